@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// hyperfocal: depth of field for rendered pictures, on the CPU.
+//
+// Give it a colour picture and its depth, get back what a lens would have seen. Typical use:
+//
+//     struct hf_context *c;
+//     struct hf_params p = hf_default_params;      // copy the defaults, change what you need
+//     p.focus_distance = 20.0f;
+//     p.range = 10.0f;
+//     if (hf_open(&c, NULL) == HF_OK)
+//         err = hf_render(c, &picture, &picture, &depth, &p);      // in place
+//     hf_close(&c);
+//
+// Words. "CoC" is the circle of confusion. Its radius is given in full-resolution pixels, negative in front of
+// the plane in focus (near), positive behind it (far). Depth is view depth unless said otherwise: positive distance
+// along the camera axis, in scene units. Pixel centres lie at +0.5. Colours are linear and premultiplied by alpha.
+// "Chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2018, the source of the default
+// engine and of its names.
+//
+// A context may be used by one thread at a time; any number of contexts may be used at once. Functions return
+// HF_OK (0) or a negative enum hf_error; none of them prints, exits or aborts.
+#ifndef HYPERFOCAL_H
+#define HYPERFOCAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "version.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define HF_API
+#else
+#define HF_API __attribute__((visibility("default")))
+#endif
+
+enum hf_error {
+    HF_OK = 0,
+    HF_ERR_ARG = -1,     // an argument is out of its documented range; the log names it and its value
+    HF_ERR_MEMORY = -2,  // the allocator returned NULL
+    HF_ERR_THREAD = -3,  // a thread could not be started
+    HF_ERR_ISA = -4,     // the instruction set asked for is not one of this CPU or of this build
+    HF_ERR_FOCUS = -5,   // there is no surface where focus was to be read
+};
+
+// One sentence for an error code; never NULL, also for numbers that are no code.
+HF_API const char *hf_error_string(int error);
+
+// Version of the library in use as "major.minor.patch"; compare with HF_VERSION_* of the header.
+HF_API const char *hf_version(void);
+
+// Instruction sets, lowest first. AUTO is the best one that CPU and build have, unless the environment variable
+// HYPERFOCAL_ISA holds another one's name (scalar, sse4.1, avx2, avx512, neon).
+enum hf_isa { HF_ISA_AUTO, HF_ISA_SCALAR, HF_ISA_SSE41, HF_ISA_AVX2, HF_ISA_AVX512, HF_ISA_NEON };
+
+// The command line's name for an instruction set; NULL for a number that is none.
+HF_API const char *hf_isa_name(enum hf_isa isa);
+// 1 if this CPU and this build can run it, else 0. AUTO and SCALAR always can.
+HF_API int hf_isa_available(enum hf_isa isa);
+
+enum hf_log_level { HF_LOG_ERROR, HF_LOG_WARNING, HF_LOG_INFO };
+
+// How a context is set up. All zero is the default and means: own threads, malloc, no log.
+struct hf_config {
+    // Threads to work on, counting the caller. 0 (default) means one per online processor; at most 256. With
+    // parallel_for it is the number of worker slots that the host promises never to exceed.
+    int threads;
+    // Highest instruction set to use. Default HF_ISA_AUTO. HF_ERR_ISA if not available.
+    enum hf_isa isa;
+
+    // Allocator. Both or neither; default malloc's family. alloc returns size bytes aligned to align (a power of
+    // two), or NULL. The library allocates on hf_open and on the first frame of a size, not per frame. The thread
+    // stacks and what the C library needs for threads are not taken from here.
+    void *(*alloc)(void *cookie, size_t size, size_t align);
+    void (*free)(void *cookie, void *ptr);
+    void *alloc_cookie;
+
+    // Receives one line without line break for each error, warning or note. Called on the caller's thread.
+    void (*log)(void *cookie, enum hf_log_level level, const char *message);
+    void *log_cookie;
+
+    // Size of the tiles that threads are given, half-resolution pixels: 0 (default) is what measured fastest, else
+    // 16 to 65536, tile_width a multiple of 16. Changes speed and memory, never a bit.
+    int tile_width, tile_height;
+
+    // The host's own threads. Must call fn(arg, i, worker) once for each i in [0, n), from any threads, with
+    // 0 <= worker < threads and no worker number in use twice at a time, and return when all are done. When NULL
+    // (default) the library starts threads of its own, once, in hf_open.
+    void (*parallel_for)(void *cookie, int n, void (*fn)(void *arg, int i, int worker), void *arg);
+    void *parallel_cookie;
+};
+
+struct hf_context;
+
+// Make a context. config may be NULL (defaults) and need only live until the call returns. On error *out is NULL.
+// Errors: HF_ERR_ARG, HF_ERR_MEMORY, HF_ERR_THREAD, HF_ERR_ISA.
+HF_API int hf_open(struct hf_context **out, const struct hf_config *config);
+
+// Stop the threads, free everything, set *c to NULL. c or *c may be NULL.
+HF_API void hf_close(struct hf_context **c);
+
+// What the context really uses, after AUTO and 0 have been resolved.
+HF_API enum hf_isa hf_context_isa(const struct hf_context *c);
+HF_API int hf_context_threads(const struct hf_context *c);
+
+// Layout of the pixels of an image.
+enum hf_format {
+    HF_FORMAT_RGBA32F,     // 4 floats a pixel
+    HF_FORMAT_RGB32F,      // 3 floats a pixel
+    HF_FORMAT_RGBA16F,     // 4 IEEE half floats a pixel
+    HF_FORMAT_R11G11B10F,  // one 32-bit word a pixel: R in bits 0-10, G 11-21, B 22-31; 5 exponent bits, no sign
+    HF_FORMAT_PLANAR32F,   // three or four planes of floats
+};
+
+// A picture in the caller's memory. Any stride of at least one row's bytes, or of at most minus that (bottom-up
+// pictures: data points to the top row). What lies between rows is neither read nor written.
+struct hf_image {
+    int width, height;       // pixels, 1..65536 each
+    enum hf_format format;
+    void *data[4];           // top left pixel. PLANAR32F: R, G, B, A (A may be NULL: no alpha). Others: data[0]
+    ptrdiff_t stride[4];     // bytes from one row to the next, one per plane in use
+};
+
+// What the numbers of a depth buffer mean; z is view depth. "No surface" counts as infinitely far.
+enum hf_depth_type {
+    HF_DEPTH_VIEW,          // z itself; 0, negative, >= 1e10 and +Inf: no surface
+    HF_DEPTH_RAY,           // distance along the pixel's ray: z = t / sqrt(1 + tan^2); no surface as for VIEW
+    HF_DEPTH_NDC_D3D,       // 0 at near_plane .. 1 at far_plane (also OpenGL's window depth)
+    HF_DEPTH_NDC_GL,        // -1 at near_plane .. 1 at far_plane
+    HF_DEPTH_NDC_REVERSED,  // 1 at near_plane .. 0 at far_plane: d = n(f-z)/(z(f-n)), with infinite far d = n/z
+    HF_DEPTH_INVERSE,       // 1/z; 0 or negative: no surface
+    HF_DEPTH_COC,           // signed CoC radius in full-resolution pixels, no lens or range is applied
+};
+
+// Depth of a picture, same width and height. It is never written. A NaN counts as the largest finite depth among
+// its 8 neighbours, else as no surface.
+struct hf_depth {
+    const float *data;       // top left pixel
+    ptrdiff_t stride;        // bytes from one row to the next, as for hf_image
+    enum hf_depth_type type; // default (0): HF_DEPTH_VIEW
+    // Clip planes, scene units, for NDC_*: 0 < near_plane < far_plane. far_plane may be INFINITY.
+    float near_plane, far_plane;
+    // For RAY: focal length in pixels (> 0), and the picture's optical axis in pixels from the top left corner.
+    float focal_px, center_x, center_y;
+};
+
+// The view depth at pixel (x, y) of a width x height depth buffer: what the focus commands of a viewer read.
+// For HF_DEPTH_COC there is no distance: HF_ERR_ARG. HF_ERR_FOCUS if there is no surface.
+HF_API int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z);
+
+enum hf_engine {
+    HF_ENGINE_GATHER,  // Sterna's gather over half-resolution near and far fields: nine passes
+};
+
+// How the normalised near and far CoC follow from depth.
+enum hf_model {
+    HF_MODEL_RANGE,  // focus distance F and range R: the chapter's empirical model
+    HF_MODEL_LENS,   // a thin lens: radius K * (1/P - 1/z), see the lens fields below
+};
+
+// How intermediate buffers are stored between passes.
+enum hf_storage {
+    HF_STORAGE_FLOAT,    // float32 everywhere
+    HF_STORAGE_HALF,     // float16 everywhere, the colour read and the result included; clamped to +-65504
+    HF_STORAGE_CHAPTER,  // the same with R11G11B10F truncated towards zero for colour, 8 bits rounded for CoC; alpha
+                         // stays float32
+};
+
+// How the gaps between the taps are closed (chapter 3.3.5).
+enum hf_fill {
+    HF_FILL_MAX,   // 3x3 maximum: brighter highlights than energy allows, the chapter's choice
+    HF_FILL_MEAN,  // 3x3 mean: keeps energy
+    HF_FILL_NONE,  // none; instead 144 taps, a 12x12 grid mapped to the disc (Shirley and Chiu 1997)
+};
+
+enum hf_blend {
+    HF_BLEND_LINEAR,      // CoC grows linearly between begin and end
+    HF_BLEND_SMOOTHSTEP,  // 3t^2 - 2t^3 of that
+};
+
+// Value of the fields below that are worked out from others unless given.
+#define HF_DERIVE (-1.0f)
+
+struct hf_params {
+    enum hf_engine engine;  // default HF_ENGINE_GATHER
+    enum hf_model model;    // default HF_MODEL_RANGE. Ignored for HF_DEPTH_COC.
+
+    // Distance of the plane in focus, scene units of view depth, > 0, finite. Default 10. Both models.
+    // Ignored for HF_DEPTH_COC.
+    float focus_distance;
+
+    // Range model. Distance over which sharp turns into fully blurred, on both sides of the focus: >= 0, scene
+    // units, INFINITY for no blur at all. HF_DERIVE (default): half the focus distance. Chapter 3.2.
+    float range;
+    // Strength, 0 (the input, bit for bit) to 1 (default). From 0.25 up it scales the kernel's radius; below, the
+    // kernel stays at a quarter and the result is blended with the input by 4 * strength. Chapter, listing 3.14.
+    float strength;
+    // Near blur is full up to near_begin and gone at near_end; far blur starts at far_begin and is full at
+    // far_end: scene units, >= 0, near_begin <= near_end, far_begin <= far_end. HF_DERIVE (default):
+    // max(0, F - R), F, F, F + R. Chapter, figure 3.2.
+    float near_begin, near_end, far_begin, far_end;
+
+    // Lens model: r(z) = K (1/focus_distance - 1/z), K = aperture radius in scene units * focal length in pixels,
+    // aperture radius = focal_length_mm / 1000 / (2 f_number) / world_unit_m, focal length in pixels =
+    // focal_length_mm / sensor_width_mm * display width. All > 0 and finite, but f_number may be INFINITY (no blur).
+    float f_number;         // default 2.8
+    float focal_length_mm;  // millimetres, default 50
+    float sensor_width_mm;  // millimetres, default 36
+    float world_unit_m;     // metres per scene unit, default 1
+
+    // Largest CoC radius, full-resolution pixels, 0 (the input, bit for bit) to 256. HF_DERIVE (default):
+    // 12 at 1080 lines and proportional to the display height (always 12 when faithful), the chapter's reach.
+    float max_radius;
+    // Size of the whole picture when the image given is a part of it: pixels, 0 (default): the image's own. Only
+    // scales blur: the height max_radius, the width the lens.
+    int display_width, display_height;
+    // Width of a pixel over its height, 0.1 to 10, default 1. Blur is narrower by this, counted in pixels of x.
+    float pixel_aspect;
+
+    enum hf_storage storage;  // default HF_STORAGE_FLOAT
+    // Reproduce the published demo, the flaws of its composite included. Default 0: those are mended.
+    int faithful;
+    // Same bits on every instruction set and architecture: no fused multiply-add. Default 0. Bits never depend on
+    // threads or tiles, with or without this.
+    int deterministic;
+    // Run every pass on every tile, also where the scene does not call for it. Default 0. Changes no bit.
+    int no_skip;
+
+    // Weight samples by 1 / (1 + luminance) in the gather, against fireflies: darker highlights. Default 0.
+    // B. Karis, "Tone mapping", 2013; chapter 3.4.4.
+    int karis;
+    // Scale the far kernel by each pixel's own CoC; the far fill then takes only neighbours whose CoC is within
+    // 0.25. Default 0. Chapter 3.5.
+    int per_pixel_kernel;
+    // Upsample the near field with a uniform cubic B-spline instead of bilinearly. Default 0. Chapter 3.4.6.
+    int bicubic;
+    enum hf_fill fill;    // default HF_FILL_MAX
+    enum hf_blend blend;  // default HF_BLEND_LINEAR
+    // Shape of the tap rings: 0 (default) circles, 5..9 a regular polygon with that many blades, the middle of a
+    // side on the +x axis turned by blade_rotation degrees (any finite value). T. Sousa, SIGGRAPH 2013.
+    int blades;
+    float blade_rotation;
+};
+
+// The defaults given above. Copy it, then change what you need.
+HF_API extern const struct hf_params hf_default_params;
+
+// Blur src into dst, which have the same size and may have different formats. dst may be src itself: the same
+// pointers, strides and format; any other overlap is undefined. An output without alpha drops it; an output with
+// alpha from an input without gets alpha 1 (alpha is not blurred then). A colour sample that is NaN or infinite
+// counts as the mean of the finite ones among its 8 neighbours, else 0, and is counted in the statistics. params may
+// be NULL (defaults). On error the pixels of dst are unspecified. Errors: HF_ERR_ARG, HF_ERR_MEMORY.
+HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                     const struct hf_depth *depth, const struct hf_params *params);
+
+// The passes of the gather engine, in the order and with the names of the chapter's table 3.1.
+enum hf_pass_id {
+    HF_PASS_COC,
+    HF_PASS_DOWN,
+    HF_PASS_MAX_X,
+    HF_PASS_MAX_Y,
+    HF_PASS_BLUR_X,
+    HF_PASS_BLUR_Y,
+    HF_PASS_GATHER,
+    HF_PASS_FILL,
+    HF_PASS_COMPOSITE,
+    HF_PASS_COUNT
+};
+
+// "CoC generation", "Downsample", ...; NULL for a number that is none.
+HF_API const char *hf_pass_name(enum hf_pass_id pass);
+
+// What the last hf_render of a context did.
+struct hf_stats {
+    double total_ms;                     // wall time of the call
+    double pass_ms[HF_PASS_COUNT];       // time in each pass, summed over the threads / number of threads
+    uint32_t tiles_run[HF_PASS_COUNT];   // tiles that ran the pass ...
+    uint32_t tiles_all[HF_PASS_COUNT];   // ... of how many
+    uint64_t near_pixels, sharp_pixels, far_pixels;  // pixels by their own CoC: n > 0, both 0, f > 0
+    uint64_t colour_repaired;            // colour samples (channels of pixels) that were NaN or infinite
+    uint64_t depth_repaired;             // depth samples that were NaN
+    uint64_t no_surface;                 // pixels without a surface
+    uint64_t clamped;                    // output samples outside the range of their format, and clamped to it
+    size_t memory;                       // bytes that the context holds
+    float max_radius;                    // the largest CoC radius that was used, pixels
+};
+
+// Copy the statistics of the last frame. Zeros before the first.
+HF_API void hf_get_stats(const struct hf_context *c, struct hf_stats *stats);
+
+// One intermediate buffer, for looking at and for tests: planes of floats.
+struct hf_buffer {
+    const char *name;       // coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far,
+                            // nearfill, farfill
+    int width, height;      // full or half resolution
+    int channels;           // 1..4: near and far CoC, one CoC, or R, G, B and perhaps A
+    const float *data[4];
+    ptrdiff_t stride;       // bytes from one row to the next, the same for all channels
+};
+
+// From now on call fn with every intermediate buffer of each frame, after it; NULL ends it. The frame then runs as
+// with no_skip, pass by pass over whole buffers: same bits, more time and memory. The buffers live until fn returns.
+HF_API void hf_set_dump(struct hf_context *c, void (*fn)(void *cookie, const struct hf_buffer *buffer),
+                        void *cookie);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a context holds between frames.
+#ifndef HF_CONTEXT_H
+#define HF_CONTEXT_H
+
+#include "pass.h"
+#include "pool.h"
+#include "setup.h"
+
+struct hf_worker {
+    _Alignas(HF_ALIGN) struct hf_frame frame;
+    struct hf_counts counts;
+    struct hf_counts seen;
+    int64_t ns[HF_PASS_COUNT];
+    uint32_t tiles[HF_PASS_COUNT];
+    struct hf_block scratch;
+};
+
+struct hf_context {
+    struct hf_config config;  // the caller's, pointers checked
+    struct hf_mem mem;
+    enum hf_isa isa;
+    int threads;
+    struct hf_kernels fused, exact;
+    struct hf_pool *pool;  // NULL: the host's parallel_for
+    struct hf_worker *workers;
+
+    struct hf_taps taps;
+    struct hf_block planes;   // half-resolution buffers of the whole frame
+    struct hf_block tiles;    // plan.c
+    struct hf_block joined;   // full-resolution CoC for a dump
+    struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
+    struct hf_stats stats;
+
+    void (*dump)(void *cookie, const struct hf_buffer *buffer);
+    void *dump_cookie;
+};
+
+// Run a frame whose arguments have been checked (render.c).
+int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct hf_image *dst,
+                    const struct hf_image *src, const struct hf_depth *depth, int fused);
+
+// fn(arg, i, worker) for i in [0, n), on the pool or on the host's threads.
+void hf_parallel(struct hf_context *c, int n, void (*fn)(void *arg, int i, int worker), void *arg);
+
+#endif

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which instruction sets this CPU and this build have.
+#ifndef HF_CPU_H
+#define HF_CPU_H
+
+#include "hyperfocal/hyperfocal.h"
+
+// The highest set up to `wanted` that may be used, HYPERFOCAL_ISA respected for AUTO; 0 (AUTO) if not available.
+enum hf_isa hf_cpu_choose(enum hf_isa wanted);
+// Processors this process may run on, at least 1.
+int hf_cpu_count(void);
+
+#endif

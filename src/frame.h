@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pass sees of a frame: its parameters, its buffers, the caller's images.
+//
+// Everything is processed in half-resolution lanes. A full-resolution row is kept split into its even and its odd
+// pixels, so that lane x stands for the pixels 2x and 2x + 1 and no pass ever shuffles: the quad of the downsample
+// and the four phases of the upsampling are plain vector arithmetic.
+#ifndef HF_FRAME_H
+#define HF_FRAME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "hyperfocal/hyperfocal.h"
+#include "taps.h"
+
+// Half-open, in half-resolution pixels unless said otherwise.
+struct hf_rect {
+    int x0, y0, x1, y1;
+};
+
+// The buffers of the chapter's figure 3.6.
+enum hf_buf_id {
+    HF_BUF_COC,        // full resolution: near even, near odd, far even, far odd lanes of each row
+    HF_BUF_COLOR4,     // half-resolution colour, R G B (A)
+    HF_BUF_COLORFAR4,  // half-resolution colour x far CoC
+    HF_BUF_COC4,       // half-resolution near and far CoC
+    HF_BUF_MAX_X,      // near CoC: the four steps of its outward blur
+    HF_BUF_MAX,
+    HF_BUF_BLUR_X,
+    HF_BUF_BLUR,
+    HF_BUF_NEAR,  // fields: colour
+    HF_BUF_FAR,
+    HF_BUF_NEAR_FILL,
+    HF_BUF_FAR_FILL,
+    HF_BUF_SUM,          // inside the gather: sums of weights, near and far
+    HF_BUF_WEIGHT,       // with Karis average: w and far CoC x w
+    HF_BUF_COLORW4,      // colour x w
+    HF_BUF_COLORFARW4,   // colour x far CoC x w
+    HF_BUF_COUNT
+};
+
+// Up to four planes of floats. ch[c] is where pixel (0, 0) of the frame would be; what is allocated is a window of
+// the frame, perhaps with a border around it.
+struct hf_buf {
+    float *ch[4];
+    ptrdiff_t stride;  // floats
+};
+
+// How a depth sample d becomes the variable v in which CoC is linear (setup.c).
+enum hf_depth_form {
+    HF_FORM_Z,    // d is z
+    HF_FORM_RAY,  // d is distance along the ray
+    HF_FORM_IZ,   // 1/z = iz_a + iz_b * (e_a + e_b * d)
+    HF_FORM_COC,  // d is the signed radius
+};
+
+// Everything that follows from the arguments of a render call.
+struct hf_setup {
+    int width, height, half_width, half_height;
+    int channels;  // blurred: 3, or 4 with alpha
+    enum hf_storage storage;
+    int faithful, no_skip, karis, per_pixel_kernel, bicubic, smoothstep;
+    enum hf_fill fill;
+
+    enum hf_depth_form form;
+    int lens;                       // v is -1/z rather than z
+    float e_a, e_b, iz_a, iz_b;     // HF_FORM_IZ
+    float ray_cx, ray_cy;           // HF_FORM_RAY: optical axis, pixels
+    float ray_sx, ray_sy;           // 1 / focal length squared, per axis
+    float near_0, near_i;           // n = sat((near_0 - v) * near_i)
+    float far_0, far_i;             // f = sat((v - far_0) * far_i)
+
+    float max_radius;      // rho, full-resolution pixels
+    float blend;           // of the fields with the picture; 0: the picture is copied
+    int max_x, max_y;      // near max and blur reach to either side
+    struct hf_taps *taps;  // kernel of the gather
+};
+
+// What the passes count. One per worker.
+struct hf_counts {
+    uint64_t near_pixels, far_pixels, sharp_pixels;
+    uint64_t colour_repaired, depth_repaired, no_surface, clamped;
+};
+
+struct hf_kernels;
+
+// One worker's view of the frame.
+struct hf_frame {
+    const struct hf_setup *s;
+    const struct hf_kernels *k;
+    const struct hf_image *src, *dst;
+    const struct hf_depth *depth;
+    struct hf_buf buf[HF_BUF_COUNT];
+    int near, far;        // which fields the tile at hand needs
+    float *lines;         // scratch rows, see hf_line
+    size_t line_floats;   // length of each
+    float *work;          // scratch of the gather's row sums
+    struct hf_counts *counts;
+    struct hf_counts *seen;  // for colour read a second time: whether there was something to repair, not how often
+};
+
+enum { HF_LINES = 40 };  // scratch rows a frame has
+enum { HF_PAD = 32 };    // floats that a vector loop may write past the end of a row
+
+// Scratch row i, 64-byte aligned.
+static inline float *hf_line(const struct hf_frame *f, int i)
+{
+    return f->lines + (size_t)i * f->line_floats;
+}
+
+static inline float *hf_at(const struct hf_buf *b, int c, int x, int y)
+{
+    return b->ch[c] + (ptrdiff_t)y * b->stride + x;
+}
+
+static inline int hf_min(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static inline int hf_max(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+#endif

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chooses the kernels of an instruction set: C first, each level overwrites what it does better.
+#include "pass/pass_c.h"
+
+void hf_kernels_c(struct hf_kernels *k)
+{
+    k->pass[HF_PASS_COC] = hf_coc_c;
+    k->pass[HF_PASS_DOWN] = hf_down_c;
+    k->pass[HF_PASS_MAX_X] = hf_max_x_c;
+    k->pass[HF_PASS_MAX_Y] = hf_max_y_c;
+    k->pass[HF_PASS_BLUR_X] = hf_blur_x_c;
+    k->pass[HF_PASS_BLUR_Y] = hf_blur_y_c;
+    k->pass[HF_PASS_GATHER] = hf_gather_c;
+    k->pass[HF_PASS_FILL] = hf_fill_c;
+    k->pass[HF_PASS_COMPOSITE] = hf_composite_c;
+    k->coc_row = hf_coc_row_c;
+    hf_format_kernels_c(k);
+}
+
+void hf_kernels_init(struct hf_kernels *k, enum hf_isa isa, int fused)
+{
+    hf_kernels_c(k);
+    (void)isa;
+    (void)fused;
+#if HF_SIMD && HF_X86
+    if (isa >= HF_ISA_SSE41 && isa <= HF_ISA_AVX512)
+        hf_kernels_sse41(k);
+    if (isa >= HF_ISA_AVX2 && isa <= HF_ISA_AVX512)
+        hf_kernels_avx2(k, fused);
+    if (isa == HF_ISA_AVX512)
+        hf_kernels_avx512(k, fused);
+#elif HF_SIMD && HF_ARM
+    if (isa == HF_ISA_NEON)
+        hf_kernels_neon(k, fused);
+#endif
+}

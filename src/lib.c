@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The public functions: check arguments, own memory, touch no pixel.
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "context.h"
+#include "cpu.h"
+
+enum { MAX_THREADS = 256 };
+
+#define STRING_(x) #x
+#define STRING(x) STRING_(x)
+
+const char *hf_version(void)
+{
+    return STRING(HF_VERSION_MAJOR) "." STRING(HF_VERSION_MINOR) "." STRING(HF_VERSION_PATCH);
+}
+
+const char *hf_error_string(int error)
+{
+    switch (error) {
+    case HF_OK:
+        return "no error";
+    case HF_ERR_ARG:
+        return "an argument is out of its range";
+    case HF_ERR_MEMORY:
+        return "out of memory";
+    case HF_ERR_THREAD:
+        return "a thread could not be started";
+    case HF_ERR_ISA:
+        return "the instruction set is not available on this CPU or in this build";
+    case HF_ERR_FOCUS:
+        return "there is no surface where focus was to be read";
+    default:
+        return "unknown error";
+    }
+}
+
+__attribute__((format(printf, 3, 4))) static void say(const struct hf_config *config, enum hf_log_level level,
+                                                      const char *format, ...)
+{
+    if (!config->log)
+        return;
+    char message[HF_MESSAGE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, sizeof message, format, args);
+    va_end(args);
+    config->log(config->log_cookie, level, message);
+}
+
+static int check_config(const struct hf_config *g)
+{
+    if (g->threads < 0 || g->threads > MAX_THREADS) {
+        say(g, HF_LOG_ERROR, "config.threads is %d; it must be 0 to %d", g->threads, MAX_THREADS);
+        return HF_ERR_ARG;
+    }
+    if (!g->alloc != !g->free) {
+        say(g, HF_LOG_ERROR, "config.%s is NULL; give alloc and free, or neither", g->alloc ? "free" : "alloc");
+        return HF_ERR_ARG;
+    }
+    if (g->tile_width < 0 || g->tile_width > 65536 || g->tile_width % 16 || g->tile_height < 0 ||
+        g->tile_height > 65536 || (g->tile_height && g->tile_height < 16)) {
+        say(g, HF_LOG_ERROR, "config.tile_width is %d and tile_height %d; they must be 0 or 16 to 65536, the width "
+            "a multiple of 16", g->tile_width, g->tile_height);
+        return HF_ERR_ARG;
+    }
+    if (!hf_isa_name(g->isa)) {
+        say(g, HF_LOG_ERROR, "config.isa is %d, which is none", (int)g->isa);
+        return HF_ERR_ARG;
+    }
+    return HF_OK;
+}
+
+int hf_open(struct hf_context **out, const struct hf_config *config)
+{
+    static const struct hf_config defaults;
+    const struct hf_config *g = config ? config : &defaults;
+    if (!out)
+        return HF_ERR_ARG;
+    *out = NULL;
+    int err = check_config(g);
+    if (err)
+        return err;
+    const enum hf_isa isa = hf_cpu_choose(g->isa);
+    if (isa == HF_ISA_AUTO) {
+        say(g, HF_LOG_ERROR, "the instruction set asked for, %s, is not available here",
+            g->isa ? hf_isa_name(g->isa) : "by HYPERFOCAL_ISA");
+        return HF_ERR_ISA;
+    }
+    const struct hf_mem mem = g->alloc ? (struct hf_mem){g->alloc, g->free, g->alloc_cookie} : hf_mem_default;
+    struct hf_context *c = mem.alloc(mem.cookie, sizeof *c, HF_ALIGN);
+    if (!c)
+        return HF_ERR_MEMORY;
+    memset(c, 0, sizeof *c);
+    c->config = *g;
+    c->mem = mem;
+    c->isa = isa;
+    c->threads = g->threads ? g->threads : hf_min(hf_cpu_count(), MAX_THREADS);
+    hf_kernels_init(&c->fused, isa, 1);
+    hf_kernels_init(&c->exact, isa, 0);
+    const size_t bytes = (size_t)c->threads * sizeof *c->workers;
+    c->workers = mem.alloc(mem.cookie, bytes, HF_ALIGN);
+    if (!c->workers) {
+        err = HF_ERR_MEMORY;
+        goto error;
+    }
+    memset(c->workers, 0, bytes);
+    if (!g->parallel_for && (err = hf_pool_open(&c->pool, c->threads, &c->mem)))
+        goto error;
+    *out = c;
+    return HF_OK;
+error:
+    say(g, HF_LOG_ERROR, "the context could not be made: %s", hf_error_string(err));
+    hf_close(&c);
+    return err;
+}
+
+void hf_close(struct hf_context **context)
+{
+    struct hf_context *c = context ? *context : NULL;
+    if (!c)
+        return;
+    *context = NULL;
+    hf_pool_close(&c->pool);
+    for (int i = 0; c->workers && i < c->threads; i++)
+        hf_block_free(&c->workers[i].scratch, &c->mem);
+    if (c->workers)
+        c->mem.free(c->mem.cookie, c->workers);
+    hf_taps_free(&c->taps, &c->mem);
+    hf_block_free(&c->planes, &c->mem);
+    hf_block_free(&c->tiles, &c->mem);
+    hf_block_free(&c->joined, &c->mem);
+    hf_block_free(&c->repairs, &c->mem);
+    const struct hf_mem mem = c->mem;
+    mem.free(mem.cookie, c);
+}
+
+enum hf_isa hf_context_isa(const struct hf_context *c)
+{
+    return c ? c->isa : HF_ISA_AUTO;
+}
+
+int hf_context_threads(const struct hf_context *c)
+{
+    return c ? c->threads : 0;
+}
+
+int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z)
+{
+    char message[HF_MESSAGE];
+    if (!z || width < 1 || height < 1 || hf_check_depth(depth, width, message) || x < 0 || y < 0 || x >= width ||
+        y >= height || depth->type == HF_DEPTH_COC)
+        return HF_ERR_ARG;
+    struct hf_setup s = {0};
+    float d;
+    hf_setup_depth(&s, depth, 1);
+    memcpy(&d, (const uint8_t *)depth->data + (ptrdiff_t)y * depth->stride + (size_t)x * 4, 4);
+    *z = hf_depth_decode(&s, d, x, y);
+    return *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
+}
+
+int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+              const struct hf_depth *depth, const struct hf_params *params)
+{
+    if (!c)
+        return HF_ERR_ARG;
+    const struct hf_params *p = params ? params : &hf_default_params;
+    char message[HF_MESSAGE];
+    int err = hf_setup_check(dst, src, depth, p, message);
+    if (err) {
+        say(&c->config, HF_LOG_ERROR, "%s", message);
+        return err;
+    }
+    struct hf_setup s;
+    err = hf_setup_make(&s, src, dst, depth, p, &c->taps, &c->mem);
+    if (c->dump)
+        s.no_skip = 1;
+    if (!err)
+        err = hf_render_frame(c, &s, dst, src, depth, !p->deterministic);
+    if (err)
+        say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
+    return err;
+}
+
+void hf_get_stats(const struct hf_context *c, struct hf_stats *stats)
+{
+    if (stats)
+        *stats = c ? c->stats : (struct hf_stats){0};
+}
+
+void hf_set_dump(struct hf_context *c, void (*fn)(void *cookie, const struct hf_buffer *buffer), void *cookie)
+{
+    if (!c)
+        return;
+    c->dump = fn;
+    c->dump_cookie = cookie;
+}

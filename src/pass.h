@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of passes and the tables of kernels.
+#ifndef HF_PASS_H
+#define HF_PASS_H
+
+#include "format.h"
+#include "frame.h"
+
+// How far around a pixel a pass reads its .around buffers; hf_pass_halo gives the numbers.
+enum hf_halo {
+    HF_HALO_NONE,
+    HF_HALO_3X3,      // one pixel
+    HF_HALO_MAX_X,    // reach of the near max and blur, along one axis
+    HF_HALO_MAX_Y,
+    HF_HALO_TAPS,     // reach of the gather
+    HF_HALO_UPSAMPLE, // one pixel, two for the cubic
+};
+
+#define HF_BIT(buf) (1u << HF_BUF_##buf)
+
+struct hf_pass {
+    const char *name;
+    unsigned reads;   // buffers read at the pixel itself
+    unsigned around;  // buffers read in its halo
+    unsigned writes;
+    enum hf_halo halo;
+    int sweep;        // 1: over the input, 2: per tile, from half-resolution buffers to the output
+};
+
+extern const struct hf_pass hf_passes[HF_PASS_COUNT];
+
+struct hf_reach {
+    int x, y;
+};
+struct hf_reach hf_pass_halo(const struct hf_setup *s, enum hf_halo halo);
+
+// Computes r of the pass's output buffers, nothing else: r lies inside the frame, in half-resolution pixels. May
+// write up to HF_PAD floats past the end of each row of them.
+typedef void hf_kernel(const struct hf_frame *f, struct hf_rect r);
+
+// Rows of an image: n lanes from lane x of row y (that is 2n pixels from 2x), split into even and odd pixels. The odd
+// pixel of the last lane of an odd width repeats the even one. even and odd are 64-byte aligned and have HF_PAD floats
+// to spare. Returns non-zero if a sample is not finite (then repair.c has to look at the row). A missing alpha is left
+// alone.
+typedef int hf_load_row(const struct hf_image *image, int x, int y, int n, float *const even[4],
+                        float *const odd[4]);
+// The other way. even and odd may hold anything past their n lanes. even[3] NULL: alpha 1 if the format has one.
+// Returns the number of samples that had to be clamped.
+typedef uint64_t hf_store_row(const struct hf_image *image, int x, int y, int n, const float *const even[4],
+                              const float *const odd[4]);
+
+// Is a run of n words finite: floats, halves, R11G11B10F words?
+typedef int hf_finite(const void *words, size_t n);
+
+// Near and far CoC of the n lanes from lane x of full-resolution row y, into four rows: near even, near odd, far even,
+// far odd. counts may be NULL.
+typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
+
+// Round a row of n floats to what a storage holds, in place; may touch HF_PAD floats more.
+typedef void hf_round_row(float *v, int n);
+typedef void hf_round_rgb(float *r, float *g, float *b, int n);
+
+struct hf_kernels {
+    hf_kernel *pass[HF_PASS_COUNT];
+    hf_coc_row *coc_row;
+    hf_load_row *load[HF_FORMAT_COUNT];
+    hf_store_row *store[HF_FORMAT_COUNT];
+    hf_finite *finite_f32, *finite_f16, *finite_r11;
+    hf_round_rgb *truncate_r11;  // R11G11B10F, towards zero
+    hf_round_row *round_half;    // to nearest even, clamped to +-65504
+};
+
+// Complete: every kernel in C.
+void hf_kernels_c(struct hf_kernels *k);
+void hf_format_kernels_c(struct hf_kernels *k);  // its rows of images (format.c)
+// Overwrite with vector kernels. fused: with fused multiply-add where the instruction set has it; without, the bits
+// are those of the C.
+void hf_kernels_sse41(struct hf_kernels *k);
+void hf_kernels_avx2(struct hf_kernels *k, int fused);
+void hf_kernels_avx512(struct hf_kernels *k, int fused);
+void hf_kernels_neon(struct hf_kernels *k, int fused);
+// The table for an instruction set.
+void hf_kernels_init(struct hf_kernels *k, enum hf_isa isa, int fused);
+
+// Load a row of the frame's colour: loaded, repaired where not finite, in chapter storage truncated.
+// Returns nothing; repaired samples are counted in counts when it is not NULL.
+void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                    struct hf_counts *counts);
+
+#endif

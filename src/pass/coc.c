@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CoC generation: normalised near and far circle of confusion of every pixel, from depth.
+#include <math.h>
+
+#include "pass/pass_c.h"
+
+// 0..1; NaN becomes 0.
+static float saturate(float v)
+{
+    v = v > 0 ? v : 0;
+    return v < 1 ? v : 1;
+}
+
+static float shape(const struct hf_setup *s, float t)
+{
+    return s->smoothstep ? (t * t) * (3 - 2 * t) : t;
+}
+
+// The rounding of a storage's CoC.
+float hf_round_coc(enum hf_storage storage, float t)
+{
+    if (storage == HF_STORAGE_CHAPTER)
+        return floorf(t * 255 + 0.5f) * (1 / 255.0f);
+    return storage == HF_STORAGE_HALF ? hf_half_unpack(hf_half_pack(t)) : t;
+}
+
+// A depth sample as the caller gave it.
+static float depth_at(const struct hf_frame *f, int x, int y)
+{
+    float d;
+    memcpy(&d, (const uint8_t *)f->depth->data + (ptrdiff_t)y * f->depth->stride + (size_t)x * 4, 4);
+    return d;
+}
+
+// The largest finite depth among the 8 neighbours, else no surface.
+static float repair_depth(const struct hf_frame *f, int x, int y)
+{
+    const struct hf_setup *s = f->s;
+    float best = -INFINITY;
+    for (int v = hf_max(y - 1, 0); v <= hf_min(y + 1, s->height - 1); v++)
+        for (int u = hf_max(x - 1, 0); u <= hf_min(x + 1, s->width - 1); u++) {
+            const float z = hf_depth_decode(s, depth_at(f, u, v), u, v);
+            if (hf_is_finite(z) && z > best)
+                best = z;
+        }
+    return best > -INFINITY ? best : INFINITY;
+}
+
+// Near and far CoC of one pixel.
+void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts)
+{
+    const struct hf_setup *s = f->s;
+    float z = hf_depth_decode(s, depth_at(f, x, y), x, y);
+    if (z != z) {
+        z = repair_depth(f, x, y);
+        if (counts)
+            counts->depth_repaired++;
+    }
+    if (counts)
+        counts->no_surface += z >= 1e10f;
+    const float v = s->lens ? -1 / z : z;
+    *n = hf_round_coc(s->storage, shape(s, saturate((s->near_0 - v) * s->near_i)));
+    *far = hf_round_coc(s->storage, shape(s, saturate((v - s->far_0) * s->far_i)));
+}
+
+static void count(struct hf_counts *c, float n, float f)
+{
+    c->near_pixels += n > 0;
+    c->far_pixels += f > 0;
+    c->sharp_pixels += !(n > 0 || f > 0);
+}
+
+void hf_coc_row_c(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts)
+{
+    for (int i = 0; i < n; i++) {
+        const int px = 2 * (x + i);
+        hf_coc_pixel(f, px, y, &out[0][i], &out[2][i], counts);
+        if (counts)
+            count(counts, out[0][i], out[2][i]);
+        if (px + 1 < f->s->width) {
+            hf_coc_pixel(f, px + 1, y, &out[1][i], &out[3][i], counts);
+            if (counts)
+                count(counts, out[1][i], out[3][i]);
+        } else {
+            out[1][i] = out[0][i];
+            out[3][i] = out[2][i];
+        }
+    }
+}
+
+// r in half-resolution pixels: the rows 2y and 2y + 1 of each.
+void hf_coc_c(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_buf *b = &f->buf[HF_BUF_COC];
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+        float *const out[4] = {hf_at(b, 0, r.x0, y), hf_at(b, 1, r.x0, y), hf_at(b, 2, r.x0, y),
+                               hf_at(b, 3, r.x0, y)};
+        f->k->coc_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
+    }
+}

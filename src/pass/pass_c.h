@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the passes in plain C share. They are the specification: a vector version gives the same bits, or with fused
+// multiply-add less rounding. So the order of operations here is deliberate where it looks odd; the usual reason is
+// that a mirrored picture must give the mirrored result, bit for bit.
+#ifndef HF_PASS_C_H
+#define HF_PASS_C_H
+
+#include "pass.h"
+#include "setup.h"
+
+hf_kernel hf_coc_c, hf_down_c, hf_max_x_c, hf_max_y_c, hf_blur_x_c, hf_blur_y_c, hf_gather_c, hf_fill_c, hf_composite_c;
+hf_coc_row hf_coc_row_c;
+
+void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts);
+float hf_round_coc(enum hf_storage storage, float t);
+
+// Round n colours to what the storage holds when a pass writes them: channel 3 is alpha.
+static inline void hf_store_rgb(const struct hf_frame *f, float *const ch[4], int n)
+{
+    if (f->s->storage == HF_STORAGE_CHAPTER)
+        f->k->truncate_r11(ch[0], ch[1], ch[2], n);
+    else if (f->s->storage == HF_STORAGE_HALF)
+        for (int c = 0; c < f->s->channels; c++)
+            f->k->round_half(ch[c], n);
+}
+
+// Row y of a buffer's channels, from x.
+static inline void hf_row(const struct hf_buf *b, int channels, int x, int y, float *ch[4])
+{
+    for (int c = 0; c < channels; c++)
+        ch[c] = hf_at(b, c, x, y);
+}
+
+// a + t (b - a), and a's own bits for t = 0: what is not blended must not change -0.0 or overflow.
+static inline float hf_lerp(float a, float b, float t)
+{
+    return t == 0 ? a : a + t * (b - a);
+}
+
+#endif

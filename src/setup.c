@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "setup.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "format.h"
+
+const struct hf_params hf_default_params = {
+    .engine = HF_ENGINE_GATHER,
+    .model = HF_MODEL_RANGE,
+    .focus_distance = 10,
+    .range = HF_DERIVE,
+    .strength = 1,
+    .near_begin = HF_DERIVE,
+    .near_end = HF_DERIVE,
+    .far_begin = HF_DERIVE,
+    .far_end = HF_DERIVE,
+    .f_number = 2.8f,
+    .focal_length_mm = 50,
+    .sensor_width_mm = 36,
+    .world_unit_m = 1,
+    .max_radius = HF_DERIVE,
+    .pixel_aspect = 1,
+};
+
+enum { MAX_SIZE = 65536 };
+static const float MAX_RADIUS = 256;
+
+__attribute__((format(printf, 2, 3))) static int bad(char message[HF_MESSAGE], const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(message, HF_MESSAGE, format, args);
+    va_end(args);
+    return HF_ERR_ARG;
+}
+
+static int check_image(const struct hf_image *m, const char *name, char message[HF_MESSAGE])
+{
+    if (!m)
+        return bad(message, "%s is NULL", name);
+    if (m->width < 1 || m->height < 1 || m->width > MAX_SIZE || m->height > MAX_SIZE)
+        return bad(message, "%s is %d x %d pixels; each side must be 1 to %d", name, m->width, m->height, MAX_SIZE);
+    if ((unsigned)m->format >= HF_FORMAT_COUNT)
+        return bad(message, "%s.format is %d, which is no format", name, (int)m->format);
+    for (int i = 0; i < hf_plane_count(m); i++) {
+        if (!m->data[i])
+            return bad(message, "%s.data[%d] is NULL", name, i);
+        if ((size_t)llabs((long long)m->stride[i]) < hf_row_bytes(m->format, m->width) && m->height > 1)
+            return bad(message, "%s.stride[%d] is %lld bytes, less than the %zu of a row", name, i,
+                       (long long)m->stride[i], hf_row_bytes(m->format, m->width));
+    }
+    return HF_OK;
+}
+
+int hf_check_depth(const struct hf_depth *d, int width, char message[HF_MESSAGE])
+{
+    if (!d)
+        return bad(message, "depth is NULL");
+    if (!d->data)
+        return bad(message, "depth.data is NULL");
+    if ((size_t)llabs((long long)d->stride) < (size_t)width * 4)
+        return bad(message, "depth.stride is %lld bytes, less than the %zu of a row", (long long)d->stride,
+                   (size_t)width * 4);
+    if ((unsigned)d->type > HF_DEPTH_COC)
+        return bad(message, "depth.type is %d, which is no depth type", (int)d->type);
+    const int ndc = d->type == HF_DEPTH_NDC_D3D || d->type == HF_DEPTH_NDC_GL || d->type == HF_DEPTH_NDC_REVERSED;
+    if (ndc && !(d->near_plane > 0 && d->near_plane < d->far_plane && hf_is_finite(d->near_plane)))
+        return bad(message, "depth.near_plane is %g and far_plane %g; they must be 0 < near < far", d->near_plane,
+                   d->far_plane);
+    if (d->type == HF_DEPTH_RAY &&
+        !(d->focal_px > 0 && hf_is_finite(d->focal_px) && hf_is_finite(d->center_x) && hf_is_finite(d->center_y)))
+        return bad(message, "depth.focal_px is %g and the centre (%g, %g); focal_px must be > 0, all finite",
+                   d->focal_px, d->center_x, d->center_y);
+    return HF_OK;
+}
+
+static float derive(float given, float otherwise)
+{
+    return given == HF_DERIVE ? otherwise : given;
+}
+
+// The range model's four distances.
+struct band {
+    float nb, ne, fb, fe;
+};
+
+static struct band band_of(const struct hf_params *p)
+{
+    const float focus = p->focus_distance, range = derive(p->range, focus / 2);
+    return (struct band){
+        derive(p->near_begin, focus - range > 0 ? focus - range : 0), derive(p->near_end, focus),
+        derive(p->far_begin, focus), derive(p->far_end, focus + range)};
+}
+
+static int check_range_model(const struct hf_params *p, char message[HF_MESSAGE])
+{
+    if (p->range != HF_DERIVE && !(p->range >= 0))
+        return bad(message, "range is %g; it must be >= 0", p->range);
+    if (!(p->strength >= 0 && p->strength <= 1))
+        return bad(message, "strength is %g; it must be 0 to 1", p->strength);
+    const struct band b = band_of(p);
+    if (!(b.nb >= 0 && b.nb <= b.ne && b.ne < INFINITY))
+        return bad(message, "near_begin is %g and near_end %g; they must be 0 <= begin <= end, finite", b.nb, b.ne);
+    if (!(b.fb >= 0 && b.fb <= b.fe && b.fb < INFINITY))
+        return bad(message, "far_begin is %g and far_end %g; they must be 0 <= begin <= end", b.fb, b.fe);
+    return HF_OK;
+}
+
+static int check_lens(const struct hf_params *p, char message[HF_MESSAGE])
+{
+    const float values[] = {p->focal_length_mm, p->sensor_width_mm, p->world_unit_m};
+    const char *const names[] = {"focal_length_mm", "sensor_width_mm", "world_unit_m"};
+    if (!(p->f_number > 0))
+        return bad(message, "f_number is %g; it must be > 0", p->f_number);
+    for (int i = 0; i < 3; i++)
+        if (!(values[i] > 0 && hf_is_finite(values[i])))
+            return bad(message, "%s is %g; it must be > 0 and finite", names[i], values[i]);
+    return HF_OK;
+}
+
+static int check_options(const struct hf_params *p, char message[HF_MESSAGE])
+{
+    if (p->max_radius != HF_DERIVE && !(p->max_radius >= 0 && p->max_radius <= MAX_RADIUS))
+        return bad(message, "max_radius is %g; it must be 0 to %g", p->max_radius, MAX_RADIUS);
+    if (p->display_width < 0 || p->display_height < 0)
+        return bad(message, "the display size is %d x %d; it must not be negative", p->display_width,
+                   p->display_height);
+    if (!(p->pixel_aspect >= 0.1f && p->pixel_aspect <= 10))
+        return bad(message, "pixel_aspect is %g; it must be 0.1 to 10", p->pixel_aspect);
+    if ((unsigned)p->storage > HF_STORAGE_CHAPTER)
+        return bad(message, "storage is %d, which is none", (int)p->storage);
+    if ((unsigned)p->fill > HF_FILL_NONE)
+        return bad(message, "fill is %d, which is none", (int)p->fill);
+    if ((unsigned)p->blend > HF_BLEND_SMOOTHSTEP)
+        return bad(message, "blend is %d, which is none", (int)p->blend);
+    if (p->blades != 0 && (p->blades < 5 || p->blades > 9))
+        return bad(message, "blades is %d; it must be 0 or 5 to 9", p->blades);
+    if (!hf_is_finite(p->blade_rotation))
+        return bad(message, "blade_rotation is %g; it must be finite", p->blade_rotation);
+    return HF_OK;
+}
+
+int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
+                   const struct hf_params *p, char message[HF_MESSAGE])
+{
+    if (check_image(src, "src", message) || check_image(dst, "dst", message) ||
+        hf_check_depth(depth, src->width, message))
+        return HF_ERR_ARG;
+    if (src->width != dst->width || src->height != dst->height)
+        return bad(message, "dst is %d x %d pixels and src %d x %d; they must be the same", dst->width, dst->height,
+                   src->width, src->height);
+    if (p->engine != HF_ENGINE_GATHER)
+        return bad(message, "engine is %d, which is none", (int)p->engine);
+    if ((unsigned)p->model > HF_MODEL_LENS)
+        return bad(message, "model is %d, which is none", (int)p->model);
+    if (depth->type != HF_DEPTH_COC) {
+        if (!(p->focus_distance > 0 && hf_is_finite(p->focus_distance)))
+            return bad(message, "focus_distance is %g; it must be > 0 and finite", p->focus_distance);
+        const int err = p->model == HF_MODEL_LENS ? check_lens(p, message) : check_range_model(p, message);
+        if (err)
+            return err;
+    }
+    return check_options(p, message);
+}
+
+void hf_setup_depth(struct hf_setup *s, const struct hf_depth *d, float pixel_aspect)
+{
+    const double n = d->near_plane, f = d->far_plane;
+    switch (d->type) {
+    case HF_DEPTH_VIEW:
+        s->form = HF_FORM_Z;
+        break;
+    case HF_DEPTH_RAY:
+        s->form = HF_FORM_RAY;
+        s->ray_cx = d->center_x;
+        s->ray_cy = d->center_y;
+        s->ray_sx = (float)(1 / ((double)d->focal_px * d->focal_px));
+        s->ray_sy = (float)(1 / ((double)d->focal_px * d->focal_px * pixel_aspect * pixel_aspect));
+        break;
+    case HF_DEPTH_NDC_D3D:
+    case HF_DEPTH_NDC_GL:
+        // 1/z = 1/f + e (1/n - 1/f) with e = 1 - d: that difference is exact where depth is most crowded, while
+        // 1/n - d (1/n - 1/f) would cancel there.
+        s->form = HF_FORM_IZ;
+        s->e_a = d->type == HF_DEPTH_NDC_GL ? 0.5f : 1;
+        s->e_b = d->type == HF_DEPTH_NDC_GL ? -0.5f : -1;
+        s->iz_a = (float)(1 / f);
+        s->iz_b = (float)(1 / n - 1 / f);
+        break;
+    case HF_DEPTH_NDC_REVERSED:
+        s->form = HF_FORM_IZ;
+        s->e_a = 0;
+        s->e_b = 1;
+        s->iz_a = (float)(1 / f);
+        s->iz_b = (float)(1 / n - 1 / f);
+        break;
+    case HF_DEPTH_INVERSE:
+        s->form = HF_FORM_IZ;
+        s->e_a = s->iz_a = 0;
+        s->e_b = s->iz_b = 1;
+        break;
+    case HF_DEPTH_COC:
+        s->form = HF_FORM_COC;
+        break;
+    }
+}
+
+float hf_depth_decode(const struct hf_setup *s, float d, int x, int y)
+{
+    if (d != d)
+        return d;
+    switch (s->form) {
+    case HF_FORM_COC:
+        return d;
+    case HF_FORM_IZ: {
+        const float iz = s->iz_a + s->iz_b * (s->e_a + s->e_b * d);
+        return iz > 1e-10f ? 1 / iz : INFINITY;
+    }
+    case HF_FORM_RAY: {
+        const float dx = (float)x + 0.5f - s->ray_cx, dy = (float)y + 0.5f - s->ray_cy;
+        const float t = d > 0 && d < 1e10f ? d : INFINITY;
+        return t / sqrtf(1 + (dx * dx * s->ray_sx + dy * dy * s->ray_sy));
+    }
+    case HF_FORM_Z:
+    default:
+        return d > 0 && d < 1e10f ? d : INFINITY;
+    }
+}
+
+// Slope of a CoC that grows from 0 to 1 over a distance. A zero distance is a step, which the steepest finite slope
+// is for every pair of different floats; an infinite one is no CoC at all.
+static float slope(float distance)
+{
+    const float i = 1 / distance;
+    return i < FLT_MAX ? i : FLT_MAX;
+}
+
+static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
+{
+    if (s->form == HF_FORM_COC) {
+        s->near_i = s->far_i = slope(s->max_radius);
+        return;
+    }
+    if (p->model == HF_MODEL_RANGE) {
+        const struct band b = band_of(p);
+        s->near_0 = b.ne;
+        s->near_i = slope(b.ne - b.nb);
+        s->far_0 = b.fb;
+        s->far_i = slope(b.fe - b.fb);
+        if (p->range == INFINITY && p->near_begin == HF_DERIVE)
+            s->near_i = 0;  // the near blur would begin at 0 - and stay finite - otherwise
+        return;
+    }
+    // r = K (1/P - 1/z); v = -1/z, so n = (-1/P - v) K / rho and f = (v - -1/P) K / rho.
+    const double display_width = p->display_width ? p->display_width : s->width;
+    const double aperture = p->focal_length_mm / 1000.0 / (2.0 * p->f_number) / p->world_unit_m;
+    const double k = aperture * ((double)p->focal_length_mm / p->sensor_width_mm * display_width);
+    s->lens = 1;
+    s->near_0 = s->far_0 = -1 / p->focus_distance;
+    s->near_i = s->far_i = s->max_radius > 0 ? (float)fmin(k / s->max_radius, FLT_MAX) : 0;
+}
+
+int hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
+                  const struct hf_depth *depth, const struct hf_params *p, struct hf_taps *taps,
+                  const struct hf_mem *mem)
+{
+    *s = (struct hf_setup){
+        .width = src->width, .height = src->height,
+        .half_width = (src->width + 1) / 2, .half_height = (src->height + 1) / 2,
+        .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
+        .storage = p->storage, .faithful = p->faithful, .no_skip = p->no_skip, .karis = p->karis,
+        .per_pixel_kernel = p->per_pixel_kernel, .bicubic = p->bicubic, .fill = p->fill,
+        .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP, .taps = taps};
+    const float display_height = (float)(p->display_height ? p->display_height : s->height);
+    s->max_radius = derive(p->max_radius, p->faithful ? 12 : fminf(12 * display_height / 1080, MAX_RADIUS));
+    hf_setup_depth(s, depth, p->pixel_aspect);
+    set_coc_model(s, p);
+    const int range_model = s->form != HF_FORM_COC && p->model == HF_MODEL_RANGE;
+    const float strength = range_model ? p->strength : 1;
+    s->blend = strength >= 0.25f ? 1 : 4 * strength;
+    if (s->max_radius == 0 || (s->near_i == 0 && s->far_i == 0)) {
+        s->blend = 0;
+        return HF_OK;
+    }
+    const float h = s->max_radius / 2;
+    s->max_x = (int)ceilf(h / p->pixel_aspect);
+    s->max_y = (int)ceilf(h);
+    const struct hf_taps_key key = {.radius = h, .scale = strength >= 0.25f ? strength : 0.25f,
+                                    .pixel_aspect = p->pixel_aspect, .blades = p->blades,
+                                    .rotation = p->blades ? p->blade_rotation : 0,
+                                    .dense = p->fill == HF_FILL_NONE};
+    return hf_taps_build(taps, &key, mem);
+}

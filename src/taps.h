@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gather's tap set, and its exact collapse onto the half-resolution lattice.
+#ifndef HF_TAPS_H
+#define HF_TAPS_H
+
+#include "hyperfocal/hyperfocal.h"
+#include "mem.h"
+
+// All bilinear taps have fixed offsets, so together they are one convolution with fixed weights on whole pixels. The
+// 49 taps of the chapter touch 129 lattice points at kernel scale 1, 36 of them distinct by mirror symmetry.
+struct hf_taps {
+    int count;             // taps, the centre included
+    const float *dx, *dy;  // their offsets in half-resolution pixels, kernel scale included; the centre comes first
+
+    int rx, ry;       // lattice reach: offsets -rx..rx, -ry..ry
+    int symmetric;    // weights mirror in x and in y
+    int row;          // floats from one row of weights to the next
+    // Weights, each tap 1/count, summing to 1. symmetric: weight[k * row + j] for |dy| = k, |dx| = j.
+    // Otherwise weight[(dy + ry) * row + dx + rx].
+    const float *weight;
+    // Non-zero part of each row k: columns below width[k] (symmetric), of |dy| = k; else of dy + ry.
+    const int *width;
+
+    struct hf_block block;  // owns all of the above
+    float key[8];           // parameters it was built from
+};
+
+// What a tap set follows from.
+struct hf_taps_key {
+    float radius;        // h: reach of the outermost ring, half-resolution pixels, > 0
+    float scale;         // kernel scale, 0.25..1
+    float pixel_aspect;  // x offsets are divided by it
+    int blades;          // 0: circles
+    float rotation;      // degrees
+    int dense;           // the 144-tap grid instead of rings
+};
+
+// (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
+int hf_taps_build(struct hf_taps *taps, const struct hf_taps_key *key, const struct hf_mem *mem);
+void hf_taps_free(struct hf_taps *taps, const struct hf_mem *mem);
+
+#endif
