@@ -20,17 +20,18 @@ void hf_kernels_c(struct hf_kernels *k)
 void hf_kernels_init(struct hf_kernels *k, enum hf_isa isa, int fused)
 {
     hf_kernels_c(k);
-    (void)isa;
-    (void)fused;
 #if HF_SIMD && HF_X86
-    if (isa >= HF_ISA_SSE41 && isa <= HF_ISA_AVX512)
-        hf_kernels_sse41(k);
-    if (isa >= HF_ISA_AVX2 && isa <= HF_ISA_AVX512)
-        hf_kernels_avx2(k, fused);
+    if (isa == HF_ISA_SSE41)
+        hf_kernels_sse41_exact(k);
+    if (isa == HF_ISA_AVX2)
+        (fused ? hf_kernels_avx2_fused : hf_kernels_avx2_exact)(k);
     if (isa == HF_ISA_AVX512)
-        hf_kernels_avx512(k, fused);
+        (fused ? hf_kernels_avx512_fused : hf_kernels_avx512_exact)(k);
 #elif HF_SIMD && HF_ARM
     if (isa == HF_ISA_NEON)
-        hf_kernels_neon(k, fused);
+        (fused ? hf_kernels_neon_fused : hf_kernels_neon_exact)(k);
+#else
+    (void)isa;
+    (void)fused;
 #endif
 }

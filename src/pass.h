@@ -73,12 +73,14 @@ struct hf_kernels {
 // Complete: every kernel in C.
 void hf_kernels_c(struct hf_kernels *k);
 void hf_format_kernels_c(struct hf_kernels *k);  // its rows of images (format.c)
-// Overwrite with vector kernels. fused: with fused multiply-add where the instruction set has it; without, the bits
-// are those of the C.
-void hf_kernels_sse41(struct hf_kernels *k);
-void hf_kernels_avx2(struct hf_kernels *k, int fused);
-void hf_kernels_avx512(struct hf_kernels *k, int fused);
-void hf_kernels_neon(struct hf_kernels *k, int fused);
+// Overwrite with vector kernels: with fused multiply-add, or to the same bits as the C. SSE4.1 has none to fuse.
+void hf_kernels_sse41_exact(struct hf_kernels *k);
+void hf_kernels_avx2_fused(struct hf_kernels *k);
+void hf_kernels_avx2_exact(struct hf_kernels *k);
+void hf_kernels_avx512_fused(struct hf_kernels *k);
+void hf_kernels_avx512_exact(struct hf_kernels *k);
+void hf_kernels_neon_fused(struct hf_kernels *k);
+void hf_kernels_neon_exact(struct hf_kernels *k);
 // The table for an instruction set.
 void hf_kernels_init(struct hf_kernels *k, enum hf_isa isa, int fused);
 

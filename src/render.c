@@ -118,17 +118,23 @@ static size_t line_floats(const struct job *j)
     return (size_t)((j->plan.tile_width + 2 * j->plan.buf[HF_BUF_COLOR4].x + 15) & ~15) + 2 * HF_PAD;
 }
 
-static size_t work_floats(const struct hf_setup *s)
+// What the kernels need for strips of up to 64 columns: row sums and pairs of the gather, rows of the near max and
+// partial sums of the near blur; and three rows for the mean fill.
+static size_t work_floats(const struct job *j)
 {
-    const size_t rows = 2 * (size_t)s->taps->ry + 1;
-    return rows * rows * 64 + (2 * (size_t)s->taps->rx + 2) * 64;
+    const struct hf_taps *t = j->s->taps;
+    const size_t rows = 2 * (size_t)t->ry + 1;
+    const size_t gather = rows * rows * 64 + (2 * (size_t)t->rx + 2) * 64;
+    const size_t near = 12 * ((size_t)j->plan.tile_height + 2 * (size_t)j->plan.buf[HF_BUF_MAX_X].y + 64) * 64;
+    const size_t most = gather > near ? gather : near, fill = 3 * line_floats(j);
+    return most > fill ? most : fill;
 }
 
 static int allocate(struct job *j)
 {
     struct hf_context *c = j->c;
     const struct hf_setup *s = j->s;
-    size_t frame = 0, scratch = HF_LINES * line_floats(j) + work_floats(s);
+    size_t frame = 0, scratch = HF_LINES * line_floats(j) + work_floats(j);
     for (int b = 0; b < HF_BUF_COUNT; b++) {
         if (is_frame_buf(b))
             frame += buf_channels(s, b) * window_floats(window_of(&j->plan, b, s->half_width, s->half_height));
@@ -162,7 +168,7 @@ static int allocate(struct job *j)
 // Point a worker's buffers at an area of the frame.
 static void place_scratch(const struct job *j, struct hf_frame *f, int x0, int y0)
 {
-    float *memory = f->work + work_floats(j->s);
+    float *memory = f->work + work_floats(j);
     for (int b = 0; b < HF_BUF_COUNT; b++)
         if (!is_frame_buf(b))
             memory = place(&f->buf[b], scratch_window(j, b), buf_channels(j->s, b), memory, x0,

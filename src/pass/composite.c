@@ -81,15 +81,10 @@ static float upsample(const struct hf_buf *b, int c, struct phase p)
     return v + 0.25f * (w - v);
 }
 
-// Uniform cubic B-spline there: weights of the neighbour, of the pixel on the other side, and of the one behind
-// the neighbour; the rest is the pixel's own.
-#define CUBIC_NEIGHBOUR (121 / 384.0f)
-#define CUBIC_OTHER (27 / 384.0f)
-#define CUBIC_BEHIND (1 / 384.0f)
-
+// Uniform cubic B-spline there.
 static float cubic(float own, float neighbour, float other, float behind)
 {
-    return own + (CUBIC_NEIGHBOUR * (neighbour - own) + CUBIC_OTHER * (other - own) + CUBIC_BEHIND * (behind - own));
+    return own + ((CUBIC_NEIGHBOUR * (neighbour - own) + CUBIC_OTHER * (other - own)) + CUBIC_BEHIND * (behind - own));
 }
 
 static float upsample_cubic(const struct hf_buf *b, int c, struct phase p)

@@ -14,7 +14,7 @@ static float max_3x3(const struct hf_buf *b, int c, int x, int y)
             const float t = *hf_at(b, c, x + i, y + j);
             v = t > v ? t : v;
         }
-    return v;
+    return v + 0;  // of 0 and -0 whichever came first: now 0
 }
 
 static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
@@ -46,7 +46,7 @@ static float far_max(const struct hf_frame *f, int c, int x, int y)
             if (counts(f->s, own, *hf_at(coc, 1, x + i, y + j)))
                 v = t > v ? t : v;
         }
-    return v;
+    return v + 0;
 }
 
 static float far_mean(const struct hf_frame *f, int c, int x, int y)

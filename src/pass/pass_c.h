@@ -37,4 +37,10 @@ static inline float hf_lerp(float a, float b, float t)
     return t == 0 ? a : a + t * (b - a);
 }
 
+// Uniform cubic B-spline a quarter of a pixel off the centre: weights of the neighbour on that side, of the one on
+// the other side, and of the one behind the neighbour. The rest, 235/384, is the pixel's own.
+#define CUBIC_NEIGHBOUR (121 / 384.0f)
+#define CUBIC_OTHER (27 / 384.0f)
+#define CUBIC_BEHIND (1 / 384.0f)
+
 #endif

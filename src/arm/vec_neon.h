@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Vector operations of 4 floats: NEON of AArch64.
+#ifndef HF_VEC_NEON_H
+#define HF_VEC_NEON_H
+
+#include <arm_neon.h>
+#include <stdint.h>
+
+typedef float32x4_t vf;
+typedef uint32x4_t vi;
+typedef uint32x4_t vm;  // lanes all ones or all zeros
+enum { VF_N = 4 };
+#define VF_REGISTERS 32
+
+// memcpy-like loads: rows of images need not be aligned to floats.
+static inline vf vf_load(const void *p) { return vreinterpretq_f32_u8(vld1q_u8((const uint8_t *)p)); }
+static inline void vf_store(void *p, vf a) { vst1q_u8((uint8_t *)p, vreinterpretq_u8_f32(a)); }
+static inline vf vf_set1(float a) { return vdupq_n_f32(a); }
+static inline vf vf_zero(void) { return vdupq_n_f32(0); }
+static inline vf vf_add(vf a, vf b) { return vaddq_f32(a, b); }
+static inline vf vf_sub(vf a, vf b) { return vsubq_f32(a, b); }
+static inline vf vf_mul(vf a, vf b) { return vmulq_f32(a, b); }
+static inline vf vf_div(vf a, vf b) { return vdivq_f32(a, b); }
+static inline vf vf_sqrt(vf a) { return vsqrtq_f32(a); }
+static inline vf vf_floor(vf a) { return vrndmq_f32(a); }
+static inline vf vf_abs(vf a) { return vabsq_f32(a); }
+// a > b ? a : b and a < b ? a : b: b when either is NaN. NEON's own max and min would return the NaN.
+static inline vf vf_max(vf a, vf b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
+static inline vf vf_min(vf a, vf b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
+static inline vf vf_muladd_fused(vf a, vf b, vf c) { return vfmaq_f32(c, a, b); }
+
+static inline vm vf_gt(vf a, vf b) { return vcgtq_f32(a, b); }
+static inline vm vf_lt(vf a, vf b) { return vcltq_f32(a, b); }
+static inline vm vf_le(vf a, vf b) { return vcleq_f32(a, b); }
+static inline vm vf_eq(vf a, vf b) { return vceqq_f32(a, b); }
+static inline vm vf_ne(vf a, vf b) { return vmvnq_u32(vceqq_f32(a, b)); }  // true for NaN
+static inline vm vm_and(vm a, vm b) { return vandq_u32(a, b); }
+static inline vm vm_or(vm a, vm b) { return vorrq_u32(a, b); }
+static inline vm vm_not(vm a) { return vmvnq_u32(a); }
+static inline int vm_any(vm a) { return vmaxvq_u32(a) != 0; }
+static inline vf vf_select(vm m, vf a, vf b) { return vbslq_f32(m, a, b); }
+static inline vf vf_keep(vm m, vf a) { return vreinterpretq_f32_u32(vandq_u32(m, vreinterpretq_u32_f32(a))); }
+// count + 1 where m.
+static inline vi vi_count(vi count, vm m) { return vsubq_u32(count, m); }
+
+static inline vi vi_load(const void *p) { return vreinterpretq_u32_u8(vld1q_u8((const uint8_t *)p)); }
+static inline void vi_store(void *p, vi a) { vst1q_u8((uint8_t *)p, vreinterpretq_u8_u32(a)); }
+static inline vi vi_set1(int32_t a) { return vdupq_n_u32((uint32_t)a); }
+static inline vi vi_add(vi a, vi b) { return vaddq_u32(a, b); }
+static inline vi vi_sub(vi a, vi b) { return vsubq_u32(a, b); }
+static inline vi vi_and(vi a, vi b) { return vandq_u32(a, b); }
+static inline vi vi_or(vi a, vi b) { return vorrq_u32(a, b); }
+static inline vm vi_eq(vi a, vi b) { return vceqq_u32(a, b); }
+#define vi_shl(a, n) vshlq_n_u32(a, n)
+#define vi_shr(a, n) vshrq_n_u32(a, n)
+static inline vi vf_as_vi(vf a) { return vreinterpretq_u32_f32(a); }
+static inline vf vi_as_vf(vi a) { return vreinterpretq_f32_u32(a); }
+static inline vi vf_to_vi(vf a) { return vreinterpretq_u32_s32(vcvtq_s32_f32(a)); }
+static inline vf vi_to_vf(vi a) { return vcvtq_f32_s32(vreinterpretq_s32_u32(a)); }
+
+// 8 numbers in memory order to even and odd ones, and back.
+static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
+{
+    *even = vuzp1q_f32(a, b);
+    *odd = vuzp2q_f32(a, b);
+}
+
+static inline void vf_zip(vf even, vf odd, vf *a, vf *b)
+{
+    *a = vzip1q_f32(even, odd);
+    *b = vzip2q_f32(even, odd);
+}
+
+// Interleaved pixels have instructions of their own.
+#define VF_OWN_INTERLEAVE 1
+static inline void vf_load_rgba(const float *p, vf out[4])
+{
+    const float32x4x4_t v = vld4q_f32(p);
+    for (int i = 0; i < 4; i++)
+        out[i] = v.val[i];
+}
+
+static inline void vf_store_rgba(float *p, const vf in[4])
+{
+    vst4q_f32(p, (float32x4x4_t){{in[0], in[1], in[2], in[3]}});
+}
+
+static inline void vf_load_rgb(const float *p, vf out[3])
+{
+    const float32x4x3_t v = vld3q_f32(p);
+    for (int i = 0; i < 3; i++)
+        out[i] = v.val[i];
+}
+
+static inline void vf_store_rgb(float *p, const vf in[3])
+{
+    vst3q_f32(p, (float32x4x3_t){{in[0], in[1], in[2]}});
+}
+
+static inline vf vf_load_half(const void *p)
+{
+    return vcvt_f32_f16(vreinterpret_f16_u8(vld1_u8((const uint8_t *)p)));
+}
+
+static inline void vf_store_half(void *p, vf a)
+{
+    vst1_u8((uint8_t *)p, vreinterpret_u8_f16(vcvt_f16_f32(a)));
+}
+
+// p[index], index counted in floats.
+static inline vf vf_gather(const float *p, vi index)
+{
+    const float v[4] = {p[(int32_t)vgetq_lane_u32(index, 0)], p[(int32_t)vgetq_lane_u32(index, 1)],
+                        p[(int32_t)vgetq_lane_u32(index, 2)], p[(int32_t)vgetq_lane_u32(index, 3)]};
+    return vld1q_f32(v);
+}
+
+#endif

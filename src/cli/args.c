@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/args.h"
+
+#include <math.h>
+#include <string.h>
+
+int cli_is_exr(const char *path)
+{
+    const size_t n = strlen(path);
+    return n >= 4 && !strcasecmp(path + n - 4, ".exr");
+}
+
+static void set_defaults(struct cli_args *args)
+{
+    *args = (struct cli_args){.params = hf_default_params};
+    float *const unset[] = {&args->focus,        &args->range,     &args->strength,  &args->near_begin,
+                            &args->near_end,     &args->far_begin, &args->far_end,   &args->fstop,
+                            &args->focal_length, &args->sensor_width, &args->world_unit, &args->near_plane,
+                            &args->far_plane};
+    for (size_t i = 0; i < sizeof(unset) / sizeof(unset[0]); i++)
+        *unset[i] = NAN;
+}
+
+// The option that a word such as --range, --range=5 or -o names.
+static const struct cli_option *find_option(const char *word)
+{
+    for (int i = 0; i < cli_option_count; i++) {
+        const struct cli_option *o = &cli_options[i];
+        const size_t n = strlen(o->name);
+        if (word[1] == '-' ? !strncmp(word + 2, o->name, n) && (word[2 + n] == '\0' || word[2 + n] == '=')
+                           : o->letter && word[1] == o->letter && word[2] == '\0')
+            return o;
+    }
+    return NULL;
+}
+
+// Parse the option at argv[i]; returns how many words it took, or -1.
+static int parse_option(struct cli_args *args, int argc, char **argv, int i, struct cli_error *error)
+{
+    const char *word = argv[i];
+    const struct cli_option *o = find_option(word);
+    if (!o)
+        return cli_fail(error, -1, "unknown option %s, see hyperfocal --help", word);
+    const char *value = word[1] == '-' ? strchr(word, '=') : NULL;
+    if (!o->placeholder) {
+        if (value)
+            return cli_fail(error, -1, "--%s takes no value, but '%s' was given", o->name, value + 1);
+        return o->parse(args, o, NULL, error) ? -1 : 1;
+    }
+    if (value)
+        return o->parse(args, o, value + 1, error) ? -1 : 1;
+
+    // A number may be negative, but what looks like a long option is one: its value was forgotten.
+    const int optional = o->placeholder[0] == '[';
+    const char *next = i + 1 < argc ? argv[i + 1] : NULL;
+    if (next && (optional ? next[0] == '-' : !strncmp(next, "--", 2)))
+        next = NULL;
+    if (!next && !optional)
+        return cli_fail(error, -1, "%s needs a value, %s", word, o->placeholder);
+    return o->parse(args, o, next, error) ? -1 : next ? 2 : 1;
+}
+
+static int parse_input(struct cli_args *args, const char *word, struct cli_error *error)
+{
+    if (word[0] == '\0')
+        return cli_fail(error, -1, "INPUT: '' is empty, it must be a file name");
+    if (args->input)
+        return cli_fail(error, -1, "'%s' is a second INPUT after '%s', but there can be only one", word,
+                        args->input);
+    args->input = word;
+    return 0;
+}
+
+static int given(float number)
+{
+    return !isnan(number);
+}
+
+// Name of an option that selects the range model, or NULL.
+static const char *range_option(const struct cli_args *args)
+{
+    return given(args->range)        ? "range"
+           : given(args->near_begin) ? "near-begin"
+           : given(args->near_end)   ? "near-end"
+           : given(args->far_begin)  ? "far-begin"
+           : given(args->far_end)    ? "far-end"
+           : given(args->strength)   ? "strength"
+                                     : NULL;
+}
+
+static int check_depth(const struct cli_args *args, struct cli_error *error)
+{
+    const int ndc = args->depth_type == HF_DEPTH_NDC_D3D || args->depth_type == HF_DEPTH_NDC_GL ||
+                    args->depth_type == HF_DEPTH_NDC_REVERSED;
+    char type[32];
+    cli_choice_name("depth-type", (int)args->depth_type, type, sizeof(type));
+    if (ndc && (!given(args->near_plane) || !given(args->far_plane)))
+        return cli_fail(error, -1, "--depth-type %s needs --%s", type, given(args->near_plane) ? "far" : "near");
+    if (ndc && !(args->near_plane < args->far_plane))
+        return cli_fail(error, -1, "--near %g must be less than --far %g", args->near_plane, args->far_plane);
+    if (!ndc && (given(args->near_plane) || given(args->far_plane)))
+        return cli_fail(error, -1, "--%s is of use only with --depth-type ndc-d3d, ndc-gl or ndc-reversed, not %s",
+                        given(args->near_plane) ? "near" : "far", type);
+    if (args->depth_type == HF_DEPTH_COC && (args->focus_at_given || args->focus_by == CLI_FOCUS_CENTER))
+        return cli_fail(error, -1, "--focus%s cannot be used with --depth-type coc, which has no distances",
+                        args->focus_at_given ? "-at" : " center");
+    return 0;
+}
+
+static int check_model(const struct cli_args *args, struct cli_error *error)
+{
+    const char *range = range_option(args);
+    const char *lens = given(args->fstop) ? "fstop" : given(args->focal_length) ? "focal-length" : NULL;
+    if (args->depth_type == HF_DEPTH_COC && (range || lens))
+        return cli_fail(error, -1, "--%s cannot be used with --depth-type coc, which holds the blur already",
+                        range ? range : lens);
+    if (range && lens)
+        return cli_fail(error, -1, "--%s and --%s cannot be given together: one chooses the range model, the other "
+                        "the lens", range, lens);
+    if (args->focus_given && args->focus_at_given)
+        return cli_fail(error, -1, "--focus and --focus-at cannot be given together");
+    if (args->near_begin > args->near_end)
+        return cli_fail(error, -1, "--near-begin %g must not be more than --near-end %g", args->near_begin,
+                        args->near_end);
+    if (args->far_begin > args->far_end)
+        return cli_fail(error, -1, "--far-begin %g must not be more than --far-end %g", args->far_begin,
+                        args->far_end);
+    return check_depth(args, error);
+}
+
+static int check_files(const struct cli_args *args, struct cli_error *error)
+{
+    if (!args->input)
+        return cli_fail(error, -1, "there is no INPUT, see hyperfocal --help");
+    if (!args->output && !args->dry_run)
+        return cli_fail(error, -1, "there is no OUTPUT for %s, name it with -o", args->input);
+    if (args->output && args->compression && !cli_is_exr(args->output))
+        return cli_fail(error, -1, "--compression %s is for EXR, but OUTPUT is %s", args->compression, args->output);
+    if (!args->json_file)
+        return 0;
+    // Forgetting that a word after --json is its FILE must not cost a picture.
+    if (cli_is_exr(args->json_file) || !strcmp(args->json_file, args->input) ||
+        (args->output && !strcmp(args->json_file, args->output)))
+        return cli_fail(error, -1, "--json would write over the picture %s", args->json_file);
+    if (args->dry_run)
+        return cli_fail(error, -1, "--json %s cannot be written in a --dry-run", args->json_file);
+    return 0;
+}
+
+int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_error *error)
+{
+    const char *json_word = NULL;  // the word after a --json, which may turn out to be INPUT
+    int words_only = 0;            // after "--"
+    set_defaults(args);
+    for (int i = 1; i < argc && !args->help && !args->version;) {
+        const char *word = argv[i];
+        int taken = 1;
+        if (!words_only && !strcmp(word, "--"))
+            words_only = 1;
+        else if (words_only || word[0] != '-' || word[1] == '\0')
+            taken = parse_input(args, word, error) ? -1 : 1;
+        else
+            taken = parse_option(args, argc, argv, i, error);
+        if (taken < 0)
+            return -1;
+        if (taken == 2 && args->json_file == argv[i + 1])
+            json_word = argv[i + 1];
+        i += taken;
+    }
+    if (args->help || args->version)
+        return 0;
+    if (!args->input && json_word && args->json_file == json_word) {
+        args->input = json_word;
+        args->json_file = NULL;
+    }
+    if (args->views && !strcmp(args->views, "all"))
+        args->views = NULL;
+    if (check_files(args, error) || check_model(args, error))
+        return -1;
+    return 0;
+}

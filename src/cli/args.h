@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line: one table of options that both the parser and the help text walk, so that they cannot disagree.
+// Parsing has no side effects; it opens no file and prints nothing.
+#ifndef HF_CLI_ARGS_H
+#define HF_CLI_ARGS_H
+
+#include "hyperfocal/hyperfocal.h"
+
+#include "cli/error.h"
+
+enum { CLI_DONE = 0, CLI_BAD_ARGUMENTS = 1, CLI_SOME_FAILED = 2, CLI_ALL_FAILED = 3 };
+
+enum cli_focus {
+    CLI_FOCUS_HEADER,    // not on the command line
+    CLI_FOCUS_DISTANCE,  // --focus D
+    CLI_FOCUS_CENTER,    // --focus center
+    CLI_FOCUS_AT,        // --focus-at X,Y
+};
+
+// What was asked for. Numbers that were not given are NAN, texts NULL.
+struct cli_args {
+    const char *input, *output;
+    int help, version, dry_run;
+
+    // Fields that the command line sets as they are: engine, storage, max_radius, the flags, fill, blend, blades.
+    // The model and what belongs to it depend on the file, see setup.h.
+    struct hf_params params;
+
+    enum cli_focus focus_by;
+    int focus_given, focus_at_given;  // --focus in either form, --focus-at
+    float focus;                      // scene units
+    int focus_x, focus_y;             // EXR pixel coordinates
+
+    float range, strength, near_begin, near_end, far_begin, far_end;
+    float fstop, focal_length, sensor_width, world_unit;
+
+    const char *depth_channel, *depth_file;
+    enum hf_depth_type depth_type;
+    float near_plane, far_plane;
+
+    const char *views;       // NULL: all, else names with commas
+    const char *compression;
+    const char *dump_dir;
+    int json;
+    const char *json_file;   // NULL: stdout
+    int threads;
+    enum hf_isa isa;
+};
+
+enum cli_group { CLI_FILES, CLI_FOCUS, CLI_LENS, CLI_DEPTH, CLI_LOOK, CLI_RUN, CLI_GROUPS };
+
+struct cli_option;
+typedef int cli_parse(struct cli_args *args, const struct cli_option *option, const char *value,
+                      struct cli_error *error);
+
+// One row of the table.
+struct cli_option {
+    const char *name;         // without the dashes
+    char letter;              // short form, 0: none
+    enum cli_group group;
+    const char *placeholder;  // of the value; NULL: takes none; "[FILE]": may have one. Of a choice the very list
+                              // of words that are accepted, "a|b"
+    const char *help;
+    cli_parse *parse;
+    size_t offset;            // in struct cli_args, of what parse sets
+    float min, max;           // of a number, inclusive
+    int above_min;            // ... but min itself is excluded
+    int inf;                  // inf is accepted
+};
+
+extern const struct cli_option cli_options[];
+extern const int cli_option_count;
+extern const char *const cli_group_names[CLI_GROUPS];
+
+// Value parsers, the last column of the table. All return 0, or -1 with *error filled.
+cli_parse cli_parse_flag, cli_parse_number, cli_parse_count, cli_parse_text, cli_parse_choice, cli_parse_choice_text;
+cli_parse cli_parse_focus, cli_parse_focus_at, cli_parse_aperture, cli_parse_json;
+
+// The word that stands for a value of an option that is a choice; "?" when there is none. buf receives it.
+const char *cli_choice_name(const char *option, int value, char *buf, size_t size);
+
+// Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
+// --version the rest of the line is not looked at.
+int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_error *error);
+
+// 1 if a name ends in .exr, whatever its case.
+int cli_is_exr(const char *path);
+
+#endif

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/dump.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static void write_buffer(void *cookie, const struct hf_buffer *buffer)
+{
+    static const char *const names[5][4] = {{0}, {"Y"}, {"R", "G"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
+    struct cli_dump *dump = cookie;
+    struct hf_io_error io;
+    char *path;
+    if (dump->failed)
+        return;
+    if (asprintf(&path, "%s/%s%s.exr", dump->dir, dump->prefix, buffer->name) < 0)
+        path = NULL;
+    // The directory is made only now that there is something to put into it.
+    if (!path)
+        dump->failed = cli_fail(&dump->error, 1, "--dump-passes %s: out of memory", dump->dir);
+    else if (mkdir(dump->dir, 0777) && errno != EEXIST)
+        dump->failed = cli_fail(&dump->error, 1, "--dump-passes %s: %s", dump->dir, strerror(errno));
+    else if (hf_io_write_planes(path, buffer->width, buffer->height, buffer->channels, names[buffer->channels],
+                                buffer->data, buffer->stride / (ptrdiff_t)sizeof(float), &io))  // there in floats
+        dump->failed = cli_fail(&dump->error, 1, "%s", io.message);
+    free(path);
+}
+
+void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const struct cli_frame *frame,
+                    const struct cli_view *view)
+{
+    *dump = (struct cli_dump){.dir = frame->args->dump_dir};
+    if (frame->view_count > 1 && view->view->name[0])
+        snprintf(dump->prefix, sizeof(dump->prefix), "%s.", view->view->name);
+    else if (frame->view_count > 1)
+        snprintf(dump->prefix, sizeof(dump->prefix), "view%d.", view->index);
+    // The name is the file's, and must not lead out of the directory.
+    for (char *c = dump->prefix; *c; c++)
+        if (*c == '/')
+            *c = '_';
+    hf_set_dump(context, write_buffer, dump);
+}
+
+int cli_dump_end(struct cli_dump *dump, struct hf_context *context, const struct hf_image *image,
+                 struct cli_error *error)
+{
+    const struct hf_buffer composite = {
+        .name = "composite",
+        .width = image->width,
+        .height = image->height,
+        .channels = image->data[3] ? 4 : 3,
+        .data = {image->data[0], image->data[1], image->data[2], image->data[3]},
+        .stride = image->stride[0],
+    };
+    hf_set_dump(context, NULL, NULL);
+    write_buffer(dump, &composite);
+    return dump->failed ? cli_fail(error, CLI_ALL_FAILED, "%s", dump->error.text) : 0;
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+int cli_fail(struct cli_error *error, int code, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    vsnprintf(error->text, sizeof(error->text), format, list);
+    va_end(list);
+    return code;
+}
+
+void cli_print_line(const char *format, ...)
+{
+    char line[sizeof(((struct cli_error *)0)->text)];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(line, sizeof(line), format, list);
+    va_end(list);
+    for (char *c = line; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+    fprintf(stderr, "hyperfocal: %s\n", line);
+}

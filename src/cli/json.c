@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/json.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+// Length of the UTF-8 sequence at s, 0 when it is none: file names may be any bytes.
+static int utf8_length(const unsigned char *s)
+{
+    const int n = s[0] < 0x80 ? 1 : s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : s[0] >= 0xe0 && s[0] < 0xf0 ? 3
+                  : s[0] >= 0xf0 && s[0] < 0xf5                 ? 4
+                                                                : 0;
+    for (int i = 1; i < n; i++)
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+    // Overlong forms, surrogates and what lies beyond the last code point.
+    if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] >= 0xa0) || (s[0] == 0xf0 && s[1] < 0x90) ||
+        (s[0] == 0xf4 && s[1] >= 0x90))
+        return 0;
+    return n;
+}
+
+static void put_escaped(FILE *out, const char *text, size_t length)
+{
+    const unsigned char *s = (const unsigned char *)text, *end = s + length;
+    while (s < end) {
+        const int n = utf8_length(s);
+        if (*s == '"' || *s == '\\')
+            fprintf(out, "\\%c", *s);
+        else if (*s < 0x20)
+            fprintf(out, "\\u%04x", *s);
+        else if (n)
+            fwrite(s, 1, (size_t)n, out);
+        else
+            fputs("\\ufffd", out);
+        s += n ? n : 1;
+    }
+}
+
+static void put_text(FILE *out, const char *text)
+{
+    if (!text) {
+        fputs("null", out);
+        return;
+    }
+    putc('"', out);
+    put_escaped(out, text, strlen(text));
+    putc('"', out);
+}
+
+// JSON has no infinity and no NaN.
+static void put_number(FILE *out, double number)
+{
+    if (isfinite(number))
+        fprintf(out, "%.9g", number);
+    else
+        fputs("null", out);
+}
+
+// The command line as one text, in which words that a shell would not take as they are stand in single quotes.
+static void put_command(FILE *out, int argc, char **argv)
+{
+    putc('"', out);
+    for (int i = 0; i < argc; i++) {
+        const char *word = argv[i];
+        const int quote = !*word || word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                                      "-_=+.,:/@%")];
+        fputs(i ? " " : "", out);
+        fputs(quote ? "'" : "", out);
+        for (const char *part = word;; part++) {
+            const size_t n = strcspn(part, "'");
+            put_escaped(out, part, n);
+            part += n;
+            if (!*part)
+                break;
+            fputs("'\\\\''", out);
+        }
+        fputs(quote ? "'" : "", out);
+    }
+    putc('"', out);
+}
+
+static void put_model(FILE *out, const struct cli_setup *setup)
+{
+    const struct hf_params *p = &setup->params;
+    fprintf(out, ",\n      \"model\": \"%s\"", cli_model_name(setup->model));
+    fputs(",\n      \"focus\": ", out);
+    put_number(out, setup->focus_from ? p->focus_distance : NAN);
+    fputs(",\n      \"focus_from\": ", out);
+    put_text(out, setup->focus_from);
+    if (setup->model != CLI_MODEL_LENS)
+        return;
+    const struct {
+        const char *name;
+        float value;
+    } lens[] = {{"fstop", p->f_number},
+                {"focal_length", p->focal_length_mm},
+                {"sensor_width", p->sensor_width_mm},
+                {"world_unit", p->world_unit_m}};
+    for (size_t i = 0; i < sizeof(lens) / sizeof(lens[0]); i++) {
+        fprintf(out, ",\n      \"%s\": ", lens[i].name);
+        put_number(out, lens[i].value);
+    }
+}
+
+static void put_stats(FILE *out, const struct cli_view *v, const struct cli_frame *frame)
+{
+    const struct hf_stats *s = &v->stats;
+    const double pixels = (double)v->view->width * v->view->height;
+    // The file layer counts over all views, so with several only the sum is known, which is beside them.
+    const uint64_t clamped = s->clamped + (frame->view_count == 1 ? frame->clamped : 0);
+    fprintf(out, ",\n      \"max_radius\": ");
+    put_number(out, s->max_radius);
+    fprintf(out,
+            ",\n      \"near_share\": %.9g,\n      \"sharp_share\": %.9g,\n      \"far_share\": %.9g"
+            ",\n      \"colour_repaired\": %" PRIu64 ",\n      \"depth_repaired\": %" PRIu64
+            ",\n      \"no_surface\": %" PRIu64 ",\n      \"clamped\": %" PRIu64,
+            (double)s->near_pixels / pixels, (double)s->sharp_pixels / pixels, (double)s->far_pixels / pixels,
+            s->colour_repaired, s->depth_repaired, s->no_surface, clamped);
+    fprintf(out, ",\n      \"total_ms\": %.6f,\n      \"passes\": [", s->total_ms);
+    for (int i = 0; i < HF_PASS_COUNT; i++)
+        fprintf(out, "%s\n        {\"name\": \"%s\", \"ms\": %.6f}", i ? "," : "", hf_pass_name((enum hf_pass_id)i),
+                s->pass_ms[i]);
+    fputs("\n      ]", out);
+}
+
+static void put_view(FILE *out, const struct cli_view *v, const struct cli_frame *frame)
+{
+    const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
+    fputs("\n    {\n      \"name\": ", out);
+    put_text(out, v->view->name);
+    fprintf(out,
+            ",\n      \"width\": %d,\n      \"height\": %d,\n      \"data_window\": [%d, %d, %d, %d]"
+            ",\n      \"display_window\": [%d, %d, %d, %d]",
+            v->view->width, v->view->height, data->x0, data->y0, data->x1 - 1, data->y1 - 1, display->x0, display->y0,
+            display->x1 - 1, display->y1 - 1);
+    put_model(out, &v->setup);
+    if (!frame->args->dry_run)
+        put_stats(out, v, frame);
+    fputs("\n    }", out);
+}
+
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame,
+                    const struct hf_context *context)
+{
+    const struct cli_args *args = frame->args;
+    char name[32];
+    fputs("{\n  \"command\": ", out);
+    put_command(out, argc, argv);
+    fprintf(out, ",\n  \"version\": \"%s\"", hf_version());
+    fputs(",\n  \"input\": ", out);
+    put_text(out, args->input);
+    fputs(",\n  \"output\": ", out);
+    put_text(out, args->output);
+    fprintf(out, ",\n  \"engine\": \"%s\"",
+            cli_choice_name("engine", (int)args->params.engine, name, sizeof(name)));
+    fprintf(out, ",\n  \"isa\": \"%s\",\n  \"threads\": %d", hf_isa_name(hf_context_isa(context)),
+            hf_context_threads(context));
+    fprintf(out, ",\n  \"storage\": \"%s\"",
+            cli_choice_name("storage", (int)args->params.storage, name, sizeof(name)));
+    if (args->dry_run)
+        fputs(",\n  \"dry_run\": true", out);
+    else
+        fprintf(out, ",\n  \"read_ms\": %.6f,\n  \"write_ms\": %.6f,\n  \"clamped\": %" PRIu64, frame->read_ms,
+                frame->write_ms, frame->clamped);
+    fputs(",\n  \"views\": [", out);
+    for (int i = 0; i < frame->view_count; i++) {
+        fputs(i ? "," : "", out);
+        put_view(out, &frame->views[i], frame);
+    }
+    fputs("\n  ]\n}\n", out);
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HF_CLI_JSON_H
+#define HF_CLI_JSON_H
+
+#include "cli/frame.h"
+
+#include <stdio.h>
+
+// One JSON object about a frame: what was asked for, what was done, how long it took. Of a --dry-run the first only.
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame,
+                    const struct hf_context *context);
+
+#endif

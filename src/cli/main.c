@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hyperfocal INPUT -o OUTPUT: what to do comes from args, how from setup and frame; here is who says what to whom.
+#include "cli/frame.h"
+#include "cli/help.h"
+#include "cli/json.h"
+#include "cli/target.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static void print_plan(const struct cli_frame *frame, const struct hf_context *context)
+{
+    const struct cli_args *args = frame->args;
+    char engine[32], storage[32], type[32];
+    printf("%s: would write %s\n", args->input, args->output ? args->output : "nothing, as there is no -o");
+    printf("  engine %s, %s storage, %d threads, %s\n",
+           cli_choice_name("engine", (int)args->params.engine, engine, sizeof(engine)),
+           cli_choice_name("storage", (int)args->params.storage, storage, sizeof(storage)),
+           hf_context_threads(context), hf_isa_name(hf_context_isa(context)));
+    for (int i = 0; i < frame->view_count; i++) {
+        const struct cli_view *v = &frame->views[i];
+        const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
+        const struct hf_params *p = &v->setup.params;
+        printf("  view %s: %d x %d, data window %d,%d to %d,%d, display window %d,%d to %d,%d\n",
+               v->view->name[0] ? v->view->name : "(no name)", v->view->width, v->view->height, data->x0, data->y0,
+               data->x1 - 1, data->y1 - 1, display->x0, display->y0, display->x1 - 1, display->y1 - 1);
+        printf("    depth %s, type %s\n", args->depth_file ? args->depth_file : v->view->depth,
+               cli_choice_name("depth-type", (int)args->depth_type, type, sizeof(type)));
+        printf("    model %s", cli_model_name(v->setup.model));
+        if (v->setup.model == CLI_MODEL_LENS)
+            printf(", f/%g, focal length %g mm, sensor %g mm, world unit %g m", p->f_number, p->focal_length_mm,
+                   p->sensor_width_mm, p->world_unit_m);
+        if (v->setup.focus_from)
+            printf(", focus %g from %s", p->focus_distance, v->setup.focus_from);
+        if (v->setup.model == CLI_MODEL_RANGE)
+            printf(", range %g, strength %g", p->range == HF_DERIVE ? p->focus_distance / 2 : p->range, p->strength);
+        printf("\n");
+    }
+}
+
+// What was wrong with the pictures but did not stop the work.
+static void print_warnings(const struct cli_frame *frame)
+{
+    for (int i = 0; i < frame->view_count; i++) {
+        const struct cli_view *v = &frame->views[i];
+        if (v->stats.colour_repaired)
+            cli_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place",
+                           v->label, v->stats.colour_repaired);
+        if (v->stats.depth_repaired)
+            cli_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
+                           v->stats.depth_repaired);
+    }
+    if (frame->clamped)
+        cli_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
+                       frame->clamped);
+}
+
+static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
+                      struct cli_error *error)
+{
+    const char *path = frame->args->json_file;
+    FILE *out = path ? fopen(path, "w") : stdout;
+    if (!out)
+        return cli_fail(error, CLI_ALL_FAILED, "--json %s cannot be written: %s", path, strerror(errno));
+    cli_write_json(out, argc, argv, frame, context);
+    if (!path)
+        return 0;  // main looks after stdout
+    const int failed = ferror(out);
+    if (fclose(out) || failed)
+        return cli_fail(error, CLI_ALL_FAILED, "--json %s could not be written", path);
+    return 0;
+}
+
+static int run_frame(int argc, char **argv, const struct cli_args *args, struct cli_session *session,
+                     struct cli_error *error)
+{
+    struct cli_frame frame;
+    int status = cli_frame_open(&frame, args, error);
+    if (!status)
+        status = cli_frame_setup(&frame, error);
+    if (!status && !args->dry_run) {
+        status = cli_frame_render(&frame, session, error);
+        if (!status)
+            status = cli_frame_write(&frame, error);
+        if (!status)
+            print_warnings(&frame);
+    }
+    if (!status && args->json)
+        status = write_json(argc, argv, &frame, session->context, error);
+    else if (!status && args->dry_run)
+        print_plan(&frame, session->context);
+    cli_frame_close(&frame);
+    return status;
+}
+
+static int run(int argc, char **argv, struct cli_error *error)
+{
+    struct cli_args args;
+    struct cli_session session;
+    if (cli_parse_args(&args, argc, argv, error))
+        return CLI_BAD_ARGUMENTS;
+    if (args.help)
+        cli_print_help();
+    if (args.version)
+        printf("hyperfocal %s\n", hf_version());
+    if (args.help || args.version)
+        return CLI_DONE;
+    int status = cli_check_targets(&args, error);
+    if (!status)
+        status = cli_session_open(&session, &args, error);
+    if (status)
+        return status;
+    status = run_frame(argc, argv, &args, &session, error);
+    hf_close(&session.context);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    struct cli_error error;
+    int status = run(argc, argv, &error);
+    const int failed = ferror(stdout);
+    if ((fflush(stdout) || failed) && !status)
+        status = cli_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
+    if (status)
+        cli_print_line("%s", error.text);
+    return status;
+}

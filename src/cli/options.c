@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of options. Order is that of the help text.
+#include "cli/args.h"
+
+#include <float.h>
+#include <stddef.h>
+
+// A choice is stored as its place in the list, so these lists are in the order of the enums.
+_Static_assert(HF_ENGINE_GATHER == 0, "order of --engine");
+_Static_assert(HF_STORAGE_FLOAT == 0 && HF_STORAGE_HALF == 1 && HF_STORAGE_CHAPTER == 2, "order of --storage");
+_Static_assert(HF_FILL_MAX == 0 && HF_FILL_MEAN == 1 && HF_FILL_NONE == 2, "order of --fill");
+_Static_assert(HF_BLEND_LINEAR == 0 && HF_BLEND_SMOOTHSTEP == 1, "order of --blend");
+_Static_assert(HF_DEPTH_VIEW == 0 && HF_DEPTH_RAY == 1 && HF_DEPTH_NDC_D3D == 2 && HF_DEPTH_NDC_GL == 3 &&
+                   HF_DEPTH_NDC_REVERSED == 4 && HF_DEPTH_INVERSE == 5 && HF_DEPTH_COC == 6,
+               "order of --depth-type");
+_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 &&
+                   HF_ISA_AVX512 == 4 && HF_ISA_NEON == 5,
+               "order of --isa");
+
+const char *const cli_group_names[CLI_GROUPS] = {
+    [CLI_FILES] = "Files",
+    [CLI_FOCUS] = "Focus and range (scene units are those of the depth)",
+    [CLI_LENS] = "Lens",
+    [CLI_DEPTH] = "Depth",
+    [CLI_LOOK] = "Look",
+    [CLI_RUN] = "Running",
+};
+
+#define FIELD(f) .offset = offsetof(struct cli_args, f)
+#define FLAG(f) .parse = cli_parse_flag, FIELD(f)
+#define TEXT(f) .parse = cli_parse_text, FIELD(f)
+#define CHOICE(f) .parse = cli_parse_choice, FIELD(f)
+#define NUMBER(f, least, most) .parse = cli_parse_number, FIELD(f), .min = (least), .max = (most)
+#define POSITIVE(f) NUMBER(f, 0, FLT_MAX), .above_min = 1
+
+const struct cli_option cli_options[] = {
+    {"output", 'o', CLI_FILES, "OUTPUT", "Picture to write: a copy of INPUT with its colours defocused. A name other "
+     "than .exr keeps the colour of one view only.", TEXT(output)},
+    {"views", 0, CLI_FILES, "all|NAME,...", "Views to defocus, each by its own depth; the others are kept as they "
+     "are. Default all.", TEXT(views)},
+    {"compression", 0, CLI_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
+     "Default: that of INPUT.", .parse = cli_parse_choice_text, FIELD(compression)},
+
+    {"focus", 0, CLI_FOCUS, "D|center", "Distance in perfect focus, scene units, more than 0; or center: what the "
+     "middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,
+     .max = FLT_MAX, .above_min = 1},
+    {"focus-at", 0, CLI_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates.",
+     .parse = cli_parse_focus_at},
+    {"range", 0, CLI_FOCUS, "D", "Distance from the focus to full blur, scene units, 0 or more, or inf. Default: "
+     "half the focus distance.", NUMBER(range, 0, FLT_MAX), .inf = 1},
+    {"strength", 0, CLI_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1)},
+    {"near-begin", 0, CLI_FOCUS, "D", "Near blur is full up to here, scene units. Default: focus - range.",
+     NUMBER(near_begin, 0, FLT_MAX)},
+    {"near-end", 0, CLI_FOCUS, "D", "Near blur ends here, scene units. Default: the focus.",
+     NUMBER(near_end, 0, FLT_MAX)},
+    {"far-begin", 0, CLI_FOCUS, "D", "Far blur begins here, scene units. Default: the focus.",
+     NUMBER(far_begin, 0, FLT_MAX)},
+    {"far-end", 0, CLI_FOCUS, "D", "Far blur is full from here on, scene units. Default: focus + range.",
+     NUMBER(far_end, 0, FLT_MAX)},
+    {"max-radius", 0, CLI_FOCUS, "PX", "Largest blur radius, pixels, 0 (none) to 256. Default: 12 at 1080 lines, "
+     "in proportion to the height.", NUMBER(params.max_radius, 0, 256)},
+
+    {"fstop", 0, CLI_LENS, "N", "f-number, more than 0, or inf (no blur). Default: the header's aperture.",
+     POSITIVE(fstop), .inf = 1},
+    {"focal-length", 0, CLI_LENS, "MM", "Focal length, millimetres. Default: the header's pinholeFocalLength.",
+     POSITIVE(focal_length)},
+    {"sensor-width", 0, CLI_LENS, "MM", "Width of the sensor, millimetres. Default: the header's "
+     "sensorOverallDimensions, else 36.", POSITIVE(sensor_width)},
+    {"world-unit", 0, CLI_LENS, "M", "Metres in one scene unit. Default 1.", POSITIVE(world_unit)},
+
+    {"depth-channel", 0, CLI_DEPTH, "NAME", "Full name of the depth channel. Default: the view's Z or depth.Z, else "
+     "the only channel with depth in its name.", TEXT(depth_channel)},
+    {"depth-file", 0, CLI_DEPTH, "FILE", "Take depth from this file, with the same data window size as the view.",
+     TEXT(depth_file)},
+    {"depth-type", 0, CLI_DEPTH, "view|ray|ndc-d3d|ndc-gl|ndc-reversed|inverse|coc", "What depth holds: distance "
+     "along the camera's axis (view, the default) or along the ray; a depth buffer from 0 to 1 (ndc-d3d), -1 to 1 "
+     "(ndc-gl) or 1 to 0 (ndc-reversed), which need --near and --far; 1/distance; or signed blur radii in pixels, "
+     "near ones negative (coc), which need no focus.", CHOICE(depth_type)},
+    {"near", 0, CLI_DEPTH, "D", "Near clip plane of an ndc depth, scene units.", POSITIVE(near_plane)},
+    {"far", 0, CLI_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf.", POSITIVE(far_plane),
+     .inf = 1},
+
+    {"engine", 0, CLI_LOOK, "gather", "How to blur. gather (default): half-resolution near and far fields.",
+     CHOICE(params.engine)},
+    {"aperture", 0, CLI_LOOK, "disc|ngon:N[:0[:DEGREES]]", "Shape of a highlight: a disc (default), or a polygon "
+     "with 5 to 9 sides turned by some degrees.", .parse = cli_parse_aperture},
+    {"fill", 0, CLI_LOOK, "max|mean|none", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, or "
+     "three times as many taps.", CHOICE(params.fill)},
+    {"blend", 0, CLI_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",
+     CHOICE(params.blend)},
+    {"karis", 0, CLI_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(params.karis)},
+    {"per-pixel-kernel", 0, CLI_LOOK, NULL, "Scale the far kernel by each pixel's own blur.",
+     FLAG(params.per_pixel_kernel)},
+    {"bicubic", 0, CLI_LOOK, NULL, "Upsample the near field with a B-spline, not bilinearly.",
+     FLAG(params.bicubic)},
+    {"faithful", 0, CLI_LOOK, NULL, "Reproduce the published demo, its flaws included.", FLAG(params.faithful)},
+    {"storage", 0, CLI_LOOK, "float|half|chapter", "Buffers between passes: 32-bit floats (default), 16-bit floats, "
+     "or the packed formats of the book chapter.", CHOICE(params.storage)},
+
+    {"threads", 0, CLI_RUN, "N", "Threads to work on, up to 256; 0 (default): one per processor.",
+     .parse = cli_parse_count, FIELD(threads), .max = 256},
+    {"isa", 0, CLI_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
+     "this CPU.", CHOICE(isa)},
+    {"deterministic", 0, CLI_RUN, NULL, "Same bits on every instruction set.", FLAG(params.deterministic)},
+    {"no-skip", 0, CLI_RUN, NULL, "Run every pass on every tile: same picture, slower.", FLAG(params.no_skip)},
+    {"json", 0, CLI_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
+     "FILE unless there is no other INPUT.", .parse = cli_parse_json},
+    {"dump-passes", 0, CLI_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},
+    {"dry-run", 0, CLI_RUN, NULL, "Say what would be done, write nothing.", FLAG(dry_run)},
+    {"help", 'h', CLI_RUN, NULL, "Print this.", FLAG(help)},
+    {"version", 0, CLI_RUN, NULL, "Print the version.", FLAG(version)},
+};
+
+const int cli_option_count = sizeof(cli_options) / sizeof(cli_options[0]);

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/setup.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static int given(float number)
+{
+    return !isnan(number);
+}
+
+// Headers hold zeros where nobody knew better.
+static int usable(float number)
+{
+    return isfinite(number) && number > 0;
+}
+
+static float first_usable(float a, float b, float otherwise)
+{
+    return given(a) ? a : usable(b) ? b : otherwise;
+}
+
+const char *cli_model_name(enum cli_model model)
+{
+    static const char *const names[] = {"range", "lens", "coc"};
+    return names[model];
+}
+
+int cli_focus_needs_depth(const struct cli_args *args)
+{
+    return args->focus_by == CLI_FOCUS_AT || args->focus_by == CLI_FOCUS_CENTER;
+}
+
+static enum cli_model choose_model(const struct cli_args *args, const struct hf_io_camera *camera)
+{
+    if (args->depth_type == HF_DEPTH_COC)
+        return CLI_MODEL_COC;
+    if (given(args->range) || given(args->strength) || given(args->near_begin) || given(args->near_end) ||
+        given(args->far_begin) || given(args->far_end))
+        return CLI_MODEL_RANGE;
+    if (given(args->fstop) || given(args->focal_length))
+        return CLI_MODEL_LENS;
+    return usable(camera->focus) && usable(camera->f_number) && usable(camera->focal_length_mm) ? CLI_MODEL_LENS
+                                                                                                : CLI_MODEL_RANGE;
+}
+
+static int display_width(const struct hf_io_view *view)
+{
+    return view->display_window.x1 - view->display_window.x0;
+}
+
+// What the numbers of the depth mean; for ray depth also where the camera's axis is and how wide it sees.
+static void describe_depth(struct hf_depth *depth, const struct cli_args *args, const struct hf_io_view *view,
+                           const float *data)
+{
+    *depth = (struct hf_depth){
+        .data = data,
+        .stride = (ptrdiff_t)view->width * (ptrdiff_t)sizeof(float),
+        .type = args->depth_type,
+        .near_plane = given(args->near_plane) ? args->near_plane : 0,
+        .far_plane = given(args->far_plane) ? args->far_plane : 0,
+    };
+    const struct hf_io_box *display = &view->display_window;
+    const float width = (float)display_width(view);
+    const float screen_width = usable(view->screen_width) ? view->screen_width : 1;
+    const float focal = first_usable(args->focal_length, view->camera.focal_length_mm, NAN);
+    const float sensor = first_usable(args->sensor_width, view->camera.sensor_width_mm, 36);
+    depth->focal_px = given(focal) ? focal / sensor * width : width / screen_width;
+
+    // The screen window is centred on the display window, and its own centre is off the axis by screenWindowCenter,
+    // in units in which it is screenWindowWidth wide, y upwards. Pixels that are not square count more of them in y.
+    const float shift_x = isfinite(view->screen_center_x) ? view->screen_center_x * (width / screen_width) : 0;
+    const float shift_y =
+        isfinite(view->screen_center_y) ? view->screen_center_y * (width / screen_width) * view->pixel_aspect : 0;
+    depth->center_x = 0.5f * (float)(display->x0 + display->x1) - shift_x - (float)view->data_window.x0;
+    depth->center_y = 0.5f * (float)(display->y0 + display->y1) + shift_y - (float)view->data_window.y0;
+}
+
+// Focus on what a pixel shows, EXR coordinates.
+static int focus_at(float *focus, const struct hf_depth *depth, const struct hf_io_view *view, int x, int y,
+                    const char *option, const char *label, struct cli_error *error)
+{
+    const struct hf_io_box *data = &view->data_window;
+    if (x < data->x0 || x >= data->x1 || y < data->y0 || y >= data->y1)
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, which is outside the data window %d,%d to "
+                        "%d,%d", label, option, x, y, data->x0, data->y0, data->x1 - 1, data->y1 - 1);
+    const int status = hf_depth_at(depth, view->width, view->height, x - data->x0, y - data->y0, focus);
+    if (status == HF_ERR_FOCUS)
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, where there is no surface to focus on",
+                        label, option, x, y);
+    if (status != HF_OK)
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s at pixel %d,%d: %s", label, option, x, y,
+                        hf_error_string(status));
+    return 0;
+}
+
+static int find_focus(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
+                      const char *label, struct cli_error *error)
+{
+    float *focus = &setup->params.focus_distance;
+    char option[64];
+    const struct hf_io_box *display = &view->display_window;
+    switch (args->focus_by) {
+    case CLI_FOCUS_DISTANCE:
+        setup->focus_from = "--focus";
+        *focus = args->focus;
+        return 0;
+    case CLI_FOCUS_CENTER:
+        setup->focus_from = "--focus center";
+        return focus_at(focus, &setup->depth, view, display->x0 + (display->x1 - display->x0) / 2,
+                        display->y0 + (display->y1 - display->y0) / 2, setup->focus_from, label, error);
+    case CLI_FOCUS_AT:
+        setup->focus_from = "--focus-at";
+        snprintf(option, sizeof(option), "--focus-at %d,%d", args->focus_x, args->focus_y);
+        return focus_at(focus, &setup->depth, view, args->focus_x, args->focus_y, option, label, error);
+    case CLI_FOCUS_HEADER:
+        break;
+    }
+    if (setup->model == CLI_MODEL_COC)
+        return 0;
+    const float unit = given(args->world_unit) ? args->world_unit : 1;
+    if (!usable(view->camera.focus / unit))
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: there is no focus distance in the header, give one with "
+                        "--focus or --focus-at", label);
+    setup->focus_from = "header";
+    *focus = view->camera.focus / unit;
+    return 0;
+}
+
+static int set_lens(struct hf_params *p, const struct cli_args *args, const struct hf_io_camera *camera,
+                    const char *label, struct cli_error *error)
+{
+    p->f_number = first_usable(args->fstop, camera->f_number, NAN);
+    p->focal_length_mm = first_usable(args->focal_length, camera->focal_length_mm, NAN);
+    p->sensor_width_mm = first_usable(args->sensor_width, camera->sensor_width_mm, 36);
+    p->world_unit_m = given(args->world_unit) ? args->world_unit : 1;
+    if (!given(p->focal_length_mm))
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --fstop %g needs --focal-length, the header has no "
+                        "pinholeFocalLength", label, args->fstop);
+    if (!given(p->f_number))
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --focal-length %g needs --fstop, the header has no aperture",
+                        label, args->focal_length);
+    return 0;
+}
+
+static int set_range(struct hf_params *p, const struct cli_args *args, const char *label, struct cli_error *error)
+{
+    if (given(args->range))
+        p->range = args->range;
+    if (given(args->strength))
+        p->strength = args->strength;
+    if (given(args->near_begin))
+        p->near_begin = args->near_begin;
+    if (given(args->near_end))
+        p->near_end = args->near_end;
+    if (given(args->far_begin))
+        p->far_begin = args->far_begin;
+    if (given(args->far_end))
+        p->far_end = args->far_end;
+
+    // Those that were not given follow from the focus and the range, which may put them on the wrong side.
+    const float focus = p->focus_distance;
+    const float range = given(args->range) ? args->range : focus / 2;
+    const float near_begin = given(args->near_begin) ? args->near_begin : fmaxf(0, focus - range);
+    const float near_end = given(args->near_end) ? args->near_end : focus;
+    const float far_begin = given(args->far_begin) ? args->far_begin : focus;
+    const float far_end = given(args->far_end) ? args->far_end : focus + range;
+    if (near_begin > near_end)
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --near-begin %g is beyond --near-end %g (focus %g, range %g)",
+                        label, near_begin, near_end, focus, range);
+    if (far_begin > far_end)
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --far-begin %g is beyond --far-end %g (focus %g, range %g)",
+                        label, far_begin, far_end, focus, range);
+    return 0;
+}
+
+int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
+                   const float *depth, const char *label, struct cli_error *error)
+{
+    *setup = (struct cli_setup){.params = args->params, .model = choose_model(args, &view->camera)};
+    struct hf_params *p = &setup->params;
+    describe_depth(&setup->depth, args, view, depth);
+    p->model = setup->model == CLI_MODEL_LENS ? HF_MODEL_LENS : HF_MODEL_RANGE;
+    p->display_width = display_width(view);
+    p->display_height = view->display_window.y1 - view->display_window.y0;
+    p->pixel_aspect = view->pixel_aspect;
+    const int status = find_focus(setup, args, view, label, error);
+    if (status || setup->model == CLI_MODEL_COC)
+        return status;
+    return setup->model == CLI_MODEL_LENS ? set_lens(p, args, &view->camera, label, error)
+                                          : set_range(p, args, label, error);
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/target.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// The directory that a path lies in; to be freed.
+static char *directory_of(const char *path)
+{
+    char *dir = strdup(path);
+    char *slash = dir ? strrchr(dir, '/') : NULL;
+    if (slash == dir && slash)
+        slash[1] = '\0';
+    else if (slash)
+        *slash = '\0';
+    else if (dir) {
+        free(dir);
+        dir = strdup(".");
+    }
+    return dir;
+}
+
+static int check_directory(const char *dir, const char *option, const char *path, struct cli_error *error)
+{
+    struct stat st;
+    if (stat(dir, &st) == 0 && !S_ISDIR(st.st_mode))
+        errno = ENOTDIR;
+    else if (access(dir, W_OK | X_OK) == 0)
+        return 0;
+    return cli_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: %s: %s", option, path, dir, strerror(errno));
+}
+
+// A file is written beside its target and renamed, so the directory has to be writable, and what is there replaceable.
+static int check_file(const char *path, const char *option, int replaced, struct cli_error *error)
+{
+    struct stat st;
+    if (stat(path, &st) == 0 && (S_ISDIR(st.st_mode) || (replaced && !S_ISREG(st.st_mode))))
+        return cli_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: it is %s", option, path,
+                        S_ISDIR(st.st_mode) ? "a directory" : "not a regular file");
+    char *dir = directory_of(path);
+    if (!dir)
+        return cli_fail(error, CLI_ALL_FAILED, "%s %s: out of memory", option, path);
+    // A device is written where it is.
+    const int in_place = !replaced && stat(path, &st) == 0 && !S_ISREG(st.st_mode);
+    const int status = in_place ? 0 : check_directory(dir, option, path, error);
+    free(dir);
+    return status;
+}
+
+static int check_dump_dir(const char *dir, struct cli_error *error)
+{
+    struct stat st;
+    if (stat(dir, &st) == 0)
+        return check_directory(dir, "--dump-passes", dir, error);
+    char *path = strdup(dir);
+    for (size_t n = path ? strlen(path) : 0; n > 1 && path[n - 1] == '/'; n--)
+        path[n - 1] = '\0';
+    char *parent = path ? directory_of(path) : NULL;
+    const int status = parent ? check_directory(parent, "--dump-passes", dir, error)
+                              : cli_fail(error, CLI_ALL_FAILED, "--dump-passes %s: out of memory", dir);
+    free(parent);
+    free(path);
+    return status;
+}
+
+int cli_check_targets(const struct cli_args *args, struct cli_error *error)
+{
+    int status = 0;
+    if (args->output)
+        status = check_file(args->output, "-o", 1, error);
+    if (!status && args->json_file)
+        status = check_file(args->json_file, "--json", 0, error);
+    if (!status && args->dump_dir)
+        status = check_dump_dir(args->dump_dir, error);
+    return status;
+}

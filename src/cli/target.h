@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HF_CLI_TARGET_H
+#define HF_CLI_TARGET_H
+
+#include "cli/args.h"
+#include "cli/error.h"
+
+// See that what is to be written can be: before any work, so that it is not in vain and nothing half done is left.
+// Returns 0, or an exit code with *error filled.
+int cli_check_targets(const struct cli_args *args, struct cli_error *error);
+
+#endif

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Opening files and choosing who handles them.
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "io/exr.h"
+#include "io/oiio.h"
+
+int hf_io_fail(struct hf_io_error *err, const char *format, ...)
+{
+    va_list args;
+    if (!err)
+        return -1;
+    va_start(args, format);
+    vsnprintf(err->message, sizeof(err->message), format, args);
+    va_end(args);
+    for (char *p = err->message; *p; p++)
+        if (*p == '\n' || *p == '\r')  // libraries end their messages with one now and then
+            *p = p[1] ? ' ' : 0;
+    return -1;
+}
+
+const char *hf_io_extension(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    return dot && (!slash || dot > slash) ? dot + 1 : "";
+}
+
+bool hf_io_is_exr_name(const char *path)
+{
+    return !strcasecmp(hf_io_extension(path), "exr");
+}
+
+int hf_io_check_window(const char *path, const char *which, struct hf_io_box b, struct hf_io_error *err)
+{
+    const int far = HF_IO_MAX_COORDINATE;
+    if (b.x1 > b.x0 && b.y1 > b.y0 && b.x0 >= -far && b.y0 >= -far && b.x1 <= far && b.y1 <= far &&
+        b.x1 - b.x0 <= HF_IO_MAX_SIDE && b.y1 - b.y0 <= HF_IO_MAX_SIDE)
+        return 0;
+    return hf_io_fail(err, "%s: %s (%d %d) - (%lld %lld) is empty, too far out, or larger than %d a side", path, which,
+                      b.x0, b.y0, (long long)b.x1 - 1, (long long)b.y1 - 1, HF_IO_MAX_SIDE);
+}
+
+void hf_io_list(char *buf, size_t size, const char *part, const char *name)
+{
+    const size_t n = strlen(buf);
+    if (n < size)
+        snprintf(buf + n, size - n, "%s%s%s%s", n ? ", " : "", part ? part : "", part ? ":" : "", name);
+}
+
+struct hf_io_view *hf_io_add_view(struct hf_io_file *file)
+{
+    const size_t n = (size_t)file->view_count;
+    struct hf_io_view *views = realloc(file->views, (n + 1) * sizeof(*views));
+    if (!views)
+        return NULL;
+    file->views = views;
+    file->view_count++;
+    memset(&views[n], 0, sizeof(views[n]));
+    return &views[n];
+}
+
+// EXR files are known by their first bytes, whatever they are called.
+static int open_fd(const char *path, bool *exr, struct hf_io_error *err)
+{
+    static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
+    unsigned char first[4] = {0};
+    struct stat st;
+    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0 || fstat(fd, &st)) {
+        hf_io_fail(err, "%s: cannot open: %s", path, strerror(errno));
+    } else if (!S_ISREG(st.st_mode)) {
+        hf_io_fail(err, "%s: cannot open: not a regular file", path);
+    } else if (st.st_size == 0) {
+        hf_io_fail(err, "%s: the file is empty", path);
+    } else {
+        *exr = pread(fd, first, sizeof(first), 0) == sizeof(first) && !memcmp(first, magic, sizeof(magic));
+        if (*exr || !hf_io_is_exr_name(path))
+            return fd;
+        hf_io_fail(err, "%s: truncated or corrupt: not an EXR file", path);
+    }
+    if (fd >= 0)
+        close(fd);
+    return -1;
+}
+
+int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_channel, struct hf_io_error *err)
+{
+    bool exr;
+    *out = NULL;
+    const int fd = open_fd(path, &exr, err);
+    if (fd < 0)
+        return -1;
+    struct hf_io_file *file = calloc(1, sizeof(*file));
+    if (file)
+        file->path = strdup(path);
+    if (!file || !file->path) {
+        free(file);
+        close(fd);
+        return hf_io_fail(err, "%s: out of memory", path);
+    }
+    int status;
+    if (exr) {
+        status = hf_exr_open(&file->exr, file->path, fd, err);
+        if (!status)
+            status = hf_exr_find_views(file, depth_channel, err);
+    } else {
+        status = hf_io_check_png(path, fd, err);
+        close(fd);
+        if (!status)
+            status = hf_oiio_open(file, depth_channel, err);
+    }
+    if (status)
+        hf_io_close(&file);
+    *out = file;
+    return status;
+}
+
+int hf_io_open(struct hf_io_file **out, const char *path, const char *depth_channel, struct hf_io_error *err)
+{
+    char names[300] = "";
+    if (hf_io_open_any(out, path, depth_channel, err))
+        return -1;
+    if ((*out)->view_count)
+        return 0;
+    hf_io_channels(*out, names, sizeof(names));
+    hf_io_close(out);
+    return hf_io_fail(err, "%s: no colour channels (R, G, B or Y) among: %s", path, names);
+}
+
+void hf_io_close(struct hf_io_file **file)
+{
+    if (!file || !*file)
+        return;
+    hf_exr_close((*file)->exr);
+    hf_oiio_close((*file)->oiio);
+    free((*file)->views);
+    free((*file)->path);
+    free(*file);
+    *file = NULL;
+}
+
+int hf_io_view_count(const struct hf_io_file *file)
+{
+    return file->view_count;
+}
+
+const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view)
+{
+    return view >= 0 && view < file->view_count ? &file->views[view] : NULL;
+}
+
+void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)
+{
+    if (!size)
+        return;
+    buf[0] = 0;
+    if (file->exr)
+        hf_exr_channels(file->exr, buf, size);
+    else
+        hf_oiio_channels(file->oiio, buf, size);
+}
+
+static int check_view(const struct hf_io_file *file, int view, struct hf_io_error *err)
+{
+    if (view < 0 || view >= file->view_count)
+        return hf_io_fail(err, "%s: there is no view number %d", file->path, view);
+    return 0;
+}
+
+int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struct hf_io_error *err)
+{
+    if (check_view(file, view, err))
+        return -1;
+    if (file->exr)
+        return hf_exr_read_colour(file->exr, &file->views[view], planes, err);
+    return hf_oiio_read_colour(file, planes, err);
+}
+
+int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err)
+{
+    char names[300];
+    if (check_view(file, view, err))
+        return -1;
+    const struct hf_io_view *v = &file->views[view];
+    if (v->depth_part < 0) {
+        hf_io_channels(file, names, sizeof(names));
+        return hf_io_fail(err, "%s: no depth channel among: %s", file->path, names);
+    }
+    if (!file->exr)
+        return hf_oiio_read_depth(file, depth, err);
+    const int c = hf_exr_find_channel(&file->exr->parts[v->depth_part], v->depth);
+    return hf_exr_read_depth(file->exr, v->depth_part, c, v->data_window, depth, err);
+}
+
+static int exr_depth_only(struct hf_io_file *file, const char *depth_channel, const struct hf_io_view *view,
+                          float *depth, struct hf_io_error *err)
+{
+    char names[300];
+    int c;
+    const int p = hf_exr_find_depth_only(file->exr, depth_channel, view->name, &c);
+    if (p < 0) {
+        hf_io_channels(file, names, sizeof(names));
+        return hf_io_fail(err, "%s: no depth channel%s%s among: %s", file->path, depth_channel ? " " : "",
+                          depth_channel ? depth_channel : "", names);
+    }
+    const struct hf_exr_part *part = &file->exr->parts[p];
+    if (hf_exr_check_part(file->exr, p, err))
+        return -1;
+    if (part->channels[c].x_sampling != 1 || part->channels[c].y_sampling != 1)
+        return hf_io_fail(err, "%s: channel %s is subsampled, which is not supported", file->path,
+                          part->channels[c].name);
+    if (part->width != view->width || part->height != view->height)
+        return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d", file->path, part->width,
+                          part->height, view->width, view->height);
+    const struct hf_io_box own = {part->window.min.x, part->window.min.y, part->window.max.x + 1,
+                                  part->window.max.y + 1};
+    return hf_exr_read_depth(file->exr, p, c, own, depth, err);
+}
+
+int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
+                          struct hf_io_error *err)
+{
+    struct hf_io_file *file;
+    if (hf_io_open_any(&file, path, NULL, err))
+        return -1;
+    const int status = file->exr ? exr_depth_only(file, depth_channel, view, depth, err)
+                                 : hf_oiio_read_depth_only(file, depth_channel, view, depth, err);
+    hf_io_close(&file);
+    return status;
+}
+
+int hf_io_write_planes(const char *path, int width, int height, int channels, const char *const names[],
+                       const float *const planes[], ptrdiff_t stride, struct hf_io_error *err)
+{
+    const struct hf_exr_new picture = {
+        .data_window = {0, 0, width, height}, .display_window = {0, 0, width, height}, .pixel_aspect = 1,
+        .screen_width = 1, .compression = EXR_COMPRESSION_ZIP, .channel_count = channels, .names = names,
+        .planes = planes, .stride = stride,
+    };
+    return hf_exr_write_new(path, &picture, err);
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every vector body, for one instruction set: included by its file (x86/avx2.c ...) after its vec_*.h. HF_INIT names
+// the function that enters them in the table.
+#include "pass/simd.h"
+
+#include "pass/format_simd.h"
+#include "pass/coc_simd.h"
+#include "pass/down_simd.h"
+#include "pass/near_max_simd.h"
+#include "pass/near_blur_simd.h"
+#include "pass/gather_simd.h"
+#include "pass/fill_simd.h"
+#include "pass/composite_simd.h"
+
+void HF_INIT(struct hf_kernels *k);
+
+void HF_INIT(struct hf_kernels *k)
+{
+    format_init(k);
+    k->coc_row = coc_row_simd;
+    k->pass[HF_PASS_DOWN] = down_simd;
+    k->pass[HF_PASS_MAX_X] = max_x_simd;
+    k->pass[HF_PASS_MAX_Y] = max_y_simd;
+    k->pass[HF_PASS_BLUR_X] = blur_x_simd;
+    k->pass[HF_PASS_BLUR_Y] = blur_y_simd;
+    k->pass[HF_PASS_GATHER] = gather_simd;
+    k->pass[HF_PASS_FILL] = fill_simd;
+    k->pass[HF_PASS_COMPOSITE] = composite_simd;
+}

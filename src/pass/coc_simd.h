@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CoC generation on vectors. Nothing is fused here, so that "is there any CoC" has one answer on every machine.
+
+// 0..1; NaN becomes 0.
+HF_INLINE vf coc_saturate(vf v)
+{
+    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
+}
+
+HF_INLINE vf coc_shape(vf t)
+{
+    return vf_mul(vf_mul(t, t), vf_sub(vf_set1(3), vf_mul(vf_set1(2), t)));
+}
+
+HF_INLINE vf coc_round_unorm(vf t)
+{
+    // The sum is positive: truncation is floor.
+    const vf k = vi_to_vf(vf_to_vi(vf_add(vf_mul(t, vf_set1(255)), vf_set1(0.5f))));
+    return vf_mul(k, vf_set1(1 / 255.0f));
+}
+
+HF_INLINE vf coc_round(enum hf_storage storage, vf t)
+{
+    if (storage == HF_STORAGE_CHAPTER)
+        return coc_round_unorm(t);
+    return storage == HF_STORAGE_HALF ? round_half_vf(t) : t;
+}
+
+// Depth samples d to the variable that CoC is linear in. none: lanes without a surface. py: y + 1/2 - axis; px: pixel
+// centres likewise.
+HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form form, vf d, vf px, vf py, vm *none)
+{
+    const vf infinity = vf_set1(__builtin_inff()), minus_one = vf_set1(-1);
+    vf z;
+    if (form == HF_FORM_COC) {
+        *none = vm_not(vf_lt(d, vf_set1(1e10f)));
+        return d;
+    }
+    if (form == HF_FORM_IZ) {
+        const vf e = vf_add(vf_set1(s->e_a), vf_mul(vf_set1(s->e_b), d));
+        const vf iz = vf_add(vf_set1(s->iz_a), vf_mul(vf_set1(s->iz_b), e));
+        z = vf_select(vf_gt(iz, vf_set1(1e-10f)), vf_div(vf_set1(1), iz), infinity);
+    } else {
+        z = vf_select(vm_and(vf_gt(d, vf_zero()), vf_lt(d, vf_set1(1e10f))), d, infinity);
+        if (form == HF_FORM_RAY) {
+            const vf x2 = vf_mul(vf_mul(px, px), vf_set1(s->ray_sx)), y2 = vf_mul(vf_mul(py, py), vf_set1(s->ray_sy));
+            z = vf_div(z, vf_sqrt(vf_add(vf_set1(1), vf_add(x2, y2))));
+        }
+    }
+    *none = vm_not(vf_lt(z, vf_set1(1e10f)));
+    return s->lens ? vf_div(minus_one, z) : z;
+}
+
+struct coc_sums {
+    vi near, far, any, none;
+    vm nan;
+};
+
+// One vector of depth to near and far CoC.
+HF_INLINE void coc_block(const struct hf_setup *s, const enum hf_depth_form form, vf d, vf px, vf py, float *near,
+                         float *far, struct coc_sums *sums)
+{
+    vm none;
+    const vf v = coc_variable(s, form, d, px, py, &none);
+    vf n = coc_saturate(vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i)));
+    vf f = coc_saturate(vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i)));
+    if (s->smoothstep) {
+        n = coc_shape(n);
+        f = coc_shape(f);
+    }
+    n = coc_round(s->storage, n);
+    f = coc_round(s->storage, f);
+    vf_store(near, n);
+    vf_store(far, f);
+    const vm is_near = vf_gt(n, vf_zero()), is_far = vf_gt(f, vf_zero());
+    sums->near = vi_count(sums->near, is_near);
+    sums->far = vi_count(sums->far, is_far);
+    sums->any = vi_count(sums->any, vm_or(is_near, is_far));
+    sums->none = vi_count(sums->none, none);
+    sums->nan = vm_or(sums->nan, vf_ne(d, d));
+}
+
+HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, int x, int y, int n,
+                       float *const out[4], struct coc_sums *sums)
+{
+    const struct hf_setup *s = f->s;
+    const uint8_t *row = (const uint8_t *)f->depth->data + (ptrdiff_t)y * f->depth->stride + (size_t)x * 8;
+    static const float steps[16] = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
+    const vf py = vf_set1((float)y + 0.5f - s->ray_cy), step = vf_load(steps);
+    for (int i = 0; i < n; i += VF_N, row += 8 * VF_N) {
+        vf even, odd;
+        vf_unzip(vf_load(row), vf_load(row + 4 * VF_N), &even, &odd);
+        // (2x + 1/2) - axis: exact additions first, as in the C.
+        const vf px = vf_add(vf_set1((float)(2 * (x + i))), step);
+        const vf px_even = vf_sub(vf_add(px, vf_set1(0.5f)), vf_set1(s->ray_cx));
+        const vf px_odd = vf_sub(vf_add(px, vf_set1(1.5f)), vf_set1(s->ray_cx));
+        coc_block(s, form, even, px_even, py, out[0] + i, out[2] + i, sums);
+        coc_block(s, form, odd, px_odd, py, out[1] + i, out[3] + i, sums);
+    }
+}
+
+HF_INLINE void coc_row_form(const struct hf_frame *f, int x, int y, int n, float *const out[4],
+                            struct coc_sums *sums)
+{
+    switch (f->s->form) {
+    case HF_FORM_Z:
+        coc_row(f, HF_FORM_Z, x, y, n, out, sums);
+        break;
+    case HF_FORM_RAY:
+        coc_row(f, HF_FORM_RAY, x, y, n, out, sums);
+        break;
+    case HF_FORM_IZ:
+        coc_row(f, HF_FORM_IZ, x, y, n, out, sums);
+        break;
+    case HF_FORM_COC:
+        coc_row(f, HF_FORM_COC, x, y, n, out, sums);
+        break;
+    }
+}
+
+static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *const out[4],
+                         struct hf_counts *counts)
+{
+    const int whole = hf_min(n, (f->s->width - 2 * x) / 2) / VF_N * VF_N;
+    struct coc_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vi_set1(0), vf_gt(vf_zero(), vf_zero())};
+    coc_row_form(f, x, y, whole, out, &sums);
+    struct hf_counts c = {.near_pixels = vi_sum(sums.near), .far_pixels = vi_sum(sums.far),
+                          .sharp_pixels = 2 * (uint64_t)whole - vi_sum(sums.any), .no_surface = vi_sum(sums.none)};
+    // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
+    const int from = vm_any(sums.nan) ? 0 : whole;
+    if (from == 0)
+        c = (struct hf_counts){0};
+    float *const rest[4] = {out[0] + from, out[1] + from, out[2] + from, out[3] + from};
+    if (from < n)
+        hf_coc_row_c(f, x + from, y, n - from, rest, &c);
+    if (!counts)
+        return;
+    counts->near_pixels += c.near_pixels;
+    counts->far_pixels += c.far_pixels;
+    counts->sharp_pixels += c.sharp_pixels;
+    counts->no_surface += c.no_surface;
+    counts->depth_repaired += c.depth_repaired;
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fill on vectors. Maximum and mean are separable: a column's three values are combined once and serve three
+// pixels. Only the per-pixel kernel, which picks its neighbours, and the far mean, which counts them, look at all nine.
+
+HF_INLINE vf max3(vf a, vf b, vf c)
+{
+    return vf_max(vf_max(a, b), c);
+}
+
+HF_INLINE vf sum3(vf before, vf middle, vf after)
+{
+    return vf_add(vf_add(before, after), middle);
+}
+
+// A row of 3x3 maxima where want > 0, else the values themselves.
+static void fill_max_row(const float *in, ptrdiff_t stride, const float *want, float *out, int n, float *columns)
+{
+    for (int x = 0; x < n + 2; x += VF_N) {
+        const float *p = in + x - 1;
+        vf_store(columns + x, max3(vf_load(p - stride), vf_load(p), vf_load(p + stride)));
+    }
+    for (int x = 0; x < n; x += VF_N) {
+        const float *p = columns + x;
+        const vf v = vf_add(max3(vf_load(p), vf_load(p + 1), vf_load(p + 2)), vf_zero());
+        vf_store(out + x, vf_select(vf_gt(vf_load(want + x), vf_zero()), v, vf_load(in + x)));
+    }
+}
+
+static void fill_mean_row(const float *in, ptrdiff_t stride, const float *want, float *out, int n, float *sums)
+{
+    // Rows first, then their sum, as in the C.
+    for (int i = 0; i < 3; i++)
+        for (int x = 0; x < n; x += VF_N) {
+            const float *p = in + (i - 1) * stride + x;
+            vf_store(sums + (size_t)i * (n + HF_PAD) + x, sum3(vf_load(p - 1), vf_load(p), vf_load(p + 1)));
+        }
+    for (int x = 0; x < n; x += VF_N) {
+        const float *p = sums + x;
+        const vf v = sum3(vf_load(p), vf_load(p + n + HF_PAD), vf_load(p + 2 * (size_t)(n + HF_PAD)));
+        vf_store(out + x, vf_select(vf_gt(vf_load(want + x), vf_zero()), vf_mul(v, vf_set1(1 / 9.0f)),
+                                    vf_load(in + x)));
+    }
+}
+
+static void fill_copy_row(const float *in, float *out, int n)
+{
+    for (int x = 0; x < n; x += VF_N)
+        vf_store(out + x, vf_load(in + x));
+}
+
+// Neighbours that count, all nine looked at: those of similar CoC (per-pixel kernel), and for a mean those
+// that are far at all.
+HF_INLINE void fill_far_picked(const struct hf_setup *s, const float *in, ptrdiff_t stride, const float *coc,
+                               ptrdiff_t coc_stride, float *out, int n)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf own = vf_load(coc + x), value = vf_load(in + x);
+        vf best = value, sum[3], count[3];
+        for (int j = -1; j <= 1; j++) {
+            vf t[3], w[3];
+            for (int i = -1; i <= 1; i++) {
+                const vf g = vf_load(coc + j * coc_stride + x + i), v = vf_load(in + j * stride + x + i);
+                vm counts = s->fill == HF_FILL_MAX ? vf_eq(own, own) : vf_gt(g, vf_zero());
+                if (s->per_pixel_kernel)
+                    counts = vm_and(counts, vf_le(vf_abs(vf_sub(own, g)), vf_set1(0.25f)));
+                best = vf_select(counts, vf_max(v, best), best);
+                t[i + 1] = vf_keep(counts, v);
+                w[i + 1] = vf_keep(counts, vf_set1(1));
+            }
+            sum[j + 1] = sum3(t[0], t[1], t[2]);
+            count[j + 1] = sum3(w[0], w[1], w[2]);
+        }
+        const vf v = s->fill == HF_FILL_MAX
+                         ? vf_add(best, vf_zero())
+                         : vf_div(sum3(sum[0], sum[1], sum[2]), sum3(count[0], count[1], count[2]));
+        vf_store(out + x, vf_select(vf_gt(own, vf_zero()), v, value));
+    }
+}
+
+static void fill_row(const struct hf_frame *f, enum hf_buf_id in, enum hf_buf_id out, const struct hf_buf *want,
+                     int want_channel, int y, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    const int n = r.x1 - r.x0;
+    const ptrdiff_t stride = f->buf[in].stride;
+    const float *w = hf_at(want, want_channel, r.x0, y);
+    float *to[4];
+    hf_row(&f->buf[out], s->channels, r.x0, y, to);
+    for (int c = 0; c < s->channels; c++) {
+        const float *from = hf_at(&f->buf[in], c, r.x0, y);
+        if (s->fill == HF_FILL_NONE)
+            fill_copy_row(from, to[c], n);
+        else if (in == HF_BUF_FAR && (s->per_pixel_kernel || s->fill == HF_FILL_MEAN))
+            fill_far_picked(s, from, stride, w, want->stride, to[c], n);
+        else if (s->fill == HF_FILL_MAX)
+            fill_max_row(from, stride, w, to[c], n, hf_line(f, 0));
+        else
+            fill_mean_row(from, stride, w, to[c], n, f->work);
+    }
+    hf_store_rgb(f, to, n);
+}
+
+static void fill_simd(const struct hf_frame *f, struct hf_rect r)
+{
+    for (int y = r.y0; y < r.y1; y++) {
+        if (f->near)
+            fill_row(f, HF_BUF_NEAR, HF_BUF_NEAR_FILL, &f->buf[HF_BUF_BLUR], 0, y, r);
+        if (f->far)
+            fill_row(f, HF_BUF_FAR, HF_BUF_FAR_FILL, &f->buf[HF_BUF_COC4], 1, y, r);
+    }
+}

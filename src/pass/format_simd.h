@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rows of images on vectors: every format to and from even and odd lanes. The small floats share one trick: shifted so
+// that their exponent lies where a float's does, they are floats too small by 2^112, denormals included, and one
+// multiplication puts that right.
+
+// ---- single vectors ----
+
+HF_INLINE vf clamp_unsigned(vf v, float max)
+{
+    return vf_min(vf_max(v, vf_zero()), vf_set1(max));
+}
+
+// Unsigned, m mantissa bits, to nearest even; 0 <= v <= the largest finite. hf_encode_small says how.
+HF_INLINE vi encode_small(vf v, const int m)
+{
+    const int shift = 23 - m;
+    const vi u = vf_as_vi(v), odd = vi_and(vi_shr(u, 23 - m), vi_set1(1));
+    const vi bias = vi_set1((int32_t)((1u << (shift - 1)) - 1 - (112u << 23)));
+    const vi normal = vi_shr(vi_add(vi_add(u, bias), odd), 23 - m);
+    const vi magic = vi_set1((127 + 23 - 14 - m) << 23);
+    const vi denormal = vi_sub(vf_as_vi(vf_add(v, vi_as_vf(magic))), magic);
+    return vf_as_vi(vf_select(vf_lt(v, vf_set1(0x1p-14f)), vi_as_vf(denormal), vi_as_vf(normal)));
+}
+
+// Float holding v truncated to m mantissa bits and 5 exponent bits.
+HF_INLINE vf truncate_small(vf v, const int m)
+{
+    const vf normal = vi_as_vf(vi_and(vf_as_vi(v), vi_set1((int32_t)(0xffffffffu << (23 - m)))));
+    const float step = (float)(1 << (14 + m));
+    const vf denormal = vf_mul(vi_to_vf(vf_to_vi(vf_mul(v, vf_set1(step)))), vf_set1(1 / step));
+    return vf_select(vf_lt(v, vf_set1(0x1p-14f)), denormal, normal);
+}
+
+HF_INLINE void r11_unpack(vi u, vf out[3])
+{
+    const vf up = vf_set1(0x1p112f);
+    out[0] = vf_mul(vi_as_vf(vi_and(vi_shl(u, 17), vi_set1(0x7ff << 17))), up);
+    out[1] = vf_mul(vi_as_vf(vi_and(vi_shl(u, 6), vi_set1(0x7ff << 17))), up);
+    out[2] = vf_mul(vi_as_vf(vi_and(vi_shr(u, 4), vi_set1(0x3ff << 18))), up);
+}
+
+HF_INLINE vi r11_pack(const vf in[3], vi *clamped)
+{
+    static const float max[3] = {HF_R11_MAX, HF_R11_MAX, HF_R10_MAX};
+    vf v[3];
+    for (int c = 0; c < 3; c++) {
+        v[c] = clamp_unsigned(in[c], max[c]);
+        *clamped = vi_count(*clamped, vf_ne(v[c], in[c]));
+    }
+    return vi_or(vi_or(encode_small(v[0], 6), vi_shl(encode_small(v[1], 6), 11)), vi_shl(encode_small(v[2], 5), 22));
+}
+
+#ifdef VF_SOFT_HALF
+HF_INLINE vf vf_load_half(const void *p)
+{
+    const vi u = vi_load_u16(p);
+    const vf v = vf_mul(vi_as_vf(vi_shl(vi_and(u, vi_set1(0x7fff)), 13)), vf_set1(0x1p112f));
+    return vi_as_vf(vi_or(vf_as_vi(v), vi_shl(vi_and(u, vi_set1(0x8000)), 16)));
+}
+
+// v is finite and within +-65504.
+HF_INLINE void vf_store_half(void *p, vf v)
+{
+    vi_store_u16(p, vi_or(encode_small(vf_abs(v), 10), vi_and(vi_shr(vf_as_vi(v), 16), vi_set1(0x8000))));
+}
+#endif
+
+// NaN becomes 0.
+HF_INLINE vf clamp_half(vf v)
+{
+    return vf_max(vf_min(vf_keep(vf_eq(v, v), v), vf_set1(HF_HALF_MAX)), vf_set1(-HF_HALF_MAX));
+}
+
+HF_INLINE vf round_half_vf(vf v)
+{
+    uint16_t h[VF_N];
+    vf_store_half(h, clamp_half(v));
+    return vf_load_half(h);
+}
+
+#ifndef VF_OWN_INTERLEAVE
+// 4 pixels a 128-bit lane.
+HF_INLINE void vf_load_rgba(const float *p, vf out[4])
+{
+    vf row[4];
+    for (int i = 0; i < 4; i++)
+        row[i] = vf_load_lanes(p + 4 * i, 16);
+    const vf a = vf_shuffle(row[0], row[1], 0x44), b = vf_shuffle(row[0], row[1], 0xee);
+    const vf c = vf_shuffle(row[2], row[3], 0x44), d = vf_shuffle(row[2], row[3], 0xee);
+    out[0] = vf_shuffle(a, c, 0x88);
+    out[1] = vf_shuffle(a, c, 0xdd);
+    out[2] = vf_shuffle(b, d, 0x88);
+    out[3] = vf_shuffle(b, d, 0xdd);
+}
+
+HF_INLINE void vf_store_rgba(float *p, const vf in[4])
+{
+    const vf a = vf_shuffle(in[0], in[1], 0x44), b = vf_shuffle(in[0], in[1], 0xee);
+    const vf c = vf_shuffle(in[2], in[3], 0x44), d = vf_shuffle(in[2], in[3], 0xee);
+    vf_store_lanes(p, 16, vf_shuffle(a, c, 0x88));
+    vf_store_lanes(p + 4, 16, vf_shuffle(a, c, 0xdd));
+    vf_store_lanes(p + 8, 16, vf_shuffle(b, d, 0x88));
+    vf_store_lanes(p + 12, 16, vf_shuffle(b, d, 0xdd));
+}
+
+// r g b r | g b r g | b r g b: three registers hold 4 pixels a lane.
+HF_INLINE void vf_load_rgb(const float *p, vf out[3])
+{
+    const vf x0 = vf_load_lanes(p, 12), x1 = vf_load_lanes(p + 4, 12), x2 = vf_load_lanes(p + 8, 12);
+    const vf high = vf_shuffle(x1, x2, 0x9e), low = vf_shuffle(x0, x1, 0x49);  // r2 g2 r3 g3, g0 b0 g1 b1
+    out[0] = vf_shuffle(x0, high, 0x8c);
+    out[1] = vf_shuffle(low, high, 0xd8);
+    out[2] = vf_shuffle(low, x2, 0xcd);
+}
+
+HF_INLINE void vf_store_rgb(float *p, const vf in[3])
+{
+    const vf a = vf_shuffle(in[0], in[1], 0x88), b = vf_shuffle(in[1], in[2], 0xdd);
+    const vf c = vf_shuffle(in[2], in[0], 0xd8);  // b0 b2 r1 r3
+    vf_store_lanes(p, 12, vf_shuffle(a, c, 0x88));
+    vf_store_lanes(p + 4, 12, vf_shuffle(b, a, 0xd8));
+    vf_store_lanes(p + 8, 12, vf_shuffle(c, b, 0xdd));
+}
+#endif
+
+// ---- blocks of 2 VF_N pixels ----
+
+// Both return lanes that are not finite.
+HF_INLINE vm not_small(vf v)
+{
+    return vm_not(vf_lt(vf_abs(v), vf_set1(65536.0f)));
+}
+
+HF_INLINE vm not_finite(vf v)
+{
+    return vm_not(vf_lt(vf_abs(v), vf_set1(__builtin_inff())));
+}
+
+HF_INLINE vm load_block(const enum hf_format format, const uint8_t *p, vf even[4], vf odd[4])
+{
+    vf a[4], b[4];
+    vm bad = vf_gt(vf_zero(), vf_zero());
+    if (format == HF_FORMAT_R11G11B10F) {
+        vf e, o;
+        vf_unzip(vf_load(p), vf_load(p + 4 * VF_N), &e, &o);
+        r11_unpack(vf_as_vi(e), even);
+        r11_unpack(vf_as_vi(o), odd);
+    } else if (format == HF_FORMAT_PLANAR32F) {  // one plane a call
+        vf_unzip(vf_load(p), vf_load(p + 4 * VF_N), &even[0], &odd[0]);
+    } else {
+        if (format == HF_FORMAT_RGBA32F) {
+            vf_load_rgba((const float *)(const void *)p, a);
+            vf_load_rgba((const float *)(const void *)p + 4 * VF_N, b);
+        } else if (format == HF_FORMAT_RGB32F) {
+            vf_load_rgb((const float *)(const void *)p, a);
+            vf_load_rgb((const float *)(const void *)p + 3 * VF_N, b);
+        } else {
+            float pixels[8 * VF_N];
+            for (int i = 0; i < 8; i++)
+                vf_store(pixels + i * VF_N, vf_load_half(p + 2 * i * VF_N));
+            vf_load_rgba(pixels, a);
+            vf_load_rgba(pixels + 4 * VF_N, b);
+        }
+        for (int c = 0; c < (format == HF_FORMAT_RGB32F ? 3 : 4); c++)
+            vf_unzip(a[c], b[c], &even[c], &odd[c]);
+    }
+    const int small = format == HF_FORMAT_R11G11B10F || format == HF_FORMAT_RGBA16F;
+    const int channels = format == HF_FORMAT_PLANAR32F                                     ? 1
+                         : format == HF_FORMAT_R11G11B10F || format == HF_FORMAT_RGB32F ? 3
+                                                                                        : 4;
+    for (int c = 0; c < channels; c++)
+        bad = vm_or(bad, small ? vm_or(not_small(even[c]), not_small(odd[c]))
+                               : vm_or(not_finite(even[c]), not_finite(odd[c])));
+    return bad;
+}
+
+HF_INLINE void store_block(const enum hf_format format, uint8_t *p, const vf even[4], const vf odd[4], vi *clamped)
+{
+    vf a[4], b[4];
+    if (format == HF_FORMAT_R11G11B10F) {
+        vf lo, hi;
+        vf_zip(vi_as_vf(r11_pack(even, clamped)), vi_as_vf(r11_pack(odd, clamped)), &lo, &hi);
+        vf_store(p, lo);
+        vf_store(p + 4 * VF_N, hi);
+        return;
+    }
+    if (format == HF_FORMAT_PLANAR32F) {
+        vf_zip(even[0], odd[0], &a[0], &b[0]);
+        vf_store(p, a[0]);
+        vf_store(p + 4 * VF_N, b[0]);
+        return;
+    }
+    for (int c = 0; c < (format == HF_FORMAT_RGB32F ? 3 : 4); c++) {
+        vf e = even[c], o = odd[c];
+        if (format == HF_FORMAT_RGBA16F) {
+            e = clamp_half(e);
+            o = clamp_half(o);
+            *clamped = vi_count(vi_count(*clamped, vf_ne(e, even[c])), vf_ne(o, odd[c]));
+        }
+        vf_zip(e, o, &a[c], &b[c]);
+    }
+    if (format == HF_FORMAT_RGBA32F) {
+        vf_store_rgba((float *)(void *)p, a);
+        vf_store_rgba((float *)(void *)p + 4 * VF_N, b);
+    } else if (format == HF_FORMAT_RGB32F) {
+        vf_store_rgb((float *)(void *)p, a);
+        vf_store_rgb((float *)(void *)p + 3 * VF_N, b);
+    } else {
+        float pixels[8 * VF_N];
+        vf_store_rgba(pixels, a);
+        vf_store_rgba(pixels + 4 * VF_N, b);
+        for (int i = 0; i < 8; i++)
+            vf_store_half(p + 2 * i * VF_N, vf_load(pixels + i * VF_N));
+    }
+}
+
+// ---- rows ----
+
+enum { FORMAT_MAX_BYTES = 16 };
+
+// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many the image still has.
+HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int channels, const uint8_t *p, int n,
+                         int pixels, float *const even[4], float *const odd[4])
+{
+    vm bad = vf_gt(vf_zero(), vf_zero());
+    for (int i = 0; i < n; i += VF_N) {
+        uint8_t rest[2 * VF_N * FORMAT_MAX_BYTES];
+        const uint8_t *from = p + (size_t)i * 2 * bpp;
+        const int left = pixels - 2 * i;
+        if (left < 2 * VF_N) {
+            // The row's end: what lies behind it is not ours to read. Repeat its last pixel.
+            memcpy(rest, from, (size_t)left * bpp);
+            for (int k = left; k < 2 * VF_N; k++)
+                memcpy(rest + k * bpp, rest + (left - 1) * bpp, bpp);
+            from = rest;
+        }
+        vf e[4], o[4];
+        bad = vm_or(bad, load_block(format, from, e, o));
+        for (int c = 0; c < channels; c++) {
+            vf_store(even[c] + i, e[c]);
+            vf_store(odd[c] + i, o[c]);
+        }
+    }
+    return vm_any(bad);
+}
+
+HF_INLINE uint32_t store_plane(const enum hf_format format, const int bpp, const int channels, uint8_t *p, int n,
+                               int pixels, const float *const even[4], const float *const odd[4])
+{
+    vi clamped = vi_set1(0);
+    for (int i = 0; i < n; i += VF_N) {
+        const int left = pixels - 2 * i;
+        vf e[4], o[4];
+        for (int c = 0; c < channels; c++) {
+            e[c] = even[c] ? vf_load(even[c] + i) : vf_set1(1);
+            o[c] = odd[c] ? vf_load(odd[c] + i) : vf_set1(1);
+        }
+        if (left >= 2 * VF_N) {
+            store_block(format, p + (size_t)i * 2 * bpp, e, o, &clamped);
+            continue;
+        }
+        // The row's end: only what is inside the image may be counted or written.
+        uint8_t rest[2 * VF_N * FORMAT_MAX_BYTES];
+        for (int c = 0; c < channels; c++) {
+            float lane[2][VF_N];
+            vf_store(lane[0], e[c]);
+            vf_store(lane[1], o[c]);
+            for (int k = left; k < 2 * VF_N; k++)
+                lane[k & 1][k / 2] = 0;
+            e[c] = vf_load(lane[0]);
+            o[c] = vf_load(lane[1]);
+        }
+        store_block(format, rest, e, o, &clamped);
+        memcpy(p + (size_t)i * 2 * bpp, rest, (size_t)left * bpp);
+    }
+    return vi_sum(clamped);
+}
+
+HF_INLINE uint8_t *plane_at(const struct hf_image *m, int plane, int bpp, int x, int y)
+{
+    return (uint8_t *)m->data[plane] + (ptrdiff_t)y * m->stride[plane] + (size_t)x * 2 * bpp;
+}
+
+#define HF_FORMAT_ROWS(name, format, bpp, channels)                                                                  \
+    static int load_##name##_simd(const struct hf_image *m, int x, int y, int n, float *const even[4],               \
+                                  float *const odd[4])                                                               \
+    {                                                                                                                \
+        return load_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), n, m->width - 2 * x, even, odd);         \
+    }                                                                                                                \
+    static uint64_t store_##name##_simd(const struct hf_image *m, int x, int y, int n, const float *const even[4],   \
+                                        const float *const odd[4])                                                   \
+    {                                                                                                                \
+        return store_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), n, m->width - 2 * x, even, odd);        \
+    }
+
+HF_FORMAT_ROWS(rgba32f, HF_FORMAT_RGBA32F, 16, 4)
+HF_FORMAT_ROWS(rgb32f, HF_FORMAT_RGB32F, 12, 3)
+HF_FORMAT_ROWS(rgba16f, HF_FORMAT_RGBA16F, 8, 4)
+HF_FORMAT_ROWS(r11, HF_FORMAT_R11G11B10F, 4, 3)
+
+static int load_planar_simd(const struct hf_image *m, int x, int y, int n, float *const even[4], float *const odd[4])
+{
+    int bad = 0;
+    for (int c = 0; c < hf_plane_count(m); c++)
+        bad |= load_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), n, m->width - 2 * x, even + c, odd + c);
+    return bad;
+}
+
+static uint64_t store_planar_simd(const struct hf_image *m, int x, int y, int n, const float *const even[4],
+                                  const float *const odd[4])
+{
+    for (int c = 0; c < hf_plane_count(m); c++)
+        store_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), n, m->width - 2 * x, even + c, odd + c);
+    return 0;
+}
+
+// ---- checks and roundings ----
+
+// Are n words finite? mask selects a word's exponent; words of 16 bits are looked at in pairs.
+HF_INLINE int finite_words(const uint8_t *p, size_t bytes, const uint32_t masks[3], const int count)
+{
+    vm bad = vf_gt(vf_zero(), vf_zero());
+    size_t i = 0;
+    for (; i + 4 * VF_N <= bytes; i += 4 * VF_N) {
+        const vi u = vi_load(p + i);
+        for (int k = 0; k < count; k++) {
+            const vi mask = vi_set1((int32_t)masks[k]);
+            bad = vm_or(bad, vi_eq(vi_and(u, mask), mask));
+        }
+    }
+    if (vm_any(bad))
+        return 0;
+    for (; i < bytes; i += 4) {
+        uint32_t u = 0;
+        memcpy(&u, p + i, bytes - i < 4 ? bytes - i : 4);
+        for (int k = 0; k < count; k++)
+            if ((u & masks[k]) == masks[k])
+                return 0;
+    }
+    return 1;
+}
+
+static int finite_f32_simd(const void *words, size_t n)
+{
+    static const uint32_t masks[3] = {0x7f800000};
+    return finite_words(words, 4 * n, masks, 1);
+}
+
+static int finite_f16_simd(const void *words, size_t n)
+{
+    static const uint32_t masks[3] = {0x7c00, 0x7c000000};
+    return finite_words(words, 2 * n, masks, 2);
+}
+
+static int finite_r11_simd(const void *words, size_t n)
+{
+    static const uint32_t masks[3] = {0x7c0, 0x3e0000, 0xf8000000};
+    return finite_words(words, 4 * n, masks, 3);
+}
+
+static void truncate_r11_simd(float *r, float *g, float *b, int n)
+{
+    for (int i = 0; i < n; i += VF_N) {
+        vf_store(r + i, truncate_small(clamp_unsigned(vf_load(r + i), HF_R11_MAX), 6));
+        vf_store(g + i, truncate_small(clamp_unsigned(vf_load(g + i), HF_R11_MAX), 6));
+        vf_store(b + i, truncate_small(clamp_unsigned(vf_load(b + i), HF_R10_MAX), 5));
+    }
+}
+
+static void round_half_simd(float *v, int n)
+{
+    for (int i = 0; i < n; i += VF_N)
+        vf_store(v + i, round_half_vf(vf_load(v + i)));
+}
+
+static void format_init(struct hf_kernels *k)
+{
+    k->load[HF_FORMAT_RGBA32F] = load_rgba32f_simd;
+    k->load[HF_FORMAT_RGB32F] = load_rgb32f_simd;
+    k->load[HF_FORMAT_RGBA16F] = load_rgba16f_simd;
+    k->load[HF_FORMAT_R11G11B10F] = load_r11_simd;
+    k->load[HF_FORMAT_PLANAR32F] = load_planar_simd;
+    k->store[HF_FORMAT_RGBA32F] = store_rgba32f_simd;
+    k->store[HF_FORMAT_RGB32F] = store_rgb32f_simd;
+    k->store[HF_FORMAT_RGBA16F] = store_rgba16f_simd;
+    k->store[HF_FORMAT_R11G11B10F] = store_r11_simd;
+    k->store[HF_FORMAT_PLANAR32F] = store_planar_simd;
+    k->finite_f32 = finite_f32_simd;
+    k->finite_f16 = finite_f16_simd;
+    k->finite_r11 = finite_r11_simd;
+    k->truncate_r11 = truncate_r11_simd;
+    k->round_half = round_half_simd;
+}

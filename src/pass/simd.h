@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the vector bodies share. This file and the *_simd.h bodies are compiled once per instruction set, over one of
+// the vec_*.h (see all_simd.h); HF_FUSED says whether multiply-add may be fused. Loops run in steps of VF_N lanes and
+// may compute and write past the end of a row: rows are padded by HF_PAD floats.
+#ifndef HF_PASS_SIMD_H
+#define HF_PASS_SIMD_H
+
+#include "pass/pass_c.h"
+
+#define HF_INLINE static inline __attribute__((always_inline))
+
+// a * b + c
+HF_INLINE vf vf_fma(vf a, vf b, vf c)
+{
+#if HF_FUSED
+    return vf_muladd_fused(a, b, c);
+#else
+    return vf_add(vf_mul(a, b), c);
+#endif
+}
+
+// Sum of the lanes of a count.
+HF_INLINE uint32_t vi_sum(vi a)
+{
+    uint32_t lane[VF_N], sum = 0;
+    vi_store(lane, a);
+    for (int i = 0; i < VF_N; i++)
+        sum += lane[i];
+    return sum;
+}
+
+// a + t (b - a), a's own bits for t = 0.
+HF_INLINE vf vf_lerp(vf a, vf b, vf t)
+{
+    return vf_select(vf_eq(t, vf_zero()), a, vf_fma(t, vf_sub(b, a), a));
+}
+
+#endif

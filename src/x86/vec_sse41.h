@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Vector operations of 4 floats: SSE4.1. No fused multiply-add and no half floats: both are made from what there is.
+#ifndef HF_VEC_SSE41_H
+#define HF_VEC_SSE41_H
+
+#include <smmintrin.h>
+#include <stdint.h>
+
+typedef __m128 vf;
+typedef __m128i vi;
+typedef __m128 vm;  // lanes all ones or all zeros
+enum { VF_N = 4 };
+#define VF_REGISTERS 16
+#define VF_SOFT_HALF 1  // vf_load_half and vf_store_half are those of half_simd.h
+
+static inline vf vf_load(const void *p) { return _mm_loadu_ps((const float *)p); }
+static inline void vf_store(void *p, vf a) { _mm_storeu_ps((float *)p, a); }
+static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
+static inline vf vf_zero(void) { return _mm_setzero_ps(); }
+static inline vf vf_add(vf a, vf b) { return _mm_add_ps(a, b); }
+static inline vf vf_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
+static inline vf vf_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
+static inline vf vf_div(vf a, vf b) { return _mm_div_ps(a, b); }
+static inline vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
+static inline vf vf_floor(vf a) { return _mm_floor_ps(a); }
+static inline vf vf_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
+// a > b ? a : b and a < b ? a : b: b when either is NaN.
+static inline vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
+static inline vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
+static inline vf vf_muladd_fused(vf a, vf b, vf c) { return _mm_add_ps(_mm_mul_ps(a, b), c); }
+
+static inline vm vf_gt(vf a, vf b) { return _mm_cmpgt_ps(a, b); }
+static inline vm vf_lt(vf a, vf b) { return _mm_cmplt_ps(a, b); }
+static inline vm vf_le(vf a, vf b) { return _mm_cmple_ps(a, b); }
+static inline vm vf_eq(vf a, vf b) { return _mm_cmpeq_ps(a, b); }
+static inline vm vf_ne(vf a, vf b) { return _mm_cmpneq_ps(a, b); }  // true for NaN
+static inline vm vm_and(vm a, vm b) { return _mm_and_ps(a, b); }
+static inline vm vm_or(vm a, vm b) { return _mm_or_ps(a, b); }
+static inline vm vm_not(vm a) { return _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1))); }
+static inline int vm_any(vm a) { return _mm_movemask_ps(a) != 0; }
+static inline vf vf_select(vm m, vf a, vf b) { return _mm_blendv_ps(b, a, m); }
+static inline vf vf_keep(vm m, vf a) { return _mm_and_ps(m, a); }  // 0 where not
+// count + 1 where m.
+static inline vi vi_count(vi count, vm m) { return _mm_sub_epi32(count, _mm_castps_si128(m)); }
+
+static inline vi vi_load(const void *p) { return _mm_loadu_si128((const __m128i *)p); }
+static inline void vi_store(void *p, vi a) { _mm_storeu_si128((__m128i *)p, a); }
+static inline vi vi_set1(int32_t a) { return _mm_set1_epi32(a); }
+static inline vi vi_add(vi a, vi b) { return _mm_add_epi32(a, b); }
+static inline vi vi_sub(vi a, vi b) { return _mm_sub_epi32(a, b); }
+static inline vi vi_and(vi a, vi b) { return _mm_and_si128(a, b); }
+static inline vi vi_or(vi a, vi b) { return _mm_or_si128(a, b); }
+static inline vm vi_eq(vi a, vi b) { return _mm_castsi128_ps(_mm_cmpeq_epi32(a, b)); }
+#define vi_shl(a, n) _mm_slli_epi32(a, n)
+#define vi_shr(a, n) _mm_srli_epi32(a, n)
+static inline vi vf_as_vi(vf a) { return _mm_castps_si128(a); }
+static inline vf vi_as_vf(vi a) { return _mm_castsi128_ps(a); }
+static inline vi vf_to_vi(vf a) { return _mm_cvttps_epi32(a); }
+static inline vf vi_to_vf(vi a) { return _mm_cvtepi32_ps(a); }
+
+// 8 numbers in memory order to even and odd ones, and back.
+static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
+{
+    *even = _mm_shuffle_ps(a, b, 0x88);
+    *odd = _mm_shuffle_ps(a, b, 0xdd);
+}
+
+static inline void vf_zip(vf even, vf odd, vf *a, vf *b)
+{
+    *a = _mm_unpacklo_ps(even, odd);
+    *b = _mm_unpackhi_ps(even, odd);
+}
+
+static inline vf vf_load_lanes(const float *p, int step)
+{
+    (void)step;
+    return _mm_loadu_ps(p);
+}
+
+static inline void vf_store_lanes(float *p, int step, vf a)
+{
+    (void)step;
+    _mm_storeu_ps(p, a);
+}
+
+#define vf_shuffle(a, b, imm) _mm_shuffle_ps(a, b, imm)
+
+// 4 halves as the low 16 bits of 4 words, and back.
+static inline vi vi_load_u16(const void *p) { return _mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)p)); }
+static inline void vi_store_u16(void *p, vi a) { _mm_storel_epi64((__m128i *)p, _mm_packus_epi32(a, a)); }
+
+// p[index], index counted in floats.
+static inline vf vf_gather(const float *p, vi index)
+{
+    int32_t i[4];
+    _mm_storeu_si128((__m128i *)i, index);
+    return _mm_setr_ps(p[i[0]], p[i[1]], p[i[2]], p[i[3]]);
+}
+
+#endif
