@@ -2,6 +2,9 @@
 #include "cpu.h"
 
 #include <sched.h>
+#if HF_SIMD && HF_X86
+#include <cpuid.h>
+#endif
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +15,16 @@ const char *hf_isa_name(enum hf_isa isa)
 {
     return (unsigned)isa < ISA_COUNT ? isa_names[isa] : NULL;
 }
+
+#if HF_SIMD && HF_X86
+// __builtin_cpu_supports knows f16c only in newer compilers. Bit 29 of leaf 1; that the operating system saves the
+// registers is what asking for avx2 has told.
+static int has_f16c(void)
+{
+    unsigned a, b, c, d;
+    return __get_cpuid(1, &a, &b, &c, &d) && (c >> 29 & 1);
+}
+#endif
 
 int hf_isa_available(enum hf_isa isa)
 {
@@ -24,7 +37,7 @@ int hf_isa_available(enum hf_isa isa)
     case HF_ISA_SSE41:
         return __builtin_cpu_supports("sse4.1") != 0;
     case HF_ISA_AVX2:
-        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("f16c");
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && has_f16c();
     case HF_ISA_AVX512:
         return hf_isa_available(HF_ISA_AVX2) && __builtin_cpu_supports("avx512f") &&
                __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&

@@ -111,26 +111,30 @@ static int mirrors(const double *w, int rx, int ry)
     return 1;
 }
 
-// Round the lattice to floats, and move what rounding took from the sum to the centre, so that a constant stays one.
-static void round_weights(struct hf_taps *t, const double *w, float *out, int *width)
+// Round the lattice to floats, keep what is not 0, and move what rounding took from the sum to the centre, so that a
+// constant stays one.
+static void round_weights(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
 {
-    const int row = 2 * t->rx + 1;
+    const int row = 2 * t->rx + 1, columns = t->symmetric ? t->rx + 1 : row;
     double sum = 0;
-    const int rows = t->symmetric ? t->ry + 1 : 2 * t->ry + 1, columns = t->symmetric ? t->rx + 1 : row;
-    for (int k = 0; k < rows; k++) {
-        width[k] = 0;
+    int n = 0, centre = 0;
+    for (int k = 0; k < t->rows; k++) {
+        first[k] = n;
         for (int j = 0; j < columns; j++) {
+            const int is_centre = t->symmetric ? k == 0 && j == 0 : k == t->ry && j == t->rx;
             const double *p = t->symmetric ? w + (k + t->ry) * row + j + t->rx : w + k * row + j;
-            float v = (float)(*p / t->count);
-            out[k * t->row + j] = v;
-            if (v != 0)
-                width[k] = j + 1;
+            const float v = (float)(*p / t->count);
+            if (v == 0 && !is_centre)
+                continue;
+            if (is_centre)
+                centre = n;
+            column[n] = j;
+            weight[n++] = v;
             sum += v * (t->symmetric ? (1 + (k > 0)) * (1 + (j > 0)) : 1.0);
         }
     }
-    out[t->symmetric ? 0 : t->ry * t->row + t->rx] += (float)(1 - sum);
-    if (t->symmetric && width[0] == 0)
-        width[0] = 1;
+    first[t->rows] = n;
+    weight[centre] += (float)(1 - sum);
 }
 
 int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem)
@@ -144,17 +148,15 @@ int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct h
     const int max_rx = (int)ceil((double)k->radius * k->scale / k->pixel_aspect) + 1;
     const int max_ry = (int)ceil((double)k->radius * k->scale) + 1;
     const size_t lattice = (size_t)(2 * max_rx + 1) * (2 * max_ry + 1);
-    const int row = 2 * max_rx + 1, rows = 2 * max_ry + 1;
-    const size_t size = lattice * (sizeof(double) + sizeof(float)) + 2 * (size_t)count * sizeof(float) +
-                        (size_t)rows * sizeof(int);
+    const size_t size = lattice * (sizeof(double) + sizeof(float) + sizeof(int)) + 2 * (size_t)count * sizeof(float) +
+                        (size_t)(2 * max_ry + 2) * sizeof(int);
     const int err = hf_block_grow(&t->block, size, mem);
     if (err)
         return err;
     double *w = t->block.data;
     float *dx = (float *)(w + lattice), *dy = dx + count, *weight = dy + count;
-    int *width = (int *)(weight + lattice);
+    int *column = (int *)(weight + lattice), *first = column + lattice;
     memset(w, 0, lattice * sizeof *w);
-    memset(weight, 0, lattice * sizeof *weight);
     place_taps(k, dx, dy);
     const int rx = lattice_reach(dx, count), ry = lattice_reach(dy, count);
     // The positions are rounded to float for the per-pixel kernel; the lattice takes the same ones.
@@ -165,11 +167,12 @@ int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct h
     t->dy = dy;
     t->rx = rx;
     t->ry = ry;
-    t->row = row;
     t->symmetric = mirrors(w, rx, ry);
+    t->rows = t->symmetric ? ry + 1 : 2 * ry + 1;
+    t->first = first;
+    t->column = column;
     t->weight = weight;
-    t->width = width;
-    round_weights(t, w, weight, width);
+    round_weights(t, w, first, column, weight);
     memcpy(t->key, key, sizeof key);
     return HF_OK;
 }

@@ -14,12 +14,12 @@ struct hf_taps {
 
     int rx, ry;       // lattice reach: offsets -rx..rx, -ry..ry
     int symmetric;    // weights mirror in x and in y
-    int row;          // floats from one row of weights to the next
-    // Weights, each tap 1/count, summing to 1. symmetric: weight[k * row + j] for |dy| = k, |dx| = j.
-    // Otherwise weight[(dy + ry) * row + dx + rx].
+    // The weights, each tap 1/count, summing to 1: only those that are not 0, row by row. Row k has entries first[k] to
+    // first[k + 1]. symmetric: ry + 1 rows, for |dy| = k, with column |dx|. Else 2 ry + 1 rows, for dy = k - ry, with
+    // column dx + rx.
+    int rows;
+    const int *first, *column;
     const float *weight;
-    // Non-zero part of each row k: columns below width[k] (symmetric), of |dy| = k; else of dy + ry.
-    const int *width;
 
     struct hf_block block;  // owns all of the above
     float key[8];           // parameters it was built from

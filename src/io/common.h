@@ -14,8 +14,8 @@ extern "C" {
 #endif
 
 enum {
-    HF_IO_MAX_SIDE = 65536,           // widest and tallest picture
-    HF_IO_MAX_COORDINATE = 1 << 30,   // windows stay within +- this, so that no difference of two overflows
+    HF_IO_MAX_SIDE = 65536,          // widest and tallest picture
+    HF_IO_MAX_COORDINATE = 1 << 30,  // windows stay within +- this, so that no difference of two overflows
 };
 
 struct hf_exr;
@@ -23,7 +23,7 @@ struct hf_oiio;
 
 struct hf_io_file {
     char *path;
-    struct hf_exr *exr;    // one of these two is set
+    struct hf_exr *exr;  // one of these two is set
     struct hf_oiio *oiio;
     int view_count;
     struct hf_io_view *views;

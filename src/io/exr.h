@@ -23,11 +23,11 @@ struct hf_exr_part {
     exr_compression_t compression;
     exr_lineorder_t line_order;
     exr_attr_box2i_t window;
-    bool window_ok;           // width and height are set: 1 .. HF_IO_MAX_SIDE
+    bool window_ok;  // width and height are set: 1 .. HF_IO_MAX_SIDE
     int width, height;
-    int chunk_lines;          // scan lines per chunk; 0 for tiles
+    int chunk_lines;  // scan lines per chunk; 0 for tiles
     int tile_width, tile_height;
-    bool one_level;           // not mipmapped
+    bool one_level;  // not mipmapped
     int chunk_count;
     uint64_t table;           // file offsets: of the chunk table,
     uint64_t compression_at;  // of the byte that names the compression,

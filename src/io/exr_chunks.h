@@ -13,10 +13,10 @@ struct hf_exr_slot {
 // The part being written.
 struct hf_exr_target {
     struct hf_out *out;
-    uint64_t at;       // bytes written so far
+    uint64_t at;  // bytes written so far
     bool multipart;
     int part;
-    uint64_t *table;   // filled: offset of each chunk
+    uint64_t *table;  // filled: offset of each chunk
 };
 
 // The chunk table of a part sorted by offset; to be freed. NULL with *err filled.

@@ -95,8 +95,8 @@ int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *e
 // A cursor over the header bytes, for what Core does not tell: where things are.
 struct cursor {
     const struct hf_exr *e;
-    uint64_t at;        // next byte
-    uint64_t begin;     // what buf holds
+    uint64_t at;     // next byte
+    uint64_t begin;  // what buf holds
     size_t held;
     uint8_t buf[4096];
 };

@@ -9,10 +9,11 @@ static const struct {
     const char *name;
     int lines;  // scan lines per chunk
 } compressions[] = {
-    [EXR_COMPRESSION_NONE] = {"none", 1}, [EXR_COMPRESSION_RLE] = {"rle", 1},      [EXR_COMPRESSION_ZIPS] = {"zips", 1},
-    [EXR_COMPRESSION_ZIP] = {"zip", 16},  [EXR_COMPRESSION_PIZ] = {"piz", 32},     [EXR_COMPRESSION_PXR24] = {"pxr24", 16},
-    [EXR_COMPRESSION_B44] = {"b44", 32},  [EXR_COMPRESSION_B44A] = {"b44a", 32},   [EXR_COMPRESSION_DWAA] = {"dwaa", 32},
-    [EXR_COMPRESSION_DWAB] = {"dwab", 256},
+    [EXR_COMPRESSION_NONE] = {"none", 1},  [EXR_COMPRESSION_RLE] = {"rle", 1},
+    [EXR_COMPRESSION_ZIPS] = {"zips", 1},  [EXR_COMPRESSION_ZIP] = {"zip", 16},
+    [EXR_COMPRESSION_PIZ] = {"piz", 32},   [EXR_COMPRESSION_PXR24] = {"pxr24", 16},
+    [EXR_COMPRESSION_B44] = {"b44", 32},   [EXR_COMPRESSION_B44A] = {"b44a", 32},
+    [EXR_COMPRESSION_DWAA] = {"dwaa", 32}, [EXR_COMPRESSION_DWAB] = {"dwab", 256},
 };
 
 const char *hf_exr_compression_name(exr_compression_t compression)
@@ -76,8 +77,8 @@ static uint64_t decoded_bytes(const struct hf_exr_part *part)
     uint64_t sum = 0;
     for (int c = 0; c < part->channel_count; c++) {
         const struct hf_exr_channel *ch = &part->channels[c];
-        sum += (uint64_t)(part->width / ch->x_sampling) * (uint64_t)(part->height / ch->y_sampling) *
-               (uint64_t)ch->bytes;
+        sum +=
+            (uint64_t)(part->width / ch->x_sampling) * (uint64_t)(part->height / ch->y_sampling) * (uint64_t)ch->bytes;
     }
     return sum;
 }
@@ -109,7 +110,7 @@ int hf_exr_check_part(const struct hf_exr *e, int p, struct hf_io_error *err)
     // short file ask for any amount of memory.
     const uint64_t best = hf_exr_is_dwa(part->compression) ? 65536 : 2048;
     if (decoded_bytes(part) / best > e->size)
-        return hf_io_fail(err, "%s: truncated or corrupt: %llu bytes cannot hold %d x %d pixels of %d channels", e->path,
-                          (unsigned long long)e->size, part->width, part->height, part->channel_count);
+        return hf_io_fail(err, "%s: truncated or corrupt: %llu bytes cannot hold %d x %d pixels of %d channels",
+                          e->path, (unsigned long long)e->size, part->width, part->height, part->channel_count);
     return 0;
 }

@@ -106,7 +106,8 @@ int hf_exr_read_pixels(struct hf_exr *e, int p, struct hf_exr_pixels *px, struct
     else
         status = hf_exr_rows(e, p, copy_row, &r, err);
     if (!status && r.bad)
-        status = hf_io_fail(err, "%s: truncated or corrupt: subsampled rows of part %d have the wrong length", e->path, p);
+        status =
+            hf_io_fail(err, "%s: truncated or corrupt: subsampled rows of part %d have the wrong length", e->path, p);
     if (status)
         hf_exr_free_pixels(px);
     return status;
@@ -119,10 +120,17 @@ int hf_exr_samples(const struct hf_exr_pixels *px, const char *path, struct hf_o
     const size_t n = (size_t)part->channel_count;
     names->names = calloc(n, sizeof(*names->names));
     names->types = calloc(n, sizeof(*names->types));
-    *s = (struct hf_oiio_samples){.x = part->window.min.x, .y = part->window.min.y, .width = part->width,
-                                  .height = part->height, .channel_count = part->channel_count, .data = px->data,
-                                  .tile_width = part->tile_width, .tile_height = part->tile_height,
-                                  .row_bytes = px->row[1], .names = names->names, .types = names->types};
+    *s = (struct hf_oiio_samples){.x = part->window.min.x,
+                                  .y = part->window.min.y,
+                                  .width = part->width,
+                                  .height = part->height,
+                                  .channel_count = part->channel_count,
+                                  .data = px->data,
+                                  .tile_width = part->tile_width,
+                                  .tile_height = part->tile_height,
+                                  .row_bytes = px->row[1],
+                                  .names = names->names,
+                                  .types = names->types};
     if (!names->names || !names->types) {
         hf_exr_free_names(names);
         return hf_io_fail(err, "%s: out of memory", path);

@@ -9,7 +9,7 @@ struct new_file {
     struct hf_out out;
     uint64_t at;
     struct hf_io_error *err;
-    bool failed;             // *err has been filled by writing
+    bool failed;  // *err has been filled by writing
 };
 
 static int64_t write_out(exr_const_context_t core, void *user, const void *data, uint64_t size, uint64_t offset,
@@ -97,8 +97,8 @@ static int check_new(const char *path, const struct hf_exr_new *picture, struct 
         hf_io_check_window(path, "display window", picture->display_window, err))
         return -1;
     if (picture->channel_count < 1 || picture->stride > INT32_MAX / 8 || picture->stride < -INT32_MAX / 8)
-        return hf_io_fail(err, "%s: cannot write %d channels with rows %td floats apart", path,
-                          picture->channel_count, picture->stride);
+        return hf_io_fail(err, "%s: cannot write %d channels with rows %td floats apart", path, picture->channel_count,
+                          picture->stride);
     for (int c = 0; c < picture->channel_count; c++)
         for (int i = 0; i < c; i++)
             if (!strcmp(picture->names[c], picture->names[i]))

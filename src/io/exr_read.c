@@ -17,22 +17,31 @@ static exr_result_t chunk_info(const struct hf_exr *e, int p, int index, exr_chu
     return exr_read_scanline_chunk_info(e->core, p, part->window.min.y + index * part->chunk_lines, info);
 }
 
-// Have Core read and decompress one chunk into pipe->unpacked_buffer.
-static exr_result_t decode_chunk(struct hf_exr *e, int p, const exr_chunk_info_t *info, exr_decode_pipeline_t *pipe)
+// A part being decoded.
+struct decoder {
+    exr_decode_pipeline_t pipe;
+    exr_result_t (*decompress)(exr_decode_pipeline_t *);
+};
+
+// Have Core read and decompress one chunk into d->pipe.unpacked_buffer.
+static exr_result_t decode_chunk(struct hf_exr *e, int p, const exr_chunk_info_t *info, struct decoder *d)
 {
     exr_result_t rv;
     // Core leaves such a chunk's buffer as it finds it.
     if (e->parts[p].compression == EXR_COMPRESSION_NONE && info->packed_size != info->unpacked_size)
         return EXR_ERR_BAD_CHUNK_LEADER;
-    if (!pipe->context) {
-        rv = exr_decoding_initialize(e->core, p, info, pipe);
+    if (!d->pipe.context) {
+        rv = exr_decoding_initialize(e->core, p, info, &d->pipe);
         if (!rv)
-            rv = exr_decoding_choose_default_routines(e->core, p, pipe);
-        pipe->unpack_and_convert_fn = NULL;  // the rows are used as they are
+            rv = exr_decoding_choose_default_routines(e->core, p, &d->pipe);
+        d->pipe.unpack_and_convert_fn = NULL;  // the rows are used as they are
+        d->decompress = d->pipe.decompress_fn;
     } else {
-        rv = exr_decoding_update(e->core, p, info, pipe);
+        rv = exr_decoding_update(e->core, p, info, &d->pipe);
     }
-    return rv ? rv : exr_decoding_run(e->core, p, pipe);
+    // What did not shrink is stored as it is, whatever the compression. Core 3.1 forgets that for B44.
+    d->pipe.decompress_fn = info->packed_size == info->unpacked_size ? NULL : d->decompress;
+    return rv ? rv : exr_decoding_run(e->core, p, &d->pipe);
 }
 
 // Hand the rows of a decoded chunk out. False when they do not fill it as they should.
@@ -76,7 +85,7 @@ static int rows_by_oiio(struct hf_exr *e, int p, hf_exr_row *row, void *arg, str
 int hf_exr_rows(struct hf_exr *e, int p, hf_exr_row *row, void *arg, struct hf_io_error *err)
 {
     const struct hf_exr_part *part = &e->parts[p];
-    exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
+    struct decoder d = {.decompress = NULL};
     if (hf_exr_is_dwa(part->compression))
         return rows_by_oiio(e, p, row, arg, err);
     const int lines = part->storage == EXR_STORAGE_TILED ? part->tile_height : part->chunk_lines;
@@ -88,13 +97,13 @@ int hf_exr_rows(struct hf_exr *e, int p, hf_exr_row *row, void *arg, struct hf_i
         exr_chunk_info_t info = {0};
         exr_result_t rv = chunk_info(e, p, i, &info);
         if (!rv)
-            rv = decode_chunk(e, p, &info, &pipe);
+            rv = decode_chunk(e, p, &info, &d);
         if (rv)
             status = hf_exr_fail(e, rv, err);
-        else if (!chunk_rows(e, p, &pipe, row, arg))
+        else if (!chunk_rows(e, p, &d.pipe, row, arg))
             status = hf_io_fail(err, "%s: truncated or corrupt: chunk %d of part %d has the wrong size", e->path, i, p);
     }
-    exr_decoding_destroy(e->core, &pipe);
+    exr_decoding_destroy(e->core, &d.pipe);
     return status;
 }
 
@@ -167,9 +176,9 @@ int hf_exr_read_depth(struct hf_exr *e, int p, int c, struct hf_io_box grid, flo
     const exr_attr_box2i_t *w = &part->window;
     struct depth_rows r = {part, c, grid, depth};
     if (w->max.x < grid.x0 || w->min.x >= grid.x1 || w->max.y < grid.y0 || w->min.y >= grid.y1)
-        return hf_io_fail(err, "%s: depth channel %s covers (%d %d) - (%d %d), nothing of the colour's (%d %d) - (%d %d)",
-                          e->path, part->channels[c].name, w->min.x, w->min.y, w->max.x, w->max.y, grid.x0, grid.y0,
-                          grid.x1 - 1, grid.y1 - 1);
+        return hf_io_fail(
+            err, "%s: depth channel %s covers (%d %d) - (%d %d), nothing of the colour's (%d %d) - (%d %d)", e->path,
+            part->channels[c].name, w->min.x, w->min.y, w->max.x, w->max.y, grid.x0, grid.y0, grid.x1 - 1, grid.y1 - 1);
     const size_t n = (size_t)(grid.x1 - grid.x0) * (size_t)(grid.y1 - grid.y0);
     if (w->min.x > grid.x0 || w->min.y > grid.y0 || w->max.x + 1 < grid.x1 || w->max.y + 1 < grid.y1)
         for (size_t i = 0; i < n; i++)

@@ -199,11 +199,11 @@ static int views_in_part(struct hf_io_file *file, int p, bool layers, struct hf_
 // What one search for depth looks for.
 struct depth_search {
     const struct hf_exr *e;
-    const char *view;     // "" when the file names none
-    const char *prefix;   // what stands before the R of the view's channels
-    bool unprefixed;      // plain names are this view's
-    int colour_part;      // -1: none
-    bool any_part;        // the file has one view, so every part is about it
+    const char *view;    // "" when the file names none
+    const char *prefix;  // what stands before the R of the view's channels
+    bool unprefixed;     // plain names are this view's
+    int colour_part;     // -1: none
+    bool any_part;       // the file has one view, so every part is about it
 };
 
 static bool part_is_ours(const struct depth_search *s, int p)
@@ -356,14 +356,19 @@ int hf_exr_find_views(struct hf_io_file *file, const char *depth_channel, struct
 int hf_exr_find_depth_only(const struct hf_exr *e, const char *depth_channel, const char *name, int *channel)
 {
     struct depth_search s = {.e = e, .view = name, .prefix = "", .unprefixed = true, .colour_part = -1};
+    char prefix[NAME];
     int flat = 0, last = -1;
+    for (int p = 0; p < e->part_count && name[0]; p++) {
+        const struct views_of_part names = views_of(e, p);
+        for (int i = 1; i < names.count; i++)
+            s.unprefixed &= strcmp(view_name(&names, i), name) != 0;
+    }
+    if (!s.unprefixed) {
+        snprintf(prefix, sizeof(prefix), "%.*s.", NAME - 2, name);
+        s.prefix = prefix;
+    }
     for (int any = 0; any < 2; any++) {
         s.any_part = any;
-        for (int p = 0; p < e->part_count && name[0]; p++) {
-            const struct views_of_part names = views_of(e, p);
-            for (int i = 1; i < names.count; i++)
-                s.unprefixed &= strcmp(view_name(&names, i), name) != 0;
-        }
         const int p = find_depth(&s, depth_channel, channel);
         if (p >= 0)
             return p;

@@ -49,8 +49,8 @@ static int plan_part(struct writer *w, int p, int compression)
         }
     }
     if (plan->changed && !part->one_level)
-        return hf_io_fail(w->err, "%s: part %d is mipmapped; writing new colours into it is not supported",
-                          w->e->path, p);
+        return hf_io_fail(w->err, "%s: part %d is mipmapped; writing new colours into it is not supported", w->e->path,
+                          p);
     if (plan->changed && compression >= 0)
         plan->compression = (exr_compression_t)compression;
     if (plan->changed && part->storage == EXR_STORAGE_SCANLINE)
@@ -219,8 +219,8 @@ static int encode_dwa(struct writer *w, int p, const struct hf_exr_pixels *px)
         status = fd < 0 ? hf_io_fail(w->err, "%s: cannot read what was written", w->out.path)
                         : hf_exr_open(&made, w->out.path, fd, w->err);
     }
-    if (!status && (made->parts[0].chunk_count != w->plans[p].chunk_count ||
-                    made->parts[0].storage != px->part->storage))
+    if (!status &&
+        (made->parts[0].chunk_count != w->plans[p].chunk_count || made->parts[0].storage != px->part->storage))
         status = hf_io_fail(w->err, "%s: OpenImageIO cut the picture into other chunks than it should", w->out.path);
     if (!status)
         status = hf_exr_copy_chunks(made, 0, &t, w->err);
@@ -273,8 +273,8 @@ static int write_all(struct writer *w, const char *path)
 int hf_exr_write(struct hf_io_file *file, const char *path, const struct hf_io_result *results, int n_results,
                  int compression, uint64_t *clamped, struct hf_io_error *err)
 {
-    struct writer w = {.e = file->exr, .file = file, .results = results, .n_results = n_results, .clamped = clamped,
-                       .err = err};
+    struct writer w = {
+        .e = file->exr, .file = file, .results = results, .n_results = n_results, .clamped = clamped, .err = err};
     w.plans = calloc((size_t)w.e->part_count, sizeof(*w.plans));
     int status = w.plans ? 0 : hf_io_fail(err, "%s: out of memory", path);
     for (int p = 0; p < w.e->part_count && !status; p++)

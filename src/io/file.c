@@ -112,7 +112,7 @@ int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_
         if (!status)
             status = hf_exr_find_views(file, depth_channel, err);
     } else {
-        status = hf_io_check_png(path, fd, err);
+        status = hf_io_has_oiio() ? hf_io_check_png(path, fd, err) : 0;
         close(fd);
         if (!status)
             status = hf_oiio_open(file, depth_channel, err);
@@ -241,9 +241,15 @@ int hf_io_write_planes(const char *path, int width, int height, int channels, co
                        const float *const planes[], ptrdiff_t stride, struct hf_io_error *err)
 {
     const struct hf_exr_new picture = {
-        .data_window = {0, 0, width, height}, .display_window = {0, 0, width, height}, .pixel_aspect = 1,
-        .screen_width = 1, .compression = EXR_COMPRESSION_ZIP, .channel_count = channels, .names = names,
-        .planes = planes, .stride = stride,
+        .data_window = {0, 0, width, height},
+        .display_window = {0, 0, width, height},
+        .pixel_aspect = 1,
+        .screen_width = 1,
+        .compression = EXR_COMPRESSION_ZIP,
+        .channel_count = channels,
+        .names = names,
+        .planes = planes,
+        .stride = stride,
     };
     return hf_exr_write_new(path, &picture, err);
 }

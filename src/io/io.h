@@ -50,7 +50,8 @@ struct hf_io_file;
 
 // Open a file and find its views. depth_channel: full name of the depth channel to use for every view (or NULL: search
 // the view's own Z, depth.Z, then any single channel named *depth*). A view without depth is no error here: it
-// has depth_part -1, and hf_io_channels says which channels there are. Returns 0, or -1 with *err filled.
+// has depth_part -1, and hf_io_channels says which channels there are. A file without colour (R, G, B or Y) is an
+// error that lists its channels. Returns 0, or -1 with *err filled.
 // Header sizes are not trusted: nothing is allocated in proportion to a data window before its pixels are asked for
 // and the file has been seen to be long enough to hold its chunk table.
 int hf_io_open(struct hf_io_file **out, const char *path, const char *depth_channel, struct hf_io_error *err);
@@ -73,7 +74,8 @@ int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
                           struct hf_io_error *err);
 
-// What to put in the place of a view's colour. planes[c] NULL: channel kept as it was.
+// What to put in the place of a view's colour. planes[c] NULL: channel kept as it was. Greyscale files take the Rec. 709
+// luminance of the three.
 struct hf_io_result {
     int view;
     const float *planes[4];
@@ -88,8 +90,9 @@ struct hf_io_write_options {
 // parts, channels and their types, tiling, compression, line order) stays; parts with nothing to change are copied as
 // raw chunks. *clamped counts samples that did not fit a half channel (clamped to +-65504). Written to a temporary file
 // beside path, then renamed; on error nothing is left. The format follows path's extension; an EXR source
-// written as something else (png, tif, jpg ...) keeps only the (first) view's colour; display formats of 8 bits get the
-// sRGB curve, by OpenImageIO. When path is not .exr, results must hold exactly one view.
+// written as something else (png, tif, jpg ...) keeps only one view's colour; formats of 8 and 16 bit integers get the
+// sRGB curve (reading takes it off again), floats stay linear. When path is not .exr, results must hold exactly one view.
+// clamped, options and err may be NULL. path may be the file's own.
 int hf_io_write(struct hf_io_file *file, const char *path, const struct hf_io_result *results, int n_results,
                 const struct hf_io_write_options *options, uint64_t *clamped, struct hf_io_error *err);
 

@@ -4,8 +4,10 @@
 
 static int absent(const char *path, struct hf_io_error *err)
 {
-    return hf_io_fail(err, "%s: this build reads and writes only EXR without DWA compression (built without "
-                           "OpenImageIO)", path);
+    return hf_io_fail(err,
+                      "%s: this build reads and writes only EXR without DWA compression (built without "
+                      "OpenImageIO)",
+                      path);
 }
 
 int hf_io_has_oiio(void)

@@ -284,7 +284,8 @@ TypeDesc output_type(const char *path, const hf_io_file *source)
 }
 
 // Interleave the planes as the format wants them: with the sRGB curve and straight alpha for integers.
-std::vector<float> interleave(const struct hf_io_view *v, const float *const planes[4], const ImageSpec &spec, bool alpha)
+std::vector<float> interleave(const struct hf_io_view *v, const float *const planes[4], const ImageSpec &spec,
+                              bool alpha)
 {
     const size_t n = (size_t)v->width * (size_t)v->height, channels = (size_t)spec.nchannels;
     const size_t colours = channels - (alpha ? 1 : 0);
@@ -325,7 +326,8 @@ int write_picture(hf_out *target, const hf_io_file *source, const struct hf_io_v
     spec.attribute("PixelAspectRatio", v->pixel_aspect);
     if (alpha && is_integer(spec.format))
         spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (is_integer(spec.format))
+    // Not in TIFF: there it makes an EXIF directory, which OpenImageIO 2.4 then links in place of the picture's.
+    if (is_integer(spec.format) && strcmp(output.out->format_name(), "tiff"))
         spec.attribute("oiio:ColorSpace", "sRGB");
     if (compression)
         spec.attribute("compression", compression);
@@ -369,8 +371,8 @@ int read_samples(const char *path, int part, hf_oiio_samples *s, hf_io_error *er
         return input.fail(path, err);
     spec = input.in->spec();
     if (spec.width != s->width || spec.height != s->height || spec.deep)
-        return hf_io_fail(err, "%s: truncated or corrupt: OpenImageIO finds %d x %d pixels in part %d, not %d x %d", path,
-                          spec.width, spec.height, part, s->width, s->height);
+        return hf_io_fail(err, "%s: truncated or corrupt: OpenImageIO finds %d x %d pixels in part %d, not %d x %d",
+                          path, spec.width, spec.height, part, s->width, s->height);
     const size_t step = spec.pixel_bytes(true);
     std::vector<uint8_t> pixels(step * (size_t)s->width * (size_t)s->height);
     if (!input.in->read_image(part, 0, 0, spec.nchannels, TypeDesc::UNKNOWN, pixels.data()))
@@ -484,7 +486,8 @@ int hf_oiio_read_depth_only(hf_io_file *file, const char *depth_channel, const s
         if (c < 0 && !depth_channel)
             c = spec.nchannels == 1 ? 0 : file->oiio->colour[0];
         if (c < 0)
-            return hf_io_fail(err, "%s: no depth channel %s", file->path, depth_channel ? depth_channel : "Z, *depth*, R");
+            return hf_io_fail(err, "%s: no depth channel %s", file->path,
+                              depth_channel ? depth_channel : "Z, *depth*, R");
         if (spec.width != view->width || spec.height != view->height)
             return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d", file->path, spec.width,
                               spec.height, view->width, view->height);
@@ -504,8 +507,7 @@ int hf_oiio_read_samples(const char *path, int part, hf_oiio_samples *s, hf_io_e
     return guarded(path, err, [&] { return read_samples(path, part, s, err); });
 }
 
-int hf_oiio_write_samples(hf_out *out, const hf_oiio_samples *s, const char *compression, float level,
-                          hf_io_error *err)
+int hf_oiio_write_samples(hf_out *out, const hf_oiio_samples *s, const char *compression, float level, hf_io_error *err)
 {
     return guarded(out->path, err, [&] { return write_samples(out, s, compression, level, err); });
 }

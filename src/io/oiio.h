@@ -28,13 +28,13 @@ int hf_oiio_write(struct hf_out *out, const struct hf_io_file *source, const str
 // The samples of one EXR part as OpenEXR stores them: row after row, in a row channel after channel, in alphabetical
 // order, little endian. All channels have full resolution.
 struct hf_oiio_samples {
-    int x, y, width, height;   // the data window
+    int x, y, width, height;  // the data window
     int channel_count;
     const char *const *names;
-    const uint8_t *types;      // 0 uint, 1 half, 2 float
+    const uint8_t *types;         // 0 uint, 1 half, 2 float
     int tile_width, tile_height;  // 0: scan lines
     size_t row_bytes;
-    uint8_t *data;             // height * row_bytes
+    uint8_t *data;  // height * row_bytes
 };
 
 int hf_oiio_read_samples(const char *path, int part, struct hf_oiio_samples *s, struct hf_io_error *err);

@@ -43,10 +43,17 @@ static int write_new_exr(const char *path, const struct hf_io_view *v, const flo
 {
     static const char *const names[4] = {"R", "G", "B", "A"};
     const struct hf_exr_new picture = {
-        .data_window = v->data_window, .display_window = v->display_window, .pixel_aspect = v->pixel_aspect,
-        .screen_center_x = v->screen_center_x, .screen_center_y = v->screen_center_y, .screen_width = v->screen_width,
+        .data_window = v->data_window,
+        .display_window = v->display_window,
+        .pixel_aspect = v->pixel_aspect,
+        .screen_center_x = v->screen_center_x,
+        .screen_center_y = v->screen_center_y,
+        .screen_width = v->screen_width,
         .compression = compression < 0 ? EXR_COMPRESSION_ZIP : (exr_compression_t)compression,
-        .channel_count = planes[3] ? 4 : 3, .names = names, .planes = planes, .stride = v->width,
+        .channel_count = planes[3] ? 4 : 3,
+        .names = names,
+        .planes = planes,
+        .stride = v->width,
     };
     return hf_exr_write_new(path, &picture, err);
 }

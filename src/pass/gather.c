@@ -10,36 +10,30 @@
 
 #include "pass/pass_c.h"
 
-// One output row of a convolution whose weights mirror: pairs of columns are added first, each row of weights is
-// summed outwards, and the rows are added from top to bottom.
-static void convolve_row_symmetric(const struct hf_taps *t, const float *in, ptrdiff_t stride, float *out, int n,
-                                   float *sum)
-{
-    for (int x = 0; x < n; x++)
-        out[x] = 0;
-    for (int dy = -t->ry; dy <= t->ry; dy++) {
-        const float *p = in + dy * stride, *w = t->weight + (dy < 0 ? -dy : dy) * t->row;
-        for (int x = 0; x < n; x++)
-            sum[x] = w[0] * p[x];
-        for (int j = 1; j < t->width[dy < 0 ? -dy : dy]; j++)
-            for (int x = 0; x < n; x++)
-                sum[x] += w[j] * (p[x - j] + p[x + j]);
-        for (int x = 0; x < n; x++)
-            out[x] += sum[x];
-    }
-}
-
+// One output row of a convolution. With mirrored weights, pairs of columns are added first. Each row of weights is
+// summed, and the rows are added from top to bottom.
 static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t stride, float *out, int n, float *sum)
 {
     for (int x = 0; x < n; x++)
         out[x] = 0;
     for (int dy = -t->ry; dy <= t->ry; dy++) {
-        const float *p = in + dy * stride - t->rx, *w = t->weight + (dy + t->ry) * t->row;
+        const float *p = in + dy * stride;
+        const int k = !t->symmetric ? dy + t->ry : dy < 0 ? -dy : dy;
         for (int x = 0; x < n; x++)
             sum[x] = 0;
-        for (int j = 0; j < t->width[dy + t->ry]; j++)
-            for (int x = 0; x < n; x++)
-                sum[x] += w[j] * p[x + j];
+        for (int i = t->first[k]; i < t->first[k + 1]; i++) {
+            const float w = t->weight[i];
+            const int j = t->column[i];
+            if (!t->symmetric)
+                for (int x = 0; x < n; x++)
+                    sum[x] += w * p[x + j - t->rx];
+            else if (j == 0)
+                for (int x = 0; x < n; x++)
+                    sum[x] += w * p[x];
+            else
+                for (int x = 0; x < n; x++)
+                    sum[x] += w * (p[x - j] + p[x + j]);
+        }
         for (int x = 0; x < n; x++)
             out[x] += sum[x];
     }
@@ -51,8 +45,7 @@ static void convolve(const struct hf_frame *f, struct hf_rect r, enum hf_buf_id 
     const struct hf_taps *t = f->s->taps;
     const struct hf_buf *a = &f->buf[in], *b = &f->buf[out];
     for (int y = r.y0; y < r.y1; y++)
-        (t->symmetric ? convolve_row_symmetric : convolve_row)(t, hf_at(a, c_in, r.x0, y), a->stride,
-                                                               hf_at(b, c_out, r.x0, y), r.x1 - r.x0, hf_line(f, 0));
+        convolve_row(t, hf_at(a, c_in, r.x0, y), a->stride, hf_at(b, c_out, r.x0, y), r.x1 - r.x0, hf_line(f, 0));
 }
 
 // Karis average: planes of w = 1 / (1 + luminance) times what is to be averaged, wherever taps of r reach.

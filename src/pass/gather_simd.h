@@ -2,102 +2,127 @@
 // Computation on vectors.
 //
 // Per input row the pairs h[j] = in[x - j] + in[x + j] are formed once, then a row sum per distinct row of weights,
-// r[k] = sum over j of w[k][j] h[j]; an output row is the sum of 2 ry + 1 of those. 44 multiplications a pixel and
-// plane at the default reach where the 48 bilinear taps would load 192 values. Row sums are made KB at a time for S
-// vectors side by side, so that a broadcast weight serves S products and a loaded h serves KB. A strip's row sums (12
-// KB) stay in the first-level cache.
+// r[k] = sum over j of w[k][j] h[j]; an output row is the sum of 2 ry + 1 of those. 36 multiplications a pixel and
+// plane at the default reach where the 48 bilinear taps would load 192 values. Columns are worked off in strips of
+// up to GATHER_S vectors: enough independent sums to hide the latency of the multiply-add, one broadcast weight for all
+// of them, and row sums that stay in the first-level cache.
 #include <float.h>
 
-#if VF_REGISTERS == 32
-enum { GATHER_S = 4, GATHER_KB = 4 };
-#else
-enum { GATHER_S = 3, GATHER_KB = 4 };
-#endif
+enum { GATHER_S = VF_N == 16 ? 5 : 9 };
 
-// r[k0 .. k0 + kb): row sums of one input row, from its pairs h. Rows of h and r are S vectors.
-HF_INLINE void row_sums(const float *w, int row, const int *width, const int kb, const int s, int k0,
-                        const float *h, float *r)
+// One row sum from the pairs h; both are rows of s vectors.
+HF_INLINE void row_sum(const float *weight, const int *column, int n, const int s, const float *h, float *r)
 {
-    vf acc[GATHER_KB][GATHER_S];
-    int columns = 0;
-    for (int k = 0; k < kb; k++)
-        columns = hf_max(columns, width[k0 + k]);
-    for (int k = 0; k < kb; k++)
+    vf acc[GATHER_S];
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        acc[v] = vf_zero();
+    for (int i = 0; i < n; i++) {
+        const vf w = vf_set1(weight[i]);
+        const float *p = h + (ptrdiff_t)column[i] * (s * VF_N);
+#pragma GCC unroll 16
         for (int v = 0; v < s; v++)
-            acc[k][v] = vf_mul(vf_set1(w[(k0 + k) * row]), vf_load(h + v * VF_N));
-    for (int j = 1; j < columns; j++) {
-        h += s * VF_N;
-        vf pair[GATHER_S];
-        for (int v = 0; v < s; v++)
-            pair[v] = vf_load(h + v * VF_N);
-        for (int k = 0; k < kb; k++) {
-            const vf weight = vf_set1(w[(k0 + k) * row + j]);
-            for (int v = 0; v < s; v++)
-                acc[k][v] = vf_fma(weight, pair[v], acc[k][v]);
-        }
+            acc[v] = vf_fma(w, vf_load(p + v * VF_N), acc[v]);
     }
-    for (int k = 0; k < kb; k++)
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        vf_store(r + v * VF_N, acc[v]);
+}
+
+// Pairs h[j] of an input row (or, without symmetry, its shifted values).
+HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, const int s, float *h)
+{
+    if (!symmetric) {
+        for (int j = -rx; j <= rx; j++, h += s * VF_N)
+#pragma GCC unroll 16
+            for (int v = 0; v < s; v++)
+                vf_store(h + v * VF_N, vf_load(p + v * VF_N + j));
+        return;
+    }
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        vf_store(h + v * VF_N, vf_load(p + v * VF_N));
+    for (int j = 1; j <= rx; j++) {
+        h += s * VF_N;
+#pragma GCC unroll 16
         for (int v = 0; v < s; v++)
-            vf_store(r + ((k0 + k) * s + v) * VF_N, acc[k][v]);
+            vf_store(h + v * VF_N, vf_add(vf_load(p + v * VF_N - j), vf_load(p + v * VF_N + j)));
+    }
 }
 
-// All row sums k in [k0, k1) of an input row.
-HF_INLINE void all_row_sums(const struct hf_taps *t, const int s, int k0, int k1, const float *h, float *r)
+// An output row: the sum of the row sums at the ring's offsets, from the top row down.
+HF_INLINE void sum_rows(const float *sums, const int32_t *offset, int ring, const int s, float *out)
 {
-    int k = k0;
-    for (; k + GATHER_KB <= k1; k += GATHER_KB)
-        row_sums(t->weight, t->row, t->width, GATHER_KB, s, k, h, r);
-    if (k1 - k == 3)
-        row_sums(t->weight, t->row, t->width, 3, s, k, h, r);
-    else if (k1 - k == 2)
-        row_sums(t->weight, t->row, t->width, 2, s, k, h, r);
-    else if (k1 - k == 1)
-        row_sums(t->weight, t->row, t->width, 1, s, k, h, r);
+    vf acc[GATHER_S];
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        acc[v] = vf_zero();
+    for (int i = 0; i < ring; i++) {
+        const float *q = sums + (ptrdiff_t)offset[i] * (s * VF_N);
+#pragma GCC unroll 16
+        for (int v = 0; v < s; v++)
+            acc[v] = vf_add(acc[v], vf_load(q + v * VF_N));
+    }
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        vf_store(out + v * VF_N, acc[v]);
 }
 
-// S vectors of columns from x0, all rows of r.
-HF_INLINE void convolve_strip(const struct hf_taps *t, const struct hf_buf *in, int c_in, const struct hf_buf *out,
-                              int c_out, int x0, int y0, int y1, const int s, float *work)
+// Where in the ring an output row finds its row sums, for each place that its topmost row may have. In rows of sums.
+HF_INLINE void ring_offsets(int32_t *offset, int ry, const int symmetric)
 {
-    const int columns = t->symmetric ? t->rx + 1 : 2 * t->rx + 1, rows = t->symmetric ? t->ry + 1 : 2 * t->ry + 1;
-    const int ring = 2 * t->ry + 1, step = s * VF_N;
-    float *h = work, *sums = work + columns * step;
-    for (int y = y0 - t->ry; y < y1 + t->ry; y++) {
-        const float *p = hf_at(in, c_in, x0, y);
-        for (int j = 0; j < columns; j++)
-            for (int v = 0; v < s; v++) {
-                const float *q = p + v * VF_N;
-                vf pair;
-                if (t->symmetric)
-                    pair = j ? vf_add(vf_load(q - j), vf_load(q + j)) : vf_load(q);
-                else
-                    pair = vf_load(q + j - t->rx);
-                vf_store(h + j * step + v * VF_N, pair);
-            }
-        // Only the row sums that an output row will read: near the ends of the strip those of far rows.
-        float *r = sums + (size_t)((y - y0 + t->ry) % ring) * rows * step;
-        int k0, k1;
-        if (t->symmetric) {
-            k0 = hf_max(0, hf_max(y0 - y, y - (y1 - 1)));
-            k1 = rows;
-        } else {
-            k0 = hf_max(0, y - (y1 - 1) + t->ry);
-            k1 = hf_min(rows, y - y0 + t->ry + 1);
+    const int ring = 2 * ry + 1, slot = symmetric ? ry + 1 : ring;
+    for (int top = 0; top < ring; top++)
+        for (int i = 0; i < ring; i++) {
+            const int k = !symmetric ? i : i < ry ? ry - i : i - ry;
+            *offset++ = (top + i < ring ? top + i : top + i - ring) * slot + k;
         }
-        all_row_sums(t, s, k0, k1, h, r);
+}
 
-        const int oy = y - t->ry;
-        if (oy < y0)
-            continue;
-        for (int v = 0; v < s; v++) {
-            vf acc = vf_zero();
-            for (int dy = -t->ry, slot = (oy - y0) % ring; dy <= t->ry; dy++, slot = slot + 1 == ring ? 0 : slot + 1) {
-                const int k = t->symmetric ? (dy < 0 ? -dy : dy) : dy + t->ry;
-                const vf sum = vf_load(sums + ((size_t)slot * rows + k) * step + v * VF_N);
-                acc = vf_add(acc, sum);
-            }
-            vf_store(hf_at(out, c_out, x0 + v * VF_N, oy), acc);
+// s vectors of columns; work starts with the ring's offsets.
+HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_t in_stride, float *out,
+                              ptrdiff_t out_stride, int height, const int symmetric, const int s, float *work)
+{
+    const int ry = t->ry, ring = 2 * ry + 1, step = s * VF_N, slot = t->rows * step;
+    const int32_t *offsets = (const int32_t *)work;
+    float *h = work + (((size_t)ring * ring + 15) & ~(size_t)15);
+    float *sums = h + (symmetric ? t->rx + 1 : 2 * t->rx + 1) * step;
+    int place = 0;  // of the input row in the ring
+    for (int y = -ry; y < height + ry; y++) {
+        row_pairs(in + y * in_stride, t->rx, symmetric, s, h);
+        // Only the row sums that an output row will read: near the strip's ends those of far rows.
+        const int k0 = symmetric ? hf_max(0, hf_max(-y, y - (height - 1))) : hf_max(0, y - (height - 1) + ry);
+        const int k1 = symmetric ? t->rows : hf_min(t->rows, y + ry + 1);
+        for (int k = k0; k < k1; k++)
+            row_sum(t->weight + t->first[k], t->column + t->first[k], t->first[k + 1] - t->first[k], s, h,
+                    sums + place * slot + k * step);
+        place = place + 1 == ring ? 0 : place + 1;
+        if (y >= ry)
+            sum_rows(sums, offsets + place * ring, ring, s, out + (y - ry) * out_stride);
+    }
+}
+
+// All columns in as few strips as there can be, of about the same width.
+HF_INLINE void convolve_columns(const struct hf_taps *t, struct hf_rect r, const struct hf_buf *in, int c_in,
+                                const struct hf_buf *out, int c_out, const int symmetric, float *work)
+{
+    const int height = r.y1 - r.y0, vectors = (r.x1 - r.x0 + VF_N - 1) / VF_N;
+    const float *p = hf_at(in, c_in, r.x0, r.y0);
+    float *q = hf_at(out, c_out, r.x0, r.y0);
+    ring_offsets((int32_t *)work, t->ry, symmetric);
+    for (int strips = (vectors + GATHER_S - 1) / GATHER_S, left = vectors; strips > 0; strips--) {
+        const int s = (left + strips - 1) / strips;
+#define STRIP(n)                                                                                                     \
+    case n:                                                                                                          \
+        convolve_strip(t, p, in->stride, q, out->stride, height, symmetric, n <= GATHER_S ? n : GATHER_S, work);     \
+        break;
+        switch (s) {
+            STRIP(1) STRIP(2) STRIP(3) STRIP(4) STRIP(5) STRIP(6) STRIP(7) STRIP(8) STRIP(9)
         }
+#undef STRIP
+        p += s * VF_N;
+        q += s * VF_N;
+        left -= s;
     }
 }
 
@@ -105,12 +130,10 @@ static void convolve_simd(const struct hf_frame *f, struct hf_rect r, enum hf_bu
                           enum hf_buf_id out, int c_out)
 {
     const struct hf_taps *t = f->s->taps;
-    const struct hf_buf *a = &f->buf[in], *b = &f->buf[out];
-    int x = r.x0;
-    for (; x + (GATHER_S - 1) * VF_N < r.x1; x += GATHER_S * VF_N)
-        convolve_strip(t, a, c_in, b, c_out, x, r.y0, r.y1, GATHER_S, f->work);
-    for (; x < r.x1; x += VF_N)
-        convolve_strip(t, a, c_in, b, c_out, x, r.y0, r.y1, 1, f->work);
+    if (t->symmetric)
+        convolve_columns(t, r, &f->buf[in], c_in, &f->buf[out], c_out, 1, f->work);
+    else
+        convolve_columns(t, r, &f->buf[in], c_in, &f->buf[out], c_out, 0, f->work);
 }
 
 static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
