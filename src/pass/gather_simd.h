@@ -138,7 +138,8 @@ static void convolve_simd(const struct hf_frame *f, struct hf_rect r, enum hf_bu
 
 static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    const int rx = f->s->taps->rx, ry = f->s->taps->ry, n = r.x1 - r.x0 + 2 * rx, channels = f->s->channels;
+    const struct hf_reach taps = hf_pass_halo(f->s, HF_HALO_TAPS);
+    const int rx = taps.x, ry = taps.y, n = r.x1 - r.x0 + 2 * rx, channels = f->s->channels;
     for (int y = r.y0 - ry; y < r.y1 + ry; y++) {
         float *colour[4], *far[4], *coc[4], *weight[4], *colour_w[4], *far_w[4];
         hf_row(&f->buf[HF_BUF_COLOR4], channels, r.x0 - rx, y, colour);
