@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "args.h"
+
+#include "pack.h"
+#include "scene.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum kind { FLAG, COUNT, NUMBER, CHOICE, TEXT, SIZE };
+
+struct option {
+    const char *name;         // with its dashes
+    const char *placeholder;  // of the value; NULL: takes none. Of a choice the very list of words, "a|b", in the
+                              // order of the enum
+    const char *help;
+    enum kind kind;
+    size_t offset;     // in struct bench_args, of what the option sets
+    double min, max;   // of a number, inclusive
+    int above_min;     // ... but min itself is excluded
+    int inf;           // inf is accepted
+    size_t given;      // offset of a flag that says that the option was there; 0: none
+};
+
+_Static_assert(HF_STORAGE_FLOAT == 0 && HF_STORAGE_HALF == 1 && HF_STORAGE_CHAPTER == 2, "order of --storage");
+_Static_assert(HF_FILL_MAX == 0 && HF_FILL_MEAN == 1 && HF_FILL_NONE == 2, "order of --fill");
+_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 &&
+                   HF_ISA_AVX512 == 4 && HF_ISA_NEON == 5, "order of --isa");
+_Static_assert(HF_FORMAT_RGBA32F == 0 && HF_FORMAT_RGB32F == 1 && HF_FORMAT_RGBA16F == 2 &&
+                   HF_FORMAT_R11G11B10F == 3 && HF_FORMAT_PLANAR32F == 4, "order of --in and --out");
+_Static_assert(sizeof(enum hf_isa) == sizeof(int), "choices are stored as int");
+
+#define FORMATS "rgba32f|rgb32f|rgba16f|r11g11b10f|planar32f"
+#define AT(field) .offset = offsetof(struct bench_args, field)
+#define GIVEN(field) .given = offsetof(struct bench_args, field)
+
+static const struct option options[] = {
+    {"--size", "WxH", "size of a built-in scene, pixels (1920x1080)", SIZE, AT(width), GIVEN(size_given)},
+    {"--scene", "NAME|FILE", "mixed, near, far, both, focus, band:PERCENT, or an EXR file (mixed)", TEXT, AT(scene)},
+    {"--frames", "N", "frames to measure (as many as take a few seconds)", COUNT, AT(frames), .min = 1,
+     .max = 1000000},
+    {"--threads", "N", "threads, up to 256; 0: one per processor (0)", COUNT, AT(threads), .max = 256},
+    {"--isa", "auto|scalar|sse4.1|avx2|avx512|neon", "instruction set (auto)", CHOICE, AT(isa)},
+    {"--engine", "gather", "engine (gather)", CHOICE, AT(params.engine)},
+    {"--storage", "float|half|chapter", "buffers between passes (float)", CHOICE, AT(params.storage)},
+    {"--in", FORMATS, "format of the colour read (r11g11b10f)", CHOICE, AT(in)},
+    {"--out", FORMATS, "format of the colour written (r11g11b10f)", CHOICE, AT(out)},
+    {"--focus", "D", "focus distance, scene units (20, or the file's)", NUMBER, AT(params.focus_distance),
+     .above_min = 1, .max = 3e38, GIVEN(focus_given)},
+    {"--range", "D", "distance from focus to full blur, scene units, or inf (10; for a file half its focus)", NUMBER,
+     AT(params.range), .max = 3e38, .inf = 1, GIVEN(range_given)},
+    {"--max-radius", "PX", "largest blur radius, pixels, up to 1024 (12)", NUMBER, AT(params.max_radius), .max = 1024},
+    {"--fill", "max|mean|none", "how gaps between taps are closed (max)", CHOICE, AT(params.fill)},
+    {"--faithful", NULL, "the published demo, its flaws included", FLAG, AT(params.faithful)},
+    {"--deterministic", NULL, "same bits on every instruction set", FLAG, AT(params.deterministic)},
+    {"--no-skip", NULL, "every pass on every tile", FLAG, AT(params.no_skip)},
+    {"--karis", NULL, "weights against fireflies", FLAG, AT(params.karis)},
+    {"--bicubic", NULL, "near field upsampled with a B-spline", FLAG, AT(params.bicubic)},
+    {"--per-pixel-kernel", NULL, "far kernel scaled by each pixel's blur", FLAG, AT(params.per_pixel_kernel)},
+    {"--json", "FILE|-", "write the numbers as JSON; -: to stdout, instead of the table", TEXT, AT(json)},
+    {"--help", NULL, "print this (-h)", FLAG, AT(help)},
+};
+enum { OPTIONS = sizeof options / sizeof *options };
+
+void bench_args_default(struct bench_args *args)
+{
+    *args = (struct bench_args){
+        .width = 1920,
+        .height = 1080,
+        .scene = "mixed",
+        .in = HF_FORMAT_R11G11B10F,
+        .out = HF_FORMAT_R11G11B10F,
+        .params = hf_default_params,
+    };
+    args->params.focus_distance = 20;
+    args->params.range = 10;
+    args->params.max_radius = 12;
+}
+
+// Integer or not, the text must be a number from start to end.
+static int parse_number(const struct option *o, const char *text, double *out)
+{
+    if (o->inf && !strcmp(text, "inf")) {
+        *out = INFINITY;
+        return 0;
+    }
+    if (!*text || strspn(text, "+-.0123456789eE") != strlen(text))
+        return -1;
+    char *end;
+    const double x = strtod(text, &end);
+    if (end == text || *end || !(x >= o->min && x <= o->max) || (o->above_min && x == o->min) ||
+        (o->kind == COUNT && x != floor(x)))
+        return -1;
+    *out = x;
+    return 0;
+}
+
+static int parse_size(const char *text, int size[2])
+{
+    for (int i = 0; i < 2; i++) {
+        char *end;
+        errno = 0;
+        const long n = strtol(text, &end, 10);
+        if (*text < '0' || *text > '9' || errno || n < 1 || n > 65536 || *end != (i ? '\0' : 'x'))
+            return -1;
+        size[i] = (int)n;
+        text = end + 1;
+    }
+    return 0;
+}
+
+// Place of a word in a list "a|b|c", or -1.
+static int parse_choice(const char *list, const char *word)
+{
+    const size_t length = strlen(word);
+    for (int i = 0;; i++) {
+        const size_t n = strcspn(list, "|");
+        if (n == length && !memcmp(list, word, n))
+            return i;
+        if (!list[n])
+            return -1;
+        list += n + 1;
+    }
+}
+
+static int bad_value(const struct option *o, const char *value, struct bench_error *error)
+{
+    if (o->kind == CHOICE)
+        return bench_fail(error, "%s must be one of %s, not '%s'", o->name, o->placeholder, value);
+    if (o->kind == SIZE)
+        return bench_fail(error, "%s must be WIDTHxHEIGHT, each 1 to 65536, not '%s'", o->name, value);
+    return bench_fail(error, "%s must be a%s number %s %g and at most %g%s, not '%s'", o->name,
+                      o->kind == COUNT ? " whole" : "", o->above_min ? "greater than" : "of at least", o->min, o->max,
+                      o->inf ? ", or inf" : "", value);
+}
+
+static int set_option(struct bench_args *args, const struct option *o, const char *value, struct bench_error *error)
+{
+    void *target = (char *)args + o->offset;
+    double number;
+    switch (o->kind) {
+    case FLAG:
+        *(int *)target = 1;
+        break;
+    case TEXT:
+        if (!*value)
+            return bench_fail(error, "%s needs a value (%s)", o->name, o->placeholder);
+        *(const char **)target = value;
+        break;
+    case SIZE:
+        if (parse_size(value, target))
+            return bad_value(o, value, error);
+        break;
+    case CHOICE:
+        if (parse_choice(o->placeholder, value) < 0)
+            return bad_value(o, value, error);
+        *(int *)target = parse_choice(o->placeholder, value);
+        break;
+    case COUNT:
+    case NUMBER:
+        if (parse_number(o, value, &number))
+            return bad_value(o, value, error);
+        if (o->kind == COUNT)
+            *(int *)target = (int)number;
+        else
+            *(float *)target = (float)number;
+        break;
+    }
+    if (o->given)
+        *(int *)((char *)args + o->given) = 1;
+    return 0;
+}
+
+// The option that a word names, "--name" or "--name=value".
+static const struct option *find_option(const char *word)
+{
+    const size_t n = strcspn(word, "=");
+    if (!strcmp(word, "-h"))
+        word = "--help";
+    for (int i = 0; i < OPTIONS; i++)
+        if (!strcmp(word, options[i].name) || (!strncmp(word, options[i].name, n) && !options[i].name[n]))
+            return &options[i];
+    return NULL;
+}
+
+int bench_args_parse(struct bench_args *args, int count, char **words, struct bench_error *error)
+{
+    for (int i = 0; i < count; i++) {
+        const struct option *o = find_option(words[i]);
+        if (!o)
+            return bench_fail(error, "there is no option '%s'; see hyperfocal-bench --help", words[i]);
+        const char *equals = strchr(words[i], '=');
+        const char *value = NULL;
+        if (o->placeholder) {
+            value = equals ? equals + 1 : i + 1 < count ? words[++i] : NULL;
+            if (!value)
+                return bench_fail(error, "%s needs a value (%s)", o->name, o->placeholder);
+        } else if (equals) {
+            return bench_fail(error, "%s takes no value", o->name);
+        }
+        if (set_option(args, o, value, error))
+            return -1;
+        if (args->help)
+            return 0;
+    }
+    if (!hf_isa_available(args->isa))
+        return bench_fail(error, "--isa %s is not available on this CPU and in this build", hf_isa_name(args->isa));
+    if (args->size_given && !bench_scene_builtin(args->scene, NULL))
+        return bench_fail(error, "--size is for built-in scenes, but '%s' is none", args->scene);
+    return 0;
+}
+
+void bench_args_help(FILE *out)
+{
+    for (int i = 0; i < OPTIONS; i++) {
+        const struct option *o = &options[i];
+        const int used = fprintf(out, "  %s %s", o->name, o->placeholder ? o->placeholder : "");
+        if (used > 27)
+            fprintf(out, "\n%*s%s\n", 28, "", o->help);
+        else
+            fprintf(out, "%*s%s\n", 28 - used, "", o->help);
+    }
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The commands of hyperfocal-bench; main.c has the table.
+#ifndef HF_BENCH_COMMANDS_H
+#define HF_BENCH_COMMANDS_H
+
+#include "args.h"
+
+// Runs with the arguments given and prints its report. Returns 0, or -1 with *error filled.
+typedef int bench_command(struct bench_args *args, struct bench_error *error);
+
+bench_command bench_passes;
+
+#endif

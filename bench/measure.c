@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Frames are measured in rounds, and the yardsticks between them, so that both see the machine in the same state: on a
+// shared one, speed drifts within seconds. A frame and a copy are taken by their median, as noise only adds, and adds
+// often; the peak is the best of many short bursts, as it stands for what the machine can do.
+#include "measure.h"
+
+#include "peak.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    ROUNDS = 7,
+    COPIES = 5,  // timed ones a round
+    BURSTS = 4,  // a round; short ones, as one that is interrupted is lost
+    MIN_FRAMES = 11,
+    MAX_FRAMES = 1001,
+    MIN_WARM_UP = 3,
+};
+static const double warm_up_s = 0.3, run_s = 3.0, burst_s = 0.003;
+
+struct frame {
+    double all_ms;
+    double pass_ms[HF_PASS_COUNT];
+};
+
+struct yardsticks {
+    double copy_s[ROUNDS * COPIES];
+    int copies;
+    double gflops;
+    long burst;  // iterations of a burst
+};
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static int by_all(const void *a, const void *b)
+{
+    const struct frame *x = a, *y = b;
+    return (x->all_ms > y->all_ms) - (x->all_ms < y->all_ms);
+}
+
+// To whole nanoseconds: then rows and overhead add up in print as they do in memory.
+static double round_ms(double ms)
+{
+    return rint(ms * 1e6) * 1e-6;
+}
+
+static int render(const struct bench_subject *s, struct frame *frame, struct bench_error *error)
+{
+    const double start = bench_now();
+    const int err = hf_render(s->context, &s->out.image, &s->in.image, &s->depth, &s->params);
+    const double end = bench_now();
+    if (err)
+        return bench_fail(error, "rendering failed: %s", hf_error_string(err));
+    struct hf_stats stats;
+    hf_get_stats(s->context, &stats);
+    frame->all_ms = round_ms((end - start) * 1e3);
+    for (int p = 0; p < HF_PASS_COUNT; p++)
+        frame->pass_ms[p] = round_ms(stats.pass_ms[p]);
+    return 0;
+}
+
+// Part i of n of a block, in whole cache lines.
+static void copy_part(void *to, const void *from, size_t bytes, int i, int n)
+{
+    const size_t lines = (bytes + 63) / 64;
+    const size_t begin = lines * (size_t)i / (size_t)n * 64, end = lines * ((size_t)i + 1) / (size_t)n * 64;
+    if (begin < bytes)
+        memcpy((char *)to + begin, (const char *)from + begin, (end < bytes ? end : bytes) - begin);
+}
+
+static void copy(void *arg, int i, int n)
+{
+    const struct bench_subject *s = arg;
+    const size_t plane = (size_t)s->in.image.width * (size_t)s->in.image.height * sizeof(float);
+    // Formats of different sizes: what fits.
+    copy_part(s->out.memory, s->in.memory, s->in.bytes < s->out.bytes ? s->in.bytes : s->out.bytes, i, n);
+    copy_part(s->scratch, s->depth.data, plane, i, n);
+}
+
+struct burst {
+    const struct bench_peak *peak;
+    long iterations;
+};
+
+static void peak_part(void *arg, int i, int n)
+{
+    const struct burst *b = arg;
+    (void)i;
+    (void)n;
+    volatile float sink = b->peak->run(b->iterations);
+    (void)sink;
+}
+
+static void measure_yardsticks(const struct bench_subject *s, struct yardsticks *y)
+{
+    for (int i = 0; i <= COPIES; i++) {
+        const double seconds = bench_workers_run(s->workers, copy, (void *)s);
+        if (i > 0)  // the first finds the caches full of something else
+            y->copy_s[y->copies++] = seconds;
+    }
+    struct burst b = {bench_peak_widest(), y->burst ? y->burst : 10000};
+    if (!y->burst) {
+        bench_workers_run(s->workers, peak_part, &b);
+        const double seconds = bench_workers_run(s->workers, peak_part, &b);
+        y->burst = (long)(burst_s / fmax(seconds, 1e-7) * (double)b.iterations) + 1;
+        b.iterations = y->burst;
+    }
+    const double flops = (double)b.iterations * b.peak->flops * bench_workers_threads(s->workers);
+    for (int i = 0; i < BURSTS; i++)
+        y->gflops = fmax(y->gflops, flops / bench_workers_run(s->workers, peak_part, &b) * 1e-9);
+}
+
+// Run until memory is paged in and clocks are up. *frame_s receives the seconds of a frame.
+static int warm_up(const struct bench_subject *s, double *frame_s, struct bench_error *error)
+{
+    *frame_s = INFINITY;
+    const double start = bench_now();
+    for (int i = 0; i < MIN_WARM_UP || bench_now() - start < warm_up_s; i++) {
+        struct frame frame;
+        if (render(s, &frame, error))
+            return -1;
+        *frame_s = fmin(*frame_s, frame.all_ms * 1e-3);
+    }
+    return 0;
+}
+
+// An odd number, so that there is a frame in the middle.
+static int choose_frames(double frame_s)
+{
+    const double n = run_s / frame_s;
+    return (int)fmin(fmax(n, MIN_FRAMES), MAX_FRAMES) | 1;
+}
+
+static int measure_frames(const struct bench_subject *s, struct frame *frames, int n, struct yardsticks *y,
+                          struct bench_error *error)
+{
+    for (int round = 0; round < ROUNDS; round++) {
+        measure_yardsticks(s, y);
+        struct frame settle;
+        if (render(s, &settle, error))
+            return -1;
+        const int end = (int)((int64_t)n * (round + 1) / ROUNDS);
+        for (int i = (int)((int64_t)n * round / ROUNDS); i < end; i++)
+            if (render(s, &frames[i], error))
+                return -1;
+    }
+    return 0;
+}
+
+// The pass whose time holds that of pass p, which ran but has no time of its own: the nearest before it in the table
+// that has, else the nearest after it.
+static int fused_into(const struct bench_result *r, int p)
+{
+    if (r->pass[p].max_ms > 0 || r->stats.tiles_run[p] == 0)
+        return -1;
+    for (int q = p - 1; q >= 0; q--)
+        if (r->pass[q].max_ms > 0)
+            return q;
+    for (int q = p + 1; q < HF_PASS_COUNT; q++)
+        if (r->pass[q].max_ms > 0)
+            return q;
+    return -1;
+}
+
+// frames get sorted.
+static void summarise(struct frame *frames, int n, struct bench_result *r)
+{
+    qsort(frames, (size_t)n, sizeof *frames, by_all);
+    const struct frame *middle = &frames[(n - 1) / 2];
+    r->frames = n;
+    r->all = (struct bench_row){middle->all_ms, frames[0].all_ms, frames[n - 1].all_ms, -1};
+    r->overhead_ms = middle->all_ms;
+    for (int p = 0; p < HF_PASS_COUNT; p++) {
+        struct bench_row *row = &r->pass[p];
+        *row = (struct bench_row){middle->pass_ms[p], INFINITY, 0, -1};
+        for (int i = 0; i < n; i++) {
+            row->min_ms = fmin(row->min_ms, frames[i].pass_ms[p]);
+            row->max_ms = fmax(row->max_ms, frames[i].pass_ms[p]);
+        }
+        r->overhead_ms -= row->median_ms;
+    }
+    r->overhead_ms = round_ms(r->overhead_ms);
+    for (int p = 0; p < HF_PASS_COUNT; p++)
+        r->pass[p].in = fused_into(r, p);
+}
+
+int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,
+                  struct bench_error *error)
+{
+    *result = (struct bench_result){0};
+    double frame_s;
+    if (warm_up(subject, &frame_s, error))
+        return -1;
+    const int n = frames ? frames : choose_frames(frame_s);
+    struct frame *list = calloc((size_t)n, sizeof *list);
+    if (!list)
+        return bench_fail(error, "there is not enough memory to measure %d frames", n);
+    struct yardsticks y = {0};
+    const int err = measure_frames(subject, list, n, &y, error);
+    if (!err) {
+        hf_get_stats(subject->context, &result->stats);
+        summarise(list, n, result);
+        qsort(y.copy_s, (size_t)y.copies, sizeof *y.copy_s, by_value);
+        result->memcpy_ms = round_ms(y.copy_s[y.copies / 2] * 1e3);
+        result->fma_gflops = y.gflops;
+    }
+    free(list);
+    return err;
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Timing of whole frames, and of two yardsticks on the same machine in the same minute.
+#ifndef HF_BENCH_MEASURE_H
+#define HF_BENCH_MEASURE_H
+
+#include "error.h"
+#include "hyperfocal/hyperfocal.h"
+#include "pack.h"
+#include "workers.h"
+
+// What is rendered, from where to where. Everything is the caller's.
+struct bench_subject {
+    struct hf_context *context;
+    struct hf_params params;
+    struct bench_image in, out;  // same size
+    struct hf_depth depth;       // rows packed tightly
+    float *scratch;              // a second plane of depth's size
+    struct bench_workers *workers;  // as many threads as the context
+};
+
+// Milliseconds of one row over the frames measured.
+struct bench_row {
+    double median_ms;  // in the frame whose All is the median, so that the rows of that frame add up
+    double min_ms, max_ms;
+    int in;            // pass into which this one is fused, so that its own time is 0; -1: none
+};
+
+struct bench_result {
+    int frames;
+    struct bench_row pass[HF_PASS_COUNT];
+    double overhead_ms;     // all.median_ms - sum of pass[].median_ms: waiting, dispatch, what belongs to no pass
+    struct bench_row all;   // wall time of hf_render, seen from outside
+    double memcpy_ms;       // copying colour in to colour out and depth to scratch, same threads: median
+    double fma_gflops;      // multiply-adds in registers, same threads, widest instruction set of the machine: best
+    struct hf_stats stats;  // of the last frame
+};
+
+// frames 0: as many as take about three seconds. Returns 0, or -1 with *error filled.
+int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,
+                  struct bench_error *error);
+
+#endif

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.h"
+
+#include "scene.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+// Milliseconds at 1920x1080 on a GeForce GTX 660: table 3.1 of the chapter, in the order of hf_pass_id.
+static const double gtx660_ms[HF_PASS_COUNT] = {0.13, 0.145, 0.08, 0.08, 0.08, 0.08, 0.455, 0.122, 0.334};
+static const double gtx660_all_ms = 1.506;
+
+#if defined(__clang__)
+static const char compiler[] = __VERSION__;
+#elif defined(__GNUC__)
+static const char compiler[] = "gcc " __VERSION__;
+#else
+static const char compiler[] = "unknown";
+#endif
+
+// Name of the CPU as the kernel tells it; ARM kernels tell none.
+static void cpu_name(char *name, size_t size)
+{
+    snprintf(name, size, "unknown CPU");
+    FILE *f = fopen("/proc/cpuinfo", "r");
+    if (!f)
+        return;
+    char line[256];
+    while (fgets(line, sizeof line, f)) {
+        const char *colon = strchr(line, ':');
+        if (colon && !strncmp(line, "model name", 10)) {
+            colon += 1 + strspn(colon + 1, " \t");
+            snprintf(name, size, "%.*s", (int)strcspn(colon, "\n"), colon);
+            break;
+        }
+    }
+    fclose(f);
+}
+
+// What All would be in arithmetic at the machine's peak, MFLOP: compares machines of different speed.
+static double cost_mflop(const struct bench_result *r)
+{
+    return r->all.median_ms * r->fma_gflops;
+}
+
+static double share(uint64_t pixels, const struct bench_run *run)
+{
+    return (double)pixels / ((double)run->width * run->height);
+}
+
+static void table_row(FILE *out, const char *name, double ms, double all_ms, double gtx)
+{
+    fprintf(out, "%-16s %9.3f %6.1f%%", name, ms, all_ms > 0 ? 100 * ms / all_ms : 0);
+    if (gtx > 0)
+        fprintf(out, " %9.3f %8.1f", gtx, ms / gtx);
+}
+
+static void table_machine(FILE *out, const struct bench_run *run)
+{
+    const struct bench_result *r = run->result;
+    const char *const storage[] = {"float", "half", "chapter"};
+    char cpu[128];
+    cpu_name(cpu, sizeof cpu);
+    fprintf(out, "%s, %s, %d thread%s, %dx%d, scene %s (near %.0f%%, sharp %.0f%%, far %.0f%%)\n", cpu,
+            hf_isa_name(run->isa), run->threads, run->threads == 1 ? "" : "s", run->width, run->height,
+            run->args->scene, 100 * share(r->stats.near_pixels, run), 100 * share(r->stats.sharp_pixels, run),
+            100 * share(r->stats.far_pixels, run));
+    fprintf(out, "%s storage, %s to %s, radius %g, %d frames, %.1f MB held; hyperfocal %s, %s\n",
+            storage[run->args->params.storage], bench_format_name(run->args->in), bench_format_name(run->args->out),
+            r->stats.max_radius, r->frames, (double)r->stats.memory * 1e-6, hf_version(), compiler);
+    fprintf(out, "memcpy %.3f ms, peak %.1f GFLOP/s, cost %.1f MFLOP (All x peak), All / memcpy %.2f\n",
+            r->memcpy_ms, r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
+}
+
+void bench_report_table(FILE *out, const struct bench_run *run)
+{
+    const struct bench_result *r = run->result;
+    const double all = r->all.median_ms;
+    fprintf(out, "%-16s %9s %7s %9s %8s %9s %9s\n", "Pass", "ms", "of All", "GTX 660", "ratio", "min", "max");
+    for (int p = 0; p < HF_PASS_COUNT; p++) {
+        const struct bench_row *row = &r->pass[p];
+        table_row(out, hf_pass_name((enum hf_pass_id)p), row->median_ms, all, gtx660_ms[p]);
+        if (row->in >= 0)
+            fprintf(out, "   in %s\n", hf_pass_name((enum hf_pass_id)row->in));
+        else
+            fprintf(out, " %9.3f %9.3f\n", row->min_ms, row->max_ms);
+    }
+    table_row(out, "overhead", r->overhead_ms, all, 0);
+    fputc('\n', out);
+    table_row(out, "All", all, all, gtx660_all_ms);
+    fprintf(out, " %9.3f %9.3f\n\n", r->all.min_ms, r->all.max_ms);
+    table_machine(out, run);
+}
+
+static void json_text(FILE *out, const char *text)
+{
+    fputc('"', out);
+    for (const char *c = text; *c; c++) {
+        if (*c == '"' || *c == '\\')
+            fputc('\\', out);
+        if ((unsigned char)*c < 32)
+            fprintf(out, "\\u%04x", (unsigned)(unsigned char)*c);
+        else
+            fputc(*c, out);
+    }
+    fputc('"', out);
+}
+
+// JSON has no infinity.
+static void json_number(FILE *out, const char *name, double value)
+{
+    if (isfinite(value))
+        fprintf(out, "  \"%s\": %.9g,\n", name, value);
+    else
+        fprintf(out, "  \"%s\": null,\n", name);
+}
+
+static void json_named(FILE *out, const char *name, const char *text)
+{
+    fprintf(out, "  \"%s\": ", name);
+    json_text(out, text);
+    fputs(",\n", out);
+}
+
+static void json_settings(FILE *out, const struct bench_run *run)
+{
+    const struct bench_args *a = run->args;
+    const char *const storage[] = {"float", "half", "chapter"}, *const fill[] = {"max", "mean", "none"};
+    json_named(out, "command", run->command);
+    json_named(out, "engine", "gather");
+    fprintf(out, "  \"width\": %d,\n  \"height\": %d,\n  \"threads\": %d,\n", run->width, run->height, run->threads);
+    json_named(out, "isa", hf_isa_name(run->isa));
+    json_named(out, "storage", storage[a->params.storage]);
+    json_named(out, "scene", a->scene);
+    json_named(out, "in", bench_format_name(a->in));
+    json_named(out, "out", bench_format_name(a->out));
+    json_number(out, "focus", a->params.focus_distance);
+    json_number(out, "range", a->params.range);
+    json_number(out, "max_radius", run->result->stats.max_radius);
+    json_named(out, "fill", fill[a->params.fill]);
+    const struct {
+        const char *name;
+        int value;
+    } flags[] = {{"faithful", a->params.faithful},
+                 {"deterministic", a->params.deterministic},
+                 {"no_skip", a->params.no_skip},
+                 {"karis", a->params.karis},
+                 {"bicubic", a->params.bicubic},
+                 {"per_pixel_kernel", a->params.per_pixel_kernel}};
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+        fprintf(out, "  \"%s\": %s,\n", flags[i].name, flags[i].value ? "true" : "false");
+}
+
+static void json_machine(FILE *out, const struct bench_run *run)
+{
+    const struct bench_result *r = run->result;
+    char cpu[128];
+    cpu_name(cpu, sizeof cpu);
+    json_named(out, "cpu", cpu);
+    json_named(out, "compiler", compiler);
+    json_named(out, "version", hf_version());
+    json_number(out, "near_share", share(r->stats.near_pixels, run));
+    json_number(out, "sharp_share", share(r->stats.sharp_pixels, run));
+    json_number(out, "far_share", share(r->stats.far_pixels, run));
+    json_number(out, "memory_bytes", (double)r->stats.memory);
+    fprintf(out, "  \"frames\": %d,\n", r->frames);
+    json_number(out, "memcpy_ms", r->memcpy_ms);
+    json_number(out, "fma_gflops", r->fma_gflops);
+    json_number(out, "cost_mflop", cost_mflop(r));
+}
+
+void bench_report_json(FILE *out, const struct bench_run *run)
+{
+    const struct bench_result *r = run->result;
+    fputs("{\n", out);
+    json_settings(out, run);
+    json_machine(out, run);
+    fputs("  \"passes\": [", out);
+    for (int p = 0; p < HF_PASS_COUNT; p++) {
+        const struct bench_row *row = &r->pass[p];
+        fprintf(out, "%s\n    {\"name\": \"%s\", \"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f, "
+                "\"gtx660_ms\": %g", p ? "," : "", hf_pass_name((enum hf_pass_id)p), row->median_ms, row->min_ms,
+                row->max_ms, gtx660_ms[p]);
+        if (row->in >= 0)
+            fprintf(out, ", \"in\": \"%s\"", hf_pass_name((enum hf_pass_id)row->in));
+        fputc('}', out);
+    }
+    fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n", r->overhead_ms);
+    fprintf(out, "  \"all\": {\"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f, \"gtx660_ms\": %g}\n}\n",
+            r->all.median_ms, r->all.min_ms, r->all.max_ms, gtx660_all_ms);
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HF_BENCH_REPORT_H
+#define HF_BENCH_REPORT_H
+
+#include "args.h"
+#include "measure.h"
+
+#include <stdio.h>
+
+// What a report says besides the numbers.
+struct bench_run {
+    const char *command;  // "passes"
+    const struct bench_args *args;
+    int width, height;    // of the scene
+    int threads;          // that were used
+    enum hf_isa isa;
+    const struct bench_result *result;
+};
+
+// A table for people.
+void bench_report_table(FILE *out, const struct bench_run *run);
+// One JSON object.
+void bench_report_json(FILE *out, const struct bench_run *run);
+
+#endif

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene.h"
+
+#include "paint.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const bench_scene_names[] = {"mixed", "near", "far", "both", "focus", "band:P", NULL};
+
+enum scene_kind { MIXED, NEAR, FAR, BOTH, FOCUS, BAND, KINDS };
+
+static int scene_kind(const char *name, float *band)
+{
+    for (int i = 0; i < BAND; i++)
+        if (!strcmp(name, bench_scene_names[i]))
+            return i;
+    if (strncmp(name, "band:", 5))
+        return KINDS;
+    char *end;
+    const float percent = strtof(name + 5, &end);
+    if (end == name + 5 || *end || !(percent >= 0 && percent <= 100))
+        return KINDS;
+    *band = percent / 100;
+    return BAND;
+}
+
+int bench_scene_builtin(const char *name, float *band)
+{
+    float share = 0;
+    const int builtin = scene_kind(name, &share) != KINDS;
+    if (band)
+        *band = share;
+    return builtin;
+}
+
+// 1 if a pixel lies on one of the near discs of `both`: one in each square of `pitch` pixels, jittered by a quarter
+// of it. The reach of the near field (maximum and box, 2 * max_radius pixels) closes the gaps between them. CoC is
+// sampled at every other pixel of every other row: no disc is so small that it falls between the samples.
+static int on_disc(int x, int y, int pitch)
+{
+    const int cx = x / pitch, cy = y / pitch;
+    const float radius = fmaxf(1.5f, 0.16f * (float)pitch), jitter = 0.25f * (float)pitch;
+    const float mx = ((float)cx + 0.5f) * (float)pitch + (bench_hash(cx, cy, 100) - 0.5f) * jitter;
+    const float my = ((float)cy + 0.5f) * (float)pitch + (bench_hash(cy, cx, 101) - 0.5f) * jitter;
+    const float dx = (float)x + 0.5f - mx, dy = (float)y + 0.5f - my;
+    return dx * dx + dy * dy <= radius * radius;
+}
+
+struct painter {
+    enum scene_kind kind;
+    int width, height;
+    int pitch;           // of the discs of `both`, pixels
+    int band0, band1;    // rows of the band
+    float focus, range;  // scene units
+};
+
+// Distance from the focus, in ranges, of a pixel that shows a surface at t in `mixed`.
+static float depth_of_kind(const struct painter *p, int x, int y, float t)
+{
+    const float order = (t + 2) / 5;  // 0..1, nearest to farthest
+    switch (p->kind) {
+    case MIXED:
+        return t;
+    case NEAR:
+        return -1.5f + 1.3f * order;
+    case FAR:
+        return 0.2f + 1.3f * order;
+    case BOTH:
+        return on_disc(x, y, p->pitch) ? -1.0f : 0.5f + order;
+    case BAND:
+        if (y < p->band0 || y >= p->band1)
+            return 0;
+        return x < p->width / 2 ? -0.5f - order : 0.5f + order;
+    default:
+        return 0;
+    }
+}
+
+// Colours at the corners of pixels: one row of width + 1 points.
+static void paint_corners(const struct painter *p, int y, struct bench_colour *corners)
+{
+    const float pixel = 1 / (float)p->height, aspect = (float)p->width / (float)p->height;
+    for (int x = 0; x <= p->width; x++)
+        corners[x] = bench_paint((float)x * pixel, (float)y * pixel, aspect).colour;
+}
+
+// Colour is half that of the centre and an eighth of each corner, so that edges are smoothed as renderers do; depth is
+// that of the centre, as they do too.
+static void paint_row(const struct painter *p, int y, const struct bench_colour *above,
+                      const struct bench_colour *below, float *rgb, float *depth)
+{
+    const float pixel = 1 / (float)p->height, aspect = (float)p->width / (float)p->height;
+    for (int x = 0; x < p->width; x++, rgb += 3) {
+        const struct bench_surface s = bench_paint(((float)x + 0.5f) * pixel, ((float)y + 0.5f) * pixel, aspect);
+        const struct bench_colour *a = above + x, *b = below + x;
+        rgb[0] = 0.5f * s.colour.r + 0.125f * (a[0].r + a[1].r + b[0].r + b[1].r);
+        rgb[1] = 0.5f * s.colour.g + 0.125f * (a[0].g + a[1].g + b[0].g + b[1].g);
+        rgb[2] = 0.5f * s.colour.b + 0.125f * (a[0].b + a[1].b + b[0].b + b[1].b);
+        if (p->kind == BOTH && on_disc(x, y, p->pitch)) {  // drops of rain in front of the town
+            rgb[0] = 0.25f * rgb[0] + 0.05f;
+            rgb[1] = 0.25f * rgb[1] + 0.06f;
+            rgb[2] = 0.25f * rgb[2] + 0.08f;
+        }
+        // A range wider than the focus distance would put near surfaces behind the camera, which means none.
+        depth[x] = fmaxf(p->focus + p->range * depth_of_kind(p, x, y, s.t), 0.05f * p->focus);
+    }
+}
+
+// Needs scene->rgb and depth. Returns 0, or -1 without memory.
+static int paint_all(const struct painter *p, const struct bench_scene *scene)
+{
+    const size_t width = (size_t)p->width;
+    struct bench_colour *corners = malloc(2 * (width + 1) * sizeof *corners);
+    if (!corners)
+        return -1;
+    struct bench_colour *above = corners, *below = corners + width + 1;
+    paint_corners(p, 0, above);
+    for (int y = 0; y < p->height; y++) {
+        paint_corners(p, y + 1, below);
+        paint_row(p, y, above, below, scene->rgb + (size_t)y * width * 3, scene->depth + (size_t)y * width);
+        struct bench_colour *swap = above;
+        above = below;
+        below = swap;
+    }
+    free(corners);
+    return 0;
+}
+
+int bench_scene_paint(struct bench_scene *scene, const char *name, int width, int height,
+                      const struct bench_optics *optics, struct bench_error *error)
+{
+    *scene = (struct bench_scene){.width = width, .height = height};
+    float band = 0;
+    const int kind = scene_kind(name, &band);
+    if (kind == KINDS)
+        return bench_fail(error, "there is no built-in scene '%s'", name);
+    const int rows = (int)(band * (float)height + 0.5f);
+    const struct painter p = {
+        .kind = (enum scene_kind)kind,
+        .width = width,
+        .height = height,
+        .pitch = (int)fminf(16, fmaxf(4, optics->max_radius * 1.5f)),
+        .band0 = (height - rows) / 2,
+        .band1 = (height - rows) / 2 + rows,
+        .focus = optics->focus,
+        .range = optics->range > 0 && isfinite(optics->range) ? optics->range : optics->focus / 2,
+    };
+    const size_t pixels = (size_t)width * (size_t)height;
+    scene->rgb = malloc(pixels * 3 * sizeof(float));
+    scene->depth = malloc(pixels * sizeof(float));
+    if (!scene->rgb || !scene->depth || paint_all(&p, scene)) {
+        bench_scene_free(scene);
+        return bench_fail(error, "there is not enough memory for a scene of %dx%d", width, height);
+    }
+    return 0;
+}
+
+void bench_scene_free(struct bench_scene *scene)
+{
+    free(scene->rgb);
+    free(scene->depth);
+    *scene = (struct bench_scene){0};
+}

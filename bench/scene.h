@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures to measure on: built-in scenes, painted at any size without a file, and picture files.
+//
+// The built-in scenes show one picture, a house at night behind a railing, and differ in depth alone, so that what
+// differs in time is what the depth asks for. Painting uses an integer hash and no function of libm that rounds
+// differently elsewhere: the same size gives the same bits on every run and machine.
+#ifndef HF_BENCH_SCENE_H
+#define HF_BENCH_SCENE_H
+
+#include "error.h"
+
+// A picture: width * height pixels, rows packed tightly.
+struct bench_scene {
+    int width, height;
+    float *rgb;    // 3 floats a pixel, linear
+    float *depth;  // view depth, scene units
+};
+
+// What the depths are made for.
+struct bench_optics {
+    float focus;       // scene units, > 0
+    float range;       // scene units, >= 0; 0 and INFINITY paint as focus / 2
+    float max_radius;  // pixels; only `both` looks at it
+};
+
+// Depth in ranges from the focus at every pixel: -1 and less is fully near, +1 and more fully far, 0 sharp.
+//   mixed   near, sharp and far in about equal parts
+//   near    near everywhere, blurred by 0.2 to 1
+//   far     far everywhere, blurred by 0.2 to 1
+//   both    near discs all over a far background: the blurred near CoC is > 0 on every pixel, f > 0 on most
+//   focus   all sharp
+//   band:P  sharp but for a band of P % of the rows, half of it near, half far
+extern const char *const bench_scene_names[];  // NULL ends it; "band:P" stands for all bands
+
+// 1 if the name is that of a built-in scene. *band receives the share of a band in 0..1.
+int bench_scene_builtin(const char *name, float *band);
+
+// Paint a built-in scene. Returns 0, or -1 with *error filled and an empty scene.
+int bench_scene_paint(struct bench_scene *scene, const char *name, int width, int height,
+                      const struct bench_optics *optics, struct bench_error *error);
+
+// Read the first view with depth of a picture file. *focus receives the focus distance that the file names, in metres,
+// or NAN. Colour only: alpha is not read. Fails in builds without the file layer.
+int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, struct bench_error *error);
+
+void bench_scene_free(struct bench_scene *scene);
+
+#endif

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene.h"
+
+#if HF_HAVE_IO
+#include "io/io.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// The first view that has a depth, or -1.
+static int view_with_depth(const struct hf_io_file *file)
+{
+    for (int i = 0; i < hf_io_view_count(file); i++)
+        if (hf_io_view(file, i)->depth_part >= 0)
+            return i;
+    return -1;
+}
+
+static void interleave(float *rgb, float *const planes[3], size_t pixels)
+{
+    for (size_t i = 0; i < pixels; i++)
+        for (int c = 0; c < 3; c++)
+            rgb[i * 3 + (size_t)c] = planes[c][i];
+}
+
+static int read_view(struct bench_scene *scene, struct hf_io_file *file, int view, struct bench_error *error)
+{
+    const size_t pixels = (size_t)scene->width * (size_t)scene->height;
+    float *memory = malloc(pixels * 3 * sizeof(float));
+    scene->rgb = malloc(pixels * 3 * sizeof(float));
+    scene->depth = malloc(pixels * sizeof(float));
+    int result = -1;
+    if (memory && scene->rgb && scene->depth) {
+        float *planes[4] = {memory, memory + pixels, memory + 2 * pixels, NULL};
+        struct hf_io_error io;
+        if (!hf_io_read_colour(file, view, planes, &io) && !hf_io_read_depth(file, view, scene->depth, &io)) {
+            interleave(scene->rgb, planes, pixels);
+            result = 0;
+        } else {
+            bench_fail(error, "%s", io.message);
+        }
+    } else {
+        bench_fail(error, "there is not enough memory for a scene of %dx%d", scene->width, scene->height);
+    }
+    free(memory);
+    return result;
+}
+
+int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, struct bench_error *error)
+{
+    *scene = (struct bench_scene){0};
+    struct hf_io_error io;
+    struct hf_io_file *file;
+    if (hf_io_open(&file, path, NULL, &io))
+        return bench_fail(error, "%s", io.message);
+    const int view = view_with_depth(file);
+    int result = -1;
+    if (view < 0) {
+        bench_fail(error, "%s has no depth channel", path);
+    } else {
+        const struct hf_io_view *v = hf_io_view(file, view);
+        scene->width = v->width;
+        scene->height = v->height;
+        *focus = v->camera.focus;
+        result = read_view(scene, file, view, error);
+    }
+    hf_io_close(&file);
+    if (result)
+        bench_scene_free(scene);
+    return result;
+}
+
+#else
+
+int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, struct bench_error *error)
+{
+    (void)focus;
+    *scene = (struct bench_scene){0};
+    return bench_fail(error, "there is no built-in scene '%s', and this build reads no files", path);
+}
+
+#endif
