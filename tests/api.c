@@ -295,6 +295,10 @@ static void focus_reading(void)
     CHECK_INT(hf_depth_at(&d, 4, 3, 3, 1, &z), HF_OK);
     CHECK_MSG(z == 4, "inverse 0.25 is %g", z);
     CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z), HF_ERR_FOCUS);
+    data[0] = 2e-10f;
+    data[1] = 0.5e-10f;
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_OK);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z), HF_ERR_FOCUS);
     d.type = HF_DEPTH_NDC_REVERSED;
     d.near_plane = 0.5f;
     d.far_plane = INFINITY;
@@ -349,6 +353,74 @@ static void format_pair(struct hf_context *c, enum hf_format from, enum hf_forma
     scene_free(&scene);
 }
 
+// Put a bit pattern that is no finite number, or the largest one, into a sample.
+static void poke(struct packed *p, struct rng *rng, int largest)
+{
+    const struct hf_image *m = &p->image;
+    const int c = rng_below(rng, format_channels(m->format)), x = rng_below(rng, m->width);
+    const int plane = m->format == HF_FORMAT_PLANAR32F && m->data[c] ? c : 0;
+    unsigned char *pixel = (unsigned char *)m->data[plane] + rng_below(rng, m->height) * m->stride[plane] +
+                           x * (ptrdiff_t)format_pixel_size(m->format);
+    const int nan = rng_below(rng, 2);
+    if (m->format == HF_FORMAT_R11G11B10F) {
+        uint32_t word;
+        const int shift = 11 * (c % 3), bits = c == 2 ? 10 : 11;
+        const uint32_t mask = ((1u << bits) - 1) << shift, infinite = (31u << (bits - 5)) << shift;
+        memcpy(&word, pixel, 4);
+        word &= ~mask;
+        word |= largest ? infinite - (1u << shift) : nan ? mask : infinite;
+        memcpy(pixel, &word, 4);
+    } else if (m->format == HF_FORMAT_RGBA16F) {
+        const uint16_t half = largest ? 0x7bff : nan ? 0xfe01 : 0xfc00;
+        memcpy(pixel + 2 * c, &half, 2);
+    } else {
+        const float f = largest ? 65504 : nan ? NAN : -INFINITY;
+        memcpy(pixel + (m->format == HF_FORMAT_PLANAR32F ? 0 : 4 * c), &f, 4);
+    }
+}
+
+// Samples that are not finite, in every format: in place and out of place give the same bits, no others are touched.
+static void repairs(struct hf_context *c, enum hf_format format, int variant)
+{
+    struct rng rng = rng_seed(seed + (unsigned)variant);
+    struct scene scene = scene_new(&rng, SCENE_BLOCKS, 50 + variant, 20 + variant, 4);
+    const struct hf_depth depth = picture_depth(&scene.depth);
+    struct hf_params p = scene_params();
+    struct packed a = packed_new(50 + variant, 20 + variant, format, 1, 4, 0, 0, 7);
+    struct packed b = packed_new(50 + variant, 20 + variant, format, 1, 4, 0, 0, 7);
+    packed_write(&a, &scene.colour);
+    for (int i = 0; i < 60; i++)
+        poke(&a, &rng, i % 3 == 0);
+    struct picture before = packed_read(&a);
+    uint64_t bad = 0;
+    for (int k = 0; k < before.channels; k++)
+        for (int i = 0; i < before.width * before.height; i++)
+            bad += !isfinite(before.plane[k][i]);
+    p.strength = (float)(variant % 2);
+    p.no_skip = variant / 2 % 2;
+    struct hf_stats stats;
+    CHECK_INT(hf_render(c, &b.image, &a.image, &depth, &p), HF_OK);
+    hf_get_stats(c, &stats);
+    CHECK_INT(stats.colour_repaired, bad);
+    CHECK_INT(hf_render(c, &a.image, &a.image, &depth, &p), HF_OK);
+    hf_get_stats(c, &stats);
+    CHECK_INT(stats.colour_repaired, bad);
+    struct picture out = packed_read(&b), in_place = packed_read(&a);
+    CHECK_MSG(picture_same_bits(&out, &in_place), "format %d, variant %d: repair in place differs", format, variant);
+    int wrong = 0;
+    for (int k = 0; k < before.channels; k++)
+        for (int i = 0; i < before.width * before.height; i++)
+            wrong += !isfinite(out.plane[k][i]) || (p.strength == 0 && isfinite(before.plane[k][i]) &&
+                                                    out.plane[k][i] != before.plane[k][i]);
+    CHECK_MSG(wrong == 0, "format %d, variant %d: %d samples not finite, or changed by a copy", format, variant, wrong);
+    picture_free(&before);
+    picture_free(&out);
+    picture_free(&in_place);
+    packed_free(&a);
+    packed_free(&b);
+    scene_free(&scene);
+}
+
 // Depth rows at odd distances, bottom-up, junk between them: the same picture, and junk is not looked at.
 static void depth_strides(struct hf_context *c)
 {
@@ -391,6 +463,9 @@ int main(int argc, char **argv)
         bad_images(c);
         bad_params(c);
         depth_strides(c);
+        for (int from = 0; from <= HF_FORMAT_PLANAR32F; from++)
+            for (int variant = 0; variant < 8; variant++)
+                repairs(c, (enum hf_format)from, variant);
         for (int from = 0; from <= HF_FORMAT_PLANAR32F; from++)
             for (int to = 0; to <= HF_FORMAT_PLANAR32F; to++)
                 for (int variant = 0; variant < 16; variant++)

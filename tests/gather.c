@@ -372,6 +372,9 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
         char label[120];
         snprintf(label, sizeof label, "%s, depth %s", isa, types[type]);
         check_frame(c, &scene, &depth, &p, label);
+        struct hf_params wide = p;
+        wide.pixel_aspect = 2;
+        check_frame(c, &scene, &depth, &wide, label);
         struct job job = { .depth = &depth };
         snprintf(job.label, sizeof job.label, "%s", label);
         hf_set_dump(c, on_buffer, &job.captured);
