@@ -53,7 +53,7 @@ typedef uint64_t hf_store_row(const struct hf_image *image, int x, int y, int n,
 typedef int hf_finite(const void *words, size_t n);
 
 // Near and far CoC of the n lanes from lane x of full-resolution row y, into four rows: near even, near odd, far even,
-// far odd. counts may be NULL.
+// far odd. counts NULL: the near rows need not be written, and nothing is counted.
 typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
 
 // Round a row of n floats to what a storage holds, in place; may touch HF_PAD floats more.

@@ -56,31 +56,33 @@ struct coc_sums {
     vm nan;
 };
 
-// One vector of depth to near and far CoC.
-HF_INLINE void coc_block(const struct hf_setup *s, const enum hf_depth_form form, vf d, vf px, vf py, float *near,
-                         float *far, struct coc_sums *sums)
+// One vector of depth to near and far CoC. whole: near and the statistics too, not just far.
+HF_INLINE void coc_block(const struct hf_setup *s, const enum hf_depth_form form, const int whole, vf d, vf px, vf py,
+                         float *near, float *far, struct coc_sums *sums)
 {
     vm none;
     const vf v = coc_variable(s, form, d, px, py, &none);
-    vf n = coc_saturate(vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i)));
     vf f = coc_saturate(vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i)));
-    if (s->smoothstep) {
-        n = coc_shape(n);
+    sums->nan = vm_or(sums->nan, vf_ne(d, d));
+    if (s->smoothstep)
         f = coc_shape(f);
-    }
-    n = coc_round(s->storage, n);
     f = coc_round(s->storage, f);
-    vf_store(near, n);
     vf_store(far, f);
+    if (!whole)
+        return;
+    vf n = coc_saturate(vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i)));
+    if (s->smoothstep)
+        n = coc_shape(n);
+    n = coc_round(s->storage, n);
+    vf_store(near, n);
     const vm is_near = vf_gt(n, vf_zero()), is_far = vf_gt(f, vf_zero());
     sums->near = vi_count(sums->near, is_near);
     sums->far = vi_count(sums->far, is_far);
     sums->any = vi_count(sums->any, vm_or(is_near, is_far));
     sums->none = vi_count(sums->none, none);
-    sums->nan = vm_or(sums->nan, vf_ne(d, d));
 }
 
-HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, int x, int y, int n,
+HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, const int whole, int x, int y, int n,
                        float *const out[4], struct coc_sums *sums)
 {
     const struct hf_setup *s = f->s;
@@ -89,31 +91,33 @@ HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, 
     const vf py = vf_set1((float)y + 0.5f - s->ray_cy), step = vf_load(steps);
     for (int i = 0; i < n; i += VF_N, row += 8 * VF_N) {
         vf even, odd;
+        for (int k = 0; k < 8 * VF_N; k += 64)  // the row after next: see load_plane
+            __builtin_prefetch((const uint8_t *)((uintptr_t)row + (uintptr_t)(2 * f->depth->stride)) + k);
         vf_unzip(vf_load(row), vf_load(row + 4 * VF_N), &even, &odd);
         // (2x + 1/2) - axis: exact additions first, as in the C.
         const vf px = vf_add(vf_set1((float)(2 * (x + i))), step);
         const vf px_even = vf_sub(vf_add(px, vf_set1(0.5f)), vf_set1(s->ray_cx));
         const vf px_odd = vf_sub(vf_add(px, vf_set1(1.5f)), vf_set1(s->ray_cx));
-        coc_block(s, form, even, px_even, py, out[0] + i, out[2] + i, sums);
-        coc_block(s, form, odd, px_odd, py, out[1] + i, out[3] + i, sums);
+        coc_block(s, form, whole, even, px_even, py, out[0] + i, out[2] + i, sums);
+        coc_block(s, form, whole, odd, px_odd, py, out[1] + i, out[3] + i, sums);
     }
 }
 
-HF_INLINE void coc_row_form(const struct hf_frame *f, int x, int y, int n, float *const out[4],
+HF_INLINE void coc_row_form(const struct hf_frame *f, const int whole, int x, int y, int n, float *const out[4],
                             struct coc_sums *sums)
 {
     switch (f->s->form) {
     case HF_FORM_Z:
-        coc_row(f, HF_FORM_Z, x, y, n, out, sums);
+        coc_row(f, HF_FORM_Z, whole, x, y, n, out, sums);
         break;
     case HF_FORM_RAY:
-        coc_row(f, HF_FORM_RAY, x, y, n, out, sums);
+        coc_row(f, HF_FORM_RAY, whole, x, y, n, out, sums);
         break;
     case HF_FORM_IZ:
-        coc_row(f, HF_FORM_IZ, x, y, n, out, sums);
+        coc_row(f, HF_FORM_IZ, whole, x, y, n, out, sums);
         break;
     case HF_FORM_COC:
-        coc_row(f, HF_FORM_COC, x, y, n, out, sums);
+        coc_row(f, HF_FORM_COC, whole, x, y, n, out, sums);
         break;
     }
 }
@@ -123,7 +127,10 @@ static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *c
 {
     const int whole = hf_min(n, (f->s->width - 2 * x) / 2) / VF_N * VF_N;
     struct coc_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vi_set1(0), vf_gt(vf_zero(), vf_zero())};
-    coc_row_form(f, x, y, whole, out, &sums);
+    if (counts)
+        coc_row_form(f, 1, x, y, whole, out, &sums);
+    else
+        coc_row_form(f, 0, x, y, whole, out, &sums);
     struct hf_counts c = {.near_pixels = vi_sum(sums.near), .far_pixels = vi_sum(sums.far),
                           .sharp_pixels = 2 * (uint64_t)whole - vi_sum(sums.any), .no_surface = vi_sum(sums.none)};
     // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.

@@ -8,7 +8,7 @@ struct far_row {
     const float *coc[2];
 };
 
-// d[1] of four weights in proportion to b / d, each d = 1 + 1000 |CoC difference|.
+// Weights in proportion to 1 / d, each d = 1 + 1000 |CoC difference|.
 HF_INLINE void weights_of(const vf d[4], vf w[4])
 {
     const vf p01 = vf_mul(d[0], d[1]), p23 = vf_mul(d[2], d[3]);
@@ -29,21 +29,27 @@ HF_INLINE void normalise(vf w[4], vf sum)
 HF_INLINE void blend_far_block(const struct far_row *far, const int channels, const int side, int x, vf coc, vf blend,
                                vf colour[4])
 {
-    static const float bilinear[4] = {9, 3, 3, 1};
-    vf d[4], w[4];
-    vm is_far[4];
-    for (int i = 0; i < 4; i++) {
-        const vf g = vf_load(far->coc[i >> 1] + x + (i & 1 ? side : 0));
-        d[i] = vf_fma(vf_set1(1000), vf_abs(vf_sub(coc, g)), vf_set1(1));
-        is_far[i] = vf_gt(g, vf_zero());
-    }
-    weights_of(d, w);
+    vf g[4], w[4] = {vf_set1(9 / 16.0f), vf_set1(3 / 16.0f), vf_set1(3 / 16.0f), vf_set1(1 / 16.0f)};
+    vf t = vf_mul(blend, coc);
     for (int i = 0; i < 4; i++)
-        w[i] = vf_keep(is_far[i], i < 3 ? vf_mul(vf_set1(bilinear[i]), w[i]) : w[i]);
-    const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
-    // No neighbour far: the pixel keeps its colour.
-    const vf t = vf_keep(vf_gt(sum, vf_zero()), vf_mul(blend, coc));
-    normalise(w, sum);
+        g[i] = vf_load(far->coc[i >> 1] + x + (i & 1 ? side : 0));
+    vm differs = vm_or(vm_or(vf_ne(coc, g[0]), vf_ne(coc, g[1])), vm_or(vf_ne(coc, g[2]), vf_ne(coc, g[3])));
+    // Where all CoCs are the same, as inside a far field that is fully blurred, bilinear weights are what would come
+    // out.
+    if (vm_any(vm_or(differs, vf_eq(coc, vf_zero())))) {
+        vf d[4];
+        for (int i = 0; i < 4; i++)
+            d[i] = vf_fma(vf_set1(1000), vf_abs(vf_sub(coc, g[i])), vf_set1(1));
+        weights_of(d, w);
+        w[0] = vf_keep(vf_gt(g[0], vf_zero()), vf_mul(vf_set1(9), w[0]));
+        w[1] = vf_keep(vf_gt(g[1], vf_zero()), vf_mul(vf_set1(3), w[1]));
+        w[2] = vf_keep(vf_gt(g[2], vf_zero()), vf_mul(vf_set1(3), w[2]));
+        w[3] = vf_keep(vf_gt(g[3], vf_zero()), w[3]);
+        const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
+        // No neighbour far: the pixel keeps its colour.
+        t = vf_keep(vf_gt(sum, vf_zero()), t);
+        normalise(w, sum);
+    }
     for (int c = 0; c < channels; c++) {
         const float *a = far->colour[0][c] + x, *b = far->colour[1][c] + x;
         const vf top = vf_fma(w[1], vf_load(a + side), vf_mul(w[0], vf_load(a)));
@@ -71,34 +77,6 @@ HF_INLINE void blend_far_faithful(const struct far_row *far, const int channels,
         const vf top = vf_fma(w[1], vf_load(a + next), vf_mul(w[0], vf_load(a)));
         const vf bottom = vf_fma(w[3], vf_load(b + next), vf_mul(w[2], vf_load(b)));
         colour[c] = vf_lerp(colour[c], vf_add(top, bottom), vf_mul(blend, coc));
-    }
-}
-
-static void blend_far_row(const struct hf_frame *f, int y, struct hf_rect r, float *const lane[2][4],
-                          float *const coc[4])
-{
-    const int n = r.x1 - r.x0, hy = y / 2, down = y & 1, ny = down ? hy + 1 : hy - 1, channels = f->s->channels;
-    struct far_row far;
-    for (int i = 0; i < 2; i++) {
-        for (int c = 0; c < channels; c++)
-            far.colour[i][c] = hf_at(&f->buf[HF_BUF_FAR_FILL], c, r.x0, i ? ny : hy);
-        far.coc[i] = hf_at(&f->buf[HF_BUF_COC4], 1, r.x0, i ? ny : hy);
-    }
-    const vf blend = vf_set1(f->s->blend);
-    for (int odd = 0; odd < 2; odd++) {
-        const int side = odd ? 1 : -1;
-        for (int x = 0; x < n; x += VF_N) {
-            vf colour[4];
-            const vf k = vf_load(coc[2 + odd] + x);
-            for (int c = 0; c < channels; c++)
-                colour[c] = vf_load(lane[odd][c] + x);
-            if (f->s->faithful)
-                blend_far_faithful(&far, channels, side, down, x, k, blend, colour);
-            else
-                blend_far_block(&far, channels, side, x, k, blend, colour);
-            for (int c = 0; c < channels; c++)
-                vf_store(lane[odd][c] + x, colour[c]);
-        }
     }
 }
 
@@ -137,59 +115,97 @@ HF_INLINE vf near_up(const float *p, const int side, const int bicubic)
     return vf_fma(vf_set1(0.25f), vf_sub(vf_load(p + side), own), own);
 }
 
-HF_INLINE void blend_near_lanes(const struct hf_frame *f, float *const line[5], float *const lane[4], int n,
-                                const int side, const int bicubic, const int channels)
+// What a row of the composite is made from.
+struct composite_row {
+    float *lane[2][4];       // the picture, even and odd; overwritten
+    float *coc[4];           // far CoC in [2] and [3]
+    struct far_row far;
+    float *near[5];          // near field and blurred CoC, interpolated in y, from two columns before the row
+    vf blend;
+    int down;                // the neighbour row is the one below
+};
+
+// Even or odd pixels of a row. Vectors without CoC are left alone: there is nothing to blend.
+HF_INLINE void composite_lanes(const struct composite_row *r, const int channels, const int with_far,
+                               const int with_near, const int faithful, const int bicubic, const int side, int n)
 {
-    const vf blend = vf_set1(f->s->blend);
+    float *const *lane = r->lane[side > 0];
     for (int x = 0; x < n; x += VF_N) {
-        const vf t = vf_mul(blend, near_up(line[4] + 2 + x, side, bicubic));
+        const vf coc = with_far ? vf_load(r->coc[side > 0 ? 3 : 2] + x) : vf_zero();
+        const vf near = with_near ? vf_mul(r->blend, near_up(r->near[4] + 2 + x, side, bicubic)) : vf_zero();
+        const int is_far = with_far && vm_any(vf_gt(coc, vf_zero())), is_near = with_near && vm_any(vf_ne(near, vf_zero()));
+        if (!is_far && !is_near)
+            continue;
+        vf colour[4];
         for (int c = 0; c < channels; c++)
-            vf_store(lane[c] + x,
-                     vf_lerp(vf_load(lane[c] + x), near_up(line[c] + 2 + x, side, bicubic), t));
+            colour[c] = vf_load(lane[c] + x);
+        if (is_far && faithful)
+            blend_far_faithful(&r->far, channels, side, r->down, x, coc, r->blend, colour);
+        else if (is_far)
+            blend_far_block(&r->far, channels, side, x, coc, r->blend, colour);
+        if (is_near)
+            for (int c = 0; c < channels; c++)
+                colour[c] = vf_lerp(colour[c], near_up(r->near[c] + 2 + x, side, bicubic), near);
+        for (int c = 0; c < channels; c++)
+            vf_store(lane[c] + x, colour[c]);
     }
 }
 
-static void blend_near_row(const struct hf_frame *f, int y, struct hf_rect r, float *const lane[2][4])
+// Options become constants, so that no pixel asks for them.
+HF_INLINE void composite_fields(const struct composite_row *r, const struct hf_setup *s, int far, int near, int n,
+                                const int channels)
 {
-    const int n = r.x1 - r.x0, channels = f->s->channels;
-    float *line[5];
-    for (int i = 0; i < 5; i++)
-        line[i] = hf_line(f, 12 + i);
-    for (int c = 0; c < channels; c++)
-        near_line(f, &f->buf[HF_BUF_NEAR_FILL], c, y, r, line[c]);
-    near_line(f, &f->buf[HF_BUF_BLUR], 0, y, r, line[4]);
-    for (int odd = 0; odd < 2; odd++) {
-        if (f->s->bicubic)
-            blend_near_lanes(f, line, lane[odd], n, odd ? 1 : -1, 1, channels);
-        else if (channels == 3)
-            blend_near_lanes(f, line, lane[odd], n, odd ? 1 : -1, 0, 3);
-        else
-            blend_near_lanes(f, line, lane[odd], n, odd ? 1 : -1, 0, 4);
+    if (s->faithful || s->bicubic) {
+        composite_lanes(r, channels, far, near, s->faithful, s->bicubic, -1, n);
+        composite_lanes(r, channels, far, near, s->faithful, s->bicubic, 1, n);
+    } else if (far && near) {
+        composite_lanes(r, channels, 1, 1, 0, 0, -1, n);
+        composite_lanes(r, channels, 1, 1, 0, 0, 1, n);
+    } else if (far) {
+        composite_lanes(r, channels, 1, 0, 0, 0, -1, n);
+        composite_lanes(r, channels, 1, 0, 0, 0, 1, n);
+    } else {
+        composite_lanes(r, channels, 0, 1, 0, 0, -1, n);
+        composite_lanes(r, channels, 0, 1, 0, 0, 1, n);
     }
 }
 
 static void composite_row_simd(const struct hf_frame *f, int y, struct hf_rect r)
 {
-    const int n = r.x1 - r.x0;
-    float *lane[2][4], *coc[4];
+    const struct hf_setup *s = f->s;
+    const int n = r.x1 - r.x0, hy = y / 2, down = y & 1, ny = down ? hy + 1 : hy - 1;
+    struct composite_row row = {.blend = vf_set1(s->blend), .down = down};
     for (int i = 0; i < 4; i++) {
-        lane[0][i] = hf_line(f, i);
-        lane[1][i] = hf_line(f, 4 + i);
-        coc[i] = hf_line(f, 8 + i);
+        row.lane[0][i] = hf_line(f, i);
+        row.lane[1][i] = hf_line(f, 4 + i);
+        row.coc[i] = hf_line(f, 8 + i);
     }
-    hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
+    hf_read_colour(f, r.x0, y, n, row.lane[0], row.lane[1], f->counts);
     if (f->far) {
-        f->k->coc_row(f, r.x0, y, n, coc, NULL);
-        blend_far_row(f, y, r, lane, coc);
+        f->k->coc_row(f, r.x0, y, n, row.coc, NULL);
+        for (int i = 0; i < 2; i++) {
+            for (int c = 0; c < s->channels; c++)
+                row.far.colour[i][c] = hf_at(&f->buf[HF_BUF_FAR_FILL], c, r.x0, i ? ny : hy);
+            row.far.coc[i] = hf_at(&f->buf[HF_BUF_COC4], 1, r.x0, i ? ny : hy);
+        }
     }
-    if (f->near)
-        blend_near_row(f, y, r, lane);
-    hf_store_rgb(f, lane[0], n);
-    hf_store_rgb(f, lane[1], n);
-    if (f->s->channels == 3)
-        lane[0][3] = lane[1][3] = NULL;
-    f->counts->clamped += f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)lane[0],
-                                                      (const float *const *)lane[1]);
+    if (f->near) {
+        for (int i = 0; i < 5; i++)
+            row.near[i] = hf_line(f, 12 + i);
+        for (int c = 0; c < s->channels; c++)
+            near_line(f, &f->buf[HF_BUF_NEAR_FILL], c, y, r, row.near[c]);
+        near_line(f, &f->buf[HF_BUF_BLUR], 0, y, r, row.near[4]);
+    }
+    if (s->channels == 3)
+        composite_fields(&row, s, f->far, f->near, n, 3);
+    else
+        composite_fields(&row, s, f->far, f->near, n, 4);
+    hf_store_rgb(f, row.lane[0], n);
+    hf_store_rgb(f, row.lane[1], n);
+    if (s->channels == 3)
+        row.lane[0][3] = row.lane[1][3] = NULL;
+    f->counts->clamped += f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)row.lane[0],
+                                                      (const float *const *)row.lane[1]);
 }
 
 static void composite_simd(const struct hf_frame *f, struct hf_rect r)

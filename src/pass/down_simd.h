@@ -24,15 +24,21 @@ HF_INLINE void down_row_simd(const struct hf_frame *f, const int channels, int y
     hf_row(&f->buf[HF_BUF_COLORFAR4], channels, r.x0, y, far);
     hf_row(&f->buf[HF_BUF_COC4], 2, r.x0, y, coc4);
     for (int x = 0; x < n; x += VF_N) {
-        const vf f0 = vf_load(f00 + x);
-        const vf d1 = down_distance(f0, vf_load(f10 + x)), d2 = down_distance(f0, vf_load(f01 + x));
-        const vf d3 = down_distance(f0, vf_load(f11 + x)), p23 = vf_mul(d2, d3);
-        vf w0 = vf_mul(d1, p23), w2 = vf_mul(d1, d3), w3 = vf_mul(d1, d2);
-        const vf i = vf_div(vf_set1(1), vf_add(vf_add(w0, p23), vf_add(w2, w3)));
-        const vf w1 = vf_mul(p23, i);
-        w0 = vf_mul(w0, i);
-        w2 = vf_mul(w2, i);
-        w3 = vf_mul(w3, i);
+        const vf f0 = vf_load(f00 + x), g1 = vf_load(f10 + x), g2 = vf_load(f01 + x), g3 = vf_load(f11 + x);
+        vf w0 = vf_set1(0.25f), w1 = w0, w2 = w0, w3 = w0;
+        // Where the far CoC is the same all over, as it mostly is, so are the weights.
+        if (vm_any(vm_or(vm_or(vf_ne(f0, g1), vf_ne(f0, g2)), vf_ne(f0, g3)))) {
+            const vf d1 = down_distance(f0, g1), d2 = down_distance(f0, g2), d3 = down_distance(f0, g3);
+            w0 = vf_mul(d1, vf_mul(d2, d3));
+            w1 = vf_mul(d2, d3);
+            w2 = vf_mul(d1, d3);
+            w3 = vf_mul(d1, d2);
+            const vf i = vf_div(vf_set1(1), vf_add(vf_add(w0, w1), vf_add(w2, w3)));
+            w0 = vf_mul(w0, i);
+            w1 = vf_mul(w1, i);
+            w2 = vf_mul(w2, i);
+            w3 = vf_mul(w3, i);
+        }
         for (int c = 0; c < channels; c++) {
             const vf c00 = vf_load(lane[0][0][c] + x), c10 = vf_load(lane[0][1][c] + x);
             const vf c01 = vf_load(lane[1][0][c] + x), c11 = vf_load(lane[1][1][c] + x);

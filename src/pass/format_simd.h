@@ -11,12 +11,16 @@ HF_INLINE vf clamp_unsigned(vf v, float max)
 }
 
 // Unsigned, m mantissa bits, to nearest even; 0 <= v <= the largest finite. hf_encode_small says how.
+HF_INLINE vi encode_normal(vf v, const int m)
+{
+    const vi u = vf_as_vi(v), odd = vi_and(vi_shr(u, 23 - m), vi_set1(1));
+    const vi bias = vi_set1((int32_t)((1u << (22 - m)) - 1 - (112u << 23)));
+    return vi_shr(vi_add(vi_add(u, bias), odd), 23 - m);
+}
+
 HF_INLINE vi encode_small(vf v, const int m)
 {
-    const int shift = 23 - m;
-    const vi u = vf_as_vi(v), odd = vi_and(vi_shr(u, 23 - m), vi_set1(1));
-    const vi bias = vi_set1((int32_t)((1u << (shift - 1)) - 1 - (112u << 23)));
-    const vi normal = vi_shr(vi_add(vi_add(u, bias), odd), 23 - m);
+    const vi normal = encode_normal(v, m);
     const vi magic = vi_set1((127 + 23 - 14 - m) << 23);
     const vi denormal = vi_sub(vf_as_vi(vf_add(v, vi_as_vf(magic))), magic);
     return vf_as_vi(vf_select(vf_lt(v, vf_set1(0x1p-14f)), vi_as_vf(denormal), vi_as_vf(normal)));
@@ -42,6 +46,11 @@ HF_INLINE void r11_unpack(vi u, vf out[3])
 HF_INLINE vi r11_pack(const vf in[3], vi *clamped)
 {
     static const float max[3] = {HF_R11_MAX, HF_R11_MAX, HF_R10_MAX};
+    // Mostly nothing has to be clamped and nothing is denormal, zero included: half the work.
+    const vf low = vf_min(vf_min(in[0], in[1]), in[2]), high = vf_max(vf_max(in[0], in[1]), in[2]);
+    if (!vm_any(vm_not(vm_and(vf_le(vf_set1(0x1p-14f), low), vf_le(high, vf_set1(HF_R10_MAX))))))
+        return vi_or(vi_or(encode_normal(in[0], 6), vi_shl(encode_normal(in[1], 6), 11)),
+                     vi_shl(encode_normal(in[2], 5), 22));
     vf v[3];
     for (int c = 0; c < 3; c++) {
         v[c] = clamp_unsigned(in[c], max[c]);
@@ -164,10 +173,13 @@ HF_INLINE vm load_block(const enum hf_format format, const uint8_t *p, vf even[4
         for (int c = 0; c < (format == HF_FORMAT_RGB32F ? 3 : 4); c++)
             vf_unzip(a[c], b[c], &even[c], &odd[c]);
     }
-    const int small = format == HF_FORMAT_R11G11B10F || format == HF_FORMAT_RGBA16F;
-    const int channels = format == HF_FORMAT_PLANAR32F                                     ? 1
-                         : format == HF_FORMAT_R11G11B10F || format == HF_FORMAT_RGB32F ? 3
-                                                                                        : 4;
+    const int small = format == HF_FORMAT_RGBA16F;
+    const int channels = format == HF_FORMAT_PLANAR32F ? 1 : format == HF_FORMAT_RGB32F ? 3 : 4;
+    if (format == HF_FORMAT_R11G11B10F) {
+        // Nothing is negative or NaN here, so that one comparison of the largest serves all six.
+        const vf e = vf_max(vf_max(even[0], even[1]), even[2]), o = vf_max(vf_max(odd[0], odd[1]), odd[2]);
+        return vm_not(vf_lt(vf_max(e, o), vf_set1(65536.0f)));
+    }
     for (int c = 0; c < channels; c++)
         bad = vm_or(bad, small ? vm_or(not_small(even[c]), not_small(odd[c]))
                                : vm_or(not_finite(even[c]), not_finite(odd[c])));
@@ -218,15 +230,18 @@ HF_INLINE void store_block(const enum hf_format format, uint8_t *p, const vf eve
 
 enum { FORMAT_MAX_BYTES = 16 };
 
-// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many the image still has.
-HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int channels, const uint8_t *p, int n,
-                         int pixels, float *const even[4], float *const odd[4])
+// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many the image still has. A tile's rows are
+// too short for hardware prefetchers to catch on, so each fetches the one after next.
+HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int channels, const uint8_t *p,
+                         ptrdiff_t stride, int n, int pixels, float *const even[4], float *const odd[4])
 {
     vm bad = vf_gt(vf_zero(), vf_zero());
     for (int i = 0; i < n; i += VF_N) {
         uint8_t rest[2 * VF_N * FORMAT_MAX_BYTES];
         const uint8_t *from = p + (size_t)i * 2 * bpp;
         const int left = pixels - 2 * i;
+        for (int k = 0; k < 2 * VF_N * bpp; k += 64)
+            __builtin_prefetch((const uint8_t *)((uintptr_t)from + (uintptr_t)(2 * stride)) + k);
         if (left < 2 * VF_N) {
             // The row's end: what lies behind it is not ours to read. Repeat its last pixel.
             memcpy(rest, from, (size_t)left * bpp);
@@ -244,12 +259,15 @@ HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int c
     return vm_any(bad);
 }
 
-HF_INLINE uint32_t store_plane(const enum hf_format format, const int bpp, const int channels, uint8_t *p, int n,
-                               int pixels, const float *const even[4], const float *const odd[4])
+HF_INLINE uint32_t store_plane(const enum hf_format format, const int bpp, const int channels, uint8_t *p,
+                               ptrdiff_t stride, int n, int pixels, const float *const even[4],
+                               const float *const odd[4])
 {
     vi clamped = vi_set1(0);
     for (int i = 0; i < n; i += VF_N) {
         const int left = pixels - 2 * i;
+        for (int k = 0; k < 2 * VF_N * bpp; k += 64)
+            __builtin_prefetch((uint8_t *)((uintptr_t)p + (uintptr_t)(2 * stride)) + (size_t)i * 2 * bpp + k, 1);
         vf e[4], o[4];
         for (int c = 0; c < channels; c++) {
             e[c] = even[c] ? vf_load(even[c] + i) : vf_set1(1);
@@ -285,12 +303,14 @@ HF_INLINE uint8_t *plane_at(const struct hf_image *m, int plane, int bpp, int x,
     static int load_##name##_simd(const struct hf_image *m, int x, int y, int n, float *const even[4],               \
                                   float *const odd[4])                                                               \
     {                                                                                                                \
-        return load_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), n, m->width - 2 * x, even, odd);         \
+        return load_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n, m->width - 2 * x,       \
+                          even, odd);                                                                                \
     }                                                                                                                \
     static uint64_t store_##name##_simd(const struct hf_image *m, int x, int y, int n, const float *const even[4],   \
                                         const float *const odd[4])                                                   \
     {                                                                                                                \
-        return store_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), n, m->width - 2 * x, even, odd);        \
+        return store_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n, m->width - 2 * x,      \
+                           even, odd);                                                                               \
     }
 
 HF_FORMAT_ROWS(rgba32f, HF_FORMAT_RGBA32F, 16, 4)
@@ -302,7 +322,8 @@ static int load_planar_simd(const struct hf_image *m, int x, int y, int n, float
 {
     int bad = 0;
     for (int c = 0; c < hf_plane_count(m); c++)
-        bad |= load_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), n, m->width - 2 * x, even + c, odd + c);
+        bad |= load_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), m->stride[c], n, m->width - 2 * x,
+                          even + c, odd + c);
     return bad;
 }
 
@@ -310,7 +331,8 @@ static uint64_t store_planar_simd(const struct hf_image *m, int x, int y, int n,
                                   const float *const odd[4])
 {
     for (int c = 0; c < hf_plane_count(m); c++)
-        store_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), n, m->width - 2 * x, even + c, odd + c);
+        store_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), m->stride[c], n, m->width - 2 * x, even + c,
+                    odd + c);
     return 0;
 }
 
