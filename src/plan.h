@@ -21,8 +21,10 @@ struct hf_plan {
     struct hf_reach buf[HF_BUF_COUNT];    // and each buffer
 };
 
-// Sizes and reaches of a frame; whole: one tile for all. memory must hold hf_plan_bytes.
-void hf_plan_layout(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int whole);
+// Sizes and reaches of a frame for a number of threads; tile sizes 0: chosen. whole: one tile for all.
+void hf_plan_layout(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
+                    int whole);
+// Bytes that hf_plan_memory wants.
 size_t hf_plan_bytes(const struct hf_plan *p);
 void hf_plan_memory(struct hf_plan *p, void *memory);
 

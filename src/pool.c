@@ -135,10 +135,14 @@ void hf_pool_run(struct hf_pool *p, int n, void (*fn)(void *arg, int i, int work
     pthread_mutex_unlock(&p->lock);
 }
 
+size_t hf_pool_bytes(int threads)
+{
+    return sizeof(struct hf_pool) + (size_t)threads * sizeof(struct worker);
+}
+
 int hf_pool_open(struct hf_pool **out, int threads, const struct hf_mem *mem)
 {
-    const size_t size = sizeof(struct hf_pool) + (size_t)threads * sizeof(struct worker);
-    struct hf_pool *p = mem->alloc(mem->cookie, size, HF_ALIGN);
+    struct hf_pool *p = mem->alloc(mem->cookie, hf_pool_bytes(threads), HF_ALIGN);
     *out = NULL;
     if (!p)
         return HF_ERR_MEMORY;

@@ -9,6 +9,8 @@ struct hf_pool;
 
 // threads counts the caller: threads - 1 are started. Returns HF_OK or HF_ERR_MEMORY, HF_ERR_THREAD.
 int hf_pool_open(struct hf_pool **out, int threads, const struct hf_mem *mem);
+// What it takes from the allocator.
+size_t hf_pool_bytes(int threads);
 void hf_pool_close(struct hf_pool **pool);
 
 // Calls fn(arg, i, worker) for i in [0, n), each once, in any order, on all workers including the caller (worker 0).

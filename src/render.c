@@ -377,7 +377,8 @@ static void collect_stats(const struct job *j, int64_t start)
     struct hf_context *c = j->c;
     struct hf_stats *t = &c->stats;
     *t = (struct hf_stats){.max_radius = j->s->max_radius};
-    t->memory = c->planes.size + c->tiles.size + c->repairs.size + c->taps.block.size;
+    t->memory = sizeof *c + c->planes.size + c->tiles.size + c->joined.size + c->repairs.size + c->taps.block.size +
+                (c->pool ? hf_pool_bytes(c->threads) : 0);
     for (int i = 0; i < c->threads; i++) {
         const struct hf_worker *w = &c->workers[i];
         for (int p = 0; p < HF_PASS_COUNT; p++) {
@@ -479,7 +480,7 @@ int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct
                  (s->blend == 0 || s->storage == HF_STORAGE_FLOAT || src->format == HF_FORMAT_R11G11B10F ||
                   (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F));
     start_workers(&j, dst, src, depth, fused);
-    hf_plan_layout(&j.plan, s, c->config.tile_width, c->config.tile_height, c->dump != NULL);
+    hf_plan_layout(&j.plan, s, c->config.tile_width, c->config.tile_height, c->threads, c->dump != NULL);
     int err = allocate(&j);
     if (err)
         return err;

@@ -111,30 +111,32 @@ static int mirrors(const double *w, int rx, int ry)
     return 1;
 }
 
-// Round the lattice to floats, keep what is not 0, and move what rounding took from the sum to the centre, so that a
-// constant stays one.
+// Round the lattice to floats, keep what is not 0, and move what rounding took from the sum to the largest weight, so that
+// a constant stays one.
 static void round_weights(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
 {
     const int row = 2 * t->rx + 1, columns = t->symmetric ? t->rx + 1 : row;
     double sum = 0;
-    int n = 0, centre = 0;
+    int n = 0, largest = 0, copies = 1;  // of the largest
     for (int k = 0; k < t->rows; k++) {
         first[k] = n;
         for (int j = 0; j < columns; j++) {
-            const int is_centre = t->symmetric ? k == 0 && j == 0 : k == t->ry && j == t->rx;
             const double *p = t->symmetric ? w + (k + t->ry) * row + j + t->rx : w + k * row + j;
             const float v = (float)(*p / t->count);
-            if (v == 0 && !is_centre)
+            const int mirrored = t->symmetric ? (1 + (k > 0)) * (1 + (j > 0)) : 1;
+            if (v == 0)
                 continue;
-            if (is_centre)
-                centre = n;
+            if (n == 0 || v > weight[largest]) {
+                largest = n;
+                copies = mirrored;
+            }
             column[n] = j;
             weight[n++] = v;
-            sum += v * (t->symmetric ? (1 + (k > 0)) * (1 + (j > 0)) : 1.0);
+            sum += (double)v * mirrored;
         }
     }
     first[t->rows] = n;
-    weight[centre] += (float)(1 - sum);
+    weight[largest] += (float)((1 - sum) / copies);
 }
 
 int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem)

@@ -24,9 +24,9 @@ struct call {
 static struct call call_new(int width, int height, int channels)
 {
     struct rng rng = rng_seed(seed);
-    struct call c = { .scene = scene_new(&rng, SCENE_BLOCKS, width, height, channels),
+    struct call c = {.scene = scene_new(&rng, SCENE_BLOCKS, width, height, channels),
                       .out = picture_new(width, height, channels),
-                      .params = scene_params() };
+                      .params = scene_params()};
     c.dst = picture_image(&c.out);
     c.src = picture_image(&c.scene.colour);
     c.depth = picture_depth(&c.scene.depth);
@@ -60,16 +60,16 @@ static void strings(void)
     char version[32];
     snprintf(version, sizeof version, "%d.%d.", HF_VERSION_MAJOR, HF_VERSION_MINOR);
     CHECK_MSG(strncmp(hf_version(), version, strlen(version)) == 0, "version %s, header %s*", hf_version(), version);
-    static const char *const isas[] = { "auto", "scalar", "sse4.1", "avx2", "avx512", "neon" };
+    static const char *const isas[] = {"auto", "scalar", "sse4.1", "avx2", "avx512", "neon"};
     for (int i = 0; i <= HF_ISA_NEON; i++)
         CHECK(strcmp(hf_isa_name((enum hf_isa)i), isas[i]) == 0);
     CHECK(!hf_isa_name((enum hf_isa)99) && !hf_isa_name((enum hf_isa)-1));
     CHECK_INT(hf_isa_available(HF_ISA_SCALAR), 1);
     CHECK_INT(hf_isa_available(HF_ISA_AUTO), 1);
     CHECK_INT(hf_isa_available((enum hf_isa)99), 0);
-    static const char *const passes[] = { "CoC generation",  "Downsample",      "Near CoC Max X", "Near CoC Max Y",
+    static const char *const passes[] = {"CoC generation",  "Downsample",      "Near CoC Max X", "Near CoC Max Y",
                                           "Near CoC Blur X", "Near CoC Blur Y", "Computation",    "Fill",
-                                          "Composite" };
+                                          "Composite"};
     for (int i = 0; i < HF_PASS_COUNT; i++)
         CHECK(strcmp(hf_pass_name((enum hf_pass_id)i), passes[i]) == 0);
     CHECK(!hf_pass_name(HF_PASS_COUNT) && !hf_pass_name((enum hf_pass_id)-1));
@@ -92,9 +92,9 @@ static void opening(void)
     struct hf_context *c;
     CHECK_INT(hf_open(NULL, NULL), HF_ERR_ARG);
     const struct hf_config bad[] = {
-        { .threads = -1 }, { .threads = 257 }, { .isa = (enum hf_isa)17 }, { .isa = (enum hf_isa)-1 },
-        { .alloc = some_alloc }, { .free = some_free }, { .tile_width = 8 }, { .tile_width = 40 },
-        { .tile_width = -16 },   { .tile_height = 15 }, { .tile_height = -1 }, { .tile_width = 65552 },
+        {.threads = -1}, {.threads = 257}, {.isa = (enum hf_isa)17}, {.isa = (enum hf_isa)-1},
+        {.alloc = some_alloc}, {.free = some_free}, {.tile_width = 8}, {.tile_width = 40},
+        {.tile_width = -16},   {.tile_height = 15}, {.tile_height = -1}, {.tile_width = 65552},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         c = (struct hf_context *)&c;
@@ -103,7 +103,7 @@ static void opening(void)
         CHECK(c == NULL);
     }
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
-        const struct hf_config config = { .threads = 1, .isa = (enum hf_isa)isa };
+        const struct hf_config config = {.threads = 1, .isa = (enum hf_isa)isa};
         CHECK_INT(hf_open(&c, &config), hf_isa_available((enum hf_isa)isa) ? HF_OK : HF_ERR_ISA);
         if (c)
             CHECK_INT(hf_context_isa(c), isa);
@@ -211,7 +211,7 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.engine = (enum hf_engine)99);
     SPOIL(params.model = (enum hf_model)2);
     SPOIL(params.model = (enum hf_model)-1);
-    static const float not_positive[] = { 0, -0.0f, -1, NAN, -INFINITY, INFINITY };
+    static const float not_positive[] = {0, -0.0f, -1, NAN, -INFINITY, INFINITY};
     for (int i = 0; i < 6; i++)
         SPOIL(params.focus_distance = not_positive[i]);
     SPOIL(params.range = -2);
@@ -274,8 +274,8 @@ static void bad_params(struct hf_context *c)
 
 static void focus_reading(void)
 {
-    float data[12] = { 5, 0, -1, 1e10f, INFINITY, NAN, 7, 0.25f, 1, 3, 4, 6 };
-    struct hf_depth d = { .data = data, .stride = 16 };
+    float data[12] = {5, 0, -1, 1e10f, INFINITY, NAN, 7, 0.25f, 1, 3, 4, 6};
+    struct hf_depth d = {.data = data, .stride = 16};
     float z = 0;
     CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_OK);
     CHECK(z == 5);
@@ -284,7 +284,7 @@ static void focus_reading(void)
     for (int x = 1; x < 4; x++)
         CHECK_INT(hf_depth_at(&d, 4, 3, x, 0, &z), HF_ERR_FOCUS);
     CHECK_INT(hf_depth_at(&d, 4, 3, 0, 1, &z), HF_ERR_FOCUS);
-    static const int outside[][2] = { { -1, 0 }, { 4, 0 }, { 0, -1 }, { 0, 3 } };
+    static const int outside[][2] = {{-1, 0}, {4, 0}, {0, -1}, {0, 3}};
     for (int i = 0; i < 4; i++)
         CHECK_INT(hf_depth_at(&d, 4, 3, outside[i][0], outside[i][1], &z), HF_ERR_ARG);
     CHECK_INT(hf_depth_at(NULL, 4, 3, 0, 0, &z), HF_ERR_ARG);
@@ -456,7 +456,7 @@ int main(int argc, char **argv)
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         if (!hf_isa_available((enum hf_isa)isa))
             continue;
-        const struct hf_config config = { .threads = 2, .isa = (enum hf_isa)isa, .log = on_log, .log_cookie = &logged };
+        const struct hf_config config = {.threads = 2, .isa = (enum hf_isa)isa, .log = on_log, .log_cookie = &logged};
         struct hf_context *c;
         if (!CHECK_INT(hf_open(&c, &config), HF_OK))
             continue;

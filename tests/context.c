@@ -44,7 +44,7 @@ static void *count_alloc(void *cookie, size_t size, size_t align)
     const size_t step = align > sizeof(struct header) ? align : sizeof(struct header);
     unsigned char *block = malloc(size + 2 * step + align);
     uintptr_t p = ((uintptr_t)block + step + align - 1) / align * align;
-    *(struct header *)(p - sizeof(struct header)) = (struct header){ block, size, 0x600d600d };
+    *(struct header *)(p - sizeof(struct header)) = (struct header){block, size, 0x600d600d};
     memset((void *)p, 0xff, size);  // NaN: nothing may count on zeros
     return (void *)p;
 }
@@ -66,12 +66,12 @@ static void count_free(void *cookie, void *p)
 
 static struct counter counter_new(void)
 {
-    return (struct counter){ .lock = PTHREAD_MUTEX_INITIALIZER, .fail_at = -1 };
+    return (struct counter){.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at = -1};
 }
 
 static struct hf_config counted(struct counter *n)
 {
-    return (struct hf_config){ .threads = 2, .alloc = count_alloc, .free = count_free, .alloc_cookie = n };
+    return (struct hf_config){.threads = 2, .alloc = count_alloc, .free = count_free, .alloc_cookie = n};
 }
 
 static int render(struct hf_context *c, const struct scene *s, const struct hf_params *p, struct picture *out)
@@ -206,7 +206,7 @@ static void forwards(void *cookie, int n, void (*fn)(void *arg, int i, int worke
     h->calls++;
     h->items += n;
     for (int t = 0; t < h->threads; t++) {
-        share[t] = (struct share){ fn, arg, n, t, h->threads };
+        share[t] = (struct share){fn, arg, n, t, h->threads};
         pthread_create(&thread[t], NULL, run_share, &share[t]);
     }
     for (int t = 0; t < h->threads; t++)
@@ -219,18 +219,18 @@ static void host_threads(void)
     struct scene s = scene_new(&rng, SCENE_BLOCKS, 301, 203, 3);
     struct picture out = picture_new(301, 203, 3), want = picture_new(301, 203, 3);
     struct hf_context *c;
-    const struct hf_config one = { .threads = 1 };
+    const struct hf_config one = {.threads = 1};
     const struct hf_params p = scene_params();
     CHECK_INT(hf_open(&c, &one), HF_OK);
     CHECK_INT(render(c, &s, &p, &want), HF_OK);
     hf_close(&c);
     for (int threads = 1; threads <= 8; threads++) {
         for (int kind = 0; kind < 3; kind++) {
-            struct host h = { .threads = threads };
-            const struct hf_config config = { .threads = threads, .parallel_for = kind == 0   ? backwards
+            struct host h = {.threads = threads};
+            const struct hf_config config = {.threads = threads, .parallel_for = kind == 0   ? backwards
                                                                                  : kind == 1 ? forwards
                                                                                              : NULL,
-                                              .parallel_cookie = &h };
+                                              .parallel_cookie = &h};
             CHECK_INT(hf_open(&c, &config), HF_OK);
             CHECK_INT(hf_context_threads(c), threads);
             for (int i = 0; i < 3; i++) {
@@ -258,7 +258,7 @@ static void *use_context(void *arg)
 {
     struct user *u = arg;
     const struct hf_params p = scene_params();
-    const struct hf_config config = { .threads = 2, .isa = u->isa };
+    const struct hf_config config = {.threads = 2, .isa = u->isa};
     for (int round = 0; round < 3; round++) {
         struct hf_context *c;
         struct picture out = picture_new(u->want->width, u->want->height, u->want->channels);
@@ -275,7 +275,7 @@ static void *use_context(void *arg)
 
 static void many_contexts(void)
 {
-    enum { USERS = 6 };
+    enum {USERS = 6};
     struct rng rng = rng_seed(seed);
     struct scene scene[USERS];
     struct picture want[USERS];
@@ -283,11 +283,11 @@ static void many_contexts(void)
     pthread_t thread[USERS];
     const struct hf_params p = scene_params();
     for (int i = 0; i < USERS; i++) {
-        const struct hf_config config = { .threads = 1, .isa = i & 1 ? HF_ISA_SCALAR : HF_ISA_AUTO };
+        const struct hf_config config = {.threads = 1, .isa = i & 1 ? HF_ISA_SCALAR : HF_ISA_AUTO};
         struct hf_context *c;
         scene[i] = scene_new(&rng, SCENE_BLOCKS, 50 + 13 * i, 60 - 5 * i, 3 + i % 2);
         want[i] = picture_new(50 + 13 * i, 60 - 5 * i, 3 + i % 2);
-        user[i] = (struct user){ &scene[i], &want[i], config.isa, 0 };
+        user[i] = (struct user){&scene[i], &want[i], config.isa, 0};
         CHECK_INT(hf_open(&c, &config), HF_OK);
         CHECK_INT(render(c, &scene[i], &p, &want[i]), HF_OK);
         hf_close(&c);

@@ -38,11 +38,11 @@ struct job {
 
 static void on_buffer(void *cookie, const struct hf_buffer *b)
 {
-    static const char *const names[] = { [REF_COC] = "coc", [REF_COC4] = "coc4", [REF_COCMAXX] = "cocmaxx",
+    static const char *const names[] = {[REF_COC] = "coc", [REF_COC4] = "coc4", [REF_COCMAXX] = "cocmaxx",
                                          [REF_COCMAX] = "cocmax", [REF_COCBLURX] = "cocblurx",
                                          [REF_COCBLUR] = "cocblur", [REF_COLOR4] = "color4",
                                          [REF_COLORMULCOC4] = "colormulcoc4", [REF_NEAR] = "near", [REF_FAR] = "far",
-                                         [REF_NEARFILL] = "nearfill", [REF_FARFILL] = "farfill" };
+                                         [REF_NEARFILL] = "nearfill", [REF_FARFILL] = "farfill"};
     struct capture *capture = cookie;
     for (int id = REF_COC; id < REF_RESULT; id++) {
         if (strcmp(b->name, names[id]) != 0)
@@ -59,8 +59,8 @@ static void on_buffer(void *cookie, const struct hf_buffer *b)
     CHECK_MSG(0, "unknown buffer %s", b->name);
 }
 
-// Largest absolute value of a channel of the full-resolution colour under the half-resolution window (x +- rx, y +- ry):
-// bounds colour4, (colour x far) / far and what is made of them.
+// Largest absolute value of a channel of the full-resolution colour under the half-resolution window (x +- rx,
+// y +- ry): bounds colour4, (colour x far) / far and what is made of them.
 static double colour_near(const struct reference *r, int c, int x, int y, int rx, int ry)
 {
     double largest = 0;
@@ -68,7 +68,7 @@ static double colour_near(const struct reference *r, int c, int x, int y, int rx
         for (int i = 2 * (x - rx); i <= 2 * (x + rx) + 1; i++) {
             const int sx = i < 0 ? 0 : i < r->width ? i : r->width - 1;
             const int sy = j < 0 ? 0 : j < r->height ? j : r->height - 1;
-            largest = fmax(largest, fabs(r->buffer[REF_COLOUR].data[c][sy * r->width + sx]));
+            largest = worse(largest, fabs(r->buffer[REF_COLOUR].data[c][sy * r->width + sx]));
         }
     }
     return largest;
@@ -81,7 +81,7 @@ static double buffer_near(const struct ref_buffer *b, int c, int x, int y, int r
     for (int j = y - reach; j <= y + reach; j++)
         for (int i = x - reach; i <= x + reach; i++)
             if (i >= 0 && j >= 0 && i < b->width && j < b->height)
-                largest = fmax(largest, fabs(b->data[c][j * b->width + i]));
+                largest = worse(largest, fabs(b->data[c][j * b->width + i]));
     return largest;
 }
 
@@ -119,9 +119,9 @@ static double coc_bound(const struct reference *r, const struct job *job)
 }
 
 // Pass 7. L lattice weights: L products and sums, one more rounding in each weight, for numerator and denominator, and
-// the quotient: 2 L + 12 roundings of the largest colour. Tap positions are rounded to float: U h per axis, and a bilinear
-// sample moves by 2 * largest sample per pixel; with the per-pixel kernel the position in the picture is rounded too.
-// Relative to the mean weight of the taps, which can be small.
+// the quotient: 2 L + 12 roundings of the largest colour. Tap positions are rounded to float: U h per axis, and a
+// bilinear sample moves by 2 * largest sample per pixel; with the per-pixel kernel the position in the picture
+// is rounded too. All relative to the mean weight of the taps, which can be small.
 static double gather_bound(const struct reference *r, enum ref_id id, int c, int x, int y)
 {
     const int rx = (int)ceil(r->reach_x * r->kernel_scale) + 1, ry = (int)ceil(r->reach_y * r->kernel_scale) + 1;
@@ -224,7 +224,7 @@ static struct picture render(struct hf_context *c, const struct scene *s, const 
 static void check_frame(struct hf_context *c, const struct scene *s, const struct hf_depth *depth,
                         const struct hf_params *p, const char *label)
 {
-    struct job job = { .depth = depth };
+    struct job job = {.depth = depth};
     snprintf(job.label, sizeof job.label, "%s", label);
     hf_set_dump(c, on_buffer, &job.captured);
     struct picture out = job.captured.buffer[REF_RESULT] = render(c, s, depth, p);
@@ -251,47 +251,47 @@ struct option {
 
 #define ON 1
 static const struct option options[] = {
-    { "default", { 0 }, 1 },
-    { "faithful", { .faithful = ON }, 1 },
-    { "strength 0.1", { .strength = 0.1f }, 0 },
-    { "strength 0.3", { .strength = 0.3f }, 0 },
-    { "strength 0.6 faithful", { .strength = 0.6f, .faithful = ON }, 0 },
-    { "karis", { .karis = ON }, 1 },
-    { "per-pixel", { .per_pixel_kernel = ON }, 1 },
-    { "per-pixel karis mean", { .per_pixel_kernel = ON, .karis = ON, .fill = HF_FILL_MEAN }, 0 },
-    { "per-pixel none aspect 2", { .per_pixel_kernel = ON, .fill = HF_FILL_NONE, .pixel_aspect = 2 }, 0 },
-    { "bicubic", { .bicubic = ON }, 1 },
-    { "bicubic faithful strength 0.2", { .bicubic = ON, .faithful = ON, .strength = 0.2f }, 0 },
-    { "mean", { .fill = HF_FILL_MEAN }, 0 },
-    { "none", { .fill = HF_FILL_NONE }, 0 },
-    { "none radius 60", { .fill = HF_FILL_NONE, .max_radius = 60 }, 0 },
-    { "none radius 60 per-pixel", { .fill = HF_FILL_NONE, .max_radius = 60, .per_pixel_kernel = ON }, 0 },
-    { "none karis 7-gon", { .fill = HF_FILL_NONE, .karis = ON, .blades = 7, .blade_rotation = 20 }, 0 },
-    { "smoothstep", { .blend = HF_BLEND_SMOOTHSTEP }, 0 },
-    { "5-gon", { .blades = 5 }, 0 },
-    { "5-gon rotated", { .blades = 5, .blade_rotation = 33 }, 1 },
-    { "6-gon", { .blades = 6 }, 0 },
-    { "6-gon rotated", { .blades = 6, .blade_rotation = -10 }, 0 },
-    { "7-gon strength 0.6", { .blades = 7, .strength = 0.6f }, 0 },
-    { "8-gon rotated", { .blades = 8, .blade_rotation = 400 }, 0 },
-    { "9-gon karis", { .blades = 9, .karis = ON }, 0 },
-    { "aspect 2", { .pixel_aspect = 2 }, 0 },
-    { "aspect 0.6 karis", { .pixel_aspect = 0.6f, .karis = ON }, 0 },
-    { "radius 1", { .max_radius = 1 }, 0 },
-    { "radius 4", { .max_radius = 4 }, 0 },
-    { "radius 7.3 strength 0.45", { .max_radius = 7.3f, .strength = 0.45f }, 0 },
-    { "radius 40", { .max_radius = 40 }, 0 },
-    { "radius 40 6-gon karis aspect 2", { .max_radius = 40, .blades = 6, .karis = ON, .pixel_aspect = 2 }, 0 },
-    { "range 20 (near begin at 0)", { .range = 20 }, 0 },
-    { "range 35 (near begin clamped)", { .range = 35 }, 0 },
-    { "range 0", { .range = 1e-30f }, 0 },
-    { "given distances", { .near_begin = 5, .near_end = 17, .far_begin = 22, .far_end = 31 }, 0 },
-    { "display 1080", { .max_radius = HF_DERIVE, .display_height = 1080 }, 0 },
-    { "derived radius", { .max_radius = HF_DERIVE, .display_height = 700 }, 0 },
-    { "derived radius faithful", { .max_radius = HF_DERIVE, .faithful = ON }, 0 },
-    { "lens", { .model = HF_MODEL_LENS, .f_number = 0.05f }, 1 },
-    { "lens smoothstep display", { .model = HF_MODEL_LENS, .f_number = 0.3f, .display_width = 500,
-                                   .blend = HF_BLEND_SMOOTHSTEP, .world_unit_m = 0.5f }, 0 },
+    {"default", {0}, 1},
+    {"faithful", {.faithful = ON}, 1},
+    {"strength 0.1", {.strength = 0.1f}, 0},
+    {"strength 0.3", {.strength = 0.3f}, 0},
+    {"strength 0.6 faithful", {.strength = 0.6f, .faithful = ON}, 0},
+    {"karis", {.karis = ON}, 1},
+    {"per-pixel", {.per_pixel_kernel = ON}, 1},
+    {"per-pixel karis mean", {.per_pixel_kernel = ON, .karis = ON, .fill = HF_FILL_MEAN}, 0},
+    {"per-pixel none aspect 2", {.per_pixel_kernel = ON, .fill = HF_FILL_NONE, .pixel_aspect = 2}, 0},
+    {"bicubic", {.bicubic = ON}, 1},
+    {"bicubic faithful strength 0.2", {.bicubic = ON, .faithful = ON, .strength = 0.2f}, 0},
+    {"mean", {.fill = HF_FILL_MEAN}, 0},
+    {"none", {.fill = HF_FILL_NONE}, 0},
+    {"none radius 60", {.fill = HF_FILL_NONE, .max_radius = 60}, 0},
+    {"none radius 60 per-pixel", {.fill = HF_FILL_NONE, .max_radius = 60, .per_pixel_kernel = ON}, 0},
+    {"none karis 7-gon", {.fill = HF_FILL_NONE, .karis = ON, .blades = 7, .blade_rotation = 20}, 0},
+    {"smoothstep", {.blend = HF_BLEND_SMOOTHSTEP}, 0},
+    {"5-gon", {.blades = 5}, 0},
+    {"5-gon rotated", {.blades = 5, .blade_rotation = 33}, 1},
+    {"6-gon", {.blades = 6}, 0},
+    {"6-gon rotated", {.blades = 6, .blade_rotation = -10}, 0},
+    {"7-gon strength 0.6", {.blades = 7, .strength = 0.6f}, 0},
+    {"8-gon rotated", {.blades = 8, .blade_rotation = 400}, 0},
+    {"9-gon karis", {.blades = 9, .karis = ON}, 0},
+    {"aspect 2", {.pixel_aspect = 2}, 0},
+    {"aspect 0.6 karis", {.pixel_aspect = 0.6f, .karis = ON}, 0},
+    {"radius 1", {.max_radius = 1}, 0},
+    {"radius 4", {.max_radius = 4}, 0},
+    {"radius 7.3 strength 0.45", {.max_radius = 7.3f, .strength = 0.45f}, 0},
+    {"radius 40", {.max_radius = 40}, 0},
+    {"radius 40 6-gon karis aspect 2", {.max_radius = 40, .blades = 6, .karis = ON, .pixel_aspect = 2}, 0},
+    {"range 20 (near begin at 0)", {.range = 20}, 0},
+    {"range 35 (near begin clamped)", {.range = 35}, 0},
+    {"range 0", {.range = 1e-30f}, 0},
+    {"given distances", {.near_begin = 5, .near_end = 17, .far_begin = 22, .far_end = 31}, 0},
+    {"display 1080", {.max_radius = HF_DERIVE, .display_height = 1080}, 0},
+    {"derived radius", {.max_radius = HF_DERIVE, .display_height = 700}, 0},
+    {"derived radius faithful", {.max_radius = HF_DERIVE, .faithful = ON}, 0},
+    {"lens", {.model = HF_MODEL_LENS, .f_number = 0.05f}, 1},
+    {"lens smoothstep display", {.model = HF_MODEL_LENS, .f_number = 0.3f, .display_width = 500,
+                                   .blend = HF_BLEND_SMOOTHSTEP, .world_unit_m = 0.5f}, 0},
 };
 enum { OPTIONS = sizeof options / sizeof *options };
 
@@ -309,7 +309,7 @@ static struct hf_params merge(const struct hf_params *set)
     return p;
 }
 
-static const int sizes[][2] = { { 1, 1 }, { 1, 7 }, { 7, 1 }, { 2, 2 }, { 17, 33 }, { 64, 48 }, { 131, 67 } };
+static const int sizes[][2] = {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {17, 33}, {64, 48}, {131, 67}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
 static void all_options(struct hf_context *c, const char *isa, unsigned seed)
@@ -334,7 +334,7 @@ static void all_options(struct hf_context *c, const char *isa, unsigned seed)
 
 static void all_scenes_and_storages(struct hf_context *c, const char *isa, unsigned seed)
 {
-    static const char *const storages[] = { "float", "half", "chapter" };
+    static const char *const storages[] = {"float", "half", "chapter"};
     for (int kind = 0; kind < SCENE_KINDS; kind++) {
         for (int storage = 0; storage < 3; storage++) {
             for (int variant = 0; variant < 4; variant++) {
@@ -358,11 +358,11 @@ static void all_scenes_and_storages(struct hf_context *c, const char *isa, unsig
 }
 
 // Every depth type against the same scene in view depth. Against the reference of the type itself the frame is checked
-// whole; that the type means what DESIGN.md says shows in the CoC, which must be that of the view depth up to what the
+// whole; that the type means what its name says shows in the CoC, which must be that of the view depth up to what the
 // rounding of the depth samples costs (at most U d each, and as much as the conversion back).
 static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed)
 {
-    static const char *const types[] = { "view", "ray", "d3d", "gl", "reversed", "inverse", "coc" };
+    static const char *const types[] = {"view", "ray", "d3d", "gl", "reversed", "inverse", "coc"};
     for (int type = HF_DEPTH_VIEW; type <= HF_DEPTH_COC; type++) {
         struct rng rng = rng_seed(seed + 2000);
         struct scene scene = scene_new(&rng, SCENE_NOISE, 45, 38, 3);
@@ -375,7 +375,7 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
         struct hf_params wide = p;
         wide.pixel_aspect = 2;
         check_frame(c, &scene, &depth, &wide, label);
-        struct job job = { .depth = &depth };
+        struct job job = {.depth = &depth};
         snprintf(job.label, sizeof job.label, "%s", label);
         hf_set_dump(c, on_buffer, &job.captured);
         struct picture out = render(c, &scene, &depth, &p);
@@ -388,7 +388,7 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
         double worst = 0;
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < coc->width * coc->height; i++)
-                worst = fmax(worst, fabs(job.captured.buffer[REF_COC].plane[k][i] - coc->data[k][i]));
+                worst = worse(worst, fabs(job.captured.buffer[REF_COC].plane[k][i] - coc->data[k][i]));
         CHECK_MSG(worst <= bound, "%s: CoC differs by %g from that of the view depth, bound %g", label, worst, bound);
         reference_free(r);
         picture_free(&out);

@@ -53,39 +53,39 @@ struct own {
 
 // Numbers from tests/reference.c in double precision, by `golden print`.
 static const struct own owns[] = {
-    { "default",
-      { 0 },
+    {"default",
+      {0},
       {
-          { 0, 0, { 0.474755358, 0.5293789884, 0.5006396801 } },
-          { 95, 63, { 0.5739471948, 0.6729065033, 0.6379232622 } },
-          { 29, 30, { 0.5521467149, 0.7451575275, 0.7043769727 } },
-          { 33, 40, { 0.7180405877, 0.6825991844, 0.6465109391 } },
-          { 47, 20, { 0.6641288981, 0.6257405101, 0.7938272126 } },
-          { 70, 44, { 0.4156503449, 0.882546478, 0.7952232205 } },
-          { 53, 57, { 0.6942778171, 0.666689393, 0.6355185184 } },
-      } },
-    { "faithful",
-      { .faithful = 1 },
+          {0, 0, {0.474755358, 0.5293789884, 0.5006396801}},
+          {95, 63, {0.5739471948, 0.6729065033, 0.6379232622}},
+          {29, 30, {0.5521467149, 0.7451575275, 0.7043769727}},
+          {33, 40, {0.7180405877, 0.6825991844, 0.6465109391}},
+          {47, 20, {0.6641288981, 0.6257405101, 0.7938272126}},
+          {70, 44, {0.4156503449, 0.882546478, 0.7952232205}},
+          {53, 57, {0.6942778171, 0.666689393, 0.6355185184}},
+      }},
+    {"faithful",
+      {.faithful = 1},
       {
-          { 0, 0, { 0.474755358, 0.5293789884, 0.5006396801 } },
-          { 95, 63, { 0.5739471948, 0.6729065033, 0.6379232622 } },
-          { 29, 30, { 0.5521467149, 0.7451575275, 0.7043769727 } },
-          { 33, 40, { 0.7180405877, 0.6825991844, 0.6465109391 } },
-          { 47, 20, { 0.6641288981, 0.6257405101, 0.7938272126 } },
-          { 70, 44, { 0.4077188371, 0.874956455, 0.7887970735 } },
-          { 53, 57, { 0.6950711916, 0.6671676961, 0.6354408985 } },
-      } },
-    { "karis, bicubic, mean, 6-gon",
-      { .karis = 1, .bicubic = 1, .fill = HF_FILL_MEAN, .blades = 6 },
+          {0, 0, {0.474755358, 0.5293789884, 0.5006396801}},
+          {95, 63, {0.5739471948, 0.6729065033, 0.6379232622}},
+          {29, 30, {0.5521467149, 0.7451575275, 0.7043769727}},
+          {33, 40, {0.7180405877, 0.6825991844, 0.6465109391}},
+          {47, 20, {0.6641288981, 0.6257405101, 0.7938272126}},
+          {70, 44, {0.4077188371, 0.874956455, 0.7887970735}},
+          {53, 57, {0.6950711916, 0.6671676961, 0.6354408985}},
+      }},
+    {"karis, bicubic, mean, 6-gon",
+      {.karis = 1, .bicubic = 1, .fill = HF_FILL_MEAN, .blades = 6},
       {
-          { 0, 0, { 0.4588938311, 0.5232474704, 0.4843737309 } },
-          { 95, 63, { 0.4618032292, 0.5387925463, 0.523588222 } },
-          { 29, 30, { 0.3819218827, 0.563958639, 0.5312632307 } },
-          { 33, 40, { 0.5290122778, 0.4798513611, 0.4440766032 } },
-          { 47, 20, { 0.4614703931, 0.4113715027, 0.6032027664 } },
-          { 70, 44, { 0.3226649426, 0.7953071554, 0.6995982039 } },
-          { 53, 57, { 0.5894876909, 0.5535716878, 0.5374394276 } },
-      } },
+          {0, 0, {0.4588938311, 0.5232474704, 0.4843737309}},
+          {95, 63, {0.4618032292, 0.5387925463, 0.523588222}},
+          {29, 30, {0.3819218827, 0.563958639, 0.5312632307}},
+          {33, 40, {0.5290122778, 0.4798513611, 0.4440766032}},
+          {47, 20, {0.4614703931, 0.4113715027, 0.6032027664}},
+          {70, 44, {0.3226649426, 0.7953071554, 0.6995982039}},
+          {53, 57, {0.5894876909, 0.5535716878, 0.5374394276}},
+      }},
 };
 enum { OWNS = sizeof owns / sizeof *owns };
 
@@ -122,7 +122,7 @@ static void check_own(struct hf_context *c, const char *isa, int o, int print)
     double worst = 0;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < WIDTH * HEIGHT; i++)
-            worst = fmax(worst, fabs(got.plane[k][i] - want->data[k][i]));
+            worst = worse(worst, fabs(got.plane[k][i] - want->data[k][i]));
     CHECK_MSG(worst <= 2.5e-5 * 40, "%s, %s: %g from the reference", isa, owns[o].name, worst);
     for (int i = 0; i < 7; i++) {
         const struct pixel *px = &owns[o].pixels[i];
@@ -149,9 +149,9 @@ struct shared {
     const char *isa;
 };
 
-static const char *const rgb_names[] = { "R", "G", "B" };
-static const char *const near_far_names[] = { "R", "G" };
-static const char *const coc_names[] = { "Y" };
+static const char *const rgb_names[] = {"R", "G", "B"};
+static const char *const near_far_names[] = {"R", "G"};
+static const char *const coc_names[] = {"Y"};
 
 static int read_golden(struct picture *out, const struct shared *shared, const char *name, int channels)
 {
@@ -196,7 +196,7 @@ static void fair(const struct shared *shared, const char *name, const struct pic
     picture_free(&want);
 }
 
-// CoC buffers: golden and library are both float runs, 2.4e-7 from the truth each at most as seen; twice that and a bit.
+// CoC buffers: golden and library are both float runs, 2.4e-7 from the truth each as seen; twice that and a bit.
 static void coc_close(const struct shared *shared, const struct hf_buffer *b, const struct picture *got)
 {
     struct picture want;
@@ -207,7 +207,7 @@ static void coc_close(const struct shared *shared, const struct hf_buffer *b, co
     CHECK_INT(got->height, want.height);
     for (int c = 0; c < b->channels; c++)
         for (int i = 0; i < want.width * want.height; i++)
-            worst = fmax(worst, fabs((double)got->plane[c][i] - want.plane[c][i]));
+            worst = worse(worst, fabs((double)got->plane[c][i] - want.plane[c][i]));
     printf("%s: %-12s %.2g\n", shared->isa, b->name, worst);
     CHECK_MSG(worst <= 6e-7, "%s: %s differs by %g", shared->isa, b->name, worst);
     picture_free(&want);
@@ -258,7 +258,7 @@ static void check_shared(struct hf_context *c, struct shared *shared, const stru
 // Returns 0 if the set is not there.
 static int read_shared(struct shared *shared, struct picture *colour, struct picture *z)
 {
-    static const char *const z_name[] = { "Z" };
+    static const char *const z_name[] = {"Z"};
     const char *root = getenv("HF_SHARED");
     if (!root)
         return 0;
@@ -277,8 +277,8 @@ static int read_shared(struct shared *shared, struct picture *colour, struct pic
 int main(int argc, char **argv)
 {
     const int own = argc > 1 && strcmp(argv[1], "shared") != 0, print = argc > 1 && strcmp(argv[1], "print") == 0;
-    struct shared shared = { 0 };
-    struct picture colour = { 0 }, z = { 0 };
+    struct shared shared = {0};
+    struct picture colour = {0}, z = {0};
     if (!own && !read_shared(&shared, &colour, &z)) {
         puts("skipped: HF_SHARED does not lead to golden/synthetic/input.exr");
         return CHECK_SKIP;
@@ -286,7 +286,7 @@ int main(int argc, char **argv)
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         if (!hf_isa_available((enum hf_isa)isa))
             continue;
-        const struct hf_config config = { .threads = 2, .isa = (enum hf_isa)isa };
+        const struct hf_config config = {.threads = 2, .isa = (enum hf_isa)isa};
         struct hf_context *c;
         if (!CHECK_INT(hf_open(&c, &config), HF_OK))
             continue;

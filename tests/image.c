@@ -17,7 +17,7 @@ static void *must(void *p)
 
 struct picture picture_new(int width, int height, int channels)
 {
-    struct picture p = { width, height, channels, { NULL } };
+    struct picture p = {width, height, channels, {NULL}};
     for (int c = 0; c < channels; c++)
         p.plane[c] = must(calloc((size_t)width * (size_t)height, sizeof(float)));
     return p;
@@ -35,12 +35,12 @@ void picture_free(struct picture *p)
 {
     for (int c = 0; c < 4; c++)
         free(p->plane[c]);
-    *p = (struct picture){ 0 };
+    *p = (struct picture){0};
 }
 
 struct hf_image picture_image(const struct picture *p)
 {
-    struct hf_image image = { p->width, p->height, HF_FORMAT_PLANAR32F, { NULL }, { 0 } };
+    struct hf_image image = {p->width, p->height, HF_FORMAT_PLANAR32F, {NULL}, {0}};
     for (int c = 0; c < p->channels; c++) {
         image.data[c] = p->plane[c];
         image.stride[c] = p->width * (ptrdiff_t)sizeof(float);
@@ -50,12 +50,12 @@ struct hf_image picture_image(const struct picture *p)
 
 struct hf_depth picture_depth(const struct picture *z)
 {
-    return (struct hf_depth){ .data = z->plane[0], .stride = z->width * (ptrdiff_t)sizeof(float) };
+    return (struct hf_depth){.data = z->plane[0], .stride = z->width * (ptrdiff_t)sizeof(float)};
 }
 
 struct rng rng_seed(uint64_t seed)
 {
-    struct rng r = { seed * 0x9e3779b97f4a7c15u + 0x1234567u };
+    struct rng r = {seed * 0x9e3779b97f4a7c15u + 0x1234567u};
     r.state |= 1;
     for (int i = 0; i < 8; i++)
         rng_u32(&r);
@@ -103,7 +103,7 @@ static uint32_t small_float(double v, int mantissa_bits)
     if (v >= 65536)
         return largest;
     const int exponent = v > 0 ? (int)fmax(ilogb(v), -14) : -14;
-    // A denormal has the step of exponent -14 and the bits of exponent 0; a carry into the exponent is what it should be.
+    // A denormal has the step of exponent -14 and the bits of exponent 0; a carry into the exponent is as it should be.
     const double steps = nearbyint(ldexp(v, mantissa_bits - exponent));
     const uint32_t bits = (uint32_t)steps + ((uint32_t)(exponent + 14) << mantissa_bits);
     return bits > largest ? largest : bits;
@@ -157,7 +157,7 @@ int format_pixel_size(enum hf_format format)
 struct packed packed_new(int width, int height, enum hf_format format, int with_alpha, ptrdiff_t extra, int negative,
                          int offset, unsigned char junk)
 {
-    struct packed p = { .image = { width, height, format, { NULL }, { 0 } } };
+    struct packed p = {.image = {width, height, format, {NULL}, {0}}};
     const int planes = format != HF_FORMAT_PLANAR32F ? 1 : with_alpha ? 4 : 3;
     for (int i = 0; i < planes; i++) {
         const ptrdiff_t stride = width * (ptrdiff_t)format_pixel_size(format) + extra;
@@ -174,7 +174,7 @@ void packed_free(struct packed *p)
 {
     for (int i = 0; i < 4; i++)
         free(p->memory[i]);
-    *p = (struct packed){ 0 };
+    *p = (struct packed){0};
 }
 
 static unsigned char *row_of(const struct hf_image *image, int plane, int y)
@@ -205,7 +205,7 @@ void packed_write(struct packed *p, const struct picture *from)
 {
     for (int y = 0; y < from->height; y++) {
         for (int x = 0; x < from->width; x++) {
-            float c[4] = { 0, 0, 0, 1 };
+            float c[4] = {0, 0, 0, 1};
             for (int i = 0; i < from->channels; i++)
                 c[i] = from->plane[i][y * from->width + x];
             write_pixel(&p->image, x, y, c);
@@ -243,7 +243,7 @@ struct picture packed_read(const struct packed *p)
     struct picture out = picture_new(p->image.width, p->image.height, channels);
     for (int y = 0; y < out.height; y++) {
         for (int x = 0; x < out.width; x++) {
-            float c[4] = { 0, 0, 0, 1 };
+            float c[4] = {0, 0, 0, 1};
             read_pixel(&p->image, x, y, c);
             for (int i = 0; i < channels; i++)
                 out.plane[i][y * out.width + x] = c[i];

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures for the tests: planes of floats, random numbers, packing into the formats of the API, distances (image.c), and
-// a small EXR reader on OpenEXRCore (image_exr.c).
+// Pictures for the tests: planes of floats, random numbers, packing into the formats of the API, distances (image.c),
+// and a small EXR reader on OpenEXRCore (image_exr.c).
 #ifndef HF_TESTS_IMAGE_H
 #define HF_TESTS_IMAGE_H
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -56,6 +57,12 @@ int packed_junk_intact(const struct packed *p, unsigned char junk);
 double half_to_double(uint16_t bits);
 uint16_t double_to_half(double v);      // nearest even; beyond 65504 clamped, NaN kept
 double uf_to_double(uint32_t bits, int mantissa_bits);
+
+// The larger of two errors; NaN is the largest of all, and stays.
+static inline double worse(double a, double b)
+{
+    return isnan(a) || b <= a ? a : b;
+}
 
 // Peak signal to noise ratio of two pictures' R, G, B after clamping to 0..1 and the sRGB curve, dB.
 double display_psnr(const struct picture *a, const struct picture *b);

@@ -61,7 +61,7 @@ int exr_read(struct picture *out, const char *path, int channels, const char *co
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = quiet;
     exr_context_t file;
-    *out = (struct picture){ 0 };
+    *out = (struct picture){0};
     if (exr_start_read(&file, path, &setup) != EXR_ERR_SUCCESS)
         return -1;
     exr_attr_box2i_t window;

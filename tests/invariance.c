@@ -53,12 +53,31 @@ static struct picture transposed(const struct picture *p)
     return out;
 }
 
+static double largest_sample(const struct picture *p)
+{
+    double largest = 0;
+    for (int c = 0; c < p->channels; c++)
+        for (int i = 0; i < p->width * p->height; i++)
+            if (fabsf(p->plane[c][i]) > largest)
+                largest = fabsf(p->plane[c][i]);
+    return largest;
+}
+
+static double largest_difference(const struct picture *a, const struct picture *b)
+{
+    double largest = 0;
+    for (int c = 0; c < a->channels; c++)
+        for (int i = 0; i < a->width * a->height; i++)
+            largest = worse(largest, fabs((double)a->plane[c][i] - b->plane[c][i]));
+    return largest;
+}
+
 // Any valid options. Not the lens, whose blur is tied to the picture's width.
 static struct hf_params random_params(struct rng *rng)
 {
     struct hf_params p = scene_params();
-    static const float radii[] = { 1, 3, 4, 8, 12, 12, 17.5f, 40 };
-    static const float strengths[] = { 1, 1, 1, 0.7f, 0.3f, 0.1f };
+    static const float radii[] = {1, 3, 4, 8, 12, 12, 17.5f, 40};
+    static const float strengths[] = {1, 1, 1, 0.7f, 0.3f, 0.1f};
     p.max_radius = radii[rng_below(rng, 8)];
     p.strength = strengths[rng_below(rng, 6)];
     p.faithful = rng_below(rng, 3) == 0;
@@ -86,7 +105,7 @@ static void crops(struct hf_context *c, const char *isa)
         p.max_radius = fminf(p.max_radius, 17.5f);
         const int x0 = 2 * rng_below(&rng, 20), y0 = 2 * rng_below(&rng, 20);
         const int w = 140 + rng_below(&rng, 20), h = 110 + rng_below(&rng, 10);
-        struct scene part = { cut(&s.colour, x0, y0, w, h), cut(&s.depth, x0, y0, w, h) };
+        struct scene part = {cut(&s.colour, x0, y0, w, h), cut(&s.depth, x0, y0, w, h)};
         struct picture whole = render(c, &s, &p), a = render(c, &part, &p);
         const int mx = 2 * (2 * (int)ceilf(p.max_radius / 2 / p.pixel_aspect) + 4);
         const int my = 2 * (2 * (int)ceilf(p.max_radius / 2) + 4);
@@ -120,7 +139,7 @@ static void flips(struct hf_context *c, const char *isa)
         struct scene s = quad_scene(&rng, 2 * (20 + rng_below(&rng, 50)), 2 * (10 + rng_below(&rng, 30)));
         struct hf_params p = random_params(&rng);
         p.faithful = p.per_pixel_kernel = p.blades = 0;
-        struct scene mirror = { flipped(&s.colour), flipped(&s.depth) };
+        struct scene mirror = {flipped(&s.colour), flipped(&s.depth)};
         struct picture a = render(c, &s, &p), b = render(c, &mirror, &p), back = flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
                   " bicubic %d)", isa, seed + i, p.storage, p.fill, p.karis, p.bicubic);
@@ -147,15 +166,9 @@ static void transposes(struct hf_context *c, const char *isa)
         p.max_radius = 12;
         p.storage = HF_STORAGE_FLOAT;
         p.per_pixel_kernel = 0;  // its threshold on CoC differences apart, it is in gather.c
-        struct scene turned = { transposed(&s.colour), transposed(&s.depth) };
+        struct scene turned = {transposed(&s.colour), transposed(&s.depth)};
         struct picture a = render(c, &s, &p), b = render(c, &turned, &p), back = transposed(&b);
-        double largest = 0;
-        for (int k = 0; k < 3; k++)
-            for (int j = 0; j < a.width * a.height; j++)
-                largest = fmax(largest, s.colour.plane[k][j]);
-        for (int k = 0; k < 3; k++)
-            for (int j = 0; j < a.width * a.height; j++)
-                worst = fmax(worst, fabs((double)a.plane[k][j] - back.plane[k][j]) / largest);
+        worst = worse(worst, largest_difference(&a, &back) / largest_sample(&s.colour));
         picture_free(&a);
         picture_free(&b);
         picture_free(&back);
@@ -168,7 +181,7 @@ static void transposes(struct hf_context *c, const char *isa)
 
 static void exposures(struct hf_context *c, const char *isa)
 {
-    static const int exponents[] = { -20, -3, 1, 12, 30 };
+    static const int exponents[] = {-20, -3, 1, 12, 30};
     for (unsigned i = 0; i < 40; i++) {
         struct rng rng = rng_seed(seed + i);
         struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 60 + rng_below(&rng, 60), 40 + rng_below(&rng, 40), 4);
@@ -194,7 +207,7 @@ static void exposures(struct hf_context *c, const char *isa)
 // Random scenes, options and tile sizes: skipping changes no bit.
 static void skipping(struct hf_context *whole, enum hf_isa id, const char *isa)
 {
-    static const int tiles[][2] = { { 16, 16 }, { 16, 33 }, { 48, 17 }, { 0, 0 } };
+    static const int tiles[][2] = {{16, 16}, {16, 33}, {48, 17}, {0, 0}};
     struct hf_context *tiled[4];
     uint64_t run = 0, all = 0;
     for (int i = 0; i < 4; i++) {
@@ -238,7 +251,7 @@ static void threads(enum hf_isa isa)
     struct rng rng = rng_seed(seed);
     struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 401, 307, 3);
     for (int storage = 0; storage < 3; storage++) {
-        struct picture first = { 0 };
+        struct picture first = {0};
         for (int n = 1; n <= 7; n++) {
             struct hf_config config = scene_config(isa, n);
             config.tile_width = 16 * (n - 1);
@@ -296,9 +309,7 @@ static void focus_pull(struct hf_context *c, const char *isa)
     for (int i = 1; i <= 60; i++) {
         p.focus_distance = 20 + (float)i * step;
         struct picture now = render(c, &s, &p);
-        for (int k = 0; k < 3; k++)
-            for (int j = 0; j < 160 * 90; j++)
-                worst = fmax(worst, fabs((double)now.plane[k][j] - before.plane[k][j]));
+        worst = worse(worst, largest_difference(&now, &before));
         picture_free(&before);
         before = now;
     }

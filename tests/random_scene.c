@@ -10,7 +10,7 @@ static const float focus = 20, range = 10;
 // A signed CoC (-1..1 near to far) that is 0 or clearly not; as a depth.
 static float random_depth(struct rng *rng)
 {
-    static const float levels[] = { -1, -0.831f, -0.37f, -0.102f, 0, 0, 0.102f, 0.25f, 0.37f, 0.5f, 0.831f, 1, 2 };
+    static const float levels[] = {-1, -0.831f, -0.37f, -0.102f, 0, 0, 0.102f, 0.25f, 0.37f, 0.5f, 0.831f, 1, 2};
     if (rng_below(rng, 60) == 0)
         return rng_below(rng, 2) ? INFINITY : 0;
     return focus + range * levels[rng_below(rng, 13)];
@@ -62,7 +62,7 @@ static void paint_blocks(struct scene *s, struct rng *rng)
 
 struct scene scene_new(struct rng *rng, enum scene_kind kind, int width, int height, int channels)
 {
-    struct scene s = { picture_new(width, height, channels), picture_new(width, height, 1) };
+    struct scene s = {picture_new(width, height, channels), picture_new(width, height, 1)};
     if (kind == SCENE_BLOCKS || kind == SCENE_HIGHLIGHTS || kind == SCENE_NEGATIVE) {
         paint_blocks(&s, rng);
     } else {
@@ -87,7 +87,7 @@ void scene_free(struct scene *s)
 
 const char *scene_name(enum scene_kind kind)
 {
-    static const char *const names[] = { "blocks", "noise", "ramp", "far", "near", "sharp", "highlights", "negative" };
+    static const char *const names[] = {"blocks", "noise", "ramp", "far", "near", "sharp", "highlights", "negative"};
     return names[kind];
 }
 
@@ -158,5 +158,5 @@ static void free_nan(void *cookie, void *p)
 
 struct hf_config scene_config(enum hf_isa isa, int threads)
 {
-    return (struct hf_config){ .isa = isa, .threads = threads, .alloc = alloc_nan, .free = free_nan };
+    return (struct hf_config){.isa = isa, .threads = threads, .alloc = alloc_nan, .free = free_nan};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random small pictures with depth, made to keep comparisons (CoC > 0, CoC differences <= 0.25) clear of their thresholds.
+// Random small pictures with depth: CoC is 0 or clearly not, so that comparisons are clear of their threshold.
 #ifndef HF_TESTS_RANDOM_SCENE_H
 #define HF_TESTS_RANDOM_SCENE_H
 
@@ -26,8 +26,8 @@ struct scene scene_new(struct rng *rng, enum scene_kind kind, int width, int hei
 void scene_free(struct scene *s);
 const char *scene_name(enum scene_kind kind);
 
-// The depth of a scene as another type: near_plane 1, far_plane 100, optical axis in the middle, focal length 50 pixels;
-// for HF_DEPTH_COC the radius that the range model gives for a largest radius rho. Its samples go to *samples.
+// The depth of a scene as another type: near_plane 1, far_plane 100, optical axis in the middle, focal length 50
+// pixels; for HF_DEPTH_COC the radius that the range model gives for a largest radius rho. Its samples go to *samples.
 struct hf_depth scene_depth_as(const struct scene *s, enum hf_depth_type type, float rho, struct picture *samples);
 
 // Parameters that fit: defaults with focus 20, range 10, largest radius 12.

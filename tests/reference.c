@@ -150,7 +150,7 @@ static void window(struct reference *r, enum ref_id from, enum ref_id to, int dx
             for (int i = -reach; i <= reach; i++) {
                 const double v = at(in, 0, x + i * dx, y + i * dy);
                 sum += v;
-                largest = fmax(largest, v);
+                largest = worse(largest, v);
             }
             store(r, to, 0, x, y, mean ? sum / (2 * reach + 1) : largest);
         }
@@ -164,9 +164,10 @@ struct planes {
 
 static struct planes weigh(const struct reference *r)
 {
-    struct planes p = { .near = r->buffer[REF_COLOR4], .far = r->buffer[REF_COLORMULCOC4] };
+    struct planes p = {.near = r->buffer[REF_COLOR4], .far = r->buffer[REF_COLORMULCOC4]};
     const size_t n = (size_t)r->half_width * (size_t)r->half_height;
-    p.near_weight = p.far_weight = (struct ref_buffer){ .width = r->half_width, .height = r->half_height, .channels = 1 };
+    const struct ref_buffer weight = {.width = r->half_width, .height = r->half_height, .channels = 1};
+    p.near_weight = p.far_weight = weight;
     p.near_weight.data[0] = malloc(n * sizeof(double));
     p.far_weight.data[0] = malloc(n * sizeof(double));
     for (int c = 0; c < r->channels; c++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gather engine once more: literal, slow, in double precision, sharing no code with the library. DESIGN.md section 2
-// is its only source, so that the two can be held against each other.
+// The gather engine once more: literal, slow, in double precision, sharing no code with the library, so that the two
+// can be held against each other.
 //
 //   reference_coc.c    depth types, repair of depth and colour, models, CoC generation
 //   reference_taps.c   sample positions: rings, polygons, the dense grid
@@ -49,7 +49,7 @@ struct reference {
     int taps;                  // without the centre
     double *tap_x, *tap_y;     // half-resolution pixels, kernel scale included
     int centre;                // 1: the centre counts as a tap more
-    double *near_mean, *far_mean;  // mean over the taps of the weights, per half-resolution pixel; 0 where none was taken
+    double *near_mean, *far_mean;  // mean weight of the taps of a half-resolution pixel; 0 where none was taken
     struct ref_buffer buffer[REF_COUNT];
 };
 

@@ -102,22 +102,28 @@ static float bilinear(const float *p, ptrdiff_t stride, float ax, float ay)
     return top + ay * (bottom - top);
 }
 
-// The far sums of one pixel, tap offsets scaled by its own CoC.
+// The far sums of one pixel, tap offsets scaled by its own CoC. Eight taps at a time are summed apart, so that many of
+// them round little.
 static void sample_taps(const struct hf_frame *f, int x, int y, const struct hf_buf *colour,
                          const struct hf_buf *weight)
 {
     const struct hf_taps *t = f->s->taps;
     const float scale = *hf_at(&f->buf[HF_BUF_COC4], 1, x, y);
-    float sum[5] = {0};
+    float total[5] = {0}, sum[5];
     for (int i = 0; i < t->count; i++) {
+        if (i % 8 == 0)
+            memset(sum, 0, sizeof sum);
         const float dx = t->dx[i] * scale, dy = t->dy[i] * scale, fx = floorf(dx), fy = floorf(dy);
         for (int c = 0; c < f->s->channels; c++)
             sum[c] += bilinear(hf_at(colour, c, x + (int)fx, y + (int)fy), colour->stride, dx - fx, dy - fy);
         sum[4] += bilinear(hf_at(weight, 1, x + (int)fx, y + (int)fy), weight->stride, dx - fx, dy - fy);
+        if (i % 8 == 7 || i == t->count - 1)
+            for (int c = 0; c < 5; c++)
+                total[c] += sum[c];
     }
     for (int c = 0; c < f->s->channels; c++)
-        *hf_at(&f->buf[HF_BUF_FAR], c, x, y) = sum[c];
-    *hf_at(&f->buf[HF_BUF_SUM], 1, x, y) = sum[4];
+        *hf_at(&f->buf[HF_BUF_FAR], c, x, y) = total[c];
+    *hf_at(&f->buf[HF_BUF_SUM], 1, x, y) = total[4];
 }
 
 static void gather_far(const struct hf_frame *f, struct hf_rect r)
@@ -138,9 +144,15 @@ static void gather_far(const struct hf_frame *f, struct hf_rect r)
         float *far[4];
         const float *sum = hf_at(&f->buf[HF_BUF_SUM], 1, r.x0, y), *coc = hf_at(&f->buf[HF_BUF_COC4], 1, r.x0, y);
         hf_row(&f->buf[HF_BUF_FAR], s->channels, r.x0, y, far);
-        for (int c = 0; c < s->channels; c++)
-            for (int x = 0; x < r.x1 - r.x0; x++)  // FLT_MIN: CoC so small that its weighted sum is 0
-                far[c][x] = coc[x] > 0 ? far[c][x] / (sum[x] > FLT_MIN ? sum[x] : FLT_MIN) : 0;
+        for (int c = 0; c < s->channels; c++) {
+            const float *own = hf_at(&f->buf[HF_BUF_COLORFAR4], c, r.x0, y);
+            for (int x = 0; x < r.x1 - r.x0; x++) {
+                // FLT_MIN: a CoC so small that its weighted sum is 0. Without a tap on the centre there may be no far
+                // CoC under any tap: then the pixel's own colour is all there is.
+                const float mean = sum[x] > 0 ? far[c][x] / (sum[x] > FLT_MIN ? sum[x] : FLT_MIN) : own[x] / coc[x];
+                far[c][x] = coc[x] > 0 ? mean : 0;
+            }
+        }
         hf_store_rgb(f, far, r.x1 - r.x0);
     }
 }

@@ -10,8 +10,9 @@
 
 enum { GATHER_S = VF_N == 16 ? 5 : 9 };
 
-// One row sum from the pairs h; both are rows of s vectors.
-HF_INLINE void row_sum(const float *weight, const int *column, int n, const int s, const float *h, float *r)
+// One row sum from the pairs h (rows of s vectors), added to the output rows above and below.
+HF_INLINE void row_sum(const float *weight, const int *column, int n, const int s, const float *h, float *above,
+                       float *below)
 {
     vf acc[GATHER_S];
 #pragma GCC unroll 16
@@ -24,9 +25,14 @@ HF_INLINE void row_sum(const float *weight, const int *column, int n, const int 
         for (int v = 0; v < s; v++)
             acc[v] = vf_fma(w, vf_load(p + v * VF_N), acc[v]);
     }
+    if (above)
 #pragma GCC unroll 16
-    for (int v = 0; v < s; v++)
-        vf_store(r + v * VF_N, acc[v]);
+        for (int v = 0; v < s; v++)
+            vf_store(above + v * VF_N, vf_add(vf_load(above + v * VF_N), acc[v]));
+    if (below)
+#pragma GCC unroll 16
+        for (int v = 0; v < s; v++)
+            vf_store(below + v * VF_N, vf_add(vf_load(below + v * VF_N), acc[v]));
 }
 
 // Rows of a frame lie on pages of their own, where no hardware prefetcher follows: without this every row of a strip
@@ -60,91 +66,104 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, const int 
     }
 }
 
-// An output row: the sum of the row sums at the ring's offsets, from the top row down.
-HF_INLINE void sum_rows(const float *sums, const int32_t *offset, int ring, const int s, float *out)
-{
-    vf acc[GATHER_S];
-#pragma GCC unroll 16
-    for (int v = 0; v < s; v++)
-        acc[v] = vf_zero();
-    for (int i = 0; i < ring; i++) {
-        const float *q = sums + (ptrdiff_t)offset[i] * (s * VF_N);
-#pragma GCC unroll 16
-        for (int v = 0; v < s; v++)
-            acc[v] = vf_add(acc[v], vf_load(q + v * VF_N));
-    }
-#pragma GCC unroll 16
-    for (int v = 0; v < s; v++)
-        vf_store(out + v * VF_N, acc[v]);
-}
-
-// Where in the ring an output row finds its row sums, for each place that its topmost row may have. In rows of sums.
-HF_INLINE void ring_offsets(int32_t *offset, int ry, const int symmetric)
-{
-    const int ring = 2 * ry + 1, slot = symmetric ? ry + 1 : ring;
-    for (int top = 0; top < ring; top++)
-        for (int i = 0; i < ring; i++) {
-            const int k = !symmetric ? i : i < ry ? ry - i : i - ry;
-            *offset++ = (top + i < ring ? top + i : top + i - ring) * slot + k;
-        }
-}
-
-// s vectors of columns; work starts with the ring's offsets.
+// s vectors of columns. Each input row is spread over the output rows it reaches: those are sums that grow from top to
+// bottom, and stay in the first-level cache while they do.
 HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_t in_stride, float *out,
-                              ptrdiff_t out_stride, int height, const int symmetric, const int s, float *work)
+                              ptrdiff_t out_stride, int height, const int symmetric, const int s, float *h)
 {
-    const int ry = t->ry, ring = 2 * ry + 1, step = s * VF_N, slot = t->rows * step;
-    const int32_t *offsets = (const int32_t *)work;
-    float *h = work + (((size_t)ring * ring + 15) & ~(size_t)15);
-    float *sums = h + (symmetric ? t->rx + 1 : 2 * t->rx + 1) * step;
-    int place = 0;  // of the input row in the ring
+    const int ry = t->ry, step = s * VF_N;
     for (int y = -ry; y < height + ry; y++) {
         prefetch_row(in + (y + GATHER_AHEAD) * in_stride - t->rx, step + 2 * t->rx);
         row_pairs(in + y * in_stride, t->rx, symmetric, s, h);
-        // Only the row sums that an output row will read: near the strip's ends those of far rows.
-        const int k0 = symmetric ? hf_max(0, hf_max(-y, y - (height - 1))) : hf_max(0, y - (height - 1) + ry);
-        const int k1 = symmetric ? t->rows : hf_min(t->rows, y + ry + 1);
-        for (int k = k0; k < k1; k++)
-            row_sum(t->weight + t->first[k], t->column + t->first[k], t->first[k + 1] - t->first[k], s, h,
-                    sums + place * slot + k * step);
-        place = place + 1 == ring ? 0 : place + 1;
-        if (y >= ry)
-            sum_rows(sums, offsets + place * ring, ring, s, out + (y - ry) * out_stride);
+        if (y + ry < height)  // reached for the first time
+#pragma GCC unroll 16
+            for (int v = 0; v < s; v++)
+                vf_store(out + (y + ry) * out_stride + v * VF_N, vf_zero());
+        for (int k = 0; k < t->rows; k++) {
+            const int up = symmetric ? y - k : y - k + ry, down = y + k;
+            float *above = up >= 0 && up < height ? out + up * out_stride : NULL;
+            float *below = symmetric && k && down >= 0 && down < height ? out + down * out_stride : NULL;
+            if (above || below)
+                row_sum(t->weight + t->first[k], t->column + t->first[k], t->first[k + 1] - t->first[k], s, h, above,
+                        below);
+        }
     }
 }
 
-// All columns in as few strips as there can be, of about the same width.
-HF_INLINE void convolve_columns(const struct hf_taps *t, struct hf_rect r, const struct hf_buf *in, int c_in,
-                                const struct hf_buf *out, int c_out, const int symmetric, float *work)
+// Planes to convolve together, and where: only rows with need > 0 are wanted.
+struct gather_job {
+    const float *in[5];
+    float *out[5];
+    ptrdiff_t in_stride[5], out_stride[5];
+    int planes;
+    const float *need;
+    ptrdiff_t need_stride;
+};
+
+static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_buf_id in, int c_in,
+                         enum hf_buf_id out, int c_out)
 {
-    const int height = r.y1 - r.y0, vectors = (r.x1 - r.x0 + VF_N - 1) / VF_N;
-    const float *p = hf_at(in, c_in, r.x0, r.y0);
-    float *q = hf_at(out, c_out, r.x0, r.y0);
-    ring_offsets((int32_t *)work, t->ry, symmetric);
-    for (int strips = (vectors + GATHER_S - 1) / GATHER_S, left = vectors; strips > 0; strips--) {
+    const int i = j->planes++;
+    j->in[i] = hf_at(&f->buf[in], c_in, r.x0, r.y0);
+    j->in_stride[i] = f->buf[in].stride;
+    j->out[i] = hf_at(&f->buf[out], c_out, r.x0, r.y0);
+    j->out_stride[i] = f->buf[out].stride;
+}
+
+// Does a row of a strip have any need?
+HF_INLINE int row_needed(const float *need, const int s)
+{
+    vf any = vf_load(need);
+#pragma GCC unroll 16
+    for (int v = 1; v < s; v++)
+        any = vf_max(any, vf_load(need + v * VF_N));
+    return vm_any(vf_gt(any, vf_zero()));
+}
+
+// A strip of s vectors from column x of all planes: the rows between the first and the last that are needed.
+HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j, int x, int height,
+                            const int symmetric, const int s, float *h)
+{
+    int y0 = 0, y1 = height;
+    while (y0 < y1 && !row_needed(j->need + y0 * j->need_stride + x, s))
+        y0++;
+    while (y1 > y0 && !row_needed(j->need + (y1 - 1) * j->need_stride + x, s))
+        y1--;
+    for (int i = 0; i < j->planes && y0 < y1; i++)
+        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
+                       j->out[i] + y0 * j->out_stride[i] + x, j->out_stride[i], y1 - y0, symmetric, s, h);
+}
+
+// All columns in as few strips as there can be, of about the same width.
+HF_INLINE void gather_strips(const struct hf_taps *t, const struct gather_job *j, int width, int height,
+                             const int symmetric, float *h)
+{
+    const int vectors = (width + VF_N - 1) / VF_N;
+    for (int strips = (vectors + GATHER_S - 1) / GATHER_S, left = vectors, x = 0; strips > 0; strips--) {
         const int s = (left + strips - 1) / strips;
 #define STRIP(n)                                                                                                     \
     case n:                                                                                                          \
-        convolve_strip(t, p, in->stride, q, out->stride, height, symmetric, n <= GATHER_S ? n : GATHER_S, work);     \
+        gather_strip(t, j, x, height, symmetric, n <= GATHER_S ? n : GATHER_S, h);                                   \
         break;
         switch (s) {
             STRIP(1) STRIP(2) STRIP(3) STRIP(4) STRIP(5) STRIP(6) STRIP(7) STRIP(8) STRIP(9)
         }
 #undef STRIP
-        p += s * VF_N;
-        q += s * VF_N;
+        x += s * VF_N;
         left -= s;
     }
 }
 
-static void convolve_simd(const struct hf_frame *f, struct hf_rect r, enum hf_buf_id in, int c_in,
-                          enum hf_buf_id out, int c_out)
+static void gather_run(const struct hf_frame *f, struct hf_rect r, struct gather_job *j, const struct hf_buf *need,
+                       int need_channel)
 {
     const struct hf_taps *t = f->s->taps;
+    j->need = hf_at(need, need_channel, r.x0, r.y0);
+    j->need_stride = need->stride;
     if (t->symmetric)
-        convolve_columns(t, r, &f->buf[in], c_in, &f->buf[out], c_out, 1, f->work);
+        gather_strips(t, j, r.x1 - r.x0, r.y1 - r.y0, 1, f->work);
     else
-        convolve_columns(t, r, &f->buf[in], c_in, &f->buf[out], c_out, 0, f->work);
+        gather_strips(t, j, r.x1 - r.x0, r.y1 - r.y0, 0, f->work);
 }
 
 static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
@@ -177,10 +196,12 @@ static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
 static void gather_near_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
+    struct gather_job j = {.planes = 0};
     for (int c = 0; c < s->channels; c++)
-        convolve_simd(f, r, s->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
+        gather_plane(&j, f, r, s->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
     if (s->karis)
-        convolve_simd(f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
+        gather_plane(&j, f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
+    gather_run(f, r, &j, &f->buf[HF_BUF_BLUR], 0);
     for (int y = r.y0; y < r.y1; y++) {
         float *near[4];
         const float *sum = s->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
@@ -226,8 +247,11 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
         for (int x = r.x0; x < r.x1; x += VF_N) {
             // Lanes past the row's end hold anything; within 0..1 they read nothing but the buffers.
             const vf scale = coc_saturate(vf_load(hf_at(&f->buf[HF_BUF_COC4], 1, x, y)));
-            vf sum[5] = {vf_zero(), vf_zero(), vf_zero(), vf_zero(), vf_zero()};
+            vf total[5] = {vf_zero(), vf_zero(), vf_zero(), vf_zero(), vf_zero()}, sum[5];
             for (int i = 0; i < t->count; i++) {
+                if (i % 8 == 0)
+                    for (int c = 0; c < 5; c++)
+                        sum[c] = vf_zero();
                 const vf dx = vf_mul(vf_set1(t->dx[i]), scale), dy = vf_mul(vf_set1(t->dy[i]), scale);
                 const vf fx = vf_floor(dx), fy = vf_floor(dy);
                 const vf ax = vf_sub(dx, fx), ay = vf_sub(dy, fy);
@@ -236,10 +260,13 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
                     sum[c] = vf_add(sum[c], sample_simd(hf_at(colour, c, x, y), colour->stride, at, ax, ay));
                 sum[4] = vf_add(sum[4], sample_simd(hf_at(weight, 1, x, y), weight->stride,
                                                     tap_index(fx, fy, weight->stride, lane), ax, ay));
+                if (i % 8 == 7 || i == t->count - 1)
+                    for (int c = 0; c < 5; c++)
+                        total[c] = vf_add(total[c], sum[c]);
             }
             for (int c = 0; c < f->s->channels; c++)
-                vf_store(hf_at(&f->buf[HF_BUF_FAR], c, x, y), sum[c]);
-            vf_store(hf_at(&f->buf[HF_BUF_SUM], 1, x, y), sum[4]);
+                vf_store(hf_at(&f->buf[HF_BUF_FAR], c, x, y), total[c]);
+            vf_store(hf_at(&f->buf[HF_BUF_SUM], 1, x, y), total[4]);
         }
 }
 
@@ -251,19 +278,27 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
     if (s->per_pixel_kernel) {
         sample_taps_simd(f, r, &f->buf[colour], &f->buf[weight]);
     } else {
+        struct gather_job j = {.planes = 0};
         for (int c = 0; c < s->channels; c++)
-            convolve_simd(f, r, colour, c, HF_BUF_FAR, c);
-        convolve_simd(f, r, weight, 1, HF_BUF_SUM, 1);
+            gather_plane(&j, f, r, colour, c, HF_BUF_FAR, c);
+        gather_plane(&j, f, r, weight, 1, HF_BUF_SUM, 1);
+        gather_run(f, r, &j, &f->buf[HF_BUF_COC4], 1);
     }
     for (int y = r.y0; y < r.y1; y++) {
         float *far[4];
         const float *sum = hf_at(&f->buf[HF_BUF_SUM], 1, r.x0, y), *coc = hf_at(&f->buf[HF_BUF_COC4], 1, r.x0, y);
         hf_row(&f->buf[HF_BUF_FAR], s->channels, r.x0, y, far);
         for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
-            const vf divisor = vf_max(vf_load(sum + x), vf_set1(FLT_MIN));
-            const vm is_far = vf_gt(vf_load(coc + x), vf_zero());
+            const vf own = vf_load(coc + x), total = vf_load(sum + x);
+            const vm is_far = vf_gt(own, vf_zero()), alone = vm_and(is_far, vm_not(vf_gt(total, vf_zero())));
+            const vf divisor = vf_max(total, vf_set1(FLT_MIN));
             for (int c = 0; c < s->channels; c++)
                 vf_store(far[c] + x, vf_keep(is_far, vf_div(vf_load(far[c] + x), divisor)));
+            if (vm_any(alone))
+                for (int c = 0; c < s->channels; c++) {
+                    const vf v = vf_div(vf_load(hf_at(&f->buf[HF_BUF_COLORFAR4], c, r.x0 + x, y)), own);
+                    vf_store(far[c] + x, vf_select(alone, v, vf_load(far[c] + x)));
+                }
         }
         hf_store_rgb(f, far, r.x1 - r.x0);
     }
