@@ -113,9 +113,13 @@ static struct window scratch_window(const struct job *j, int b)
                            : window_of(p, b, p->tile_width, p->tile_height);
 }
 
+// A scratch row holds what a pass may read of a tile's row: the widest window there is.
 static size_t line_floats(const struct job *j)
 {
-    return (size_t)((j->plan.tile_width + 2 * j->plan.buf[HF_BUF_COLOR4].x + 15) & ~15) + 2 * HF_PAD;
+    int reach = 0;
+    for (int b = 0; b < HF_BUF_COUNT; b++)
+        reach = hf_max(reach, j->plan.buf[b].x);
+    return (size_t)((j->plan.tile_width + 2 * reach + 15) & ~15) + 2 * HF_PAD;
 }
 
 // What the kernels need for strips of up to 80 columns: row sums and pairs of the gather, rows of the near max and

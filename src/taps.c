@@ -93,10 +93,10 @@ static void splat(double *w, int rx, int ry, double x, double y)
 // Lattice points needed on either side of the centre.
 static int lattice_reach(const float *d, int count)
 {
-    double reach = 0;
+    float reach = 0;
     for (int i = 0; i < count; i++)
-        reach = fmax(reach, ceil(fabs((double)d[i]) - NEGLIGIBLE));
-    return (int)reach;
+        reach = fmaxf(reach, fabsf(d[i]));
+    return (int)ceil((double)reach - NEGLIGIBLE);
 }
 
 static int mirrors(const double *w, int rx, int ry)

@@ -46,9 +46,12 @@ HF_INLINE void r11_unpack(vi u, vf out[3])
 HF_INLINE vi r11_pack(const vf in[3], vi *clamped)
 {
     static const float max[3] = {HF_R11_MAX, HF_R11_MAX, HF_R10_MAX};
-    // Mostly nothing has to be clamped and nothing is denormal, zero included: half the work.
+    // Mostly nothing has to be clamped and nothing is denormal, zero included: half the work. Minimum and maximum may lose
+    // a NaN, the sum does not.
     const vf low = vf_min(vf_min(in[0], in[1]), in[2]), high = vf_max(vf_max(in[0], in[1]), in[2]);
-    if (!vm_any(vm_not(vm_and(vf_le(vf_set1(0x1p-14f), low), vf_le(high, vf_set1(HF_R10_MAX))))))
+    const vf sum = vf_add(vf_add(in[0], in[1]), in[2]);
+    const vm plain = vm_and(vf_le(vf_set1(0x1p-14f), low), vf_le(high, vf_set1(HF_R10_MAX)));
+    if (!vm_any(vm_not(vm_and(plain, vf_eq(sum, sum)))))
         return vi_or(vi_or(encode_normal(in[0], 6), vi_shl(encode_normal(in[1], 6), 11)),
                      vi_shl(encode_normal(in[2], 5), 22));
     vf v[3];
@@ -230,7 +233,7 @@ HF_INLINE void store_block(const enum hf_format format, uint8_t *p, const vf eve
 
 enum { FORMAT_MAX_BYTES = 16 };
 
-// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many the image still has. A tile's rows are
+// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many of the 2 n there are. A tile's rows are
 // too short for hardware prefetchers to catch on, so each fetches the one after next.
 HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int channels, const uint8_t *p,
                          ptrdiff_t stride, int n, int pixels, float *const even[4], float *const odd[4])
@@ -309,8 +312,8 @@ HF_INLINE uint8_t *plane_at(const struct hf_image *m, int plane, int bpp, int x,
     static uint64_t store_##name##_simd(const struct hf_image *m, int x, int y, int n, const float *const even[4],   \
                                         const float *const odd[4])                                                   \
     {                                                                                                                \
-        return store_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n, m->width - 2 * x,      \
-                           even, odd);                                                                               \
+        return store_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n,                        \
+                           hf_min(m->width - 2 * x, 2 * n), even, odd);                                              \
     }
 
 HF_FORMAT_ROWS(rgba32f, HF_FORMAT_RGBA32F, 16, 4)
@@ -331,8 +334,8 @@ static uint64_t store_planar_simd(const struct hf_image *m, int x, int y, int n,
                                   const float *const odd[4])
 {
     for (int c = 0; c < hf_plane_count(m); c++)
-        store_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), m->stride[c], n, m->width - 2 * x, even + c,
-                    odd + c);
+        store_plane(HF_FORMAT_PLANAR32F, 4, 1, plane_at(m, c, 4, x, y), m->stride[c], n,
+                    hf_min(m->width - 2 * x, 2 * n), even + c, odd + c);
     return 0;
 }
 
