@@ -123,7 +123,7 @@ static int load_row_c(const struct hf_image *m, int x, int y, int n, float *cons
         for (int i = 0; i < n; i++) {
             even[c][i] = hf_sample(m, c, 2 * (x + i), y);
             odd[c][i] = hf_sample(m, c, hf_min(2 * (x + i) + 1, last), y);
-            bad |= !hf_is_finite(even[c][i]) | !hf_is_finite(odd[c][i]);
+            bad |= !(hf_is_finite(even[c][i]) && hf_is_finite(odd[c][i]));
         }
     return bad;
 }
@@ -140,7 +140,7 @@ static int load_r11_c(const struct hf_image *m, int x, int y, int n, float *cons
         hf_r11_unpack(a, &even[0][i], &even[1][i], &even[2][i]);
         hf_r11_unpack(b, &odd[0][i], &odd[1][i], &odd[2][i]);
         for (int c = 0; c < 3; c++)
-            bad |= !(even[c][i] < 65536.0f) | !(odd[c][i] < 65536.0f);
+            bad |= !(even[c][i] < 65536.0f && odd[c][i] < 65536.0f);
     }
     return bad;
 }
