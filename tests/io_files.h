@@ -84,7 +84,7 @@ static uint32_t value(exr_pixel_type_t type, uint32_t r)
     if (type == EXR_PIXEL_HALF)
         return (r & 0x8000u) | (r & 0x7fffu) % 0x7000u;
     if (type == EXR_PIXEL_FLOAT)
-        return hf_io_float_bits((float)(r % 100000) * 0.001f + 1.0f);
+        return hf_bits((float)(r % 100000) * 0.001f + 1.0f);
     return r;
 }
 
