@@ -122,13 +122,13 @@ static size_t line_floats(const struct job *j)
     return (size_t)((j->plan.tile_width + 2 * reach + 15) & ~15) + 2 * HF_PAD;
 }
 
-// What the kernels need for strips of up to 80 columns: row sums and pairs of the gather, rows of the near max and
-// partial sums of the near blur; and three rows for the mean fill.
+// What the kernels need for strips of up to 80 columns: terms and pairs of the gather, rows of the near max and partial
+// sums of the near blur; and three rows for the mean fill.
 static size_t work_floats(const struct job *j)
 {
     const struct hf_taps *t = j->s->taps;
-    const size_t rows = 2 * (size_t)t->ry + 1;
-    const size_t gather = rows * rows * 80 + (2 * (size_t)t->rx + 2) * 80;
+    const size_t rows = 2 * (size_t)t->ry + 1, columns = 2 * (size_t)t->rx + 1;
+    const size_t gather = 2 * rows * columns + 16 + columns * 80;
     const size_t near = 12 * ((size_t)j->plan.tile_height + 2 * (size_t)j->plan.buf[HF_BUF_MAX_X].y + 64) * 64;
     const size_t most = gather > near ? gather : near, fill = 3 * line_floats(j);
     return most > fill ? most : fill;

@@ -10,20 +10,26 @@
 
 enum { GATHER_S = VF_N == 16 ? 5 : 9 };
 
+// A weight and the byte offset of its pairs: what the inner loop needs, worked out once a strip.
+struct gather_term {
+    float weight;
+    int32_t offset;
+};
+
 // One row sum from the pairs h (rows of s vectors), added to the output rows above and below.
-HF_INLINE void row_sum(const float *weight, const int *column, int n, const int s, const float *h, float *above,
-                       float *below)
+HF_INLINE void row_sum(const struct gather_term *term, const struct gather_term *end, const int s, const float *h,
+                       float *above, float *below)
 {
     vf acc[GATHER_S];
 #pragma GCC unroll 16
     for (int v = 0; v < s; v++)
         acc[v] = vf_zero();
-    for (int i = 0; i < n; i++) {
-        const vf w = vf_set1(weight[i]);
-        const float *p = h + (ptrdiff_t)column[i] * (s * VF_N);
+    for (; term < end; term++) {
+        const vf w = vf_set1(term->weight);
+        const char *p = (const char *)h + term->offset;
 #pragma GCC unroll 16
         for (int v = 0; v < s; v++)
-            acc[v] = vf_fma(w, vf_load(p + v * VF_N), acc[v]);
+            acc[v] = vf_fma(w, vf_load(p + v * (int)sizeof(vf)), acc[v]);
     }
     if (above)
 #pragma GCC unroll 16
@@ -69,7 +75,8 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, const int 
 // s vectors of columns. Each input row is spread over the output rows it reaches: those are sums that grow from top to
 // bottom, and stay in the first-level cache while they do.
 HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_t in_stride, float *out,
-                              ptrdiff_t out_stride, int height, const int symmetric, const int s, float *h)
+                              ptrdiff_t out_stride, int height, const int symmetric, const int s,
+                              const struct gather_term *terms, float *h)
 {
     const int ry = t->ry, step = s * VF_N;
     for (int y = -ry; y < height + ry; y++) {
@@ -84,8 +91,7 @@ HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_
             float *above = up >= 0 && up < height ? out + up * out_stride : NULL;
             float *below = symmetric && k && down >= 0 && down < height ? out + down * out_stride : NULL;
             if (above || below)
-                row_sum(t->weight + t->first[k], t->column + t->first[k], t->first[k + 1] - t->first[k], s, h, above,
-                        below);
+                row_sum(terms + t->first[k], terms + t->first[k + 1], s, h, above, below);
         }
     }
 }
@@ -122,8 +128,13 @@ HF_INLINE int row_needed(const float *need, const int s)
 
 // A strip of s vectors from column x of all planes: the rows between the first and the last that are needed.
 HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j, int x, int height,
-                            const int symmetric, const int s, float *h)
+                            const int symmetric, const int s, float *work)
 {
+    struct gather_term *terms = (struct gather_term *)work;
+    const int n = t->first[t->rows];
+    float *h = work + ((2 * n + 15) & ~15);
+    for (int i = 0; i < n; i++)
+        terms[i] = (struct gather_term){t->weight[i], t->column[i] * s * (int)sizeof(vf)};
     int y0 = 0, y1 = height;
     while (y0 < y1 && !row_needed(j->need + y0 * j->need_stride + x, s))
         y0++;
@@ -131,19 +142,19 @@ HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j,
         y1--;
     for (int i = 0; i < j->planes && y0 < y1; i++)
         convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
-                       j->out[i] + y0 * j->out_stride[i] + x, j->out_stride[i], y1 - y0, symmetric, s, h);
+                       j->out[i] + y0 * j->out_stride[i] + x, j->out_stride[i], y1 - y0, symmetric, s, terms, h);
 }
 
 // All columns in as few strips as there can be, of about the same width.
 HF_INLINE void gather_strips(const struct hf_taps *t, const struct gather_job *j, int width, int height,
-                             const int symmetric, float *h)
+                             const int symmetric, float *work)
 {
     const int vectors = (width + VF_N - 1) / VF_N;
     for (int strips = (vectors + GATHER_S - 1) / GATHER_S, left = vectors, x = 0; strips > 0; strips--) {
         const int s = (left + strips - 1) / strips;
 #define STRIP(n)                                                                                                     \
     case n:                                                                                                          \
-        gather_strip(t, j, x, height, symmetric, n <= GATHER_S ? n : GATHER_S, h);                                   \
+        gather_strip(t, j, x, height, symmetric, n <= GATHER_S ? n : GATHER_S, work);                                \
         break;
         switch (s) {
             STRIP(1) STRIP(2) STRIP(3) STRIP(4) STRIP(5) STRIP(6) STRIP(7) STRIP(8) STRIP(9)
