@@ -91,7 +91,7 @@ static inline float hf_half_unpack(uint16_t h)
 
 static inline uint16_t hf_half_pack(float v)
 {
-    const uint32_t sign = hf_bits(v) >> 16 & 0x8000;
+    const uint32_t sign = v == v ? hf_bits(v) >> 16 & 0x8000 : 0;
     const float a = hf_clamp_unsigned(hf_from_bits(hf_bits(v) & 0x7fffffff), HF_HALF_MAX);
     return (uint16_t)(sign | hf_encode_small(a, 10));
 }

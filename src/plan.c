@@ -6,7 +6,7 @@
 // What measured fastest on two cores with 512 KB of second-level cache each. Large tiles compute little twice at their
 // rims and read memory in long runs; smaller ones stay in the cache, and skip more. With more threads they are halved until
 // each thread has a few.
-enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 32, TILES_A_THREAD = 4, CHUNK_HEIGHT = 8 };
+enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4, CHUNK_HEIGHT = 8 };
 
 // Walk the passes backwards from the output, and carry along how far around a tile each buffer is read.
 static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
@@ -42,16 +42,17 @@ static int ceil_div(int a, int b)
     return (a + b - 1) / b;
 }
 
-// Tiles of the default size, smaller if there are many threads.
+// Tiles of the default size, smaller if there are many threads. Widths stay multiples of 16: kernels write whole vectors,
+// and a chunk's last one must not reach into its neighbour.
 static void choose_tile(struct hf_plan *p, const struct hf_setup *s, int threads)
 {
     p->tile_width = TILE_WIDTH;
     p->tile_height = TILE_HEIGHT;
     while (ceil_div(s->half_width, p->tile_width) * ceil_div(s->half_height, p->tile_height) <
            TILES_A_THREAD * threads) {
-        if (p->tile_width > 2 * p->tile_height && p->tile_width > MIN_WIDTH)
+        if (p->tile_width > 2 * p->tile_height && p->tile_width / 2 >= MIN_WIDTH)
             p->tile_width /= 2;
-        else if (p->tile_height > MIN_HEIGHT)
+        else if (p->tile_height / 2 >= MIN_HEIGHT)
             p->tile_height /= 2;
         else
             break;

@@ -116,14 +116,14 @@ static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct 
     j->out_stride[i] = f->buf[out].stride;
 }
 
-// Does a row of a strip have any need?
+// Does a row of a strip have any need? Lanes past the row's end may hold anything, and NaN is no need.
 HF_INLINE int row_needed(const float *need, const int s)
 {
-    vf any = vf_load(need);
+    vm any = vf_gt(vf_load(need), vf_zero());
 #pragma GCC unroll 16
     for (int v = 1; v < s; v++)
-        any = vf_max(any, vf_load(need + v * VF_N));
-    return vm_any(vf_gt(any, vf_zero()));
+        any = vm_or(any, vf_gt(vf_load(need + v * VF_N), vf_zero()));
+    return vm_any(any);
 }
 
 // A strip of s vectors from column x of all planes: the rows between the first and the last that are needed.

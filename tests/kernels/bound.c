@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far fused arithmetic may be from the C. Both round, in other places: with k roundings of half an FLT_EPSILON each
+// on the way to a result, each is within k / 2 FLT_EPSILON of the exact one, and the two within k FLT_EPSILON of each
+// other - times the sum of the magnitudes of what was added up. The counts below are of the longer of the two ways.
+// Where storage rounds the results, they may end up one step apart.
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "harness.h"
+
+static float reference_at(const struct world *w, enum hf_buf_id b, int c, int x, int y)
+{
+    return *hf_at(&w->reference.buf[b], c, x, y);
+}
+
+// Distance of neighbouring numbers of a small format at v.
+static double half_step(double v)
+{
+    return fmax(fabs(v) * 0x1p-10, 0x1p-24);
+}
+
+static double r11_step(int c, double v)
+{
+    return c == 2 ? fmax(fabs(v) * 0x1p-5, 0x1p-19) : fmax(fabs(v) * 0x1p-6, 0x1p-20);
+}
+
+static double storage_step(const struct world *w, int c, float want, float got)
+{
+    const double v = fmax(fabs((double)want), fabs((double)got));
+    if (w->setup.storage == HF_STORAGE_HALF)
+        return half_step(v);
+    return w->setup.storage == HF_STORAGE_CHAPTER && c < 3 ? r11_step(c, v) : 0;
+}
+
+static double format_step(const struct world *w, int c, float want, float got)
+{
+    const double v = fmax(fabs((double)want), fabs((double)got));
+    if (w->dst.format == HF_FORMAT_RGBA16F)
+        return half_step(v);
+    return w->dst.format == HF_FORMAT_R11G11B10F ? r11_step(c, v) : 0;
+}
+
+// Largest sample of the picture in a rectangle of pixels, and around it where one has to be repaired.
+static double largest_sample(const struct world *w, int c, int x0, int y0, int x1, int y1)
+{
+    double most = 0;
+    for (int y = hf_max(y0, 0); y <= hf_min(y1, w->src.height - 1); y++)
+        for (int x = hf_max(x0, 0); x <= hf_min(x1, w->src.width - 1); x++) {
+            const float v = hf_sample(&w->src, c, x, y);
+            if (hf_is_finite(v))
+                most = fmax(most, fabs((double)v));
+        }
+    return most;
+}
+
+// Downsample, colour x far: d is within 2 roundings, d1 (d2 d3) within 8, the sum of four within 10, its inverse 11,
+// a weight 20, the sum of weighted colours 23, times CoC 24.
+static double bound_down(const struct world *w, int c, int x, int y)
+{
+    const double most = largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
+    return 25 * FLT_EPSILON * most * reference_at(w, HF_BUF_COC, 2, x, 2 * y);
+}
+
+// The values at (x +- dx, y +- dy), each of them once.
+static double mirrored(const struct world *w, enum hf_buf_id b, int c, int x, int y, int dx, int dy)
+{
+    double sum = 0;
+    for (int v = y - dy; v <= y + dy; v += 2 * dy + !dy)
+        for (int u = x - dx; u <= x + dx; u += 2 * dx + !dx)
+            sum += fabs((double)reference_at(w, b, c, u, v));
+    return sum;
+}
+
+// Sum of |weight x value| over the lattice.
+static double lattice_sum(const struct world *w, enum hf_buf_id b, int c, int x, int y)
+{
+    const struct hf_taps *t = w->setup.taps;
+    double sum = 0;
+    for (int k = 0; k < t->rows; k++)
+        for (int i = t->first[k]; i < t->first[k + 1]; i++)
+            sum += fabs((double)t->weight[i]) *
+                   (t->symmetric ? mirrored(w, b, c, x, y, t->column[i], k)
+                                 : fabs((double)reference_at(w, b, c, x + t->column[i] - t->rx, y + k - t->ry)));
+    return sum;
+}
+
+// Sum of the magnitudes of all four neighbours of all taps of the per-pixel kernel.
+static double taps_sum(const struct world *w, enum hf_buf_id b, int c, int x, int y)
+{
+    const struct hf_taps *t = w->setup.taps;
+    const float scale = reference_at(w, HF_BUF_COC4, 1, x, y);
+    double sum = 0;
+    for (int i = 0; i < t->count; i++) {
+        const int u = x + (int)floorf(t->dx[i] * scale), v = y + (int)floorf(t->dy[i] * scale);
+        for (int k = 0; k < 4; k++)
+            sum += fabs((double)reference_at(w, b, c, u + (k & 1), v + (k >> 1)));
+    }
+    return sum;
+}
+
+// Roundings on the way to a sum of the gather. A row's sum: the pair, the product, an addition per column; then an
+// addition per row. Karis: luminance 3, the weight 5, times the value 6 more.
+static double gather_roundings(const struct world *w)
+{
+    const struct hf_taps *t = w->setup.taps;
+    return 2 * t->rx + 2 * t->ry + 4 + (w->setup.karis ? 6 : 0);
+}
+
+// A quotient of sums: errors of both, and the division's.
+static double quotient_bound(double error, double divisor_error, double divisor, double value)
+{
+    divisor = fmax(divisor, FLT_MIN);
+    if (divisor_error > divisor / 2)
+        return INFINITY;  // says nothing any more
+    return (error + value * divisor_error) / (divisor - divisor_error) + value * FLT_EPSILON;
+}
+
+static double bound_near(const struct world *w, int c, int x, int y, float want)
+{
+    const double k = gather_roundings(w) * FLT_EPSILON;
+    if (!(reference_at(w, HF_BUF_BLUR, 0, x, y) > 0))
+        return 0;  // a copy
+    if (!w->setup.karis)
+        return k * lattice_sum(w, HF_BUF_COLOR4, c, x, y);
+    const double divisor = lattice_sum(w, HF_BUF_WEIGHT, 0, x, y);
+    return quotient_bound(k * lattice_sum(w, HF_BUF_COLORW4, c, x, y), k * divisor, divisor, fabs((double)want));
+}
+
+static double bound_far(const struct world *w, int c, int x, int y, float want)
+{
+    const enum hf_buf_id colour = w->setup.karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_buf_id weight = w->setup.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    if (!(reference_at(w, HF_BUF_COC4, 1, x, y) > 0))
+        return 0;
+    // Products of denormals are off by their own step.
+    const int n = w->setup.per_pixel_kernel ? 4 * w->setup.taps->count
+                                            : (2 * w->setup.taps->rx + 1) * (2 * w->setup.taps->ry + 1);
+    const double denormal = n * 0x1p-149;
+    double k = gather_roundings(w) * FLT_EPSILON, sum, divisor, divisor_sum;
+    if (w->setup.per_pixel_kernel) {
+        // Three interpolations of 3 roundings each, the last of which sees the others' magnitudes: 6 of all four
+        // neighbours. Then an addition per tap.
+        k = (6 + w->setup.taps->count + (w->setup.karis ? 6 : 0)) * FLT_EPSILON;
+        sum = taps_sum(w, colour, c, x, y);
+        divisor_sum = taps_sum(w, weight, 1, x, y);
+        divisor = reference_at(w, HF_BUF_SUM, 1, x, y);
+    } else {
+        sum = lattice_sum(w, colour, c, x, y);
+        divisor = divisor_sum = lattice_sum(w, weight, 1, x, y);
+    }
+    return quotient_bound(k * sum + denormal, k * divisor_sum + denormal, divisor, fabs((double)want));
+}
+
+double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y, float want, float got)
+{
+    double bound = 0;
+    // Luminance of colours of both signs can cancel, and then means nothing.
+    const int cancels = w->setup.karis && w->colours == COLOURS_MIXED;
+    if (b == HF_BUF_COLORFAR4)
+        bound = bound_down(w, c, x, y);
+    else if (b == HF_BUF_NEAR)
+        bound = cancels ? INFINITY : bound_near(w, c, x, y, want);
+    else if (b == HF_BUF_FAR)
+        bound = cancels ? INFINITY : bound_far(w, c, x, y, want);
+    return bound > 0 ? bound + 0x1p-140 + storage_step(w, c, want, got) : 0;
+}
+
+// Composite. A far weight: d 2, products 9 with the bilinear factor, their sum 11, inverse 12, together 22; the sum of
+// weighted colours 25, the blend 5 more. The near field: bilinear 3, its weight 4 of a difference of up to twice the
+// largest colour, the blend 5: 16. The cubic: 10, 11 twice, 5.
+double bound_pixel(const struct world *w, int c, int x, int y, float want, float got)
+{
+    const int reach = w->setup.bicubic ? 2 : 1;
+    double most = largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
+    for (int v = y / 2 - reach; v <= y / 2 + reach && c < w->setup.channels; v++)
+        for (int u = x / 2 - reach; u <= x / 2 + reach; u++) {
+            if (w->near)
+                most = fmax(most, fabs((double)reference_at(w, HF_BUF_NEAR_FILL, c, u, v)));
+            if (w->far && abs(u - x / 2) < 2 && abs(v - y / 2) < 2)
+                most = fmax(most, fabs((double)reference_at(w, HF_BUF_FAR_FILL, c, u, v)));
+        }
+    const int roundings = (w->far ? 30 : 0) + (w->near ? (w->setup.bicubic ? 37 : 16) : 0);
+    return (roundings + 1) * FLT_EPSILON * most + 0x1p-140 + storage_step(w, c, want, got) +
+           format_step(w, c, want, got);
+}

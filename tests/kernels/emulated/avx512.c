@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The AVX-512 kernels for CPUs without AVX-512: immintrin.h beside this file does the instructions in plain C.
+// Compiled twice, as src/x86/avx512.c is.
+#define hf_kernels_avx512_fused emulated_avx512_fused
+#define hf_kernels_avx512_exact emulated_avx512_exact
+#include "x86/avx512.c"
+
+#if HF_FUSED
+int emulated_check_vectors(void);
+
+static const float special[16] = {0.0f,       -0.0f,     1.5f,       -1.5f,      __builtin_inff(), -__builtin_inff(),
+                                  NAN,        1e-40f,    -1e-45f,    65519.996f, 65520.0f,         -65504.0f,
+                                  0x1.004p0f, 0x1.00cp0f, 0x1.8p-25f, 3e9f};
+
+static float lane(vf v, int i)
+{
+    float f[VF_N];
+    vf_store(f, v);
+    return f[i];
+}
+
+static int same(float a, float b)
+{
+    return hf_bits(a) == hf_bits(b) || (a != a && b != b);
+}
+
+// Comparisons and what is made of them: of two NaN or two zeros the second operand, false for NaN, true for "not
+// equal".
+static int wrong_pair(float a, float b)
+{
+    const vf x = vf_set1(a), y = vf_set1(b);
+    return !same(lane(vf_max(x, y), 3), a > b ? a : b) + !same(lane(vf_min(x, y), 3), a < b ? a : b) +
+           (vf_gt(x, y) != (a > b ? 0xffff : 0)) + (vf_lt(x, y) != (a < b ? 0xffff : 0)) +
+           (vf_le(x, y) != (a <= b ? 0xffff : 0)) + (vf_eq(x, y) != (a == b ? 0xffff : 0)) +
+           (vf_ne(x, y) != (a != b ? 0xffff : 0)) +
+           !same(lane(vf_muladd_fused(x, y, vf_set1(1)), 5), __builtin_fmaf(a, b, 1));
+}
+
+// Every half to float and back; ties, overflow and underflow.
+static int wrong_halves(void)
+{
+    static const uint16_t want[16] = {0,      0x8000, 0x3e00, 0xbe00, 0x7c00, 0xfc00, 0x7e00, 0,
+                                      0x8000, 0x7bff, 0x7c00, 0xfbff, 0x3c01, 0x3c03, 0x0001, 0x7c00};
+    uint16_t h[16];
+    vf_store_half(h, vf_load(special));
+    int wrong = memcmp(h, want, sizeof h) != 0;
+    for (unsigned i = 0; i < 65536; i += 16) {
+        uint16_t in[16];
+        for (unsigned k = 0; k < 16; k++)
+            in[k] = (uint16_t)(i + k);
+        const vf v = vf_load_half(in);
+        vf_store_half(h, v);
+        for (int k = 0; k < 16; k++) {
+            const int nan = (in[k] & 0x7fff) > 0x7c00, infinite = (in[k] & 0x7fff) == 0x7c00;
+            wrong += h[k] != (nan ? in[k] | 0x200 : in[k]);
+            wrong += !nan && !infinite && !same(lane(v, k), hf_half_unpack(in[k]));
+        }
+    }
+    return wrong;
+}
+
+static int wrong_roundings(void)
+{
+    static const int32_t whole[16] = {0, 0, 1, -1, INT32_MIN, INT32_MIN, INT32_MIN, 0,
+                                      0, 65519, 65520, -65504, 1, 1, 0, INT32_MIN};
+    int32_t got[16];
+    vi_store(got, vf_to_vi(vf_load(special)));
+    int wrong = memcmp(got, whole, sizeof got) != 0;
+    for (int i = 0; i < 16; i++)
+        wrong += !same(lane(vf_floor(vf_load(special)), i), __builtin_floorf(special[i])) +
+                 !same(lane(vf_abs(vf_load(special)), i), __builtin_fabsf(special[i])) +
+                 !same(lane(vi_to_vf(vi_set1((int32_t)(i * 123456789u))), i), (float)(int32_t)(i * 123456789u));
+    return wrong;
+}
+
+int emulated_check_vectors(void)
+{
+    int wrong = wrong_halves() + wrong_roundings();
+    for (int i = 0; i < 16; i++)
+        for (int k = 0; k < 16; k++)
+            wrong += wrong_pair(special[i], special[k]);
+    return wrong;
+}
+#endif

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stands in for the compiler's <immintrin.h> where src/x86/avx512.c is compiled for a CPU without AVX-512: SIMDe does
+// each intrinsic in plain C. Only intrinsics, none of the kernels, are written over here: what SIMDe 0.7.4 does not
+// have, and what it does with other bits than the instruction.
+#ifndef HF_EMULATED_IMMINTRIN_H
+#define HF_EMULATED_IMMINTRIN_H
+
+#define SIMDE_ENABLE_NATIVE_ALIASES
+#define SIMDE_NO_NATIVE  // plain C: the semantics are those written down in SIMDe, not those of the CPU at hand
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#include <simde/x86/avx512.h>
+#pragma GCC diagnostic pop
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifndef __mmask16
+#define __mmask16 simde__mmask16
+#endif
+#ifndef _MM_FROUND_NO_EXC
+#define _MM_FROUND_NO_EXC SIMDE_MM_FROUND_NO_EXC
+#endif
+
+// a * b + c rounded once; SIMDe rounds twice.
+static inline __m512 emulated_fmadd(__m512 a, __m512 b, __m512 c)
+{
+    float x[16], y[16], z[16];
+    memcpy(x, &a, sizeof x);
+    memcpy(y, &b, sizeof y);
+    memcpy(z, &c, sizeof z);
+    for (int i = 0; i < 16; i++)
+        z[i] = fmaf(x[i], y[i], z[i]);
+    memcpy(&c, z, sizeof z);
+    return c;
+}
+
+// Towards zero; what no int32 holds becomes the smallest one.
+static inline __m512i emulated_cvttps(__m512 a)
+{
+    float x[16];
+    int32_t r[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++)
+        r[i] = x[i] >= -0x1p31f && x[i] < 0x1p31f ? (int32_t)x[i] : INT32_MIN;
+    __m512i v;
+    memcpy(&v, r, sizeof r);
+    return v;
+}
+
+static inline __m512 emulated_cvtepi32(__m512i a)
+{
+    int32_t x[16];
+    float r[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++)
+        r[i] = (float)x[i];
+    __m512 v;
+    memcpy(&v, r, sizeof r);
+    return v;
+}
+
+// Denormal halves are exact in float; a NaN keeps sign and payload and becomes quiet.
+static inline float emulated_from_half(uint16_t h)
+{
+    const int exponent = h >> 10 & 31, mantissa = h & 0x3ff;
+    uint32_t u = 0x7f800000 | (uint32_t)mantissa << 13 | (mantissa ? 0x400000 : 0);
+    if (exponent < 31) {
+        const float v = exponent ? ldexpf((float)(1024 + mantissa), exponent - 25) : ldexpf((float)mantissa, -24);
+        memcpy(&u, &v, 4);
+    }
+    u |= (uint32_t)(h & 0x8000) << 16;
+    float v;
+    memcpy(&v, &u, 4);
+    return v;
+}
+
+// To nearest even; beyond 65520 infinite.
+static inline uint16_t emulated_to_half(float v)
+{
+    uint32_t u;
+    memcpy(&u, &v, 4);
+    const uint32_t sign = u >> 16 & 0x8000, magnitude = u & 0x7fffffff;
+    if (magnitude > 0x7f800000)
+        return (uint16_t)(sign | 0x7e00 | (magnitude >> 13 & 0x1ff));
+    if (fabsf(v) >= 65520)
+        return (uint16_t)(sign | 0x7c00);
+    if (fabsf(v) < 0x1p-14f)  // steps of 2^-24; 1024 of them are the smallest normal half
+        return (uint16_t)(sign | (uint32_t)rintf(fabsf(v) * 0x1p24f));
+    // The mantissa rounded to 10 bits; its carry belongs into the exponent.
+    const uint32_t step = rintf(ldexpf((float)(magnitude & 0x7fffff), -13));
+    return (uint16_t)(sign | (((magnitude >> 23) - 112) * 1024 + step));
+}
+
+static inline __m512 emulated_cvtph(__m256i a)
+{
+    uint16_t h[16];
+    float r[16];
+    memcpy(h, &a, sizeof h);
+    for (int i = 0; i < 16; i++)
+        r[i] = emulated_from_half(h[i]);
+    __m512 v;
+    memcpy(&v, r, sizeof r);
+    return v;
+}
+
+static inline __m256i emulated_cvtps(__m512 a)
+{
+    float x[16];
+    uint16_t h[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++)
+        h[i] = emulated_to_half(x[i]);
+    __m256i v;
+    memcpy(&v, h, sizeof h);
+    return v;
+}
+
+// The only rounding asked of it: down.
+static inline __m512 emulated_floor(__m512 a)
+{
+    float x[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++)
+        x[i] = floorf(x[i]);
+    memcpy(&a, x, sizeof x);
+    return a;
+}
+
+// SIMDe leaves -0 as it is.
+static inline __m512 emulated_abs(__m512 a)
+{
+    float x[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++)
+        x[i] = fabsf(x[i]);
+    memcpy(&a, x, sizeof x);
+    return a;
+}
+
+static inline __m512 emulated_gather(__m512i index, const float *p)
+{
+    int32_t i[16];
+    float r[16];
+    memcpy(i, &index, sizeof i);
+    for (int k = 0; k < 16; k++)
+        r[k] = p[i[k]];
+    __m512 v;
+    memcpy(&v, r, sizeof r);
+    return v;
+}
+
+#undef _mm512_fmadd_ps
+#define _mm512_fmadd_ps(a, b, c) emulated_fmadd(a, b, c)
+#undef _mm512_abs_ps
+#define _mm512_abs_ps(a) emulated_abs(a)
+#undef _mm512_roundscale_ps
+#define _mm512_roundscale_ps(a, rounding) emulated_floor(a)
+#undef _mm512_cvttps_epi32
+#define _mm512_cvttps_epi32(a) emulated_cvttps(a)
+#undef _mm512_cvtepi32_ps
+#define _mm512_cvtepi32_ps(a) emulated_cvtepi32(a)
+#undef _mm512_cvtph_ps
+#define _mm512_cvtph_ps(a) emulated_cvtph(a)
+#undef _mm512_cvtps_ph  // the only rounding used is to nearest even
+#define _mm512_cvtps_ph(a, rounding) emulated_cvtps(a)
+#undef _mm512_i32gather_ps
+#define _mm512_i32gather_ps(index, p, scale) emulated_gather(index, p)
+
+#endif

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the files of the kernel tests share.
+//
+// A case is a "world": a frame's parameters, buffers and images, small and random. It exists three times in memory, at
+// the same offsets: as it was made, as the C reference left it, and as the kernel under test left it. A test makes a
+// case, calls the kernel on the latter two, and compares everything there is.
+#ifndef HF_TESTS_HARNESS_H
+#define HF_TESTS_HARNESS_H
+
+#include "pass.h"
+#include "setup.h"
+
+// ---- random numbers: one seed, one sequence, so never two draws where C leaves the order open ----
+
+struct rng {
+    uint64_t state;
+};
+
+struct rng rng_from(uint64_t seed, uint64_t stream);
+uint32_t rng_next(struct rng *r);
+int rng_int(struct rng *r, int low, int high);  // both included
+int rng_one_in(struct rng *r, int n);
+float rng_float(struct rng *r, float low, float high);
+
+enum colours {
+    COLOURS_PLAIN,     // 0..1
+    COLOURS_POSITIVE,  // 1 in 8 near zero or denormal, 1 in 8 huge
+    COLOURS_MIXED,     // and negative, and -0
+    COLOURS_COUNT
+};
+float random_colour(struct rng *r, enum colours kind);
+// 0, 1, tiny, denormal or anything between, as a storage holds it.
+float random_coc(struct rng *r, enum hf_storage storage);
+// For encoders: ties, the ends of ranges, negative, infinite, NaN.
+float random_store_value(struct rng *r);
+
+// ---- instruction sets ----
+
+struct level {
+    char name[32];
+    enum hf_isa isa;  // 0: emulated
+    int exact;        // promises the bits of the C
+    struct hf_kernels k;
+};
+
+enum { MAX_LEVELS = 12 };
+// Every table this CPU can run, the C first; filter: NULL, or part of a name. Returns how many.
+int levels_make(struct level levels[MAX_LEVELS], const char *filter);
+// AVX-512 in plain C (emulated/). Returns 0 if this build has none.
+int emulated_kernels(struct hf_kernels *k, int fused);
+// Does the emulation do what the instructions do? Returns the number of operations that do not.
+int emulated_check(void);
+
+// ---- worlds ----
+
+enum arena { ARENA_MADE, ARENA_REFERENCE, ARENA_TEST, ARENA_COUNT };
+
+// Blocks of memory. Each ends at a page that cannot be touched, so that reading past the last row is a crash.
+enum {
+    SLOT_BUF = 0,  // + 4 * buffer + channel
+    SLOT_SRC = 4 * HF_BUF_COUNT,
+    SLOT_DST = SLOT_SRC + 4,
+    SLOT_DEPTH = SLOT_DST + 4,
+    SLOT_LINES,
+    SLOT_WORK,
+    SLOT_COUNT
+};
+
+enum region_kind {
+    REGION_FLOATS,   // compared, with tolerance where the kernel may fuse
+    REGION_PIXELS,   // of dst, likewise
+    REGION_SCRATCH,  // may be written, is not looked at
+};
+
+// What a kernel may write: rows of a slot. Nothing else may change.
+struct region {
+    enum region_kind kind;
+    int slot;
+    size_t offset, row_bytes;
+    size_t spare;      // bytes after each row that may be written too
+    int rows;
+    ptrdiff_t stride;  // bytes
+    int buf, channel, x0, y0;
+};
+
+enum { MAX_REGIONS = 48 };
+
+struct result {
+    int returned;
+    uint64_t clamped;
+    struct hf_counts counts, seen;
+};
+
+struct world {
+    struct rng rng;
+    int bench;  // typical input instead of random one
+    struct hf_params params;
+    struct hf_setup setup;
+    struct hf_taps taps;
+    enum colours colours;
+    struct hf_image src, dst;  // in ARENA_MADE
+    struct hf_depth depth;
+    struct hf_buf buf[HF_BUF_COUNT];
+    struct hf_rect r;
+    int near, far;
+    int is_pass;  // may use scratch, and with fused arithmetic round otherwise
+    size_t line_floats;
+    size_t bytes[SLOT_COUNT];  // in use, at the end of the slot
+
+    // Rows: n lanes from lane x of row y; words for the finiteness checks.
+    int x, y, n, with_counts, no_alpha;
+    const uint8_t *words;
+    size_t word_count;
+
+    struct region regions[MAX_REGIONS];
+    int region_count;
+    struct hf_frame reference;  // as the C reference saw it
+    struct result result[ARENA_COUNT];
+};
+
+void arenas_open(void);
+// The same byte in another arena.
+void *in_arena(enum arena a, const void *made);
+uint8_t *slot_start(const struct world *w, enum arena a, int slot);
+// Give a slot `bytes` bytes filled with `fill`, and a new case no slots at all.
+uint8_t *slot_use(struct world *w, int slot, size_t bytes, int fill);
+void world_clear(struct world *w);
+// Bring an arena back to what was made.
+void world_reset(const struct world *w, enum arena a);
+struct region *world_region(struct world *w, enum region_kind kind, int slot, const void *first, size_t row_bytes,
+                            size_t spare, int rows, ptrdiff_t stride);
+
+// Random parameters of a picture of some size, formats and depth type; returns when setup has something to blur.
+void make_setup(struct world *w, int half_width, int half_height);
+void make_image(struct world *w, struct hf_image *m, int slot, int bad);
+void make_depth(struct world *w, int bad);
+// Scratch rows, filled with NaN.
+void make_lines(struct world *w, int lines, size_t floats);
+// Buffer b may be read in r; random means that it holds something there.
+void make_buf(struct world *w, enum hf_buf_id b, struct hf_rect r);
+float *world_at(const struct world *w, enum arena a, enum hf_buf_id b, int c, int x, int y);
+struct hf_frame world_frame(struct world *w, const struct hf_kernels *k, enum arena a);
+int buf_channels(const struct world *w, enum hf_buf_id b);
+
+// ---- tests ----
+
+struct test {
+    const char *name;
+    int index;  // pass or format
+    int cases;
+    void (*make)(struct world *w, int index);
+    // Call the kernel, nothing else: this is what the benchmark times too.
+    void (*call)(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+    // Compares what the call returned. Returns 0 and says why if it is wrong.
+    int (*check)(const struct world *w, const struct level *l, char message[256]);
+    // Half-resolution pixels of the typical case, for the benchmark.
+    int (*pixels)(const struct world *w);
+};
+
+extern const struct test tests[];
+extern const int test_count;
+
+// passes.c
+void pass_make(struct world *w, int pass);
+void pass_call(struct world *w, const struct hf_kernels *k, enum arena a, int pass);
+int pass_check(const struct world *w, const struct level *l, char message[256]);
+int pass_pixels(const struct world *w);
+
+// rows.c
+void coc_row_make(struct world *w, int index);
+void coc_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void load_make(struct world *w, int format);
+void load_call(struct world *w, const struct hf_kernels *k, enum arena a, int format);
+int load_check(const struct world *w, const struct level *l, char message[256]);
+void store_make(struct world *w, int format);
+void store_call(struct world *w, const struct hf_kernels *k, enum arena a, int format);
+void finite_make(struct world *w, int which);
+void finite_call(struct world *w, const struct hf_kernels *k, enum arena a, int which);
+void round_make(struct world *w, int channels);
+void round_call(struct world *w, const struct hf_kernels *k, enum arena a, int channels);
+int row_check(const struct world *w, const struct level *l, char message[256]);
+int row_pixels(const struct world *w);
+
+// compare.c: all regions, and everything outside them.
+int world_compare(const struct world *w, const struct level *l, char message[256]);
+// Did the reference itself keep to its area, and make only finite numbers?
+int reference_check(const struct world *w, char message[256]);
+
+// bound.c: by how much a fused kernel may differ at a pixel where the C gives `want` and it gives `got`; 0 where
+// nothing may be fused.
+double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y, float want, float got);
+double bound_pixel(const struct world *w, int c, int x, int y, float want, float got);
+
+// crash.c. A crash ends the program, as a failed test that names what it was at, ...
+void crash_handlers(void);
+extern const char *volatile crash_step;
+// ... but not one in here: it returns the number of the signal, else 0.
+int guarded(void (*call)(struct world *, const struct hf_kernels *, enum arena, int), struct world *w,
+            const struct hf_kernels *k, enum arena a, int index);
+
+// bench.c
+void bench_run(struct world *w, const struct level *levels, int level_count, const char *name);
+
+#endif

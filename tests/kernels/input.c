@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Random frames: parameters, pictures, depth.
+#include <math.h>
+#include <stdlib.h>
+
+#include "harness.h"
+
+static float pick(struct rng *r, const float *from, int n)
+{
+    return from[rng_int(r, 0, n - 1)];
+}
+
+static void random_model(struct rng *r, struct hf_params *p)
+{
+    static const float ranges[] = {0, 1, 4, HF_DERIVE, 30, INFINITY};
+    p->focus_distance = rng_float(r, 0.5f, 20);
+    p->model = rng_one_in(r, 3) ? HF_MODEL_LENS : HF_MODEL_RANGE;
+    p->f_number = rng_float(r, 0.7f, 8);
+    p->range = pick(r, ranges, 6);
+    p->strength = rng_one_in(r, 2) ? 1 : rng_float(r, 0.02f, 1);
+    if (rng_one_in(r, 4)) {
+        p->near_begin = rng_float(r, 0, p->focus_distance);
+        p->far_end = p->focus_distance * rng_float(r, 1, 3);
+    }
+}
+
+static void random_options(struct rng *r, struct hf_params *p)
+{
+    // Half-resolution reaches of 1 to 20, small ones more often.
+    const int most = rng_one_in(r, 6) ? 40 : 14;
+    p->max_radius = rng_one_in(r, 4) ? 12 : rng_float(r, 0.1f, (float)most);
+    if (rng_one_in(r, 2))
+        p->max_radius = ceilf(p->max_radius);
+    p->pixel_aspect = rng_one_in(r, 2) ? 1 : rng_float(r, 0.5f, 2);
+    p->storage = (enum hf_storage)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->faithful = rng_one_in(r, 4);
+    p->karis = rng_one_in(r, 4);
+    p->per_pixel_kernel = rng_one_in(r, 4);
+    p->bicubic = rng_one_in(r, 3);
+    p->fill = (enum hf_fill)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->blend = rng_one_in(r, 3) ? HF_BLEND_SMOOTHSTEP : HF_BLEND_LINEAR;
+    p->blades = rng_one_in(r, 3) ? rng_int(r, 5, 9) : 0;
+    p->blade_rotation = rng_one_in(r, 2) ? 0 : rng_float(r, -180, 180);
+}
+
+static void random_depth_type(struct rng *r, struct hf_depth *d, int width, int height)
+{
+    d->type = (enum hf_depth_type)rng_int(r, 0, HF_DEPTH_COC);
+    d->near_plane = rng_float(r, 0.01f, 1);
+    d->far_plane = rng_one_in(r, 3) ? INFINITY : rng_float(r, 5, 1000);
+    d->focal_px = rng_float(r, 5, 200);
+    d->center_x = rng_one_in(r, 2) ? (float)width / 2 : rng_float(r, -50, 150);
+    d->center_y = rng_one_in(r, 2) ? (float)height / 2 : rng_float(r, -50, 150);
+}
+
+static void random_format(struct world *w, struct hf_image *m, int width, int height)
+{
+    static char there;
+    *m = (struct hf_image){.width = width, .height = height,
+                           .format = (enum hf_format)rng_int(&w->rng, 0, HF_FORMAT_COUNT - 1)};
+    if (w->bench)
+        m->format = HF_FORMAT_R11G11B10F;
+    for (int i = 0; i < (m->format != HF_FORMAT_PLANAR32F ? 1 : rng_one_in(&w->rng, 2) ? 4 : 3); i++)
+        m->data[i] = &there;  // for now
+}
+
+void make_setup(struct world *w, int half_width, int half_height)
+{
+    struct rng *r = &w->rng;
+    do {
+        const int width = 2 * half_width - (w->bench ? 0 : rng_int(r, 0, 1));
+        const int height = 2 * half_height - (w->bench ? 0 : rng_int(r, 0, 1));
+        w->params = hf_default_params;
+        w->params.max_radius = 12;
+        w->depth = (struct hf_depth){0};
+        random_format(w, &w->src, width, height);
+        random_format(w, &w->dst, width, height);
+        if (!w->bench) {
+            random_depth_type(r, &w->depth, width, height);
+            random_model(r, &w->params);
+            random_options(r, &w->params);
+        }
+        if (hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->taps, &hf_mem_default) != HF_OK)
+            abort();
+    } while (w->setup.blend == 0);
+    w->colours = (enum colours)(w->bench ? COLOURS_PLAIN : rng_int(r, 0, COLOURS_COUNT - 1));
+}
+
+// Set the sample to NaN or infinity.
+static void spoil(struct world *w, const struct hf_image *m, int c, int x, int y)
+{
+    const uint32_t random = rng_next(&w->rng);
+    uint8_t *row = (uint8_t *)m->data[m->format == HF_FORMAT_PLANAR32F ? c : 0] +
+                   (ptrdiff_t)y * m->stride[m->format == HF_FORMAT_PLANAR32F ? c : 0];
+    const uint16_t half = (uint16_t)(0x7c00 | (random & 0x8000) | (random & 1 ? random >> 8 & 0x3ff : 0));
+    uint32_t word;
+    if (m->format == HF_FORMAT_RGBA16F) {
+        memcpy(row + (size_t)x * 8 + c * 2, &half, 2);
+    } else if (m->format == HF_FORMAT_R11G11B10F) {
+        memcpy(&word, row + (size_t)x * 4, 4);
+        word |= c == 2 ? 0xf8000000u : 0x7c0u << 11 * c;
+        memcpy(row + (size_t)x * 4, &word, 4);
+    } else {
+        hf_put_sample(m, c, x, y, random & 1 ? NAN : random & 2 ? INFINITY : -INFINITY);
+    }
+}
+
+static void fill_image(struct world *w, const struct hf_image *m, int bad)
+{
+    for (int c = 0; c < hf_image_channels(m); c++)
+        for (int y = 0; y < m->height; y++)
+            for (int x = 0; x < m->width; x++)
+                hf_put_sample(m, c, x, y, random_colour(&w->rng, w->colours));
+    if (!bad || w->bench)
+        return;
+    for (int i = 0; i < 1 + m->width * m->height / 60; i++) {
+        const int c = rng_int(&w->rng, 0, hf_image_channels(m) - 1), x = rng_int(&w->rng, 0, m->width - 1);
+        spoil(w, m, c, x, rng_int(&w->rng, 0, m->height - 1));
+    }
+}
+
+// One plane of rows with junk between them, of any alignment, perhaps from the bottom up. Returns its first row.
+static void *random_rows(struct world *w, int slot, size_t row_bytes, int height, ptrdiff_t *stride)
+{
+    struct rng *r = &w->rng;
+    const size_t step = row_bytes + (rng_one_in(r, 2) ? 0 : (size_t)rng_int(r, 0, 40));
+    const size_t front = 64, tail = rng_one_in(r, 2) ? 0 : (size_t)rng_int(r, 0, 15);
+    uint8_t *p = slot_use(w, slot, front + (size_t)(height - 1) * step + row_bytes + tail, 0xff) + front;
+    if (!w->bench && rng_one_in(r, 6)) {
+        *stride = -(ptrdiff_t)step;
+        return p + (size_t)(height - 1) * step;
+    }
+    *stride = (ptrdiff_t)step;
+    return p;
+}
+
+void make_image(struct world *w, struct hf_image *m, int slot, int bad)
+{
+    for (int i = 0; i < hf_plane_count(m); i++)
+        m->data[i] = random_rows(w, slot + i, hf_row_bytes(m->format, m->width), m->height, &m->stride[i]);
+    fill_image(w, m, bad);
+}
+
+static float random_depth(struct world *w)
+{
+    static const float odd[] = {0,     -0.0f, -1,    1e-45f, 1e10f, 0x1.2a05f0p+33f, 1e30f, INFINITY,
+                                -5e9f, 1,     -1e4f, 0.5f,   1e-9f, -INFINITY};
+    struct rng *r = &w->rng;
+    if (rng_one_in(r, 8))
+        return odd[rng_int(r, 0, (int)(sizeof odd / sizeof *odd) - 1)];
+    const float focus = w->params.focus_distance;
+    if (rng_one_in(r, 8))
+        return focus;
+    switch (w->depth.type) {
+    case HF_DEPTH_NDC_D3D:
+        return rng_one_in(r, 4) ? rng_float(r, -0.2f, 1.2f) : 1 - rng_float(r, 0, 0.1f);
+    case HF_DEPTH_NDC_GL:
+        return rng_one_in(r, 4) ? rng_float(r, -1.2f, 1.2f) : 1 - rng_float(r, 0, 0.1f);
+    case HF_DEPTH_NDC_REVERSED:
+        return rng_one_in(r, 4) ? rng_float(r, -0.2f, 1.2f) : rng_float(r, 0, 0.1f);
+    case HF_DEPTH_INVERSE:
+        return rng_float(r, 0, 4 / focus);
+    case HF_DEPTH_COC:
+        return rng_float(r, -1.5f, 1.5f) * w->params.max_radius;
+    default:
+        return rng_float(r, 0, 3 * focus);
+    }
+}
+
+void make_depth(struct world *w, int bad)
+{
+    struct hf_depth *d = &w->depth;
+    const int width = w->setup.width, height = w->setup.height;
+    uint8_t *p = random_rows(w, SLOT_DEPTH, (size_t)width * 4, height, &d->stride);
+    d->data = (const float *)(void *)p;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            float v = w->bench ? 5 + (float)((x + y) % 64) / 4 : random_depth(w);
+            if (bad && !w->bench && rng_one_in(&w->rng, 50))
+                v = NAN;
+            memcpy(p + (ptrdiff_t)y * d->stride + (size_t)x * 4, &v, 4);
+        }
+}

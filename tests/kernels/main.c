@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tests every kernel of every instruction set against the C, and times them.
+//     kernels [--seed N] [--quick] [--isa NAME] [--kernel NAME] [--case N] [--list] [--bench [NAME]]
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "harness.h"
+
+#define ROW(name, index, cases, make, call, check) {name, index, cases, make, call, check, row_pixels}
+#define PASS(name, index, cases) {name, index, cases, pass_make, pass_call, pass_check, pass_pixels}
+
+const struct test tests[] = {
+    PASS("coc", HF_PASS_COC, 1200),
+    PASS("down", HF_PASS_DOWN, 2000),
+    PASS("max_x", HF_PASS_MAX_X, 960),
+    PASS("max_y", HF_PASS_MAX_Y, 960),
+    PASS("blur_x", HF_PASS_BLUR_X, 960),
+    PASS("blur_y", HF_PASS_BLUR_Y, 960),
+    PASS("gather", HF_PASS_GATHER, 1600),
+    PASS("fill", HF_PASS_FILL, 1600),
+    PASS("composite", HF_PASS_COMPOSITE, 2400),
+    ROW("coc_row", 0, 2000, coc_row_make, coc_row_call, row_check),
+    ROW("load_rgba32f", HF_FORMAT_RGBA32F, 1000, load_make, load_call, load_check),
+    ROW("load_rgb32f", HF_FORMAT_RGB32F, 1000, load_make, load_call, load_check),
+    ROW("load_rgba16f", HF_FORMAT_RGBA16F, 1000, load_make, load_call, load_check),
+    ROW("load_r11g11b10f", HF_FORMAT_R11G11B10F, 1000, load_make, load_call, load_check),
+    ROW("load_planar32f", HF_FORMAT_PLANAR32F, 1000, load_make, load_call, load_check),
+    ROW("store_rgba32f", HF_FORMAT_RGBA32F, 1000, store_make, store_call, row_check),
+    ROW("store_rgb32f", HF_FORMAT_RGB32F, 1000, store_make, store_call, row_check),
+    ROW("store_rgba16f", HF_FORMAT_RGBA16F, 1000, store_make, store_call, row_check),
+    ROW("store_r11g11b10f", HF_FORMAT_R11G11B10F, 1000, store_make, store_call, row_check),
+    ROW("store_planar32f", HF_FORMAT_PLANAR32F, 1000, store_make, store_call, row_check),
+    ROW("finite_f32", 0, 2000, finite_make, finite_call, row_check),
+    ROW("finite_f16", 1, 2000, finite_make, finite_call, row_check),
+    ROW("finite_r11", 2, 2000, finite_make, finite_call, row_check),
+    ROW("truncate_r11", 3, 1000, round_make, round_call, row_check),
+    ROW("round_half", 1, 1000, round_make, round_call, row_check),
+};
+const int test_count = sizeof tests / sizeof *tests;
+
+struct options {
+    uint64_t seed;
+    int quick, list, bench, only_case;
+    const char *isa, *kernel;
+};
+
+// One kernel on one instruction set over all its cases. Ends with the first failure; without the C there is nothing to
+// compare with.
+struct outcome {
+    int cases, failed;
+};
+
+static void report(const struct test *t, const struct level *l, uint64_t seed, int number, const char *message,
+                   const struct world *w)
+{
+    const struct hf_setup *s = &w->setup;
+    printf("FAILED %s, %s, case %d of seed %llu: %s\n", t->name, l->name, number, (unsigned long long)seed, message);
+    printf("    frame %d x %d, area %d..%d x %d..%d, channels %d, storage %d, radius %g, strength %g, blades %d, fill "
+           "%d%s%s%s%s%s%s, formats %d %d, row %d lane %d + %d\n",
+           s->width, s->height, w->r.x0, w->r.x1, w->r.y0, w->r.y1, s->channels, (int)s->storage, s->max_radius,
+           w->params.strength, w->params.blades, (int)s->fill, s->karis ? ", karis" : "",
+           s->per_pixel_kernel ? ", per-pixel" : "", s->bicubic ? ", bicubic" : "", s->faithful ? ", faithful" : "",
+           w->near ? ", near" : "", w->far ? ", far" : "", (int)w->src.format, (int)w->dst.format, w->y, w->x, w->n);
+}
+
+static int run_level(struct world *w, const struct test *t, const struct level *l, char message[256])
+{
+    world_reset(w, ARENA_TEST);
+    memset(&w->result[ARENA_TEST], 0, sizeof w->result[ARENA_TEST]);
+    const int number = guarded(t->call, w, &l->k, ARENA_TEST, t->index);
+    if (number) {
+        snprintf(message, 256, "%s", strsignal(number));
+        return 0;
+    }
+    return t->check(w, l, message);
+}
+
+static int run_reference(struct world *w, const struct test *t, const struct level *c, char message[256])
+{
+    world_reset(w, ARENA_REFERENCE);
+    const int number = guarded(t->call, w, &c->k, ARENA_REFERENCE, t->index);
+    if (number) {
+        snprintf(message, 256, "%s", strsignal(number));
+        return 0;
+    }
+    return reference_check(w, message);
+}
+
+// One case on every level.
+static void run_case(struct world *w, const struct test *t, int number, const struct options *o,
+                     const struct level *levels, int level_count, struct outcome *outcomes)
+{
+    char message[256];
+    w->rng = rng_from(o->seed, (uint64_t)(t - tests) * 1000000 + (uint64_t)number);
+    t->make(w, t->index);
+    for (int i = 0; i < level_count && !outcomes[0].failed; i++) {
+        if (outcomes[i].failed)
+            continue;
+        outcomes[i].cases++;
+        if (!(i ? run_level(w, t, &levels[i], message) : run_reference(w, t, &levels[0], message))) {
+            outcomes[i].failed = 1;
+            report(t, &levels[i], o->seed, number, message, w);
+        }
+    }
+}
+
+static int run_tests(struct world *w, const struct options *o, const struct level *levels, int level_count)
+{
+    int passed = 0, failed = 0;
+    for (int i = 0; i < test_count; i++) {
+        const struct test *t = &tests[i];
+        if (o->kernel && strcmp(o->kernel, t->name))
+            continue;
+        struct outcome outcomes[MAX_LEVELS] = {0};
+        const int cases = o->quick ? t->cases / 6 : t->cases;
+        for (int n = o->only_case < 0 ? 0 : o->only_case; n < (o->only_case < 0 ? cases : o->only_case + 1); n++)
+            run_case(w, t, n, o, levels, level_count, outcomes);
+        for (int l = 0; l < level_count; l++) {
+            passed += !outcomes[l].failed;
+            failed += outcomes[l].failed;
+        }
+    }
+    if (emulated_check()) {
+        printf("FAILED emulation of AVX-512: %d operations differ from the instructions\n", emulated_check());
+        failed++;
+    }
+    printf("%d passed, %d failed\n", passed, failed);
+    return failed;
+}
+
+static void usage(void)
+{
+    fprintf(stderr, "usage: kernels [--seed N] [--quick] [--isa NAME] [--kernel NAME] [--case N] [--list] "
+                    "[--bench [NAME]]\n");
+    exit(2);
+}
+
+static struct options parse(int argc, char **argv)
+{
+    struct options o = {.seed = 1, .only_case = -1};
+    if (getenv("HF_TEST_SEED"))
+        o.seed = strtoull(getenv("HF_TEST_SEED"), NULL, 0);
+    for (int i = 1; i < argc; i++) {
+        const char *value = i + 1 < argc ? argv[i + 1] : NULL;
+        if (!strcmp(argv[i], "--quick"))
+            o.quick = 1;
+        else if (!strcmp(argv[i], "--list"))
+            o.list = 1;
+        else if (!strcmp(argv[i], "--bench")) {
+            o.bench = 1;
+            if (value && *value != '-')
+                o.kernel = argv[++i];
+        } else if (!value)
+            usage();
+        else if (!strcmp(argv[i], "--seed"))
+            o.seed = strtoull(argv[++i], NULL, 0);
+        else if (!strcmp(argv[i], "--isa"))
+            o.isa = argv[++i];
+        else if (!strcmp(argv[i], "--kernel"))
+            o.kernel = argv[++i];
+        else if (!strcmp(argv[i], "--case"))
+            o.only_case = atoi(argv[++i]);
+        else
+            usage();
+    }
+    return o;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = parse(argc, argv);
+    static struct level levels[MAX_LEVELS];
+    static struct world world;
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    crash_handlers();
+    const int level_count = levels_make(levels, o.isa);
+    if (o.isa && level_count == 1) {
+        fprintf(stderr, "%s: not on this CPU or not in this build\n", o.isa);
+        return 77;
+    }
+    if (o.list) {
+        for (int i = 0; i < level_count; i++)
+            printf("isa %s\n", levels[i].name);
+        for (int i = 0; i < test_count; i++)
+            printf("kernel %s\n", tests[i].name);
+        return 0;
+    }
+    printf("seed %llu; instruction sets:", (unsigned long long)o.seed);
+    for (int i = 0; i < level_count; i++)
+        printf("%s %s", i ? "," : "", levels[i].name);
+    putchar('\n');
+    arenas_open();
+    if (o.bench)
+        o.quick = 1;
+    const int failed = run_tests(&world, &o, levels, level_count);
+    if (!failed && o.bench)
+        bench_run(&world, levels, level_count, o.kernel);
+    hf_taps_free(&world.taps, &hf_mem_default);
+    return failed != 0;
+}

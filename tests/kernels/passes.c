@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The nine passes, each alone: random input buffers, only as large as pass.c's table says that it reads.
+#include <stdio.h>
+
+#include "harness.h"
+
+static struct hf_rect grow(struct hf_rect r, struct hf_reach by)
+{
+    return (struct hf_rect){r.x0 - by.x, r.y0 - by.y, r.x1 + by.x, r.y1 + by.y};
+}
+
+// Rows of the full resolution for HF_BUF_COC.
+static struct hf_rect rows_of(const struct world *w, int b, struct hf_rect r)
+{
+    if (b != HF_BUF_COC)
+        return r;
+    return (struct hf_rect){r.x0, 2 * r.y0, r.x1, hf_min(2 * r.y1, w->setup.height)};
+}
+
+// Colour x far CoC and far fields are consistent with the CoC, as the passes before make them: a quotient of the two
+// then is a colour.
+static float buffer_value(struct world *w, int b, int x, int y)
+{
+    const int is_far = b == HF_BUF_COLORFAR4 || b == HF_BUF_FAR || b == HF_BUF_FAR_FILL;
+    const float colour = random_colour(&w->rng, w->colours);
+    if (!is_far)
+        return colour;
+    const float f = *world_at(w, ARENA_MADE, HF_BUF_COC4, 1, x, y);
+    return b == HF_BUF_COLORFAR4 ? colour * f : f > 0 ? colour : 0;
+}
+
+static int is_coc(int b)
+{
+    return b == HF_BUF_COC || b == HF_BUF_COC4 || (b >= HF_BUF_MAX_X && b <= HF_BUF_BLUR);
+}
+
+// CoC anywhere; in patches with none between them, some wider than any vector; everywhere; so small that sums of
+// products vanish.
+enum { COC_ANY, COC_PATCHES, COC_EVERYWHERE, COC_VANISHING, COC_MODES };
+
+static float coc_value(struct world *w, int mode, int patch)
+{
+    if (w->bench)
+        return rng_float(&w->rng, 0.001f, 1);
+    const float v = random_coc(&w->rng, w->setup.storage);
+    if (mode == COC_VANISHING && w->setup.storage == HF_STORAGE_FLOAT)
+        return v * 1e-36f;
+    return mode == COC_PATCHES && patch ? 0 : mode == COC_EVERYWHERE && v == 0 ? 1 : v;
+}
+
+static void fill_buf(struct world *w, int b, struct hf_rect r)
+{
+    const int mode = rng_int(&w->rng, 0, rng_one_in(&w->rng, 2) ? COC_MODES - 1 : COC_EVERYWHERE);
+    const int size = 4 << rng_int(&w->rng, 0, 4);
+    const uint32_t pattern = rng_next(&w->rng);
+    for (int c = 0; c < buf_channels(w, b); c++)
+        for (int y = r.y0; y < r.y1; y++)
+            for (int x = r.x0; x < r.x1; x++) {
+                const int patch = pattern >> ((x - r.x0) / size + 3 * ((y - r.y0) / 2) + 5 * (c / 2)) % 32 & 1;
+                *world_at(w, ARENA_MADE, b, c, x, y) =
+                    is_coc(b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y);
+            }
+}
+
+// A buffer that the tile's flags leave out is there, but nobody has written it.
+static int wanted(const struct world *w, int b)
+{
+    const unsigned near = HF_BIT(NEAR) | HF_BIT(NEAR_FILL) | HF_BIT(BLUR), far = HF_BIT(FAR) | HF_BIT(FAR_FILL);
+    return !(!w->near && (near >> b & 1)) && !(!w->far && (far >> b & 1));
+}
+
+static void make_inputs(struct world *w, int pass)
+{
+    const struct hf_pass *p = &hf_passes[pass];
+    const struct hf_reach halo = hf_pass_halo(&w->setup, p->halo);
+    const unsigned all = p->reads | p->around;
+    for (int i = -1; i < HF_BUF_COUNT; i++) {
+        const int b = i < 0 ? HF_BUF_COC4 : i;  // first: others depend on it
+        if (!(all >> b & 1) || (i == HF_BUF_COC4))
+            continue;
+        const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? grow(w->r, halo) : w->r);
+        make_buf(w, b, r);
+        if (wanted(w, b))
+            fill_buf(w, b, r);
+    }
+    if (pass == HF_PASS_COC || pass == HF_PASS_COMPOSITE)
+        make_depth(w, pass == HF_PASS_COC || rng_one_in(&w->rng, 4));
+    if (pass == HF_PASS_DOWN || pass == HF_PASS_COMPOSITE)
+        make_image(w, &w->src, SLOT_SRC, rng_one_in(&w->rng, 4));
+}
+
+static void add_region(struct world *w, enum region_kind kind, int b, int c, struct hf_rect r)
+{
+    struct region *g = world_region(w, kind, SLOT_BUF + 4 * b + c, world_at(w, ARENA_MADE, b, c, r.x0, r.y0),
+                                    (size_t)(r.x1 - r.x0) * sizeof(float), HF_PAD * sizeof(float), r.y1 - r.y0,
+                                    w->buf[b].stride * (ptrdiff_t)sizeof(float));
+    g->buf = b;
+    g->channel = c;
+    g->x0 = r.x0;
+    g->y0 = r.y0;
+}
+
+static void make_output(struct world *w, enum region_kind kind, int b, struct hf_rect r)
+{
+    make_buf(w, b, r);
+    if (wanted(w, b))
+        for (int c = 0; c < buf_channels(w, b); c++)
+            add_region(w, kind, b, c, r);
+}
+
+static void make_dst(struct world *w)
+{
+    const struct hf_rect r = w->r;
+    if (w->src.format == w->dst.format && hf_image_channels(&w->src) == hf_image_channels(&w->dst) &&
+        rng_one_in(&w->rng, 3)) {
+        w->dst = w->src;
+    } else {
+        make_image(w, &w->dst, SLOT_DST, 0);
+    }
+    const struct hf_image *m = &w->dst;
+    const int slot = m->data[0] == w->src.data[0] ? SLOT_SRC : SLOT_DST;
+    for (int i = 0; i < hf_plane_count(m); i++) {
+        struct region *g = world_region(
+            w, REGION_PIXELS, slot + i,
+            (uint8_t *)m->data[i] + 2 * r.y0 * m->stride[i] + hf_row_bytes(m->format, 2 * r.x0),
+            hf_row_bytes(m->format, hf_min(2 * r.x1, m->width) - 2 * r.x0), 0,
+            hf_min(2 * r.y1, m->height) - 2 * r.y0, m->stride[i]);
+        g->channel = i;
+        g->x0 = 2 * r.x0;
+        g->y0 = 2 * r.y0;
+    }
+}
+
+static void make_outputs(struct world *w, int pass)
+{
+    for (int b = 0; b < HF_BUF_COUNT; b++)
+        if (hf_passes[pass].writes >> b & 1)
+            make_output(w, REGION_FLOATS, b, rows_of(w, b, w->r));
+    if (pass == HF_PASS_GATHER) {
+        make_output(w, REGION_SCRATCH, HF_BUF_SUM, w->r);
+        const struct hf_rect weighed = grow(w->r, hf_pass_halo(&w->setup, HF_HALO_TAPS));
+        for (int b = HF_BUF_WEIGHT; b <= HF_BUF_COLORFARW4 && w->setup.karis; b++)
+            make_output(w, REGION_SCRATCH, b, weighed);
+    }
+    if (pass == HF_PASS_COMPOSITE)
+        make_dst(w);
+}
+
+// Longer than render.c makes them: whether those are long enough is for whole_frame.c to say.
+static void make_scratch(struct world *w)
+{
+    const struct hf_setup *s = &w->setup;
+    const struct hf_taps *t = s->taps;
+    const int width = w->r.x1 - w->r.x0, height = w->r.y1 - w->r.y0;
+    make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(s->max_x, t->rx) + 8 + 2 * HF_PAD));
+    const size_t rows = 2 * (size_t)t->ry + 1, gather = (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 2) * 128;
+    const size_t near = 12 * (size_t)(height + 4 * s->max_y + 68) * 64, fill = 3 * w->line_floats;
+    const size_t floats = gather > near ? gather : near;
+    slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);
+}
+
+static void random_area(struct world *w)
+{
+    struct rng *r = &w->rng;
+    const struct hf_setup *s = &w->setup;
+    w->r = (struct hf_rect){0, 0, s->half_width, s->half_height};
+    if (rng_one_in(r, 2) || w->bench)
+        return;
+    w->r.x0 = rng_int(r, 0, s->half_width - 1);
+    w->r.y0 = rng_int(r, 0, s->half_height - 1);
+    w->r.x1 = rng_one_in(r, 2) ? s->half_width : rng_int(r, w->r.x0 + 1, s->half_width);
+    w->r.y1 = rng_one_in(r, 2) ? s->half_height : rng_int(r, w->r.y0 + 1, s->half_height);
+}
+
+void pass_make(struct world *w, int pass)
+{
+    world_clear(w);
+    const int half_width = rng_int(&w->rng, 1, 70), half_height = rng_int(&w->rng, 1, 10);
+    make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
+    random_area(w);
+    w->is_pass = 1;
+    w->near = w->far = 1;
+    if (!w->bench && pass >= HF_PASS_GATHER && rng_one_in(&w->rng, 3))
+        rng_one_in(&w->rng, 2) ? (w->near = 0) : (w->far = 0);
+    make_scratch(w);
+    make_inputs(w, pass);
+    make_outputs(w, pass);
+}
+
+void pass_call(struct world *w, const struct hf_kernels *k, enum arena a, int pass)
+{
+    const struct hf_frame f = world_frame(w, k, a);
+    if (a == ARENA_REFERENCE)
+        w->reference = f;
+    k->pass[pass](&f, w->r);
+}
+
+int pass_check(const struct world *w, const struct level *l, char message[256])
+{
+    struct hf_counts want = w->result[ARENA_REFERENCE].counts, got = w->result[ARENA_TEST].counts;
+    if (!l->exact)
+        want.clamped = got.clamped = 0;  // a colour just beside the end of its range
+    if (memcmp(&want, &got, sizeof want) ||
+        memcmp(&w->result[ARENA_REFERENCE].seen, &w->result[ARENA_TEST].seen, sizeof want)) {
+        snprintf(message, 256, "other counts than the C");
+        return 0;
+    }
+    return world_compare(w, l, message);
+}
+
+int pass_pixels(const struct world *w)
+{
+    return (w->r.x1 - w->r.x0) * (w->r.y1 - w->r.y0);
+}

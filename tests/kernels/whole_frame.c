@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whole frames through the public calls, on every instruction set: deterministic frames have the bits of the C, others
+// are within the bound that follows from the number of operations.
+//     whole_frame [--seed N] [--quick] [--isa NAME]
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "context.h"
+#include "harness.h"
+
+struct frame_case {
+    const char *name;
+    int half_width, half_height;
+    float max_radius, strength, pixel_aspect;  // 0: random
+};
+
+// What random frames are too small for. Then as many random ones as there is time for.
+static const struct frame_case special[] = {
+    {"the largest reach, little strength", 300, 20, 200, 0.25f, 1},
+    {"the largest reach", 150, 24, 120, 1, 0.7f},
+    {"several tiles", 160, 70, 0, 0, 0},
+    {"1 x 1", 1, 1, 0, 0, 0},
+    {"a column", 1, 40, 0, 0, 0},
+    {"a row", 70, 1, 0, 0, 0},
+};
+
+enum { SPECIALS = sizeof special / sizeof *special };
+
+static int passed, failed;
+static uint32_t hash = 2166136261u;  // of the C's pictures: the same on every machine with the same libm
+
+static void make_case(struct world *w, const struct frame_case *c)
+{
+    world_clear(w);
+    do {
+        make_setup(w, c->half_width, c->half_height);
+        w->params.max_radius = c->max_radius ? c->max_radius : w->params.max_radius;
+        w->params.strength = c->strength ? c->strength : w->params.strength;
+        w->params.pixel_aspect = c->pixel_aspect ? c->pixel_aspect : w->params.pixel_aspect;
+        w->params.karis &= w->colours != COLOURS_MIXED;  // luminance would cancel
+    } while (c->max_radius && (w->params.model == HF_MODEL_LENS || w->params.per_pixel_kernel));
+    const int in_place = rng_one_in(&w->rng, 4), bad = rng_one_in(&w->rng, 3);
+    make_image(w, &w->src, SLOT_SRC, bad);
+    if (in_place)
+        w->dst = w->src;
+    else
+        make_image(w, &w->dst, SLOT_DST, 0);
+    make_depth(w, bad);
+}
+
+// Depth of one piece over blocks of a random size, so that there are tiles with nothing to do; and no CoC that is only
+// just not 0, of which a quotient makes anything.
+static void smooth_depth(struct world *w)
+{
+    uint8_t *p = slot_start(w, ARENA_MADE, SLOT_DEPTH);
+    p += (const uint8_t *)w->depth.data - p;
+    const int size = 1 << rng_int(&w->rng, 0, 7);
+    for (int y = 0; y < w->setup.height; y++)
+        for (int x = 0; x < w->setup.width; x++) {
+            float v;
+            memcpy(&v, p + y / size * size * w->depth.stride + (size_t)(x / size * size) * 4, 4);
+            if (fabsf(v) < 1e-12f)
+                v = 0;
+            memcpy(p + y * w->depth.stride + (size_t)x * 4, &v, 4);
+        }
+}
+
+static int render(struct world *w, const struct level *l, enum arena a, struct hf_stats *stats)
+{
+    struct hf_config config = {.isa = l->isa ? l->isa : HF_ISA_SCALAR, .threads = 2};
+    config.tile_width = rng_one_in(&w->rng, 2) ? 0 : 16 * rng_int(&w->rng, 1, 4);
+    config.tile_height = rng_one_in(&w->rng, 2) ? 0 : rng_int(&w->rng, 16, 40);
+    struct hf_context *c;
+    crash_step = l->name;
+    int err = hf_open(&c, &config);
+    if (err)
+        return err;
+    if (!l->isa)  // emulated: not one that a caller could ask for
+        c->exact = c->fused = l->k;
+    world_reset(w, a);
+    const struct hf_frame f = world_frame(w, &l->k, a);
+    w->params.deterministic = l->exact;
+    err = hf_render(c, f.dst, f.src, f.depth, &w->params);
+    hf_get_stats(c, stats);
+    hf_close(&c);
+    return err;
+}
+
+static double largest_sample(const struct world *w, int c)
+{
+    double most = 0;
+    for (int y = 0; y < w->src.height; y++)
+        for (int x = 0; x < w->src.width; x++) {
+            const float v = hf_sample(&w->src, c, x, y);
+            if (hf_is_finite(v))
+                most = fmax(most, fabs((double)v));
+        }
+    return most;
+}
+
+// Roundings on the way through all passes, see bound.c for each: downsample 25; the gather's sums, of colour and of
+// weight, and their quotient; a mean of nine 9; composite 68.
+static double frame_roundings(const struct world *w)
+{
+    const float h = w->params.max_radius / 2;
+    const double rx = ceilf(h / w->params.pixel_aspect), ry = ceilf(h);
+    return 25 + 2 * (2 * rx + 2 * ry + 4 + 6) + 1 + 9 + 68;
+}
+
+// Rounding to small formats between passes, and dividing by sums that cancel, leave no bound to speak of: there only
+// equality is tested.
+static int has_bound(const struct world *w)
+{
+    return w->params.storage == HF_STORAGE_FLOAT && !w->params.per_pixel_kernel;
+}
+
+static double format_step(const struct world *w, int c, double v)
+{
+    if (w->dst.format == HF_FORMAT_RGBA16F)
+        return fmax(v * 0x1p-10, 0x1p-24);
+    if (w->dst.format == HF_FORMAT_R11G11B10F)
+        return c == 2 ? fmax(v * 0x1p-5, 0x1p-19) : fmax(v * 0x1p-6, 0x1p-20);
+    return 0;
+}
+
+static int compare(const struct world *w, const struct level *l, char message[256])
+{
+    struct hf_image want = w->dst, got = w->dst;
+    for (int i = 0; i < 4; i++) {
+        want.data[i] = in_arena(ARENA_REFERENCE, w->dst.data[i]);
+        got.data[i] = in_arena(ARENA_TEST, w->dst.data[i]);
+    }
+    for (int c = 0; c < hf_image_channels(&w->dst); c++) {
+        const double bound = l->exact ? 0 : frame_roundings(w) * FLT_EPSILON * largest_sample(w, c) + 0x1p-140;
+        for (int y = 0; y < want.height && (l->exact || has_bound(w)); y++)
+            for (int x = 0; x < want.width; x++) {
+                const float a = hf_sample(&want, c, x, y), b = hf_sample(&got, c, x, y);
+                const double step = l->exact ? 0 : format_step(w, c, fmax(fabs((double)a), fabs((double)b)));
+                if (hf_bits(a) == hf_bits(b) || (!l->exact && fabs((double)a - b) <= bound + step))
+                    continue;
+                snprintf(message, 256, "channel %d at (%d, %d): %a, the C %a, off by %g of %g", c, x, y, b, a,
+                         fabs((double)a - b), bound + step);
+                return 0;
+            }
+    }
+    return 1;
+}
+
+static void add_to_hash(const struct world *w)
+{
+    struct hf_image m = w->dst;
+    for (int i = 0; i < 4; i++)
+        m.data[i] = in_arena(ARENA_REFERENCE, w->dst.data[i]);
+    for (int c = 0; c < hf_image_channels(&m); c++)
+        for (int y = 0; y < m.height; y++)
+            for (int x = 0; x < m.width; x++)
+                hash = (hash ^ hf_bits(hf_sample(&m, c, x, y))) * 16777619u;
+}
+
+static int same_counts(const struct hf_stats *a, const struct hf_stats *b, const struct level *l)
+{
+    return a->near_pixels == b->near_pixels && a->sharp_pixels == b->sharp_pixels && a->far_pixels == b->far_pixels &&
+           a->colour_repaired == b->colour_repaired && a->depth_repaired == b->depth_repaired &&
+           a->no_surface == b->no_surface && (!l->exact || a->clamped == b->clamped);
+}
+
+static void check(int ok, const struct world *w, const struct level *l, const char *name, uint64_t seed, int number,
+                  const char *message)
+{
+    passed += ok;
+    failed += !ok;
+    if (ok)
+        return;
+    const struct hf_params *p = &w->params;
+    printf("FAILED %s, frame %d of seed %llu (%s): %s\n", l->name, number, (unsigned long long)seed, name, message);
+    printf("    %d x %d, formats %d %d%s, storage %d, radius %g, strength %g, aspect %g, blades %d, fill %d, depth %d, "
+           "model %d%s%s%s%s\n",
+           w->src.width, w->src.height, (int)w->src.format, (int)w->dst.format,
+           w->src.data[0] == w->dst.data[0] ? " in place" : "", (int)p->storage, p->max_radius, p->strength,
+           p->pixel_aspect, p->blades, (int)p->fill, (int)w->depth.type, (int)p->model, p->karis ? ", karis" : "",
+           p->per_pixel_kernel ? ", per-pixel" : "", p->bicubic ? ", bicubic" : "", p->faithful ? ", faithful" : "");
+}
+
+static void run_frame(struct world *w, const struct level *levels, int level_count, uint64_t seed, int number)
+{
+    w->rng = rng_from(seed, (uint64_t)number);
+    struct frame_case random = {.name = "random"};
+    random.half_width = rng_int(&w->rng, 1, 70);
+    random.half_height = rng_int(&w->rng, 1, 40);
+    const struct frame_case *c = number < SPECIALS ? &special[number] : &random;
+    struct hf_stats want, got;
+    make_case(w, c);
+    smooth_depth(w);
+    const int err = render(w, &levels[0], ARENA_REFERENCE, &want);
+    check(!err, w, &levels[0], c->name, seed, number, hf_error_string(err));
+    add_to_hash(w);
+    for (int i = 1; i < level_count; i++) {
+        char message[256] = "other statistics than the C";
+        const int ok = render(w, &levels[i], ARENA_TEST, &got) == HF_OK && compare(w, &levels[i], message) &&
+                       same_counts(&want, &got, &levels[i]);
+        check(ok, w, &levels[i], c->name, seed, number, message);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    static struct level levels[MAX_LEVELS];
+    static struct world w;
+    const char *isa = NULL, *seed = getenv("HF_TEST_SEED");
+    int frames = 150;
+    for (int i = 1; i < argc; i++) {
+        if (!strcmp(argv[i], "--quick"))
+            frames = 12;
+        else if (!strcmp(argv[i], "--seed") && i + 1 < argc)
+            seed = argv[++i];
+        else if (!strcmp(argv[i], "--isa") && i + 1 < argc)
+            isa = argv[++i];
+        else
+            return fprintf(stderr, "usage: whole_frame [--seed N] [--quick] [--isa NAME]\n"), 2;
+    }
+    crash_handlers();
+    const int level_count = levels_make(levels, isa);
+    if (isa && level_count == 1)
+        return 77;
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    arenas_open();
+    for (int i = 0; i < SPECIALS + frames; i++)
+        run_frame(&w, levels, level_count, seed ? strtoull(seed, NULL, 0) : 1, i);
+    hf_taps_free(&w.taps, &hf_mem_default);
+    printf("hash of the C's pictures: %08x\n", hash);
+    printf("%d passed, %d failed\n", passed, failed);
+    return failed != 0;
+}
