@@ -39,7 +39,7 @@ enum hf_buf_id {
     HF_BUF_COUNT
 };
 
-// Up to four planes of floats. ch[c] is where pixel (0, 0) of the frame would be; what is allocated is a window of
+// Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is allocated is a window of
 // the frame, perhaps with a border around it.
 struct hf_buf {
     float *ch[4];

@@ -3,9 +3,13 @@
 // pieces of plain arithmetic over the same half-resolution loads. The near field is interpolated in y once for both
 // phases in x.
 
+// The far field around a row: its own and its neighbour's, at lane 0. Channels lie a fixed distance apart, so that a few
+// registers address them all; vector stores may alias anything, and pointers kept in memory would be read again after
+// each.
 struct far_row {
-    const float *colour[2][4];  // [own, neighbour row][channel], at lane 0
+    const float *colour[2];
     const float *coc[2];
+    ptrdiff_t plane;
 };
 
 // Weights in proportion to 1 / d, each d = 1 + 1000 |CoC difference|.
@@ -51,7 +55,7 @@ HF_INLINE void blend_far_block(const struct far_row *far, const int channels, co
         normalise(w, sum);
     }
     for (int c = 0; c < channels; c++) {
-        const float *a = far->colour[0][c] + x, *b = far->colour[1][c] + x;
+        const float *a = far->colour[0] + c * far->plane + x, *b = far->colour[1] + c * far->plane + x;
         const vf top = vf_fma(w[1], vf_load(a + side), vf_mul(w[0], vf_load(a)));
         const vf bottom = vf_fma(w[3], vf_load(b + side), vf_mul(w[2], vf_load(b)));
         colour[c] = vf_lerp(colour[c], vf_add(top, bottom), t);
@@ -73,7 +77,8 @@ HF_INLINE void blend_far_faithful(const struct far_row *far, const int channels,
     normalise(w, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
     const int next = side > 0 ? 1 : 0;
     for (int c = 0; c < channels; c++) {
-        const float *a = far->colour[0][c] + x, *b = far->colour[down ? 1 : 0][c] + x;
+        const float *a = far->colour[0] + c * far->plane + x;
+        const float *b = far->colour[down ? 1 : 0] + c * far->plane + x;
         const vf top = vf_fma(w[1], vf_load(a + next), vf_mul(w[0], vf_load(a)));
         const vf bottom = vf_fma(w[3], vf_load(b + next), vf_mul(w[2], vf_load(b)));
         colour[c] = vf_lerp(colour[c], vf_add(top, bottom), vf_mul(blend, coc));
@@ -115,39 +120,43 @@ HF_INLINE vf near_up(const float *p, const int side, const int bicubic)
     return vf_fma(vf_set1(0.25f), vf_sub(vf_load(p + side), own), own);
 }
 
-// What a row of the composite is made from.
+// What a row of the composite is made from. Rows of one kind lie `line` floats apart.
 struct composite_row {
-    float *lane[2][4];       // the picture, even and odd; overwritten
-    float *coc[4];           // far CoC in [2] and [3]
+    float *lane[2];     // the picture, even and odd, channel by channel; overwritten
+    const float *coc;   // far CoC, even, then odd
+    const float *near;  // near field's channels, then blurred CoC, interpolated in y, from two columns before the row
+    ptrdiff_t line;
     struct far_row far;
-    float *near[5];          // near field and blurred CoC, interpolated in y, from two columns before the row
-    vf blend;
-    int down;                // the neighbour row is the one below
+    float blend;
+    int down;           // the neighbour row is the one below
 };
 
 // Even or odd pixels of a row. Vectors without CoC are left alone: there is nothing to blend.
-HF_INLINE void composite_lanes(const struct composite_row *r, const int channels, const int with_far,
+HF_INLINE void composite_lanes(const struct composite_row *row, const int channels, const int with_far,
                                const int with_near, const int faithful, const int bicubic, const int side, int n)
 {
-    float *const *lane = r->lane[side > 0];
+    const struct composite_row r = *row;  // see far_row
+    float *const lane = r.lane[side > 0];
+    const float *const coc_row = r.coc + (side > 0 ? r.line : 0), *const near_row = r.near + 2;
+    const vf blend = vf_set1(r.blend);
     for (int x = 0; x < n; x += VF_N) {
-        const vf coc = with_far ? vf_load(r->coc[side > 0 ? 3 : 2] + x) : vf_zero();
-        const vf near = with_near ? vf_mul(r->blend, near_up(r->near[4] + 2 + x, side, bicubic)) : vf_zero();
+        const vf coc = with_far ? vf_load(coc_row + x) : vf_zero();
+        const vf near = with_near ? vf_mul(blend, near_up(near_row + channels * r.line + x, side, bicubic)) : vf_zero();
         const int is_far = with_far && vm_any(vf_gt(coc, vf_zero())), is_near = with_near && vm_any(vf_ne(near, vf_zero()));
         if (!is_far && !is_near)
             continue;
         vf colour[4];
         for (int c = 0; c < channels; c++)
-            colour[c] = vf_load(lane[c] + x);
+            colour[c] = vf_load(lane + c * r.line + x);
         if (is_far && faithful)
-            blend_far_faithful(&r->far, channels, side, r->down, x, coc, r->blend, colour);
+            blend_far_faithful(&r.far, channels, side, r.down, x, coc, blend, colour);
         else if (is_far)
-            blend_far_block(&r->far, channels, side, x, coc, r->blend, colour);
+            blend_far_block(&r.far, channels, side, x, coc, blend, colour);
         if (is_near)
             for (int c = 0; c < channels; c++)
-                colour[c] = vf_lerp(colour[c], near_up(r->near[c] + 2 + x, side, bicubic), near);
+                colour[c] = vf_lerp(colour[c], near_up(near_row + c * r.line + x, side, bicubic), near);
         for (int c = 0; c < channels; c++)
-            vf_store(lane[c] + x, colour[c]);
+            vf_store(lane + c * r.line + x, colour[c]);
     }
 }
 
@@ -174,38 +183,39 @@ static void composite_row_simd(const struct hf_frame *f, int y, struct hf_rect r
 {
     const struct hf_setup *s = f->s;
     const int n = r.x1 - r.x0, hy = y / 2, down = y & 1, ny = down ? hy + 1 : hy - 1;
-    struct composite_row row = {.blend = vf_set1(s->blend), .down = down};
+    float *lane[2][4], *coc[4];
     for (int i = 0; i < 4; i++) {
-        row.lane[0][i] = hf_line(f, i);
-        row.lane[1][i] = hf_line(f, 4 + i);
-        row.coc[i] = hf_line(f, 8 + i);
+        lane[0][i] = hf_line(f, i);
+        lane[1][i] = hf_line(f, 4 + i);
+        coc[i] = hf_line(f, 8 + i);
     }
-    hf_read_colour(f, r.x0, y, n, row.lane[0], row.lane[1], f->counts);
+    struct composite_row row = {.lane = {lane[0][0], lane[1][0]}, .coc = coc[2], .near = hf_line(f, 12),
+                                .line = (ptrdiff_t)f->line_floats, .blend = s->blend, .down = down};
+    hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
     if (f->far) {
-        f->k->coc_row(f, r.x0, y, n, row.coc, NULL);
+        const struct hf_buf *fill = &f->buf[HF_BUF_FAR_FILL];
+        f->k->coc_row(f, r.x0, y, n, coc, NULL);
+        row.far.plane = fill->ch[1] - fill->ch[0];
         for (int i = 0; i < 2; i++) {
-            for (int c = 0; c < s->channels; c++)
-                row.far.colour[i][c] = hf_at(&f->buf[HF_BUF_FAR_FILL], c, r.x0, i ? ny : hy);
+            row.far.colour[i] = hf_at(fill, 0, r.x0, i ? ny : hy);
             row.far.coc[i] = hf_at(&f->buf[HF_BUF_COC4], 1, r.x0, i ? ny : hy);
         }
     }
     if (f->near) {
-        for (int i = 0; i < 5; i++)
-            row.near[i] = hf_line(f, 12 + i);
         for (int c = 0; c < s->channels; c++)
-            near_line(f, &f->buf[HF_BUF_NEAR_FILL], c, y, r, row.near[c]);
-        near_line(f, &f->buf[HF_BUF_BLUR], 0, y, r, row.near[4]);
+            near_line(f, &f->buf[HF_BUF_NEAR_FILL], c, y, r, hf_line(f, 12 + c));
+        near_line(f, &f->buf[HF_BUF_BLUR], 0, y, r, hf_line(f, 12 + s->channels));
     }
     if (s->channels == 3)
         composite_fields(&row, s, f->far, f->near, n, 3);
     else
         composite_fields(&row, s, f->far, f->near, n, 4);
-    hf_store_rgb(f, row.lane[0], n);
-    hf_store_rgb(f, row.lane[1], n);
+    hf_store_rgb(f, lane[0], n);
+    hf_store_rgb(f, lane[1], n);
     if (s->channels == 3)
-        row.lane[0][3] = row.lane[1][3] = NULL;
-    f->counts->clamped += f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)row.lane[0],
-                                                      (const float *const *)row.lane[1]);
+        lane[0][3] = lane[1][3] = NULL;
+    f->counts->clamped += f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)lane[0],
+                                                      (const float *const *)lane[1]);
 }
 
 static void composite_simd(const struct hf_frame *f, struct hf_rect r)
