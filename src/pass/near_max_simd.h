@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Near CoC max on vectors. Maxima of 2, 4, 8 ... values come from each other, and two overlapping ones of those cover
-// any width: 4 maxima a value for 13, 5 for 25. (van Herk's method takes 3 whatever the width, but needs blocks
-// that start at multiples of it; at 13 it was no faster.)
+// any width: 4 maxima a value for 13, 5 for 25.
 
 // Largest power of two <= 2m + 1.
 HF_INLINE int max_span(int m)
