@@ -54,11 +54,13 @@ int hf_isa_available(enum hf_isa isa)
 
 enum hf_isa hf_cpu_choose(enum hf_isa wanted)
 {
-    if (wanted == HF_ISA_AUTO) {
-        const char *name = getenv("HYPERFOCAL_ISA");
-        for (int i = HF_ISA_SCALAR; name && i < ISA_COUNT; i++)
+    const char *name = getenv("HYPERFOCAL_ISA");
+    if (wanted == HF_ISA_AUTO && name && *name) {
+        for (int i = HF_ISA_AUTO; i < ISA_COUNT; i++)
             if (!strcmp(name, isa_names[i]))
                 wanted = (enum hf_isa)i;
+        if (wanted == HF_ISA_AUTO && strcmp(name, isa_names[HF_ISA_AUTO]))
+            return HF_ISA_AUTO;
     }
     if (wanted != HF_ISA_AUTO)
         return hf_isa_available(wanted) ? wanted : HF_ISA_AUTO;

@@ -5,7 +5,7 @@
 
 #include "hyperfocal/hyperfocal.h"
 
-// The highest set up to `wanted` that may be used, HYPERFOCAL_ISA respected for AUTO; 0 (AUTO) if not available.
+// The set to use: `wanted`, for AUTO what HYPERFOCAL_ISA names, else the best. AUTO: that is not available or no name.
 enum hf_isa hf_cpu_choose(enum hf_isa wanted);
 // Processors this process may run on, at least 1.
 int hf_cpu_count(void);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "context.h"
@@ -86,8 +87,11 @@ int hf_open(struct hf_context **out, const struct hf_config *config)
         return err;
     const enum hf_isa isa = hf_cpu_choose(g->isa);
     if (isa == HF_ISA_AUTO) {
-        say(g, HF_LOG_ERROR, "the instruction set asked for, %s, is not available here",
-            g->isa ? hf_isa_name(g->isa) : "by HYPERFOCAL_ISA");
+        if (g->isa)
+            say(g, HF_LOG_ERROR, "config.isa is %s, which this CPU or build does not have", hf_isa_name(g->isa));
+        else
+            say(g, HF_LOG_ERROR, "HYPERFOCAL_ISA is %s, which this CPU or build does not have",
+                getenv("HYPERFOCAL_ISA"));
         return HF_ERR_ISA;
     }
     const struct hf_mem mem = g->alloc ? (struct hf_mem){g->alloc, g->free, g->alloc_cookie} : hf_mem_default;

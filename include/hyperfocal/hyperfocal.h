@@ -54,7 +54,7 @@ HF_API const char *hf_error_string(int error);
 HF_API const char *hf_version(void);
 
 // Instruction sets, lowest first. AUTO is the best one that CPU and build have, unless the environment variable
-// HYPERFOCAL_ISA holds another one's name (scalar, sse4.1, avx2, avx512, neon).
+// HYPERFOCAL_ISA holds another one's name (scalar, sse4.1, avx2, avx512, neon; anything else is HF_ERR_ISA).
 enum hf_isa { HF_ISA_AUTO, HF_ISA_SCALAR, HF_ISA_SSE41, HF_ISA_AVX2, HF_ISA_AVX512, HF_ISA_NEON };
 
 // The command line's name for an instruction set; NULL for a number that is none.
