@@ -428,6 +428,16 @@ if [ -f "$lights" ]; then
     good "$lights" -o scene2.exr --threads 1 --no-skip
     cmp -s scene.exr scene2.exr
     result "threads and --no-skip change no byte" $?
+    # A limit on file size stands for a full disk: an error like others, nothing left behind.
+    run_limited() {
+        command=$*
+        (ulimit -f 100 && exec "$program" "$@" >"$dir/out" 2>"$dir/err" </dev/null)
+        status=$?
+    }
+    run_limited "$lights" -o full.exr
+    [ "$status" -eq 3 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" full.exr &&
+        [ -z "$(find . -name '*full*' -o -name '.hyperfocal*')" ]
+    result "a full disk" $?
 else
     skip "images/lights.exr"
 fi

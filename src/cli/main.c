@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -119,6 +120,8 @@ static int run(int argc, char **argv, struct cli_error *error)
 
 int main(int argc, char **argv)
 {
+    // A file that grows too large for the system's limit is an error like a full disk, not the end of the process.
+    signal(SIGXFSZ, SIG_IGN);
     struct cli_error error;
     int status = run(argc, argv, &error);
     const int failed = ferror(stdout);
