@@ -40,7 +40,4 @@ struct hf_context {
 int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct hf_image *dst,
                     const struct hf_image *src, const struct hf_depth *depth, int fused);
 
-// fn(arg, i, worker) for i in [0, n), on the pool or on the host's threads.
-void hf_parallel(struct hf_context *c, int n, void (*fn)(void *arg, int i, int worker), void *arg);
-
 #endif

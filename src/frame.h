@@ -99,7 +99,7 @@ struct hf_frame {
     struct hf_counts *seen;  // for colour read a second time: whether there was something to repair, not how often
 };
 
-enum { HF_LINES = 40 };  // scratch rows a frame has
+enum { HF_LINES = 20 };  // scratch rows a frame has; the composite uses 17, the most
 enum { HF_PAD = 32 };    // floats that a vector loop may write past the end of a row
 
 // Scratch row i, 64-byte aligned.

@@ -24,7 +24,8 @@ static int64_t now_ns(void)
     return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
 }
 
-void hf_parallel(struct hf_context *c, int n, void (*fn)(void *arg, int i, int worker), void *arg)
+// fn(arg, i, worker) for i in [0, n), on the pool or on the host's threads.
+static void parallel(struct hf_context *c, int n, void (*fn)(void *arg, int i, int worker), void *arg)
 {
     if (n == 1)
         fn(arg, 0, 0);
@@ -490,16 +491,16 @@ int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct
         return err;
     if (s->blend == 0) {
         if (j.in_place)
-            hf_parallel(c, j.plan.tiles_x * j.plan.tiles_y, scan_tile, &j);
+            parallel(c, j.plan.tiles_x * j.plan.tiles_y, scan_tile, &j);
     } else {
-        hf_parallel(c, j.plan.chunks_x * j.plan.chunks_y, first_sweep, &j);
+        parallel(c, j.plan.chunks_x * j.plan.chunks_y, first_sweep, &j);
         hf_plan_classify(&j.plan, s);
         if (j.plan.deferred_count)
-            hf_parallel(c, j.plan.deferred_count, first_sweep_deferred, &j);
+            parallel(c, j.plan.deferred_count, first_sweep_deferred, &j);
     }
     if (j.in_place && seen_bad(c) && (err = repair_in_place(&j)))
         return err;
-    hf_parallel(c, j.plan.tiles_x * j.plan.tiles_y, second_sweep, &j);
+    parallel(c, j.plan.tiles_x * j.plan.tiles_y, second_sweep, &j);
     collect_stats(&j, start);
     return c->dump && s->blend != 0 ? dump_buffers(&j) : HF_OK;
 }

@@ -141,10 +141,9 @@ static void round_weights(struct hf_taps *t, const double *w, int *first, int *c
 
 int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem)
 {
-    const float key[8] = {k->radius, k->scale, k->pixel_aspect, (float)k->blades, k->rotation, (float)k->dense, 1, 0};
-    if (!memcmp(key, t->key, sizeof key))
+    if (!memcmp(k, &t->key, sizeof *k))
         return HF_OK;
-    memset(t->key, 0, sizeof t->key);
+    t->key = (struct hf_taps_key){0};
     const int count = tap_count(k);
     // Room for the largest reach there can be: a polygon's corners lie on its circle.
     const int max_rx = (int)ceil((double)k->radius * k->scale / k->pixel_aspect) + 1;
@@ -175,7 +174,7 @@ int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct h
     t->column = column;
     t->weight = weight;
     round_weights(t, w, first, column, weight);
-    memcpy(t->key, key, sizeof key);
+    t->key = *k;
     return HF_OK;
 }
 

@@ -6,10 +6,20 @@
 #include "hyperfocal/hyperfocal.h"
 #include "mem.h"
 
+// What a tap set follows from. No padding: keys are compared byte by byte.
+struct hf_taps_key {
+    float radius;        // h: reach of the outermost ring, half-resolution pixels, > 0
+    float scale;         // kernel scale, 0.25..1
+    float pixel_aspect;  // x offsets are divided by it
+    int blades;          // 0: circles
+    float rotation;      // degrees
+    int dense;           // the 144-tap grid instead of rings
+};
+
 // All bilinear taps have fixed offsets, so together they are one convolution with fixed weights on whole pixels. The
 // 49 taps of the chapter touch 129 lattice points at kernel scale 1, 36 of them distinct by mirror symmetry.
 struct hf_taps {
-    int count;             // taps, the centre included
+    int count;             // taps: the centre and the rings, or the dense grid, which has none on the centre
     const float *dx, *dy;  // their offsets in half-resolution pixels, kernel scale included; the centre comes first
 
     int rx, ry;       // lattice reach: offsets -rx..rx, -ry..ry
@@ -22,17 +32,7 @@ struct hf_taps {
     const float *weight;
 
     struct hf_block block;  // owns all of the above
-    float key[8];           // parameters it was built from
-};
-
-// What a tap set follows from.
-struct hf_taps_key {
-    float radius;        // h: reach of the outermost ring, half-resolution pixels, > 0
-    float scale;         // kernel scale, 0.25..1
-    float pixel_aspect;  // x offsets are divided by it
-    int blades;          // 0: circles
-    float rotation;      // degrees
-    int dense;           // the 144-tap grid instead of rings
+    struct hf_taps_key key; // what it was built from; radius 0: nothing yet
 };
 
 // (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.

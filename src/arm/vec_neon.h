@@ -10,7 +10,6 @@ typedef float32x4_t vf;
 typedef uint32x4_t vi;
 typedef uint32x4_t vm;  // lanes all ones or all zeros
 enum { VF_N = 4 };
-#define VF_REGISTERS 32
 
 // memcpy-like loads: rows of images need not be aligned to floats.
 static inline vf vf_load(const void *p) { return vreinterpretq_f32_u8(vld1q_u8((const uint8_t *)p)); }

@@ -10,7 +10,6 @@ typedef __m256 vf;
 typedef __m256i vi;
 typedef __m256 vm;  // lanes all ones or all zeros
 enum { VF_N = 8 };
-#define VF_REGISTERS 16
 
 static inline vf vf_load(const void *p) { return _mm256_loadu_ps((const float *)p); }
 static inline void vf_store(void *p, vf a) { _mm256_storeu_ps((float *)p, a); }

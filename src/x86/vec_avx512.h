@@ -10,7 +10,6 @@ typedef __m512 vf;
 typedef __m512i vi;
 typedef __mmask16 vm;
 enum { VF_N = 16 };
-#define VF_REGISTERS 32
 
 static inline vf vf_load(const void *p) { return _mm512_loadu_ps(p); }
 static inline void vf_store(void *p, vf a) { _mm512_storeu_ps(p, a); }
