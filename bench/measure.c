@@ -23,7 +23,7 @@ static const double warm_up_s = 0.3, run_s = 3.0, burst_s = 0.003;
 
 struct frame {
     double all_ms;
-    double pass_ms[HF_PASS_COUNT];
+    double pass_ms[HF_MAX_PASSES];
 };
 
 struct yardsticks {
@@ -61,7 +61,7 @@ static int render(const struct bench_subject *s, struct frame *frame, struct ben
     struct hf_stats stats;
     hf_get_stats(s->context, &stats);
     frame->all_ms = round_ms((end - start) * 1e3);
-    for (int p = 0; p < HF_PASS_COUNT; p++)
+    for (int p = 0; p < HF_MAX_PASSES; p++)
         frame->pass_ms[p] = round_ms(stats.pass_ms[p]);
     return 0;
 }
@@ -163,7 +163,7 @@ static int fused_into(const struct bench_result *r, int p)
     for (int q = p - 1; q >= 0; q--)
         if (r->pass[q].max_ms > 0)
             return q;
-    for (int q = p + 1; q < HF_PASS_COUNT; q++)
+    for (int q = p + 1; q < HF_MAX_PASSES; q++)
         if (r->pass[q].max_ms > 0)
             return q;
     return -1;
@@ -177,7 +177,7 @@ static void summarise(struct frame *frames, int n, struct bench_result *r)
     r->frames = n;
     r->all = (struct bench_row){middle->all_ms, frames[0].all_ms, frames[n - 1].all_ms, -1};
     r->overhead_ms = middle->all_ms;
-    for (int p = 0; p < HF_PASS_COUNT; p++) {
+    for (int p = 0; p < HF_MAX_PASSES; p++) {
         struct bench_row *row = &r->pass[p];
         *row = (struct bench_row){middle->pass_ms[p], INFINITY, 0, -1};
         for (int i = 0; i < n; i++) {
@@ -187,7 +187,7 @@ static void summarise(struct frame *frames, int n, struct bench_result *r)
         r->overhead_ms -= row->median_ms;
     }
     r->overhead_ms = round_ms(r->overhead_ms);
-    for (int p = 0; p < HF_PASS_COUNT; p++)
+    for (int p = 0; p < HF_MAX_PASSES; p++)
         r->pass[p].in = fused_into(r, p);
 }
 

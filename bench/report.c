@@ -8,7 +8,7 @@
 #include <string.h>
 
 // Milliseconds at 1920x1080 on a GeForce GTX 660: table 3.1 of the chapter, in the order of hf_pass_id.
-static const double gtx660_ms[HF_PASS_COUNT] = {0.13, 0.145, 0.08, 0.08, 0.08, 0.08, 0.455, 0.122, 0.334};
+static const double gtx660_ms[HF_MAX_PASSES] = {0.13, 0.145, 0.08, 0.08, 0.08, 0.08, 0.455, 0.122, 0.334};
 static const double gtx660_all_ms = 1.506;
 
 #if defined(__clang__)
@@ -78,11 +78,11 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     const struct bench_result *r = run->result;
     const double all = r->all.median_ms;
     fprintf(out, "%-16s %9s %7s %9s %8s %9s %9s\n", "Pass", "ms", "of All", "GTX 660", "ratio", "min", "max");
-    for (int p = 0; p < HF_PASS_COUNT; p++) {
+    for (int p = 0; p < hf_pass_count(r->stats.engine); p++) {
         const struct bench_row *row = &r->pass[p];
-        table_row(out, hf_pass_name((enum hf_pass_id)p), row->median_ms, all, gtx660_ms[p]);
+        table_row(out, hf_pass_name(r->stats.engine, p), row->median_ms, all, gtx660_ms[p]);
         if (row->in >= 0)
-            fprintf(out, "   in %s\n", hf_pass_name((enum hf_pass_id)row->in));
+            fprintf(out, "   in %s\n", hf_pass_name(r->stats.engine, row->in));
         else
             fprintf(out, " %9.3f %9.3f\n", row->min_ms, row->max_ms);
     }
@@ -177,13 +177,13 @@ void bench_report_json(FILE *out, const struct bench_run *run)
     json_settings(out, run);
     json_machine(out, run);
     fputs("  \"passes\": [", out);
-    for (int p = 0; p < HF_PASS_COUNT; p++) {
+    for (int p = 0; p < hf_pass_count(r->stats.engine); p++) {
         const struct bench_row *row = &r->pass[p];
         fprintf(out, "%s\n    {\"name\": \"%s\", \"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f, "
-                "\"gtx660_ms\": %g", p ? "," : "", hf_pass_name((enum hf_pass_id)p), row->median_ms, row->min_ms,
+                "\"gtx660_ms\": %g", p ? "," : "", hf_pass_name(r->stats.engine, p), row->median_ms, row->min_ms,
                 row->max_ms, gtx660_ms[p]);
         if (row->in >= 0)
-            fprintf(out, ", \"in\": \"%s\"", hf_pass_name((enum hf_pass_id)row->in));
+            fprintf(out, ", \"in\": \"%s\"", hf_pass_name(r->stats.engine, row->in));
         fputc('}', out);
     }
     fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n", r->overhead_ms);

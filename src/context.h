@@ -3,7 +3,8 @@
 #ifndef HF_CONTEXT_H
 #define HF_CONTEXT_H
 
-#include "pass.h"
+#include "engine.h"
+#include "plan.h"
 #include "pool.h"
 #include "setup.h"
 
@@ -11,8 +12,8 @@ struct hf_worker {
     _Alignas(HF_ALIGN) struct hf_frame frame;
     struct hf_counts counts;
     struct hf_counts seen;
-    int64_t ns[HF_PASS_COUNT];
-    uint32_t tiles[HF_PASS_COUNT];
+    int64_t ns[HF_MAX_PASSES];
+    uint32_t tiles[HF_MAX_PASSES];
     struct hf_block scratch;
 };
 
@@ -26,8 +27,10 @@ struct hf_context {
     struct hf_worker *workers;
 
     struct hf_taps taps;
-    struct hf_block planes;   // half-resolution buffers of the whole frame
-    struct hf_block tiles;    // plan.c
+    struct hf_block tables;   // of the other engines' prepare
+    struct hf_plan plan;      // of the last frame: the next one guesses from it
+    struct hf_block planes;   // buffers of the whole frame
+    struct hf_block chunks, tiles;  // the plan's
     struct hf_block joined;   // full-resolution CoC for a dump
     struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
     struct hf_stats stats;
@@ -37,7 +40,7 @@ struct hf_context {
 };
 
 // Run a frame whose arguments have been checked (render.c).
-int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct hf_image *dst,
+int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
                     const struct hf_image *src, const struct hf_depth *depth, int fused);
 
 #endif

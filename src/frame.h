@@ -39,6 +39,9 @@ enum hf_buf_id {
     HF_BUF_COUNT
 };
 
+// No engine has more; others than the gather number theirs in engine/*.c.
+enum { HF_MAX_BUFS = 16 };
+
 // Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is allocated is a window of
 // the frame, perhaps with a border around it.
 struct hf_buf {
@@ -57,6 +60,7 @@ enum hf_depth_form {
 // Everything that follows from the arguments of a render call.
 struct hf_setup {
     int width, height, half_width, half_height;
+    enum hf_engine engine;
     int channels;  // blurred: 3, or 4 with alpha
     enum hf_storage storage;
     int faithful, no_skip, karis, per_pixel_kernel, bicubic, smoothstep;
@@ -71,15 +75,33 @@ struct hf_setup {
     float far_0, far_i;             // f = sat((v - far_0) * far_i)
 
     float max_radius;      // rho, full-resolution pixels
+    float strength;        // 1 outside the range model
     float blend;           // of the fields with the picture; 0: the picture is copied
+    float pixel_aspect;
+
+    // gather
     int max_x, max_y;      // near max and blur reach to either side
-    struct hf_taps *taps;  // kernel of the gather
+    struct hf_taps *taps;  // its kernel
+
+    // The other engines: signed CoC radius in full-resolution pixels, see hf_radius_row.
+    float radius_0, radius_k;  // linear: r = (v - radius_0) * radius_k, within +-max_radius; radius_k 0: by range,
+                               // r = strength * max_radius * (f - n)
+    float sharp_radius;        // up to here a pixel counts as sharp, and its radius as 0
+    int reach_x, reach_y;      // of the frame at hand, half-resolution pixels, once it is known
+    enum hf_resolution resolution;
+    float rotation;            // degrees
+    int uniform;
+    int iterations;
+    float sigma;
+    const struct hf_params *params;  // for what only one engine reads
+    void *tables;                    // what that engine's prepare made
 };
 
 // What the passes count. One per worker.
 struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
+    float radius_min, radius_max;  // signed CoC radii; not the gather's
 };
 
 struct hf_kernels;
@@ -90,7 +112,7 @@ struct hf_frame {
     const struct hf_kernels *k;
     const struct hf_image *src, *dst;
     const struct hf_depth *depth;
-    struct hf_buf buf[HF_BUF_COUNT];
+    struct hf_buf buf[HF_MAX_BUFS];
     int near, far;        // which fields the tile at hand needs
     float *lines;         // scratch rows, see hf_line
     size_t line_floats;   // length of each

@@ -135,7 +135,9 @@ void hf_close(struct hf_context **context)
         c->mem.free(c->mem.cookie, c->workers);
     hf_taps_free(&c->taps, &c->mem);
     hf_block_free(&c->planes, &c->mem);
+    hf_block_free(&c->chunks, &c->mem);
     hf_block_free(&c->tiles, &c->mem);
+    hf_block_free(&c->tables, &c->mem);
     hf_block_free(&c->joined, &c->mem);
     hf_block_free(&c->repairs, &c->mem);
     const struct hf_mem mem = c->mem;
@@ -179,9 +181,12 @@ int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_
         return err;
     }
     struct hf_setup s;
-    err = hf_setup_make(&s, src, dst, depth, p, &c->taps, &c->mem);
+    hf_setup_make(&s, src, dst, depth, p, &c->taps);
     if (c->dump)
         s.no_skip = 1;
+    const struct hf_engine_def *engine = hf_engine_def(p->engine);
+    if (engine->prepare && s.blend != 0)
+        err = engine->prepare(c, &s, p);
     if (!err)
         err = hf_render_frame(c, &s, dst, src, depth, !p->deterministic);
     if (err)

@@ -6,32 +6,45 @@
 #include "format.h"
 #include "frame.h"
 
-// How far around a pixel a pass reads its .around buffers; hf_pass_halo gives the numbers.
+// How far around a pixel a pass reads its .around buffers; the engine gives the numbers.
 enum hf_halo {
     HF_HALO_NONE,
-    HF_HALO_3X3,      // one pixel
-    HF_HALO_MAX_X,    // reach of the near max and blur, along one axis
+    HF_HALO_3X3,       // one pixel
+    HF_HALO_MAX_X,     // gather: reach of the near max and blur, along one axis
     HF_HALO_MAX_Y,
-    HF_HALO_TAPS,     // reach of the gather
-    HF_HALO_UPSAMPLE, // one pixel, two for the cubic
+    HF_HALO_TAPS,      // gather: reach of the taps
+    HF_HALO_UPSAMPLE,  // one pixel, two for the cubic
+    HF_HALO_RADIUS,    // the largest CoC radius
 };
+
+// The two fields: what a scene asks of a tile, was found in a chunk, or a pass or buffer serves.
+enum { HF_NEAR = 1, HF_FAR = 2, HF_FIELDS = HF_NEAR | HF_FAR };
 
 #define HF_BIT(buf) (1u << HF_BUF_##buf)
 
+// Kernels beyond the gather's, which are numbered by its passes.
+enum {
+    HF_KERNEL_COUNT = HF_PASS_COUNT
+};
+
 struct hf_pass {
     const char *name;
-    unsigned reads;   // buffers read at the pixel itself
-    unsigned around;  // buffers read in its halo
+    int kernel;        // which one in hf_kernels.pass
+    unsigned reads;    // buffers read at the pixel itself
+    unsigned around;   // buffers read in its halo
     unsigned writes;
+    unsigned inside;   // scratch of the pass itself, as large as what it writes ...
+    unsigned weighed;  // ... and larger by the halo
     enum hf_halo halo;
-    int sweep;        // 1: over the input, 2: per tile, from half-resolution buffers to the output
+    int sweep;         // 1: over the input; 2 and more: per cell, from buffers to the output
+    unsigned field;    // runs where this field is needed; 0: where any is
 };
-
-extern const struct hf_pass hf_passes[HF_PASS_COUNT];
 
 struct hf_reach {
-    int x, y;
+    int x, y;  // half-resolution pixels
 };
+
+// The gather's halos.
 struct hf_reach hf_pass_halo(const struct hf_setup *s, enum hf_halo halo);
 
 // Computes r of the pass's output buffers, nothing else: r lies inside the frame, in half-resolution pixels. May
@@ -61,7 +74,7 @@ typedef void hf_round_row(float *v, int n);
 typedef void hf_round_rgb(float *r, float *g, float *b, int n);
 
 struct hf_kernels {
-    hf_kernel *pass[HF_PASS_COUNT];
+    hf_kernel *pass[HF_KERNEL_COUNT];
     hf_coc_row *coc_row;
     hf_load_row *load[HF_FORMAT_COUNT];
     hf_store_row *store[HF_FORMAT_COUNT];

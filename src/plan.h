@@ -1,37 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which tile needs what, and how large the buffers around it have to be.
+// Which cell needs what, and how large the buffers around it have to be.
 #ifndef HF_PLAN_H
 #define HF_PLAN_H
 
-#include "pass.h"
+#include "engine.h"
 
-// What the scene asks of a tile, or was found in a chunk.
-enum { HF_NEAR = 1, HF_FAR = 2 };
+enum { HF_MAX_SWEEPS = 6 };
 
+// Cells of sweep i have cell_width[i] x cell_height[i] half-resolution pixels and lie in columns[i] x rows[i]; those of
+// sweep 1 are called chunks, those of sweep 2 tiles. [0] is not used.
 struct hf_plan {
-    int chunk_width, chunk_height, chunks_x, chunks_y;  // first sweep; half-resolution pixels
-    int tile_width, tile_height, tiles_x, tiles_y;      // second sweep; each a whole number of chunks
-    uint8_t *chunk_found;     // HF_NEAR, HF_FAR: CoC of that kind in the chunk
-    uint8_t *chunk_deferred;  // 1: its downsample was put off, nobody may need it
-    uint8_t *tile_needs;
-    int *deferred;            // list for the second run of the first sweep
-    int deferred_count;
+    const struct hf_engine_def *engine;
+    int width, height;  // of the frame, half-resolution pixels
+    int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
-    struct hf_reach pass[HF_PASS_COUNT];  // by how much a pass's rectangle exceeds the tile
-    struct hf_reach buf[HF_BUF_COUNT];    // and each buffer
+    uint8_t *chunk_found;  // fields of which there is CoC in the chunk
+    uint8_t *chunk_made;   // fields whose buffers the first sweep has made
+    uint8_t *chunk_reads;  // fields that some tile reads there; until they are known, those of the last frame
+    int *deferred;         // chunks whose buffers are made once it is known that they are read
+    int deferred_count;
+    uint8_t *tile_needs;   // fields
+    unsigned needs, reads; // of all tiles
+
+    struct hf_reach pass[HF_MAX_PASSES];  // by how much a pass's rectangle exceeds the cell
+    struct hf_reach buf[HF_MAX_BUFS];     // and each buffer
+    size_t line_floats;                   // longest row that a pass may keep of a cell
 };
 
-// Sizes and reaches of a frame for a number of threads; tile sizes 0: chosen. whole: one tile for all.
-void hf_plan_layout(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
-                    int whole);
-// Bytes that hf_plan_memory wants.
-size_t hf_plan_bytes(const struct hf_plan *p);
-void hf_plan_memory(struct hf_plan *p, void *memory);
+// Sizes of the chunks for a number of threads; tile sizes 0: chosen. whole: one cell for all.
+void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s,
+                    int tile_width, int tile_height, int threads, int whole);
+// Reaches, and the other sweeps' cells: once the setup's reach is known.
+void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
+                   int whole);
+size_t hf_plan_chunk_bytes(const struct hf_plan *p);
+// Memory for the chunks; keep: it holds what the last frame knew of the same chunks.
+void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep);
 
-// After the first sweep: what each tile needs, and which deferred chunks are wanted after all.
+// After the first sweep: what each tile needs, and which chunks it has to make after all.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s);
 
-struct hf_rect hf_plan_chunk(const struct hf_plan *p, const struct hf_setup *s, int i);
-struct hf_rect hf_plan_tile(const struct hf_plan *p, const struct hf_setup *s, int i);
+// Nothing has been made after all.
+void hf_plan_forget(struct hf_plan *p);
+
+int hf_plan_count(const struct hf_plan *p, int sweep);
+struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i);
 
 #endif

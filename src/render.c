@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame in two sweeps over the full-resolution data. The first makes CoC and the half-resolution buffers, chunk
-// by chunk, and notes what each chunk contains; the second takes each tile through all other passes while its buffers
-// are in the cache.
+// One frame. The first sweep looks at the depth and makes the first buffers, chunk by chunk; with what it has found the
+// plan is made; the other sweeps take each cell through its passes while its buffers are in the cache. What the passes
+// are is the engine's business.
+#include <float.h>
 #include <string.h>
 #include <time.h>
 
-#include "context.h"
-#include "plan.h"
-#include "repair.h"
+#include "buffers.h"
+#include "copy.h"
+#include "dump.h"
 
 struct job {
     struct hf_context *c;
-    const struct hf_setup *s;
-    struct hf_plan plan;
-    int in_place;
-    int raw_copy;      // a sharp pixel's bits may be copied as they are
+    struct hf_setup *s;
+    struct hf_copy copy;
+    unsigned have;  // fields whose buffers are allocated
+    int sweep;
 };
 
 static int64_t now_ns(void)
@@ -35,424 +36,162 @@ static void parallel(struct hf_context *c, int n, void (*fn)(void *arg, int i, i
         c->config.parallel_for(c->config.parallel_cookie, n, fn, arg);
 }
 
-static struct hf_rect grow(struct hf_rect r, struct hf_reach by)
+static struct hf_rect grown_in_frame(const struct hf_plan *p, struct hf_rect r, struct hf_reach by)
 {
-    return (struct hf_rect){r.x0 - by.x, r.y0 - by.y, r.x1 + by.x, r.y1 + by.y};
+    return (struct hf_rect){hf_max(r.x0 - by.x, 0), hf_max(r.y0 - by.y, 0), hf_min(r.x1 + by.x, p->width),
+                            hf_min(r.y1 + by.y, p->height)};
 }
 
-static struct hf_rect inside_frame(struct hf_rect r, const struct hf_setup *s)
+// One pass on a cell, and what it costs.
+static void run_pass(const struct job *j, struct hf_worker *w, int pass, struct hf_rect cell, int64_t *clock)
 {
-    return (struct hf_rect){hf_max(r.x0, 0), hf_max(r.y0, 0), hf_min(r.x1, s->half_width),
-                            hf_min(r.y1, s->half_height)};
-}
-
-// Channels of a buffer; 0: not wanted with these options.
-static int buf_channels(const struct hf_setup *s, int b)
-{
-    switch (b) {
-    case HF_BUF_COC:
-        return 4;
-    case HF_BUF_COC4:
-    case HF_BUF_SUM:
-        return 2;
-    case HF_BUF_MAX_X:
-    case HF_BUF_MAX:
-    case HF_BUF_BLUR_X:
-    case HF_BUF_BLUR:
-        return 1;
-    case HF_BUF_WEIGHT:
-        return s->karis ? 2 : 0;
-    case HF_BUF_COLORW4:
-    case HF_BUF_COLORFARW4:
-        return s->karis ? s->channels : 0;
-    default:
-        return s->channels;
-    }
-}
-
-static int is_frame_buf(int b)
-{
-    return b == HF_BUF_COLOR4 || b == HF_BUF_COLORFAR4 || b == HF_BUF_COC4;
-}
-
-// A buffer's window: size and where its first pixel lies relative to the area it surrounds.
-struct window {
-    int stride, rows, left, top;
-};
-
-static struct window window_of(const struct hf_plan *p, int b, int width, int height)
-{
-    struct window w = {.left = (p->buf[b].x + 15) & ~15, .top = p->buf[b].y};
-    w.stride = ((width + 15) & ~15) + 2 * w.left + HF_PAD;
-    if (w.stride % 1024 == 0)
-        w.stride += 16;  // rows 4 KB apart would share cache sets
-    w.rows = height + 2 * w.top;
-    return w;
-}
-
-static size_t window_floats(struct window w)
-{
-    return (size_t)w.stride * w.rows;
-}
-
-// Point the channels of a buffer into memory, for an area that starts at (x0, y0). Returns what comes after it.
-static float *place(struct hf_buf *buf, struct window w, int channels, float *memory, int x0, int y0)
-{
-    buf->stride = w.stride;
-    for (int c = 0; c < channels; c++) {
-        buf->ch[c] = memory + (ptrdiff_t)w.stride * (w.top - y0) + w.left - x0;
-        memory += window_floats(w);
-    }
-    return memory;
-}
-
-// Window of a worker's buffer; HF_BUF_COC holds a chunk's full-resolution rows, the others a tile and its reach.
-static struct window scratch_window(const struct job *j, int b)
-{
-    const struct hf_plan *p = &j->plan;
-    return b == HF_BUF_COC ? window_of(p, b, p->chunk_width, 2 * p->chunk_height)
-                           : window_of(p, b, p->tile_width, p->tile_height);
-}
-
-// A scratch row holds what a pass may read of a tile's row: the widest window there is.
-static size_t line_floats(const struct job *j)
-{
-    int reach = 0;
-    for (int b = 0; b < HF_BUF_COUNT; b++)
-        reach = hf_max(reach, j->plan.buf[b].x);
-    return (size_t)((j->plan.tile_width + 2 * reach + 15) & ~15) + 2 * HF_PAD;
-}
-
-// What the kernels need for strips of up to 80 columns: terms and pairs of the gather, rows of the near max and partial
-// sums of the near blur; and three rows for the mean fill.
-static size_t work_floats(const struct job *j)
-{
-    const struct hf_taps *t = j->s->taps;
-    const size_t rows = 2 * (size_t)t->ry + 1, columns = 2 * (size_t)t->rx + 1;
-    const size_t gather = 2 * rows * columns + 16 + columns * 80;
-    const size_t near = 12 * ((size_t)j->plan.tile_height + 2 * (size_t)j->plan.buf[HF_BUF_MAX_X].y + 64) * 64;
-    const size_t most = gather > near ? gather : near, fill = 3 * line_floats(j);
-    return most > fill ? most : fill;
-}
-
-static int allocate(struct job *j)
-{
-    struct hf_context *c = j->c;
-    const struct hf_setup *s = j->s;
-    size_t frame = 0, scratch = HF_LINES * line_floats(j) + work_floats(j);
-    for (int b = 0; b < HF_BUF_COUNT; b++) {
-        if (is_frame_buf(b))
-            frame += buf_channels(s, b) * window_floats(window_of(&j->plan, b, s->half_width, s->half_height));
-        else
-            scratch += buf_channels(s, b) * window_floats(scratch_window(j, b));
-    }
-    int err = hf_block_grow(&c->planes, frame * sizeof(float), &c->mem);
-    if (!err)
-        err = hf_block_grow(&c->tiles, hf_plan_bytes(&j->plan), &c->mem);
-    for (int i = 0; i < c->threads && !err; i++)
-        err = hf_block_grow(&c->workers[i].scratch, scratch * sizeof(float), &c->mem);
-    if (err)
-        return err;
-    hf_plan_memory(&j->plan, c->tiles.data);
-    float *memory = c->planes.data;
-    struct hf_buf planes[HF_BUF_COUNT] = {0};
-    for (int b = 0; b < HF_BUF_COUNT; b++)
-        if (is_frame_buf(b))
-            memory = place(&planes[b], window_of(&j->plan, b, s->half_width, s->half_height), buf_channels(s, b),
-                           memory, 0, 0);
-    for (int i = 0; i < c->threads; i++) {
-        struct hf_frame *f = &c->workers[i].frame;
-        memcpy(f->buf, planes, sizeof planes);
-        f->line_floats = line_floats(j);
-        f->lines = c->workers[i].scratch.data;
-        f->work = f->lines + HF_LINES * f->line_floats;
-    }
-    return HF_OK;
-}
-
-// Point a worker's buffers at an area of the frame.
-static void place_scratch(const struct job *j, struct hf_frame *f, int x0, int y0)
-{
-    float *memory = f->work + work_floats(j);
-    for (int b = 0; b < HF_BUF_COUNT; b++)
-        if (!is_frame_buf(b))
-            memory = place(&f->buf[b], scratch_window(j, b), buf_channels(j->s, b), memory, x0,
-                           b == HF_BUF_COC ? 2 * y0 : y0);
-}
-
-// All sampling clamps to the edge: repeat the border of `have` outwards up to `want`.
-static void extend(const struct hf_buf *b, int channels, struct hf_rect have, struct hf_rect want)
-{
-    for (int c = 0; c < channels; c++) {
-        for (int y = have.y0; y < have.y1; y++) {
-            float *row = hf_at(b, c, 0, y);
-            for (int x = want.x0; x < have.x0; x++)
-                row[x] = row[have.x0];
-            for (int x = have.x1; x < want.x1; x++)
-                row[x] = row[have.x1 - 1];
-        }
-        const size_t bytes = (size_t)(want.x1 - want.x0) * sizeof(float);
-        for (int y = want.y0; y < have.y0; y++)
-            memcpy(hf_at(b, c, want.x0, y), hf_at(b, c, want.x0, have.y0), bytes);
-        for (int y = have.y1; y < want.y1; y++)
-            memcpy(hf_at(b, c, want.x0, y), hf_at(b, c, want.x0, have.y1 - 1), bytes);
-    }
-}
-
-static void run_pass(struct hf_worker *w, enum hf_pass_id pass, struct hf_rect r, int64_t *clock)
-{
-    w->frame.k->pass[pass](&w->frame, r);
+    const struct hf_plan *p = &j->c->plan;
+    const struct hf_pass *def = &p->engine->passes[pass];
+    const struct hf_rect r = grown_in_frame(p, cell, p->pass[pass]);
+    w->frame.k->pass[def->kernel](&w->frame, r);
+    for (int b = 0; b < p->engine->buf_count; b++)
+        if (def->writes >> b & 1)
+            hf_buffers_extend(j->c, j->s, &w->frame, b, r, cell);
     w->tiles[pass]++;
     const int64_t now = now_ns();
     w->ns[pass] += now - *clock;
     *clock = now;
 }
 
-// The half-resolution buffers of a chunk, and of the border beside it where it lies at the frame's edge.
-static void downsample(const struct job *j, struct hf_worker *w, struct hf_rect r, int64_t *clock)
+static void set_fields(struct hf_frame *f, unsigned fields)
 {
-    const struct hf_setup *s = j->s;
-    w->frame.k->pass[HF_PASS_DOWN](&w->frame, r);
-    for (int b = 0; b < HF_BUF_COUNT; b++) {
-        if (!is_frame_buf(b))
-            continue;
-        const struct hf_reach reach = j->plan.buf[b];
-        extend(&w->frame.buf[b], buf_channels(s, b), r,
-               (struct hf_rect){r.x0 == 0 ? -reach.x : r.x0, r.y0 == 0 ? -reach.y : r.y0,
-                                r.x1 == s->half_width ? r.x1 + reach.x : r.x1,
-                                r.y1 == s->half_height ? r.y1 + reach.y : r.y1});
-    }
-    w->tiles[HF_PASS_DOWN]++;
-    const int64_t now = now_ns();
-    w->ns[HF_PASS_DOWN] += now - *clock;
-    *clock = now;
+    f->near = (fields & HF_NEAR) != 0;
+    f->far = (fields & HF_FAR) != 0;
 }
 
-// First byte of the pixels of a rectangle's row in one plane.
-static uint8_t *pixels_at(const struct hf_image *m, int plane, int x, int y)
+// The buffers that the first sweep makes of a chunk.
+static void make_chunk(const struct job *j, struct hf_worker *w, struct hf_rect r, unsigned fields, int64_t *clock)
 {
-    return (uint8_t *)m->data[plane] + (ptrdiff_t)y * m->stride[plane] + hf_row_bytes(m->format, x);
-}
-
-static int row_finite(const struct hf_frame *f, int x, int y, int n)
-{
-    const struct hf_image *m = f->src;
-    hf_finite *finite = m->format == HF_FORMAT_RGBA16F      ? f->k->finite_f16
-                        : m->format == HF_FORMAT_R11G11B10F ? f->k->finite_r11
-                                                            : f->k->finite_f32;
-    const size_t words = hf_row_bytes(m->format, n) / (m->format == HF_FORMAT_RGBA16F ? 2 : 4);
-    for (int p = 0; p < hf_plane_count(m); p++)
-        if (!finite(pixels_at(m, p, x, y), words))
-            return 0;
-    return 1;
-}
-
-static void scan_finite(struct hf_worker *w, struct hf_rect r)
-{
-    const struct hf_setup *s = w->frame.s;
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, s->height); y++)
-        w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0);
+    const struct hf_engine_def *e = j->c->plan.engine;
+    set_fields(&w->frame, fields);
+    for (int i = 1; i < e->pass_count && e->passes[i].sweep == 1; i++)
+        run_pass(j, w, i, r, clock);
 }
 
 static void first_sweep(void *arg, int i, int worker)
 {
     struct job *j = arg;
+    struct hf_plan *p = &j->c->plan;
     struct hf_worker *w = &j->c->workers[worker];
-    const struct hf_rect r = hf_plan_chunk(&j->plan, j->s, i);
+    const struct hf_rect r = hf_plan_cell(p, 1, i);
     int64_t clock = now_ns();
     const struct hf_counts before = w->counts;
-    place_scratch(j, &w->frame, r.x0, r.y0);
-    run_pass(w, HF_PASS_COC, r, &clock);
-    const int found = (w->counts.near_pixels > before.near_pixels ? HF_NEAR : 0) |
-                      (w->counts.far_pixels > before.far_pixels ? HF_FAR : 0);
-    j->plan.chunk_found[i] = (uint8_t)found;
-    j->plan.chunk_deferred[i] = !found && !j->s->no_skip;
-    if (!j->plan.chunk_deferred[i])
-        downsample(j, w, r, &clock);
-    else if (j->in_place)
-        scan_finite(w, r);
+    hf_buffers_place(j->c, j->s, &w->frame, 1, r);
+    set_fields(&w->frame, HF_FIELDS);
+    run_pass(j, w, 0, r, &clock);
+    const unsigned found = (w->counts.near_pixels > before.near_pixels ? HF_NEAR : 0u) |
+                           (w->counts.far_pixels > before.far_pixels ? HF_FAR : 0u);
+    // What the last frame read there will be read again, most likely; what is not is made later.
+    const unsigned fields = (j->s->no_skip ? HF_FIELDS : found ? found | p->chunk_reads[i] : 0) & j->have;
+    p->chunk_found[i] = (uint8_t)found;
+    p->chunk_made[i] = (uint8_t)fields;
+    if (fields)
+        make_chunk(j, w, r, fields, &clock);
+    else if (j->copy.in_place)
+        hf_copy_scan(w, r);
 }
 
-// A chunk without CoC that a neighbour's tile reads after all.
+// A chunk that is read and was not made, or not all of it.
 static void first_sweep_deferred(void *arg, int i, int worker)
 {
     struct job *j = arg;
+    struct hf_plan *p = &j->c->plan;
     struct hf_worker *w = &j->c->workers[worker];
-    const struct hf_rect r = hf_plan_chunk(&j->plan, j->s, j->plan.deferred[i]);
+    const int chunk = p->deferred[i];
+    const struct hf_rect r = hf_plan_cell(p, 1, chunk);
     int64_t clock = now_ns();
-    place_scratch(j, &w->frame, r.x0, r.y0);
-    const struct hf_buf *coc = &w->frame.buf[HF_BUF_COC];
-    for (int ch = 0; ch < 4; ch++)
-        for (int y = 2 * r.y0; y < 2 * r.y1; y++)
-            memset(hf_at(coc, ch, r.x0, y), 0, (size_t)(r.x1 - r.x0) * sizeof(float));
-    downsample(j, w, r, &clock);
+    hf_buffers_place(j->c, j->s, &w->frame, 1, r);
+    if (!p->engine->measured) {
+        struct hf_counts twice = {0};
+        w->frame.counts = &twice;
+        w->frame.k->pass[p->engine->passes[0].kernel](&w->frame, r);
+        w->frame.counts = &w->counts;
+    }
+    make_chunk(j, w, r, p->chunk_reads[chunk] & ~p->chunk_made[chunk], &clock);
 }
 
-// Copy a rectangle that is sharp, non-finite samples repaired.
-static void copy_sharp(const struct job *j, struct hf_worker *w, struct hf_rect r)
-{
-    const struct hf_frame *f = &w->frame;
-    const int x = 2 * r.x0, n = hf_min(2 * r.x1, j->s->width) - x;
-    float *even[4], *odd[4];
-    for (int c = 0; c < 4; c++) {
-        even[c] = hf_line(f, c);
-        odd[c] = hf_line(f, 4 + c);
-    }
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, j->s->height); y++) {
-        if (j->raw_copy && j->in_place)
-            continue;  // checked, and repaired if need be, after the first sweep
-        if (j->raw_copy && row_finite(f, x, y, n)) {
-            for (int p = 0; p < hf_plane_count(f->src); p++)
-                memcpy(pixels_at(f->dst, p, x, y), pixels_at(f->src, p, x, y), hf_row_bytes(f->src->format, n));
-            continue;
-        }
-        float *const *alpha = hf_image_channels(f->src) == 4 ? even : NULL;
-        hf_read_colour(f, r.x0, y, r.x1 - r.x0, even, odd, &w->counts);
-        const float *const e[4] = {even[0], even[1], even[2], alpha ? even[3] : NULL};
-        const float *const o[4] = {odd[0], odd[1], odd[2], alpha ? odd[3] : NULL};
-        w->counts.clamped += f->k->store[f->dst->format](f->dst, r.x0, y, r.x1 - r.x0, e, o);
-    }
-}
-
-static void second_sweep(void *arg, int i, int worker)
+static void later_sweep(void *arg, int i, int worker)
 {
     struct job *j = arg;
+    const struct hf_plan *p = &j->c->plan;
+    const int last = j->sweep == p->engine->sweeps;
     struct hf_worker *w = &j->c->workers[worker];
-    const struct hf_rect tile = hf_plan_tile(&j->plan, j->s, i);
-    const int needs = j->s->blend == 0 ? 0 : j->plan.tile_needs[i];
+    const struct hf_rect cell = hf_plan_cell(p, j->sweep, i);
+    const int is_tile = p->columns[j->sweep] == p->columns[2] && p->rows[j->sweep] == p->rows[2];
+    const unsigned needs = j->s->blend == 0 ? 0 : is_tile ? p->tile_needs[i] : p->needs;
     int64_t clock = now_ns();
     if (!needs) {
-        copy_sharp(j, w, tile);
-        w->ns[HF_PASS_COMPOSITE] += now_ns() - clock;
+        if (last) {
+            hf_copy_sharp(&j->copy, w, cell);
+            w->ns[p->engine->pass_count - 1] += now_ns() - clock;
+        }
         return;
     }
-    place_scratch(j, &w->frame, tile.x0, tile.y0);
-    w->frame.near = needs & HF_NEAR;
-    w->frame.far = needs & HF_FAR;
-    for (int p = 0; p < HF_PASS_COUNT; p++) {
-        const int near_only = p >= HF_PASS_MAX_X && p <= HF_PASS_BLUR_Y;
-        if (hf_passes[p].sweep != 2 || (near_only && !w->frame.near))
-            continue;
-        const struct hf_rect r = inside_frame(grow(tile, j->plan.pass[p]), j->s);
-        w->frame.k->pass[p](&w->frame, r);
-        for (int b = 0; b < HF_BUF_COUNT; b++)
-            if (hf_passes[p].writes >> b & 1)
-                extend(&w->frame.buf[b], buf_channels(j->s, b), r, grow(tile, j->plan.buf[b]));
-        w->tiles[p]++;
-        const int64_t now = now_ns();
-        w->ns[p] += now - clock;
-        clock = now;
+    hf_buffers_place(j->c, j->s, &w->frame, j->sweep, cell);
+    set_fields(&w->frame, needs);
+    for (int pass = 0; pass < p->engine->pass_count; pass++) {
+        const struct hf_pass *def = &p->engine->passes[pass];
+        if (def->sweep == j->sweep && (!def->field || (def->field & needs)))
+            run_pass(j, w, pass, cell, &clock);
     }
-}
-
-// In place, a tile overwrites what its neighbours' repairs are made from: write all repairs first.
-static int repair_in_place(struct job *j)
-{
-    struct hf_context *c = j->c;
-    const struct hf_image *m = c->workers[0].frame.src;
-    const struct hf_rect all = {0, 0, m->width, m->height};
-    const size_t n = hf_repair_list(m, all, NULL, 0);
-    const int err = hf_block_grow(&c->repairs, n * sizeof(struct hf_repair), &c->mem);
-    if (err)
-        return err;
-    struct hf_repair *list = c->repairs.data;
-    hf_repair_list(m, all, list, n);
-    for (size_t i = 0; i < n; i++)
-        hf_put_sample(m, list[i].channel, list[i].x, list[i].y, list[i].value);
-    c->workers[0].counts.colour_repaired += n;
-    return HF_OK;
 }
 
 static void scan_tile(void *arg, int i, int worker)
 {
     struct job *j = arg;
-    scan_finite(&j->c->workers[worker], hf_plan_tile(&j->plan, j->s, i));
+    hf_copy_scan(&j->c->workers[worker], hf_plan_cell(&j->c->plan, 2, i));
 }
 
-static int seen_bad(const struct hf_context *c)
+static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
 {
-    uint64_t n = 0;
+    sum->near_pixels += c->near_pixels;
+    sum->far_pixels += c->far_pixels;
+    sum->sharp_pixels += c->sharp_pixels;
+    sum->colour_repaired += c->colour_repaired;
+    sum->depth_repaired += c->depth_repaired;
+    sum->no_surface += c->no_surface;
+    sum->clamped += c->clamped;
+    sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
+    sum->radius_max = c->radius_max > sum->radius_max ? c->radius_max : sum->radius_max;
+}
+
+static struct hf_counts all_counts(const struct hf_context *c)
+{
+    struct hf_counts sum = {0};
     for (int i = 0; i < c->threads; i++)
-        n += c->workers[i].seen.colour_repaired;
-    return n != 0;
+        add_counts(&sum, &c->workers[i].counts);
+    return sum;
 }
 
 static void collect_stats(const struct job *j, int64_t start)
 {
     struct hf_context *c = j->c;
     struct hf_stats *t = &c->stats;
-    *t = (struct hf_stats){.max_radius = j->s->max_radius};
-    t->memory = sizeof *c + c->planes.size + c->tiles.size + c->joined.size + c->repairs.size + c->taps.block.size +
-                (c->pool ? hf_pool_bytes(c->threads) : 0);
+    const struct hf_counts n = all_counts(c);
+    *t = (struct hf_stats){.engine = j->s->engine, .max_radius = j->s->max_radius,
+                           .near_pixels = n.near_pixels, .far_pixels = n.far_pixels, .sharp_pixels = n.sharp_pixels,
+                           .colour_repaired = n.colour_repaired, .depth_repaired = n.depth_repaired,
+                           .no_surface = n.no_surface, .clamped = n.clamped};
+    if (j->s->blend == 0)
+        t->sharp_pixels = (uint64_t)j->s->width * (uint64_t)j->s->height;
+    t->memory = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
+                c->taps.block.size + c->tables.size + (c->pool ? hf_pool_bytes(c->threads) : 0);
     for (int i = 0; i < c->threads; i++) {
         const struct hf_worker *w = &c->workers[i];
-        for (int p = 0; p < HF_PASS_COUNT; p++) {
+        for (int p = 0; p < HF_MAX_PASSES; p++) {
             t->pass_ms[p] += (double)w->ns[p] * 1e-6 / c->threads;
             t->tiles_run[p] += w->tiles[p];
         }
-        t->near_pixels += w->counts.near_pixels;
-        t->far_pixels += w->counts.far_pixels;
-        t->sharp_pixels += w->counts.sharp_pixels;
-        t->colour_repaired += w->counts.colour_repaired;
-        t->depth_repaired += w->counts.depth_repaired;
-        t->no_surface += w->counts.no_surface;
-        t->clamped += w->counts.clamped;
         t->memory += w->scratch.size + sizeof *w;
     }
-    for (int p = 0; p < HF_PASS_COUNT; p++)
-        t->tiles_all[p] = (uint32_t)(hf_passes[p].sweep == 1 ? j->plan.chunks_x * j->plan.chunks_y
-                                                             : j->plan.tiles_x * j->plan.tiles_y);
-    if (j->s->blend == 0)
-        t->sharp_pixels = (uint64_t)j->s->width * j->s->height;
+    for (int p = 0; p < c->plan.engine->pass_count; p++)
+        t->tiles_all[p] = (uint32_t)hf_plan_count(&c->plan, c->plan.engine->passes[p].sweep);
     t->total_ms = (double)(now_ns() - start) * 1e-6;
-}
-
-// The CoC buffer holds even and odd pixels apart: put them side by side.
-static int join_coc(const struct job *j, struct hf_buffer *out)
-{
-    struct hf_context *c = j->c;
-    const struct hf_buf *b = &c->workers[0].frame.buf[HF_BUF_COC];
-    const int width = j->s->width, height = j->s->height;
-    const int err = hf_block_grow(&c->joined, 2 * (size_t)width * height * sizeof(float), &c->mem);
-    if (err)
-        return err;
-    float *p = c->joined.data;
-    for (int ch = 0; ch < 2; ch++) {
-        out->data[ch] = p;
-        for (int y = 0; y < height; y++)
-            for (int x = 0; x < width; x++)
-                *p++ = *hf_at(b, 2 * ch + (x & 1), x / 2, y);
-    }
-    out->width = width;
-    out->height = height;
-    out->channels = 2;
-    out->stride = width * (ptrdiff_t)sizeof(float);
-    return HF_OK;
-}
-
-static int dump_buffers(const struct job *j)
-{
-    static const char *const names[HF_BUF_COUNT] = {
-        [HF_BUF_COC] = "coc", [HF_BUF_COLOR4] = "color4", [HF_BUF_COLORFAR4] = "colormulcoc4",
-        [HF_BUF_COC4] = "coc4", [HF_BUF_MAX_X] = "cocmaxx", [HF_BUF_MAX] = "cocmax", [HF_BUF_BLUR_X] = "cocblurx",
-        [HF_BUF_BLUR] = "cocblur", [HF_BUF_NEAR] = "near", [HF_BUF_FAR] = "far", [HF_BUF_NEAR_FILL] = "nearfill",
-        [HF_BUF_FAR_FILL] = "farfill"};
-    struct hf_context *c = j->c;
-    const struct hf_frame *f = &c->workers[0].frame;
-    for (int b = 0; b < HF_BUF_COUNT; b++) {
-        if (!names[b])
-            continue;
-        struct hf_buffer out = {.name = names[b], .width = j->s->half_width, .height = j->s->half_height,
-                                .channels = buf_channels(j->s, b),
-                                .stride = f->buf[b].stride * (ptrdiff_t)sizeof(float)};
-        for (int ch = 0; ch < out.channels; ch++)
-            out.data[ch] = f->buf[b].ch[ch];
-        const int err = b == HF_BUF_COC ? join_coc(j, &out) : HF_OK;
-        if (err)
-            return err;
-        c->dump(c->dump_cookie, &out);
-    }
-    return HF_OK;
 }
 
 static void start_workers(const struct job *j, const struct hf_image *dst, const struct hf_image *src,
@@ -475,32 +214,80 @@ static void start_workers(const struct job *j, const struct hf_image *dst, const
     }
 }
 
-int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct hf_image *dst,
+// Cells, and memory for them and for the fields' buffers.
+static int lay_out(struct job *j, unsigned fields)
+{
+    struct hf_context *c = j->c;
+    hf_plan_cells(&c->plan, j->s, c->config.tile_width, c->config.tile_height, c->threads, c->dump != NULL);
+    const int err = hf_block_grow(&c->tiles, (size_t)hf_plan_count(&c->plan, 2), &c->mem);
+    c->plan.tile_needs = c->tiles.data;
+    j->have = fields;
+    return err ? err : hf_buffers_allocate(c, j->s, fields);
+}
+
+static int lay_out_chunks(struct job *j)
+{
+    struct hf_context *c = j->c;
+    const struct hf_plan last = c->plan;
+    hf_plan_chunks(&c->plan, hf_engine_def(j->s->engine), j->s, c->config.tile_width, c->config.tile_height,
+                   c->threads, c->dump != NULL);
+    const int same = last.engine == c->plan.engine && last.width == c->plan.width && last.height == c->plan.height &&
+                     last.cell_width[1] == c->plan.cell_width[1] && last.cell_height[1] == c->plan.cell_height[1];
+    const int err = hf_block_grow(&c->chunks, hf_plan_chunk_bytes(&c->plan), &c->mem);
+    hf_plan_chunk_memory(&c->plan, c->chunks.data, same);
+    if (!same)
+        c->plan.reads = 0;
+    return err;
+}
+
+// The plan: what the depth shows decides which chunks, buffers and passes there are.
+static int plan_frame(struct job *j)
+{
+    struct hf_context *c = j->c;
+    struct hf_plan *p = &c->plan;
+    int err = HF_OK;
+    if (p->engine->measured) {
+        const struct hf_counts found = all_counts(c);
+        p->engine->measure(j->s, &found);
+        err = lay_out(j, 0);
+    }
+    if (err)
+        return err;
+    hf_plan_classify(p, j->s);
+    if (!(p->reads & ~j->have))
+        return HF_OK;
+    // Buffers that the last frame did not read: all are placed anew, and what was made is lost.
+    err = lay_out(j, p->reads);
+    hf_plan_forget(p);
+    return err;
+}
+
+int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
                     const struct hf_image *src, const struct hf_depth *depth, int fused)
 {
     const int64_t start = now_ns();
-    struct job j = {.c = c, .s = s};
-    j.in_place = dst->data[0] == src->data[0];
-    j.raw_copy = dst->format == src->format && hf_image_channels(dst) == hf_image_channels(src) &&
-                 (s->blend == 0 || s->storage == HF_STORAGE_FLOAT || src->format == HF_FORMAT_R11G11B10F ||
-                  (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F));
+    struct job j = {.c = c, .s = s, .copy = hf_copy_plan(s, dst, src)};
     start_workers(&j, dst, src, depth, fused);
-    hf_plan_layout(&j.plan, s, c->config.tile_width, c->config.tile_height, c->threads, c->dump != NULL);
-    int err = allocate(&j);
+    int err = lay_out_chunks(&j);
+    if (!err)
+        err = lay_out(&j, c->plan.engine->measured || s->blend == 0 ? 0 : s->no_skip ? HF_FIELDS : c->plan.reads);
     if (err)
         return err;
-    if (s->blend == 0) {
-        if (j.in_place)
-            parallel(c, j.plan.tiles_x * j.plan.tiles_y, scan_tile, &j);
-    } else {
-        parallel(c, j.plan.chunks_x * j.plan.chunks_y, first_sweep, &j);
-        hf_plan_classify(&j.plan, s);
-        if (j.plan.deferred_count)
-            parallel(c, j.plan.deferred_count, first_sweep_deferred, &j);
+    if (s->blend != 0) {
+        parallel(c, hf_plan_count(&c->plan, 1), first_sweep, &j);
+        err = plan_frame(&j);
+        if (!err && c->plan.deferred_count)
+            parallel(c, c->plan.deferred_count, first_sweep_deferred, &j);
+    } else if (j.copy.in_place) {
+        parallel(c, hf_plan_count(&c->plan, 2), scan_tile, &j);
     }
-    if (j.in_place && seen_bad(c) && (err = repair_in_place(&j)))
+    if (!err && j.copy.in_place)
+        err = hf_copy_repair(c);
+    if (err)
         return err;
-    parallel(c, j.plan.tiles_x * j.plan.tiles_y, second_sweep, &j);
+    for (j.sweep = 2; j.sweep <= c->plan.engine->sweeps; j.sweep++)
+        if (j.sweep == c->plan.engine->sweeps || (s->blend != 0 && c->plan.needs))
+            parallel(c, hf_plan_count(&c->plan, j.sweep), later_sweep, &j);
     collect_stats(&j, start);
-    return c->dump && s->blend != 0 ? dump_buffers(&j) : HF_OK;
+    return c->dump && s->blend != 0 ? hf_dump_buffers(c, s) : HF_OK;
 }

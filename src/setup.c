@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "engine.h"
 #include "format.h"
 
 const struct hf_params hf_default_params = {
@@ -25,10 +26,12 @@ const struct hf_params hf_default_params = {
     .world_unit_m = 1,
     .max_radius = HF_DERIVE,
     .pixel_aspect = 1,
+    .squeeze = 1,
+    .iterations = 3,
 };
 
-enum { MAX_SIZE = 65536 };
-static const float MAX_RADIUS = 256;
+enum { MAX_SIZE = 65536, MAX_ITERATIONS = 64 };
+static const float MAX_RADIUS = 256, MAX_LENS_RADIUS = 2048;
 
 __attribute__((format(printf, 2, 3))) static int bad(char message[HF_MESSAGE], const char *format, ...)
 {
@@ -138,10 +141,54 @@ static int check_options(const struct hf_params *p, char message[HF_MESSAGE])
         return bad(message, "fill is %d, which is none", (int)p->fill);
     if ((unsigned)p->blend > HF_BLEND_SMOOTHSTEP)
         return bad(message, "blend is %d, which is none", (int)p->blend);
-    if (p->blades != 0 && (p->blades < 5 || p->blades > 9))
-        return bad(message, "blades is %d; it must be 0 or 5 to 9", p->blades);
     if (!hf_is_finite(p->blade_rotation))
         return bad(message, "blade_rotation is %g; it must be finite", p->blade_rotation);
+    return HF_OK;
+}
+
+static int check_between(const char *name, float value, float least, float most, char message[HF_MESSAGE])
+{
+    return value >= least && value <= most
+               ? HF_OK
+               : bad(message, "%s is %g; it must be %g to %g", name, value, least, most);
+}
+
+static int check_scatter(const struct hf_params *p, char message[HF_MESSAGE])
+{
+    if (p->blades != 0 && (p->blades < 3 || p->blades > 16))
+        return bad(message, "blades is %d; it must be 0 or 3 to 16", p->blades);
+    if (p->aperture && check_image(p->aperture, "aperture", message))
+        return HF_ERR_ARG;
+    const struct {
+        const char *name;
+        float value, least, most;
+    } ranges[] = {{"blade_roundness", p->blade_roundness, 0, 1}, {"ring", p->ring, 0, 0.95f},
+                  {"chromatic", p->chromatic, -0.5f, 0.5f}, {"cat_eye", p->cat_eye, 0, 1},
+                  {"squeeze", p->squeeze, 0.25f, 4}};
+    for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+        if (check_between(ranges[i].name, ranges[i].value, ranges[i].least, ranges[i].most, message))
+            return HF_ERR_ARG;
+    return HF_OK;
+}
+
+// What only some engines read is checked for those alone.
+static int check_engine(const struct hf_params *p, char message[HF_MESSAGE])
+{
+    if (p->engine == HF_ENGINE_GATHER && p->blades != 0 && (p->blades < 5 || p->blades > 9))
+        return bad(message, "blades is %d; it must be 0 or 5 to 9", p->blades);
+    if (p->engine == HF_ENGINE_GATHER)
+        return HF_OK;
+    if ((unsigned)p->resolution > HF_RESOLUTION_QUARTER ||
+        (p->resolution == HF_RESOLUTION_QUARTER && p->engine != HF_ENGINE_GAUSSIAN))
+        return bad(message, "resolution is %d, which the %s engine does not have", (int)p->resolution,
+                   hf_engine_name(p->engine));
+    if (p->engine == HF_ENGINE_SCATTER)
+        return check_scatter(p, message);
+    if (p->engine == HF_ENGINE_GAUSSIAN) {
+        if (p->iterations < 0 || p->iterations > MAX_ITERATIONS)
+            return bad(message, "iterations is %d; it must be 0 to %d", p->iterations, MAX_ITERATIONS);
+        return check_between("sigma", p->sigma, 0, MAX_RADIUS, message);
+    }
     return HF_OK;
 }
 
@@ -154,18 +201,20 @@ int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const
     if (src->width != dst->width || src->height != dst->height)
         return bad(message, "dst is %d x %d pixels and src %d x %d; they must be the same", dst->width, dst->height,
                    src->width, src->height);
-    if (p->engine != HF_ENGINE_GATHER)
+    if (!hf_engine_def(p->engine))
         return bad(message, "engine is %d, which is none", (int)p->engine);
     if ((unsigned)p->model > HF_MODEL_LENS)
         return bad(message, "model is %d, which is none", (int)p->model);
     if (depth->type != HF_DEPTH_COC) {
-        if (!(p->focus_distance > 0 && hf_is_finite(p->focus_distance)))
+        const int autofocus = p->engine == HF_ENGINE_GAUSSIAN && p->focus_distance == HF_DERIVE;
+        if (!autofocus && !(p->focus_distance > 0 && hf_is_finite(p->focus_distance)))
             return bad(message, "focus_distance is %g; it must be > 0 and finite", p->focus_distance);
         const int err = p->model == HF_MODEL_LENS ? check_lens(p, message) : check_range_model(p, message);
         if (err)
             return err;
     }
-    return check_options(p, message);
+    const int err = check_options(p, message);
+    return err ? err : check_engine(p, message);
 }
 
 void hf_setup_depth(struct hf_setup *s, const struct hf_depth *d, float pixel_aspect)
@@ -244,6 +293,7 @@ static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
 {
     if (s->form == HF_FORM_COC) {
         s->near_i = s->far_i = slope(s->max_radius);
+        s->radius_k = 1;
         return;
     }
     if (p->model == HF_MODEL_RANGE) {
@@ -261,38 +311,43 @@ static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
     const double aperture = p->focal_length_mm / 1000.0 / (2.0 * p->f_number) / p->world_unit_m;
     const double k = aperture * ((double)p->focal_length_mm / p->sensor_width_mm * display_width);
     s->lens = 1;
-    s->near_0 = s->far_0 = -1 / p->focus_distance;
+    s->near_0 = s->far_0 = s->radius_0 = -1 / p->focus_distance;
     s->near_i = s->far_i = s->max_radius > 0 ? (float)fmin(k / s->max_radius, FLT_MAX) : 0;
+    s->radius_k = s->near_i > 0 ? (float)fmin(k, FLT_MAX) : 0;
 }
 
-int hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                  const struct hf_depth *depth, const struct hf_params *p, struct hf_taps *taps,
-                  const struct hf_mem *mem)
+// rho. The lens and given radii have no limit of their own but in the gather, whose reach is fixed.
+static float radius_limit(const struct hf_setup *s, const struct hf_params *p)
+{
+    const float display_height = (float)(p->display_height ? p->display_height : s->height);
+    if (p->max_radius != HF_DERIVE)
+        return p->max_radius;
+    if (p->engine == HF_ENGINE_HEXAGON || p->engine == HF_ENGINE_SCATTER)
+        if (s->form == HF_FORM_COC || p->model == HF_MODEL_LENS)
+            return MAX_LENS_RADIUS;
+    return p->faithful ? 12 : fminf(12 * display_height / 1080, MAX_RADIUS);
+}
+
+void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
+                   const struct hf_depth *depth, const struct hf_params *p, struct hf_taps *taps)
 {
     *s = (struct hf_setup){
         .width = src->width, .height = src->height,
         .half_width = (src->width + 1) / 2, .half_height = (src->height + 1) / 2,
-        .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
+        .engine = p->engine, .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
         .storage = p->storage, .faithful = p->faithful, .no_skip = p->no_skip, .karis = p->karis,
         .per_pixel_kernel = p->per_pixel_kernel, .bicubic = p->bicubic, .fill = p->fill,
-        .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP, .taps = taps};
-    const float display_height = (float)(p->display_height ? p->display_height : s->height);
-    s->max_radius = derive(p->max_radius, p->faithful ? 12 : fminf(12 * display_height / 1080, MAX_RADIUS));
+        .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP, .taps = taps, .pixel_aspect = p->pixel_aspect,
+        .resolution = p->resolution, .rotation = p->blade_rotation, .uniform = p->uniform,
+        .iterations = p->iterations, .sigma = p->sigma, .params = p};
     hf_setup_depth(s, depth, p->pixel_aspect);
+    s->max_radius = radius_limit(s, p);
     set_coc_model(s, p);
     const int range_model = s->form != HF_FORM_COC && p->model == HF_MODEL_RANGE;
-    const float strength = range_model ? p->strength : 1;
-    s->blend = strength >= 0.25f ? 1 : 4 * strength;
-    if (s->max_radius == 0 || (s->near_i == 0 && s->far_i == 0)) {
+    s->strength = range_model ? p->strength : 1;
+    s->blend = s->strength >= 0.25f ? 1 : 4 * s->strength;
+    if (p->engine != HF_ENGINE_GATHER && s->blend > 0)
+        s->blend = 1;  // their strength is in the radius
+    if (s->max_radius == 0 || (s->near_i == 0 && s->far_i == 0))
         s->blend = 0;
-        return HF_OK;
-    }
-    const float h = s->max_radius / 2;
-    s->max_x = (int)ceilf(h / p->pixel_aspect);
-    s->max_y = (int)ceilf(h);
-    const struct hf_taps_key key = {.radius = h, .scale = strength >= 0.25f ? strength : 0.25f,
-                                    .pixel_aspect = p->pixel_aspect, .blades = p->blades,
-                                    .rotation = p->blades ? p->blade_rotation : 0,
-                                    .dense = p->fill == HF_FILL_NONE};
-    return hf_taps_build(taps, &key, mem);
 }

@@ -11,10 +11,9 @@ enum { HF_MESSAGE = 256 };
 int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
                    const struct hf_params *params, char message[HF_MESSAGE]);
 
-// Fill *s from checked arguments. taps is (re)built with mem.
-int hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                  const struct hf_depth *depth, const struct hf_params *params, struct hf_taps *taps,
-                  const struct hf_mem *mem);
+// Fill *s from checked arguments. The engine's own tables, taps among them, are made by its prepare.
+void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
+                   const struct hf_depth *depth, const struct hf_params *params, struct hf_taps *taps);
 
 // View depth (INFINITY: no surface) or for HF_FORM_COC the radius of depth sample d at pixel (x, y). NaN gives NaN.
 float hf_depth_decode(const struct hf_setup *s, float d, int x, int y);

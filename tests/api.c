@@ -71,8 +71,9 @@ static void strings(void)
                                           "Near CoC Blur X", "Near CoC Blur Y", "Computation",    "Fill",
                                           "Composite"};
     for (int i = 0; i < HF_PASS_COUNT; i++)
-        CHECK(strcmp(hf_pass_name((enum hf_pass_id)i), passes[i]) == 0);
-    CHECK(!hf_pass_name(HF_PASS_COUNT) && !hf_pass_name((enum hf_pass_id)-1));
+        CHECK(strcmp(hf_pass_name(HF_ENGINE_GATHER, i), passes[i]) == 0);
+    CHECK(!hf_pass_name(HF_ENGINE_GATHER, HF_PASS_COUNT) && !hf_pass_name(HF_ENGINE_GATHER, -1) &&
+          !hf_pass_name((enum hf_engine)-1, 0));
 }
 
 static void *some_alloc(void *cookie, size_t size, size_t align)

@@ -153,7 +153,21 @@ struct hf_depth {
 HF_API int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z);
 
 enum hf_engine {
-    HF_ENGINE_GATHER,  // Sterna's gather over half-resolution near and far fields: nine passes
+    HF_ENGINE_GATHER,    // Sterna's gather over half-resolution near and far fields: nine passes
+    HF_ENGINE_HEXAGON,   // hexagonal bokeh in two passes of directional blurs (White and Barre-Brisebois, 2011)
+    HF_ENGINE_SCATTER,   // every pixel becomes its aperture's picture (Wronski, 2012)
+    HF_ENGINE_GAUSSIAN,  // iterated 5-tap blur blended by depth, with autofocus (2010)
+};
+enum { HF_ENGINE_COUNT = HF_ENGINE_GAUSSIAN + 1 };
+
+// The command line's name for an engine; NULL for a number that is none.
+HF_API const char *hf_engine_name(enum hf_engine engine);
+
+// Size of the buffers in which the engines other than gather work. Smaller is faster and softer.
+enum hf_resolution {
+    HF_RESOLUTION_FULL,
+    HF_RESOLUTION_HALF,     // half the width and half the height
+    HF_RESOLUTION_QUARTER,  // a quarter of each; gaussian only
 };
 
 // How the normalised near and far CoC follow from depth.
@@ -190,7 +204,7 @@ struct hf_params {
     enum hf_model model;    // default HF_MODEL_RANGE. Ignored for HF_DEPTH_COC.
 
     // Distance of the plane in focus, scene units of view depth, > 0, finite. Default 10. Both models.
-    // Ignored for HF_DEPTH_COC.
+    // gaussian also takes HF_DERIVE: what the picture's centre shows. Ignored for HF_DEPTH_COC.
     float focus_distance;
 
     // Range model. Distance over which sharp turns into fully blurred, on both sides of the focus: >= 0, scene
@@ -213,7 +227,8 @@ struct hf_params {
     float world_unit_m;     // metres per scene unit, default 1
 
     // Largest CoC radius, full-resolution pixels, 0 (the input, bit for bit) to 256. HF_DERIVE (default):
-    // 12 at 1080 lines and proportional to the display height (always 12 when faithful), the chapter's reach.
+    // 12 at 1080 lines and proportional to the display height (always 12 when faithful), the chapter's reach; for the
+    // lens model and HF_DEPTH_COC in other engines than gather, no limit but that of 2048.
     float max_radius;
     // Size of the whole picture when the image given is a part of it: pixels, 0 (default): the image's own. Only
     // scales blur: the height max_radius, the width the lens.
@@ -240,10 +255,41 @@ struct hf_params {
     int bicubic;
     enum hf_fill fill;    // default HF_FILL_MAX
     enum hf_blend blend;  // default HF_BLEND_LINEAR
-    // Shape of the tap rings: 0 (default) circles, 5..9 a regular polygon with that many blades, the middle of a
-    // side on the +x axis turned by blade_rotation degrees (any finite value). T. Sousa, SIGGRAPH 2013.
+    // Shape of the aperture. blades: 0 (default) a disc, else a regular polygon with that many sides, the middle of
+    // one on the +x axis turned by blade_rotation degrees (any finite value, default 0). gather: 5..9, its rings of
+    // taps take that shape (T. Sousa, SIGGRAPH 2013). scatter: 3..16, and its corners may be rounded.
+    // hexagon: always six sides; only blade_rotation counts.
     int blades;
     float blade_rotation;
+
+    // hexagon, scatter, gaussian: size of the working buffers. Default HF_RESOLUTION_FULL. scatter has no quarter,
+    // hexagon neither.
+    enum hf_resolution resolution;
+    // hexagon: every pixel gets max_radius, whatever its depth: the plain blur, whose cost does not grow with the
+    // square of the radius. Default 0.
+    int uniform;
+
+    // scatter. Sides of the polygon bent towards the circle around it: 0 (default) straight .. 1 a disc.
+    float blade_roundness;
+    // Radius of a central obstruction, as a mirror lens has, over the aperture's: 0 (default, none) .. 0.95.
+    float ring;
+    // A picture of the aperture, its centre the lens's axis and its shorter side the diameter; brightness is
+    // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during hf_render.
+    const struct hf_image *aperture;
+    // Axial chromatic aberration: red CoCs are larger by this fraction and blue ones smaller (behind the focus; the other
+    // way in front of it), -0.5..0.5, default 0.
+    float chromatic;
+    // Mechanical vignetting: how far the exit pupil's second circle moves towards the picture's corner there, in
+    // aperture radii, 0 (default, none) .. 1. Highlights in the corners become cat's eyes.
+    float cat_eye;
+    // Anamorphic squeeze: height over width of a highlight, 0.25..4, default 1. Heights are kept.
+    float squeeze;
+
+    // gaussian: passes of the 5-tap kernel over the buffer, 0..64, default 3.
+    int iterations;
+    // gaussian: standard deviation in full-resolution pixels of one blur that costs the same for any, in place of
+    // the iterations; 0 (default): iterations. Up to 256.
+    float sigma;
 };
 
 // The defaults given above. Copy it, then change what you need.
@@ -257,7 +303,7 @@ HF_API extern const struct hf_params hf_default_params;
 HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params);
 
-// The passes of the gather engine, in the order and with the names of the chapter's table 3.1.
+// The passes of the gather engine, in the order of the chapter's table 3.1.
 enum hf_pass_id {
     HF_PASS_COC,
     HF_PASS_DOWN,
@@ -271,15 +317,21 @@ enum hf_pass_id {
     HF_PASS_COUNT
 };
 
-// "CoC generation", "Downsample", ...; NULL for a number that is none.
-HF_API const char *hf_pass_name(enum hf_pass_id pass);
+// No engine has more passes.
+enum { HF_MAX_PASSES = 12 };
+
+// An engine's passes in the order in which they run, and their names: for the gather those of table 3.1. 0 and NULL
+// for numbers that are none.
+HF_API int hf_pass_count(enum hf_engine engine);
+HF_API const char *hf_pass_name(enum hf_engine engine, int pass);
 
 // What the last hf_render of a context did.
 struct hf_stats {
     double total_ms;                     // wall time of the call
-    double pass_ms[HF_PASS_COUNT];       // time in each pass, summed over the threads / number of threads
-    uint32_t tiles_run[HF_PASS_COUNT];   // tiles that ran the pass ...
-    uint32_t tiles_all[HF_PASS_COUNT];   // ... of how many
+    enum hf_engine engine;               // that rendered it; numbers its passes
+    double pass_ms[HF_MAX_PASSES];       // time in each pass, summed over the threads / number of threads
+    uint32_t tiles_run[HF_MAX_PASSES];   // tiles that ran the pass ...
+    uint32_t tiles_all[HF_MAX_PASSES];   // ... of how many
     uint64_t near_pixels, sharp_pixels, far_pixels;  // pixels by their own CoC: n > 0, both 0, f > 0
     uint64_t colour_repaired;            // colour samples (channels of pixels) that were NaN or infinite
     uint64_t depth_repaired;             // depth samples that were NaN
@@ -294,9 +346,9 @@ HF_API void hf_get_stats(const struct hf_context *c, struct hf_stats *stats);
 
 // One intermediate buffer, for looking at and for tests: planes of floats.
 struct hf_buffer {
-    const char *name;       // coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far,
+    const char *name;       // gather: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far,
                             // nearfill, farfill
-    int width, height;      // full or half resolution
+    int width, height;      // full, half or quarter resolution
     int channels;           // 1..4: near and far CoC, one CoC, or R, G, B and perhaps A
     const float *data[4];
     ptrdiff_t stride;       // bytes from one row to the next, the same for all channels

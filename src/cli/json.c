@@ -119,8 +119,8 @@ static void put_stats(FILE *out, const struct cli_view *v, const struct cli_fram
             (double)s->near_pixels / pixels, (double)s->sharp_pixels / pixels, (double)s->far_pixels / pixels,
             s->colour_repaired, s->depth_repaired, s->no_surface, clamped);
     fprintf(out, ",\n      \"total_ms\": %.6f,\n      \"passes\": [", s->total_ms);
-    for (int i = 0; i < HF_PASS_COUNT; i++)
-        fprintf(out, "%s\n        {\"name\": \"%s\", \"ms\": %.6f}", i ? "," : "", hf_pass_name((enum hf_pass_id)i),
+    for (int i = 0; i < hf_pass_count(s->engine); i++)
+        fprintf(out, "%s\n        {\"name\": \"%s\", \"ms\": %.6f}", i ? "," : "", hf_pass_name(s->engine, i),
                 s->pass_ms[i]);
     fputs("\n      ]", out);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Downsample: half-resolution colour, colour x far CoC, and CoC.
+// Downsample: half-resolution colour and near CoC for the near field, colour x far CoC and far CoC for the far one.
 #include "pass/pass_c.h"
 
 // Weights of a 2x2 quad for the far field: like pixels count, relative to its top left one. The chapter has w00 =
@@ -42,14 +42,20 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
         for (int c = 0; c < s->channels; c++) {
             const float c00 = lane[0][0][c][x], c10 = lane[0][1][c][x];
             const float c01 = lane[1][0][c][x], c11 = lane[1][1][c][x];
-            colour[c][x] = 0.25f * ((c00 + c10) + (c01 + c11));
-            far[c][x] = ((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0];
+            if (f->near)
+                colour[c][x] = 0.25f * ((c00 + c10) + (c01 + c11));
+            if (f->far)
+                far[c][x] = ((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0];
         }
-        *hf_at(&f->buf[HF_BUF_COC4], 0, r.x0 + x, y) = *hf_at(coc, 0, r.x0 + x, 2 * y);
-        *hf_at(&f->buf[HF_BUF_COC4], 1, r.x0 + x, y) = quad[0];
+        if (f->near)
+            *hf_at(&f->buf[HF_BUF_COC4], 0, r.x0 + x, y) = *hf_at(coc, 0, r.x0 + x, 2 * y);
+        if (f->far)
+            *hf_at(&f->buf[HF_BUF_COC4], 1, r.x0 + x, y) = quad[0];
     }
-    hf_store_rgb(f, colour, n);
-    hf_store_rgb(f, far, n);
+    if (f->near)
+        hf_store_rgb(f, colour, n);
+    if (f->far)
+        hf_store_rgb(f, far, n);
 }
 
 void hf_down_c(const struct hf_frame *f, struct hf_rect r)

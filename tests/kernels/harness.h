@@ -7,7 +7,7 @@
 #ifndef HF_TESTS_HARNESS_H
 #define HF_TESTS_HARNESS_H
 
-#include "pass.h"
+#include "engine.h"
 #include "setup.h"
 
 // ---- random numbers: one seed, one sequence, so never two draws where C leaves the order open ----

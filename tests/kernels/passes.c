@@ -62,16 +62,17 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
             }
 }
 
-// A buffer that the tile's flags leave out is there, but nobody has written it.
+// A buffer that the flags leave out is there, but nobody has written it.
 static int wanted(const struct world *w, int b)
 {
-    const unsigned near = HF_BIT(NEAR) | HF_BIT(NEAR_FILL) | HF_BIT(BLUR), far = HF_BIT(FAR) | HF_BIT(FAR_FILL);
+    const unsigned near = HF_BIT(NEAR) | HF_BIT(NEAR_FILL) | HF_BIT(BLUR) | HF_BIT(COLOR4);
+    const unsigned far = HF_BIT(FAR) | HF_BIT(FAR_FILL) | HF_BIT(COLORFAR4);
     return !(!w->near && (near >> b & 1)) && !(!w->far && (far >> b & 1));
 }
 
 static void make_inputs(struct world *w, int pass)
 {
-    const struct hf_pass *p = &hf_passes[pass];
+    const struct hf_pass *p = &hf_gather_engine.passes[pass];
     const struct hf_reach halo = hf_pass_halo(&w->setup, p->halo);
     const unsigned all = p->reads | p->around;
     for (int i = -1; i < HF_BUF_COUNT; i++) {
@@ -80,7 +81,8 @@ static void make_inputs(struct world *w, int pass)
             continue;
         const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? grow(w->r, halo) : w->r);
         make_buf(w, b, r);
-        if (wanted(w, b))
+        // Karis weights come from the colour, whatever the field.
+        if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->setup.karis))
             fill_buf(w, b, r);
     }
     if (pass == HF_PASS_COC || pass == HF_PASS_COMPOSITE)
@@ -105,7 +107,8 @@ static void make_output(struct world *w, enum region_kind kind, int b, struct hf
     make_buf(w, b, r);
     if (wanted(w, b))
         for (int c = 0; c < buf_channels(w, b); c++)
-            add_region(w, kind, b, c, r);
+            if (b != HF_BUF_COC4 || (c == 0 ? w->near : w->far))
+                add_region(w, kind, b, c, r);
 }
 
 static void make_dst(struct world *w)
@@ -134,7 +137,7 @@ static void make_dst(struct world *w)
 static void make_outputs(struct world *w, int pass)
 {
     for (int b = 0; b < HF_BUF_COUNT; b++)
-        if (hf_passes[pass].writes >> b & 1)
+        if (hf_gather_engine.passes[pass].writes >> b & 1)
             make_output(w, REGION_FLOATS, b, rows_of(w, b, w->r));
     if (pass == HF_PASS_GATHER) {
         make_output(w, REGION_SCRATCH, HF_BUF_SUM, w->r);
@@ -180,7 +183,7 @@ void pass_make(struct world *w, int pass)
     random_area(w);
     w->is_pass = 1;
     w->near = w->far = 1;
-    if (!w->bench && pass >= HF_PASS_GATHER && rng_one_in(&w->rng, 3))
+    if (!w->bench && (pass == HF_PASS_DOWN || pass >= HF_PASS_GATHER) && rng_one_in(&w->rng, 3))
         rng_one_in(&w->rng, 2) ? (w->near = 0) : (w->far = 0);
     make_scratch(w);
     make_inputs(w, pass);
