@@ -14,6 +14,10 @@ void hf_kernels_c(struct hf_kernels *k)
     k->pass[HF_PASS_FILL] = hf_fill_c;
     k->pass[HF_PASS_COMPOSITE] = hf_composite_c;
     k->coc_row = hf_coc_row_c;
+    k->pass[HF_KERNEL_RADIUS] = hf_radius_c;
+    k->radius_row = hf_radius_row_c;
+    k->zip = hf_zip_row_c;
+    k->unzip = hf_unzip_row_c;
     hf_format_kernels_c(k);
 }
 

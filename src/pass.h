@@ -24,7 +24,8 @@ enum { HF_NEAR = 1, HF_FAR = 2, HF_FIELDS = HF_NEAR | HF_FAR };
 
 // Kernels beyond the gather's, which are numbered by its passes.
 enum {
-    HF_KERNEL_COUNT = HF_PASS_COUNT
+    HF_KERNEL_RADIUS = HF_PASS_COUNT,  // looks at the depth: counts, and the range of radii
+    HF_KERNEL_COUNT
 };
 
 struct hf_pass {
@@ -69,6 +70,13 @@ typedef int hf_finite(const void *words, size_t n);
 // far odd. counts NULL: the near rows need not be written, and nothing is counted.
 typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
 
+// Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted.
+typedef void hf_radius_row(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts);
+
+// Rows of 2n pixels in order, from their n even and n odd ones, and back.
+typedef void hf_zip_row(const float *even, const float *odd, int n, float *out);
+typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
+
 // Round a row of n floats to what a storage holds, in place; may touch HF_PAD floats more.
 typedef void hf_round_row(float *v, int n);
 typedef void hf_round_rgb(float *r, float *g, float *b, int n);
@@ -76,6 +84,9 @@ typedef void hf_round_rgb(float *r, float *g, float *b, int n);
 struct hf_kernels {
     hf_kernel *pass[HF_KERNEL_COUNT];
     hf_coc_row *coc_row;
+    hf_radius_row *radius_row;
+    hf_zip_row *zip;
+    hf_unzip_row *unzip;
     hf_load_row *load[HF_FORMAT_COUNT];
     hf_store_row *store[HF_FORMAT_COUNT];
     hf_finite *finite_f32, *finite_f16, *finite_r11;
@@ -101,5 +112,10 @@ void hf_kernels_init(struct hf_kernels *k, enum hf_isa isa, int fused);
 // Returns nothing; repaired samples are counted in counts when it is not NULL.
 void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
                     struct hf_counts *counts);
+// The same for 2n pixels in order from pixel 2x on. Uses scratch rows 0 to 7.
+void hf_read_pixels(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
+// Store 2n pixels in order from pixel 2x of row y on, as the target's format wants them; what it clamps is counted.
+// alpha 0: in[3] is not there, and is 1 if the format has one. Uses scratch rows 0 to 7.
+void hf_write_pixels(const struct hf_frame *f, int x, int y, int n, const float *const in[4], int alpha);
 
 #endif

@@ -178,6 +178,9 @@ static int check_engine(const struct hf_params *p, char message[HF_MESSAGE])
         return bad(message, "blades is %d; it must be 0 or 5 to 9", p->blades);
     if (p->engine == HF_ENGINE_GATHER)
         return HF_OK;
+    if (p->storage != HF_STORAGE_FLOAT)
+        return bad(message, "storage is %d; the %s engine has float storage only", (int)p->storage,
+                   hf_engine_name(p->engine));
     if ((unsigned)p->resolution > HF_RESOLUTION_QUARTER ||
         (p->resolution == HF_RESOLUTION_QUARTER && p->engine != HF_ENGINE_GAUSSIAN))
         return bad(message, "resolution is %d, which the %s engine does not have", (int)p->resolution,
@@ -348,6 +351,7 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
     s->blend = s->strength >= 0.25f ? 1 : 4 * s->strength;
     if (p->engine != HF_ENGINE_GATHER && s->blend > 0)
         s->blend = 1;  // their strength is in the radius
-    if (s->max_radius == 0 || (s->near_i == 0 && s->far_i == 0))
+    const int no_coc = s->near_i == 0 && s->far_i == 0 && !(s->uniform && p->engine == HF_ENGINE_HEXAGON);
+    if (s->max_radius == 0 || no_coc)
         s->blend = 0;
 }

@@ -128,6 +128,49 @@ static int check_model(const struct cli_args *args, struct cli_error *error)
     return check_depth(args, error);
 }
 
+// What an engine cannot do is said, not ignored.
+static int check_engine(const struct cli_args *args, struct cli_error *error)
+{
+    const struct hf_params *p = &args->params;
+    const int gather = p->engine == HF_ENGINE_GATHER, scatter = p->engine == HF_ENGINE_SCATTER;
+    const int hexagon = p->engine == HF_ENGINE_HEXAGON, gaussian = p->engine == HF_ENGINE_GAUSSIAN;
+    const struct hf_params *d = &hf_default_params;
+    const struct {
+        int given, allowed;
+        const char *option, *engines;
+    } rules[] = {
+        {p->chromatic != d->chromatic, scatter, "chromatic", "scatter"},
+        {p->cat_eye != d->cat_eye, scatter, "cat-eye", "scatter"},
+        {p->squeeze != d->squeeze, scatter, "squeeze", "scatter"},
+        {p->uniform, hexagon, "uniform", "hexagon"},
+        {p->iterations != d->iterations, gaussian, "iterations", "gaussian"},
+        {p->sigma != d->sigma, gaussian, "sigma", "gaussian"},
+        {p->resolution == HF_RESOLUTION_HALF, !gather, "resolution half", "hexagon, scatter and gaussian"},
+        {p->resolution == HF_RESOLUTION_QUARTER, gaussian, "resolution quarter", "gaussian"},
+        {p->karis, gather, "karis", "gather"},
+        {p->per_pixel_kernel, gather, "per-pixel-kernel", "gather"},
+        {p->bicubic, gather, "bicubic", "gather"},
+        {p->fill != d->fill, gather, "fill", "gather"},
+        {p->storage != d->storage, gather, "storage", "gather"},
+        {p->faithful, gather || gaussian, "faithful", "gather and gaussian"},
+    };
+    for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++)
+        if (rules[i].given && !rules[i].allowed)
+            return cli_fail(error, -1, "--%s is of use only with --engine %s, not %s", rules[i].option,
+                            rules[i].engines, hf_engine_name(p->engine));
+    const int plain = !args->aperture_file && p->ring == 0 && p->blade_roundness == 0;
+    if (args->aperture && gather && (!plain || (p->blades && (p->blades < 5 || p->blades > 9))))
+        return cli_fail(error, -1, "--aperture: '%s' is not an aperture of the gather engine, which takes disc or "
+                        "ngon:N[:0[:DEGREES]] with 5 to 9 sides", args->aperture);
+    if (args->aperture && hexagon && (!plain || (p->blades != 6)))
+        return cli_fail(error, -1, "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
+                        "ngon:6[:0[:DEGREES]]", args->aperture);
+    if (args->aperture && gaussian)
+        return cli_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon and scatter",
+                        args->aperture);
+    return 0;
+}
+
 static int check_files(const struct cli_args *args, struct cli_error *error)
 {
     if (!args->input)
@@ -175,7 +218,7 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_erro
     }
     if (args->views && !strcmp(args->views, "all"))
         args->views = NULL;
-    if (check_files(args, error) || check_model(args, error))
+    if (check_files(args, error) || check_engine(args, error) || check_model(args, error))
         return -1;
     return 0;
 }

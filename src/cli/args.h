@@ -38,6 +38,9 @@ struct cli_args {
     enum hf_depth_type depth_type;
     float near_plane, far_plane;
 
+    const char *aperture;       // as given
+    const char *aperture_file;  // NULL: the shape in params
+
     const char *views;       // NULL: all, else names with commas
     const char *compression;
     const char *dump_dir;

@@ -6,7 +6,10 @@
 #include <stddef.h>
 
 // A choice is stored as its place in the list, so these lists are in the order of the enums.
-_Static_assert(HF_ENGINE_GATHER == 0, "order of --engine");
+_Static_assert(HF_ENGINE_GATHER == 0 && HF_ENGINE_HEXAGON == 1 && HF_ENGINE_SCATTER == 2 && HF_ENGINE_GAUSSIAN == 3,
+               "order of --engine");
+_Static_assert(HF_RESOLUTION_FULL == 0 && HF_RESOLUTION_HALF == 1 && HF_RESOLUTION_QUARTER == 2,
+               "order of --resolution");
 _Static_assert(HF_STORAGE_FLOAT == 0 && HF_STORAGE_HALF == 1 && HF_STORAGE_CHAPTER == 2, "order of --storage");
 _Static_assert(HF_FILL_MAX == 0 && HF_FILL_MEAN == 1 && HF_FILL_NONE == 2, "order of --fill");
 _Static_assert(HF_BLEND_LINEAR == 0 && HF_BLEND_SMOOTHSTEP == 1, "order of --blend");
@@ -80,10 +83,26 @@ const struct cli_option cli_options[] = {
     {"far", 0, CLI_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf.", POSITIVE(far_plane),
      .inf = 1},
 
-    {"engine", 0, CLI_LOOK, "gather", "How to blur. gather (default): half-resolution near and far fields.",
-     CHOICE(params.engine)},
-    {"aperture", 0, CLI_LOOK, "disc|ngon:N[:0[:DEGREES]]", "Shape of a highlight: a disc (default), or a polygon "
-     "with 5 to 9 sides turned by some degrees.", .parse = cli_parse_aperture},
+    {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian", "How to blur. gather (default): half-resolution near "
+     "and far fields, the fastest. hexagon: hexagonal highlights in two passes. scatter: every pixel becomes the "
+     "aperture's picture, the most accurate. gaussian: soft, with autofocus.", CHOICE(params.engine)},
+    {"aperture", 0, CLI_LOOK, "disc|ngon:N[:ROUNDNESS[:DEGREES]]|ring:R|FILE", "Shape of a highlight: a disc "
+     "(default), or a polygon with 5 to 9 sides turned by some degrees. scatter: 3 to 16 sides, rounded by 0 to 1; a "
+     "ring whose hole has R of the radius, 0 to 0.95; or the picture in FILE. hexagon: ngon:6 and the degrees.",
+     .parse = cli_parse_aperture},
+    {"chromatic", 0, CLI_LOOK, "S", "scatter: red highlights larger by this fraction and blue ones smaller behind the "
+     "focus, the other way before it, -0.5 to 0.5. Default 0.", NUMBER(params.chromatic, -0.5, 0.5)},
+    {"cat-eye", 0, CLI_LOOK, "S", "scatter: cut highlights towards the corners, 0 (default) to 1.",
+     NUMBER(params.cat_eye, 0, 1)},
+    {"squeeze", 0, CLI_LOOK, "S", "scatter: height over width of a highlight, 0.25 to 4. Default 1.",
+     NUMBER(params.squeeze, 0.25, 4)},
+    {"uniform", 0, CLI_LOOK, NULL, "hexagon: the same blur everywhere, --max-radius.", FLAG(params.uniform)},
+    {"iterations", 0, CLI_LOOK, "N", "gaussian: passes of the 5-tap blur, 0 to 64. Default 3.",
+     .parse = cli_parse_count, FIELD(params.iterations), .max = 64},
+    {"sigma", 0, CLI_LOOK, "PX", "gaussian: one blur of this standard deviation, pixels, in place of --iterations, 0 "
+     "to 256. Default 0: iterations.", NUMBER(params.sigma, 0, 256)},
+    {"resolution", 0, CLI_LOOK, "full|half|quarter", "hexagon, scatter, gaussian: size of the working buffers, quarter "
+     "only for gaussian. Default full.", CHOICE(params.resolution)},
     {"fill", 0, CLI_LOOK, "max|mean|none", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, or "
      "three times as many taps.", CHOICE(params.fill)},
     {"blend", 0, CLI_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",

@@ -118,6 +118,11 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     }
     if (setup->model == CLI_MODEL_COC)
         return 0;
+    if (args->params.engine == HF_ENGINE_GAUSSIAN && setup->model == CLI_MODEL_RANGE) {
+        setup->focus_from = "the picture's centre";
+        *focus = HF_DERIVE;
+        return 0;
+    }
     const float unit = given(args->world_unit) ? args->world_unit : 1;
     if (!usable(view->camera.focus / unit))
         return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: there is no focus distance in the header, give one with "

@@ -197,8 +197,8 @@ static int parse_ngon(struct hf_params *params, const char *value, struct cli_er
     char *end, part[32];
     const char *text = value + strlen("ngon:");
     double number[2] = {0, 0};  // roundness, degrees
-    if (read_int(text, &params->blades, &end) || (*end && *end != ':') || params->blades < 5 || params->blades > 9)
-        return cli_fail(error, -1, "--aperture: '%s' must have 5 to 9 sides, as in ngon:6", value);
+    if (read_int(text, &params->blades, &end) || (*end && *end != ':') || params->blades < 3 || params->blades > 16)
+        return cli_fail(error, -1, "--aperture: '%s' must have 3 to 16 sides, as in ngon:6", value);
     for (int i = 0; *end; i++) {
         const size_t n = strcspn(end + 1, ":");
         snprintf(part, sizeof(part), "%.*s", (int)n, end + 1);
@@ -206,8 +206,9 @@ static int parse_ngon(struct hf_params *params, const char *value, struct cli_er
             return cli_fail(error, -1, "--aperture: '%s' is not ngon:N[:ROUNDNESS[:DEGREES]]", value);
         end += 1 + n;
     }
-    if (number[0] != 0)
-        return cli_fail(error, -1, "--aperture: '%s' is rounded, the gather engine takes roundness 0 only", value);
+    if (!(number[0] >= 0 && number[0] <= 1))
+        return cli_fail(error, -1, "--aperture: '%s' must be rounded by 0 to 1", value);
+    params->blade_roundness = (float)number[0];
     params->blade_rotation = (float)number[1];
     return 0;
 }
@@ -215,14 +216,25 @@ static int parse_ngon(struct hf_params *params, const char *value, struct cli_er
 int cli_parse_aperture(struct cli_args *args, const struct cli_option *option, const char *value,
                        struct cli_error *error)
 {
-    args->params.blades = 0;
-    args->params.blade_rotation = 0;
+    struct hf_params *p = &args->params;
+    double hole = 0;
+    p->blades = 0;
+    p->blade_rotation = p->blade_roundness = p->ring = 0;
+    args->aperture = value;
+    args->aperture_file = NULL;
     if (!strcmp(value, "disc"))
         return 0;
     if (!strncmp(value, "ngon:", 5))
-        return parse_ngon(&args->params, value, error);
-    return cli_fail(error, -1, "--%s: '%s' is not an aperture of the gather engine, which takes disc or ngon:N",
-                    option->name, value);
+        return parse_ngon(p, value, error);
+    if (strncmp(value, "ring:", 5)) {
+        args->aperture_file = value;
+        return value[0] ? 0 : cli_fail(error, -1, "--%s: '' is empty, it must be %s", option->name,
+                                       option->placeholder);
+    }
+    if (read_number(value + 5, &hole) || !(hole >= 0 && hole <= 0.95))
+        return cli_fail(error, -1, "--%s: the hole of '%s' must be 0 to 0.95 of the radius", option->name, value);
+    p->ring = (float)hole;
+    return 0;
 }
 
 int cli_parse_json(struct cli_args *args, const struct cli_option *option, const char *value,

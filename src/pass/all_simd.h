@@ -5,6 +5,7 @@
 
 #include "pass/format_simd.h"
 #include "pass/coc_simd.h"
+#include "pass/radius_simd.h"
 #include "pass/down_simd.h"
 #include "pass/near_max_simd.h"
 #include "pass/near_blur_simd.h"
@@ -18,6 +19,9 @@ void HF_INIT(struct hf_kernels *k)
 {
     format_init(k);
     k->coc_row = coc_row_simd;
+    k->radius_row = radius_row_simd;
+    k->zip = zip_row_simd;
+    k->unzip = unzip_row_simd;
     k->pass[HF_PASS_DOWN] = down_simd;
     k->pass[HF_PASS_MAX_X] = max_x_simd;
     k->pass[HF_PASS_MAX_Y] = max_y_simd;

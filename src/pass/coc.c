@@ -46,8 +46,7 @@ static float repair_depth(const struct hf_frame *f, int x, int y)
     return best > -INFINITY ? best : INFINITY;
 }
 
-// Near and far CoC of one pixel.
-void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts)
+float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts)
 {
     const struct hf_setup *s = f->s;
     float z = hf_depth_decode(s, depth_at(f, x, y), x, y);
@@ -58,7 +57,14 @@ void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, 
     }
     if (counts)
         counts->no_surface += z >= 1e10f;
-    const float v = s->lens ? -1 / z : z;
+    return s->lens ? -1 / z : z;
+}
+
+// Near and far CoC of one pixel.
+void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts)
+{
+    const struct hf_setup *s = f->s;
+    const float v = hf_coc_variable(f, x, y, counts);
     *n = hf_round_coc(s->storage, shape(s, saturate((s->near_0 - v) * s->near_i)));
     *far = hf_round_coc(s->storage, shape(s, saturate((v - s->far_0) * s->far_i)));
 }

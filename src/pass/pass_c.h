@@ -10,6 +10,13 @@
 
 hf_kernel hf_coc_c, hf_down_c, hf_max_x_c, hf_max_y_c, hf_blur_x_c, hf_blur_y_c, hf_gather_c, hf_fill_c, hf_composite_c;
 hf_coc_row hf_coc_row_c;
+hf_kernel hf_radius_c;
+hf_radius_row hf_radius_row_c;
+hf_zip_row hf_zip_row_c;
+hf_unzip_row hf_unzip_row_c;
+
+// The variable that CoC is linear in at a pixel: z, -1/z with a lens, or the radius itself.
+float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);
 
 void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts);
 float hf_round_coc(enum hf_storage storage, float t);

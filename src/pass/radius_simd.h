@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Signed CoC radii on vectors. As in CoC generation nothing is fused, so that what is sharp has one answer everywhere.
+
+HF_INLINE vf radius_of_vf(const struct hf_setup *s, vf v)
+{
+    vf r;
+    if (s->radius_k > 0) {
+        r = vf_mul(vf_sub(v, vf_set1(s->radius_0)), vf_set1(s->radius_k));
+        r = vf_min(vf_max(r, vf_set1(-s->max_radius)), vf_set1(s->max_radius));
+    } else {
+        vf n = coc_saturate(vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i)));
+        vf f = coc_saturate(vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i)));
+        if (s->smoothstep) {
+            n = coc_shape(n);
+            f = coc_shape(f);
+        }
+        r = vf_mul(vf_set1(s->strength * s->max_radius), vf_sub(f, n));
+    }
+    if (s->uniform)
+        r = vf_set1(s->max_radius);
+    return vf_keep(vf_gt(vf_abs(r), vf_set1(s->sharp_radius)), r);
+}
+
+struct radius_sums {
+    vi near, far, none;
+    vf min, max;
+    vm nan;
+};
+
+HF_INLINE void radius_form(const struct hf_frame *f, const enum hf_depth_form form, int x, int y, int n, float *out,
+                           struct radius_sums *sums)
+{
+    const struct hf_setup *s = f->s;
+    const uint8_t *row = (const uint8_t *)f->depth->data + (ptrdiff_t)y * f->depth->stride + (size_t)x * 4;
+    static const float steps[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const vf py = vf_set1((float)y + 0.5f - s->ray_cy), step = vf_load(steps);
+    for (int i = 0; i < n; i += VF_N) {
+        vm none;
+        const vf d = vf_load(row + (size_t)i * 4);
+        const vf px = vf_sub(vf_add(vf_add(vf_set1((float)(x + i)), step), vf_set1(0.5f)), vf_set1(s->ray_cx));
+        const vf r = radius_of_vf(s, coc_variable(s, form, d, px, py, &none));
+        vf_store(out + i, r);
+        sums->nan = vm_or(sums->nan, vf_ne(d, d));
+        sums->none = vi_count(sums->none, none);
+        sums->near = vi_count(sums->near, vf_lt(r, vf_zero()));
+        sums->far = vi_count(sums->far, vf_gt(r, vf_zero()));
+        sums->min = vf_min(sums->min, r);
+        sums->max = vf_max(sums->max, r);
+    }
+}
+
+static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts)
+{
+    const int whole = n / VF_N * VF_N;
+    struct radius_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(), vf_gt(vf_zero(), vf_zero())};
+    switch (f->s->form) {
+    case HF_FORM_Z:
+        radius_form(f, HF_FORM_Z, x, y, whole, out, &sums);
+        break;
+    case HF_FORM_RAY:
+        radius_form(f, HF_FORM_RAY, x, y, whole, out, &sums);
+        break;
+    case HF_FORM_IZ:
+        radius_form(f, HF_FORM_IZ, x, y, whole, out, &sums);
+        break;
+    case HF_FORM_COC:
+        radius_form(f, HF_FORM_COC, x, y, whole, out, &sums);
+        break;
+    }
+    // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
+    const int from = vm_any(sums.nan) ? 0 : whole;
+    if (from < n)
+        hf_radius_row_c(f, x + from, y, n - from, out + from, counts);
+    if (!counts || from == 0)
+        return;
+    float least[VF_N], most[VF_N];
+    const uint32_t near = vi_sum(sums.near), far = vi_sum(sums.far);
+    counts->near_pixels += near;
+    counts->far_pixels += far;
+    counts->sharp_pixels += (uint64_t)whole - near - far;
+    counts->no_surface += vi_sum(sums.none);
+    vf_store(least, sums.min);
+    vf_store(most, sums.max);
+    for (int i = 0; i < VF_N; i++) {
+        counts->radius_min = least[i] < counts->radius_min ? least[i] : counts->radius_min;
+        counts->radius_max = most[i] > counts->radius_max ? most[i] : counts->radius_max;
+    }
+}
+
+static void zip_row_simd(const float *even, const float *odd, int n, float *out)
+{
+    for (int i = 0; i < n; i += VF_N) {
+        vf a, b;
+        vf_zip(vf_load(even + i), vf_load(odd + i), &a, &b);
+        vf_store(out + 2 * i, a);
+        vf_store(out + 2 * i + VF_N, b);
+    }
+}
+
+static void unzip_row_simd(const float *in, int n, float *even, float *odd)
+{
+    for (int i = 0; i < n; i += VF_N) {
+        vf a, b;
+        vf_unzip(vf_load(in + 2 * i), vf_load(in + 2 * i + VF_N), &a, &b);
+        vf_store(even + i, a);
+        vf_store(odd + i, b);
+    }
+}
