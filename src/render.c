@@ -234,10 +234,14 @@ static int lay_out_chunks(struct job *j)
     const int same = last.engine == c->plan.engine && last.width == c->plan.width && last.height == c->plan.height &&
                      last.cell_width[1] == c->plan.cell_width[1] && last.cell_height[1] == c->plan.cell_height[1];
     const int err = hf_block_grow(&c->chunks, hf_plan_chunk_bytes(&c->plan), &c->mem);
+    if (err) {
+        c->plan.width = 0;  // nothing to guess from
+        return err;
+    }
     hf_plan_chunk_memory(&c->plan, c->chunks.data, same);
     if (!same)
         c->plan.reads = 0;
-    return err;
+    return HF_OK;
 }
 
 // The plan: what the depth shows decides which chunks, buffers and passes there are.
