@@ -191,6 +191,33 @@ static void summarise(struct frame *frames, int n, struct bench_result *r)
         r->pass[p].in = fused_into(r, p);
 }
 
+double bench_measure_copy(const struct bench_subject *s)
+{
+    double seconds[COPIES];
+    bench_workers_run(s->workers, copy, (void *)s);
+    for (int i = 0; i < COPIES; i++)
+        seconds[i] = bench_workers_run(s->workers, copy, (void *)s);
+    qsort(seconds, COPIES, sizeof *seconds, by_value);
+    return round_ms(seconds[COPIES / 2] * 1e3);
+}
+
+int bench_measure_all(const struct bench_subject *s, double seconds, int least, struct bench_row *all,
+                      struct hf_stats *stats, struct bench_error *error)
+{
+    enum { MOST = 401 };
+    struct frame frames[MOST];
+    if (render(s, &frames[0], error))
+        return -1;
+    int n = 0;
+    for (const double start = bench_now(); n < MOST && (n < least || bench_now() - start < seconds); n++)
+        if (render(s, &frames[n], error))
+            return -1;
+    qsort(frames, (size_t)n, sizeof *frames, by_all);
+    *all = (struct bench_row){frames[(n - 1) / 2].all_ms, frames[0].all_ms, frames[n - 1].all_ms, -1};
+    hf_get_stats(s->context, stats);
+    return 0;
+}
+
 int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,
                   struct bench_error *error)
 {

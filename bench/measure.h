@@ -35,6 +35,14 @@ struct bench_result {
     struct hf_stats stats;  // of the last frame
 };
 
+// Milliseconds of copying colour in to colour out and depth to scratch, same threads: median.
+double bench_measure_copy(const struct bench_subject *subject);
+
+// Median, least and most of frames, as many as take about so many seconds, at least `least`, after one that is not
+// counted. The passes stay zero. *stats receives those of the last. Returns 0, or -1 with *error filled.
+int bench_measure_all(const struct bench_subject *subject, double seconds, int least, struct bench_row *all,
+                      struct hf_stats *stats, struct bench_error *error);
+
 // frames 0: as many as take about three seconds. Returns 0, or -1 with *error filled.
 int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,
                   struct bench_error *error);

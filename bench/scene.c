@@ -8,23 +8,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const bench_scene_names[] = {"mixed", "near", "far", "both", "focus", "band:P", NULL};
+const char *const bench_scene_names[] = {"mixed", "near", "far", "both", "focus", "band:P", "band-near:P", "band-far:P",
+                                         "band-both:P", NULL};
 
-enum scene_kind { MIXED, NEAR, FAR, BOTH, FOCUS, BAND, KINDS };
+enum scene_kind { MIXED, NEAR, FAR, BOTH, FOCUS, BAND, BAND_NEAR, BAND_FAR, BAND_BOTH, KINDS };
 
 static int scene_kind(const char *name, float *band)
 {
-    for (int i = 0; i < BAND; i++)
-        if (!strcmp(name, bench_scene_names[i]))
+    for (int i = 0; i < KINDS; i++) {
+        const size_t n = strcspn(bench_scene_names[i], "P");
+        if (i < BAND && !strcmp(name, bench_scene_names[i]))
             return i;
-    if (strncmp(name, "band:", 5))
-        return KINDS;
-    char *end;
-    const float percent = strtof(name + 5, &end);
-    if (end == name + 5 || *end || !(percent >= 0 && percent <= 100))
-        return KINDS;
-    *band = percent / 100;
-    return BAND;
+        if (i < BAND || strncmp(name, bench_scene_names[i], n))
+            continue;
+        char *end;
+        const float percent = strtof(name + n, &end);
+        if (end == name + n || *end || !(percent >= 0 && percent <= 100))
+            return KINDS;
+        *band = percent / 100;
+        return i;
+    }
+    return KINDS;
 }
 
 int bench_scene_builtin(const char *name, float *band)
@@ -61,22 +65,31 @@ struct painter {
 static float depth_of_kind(const struct painter *p, int x, int y, float t)
 {
     const float order = (t + 2) / 5;  // 0..1, nearest to farthest
+    if (p->kind >= BAND && (y < p->band0 || y >= p->band1))
+        return 0;
     switch (p->kind) {
     case MIXED:
         return t;
     case NEAR:
+    case BAND_NEAR:
         return -1.5f + 1.3f * order;
     case FAR:
+    case BAND_FAR:
         return 0.2f + 1.3f * order;
     case BOTH:
+    case BAND_BOTH:
         return on_disc(x, y, p->pitch) ? -1.0f : 0.5f + order;
     case BAND:
-        if (y < p->band0 || y >= p->band1)
-            return 0;
         return x < p->width / 2 ? -0.5f - order : 0.5f + order;
     default:
         return 0;
     }
+}
+
+// A range wider than the focus distance would put near surfaces behind the camera, which means none.
+static float scene_depth(const struct painter *p, int x, int y, float t)
+{
+    return fmaxf(p->focus + p->range * depth_of_kind(p, x, y, t), 0.05f * p->focus);
 }
 
 // Colours at the corners of pixels: one row of width + 1 points.
@@ -104,8 +117,7 @@ static void paint_row(const struct painter *p, int y, const struct bench_colour 
             rgb[1] = 0.25f * rgb[1] + 0.06f;
             rgb[2] = 0.25f * rgb[2] + 0.08f;
         }
-        // A range wider than the focus distance would put near surfaces behind the camera, which means none.
-        depth[x] = fmaxf(p->focus + p->range * depth_of_kind(p, x, y, s.t), 0.05f * p->focus);
+        depth[x] = scene_depth(p, x, y, s.t);
     }
 }
 
@@ -129,16 +141,15 @@ static int paint_all(const struct painter *p, const struct bench_scene *scene)
     return 0;
 }
 
-int bench_scene_paint(struct bench_scene *scene, const char *name, int width, int height,
-                      const struct bench_optics *optics, struct bench_error *error)
+static int make_painter(struct painter *p, const char *name, int width, int height, const struct bench_optics *optics,
+                        struct bench_error *error)
 {
-    *scene = (struct bench_scene){.width = width, .height = height};
     float band = 0;
     const int kind = scene_kind(name, &band);
     if (kind == KINDS)
         return bench_fail(error, "there is no built-in scene '%s'", name);
     const int rows = (int)(band * (float)height + 0.5f);
-    const struct painter p = {
+    *p = (struct painter){
         .kind = (enum scene_kind)kind,
         .width = width,
         .height = height,
@@ -148,6 +159,16 @@ int bench_scene_paint(struct bench_scene *scene, const char *name, int width, in
         .focus = optics->focus,
         .range = optics->range > 0 && isfinite(optics->range) ? optics->range : optics->focus / 2,
     };
+    return 0;
+}
+
+int bench_scene_paint(struct bench_scene *scene, const char *name, int width, int height,
+                      const struct bench_optics *optics, struct bench_error *error)
+{
+    struct painter p;
+    *scene = (struct bench_scene){.width = width, .height = height};
+    if (make_painter(&p, name, width, height, optics, error))
+        return -1;
     const size_t pixels = (size_t)width * (size_t)height;
     scene->rgb = malloc(pixels * 3 * sizeof(float));
     scene->depth = malloc(pixels * sizeof(float));
@@ -155,6 +176,20 @@ int bench_scene_paint(struct bench_scene *scene, const char *name, int width, in
         bench_scene_free(scene);
         return bench_fail(error, "there is not enough memory for a scene of %dx%d", width, height);
     }
+    return 0;
+}
+
+int bench_scene_depth(const struct bench_scene *mixed, const char *name, const struct bench_optics *optics,
+                      float *depth, struct bench_error *error)
+{
+    struct painter p;
+    if (make_painter(&p, name, mixed->width, mixed->height, optics, error))
+        return -1;
+    for (int y = 0; y < p.height; y++)
+        for (int x = 0; x < p.width; x++) {
+            const size_t i = (size_t)y * (size_t)p.width + (size_t)x;
+            depth[i] = scene_depth(&p, x, y, (mixed->depth[i] - p.focus) / p.range);
+        }
     return 0;
 }
 

@@ -29,7 +29,8 @@ struct bench_optics {
 //   far     far everywhere, blurred by 0.2 to 1
 //   both    near discs all over a far background: the blurred near CoC is > 0 on every pixel, f > 0 on most
 //   focus   all sharp
-//   band:P  sharp but for a band of P % of the rows, half of it near, half far
+//   band:P  sharp but for a band of P % of the rows, half of it near, half far; band-near:P, band-far:P and band-both:P:
+//           the band is as `near`, `far` or `both`
 extern const char *const bench_scene_names[];  // NULL ends it; "band:P" stands for all bands
 
 // 1 if the name is that of a built-in scene. *band receives the share of a band in 0..1.
@@ -38,6 +39,10 @@ int bench_scene_builtin(const char *name, float *band);
 // Paint a built-in scene. Returns 0, or -1 with *error filled and an empty scene.
 int bench_scene_paint(struct bench_scene *scene, const char *name, int width, int height,
                       const struct bench_optics *optics, struct bench_error *error);
+
+// The depth of another built-in scene for a picture that was painted as `mixed` with the same optics.
+int bench_scene_depth(const struct bench_scene *mixed, const char *name, const struct bench_optics *optics,
+                      float *depth, struct bench_error *error);
 
 // Read the first view with depth of a picture file. *focus receives the focus distance that the file names, in metres,
 // or NAN. Colour only: alpha is not read. Fails in builds without the file layer.

@@ -3,6 +3,8 @@
 #ifndef HF_CONTEXT_H
 #define HF_CONTEXT_H
 
+#include "budget.h"
+#include "cost.h"
 #include "engine.h"
 #include "plan.h"
 #include "pool.h"
@@ -34,13 +36,17 @@ struct hf_context {
     struct hf_block joined;   // full-resolution CoC for a dump
     struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
     struct hf_stats stats;
+    struct hf_report report;
+    struct hf_work work;      // of the plan
+    struct hf_cost cost;
+    struct hf_budget budget;
 
     void (*dump)(void *cookie, const struct hf_buffer *buffer);
     void *dump_cookie;
 };
 
-// Run a frame whose arguments have been checked (render.c).
+// Run a frame whose arguments have been checked, or only plan it (render.c).
 int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
-                    const struct hf_image *src, const struct hf_depth *depth, int fused);
+                    const struct hf_image *src, const struct hf_depth *depth, int fused, int plan_only);
 
 #endif

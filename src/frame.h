@@ -80,6 +80,7 @@ struct hf_setup {
     float pixel_aspect;
 
     // gather
+    int rings;             // 0: derived
     int max_x, max_y;      // near max and blur reach to either side
     struct hf_taps *taps;  // its kernel
 
@@ -102,6 +103,7 @@ struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
     float radius_min, radius_max;  // signed CoC radii; not the gather's
+    float near_max, far_max;       // the gather's CoC
 };
 
 struct hf_kernels;

@@ -168,8 +168,9 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
     return *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
 }
 
-int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-              const struct hf_depth *depth, const struct hf_params *params)
+// Check, choose a setting that fits the budget, and go.
+static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+               const struct hf_depth *depth, const struct hf_params *params, int plan_only)
 {
     if (!c)
         return HF_ERR_ARG;
@@ -181,17 +182,49 @@ int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_
         return err;
     }
     struct hf_setup s;
+    struct hf_params ladder[HF_BUDGET_STEPS];
+    int steps = 1;
     hf_setup_make(&s, src, dst, depth, p, &c->taps);
+    if (p->budget_ms > 0 && !c->dump) {
+        steps = hf_budget_ladder(p, s.max_radius, ladder);
+        p = &ladder[hf_budget_choose(&c->budget, ladder, steps)];
+        hf_setup_make(&s, src, dst, depth, p, &c->taps);
+    } else {
+        c->budget.step = 0;
+    }
     if (c->dump)
         s.no_skip = 1;
     const struct hf_engine_def *engine = hf_engine_def(p->engine);
     if (engine->prepare && s.blend != 0)
         err = engine->prepare(c, &s, p);
     if (!err)
-        err = hf_render_frame(c, &s, dst, src, depth, !p->deterministic);
+        err = hf_render_frame(c, &s, dst, src, depth, !p->deterministic, plan_only);
     if (err)
         say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
+    else if (p->budget_ms > 0 && !plan_only && !c->dump)
+        hf_budget_note(&c->budget, p->budget_ms, steps, (float)c->stats.total_ms);
     return err;
+}
+
+int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+              const struct hf_depth *depth, const struct hf_params *params)
+{
+    return run(c, dst, src, depth, params, 0);
+}
+
+int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+            const struct hf_depth *depth, const struct hf_params *params, struct hf_report *report)
+{
+    const int err = run(c, dst, src, depth, params, 1);
+    if (report)
+        *report = err ? (struct hf_report){0} : c->report;
+    return err;
+}
+
+void hf_get_report(const struct hf_context *c, struct hf_report *report)
+{
+    if (report)
+        *report = c ? c->report : (struct hf_report){0};
 }
 
 void hf_get_stats(const struct hf_context *c, struct hf_stats *stats)

@@ -111,6 +111,17 @@ int hf_plan_count(const struct hf_plan *p, int sweep)
     return p->columns[sweep] * p->rows[sweep];
 }
 
+size_t hf_plan_tile_bytes(const struct hf_plan *p)
+{
+    return (size_t)hf_plan_count(p, 2) * (2 * sizeof(int) + 1);
+}
+
+void hf_plan_tile_memory(struct hf_plan *p, void *memory)
+{
+    p->tile_rows = memory;
+    p->tile_needs = (uint8_t *)(p->tile_rows + 2 * (size_t)hf_plan_count(p, 2));
+}
+
 size_t hf_plan_chunk_bytes(const struct hf_plan *p)
 {
     return (size_t)hf_plan_count(p, 1) * (sizeof(int) + 3);
@@ -133,6 +144,14 @@ struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i)
     const int w = p->cell_width[sweep], h = p->cell_height[sweep];
     const int x = i % p->columns[sweep] * w, y = i / p->columns[sweep] * h;
     return (struct hf_rect){x, y, hf_min(x + w, p->width), hf_min(y + h, p->height)};
+}
+
+struct hf_rect hf_plan_active(const struct hf_plan *p, int tile)
+{
+    struct hf_rect r = hf_plan_cell(p, 2, tile);
+    r.y0 = p->tile_rows[2 * (size_t)tile];
+    r.y1 = p->tile_rows[2 * (size_t)tile + 1];
+    return r;
 }
 
 // The chunks that touch r grown by reach, as a rectangle of chunk numbers.
@@ -181,23 +200,42 @@ static void list_deferred(struct hf_plan *p)
             p->deferred[p->deferred_count++] = i;
 }
 
+// What a tile needs, and from where to where: looked at in strips of a chunk's height, as a tile is much higher than the
+// band that a thin thing in front of it blurs.
+static void classify_tile(struct hf_plan *p, const struct hf_setup *s, int i)
+{
+    const struct hf_reach near = p->engine->spread(s, p, HF_NEAR), far = p->engine->spread(s, p, HF_FAR);
+    const struct hf_rect tile = hf_plan_cell(p, 2, i);
+    int *rows = p->tile_rows + 2 * (size_t)i;
+    unsigned needs = 0;
+    rows[0] = tile.y1;
+    rows[1] = tile.y0;
+    for (int y = tile.y0; y < tile.y1; y += p->cell_height[1]) {
+        const struct hf_rect strip = {tile.x0, y, tile.x1, hf_min(y + p->cell_height[1], tile.y1)};
+        const unsigned found = (found_around(p, strip, near) & HF_NEAR) | (found_around(p, strip, far) & HF_FAR);
+        needs |= found;
+        if (found || s->no_skip) {
+            rows[0] = hf_min(rows[0], strip.y0);
+            rows[1] = strip.y1;
+        }
+    }
+    p->tile_needs[i] = (uint8_t)(s->no_skip ? HF_FIELDS : needs);
+}
+
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s)
 {
     const struct hf_engine_def *e = p->engine;
-    const struct hf_reach near = e->spread(s, p, HF_NEAR), far = e->spread(s, p, HF_FAR), read = read_reach(p);
+    const struct hf_reach read = read_reach(p);
     const int chunks = hf_plan_count(p, 1), tiles = hf_plan_count(p, 2);
     memset(p->chunk_reads, 0, (size_t)chunks);
     p->needs = 0;
     for (int i = 0; i < tiles; i++) {
-        const struct hf_rect r = hf_plan_cell(p, 2, i);
-        const unsigned needs = s->no_skip ? HF_FIELDS
-                                          : (found_around(p, r, near) & HF_NEAR) | (found_around(p, r, far) & HF_FAR);
-        p->tile_needs[i] = (uint8_t)needs;
-        p->needs |= needs;
-        if (!needs)
+        classify_tile(p, s, i);
+        p->needs |= p->tile_needs[i];
+        if (!p->tile_needs[i])
             continue;
-        const unsigned reads = e->reads(s, needs);
-        const struct hf_rect c = chunks_around(p, r, read);
+        const unsigned reads = e->reads(s, p->tile_needs[i]);
+        const struct hf_rect c = chunks_around(p, hf_plan_active(p, i), read);
         for (int y = c.y0; y < c.y1; y++)
             for (int x = c.x0; x < c.x1; x++)
                 p->chunk_reads[y * p->columns[1] + x] |= (uint8_t)reads;

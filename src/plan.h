@@ -20,6 +20,7 @@ struct hf_plan {
     int *deferred;         // chunks whose buffers are made once it is known that they are read
     int deferred_count;
     uint8_t *tile_needs;   // fields
+    int *tile_rows;        // first row and end of the part of each tile that is not sharp
     unsigned needs, reads; // of all tiles
 
     struct hf_reach pass[HF_MAX_PASSES];  // by how much a pass's rectangle exceeds the cell
@@ -33,6 +34,8 @@ void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const
 // Reaches, and the other sweeps' cells: once the setup's reach is known.
 void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
                    int whole);
+size_t hf_plan_tile_bytes(const struct hf_plan *p);
+void hf_plan_tile_memory(struct hf_plan *p, void *memory);
 size_t hf_plan_chunk_bytes(const struct hf_plan *p);
 // Memory for the chunks; keep: it holds what the last frame knew of the same chunks.
 void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep);
@@ -45,5 +48,7 @@ void hf_plan_forget(struct hf_plan *p);
 
 int hf_plan_count(const struct hf_plan *p, int sweep);
 struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i);
+// The rows of a tile that its passes have to make; the others are sharp.
+struct hf_rect hf_plan_active(const struct hf_plan *p, int tile);
 
 #endif

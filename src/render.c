@@ -9,6 +9,7 @@
 #include "buffers.h"
 #include "copy.h"
 #include "dump.h"
+#include "report.h"
 
 struct job {
     struct hf_context *c;
@@ -16,6 +17,7 @@ struct job {
     struct hf_copy copy;
     unsigned have;  // fields whose buffers are allocated
     int sweep;
+    int plan_only;  // look at the depth, make nothing
 };
 
 static int64_t now_ns(void)
@@ -92,7 +94,7 @@ static void first_sweep(void *arg, int i, int worker)
     p->chunk_made[i] = (uint8_t)fields;
     if (fields)
         make_chunk(j, w, r, fields, &clock);
-    else if (j->copy.in_place)
+    else if (j->copy.in_place && !j->plan_only)
         hf_copy_scan(w, r);
 }
 
@@ -115,25 +117,42 @@ static void first_sweep_deferred(void *arg, int i, int worker)
     make_chunk(j, w, r, p->chunk_reads[chunk] & ~p->chunk_made[chunk], &clock);
 }
 
+// What of a tile is sharp: all of it, or what lies above and below its active part.
+static void copy_tile(const struct job *j, struct hf_worker *w, struct hf_rect tile, const struct hf_rect *active)
+{
+    const int64_t start = now_ns();
+    if (!active) {
+        hf_copy_sharp(&j->copy, w, tile);
+    } else {
+        hf_copy_sharp(&j->copy, w, (struct hf_rect){tile.x0, tile.y0, tile.x1, active->y0});
+        hf_copy_sharp(&j->copy, w, (struct hf_rect){tile.x0, active->y1, tile.x1, tile.y1});
+    }
+    w->ns[j->c->plan.engine->pass_count - 1] += now_ns() - start;
+}
+
 static void later_sweep(void *arg, int i, int worker)
 {
     struct job *j = arg;
     const struct hf_plan *p = &j->c->plan;
     const int last = j->sweep == p->engine->sweeps;
     struct hf_worker *w = &j->c->workers[worker];
-    const struct hf_rect cell = hf_plan_cell(p, j->sweep, i);
+    struct hf_rect cell = hf_plan_cell(p, j->sweep, i);
     const int is_tile = p->columns[j->sweep] == p->columns[2] && p->rows[j->sweep] == p->rows[2];
     const unsigned needs = j->s->blend == 0 ? 0 : is_tile ? p->tile_needs[i] : p->needs;
-    int64_t clock = now_ns();
     if (!needs) {
-        if (last) {
-            hf_copy_sharp(&j->copy, w, cell);
-            w->ns[p->engine->pass_count - 1] += now_ns() - clock;
-        }
+        if (last)
+            copy_tile(j, w, cell, NULL);
         return;
+    }
+    if (is_tile) {
+        const struct hf_rect active = hf_plan_active(p, i);
+        if (last)
+            copy_tile(j, w, cell, &active);
+        cell = active;
     }
     hf_buffers_place(j->c, j->s, &w->frame, j->sweep, cell);
     set_fields(&w->frame, needs);
+    int64_t clock = now_ns();
     for (int pass = 0; pass < p->engine->pass_count; pass++) {
         const struct hf_pass *def = &p->engine->passes[pass];
         if (def->sweep == j->sweep && (!def->field || (def->field & needs)))
@@ -156,6 +175,8 @@ static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
     sum->depth_repaired += c->depth_repaired;
     sum->no_surface += c->no_surface;
     sum->clamped += c->clamped;
+    sum->near_max = c->near_max > sum->near_max ? c->near_max : sum->near_max;
+    sum->far_max = c->far_max > sum->far_max ? c->far_max : sum->far_max;
     sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
     sum->radius_max = c->radius_max > sum->radius_max ? c->radius_max : sum->radius_max;
 }
@@ -219,10 +240,12 @@ static int lay_out(struct job *j, unsigned fields)
 {
     struct hf_context *c = j->c;
     hf_plan_cells(&c->plan, j->s, c->config.tile_width, c->config.tile_height, c->threads, c->dump != NULL);
-    const int err = hf_block_grow(&c->tiles, (size_t)hf_plan_count(&c->plan, 2), &c->mem);
-    c->plan.tile_needs = c->tiles.data;
+    const int err = hf_block_grow(&c->tiles, hf_plan_tile_bytes(&c->plan), &c->mem);
+    if (err)
+        return err;
+    hf_plan_tile_memory(&c->plan, c->tiles.data);
     j->have = fields;
-    return err ? err : hf_buffers_allocate(c, j->s, fields);
+    return hf_buffers_allocate(c, j->s, fields);
 }
 
 static int lay_out_chunks(struct job *j)
@@ -249,16 +272,18 @@ static int plan_frame(struct job *j)
 {
     struct hf_context *c = j->c;
     struct hf_plan *p = &c->plan;
+    const struct hf_counts found = all_counts(c);
     int err = HF_OK;
-    if (p->engine->measured) {
-        const struct hf_counts found = all_counts(c);
+    if (p->engine->measured && j->s->blend != 0) {
         p->engine->measure(j->s, &found);
         err = lay_out(j, 0);
     }
     if (err)
         return err;
-    hf_plan_classify(p, j->s);
-    if (!(p->reads & ~j->have))
+    if (j->s->blend != 0)
+        hf_plan_classify(p, j->s);
+    hf_report_plan(c, j->s, &found);
+    if (j->plan_only || j->s->blend == 0 || !(p->reads & ~j->have))
         return HF_OK;
     // Buffers that the last frame did not read: all are placed anew, and what was made is lost.
     err = lay_out(j, p->reads);
@@ -266,32 +291,50 @@ static int plan_frame(struct job *j)
     return err;
 }
 
+// The sweeps over the cells, and before them what the first sweep owes.
+static int run_plan(struct job *j)
+{
+    struct hf_context *c = j->c;
+    if (j->s->blend != 0 && c->plan.deferred_count)
+        parallel(c, c->plan.deferred_count, first_sweep_deferred, j);
+    if (j->s->blend == 0 && j->copy.in_place)
+        parallel(c, hf_plan_count(&c->plan, 2), scan_tile, j);
+    const int err = j->copy.in_place ? hf_copy_repair(c) : HF_OK;
+    if (err)
+        return err;
+    for (j->sweep = 2; j->sweep <= c->plan.engine->sweeps; j->sweep++)
+        if (j->sweep == c->plan.engine->sweeps || (j->s->blend != 0 && c->plan.needs))
+            parallel(c, hf_plan_count(&c->plan, j->sweep), later_sweep, j);
+    return HF_OK;
+}
+
 int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
-                    const struct hf_image *src, const struct hf_depth *depth, int fused)
+                    const struct hf_image *src, const struct hf_depth *depth, int fused, int plan_only)
 {
     const int64_t start = now_ns();
-    struct job j = {.c = c, .s = s, .copy = hf_copy_plan(s, dst, src)};
+    struct job j = {.c = c, .s = s, .copy = hf_copy_plan(s, dst, src), .plan_only = plan_only};
     start_workers(&j, dst, src, depth, fused);
     int err = lay_out_chunks(&j);
+    const int all = s->no_skip && !plan_only;
     if (!err)
-        err = lay_out(&j, c->plan.engine->measured || s->blend == 0 ? 0 : s->no_skip ? HF_FIELDS : c->plan.reads);
+        err = lay_out(&j, c->plan.engine->measured || s->blend == 0 ? 0 : all ? HF_FIELDS : c->plan.reads);
     if (err)
         return err;
-    if (s->blend != 0) {
+    if (plan_only)
+        j.have = 0;
+    int64_t planning = now_ns() - start;
+    if (s->blend != 0)
         parallel(c, hf_plan_count(&c->plan, 1), first_sweep, &j);
-        err = plan_frame(&j);
-        if (!err && c->plan.deferred_count)
-            parallel(c, c->plan.deferred_count, first_sweep_deferred, &j);
-    } else if (j.copy.in_place) {
-        parallel(c, hf_plan_count(&c->plan, 2), scan_tile, &j);
-    }
-    if (!err && j.copy.in_place)
-        err = hf_copy_repair(c);
+    planning -= now_ns();
+    err = plan_frame(&j);
+    planning += now_ns();
+    c->report.plan_ms = (double)planning * 1e-6;
+    if (err || plan_only)
+        return err;
+    err = run_plan(&j);
     if (err)
         return err;
-    for (j.sweep = 2; j.sweep <= c->plan.engine->sweeps; j.sweep++)
-        if (j.sweep == c->plan.engine->sweeps || (s->blend != 0 && c->plan.needs))
-            parallel(c, hf_plan_count(&c->plan, j.sweep), later_sweep, &j);
     collect_stats(&j, start);
+    hf_report_frame(c, s);
     return c->dump && s->blend != 0 ? hf_dump_buffers(c, s) : HF_OK;
 }

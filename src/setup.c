@@ -30,7 +30,7 @@ const struct hf_params hf_default_params = {
     .iterations = 3,
 };
 
-enum { MAX_SIZE = 65536, MAX_ITERATIONS = 64 };
+enum { MAX_SIZE = 65536, MAX_ITERATIONS = 64, MAX_RINGS = 64 };
 static const float MAX_RADIUS = 256, MAX_LENS_RADIUS = 2048;
 
 __attribute__((format(printf, 2, 3))) static int bad(char message[HF_MESSAGE], const char *format, ...)
@@ -174,6 +174,10 @@ static int check_scatter(const struct hf_params *p, char message[HF_MESSAGE])
 // What only some engines read is checked for those alone.
 static int check_engine(const struct hf_params *p, char message[HF_MESSAGE])
 {
+    if (!(p->budget_ms >= 0))
+        return bad(message, "budget_ms is %g; it must be >= 0", p->budget_ms);
+    if (p->engine == HF_ENGINE_GATHER && (p->rings < 0 || p->rings > MAX_RINGS))
+        return bad(message, "rings is %d; it must be 0 to %d", p->rings, MAX_RINGS);
     if (p->engine == HF_ENGINE_GATHER && p->blades != 0 && (p->blades < 5 || p->blades > 9))
         return bad(message, "blades is %d; it must be 0 or 5 to 9", p->blades);
     if (p->engine == HF_ENGINE_GATHER)
@@ -340,7 +344,7 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
         .engine = p->engine, .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
         .storage = p->storage, .faithful = p->faithful, .no_skip = p->no_skip, .karis = p->karis,
         .per_pixel_kernel = p->per_pixel_kernel, .bicubic = p->bicubic, .fill = p->fill,
-        .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP, .taps = taps, .pixel_aspect = p->pixel_aspect,
+        .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP, .taps = taps, .rings = p->rings, .pixel_aspect = p->pixel_aspect,
         .resolution = p->resolution, .rotation = p->blade_rotation, .uniform = p->uniform,
         .iterations = p->iterations, .sigma = p->sigma, .params = p};
     hf_setup_depth(s, depth, p->pixel_aspect);

@@ -7,15 +7,20 @@
 // Weights below this are rounding of a tap that lies on a lattice line (the smallest real ones are above 1e-5).
 static const double NEGLIGIBLE = 1e-6;
 
-static int ring_count(double radius)
+int hf_taps_rings(float radius)
 {
-    const int n = (int)ceil(radius / 2);
+    const int n = (int)ceil((double)radius / 2);
     return n < 1 ? 1 : n;
+}
+
+static int ring_count(const struct hf_taps_key *k)
+{
+    return k->rings ? k->rings : hf_taps_rings(k->radius);
 }
 
 static int tap_count(const struct hf_taps_key *k)
 {
-    const int rings = ring_count(k->radius);
+    const int rings = ring_count(k);
     return k->dense ? 144 : 1 + 4 * rings * (rings + 1);
 }
 
@@ -59,7 +64,7 @@ static void place_taps(const struct hf_taps_key *k, float *dx, float *dy)
     }
     dx[n] = dy[n] = 0;
     n++;
-    const int rings = ring_count(k->radius);
+    const int rings = ring_count(k);
     for (int ring = 1; ring <= rings; ring++) {
         for (int i = 0; i < 8 * ring; i++, n++) {
             const double t = 2 * M_PI * i / (8 * ring);

@@ -14,6 +14,7 @@ struct hf_taps_key {
     int blades;          // 0: circles
     float rotation;      // degrees
     int dense;           // the 144-tap grid instead of rings
+    int rings;           // 0: as many as lie at most 2 apart
 };
 
 // All bilinear taps have fixed offsets, so together they are one convolution with fixed weights on whole pixels. The
@@ -34,6 +35,9 @@ struct hf_taps {
     struct hf_block block;  // owns all of the above
     struct hf_taps_key key; // what it was built from; radius 0: nothing yet
 };
+
+// Rings that reach a radius of so many half-resolution pixels, at most 2 apart.
+int hf_taps_rings(float radius);
 
 // (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
 int hf_taps_build(struct hf_taps *taps, const struct hf_taps_key *key, const struct hf_mem *mem);

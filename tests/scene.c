@@ -219,12 +219,29 @@ static void test_formats(void)
     bench_image_free(&image);
 }
 
+// The depth alone is what painting the scene would give, but for the rounding of the way back from the depth of `mixed`.
+static void test_depth(const char *name)
+{
+    struct bench_scene mixed, painted;
+    struct bench_error error;
+    float depth[64 * 40];
+    CHECK(!bench_scene_paint(&mixed, "mixed", 64, 40, &optics, &error));
+    CHECK(!bench_scene_paint(&painted, name, 64, 40, &optics, &error));
+    CHECK(!bench_scene_depth(&mixed, name, &optics, depth, &error));
+    for (int i = 0; i < 64 * 40; i++)
+        CHECK_MSG(fabsf(depth[i] - painted.depth[i]) <= 1e-5f * painted.depth[i], "%s: %g, painted %g", name, depth[i],
+                  painted.depth[i]);
+    bench_scene_free(&mixed);
+    bench_scene_free(&painted);
+}
+
 int main(void)
 {
     static const int sizes[][2] = {{1, 1}, {17, 9}, {480, 270}};
+    static const char *const bands[4] = {"band-near:40", "band:40", "band-far:7", "band-both:100"};
     for (int i = 0; bench_scene_names[i]; i++)
         for (int k = 0; k < 3; k++)
-            test_values(strcmp(bench_scene_names[i], "band:P") ? bench_scene_names[i] : "band:40", sizes[k][0],
+            test_values(strncmp(bench_scene_names[i], "band", 4) ? bench_scene_names[i] : bands[i % 4], sizes[k][0],
                         sizes[k][1]);
     test_mixed(17, 9);
     test_mixed(480, 270);
@@ -235,6 +252,11 @@ int main(void)
     test_pure("band:0", (struct shares){0, 1, 0});
     test_pure("band:40", (struct shares){0.2, 0.6, 0.2});
     test_pure("band:100", (struct shares){0.5, 0, 0.5});
+    test_pure("band-near:25", (struct shares){0.25, 0.75, 0});
+    test_pure("band-far:10", (struct shares){0, 0.9, 0.1});
+    test_depth("near");
+    test_depth("band:30");
+    test_depth("band-both:100");
     test_both(12);
     test_both(4);
     test_both(48);

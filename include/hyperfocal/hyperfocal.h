@@ -244,7 +244,15 @@ struct hf_params {
     int deterministic;
     // Run every pass on every tile, also where the scene does not call for it. Default 0. Changes no bit.
     int no_skip;
+    // Milliseconds that a frame may take, 0 (default): any. What was asked for is then the best that a frame may be;
+    // if earlier frames of this context took longer, cheaper settings are tried in turn: smaller working buffers, the
+    // gather in place of a costlier engine, fewer rings of taps. It goes back only when the better setting would
+    // leave a fifth of the budget for a dozen frames on end, so that a shot does not flicker between two looks.
+    float budget_ms;
 
+    // gather: rings of taps, 1..64; 0 (default): as many as keep them two half-resolution pixels apart. Fewer are
+    // faster and leave gaps. Ignored with HF_FILL_NONE.
+    int rings;
     // Weight samples by 1 / (1 + luminance) in the gather, against fireflies: darker highlights. Default 0.
     // B. Karis, "Tone mapping", 2013; chapter 3.4.4.
     int karis;
@@ -343,6 +351,47 @@ struct hf_stats {
 
 // Copy the statistics of the last frame. Zeros before the first.
 HF_API void hf_get_stats(const struct hf_context *c, struct hf_stats *stats);
+
+// What a scene asks of a tile.
+enum hf_tile { HF_TILE_SHARP, HF_TILE_NEAR, HF_TILE_FAR, HF_TILE_BOTH };
+
+// A pass in a plan: on how many tiles it runs, and what it costs.
+struct hf_pass_report {
+    const char *name;
+    const char *skipped;    // why the other tiles do without; NULL if all run
+    uint32_t run, all;      // tiles, or chunks of the first sweep
+    double predicted_ms;    // time in the pass over the number of threads, from earlier frames or a table
+    double ms;              // what it was; 0 in a plan that has not run
+};
+
+// What a frame calls for.
+struct hf_report {
+    enum hf_engine engine;  // the settings in use: what was asked for, or what a budget left of it
+    enum hf_resolution resolution;
+    int rings;              // of taps, gather; 0 for the others
+    int budget_step;        // 0: as asked for; each step is cheaper
+
+    int tile_width, tile_height;  // full-resolution pixels
+    int columns, rows;            // of tiles
+    const uint8_t *tiles;         // columns * rows of enum hf_tile, from the top left; lives until the context's next call
+    uint32_t tile_count[4];       // by enum hf_tile
+    int passes;
+    struct hf_pass_report pass[HF_MAX_PASSES];
+
+    // CoC radii that there are, full-resolution pixels: the largest in front of the focus and behind it.
+    float near_radius, far_radius;
+    size_t memory;        // bytes of buffers that the frame needs
+    size_t memory_saved;  // bytes that it would need besides with no_skip
+    double plan_ms;       // time for planning, the look at the depth not included
+    double predicted_ms;  // of the whole frame
+    double total_ms;      // what it was; 0 in a plan that has not run
+};
+
+// What hf_render would do with the same arguments, without rendering: looks at the depth only. Errors as for hf_render.
+HF_API int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                   const struct hf_depth *depth, const struct hf_params *params, struct hf_report *report);
+// What the last hf_render or hf_plan did. All zero before the first.
+HF_API void hf_get_report(const struct hf_context *c, struct hf_report *report);
 
 // One intermediate buffer, for looking at and for tests: planes of floats.
 struct hf_buffer {

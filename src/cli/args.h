@@ -44,6 +44,8 @@ struct cli_args {
     const char *views;       // NULL: all, else names with commas
     const char *compression;
     const char *dump_dir;
+    int explain;
+    const char *explain_image;
     int json;
     const char *json_file;   // NULL: stdout
     int threads;

@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "cli/dump.h"
+#include "cli/explain.h"
 #include "cli/views.h"
 
 static double now_ms(void)
@@ -117,27 +118,30 @@ static int read_colour(struct cli_frame *frame, struct cli_view *v, struct cli_e
     return 0;
 }
 
-static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
-                       struct cli_error *error)
+// All that is needed to render a view; *image is its colour.
+static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
+                     struct hf_image *image, struct cli_error *error)
 {
     int status = v->depth ? 0 : read_depth(frame, v, error);
     if (!status)
         status = read_colour(frame, v, error);
     if (status)
         return status;
-
-    struct hf_image image = {.width = v->view->width, .height = v->view->height, .format = HF_FORMAT_PLANAR32F};
+    *image = (struct hf_image){.width = v->view->width, .height = v->view->height, .format = HF_FORMAT_PLANAR32F};
     for (int c = 0; c < 4; c++) {
-        image.data[c] = v->planes[c];
-        image.stride[c] = (ptrdiff_t)v->view->width * (ptrdiff_t)sizeof(float);
+        image->data[c] = v->planes[c];
+        image->stride[c] = (ptrdiff_t)v->view->width * (ptrdiff_t)sizeof(float);
     }
     v->setup.depth.data = v->depth;
     session->label = v->label;
     session->log.text[0] = '\0';
-    struct cli_dump dump;
-    if (frame->args->dump_dir)
-        cli_dump_begin(&dump, session->context, frame, v);
-    status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
+    return 0;
+}
+
+// After the library has seen the view: what went wrong, or what to keep.
+static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, int status,
+                       struct cli_error *error)
+{
     if (status != HF_OK) {
         hf_set_dump(session->context, NULL, NULL);
         return cli_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
@@ -146,17 +150,57 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     hf_get_stats(session->context, &v->stats);
     free(v->depth);
     v->depth = NULL;
-    return frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : 0;
+    const struct cli_args *args = frame->args;
+    return args->explain || args->explain_image || args->json ? cli_explain_keep(v, session->context, error) : 0;
 }
 
-int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct cli_error *error)
+static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
+                       struct cli_error *error)
+{
+    struct hf_image image;
+    struct cli_dump dump;
+    int status = load_view(frame, v, session, &image, error);
+    if (status)
+        return status;
+    if (frame->args->dump_dir)
+        cli_dump_begin(&dump, session->context, frame, v);
+    status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
+    status = finish_view(frame, v, session, status, error);
+    return !status && frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : status;
+}
+
+static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
+                     struct cli_error *error)
+{
+    struct hf_image image;
+    int status = load_view(frame, v, session, &image, error);
+    if (status)
+        return status;
+    status = hf_plan(session->context, &image, &image, &v->setup.depth, &v->setup.params, NULL);
+    return finish_view(frame, v, session, status, error);
+}
+
+typedef int view_step(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
+                      struct cli_error *error);
+
+static int each_view(struct cli_frame *frame, struct cli_session *session, view_step *step, struct cli_error *error)
 {
     for (int i = 0; i < frame->view_count; i++) {
-        const int status = render_view(frame, &frame->views[i], session, error);
+        const int status = step(frame, &frame->views[i], session, error);
         if (status)
             return status;
     }
     return 0;
+}
+
+int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct cli_error *error)
+{
+    return each_view(frame, session, plan_view, error);
+}
+
+int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct cli_error *error)
+{
+    return each_view(frame, session, render_view, error);
 }
 
 int cli_frame_write(struct cli_frame *frame, struct cli_error *error)
@@ -187,6 +231,7 @@ void cli_frame_close(struct cli_frame *frame)
             free(v->planes[c]);
         free(v->depth);
         free(v->label);
+        free(v->tiles);
     }
     free(frame->views);
     hf_io_close(&frame->file);

@@ -20,6 +20,8 @@ struct cli_view {
     float *depth;          // NULL: not read yet, or not needed any more
     float *planes[4];
     struct hf_stats stats;
+    struct hf_report report;
+    uint8_t *tiles;        // of the report; NULL unless asked for
 };
 
 struct cli_frame {
@@ -34,9 +36,10 @@ struct cli_frame {
 // Start the library. Returns 0, or an exit code with *error filled.
 int cli_session_open(struct cli_session *session, const struct cli_args *args, struct cli_error *error);
 
-// The steps, in order. Each returns 0, or an exit code with *error filled; close after any of them.
+// The steps, in order; plan, which looks at the pictures but renders nothing, in place of render. Each returns 0, or an exit code with *error filled; close after any of them.
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, struct cli_error *error);
 int cli_frame_setup(struct cli_frame *frame, struct cli_error *error);
+int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);
 int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);
 int cli_frame_write(struct cli_frame *frame, struct cli_error *error);
 void cli_frame_close(struct cli_frame *frame);

@@ -125,6 +125,32 @@ static void put_stats(FILE *out, const struct cli_view *v, const struct cli_fram
     fputs("\n      ]", out);
 }
 
+static void put_report(FILE *out, const struct hf_report *r)
+{
+    static const char *const resolutions[] = {"full", "half", "quarter"};
+    fprintf(out,
+            ",\n      \"plan\": {\n        \"engine\": \"%s\",\n        \"resolution\": \"%s\",\n        \"rings\": %d"
+            ",\n        \"budget_step\": %d,\n        \"tile_size\": [%d, %d]"
+            ",\n        \"tiles\": {\"sharp\": %u, \"near\": %u, \"far\": %u, \"both\": %u}",
+            hf_engine_name(r->engine), resolutions[r->resolution], r->rings, r->budget_step, r->tile_width,
+            r->tile_height, r->tile_count[HF_TILE_SHARP], r->tile_count[HF_TILE_NEAR], r->tile_count[HF_TILE_FAR],
+            r->tile_count[HF_TILE_BOTH]);
+    fprintf(out,
+            ",\n        \"near_radius\": %.9g,\n        \"far_radius\": %.9g,\n        \"memory\": %zu"
+            ",\n        \"memory_saved\": %zu,\n        \"plan_ms\": %.6f,\n        \"predicted_ms\": %.6f"
+            ",\n        \"passes\": [",
+            r->near_radius, r->far_radius, r->memory, r->memory_saved, r->plan_ms, r->predicted_ms);
+    for (int i = 0; i < r->passes; i++) {
+        const struct hf_pass_report *p = &r->pass[i];
+        fprintf(out, "%s\n          {\"name\": \"%s\", \"run\": %u, \"all\": %u, \"predicted_ms\": %.6f, \"ms\": %.6f",
+                i ? "," : "", p->name, p->run, p->all, p->predicted_ms, p->ms);
+        if (p->skipped)
+            fprintf(out, ", \"skipped\": \"%s\"", p->skipped);
+        fputc('}', out);
+    }
+    fputs("\n        ]\n      }", out);
+}
+
 static void put_view(FILE *out, const struct cli_view *v, const struct cli_frame *frame)
 {
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
@@ -138,6 +164,8 @@ static void put_view(FILE *out, const struct cli_view *v, const struct cli_frame
     put_model(out, &v->setup);
     if (!frame->args->dry_run)
         put_stats(out, v, frame);
+    if (v->tiles)
+        put_report(out, &v->report);
     fputs("\n    }", out);
 }
 

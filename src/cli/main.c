@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hyperfocal INPUT -o OUTPUT: what to do comes from args, how from setup and frame; here is who says what to whom.
+#include "cli/explain.h"
 #include "cli/frame.h"
 #include "cli/help.h"
 #include "cli/json.h"
@@ -78,20 +79,28 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
                      struct cli_error *error)
 {
     struct cli_frame frame;
+    const int explain = args->explain || args->explain_image;
     int status = cli_frame_open(&frame, args, error);
     if (!status)
         status = cli_frame_setup(&frame, error);
-    if (!status && !args->dry_run) {
+    if (!status && !args->dry_run)
         status = cli_frame_render(&frame, session, error);
-        if (!status)
-            status = cli_frame_write(&frame, error);
+    else if (!status && explain)
+        status = cli_frame_plan(&frame, session, error);
+    if (!status && !args->dry_run) {
+        status = cli_frame_write(&frame, error);
         if (!status)
             print_warnings(&frame);
     }
+    if (!status && args->explain_image)
+        status = cli_explain_image(&frame, error);
     if (!status && args->json)
         status = write_json(argc, argv, &frame, session->context, error);
     else if (!status && args->dry_run)
         print_plan(&frame, session->context);
+    // JSON on stdout is for programs: then people are told on the other channel.
+    if (!status && args->explain)
+        cli_explain_print(args->json && !args->json_file ? stderr : stdout, &frame, !args->dry_run);
     cli_frame_close(&frame);
     return status;
 }

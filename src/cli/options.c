@@ -107,6 +107,8 @@ const struct cli_option cli_options[] = {
      "three times as many taps.", CHOICE(params.fill)},
     {"blend", 0, CLI_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",
      CHOICE(params.blend)},
+    {"rings", 0, CLI_LOOK, "N", "gather: rings of taps, 1 to 64; 0 (default): as many as lie two half-resolution pixels "
+     "apart. Fewer are faster.", .parse = cli_parse_count, FIELD(params.rings), .max = 64},
     {"karis", 0, CLI_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(params.karis)},
     {"per-pixel-kernel", 0, CLI_LOOK, NULL, "Scale the far kernel by each pixel's own blur.",
      FLAG(params.per_pixel_kernel)},
@@ -122,6 +124,13 @@ const struct cli_option cli_options[] = {
      "this CPU.", CHOICE(isa)},
     {"deterministic", 0, CLI_RUN, NULL, "Same bits on every instruction set.", FLAG(params.deterministic)},
     {"no-skip", 0, CLI_RUN, NULL, "Run every pass on every tile: same picture, slower.", FLAG(params.no_skip)},
+    {"budget-ms", 0, CLI_RUN, "MS", "Milliseconds that a frame may take. When the frames before took longer, cheaper "
+     "settings are chosen: smaller buffers, the gather, fewer rings. Default: any time.",
+     POSITIVE(params.budget_ms)},
+    {"explain", 0, CLI_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
+     "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
+    {"explain-image", 0, CLI_RUN, "FILE", "Write the picture with its tiles painted over: near red, far blue, both "
+     "violet, sharp as it is.", TEXT(explain_image)},
     {"json", 0, CLI_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
      "FILE unless there is no other INPUT.", .parse = cli_parse_json},
     {"dump-passes", 0, CLI_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},

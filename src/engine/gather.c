@@ -117,7 +117,7 @@ int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct 
     const struct hf_taps_key key = {.radius = h, .scale = s->strength >= 0.25f ? s->strength : 0.25f,
                                     .pixel_aspect = p->pixel_aspect, .blades = p->blades,
                                     .rotation = p->blades ? p->blade_rotation : 0,
-                                    .dense = p->fill == HF_FILL_NONE};
+                                    .dense = p->fill == HF_FILL_NONE, .rings = s->rings};
     return hf_taps_build(s->taps, &key, mem);
 }
 

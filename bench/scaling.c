@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `hyperfocal-bench scaling`: what a frame costs as more of it is blurred, and as it grows.
+#include "commands.h"
+#include "subject.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+static const int sizes[][2] = {{480, 270}, {960, 540}, {1920, 1080}, {3840, 2160}, {7680, 4320}};
+static const int shares[] = {0, 10, 25, 50, 75, 100};
+static const char *const kinds[] = {"near", "far", "both"};
+enum {
+    SIZES = sizeof sizes / sizeof *sizes,
+    SHARES = sizeof shares / sizeof *shares,
+    KINDS = sizeof kinds / sizeof *kinds,
+    HD = 2,      // place of 1920x1080
+    LEAST = 5,   // frames of a point
+};
+static const double seconds = 0.25;  // of a point
+
+struct point {
+    struct bench_row all;
+    size_t memory;  // that the context held
+};
+
+struct size_result {
+    int width, height;
+    double memcpy_ms;
+    struct point point[KINDS][SHARES];
+};
+
+struct scaling {
+    const struct bench_args *args;
+    int threads, count;
+    enum hf_isa isa;
+    float max_radius;
+    struct size_result size[SIZES];
+};
+
+static double megapixels(const struct size_result *s)
+{
+    return (double)s->width * s->height * 1e-6;
+}
+
+// Of the frame all blurred, the time at 10 %.
+static double tenth(const struct size_result *s, int kind)
+{
+    return s->point[kind][1].all.median_ms / s->point[kind][SHARES - 1].all.median_ms;
+}
+
+// Milliseconds a megapixel, all of it near and far, over those at 1920x1080; 0: that was not measured.
+static double growth(const struct scaling *r, int i)
+{
+    const struct size_result *s = &r->size[i], *hd = &r->size[HD];
+    if (r->count <= HD)
+        return 0;
+    return s->point[KINDS - 1][SHARES - 1].all.median_ms / megapixels(s) /
+           (hd->point[KINDS - 1][SHARES - 1].all.median_ms / megapixels(hd));
+}
+
+// Most memory that the process had at a time, bytes.
+static double peak_memory(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) ? 0 : (double)usage.ru_maxrss * 1024;
+}
+
+static void table(FILE *out, const void *what)
+{
+    const struct scaling *r = what;
+    fprintf(out, "%-11s %-5s %9s", "size", "band", "memcpy");
+    for (int i = 0; i < SHARES; i++)
+        fprintf(out, " %7d %%", shares[i]);
+    fprintf(out, " %9s %10s %9s\n", "10/100", "ms/Mpixel", "MB held");
+    for (int i = 0; i < r->count; i++)
+        for (int k = 0; k < KINDS; k++) {
+            const struct size_result *s = &r->size[i];
+            fprintf(out, "%4d x %-4d %-5s %9.3f", s->width, s->height, kinds[k], s->memcpy_ms);
+            for (int j = 0; j < SHARES; j++)
+                fprintf(out, " %9.3f", s->point[k][j].all.median_ms);
+            fprintf(out, " %9.2f %10.3f %9.1f\n", tenth(s, k), s->point[k][SHARES - 1].all.median_ms / megapixels(s),
+                    (double)s->point[k][SHARES - 1].memory * 1e-6);
+        }
+    fprintf(out, "\n%s, %d threads, engine %s, radius %g; the process had at most %.0f MB\n", hf_isa_name(r->isa),
+            r->threads, hf_engine_name(r->args->params.engine), r->max_radius, peak_memory() * 1e-6);
+}
+
+static void json_point(FILE *out, const struct scaling *r, int i, int k, int j)
+{
+    const struct size_result *s = &r->size[i];
+    const struct point *p = &s->point[k][j];
+    fprintf(out,
+            "    {\"width\": %d, \"height\": %d, \"kind\": \"%s\", \"share\": %d, \"median_ms\": %.6f, \"min_ms\": %.6f, "
+            "\"max_ms\": %.6f, \"ms_per_megapixel\": %.6f, \"memcpy_ms\": %.6f, \"memory\": %zu}",
+            s->width, s->height, kinds[k], shares[j], p->all.median_ms, p->all.min_ms, p->all.max_ms,
+            p->all.median_ms / megapixels(s), s->memcpy_ms, p->memory);
+}
+
+static void json(FILE *out, const void *what)
+{
+    const struct scaling *r = what;
+    fprintf(out, "{\n  \"command\": \"scaling\",\n  \"engine\": \"%s\",\n  \"threads\": %d,\n  \"isa\": \"%s\",\n"
+            "  \"max_radius\": %g,\n  \"peak_memory\": %.0f,\n  \"points\": [\n",
+            hf_engine_name(r->args->params.engine), r->threads, hf_isa_name(r->isa), r->max_radius, peak_memory());
+    const char *comma = "";
+    for (int i = 0; i < r->count; i++)
+        for (int k = 0; k < KINDS; k++)
+            for (int j = 0; j < SHARES; j++, comma = ",\n") {
+                fputs(comma, out);
+                json_point(out, r, i, k, j);
+            }
+    fputs("\n  ],\n  \"sizes\": [\n", out);
+    for (int i = 0; i < r->count; i++) {
+        const struct size_result *s = &r->size[i];
+        fprintf(out, "    {\"width\": %d, \"height\": %d, \"memcpy_ms\": %.6f, \"ten_over_all\": "
+                "{\"near\": %.4f, \"far\": %.4f, \"both\": %.4f}, \"per_megapixel_over_1080p\": %.4f}%s\n",
+                s->width, s->height, s->memcpy_ms, tenth(s, 0), tenth(s, 1), tenth(s, 2), growth(r, i),
+                i + 1 < r->count ? "," : "");
+    }
+    fputs("  ]\n}\n", out);
+}
+
+static int measure_size(struct size_result *s, struct scaling *r, struct bench_error *log, struct bench_error *error)
+{
+    const struct bench_args *a = r->args;
+    const struct bench_optics optics = {a->params.focus_distance, a->params.range, a->params.max_radius};
+    struct bench_scene scene = {0};
+    struct bench_subject subject = {0};
+    float *depth = malloc((size_t)s->width * (size_t)s->height * sizeof(float));
+    int err = depth ? bench_scene_paint(&scene, "mixed", s->width, s->height, &optics, error)
+                    : bench_fail(error, "there is not enough memory for %dx%d", s->width, s->height);
+    if (!err)
+        err = bench_subject_open(&subject, a, &scene, log, error);
+    if (!err) {
+        subject.depth.data = depth;
+        memcpy(depth, scene.depth, (size_t)s->width * (size_t)s->height * sizeof(float));
+        s->memcpy_ms = bench_measure_copy(&subject);
+        r->threads = hf_context_threads(subject.context);
+        r->isa = hf_context_isa(subject.context);
+    }
+    for (int k = 0; k < KINDS && !err; k++)
+        for (int j = 0; j < SHARES && !err; j++) {
+            char name[32];
+            struct hf_stats stats;
+            snprintf(name, sizeof name, "band-%s:%d", kinds[k], shares[j]);
+            err = bench_scene_depth(&scene, name, &optics, depth, error);
+            if (!err)
+                err = bench_measure_all(&subject, seconds, LEAST, &s->point[k][j].all, &stats, error);
+            if (!err) {
+                s->point[k][j].memory = stats.memory;
+                r->max_radius = stats.max_radius;
+            }
+        }
+    bench_subject_close(&subject);
+    bench_scene_free(&scene);
+    free(depth);
+    return err;
+}
+
+int bench_scaling(struct bench_args *args, struct bench_error *error)
+{
+    struct scaling r = {.args = args};
+    struct bench_error log = {""};
+    // With --size: only up to there.
+    for (int i = 0; i < SIZES && (!args->size_given || sizes[i][0] <= args->width); i++) {
+        r.size[i] = (struct size_result){.width = sizes[i][0], .height = sizes[i][1]};
+        if (measure_size(&r.size[i], &r, &log, error))
+            return -1;
+        r.count++;
+    }
+    if (!r.count)
+        return bench_fail(error, "--size %dx%d is less than the smallest, %dx%d", args->width, args->height, sizes[0][0],
+                          sizes[0][1]);
+    return bench_write_report(args, table, json, &r, error);
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A time budget: which of a ladder of settings, from what was asked for down to the cheapest, the next frame gets.
+#ifndef HF_BUDGET_H
+#define HF_BUDGET_H
+
+#include "hyperfocal/hyperfocal.h"
+
+enum { HF_BUDGET_STEPS = 8 };
+
+struct hf_budget {
+    uint64_t asked;              // hash of what the ladder was made for; 0: nothing yet
+    int step;                    // in use
+    int frames;                  // rendered at it
+    int over, calm;              // frames on end beyond the budget, and with room for the step above
+    int patience;                // calm frames to wait for before going up
+    int climbed;                 // this step was reached from a cheaper one
+    float ms;                    // of a frame at this step, smoothed
+    float above;                 // of the step above when it was left for this one; 0: it was not
+    float ratio[HF_BUDGET_STEPS];  // cost of the step above over this one's, seen then
+};
+
+// Fill ladder with settings to choose from, best first; ladder[0] is *asked. radius: the largest there may be. Returns
+// how many.
+int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS]);
+
+// The setting for the next frame.
+int hf_budget_choose(struct hf_budget *b, const struct hf_params *ladder, int steps);
+// That frame took so long.
+void hf_budget_note(struct hf_budget *b, float budget_ms, int steps, float ms);
+
+#endif

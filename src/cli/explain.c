@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/explain.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct cli_error *error)
+{
+    hf_get_report(context, &v->report);
+    const size_t tiles = (size_t)v->report.columns * (size_t)v->report.rows;
+    v->tiles = malloc(tiles);
+    if (!v->tiles)
+        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+    memcpy(v->tiles, v->report.tiles, tiles);
+    v->report.tiles = v->tiles;
+    return 0;
+}
+
+static void print_settings(FILE *out, const struct hf_report *r)
+{
+    static const char *const resolutions[] = {"full", "half", "quarter"};
+    fprintf(out, "  engine %s", hf_engine_name(r->engine));
+    if (r->engine == HF_ENGINE_GATHER)
+        fprintf(out, ", %d ring%s of taps", r->rings, r->rings == 1 ? "" : "s");
+    else
+        fprintf(out, ", %s resolution", resolutions[r->resolution]);
+    if (r->budget_step > 0)
+        fprintf(out, ", %d step%s below what was asked for, to keep the budget", r->budget_step,
+                r->budget_step == 1 ? "" : "s");
+    fprintf(out, "\n  largest CoC radius: near %.2f, far %.2f pixels\n", r->near_radius, r->far_radius);
+    fprintf(out, "  tiles of %d x %d pixels: %u sharp, %u near, %u far, %u both\n", r->tile_width, r->tile_height,
+            r->tile_count[HF_TILE_SHARP], r->tile_count[HF_TILE_NEAR], r->tile_count[HF_TILE_FAR],
+            r->tile_count[HF_TILE_BOTH]);
+}
+
+static void print_report(FILE *out, const struct hf_report *r, int ran)
+{
+    print_settings(out, r);
+    fprintf(out, "  %-18s %7s %9s %13s %12s   %s\n", "pass", "runs on", "skips", "predicted ms", ran ? "measured ms" : "",
+            "because");
+    for (int i = 0; i < r->passes; i++) {
+        const struct hf_pass_report *p = &r->pass[i];
+        fprintf(out, "  %-18s %7u %9u %13.3f ", p->name, p->run, p->all - p->run, p->predicted_ms);
+        if (ran)
+            fprintf(out, "%12.3f", p->ms);
+        else
+            fprintf(out, "%12s", "");
+        fprintf(out, "   %s\n", p->skipped ? p->skipped : "");
+    }
+    fprintf(out, "  %-18s %7s %9s %13.3f ", "frame", "", "", r->predicted_ms);
+    if (ran)
+        fprintf(out, "%12.3f   of which planning %.3f\n", r->total_ms, r->plan_ms);
+    else
+        fprintf(out, "\n");
+    fprintf(out, "  memory for buffers: %.1f MB; skipping saves %.1f MB\n", (double)r->memory * 1e-6,
+            (double)r->memory_saved * 1e-6);
+}
+
+void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
+{
+    for (int i = 0; i < frame->view_count; i++) {
+        fprintf(out, "%s\n", frame->views[i].label);
+        print_report(out, &frame->views[i].report, ran);
+    }
+}
+
+// Near red, far blue, both violet, sharp as it is; a dark line between tiles.
+static void paint(const struct cli_view *v, float *const planes[3])
+{
+    static const float tint[4][3] = {{1, 1, 1}, {1, 0.25f, 0.2f}, {0.2f, 0.4f, 1}, {0.75f, 0.25f, 0.9f}};
+    const struct hf_report *r = &v->report;
+    const int width = v->view->width, height = v->view->height;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const uint8_t tile = v->tiles[y / r->tile_height * r->columns + x / r->tile_width];
+            const int line = x % r->tile_width == 0 || y % r->tile_height == 0;
+            for (int c = 0; c < 3; c++) {
+                const size_t i = (size_t)y * (size_t)width + (size_t)x;
+                const float colour = v->planes[c][i];
+                // Half the picture, half the tint at the brightness of a mid grey.
+                planes[c][i] = line ? 0 : tile == HF_TILE_SHARP ? colour : 0.5f * colour + 0.1f * tint[tile][c];
+            }
+        }
+}
+
+// FILE, or for one of several views FILE with the view's name before the extension.
+static char *image_path(const struct cli_frame *frame, const struct cli_view *v)
+{
+    const char *file = frame->args->explain_image, *dot = strrchr(file, '.'), *slash = strrchr(file, '/');
+    char *path = NULL;
+    if (frame->view_count == 1)
+        return strdup(file);
+    if (!dot || (slash && dot < slash))
+        dot = file + strlen(file);
+    const int stem = (int)(dot - file);
+    const int n = v->view->name[0] ? asprintf(&path, "%.*s.%s%s", stem, file, v->view->name, dot)
+                                   : asprintf(&path, "%.*s.view%d%s", stem, file, v->index, dot);
+    if (n < 0)
+        return NULL;
+    // The name is the file's, and must not lead elsewhere.
+    for (char *c = path + stem; c < path + n - strlen(dot); c++)
+        if (*c == '/')
+            *c = '_';
+    return path;
+}
+
+static int write_image(const struct cli_frame *frame, const struct cli_view *v, struct cli_error *error)
+{
+    const size_t pixels = (size_t)v->view->width * (size_t)v->view->height;
+    float *memory = malloc(3 * pixels * sizeof(float));
+    char *path = image_path(frame, v);
+    int status = 0;
+    if (!memory || !path) {
+        status = cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+    } else {
+        float *const planes[3] = {memory, memory + pixels, memory + 2 * pixels};
+        struct hf_io_error io;
+        paint(v, planes);
+        const struct hf_io_result result = {.view = v->index, .planes = {planes[0], planes[1], planes[2]}};
+        if (hf_io_write(frame->file, path, &result, 1, NULL, NULL, &io))
+            status = cli_fail(error, CLI_ALL_FAILED, "--explain-image: %s", io.message);
+    }
+    free(memory);
+    free(path);
+    return status;
+}
+
+int cli_explain_image(const struct cli_frame *frame, struct cli_error *error)
+{
+    for (int i = 0; i < frame->view_count; i++) {
+        const int status = write_image(frame, &frame->views[i], error);
+        if (status)
+            return status;
+    }
+    return 0;
+}

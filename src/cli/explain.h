@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// --explain and --explain-image: what a frame called for, as a table and as a picture.
+#ifndef HF_CLI_EXPLAIN_H
+#define HF_CLI_EXPLAIN_H
+
+#include <stdio.h>
+
+#include "cli/frame.h"
+
+// Keep a context's report with its view, tiles included, which the context overwrites. 0, or an exit code.
+int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct cli_error *error);
+
+// The table of all views. ran: frames were rendered, not only planned.
+void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran);
+
+// The tiles of all views painted over their pictures, in --explain-image's file; with several views each gets a file
+// of its own, its name before the extension. 0, or an exit code.
+int cli_explain_image(const struct cli_frame *frame, struct cli_error *error);
+
+#endif
