@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hard cases of the gather engine, pairs of pictures: shifts and crops, flips, transposes, exposure, threads, skipping,
-// widths around the vectors' length, a focus pull.
+// Hard cases of the gather engine, pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths around the vectors' length, a focus pull.
 //
 //     invariance [seed]
 #include <float.h>
@@ -204,47 +203,6 @@ static void exposures(struct hf_context *c, const char *isa)
     }
 }
 
-// Random scenes, options and tile sizes: skipping changes no bit.
-static void skipping(struct hf_context *whole, enum hf_isa id, const char *isa)
-{
-    static const int tiles[][2] = {{16, 16}, {16, 33}, {48, 17}, {0, 0}};
-    struct hf_context *tiled[4];
-    uint64_t run = 0, all = 0;
-    for (int i = 0; i < 4; i++) {
-        struct hf_config config = scene_config(id, 2);
-        config.tile_width = tiles[i][0];
-        config.tile_height = tiles[i][1];
-        CHECK_INT(hf_open(&tiled[i], &config), HF_OK);
-    }
-    for (unsigned i = 0; i < 200; i++) {
-        struct hf_context *c = tiled[i / 4 % 4];
-        struct rng rng = rng_seed(seed + i);
-        const enum scene_kind kind = (enum scene_kind)rng_below(&rng, SCENE_KINDS);
-        const int w = 1 + rng_below(&rng, i % 4 ? 150 : 330), h = 1 + rng_below(&rng, i % 4 ? 100 : 230);
-        struct scene s = scene_new(&rng, kind, w, h, 3 + rng_below(&rng, 2));
-        struct hf_params p = random_params(&rng);
-        // -0.0, and sums that overflow, are what blending with a weight of 0 would change.
-        for (int k = 0; k < w * h / 20; k++)
-            s.colour.plane[rng_below(&rng, 3)][rng_below(&rng, w * h)] = rng_below(&rng, 2) ? -0.0f : -1e-3f;
-        struct picture a = render(c, &s, &p);
-        struct hf_stats stats;
-        hf_get_stats(c, &stats);
-        run += stats.tiles_run[HF_PASS_GATHER];
-        all += stats.tiles_all[HF_PASS_GATHER];
-        p.no_skip = 1;
-        struct picture b = render(whole, &s, &p);
-        CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u, %s %d x %d, tiles %d: skipping gives other bits", isa,
-                  seed + i, scene_name(kind), w, h, i / 4 % 4);
-        picture_free(&a);
-        picture_free(&b);
-        scene_free(&s);
-    }
-    printf("%s: skipping: %.0f %% of the tiles gathered\n", isa, 100.0 * (double)run / (double)all);
-    CHECK(run < all);
-    for (int i = 0; i < 4; i++)
-        hf_close(&tiled[i]);
-}
-
 // 1 to 7 threads, tiles of as many sizes, and repetition.
 static void threads(enum hf_isa isa)
 {
@@ -339,7 +297,6 @@ int main(int argc, char **argv)
         flips(c, name);
         transposes(c, name);
         exposures(c, name);
-        skipping(c, (enum hf_isa)isa, name);
         threads((enum hf_isa)isa);
         widths(c, plain, name);
         focus_pull(c, name);

@@ -74,6 +74,8 @@ static void count(struct hf_counts *c, float n, float f)
     c->near_pixels += n > 0;
     c->far_pixels += f > 0;
     c->sharp_pixels += !(n > 0 || f > 0);
+    c->near_max = n > c->near_max ? n : c->near_max;
+    c->far_max = f > c->far_max ? f : c->far_max;
 }
 
 void hf_coc_row_c(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts)

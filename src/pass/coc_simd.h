@@ -53,6 +53,7 @@ HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form for
 
 struct coc_sums {
     vi near, far, any, none;
+    vf near_max, far_max;
     vm nan;
 };
 
@@ -80,6 +81,8 @@ HF_INLINE void coc_block(const struct hf_setup *s, const enum hf_depth_form form
     sums->far = vi_count(sums->far, is_far);
     sums->any = vi_count(sums->any, vm_or(is_near, is_far));
     sums->none = vi_count(sums->none, none);
+    sums->near_max = vf_max(n, sums->near_max);
+    sums->far_max = vf_max(f, sums->far_max);
 }
 
 HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, const int whole, int x, int y, int n,
@@ -126,13 +129,15 @@ static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *c
                          struct hf_counts *counts)
 {
     const int whole = hf_min(n, (f->s->width - 2 * x) / 2) / VF_N * VF_N;
-    struct coc_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vi_set1(0), vf_gt(vf_zero(), vf_zero())};
+    struct coc_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(),
+                            vf_gt(vf_zero(), vf_zero())};
     if (counts)
         coc_row_form(f, 1, x, y, whole, out, &sums);
     else
         coc_row_form(f, 0, x, y, whole, out, &sums);
     struct hf_counts c = {.near_pixels = vi_sum(sums.near), .far_pixels = vi_sum(sums.far),
-                          .sharp_pixels = 2 * (uint64_t)whole - vi_sum(sums.any), .no_surface = vi_sum(sums.none)};
+                          .sharp_pixels = 2 * (uint64_t)whole - vi_sum(sums.any), .no_surface = vi_sum(sums.none),
+                          .near_max = vf_most(sums.near_max), .far_max = vf_most(sums.far_max)};
     // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
     const int from = vm_any(sums.nan) ? 0 : whole;
     if (from == 0)
@@ -147,4 +152,6 @@ static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *c
     counts->sharp_pixels += c.sharp_pixels;
     counts->no_surface += c.no_surface;
     counts->depth_repaired += c.depth_repaired;
+    counts->near_max = c.near_max > counts->near_max ? c.near_max : counts->near_max;
+    counts->far_max = c.far_max > counts->far_max ? c.far_max : counts->far_max;
 }

@@ -73,18 +73,14 @@ static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float
         hf_radius_row_c(f, x + from, y, n - from, out + from, counts);
     if (!counts || from == 0)
         return;
-    float least[VF_N], most[VF_N];
+    const float least = -vf_most(vf_sub(vf_zero(), sums.min)), most = vf_most(sums.max);
     const uint32_t near = vi_sum(sums.near), far = vi_sum(sums.far);
     counts->near_pixels += near;
     counts->far_pixels += far;
     counts->sharp_pixels += (uint64_t)whole - near - far;
     counts->no_surface += vi_sum(sums.none);
-    vf_store(least, sums.min);
-    vf_store(most, sums.max);
-    for (int i = 0; i < VF_N; i++) {
-        counts->radius_min = least[i] < counts->radius_min ? least[i] : counts->radius_min;
-        counts->radius_max = most[i] > counts->radius_max ? most[i] : counts->radius_max;
-    }
+    counts->radius_min = least < counts->radius_min ? least : counts->radius_min;
+    counts->radius_max = most > counts->radius_max ? most : counts->radius_max;
 }
 
 static void zip_row_simd(const float *even, const float *odd, int n, float *out)

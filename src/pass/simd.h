@@ -29,6 +29,17 @@ HF_INLINE uint32_t vi_sum(vi a)
     return sum;
 }
 
+// Largest of the lanes, none of them NaN.
+HF_INLINE float vf_most(vf a)
+{
+    float lane[VF_N], most;
+    vf_store(lane, a);
+    most = lane[0];
+    for (int i = 1; i < VF_N; i++)
+        most = lane[i] > most ? lane[i] : most;
+    return most;
+}
+
 // a + t (b - a), a's own bits for t = 0.
 HF_INLINE vf vf_lerp(vf a, vf b, vf t)
 {
