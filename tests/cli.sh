@@ -163,7 +163,8 @@ result "-h is --help" $?
 for option in output focus focus-at range strength near-begin near-end far-begin far-end fstop focal-length \
     sensor-width world-unit max-radius depth-channel depth-file depth-type near far views aperture karis \
     per-pixel-kernel bicubic fill blend threads isa no-skip json dump-passes compression dry-run version engine \
-    faithful storage deterministic; do
+    faithful storage deterministic explain explain-image budget-ms rings resolution chromatic cat-eye squeeze uniform \
+    iterations sigma; do
     contains "$dir/help" "--$option"
     result "--help tells of --$option" $?
 done
@@ -186,7 +187,7 @@ bad 1 "a.exr|b.exr" a.exr b.exr -o o.exr
 bad 1 "--bogus|--help" a.exr -o o.exr --bogus
 bad 1 "--bogus=3|--help" a.exr -o o.exr --bogus=3
 bad 1 "-q|--help" -q a.exr -o o.exr
-for option in --chromatic=1 --quality=high --frames=1-2 --resume --explain; do
+for option in --quality=high --frames=1-2 --resume; do
     bad 1 "$option|--help" a.exr -o o.exr $option
 done
 bad 1 "-o" a.exr -o
@@ -232,11 +233,27 @@ bad 1 "--isa|'avx9'|scalar" a.exr -o o.exr --isa avx9
 bad 1 "--depth-type|'z'|ndc-d3d" a.exr -o o.exr --depth-type z
 bad 1 "--compression|'lzma'|piz" a.exr -o o.exr --compression lzma
 bad 1 "--compression|zip|o.png" a.exr -o o.png --compression zip
-for value in ngon ngon: ngon:4 ngon:10 ngon:x ngon:6:x ngon:6:0:x ngon:6:0:1:2 ngon:6: ngon:6:0:inf ngon:6:0.5 \
+for value in ngon ngon: ngon:4 ngon:10 ngon:17 ngon:x ngon:6:x ngon:6:0:x ngon:6:0:1:2 ngon:6: ngon:6:0:inf ngon:6:0.5 \
     ring:0.5 star.png; do
     bad 1 "--aperture|'$value'" a.exr -o o.exr --aperture $value
 done
 bad 1 "--aperture|ring:0.5|disc or ngon" a.exr -o o.exr --aperture ring:0.5
+for value in 0 -1 inf nan x; do
+    bad 1 "--budget-ms|'$value'" a.exr -o o.exr --budget-ms $value
+done
+bad 1 "--rings|'65'" a.exr -o o.exr --rings 65
+bad 1 "--chromatic|'0.6'" a.exr -o o.exr --engine scatter --chromatic 0.6
+bad 1 "--chromatic|scatter|gather" a.exr -o o.exr --chromatic 0.1
+bad 1 "--cat-eye|scatter|hexagon" a.exr -o o.exr --engine hexagon --cat-eye 0.1
+bad 1 "--squeeze|scatter" a.exr -o o.exr --squeeze 2
+bad 1 "--uniform|hexagon" a.exr -o o.exr --uniform
+bad 1 "--iterations|gaussian" a.exr -o o.exr --iterations 4
+bad 1 "--sigma|gaussian" a.exr -o o.exr --sigma 4
+bad 1 "--resolution half|hexagon" a.exr -o o.exr --resolution half
+bad 1 "--resolution quarter|gaussian|scatter" a.exr -o o.exr --engine scatter --resolution quarter
+bad 1 "--karis|gather|scatter" a.exr -o o.exr --engine scatter --karis
+bad 1 "--storage|gather|hexagon" a.exr -o o.exr --engine hexagon --storage half
+bad 1 "--explain-image|''" a.exr -o o.exr --explain-image ""
 bad 1 "--range|--fstop" a.exr -o o.exr --range 3 --fstop 2
 bad 1 "--strength|--focal-length" a.exr -o o.exr --focal-length 50 --strength 1
 bad 1 "--far-end|--fstop" a.exr -o o.exr --far-end 9 --fstop 2
@@ -391,6 +408,32 @@ picture_tests() {
     [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"colour_repaired": 1' &&
         [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" nan.exr
     result "NaN is repaired, counted and reported" $?
+
+    # What the picture called for.
+    good plain.exr -o o.exr --focus 3 --explain
+    contains "$dir/out" "Computation" && contains "$dir/out" "tiles of" && contains "$dir/out" "memory"
+    result "--explain prints a table" $?
+    good plain.exr -o o.exr --focus 3 --range inf --explain
+    contains "$dir/out" "no blur at all"
+    result "--explain says why" $?
+    rm -f o.exr
+    run plain.exr --focus 3 --explain --dry-run
+    [ "$status" -eq 0 ] && contains "$dir/out" "predicted" && ! contains "$dir/out" "measured" && [ ! -e o.exr ]
+    result "--explain --dry-run" $?
+    run plain.exr -o o.exr --focus 3 --explain --json
+    [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"predicted_ms"' &&
+        contains "$dir/out" '"memory_saved"' && contains "$dir/err" "Computation"
+    result "--explain --json" $?
+    good plain.exr -o o.exr --focus 3 --explain-image tiles.exr
+    [ -s tiles.exr ]
+    result "--explain-image" $?
+    good stereo.exr -o o.exr --focus 3 --explain-image tiles.exr
+    [ -s tiles.left.exr ] && [ -s tiles.right.exr ]
+    result "--explain-image of two views" $?
+    rm -f tiles.exr tiles.left.exr tiles.right.exr
+    good plain.exr -o o.exr --focus 3 --budget-ms 100 --rings 2 --json
+    contains "$dir/out" '"budget_step": 0' && contains "$dir/out" '"rings": 2'
+    result "--budget-ms and --rings" $?
 
     passes="coc coc4 cocmaxx cocmax cocblurx cocblur color4 colormulcoc4 near far nearfill farfill composite"
     good plain.exr -o o.exr --focus 3 --dump-passes passes
