@@ -15,10 +15,11 @@ struct bench_args {
     int threads;           // 0: one per processor
     enum hf_isa isa;
     const char *scene;     // name of a built-in scene, or of a file
+    const char *images;    // folder of the truth scenes
     const char *json;      // file, "-" for stdout, NULL for none
     enum hf_format in, out;
     struct hf_params params;
-    int size_given, focus_given, range_given;  // on the command line
+    int size_given, focus_given, range_given, max_radius_given;  // on the command line
 };
 
 // The defaults of DESIGN.md, section 7: 1920x1080, mixed, float storage, R11G11B10F in and out, radius 12.

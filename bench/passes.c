@@ -13,9 +13,10 @@ static int make_scene(struct bench_args *args, struct bench_scene *scene, struct
         const struct bench_optics optics = {p->focus_distance, p->range, p->max_radius};
         return bench_scene_paint(scene, args->scene, args->width, args->height, &optics, error);
     }
-    float focus = NAN;
-    if (bench_scene_read(scene, args->scene, &focus, error))
+    struct bench_camera camera;
+    if (bench_scene_read(scene, args->scene, 1, &camera, error))
         return -1;
+    const float focus = camera.focus;
     if (!args->focus_given && focus > 0 && isfinite(focus)) {
         p->focus_distance = focus;
         if (!args->range_given)

@@ -44,9 +44,16 @@ int bench_scene_paint(struct bench_scene *scene, const char *name, int width, in
 int bench_scene_depth(const struct bench_scene *mixed, const char *name, const struct bench_optics *optics,
                       float *depth, struct bench_error *error);
 
-// Read the first view with depth of a picture file. *focus receives the focus distance that the file names, in metres,
-// or NAN. Colour only: alpha is not read. Fails in builds without the file layer.
-int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, struct bench_error *error);
+// The camera that a file names; NAN what it does not.
+struct bench_camera {
+    float focus;  // metres
+    float f_number, focal_length_mm, sensor_width_mm;
+};
+
+// Read the first view with depth of a picture file, or with_depth 0 the first view, without. Colour only: alpha is not
+// read. camera may be NULL. Fails in builds without the file layer.
+int bench_scene_read(struct bench_scene *scene, const char *path, int with_depth, struct bench_camera *camera,
+                     struct bench_error *error);
 
 void bench_scene_free(struct bench_scene *scene);
 

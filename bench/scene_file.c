@@ -23,17 +23,20 @@ static void interleave(float *rgb, float *const planes[3], size_t pixels)
             rgb[i * 3 + (size_t)c] = planes[c][i];
 }
 
-static int read_view(struct bench_scene *scene, struct hf_io_file *file, int view, struct bench_error *error)
+static int read_view(struct bench_scene *scene, struct hf_io_file *file, int view, int with_depth,
+                     struct bench_error *error)
 {
     const size_t pixels = (size_t)scene->width * (size_t)scene->height;
     float *memory = malloc(pixels * 3 * sizeof(float));
     scene->rgb = malloc(pixels * 3 * sizeof(float));
-    scene->depth = malloc(pixels * sizeof(float));
+    if (with_depth)
+        scene->depth = malloc(pixels * sizeof(float));
     int result = -1;
-    if (memory && scene->rgb && scene->depth) {
+    if (memory && scene->rgb && (scene->depth || !with_depth)) {
         float *planes[4] = {memory, memory + pixels, memory + 2 * pixels, NULL};
         struct hf_io_error io;
-        if (!hf_io_read_colour(file, view, planes, &io) && !hf_io_read_depth(file, view, scene->depth, &io)) {
+        if (!hf_io_read_colour(file, view, planes, &io) &&
+            (!with_depth || !hf_io_read_depth(file, view, scene->depth, &io))) {
             interleave(scene->rgb, planes, pixels);
             result = 0;
         } else {
@@ -46,14 +49,15 @@ static int read_view(struct bench_scene *scene, struct hf_io_file *file, int vie
     return result;
 }
 
-int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, struct bench_error *error)
+int bench_scene_read(struct bench_scene *scene, const char *path, int with_depth, struct bench_camera *camera,
+                     struct bench_error *error)
 {
     *scene = (struct bench_scene){0};
     struct hf_io_error io;
     struct hf_io_file *file;
     if (hf_io_open(&file, path, NULL, &io))
         return bench_fail(error, "%s", io.message);
-    const int view = view_with_depth(file);
+    const int view = with_depth ? view_with_depth(file) : 0;
     int result = -1;
     if (view < 0) {
         bench_fail(error, "%s has no depth channel", path);
@@ -61,8 +65,10 @@ int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, 
         const struct hf_io_view *v = hf_io_view(file, view);
         scene->width = v->width;
         scene->height = v->height;
-        *focus = v->camera.focus;
-        result = read_view(scene, file, view, error);
+        if (camera)
+            *camera = (struct bench_camera){v->camera.focus, v->camera.f_number, v->camera.focal_length_mm,
+                                            v->camera.sensor_width_mm};
+        result = read_view(scene, file, view, with_depth, error);
     }
     hf_io_close(&file);
     if (result)
@@ -72,9 +78,11 @@ int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, 
 
 #else
 
-int bench_scene_read(struct bench_scene *scene, const char *path, float *focus, struct bench_error *error)
+int bench_scene_read(struct bench_scene *scene, const char *path, int with_depth, struct bench_camera *camera,
+                     struct bench_error *error)
 {
-    (void)focus;
+    (void)with_depth;
+    (void)camera;
     *scene = (struct bench_scene){0};
     return bench_fail(error, "there is no built-in scene '%s', and this build reads no files", path);
 }

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `hyperfocal-bench truth`: how far each engine is from what a ray-traced thin lens sees, and what it costs.
+#include "commands.h"
+#include "subject.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The scenes, and what others reach on them when given the exact radius: PSNR in dB, seconds on two threads.
+static const struct {
+    const char *name;
+    double none, blender, blender_s, gegl;
+} scenes[] = {{"lights", 14.21, 25.85, 8.3, 25.37}, {"fence", 19.85, 21.51, 2.7, 24.36},
+              {"foliage", 22.11, 27.76, 16.9, 29.34}};
+enum { SCENES = sizeof scenes / sizeof *scenes, LEAST = 3 };
+
+struct truth {
+    const struct bench_args *args;
+    int threads;
+    struct {
+        double psnr, rmse, ms;
+    } at[SCENES][HF_ENGINE_COUNT];
+};
+
+static float display(float v)
+{
+    v = v > 0 ? v < 1 ? v : 1 : 0;
+    return v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
+}
+
+// Of the picture clamped to 0..1 with the sRGB curve: peak signal to noise; and root mean square error of the linear.
+static void distance(const float *a, const float *b, size_t n, double *psnr, double *rmse)
+{
+    double shown = 0, linear = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double d = (double)display(a[i]) - display(b[i]), l = (double)a[i] - b[i];
+        shown += d * d;
+        linear += l * l;
+    }
+    *psnr = -10 * log10(shown / (double)n);
+    *rmse = sqrt(linear / (double)n);
+}
+
+// The gather's reach must be told; the others find it. Whoever rings of taps are too slow for limits it with --max-radius.
+static int set_reach(struct bench_subject *s, const struct bench_args *args, struct bench_error *error)
+{
+    struct hf_params p = s->params;
+    struct hf_report r;
+    p.engine = HF_ENGINE_SCATTER;
+    p.max_radius = HF_DERIVE;
+    const int err = hf_plan(s->context, &s->out.image, &s->in.image, &s->depth, &p, &r);
+    if (err)
+        return bench_fail(error, "planning failed: %s", hf_error_string(err));
+    s->params.max_radius = args->max_radius_given ? args->params.max_radius
+                                                  : fminf(256, ceilf(fmaxf(r.near_radius, r.far_radius)));
+    return 0;
+}
+
+static int measure_engine(struct truth *t, int scene, int engine, struct bench_subject *s, const float *want,
+                          struct bench_error *error)
+{
+    struct bench_row all;
+    struct hf_stats stats;
+    const size_t samples = 3 * (size_t)s->in.image.width * (size_t)s->in.image.height;
+    s->params.engine = (enum hf_engine)engine;
+    s->params.max_radius = t->args->max_radius_given ? t->args->params.max_radius : HF_DERIVE;
+    if (engine == HF_ENGINE_GATHER && set_reach(s, t->args, error))
+        return -1;
+    s->params.engine = (enum hf_engine)engine;
+    if (bench_measure_all(s, 0.5, LEAST, &all, &stats, error))
+        return -1;
+    t->at[scene][engine].ms = all.median_ms;
+    distance(s->out.image.data[0], want, samples, &t->at[scene][engine].psnr, &t->at[scene][engine].rmse);
+    return 0;
+}
+
+static int measure_scene(struct truth *t, int i, struct bench_error *log, struct bench_error *error)
+{
+    char path[4096];
+    struct bench_args args = *t->args;
+    struct bench_scene scene = {0}, want = {0};
+    struct bench_subject subject = {0};
+    struct bench_camera camera;
+    args.in = args.out = HF_FORMAT_RGB32F;
+    snprintf(path, sizeof path, "%s/%s.exr", args.images, scenes[i].name);
+    int err = bench_scene_read(&scene, path, 1, &camera, error);
+    snprintf(path, sizeof path, "%s/%s.truth.exr", args.images, scenes[i].name);
+    if (!err)
+        err = bench_scene_read(&want, path, 0, NULL, error);
+    if (!err && (want.width != scene.width || want.height != scene.height))
+        err = bench_fail(error, "%s is %dx%d, its scene %dx%d", path, want.width, want.height, scene.width, scene.height);
+    if (!err)
+        err = bench_subject_open(&subject, &args, &scene, log, error);
+    if (!err) {
+        struct hf_params *p = &subject.params;
+        p->model = HF_MODEL_LENS;
+        p->focus_distance = camera.focus;
+        p->f_number = camera.f_number;
+        p->focal_length_mm = camera.focal_length_mm;
+        p->sensor_width_mm = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : 36;
+        t->threads = hf_context_threads(subject.context);
+    }
+    for (int e = 0; e < HF_ENGINE_COUNT && !err; e++)
+        err = measure_engine(t, i, e, &subject, want.rgb, error);
+    bench_subject_close(&subject);
+    bench_scene_free(&scene);
+    bench_scene_free(&want);
+    return err;
+}
+
+static void table(FILE *out, const void *what)
+{
+    const struct truth *t = what;
+    fprintf(out, "%-16s", "dB (ms)");
+    for (int i = 0; i < SCENES; i++)
+        fprintf(out, " %20s", scenes[i].name);
+    fputc('\n', out);
+    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+        fprintf(out, "%-16s", hf_engine_name((enum hf_engine)e));
+        for (int i = 0; i < SCENES; i++)
+            fprintf(out, " %9.2f %10.1f", t->at[i][e].psnr, t->at[i][e].ms);
+        fputc('\n', out);
+    }
+    fprintf(out, "%-16s", "no blur");
+    for (int i = 0; i < SCENES; i++)
+        fprintf(out, " %9.2f %10s", scenes[i].none, "");
+    fprintf(out, "\n%-16s", "Blender Defocus");
+    for (int i = 0; i < SCENES; i++)
+        fprintf(out, " %9.2f %10.1f", scenes[i].blender, 1e3 * scenes[i].blender_s);
+    fprintf(out, "\n%-16s", "GEGL lens-blur");
+    for (int i = 0; i < SCENES; i++)
+        fprintf(out, " %9.2f %10s", scenes[i].gegl, "");
+    fprintf(out, "\n\n%d threads; the last three as measured by others on two threads, GEGL in about 300 ms\n", t->threads);
+}
+
+static void json(FILE *out, const void *what)
+{
+    const struct truth *t = what;
+    fprintf(out, "{\n  \"command\": \"truth\",\n  \"threads\": %d,\n  \"results\": [\n", t->threads);
+    for (int i = 0; i < SCENES; i++)
+        for (int e = 0; e < HF_ENGINE_COUNT; e++)
+            fprintf(out, "    {\"scene\": \"%s\", \"engine\": \"%s\", \"psnr_db\": %.4f, \"linear_rmse\": %.6g, \"median_ms\": "
+                    "%.4f}%s\n", scenes[i].name, hf_engine_name((enum hf_engine)e), t->at[i][e].psnr, t->at[i][e].rmse,
+                    t->at[i][e].ms, i + 1 < SCENES || e + 1 < HF_ENGINE_COUNT ? "," : "");
+    fputs("  ]\n}\n", out);
+}
+
+int bench_truth(struct bench_args *args, struct bench_error *error)
+{
+    struct truth t = {.args = args};
+    struct bench_error log = {""};
+    for (int i = 0; i < SCENES; i++)
+        if (measure_scene(&t, i, &log, error))
+            return *log.text ? bench_fail(error, "%s", log.text) : -1;
+    return bench_write_report(args, table, json, &t, error);
+}
