@@ -44,6 +44,8 @@ void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_re
 {
     const struct hf_frame *f = &w->frame;
     const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x;
+    if (r.x0 >= r.x1)
+        return;
     float *even[4], *odd[4];
     for (int c = 0; c < 4; c++) {
         even[c] = hf_line(f, c);

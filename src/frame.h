@@ -104,7 +104,15 @@ struct hf_counts {
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
     float radius_min, radius_max;  // signed CoC radii; not the gather's
     float near_max, far_max;       // the gather's CoC
+    uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes
 };
+
+// Lanes are looked at in groups of 64; there may be more than bits, then several share one.
+enum { HF_GROUP = 64 };
+static inline int hf_group(int lane)
+{
+    return lane / HF_GROUP & 63;
+}
 
 struct hf_kernels;
 

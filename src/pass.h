@@ -68,10 +68,10 @@ typedef uint64_t hf_store_row(const struct hf_image *image, int x, int y, int n,
 typedef int hf_finite(const void *words, size_t n);
 
 // Near and far CoC of the n lanes from lane x of full-resolution row y, into four rows: near even, near odd, far even,
-// far odd. counts NULL: the near rows need not be written, and nothing is counted.
+// far odd. counts NULL: the near rows need not be written, and nothing is counted; else x is a multiple of 16.
 typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
 
-// Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted.
+// Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted; else x is a multiple of 32.
 typedef void hf_radius_row(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts);
 
 // Rows of 2n pixels in order, from their n even and n odd ones, and back.

@@ -113,27 +113,28 @@ int hf_plan_count(const struct hf_plan *p, int sweep)
 
 size_t hf_plan_tile_bytes(const struct hf_plan *p)
 {
-    return (size_t)hf_plan_count(p, 2) * (2 * sizeof(int) + 1);
+    return (size_t)hf_plan_count(p, 2) * (sizeof *p->tile_active + 1);
 }
 
 void hf_plan_tile_memory(struct hf_plan *p, void *memory)
 {
-    p->tile_rows = memory;
-    p->tile_needs = (uint8_t *)(p->tile_rows + 2 * (size_t)hf_plan_count(p, 2));
+    p->tile_active = memory;
+    p->tile_needs = (uint8_t *)(p->tile_active + (size_t)hf_plan_count(p, 2));
 }
 
 size_t hf_plan_chunk_bytes(const struct hf_plan *p)
 {
-    return (size_t)hf_plan_count(p, 1) * (sizeof(int) + 3);
+    return (size_t)hf_plan_count(p, 1) * (2 * sizeof(uint64_t) + sizeof(int) + 2);
 }
 
 void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep)
 {
     const size_t chunks = (size_t)hf_plan_count(p, 1);
-    p->deferred = memory;
+    p->found_near = memory;
+    p->found_far = p->found_near + chunks;
+    p->deferred = (int *)(p->found_far + chunks);
     p->deferred_count = 0;
-    p->chunk_found = (uint8_t *)(p->deferred + chunks);
-    p->chunk_made = p->chunk_found + chunks;
+    p->chunk_made = (uint8_t *)(p->deferred + chunks);
     p->chunk_reads = p->chunk_made + chunks;
     if (!keep)
         memset(p->chunk_reads, 0, chunks);
@@ -148,10 +149,7 @@ struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i)
 
 struct hf_rect hf_plan_active(const struct hf_plan *p, int tile)
 {
-    struct hf_rect r = hf_plan_cell(p, 2, tile);
-    r.y0 = p->tile_rows[2 * (size_t)tile];
-    r.y1 = p->tile_rows[2 * (size_t)tile + 1];
-    return r;
+    return p->tile_active[tile];
 }
 
 // The chunks that touch r grown by reach, as a rectangle of chunk numbers.
@@ -163,14 +161,31 @@ static struct hf_rect chunks_around(const struct hf_plan *p, struct hf_rect r, s
                             hf_min((r.y1 + reach.y - 1) / h + 1, p->rows[1])};
 }
 
-static unsigned found_around(const struct hf_plan *p, struct hf_rect r, struct hf_reach reach)
+// Is any of the groups of lanes from x0 to x1 of a mask set?
+static int in_groups(uint64_t groups, int x0, int x1)
+{
+    const int first = x0 / HF_GROUP, last = (x1 - 1) / HF_GROUP;
+    if (last - first >= 63)
+        return groups != 0;
+    for (int g = first; g <= last; g++)
+        if (groups >> (g & 63) & 1)
+            return 1;
+    return 0;
+}
+
+// Is there CoC of a kind within reach of r?
+static int found_around(const struct hf_plan *p, const uint64_t *found, struct hf_rect r, struct hf_reach reach)
 {
     const struct hf_rect c = chunks_around(p, r, reach);
-    unsigned found = 0;
+    const int x0 = hf_max(r.x0 - reach.x, 0), x1 = hf_min(r.x1 + reach.x, p->width);
     for (int y = c.y0; y < c.y1; y++)
-        for (int x = c.x0; x < c.x1; x++)
-            found |= p->chunk_found[y * p->columns[1] + x];
-    return found;
+        for (int x = c.x0; x < c.x1; x++) {
+            const int left = x * p->cell_width[1], right = left + p->cell_width[1];
+            const uint64_t groups = found[y * p->columns[1] + x];
+            if (groups && in_groups(groups, hf_max(x0, left), hf_min(x1, right)))
+                return 1;
+        }
+    return 0;
 }
 
 // The reach within which a tile's passes read what the first sweep made.
@@ -200,26 +215,27 @@ static void list_deferred(struct hf_plan *p)
             p->deferred[p->deferred_count++] = i;
 }
 
-// What a tile needs, and from where to where: looked at in strips of a chunk's height, as a tile is much higher than the
-// band that a thin thing in front of it blurs.
+// What a tile needs, and in which part of it: looked at in blocks of a group's width and a chunk's height, as a tile is
+// much larger than what a thin thing in front of it blurs.
 static void classify_tile(struct hf_plan *p, const struct hf_setup *s, int i)
 {
     const struct hf_reach near = p->engine->spread(s, p, HF_NEAR), far = p->engine->spread(s, p, HF_FAR);
     const struct hf_rect tile = hf_plan_cell(p, 2, i);
-    int *rows = p->tile_rows + 2 * (size_t)i;
+    struct hf_rect active = {tile.x1, tile.y1, tile.x0, tile.y0};
     unsigned needs = 0;
-    rows[0] = tile.y1;
-    rows[1] = tile.y0;
-    for (int y = tile.y0; y < tile.y1; y += p->cell_height[1]) {
-        const struct hf_rect strip = {tile.x0, y, tile.x1, hf_min(y + p->cell_height[1], tile.y1)};
-        const unsigned found = (found_around(p, strip, near) & HF_NEAR) | (found_around(p, strip, far) & HF_FAR);
-        needs |= found;
-        if (found || s->no_skip) {
-            rows[0] = hf_min(rows[0], strip.y0);
-            rows[1] = strip.y1;
+    for (int y = tile.y0; y < tile.y1; y += p->cell_height[1])
+        for (int x = tile.x0; x < tile.x1; x += HF_GROUP) {
+            const struct hf_rect block = {x, y, hf_min(x + HF_GROUP, tile.x1), hf_min(y + p->cell_height[1], tile.y1)};
+            const unsigned found = (found_around(p, p->found_near, block, near) ? HF_NEAR : 0u) |
+                                   (found_around(p, p->found_far, block, far) ? HF_FAR : 0u);
+            needs |= found;
+            if (!found)
+                continue;
+            active = (struct hf_rect){hf_min(active.x0, x), hf_min(active.y0, y), hf_max(active.x1, block.x1),
+                                      hf_max(active.y1, block.y1)};
         }
-    }
     p->tile_needs[i] = (uint8_t)(s->no_skip ? HF_FIELDS : needs);
+    p->tile_active[i] = s->no_skip ? tile : active;
 }
 
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s)

@@ -14,13 +14,13 @@ struct hf_plan {
     int width, height;  // of the frame, half-resolution pixels
     int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
-    uint8_t *chunk_found;  // fields of which there is CoC in the chunk
+    uint64_t *found_near, *found_far;  // groups of lanes in the chunk that have such CoC
     uint8_t *chunk_made;   // fields whose buffers the first sweep has made
     uint8_t *chunk_reads;  // fields that some tile reads there; until they are known, those of the last frame
     int *deferred;         // chunks whose buffers are made once it is known that they are read
     int deferred_count;
     uint8_t *tile_needs;   // fields
-    int *tile_rows;        // first row and end of the part of each tile that is not sharp
+    struct hf_rect *tile_active;  // the part of each tile that is not sharp
     unsigned needs, reads; // of all tiles
 
     struct hf_reach pass[HF_MAX_PASSES];  // by how much a pass's rectangle exceeds the cell

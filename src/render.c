@@ -82,15 +82,15 @@ static void first_sweep(void *arg, int i, int worker)
     struct hf_worker *w = &j->c->workers[worker];
     const struct hf_rect r = hf_plan_cell(p, 1, i);
     int64_t clock = now_ns();
-    const struct hf_counts before = w->counts;
     hf_buffers_place(j->c, j->s, &w->frame, 1, r);
+    w->counts.near_groups = w->counts.far_groups = 0;
     set_fields(&w->frame, HF_FIELDS);
     run_pass(j, w, 0, r, &clock);
-    const unsigned found = (w->counts.near_pixels > before.near_pixels ? HF_NEAR : 0u) |
-                           (w->counts.far_pixels > before.far_pixels ? HF_FAR : 0u);
+    p->found_near[i] = w->counts.near_groups;
+    p->found_far[i] = w->counts.far_groups;
+    const unsigned found = (p->found_near[i] ? HF_NEAR : 0u) | (p->found_far[i] ? HF_FAR : 0u);
     // What the last frame read there will be read again, most likely; what is not is made later.
     const unsigned fields = (j->s->no_skip ? HF_FIELDS : found ? found | p->chunk_reads[i] : 0) & j->have;
-    p->chunk_found[i] = (uint8_t)found;
     p->chunk_made[i] = (uint8_t)fields;
     if (fields)
         make_chunk(j, w, r, fields, &clock);
@@ -117,7 +117,7 @@ static void first_sweep_deferred(void *arg, int i, int worker)
     make_chunk(j, w, r, p->chunk_reads[chunk] & ~p->chunk_made[chunk], &clock);
 }
 
-// What of a tile is sharp: all of it, or what lies above and below its active part.
+// What of a tile is sharp: all of it, or what lies around its active part.
 static void copy_tile(const struct job *j, struct hf_worker *w, struct hf_rect tile, const struct hf_rect *active)
 {
     const int64_t start = now_ns();
@@ -126,6 +126,8 @@ static void copy_tile(const struct job *j, struct hf_worker *w, struct hf_rect t
     } else {
         hf_copy_sharp(&j->copy, w, (struct hf_rect){tile.x0, tile.y0, tile.x1, active->y0});
         hf_copy_sharp(&j->copy, w, (struct hf_rect){tile.x0, active->y1, tile.x1, tile.y1});
+        hf_copy_sharp(&j->copy, w, (struct hf_rect){tile.x0, active->y0, active->x0, active->y1});
+        hf_copy_sharp(&j->copy, w, (struct hf_rect){active->x1, active->y0, tile.x1, active->y1});
     }
     w->ns[j->c->plan.engine->pass_count - 1] += now_ns() - start;
 }

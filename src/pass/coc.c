@@ -69,8 +69,10 @@ void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, 
     *far = hf_round_coc(s->storage, shape(s, saturate((v - s->far_0) * s->far_i)));
 }
 
-static void count(struct hf_counts *c, float n, float f)
+static void count(struct hf_counts *c, int lane, float n, float f)
 {
+    c->near_groups |= (uint64_t)(n > 0) << hf_group(lane);
+    c->far_groups |= (uint64_t)(f > 0) << hf_group(lane);
     c->near_pixels += n > 0;
     c->far_pixels += f > 0;
     c->sharp_pixels += !(n > 0 || f > 0);
@@ -84,11 +86,11 @@ void hf_coc_row_c(const struct hf_frame *f, int x, int y, int n, float *const ou
         const int px = 2 * (x + i);
         hf_coc_pixel(f, px, y, &out[0][i], &out[2][i], counts);
         if (counts)
-            count(counts, out[0][i], out[2][i]);
+            count(counts, x + i, out[0][i], out[2][i]);
         if (px + 1 < f->s->width) {
             hf_coc_pixel(f, px + 1, y, &out[1][i], &out[3][i], counts);
             if (counts)
-                count(counts, out[1][i], out[3][i]);
+                count(counts, x + i, out[1][i], out[3][i]);
         } else {
             out[1][i] = out[0][i];
             out[3][i] = out[2][i];

@@ -54,6 +54,8 @@ HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form for
 struct coc_sums {
     vi near, far, any, none;
     vf near_max, far_max;
+    vm group_near, group_far;  // since the last group of lanes began
+    uint64_t near_groups, far_groups;
     vm nan;
 };
 
@@ -81,8 +83,18 @@ HF_INLINE void coc_block(const struct hf_setup *s, const enum hf_depth_form form
     sums->far = vi_count(sums->far, is_far);
     sums->any = vi_count(sums->any, vm_or(is_near, is_far));
     sums->none = vi_count(sums->none, none);
+    sums->group_near = vm_or(sums->group_near, is_near);
+    sums->group_far = vm_or(sums->group_far, is_far);
     sums->near_max = vf_max(n, sums->near_max);
     sums->far_max = vf_max(f, sums->far_max);
+}
+
+// Note which groups of lanes have CoC: lane x is the last of one, or of the row.
+HF_INLINE void coc_end_group(struct coc_sums *sums, int x)
+{
+    sums->near_groups |= (uint64_t)vm_any(sums->group_near) << hf_group(x);
+    sums->far_groups |= (uint64_t)vm_any(sums->group_far) << hf_group(x);
+    sums->group_near = sums->group_far = vf_gt(vf_zero(), vf_zero());
 }
 
 HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, const int whole, int x, int y, int n,
@@ -103,6 +115,8 @@ HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, 
         const vf px_odd = vf_sub(vf_add(px, vf_set1(1.5f)), vf_set1(s->ray_cx));
         coc_block(s, form, whole, even, px_even, py, out[0] + i, out[2] + i, sums);
         coc_block(s, form, whole, odd, px_odd, py, out[1] + i, out[3] + i, sums);
+        if (whole && ((x + i + VF_N) % HF_GROUP == 0 || i + VF_N >= n))
+            coc_end_group(sums, x + i + VF_N - 1);
     }
 }
 
@@ -129,15 +143,17 @@ static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *c
                          struct hf_counts *counts)
 {
     const int whole = hf_min(n, (f->s->width - 2 * x) / 2) / VF_N * VF_N;
+    const vm no = vf_gt(vf_zero(), vf_zero());
     struct coc_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(),
-                            vf_gt(vf_zero(), vf_zero())};
+                            no, no, 0, 0, no};
     if (counts)
         coc_row_form(f, 1, x, y, whole, out, &sums);
     else
         coc_row_form(f, 0, x, y, whole, out, &sums);
     struct hf_counts c = {.near_pixels = vi_sum(sums.near), .far_pixels = vi_sum(sums.far),
                           .sharp_pixels = 2 * (uint64_t)whole - vi_sum(sums.any), .no_surface = vi_sum(sums.none),
-                          .near_max = vf_most(sums.near_max), .far_max = vf_most(sums.far_max)};
+                          .near_max = vf_most(sums.near_max), .far_max = vf_most(sums.far_max),
+                          .near_groups = sums.near_groups, .far_groups = sums.far_groups};
     // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
     const int from = vm_any(sums.nan) ? 0 : whole;
     if (from == 0)
@@ -152,6 +168,8 @@ static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *c
     counts->sharp_pixels += c.sharp_pixels;
     counts->no_surface += c.no_surface;
     counts->depth_repaired += c.depth_repaired;
+    counts->near_groups |= c.near_groups;
+    counts->far_groups |= c.far_groups;
     counts->near_max = c.near_max > counts->near_max ? c.near_max : counts->near_max;
     counts->far_max = c.far_max > counts->far_max ? c.far_max : counts->far_max;
 }

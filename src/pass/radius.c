@@ -39,6 +39,8 @@ void hf_radius_row_c(const struct hf_frame *f, int x, int y, int n, float *out, 
         out[i] = r;
         if (!counts)
             continue;
+        counts->near_groups |= (uint64_t)(r < 0) << hf_group((x + i) / 2);
+        counts->far_groups |= (uint64_t)(r > 0) << hf_group((x + i) / 2);
         counts->near_pixels += r < 0;
         counts->far_pixels += r > 0;
         counts->sharp_pixels += r == 0;

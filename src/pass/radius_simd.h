@@ -24,7 +24,8 @@ HF_INLINE vf radius_of_vf(const struct hf_setup *s, vf v)
 struct radius_sums {
     vi near, far, none;
     vf min, max;
-    vm nan;
+    vm nan, group_near, group_far;  // since the last group of lanes began
+    uint64_t near_groups, far_groups;
 };
 
 HF_INLINE void radius_form(const struct hf_frame *f, const enum hf_depth_form form, int x, int y, int n, float *out,
@@ -42,17 +43,27 @@ HF_INLINE void radius_form(const struct hf_frame *f, const enum hf_depth_form fo
         vf_store(out + i, r);
         sums->nan = vm_or(sums->nan, vf_ne(d, d));
         sums->none = vi_count(sums->none, none);
-        sums->near = vi_count(sums->near, vf_lt(r, vf_zero()));
-        sums->far = vi_count(sums->far, vf_gt(r, vf_zero()));
+        const vm is_near = vf_lt(r, vf_zero()), is_far = vf_gt(r, vf_zero());
+        sums->near = vi_count(sums->near, is_near);
+        sums->far = vi_count(sums->far, is_far);
+        sums->group_near = vm_or(sums->group_near, is_near);
+        sums->group_far = vm_or(sums->group_far, is_far);
         sums->min = vf_min(sums->min, r);
         sums->max = vf_max(sums->max, r);
+        if ((x + i + VF_N) % (2 * HF_GROUP) == 0 || i + VF_N >= n) {
+            const int group = hf_group((x + i + VF_N - 1) / 2);
+            sums->near_groups |= (uint64_t)vm_any(sums->group_near) << group;
+            sums->far_groups |= (uint64_t)vm_any(sums->group_far) << group;
+            sums->group_near = sums->group_far = vf_gt(vf_zero(), vf_zero());
+        }
     }
 }
 
 static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts)
 {
     const int whole = n / VF_N * VF_N;
-    struct radius_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(), vf_gt(vf_zero(), vf_zero())};
+    const vm no = vf_gt(vf_zero(), vf_zero());
+    struct radius_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(), no, no, no, 0, 0};
     switch (f->s->form) {
     case HF_FORM_Z:
         radius_form(f, HF_FORM_Z, x, y, whole, out, &sums);
@@ -75,6 +86,8 @@ static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float
         return;
     const float least = -vf_most(vf_sub(vf_zero(), sums.min)), most = vf_most(sums.max);
     const uint32_t near = vi_sum(sums.near), far = vi_sum(sums.far);
+    counts->near_groups |= sums.near_groups;
+    counts->far_groups |= sums.far_groups;
     counts->near_pixels += near;
     counts->far_pixels += far;
     counts->sharp_pixels += (uint64_t)whole - near - far;

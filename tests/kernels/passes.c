@@ -181,6 +181,8 @@ void pass_make(struct world *w, int pass)
     const int half_width = rng_int(&w->rng, 1, 70), half_height = rng_int(&w->rng, 1, 10);
     make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
     random_area(w);
+    if (pass == HF_PASS_COC)
+        w->r.x0 &= ~15;  // as cells are
     w->is_pass = 1;
     w->near = w->far = 1;
     if (!w->bench && (pass == HF_PASS_DOWN || pass >= HF_PASS_GATHER) && rng_one_in(&w->rng, 3))

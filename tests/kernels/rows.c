@@ -43,6 +43,7 @@ void coc_row_make(struct world *w, int index)
     random_row(w);
     make_depth(w, rng_one_in(&w->rng, 2));
     w->with_counts = !rng_one_in(&w->rng, 3);
+    w->x &= w->with_counts ? ~15 : ~0;
     // Near is for who counts.
     for (int i = 0; i < 4; i++)
         lane_region(w, i < 2 && !w->with_counts ? REGION_SCRATCH : REGION_FLOATS, i);
