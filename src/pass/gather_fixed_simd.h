@@ -27,6 +27,10 @@ static int taps_are(const struct hf_taps *t, const uint16_t *rows, int r)
         if (columns != rows[k])
             return 0;
     }
+    // Taps on the axes hit lattice points, all with one weight; see fixed_sum.
+    for (int i = 2; i <= r; i += 2)
+        if (t->weight[t->first[i]] != t->weight[1] || t->weight[i / 2] != t->weight[1])
+            return 0;
     return 1;
 }
 
@@ -56,22 +60,38 @@ HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
 #endif
 }
 
-// Row k's sum. The weights lie one after the other; where each one is, is known when this is compiled.
-HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf *h, const float *weight)
+HF_INLINE vf fixed_weight(const float *weight, int i)
+{
+    return WEIGHT_N == 1 ? vf_set1(weight[i]) : vf_load(weight + i * WEIGHT_N);
+}
+
+// Row k's sum. The weights lie one after the other; where each one is, is known when this is compiled. Fused, the weight
+// of the taps on the axes is used once for all of row 0, and its product with h[0], axis, starts the other even rows:
+// 32 multiply-adds for radius 6 instead of 36, which is what the units for additions have room for.
+HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf *h, const float *weight, vf axis)
 {
     int n = 0;
 #pragma GCC unroll 8
     for (int i = 0; i < k; i++)
         n += __builtin_popcount(rows[i]);
-    weight += n * WEIGHT_N;
     vf sum = vf_zero();
+    int j = 0;
+    if (HF_FUSED && k == 0) {
+        vf even = h[2];
+#pragma GCC unroll 4
+        for (int i = 4; i <= r; i += 2)
+            even = vf_add(even, h[i]);
+        return vf_fma(fixed_weight(weight, 0), h[0], vf_mul(fixed_weight(weight, 1), even));
+    }
+    if (HF_FUSED && k % 2 == 0) {
+        sum = axis;
+        j++;
+        n++;
+    }
 #pragma GCC unroll 9
-    for (int j = 0; j <= r; j++)
-        if (rows[k] >> j & 1) {
-            const vf w = WEIGHT_N == 1 ? vf_set1(*weight) : vf_load(weight);
-            sum = vf_fma(w, h[j], sum);
-            weight += WEIGHT_N;
-        }
+    for (; j <= r; j++)
+        if (rows[k] >> j & 1)
+            sum = vf_fma(fixed_weight(weight, n++), h[j], sum);
     return sum;
 }
 
@@ -81,11 +101,13 @@ HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const float *weight
 {
     vf h[FIXED_R + 1];
     fixed_pairs(in, r, h);
+    __builtin_prefetch(in + 2 * VF_N);
+    const vf axis = vf_mul(fixed_weight(weight, 1), h[0]);
 #pragma GCC unroll 8
     for (int k = r; k >= 1; k--)
         if (k >= d && k - d < height) {
             float *p = out + (k - d) * stride;
-            const vf sum = fixed_sum(rows, k, r, h, weight);
+            const vf sum = fixed_sum(rows, k, r, h, weight, axis);
             vf_store(p, k == r && top ? sum : vf_add(vf_load(p), sum));
         }
 }
@@ -103,9 +125,10 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const float *weig
         vf h[FIXED_R + 1], row[FIXED_R + 1];
         fixed_pairs(p, r, h);
         __builtin_prefetch(p + 2 * VF_N);
+        const vf axis = vf_mul(fixed_weight(weight, 1), h[0]);
 #pragma GCC unroll 9
         for (int k = r; k >= 0; k--) {
-            row[k] = fixed_sum(rows, k, r, h, weight);
+            row[k] = fixed_sum(rows, k, r, h, weight, axis);
             sums[r - k] = vf_add(sums[r - k + 1], row[k]);
             if (k == r && y >= r)
                 vf_store(out + (y - r) * out_stride, sums[0]);
