@@ -96,6 +96,9 @@ static inline void vf_store_rgb(float *p, const vf in[3])
     vst3q_f32(p, (float32x4x3_t){{in[0], in[1], in[2]}});
 }
 
+// Lanes n to n + 3 of the 8 in (a, b).
+#define vf_shift(a, b, n) vextq_f32(a, b, n)
+
 static inline vf vf_load_half(const void *p)
 {
     return vcvt_f32_f16(vreinterpret_f16_u8(vld1_u8((const uint8_t *)p)));

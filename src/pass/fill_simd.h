@@ -12,17 +12,45 @@ HF_INLINE vf sum3(vf before, vf middle, vf after)
     return vf_add(vf_add(before, after), middle);
 }
 
-// A row of 3x3 maxima where want > 0, else the values themselves.
-static void fill_max_row(const float *in, ptrdiff_t stride, const float *want, float *out, int n, float *columns)
+HF_INLINE vf column_max(const float *p, ptrdiff_t stride)
 {
-    for (int x = 0; x < n + 2; x += VF_N) {
-        const float *p = in + x - 1;
-        vf_store(columns + x, max3(vf_load(p - stride), vf_load(p), vf_load(p + stride)));
+    return max3(vf_load(p - stride), vf_load(p), vf_load(p + stride));
+}
+
+// 3x3 maxima where want > 0, else the values themselves.
+HF_INLINE void fill_max_vector(vf left, vf middle, vf right, const float *in, vm wanted, float *out)
+{
+    const vf v = vf_add(max3(left, middle, right), vf_zero());
+    vf_store(out, vf_select(wanted, v, vf_load(in)));
+}
+
+// A row of them. A first vector lies where the row begins, the others are aligned: their columns' maxima are made once,
+// and shifted for the neighbours.
+HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *want, float *const out[4], int n, int first,
+                            const int channels)
+{
+    vf left[4], middle[4];
+    vm wanted = vf_gt(vf_load(want), vf_zero());
+#pragma GCC unroll 4
+    for (int c = 0; c < channels; c++)
+        fill_max_vector(column_max(in[c] - 1, stride), column_max(in[c], stride), column_max(in[c] + 1, stride), in[c],
+                        wanted, out[c]);
+    int x = VF_N - (first & (VF_N - 1));
+#pragma GCC unroll 4
+    for (int c = 0; c < channels && x < n; c++) {
+        left[c] = column_max(in[c] + x - VF_N, stride);
+        middle[c] = column_max(in[c] + x, stride);
     }
-    for (int x = 0; x < n; x += VF_N) {
-        const float *p = columns + x;
-        const vf v = vf_add(max3(vf_load(p), vf_load(p + 1), vf_load(p + 2)), vf_zero());
-        vf_store(out + x, vf_select(vf_gt(vf_load(want + x), vf_zero()), v, vf_load(in + x)));
+    for (; x < n; x += VF_N) {
+        wanted = vf_gt(vf_load(want + x), vf_zero());
+#pragma GCC unroll 4
+        for (int c = 0; c < channels; c++) {
+            const vf right = column_max(in[c] + x + VF_N, stride);
+            fill_max_vector(vf_shift(left[c], middle[c], VF_N - 1), middle[c], vf_shift(middle[c], right, 1), in[c] + x,
+                            wanted, out[c] + x);
+            left[c] = middle[c];
+            middle[c] = right;
+        }
     }
 }
 
@@ -84,18 +112,23 @@ static void fill_row(const struct hf_frame *f, enum hf_buf_id in, enum hf_buf_id
     const int n = r.x1 - r.x0;
     const ptrdiff_t stride = f->buf[in].stride;
     const float *w = hf_at(want, want_channel, r.x0, y);
-    float *to[4];
+    float *to[4], *from[4];
     hf_row(&f->buf[out], s->channels, r.x0, y, to);
-    for (int c = 0; c < s->channels; c++) {
-        const float *from = hf_at(&f->buf[in], c, r.x0, y);
-        if (s->fill == HF_FILL_NONE)
-            fill_copy_row(from, to[c], n);
-        else if (in == HF_BUF_FAR && (s->per_pixel_kernel || s->fill == HF_FILL_MEAN))
-            fill_far_picked(s, from, stride, w, want->stride, to[c], n);
-        else if (s->fill == HF_FILL_MAX)
-            fill_max_row(from, stride, w, to[c], n, hf_line(f, 0));
+    hf_row(&f->buf[in], s->channels, r.x0, y, from);
+    const int picked = in == HF_BUF_FAR && (s->per_pixel_kernel || s->fill == HF_FILL_MEAN);
+    if (s->fill == HF_FILL_MAX && !picked) {
+        if (s->channels == 3)
+            fill_max_row(from, stride, w, to, n, r.x0, 3);
         else
-            fill_mean_row(from, stride, w, to[c], n, f->work);
+            fill_max_row(from, stride, w, to, n, r.x0, 4);
+    } else {
+        for (int c = 0; c < s->channels; c++)
+            if (s->fill == HF_FILL_NONE)
+                fill_copy_row(from[c], to[c], n);
+            else if (picked)
+                fill_far_picked(s, from[c], stride, w, want->stride, to[c], n);
+            else
+                fill_mean_row(from[c], stride, w, to[c], n, f->work);
     }
     hf_store_rgb(f, to, n);
 }

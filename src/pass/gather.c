@@ -149,7 +149,8 @@ static void gather_far(const struct hf_frame *f, struct hf_rect r)
             for (int x = 0; x < r.x1 - r.x0; x++) {
                 // FLT_MIN: a CoC so small that its weighted sum is 0. Without a tap on the centre there may be no far
                 // CoC under any tap: then the pixel's own colour is all there is.
-                const float mean = sum[x] > 0 ? far[c][x] / (sum[x] > FLT_MIN ? sum[x] : FLT_MIN) : own[x] / coc[x];
+                const float inverse = 1 / (sum[x] > FLT_MIN ? sum[x] : FLT_MIN);
+                const float mean = sum[x] > 0 ? far[c][x] * inverse : own[x] / coc[x];
                 far[c][x] = coc[x] > 0 ? mean : 0;
             }
         }

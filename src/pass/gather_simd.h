@@ -8,6 +8,8 @@
 // of them, and output rows that stay in the first-level cache.
 #include <float.h>
 
+#include "pass/gather_fixed_simd.h"
+
 enum { GATHER_S = VF_N == 16 ? 5 : 9 };
 
 // A weight and the byte offset of its pairs: what the inner loop needs, worked out once a strip.
@@ -126,7 +128,18 @@ HF_INLINE int row_needed(const float *need, const int s)
     return vm_any(any);
 }
 
-// A strip of s vectors from column x of all planes: the rows between the first and the last that are needed.
+// The rows from the first to the last that a strip of s vectors from column x needs.
+HF_INLINE void rows_needed(const struct gather_job *j, int x, int height, const int s, int *y0, int *y1)
+{
+    *y0 = 0;
+    *y1 = height;
+    while (*y0 < *y1 && !row_needed(j->need + *y0 * j->need_stride + x, s))
+        (*y0)++;
+    while (*y1 > *y0 && !row_needed(j->need + (*y1 - 1) * j->need_stride + x, s))
+        (*y1)--;
+}
+
+// A strip of s vectors from column x of all planes.
 HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j, int x, int height,
                             const int symmetric, const int s, float *work)
 {
@@ -135,46 +148,63 @@ HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j,
     float *h = work + ((2 * n + 15) & ~15);
     for (int i = 0; i < n; i++)
         terms[i] = (struct gather_term){t->weight[i], t->column[i] * s * (int)sizeof(vf)};
-    int y0 = 0, y1 = height;
-    while (y0 < y1 && !row_needed(j->need + y0 * j->need_stride + x, s))
-        y0++;
-    while (y1 > y0 && !row_needed(j->need + (y1 - 1) * j->need_stride + x, s))
-        y1--;
+    int y0, y1;
+    rows_needed(j, x, height, s, &y0, &y1);
     for (int i = 0; i < j->planes && y0 < y1; i++)
         convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
                        j->out[i] + y0 * j->out_stride[i] + x, j->out_stride[i], y1 - y0, symmetric, s, terms, h);
 }
 
-// All columns in as few strips as there can be, of about the same width.
-HF_INLINE void gather_strips(const struct hf_taps *t, const struct gather_job *j, int width, int height,
-                             const int symmetric, float *work)
+HF_INLINE void gather_any(const struct hf_taps *t, const struct gather_job *j, int x, int height,
+                          const int symmetric, int s, float *work)
 {
-    const int vectors = (width + VF_N - 1) / VF_N;
-    for (int strips = (vectors + GATHER_S - 1) / GATHER_S, left = vectors, x = 0; strips > 0; strips--) {
-        const int s = (left + strips - 1) / strips;
 #define STRIP(n)                                                                                                     \
     case n:                                                                                                          \
         gather_strip(t, j, x, height, symmetric, n <= GATHER_S ? n : GATHER_S, work);                                \
         break;
-        switch (s) {
-            STRIP(1) STRIP(2) STRIP(3) STRIP(4) STRIP(5) STRIP(6) STRIP(7) STRIP(8) STRIP(9)
-        }
-#undef STRIP
-        x += s * VF_N;
-        left -= s;
+    switch (s) {
+        STRIP(1) STRIP(2) STRIP(3) STRIP(4) STRIP(5) STRIP(6) STRIP(7) STRIP(8) STRIP(9)
     }
+#undef STRIP
 }
 
+// s vectors for a tap set that has a column of its own: each looks for its rows.
+static void gather_columns(const float *weights, const struct gather_job *j, fixed_column *column, int x, int height,
+                           int s)
+{
+    int y0[FIXED_STRIP], y1[FIXED_STRIP];
+    for (int v = 0; v < s; v++)
+        rows_needed(j, x + v * VF_N, height, 1, &y0[v], &y1[v]);
+    for (int i = 0; i < j->planes; i++)
+        for (int v = 0; v < s; v++)
+            if (y0[v] < y1[v])
+                column(weights, j->in[i] + y0[v] * j->in_stride[i] + x + v * VF_N, j->in_stride[i],
+                       j->out[i] + y0[v] * j->out_stride[i] + x + v * VF_N, j->out_stride[i], y1[v] - y0[v]);
+}
+
+// Convolves strip by strip, and finishes each while it is in the cache. A first vector lies wherever r begins, all others
+// are aligned; where the two overlap, the second writes everything again.
 static void gather_run(const struct hf_frame *f, struct hf_rect r, struct gather_job *j, const struct hf_buf *need,
-                       int need_channel)
+                       int need_channel, hf_kernel *finish)
 {
     const struct hf_taps *t = f->s->taps;
+    fixed_column *column = fixed_column_for(t);
+    const float *weights = column ? fixed_weights(t, f->work) : NULL;
+    const int most = column ? FIXED_STRIP : GATHER_S, width = r.x1 - r.x0, height = r.y1 - r.y0;
     j->need = hf_at(need, need_channel, r.x0, r.y0);
     j->need_stride = need->stride;
-    if (t->symmetric)
-        gather_strips(t, j, r.x1 - r.x0, r.y1 - r.y0, 1, f->work);
-    else
-        gather_strips(t, j, r.x1 - r.x0, r.y1 - r.y0, 0, f->work);
+    for (int x = 0, next; x < width; x = next) {
+        const int odd = (r.x0 + x) & (VF_N - 1), left = (width - x + VF_N - 1) / VF_N, strips = (left + most - 1) / most;
+        const int s = odd ? 1 : (left + strips - 1) / strips;
+        next = x + s * VF_N - odd;
+        if (column)
+            gather_columns(weights, j, column, x, height, s);
+        else if (t->symmetric)
+            gather_any(t, j, x, height, 1, s, f->work);
+        else
+            gather_any(t, j, x, height, 0, s, f->work);
+        finish(f, (struct hf_rect){r.x0 + x, r.y0, r.x0 + hf_min(next, width), r.y1});
+    }
 }
 
 static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
@@ -204,6 +234,29 @@ static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
     }
 }
 
+// The gathered mean where there is near CoC, else the pixel's own colour.
+static void finish_near(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    for (int y = r.y0; y < r.y1; y++) {
+        float *near[4], *colour[4];
+        const float *sum = s->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
+        const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y);
+        hf_row(&f->buf[HF_BUF_NEAR], s->channels, r.x0, y, near);
+        hf_row(&f->buf[HF_BUF_COLOR4], s->channels, r.x0, y, colour);
+        for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
+            const vm is_near = vf_gt(vf_load(blur + x), vf_zero());
+            for (int c = 0; c < s->channels; c++) {
+                vf v = vf_load(near[c] + x);
+                if (sum)
+                    v = vf_div(v, vf_load(sum + x));
+                vf_store(near[c] + x, vf_select(is_near, v, vf_load(colour[c] + x)));
+            }
+        }
+        hf_store_rgb(f, near, r.x1 - r.x0);
+    }
+}
+
 static void gather_near_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
@@ -212,24 +265,7 @@ static void gather_near_simd(const struct hf_frame *f, struct hf_rect r)
         gather_plane(&j, f, r, s->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
     if (s->karis)
         gather_plane(&j, f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
-    gather_run(f, r, &j, &f->buf[HF_BUF_BLUR], 0);
-    for (int y = r.y0; y < r.y1; y++) {
-        float *near[4];
-        const float *sum = s->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
-        const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y);
-        hf_row(&f->buf[HF_BUF_NEAR], s->channels, r.x0, y, near);
-        for (int c = 0; c < s->channels; c++) {
-            const float *colour = hf_at(&f->buf[HF_BUF_COLOR4], c, r.x0, y);
-            for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
-                vf v = vf_load(near[c] + x);
-                if (sum)
-                    v = vf_div(v, vf_load(sum + x));
-                vf_store(near[c] + x,
-                         vf_select(vf_gt(vf_load(blur + x), vf_zero()), v, vf_load(colour + x)));
-            }
-        }
-        hf_store_rgb(f, near, r.x1 - r.x0);
-    }
+    gather_run(f, r, &j, &f->buf[HF_BUF_BLUR], 0, finish_near);
 }
 
 // Four bilinear neighbours of VF_N pixels, wherever they are.
@@ -281,20 +317,10 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
         }
 }
 
-static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
+// Sums of colour over the sum of weights.
+static void finish_far(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const enum hf_buf_id colour = s->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_buf_id weight = s->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
-    if (s->per_pixel_kernel) {
-        sample_taps_simd(f, r, &f->buf[colour], &f->buf[weight]);
-    } else {
-        struct gather_job j = {.planes = 0};
-        for (int c = 0; c < s->channels; c++)
-            gather_plane(&j, f, r, colour, c, HF_BUF_FAR, c);
-        gather_plane(&j, f, r, weight, 1, HF_BUF_SUM, 1);
-        gather_run(f, r, &j, &f->buf[HF_BUF_COC4], 1);
-    }
     for (int y = r.y0; y < r.y1; y++) {
         float *far[4];
         const float *sum = hf_at(&f->buf[HF_BUF_SUM], 1, r.x0, y), *coc = hf_at(&f->buf[HF_BUF_COC4], 1, r.x0, y);
@@ -302,9 +328,9 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
         for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
             const vf own = vf_load(coc + x), total = vf_load(sum + x);
             const vm is_far = vf_gt(own, vf_zero()), alone = vm_and(is_far, vm_not(vf_gt(total, vf_zero())));
-            const vf divisor = vf_max(total, vf_set1(FLT_MIN));
+            const vf inverse = vf_div(vf_set1(1), vf_max(total, vf_set1(FLT_MIN)));
             for (int c = 0; c < s->channels; c++)
-                vf_store(far[c] + x, vf_keep(is_far, vf_div(vf_load(far[c] + x), divisor)));
+                vf_store(far[c] + x, vf_keep(is_far, vf_mul(vf_load(far[c] + x), inverse)));
             if (vm_any(alone))
                 for (int c = 0; c < s->channels; c++) {
                     const vf v = vf_div(vf_load(hf_at(&f->buf[HF_BUF_COLORFAR4], c, r.x0 + x, y)), own);
@@ -313,6 +339,23 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
         }
         hf_store_rgb(f, far, r.x1 - r.x0);
     }
+}
+
+static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    const enum hf_buf_id colour = s->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_buf_id weight = s->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    if (s->per_pixel_kernel) {
+        sample_taps_simd(f, r, &f->buf[colour], &f->buf[weight]);
+        finish_far(f, r);
+        return;
+    }
+    struct gather_job j = {.planes = 0};
+    for (int c = 0; c < s->channels; c++)
+        gather_plane(&j, f, r, colour, c, HF_BUF_FAR, c);
+    gather_plane(&j, f, r, weight, 1, HF_BUF_SUM, 1);
+    gather_run(f, r, &j, &f->buf[HF_BUF_COC4], 1, finish_far);
 }
 
 static void gather_simd(const struct hf_frame *f, struct hf_rect r)

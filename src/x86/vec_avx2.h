@@ -83,6 +83,12 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p + step, _mm256_extractf128_ps(a, 1));
 }
 
+// Lanes n to n + 7 of the 16 in (a, b).
+#define vf_shift(a, b, n) vf_shift_bytes(a, b, _mm256_permute2f128_ps(a, b, 0x21), 4 * (n))
+#define vf_shift_bytes(a, b, middle, n)                                                                              \
+    _mm256_castsi256_ps((n) < 16 ? _mm256_alignr_epi8(_mm256_castps_si256(middle), _mm256_castps_si256(a), (n) & 15) \
+                                 : _mm256_alignr_epi8(_mm256_castps_si256(b), _mm256_castps_si256(middle), (n) & 15))
+
 #define vf_shuffle(a, b, imm) _mm256_shuffle_ps(a, b, imm)
 
 static inline vf vf_load_half(const void *p) { return _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)p)); }

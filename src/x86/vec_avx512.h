@@ -10,6 +10,7 @@ typedef __m512 vf;
 typedef __m512i vi;
 typedef __mmask16 vm;
 enum { VF_N = 16 };
+#define VF_ALIGNED_ONLY 1  // every load that is not aligned crosses a cache line, and is two
 
 static inline vf vf_load(const void *p) { return _mm512_loadu_ps(p); }
 static inline void vf_store(void *p, vf a) { _mm512_storeu_ps(p, a); }
@@ -87,6 +88,10 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p + 2 * step, _mm512_extractf32x4_ps(a, 2));
     _mm_storeu_ps(p + 3 * step, _mm512_extractf32x4_ps(a, 3));
 }
+
+// Lanes n to n + 15 of the 32 in (a, b).
+#define vf_shift(a, b, n) \
+    _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(b), _mm512_castps_si512(a), n))
 
 #define vf_shuffle(a, b, imm) _mm512_shuffle_ps(a, b, imm)
 

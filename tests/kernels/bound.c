@@ -107,13 +107,13 @@ static double gather_roundings(const struct world *w)
     return 2 * t->rx + 2 * t->ry + 4 + (w->setup.karis ? 6 : 0);
 }
 
-// A quotient of sums: errors of both, and the division's.
+// A quotient of sums: errors of both, and those of the division or of the inverse and the product with it.
 static double quotient_bound(double error, double divisor_error, double divisor, double value)
 {
     divisor = fmax(divisor, FLT_MIN);
     if (divisor_error > divisor / 2)
         return INFINITY;  // says nothing any more
-    return (error + value * divisor_error) / (divisor - divisor_error) + value * FLT_EPSILON;
+    return (error + value * divisor_error) / (divisor - divisor_error) + 2 * value * FLT_EPSILON;
 }
 
 static double bound_near(const struct world *w, int c, int x, int y, float want)

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gather's convolution for tap sets whose lattice is known when this is compiled: whole rings at kernel scale 1,
+// radius 4, 6 and 8 (12 pixels of a picture of 1080 lines, and the same at 720 and 1440).
+//
+// One vector of columns is walked down with all sums in registers: the pairs h[j] of the row at hand, and one sum for
+// each of the 2 r + 1 output rows that it reaches. A sum moves one place up as the next row is added to it, which costs
+// nothing in an instruction of three operands. So an output row is stored once, no pair is stored at all, and what is
+// left of the loads are the weights and the shifted values.
+
+// Which columns the rows of weights have, bit j for |dx| = j.
+static const uint16_t rings_4[] = {0x15, 0x1e, 0x1f, 0x0e, 0x07};
+static const uint16_t rings_6[] = {0x55, 0x7e, 0x7f, 0x6e, 0x37, 0x3e, 0x0f};
+static const uint16_t rings_8[] = {0x155, 0x1fe, 0x1ff, 0x1ee, 0x1f7, 0x0fe, 0x07f, 0x03e, 0x01f};
+
+enum { FIXED_R = 8, FIXED_STRIP = 64 / VF_N };
+// Four lanes have no load that repeats a number: the weights are laid out four times each.
+enum { WEIGHT_N = VF_N == 4 ? 4 : 1 };
+
+static int taps_are(const struct hf_taps *t, const uint16_t *rows, int r)
+{
+    if (!t->symmetric || t->rx != r || t->ry != r)
+        return 0;
+    for (int k = 0; k <= r; k++) {
+        unsigned columns = 0;
+        for (int i = t->first[k]; i < t->first[k + 1]; i++)
+            columns |= 1u << t->column[i];
+        if (columns != rows[k])
+            return 0;
+    }
+    // Taps on the axes hit lattice points, all with one weight; see fixed_sum.
+    for (int i = 2; i <= r; i += 2)
+        if (t->weight[t->first[i]] != t->weight[1] || t->weight[i / 2] != t->weight[1])
+            return 0;
+    return 1;
+}
+
+HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
+{
+    h[0] = vf_load(p);
+#if VF_ALIGNED_ONLY
+    // A vector of 64 bytes that is not aligned is two loads. The right neighbours are shifted out of aligned ones: half
+    // of the values, as shifts share a pipe with the sums.
+    const vf next = vf_load(p + VF_N);
+#define PAIR(j) \
+    if (j <= r) \
+        h[j] = vf_add(vf_load(p - j), vf_shift(h[0], next, j))
+    PAIR(1);
+    PAIR(2);
+    PAIR(3);
+    PAIR(4);
+    PAIR(5);
+    PAIR(6);
+    PAIR(7);
+    PAIR(8);
+#undef PAIR
+#else
+#pragma GCC unroll 8
+    for (int j = 1; j <= r; j++)
+        h[j] = vf_add(vf_load(p - j), vf_load(p + j));
+#endif
+}
+
+HF_INLINE vf fixed_weight(const float *weight, int i)
+{
+    return WEIGHT_N == 1 ? vf_set1(weight[i]) : vf_load(weight + i * WEIGHT_N);
+}
+
+// Row k's sum. The weights lie one after the other; where each one is, is known when this is compiled. Fused, the weight
+// of the taps on the axes is used once for all of row 0, and its product with h[0], axis, starts the other even rows:
+// 32 multiply-adds for radius 6 instead of 36, which is what the units for additions have room for.
+HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf *h, const float *weight, vf axis)
+{
+    int n = 0;
+#pragma GCC unroll 8
+    for (int i = 0; i < k; i++)
+        n += __builtin_popcount(rows[i]);
+    vf sum = vf_zero();
+    int j = 0;
+    if (HF_FUSED && k == 0) {
+        vf even = h[2];
+#pragma GCC unroll 4
+        for (int i = 4; i <= r; i += 2)
+            even = vf_add(even, h[i]);
+        return vf_fma(fixed_weight(weight, 0), h[0], vf_mul(fixed_weight(weight, 1), even));
+    }
+    if (HF_FUSED && k % 2 == 0) {
+        sum = axis;
+        j++;
+        n++;
+    }
+#pragma GCC unroll 9
+    for (; j <= r; j++)
+        if (rows[k] >> j & 1)
+            sum = vf_fma(fixed_weight(weight, n++), h[j], sum);
+    return sum;
+}
+
+// An input row d rows outside of the strip: it reaches the first r - d + 1 output rows from that edge on.
+HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const float *weight, const float *in, int d, int top,
+                          float *out, ptrdiff_t stride, int height)
+{
+    vf h[FIXED_R + 1];
+    fixed_pairs(in, r, h);
+    __builtin_prefetch(in + 2 * VF_N);
+    const vf axis = vf_mul(fixed_weight(weight, 1), h[0]);
+#pragma GCC unroll 8
+    for (int k = r; k >= 1; k--)
+        if (k >= d && k - d < height) {
+            float *p = out + (k - d) * stride;
+            const vf sum = fixed_sum(rows, k, r, h, weight, axis);
+            vf_store(p, k == r && top ? sum : vf_add(vf_load(p), sum));
+        }
+}
+
+// The rows of the strip itself; sums[i] is that of the output row r - i above the one at hand.
+HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const float *weight, const float *in,
+                            ptrdiff_t in_stride, float *out, ptrdiff_t out_stride, int height)
+{
+    vf sums[2 * FIXED_R + 1];
+#pragma GCC unroll 17
+    for (int i = 0; i <= 2 * r; i++)
+        sums[i] = i > r && i - r - 1 < height ? vf_load(out + (i - r - 1) * out_stride) : vf_zero();
+    for (int y = 0; y < height; y++) {
+        const float *p = in + y * in_stride;
+        vf h[FIXED_R + 1], row[FIXED_R + 1];
+        fixed_pairs(p, r, h);
+        __builtin_prefetch(p + 2 * VF_N);
+        const vf axis = vf_mul(fixed_weight(weight, 1), h[0]);
+#pragma GCC unroll 9
+        for (int k = r; k >= 0; k--) {
+            row[k] = fixed_sum(rows, k, r, h, weight, axis);
+            sums[r - k] = vf_add(sums[r - k + 1], row[k]);
+            if (k == r && y >= r)
+                vf_store(out + (y - r) * out_stride, sums[0]);
+        }
+#pragma GCC unroll 8
+        for (int k = 1; k < r; k++)
+            sums[r + k] = vf_add(sums[r + k + 1], row[k]);
+        sums[2 * r] = row[r];
+    }
+#pragma GCC unroll 8
+    for (int i = 1; i <= r; i++)
+        if (height - 1 - r + i >= 0)
+            vf_store(out + (height - 1 - r + i) * out_stride, sums[i]);
+}
+
+// One vector of columns.
+typedef void fixed_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out, ptrdiff_t out_stride,
+                          int height);
+
+// Functions of their own: inlined into one, the compiler keeps the weights of all edge rows, and spills them.
+#define FIXED_COLUMN(rows, r)                                                                                         \
+    static __attribute__((noinline)) void rows##_edge(const float *weight, const float *in, int d, int top,           \
+                                                      float *out, ptrdiff_t stride, int height)                       \
+    {                                                                                                                 \
+        fixed_edge(rows, r, weight, in, d, top, out, stride, height);                                                 \
+    }                                                                                                                 \
+    static __attribute__((noinline)) void rows##_inside(const float *weight, const float *in, ptrdiff_t in_stride,    \
+                                                        float *out, ptrdiff_t out_stride, int height)                 \
+    {                                                                                                                 \
+        fixed_inside(rows, r, weight, in, in_stride, out, out_stride, height);                                        \
+    }                                                                                                                 \
+    static void rows##_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out,                  \
+                              ptrdiff_t out_stride, int height)                                                       \
+    {                                                                                                                 \
+        for (int d = r; d >= 1; d--)                                                                                  \
+            rows##_edge(weight, in - d * in_stride, d, 1, out, out_stride, height);                                   \
+        rows##_inside(weight, in, in_stride, out, out_stride, height);                                                \
+        for (int d = 1; d <= r; d++)                                                                                  \
+            rows##_edge(weight, in + (height - 1 + d) * in_stride, d, 0, out + (height - 1) * out_stride,             \
+                        -out_stride, height);                                                                         \
+    }
+
+FIXED_COLUMN(rings_4, 4)
+FIXED_COLUMN(rings_6, 6)
+FIXED_COLUMN(rings_8, 8)
+
+// The weights as columns take them.
+static const float *fixed_weights(const struct hf_taps *t, float *work)
+{
+    if (WEIGHT_N == 1)
+        return t->weight;
+    for (int i = 0; i < t->first[t->rows]; i++)
+        vf_store(work + i * VF_N, vf_set1(t->weight[i]));
+    return work;
+}
+
+// NULL: none fits.
+static fixed_column *fixed_column_for(const struct hf_taps *t)
+{
+    return taps_are(t, rings_6, 6) ? rings_6_column : taps_are(t, rings_4, 4) ? rings_4_column
+         : taps_are(t, rings_8, 8) ? rings_8_column : NULL;
+}
