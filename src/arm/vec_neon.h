@@ -70,6 +70,9 @@ static inline void vf_zip(vf even, vf odd, vf *a, vf *b)
     *b = vzip2q_f32(even, odd);
 }
 
+// 4 numbers of a and b, one after the other, from number n on; 0 <= n < 4.
+#define vf_align(a, b, n) vextq_f32(a, b, n)
+
 // Interleaved pixels have instructions of their own.
 #define VF_OWN_INTERLEAVE 1
 static inline void vf_load_rgba(const float *p, vf out[4])

@@ -151,8 +151,19 @@ static inline __m512 emulated_gather(__m512i index, const float *p)
     return v;
 }
 
+static inline __m512i emulated_alignr(__m512i a, __m512i b, int n)
+{
+    int32_t x[32];
+    memcpy(x, &b, sizeof b);
+    memcpy(x + 16, &a, sizeof a);
+    memcpy(&a, x + n, sizeof a);
+    return a;
+}
+
 #undef _mm512_fmadd_ps
 #define _mm512_fmadd_ps(a, b, c) emulated_fmadd(a, b, c)
+#undef _mm512_alignr_epi32
+#define _mm512_alignr_epi32(a, b, n) emulated_alignr(a, b, n)
 #undef _mm512_abs_ps
 #define _mm512_abs_ps(a) emulated_abs(a)
 #undef _mm512_roundscale_ps
