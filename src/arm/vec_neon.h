@@ -70,6 +70,9 @@ static inline void vf_zip(vf even, vf odd, vf *a, vf *b)
     *b = vzip2q_f32(even, odd);
 }
 
+// 4 numbers of a and b, one after the other, from number n on; 0 <= n < 4.
+#define vf_align(a, b, n) vextq_f32(a, b, n)
+
 // Interleaved pixels have instructions of their own.
 #define VF_OWN_INTERLEAVE 1
 static inline void vf_load_rgba(const float *p, vf out[4])
@@ -95,9 +98,6 @@ static inline void vf_store_rgb(float *p, const vf in[3])
 {
     vst3q_f32(p, (float32x4x3_t){{in[0], in[1], in[2]}});
 }
-
-// Lanes n to n + 3 of the 8 in (a, b).
-#define vf_shift(a, b, n) vextq_f32(a, b, n)
 
 static inline vf vf_load_half(const void *p)
 {

@@ -46,7 +46,7 @@ HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *w
 #pragma GCC unroll 4
         for (int c = 0; c < channels; c++) {
             const vf right = column_max(in[c] + x + VF_N, stride);
-            fill_max_vector(vf_shift(left[c], middle[c], VF_N - 1), middle[c], vf_shift(middle[c], right, 1), in[c] + x,
+            fill_max_vector(vf_align(left[c], middle[c], VF_N - 1), middle[c], vf_align(middle[c], right, 1), in[c] + x,
                             wanted, out[c] + x);
             left[c] = middle[c];
             middle[c] = right;

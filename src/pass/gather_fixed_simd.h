@@ -43,7 +43,7 @@ HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
     const vf next = vf_load(p + VF_N);
 #define PAIR(j) \
     if (j <= r) \
-        h[j] = vf_add(vf_load(p - j), vf_shift(h[0], next, j))
+        h[j] = vf_add(vf_load(p - j), vf_align(h[0], next, j))
     PAIR(1);
     PAIR(2);
     PAIR(3);

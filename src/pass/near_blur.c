@@ -2,25 +2,22 @@
 // Near CoC blur: a box as wide as the max before it, so that the near field's edge ramps over twice the reach.
 #include "pass/pass_c.h"
 
-// Sum of the 2m + 1 values around p: the centre plus windows of 2^i values, laid outwards from the ends to the
-// centre on both sides alike. Each window is summed as a balanced tree. So nothing drifts as a running sum would,
-// and a mirrored row gives the mirrored bits. The vector version shares the windows between neighbours.
+// Sum of `size` values from p on, made of its two halves and, if that is odd, the value between them.
 static float window(const float *p, ptrdiff_t step, int size)
 {
-    return size == 1 ? *p : window(p, step, size / 2) + window(p + step * (size / 2), step, size / 2);
+    if (size == 1)
+        return *p;
+    const int half = size / 2;
+    const float ends = window(p, step, half) + window(p + step * (size - half), step, half);
+    return size & 1 ? ends + p[step * half] : ends;
 }
 
+// Sum of the 2m + 1 values around p, m > 0: the centre, and the sum of the windows to its left and right. All this is the same
+// from right to left, so that a mirrored row gives the mirrored bits; and nothing drifts, as a running sum would. The
+// vector version shares the windows between neighbours.
 static float box(const float *p, ptrdiff_t step, int m)
 {
-    float sum = *p;
-    int covered = 0;  // next to the centre
-    for (int size = 1; size <= m; size *= 2)
-        if (m & size) {
-            const float *right = p + step * (covered + 1), *left = p - step * (covered + size);
-            sum += window(left, step, size) + window(right, step, size);
-            covered += size;
-        }
-    return sum;
+    return *p + (window(p - step * m, step, m) + window(p + step, step, m));
 }
 
 static void blur(const struct hf_frame *f, struct hf_rect r, const struct hf_buf *in, const struct hf_buf *out,

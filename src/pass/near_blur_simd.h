@@ -1,111 +1,132 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Near CoC blur on vectors: the sums of 2, 4, 8 ... neighbours that the C makes for each pixel are shared between
-// pixels, 6 additions a value for 13 wide. No running sum: nothing drifts, and the bits do not depend on where a
-// tile starts.
+// Near CoC blur on vectors: the windows that the C sums for each pixel are shared between pixels, 5 additions a value
+// for 13 wide. No running sum: nothing drifts, and the bits do not depend on where a tile starts.
 
-// Up to 9 levels: 2^8 > 128, the largest reach at the largest max_radius and aspect 1; narrow pixels reach farther in x.
-enum { BLUR_LEVELS = 12 };
-
-// The windows of one output value: where they begin, left and right of the centre, in their level.
-struct blur_terms {
-    const float *level[BLUR_LEVELS];
-    ptrdiff_t stride[BLUR_LEVELS], left[BLUR_LEVELS], right[BLUR_LEVELS];
-    int count;
-};
-
-// level[i] holds sums of 2^i values, m values before the first output; offsets are counted in steps.
-static void blur_terms_of(struct blur_terms *t, int m, const float *const level[BLUR_LEVELS],
-                          const ptrdiff_t step[BLUR_LEVELS], const ptrdiff_t stride[BLUR_LEVELS])
+HF_INLINE vf blur_value(const struct hf_setup *s, vf centre, vf left, vf right, vf scale)
 {
-    t->count = 0;
-    for (int i = 0, covered = 0; 1 << i <= m; i++)
-        if (m >> i & 1) {
-            const int k = t->count++;
-            t->level[k] = level[i];
-            t->stride[k] = stride[i];
-            t->left[k] = (m - covered - (1 << i)) * step[i];
-            t->right[k] = (m + covered + 1) * step[i];
-            covered += 1 << i;
-        }
+    return coc_round(s->storage, vf_mul(vf_add(centre, vf_add(left, right)), scale));
 }
 
-// A row of sums from the centres and their windows; count is a constant where it is small.
-HF_INLINE void blur_sum(const float *centre, const struct blur_terms *t, const int count, int y, float *out, int n,
-                        vf scale, enum hf_storage storage)
+// A row or a column: where it begins, how far apart its vectors lie, and how far apart the values that a sum adds.
+struct blur_line {
+    float *p;
+    ptrdiff_t advance, step;
+};
+
+// n values of a line of any width from n + 2m; per: how many of them a vector makes. Windows of the m values to either
+// side grow bit by bit of m, in place: a value is read for the last time when it is replaced.
+static void blur_line(const struct hf_setup *s, struct blur_line in, struct blur_line sum, struct blur_line out, int m,
+                      int n, int per)
 {
-    for (int x = 0; x < n; x += VF_N) {
-        vf sum = vf_load(centre + x);
-#pragma GCC unroll 4
-        for (int k = 0; k < count; k++) {
-            const float *p = t->level[k] + y * t->stride[k] + x;
-            sum = vf_add(sum, vf_add(vf_load(p + t->left[k]), vf_load(p + t->right[k])));
+    const vf scale = vf_set1(1 / (float)(2 * m + 1));
+    struct blur_line w = in;
+    int size = 1;
+    for (int bit = 30 - __builtin_clz((unsigned)m); bit >= 0; bit--) {
+        const int odd = m >> bit & 1, next = 2 * size + odd;
+        for (int i = 0; i * per < n + 2 * m - next + 1; i++) {
+            const float *p = w.p + i * w.advance;
+            vf v = vf_add(vf_load(p), vf_load(p + (size + odd) * w.step));
+            if (odd)
+                v = vf_add(v, vf_load(in.p + i * in.advance + size * in.step));
+            vf_store(sum.p + i * sum.advance, v);
         }
-        vf_store(out + x, coc_round(storage, vf_mul(sum, scale)));
+        w = sum;
+        size = next;
+    }
+    for (int i = 0; i * per < n; i++) {
+        const float *p = w.p + i * w.advance;
+        vf_store(out.p + i * out.advance, blur_value(s, vf_load(in.p + i * in.advance + m * in.step), vf_load(p),
+                                                     vf_load(p + (m + 1) * w.step), scale));
     }
 }
 
-static void blur_row(const float *centre, const struct blur_terms *t, int y, float *out, int n, vf scale,
-                     enum hf_storage storage)
+// 13 wide, the usual case, in registers: windows of 3, then of 6. A level lags a vector behind the one it is made from.
+HF_INLINE void blur_row_13(const struct hf_setup *s, const float *in, float *out, int n)
 {
-    if (t->count == 1)
-        blur_sum(centre, t, 1, y, out, n, scale, storage);
-    else if (t->count == 2)
-        blur_sum(centre, t, 2, y, out, n, scale, storage);
-    else
-        blur_sum(centre, t, t->count, y, out, n, scale, storage);
+    enum { LAG = VF_N == 4 ? 4 : 3 };  // of the output behind the input, vectors
+    const int count = (n + VF_N - 1) / VF_N, inputs = (n + 12 + VF_N - 1) / VF_N;
+    const vf scale = vf_set1(1 / 13.0f), zero = vf_zero();
+    vf a[LAG + 1], w3[3] = {zero, zero, zero}, w6[4] = {zero, zero, zero, zero};
+    for (int k = 0; k <= LAG; k++)
+        a[k] = zero;
+    for (int i = 0; i < count + LAG; i++) {
+        for (int k = 0; k < LAG; k++)
+            a[k] = a[k + 1];
+        if (i < inputs)
+            a[LAG] = vf_load(in + i * VF_N);
+        const vf *last = a + LAG - 1;
+        w3[0] = w3[1];
+        w3[1] = vf_add(vf_add(last[0], vf_shift(last, 2)), vf_shift(last, 1));
+        for (int k = 0; k < LAG - 2; k++)
+            w6[k] = w6[k + 1];
+        w6[LAG - 2] = vf_add(w3[0], vf_shift(w3, 3));
+        if (i >= LAG)
+            vf_store(out + (i - LAG) * VF_N, blur_value(s, vf_shift(a, 6), w6[0], vf_shift(w6, 7), scale));
+    }
 }
 
 static void blur_x_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const int m = f->s->max_x, n = r.x1 - r.x0;
-    const vf scale = vf_set1(1 / (float)(2 * m + 1));
-    const float *level[BLUR_LEVELS];
-    ptrdiff_t one[BLUR_LEVELS], none[BLUR_LEVELS] = {0};
-    struct blur_terms terms;
-    for (int i = 0; i < BLUR_LEVELS; i++)
-        one[i] = 1;
     for (int y = r.y0; y < r.y1; y++) {
-        level[0] = hf_at(&f->buf[HF_BUF_MAX], 0, r.x0 - m, y);
-        for (int i = 1; 1 << i <= m; i++) {
-            float *sum = hf_line(f, i);
-            for (int x = 0; x < n + 2 * m - (1 << i) + 1; x += VF_N)
-                vf_store(sum + x, vf_add(vf_load(level[i - 1] + x), vf_load(level[i - 1] + x + (1 << i) / 2)));
-            level[i] = sum;
-        }
-        blur_terms_of(&terms, m, level, one, none);
-        blur_row(level[0] + m, &terms, 0, hf_at(&f->buf[HF_BUF_BLUR_X], 0, r.x0, y), n, scale, f->s->storage);
+        float *in = hf_at(&f->buf[HF_BUF_MAX], 0, r.x0 - m, y), *out = hf_at(&f->buf[HF_BUF_BLUR_X], 0, r.x0, y);
+        const struct blur_line from = {in, VF_N, 1}, sum = {hf_line(f, 0), VF_N, 1}, to = {out, VF_N, 1};
+        if (m == 6)
+            blur_row_13(f->s, in, out, n);
+        else
+            blur_line(f->s, from, sum, to, m, n, VF_N);
     }
 }
 
-static void blur_y_strip(const struct hf_frame *f, struct hf_rect r, float *rows)
+// 13 high, a vector wide: the windows in reach stay in registers on the way down. Until the first row there are only
+// windows to make, and nothing to write.
+HF_INLINE void blur_column_13(const struct hf_setup *s, const float *in, ptrdiff_t stride, float *out,
+                              ptrdiff_t out_stride, int n)
 {
-    const int m = f->s->max_y, n = r.y1 - r.y0, width = r.x1 - r.x0;
-    const struct hf_buf *b = &f->buf[HF_BUF_BLUR_X];
-    const vf scale = vf_set1(1 / (float)(2 * m + 1));
-    const float *level[BLUR_LEVELS];
-    ptrdiff_t stride[BLUR_LEVELS];
-    struct blur_terms terms;
-    level[0] = hf_at(b, 0, r.x0, r.y0 - m);
-    stride[0] = b->stride;
-    for (int i = 1; 1 << i <= m; i++) {
-        const int half = (1 << i) / 2, count = n + 2 * m - (1 << i) + 1;
-        for (int y = 0; y < count; y++)
-            for (int x = 0; x < width; x += VF_N) {
-                const float *p = level[i - 1] + y * stride[i - 1] + x;
-                vf_store(rows + y * NEAR_STRIP + x, vf_add(vf_load(p), vf_load(p + half * stride[i - 1])));
-            }
-        level[i] = rows;
-        stride[i] = NEAR_STRIP;
-        rows += (size_t)count * NEAR_STRIP;
+    enum { ROWS = 8 };
+    const vf scale = vf_set1(1 / 13.0f);
+    vf a[ROWS + 2], w3[ROWS + 3], w6[ROWS + 7], first[10];
+    for (int y = 0; y < 10; y++)
+        first[y] = vf_add(vf_add(vf_load(in + y * stride), vf_load(in + (y + 2) * stride)),
+                          vf_load(in + (y + 1) * stride));
+    for (int y = 0; y < 7; y++)
+        w6[y] = vf_add(first[y], first[y + 3]);
+    for (int y = 0; y < 3; y++)
+        w3[y] = first[y + 7];
+    a[0] = vf_load(in + 10 * stride);
+    a[1] = vf_load(in + 11 * stride);
+    for (int y = 0; y < n; y += ROWS) {
+#pragma GCC unroll 8
+        for (int k = 0; k < ROWS; k++) {
+            if (y + k == n)
+                return;
+            a[k + 2] = vf_load(in + 12 * stride);
+            w3[k + 3] = vf_add(vf_add(a[k], a[k + 2]), a[k + 1]);
+            w6[k + 7] = vf_add(w3[k], w3[k + 3]);
+            vf_store(out, blur_value(s, vf_load(in + 6 * stride), w6[k], w6[k + 7], scale));
+            in += stride;
+            out += out_stride;
+        }
+        a[0] = a[ROWS];
+        a[1] = a[ROWS + 1];
+        for (int k = 0; k < 3; k++)
+            w3[k] = w3[ROWS + k];
+        for (int k = 0; k < 7; k++)
+            w6[k] = w6[ROWS + k];
     }
-    blur_terms_of(&terms, m, level, stride, stride);
-    for (int y = 0; y < n; y++)
-        blur_row(level[0] + (y + m) * stride[0], &terms, y, hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, r.y0 + y), width,
-                 scale, f->s->storage);
 }
 
 static void blur_y_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int x = r.x0; x < r.x1; x += NEAR_STRIP)
-        blur_y_strip(f, (struct hf_rect){x, r.y0, hf_min(x + NEAR_STRIP, r.x1), r.y1}, f->work);
+    const struct hf_buf *b = &f->buf[HF_BUF_BLUR_X], *to = &f->buf[HF_BUF_BLUR];
+    const int m = f->s->max_y, n = r.y1 - r.y0;
+    for (int x = r.x0; x < r.x1; x += VF_N) {
+        float *in = hf_at(b, 0, x, r.y0 - m), *out = hf_at(to, 0, x, r.y0);
+        const struct blur_line from = {in, b->stride, b->stride}, sum = {f->work, VF_N, VF_N},
+                               column = {out, to->stride, to->stride};
+        if (m == 6)
+            blur_column_13(f->s, in, b->stride, out, to->stride, n);
+        else
+            blur_line(f->s, from, sum, column, m, n, 1);
+    }
 }

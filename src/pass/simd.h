@@ -19,6 +19,9 @@ HF_INLINE vf vf_fma(vf a, vf b, vf c)
 #endif
 }
 
+// The vector that begins n numbers into consecutive vectors v[0], v[1] ...; n is a literal.
+#define vf_shift(v, n) vf_align((v)[(n) / VF_N], (v)[(n) / VF_N + 1], (n) % VF_N)
+
 // Sum of the lanes of a count.
 HF_INLINE uint32_t vi_sum(vi a)
 {

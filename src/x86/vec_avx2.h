@@ -83,11 +83,13 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p + step, _mm256_extractf128_ps(a, 1));
 }
 
-// Lanes n to n + 7 of the 16 in (a, b).
-#define vf_shift(a, b, n) vf_shift_bytes(a, b, _mm256_permute2f128_ps(a, b, 0x21), 4 * (n))
-#define vf_shift_bytes(a, b, middle, n)                                                                              \
-    _mm256_castsi256_ps((n) < 16 ? _mm256_alignr_epi8(_mm256_castps_si256(middle), _mm256_castps_si256(a), (n) & 15) \
-                                 : _mm256_alignr_epi8(_mm256_castps_si256(b), _mm256_castps_si256(middle), (n) & 15))
+// 8 numbers of a and b, one after the other, from number n on; 0 <= n < 8.
+#define vf_middle(a, b) _mm256_permute2x128_si256(_mm256_castps_si256(a), _mm256_castps_si256(b), 0x21)
+#define vf_align(a, b, n)                                                                                            \
+    _mm256_castsi256_ps((n) == 0   ? _mm256_castps_si256(a)                                                          \
+                        : (n) < 4  ? _mm256_alignr_epi8(vf_middle(a, b), _mm256_castps_si256(a), 4 * (n) & 15)       \
+                        : (n) == 4 ? vf_middle(a, b)                                                                 \
+                                   : _mm256_alignr_epi8(_mm256_castps_si256(b), vf_middle(a, b), 4 * (n) & 15))
 
 #define vf_shuffle(a, b, imm) _mm256_shuffle_ps(a, b, imm)
 

@@ -89,9 +89,8 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p + 3 * step, _mm512_extractf32x4_ps(a, 3));
 }
 
-// Lanes n to n + 15 of the 32 in (a, b).
-#define vf_shift(a, b, n) \
-    _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(b), _mm512_castps_si512(a), n))
+// 16 numbers of a and b, one after the other, from number n on; 0 <= n < 16.
+#define vf_align(a, b, n) _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(b), _mm512_castps_si512(a), n))
 
 #define vf_shuffle(a, b, imm) _mm512_shuffle_ps(a, b, imm)
 

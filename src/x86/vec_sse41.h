@@ -82,8 +82,8 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p, a);
 }
 
-// Lanes n to n + 3 of the 8 in (a, b).
-#define vf_shift(a, b, n) _mm_castsi128_ps(_mm_alignr_epi8(_mm_castps_si128(b), _mm_castps_si128(a), 4 * (n)))
+// 4 numbers of a and b, one after the other, from number n on; 0 <= n < 4.
+#define vf_align(a, b, n) _mm_castsi128_ps(_mm_alignr_epi8(_mm_castps_si128(b), _mm_castps_si128(a), 4 * (n)))
 
 #define vf_shuffle(a, b, imm) _mm_shuffle_ps(a, b, imm)
 

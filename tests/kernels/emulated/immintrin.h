@@ -151,18 +151,19 @@ static inline __m512 emulated_gather(__m512i index, const float *p)
     return v;
 }
 
-// Words n to n + 15 of the 32 in (low, high).
-static inline __m512i emulated_alignr(__m512i high, __m512i low, int n)
+static inline __m512i emulated_alignr(__m512i a, __m512i b, int n)
 {
-    int32_t words[32];
-    memcpy(words, &low, 64);
-    memcpy(words + 16, &high, 64);
-    memcpy(&low, words + n, 64);
-    return low;
+    int32_t x[32];
+    memcpy(x, &b, sizeof b);
+    memcpy(x + 16, &a, sizeof a);
+    memcpy(&a, x + n, sizeof a);
+    return a;
 }
 
 #undef _mm512_fmadd_ps
 #define _mm512_fmadd_ps(a, b, c) emulated_fmadd(a, b, c)
+#undef _mm512_alignr_epi32
+#define _mm512_alignr_epi32(a, b, n) emulated_alignr(a, b, n)
 #undef _mm512_abs_ps
 #define _mm512_abs_ps(a) emulated_abs(a)
 #undef _mm512_roundscale_ps
@@ -177,7 +178,5 @@ static inline __m512i emulated_alignr(__m512i high, __m512i low, int n)
 #define _mm512_cvtps_ph(a, rounding) emulated_cvtps(a)
 #undef _mm512_i32gather_ps
 #define _mm512_i32gather_ps(index, p, scale) emulated_gather(index, p)
-#undef _mm512_alignr_epi32
-#define _mm512_alignr_epi32(high, low, n) emulated_alignr(high, low, n)
 
 #endif
