@@ -13,7 +13,7 @@
 struct hf_worker {
     _Alignas(HF_ALIGN) struct hf_frame frame;
     struct hf_counts counts;
-    struct hf_counts seen;
+    struct hf_counts seen, looked;
     int64_t ns[HF_MAX_PASSES];
     uint32_t tiles[HF_MAX_PASSES];
     struct hf_block scratch;

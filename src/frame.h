@@ -63,6 +63,7 @@ struct hf_setup {
     enum hf_engine engine;
     int channels;  // blurred: 3, or 4 with alpha
     enum hf_storage storage;
+    int colour_stats;
     int faithful, no_skip, karis, per_pixel_kernel, bicubic, smoothstep;
     enum hf_fill fill;
 
@@ -104,6 +105,7 @@ struct hf_counts {
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
     float radius_min, radius_max;  // signed CoC radii; not the gather's
     float near_max, far_max;       // the gather's CoC
+    float brightest, alpha_min;        // of the colour, if somebody asks
     uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes
 };
 

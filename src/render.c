@@ -3,6 +3,7 @@
 // plan is made; the other sweeps take each cell through its passes while its buffers are in the cache. What the passes
 // are is the engine's business.
 #include <float.h>
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -162,6 +163,32 @@ static void later_sweep(void *arg, int i, int worker)
     }
 }
 
+// What the colour is like where it will be read: for the report alone.
+static void look_at_colour(void *arg, int i, int worker)
+{
+    struct job *j = arg;
+    const struct hf_plan *p = &j->c->plan;
+    struct hf_worker *w = &j->c->workers[worker];
+    const struct hf_rect r = hf_plan_cell(p, 1, i);
+    const int alpha = hf_image_channels(w->frame.src) == 4, n = r.x1 - r.x0;
+    float *even[4], *odd[4];
+    if (!p->chunk_reads[i])
+        return;
+    for (int c = 0; c < 4; c++) {
+        even[c] = hf_line(&w->frame, c);
+        odd[c] = hf_line(&w->frame, 4 + c);
+    }
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, j->s->height); y++) {
+        hf_read_colour(&w->frame, r.x0, y, n, even, odd, &w->looked);
+        for (int x = 0; x < n; x++) {
+            for (int c = 0; c < 3; c++)
+                w->looked.brightest = fmaxf(w->looked.brightest, fmaxf(even[c][x], odd[c][x]));
+            if (alpha)
+                w->looked.alpha_min = fminf(w->looked.alpha_min, fminf(even[3][x], odd[3][x]));
+        }
+    }
+}
+
 static void scan_tile(void *arg, int i, int worker)
 {
     struct job *j = arg;
@@ -225,6 +252,7 @@ static void start_workers(const struct job *j, const struct hf_image *dst, const
         struct hf_worker *w = &c->workers[i];
         memset(&w->counts, 0, sizeof w->counts);
         memset(&w->seen, 0, sizeof w->seen);
+        w->looked = (struct hf_counts){.brightest = -FLT_MAX, .alpha_min = 1};
         memset(w->ns, 0, sizeof w->ns);
         memset(w->tiles, 0, sizeof w->tiles);
         w->frame.s = j->s;
@@ -331,6 +359,10 @@ int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_im
     err = plan_frame(&j);
     planning += now_ns();
     c->report.plan_ms = (double)planning * 1e-6;
+    if (!err && s->colour_stats && s->blend != 0) {
+        parallel(c, hf_plan_count(&c->plan, 1), look_at_colour, &j);
+        hf_report_colour(c);
+    }
     if (err || plan_only)
         return err;
     err = run_plan(&j);

@@ -53,6 +53,18 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     r->memory_saved = hf_buffers_bytes(c, s, HF_FIELDS) - r->memory;
 }
 
+void hf_report_colour(struct hf_context *c)
+{
+    struct hf_report *r = &c->report;
+    r->colour_known = r->opaque = 1;
+    for (int i = 0; i < c->threads; i++) {
+        const struct hf_counts *seen = &c->workers[i].looked;
+        r->brightest = i == 0 || seen->brightest > r->brightest ? seen->brightest : r->brightest;
+        r->opaque &= seen->alpha_min >= 1;
+        r->not_finite += seen->colour_repaired;
+    }
+}
+
 void hf_report_frame(struct hf_context *c, const struct hf_setup *s)
 {
     struct hf_report *r = &c->report;

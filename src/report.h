@@ -7,6 +7,8 @@
 
 // Fill the context's report from its plan. fields: whose buffers the frame needs.
 void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct hf_counts *found);
+// Add what its workers saw of the colour.
+void hf_report_colour(struct hf_context *c);
 // Add what the frame's workers did, and learn from it.
 void hf_report_frame(struct hf_context *c, const struct hf_setup *s);
 

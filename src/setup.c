@@ -342,7 +342,7 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
         .width = src->width, .height = src->height,
         .half_width = (src->width + 1) / 2, .half_height = (src->height + 1) / 2,
         .engine = p->engine, .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
-        .storage = p->storage, .faithful = p->faithful, .no_skip = p->no_skip, .karis = p->karis,
+        .storage = p->storage, .colour_stats = p->colour_stats, .faithful = p->faithful, .no_skip = p->no_skip, .karis = p->karis,
         .per_pixel_kernel = p->per_pixel_kernel, .bicubic = p->bicubic, .fill = p->fill,
         .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP, .taps = taps, .rings = p->rings, .pixel_aspect = p->pixel_aspect,
         .resolution = p->resolution, .rotation = p->blade_rotation, .uniform = p->uniform,

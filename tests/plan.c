@@ -250,8 +250,34 @@ static void budget_of_frames(void)
     hf_close(&c);
 }
 
+// Looked at where it is blurred, and only there.
+static void colour(void)
+{
+    struct hf_context *c = context();
+    struct scene s = sharp(640, 448);
+    struct hf_params p = scene_params();
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 640 * 448; k++)
+            s.colour.plane[i][k] = 0.5f;
+    put(&s, 330, 210, 340, 220, 40);
+    s.colour.plane[1][5] = 100;              // far from the blur
+    s.colour.plane[2][215 * 640 + 335] = 7;  // in it
+    s.colour.plane[0][215 * 640 + 333] = NAN;
+    struct hf_report r = plan(c, &s, &p);
+    CHECK(!r.colour_known);
+    p.colour_stats = 1;
+    r = plan(c, &s, &p);
+    CHECK(r.colour_known && r.brightest == 7 && r.opaque);
+    CHECK_INT(r.not_finite, 1);
+    r = render(c, &s, &p);
+    CHECK(r.colour_known && r.brightest == 7 && r.opaque);
+    scene_free(&s);
+    hf_close(&c);
+}
+
 int main(void)
 {
+    colour();
     planned_and_done();
     only_what_is_called_for();
     budget();

@@ -244,6 +244,8 @@ struct hf_params {
     int deterministic;
     // Run every pass on every tile, also where the scene does not call for it. Default 0. Changes no bit.
     int no_skip;
+    // Look at the colour of what will be blurred, for hf_report. Default 0: that takes time and serves nothing else.
+    int colour_stats;
     // Milliseconds that a frame may take, 0 (default): any. What was asked for is then the best that a frame may be;
     // if earlier frames of this context took longer, cheaper settings are tried in turn: smaller working buffers, the
     // gather in place of a costlier engine, fewer rings of taps. It goes back only when the better setting would
@@ -380,6 +382,12 @@ struct hf_report {
 
     // CoC radii that there are, full-resolution pixels: the largest in front of the focus and behind it.
     float near_radius, far_radius;
+    // Colour where it is read for blurring; known only with params.colour_stats.
+    int colour_known;
+    float brightest;      // largest finite sample of R, G and B
+    int opaque;           // no alpha below 1
+    uint64_t not_finite;  // samples, repaired before anything was made of them
+
     size_t memory;        // bytes of buffers that the frame needs
     size_t memory_saved;  // bytes that it would need besides with no_skip
     double plan_ms;       // time for planning, the look at the depth not included

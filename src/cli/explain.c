@@ -28,6 +28,9 @@ static void print_settings(FILE *out, const struct hf_report *r)
         fprintf(out, ", %d step%s below what was asked for, to keep the budget", r->budget_step,
                 r->budget_step == 1 ? "" : "s");
     fprintf(out, "\n  largest CoC radius: near %.2f, far %.2f pixels\n", r->near_radius, r->far_radius);
+    if (r->colour_known)
+        fprintf(out, "  colour to blur: up to %g, %s, %llu samples not finite\n", r->brightest,
+                r->opaque ? "opaque" : "with alpha below 1", (unsigned long long)r->not_finite);
     fprintf(out, "  tiles of %d x %d pixels: %u sharp, %u near, %u far, %u both\n", r->tile_width, r->tile_height,
             r->tile_count[HF_TILE_SHARP], r->tile_count[HF_TILE_NEAR], r->tile_count[HF_TILE_FAR],
             r->tile_count[HF_TILE_BOTH]);

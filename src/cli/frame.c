@@ -164,6 +164,7 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
         return status;
     if (frame->args->dump_dir)
         cli_dump_begin(&dump, session->context, frame, v);
+    v->setup.params.colour_stats = frame->args->explain;
     status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
     status = finish_view(frame, v, session, status, error);
     return !status && frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : status;
@@ -176,6 +177,7 @@ static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     int status = load_view(frame, v, session, &image, error);
     if (status)
         return status;
+    v->setup.params.colour_stats = frame->args->explain;
     status = hf_plan(session->context, &image, &image, &v->setup.depth, &v->setup.params, NULL);
     return finish_view(frame, v, session, status, error);
 }
