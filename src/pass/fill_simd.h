@@ -24,8 +24,8 @@ HF_INLINE void fill_max_vector(vf left, vf middle, vf right, const float *in, vm
     vf_store(out, vf_select(wanted, v, vf_load(in)));
 }
 
-// A row of them. A first vector lies where the row begins, the others are aligned: their columns' maxima are made once,
-// and shifted for the neighbours.
+// A row of them. A first vector lies where the row begins, the others are aligned: their columns' maxima are made
+// once, and shifted for the neighbours.
 HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *want, float *const out[4], int n, int first,
                             const int channels)
 {

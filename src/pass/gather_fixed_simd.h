@@ -65,9 +65,9 @@ HF_INLINE vf fixed_weight(const float *weight, int i)
     return WEIGHT_N == 1 ? vf_set1(weight[i]) : vf_load(weight + i * WEIGHT_N);
 }
 
-// Row k's sum. The weights lie one after the other; where each one is, is known when this is compiled. Fused, the weight
-// of the taps on the axes is used once for all of row 0, and its product with h[0], axis, starts the other even rows:
-// 32 multiply-adds for radius 6 instead of 36, which is what the units for additions have room for.
+// Row k's sum. The weights lie one after the other; where each one is, is known when this is compiled. Fused, the
+// weight of the taps on the axes is used once for all of row 0, and its product with h[0], axis, starts the other even
+// rows: 32 multiply-adds for radius 6 instead of 36, at the price of two additions, which have units of their own.
 HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf *h, const float *weight, vf axis)
 {
     int n = 0;
@@ -148,7 +148,7 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const float *weig
 typedef void fixed_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out, ptrdiff_t out_stride,
                           int height);
 
-// Functions of their own: inlined into one, the compiler keeps the weights of all edge rows, and spills them.
+// Two functions: inlined into one, the compiler keeps the weights of all rows as vectors, and spills them.
 #define FIXED_COLUMN(rows, r)                                                                                         \
     static __attribute__((noinline)) void rows##_edge(const float *weight, const float *in, int d, int top,           \
                                                       float *out, ptrdiff_t stride, int height)                       \

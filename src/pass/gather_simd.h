@@ -3,9 +3,10 @@
 //
 // Per input row the pairs h[j] = in[x - j] + in[x + j] are formed once, then a row sum per distinct row of weights,
 // r[k] = sum over j of w[k][j] h[j]; an output row is the sum of 2 ry + 1 of those. 36 multiplications a pixel and
-// plane at the default reach where the 48 bilinear taps would load 192 values. Columns are worked off in strips of
-// up to GATHER_S vectors: enough independent sums to hide the latency of the multiply-add, one broadcast weight for all
-// of them, and output rows that stay in the first-level cache.
+// plane at the default reach where the 48 bilinear taps would load 192 values. Tap sets that are known when this is
+// compiled are gather_fixed_simd.h's. For all others columns are worked off in strips of up to GATHER_S vectors: enough
+// independent sums to hide the latency of the multiply-add, one broadcast weight for all of them, and output rows that
+// stay in the first-level cache.
 #include <float.h>
 
 #include "pass/gather_fixed_simd.h"
@@ -182,8 +183,8 @@ static void gather_columns(const float *weights, const struct gather_job *j, fix
                        j->out[i] + y0[v] * j->out_stride[i] + x + v * VF_N, j->out_stride[i], y1[v] - y0[v]);
 }
 
-// Convolves strip by strip, and finishes each while it is in the cache. A first vector lies wherever r begins, all others
-// are aligned; where the two overlap, the second writes everything again.
+// Convolves strip by strip, and finishes each while it is in the cache. A first vector lies wherever r begins, all
+// others are aligned; where the two overlap, the second writes everything again.
 static void gather_run(const struct hf_frame *f, struct hf_rect r, struct gather_job *j, const struct hf_buf *need,
                        int need_channel, hf_kernel *finish)
 {
@@ -194,7 +195,8 @@ static void gather_run(const struct hf_frame *f, struct hf_rect r, struct gather
     j->need = hf_at(need, need_channel, r.x0, r.y0);
     j->need_stride = need->stride;
     for (int x = 0, next; x < width; x = next) {
-        const int odd = (r.x0 + x) & (VF_N - 1), left = (width - x + VF_N - 1) / VF_N, strips = (left + most - 1) / most;
+        const int odd = (r.x0 + x) & (VF_N - 1), left = (width - x + VF_N - 1) / VF_N;
+        const int strips = (left + most - 1) / most;
         const int s = odd ? 1 : (left + strips - 1) / strips;
         next = x + s * VF_N - odd;
         if (column)
