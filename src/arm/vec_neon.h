@@ -14,6 +14,9 @@ enum { VF_N = 4 };
 // memcpy-like loads: rows of images need not be aligned to floats.
 static inline vf vf_load(const void *p) { return vreinterpretq_f32_u8(vld1q_u8((const uint8_t *)p)); }
 static inline void vf_store(void *p, vf a) { vst1q_u8((uint8_t *)p, vreinterpretq_u8_f32(a)); }
+// Past the caches on other machines; there is no intrinsic for it here.
+static inline void vf_stream(void *p, vf a) { vf_store(p, a); }
+static inline void vf_stream_end(void) {}
 static inline vf vf_set1(float a) { return vdupq_n_f32(a); }
 static inline vf vf_zero(void) { return vdupq_n_f32(0); }
 static inline vf vf_add(vf a, vf b) { return vaddq_f32(a, b); }

@@ -1,82 +1,218 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Downsample on vectors: rows come split into even and odd pixels, so a quad is four aligned loads.
 
+// Where the rows of r begin in the buffers.
+struct down_row {
+    const float *near, *far[4]; // full-resolution CoC: near of a quad's first pixel, far of all
+    float *colour[4], *colour_far[4], *coc[4];
+};
+
+HF_INLINE struct down_row down_row_at(const struct hf_frame *f, const int channels, int x, int y)
+{
+    const int y1 = hf_min(2 * y + 1, f->s->height - 1);
+    const struct hf_buf *coc = &f->buf[HF_BUF_COC];
+    struct down_row d = {
+        .near = hf_at(coc, 0, x, 2 * y),
+        .far = {hf_at(coc, 2, x, 2 * y), hf_at(coc, 3, x, 2 * y), hf_at(coc, 2, x, y1), hf_at(coc, 3, x, y1)}};
+    hf_row(&f->buf[HF_BUF_COLOR4], channels, x, y, d.colour);
+    hf_row(&f->buf[HF_BUF_COLORFAR4], channels, x, y, d.colour_far);
+    hf_row(&f->buf[HF_BUF_COC4], 2, x, y, d.coc);
+    return d;
+}
+
 HF_INLINE vf down_distance(vf a, vf b)
 {
     return vf_fma(vf_set1(1000), vf_abs(vf_sub(a, b)), vf_set1(1));
 }
 
-HF_INLINE void down_row_simd(const struct hf_frame *f, const int channels, const int near, const int far, int y,
-                             struct hf_rect r)
+// Are the quads' far CoCs not all the same? Mostly they are.
+HF_INLINE int down_differ(const vf f[4])
 {
-    const int n = r.x1 - r.x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
-    float *lane[2][2][4];  // [row][odd][channel]
-    for (int i = 0; i < 16; i++)
-        lane[i >> 3][i >> 2 & 1][i & 3] = hf_line(f, i);
-    hf_read_colour(f, r.x0, 2 * y, n, lane[0][0], lane[0][1], f->seen);
-    hf_read_colour(f, r.x0, y1, n, lane[1][0], lane[1][1], f->seen);
-
-    const struct hf_buf *coc = &f->buf[HF_BUF_COC];
-    const float *near_coc = hf_at(coc, 0, r.x0, 2 * y);
-    const float *f00 = hf_at(coc, 2, r.x0, 2 * y), *f10 = hf_at(coc, 3, r.x0, 2 * y);
-    const float *f01 = hf_at(coc, 2, r.x0, y1), *f11 = hf_at(coc, 3, r.x0, y1);
-    float *colour[4], *colour_far[4], *coc4[4];
-    hf_row(&f->buf[HF_BUF_COLOR4], channels, r.x0, y, colour);
-    hf_row(&f->buf[HF_BUF_COLORFAR4], channels, r.x0, y, colour_far);
-    hf_row(&f->buf[HF_BUF_COC4], 2, r.x0, y, coc4);
-    for (int x = 0; x < n; x += VF_N) {
-        if (near)
-            vf_store(coc4[0] + x, vf_load(near_coc + x));
-        const vf f0 = vf_load(f00 + x), g1 = vf_load(f10 + x), g2 = vf_load(f01 + x), g3 = vf_load(f11 + x);
-        vf w0 = vf_set1(0.25f), w1 = w0, w2 = w0, w3 = w0;
-        // Where the far CoC is the same all over, as it mostly is, so are the weights.
-        if (far && vm_any(vm_or(vm_or(vf_ne(f0, g1), vf_ne(f0, g2)), vf_ne(f0, g3)))) {
-            const vf d1 = down_distance(f0, g1), d2 = down_distance(f0, g2), d3 = down_distance(f0, g3);
-            w0 = vf_mul(d1, vf_mul(d2, d3));
-            w1 = vf_mul(d2, d3);
-            w2 = vf_mul(d1, d3);
-            w3 = vf_mul(d1, d2);
-            const vf i = vf_div(vf_set1(1), vf_add(vf_add(w0, w1), vf_add(w2, w3)));
-            w0 = vf_mul(w0, i);
-            w1 = vf_mul(w1, i);
-            w2 = vf_mul(w2, i);
-            w3 = vf_mul(w3, i);
-        }
-        for (int c = 0; c < channels; c++) {
-            const vf c00 = vf_load(lane[0][0][c] + x), c10 = vf_load(lane[0][1][c] + x);
-            const vf c01 = vf_load(lane[1][0][c] + x), c11 = vf_load(lane[1][1][c] + x);
-            if (near)
-                vf_store(colour[c] + x, vf_mul(vf_set1(0.25f), vf_add(vf_add(c00, c10), vf_add(c01, c11))));
-            if (!far)
-                continue;
-            const vf top = vf_fma(w1, c10, vf_mul(w0, c00)), bottom = vf_fma(w3, c11, vf_mul(w2, c01));
-            vf_store(colour_far[c] + x, vf_mul(vf_add(top, bottom), f0));
-        }
-        if (far)
-            vf_store(coc4[1] + x, f0);
-    }
-    if (near)
-        hf_store_rgb(f, colour, n);
-    if (far)
-        hf_store_rgb(f, colour_far, n);
+    return vm_any(vm_or(vm_or(vf_ne(f[0], f[1]), vf_ne(f[0], f[2])), vf_ne(f[0], f[3])));
 }
 
-HF_INLINE void down_row_fields(const struct hf_frame *f, const int channels, int y, struct hf_rect r)
+HF_INLINE void down_weights(const vf f[4], vf w[4])
 {
-    if (f->near && f->far)
-        down_row_simd(f, channels, 1, 1, y, r);
-    else if (f->near)
-        down_row_simd(f, channels, 1, 0, y, r);
+    const vf d1 = down_distance(f[0], f[1]), d2 = down_distance(f[0], f[2]), d3 = down_distance(f[0], f[3]);
+    w[0] = vf_mul(d1, vf_mul(d2, d3));
+    w[1] = vf_mul(d2, d3);
+    w[2] = vf_mul(d1, d3);
+    w[3] = vf_mul(d1, d2);
+    const vf i = vf_div(vf_set1(1), vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
+    for (int t = 0; t < 4; t++)
+        w[t] = vf_mul(w[t], i);
+}
+
+HF_INLINE vf down_sum(const vf c[4])
+{
+    return vf_add(vf_add(c[0], c[1]), vf_add(c[2], c[3]));
+}
+
+HF_INLINE vf down_far(const vf w[4], const vf c[4], vf f0)
+{
+    const vf top = vf_fma(w[1], c[1], vf_mul(w[0], c[0])), bottom = vf_fma(w[3], c[3], vf_mul(w[2], c[2]));
+    return vf_mul(vf_add(top, bottom), f0);
+}
+
+// A row of any format, by way of lines: the fields that are asked for.
+HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, const int near, const int far, int x0,
+                              int x1, int y)
+{
+    const int n = x1 - x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
+    float *lane[4][4]; // [row and even or odd][channel]
+    for (int i = 0; i < 16; i++)
+        lane[i >> 2][i & 3] = hf_line(f, i);
+    hf_read_colour(f, x0, 2 * y, n, lane[0], lane[1], f->seen);
+    hf_read_colour(f, x0, y1, n, lane[2], lane[3], f->seen);
+    const struct down_row d = down_row_at(f, channels, x0, y);
+    for (int x = 0; x < n; x += VF_N) {
+        const vf g[4] = {vf_load(d.far[0] + x), vf_load(d.far[1] + x), vf_load(d.far[2] + x), vf_load(d.far[3] + x)};
+        vf w[4] = {vf_set1(0.25f), vf_set1(0.25f), vf_set1(0.25f), vf_set1(0.25f)};
+        if (far && down_differ(g))
+            down_weights(g, w);
+        for (int c = 0; c < channels; c++) {
+            const vf quad[4] = {vf_load(lane[0][c] + x), vf_load(lane[1][c] + x), vf_load(lane[2][c] + x),
+                                vf_load(lane[3][c] + x)};
+            if (near)
+                vf_store(d.colour[c] + x, vf_mul(vf_set1(0.25f), down_sum(quad)));
+            if (far)
+                vf_store(d.colour_far[c] + x, down_far(w, quad, g[0]));
+        }
+        if (near)
+            vf_store(d.coc[0] + x, vf_load(d.near + x));
+        if (far)
+            vf_store(d.coc[1] + x, g[0]);
+    }
+    if (near)
+        hf_store_rgb(f, d.colour, n);
+    if (far)
+        hf_store_rgb(f, d.colour_far, n);
+}
+
+// R11G11B10F words of a quad as floats 2^112 times too small: see r11_unpack. Sums of four have the bits that they
+// have at full size, products with weights do not.
+HF_INLINE void down_unpack(const vi u[4], vf quad[3][4])
+{
+    for (int i = 0; i < 4; i++) {
+        quad[0][i] = vi_as_vf(vi_and(vi_shl(u[i], 17), vi_set1(0x7ff << 17)));
+        quad[1][i] = vi_as_vf(vi_and(vi_shl(u[i], 6), vi_set1(0x7ff << 17)));
+        quad[2][i] = vi_as_vf(vi_and(vi_shr(u[i], 4), vi_set1(0x3ff << 18)));
+    }
+}
+
+// To what the storage holds.
+HF_INLINE vf down_round(enum hf_storage storage, vf v, const int c)
+{
+    if (storage == HF_STORAGE_CHAPTER)
+        return truncate_channel(v, c);
+    return storage == HF_STORAGE_HALF ? round_half_vf(v) : v;
+}
+
+HF_INLINE void down_put(float *p, vf v, const int stream)
+{
+    if (stream)
+        vf_stream(p, v);
     else
-        down_row_simd(f, channels, 0, 1, y, r);
+        vf_store(p, v);
+}
+
+// A vector of quads of R11G11B10F, in registers: u as down_unpack wants them, x from the row's beginning. Returns the
+// largest mean.
+HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, const int near, const int far, int x,
+                            const vi u[4], const int stream)
+{
+    const vf g[4] = {vf_load(d->far[0] + x), vf_load(d->far[1] + x), vf_load(d->far[2] + x), vf_load(d->far[3] + x)};
+    vf quad[3][4], mean[3];
+    down_unpack(u, quad);
+    for (int c = 0; c < 3; c++) {
+        mean[c] = vf_mul(down_sum(quad[c]), vf_set1(0x1p110f));
+        if (near)
+            down_put(d->colour[c] + x, down_round(storage, mean[c], c), stream);
+    }
+    if (far && down_differ(g)) {
+        vf w[4];
+        down_weights(g, w);
+        for (int c = 0; c < 3; c++) {
+            for (int i = 0; i < 4; i++)
+                quad[c][i] = vf_mul(quad[c][i], vf_set1(0x1p112f));
+            down_put(d->colour_far[c] + x, down_round(storage, down_far(w, quad[c], g[0]), c), stream);
+        }
+    } else if (far) { // quarters of small floats are exact, so that their sum is the mean
+        for (int c = 0; c < 3; c++)
+            down_put(d->colour_far[c] + x, down_round(storage, vf_mul(mean[c], g[0]), c), stream);
+    }
+    if (near)
+        down_put(d->coc[0] + x, vf_load(d->near + x), stream);
+    if (far)
+        down_put(d->coc[1] + x, g[0], stream);
+    return vf_max(vf_max(mean[0], mean[1]), mean[2]);
+}
+
+// A row of R11G11B10F. Returns 0 if there may be a sample that is not finite: then nothing of this row counts. The
+// frame's border is read at once, to be repeated outwards: it is not streamed.
+HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int far, int x0, int x1, int y, int stream)
+{
+    const int last = f->s->half_width - VF_N, inner_row = stream && y > 0 && y < f->s->half_height - 1;
+    const struct hf_image *m = f->src;
+    const uint8_t *p[2] = {plane_at(m, 0, 4, x0, 2 * y), plane_at(m, 0, 4, x0, hf_min(2 * y + 1, m->height - 1))};
+    const struct down_row d = down_row_at(f, 3, x0, y);
+    vf largest = vf_zero();
+    for (int x = 0; x < x1 - x0; x += VF_N) {
+        vi u[4];
+        for (int row = 0; row < 2; row++) {
+            const uint8_t *from = p[row] + 8 * x;
+            vf even, odd;
+            for (int k = 0; k < 8 * VF_N; k += 64)
+                __builtin_prefetch((const uint8_t *)((uintptr_t)from + (uintptr_t)(2 * m->stride[0])) + k);
+            vf_unzip(vf_load(from), vf_load(from + 4 * VF_N), &even, &odd);
+            u[2 * row] = vf_as_vi(even);
+            u[2 * row + 1] = vf_as_vi(odd);
+        }
+        const int inner = inner_row && x0 + x > 0 && x0 + x < last;
+        const vf mean = inner ? down_block_r11(f->s->storage, &d, near, far, x, u, 1)
+                              : down_block_r11(f->s->storage, &d, near, far, x, u, 0);
+        largest = vf_max(largest, mean);
+    }
+    // One sample that is not finite makes 65536 / 4 at least.
+    return !vm_any(vm_not(vf_lt(largest, vf_set1(16384))));
+}
+
+// Are the planes of a frame so large that what is written first has left the cache before it is read? Then they are
+// written past it, and push nothing else out.
+HF_INLINE int down_streams(const struct hf_frame *f, struct hf_rect r)
+{
+    enum { LARGE = 12 << 20 };
+    const struct hf_buf *b = &f->buf[HF_BUF_COC4];
+    return (size_t)b->stride * f->s->half_height * 8 * sizeof(float) > LARGE &&
+           (uintptr_t)hf_at(b, 0, r.x0, r.y0) % sizeof(vf) == 0;
+}
+
+HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far, struct hf_rect r)
+{
+    const int stream = down_streams(f, r);
+    for (int y = r.y0; y < r.y1; y++) {
+        int x = r.x0;
+        if (f->src->format == HF_FORMAT_R11G11B10F) {
+            // Up to the last vector that lies in the picture as a whole.
+            const int x1 = hf_min(r.x1, x + (f->s->width / 2 - x) / VF_N * VF_N);
+            if (x < x1 && down_row_r11(f, near, far, x, x1, y, stream))
+                x = x1;
+        }
+        if (x < r.x1 && f->s->channels == 3)
+            down_row_lines(f, 3, near, far, x, r.x1, y);
+        else if (x < r.x1)
+            down_row_lines(f, 4, near, far, x, r.x1, y);
+    }
+    if (stream)
+        vf_stream_end();
 }
 
 static void down_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = r.y0; y < r.y1; y++) {
-        if (f->s->channels == 3)
-            down_row_fields(f, 3, y, r);
-        else
-            down_row_fields(f, 4, y, r);
-    }
+    if (f->near && f->far)
+        down_rows(f, 1, 1, r);
+    else if (f->near)
+        down_rows(f, 1, 0, r);
+    else
+        down_rows(f, 0, 1, r);
 }

@@ -383,12 +383,17 @@ static int finite_r11_simd(const void *words, size_t n)
     return finite_words(words, 4 * n, masks, 3);
 }
 
+HF_INLINE vf truncate_channel(vf v, const int c)
+{
+    return truncate_small(clamp_unsigned(v, c == 2 ? HF_R10_MAX : HF_R11_MAX), c == 2 ? 5 : 6);
+}
+
 static void truncate_r11_simd(float *r, float *g, float *b, int n)
 {
     for (int i = 0; i < n; i += VF_N) {
-        vf_store(r + i, truncate_small(clamp_unsigned(vf_load(r + i), HF_R11_MAX), 6));
-        vf_store(g + i, truncate_small(clamp_unsigned(vf_load(g + i), HF_R11_MAX), 6));
-        vf_store(b + i, truncate_small(clamp_unsigned(vf_load(b + i), HF_R10_MAX), 5));
+        vf_store(r + i, truncate_channel(vf_load(r + i), 0));
+        vf_store(g + i, truncate_channel(vf_load(g + i), 1));
+        vf_store(b + i, truncate_channel(vf_load(b + i), 2));
     }
 }
 

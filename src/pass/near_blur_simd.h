@@ -43,7 +43,7 @@ static void blur_line(const struct hf_setup *s, struct blur_line in, struct blur
 // 13 wide, the usual case, in registers: windows of 3, then of 6. A level lags a vector behind the one it is made from.
 HF_INLINE void blur_row_13(const struct hf_setup *s, const float *in, float *out, int n)
 {
-    enum { LAG = VF_N == 4 ? 4 : 3 };  // of the output behind the input, vectors
+    enum { LAG = VF_N == 4 ? 4 : 3 }; // of the output behind the input, vectors
     const int count = (n + VF_N - 1) / VF_N, inputs = (n + 12 + VF_N - 1) / VF_N;
     const vf scale = vf_set1(1 / 13.0f), zero = vf_zero();
     vf a[LAG + 1], w3[3] = {zero, zero, zero}, w6[4] = {zero, zero, zero, zero};
@@ -87,8 +87,8 @@ HF_INLINE void blur_column_13(const struct hf_setup *s, const float *in, ptrdiff
     const vf scale = vf_set1(1 / 13.0f);
     vf a[ROWS + 2], w3[ROWS + 3], w6[ROWS + 7], first[10];
     for (int y = 0; y < 10; y++)
-        first[y] = vf_add(vf_add(vf_load(in + y * stride), vf_load(in + (y + 2) * stride)),
-                          vf_load(in + (y + 1) * stride));
+        first[y] =
+            vf_add(vf_add(vf_load(in + y * stride), vf_load(in + (y + 2) * stride)), vf_load(in + (y + 1) * stride));
     for (int y = 0; y < 7; y++)
         w6[y] = vf_add(first[y], first[y + 3]);
     for (int y = 0; y < 3; y++)

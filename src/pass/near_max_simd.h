@@ -15,7 +15,7 @@ HF_INLINE int max_span(int m)
 // A level lags a vector behind the one it is made from.
 HF_INLINE void max_row(const float *in, float *out, int n, const int width)
 {
-    enum { LAG = VF_N == 4 ? 5 : 4 };  // of the output behind the input, vectors
+    enum { LAG = VF_N == 4 ? 5 : 4 }; // of the output behind the input, vectors
     const int count = (n + VF_N - 1) / VF_N, inputs = (n + width - 1 + VF_N - 1) / VF_N;
     const vf zero = vf_zero();
     vf a[2] = {zero, zero}, m2[2] = {zero, zero}, m4[3] = {zero, zero, zero}, m8[4] = {zero, zero, zero, zero};
@@ -44,7 +44,7 @@ static void max_x_simd(const struct hf_frame *f, struct hf_rect r)
         const float *in = hf_at(b, 0, r.x0 - m, y);
         float *out = hf_at(&f->buf[HF_BUF_MAX_X], 0, r.x0, y);
         int len = 1;
-        for (int x = 0; x < n + 2 * m + 15; x += 16)  // comes from memory, in rows too short for hardware prefetchers
+        for (int x = 0; x < n + 2 * m + 15; x += 16) // comes from memory, in rows too short for hardware prefetchers
             __builtin_prefetch(in + 4 * b->stride + x);
         if (m == 6) {
             max_row(in, out, n, 13);

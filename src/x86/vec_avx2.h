@@ -13,6 +13,9 @@ enum { VF_N = 8 };
 
 static inline vf vf_load(const void *p) { return _mm256_loadu_ps((const float *)p); }
 static inline void vf_store(void *p, vf a) { _mm256_storeu_ps((float *)p, a); }
+// Past the caches; p is aligned to the vector. Ended by vf_stream_end.
+static inline void vf_stream(void *p, vf a) { _mm256_stream_ps((float *)p, a); }
+static inline void vf_stream_end(void) { _mm_sfence(); }
 static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
 static inline vf vf_zero(void) { return _mm256_setzero_ps(); }
 static inline vf vf_add(vf a, vf b) { return _mm256_add_ps(a, b); }

@@ -14,6 +14,9 @@ enum { VF_N = 16 };
 
 static inline vf vf_load(const void *p) { return _mm512_loadu_ps(p); }
 static inline void vf_store(void *p, vf a) { _mm512_storeu_ps(p, a); }
+// Past the caches; p is aligned to the vector. Ended by vf_stream_end.
+static inline void vf_stream(void *p, vf a) { _mm512_stream_ps((float *)p, a); }
+static inline void vf_stream_end(void) { _mm_sfence(); }
 static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
 static inline vf vf_zero(void) { return _mm512_setzero_ps(); }
 static inline vf vf_add(vf a, vf b) { return _mm512_add_ps(a, b); }

@@ -14,6 +14,9 @@ enum { VF_N = 4 };
 
 static inline vf vf_load(const void *p) { return _mm_loadu_ps((const float *)p); }
 static inline void vf_store(void *p, vf a) { _mm_storeu_ps((float *)p, a); }
+// Past the caches; p is aligned to the vector. Ended by vf_stream_end.
+static inline void vf_stream(void *p, vf a) { _mm_stream_ps((float *)p, a); }
+static inline void vf_stream_end(void) { _mm_sfence(); }
 static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
 static inline vf vf_zero(void) { return _mm_setzero_ps(); }
 static inline vf vf_add(vf a, vf b) { return _mm_add_ps(a, b); }

@@ -162,6 +162,8 @@ static inline __m512i emulated_alignr(__m512i a, __m512i b, int n)
 
 #undef _mm512_fmadd_ps
 #define _mm512_fmadd_ps(a, b, c) emulated_fmadd(a, b, c)
+#undef _mm512_stream_ps
+#define _mm512_stream_ps(p, a) _mm512_storeu_ps(p, a)
 #undef _mm512_alignr_epi32
 #define _mm512_alignr_epi32(a, b, n) emulated_alignr(a, b, n)
 #undef _mm512_abs_ps
