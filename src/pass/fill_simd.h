@@ -26,8 +26,8 @@ HF_INLINE void fill_max_vector(vf left, vf middle, vf right, const float *in, vm
 
 // A row of them. A first vector lies where the row begins, the others are aligned: their columns' maxima are made
 // once, and shifted for the neighbours.
-HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *want, float *const out[4], int n, int first,
-                            const int channels)
+HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *want, float *const out[4], int n,
+                            int first, const int channels)
 {
     vf left[4], middle[4];
     vm wanted = vf_gt(vf_load(want), vf_zero());

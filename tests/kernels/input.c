@@ -28,7 +28,8 @@ static void random_options(struct rng *r, struct hf_params *p)
 {
     // Half-resolution reaches of 1 to 20, small ones more often.
     const int most = rng_one_in(r, 6) ? 40 : 14;
-    p->max_radius = rng_one_in(r, 4) ? 12 : rng_float(r, 0.1f, (float)most);
+    // The gather has code of its own for 8, 12 and 16.
+    p->max_radius = rng_one_in(r, 3) ? (float)(4 * rng_int(r, 2, 4)) : rng_float(r, 0.1f, (float)most);
     if (rng_one_in(r, 2))
         p->max_radius = ceilf(p->max_radius);
     p->pixel_aspect = rng_one_in(r, 2) ? 1 : rng_float(r, 0.5f, 2);
