@@ -53,7 +53,7 @@ static int channels(const struct hf_setup *s, int b)
                  (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
         return 0;
     if (b < HF_HEXAGON_MADE)
-        return b % 2 ? 2 : s->channels;
+        return b % 2 ? 2 + half : s->channels;
     switch ((b - HF_HEXAGON_MADE) % HF_HEXAGON_MADE_COUNT) {
     case HF_HEXAGON_NEAR_W:
         return 4;
@@ -64,10 +64,10 @@ static int channels(const struct hf_setup *s, int b)
     }
 }
 
-// The working buffers' picture.
+// How far lines go, in working pixels: what is near by less than a pixel is spread over one, thinly.
 static float working(const struct hf_setup *s, float radius)
 {
-    return s->resolution == HF_RESOLUTION_HALF ? radius / 2 : radius;
+    return fmaxf(s->resolution == HF_RESOLUTION_HALF ? radius / 2 : radius, 1);
 }
 
 // The step between taps, in units of a pixel's height: 1, or less where that would leave out columns of narrow pixels.
@@ -189,6 +189,13 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return needs ? HF_FIELDS : 0;
 }
 
+// A row of radii.
+static size_t work(const struct hf_setup *s, const struct hf_plan *p)
+{
+    (void)s;
+    return p->line_floats;
+}
+
 // Pass 1 runs on a tile and its rim: with a large reach, tiles that are not much smaller.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
@@ -202,5 +209,5 @@ const struct hf_engine_def hf_hexagon_engine = {
     .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = 2,
     .bufs = bufs, .buf_count = HF_HEXAGON_BUF_COUNT, .measured = 1,
     .prepare = prepare, .measure = measure, .channels = channels, .halo = halo, .spread = spread, .reads = reads,
-    .cell = cell,
+    .cell = cell, .work = work,
 };

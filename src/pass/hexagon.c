@@ -42,6 +42,7 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
     const float scale = 0.25f / (q > 1 ? q : 1);
     *hf_at(&f->buf[colour + 1], 0, x, y) = sum * scale;
     *hf_at(&f->buf[colour + 1], 1, x, y) = q;
+    *hf_at(&f->buf[colour + 1], 2, x, y) = 0.25f * sum;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(&f->buf[colour], c, x, y) = ((w[0] * lane[0][0][c][i] + w[1] * lane[0][1][c][i]) +
                                             (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) * scale;
@@ -111,7 +112,7 @@ static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_fi
         for (int c = 0; c < f->s->channels; c++)
             sum.colour[c] = sum.colour[c] + w * *hf_at(in->colour, c, u, v);
         sum.a = sum.a + w * *hf_at(in->weight, in->a, u, v);
-        sum.w = sum.w + w;
+        sum.w = sum.w + (in->part < 0 ? w : w * *hf_at(in->weight, in->part, u, v));
     }
     return sum;
 }

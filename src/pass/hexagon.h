@@ -67,7 +67,8 @@ struct hf_hexagon {
     int most;  // taps that a line has room for
 };
 
-// Samples of one field: planes of colour x weight, of weight, and of radius x sign.
+// Samples of one field: planes of colour x weight, of weight, and of radius x sign. At half resolution a sample may be
+// there in part, and its weight is that much smaller.
 struct hf_hexagon_field {
     const struct hf_buf *colour;
     const struct hf_buf *weight;
@@ -75,6 +76,7 @@ struct hf_hexagon_field {
     const struct hf_buf *radius;
     int q;                       // channel of radius
     float sign;
+    int part;                    // channel of weight, -1: all are there in full
 };
 
 // Where things are at the setup's resolution.
@@ -88,7 +90,8 @@ static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f,
     const int half = f->s->resolution == HF_RESOLUTION_HALF;
     const int colour = !half ? HF_HEXAGON_COLOUR : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2 : HF_HEXAGON_FAR_COLOUR_2;
     const struct hf_buf *weight = &f->buf[colour + 1];
-    return (struct hf_hexagon_field){&f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f};
+    return (struct hf_hexagon_field){&f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f,
+                                     half ? 2 : -1};
 }
 
 // The samples that pass 2 reads: what pass 1 made along line v (0) or w (1).
@@ -97,7 +100,7 @@ static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *
     if (field == HF_NEAR) {
         const struct hf_buf *weight = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
         return (struct hf_hexagon_field){hf_hexagon_made(f, second ? HF_HEXAGON_NEAR_B : HF_HEXAGON_NEAR_U),
-                                         weight, 2 * second, weight, 2 * second + 1, 1};
+                                         weight, 2 * second, weight, 2 * second + 1, 1, -1};
     }
     struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     in.colour = hf_hexagon_made(f, second ? HF_HEXAGON_FAR_B : HF_HEXAGON_FAR_U);
