@@ -43,7 +43,7 @@ struct hf_engine_def {
     size_t (*work)(const struct hf_setup *s, const struct hf_plan *p);
 };
 
-extern const struct hf_engine_def hf_gather_engine;
+extern const struct hf_engine_def hf_gather_engine, hf_hexagon_engine;
 // Reaches and taps of the gather: its prepare, for a setup whose taps are anyone's.
 int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
 

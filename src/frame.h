@@ -40,7 +40,7 @@ enum hf_buf_id {
 };
 
 // No engine has more; others than the gather number theirs in engine/*.c.
-enum { HF_MAX_BUFS = 16 };
+enum { HF_MAX_BUFS = 24 };
 
 // Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is allocated is a window of
 // the frame, perhaps with a border around it.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Chooses the kernels of an instruction set: C first, each level overwrites what it does better.
-#include "pass/pass_c.h"
+#include "pass/hexagon.h"
 
 void hf_kernels_c(struct hf_kernels *k)
 {
@@ -16,6 +16,10 @@ void hf_kernels_c(struct hf_kernels *k)
     k->coc_row = hf_coc_row_c;
     k->pass[HF_KERNEL_RADIUS] = hf_radius_c;
     k->radius_row = hf_radius_row_c;
+    k->pass[HF_KERNEL_HEXAGON_LOAD] = hf_hexagon_load_c;
+    k->pass[HF_KERNEL_HEXAGON_1] = hf_hexagon_1_c;
+    k->pass[HF_KERNEL_HEXAGON_2] = hf_hexagon_2_c;
+    k->pass[HF_KERNEL_HEXAGON_COMPOSITE] = hf_hexagon_composite_c;
     k->zip = hf_zip_row_c;
     k->unzip = hf_unzip_row_c;
     hf_format_kernels_c(k);

@@ -25,6 +25,10 @@ enum { HF_NEAR = 1, HF_FAR = 2, HF_FIELDS = HF_NEAR | HF_FAR };
 // Kernels beyond the gather's, which are numbered by its passes.
 enum {
     HF_KERNEL_RADIUS = HF_PASS_COUNT,  // looks at the depth: counts, and the range of radii
+    HF_KERNEL_HEXAGON_LOAD,
+    HF_KERNEL_HEXAGON_1,
+    HF_KERNEL_HEXAGON_2,
+    HF_KERNEL_HEXAGON_COMPOSITE,
     HF_KERNEL_COUNT
 };
 

@@ -12,6 +12,8 @@
 #include "pass/gather_simd.h"
 #include "pass/fill_simd.h"
 #include "pass/composite_simd.h"
+#include "pass/hexagon_simd.h"
+#include "pass/hexagon_ends_simd.h"
 
 void HF_INIT(struct hf_kernels *k);
 
@@ -30,4 +32,8 @@ void HF_INIT(struct hf_kernels *k)
     k->pass[HF_PASS_GATHER] = gather_simd;
     k->pass[HF_PASS_FILL] = fill_simd;
     k->pass[HF_PASS_COMPOSITE] = composite_simd;
+    k->pass[HF_KERNEL_HEXAGON_LOAD] = hexagon_load_simd;
+    k->pass[HF_KERNEL_HEXAGON_1] = hexagon_1_simd;
+    k->pass[HF_KERNEL_HEXAGON_2] = hexagon_2_simd;
+    k->pass[HF_KERNEL_HEXAGON_COMPOSITE] = hexagon_composite_simd;
 }

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon: two passes of blurs along lines, see pass/hexagon.h. A pixel costs O(largest radius around it) taps.
+#include <math.h>
+
+#include "context.h"
+#include "pass/hexagon.h"
+#include "plan.h"
+
+#define FRAME(name) (1u << HF_HEXAGON_##name)
+#define MADE(name)                                                                                                   \
+    (1u << (HF_HEXAGON_MADE + HF_HEXAGON_##name) |                                                                   \
+     1u << (HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##name))
+#define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
+#define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
+#define BETWEEN (MADE(NEAR_U) | MADE(NEAR_B) | MADE(NEAR_W) | MADE(FAR_U) | MADE(FAR_B))
+
+static const struct hf_pass passes[] = {
+    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1},
+    {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1},
+    {"Pass 1", HF_KERNEL_HEXAGON_1, .around = INPUT, .writes = BETWEEN, .halo = HF_HALO_RADIUS, .sweep = 2},
+    {"Pass 2", HF_KERNEL_HEXAGON_2, .around = BETWEEN | WEIGHTS, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
+     .halo = HF_HALO_RADIUS, .sweep = 2},
+    {"Composite", HF_KERNEL_HEXAGON_COMPOSITE, .reads = FRAME(WEIGHT),
+     .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2), .halo = HF_HALO_UPSAMPLE, .sweep = 2},
+};
+
+#define FULL .x = 1, .y = 1
+#define NAMED(b, name, ...)                                                                                          \
+    [HF_HEXAGON_MADE + HF_HEXAGON_##b] = {name, FULL, __VA_ARGS__},                                                  \
+    [HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##b] = {name, __VA_ARGS__}
+
+static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
+    [HF_HEXAGON_COLOUR] = {"colour", .frame = 1, FULL},
+    [HF_HEXAGON_WEIGHT] = {"weight", .frame = 1, FULL},
+    [HF_HEXAGON_NEAR_COLOUR_2] = {"nearcolour", .frame = 1},
+    [HF_HEXAGON_NEAR_WEIGHT_2] = {"nearweight", .frame = 1},
+    [HF_HEXAGON_FAR_COLOUR_2] = {"farcolour", .frame = 1},
+    [HF_HEXAGON_FAR_WEIGHT_2] = {"farweight", .frame = 1},
+    NAMED(NEAR_U, "nearup", .field = HF_NEAR),
+    NAMED(NEAR_B, "nearboth", .field = HF_NEAR),
+    NAMED(NEAR_W, "nearcover", .field = HF_NEAR),
+    NAMED(FAR_U, "farup", .field = HF_FAR),
+    NAMED(FAR_B, "farboth", .field = HF_FAR),
+    NAMED(NEAR, "near", .field = HF_NEAR),
+    NAMED(COVERAGE, "nearcoverage", .field = HF_NEAR),
+    NAMED(FAR, "far", .field = HF_FAR),
+};
+
+static int channels(const struct hf_setup *s, int b)
+{
+    const int half = s->resolution == HF_RESOLUTION_HALF;
+    if (half != (b >= HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT ||
+                 (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
+        return 0;
+    if (b < HF_HEXAGON_MADE)
+        return b % 2 ? 2 + half : s->channels;
+    switch ((b - HF_HEXAGON_MADE) % HF_HEXAGON_MADE_COUNT) {
+    case HF_HEXAGON_NEAR_W:
+        return 4;
+    case HF_HEXAGON_COVERAGE:
+        return 1;
+    default:
+        return s->channels;
+    }
+}
+
+// How far lines go, in working pixels: what is near by less than a pixel is spread over one, thinly.
+static float working(const struct hf_setup *s, float radius)
+{
+    return fmaxf(s->resolution == HF_RESOLUTION_HALF ? radius / 2 : radius, 1);
+}
+
+// The step between taps, in units of a pixel's height: 1, or less where that would leave out columns of narrow pixels.
+static double step_of(const struct hf_setup *s)
+{
+    return s->pixel_aspect < 1 ? s->pixel_aspect : 1;
+}
+
+// Past the end of a line, taps that still share pixels with those before.
+static int tap_count(const struct hf_setup *s, float radius)
+{
+    return (int)ceil((working(s, radius) + 4 + 2 * s->pixel_aspect) / step_of(s));
+}
+
+static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
+{
+    (void)p;
+    const size_t most = 4 * (size_t)tap_count(s, s->max_radius);
+    const int err = hf_block_grow(&c->tables, sizeof(struct hf_hexagon) + 3 * most * sizeof(struct hf_hexagon_tap),
+                                  &c->mem);
+    if (err)
+        return err;
+    struct hf_hexagon *h = s->tables = c->tables.data;
+    h->most = (int)most;
+    for (int i = 0; i < 3; i++)
+        h->line[i] = (struct hf_hexagon_line){.taps = (struct hf_hexagon_tap *)(h + 1) + i * most};
+    return HF_OK;
+}
+
+// Add weight to the pixel (dx, dy), t along the line: it has some already, or goes where t belongs. A pixel's
+// bilinear neighbours follow each other closely, and so do their distances. c holds t for now.
+static void add_tap(struct hf_hexagon_line *l, int dx, int dy, float t, double weight)
+{
+    struct hf_hexagon_tap *p = l->taps;
+    if (weight == 0)
+        return;
+    for (int i = l->count - 1; i >= 0 && i >= l->count - 24; i--)
+        if (p[i].dx == dx && p[i].dy == dy) {
+            p[i].b += (float)weight;
+            return;
+        }
+    int i = l->count++;
+    for (; i > 0 && p[i - 1].c > t; i--)
+        p[i] = p[i - 1];
+    p[i] = (struct hf_hexagon_tap){dx, dy, (float)weight, t};
+}
+
+// Taps of a line in direction (ux, uy), pixels of height 1, as far as a sample of this radius reaches.
+static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, double ux, double uy, float radius)
+{
+    const double step = step_of(s), aspect = s->pixel_aspect;
+    l->count = 0;
+    for (int k = 0; k < tap_count(s, radius); k++) {
+        // Whole 4096ths of a pixel: what lies on a row or column stays on it.
+        const double x = round((k + 0.5) * step * ux / aspect * 4096) / 4096;
+        const double y = round((k + 0.5) * step * uy * 4096) / 4096;
+        const int ix = (int)floor(x), iy = (int)floor(y);
+        for (int i = 0; i < 4; i++) {
+            const int dx = ix + (i & 1), dy = iy + (i >> 1);
+            add_tap(l, dx, dy, (float)(dx * aspect * ux + dy * uy),
+                    step * (1 - fabs(x - dx)) * (1 - fabs(y - dy)));
+        }
+    }
+    float c = 0;
+    const float reach = working(s, radius);
+    int n = 0;
+    l->x0 = l->y0 = l->x1 = l->y1 = 0;
+    for (; n < l->count && c < reach; n++) {
+        struct hf_hexagon_tap *p = &l->taps[n];
+        p->c = c;
+        c += p->b;
+        // From anywhere in the picture, that far and farther is its edge.
+        p->dx = hf_max(hf_min(p->dx, s->width - 1), 1 - s->width);
+        p->dy = hf_max(hf_min(p->dy, s->height - 1), 1 - s->height);
+        l->x0 = hf_min(l->x0, p->dx);
+        l->x1 = hf_max(l->x1, p->dx);
+        l->y0 = hf_min(l->y0, p->dy);
+        l->y1 = hf_max(l->y1, p->dy);
+    }
+    l->count = n;
+}
+
+static void measure(struct hf_setup *s, const struct hf_counts *found)
+{
+    struct hf_hexagon *h = s->tables;
+    const float radius = fmaxf(-found->radius_min, found->radius_max);
+    int x = 0, y = 0;
+    for (int i = 0; i < 3; i++) {
+        struct hf_hexagon_line *l = &h->line[i];
+        const double angle = (s->rotation + (i == 0 ? 0 : i == 1 ? 240 : 120)) * (M_PI / 180);
+        make_line(s, l, sin(angle), -cos(angle), radius);
+        x = hf_max(x, hf_max(-l->x0, l->x1));
+        y = hf_max(y, hf_max(-l->y0, l->y1));
+    }
+    const int half = s->resolution == HF_RESOLUTION_HALF;
+    s->reach_x = half ? x : (x + 1) / 2;
+    s->reach_y = half ? y : (y + 1) / 2;
+}
+
+static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
+{
+    const int upsample = s->resolution == HF_RESOLUTION_HALF;
+    if (halo == HF_HALO_RADIUS)
+        return (struct hf_reach){s->reach_x, s->reach_y};
+    return halo == HF_HALO_UPSAMPLE ? (struct hf_reach){upsample, upsample} : (struct hf_reach){0, 0};
+}
+
+// A far pixel changes itself alone.
+static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
+{
+    if (field == HF_FAR)
+        return (struct hf_reach){0, 0};
+    return p->buf[s->resolution == HF_RESOLUTION_HALF ? HF_HEXAGON_NEAR_COLOUR_2 : HF_HEXAGON_COLOUR];
+}
+
+static unsigned reads(const struct hf_setup *s, unsigned needs)
+{
+    (void)s;
+    return needs ? HF_FIELDS : 0;
+}
+
+// A row of radii.
+static size_t work(const struct hf_setup *s, const struct hf_plan *p)
+{
+    (void)s;
+    return p->line_floats;
+}
+
+// Pass 1 runs on a tile and its rim: with a large reach, tiles that are not much smaller.
+static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
+{
+    (void)sweep;
+    *width = hf_max(*width, (2 * s->reach_x + 15) & ~15);
+    *height = hf_max(*height, 2 * s->reach_y);
+}
+
+const struct hf_engine_def hf_hexagon_engine = {
+    .name = "hexagon",
+    .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = 2,
+    .bufs = bufs, .buf_count = HF_HEXAGON_BUF_COUNT, .measured = 1,
+    .prepare = prepare, .measure = measure, .channels = channels, .halo = halo, .spread = spread, .reads = reads,
+    .cell = cell, .work = work,
+};
