@@ -13,6 +13,7 @@ struct hf_buf_def {
     int frame;         // a window of the whole frame; else of a cell of the sweep that writes it
     int x, y;          // log2 of its pixels per half-resolution pixel: 1 is full resolution, 0 half, -1 a quarter
     unsigned field;    // the field that it belongs to; 0: wanted for any
+    int shrinks;       // x and y are those at full resolution, and smaller with the setup's
 };
 
 struct hf_engine_def {
@@ -43,7 +44,7 @@ struct hf_engine_def {
     size_t (*work)(const struct hf_setup *s, const struct hf_plan *p);
 };
 
-extern const struct hf_engine_def hf_gather_engine;
+extern const struct hf_engine_def hf_gather_engine, hf_gaussian_engine;
 // Reaches and taps of the gather: its prepare, for a setup whose taps are anyone's.
 int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
 

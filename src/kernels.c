@@ -16,6 +16,15 @@ void hf_kernels_c(struct hf_kernels *k)
     k->coc_row = hf_coc_row_c;
     k->pass[HF_KERNEL_RADIUS] = hf_radius_c;
     k->radius_row = hf_radius_row_c;
+    k->pass[HF_KERNEL_GAUSSIAN_DEPTH] = hf_gaussian_depth_pass;
+    k->pass[HF_KERNEL_GAUSSIAN_ROWS] = hf_gaussian_rows_pass;
+    k->pass[HF_KERNEL_GAUSSIAN_COLUMNS] = hf_gaussian_columns_pass;
+    k->pass[HF_KERNEL_GAUSSIAN_MERGE] = hf_gaussian_merge_pass;
+    k->blend_row = hf_blend_row_c;
+    k->lerp_row = hf_lerp_row_c;
+    k->gaussian_line = hf_gaussian_line_c;
+    k->gaussian_columns = hf_gaussian_columns_c;
+    k->gaussian_up = hf_gaussian_up_c;
     k->zip = hf_zip_row_c;
     k->unzip = hf_unzip_row_c;
     hf_format_kernels_c(k);

@@ -106,7 +106,7 @@ static void first_sweep_deferred(void *arg, int i, int worker)
     const struct hf_rect r = hf_plan_cell(p, 1, chunk);
     int64_t clock = now_ns();
     hf_buffers_place(j->c, j->s, &w->frame, 1, r);
-    if (!p->engine->measured) {
+    if (p->engine->passes[0].writes) {  // they have to be made again
         struct hf_counts twice = {0};
         w->frame.counts = &twice;
         w->frame.k->pass[p->engine->passes[0].kernel](&w->frame, r);
