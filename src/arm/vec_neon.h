@@ -106,6 +106,9 @@ static inline void vf_store_half(void *p, vf a)
     vst1_u8((uint8_t *)p, vreinterpret_u8_f16(vcvt_f16_f32(a)));
 }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur) { return vextq_f32(prev, cur, 3); }
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index)
 {

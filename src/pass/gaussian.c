@@ -9,13 +9,10 @@
 // mirrored bits. Divided first, so that nothing overflows.
 static float five(const float v[5])
 {
-    float p[5];
-    for (int i = 0; i < 5; i++)
-        p[i] = v[i] * 0.0625f;
-    for (int n = 4; n > 0; n--)
-        for (int i = 0; i < n; i++)
-            p[i] = p[i] + p[i + 1];
-    return p[0];
+    const float a = v[0] * 0.0625f, b = v[1] * 0.0625f, c = v[2] * 0.0625f, d = v[3] * 0.0625f, e = v[4] * 0.0625f;
+    const float ab = a + b, bc = b + c, cd = c + d, de = d + e;
+    const float abc = ab + bc, bcd = bc + cd, cde = cd + de;
+    return (abc + bcd) + (bcd + cde);
 }
 
 // As printed.
@@ -140,11 +137,13 @@ static struct lines lines_of(const struct hf_frame *f, size_t floats)
     return l;
 }
 
-// Row y of the working resolution, lanes x0 to x1, in l->sum: pixels for full resolution, else sums of lanes.
+// Row y of the working resolution, lanes x0 to x1: at full resolution in l->even and l->odd, else what each lane adds to
+// the mean of four or sixteen pixels, in l->sum.
 static void read_sums(const struct hf_frame *f, struct lines *l, int x0, int x1, int y)
 {
     const struct hf_setup *s = f->s;
     const int n = x1 - x0, rows = 1 << s->resolution;
+    const float share = s->resolution == HF_RESOLUTION_HALF ? 0.25f : 0.0625f;
     for (int i = 0; i < rows; i++) {
         hf_read_colour(f, x0, hf_min(y * rows + i, s->height - 1), n, l->even, l->odd, f->seen);
         if (rows == 1)
@@ -153,7 +152,7 @@ static void read_sums(const struct hf_frame *f, struct lines *l, int x0, int x1,
             const float *e = l->even[c], *o = l->odd[c];
             float *sum = l->sum[c];
             for (int x = 0; x < n; x++)
-                sum[x] = i ? sum[x] + (e[x] + o[x]) : e[x] + o[x];
+                sum[x] = (i ? sum[x] : 0) + (e[x] * share + o[x] * share);
         }
     }
 }
@@ -167,11 +166,11 @@ static void make_line(const struct hf_frame *f, const struct lines *l, int c, in
         break;
     case HF_RESOLUTION_HALF:
         for (int x = 0; x < n; x++)
-            line[x] = 0.25f * l->sum[c][x];
+            line[x] = l->sum[c][x];
         break;
     case HF_RESOLUTION_QUARTER:
         for (int x = 0; x < n; x++)
-            line[x] = 0.0625f * (l->sum[c][2 * x] + l->sum[c][hf_min(2 * x + 1, lanes - 1)]);
+            line[x] = l->sum[c][2 * x] + l->sum[c][hf_min(2 * x + 1, lanes - 1)];
         break;
     }
 }
@@ -190,6 +189,25 @@ static struct hf_rect working(const struct hf_setup *s, struct hf_rect r)
                             hf_min(((2 * r.y1 - 1) >> log2) + 1, working_size(s, s->height, s->half_height))};
 }
 
+// All iterations on the line of n pixels in l->line[0]; the `count` pixels from `first` on to out.
+static void blur_line(const struct hf_frame *f, const struct lines *l, int n, int first, int count, float *out)
+{
+    const int iterations = f->s->iterations;
+    // The last iteration writes whole vectors, and a quarter of a chunk is not one.
+    const int direct = iterations > 0 && f->s->resolution != HF_RESOLUTION_QUARTER;
+    for (int i = 0; i < iterations; i++) {
+        float *line = l->line[i % 2];
+        line[-2] = line[-1] = line[0];
+        line[n] = line[n + 1] = line[n - 1];
+        if (direct && i == iterations - 1)
+            f->k->gaussian_line(line + first, count, out, f->s->faithful);
+        else
+            f->k->gaussian_line(line, n, l->line[(i + 1) % 2], f->s->faithful);
+    }
+    if (!direct)
+        memcpy(out, l->line[iterations % 2] + first, (size_t)count * sizeof(float));
+}
+
 // The picture in the working resolution, through all iterations along its rows.
 void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
 {
@@ -202,18 +220,8 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
     for (int y = out.y0; y < out.y1; y++) {
         read_sums(f, &l, read.x0, read.x1, y);
         for (int c = 0; c < s->channels; c++) {
-            float *a = l.line[0], *b = l.line[1];
-            make_line(f, &l, c, lanes, n, a);
-            for (int i = 0; i < s->iterations; i++) {
-                a[-2] = a[-1] = a[0];
-                a[n] = a[n + 1] = a[n - 1];
-                f->k->gaussian_line(a, n, b, s->faithful);
-                float *const swap = a;
-                a = b;
-                b = swap;
-            }
-            memcpy(hf_at(&f->buf[HF_GAUSSIAN_ROWS], c, out.x0, y), a + out.x0 - in.x0,
-                   (size_t)(out.x1 - out.x0) * sizeof(float));
+            make_line(f, &l, c, lanes, n, l.line[0]);
+            blur_line(f, &l, n, out.x0 - in.x0, out.x1 - out.x0, hf_at(&f->buf[HF_GAUSSIAN_ROWS], c, out.x0, y));
         }
     }
 }

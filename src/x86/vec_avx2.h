@@ -91,6 +91,13 @@ static inline void vf_store_half(void *p, vf a)
     _mm_storeu_si128((__m128i *)p, _mm256_cvtps_ph(a, _MM_FROUND_TO_NEAREST_INT));
 }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur)
+{
+    const __m256i middle = _mm256_castps_si256(_mm256_permute2f128_ps(prev, cur, 0x21));
+    return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(cur), middle, 12));
+}
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index) { return _mm256_i32gather_ps(p, index, 4); }
 

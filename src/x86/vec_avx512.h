@@ -96,6 +96,12 @@ static inline void vf_store_half(void *p, vf a)
     _mm256_storeu_si256((__m256i *)p, _mm512_cvtps_ph(a, _MM_FROUND_TO_NEAREST_INT));
 }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur)
+{
+    return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(cur), _mm512_castps_si512(prev), 15));
+}
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index) { return _mm512_i32gather_ps(index, p, 4); }
 

@@ -88,6 +88,12 @@ static inline void vf_store_lanes(float *p, int step, vf a)
 static inline vi vi_load_u16(const void *p) { return _mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)p)); }
 static inline void vi_store_u16(void *p, vi a) { _mm_storel_epi64((__m128i *)p, _mm_packus_epi32(a, a)); }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur)
+{
+    return _mm_castsi128_ps(_mm_alignr_epi8(_mm_castps_si128(cur), _mm_castps_si128(prev), 12));
+}
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index)
 {

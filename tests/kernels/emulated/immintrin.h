@@ -151,6 +151,18 @@ static inline __m512 emulated_gather(__m512i index, const float *p)
     return v;
 }
 
+// The 16 words from word n of b and, above it, a.
+static inline __m512i emulated_alignr(__m512i a, __m512i b, int n)
+{
+    int32_t w[32];
+    memcpy(w, &b, 64);
+    memcpy(w + 16, &a, 64);
+    memcpy(&a, w + n, 64);
+    return a;
+}
+
+#undef _mm512_alignr_epi32
+#define _mm512_alignr_epi32(a, b, n) emulated_alignr(a, b, n)
 #undef _mm512_fmadd_ps
 #define _mm512_fmadd_ps(a, b, c) emulated_fmadd(a, b, c)
 #undef _mm512_abs_ps
