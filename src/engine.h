@@ -23,6 +23,8 @@ struct hf_engine_def {
     int sweeps;        // sweep 1 is over chunks: its first pass looks at depth alone and counts what there is
     const struct hf_buf_def *bufs;
     int buf_count;
+    // Bit i: sweep i takes whole rows or columns, so all of its cells run if any tile needs something.
+    unsigned across;
     // The reach of a frame is known only when its depth has been looked at: nothing but the first pass runs before.
     int measured;
 
@@ -32,6 +34,8 @@ struct hf_engine_def {
     void (*measure)(struct hf_setup *s, const struct hf_counts *found);
     // Channels of a buffer; 0: not wanted with these options.
     int (*channels)(const struct hf_setup *s, int buf);
+    // Does a pass run with these options? NULL: all do.
+    int (*runs)(const struct hf_setup *s, int pass);
     // How far around a pixel a pass reads.
     struct hf_reach (*halo)(const struct hf_setup *s, enum hf_halo halo);
     // A tile needs a field if there is CoC of that kind within this reach.

@@ -29,6 +29,8 @@ enum {
     HF_KERNEL_GAUSSIAN_DEPTH,          // looks at the depth: counts
     HF_KERNEL_GAUSSIAN_ROWS,
     HF_KERNEL_GAUSSIAN_COLUMNS,
+    HF_KERNEL_WIDE_COLUMNS,            // gaussian, of any size
+    HF_KERNEL_WIDE_ROWS,
     HF_KERNEL_GAUSSIAN_MERGE,
     HF_KERNEL_COUNT
 };
@@ -93,6 +95,10 @@ typedef void hf_gaussian_columns(const float *in, ptrdiff_t in_stride, int rows,
 // n lanes from lane x of row y of the frame, bilinearly from a buffer of half or a quarter of its size.
 typedef void hf_gaussian_up(const struct hf_buf *b, int c, int quarter, int x, int y, int n, float *even, float *odd);
 
+// HF_WIDE_LANES columns of n samples, side by side, blurred in place. work: hf_wide_floats(n) but for the block's own.
+struct hf_wide;
+typedef void hf_wide_block(float *block, int n, const struct hf_wide *w, float *work);
+
 // Rows of 2n pixels in order, from their n even and n odd ones, and back.
 typedef void hf_zip_row(const float *even, const float *odd, int n, float *out);
 typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
@@ -110,6 +116,7 @@ struct hf_kernels {
     hf_gaussian_line *gaussian_line;
     hf_gaussian_columns *gaussian_columns;
     hf_gaussian_up *gaussian_up;
+    hf_wide_block *wide_block;
     hf_zip_row *zip;
     hf_unzip_row *unzip;
     hf_load_row *load[HF_FORMAT_COUNT];

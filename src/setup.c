@@ -438,6 +438,8 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
     if (p->engine != HF_ENGINE_GATHER && s->blend > 0)
         s->blend = 1;  // their strength is in the radius, or in the gaussian's blend factor
     const int no_coc = s->near_i == 0 && s->far_i == 0 && !(s->uniform && p->engine == HF_ENGINE_HEXAGON);
+    if (s->sigma > 0)
+        s->iterations = 0;
     const int no_blur = p->engine == HF_ENGINE_GAUSSIAN && s->resolution == HF_RESOLUTION_FULL && s->iterations == 0 &&
                         s->sigma == 0;
     if (s->max_radius == 0 || no_coc || no_blur)

@@ -117,4 +117,15 @@ static inline vf vf_gather(const float *p, vi index)
     return vld1q_f32(v);
 }
 
+// Vectors of half as many doubles: from floats and back, and as they are.
+typedef float64x2_t vd;
+enum { VD_N = 2 };
+static inline vd vd_load(const float *p) { return vcvt_f64_f32(vld1_f32(p)); }
+static inline void vd_store(float *p, vd a) { vst1_f32(p, vcvt_f32_f64(a)); }
+static inline vd vd_sum(const double *p) { return vld1q_f64(p); }
+static inline void vd_keep_sum(double *p, vd a) { vst1q_f64(p, a); }
+static inline vd vd_set1(double a) { return vdupq_n_f64(a); }
+static inline vd vd_add(vd a, vd b) { return vaddq_f64(a, b); }
+static inline vd vd_mul(vd a, vd b) { return vmulq_f64(a, b); }
+
 #endif

@@ -175,20 +175,6 @@ static void make_line(const struct hf_frame *f, const struct lines *l, int c, in
     }
 }
 
-// Size of the working resolution, and an area of it: half-resolution pixels in, inside the frame.
-static int working_size(const struct hf_setup *s, int full, int half)
-{
-    return s->resolution == HF_RESOLUTION_FULL ? full : (half + (int)s->resolution - 1) / (int)s->resolution;
-}
-
-static struct hf_rect working(const struct hf_setup *s, struct hf_rect r)
-{
-    const int log2 = (int)s->resolution;
-    return (struct hf_rect){2 * r.x0 >> log2, 2 * r.y0 >> log2,
-                            hf_min(((2 * r.x1 - 1) >> log2) + 1, working_size(s, s->width, s->half_width)),
-                            hf_min(((2 * r.y1 - 1) >> log2) + 1, working_size(s, s->height, s->half_height))};
-}
-
 // All iterations on the line of n pixels in l->line[0]; the `count` pixels from `first` on to out.
 static void blur_line(const struct hf_frame *f, const struct lines *l, int n, int first, int count, float *out)
 {
@@ -214,7 +200,7 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
     const struct hf_setup *s = f->s;
     const int reach = hf_gaussian_halo(s);
     const struct hf_rect read = {hf_max(r.x0 - reach, 0), r.y0, hf_min(r.x1 + reach, s->half_width), r.y1};
-    const struct hf_rect in = working(s, read), out = working(s, r);
+    const struct hf_rect in = hf_gaussian_working(s, read), out = hf_gaussian_working(s, r);
     const int lanes = read.x1 - read.x0, n = in.x1 - in.x0;
     struct lines l = lines_of(f, hf_gaussian_line_floats(s, r.x1 - r.x0));
     for (int y = out.y0; y < out.y1; y++) {
@@ -231,7 +217,7 @@ static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     const struct hf_buf *in = &f->buf[HF_GAUSSIAN_ROWS], *out = &f->buf[HF_GAUSSIAN_BLUR];
-    const int columns = r.x1 - r.x0, n = s->iterations, height = working_size(s, s->height, s->half_height);
+    const int columns = r.x1 - r.x0, n = s->iterations, height = hf_gaussian_size(s, s->height, s->half_height);
     const int top = hf_max(r.y0 - hf_gaussian_reach(s), 0);
     const float *from = hf_at(in, c, r.x0, 0);
     ptrdiff_t stride = in->stride;
@@ -252,7 +238,7 @@ static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
 // All iterations down the columns.
 void hf_gaussian_columns_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_rect w = working(f->s, r);
+    const struct hf_rect w = hf_gaussian_working(f->s, r);
     for (int c = 0; c < f->s->channels; c++)
         for (int x = w.x0; x < w.x1; x += HF_GAUSSIAN_STRIP)
             blur_strip(f, c, (struct hf_rect){x, w.y0, hf_min(x + HF_GAUSSIAN_STRIP, w.x1), w.y1});

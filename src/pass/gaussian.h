@@ -35,4 +35,18 @@ static inline size_t hf_gaussian_line_floats(const struct hf_setup *s, int chunk
 // How many of them there are: even and odd pixels and their sums, and two lines in working resolution, twice as long.
 enum { HF_GAUSSIAN_LINES = 16 };
 
+// Size of the working resolution, and an area of it: half-resolution pixels in, inside the frame.
+static inline int hf_gaussian_size(const struct hf_setup *s, int full, int half)
+{
+    return s->resolution == HF_RESOLUTION_FULL ? full : (half + (int)s->resolution - 1) / (int)s->resolution;
+}
+
+static inline struct hf_rect hf_gaussian_working(const struct hf_setup *s, struct hf_rect r)
+{
+    const int log2 = (int)s->resolution;
+    return (struct hf_rect){2 * r.x0 >> log2, 2 * r.y0 >> log2,
+                            hf_min(((2 * r.x1 - 1) >> log2) + 1, hf_gaussian_size(s, s->width, s->half_width)),
+                            hf_min(((2 * r.y1 - 1) >> log2) + 1, hf_gaussian_size(s, s->height, s->half_height))};
+}
+
 #endif

@@ -18,6 +18,8 @@ hf_lerp_row hf_lerp_row_c;
 hf_gaussian_line hf_gaussian_line_c;
 hf_gaussian_columns hf_gaussian_columns_c;
 hf_gaussian_up hf_gaussian_up_c;
+hf_kernel hf_wide_columns_pass, hf_wide_rows_pass;
+hf_wide_block hf_wide_block_c;
 hf_zip_row hf_zip_row_c;
 hf_unzip_row hf_unzip_row_c;
 

@@ -101,4 +101,15 @@ static inline vf vf_back(vf prev, vf cur)
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index) { return _mm256_i32gather_ps(p, index, 4); }
 
+// Vectors of half as many doubles: from floats and back, and as they are.
+typedef __m256d vd;
+enum { VD_N = 4 };
+static inline vd vd_load(const float *p) { return _mm256_cvtps_pd(_mm_loadu_ps(p)); }
+static inline void vd_store(float *p, vd a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a)); }
+static inline vd vd_sum(const double *p) { return _mm256_loadu_pd(p); }
+static inline void vd_keep_sum(double *p, vd a) { _mm256_storeu_pd(p, a); }
+static inline vd vd_set1(double a) { return _mm256_set1_pd(a); }
+static inline vd vd_add(vd a, vd b) { return _mm256_add_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm256_mul_pd(a, b); }
+
 #endif

@@ -105,4 +105,15 @@ static inline vf vf_back(vf prev, vf cur)
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index) { return _mm512_i32gather_ps(index, p, 4); }
 
+// Vectors of half as many doubles: from floats and back, and as they are.
+typedef __m512d vd;
+enum { VD_N = 8 };
+static inline vd vd_load(const float *p) { return _mm512_cvtps_pd(_mm256_loadu_ps(p)); }
+static inline void vd_store(float *p, vd a) { _mm256_storeu_ps(p, _mm512_cvtpd_ps(a)); }
+static inline vd vd_sum(const double *p) { return _mm512_loadu_pd(p); }
+static inline void vd_keep_sum(double *p, vd a) { _mm512_storeu_pd(p, a); }
+static inline vd vd_set1(double a) { return _mm512_set1_pd(a); }
+static inline vd vd_add(vd a, vd b) { return _mm512_add_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm512_mul_pd(a, b); }
+
 #endif
