@@ -6,7 +6,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine.h"
 #include "format.h"
@@ -148,6 +147,35 @@ static int check_options(const struct hf_params *p, char message[HF_MESSAGE])
     return HF_OK;
 }
 
+// Autofocus: what the pixel in the middle shows, at infinity if that is nothing.
+static float focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height)
+{
+    if (p->engine != HF_ENGINE_GAUSSIAN || p->focus_distance != HF_DERIVE || depth->type == HF_DEPTH_COC)
+        return p->focus_distance;
+    struct hf_setup s = {.width = width, .height = height};
+    int repaired;
+    hf_setup_depth(&s, depth, p->pixel_aspect);
+    const float z = hf_depth_surface(&s, depth, width / 2, height / 2, &repaired);
+    return z < 1e10f ? z : INFINITY;
+}
+
+// Does the gaussian engine blend by the distance in depth, as its source does?
+static int blends_by_depth(const struct hf_params *p, enum hf_depth_type type)
+{
+    const float given[] = {p->range, p->near_begin, p->near_end, p->far_begin, p->far_end};
+    int derived = p->model == HF_MODEL_RANGE;
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
+        derived &= given[i] == HF_DERIVE;
+    return p->engine == HF_ENGINE_GAUSSIAN && type != HF_DEPTH_COC && (p->faithful || derived);
+}
+
+// The planes that bound its depths: those of the depth, else 1 and 100.
+static void depth_planes(const struct hf_depth *depth, float *near, float *far)
+{
+    *near = depth->near_plane > 0 ? depth->near_plane : 1;
+    *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
+}
+
 static int check_between(const char *name, float value, float least, float most, char message[HF_MESSAGE])
 {
     return value >= least && value <= most
@@ -197,10 +225,6 @@ static int check_engine(const struct hf_params *p, char message[HF_MESSAGE])
     return HF_OK;
 }
 
-static float focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height);
-static int blends_by_depth(const struct hf_params *p, enum hf_depth_type type);
-static void depth_planes(const struct hf_depth *depth, float *near, float *far);
-
 int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
                    const struct hf_params *p, char message[HF_MESSAGE])
 {
@@ -230,127 +254,6 @@ int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const
     }
     const int err = check_options(p, message);
     return err ? err : check_engine(p, message);
-}
-
-void hf_setup_depth(struct hf_setup *s, const struct hf_depth *d, float pixel_aspect)
-{
-    const double n = d->near_plane, f = d->far_plane;
-    switch (d->type) {
-    case HF_DEPTH_VIEW:
-        s->form = HF_FORM_Z;
-        break;
-    case HF_DEPTH_RAY:
-        s->form = HF_FORM_RAY;
-        s->ray_cx = d->center_x;
-        s->ray_cy = d->center_y;
-        s->ray_sx = (float)(1 / ((double)d->focal_px * d->focal_px));
-        s->ray_sy = (float)(1 / ((double)d->focal_px * d->focal_px * pixel_aspect * pixel_aspect));
-        break;
-    case HF_DEPTH_NDC_D3D:
-    case HF_DEPTH_NDC_GL:
-        // 1/z = 1/f + e (1/n - 1/f) with e = 1 - d: that difference is exact where depth is most crowded, while
-        // 1/n - d (1/n - 1/f) would cancel there.
-        s->form = HF_FORM_IZ;
-        s->e_a = d->type == HF_DEPTH_NDC_GL ? 0.5f : 1;
-        s->e_b = d->type == HF_DEPTH_NDC_GL ? -0.5f : -1;
-        s->iz_a = (float)(1 / f);
-        s->iz_b = (float)(1 / n - 1 / f);
-        break;
-    case HF_DEPTH_NDC_REVERSED:
-        s->form = HF_FORM_IZ;
-        s->e_a = 0;
-        s->e_b = 1;
-        s->iz_a = (float)(1 / f);
-        s->iz_b = (float)(1 / n - 1 / f);
-        break;
-    case HF_DEPTH_INVERSE:
-        s->form = HF_FORM_IZ;
-        s->e_a = s->iz_a = 0;
-        s->e_b = s->iz_b = 1;
-        break;
-    case HF_DEPTH_COC:
-        s->form = HF_FORM_COC;
-        break;
-    }
-}
-
-float hf_depth_decode(const struct hf_setup *s, float d, int x, int y)
-{
-    if (d != d)
-        return d;
-    switch (s->form) {
-    case HF_FORM_COC:
-        return d;
-    case HF_FORM_IZ: {
-        const float iz = s->iz_a + s->iz_b * (s->e_a + s->e_b * d);
-        return iz > 1e-10f ? 1 / iz : INFINITY;
-    }
-    case HF_FORM_RAY: {
-        const float dx = (float)x + 0.5f - s->ray_cx, dy = (float)y + 0.5f - s->ray_cy;
-        const float t = d > 0 && d < 1e10f ? d : INFINITY;
-        return t / sqrtf(1 + (dx * dx * s->ray_sx + dy * dy * s->ray_sy));
-    }
-    case HF_FORM_Z:
-    default:
-        return d > 0 && d < 1e10f ? d : INFINITY;
-    }
-}
-
-// A depth sample as the caller gave it.
-static float depth_sample(const struct hf_depth *depth, int x, int y)
-{
-    float d;
-    memcpy(&d, (const uint8_t *)depth->data + (ptrdiff_t)y * depth->stride + (size_t)x * 4, 4);
-    return d;
-}
-
-// The largest finite depth among the 8 neighbours, else no surface.
-static float repair_depth(const struct hf_setup *s, const struct hf_depth *depth, int x, int y)
-{
-    float best = -INFINITY;
-    for (int v = hf_max(y - 1, 0); v <= hf_min(y + 1, s->height - 1); v++)
-        for (int u = hf_max(x - 1, 0); u <= hf_min(x + 1, s->width - 1); u++) {
-            const float z = hf_depth_decode(s, depth_sample(depth, u, v), u, v);
-            if (hf_is_finite(z) && z > best)
-                best = z;
-        }
-    return best > -INFINITY ? best : INFINITY;
-}
-
-float hf_depth_surface(const struct hf_setup *s, const struct hf_depth *depth, int x, int y, int *repaired)
-{
-    const float z = hf_depth_decode(s, depth_sample(depth, x, y), x, y);
-    *repaired = z != z;
-    return z != z ? repair_depth(s, depth, x, y) : z;
-}
-
-// Autofocus: what the pixel in the middle shows, at infinity if that is nothing.
-static float focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height)
-{
-    if (p->engine != HF_ENGINE_GAUSSIAN || p->focus_distance != HF_DERIVE || depth->type == HF_DEPTH_COC)
-        return p->focus_distance;
-    struct hf_setup s = {.width = width, .height = height};
-    int repaired;
-    hf_setup_depth(&s, depth, p->pixel_aspect);
-    const float z = hf_depth_surface(&s, depth, width / 2, height / 2, &repaired);
-    return z < 1e10f ? z : INFINITY;
-}
-
-// Does the gaussian engine blend by the distance in depth, as its source does?
-static int blends_by_depth(const struct hf_params *p, enum hf_depth_type type)
-{
-    const float given[] = {p->range, p->near_begin, p->near_end, p->far_begin, p->far_end};
-    int derived = p->model == HF_MODEL_RANGE;
-    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
-        derived &= given[i] == HF_DERIVE;
-    return p->engine == HF_ENGINE_GAUSSIAN && type != HF_DEPTH_COC && (p->faithful || derived);
-}
-
-// The planes that bound its depths: those of the depth, else 1 and 100.
-static void depth_planes(const struct hf_depth *depth, float *near, float *far)
-{
-    *near = depth->near_plane > 0 ? depth->near_plane : 1;
-    *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
 }
 
 // Slope of a CoC that grows from 0 to 1 over a distance. A zero distance is a step, which the steepest finite slope
