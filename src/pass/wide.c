@@ -49,7 +49,7 @@ static void box_c(const float *in, float *out, int n, const struct hf_wide *w, d
 
 void hf_wide_block_c(float *block, int n, const struct hf_wide *w, float *work)
 {
-    float *other = work + HF_WIDE_LANES * 2 * (size_t)n;
+    float *other = work + HF_WIDE_LANES * (size_t)n;
     for (int x = 0; x < HF_WIDE_LANES; x++)
         for (int i = 0; i < HF_WIDE_BOXES; i++)
             box_c((i % 2 ? other : block) + x, (i % 2 ? block : other) + x, n, w, (double *)(void *)work);

@@ -19,7 +19,7 @@ struct hf_wide hf_wide_of(double variance);
 // Floats of scratch for lines of n samples: the block, its sums in double, another block.
 static inline size_t hf_wide_floats(int n)
 {
-    return 4 * HF_WIDE_LANES * (size_t)n;
+    return 3 * HF_WIDE_LANES * (size_t)n;
 }
 
 #endif

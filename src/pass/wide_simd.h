@@ -49,7 +49,7 @@ static void wide_box_simd(const float *in, float *out, int n, const struct hf_wi
 
 static void wide_block_simd(float *block, int n, const struct hf_wide *w, float *work)
 {
-    float *other = work + HF_WIDE_LANES * 2 * (size_t)n;
+    float *other = work + HF_WIDE_LANES * (size_t)n;
     for (int x = 0; x < HF_WIDE_LANES; x += VD_N)
         for (int i = 0; i < HF_WIDE_BOXES; i++)
             wide_box_simd((i % 2 ? other : block) + x, (i % 2 ? block : other) + x, n, w, (double *)(void *)work);
