@@ -19,15 +19,27 @@ static int offset(int n, int log2)
     return log2 >= 0 ? n * (1 << log2) : n >> 1;
 }
 
+// log2 of a buffer's pixels per half-resolution pixel, in x and y.
+static int log2_x(const struct hf_setup *s, const struct hf_buf_def *def)
+{
+    return def->x - (def->shrinks ? (int)s->resolution : 0);
+}
+
+static int log2_y(const struct hf_setup *s, const struct hf_buf_def *def)
+{
+    return def->y - (def->shrinks ? (int)s->resolution : 0);
+}
+
 // Of an area of width x height half-resolution pixels.
-static struct window window_of(const struct hf_plan *p, int b, int width, int height)
+static struct window window_of(const struct hf_plan *p, const struct hf_setup *s, int b, int width, int height)
 {
     const struct hf_buf_def *def = &p->engine->bufs[b];
-    struct window w = {.left = (scaled(p->buf[b].x, def->x) + 15) & ~15, .top = scaled(p->buf[b].y, def->y)};
-    w.stride = ((scaled(width, def->x) + 15) & ~15) + 2 * w.left + HF_PAD;
+    const int lx = log2_x(s, def), ly = log2_y(s, def);
+    struct window w = {.left = (scaled(p->buf[b].x, lx) + 15) & ~15, .top = scaled(p->buf[b].y, ly)};
+    w.stride = ((scaled(width, lx) + 15) & ~15) + 2 * w.left + HF_PAD;
     if (w.stride % 1024 == 0)
         w.stride += 16;  // rows 4 KB apart would share cache sets
-    w.rows = scaled(height, def->y) + 2 * w.top;
+    w.rows = scaled(height, ly) + 2 * w.top;
     return w;
 }
 
@@ -74,7 +86,7 @@ static size_t sweep_floats(const struct hf_context *c, const struct hf_setup *s,
     for (int b = 0; b < e->buf_count; b++)
         if (bufs >> b & 1)
             floats += (size_t)e->channels(s, b) *
-                      window_floats(window_of(&c->plan, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]));
+                      window_floats(window_of(&c->plan, s, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]));
     return floats;
 }
 
@@ -107,7 +119,7 @@ static size_t frame_floats(const struct hf_context *c, const struct hf_setup *s,
     size_t floats = 0;
     for (int b = 0; b < e->buf_count; b++)
         if (e->bufs[b].frame && is_wanted(&e->bufs[b], fields))
-            floats += (size_t)e->channels(s, b) * window_floats(window_of(&c->plan, b, s->half_width, s->half_height));
+            floats += (size_t)e->channels(s, b) * window_floats(window_of(&c->plan, s, b, s->half_width, s->half_height));
     return floats;
 }
 
@@ -128,7 +140,7 @@ int hf_buffers_allocate(struct hf_context *c, const struct hf_setup *s, unsigned
     struct hf_buf planes[HF_MAX_BUFS] = {0};
     for (int b = 0; b < e->buf_count; b++)
         if (e->bufs[b].frame && is_wanted(&e->bufs[b], fields))
-            memory = place(&planes[b], window_of(&c->plan, b, s->half_width, s->half_height), e->channels(s, b),
+            memory = place(&planes[b], window_of(&c->plan, s, b, s->half_width, s->half_height), e->channels(s, b),
                            memory, 0, 0);
     for (int i = 0; i < c->threads; i++) {
         struct hf_frame *f = &c->workers[i].frame;
@@ -149,16 +161,18 @@ void hf_buffers_place(const struct hf_context *c, const struct hf_setup *s, stru
     for (int b = 0; b < e->buf_count; b++)
         if (bufs >> b & 1)
             memory = place(&f->buf[b],
-                           window_of(&c->plan, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]),
-                           e->channels(s, b), memory, offset(cell.x0, e->bufs[b].x), offset(cell.y0, e->bufs[b].y));
+                           window_of(&c->plan, s, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]),
+                           e->channels(s, b), memory, offset(cell.x0, log2_x(s, &e->bufs[b])),
+                           offset(cell.y0, log2_y(s, &e->bufs[b])));
 }
 
 struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def *def, struct hf_rect r)
 {
-    const int width = def->x > 0 ? s->width : scaled(s->half_width, def->x);
-    const int height = def->y > 0 ? s->height : scaled(s->half_height, def->y);
-    return (struct hf_rect){hf_max(offset(r.x0, def->x), 0), hf_max(offset(r.y0, def->y), 0),
-                            hf_min(scaled(r.x1, def->x), width), hf_min(scaled(r.y1, def->y), height)};
+    const int lx = log2_x(s, def), ly = log2_y(s, def);
+    const int width = lx > 0 ? s->width : scaled(s->half_width, lx);
+    const int height = ly > 0 ? s->height : scaled(s->half_height, ly);
+    return (struct hf_rect){hf_max(offset(r.x0, lx), 0), hf_max(offset(r.y0, ly), 0),
+                            hf_min(scaled(r.x1, lx), width), hf_min(scaled(r.y1, ly), height)};
 }
 
 static void extend(const struct hf_buf *b, int channels, struct hf_rect have, struct hf_rect want)
@@ -184,13 +198,13 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
 {
     const struct hf_engine_def *e = c->plan.engine;
     const struct hf_buf_def *def = &e->bufs[b];
-    const struct hf_reach reach = {scaled(c->plan.buf[b].x, def->x), scaled(c->plan.buf[b].y, def->y)};
+    const int lx = log2_x(s, def), ly = log2_y(s, def);
+    const struct hf_reach reach = {scaled(c->plan.buf[b].x, lx), scaled(c->plan.buf[b].y, ly)};
     if (!f->buf[b].ch[0] || (reach.x == 0 && reach.y == 0))
         return;
     const struct hf_rect have = hf_buffers_rect(s, def, r);
     struct hf_rect want = have;
-    const int x0 = offset(cell.x0, def->x), y0 = offset(cell.y0, def->y);
-    const int x1 = scaled(cell.x1, def->x), y1 = scaled(cell.y1, def->y);
+    const int x0 = offset(cell.x0, lx), y0 = offset(cell.y0, ly), x1 = scaled(cell.x1, lx), y1 = scaled(cell.y1, ly);
     // Inside the frame the neighbours' pixels are made like these; at its edge there are none.
     if (!def->frame || r.x0 == 0)
         want.x0 = x0 - reach.x;

@@ -36,16 +36,11 @@ static double area(struct hf_rect r)
     return (double)(r.x1 - r.x0) * (r.y1 - r.y0);
 }
 
-static int is_tile_sweep(const struct hf_plan *p, int sweep)
-{
-    return sweep > 1 && p->columns[sweep] == p->columns[2] && p->rows[sweep] == p->rows[2];
-}
-
 // Fields for which a pass runs in a cell of a sweep.
 static unsigned fields_in(const struct hf_plan *p, const struct hf_pass *pass, int cell)
 {
     const unsigned fields = pass->sweep == 1                  ? p->chunk_reads[cell]
-                            : is_tile_sweep(p, pass->sweep) ? p->tile_needs[cell]
+                            : hf_plan_is_tiled(p, pass->sweep) ? p->tile_needs[cell]
                                                             : p->needs;
     return pass->field ? fields & pass->field : fields;
 }
@@ -53,7 +48,7 @@ static unsigned fields_in(const struct hf_plan *p, const struct hf_pass *pass, i
 // The part of a cell that is worked on.
 static struct hf_rect cell_of(const struct hf_plan *p, int sweep, int cell)
 {
-    return is_tile_sweep(p, sweep) ? hf_plan_active(p, cell) : hf_plan_cell(p, sweep, cell);
+    return hf_plan_is_tiled(p, sweep) ? hf_plan_active(p, cell) : hf_plan_cell(p, sweep, cell);
 }
 
 void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s)
@@ -62,7 +57,7 @@ void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_se
     for (int i = 0; i < p->engine->pass_count; i++) {
         const struct hf_pass *pass = &p->engine->passes[i];
         w->all[i] = (uint32_t)hf_plan_count(p, pass->sweep);
-        if (s->blend == 0)
+        if (s->blend == 0 || !hf_plan_pass_runs(p, s, i))
             continue;
         for (int cell = 0; cell < (int)w->all[i]; cell++) {
             const int fields = i == 0 ? 1 : fields_of(fields_in(p, pass, cell));

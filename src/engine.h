@@ -13,6 +13,7 @@ struct hf_buf_def {
     int frame;         // a window of the whole frame; else of a cell of the sweep that writes it
     int x, y;          // log2 of its pixels per half-resolution pixel: 1 is full resolution, 0 half, -1 a quarter
     unsigned field;    // the field that it belongs to; 0: wanted for any
+    int shrinks;       // x and y are those at full resolution, and smaller with the setup's
 };
 
 struct hf_engine_def {
@@ -22,6 +23,8 @@ struct hf_engine_def {
     int sweeps;        // sweep 1 is over chunks: its first pass looks at depth alone and counts what there is
     const struct hf_buf_def *bufs;
     int buf_count;
+    // Bit i: sweep i takes whole rows or columns, so all of its cells run if any tile needs something.
+    unsigned across;
     // The reach of a frame is known only when its depth has been looked at: nothing but the first pass runs before.
     int measured;
 
@@ -31,6 +34,8 @@ struct hf_engine_def {
     void (*measure)(struct hf_setup *s, const struct hf_counts *found);
     // Channels of a buffer; 0: not wanted with these options.
     int (*channels)(const struct hf_setup *s, int buf);
+    // Does a pass run with these options? NULL: all do.
+    int (*runs)(const struct hf_setup *s, int pass);
     // How far around a pixel a pass reads.
     struct hf_reach (*halo)(const struct hf_setup *s, enum hf_halo halo);
     // A tile needs a field if there is CoC of that kind within this reach.
@@ -43,7 +48,7 @@ struct hf_engine_def {
     size_t (*work)(const struct hf_setup *s, const struct hf_plan *p);
 };
 
-extern const struct hf_engine_def hf_gather_engine, hf_hexagon_engine;
+extern const struct hf_engine_def hf_gather_engine, hf_hexagon_engine, hf_gaussian_engine;
 // Reaches and taps of the gather: its prepare, for a setup whose taps are anyone's.
 int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
 

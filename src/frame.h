@@ -94,6 +94,8 @@ struct hf_setup {
     float rotation;            // degrees
     int uniform;
     int iterations;
+    int by_depth;              // gaussian: blend by the distance in depth from the focus
+    float plane_near, plane_far, focus_d;  // see hf_gaussian_depth
     float sigma;
     const struct hf_params *params;  // for what only one engine reads
     void *tables;                    // what that engine's prepare made

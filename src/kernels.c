@@ -20,6 +20,18 @@ void hf_kernels_c(struct hf_kernels *k)
     k->pass[HF_KERNEL_HEXAGON_1] = hf_hexagon_1_c;
     k->pass[HF_KERNEL_HEXAGON_2] = hf_hexagon_2_c;
     k->pass[HF_KERNEL_HEXAGON_COMPOSITE] = hf_hexagon_composite_c;
+    k->pass[HF_KERNEL_GAUSSIAN_DEPTH] = hf_gaussian_depth_pass;
+    k->pass[HF_KERNEL_GAUSSIAN_ROWS] = hf_gaussian_rows_pass;
+    k->pass[HF_KERNEL_GAUSSIAN_COLUMNS] = hf_gaussian_columns_pass;
+    k->pass[HF_KERNEL_GAUSSIAN_MERGE] = hf_gaussian_merge_pass;
+    k->pass[HF_KERNEL_WIDE_COLUMNS] = hf_wide_columns_pass;
+    k->pass[HF_KERNEL_WIDE_ROWS] = hf_wide_rows_pass;
+    k->blend_row = hf_blend_row_c;
+    k->lerp_row = hf_lerp_row_c;
+    k->gaussian_line = hf_gaussian_line_c;
+    k->gaussian_columns = hf_gaussian_columns_c;
+    k->gaussian_up = hf_gaussian_up_c;
+    k->wide_block = hf_wide_block_c;
     k->zip = hf_zip_row_c;
     k->unzip = hf_unzip_row_c;
     hf_format_kernels_c(k);

@@ -15,6 +15,7 @@ enum hf_halo {
     HF_HALO_TAPS,      // gather: reach of the taps
     HF_HALO_UPSAMPLE,  // one pixel, two for the cubic
     HF_HALO_RADIUS,    // the largest CoC radius
+    HF_HALO_COLUMNS,   // gaussian: reach of its iterations down the columns
 };
 
 // The two fields: what a scene asks of a tile, was found in a chunk, or a pass or buffer serves.
@@ -29,6 +30,12 @@ enum {
     HF_KERNEL_HEXAGON_1,
     HF_KERNEL_HEXAGON_2,
     HF_KERNEL_HEXAGON_COMPOSITE,
+    HF_KERNEL_GAUSSIAN_DEPTH,          // looks at the depth: counts
+    HF_KERNEL_GAUSSIAN_ROWS,
+    HF_KERNEL_GAUSSIAN_COLUMNS,
+    HF_KERNEL_WIDE_COLUMNS,            // gaussian, of any size
+    HF_KERNEL_WIDE_ROWS,
+    HF_KERNEL_GAUSSIAN_MERGE,
     HF_KERNEL_COUNT
 };
 
@@ -78,6 +85,25 @@ typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *co
 // Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted; else x is a multiple of 32.
 typedef void hf_radius_row(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts);
 
+// gaussian: blend factors of the n lanes from lane x of row y into out[0], even, and out[1], odd; out[2] and out[3] are
+// scratch. counts NULL: nothing is counted.
+typedef void hf_blend_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
+// a + t (b - a), a's own bits for t = 0.
+typedef void hf_lerp_row(float *a, const float *b, const float *t, int n);
+// One iteration of the 5-tap kernel along a line of n pixels with two more at either end. May read HF_PAD floats before
+// and after them.
+typedef void hf_gaussian_line(const float *in, int n, float *out, int faithful);
+// One down n columns, at most HF_GAUSSIAN_STRIP: from rows of in, of which there are `rows` and which repeat at their ends,
+// rows from to to. out is row `from` of the result, and may be that of in itself.
+typedef void hf_gaussian_columns(const float *in, ptrdiff_t in_stride, int rows, int from, int to, float *out,
+                                 ptrdiff_t out_stride, int n, int faithful);
+// n lanes from lane x of row y of the frame, bilinearly from a buffer of half or a quarter of its size.
+typedef void hf_gaussian_up(const struct hf_buf *b, int c, int quarter, int x, int y, int n, float *even, float *odd);
+
+// HF_WIDE_LANES columns of n samples, side by side, blurred in place. work: hf_wide_floats(n) but for the block's own.
+struct hf_wide;
+typedef void hf_wide_block(float *block, int n, const struct hf_wide *w, float *work);
+
 // Rows of 2n pixels in order, from their n even and n odd ones, and back.
 typedef void hf_zip_row(const float *even, const float *odd, int n, float *out);
 typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
@@ -90,6 +116,12 @@ struct hf_kernels {
     hf_kernel *pass[HF_KERNEL_COUNT];
     hf_coc_row *coc_row;
     hf_radius_row *radius_row;
+    hf_blend_row *blend_row;
+    hf_lerp_row *lerp_row;
+    hf_gaussian_line *gaussian_line;
+    hf_gaussian_columns *gaussian_columns;
+    hf_gaussian_up *gaussian_up;
+    hf_wide_block *wide_block;
     hf_zip_row *zip;
     hf_unzip_row *unzip;
     hf_load_row *load[HF_FORMAT_COUNT];

@@ -17,6 +17,25 @@ static struct hf_reach reach_max(struct hf_reach a, struct hf_reach b)
     return (struct hf_reach){hf_max(a.x, b.x), hf_max(a.y, b.y)};
 }
 
+int hf_plan_is_tiled(const struct hf_plan *p, int sweep)
+{
+    return sweep > 1 && !(p->engine->across >> sweep & 1) && p->columns[sweep] == p->columns[2] &&
+           p->rows[sweep] == p->rows[2];
+}
+
+int hf_plan_pass_runs(const struct hf_plan *p, const struct hf_setup *s, int pass)
+{
+    return !p->engine->runs || p->engine->runs(s, pass);
+}
+
+int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sweep)
+{
+    for (int i = 0; i < p->engine->pass_count; i++)
+        if (p->engine->passes[i].sweep == sweep && hf_plan_pass_runs(p, s, i))
+            return 1;
+    return 0;
+}
+
 // Walk the passes backwards from the output, and carry along how far around a cell each buffer is read.
 static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
 {
@@ -85,9 +104,13 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
                    int whole)
 {
     const struct hf_engine_def *e = p->engine;
+    int width, height;
+    choose_tile(p, threads, &width, &height);
     for (int sweep = 2; sweep <= e->sweeps; sweep++) {
-        int width, height;
-        choose_tile(p, threads, &width, &height);
+        if (sweep > 2) {
+            width = p->cell_width[2];
+            height = p->cell_height[2];
+        }
         if (e->cell)
             e->cell(s, sweep, &width, &height);
         set_cells(p, sweep, tile_width && sweep == 2 ? tile_width : width,
@@ -97,7 +120,7 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
     int longest = 0;
     for (int i = 0; i < e->pass_count; i++) {
         const int sweep = e->passes[i].sweep;
-        for (int b = 0; b < e->buf_count; b++) {
+        for (int b = 0; hf_plan_pass_runs(p, s, i) && b < e->buf_count; b++) {
             const int touched = (e->passes[i].reads | e->passes[i].around | e->passes[i].writes) >> b & 1;
             const int length = (p->cell_width[sweep] + 2 * p->buf[b].x) << hf_max(e->bufs[b].x, 0);
             longest = touched ? hf_max(longest, length) : longest;
@@ -199,10 +222,12 @@ static struct hf_reach read_reach(const struct hf_plan *p)
 }
 
 // A sweep with cells of its own reads across the frame: then all chunks are made.
-static int reads_all(const struct hf_plan *p)
+static int reads_all(const struct hf_plan *p, const struct hf_setup *s)
 {
     for (int sweep = 3; sweep <= p->engine->sweeps; sweep++)
-        if (p->cell_width[sweep] != p->cell_width[2] || p->cell_height[sweep] != p->cell_height[2])
+        if (hf_plan_sweep_runs(p, s, sweep) &&
+            (p->engine->across >> sweep & 1 || p->cell_width[sweep] != p->cell_width[2] ||
+             p->cell_height[sweep] != p->cell_height[2]))
             return 1;
     return 0;
 }
@@ -257,7 +282,7 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s)
                 p->chunk_reads[y * p->columns[1] + x] |= (uint8_t)reads;
     }
     p->reads = p->needs ? e->reads(s, p->needs) : 0;
-    if (p->needs && reads_all(p))
+    if (p->needs && reads_all(p, s))
         memset(p->chunk_reads, (int)p->reads, (size_t)chunks);
     list_deferred(p);
 }

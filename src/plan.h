@@ -46,6 +46,12 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s);
 // Nothing has been made after all.
 void hf_plan_forget(struct hf_plan *p);
 
+// Are a sweep's cells the tiles, which run as far as they need?
+int hf_plan_is_tiled(const struct hf_plan *p, int sweep);
+// Does a pass, or any of a sweep, run with these options?
+int hf_plan_pass_runs(const struct hf_plan *p, const struct hf_setup *s, int pass);
+int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sweep);
+
 int hf_plan_count(const struct hf_plan *p, int sweep);
 struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i);
 // The rows of a tile that its passes have to make; the others are sharp.

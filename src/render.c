@@ -109,7 +109,7 @@ static void first_sweep_deferred(void *arg, int i, int worker)
     const struct hf_rect r = hf_plan_cell(p, 1, chunk);
     int64_t clock = now_ns();
     hf_buffers_place(j->c, j->s, &w->frame, 1, r);
-    if (!p->engine->measured) {
+    if (p->engine->passes[0].writes) {  // they have to be made again
         struct hf_counts twice = {0};
         w->frame.counts = &twice;
         w->frame.k->pass[p->engine->passes[0].kernel](&w->frame, r);
@@ -140,7 +140,7 @@ static void later_sweep(void *arg, int i, int worker)
     const int last = j->sweep == p->engine->sweeps;
     struct hf_worker *w = &j->c->workers[worker];
     struct hf_rect cell = hf_plan_cell(p, j->sweep, i);
-    const int is_tile = p->columns[j->sweep] == p->columns[2] && p->rows[j->sweep] == p->rows[2];
+    const int is_tile = hf_plan_is_tiled(p, j->sweep);
     const unsigned needs = j->s->blend == 0 ? 0 : is_tile ? p->tile_needs[i] : p->needs;
     if (!needs) {
         if (last)
@@ -158,7 +158,7 @@ static void later_sweep(void *arg, int i, int worker)
     int64_t clock = now_ns();
     for (int pass = 0; pass < p->engine->pass_count; pass++) {
         const struct hf_pass *def = &p->engine->passes[pass];
-        if (def->sweep == j->sweep && (!def->field || (def->field & needs)))
+        if (def->sweep == j->sweep && (!def->field || (def->field & needs)) && hf_plan_pass_runs(p, j->s, pass))
             run_pass(j, w, pass, cell, &clock);
     }
 }
@@ -333,7 +333,8 @@ static int run_plan(struct job *j)
     if (err)
         return err;
     for (j->sweep = 2; j->sweep <= c->plan.engine->sweeps; j->sweep++)
-        if (j->sweep == c->plan.engine->sweeps || (j->s->blend != 0 && c->plan.needs))
+        if (j->sweep == c->plan.engine->sweeps ||
+            (j->s->blend != 0 && c->plan.needs && hf_plan_sweep_runs(&c->plan, j->s, j->sweep)))
             parallel(c, hf_plan_count(&c->plan, j->sweep), later_sweep, j);
     return HF_OK;
 }

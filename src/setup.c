@@ -107,9 +107,10 @@ static int check_range_model(const struct hf_params *p, char message[HF_MESSAGE]
     if (!(p->strength >= 0 && p->strength <= 1))
         return bad(message, "strength is %g; it must be 0 to 1", p->strength);
     const struct band b = band_of(p);
-    if (!(b.nb >= 0 && b.nb <= b.ne && b.ne < INFINITY))
+    const int endless = p->focus_distance == INFINITY;  // autofocus where there is nothing
+    if (!(b.nb >= 0 && b.nb <= b.ne && (b.ne < INFINITY || endless)))
         return bad(message, "near_begin is %g and near_end %g; they must be 0 <= begin <= end, finite", b.nb, b.ne);
-    if (!(b.fb >= 0 && b.fb <= b.fe && b.fb < INFINITY))
+    if (!(b.fb >= 0 && b.fb <= b.fe && (b.fb < INFINITY || endless)))
         return bad(message, "far_begin is %g and far_end %g; they must be 0 <= begin <= end", b.fb, b.fe);
     return HF_OK;
 }
@@ -144,6 +145,35 @@ static int check_options(const struct hf_params *p, char message[HF_MESSAGE])
     if (!hf_is_finite(p->blade_rotation))
         return bad(message, "blade_rotation is %g; it must be finite", p->blade_rotation);
     return HF_OK;
+}
+
+// Autofocus: what the pixel in the middle shows, at infinity if that is nothing.
+static float focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height)
+{
+    if (p->engine != HF_ENGINE_GAUSSIAN || p->focus_distance != HF_DERIVE || depth->type == HF_DEPTH_COC)
+        return p->focus_distance;
+    struct hf_setup s = {.width = width, .height = height};
+    int repaired;
+    hf_setup_depth(&s, depth, p->pixel_aspect);
+    const float z = hf_depth_surface(&s, depth, width / 2, height / 2, &repaired);
+    return z < 1e10f ? z : INFINITY;
+}
+
+// Does the gaussian engine blend by the distance in depth, as its source does?
+static int blends_by_depth(const struct hf_params *p, enum hf_depth_type type)
+{
+    const float given[] = {p->range, p->near_begin, p->near_end, p->far_begin, p->far_end};
+    int derived = p->model == HF_MODEL_RANGE;
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
+        derived &= given[i] == HF_DERIVE;
+    return p->engine == HF_ENGINE_GAUSSIAN && type != HF_DEPTH_COC && (p->faithful || derived);
+}
+
+// The planes that bound its depths: those of the depth, else 1 and 100.
+static void depth_planes(const struct hf_depth *depth, float *near, float *far)
+{
+    *near = depth->near_plane > 0 ? depth->near_plane : 1;
+    *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
 }
 
 static int check_between(const char *name, float value, float least, float most, char message[HF_MESSAGE])
@@ -216,76 +246,18 @@ int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const
         const int autofocus = p->engine == HF_ENGINE_GAUSSIAN && p->focus_distance == HF_DERIVE;
         if (!autofocus && !(p->focus_distance > 0 && hf_is_finite(p->focus_distance)))
             return bad(message, "focus_distance is %g; it must be > 0 and finite", p->focus_distance);
-        const int err = p->model == HF_MODEL_LENS ? check_lens(p, message) : check_range_model(p, message);
+        struct hf_params focused = *p;
+        focused.focus_distance = focus_of(p, depth, src->width, src->height);
+        const int err = p->model == HF_MODEL_LENS ? check_lens(p, message) : check_range_model(&focused, message);
         if (err)
             return err;
+        float near, far;
+        depth_planes(depth, &near, &far);
+        if (blends_by_depth(p, depth->type) && !(near < far))
+            return bad(message, "depth.near_plane is %g and far_plane %g; near must be less than far", near, far);
     }
     const int err = check_options(p, message);
     return err ? err : check_engine(p, message);
-}
-
-void hf_setup_depth(struct hf_setup *s, const struct hf_depth *d, float pixel_aspect)
-{
-    const double n = d->near_plane, f = d->far_plane;
-    switch (d->type) {
-    case HF_DEPTH_VIEW:
-        s->form = HF_FORM_Z;
-        break;
-    case HF_DEPTH_RAY:
-        s->form = HF_FORM_RAY;
-        s->ray_cx = d->center_x;
-        s->ray_cy = d->center_y;
-        s->ray_sx = (float)(1 / ((double)d->focal_px * d->focal_px));
-        s->ray_sy = (float)(1 / ((double)d->focal_px * d->focal_px * pixel_aspect * pixel_aspect));
-        break;
-    case HF_DEPTH_NDC_D3D:
-    case HF_DEPTH_NDC_GL:
-        // 1/z = 1/f + e (1/n - 1/f) with e = 1 - d: that difference is exact where depth is most crowded, while
-        // 1/n - d (1/n - 1/f) would cancel there.
-        s->form = HF_FORM_IZ;
-        s->e_a = d->type == HF_DEPTH_NDC_GL ? 0.5f : 1;
-        s->e_b = d->type == HF_DEPTH_NDC_GL ? -0.5f : -1;
-        s->iz_a = (float)(1 / f);
-        s->iz_b = (float)(1 / n - 1 / f);
-        break;
-    case HF_DEPTH_NDC_REVERSED:
-        s->form = HF_FORM_IZ;
-        s->e_a = 0;
-        s->e_b = 1;
-        s->iz_a = (float)(1 / f);
-        s->iz_b = (float)(1 / n - 1 / f);
-        break;
-    case HF_DEPTH_INVERSE:
-        s->form = HF_FORM_IZ;
-        s->e_a = s->iz_a = 0;
-        s->e_b = s->iz_b = 1;
-        break;
-    case HF_DEPTH_COC:
-        s->form = HF_FORM_COC;
-        break;
-    }
-}
-
-float hf_depth_decode(const struct hf_setup *s, float d, int x, int y)
-{
-    if (d != d)
-        return d;
-    switch (s->form) {
-    case HF_FORM_COC:
-        return d;
-    case HF_FORM_IZ: {
-        const float iz = s->iz_a + s->iz_b * (s->e_a + s->e_b * d);
-        return iz > 1e-10f ? 1 / iz : INFINITY;
-    }
-    case HF_FORM_RAY: {
-        const float dx = (float)x + 0.5f - s->ray_cx, dy = (float)y + 0.5f - s->ray_cy;
-        const float t = d > 0 && d < 1e10f ? d : INFINITY;
-        return t / sqrtf(1 + (dx * dx * s->ray_sx + dy * dy * s->ray_sy));
-    }
-    case HF_FORM_Z:
-    default:
-        return d > 0 && d < 1e10f ? d : INFINITY;
-    }
 }
 
 // Slope of a CoC that grows from 0 to 1 over a distance. A zero distance is a step, which the steepest finite slope
@@ -298,6 +270,10 @@ static float slope(float distance)
 
 static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
 {
+    if (s->by_depth) {
+        s->near_i = s->far_i = 1;  // there is blur
+        return;
+    }
     if (s->form == HF_FORM_COC) {
         s->near_i = s->far_i = slope(s->max_radius);
         s->radius_k = 1;
@@ -335,6 +311,14 @@ static float radius_limit(const struct hf_setup *s, const struct hf_params *p)
     return p->faithful ? 12 : fminf(12 * display_height / 1080, MAX_RADIUS);
 }
 
+static void set_depth_blend(struct hf_setup *s, const struct hf_depth *depth, float focus)
+{
+    depth_planes(depth, &s->plane_near, &s->plane_far);
+    if (!s->faithful)
+        s->plane_near = 0;  // nothing but the far plane counts
+    s->focus_d = hf_gaussian_depth(s, focus);
+}
+
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
                    const struct hf_depth *depth, const struct hf_params *p, struct hf_taps *taps)
 {
@@ -349,13 +333,22 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
         .iterations = p->iterations, .sigma = p->sigma, .params = p};
     hf_setup_depth(s, depth, p->pixel_aspect);
     s->max_radius = radius_limit(s, p);
-    set_coc_model(s, p);
-    const int range_model = s->form != HF_FORM_COC && p->model == HF_MODEL_RANGE;
+    struct hf_params focused = *p;
+    focused.focus_distance = focus_of(p, depth, s->width, s->height);
+    s->by_depth = blends_by_depth(p, depth->type);
+    set_coc_model(s, &focused);
+    if (s->by_depth)
+        set_depth_blend(s, depth, focused.focus_distance);
+    const int range_model = s->form != HF_FORM_COC && (p->model == HF_MODEL_RANGE || s->by_depth);
     s->strength = range_model ? p->strength : 1;
     s->blend = s->strength >= 0.25f ? 1 : 4 * s->strength;
     if (p->engine != HF_ENGINE_GATHER && s->blend > 0)
-        s->blend = 1;  // their strength is in the radius
+        s->blend = 1;  // their strength is in the radius, or in the gaussian's blend factor
     const int no_coc = s->near_i == 0 && s->far_i == 0 && !(s->uniform && p->engine == HF_ENGINE_HEXAGON);
-    if (s->max_radius == 0 || no_coc)
+    if (s->sigma > 0)
+        s->iterations = 0;
+    const int no_blur = p->engine == HF_ENGINE_GAUSSIAN && s->resolution == HF_RESOLUTION_FULL && s->iterations == 0 &&
+                        s->sigma == 0;
+    if (s->max_radius == 0 || no_coc || no_blur)
         s->blend = 0;
 }

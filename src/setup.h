@@ -17,8 +17,18 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
 
 // View depth (INFINITY: no surface) or for HF_FORM_COC the radius of depth sample d at pixel (x, y). NaN gives NaN.
 float hf_depth_decode(const struct hf_setup *s, float d, int x, int y);
+// The same for pixel (x, y) of a depth buffer, a NaN repaired: *repaired is set if it was one.
+float hf_depth_surface(const struct hf_setup *s, const struct hf_depth *depth, int x, int y, int *repaired);
 // Fill the depth fields of a setup (form, e_a .. ray_sy): all that hf_depth_decode needs.
 void hf_setup_depth(struct hf_setup *s, const struct hf_depth *depth, float pixel_aspect);
 int hf_check_depth(const struct hf_depth *depth, int width, char message[HF_MESSAGE]);
+
+// What the gaussian engine compares: z over the far plane, or as its source has it.
+static inline float hf_gaussian_depth(const struct hf_setup *s, float z)
+{
+    z = z > s->plane_near ? z : s->plane_near;
+    z = z < s->plane_far ? z : s->plane_far;
+    return s->faithful ? (2 * z) / (z + s->plane_far) : z / s->plane_far;
+}
 
 #endif

@@ -112,6 +112,9 @@ static inline void vf_store_half(void *p, vf a)
     vst1_u8((uint8_t *)p, vreinterpret_u8_f16(vcvt_f16_f32(a)));
 }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur) { return vextq_f32(prev, cur, 3); }
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index)
 {
@@ -119,5 +122,16 @@ static inline vf vf_gather(const float *p, vi index)
                         p[(int32_t)vgetq_lane_u32(index, 2)], p[(int32_t)vgetq_lane_u32(index, 3)]};
     return vld1q_f32(v);
 }
+
+// Vectors of half as many doubles: from floats and back, and as they are.
+typedef float64x2_t vd;
+enum { VD_N = 2 };
+static inline vd vd_load(const float *p) { return vcvt_f64_f32(vld1_f32(p)); }
+static inline void vd_store(float *p, vd a) { vst1_f32(p, vcvt_f32_f64(a)); }
+static inline vd vd_sum(const double *p) { return vld1q_f64(p); }
+static inline void vd_keep_sum(double *p, vd a) { vst1q_f64(p, a); }
+static inline vd vd_set1(double a) { return vdupq_n_f64(a); }
+static inline vd vd_add(vd a, vd b) { return vaddq_f64(a, b); }
+static inline vd vd_mul(vd a, vd b) { return vmulq_f64(a, b); }
 
 #endif

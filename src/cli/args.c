@@ -96,9 +96,11 @@ static int check_depth(const struct cli_args *args, struct cli_error *error)
     cli_choice_name("depth-type", (int)args->depth_type, type, sizeof(type));
     if (ndc && (!given(args->near_plane) || !given(args->far_plane)))
         return cli_fail(error, -1, "--depth-type %s needs --%s", type, given(args->near_plane) ? "far" : "near");
-    if (ndc && !(args->near_plane < args->far_plane))
+    if (args->near_plane >= args->far_plane)
         return cli_fail(error, -1, "--near %g must be less than --far %g", args->near_plane, args->far_plane);
-    if (!ndc && (given(args->near_plane) || given(args->far_plane)))
+    // The gaussian engine measures depth by the planes, whatever its type.
+    const int wants_planes = ndc || (args->params.engine == HF_ENGINE_GAUSSIAN && args->depth_type != HF_DEPTH_COC);
+    if (!wants_planes && (given(args->near_plane) || given(args->far_plane)))
         return cli_fail(error, -1, "--%s is of use only with --depth-type ndc-d3d, ndc-gl or ndc-reversed, not %s",
                         given(args->near_plane) ? "near" : "far", type);
     if (args->depth_type == HF_DEPTH_COC && (args->focus_at_given || args->focus_by == CLI_FOCUS_CENTER))

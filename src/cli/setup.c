@@ -163,7 +163,10 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
     if (given(args->far_end))
         p->far_end = args->far_end;
 
-    // Those that were not given follow from the focus and the range, which may put them on the wrong side.
+    // Those that were not given follow from the focus and the range, which may put them on the wrong side. Where the
+    // gaussian engine focuses by itself, it will say so.
+    if (p->focus_distance == HF_DERIVE)
+        return 0;
     const float focus = p->focus_distance;
     const float range = given(args->range) ? args->range : focus / 2;
     const float near_begin = given(args->near_begin) ? args->near_begin : fmaxf(0, focus - range);

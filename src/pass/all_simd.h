@@ -6,6 +6,8 @@
 #include "pass/format_simd.h"
 #include "pass/coc_simd.h"
 #include "pass/radius_simd.h"
+#include "pass/gaussian_simd.h"
+#include "pass/wide_simd.h"
 #include "pass/down_simd.h"
 #include "pass/near_max_simd.h"
 #include "pass/near_blur_simd.h"
@@ -22,6 +24,12 @@ void HF_INIT(struct hf_kernels *k)
     format_init(k);
     k->coc_row = coc_row_simd;
     k->radius_row = radius_row_simd;
+    k->blend_row = blend_row_simd;
+    k->lerp_row = lerp_row_simd;
+    k->gaussian_line = gaussian_line_simd;
+    k->gaussian_columns = gaussian_columns_simd;
+    k->gaussian_up = gaussian_up_simd;
+    k->wide_block = wide_block_simd;
     k->zip = zip_row_simd;
     k->unzip = unzip_row_simd;
     k->pass[HF_PASS_DOWN] = down_simd;

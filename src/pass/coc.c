@@ -24,39 +24,15 @@ float hf_round_coc(enum hf_storage storage, float t)
     return storage == HF_STORAGE_HALF ? hf_half_unpack(hf_half_pack(t)) : t;
 }
 
-// A depth sample as the caller gave it.
-static float depth_at(const struct hf_frame *f, int x, int y)
-{
-    float d;
-    memcpy(&d, (const uint8_t *)f->depth->data + (ptrdiff_t)y * f->depth->stride + (size_t)x * 4, 4);
-    return d;
-}
-
-// The largest finite depth among the 8 neighbours, else no surface.
-static float repair_depth(const struct hf_frame *f, int x, int y)
-{
-    const struct hf_setup *s = f->s;
-    float best = -INFINITY;
-    for (int v = hf_max(y - 1, 0); v <= hf_min(y + 1, s->height - 1); v++)
-        for (int u = hf_max(x - 1, 0); u <= hf_min(x + 1, s->width - 1); u++) {
-            const float z = hf_depth_decode(s, depth_at(f, u, v), u, v);
-            if (hf_is_finite(z) && z > best)
-                best = z;
-        }
-    return best > -INFINITY ? best : INFINITY;
-}
-
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts)
 {
     const struct hf_setup *s = f->s;
-    float z = hf_depth_decode(s, depth_at(f, x, y), x, y);
-    if (z != z) {
-        z = repair_depth(f, x, y);
-        if (counts)
-            counts->depth_repaired++;
-    }
-    if (counts)
+    int repaired = 0;
+    const float z = hf_depth_surface(s, f->depth, x, y, &repaired);
+    if (counts) {
+        counts->depth_repaired += (unsigned)repaired;
         counts->no_surface += z >= 1e10f;
+    }
     return s->lens ? -1 / z : z;
 }
 

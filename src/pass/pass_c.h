@@ -12,6 +12,14 @@ hf_kernel hf_coc_c, hf_down_c, hf_max_x_c, hf_max_y_c, hf_blur_x_c, hf_blur_y_c,
 hf_coc_row hf_coc_row_c;
 hf_kernel hf_radius_c;
 hf_radius_row hf_radius_row_c;
+hf_kernel hf_gaussian_depth_pass, hf_gaussian_rows_pass, hf_gaussian_columns_pass, hf_gaussian_merge_pass;
+hf_blend_row hf_blend_row_c;
+hf_lerp_row hf_lerp_row_c;
+hf_gaussian_line hf_gaussian_line_c;
+hf_gaussian_columns hf_gaussian_columns_c;
+hf_gaussian_up hf_gaussian_up_c;
+hf_kernel hf_wide_columns_pass, hf_wide_rows_pass;
+hf_wide_block hf_wide_block_c;
 hf_zip_row hf_zip_row_c;
 hf_unzip_row hf_unzip_row_c;
 

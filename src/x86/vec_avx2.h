@@ -102,7 +102,25 @@ static inline void vf_store_half(void *p, vf a)
     _mm_storeu_si128((__m128i *)p, _mm256_cvtps_ph(a, _MM_FROUND_TO_NEAREST_INT));
 }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur)
+{
+    const __m256i middle = _mm256_castps_si256(_mm256_permute2f128_ps(prev, cur, 0x21));
+    return _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(cur), middle, 12));
+}
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index) { return _mm256_i32gather_ps(p, index, 4); }
+
+// Vectors of half as many doubles: from floats and back, and as they are.
+typedef __m256d vd;
+enum { VD_N = 4 };
+static inline vd vd_load(const float *p) { return _mm256_cvtps_pd(_mm_loadu_ps(p)); }
+static inline void vd_store(float *p, vd a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a)); }
+static inline vd vd_sum(const double *p) { return _mm256_loadu_pd(p); }
+static inline void vd_keep_sum(double *p, vd a) { _mm256_storeu_pd(p, a); }
+static inline vd vd_set1(double a) { return _mm256_set1_pd(a); }
+static inline vd vd_add(vd a, vd b) { return _mm256_add_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm256_mul_pd(a, b); }
 
 #endif

@@ -103,7 +103,24 @@ static inline void vf_store_half(void *p, vf a)
     _mm256_storeu_si256((__m256i *)p, _mm512_cvtps_ph(a, _MM_FROUND_TO_NEAREST_INT));
 }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur)
+{
+    return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(cur), _mm512_castps_si512(prev), 15));
+}
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index) { return _mm512_i32gather_ps(index, p, 4); }
+
+// Vectors of half as many doubles: from floats and back, and as they are.
+typedef __m512d vd;
+enum { VD_N = 8 };
+static inline vd vd_load(const float *p) { return _mm512_cvtps_pd(_mm256_loadu_ps(p)); }
+static inline void vd_store(float *p, vd a) { _mm256_storeu_ps(p, _mm512_cvtpd_ps(a)); }
+static inline vd vd_sum(const double *p) { return _mm512_loadu_pd(p); }
+static inline void vd_keep_sum(double *p, vd a) { _mm512_storeu_pd(p, a); }
+static inline vd vd_set1(double a) { return _mm512_set1_pd(a); }
+static inline vd vd_add(vd a, vd b) { return _mm512_add_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm512_mul_pd(a, b); }
 
 #endif

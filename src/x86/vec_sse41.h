@@ -94,6 +94,12 @@ static inline void vf_store_lanes(float *p, int step, vf a)
 static inline vi vi_load_u16(const void *p) { return _mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)p)); }
 static inline void vi_store_u16(void *p, vi a) { _mm_storel_epi64((__m128i *)p, _mm_packus_epi32(a, a)); }
 
+// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+static inline vf vf_back(vf prev, vf cur)
+{
+    return _mm_castsi128_ps(_mm_alignr_epi8(_mm_castps_si128(cur), _mm_castps_si128(prev), 12));
+}
+
 // p[index], index counted in floats.
 static inline vf vf_gather(const float *p, vi index)
 {
@@ -101,5 +107,16 @@ static inline vf vf_gather(const float *p, vi index)
     _mm_storeu_si128((__m128i *)i, index);
     return _mm_setr_ps(p[i[0]], p[i[1]], p[i[2]], p[i[3]]);
 }
+
+// Vectors of half as many doubles: from floats and back, and as they are.
+typedef __m128d vd;
+enum { VD_N = 2 };
+static inline vd vd_load(const float *p) { return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p))); }
+static inline void vd_store(float *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p, _mm_castps_si128(_mm_cvtpd_ps(a))); }
+static inline vd vd_sum(const double *p) { return _mm_loadu_pd(p); }
+static inline void vd_keep_sum(double *p, vd a) { _mm_storeu_pd(p, a); }
+static inline vd vd_set1(double a) { return _mm_set1_pd(a); }
+static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
+static inline vd vd_mul(vd a, vd b) { return _mm_mul_pd(a, b); }
 
 #endif

@@ -181,6 +181,16 @@ void round_call(struct world *w, const struct hf_kernels *k, enum arena a, int c
 int row_check(const struct world *w, const struct level *l, char message[256]);
 int row_pixels(const struct world *w);
 
+// gaussian.c
+void blend_row_make(struct world *w, int index);
+void blend_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void lerp_row_make(struct world *w, int index);
+void lerp_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void gaussian_make(struct world *w, int which);
+void gaussian_call(struct world *w, const struct hf_kernels *k, enum arena a, int which);
+void wide_make(struct world *w, int index);
+void wide_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+
 // compare.c: all regions, and everything outside them.
 int world_compare(const struct world *w, const struct level *l, char message[256]);
 // Did the reference itself keep to its area, and make only finite numbers?

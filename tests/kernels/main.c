@@ -35,6 +35,16 @@ const struct test tests[] = {
     ROW("finite_r11", 2, 2000, finite_make, finite_call, row_check),
     ROW("truncate_r11", 3, 1000, round_make, round_call, row_check),
     ROW("round_half", 1, 1000, round_make, round_call, row_check),
+    ROW("blend_row", 0, 2000, blend_row_make, blend_row_call, row_check),
+    ROW("lerp_row", 0, 600, lerp_row_make, lerp_row_call, row_check),
+    ROW("gaussian_line", 0, 600, gaussian_make, gaussian_call, row_check),
+    ROW("gaussian_line_faithful", 1, 600, gaussian_make, gaussian_call, row_check),
+    ROW("gaussian_columns", 2, 600, gaussian_make, gaussian_call, row_check),
+    ROW("gaussian_columns_faithful", 3, 600, gaussian_make, gaussian_call, row_check),
+    ROW("gaussian_columns_in_place", 4, 600, gaussian_make, gaussian_call, row_check),
+    ROW("gaussian_up_half", 5, 600, gaussian_make, gaussian_call, row_check),
+    ROW("gaussian_up_quarter", 6, 600, gaussian_make, gaussian_call, row_check),
+    ROW("wide_block", 0, 600, wide_make, wide_call, row_check),
 };
 const int test_count = sizeof tests / sizeof *tests;
 

@@ -31,6 +31,22 @@ enum { SPECIALS = sizeof special / sizeof *special };
 static int passed, failed;
 static uint32_t hash = 2166136261u;  // of the C's pictures: the same on every machine with the same libm
 
+// The gaussian engine with the rest of the options as they are.
+static void make_gaussian(struct world *w)
+{
+    struct hf_params *p = &w->params;
+    p->engine = HF_ENGINE_GAUSSIAN;
+    p->storage = HF_STORAGE_FLOAT;
+    p->iterations = rng_int(&w->rng, 0, 6);
+    p->sigma = rng_one_in(&w->rng, 3) ? rng_float(&w->rng, 0.1f, 40) : 0;
+    p->resolution = (enum hf_resolution)rng_int(&w->rng, 0, 2);
+    if (rng_one_in(&w->rng, 2)) {
+        p->model = HF_MODEL_RANGE;
+        p->range = p->near_begin = p->far_end = HF_DERIVE;
+        p->focus_distance = rng_one_in(&w->rng, 2) ? HF_DERIVE : p->focus_distance;
+    }
+}
+
 static void make_case(struct world *w, const struct frame_case *c)
 {
     world_clear(w);
@@ -41,6 +57,8 @@ static void make_case(struct world *w, const struct frame_case *c)
         w->params.pixel_aspect = c->pixel_aspect ? c->pixel_aspect : w->params.pixel_aspect;
         w->params.karis &= w->colours != COLOURS_MIXED;  // luminance would cancel
     } while (c->max_radius && (w->params.model == HF_MODEL_LENS || w->params.per_pixel_kernel));
+    if (rng_one_in(&w->rng, 4))
+        make_gaussian(w);
     const int in_place = rng_one_in(&w->rng, 4), bad = rng_one_in(&w->rng, 3);
     make_image(w, &w->src, SLOT_SRC, bad);
     if (in_place)
@@ -104,6 +122,8 @@ static double largest_sample(const struct world *w, int c)
 // weight, and their quotient; a mean of nine 9; composite 68.
 static double frame_roundings(const struct world *w)
 {
+    if (w->params.engine == HF_ENGINE_GAUSSIAN)
+        return 0;  // nothing is ever fused
     const float h = w->params.max_radius / 2;
     const double rx = ceilf(h / w->params.pixel_aspect), ry = ceilf(h);
     return 25 + 2 * (2 * rx + 2 * ry + 4 + 6) + 1 + 9 + 68;

@@ -160,6 +160,34 @@ static inline __m512i emulated_alignr(__m512i a, __m512i b, int n)
     return a;
 }
 
+static inline __m512d emulated_to_double(__m256 a)
+{
+    float x[8];
+    double r[8];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 8; i++)
+        r[i] = x[i];
+    __m512d v;
+    memcpy(&v, r, sizeof r);
+    return v;
+}
+
+static inline __m256 emulated_to_float(__m512d a)
+{
+    double x[8];
+    float r[8];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 8; i++)
+        r[i] = (float)x[i];
+    __m256 v;
+    memcpy(&v, r, sizeof r);
+    return v;
+}
+
+#undef _mm512_cvtps_pd
+#define _mm512_cvtps_pd(a) emulated_to_double(a)
+#undef _mm512_cvtpd_ps
+#define _mm512_cvtpd_ps(a) emulated_to_float(a)
 #undef _mm512_fmadd_ps
 #define _mm512_fmadd_ps(a, b, c) emulated_fmadd(a, b, c)
 #undef _mm512_stream_ps
