@@ -53,7 +53,7 @@ static int channels(const struct hf_setup *s, int b)
                  (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
         return 0;
     if (b < HF_HEXAGON_MADE)
-        return b % 2 ? 2 + half : s->channels;
+        return b % 2 ? 3 : s->channels;
     switch ((b - HF_HEXAGON_MADE) % HF_HEXAGON_MADE_COUNT) {
     case HF_HEXAGON_NEAR_W:
         return 4;

@@ -14,13 +14,14 @@ static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
     const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
-    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y);
+    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *far = hf_at(weight, 2, x0, y);
     hf_row(&f->buf[HF_HEXAGON_COLOUR], f->s->channels, x0, y, colour);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
     f->k->radius_row(f, x0, y, n, q, NULL);
     for (int x = 0; x < n; x++) {
         const float m = __builtin_fabsf(q[x]);
         a[x] = 1 / (m > 1 ? m : 1);
+        far[x] = q[x] > 0 ? a[x] : 0;
         for (int c = 0; c < f->s->channels; c++)
             colour[c][x] *= a[x];
     }

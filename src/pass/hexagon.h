@@ -26,9 +26,9 @@
 // each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
 enum hf_hexagon_buf {
     HF_HEXAGON_COLOUR,         // full resolution: colour x a
-    HF_HEXAGON_WEIGHT,         // a, and the signed radius
+    HF_HEXAGON_WEIGHT,         // a, the signed radius, and a of far pixels alone
     HF_HEXAGON_NEAR_COLOUR_2,  // half resolution: radii are not negative, and in half-resolution pixels
-    HF_HEXAGON_NEAR_WEIGHT_2,
+    HF_HEXAGON_NEAR_WEIGHT_2,  // a, radius, and how much of the quad is near
     HF_HEXAGON_FAR_COLOUR_2,
     HF_HEXAGON_FAR_WEIGHT_2,
     HF_HEXAGON_MADE,  // what the two passes make: full resolution, then the same again at half
@@ -77,6 +77,7 @@ struct hf_hexagon_field {
     int q;                       // channel of radius
     float sign;
     int part;                    // channel of weight, -1: all are there in full
+    int alone;                   // colour and weight are 0 where the radius is not above 0
 };
 
 // Where things are at the setup's resolution.
@@ -91,7 +92,7 @@ static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f,
     const int colour = !half ? HF_HEXAGON_COLOUR : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2 : HF_HEXAGON_FAR_COLOUR_2;
     const struct hf_buf *weight = &f->buf[colour + 1];
     return (struct hf_hexagon_field){&f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f,
-                                     half ? 2 : -1};
+                                     half ? 2 : -1, half};
 }
 
 // The samples that pass 2 reads: what pass 1 made along line v (0) or w (1).
@@ -100,10 +101,12 @@ static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *
     if (field == HF_NEAR) {
         const struct hf_buf *weight = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
         return (struct hf_hexagon_field){hf_hexagon_made(f, second ? HF_HEXAGON_NEAR_B : HF_HEXAGON_NEAR_U),
-                                         weight, 2 * second, weight, 2 * second + 1, 1, -1};
+                                         weight, 2 * second, weight, 2 * second + 1, 1, -1, 1};
     }
     struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     in.colour = hf_hexagon_made(f, second ? HF_HEXAGON_FAR_B : HF_HEXAGON_FAR_U);
+    in.a = f->s->resolution == HF_RESOLUTION_HALF ? 0 : 2;
+    in.alone = 1;
     return in;
 }
 

@@ -7,13 +7,14 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
     const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
-    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y);
+    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *far = hf_at(weight, 2, x0, y);
     hf_row(&f->buf[HF_HEXAGON_COLOUR], f->s->channels, x0, y, colour);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
     f->k->radius_row(f, x0, y, n, q, NULL);
     for (int x = 0; x < n; x += VF_N) {
-        const vf w = vf_div(vf_set1(1), vf_max(vf_abs(vf_load(q + x)), vf_set1(1)));
+        const vf own = vf_load(q + x), w = vf_div(vf_set1(1), vf_max(vf_abs(own), vf_set1(1)));
         vf_store(a + x, w);
+        vf_store(far + x, vf_keep(vf_gt(own, vf_zero()), w));
         for (int c = 0; c < f->s->channels; c++)
             vf_store(colour[c] + x, vf_mul(vf_load(colour[c] + x), w));
     }

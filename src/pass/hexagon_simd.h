@@ -4,17 +4,19 @@
 // A line's taps are the same for all pixels, so each is a load at a fixed offset. What a tap costs is asking how much of a
 // sample counts, so the radii around each block of pixels are looked at first: no tap is read that none of them reaches,
 // and those that all of them reach are plain products, four where there would be ten operations. Skipped taps
-// would add nothing and full ones have the same weight either way, so no bit depends on where a block lies.
+// would add nothing and full ones have the same weight either way, so no bit depends on where a block lies. Where near
+// and far pixels mix at full resolution, both fields' sums are made at once: they read the same samples, and loads that
+// cross cache lines are what there is too much of.
 #include "pass/hexagon.h"
 
-enum { HEX_S = 2, HEX_STEP = HEX_S * VF_N, HEX_WIDTH = 128, HEX_HEIGHT = 16 };
+enum { HEX_S = VF_N == 16 ? 2 : 1, HEX_STEP = HEX_S * VF_N, HEX_WIDTH = 128, HEX_HEIGHT = 16 };
 
 struct hex_range {
     float least, most;
 };
 
-// Least and most radius in a block and all that a line reaches from it. Lanes past its end may hold anything: that
-// widens the range, and NaN does not count.
+// Least and most radius in a block and all that a line reaches from it; of samples that hold 0 without a radius, the
+// least above 0. Lanes past its end may hold anything: that widens the range, and NaN does not count.
 HF_INLINE struct hex_range hex_range(const struct hf_hexagon_field *in, const struct hf_hexagon_line *l,
                                      struct hf_rect b)
 {
@@ -23,7 +25,8 @@ HF_INLINE struct hex_range hex_range(const struct hf_hexagon_field *in, const st
     for (int y = b.y0 + l->y0; y < b.y1 + l->y1; y++)
         for (int x = b.x0 + l->x0; x < b.x1 + l->x1; x += VF_N) {
             const vf q = vf_mul(sign, vf_load(hf_at(in->radius, in->q, x, y)));
-            least = vf_min(q, least);
+            const vf lower = vf_min(q, least);
+            least = in->alone ? vf_select(vf_gt(q, vf_zero()), lower, least) : lower;
             most = vf_max(q, most);
         }
     float lanes[2][VF_N];
@@ -149,6 +152,16 @@ HF_INLINE void hex_store_near(const struct hf_frame *f, const struct hex_sums *s
     }
 }
 
+HF_INLINE void hex_add(struct hex_sums *u, const struct hex_sums *v, const int channels)
+{
+    for (int i = 0; i < HEX_S; i++) {
+        for (int c = 0; c < channels; c++)
+            u->colour[c][i] = vf_add(u->colour[c][i], v->colour[c][i]);
+        u->a[i] = vf_add(u->a[i], v->a[i]);
+        u->w[i] = vf_add(u->w[i], v->w[i]);
+    }
+}
+
 HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int channels,
                           const enum hex_weights weights)
 {
@@ -161,12 +174,7 @@ HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int 
             struct hex_sums u = hex_line(&in, &up, channels, weights, x, y, NULL);
             hex_store_near(f, &u, channels, HF_HEXAGON_NEAR_U, 0, x, y);
             const struct hex_sums v = hex_line(&in, &left, channels, weights, x, y, NULL);
-            for (int i = 0; i < HEX_S; i++) {
-                for (int c = 0; c < channels; c++)
-                    u.colour[c][i] = vf_add(u.colour[c][i], v.colour[c][i]);
-                u.a[i] = vf_add(u.a[i], v.a[i]);
-                u.w[i] = vf_add(u.w[i], v.w[i]);
-            }
+            hex_add(&u, &v, channels);
             hex_store_near(f, &u, channels, HF_HEXAGON_NEAR_B, 2, x, y);
         }
 }
@@ -217,29 +225,42 @@ HF_INLINE struct hex_far hex_far(const struct hf_frame *f, const struct hf_hexag
     return (struct hex_far){*in, hex_taps(l, r), !(r.most <= 1.9999f * least)};
 }
 
+HF_INLINE struct hex_limit hex_limit(const vf p[HEX_S])
+{
+    struct hex_limit l;
+    for (int i = 0; i < HEX_S; i++) {
+        l.slope[i] = vf_div(vf_set1(1), vf_min(p[i], vf_set1(1)));
+        l.limit[i] = vf_add(vf_mul(vf_mul(vf_set1(2), p[i]), l.slope[i]), vf_set1(1));
+    }
+    return l;
+}
+
+// The sums of a line to colours, with the pixel's own where they are too little.
+HF_INLINE void hex_far_colours(const struct hf_hexagon_field *in, const struct hex_sums *s, const int channels, int x,
+                               int y, const vf p[HEX_S], vf out[4][HEX_S])
+{
+    for (int i = 0; i < HEX_S; i++) {
+        const vf o = hex_own(s->a[i], p[i]), scale = vf_div(vf_set1(1), vf_add(s->a[i], o));
+        const vf mine = vf_div(o, vf_load(hf_at(in->weight, in->a, x + i * VF_N, y)));
+        for (int c = 0; c < channels; c++) {
+            const vf own = vf_load(hf_at(in->colour, c, x + i * VF_N, y));
+            const vf v = vf_mul(vf_fma(mine, own, s->colour[c][i]), scale);
+            out[c][i] = vf_keep(vf_gt(p[i], vf_zero()), v);
+        }
+    }
+}
+
 HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, int x, int y, const vf p[HEX_S],
                             vf out[4][HEX_S])
 {
-    struct hex_limit limit;
     struct hex_sums s;
     if (l->limited) {
-        for (int i = 0; i < HEX_S; i++) {
-            limit.slope[i] = vf_div(vf_set1(1), vf_min(p[i], vf_set1(1)));
-            limit.limit[i] = vf_add(vf_mul(vf_mul(vf_set1(2), p[i]), limit.slope[i]), vf_set1(1));
-        }
+        const struct hex_limit limit = hex_limit(p);
         s = hex_line(&l->in, &l->taps, channels, HEX_NONE, x, y, &limit);
     } else {
         s = hex_line(&l->in, &l->taps, channels, HEX_NONE, x, y, NULL);
     }
-    for (int i = 0; i < HEX_S; i++) {
-        const vf o = hex_own(s.a[i], p[i]), scale = vf_div(vf_set1(1), vf_add(s.a[i], o));
-        const vf mine = vf_div(o, vf_load(hf_at(l->in.weight, l->in.a, x + i * VF_N, y)));
-        for (int c = 0; c < channels; c++) {
-            const vf own = vf_load(hf_at(l->in.colour, c, x + i * VF_N, y));
-            const vf v = vf_mul(vf_fma(mine, own, s.colour[c][i]), scale);
-            out[c][i] = vf_keep(vf_gt(p[i], vf_zero()), v);
-        }
-    }
+    hex_far_colours(&l->in, &s, channels, x, y, p, out);
 }
 
 // Nothing far in a block: it shows nothing.
@@ -251,14 +272,26 @@ HF_INLINE void hex_clear(const struct hf_buf *out, struct hf_rect b, const int c
                 vf_store(hf_at(out, c, x, y), vf_zero());
 }
 
+HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hf_hexagon_field *in, const int channels, int x,
+                             int y, vf u[4][HEX_S], vf v[4][HEX_S])
+{
+    const struct hf_buf *up = hf_hexagon_made(f, HF_HEXAGON_FAR_U), *both = hf_hexagon_made(f, HF_HEXAGON_FAR_B);
+    for (int i = 0; i < HEX_S; i++) {
+        const vf a = vf_load(hf_at(in->weight, in->a, x + i * VF_N, y));
+        for (int c = 0; c < channels; c++) {
+            vf_store(hf_at(up, c, x + i * VF_N, y), vf_mul(u[c][i], a));
+            vf_store(hf_at(both, c, x + i * VF_N, y), vf_mul(vf_add(u[c][i], v[c][i]), a));
+        }
+    }
+}
+
 HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int channels)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
-    const struct hf_buf *out[2] = {hf_hexagon_made(f, HF_HEXAGON_FAR_U), hf_hexagon_made(f, HF_HEXAGON_FAR_B)};
     const float least = hex_least_far(&in, b);
     if (least == FLT_MAX) {
-        hex_clear(out[0], b, channels);
-        hex_clear(out[1], b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_U), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_B), b, channels);
         return;
     }
     const struct hex_far up = hex_far(f, &in, 0, least, b), left = hex_far(f, &in, 1, least, b);
@@ -269,13 +302,7 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
                 p[i] = vf_load(hf_at(in.radius, in.q, x + i * VF_N, y));
             hex_far_line(&up, channels, x, y, p, u);
             hex_far_line(&left, channels, x, y, p, v);
-            for (int i = 0; i < HEX_S; i++) {
-                const vf a = vf_load(hf_at(in.weight, in.a, x + i * VF_N, y));
-                for (int c = 0; c < channels; c++) {
-                    vf_store(hf_at(out[0], c, x + i * VF_N, y), vf_mul(u[c][i], a));
-                    vf_store(hf_at(out[1], c, x + i * VF_N, y), vf_mul(vf_add(u[c][i], v[c][i]), a));
-                }
-            }
+            hex_store_far(f, &in, channels, x, y, u, v);
         }
 }
 
@@ -303,6 +330,96 @@ HF_INLINE void hex_far_2(const struct hf_frame *f, struct hf_rect b, const int c
         }
 }
 
+// ---- both fields at once: pass 1 at full resolution ----
+
+// Sums of both fields along a line; limit NULL: none for far.
+HF_INLINE void hex_line_both(const struct hf_hexagon_field *in, const struct hf_hexagon_tap *p,
+                             const struct hf_hexagon_tap *end, const int channels, int x, int y,
+                             const struct hex_limit *limit, struct hex_sums *near, struct hex_sums *far)
+{
+    const ptrdiff_t stride = in->colour->stride, weight_stride = in->weight->stride;
+    const float *colour[4], *a = hf_at(in->weight, in->a, x, y), *radius = hf_at(in->radius, in->q, x, y);
+    for (int c = 0; c < channels; c++)
+        colour[c] = hf_at(in->colour, c, x, y);
+#pragma GCC unroll 8
+    for (int v = 0; v < HEX_S; v++) {
+        for (int c = 0; c < channels; c++)
+            near->colour[c][v] = far->colour[c][v] = vf_zero();
+        near->a[v] = near->w[v] = far->a[v] = far->w[v] = vf_zero();
+    }
+    for (; p < end; p++) {
+        const ptrdiff_t at = p->dy * stride + p->dx, weight_at = p->dy * weight_stride + p->dx;
+        const vf b = vf_set1(p->b), before = vf_set1(p->c);
+#pragma GCC unroll 8
+        for (int v = 0; v < HEX_S; v++) {
+            const vf r = vf_load(radius + weight_at + v * VF_N), q = vf_sub(vf_zero(), r);
+            const vf n = vf_max(vf_min(vf_sub(q, before), b), vf_zero());
+            vf w = vf_sub(r, before);
+            if (limit)
+                w = vf_min(w, vf_mul(b, vf_sub(limit->limit[v], vf_mul(limit->slope[v], r))));
+            w = vf_max(vf_min(w, b), vf_zero());
+            for (int c = 0; c < channels; c++) {
+                const vf value = vf_load(colour[c] + at + v * VF_N);
+                near->colour[c][v] = vf_fma(n, value, near->colour[c][v]);
+                far->colour[c][v] = vf_fma(w, value, far->colour[c][v]);
+            }
+            const vf weight = vf_load(a + weight_at + v * VF_N);
+            near->a[v] = vf_fma(n, weight, near->a[v]);
+            near->w[v] = vf_add(near->w[v], n);
+            far->a[v] = vf_fma(w, weight, far->a[v]);
+        }
+    }
+}
+
+HF_INLINE void hex_both_sums(const struct hf_frame *f, struct hf_rect b, const int channels,
+                             const struct hf_hexagon_field *in, const struct hf_hexagon_tap *const end[2],
+                             const int limited)
+{
+    const struct hf_hexagon *h = f->s->tables;
+    for (int y = b.y0; y < b.y1; y++)
+        for (int x = b.x0; x < b.x1; x += HEX_STEP) {
+            struct hex_sums near[2], far[2];
+            struct hex_limit limit;
+            vf p[HEX_S], colours[2][4][HEX_S];
+            for (int i = 0; i < HEX_S; i++)
+                p[i] = vf_load(hf_at(in->radius, in->q, x + i * VF_N, y));
+            if (limited)
+                limit = hex_limit(p);
+            for (int i = 0; i < 2; i++) {
+                hex_line_both(in, h->line[i].taps, end[i], channels, x, y, limited ? &limit : NULL, &near[i], &far[i]);
+                hex_far_colours(in, &far[i], channels, x, y, p, colours[i]);
+            }
+            hex_store_near(f, &near[0], channels, HF_HEXAGON_NEAR_U, 0, x, y);
+            hex_add(&near[0], &near[1], channels);
+            hex_store_near(f, &near[0], channels, HF_HEXAGON_NEAR_B, 2, x, y);
+            hex_store_far(f, in, channels, x, y, colours[0], colours[1]);
+        }
+}
+
+// Pass 1 of a block in which both fields may be found.
+HF_INLINE void hex_both_1(const struct hf_frame *f, struct hf_rect b, const int channels)
+{
+    const struct hf_hexagon *h = f->s->tables;
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    const float least = hex_least_far(&in, b);
+    const struct hf_hexagon_tap *end[2];
+    float near = 0, far = 0;
+    for (int i = 0; i < 2; i++) {
+        const struct hex_range r = hex_range(&in, &h->line[i], b);
+        near = r.least < near ? r.least : near;
+        far = r.most > far ? r.most : far;
+        end[i] = hex_taps(&h->line[i], (struct hex_range){0, r.most > -r.least ? r.most : -r.least}).end;
+    }
+    if (least == FLT_MAX || !(near < 0)) {
+        hex_near_1(f, b, channels, HEX_WHOLE);
+        hex_far_1(f, b, channels);
+    } else if (far <= 1.9999f * least) {
+        hex_both_sums(f, b, channels, &in, end, 0);
+    } else {
+        hex_both_sums(f, b, channels, &in, end, 1);
+    }
+}
+
 // ---- the passes ----
 
 HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect r, const int second, const int channels)
@@ -311,6 +428,10 @@ HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect r, const int se
     for (int y = p.y0; y < p.y1; y += HEX_HEIGHT)
         for (int x = p.x0; x < p.x1; x += HEX_WIDTH) {
             const struct hf_rect b = {x, y, hf_min(x + HEX_WIDTH, p.x1), hf_min(y + HEX_HEIGHT, p.y1)};
+            if (!second && f->near && f->far && f->s->resolution == HF_RESOLUTION_FULL) {
+                hex_both_1(f, b, channels);
+                continue;
+            }
             if (f->near && second)
                 hex_near_2(f, b, channels);
             else if (f->near && f->s->resolution == HF_RESOLUTION_HALF)
