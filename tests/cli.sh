@@ -248,6 +248,8 @@ for type in ndc-d3d ndc-gl ndc-reversed; do
     bad 1 "--near 9|--far 3" a.exr -o o.exr --depth-type $type --near 9 --far 3
 done
 bad 1 "--near|view" a.exr -o o.exr --near 1
+bad 1 "--near 9|--far 3" a.exr -o o.exr --engine gaussian --near 9 --far 3
+bad 1 "--near|coc" a.exr -o o.exr --engine gaussian --depth-type coc --near 1
 bad 1 "--focus center|coc" a.exr -o o.exr --depth-type coc --focus center
 bad 1 "--focus-at|coc" a.exr -o o.exr --depth-type coc --focus-at 1,2
 bad 1 "--fstop|coc" a.exr -o o.exr --depth-type coc --fstop 2
@@ -320,6 +322,12 @@ picture_tests() {
     plan "depth my.depth" deep.exr --focus 3 --depth-channel my.depth
     plan "depth depth.exr" flat.exr --focus 3 --depth-file depth.exr
     plan "ndc-reversed" plain.exr --focus 3 --depth-type ndc-reversed --near 0.1 --far inf
+    plan "model range|the picture's centre" plain.exr --engine gaussian
+    plan "model range|the picture's centre" plain.exr --engine gaussian --near 0.5 --far 20
+    run plain.exr -o near.exr --engine gaussian --range 3 && run plain.exr -o far.exr --engine gaussian --far 20 &&
+        run plain.exr -o none.exr --engine gaussian && [ "$status" -eq 0 ] && ! cmp -s far.exr none.exr &&
+        ! cmp -s near.exr none.exr
+    result "--engine gaussian focuses by itself, and measures by --far" $?
     before=$(ls -lR .)
     run plain.exr -o o.exr --focus 3 --dry-run --dump-passes passes
     [ "$status" -eq 0 ] && [ "$(ls -lR .)" = "$before" ] && contains "$dir/out" "o.exr"

@@ -86,7 +86,7 @@ static void put_model(FILE *out, const struct cli_setup *setup)
     const struct hf_params *p = &setup->params;
     fprintf(out, ",\n      \"model\": \"%s\"", cli_model_name(setup->model));
     fputs(",\n      \"focus\": ", out);
-    put_number(out, setup->focus_from ? p->focus_distance : NAN);
+    put_number(out, setup->focus_from && p->focus_distance != HF_DERIVE ? p->focus_distance : NAN);
     fputs(",\n      \"focus_from\": ", out);
     put_text(out, setup->focus_from);
     if (setup->model != CLI_MODEL_LENS)

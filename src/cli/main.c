@@ -33,10 +33,17 @@ static void print_plan(const struct cli_frame *frame, const struct hf_context *c
         if (v->setup.model == CLI_MODEL_LENS)
             printf(", f/%g, focal length %g mm, sensor %g mm, world unit %g m", p->f_number, p->focal_length_mm,
                    p->sensor_width_mm, p->world_unit_m);
-        if (v->setup.focus_from)
+        const int autofocus = p->focus_distance == HF_DERIVE;  // no number yet
+        if (autofocus)
+            printf(", focus from %s", v->setup.focus_from);
+        else if (v->setup.focus_from)
             printf(", focus %g from %s", p->focus_distance, v->setup.focus_from);
+        if (v->setup.model == CLI_MODEL_RANGE && p->range != HF_DERIVE)
+            printf(", range %g", p->range);
+        else if (v->setup.model == CLI_MODEL_RANGE && !autofocus)
+            printf(", range %g", p->focus_distance / 2);
         if (v->setup.model == CLI_MODEL_RANGE)
-            printf(", range %g, strength %g", p->range == HF_DERIVE ? p->focus_distance / 2 : p->range, p->strength);
+            printf(", strength %g", p->strength);
         printf("\n");
     }
 }

@@ -5,7 +5,8 @@
 // Blur. n iterations of a 5-tap kernel along the rows and down the columns, 1 4 6 4 1 / 16, faithfully .3 .15 .1 .15 .3
 // (the printed weights, which are upside down). Each iteration clamps to the frame's edge. Along the rows and down the
 // columns are linear and independent, clamping included, so all iterations along the rows come first: from the picture
-// itself, chunk by chunk, which is why the engine works in place. Cost: n times 2 x 4 additions a sample.
+// itself, chunk by chunk, which is why the engine works in place. Cost: n times 2 x 4 additions a sample, or with sigma (wide.c)
+// 2 x 4 boxes of three. Half and quarter buffers: mean of 2 x 2 or 4 x 4 pixels, bilinear back.
 //
 // Blend, per pixel at full resolution whatever the buffer's size. With nothing but a focus given (range model, all of
 // range and near_begin to far_end derived), and always when faithful: strength * sat(3 |d(focus) - d|), where

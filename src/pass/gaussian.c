@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gaussian engine's passes (engine/gaussian.c says what they compute), and their rows in plain C. Nothing here is ever
-// fused: the bits are the same on every machine.
+// The gaussian engine's passes (engine/gaussian.c says what they compute), and their rows in plain C. Nothing is fused that
+// fusing would change: the bits are the same on every machine, deterministic or not.
 #include "pass/gaussian.h"
 
 #include "pass/pass_c.h"
 
-// 1 4 6 4 1 / 16 as sums of pairs of sums of pairs: a constant stays what it is, bit for bit, and mirrored samples give
-// mirrored bits. Divided first, so that nothing overflows.
+// 1 4 6 4 1 / 16 as 1 2 1 twice: a constant stays what it is, bit for bit, mirrored samples give mirrored bits, and since
+// doubling is exact a fused multiply-add changes nothing. Divided first, so that nothing overflows.
+static float smooth(float a, float b, float c)
+{
+    return (a + c) + 2 * b;
+}
+
 static float five(const float v[5])
 {
     const float a = v[0] * 0.0625f, b = v[1] * 0.0625f, c = v[2] * 0.0625f, d = v[3] * 0.0625f, e = v[4] * 0.0625f;
-    const float ab = a + b, bc = b + c, cd = c + d, de = d + e;
-    const float abc = ab + bc, bcd = bc + cd, cde = cd + de;
-    return (abc + bcd) + (bcd + cde);
+    return smooth(smooth(a, b, c), smooth(b, c, d), smooth(c, d, e));
 }
 
 // As printed.
