@@ -42,6 +42,9 @@ static inline vm vm_not(vm a) { return vmvnq_u32(a); }
 static inline int vm_any(vm a) { return vmaxvq_u32(a) != 0; }
 static inline vf vf_select(vm m, vf a, vf b) { return vbslq_f32(m, a, b); }
 static inline vf vf_keep(vm m, vf a) { return vreinterpretq_f32_u32(vandq_u32(m, vreinterpretq_u32_f32(a))); }
+// c, and where m a + c or a * b + c.
+static inline vf vf_add_where(vm m, vf a, vf c) { return vf_select(m, vf_add(a, c), c); }
+static inline vf vf_muladd_where_fused(vm m, vf a, vf b, vf c) { return vf_select(m, vf_muladd_fused(a, b, c), c); }
 // count + 1 where m.
 static inline vi vi_count(vi count, vm m) { return vsubq_u32(count, m); }
 
@@ -52,6 +55,12 @@ static inline vi vi_add(vi a, vi b) { return vaddq_u32(a, b); }
 static inline vi vi_sub(vi a, vi b) { return vsubq_u32(a, b); }
 static inline vi vi_and(vi a, vi b) { return vandq_u32(a, b); }
 static inline vi vi_or(vi a, vi b) { return vorrq_u32(a, b); }
+static inline vi vi_xor(vi a, vi b) { return veorq_u32(a, b); }
+static inline vi vi_or_and(vi a, vi b, vi c) { return vi_or(a, vi_and(b, c)); }
+static inline vi vi_or_xor(vi a, vi b, vi c) { return vi_or(a, vi_xor(b, c)); }
+static inline vi vi_max(vi a, vi b) { return vmaxq_u32(a, b); }  // unsigned
+static inline int vi_any(vi a) { return vmaxvq_u32(a) != 0; }
+static inline vm vi_le(vi a, vi b) { return vcleq_u32(a, b); }
 static inline vm vi_eq(vi a, vi b) { return vceqq_u32(a, b); }
 #define vi_shl(a, n) vshlq_n_u32(a, n)
 #define vi_shr(a, n) vshrq_n_u32(a, n)

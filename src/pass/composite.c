@@ -11,18 +11,19 @@ struct phase {
 
 // Joint bilateral upsampling: bilinear weights 9 3 3 1 (sixteenths), each over 1 + 1000 |CoC difference|; what has
 // no far CoC has no far colour. Weights are kept in proportion by products instead of quotients, so that one division
-// serves all four. Returns 0 if no neighbour is far.
+// serves all four; the factor 9 3 3 1 is 3 1 times that of the last distance. Returns 0 if no neighbour is far.
 static int far_weights(const struct hf_buf *coc, struct phase p, float f, float w[4])
 {
     const float g[4] = {*hf_at(coc, 1, p.x, p.y), *hf_at(coc, 1, p.nx, p.y), *hf_at(coc, 1, p.x, p.ny),
                         *hf_at(coc, 1, p.nx, p.ny)};
     float d[4];
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 3; i++)
         d[i] = 1 + 1000 * __builtin_fabsf(f - g[i]);
+    d[3] = 3 + 3000 * __builtin_fabsf(f - g[3]);
     const float p01 = d[0] * d[1], p23 = d[2] * d[3];
-    w[0] = g[0] > 0 ? 9 * (d[1] * p23) : 0;
-    w[1] = g[1] > 0 ? 3 * (d[0] * p23) : 0;
-    w[2] = g[2] > 0 ? 3 * (d[3] * p01) : 0;
+    w[0] = g[0] > 0 ? (3 * d[1]) * p23 : 0;
+    w[1] = g[1] > 0 ? d[0] * p23 : 0;
+    w[2] = g[2] > 0 ? d[3] * p01 : 0;
     w[3] = g[3] > 0 ? d[2] * p01 : 0;
     const float sum = (w[0] + w[1]) + (w[2] + w[3]);
     if (!(sum > 0))
@@ -66,9 +67,11 @@ static void blend_far(const struct hf_frame *f, struct phase p, float coc, float
         return;
     }
     for (int c = 0; c < f->s->channels; c++) {
-        const float top = w[0] * *hf_at(far, c, p.x, p.y) + w[1] * *hf_at(far, c, p.nx, p.y);
-        const float bottom = w[2] * *hf_at(far, c, p.x, p.ny) + w[3] * *hf_at(far, c, p.nx, p.ny);
-        colour[c][i] = hf_lerp(colour[c][i], top + bottom, t);
+        float sum = w[0] * *hf_at(far, c, p.x, p.y);
+        sum += w[1] * *hf_at(far, c, p.nx, p.y);
+        sum += w[2] * *hf_at(far, c, p.x, p.ny);
+        sum += w[3] * *hf_at(far, c, p.nx, p.ny);
+        colour[c][i] = hf_lerp(colour[c][i], sum, t);
     }
 }
 

@@ -35,31 +35,65 @@ HF_INLINE vf truncate_small(vf v, const int m)
     return vf_select(vf_lt(v, vf_set1(0x1p-14f)), denormal, normal);
 }
 
-HF_INLINE void r11_unpack(vi u, vf out[3])
+// *most: the bits of the largest so far, before it is put right; none is negative.
+HF_INLINE void r11_unpack(vi u, vf out[3], vi *most)
 {
+    const vi r = vi_and(vi_shl(u, 17), vi_set1(0x7ff << 17)), g = vi_and(vi_shl(u, 6), vi_set1(0x7ff << 17));
+    const vi b = vi_and(vi_shr(u, 4), vi_set1(0x3ff << 18));
     const vf up = vf_set1(0x1p112f);
-    out[0] = vf_mul(vi_as_vf(vi_and(vi_shl(u, 17), vi_set1(0x7ff << 17))), up);
-    out[1] = vf_mul(vi_as_vf(vi_and(vi_shl(u, 6), vi_set1(0x7ff << 17))), up);
-    out[2] = vf_mul(vi_as_vf(vi_and(vi_shr(u, 4), vi_set1(0x3ff << 18))), up);
+    out[0] = vf_mul(vi_as_vf(r), up);
+    out[1] = vf_mul(vi_as_vf(g), up);
+    out[2] = vf_mul(vi_as_vf(b), up);
+    *most = vi_max(*most, vi_max(vi_max(r, g), b));
 }
 
-HF_INLINE vi r11_pack(const vf in[3], vi *clamped)
+// The bits of v above 2^-14, which count from 0, to be cut off after rounding to m mantissa bits. Smaller numbers come
+// out huge, unless they round to 2^-14.
+HF_INLINE vi r11_from_smallest(vf v, const int m)
+{
+    return vi_add(vf_as_vi(v), vi_set1((int32_t)((1u << (22 - m)) - 1 - (113u << 23))));
+}
+
+HF_INLINE vi r11_odd(vf v, const int m)
+{
+    return vi_and(vi_shr(vf_as_vi(v), 23 - m), vi_set1(1));
+}
+
+HF_INLINE vi r11_pack_any(const vf in[3], vi *clamped)
 {
     static const float max[3] = {HF_R11_MAX, HF_R11_MAX, HF_R10_MAX};
-    // Mostly nothing has to be clamped and nothing is denormal, zero included: half the work. Minimum and maximum may lose
-    // a NaN, the sum does not.
-    const vf low = vf_min(vf_min(in[0], in[1]), in[2]), high = vf_max(vf_max(in[0], in[1]), in[2]);
-    const vf sum = vf_add(vf_add(in[0], in[1]), in[2]);
-    const vm plain = vm_and(vf_le(vf_set1(0x1p-14f), low), vf_le(high, vf_set1(HF_R10_MAX)));
-    if (!vm_any(vm_not(vm_and(plain, vf_eq(sum, sum)))))
-        return vi_or(vi_or(encode_normal(in[0], 6), vi_shl(encode_normal(in[1], 6), 11)),
-                     vi_shl(encode_normal(in[2], 5), 22));
     vf v[3];
     for (int c = 0; c < 3; c++) {
         v[c] = clamp_unsigned(in[c], max[c]);
         *clamped = vi_count(*clamped, vf_ne(v[c], in[c]));
     }
     return vi_or(vi_or(encode_small(v[0], 6), vi_shl(encode_small(v[1], 6), 11)), vi_shl(encode_small(v[2], 5), 22));
+}
+
+// Two vectors. Mostly nothing has to be clamped and nothing is denormal, zero included: half the work. As unsigned
+// numbers, counted from the smallest normal one, all that is small, negative or no number is large.
+HF_INLINE void r11_pack(const vf in[2][4], vi out[2], vi *clamped)
+{
+    vi v[2][3], most = vi_set1(0);
+    for (int o = 0; o < 2; o++)
+        for (int c = 0; c < 3; c++) {
+            v[o][c] = r11_from_smallest(in[o][c], c == 2 ? 5 : 6);
+            most = vi_max(most, v[o][c]);
+        }
+    const int32_t max = (int32_t)(0x477c0000u - (113u << 23) + 0xffff);  // the bits of HF_R10_MAX
+    if (vm_any(vm_not(vi_le(most, vi_set1(max))))) {
+        for (int o = 0; o < 2; o++)
+            out[o] = r11_pack_any(in[o], clamped);
+        return;
+    }
+    for (int o = 0; o < 2; o++) {
+        for (int c = 0; c < 3; c++)
+            v[o][c] = vi_add(v[o][c], r11_odd(in[o][c], c == 2 ? 5 : 6));
+        vi u = vi_shr(v[o][0], 17);
+        u = vi_or_and(u, vi_shr(v[o][1], 6), vi_set1(0x7ff << 11));
+        u = vi_or_and(u, vi_shl(v[o][2], 4), vi_set1((int32_t)(0x3ffu << 22)));
+        out[o] = vi_add(u, vi_set1(1 << 6 | 1 << 17 | 1 << 27));  // the exponent of 2^-14
+    }
 }
 
 #ifdef VF_SOFT_HALF
@@ -155,8 +189,10 @@ HF_INLINE vm load_block(const enum hf_format format, const uint8_t *p, vf even[4
     if (format == HF_FORMAT_R11G11B10F) {
         vf e, o;
         vf_unzip(vf_load(p), vf_load(p + 4 * VF_N), &e, &o);
-        r11_unpack(vf_as_vi(e), even);
-        r11_unpack(vf_as_vi(o), odd);
+        vi most = vi_set1(0);
+        r11_unpack(vf_as_vi(e), even, &most);
+        r11_unpack(vf_as_vi(o), odd, &most);
+        return vm_not(vi_le(most, vi_set1((31 << 23) - 1)));
     } else if (format == HF_FORMAT_PLANAR32F) {  // one plane a call
         vf_unzip(vf_load(p), vf_load(p + 4 * VF_N), &even[0], &odd[0]);
     } else {
@@ -178,11 +214,6 @@ HF_INLINE vm load_block(const enum hf_format format, const uint8_t *p, vf even[4
     }
     const int small = format == HF_FORMAT_RGBA16F;
     const int channels = format == HF_FORMAT_PLANAR32F ? 1 : format == HF_FORMAT_RGB32F ? 3 : 4;
-    if (format == HF_FORMAT_R11G11B10F) {
-        // Nothing is negative or NaN here, so that one comparison of the largest serves all six.
-        const vf e = vf_max(vf_max(even[0], even[1]), even[2]), o = vf_max(vf_max(odd[0], odd[1]), odd[2]);
-        return vm_not(vf_lt(vf_max(e, o), vf_set1(65536.0f)));
-    }
     for (int c = 0; c < channels; c++)
         bad = vm_or(bad, small ? vm_or(not_small(even[c]), not_small(odd[c]))
                                : vm_or(not_finite(even[c]), not_finite(odd[c])));
@@ -193,10 +224,12 @@ HF_INLINE void store_block(const enum hf_format format, uint8_t *p, const vf eve
 {
     vf a[4], b[4];
     if (format == HF_FORMAT_R11G11B10F) {
-        vf lo, hi;
-        vf_zip(vi_as_vf(r11_pack(even, clamped)), vi_as_vf(r11_pack(odd, clamped)), &lo, &hi);
-        vf_store(p, lo);
-        vf_store(p + 4 * VF_N, hi);
+        const vf in[2][4] = {{even[0], even[1], even[2]}, {odd[0], odd[1], odd[2]}};
+        vi u[2];
+        r11_pack(in, u, clamped);
+        vf_zip(vi_as_vf(u[0]), vi_as_vf(u[1]), &a[0], &b[0]);
+        vf_store(p, a[0]);
+        vf_store(p + 4 * VF_N, b[0]);
         return;
     }
     if (format == HF_FORMAT_PLANAR32F) {
@@ -233,8 +266,8 @@ HF_INLINE void store_block(const enum hf_format format, uint8_t *p, const vf eve
 
 enum { FORMAT_MAX_BYTES = 16 };
 
-// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many of the 2 n there are. A tile's rows are
-// too short for hardware prefetchers to catch on, so each fetches the one after next.
+// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many of the 2 n there are. A tile's rows
+// are too short for hardware prefetchers to catch on, so each fetches the one after next.
 HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int channels, const uint8_t *p,
                          ptrdiff_t stride, int n, int pixels, float *const even[4], float *const odd[4])
 {

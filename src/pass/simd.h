@@ -46,7 +46,12 @@ HF_INLINE float vf_most(vf a)
 // a + t (b - a), a's own bits for t = 0.
 HF_INLINE vf vf_lerp(vf a, vf b, vf t)
 {
-    return vf_select(vf_eq(t, vf_zero()), a, vf_fma(t, vf_sub(b, a), a));
+    const vm m = vf_ne(t, vf_zero());
+#if HF_FUSED
+    return vf_muladd_where_fused(m, t, vf_sub(b, a), a);
+#else
+    return vf_add_where(m, vf_mul(t, vf_sub(b, a)), a);
+#endif
 }
 
 #endif

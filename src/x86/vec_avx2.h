@@ -41,6 +41,9 @@ static inline vm vm_not(vm a) { return _mm256_xor_ps(a, _mm256_castsi256_ps(_mm2
 static inline int vm_any(vm a) { return _mm256_movemask_ps(a) != 0; }
 static inline vf vf_select(vm m, vf a, vf b) { return _mm256_blendv_ps(b, a, m); }
 static inline vf vf_keep(vm m, vf a) { return _mm256_and_ps(m, a); }  // 0 where not
+// c, and where m a + c or a * b + c.
+static inline vf vf_add_where(vm m, vf a, vf c) { return vf_select(m, vf_add(a, c), c); }
+static inline vf vf_muladd_where_fused(vm m, vf a, vf b, vf c) { return vf_select(m, vf_muladd_fused(a, b, c), c); }
 // count + 1 where m.
 static inline vi vi_count(vi count, vm m) { return _mm256_sub_epi32(count, _mm256_castps_si256(m)); }
 
@@ -51,7 +54,13 @@ static inline vi vi_add(vi a, vi b) { return _mm256_add_epi32(a, b); }
 static inline vi vi_sub(vi a, vi b) { return _mm256_sub_epi32(a, b); }
 static inline vi vi_and(vi a, vi b) { return _mm256_and_si256(a, b); }
 static inline vi vi_or(vi a, vi b) { return _mm256_or_si256(a, b); }
+static inline vi vi_xor(vi a, vi b) { return _mm256_xor_si256(a, b); }
+static inline vi vi_or_and(vi a, vi b, vi c) { return vi_or(a, vi_and(b, c)); }
+static inline vi vi_or_xor(vi a, vi b, vi c) { return vi_or(a, vi_xor(b, c)); }
+static inline vi vi_max(vi a, vi b) { return _mm256_max_epu32(a, b); }  // unsigned
 static inline vm vi_eq(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)); }
+static inline int vi_any(vi a) { return !_mm256_testz_si256(a, a); }
+static inline vm vi_le(vi a, vi b) { return vi_eq(vi_max(a, b), b); }
 #define vi_shl(a, n) _mm256_slli_epi32(a, n)
 #define vi_shr(a, n) _mm256_srli_epi32(a, n)
 static inline vi vf_as_vi(vf a) { return _mm256_castps_si256(a); }

@@ -42,6 +42,9 @@ static inline vm vm_not(vm a) { return (vm)~a; }
 static inline int vm_any(vm a) { return a != 0; }
 static inline vf vf_select(vm m, vf a, vf b) { return _mm512_mask_blend_ps(m, b, a); }
 static inline vf vf_keep(vm m, vf a) { return _mm512_maskz_mov_ps(m, a); }  // 0 where not
+// c, and where m a + c or a * b + c.
+static inline vf vf_add_where(vm m, vf a, vf c) { return _mm512_mask_add_ps(c, m, a, c); }
+static inline vf vf_muladd_where_fused(vm m, vf a, vf b, vf c) { return _mm512_mask3_fmadd_ps(a, b, c, m); }
 // count + 1 where m.
 static inline vi vi_count(vi count, vm m) { return _mm512_mask_add_epi32(count, m, count, _mm512_set1_epi32(1)); }
 
@@ -52,6 +55,12 @@ static inline vi vi_add(vi a, vi b) { return _mm512_add_epi32(a, b); }
 static inline vi vi_sub(vi a, vi b) { return _mm512_sub_epi32(a, b); }
 static inline vi vi_and(vi a, vi b) { return _mm512_and_si512(a, b); }
 static inline vi vi_or(vi a, vi b) { return _mm512_or_si512(a, b); }
+static inline vi vi_xor(vi a, vi b) { return _mm512_xor_si512(a, b); }
+static inline vi vi_or_and(vi a, vi b, vi c) { return _mm512_ternarylogic_epi32(a, b, c, 0xf8); }  // a | (b & c)
+static inline vi vi_or_xor(vi a, vi b, vi c) { return _mm512_ternarylogic_epi32(a, b, c, 0xf6); }  // a | (b ^ c)
+static inline vi vi_max(vi a, vi b) { return _mm512_max_epu32(a, b); }  // unsigned
+static inline int vi_any(vi a) { return _mm512_test_epi32_mask(a, a) != 0; }
+static inline vm vi_le(vi a, vi b) { return _mm512_cmple_epu32_mask(a, b); }
 static inline vm vi_eq(vi a, vi b) { return _mm512_cmpeq_epi32_mask(a, b); }
 #define vi_shl(a, n) _mm512_slli_epi32(a, n)
 #define vi_shr(a, n) _mm512_srli_epi32(a, n)

@@ -42,6 +42,9 @@ static inline vm vm_not(vm a) { return _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_e
 static inline int vm_any(vm a) { return _mm_movemask_ps(a) != 0; }
 static inline vf vf_select(vm m, vf a, vf b) { return _mm_blendv_ps(b, a, m); }
 static inline vf vf_keep(vm m, vf a) { return _mm_and_ps(m, a); }  // 0 where not
+// c, and where m a + c or a * b + c.
+static inline vf vf_add_where(vm m, vf a, vf c) { return vf_select(m, vf_add(a, c), c); }
+static inline vf vf_muladd_where_fused(vm m, vf a, vf b, vf c) { return vf_select(m, vf_muladd_fused(a, b, c), c); }
 // count + 1 where m.
 static inline vi vi_count(vi count, vm m) { return _mm_sub_epi32(count, _mm_castps_si128(m)); }
 
@@ -52,7 +55,13 @@ static inline vi vi_add(vi a, vi b) { return _mm_add_epi32(a, b); }
 static inline vi vi_sub(vi a, vi b) { return _mm_sub_epi32(a, b); }
 static inline vi vi_and(vi a, vi b) { return _mm_and_si128(a, b); }
 static inline vi vi_or(vi a, vi b) { return _mm_or_si128(a, b); }
+static inline vi vi_xor(vi a, vi b) { return _mm_xor_si128(a, b); }
+static inline vi vi_or_and(vi a, vi b, vi c) { return vi_or(a, vi_and(b, c)); }
+static inline vi vi_or_xor(vi a, vi b, vi c) { return vi_or(a, vi_xor(b, c)); }
+static inline vi vi_max(vi a, vi b) { return _mm_max_epu32(a, b); }  // unsigned
 static inline vm vi_eq(vi a, vi b) { return _mm_castsi128_ps(_mm_cmpeq_epi32(a, b)); }
+static inline int vi_any(vi a) { return !_mm_testz_si128(a, a); }
+static inline vm vi_le(vi a, vi b) { return vi_eq(vi_max(a, b), b); }
 #define vi_shl(a, n) _mm_slli_epi32(a, n)
 #define vi_shr(a, n) _mm_srli_epi32(a, n)
 static inline vi vf_as_vi(vf a) { return _mm_castps_si128(a); }

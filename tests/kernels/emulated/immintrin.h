@@ -194,6 +194,8 @@ static inline __m256 emulated_to_float(__m512d a)
 #define _mm512_stream_ps(p, a) _mm512_storeu_ps(p, a)
 #undef _mm512_alignr_epi32
 #define _mm512_alignr_epi32(a, b, n) emulated_alignr(a, b, n)
+#undef _mm512_mask3_fmadd_ps
+#define _mm512_mask3_fmadd_ps(a, b, c, m) _mm512_mask_mov_ps(c, m, emulated_fmadd(a, b, c))
 #undef _mm512_abs_ps
 #define _mm512_abs_ps(a) emulated_abs(a)
 #undef _mm512_roundscale_ps
