@@ -122,7 +122,8 @@ static void later_sweep(void *arg, int i, int worker)
     const int last = j->sweep == p->engine->sweeps;
     struct hf_worker *w = &j->c->workers[worker];
     const struct hf_rect cell = hf_plan_cell(p, j->sweep, i);
-    const int is_tile = !(p->engine->across >> j->sweep & 1) && p->columns[j->sweep] == p->columns[2] && p->rows[j->sweep] == p->rows[2];
+    const int is_tile = !(p->engine->across >> j->sweep & 1) && p->columns[j->sweep] == p->columns[2] &&
+                        p->rows[j->sweep] == p->rows[2];
     const unsigned needs = j->s->blend == 0 ? 0 : is_tile ? p->tile_needs[i] : p->needs;
     int64_t clock = now_ns();
     if (!needs) {
@@ -290,7 +291,8 @@ int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_im
     if (err)
         return err;
     for (j.sweep = 2; j.sweep <= c->plan.engine->sweeps; j.sweep++)
-        if (j.sweep == c->plan.engine->sweeps || (s->blend != 0 && c->plan.needs && hf_plan_sweep_runs(&c->plan, s, j.sweep)))
+        if (j.sweep == c->plan.engine->sweeps ||
+            (s->blend != 0 && c->plan.needs && hf_plan_sweep_runs(&c->plan, s, j.sweep)))
             parallel(c, hf_plan_count(&c->plan, j.sweep), later_sweep, &j);
     collect_stats(&j, start);
     return c->dump && s->blend != 0 ? hf_dump_buffers(c, s) : HF_OK;
