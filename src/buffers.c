@@ -119,7 +119,8 @@ static size_t frame_floats(const struct hf_context *c, const struct hf_setup *s,
     size_t floats = 0;
     for (int b = 0; b < e->buf_count; b++)
         if (e->bufs[b].frame && is_wanted(&e->bufs[b], fields))
-            floats += (size_t)e->channels(s, b) * window_floats(window_of(&c->plan, s, b, s->half_width, s->half_height));
+            floats += (size_t)e->channels(s, b) *
+                      window_floats(window_of(&c->plan, s, b, s->half_width, s->half_height));
     return floats;
 }
 

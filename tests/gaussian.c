@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gaussian engine against its formulas in double precision: blur, blend, autofocus, and that each parameter counts. Its
-// hard cases are in gaussian_hard.c.
+// The gaussian engine against its formulas in double precision: blur, blend, autofocus, and that each parameter counts.
+// Its hard cases are in gaussian_hard.c.
 //
 //     gaussian [seed]
 //
@@ -71,7 +71,8 @@ static void true_gaussian(struct plane *p, int dx, int dy, double sigma)
     *p = out;
 }
 
-// Mean of size x size pixels. At an odd edge half-resolution quads repeat their last pixel, and quarter ones their last quad.
+// Mean of size x size pixels. At an odd edge half-resolution quads repeat their last pixel, and quarter ones their last
+// quad.
 static struct plane shrunk(const struct plane *p, int size)
 {
     const int hw = (p->width + 1) / 2, hh = (p->height + 1) / 2;
@@ -168,9 +169,9 @@ static struct picture expected(const struct scene *s, const struct hf_depth *dep
 }
 
 // Roundings from the picture to the result. Each iteration has two directions of four additions (faithfully four, three
-// products and three weights that are no floats); 16 additions and a product down, 2 x 3 operations up; 3 to blend, at twice
-// the largest sample. The blend factor, times that: of z / f or 2 z / (z + f) three, at either end, and two for z itself (NDC
-// eight), times 3, and eight for the shape.
+// products and three weights that are no floats); 16 additions and a product down, 2 x 3 operations up; 3 to blend, at
+// twice the largest sample. The blend factor, times that: of z / f or 2 z / (z + f) three, at either end, and two for z
+// itself (NDC eight), times 3, and eight for the shape.
 static double bound_of(const struct hf_params *p, const struct hf_depth *d)
 {
     const double iterations = (p->faithful ? 20 : 8) * p->iterations, sizes = p->resolution ? 17 + 12 : 0;
@@ -215,13 +216,14 @@ static void against_double(struct hf_context *c, const char *isa)
     printf("%s: against double precision: %.2g of the bound\n", isa, worst);
 }
 
-// Four boxes are not quite a gaussian, but have its variance exactly. A unit line and a unit step, and random samples between
-// 0 and 1, against a true one; below sigma 1 samples of a gaussian have another variance than it has.
+// Four boxes are not quite a gaussian, but have its variance exactly. A unit line and a unit step, and random samples
+// between 0 and 1, against a true one; below sigma 1 samples of a gaussian have another variance than it has.
 static void against_gaussian(struct hf_context *c, const char *isa)
 {
     enum { W = 301, MIDDLE = 150 };
     static const float sigmas[] = {0.2f, 0.3f, 0.7f, 1, 1.5f, 2, 3, 5, 8, 12, 20};
-    // The excess kurtosis of k boxes is -1.2 / k, which lowers the peak by an eighth of that, 0.0375, and more for few taps.
+    // The excess kurtosis of k boxes is -1.2 / k, which lowers the peak by an eighth of that, 0.0375, and more for few
+    // taps.
     static const double bounds[3] = {0.065, 0.013, 0.03};
     double worst[3] = {0};
     for (int i = 0; i < 11; i++) {

@@ -241,7 +241,8 @@ static void copies(struct hf_context *c, const char *isa)
     scene_free(&s);
 }
 
-// Tiny steps of the focus are tiny steps of the picture: 3 |d(focus) - d| has slope 3 / 100 a unit, the merge at most 1.
+// Tiny steps of the focus are tiny steps of the picture: 3 |d(focus) - d| has slope 3 / 100 a unit, the merge at most
+// 1.
 static void focus_pull(struct hf_context *c, const char *isa)
 {
     struct rng rng = rng_seed(seed);

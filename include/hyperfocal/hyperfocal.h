@@ -205,8 +205,8 @@ struct hf_params {
     enum hf_model model;    // default HF_MODEL_RANGE. Ignored for HF_DEPTH_COC.
 
     // Distance of the plane in focus, scene units of view depth, > 0, finite. Default 10. Both models.
-    // gaussian also takes HF_DERIVE: what pixel (width / 2, height / 2) shows; without a surface there, infinity. Ignored
-    // for HF_DEPTH_COC.
+    // gaussian also takes HF_DERIVE: what pixel (width / 2, height / 2) shows; without a surface there, infinity.
+    // Ignored for HF_DEPTH_COC.
     float focus_distance;
 
     // Range model. Distance over which sharp turns into fully blurred, on both sides of the focus: >= 0, scene
@@ -297,12 +297,12 @@ struct hf_params {
     // Anamorphic squeeze: height over width of a highlight, 0.25..4, default 1. Heights are kept.
     float squeeze;
 
-    // gaussian: passes of the 5-tap kernel over the buffer, 0..64, default 3: a standard deviation of sqrt(iterations) of its
-    // pixels, square or not. With range, near_* and far_* all derived (and no lens), or faithful, the blend with the
-    // picture is strength * sat(3 |d(focus) - d(z)|), d = sat(z / far plane); else strength * max(n, f).
+    // gaussian: passes of the 5-tap kernel over the buffer, 0..64, default 3: a standard deviation of sqrt(iterations)
+    // of its pixels, square or not. With range, near_* and far_* all derived (and no lens), or faithful, the blend with
+    // the picture is strength * sat(3 |d(focus) - d(z)|), d = sat(z / far plane); else strength * max(n, f).
     int iterations;
-    // gaussian: standard deviation in full-resolution pixels (of y; pixel_aspect narrows it) of one blur that costs the same
-    // for any, in place of the iterations; 0 (default): iterations. Up to 256. Four boxes: within 1.3 % of a true
+    // gaussian: standard deviation in full-resolution pixels (of y; pixel_aspect narrows it) of one blur that costs the
+    // same for any, in place of the iterations; 0 (default): iterations. Up to 256. Four boxes: within 1.3 % of a true
     // gaussian's edge.
     float sigma;
 };

@@ -79,9 +79,10 @@ const struct cli_option cli_options[] = {
      "along the camera's axis (view, the default) or along the ray; a depth buffer from 0 to 1 (ndc-d3d), -1 to 1 "
      "(ndc-gl) or 1 to 0 (ndc-reversed), which need --near and --far; 1/distance; or signed blur radii in pixels, "
      "near ones negative (coc), which need no focus.", CHOICE(depth_type)},
-    {"near", 0, CLI_DEPTH, "D", "Near clip plane of an ndc depth, scene units; with gaussian of any.", POSITIVE(near_plane)},
-    {"far", 0, CLI_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf; with gaussian of any.", POSITIVE(far_plane),
-     .inf = 1},
+    {"near", 0, CLI_DEPTH, "D", "Near clip plane of an ndc depth, scene units; with gaussian of any.",
+     POSITIVE(near_plane)},
+    {"far", 0, CLI_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf; with gaussian of any.",
+     POSITIVE(far_plane), .inf = 1},
 
     {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian", "How to blur. gather (default): half-resolution near "
      "and far fields, the fastest. hexagon: hexagonal highlights in two passes. scatter: every pixel becomes the "

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gaussian engine: a blurred copy of the picture, blended with it by depth. After a shader of 2010 for a GTX 470, which
-// focuses on what the picture's centre shows.
+// The gaussian engine: a blurred copy of the picture, blended with it by depth. After a shader of 2010 for a GTX 470,
+// which focuses on what the picture's centre shows.
 //
 // Blur. n iterations of a 5-tap kernel along the rows and down the columns, 1 4 6 4 1 / 16, faithfully .3 .15 .1 .15 .3
 // (the printed weights, which are upside down). Each iteration clamps to the frame's edge. Along the rows and down the
 // columns are linear and independent, clamping included, so all iterations along the rows come first: from the picture
-// itself, chunk by chunk, which is why the engine works in place. Cost: n times 2 x 4 additions a sample, or with sigma (wide.c)
-// 2 x 4 boxes of three. Half and quarter buffers: mean of 2 x 2 or 4 x 4 pixels, bilinear back.
+// itself, chunk by chunk, which is why the engine works in place. Cost: n times 2 x 4 additions a sample, or with sigma
+// (wide.c) 2 x 4 boxes of three. Half and quarter buffers: mean of 2 x 2 or 4 x 4 pixels, bilinear back.
 //
 // Blend, per pixel at full resolution whatever the buffer's size. With nothing but a focus given (range model, all of
 // range and near_begin to far_end derived), and always when faithful: strength * sat(3 |d(focus) - d|), where
@@ -16,7 +16,8 @@
 #include "context.h"
 #include "pass/wide.h"
 
-// Sweep 2 has no passes, but its cells are the tiles. With sigma, whole columns and then whole rows are blurred in between.
+// Sweep 2 has no passes, but its cells are the tiles. With sigma, whole columns and then whole rows are blurred in
+// between.
 enum { WIDE_COLUMNS = 3, WIDE_ROWS, TILES };
 
 #define B(name) (1u << HF_GAUSSIAN_##name)
@@ -92,13 +93,15 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
     const size_t rows = HF_GAUSSIAN_LINES * hf_gaussian_line_floats(s, p->cell_width[1]);
     const size_t columns = (2 * (size_t)p->cell_height[2] + 2 * (size_t)hf_gaussian_reach(s) + 16) * HF_GAUSSIAN_STRIP;
-    const size_t wide = s->sigma > 0 ? hf_wide_floats(hf_max(s->width, s->height)) : 0, most = rows > columns ? rows : columns;
+    const size_t wide = s->sigma > 0 ? hf_wide_floats(hf_max(s->width, s->height)) : 0;
+    const size_t most = rows > columns ? rows : columns;
     return most > wide ? most : wide;
 }
 
 const struct hf_engine_def hf_gaussian_engine = {
     .name = "gaussian",
-    .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = TILES, .across = 1 << WIDE_COLUMNS | 1 << WIDE_ROWS,
+    .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = TILES,
+    .across = 1 << WIDE_COLUMNS | 1 << WIDE_ROWS,
     .bufs = bufs, .buf_count = HF_GAUSSIAN_BUFS,
     .channels = channels, .halo = halo, .spread = spread, .reads = reads, .work = work, .runs = runs, .cell = cell,
 };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gaussian engine's passes (engine/gaussian.c says what they compute), and their rows in plain C. Nothing is fused that
-// fusing would change: the bits are the same on every machine, deterministic or not.
+// The gaussian engine's passes (engine/gaussian.c says what they compute), and their rows in plain C. Nothing is fused
+// that fusing would change: the bits are the same on every machine, deterministic or not.
 #include "pass/gaussian.h"
 
 #include "pass/pass_c.h"
 
-// 1 4 6 4 1 / 16 as 1 2 1 twice: a constant stays what it is, bit for bit, mirrored samples give mirrored bits, and since
-// doubling is exact a fused multiply-add changes nothing. Divided first, so that nothing overflows.
+// 1 4 6 4 1 / 16 as 1 2 1 twice: a constant stays what it is, bit for bit, mirrored samples give mirrored bits, and
+// since doubling is exact a fused multiply-add changes nothing. Divided first, so that nothing overflows.
 static float smooth(float a, float b, float c)
 {
     return (a + c) + 2 * b;
@@ -141,8 +141,8 @@ static struct lines lines_of(const struct hf_frame *f, size_t floats)
     return l;
 }
 
-// Row y of the working resolution, lanes x0 to x1: at full resolution in l->even and l->odd, else what each lane adds to
-// the mean of four or sixteen pixels, in l->sum.
+// Row y of the working resolution, lanes x0 to x1: at full resolution in l->even and l->odd, else what each lane adds
+// to the mean of four or sixteen pixels, in l->sum.
 static void read_sums(const struct hf_frame *f, struct lines *l, int x0, int x1, int y)
 {
     const struct hf_setup *s = f->s;

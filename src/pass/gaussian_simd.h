@@ -9,8 +9,8 @@ HF_INLINE vf smooth_vf(vf a, vf b, vf c)
     return vf_muladd_fused(vf_set1(2), b, vf_add(a, c));
 }
 
-// The 5-tap kernel is that twice, down a column one sample at a time: the last two samples and their last two sums are all
-// that the next one needs, so a sample costs one load.
+// The 5-tap kernel is that twice, down a column one sample at a time: the last two samples and their last two sums are
+// all that the next one needs, so a sample costs one load.
 struct column {
     vf v[2], q[2];
 };
@@ -33,7 +33,8 @@ HF_INLINE vf five_faithful_vf(vf a, vf b, vf c, vf d, vf e)
 HF_INLINE vf line_sums(const float *p)
 {
     const vf sixteenth = vf_set1(0.0625f);
-    return smooth_vf(vf_mul(vf_load(p - 1), sixteenth), vf_mul(vf_load(p), sixteenth), vf_mul(vf_load(p + 1), sixteenth));
+    const vf a = vf_mul(vf_load(p - 1), sixteenth), c = vf_mul(vf_load(p + 1), sixteenth);
+    return smooth_vf(a, vf_mul(vf_load(p), sixteenth), c);
 }
 
 static void gaussian_line_simd(const float *in, int n, float *out, int faithful)
@@ -46,8 +47,9 @@ static void gaussian_line_simd(const float *in, int n, float *out, int faithful)
         }
         return;
     }
-    // Neighbours of pixels are loaded, those of their sums shifted: on Zen 4 shifts share a unit with additions, and four of
-    // them were a third slower. Sums lie one pixel ahead, and before the first vector only the last two of them count.
+    // Neighbours of pixels are loaded, those of their sums shifted: on Zen 4 shifts share a unit with additions, and
+    // four of them were a third slower. Sums lie one pixel ahead, and before the first vector only the last two of them
+    // count.
     vf ahead = line_sums(in + 1 - VF_N), own = vf_back(ahead, ahead);
     for (int i = 0; i < n; i += VF_N) {
         const vf next = line_sums(in + i + 1), middle = vf_back(ahead, next);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A gaussian whose cost does not depend on its size: four boxes with fractional ends, so that the variance is exact (Gwosdek,
-// Grewenig, Bruhn and Weickert, "Theoretical foundations of gaussian convolution by extended box filtering", 2011).
+// A gaussian whose cost does not depend on its size: four boxes with fractional ends, so that the variance is exact
+// (Gwosdek, Grewenig, Bruhn and Weickert, "Theoretical foundations of gaussian convolution by extended box filtering",
+// 2011).
 //
-// A box sum of 2l + 1 samples is one suffix and one prefix of blocks that long, three additions whatever the length, and
-// never a subtraction, so that nothing drifts, and nothing of a highlight stays behind when it leaves the window. In double:
-// the sums of floats are exact there while the samples under the window lie within a factor of 2^(29 - log2(2l + 1)) of
-// each other, and then shifts, crops and flips of a picture give the same bits; beyond, the last bit of one in many millions of
-// samples may differ. What the boxes hand on is float.
+// A box sum of 2l + 1 samples is one suffix and one prefix of blocks that long, three additions whatever the length,
+// and never a subtraction, so that nothing drifts, and nothing of a highlight stays behind when it leaves the window.
+// In double: the sums of floats are exact there while the samples under the window lie within a factor of 2^(29 -
+// log2(2l + 1)) of each other, and then shifts, crops and flips of a picture give the same bits; beyond, the last bit
+// of one in many millions of samples may differ. What the boxes hand on is float.
 #include <math.h>
 
 #include "pass/pass_c.h"

@@ -5,7 +5,8 @@
 
 #include "pass/gaussian.h"
 
-// Columns that are filtered at a time, and how often. A larger number of boxes is closer to a gaussian: see tests/gaussian.c.
+// Columns that are filtered at a time, and how often. A larger number of boxes is closer to a gaussian: see
+// tests/gaussian.c.
 enum { HF_WIDE_LANES = 16, HF_WIDE_BOXES = 4 };
 
 // A box of 2l + 1 samples, and alpha of one more at either end; scale is 1 over the sum.

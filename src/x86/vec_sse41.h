@@ -120,8 +120,16 @@ static inline vf vf_gather(const float *p, vi index)
 // Vectors of half as many doubles: from floats and back, and as they are.
 typedef __m128d vd;
 enum { VD_N = 2 };
-static inline vd vd_load(const float *p) { return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p))); }
-static inline void vd_store(float *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p, _mm_castps_si128(_mm_cvtpd_ps(a))); }
+static inline vd vd_load(const float *p)
+{
+    return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
+}
+
+static inline void vd_store(float *p, vd a)
+{
+    _mm_storel_epi64((__m128i *)(void *)p, _mm_castps_si128(_mm_cvtpd_ps(a)));
+}
+
 static inline vd vd_sum(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_keep_sum(double *p, vd a) { _mm_storeu_pd(p, a); }
 static inline vd vd_set1(double a) { return _mm_set1_pd(a); }
