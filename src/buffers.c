@@ -23,7 +23,11 @@ static int offset(int n, int log2)
 static struct window window_of(const struct hf_plan *p, int b, int width, int height)
 {
     const struct hf_buf_def *def = &p->engine->bufs[b];
-    struct window w = {.left = (scaled(p->buf[b].x, def->x) + 15) & ~15, .top = scaled(p->buf[b].y, def->y)};
+    struct window w = {0};
+    if (!def->bare) {
+        w.left = (scaled(p->buf[b].x, def->x) + 15) & ~15;
+        w.top = scaled(p->buf[b].y, def->y);
+    }
     w.stride = ((scaled(width, def->x) + 15) & ~15) + 2 * w.left + HF_PAD;
     if (w.stride % 1024 == 0)
         w.stride += 16;  // rows 4 KB apart would share cache sets
@@ -185,7 +189,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
     const struct hf_engine_def *e = c->plan.engine;
     const struct hf_buf_def *def = &e->bufs[b];
     const struct hf_reach reach = {scaled(c->plan.buf[b].x, def->x), scaled(c->plan.buf[b].y, def->y)};
-    if (!f->buf[b].ch[0] || (reach.x == 0 && reach.y == 0))
+    if (!f->buf[b].ch[0] || def->bare || (reach.x == 0 && reach.y == 0))
         return;
     const struct hf_rect have = hf_buffers_rect(s, def, r);
     struct hf_rect want = have;

@@ -5,6 +5,7 @@ const struct hf_engine_def *hf_engine_def(enum hf_engine engine)
 {
     static const struct hf_engine_def *const engines[HF_ENGINE_COUNT] = {
         [HF_ENGINE_GATHER] = &hf_gather_engine,
+        [HF_ENGINE_SCATTER] = &hf_scatter_engine,
     };
     return (unsigned)engine < HF_ENGINE_COUNT ? engines[engine] : NULL;
 }

@@ -13,6 +13,7 @@ struct hf_buf_def {
     int frame;         // a window of the whole frame; else of a cell of the sweep that writes it
     int x, y;          // log2 of its pixels per half-resolution pixel: 1 is full resolution, 0 half, -1 a quarter
     unsigned field;    // the field that it belongs to; 0: wanted for any
+    int bare;          // nothing is read beyond the frame: no border
 };
 
 struct hf_engine_def {
@@ -29,6 +30,8 @@ struct hf_engine_def {
     int (*prepare)(struct hf_context *c, struct hf_setup *s, const struct hf_params *p);
     // measured: called with what was counted over the frame; sets the reach.
     void (*measure)(struct hf_setup *s, const struct hf_counts *found);
+    // measured: called with what the whole first sweep has counted. NULL: nothing follows from it.
+    void (*made)(struct hf_setup *s, const struct hf_counts *found);
     // Channels of a buffer; 0: not wanted with these options.
     int (*channels)(const struct hf_setup *s, int buf);
     // How far around a pixel a pass reads.
@@ -43,7 +46,7 @@ struct hf_engine_def {
     size_t (*work)(const struct hf_setup *s, const struct hf_plan *p);
 };
 
-extern const struct hf_engine_def hf_gather_engine;
+extern const struct hf_engine_def hf_gather_engine, hf_scatter_engine;
 // Reaches and taps of the gather: its prepare, for a setup whose taps are anyone's.
 int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
 

@@ -102,6 +102,8 @@ struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
     float radius_min, radius_max;  // signed CoC radii; not the gather's
+    float largest;                 // scatter: absolute sample of a blurred pixel
+    uint64_t transparent;          // scatter: blurred pixels whose alpha is not 1
 };
 
 struct hf_kernels;

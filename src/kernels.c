@@ -18,6 +18,12 @@ void hf_kernels_c(struct hf_kernels *k)
     k->radius_row = hf_radius_row_c;
     k->zip = hf_zip_row_c;
     k->unzip = hf_unzip_row_c;
+    k->pass[HF_KERNEL_SCATTER_PREPARE] = hf_scatter_prepare_c;
+    k->pass[HF_KERNEL_SPLAT_FAR] = hf_splat_far;
+    k->pass[HF_KERNEL_SPLAT_NEAR] = hf_splat_near;
+    k->pass[HF_KERNEL_SCATTER_COMPOSITE] = hf_scatter_composite_c;
+    k->splat = hf_splat_c;
+    k->settle = hf_settle_c;
     hf_format_kernels_c(k);
 }
 

@@ -25,6 +25,10 @@ enum { HF_NEAR = 1, HF_FAR = 2, HF_FIELDS = HF_NEAR | HF_FAR };
 // Kernels beyond the gather's, which are numbered by its passes.
 enum {
     HF_KERNEL_RADIUS = HF_PASS_COUNT,  // looks at the depth: counts, and the range of radii
+    HF_KERNEL_SCATTER_PREPARE,
+    HF_KERNEL_SPLAT_FAR,
+    HF_KERNEL_SPLAT_NEAR,
+    HF_KERNEL_SCATTER_COMPOSITE,
     HF_KERNEL_COUNT
 };
 
@@ -81,12 +85,22 @@ typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
 typedef void hf_round_row(float *v, int n);
 typedef void hf_round_rgb(float *r, float *g, float *b, int n);
 
+struct hf_sums;
+struct hf_splats;
+struct hf_aperture;
+// Scatter: draw a list of pictures, of sources on row y, into the sums (pass/splat.c).
+typedef void hf_splat(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list);
+// A finished row of n pixels of sums: integrated, scaled, split into planes (lane 3, the weight, to out[3]), and zeroed.
+typedef void hf_settle(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4]);
+
 struct hf_kernels {
     hf_kernel *pass[HF_KERNEL_COUNT];
     hf_coc_row *coc_row;
     hf_radius_row *radius_row;
     hf_zip_row *zip;
     hf_unzip_row *unzip;
+    hf_splat *splat;
+    hf_settle *settle;
     hf_load_row *load[HF_FORMAT_COUNT];
     hf_store_row *store[HF_FORMAT_COUNT];
     hf_finite *finite_f32, *finite_f16, *finite_r11;

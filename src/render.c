@@ -158,6 +158,8 @@ static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
     sum->clamped += c->clamped;
     sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
     sum->radius_max = c->radius_max > sum->radius_max ? c->radius_max : sum->radius_max;
+    sum->largest = c->largest > sum->largest ? c->largest : sum->largest;
+    sum->transparent += c->transparent;
 }
 
 static struct hf_counts all_counts(const struct hf_context *c)
@@ -180,7 +182,7 @@ static void collect_stats(const struct job *j, int64_t start)
     if (j->s->blend == 0)
         t->sharp_pixels = (uint64_t)j->s->width * (uint64_t)j->s->height;
     t->memory = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
-                c->taps.block.size + c->tables.size + (c->pool ? hf_pool_bytes(c->threads) : 0);
+                c->taps.block.size + c->aperture.block.size + c->tables.size + (c->pool ? hf_pool_bytes(c->threads) : 0);
     for (int i = 0; i < c->threads; i++) {
         const struct hf_worker *w = &c->workers[i];
         for (int p = 0; p < HF_MAX_PASSES; p++) {
@@ -282,6 +284,10 @@ int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_im
         err = plan_frame(&j);
         if (!err && c->plan.deferred_count)
             parallel(c, c->plan.deferred_count, first_sweep_deferred, &j);
+        if (!err && c->plan.engine->made) {
+            const struct hf_counts found = all_counts(c);
+            c->plan.engine->made(s, &found);
+        }
     } else if (j.copy.in_place) {
         parallel(c, hf_plan_count(&c->plan, 2), scan_tile, &j);
     }

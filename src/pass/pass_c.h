@@ -14,6 +14,9 @@ hf_kernel hf_radius_c;
 hf_radius_row hf_radius_row_c;
 hf_zip_row hf_zip_row_c;
 hf_unzip_row hf_unzip_row_c;
+hf_kernel hf_scatter_prepare_c, hf_splat_far, hf_splat_near, hf_scatter_composite_c;
+hf_splat hf_splat_c;
+hf_settle hf_settle_c;
 
 // The variable that CoC is linear in at a pixel: z, -1/z with a lens, or the radius itself.
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);

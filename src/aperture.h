@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures of the aperture at every size, as runs of pixels row by row: what the scatter engine draws.
+#ifndef HF_APERTURE_H
+#define HF_APERTURE_H
+
+#include "frame.h"
+#include "mem.h"
+
+// A row of a picture: the run from a to b, in 1/256 pixel from the left edge of the pixel it is drawn around, and its
+// weight in 1/64: below that where the picture covers only part of the row's height.
+struct hf_run {
+    int32_t a, b, weight;
+};
+
+// One size of the picture. Every shape has rows from `top` down to bottom.
+struct hf_picture {
+    int first;      // row 0 (symmetric) or row `top`, in half[] or run[]
+    int top, rows;  // symmetric: top 0, rows 0..rows - 1 stand for both +dy and -dy
+    int reach_x, reach_y;
+    float inverse;  // 1 / sum of the weights of its pixels, in units of hf_aperture.unit
+};
+
+// 256 sizes an octave, from radius 0.5 on, each 0.2 to 0.4 % larger than the last. Nearest one to a radius.
+enum { HF_SIZES_LOG2 = 8, HF_SIZES = 1 << HF_SIZES_LOG2 };
+
+// What the pictures follow from. No padding: keys are compared byte by byte.
+struct hf_aperture_key {
+    float largest;  // radius, pixels
+    float scale_x;  // widths are multiplied by it: pixel aspect and squeeze
+    int blades;
+    float rotation, roundness, ring;
+};
+
+struct hf_aperture {
+    int symmetric;             // disc: about both axes, half[] alone
+    int count;
+    int unit;                  // weight of a whole pixel
+    int headroom;              // bits by which sums may exceed the largest sample
+    struct hf_picture *picture;
+    int32_t *half;             // symmetric: half a row's width plus half a pixel, 1/256 pixel
+    struct hf_run *run;        // outlines
+    struct hf_block block;
+    struct hf_aperture_key key;
+};
+
+// (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
+int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem);
+
+// Number of the picture for a radius; smaller ones than 0.5 count as that. radius is finite.
+static inline int hf_picture_number(float radius)
+{
+    union {
+        float f;
+        int32_t i;
+    } r = {radius > 0.5f ? radius : 0.5f};
+    return (r.i - 0x3f000000 + (1 << (22 - HF_SIZES_LOG2))) >> (23 - HF_SIZES_LOG2);
+}
+
+// Its radius.
+static inline float hf_picture_radius(int number)
+{
+    union {
+        int32_t i;
+        float f;
+    } r = {0x3f000000 + number * (1 << (23 - HF_SIZES_LOG2))};
+    return r.f;
+}
+
+#endif

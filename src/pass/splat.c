@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatter: every blurred pixel adds its aperture's picture to the sums around it.
+//
+// Sums are 64-bit integers, so that no order of additions gives other bits and nothing drifts. A picture is a run of pixels
+// in each row; adding one means adding its share where it begins and taking it away where it ends: two pixels each,
+// for ends lie between pixels. One running sum along each row then turns these differences into the picture. A pixel
+// of radius r costs 4 (2r + 1) additions of four lanes instead of 4 r^2.
+//
+// Radii of half_to and more go to sums of half the resolution, between half_from and half_to to both. There a source is
+// the tent-weighted mean of 4x4 pixels (1 3 3 1), which keeps centroids, where those have like radii; else pixels are drawn
+// one by one, each on the four nearest.
+#include <math.h>
+#include <string.h>
+
+#include "pass/pass_c.h"
+#include "scatter.h"
+
+// Share of a run's end: j units of u where it begins and 256 - j one pixel on.
+static void add_end(int64_t *row, int x, int width, const uint64_t u[4], uint64_t first, uint64_t second)
+{
+    int64_t *p = row + 4 * (ptrdiff_t)hf_max(hf_min(x, width), 0);
+    int64_t *q = row + 4 * (ptrdiff_t)hf_max(hf_min(x + 1, width), 0);
+    for (int c = 0; c < 4; c++)
+        p[c] = (int64_t)((uint64_t)p[c] + u[c] * first);
+    for (int c = 0; c < 4; c++)
+        q[c] = (int64_t)((uint64_t)q[c] + u[c] * second);
+}
+
+static void draw_half(const struct hf_sums *s, int x, int y, const uint64_t u[4], int32_t half)
+{
+    if (y < s->y0 || y >= s->y1)
+        return;
+    int64_t *row = s->lane + s->row[y - s->y0];
+    const int n = half >> 8, width = s->x1 - s->x0;
+    const uint64_t j = (uint64_t)half & 255;
+    add_end(row, x - n, width, u, j, 256 - j);
+    add_end(row, x + n, width, u, -(256 - j), -j);
+}
+
+void hf_splat_c(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list)
+{
+    for (int i = 0; i < list->count; i++) {
+        const struct hf_picture *p = &a->picture[list->picture[i]];
+        const uint64_t *u = (const uint64_t *)list->share[i];
+        const int x = list->x[i] - s->x0;
+        for (int dy = 0; dy < p->rows; dy++) {
+            draw_half(s, x, y + dy, u, a->half[p->first + dy]);
+            if (dy)
+                draw_half(s, x, y - dy, u, a->half[p->first + dy]);
+        }
+    }
+}
+
+void hf_settle_c(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4])
+{
+    uint64_t sum[4] = {0};
+    for (int x = 0; x < n; x++)
+        for (int c = 0; c < 4; c++) {
+            sum[c] += (uint64_t)lane[4 * x + c];
+            if (c < channels || c == 3)
+                out[c][x] = (float)((double)(int64_t)sum[c] * unscale[c]);
+        }
+    memset(lane, 0, sizeof *lane * 4 * (size_t)(n + 2));
+}
+
+// The walk over a window: one field's sums of one group and level.
+struct walk {
+    const struct hf_frame *f;
+    const struct hf_scatter *t;
+    const struct hf_splat_group *group;
+    int field;  // 0 near, 1 far
+    int level;  // 1: half resolution
+    struct hf_sums sums;
+    struct hf_splats *list;
+    // level 1: of the last rows, source radii and pixels; see merge_row
+    float *quad[4], *tent[4][4], *pixel[4];
+    int lone[4];
+    int tent_x0, tent_x1, quads_done, tents_done;  // half-resolution columns; rows up to which they are made
+};
+
+// How much of a pixel of radius r > 0 the half-resolution sums take.
+static float half_part(const struct hf_scatter *t, float r)
+{
+    if (t->half_to <= 0)
+        return 1;
+    return hf_saturate((r - t->half_from) * (1 / (t->half_to - t->half_from)));
+}
+
+static void flush(struct walk *w, int y)
+{
+    if (w->list->count)
+        w->f->k->splat(&w->sums, w->t->aperture, y, w->list);
+    w->list->count = 0;
+}
+
+// Add a source to the list of row y: colour already weighted.
+static void add_source(struct walk *w, int x, int y, float radius, const float colour[3], float weight)
+{
+    struct hf_splats *l = w->list;
+    const float r = radius * w->group->factor[w->field];
+    const int number = hf_picture_number(r);
+    const float part = w->t->aperture->picture[number].inverse;
+    l->x[l->count] = x;
+    l->picture[l->count] = number;
+    for (int c = 0; c < 3; c++)
+        l->share[l->count][c] = c < w->group->channels ? (int64_t)((double)(colour[c] * part) * w->t->scale[c]) : 0;
+    l->share[l->count][3] = (int64_t)((double)(weight * part) * w->t->scale[3]);
+    if (++l->count == HF_SPLATS)
+        flush(w, y);
+}
+
+// Weight of a source pixel in its field, both levels together; 0: not of this field. *radius gets |r|.
+static float field_weight(const struct walk *w, float signed_radius, float *radius)
+{
+    const float r = w->field ? signed_radius : -signed_radius;
+    *radius = r;
+    if (!(r > 0))
+        return 0;
+    return w->field ? 1 : 1 - hf_own_part(w->t, r);
+}
+
+static void list_full(struct walk *w, int y)
+{
+    const struct hf_frame *f = w->f;
+    const int reach = w->t->reach_x[w->field][0];
+    const int x0 = hf_max(w->sums.x0 - reach, 0), x1 = hf_min(w->sums.x1 + reach, f->s->width);
+    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
+    const float *colour[3] = {NULL};
+    for (int c = 0; c < w->group->channels; c++)
+        colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], 0, y);
+    for (int x = x0; x < x1; x++) {
+        float r, v[3];
+        float weight = field_weight(w, radius[x], &r);
+        if (!(weight > 0))
+            continue;
+        weight *= 1 - half_part(w->t, r);
+        if (!(weight > 0))
+            continue;
+        for (int c = 0; c < w->group->channels; c++)
+            v[c] = colour[c][x] * weight;
+        add_source(w, x, y, r, v, weight);
+    }
+    flush(w, y);
+}
+
+// Radius of a half-resolution pixel whose four have like ones, on this field's side; else 0.
+static float quad_radius(const float r[4])
+{
+    float least = r[0], most = r[0];
+    for (int i = 1; i < 4; i++) {
+        least = r[i] < least ? r[i] : least;
+        most = r[i] > most ? r[i] : most;
+    }
+    return least > 0 && most - least <= 0.5f + least * (1 / 32.0f) ? 0.25f * ((r[0] + r[1]) + (r[2] + r[3])) : 0;
+}
+
+static void quad_row(struct walk *w, int q)
+{
+    const struct hf_setup *s = w->f->s;
+    const int y0 = 2 * q, y1 = hf_min(2 * q + 1, s->height - 1);
+    const float sign = w->field ? 1 : -1;
+    const float *a = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 0, y0), *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 0, y1);
+    float *out = w->quad[q & 3];
+    for (int x = w->tent_x0; x < w->tent_x1; x++) {
+        const int xa = 2 * x, xb = hf_min(2 * x + 1, s->width - 1);
+        const float r[4] = {sign * a[xa], sign * a[xb], sign * b[xa], sign * b[xb]};
+        out[x - w->tent_x0] = quad_radius(r);
+    }
+}
+
+// Is a pixel of radius r like those of the quad?
+static int alike(float quad, float r)
+{
+    const float d = quad - r;
+    return quad > 0 && (d < 0 ? -d : d) <= 0.5f + r * (1 / 32.0f);
+}
+
+// The neighbour of a pixel's quad that its tent reaches, on one axis.
+static int beside(int pixel, int count)
+{
+    const int q = (pixel >> 1) + (pixel & 1 ? 1 : -1);
+    return q < 0 ? 0 : q >= count ? count - 1 : q;
+}
+
+// Weight of pixel x of row y in the half-resolution sums; *radius gets |r| and *merged whether it is one of a mean.
+static float tent_weight(const struct walk *w, const float *radius_row, int x, int y, float *radius, int *merged)
+{
+    float weight = field_weight(w, radius_row[x], radius);
+    if (!(weight > 0))
+        return 0;
+    weight *= half_part(w->t, *radius);
+    const int qx = (x >> 1) - w->tent_x0, nx = beside(x, w->f->s->half_width) - w->tent_x0;
+    const int qy = y >> 1, ny = beside(y, w->f->s->half_height);
+    const float *own = w->quad[qy & 3], *next = w->quad[ny & 3];
+    const int last = w->tent_x1 - w->tent_x0 - 1, mx = nx < 0 ? 0 : nx > last ? last : nx;
+    *merged = alike(own[qx], *radius) && alike(own[mx], *radius) && alike(next[qx], *radius) && alike(next[mx], *radius);
+    return weight;
+}
+
+// One full-resolution row's pixels that are parts of means, weighted, and their tent along x. Lanes 0..2 are the
+// channels, 3 the weight. What the tent would put outside the frame stays at its edge.
+static void tent_row(struct walk *w, int y)
+{
+    const struct hf_frame *f = w->f;
+    const int width = f->s->width, n = w->tent_x1 - w->tent_x0, from = 2 * w->tent_x0 - 1;
+    const int end = hf_min(2 * w->tent_x1, width);
+    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
+    w->lone[y & 3] = 0;
+    for (int c = 0; c < 4; c++)
+        memset(w->pixel[c], 0, sizeof **w->pixel * (size_t)(2 * n + 2));
+    for (int x = 2 * w->tent_x0; x < end; x++) {
+        int merged;
+        float r;
+        const float weight = tent_weight(w, radius, x, y, &r, &merged);
+        if (!(weight > 0))
+            continue;
+        w->lone[y & 3] |= !merged;
+        for (int c = 0; merged && c < w->group->channels; c++)
+            w->pixel[c][x - from] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * weight;
+        w->pixel[3][x - from] = merged ? weight : 0;
+    }
+    for (int c = 0; c < 4; c++) {
+        float *m = w->pixel[c], *tent = w->tent[y & 3][c];
+        if (w->tent_x0 == 0)
+            m[0] = m[1];
+        if (end == width && width % 2 == 0)
+            m[end - from] = m[end - from - 1];
+        for (int i = 0; i < n; i++)
+            tent[i] = 0.375f * (m[2 * i + 1] + m[2 * i + 2]) + 0.125f * (m[2 * i] + m[2 * i + 3]);
+    }
+}
+
+// Draw the pixels of row y that have no like neighbours, on half-resolution row q, with a share of `part`.
+static void list_lone(struct walk *w, int y, int q, float part)
+{
+    const struct hf_frame *f = w->f;
+    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
+    const int reach = w->t->reach_x[w->field][1];
+    const int x0 = hf_max(w->sums.x0 - reach, 0), x1 = hf_min(w->sums.x1 + reach, f->s->half_width);
+    for (int x = 2 * w->tent_x0; x < hf_min(2 * w->tent_x1, f->s->width); x++) {
+        int merged;
+        float r;
+        const float weight = tent_weight(w, radius, x, y, &r, &merged);
+        if (!(weight > 0) || merged)
+            continue;
+        for (int side = 0; side < 2; side++) {
+            const int column = side ? beside(x, f->s->half_width) : x >> 1;
+            const float share = weight * part * (side ? 0.25f : 0.75f);
+            float v[3];
+            if (column < x0 || column >= x1)
+                continue;
+            for (int c = 0; c < w->group->channels; c++)
+                v[c] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * share;
+            add_source(w, column, q, 0.5f * r, v, share);
+        }
+    }
+    flush(w, q);
+}
+
+// Rows of quads up to q + 1 and of tents up to 2 q + 2.
+static void prepare_tents(struct walk *w, int q)
+{
+    const struct hf_setup *s = w->f->s;
+    if (w->quads_done < hf_max(q - 1, 0))
+        w->quads_done = hf_max(q - 1, 0);
+    if (w->tents_done < hf_max(2 * q - 1, 0))
+        w->tents_done = hf_max(2 * q - 1, 0);
+    // A row of tents needs quads of up to one row on.
+    while (w->tents_done <= hf_min(2 * q + 2, s->height - 1)) {
+        while (w->quads_done <= hf_min((w->tents_done >> 1) + 1, s->half_height - 1))
+            quad_row(w, w->quads_done++);
+        tent_row(w, w->tents_done++);
+    }
+}
+
+static void list_half(struct walk *w, int q)
+{
+    static const float parts[4] = {0.25f, 0.75f, 0.75f, 0.25f};  // of full-resolution rows 2q - 1 .. 2q + 2
+    const struct hf_setup *s = w->f->s;
+    const int reach = w->t->reach_x[w->field][1];
+    const int x0 = hf_max(w->sums.x0 - reach, 0), x1 = hf_min(w->sums.x1 + reach, s->half_width);
+    prepare_tents(w, q);
+    // What a tent would put outside the frame stays in its last row.
+    float part[4];
+    int row[4];
+    for (int i = 0; i < 4; i++) {
+        row[i] = 2 * q - 1 + i;
+        part[i] = row[i] < 0 || row[i] >= s->height ? 0 : parts[i];
+        if (part[i] > 0 && beside(row[i], s->half_height) == q && row[i] >> 1 == q)
+            part[i] = 1;
+    }
+    for (int x = x0; x < x1; x++) {
+        const int i = x - w->tent_x0;
+        const float r = w->quad[q & 3][i];
+        float v[4];
+        if (!(r > 0))
+            continue;
+        for (int c = 0; c < 4; c++) {
+            float t[4];
+            for (int k = 0; k < 4; k++)
+                t[k] = part[k] > 0 ? part[k] * w->tent[row[k] & 3][c][i] : 0;
+            v[c] = 0.5f * ((t[0] + t[3]) + (t[1] + t[2]));
+        }
+        if (v[3] > 0)
+            add_source(w, x, q, 0.5f * r, v, v[3]);
+    }
+    flush(w, q);
+    for (int k = 0; k < 4; k++)
+        if (part[k] > 0 && w->lone[row[k] & 3])
+            list_lone(w, row[k], q, 0.25f * part[k]);
+}
+
+// Widths and heights of what a pass keeps while it draws on a rectangle of half-resolution pixels.
+struct layout {
+    int width[2], height[2], ring[2], stride[2];  // of the sums, each level; stride in lanes
+    int tents;                                    // columns of the rows of means
+    size_t sums, rows, list, half, lines;         // floats of each part
+};
+
+static struct layout layout_of(const struct hf_scatter *t, int field, int cell_width, int cell_height)
+{
+    struct layout l = {0};
+    for (int level = 0; level < 2; level++) {
+        if (t->reach_x[field][level] < 0)
+            continue;
+        l.width[level] = level ? cell_width + 2 : 2 * cell_width;
+        l.height[level] = level ? cell_height + 2 : 2 * cell_height;
+        l.ring[level] = hf_min(2 * t->reach_y[field][level] + 1, l.height[level]);
+        l.stride[level] = 4 * (l.width[level] + 2);
+        const size_t sums = 2 * (size_t)l.stride[level] * (size_t)l.ring[level];
+        l.sums = sums > l.sums ? sums : l.sums;
+        l.rows = hf_max((int)l.rows, l.height[level]) * sizeof(ptrdiff_t) / sizeof(float);
+    }
+    if (t->reach_x[field][1] >= 0) {
+        l.tents = l.width[1] + 2 * t->reach_x[field][1] + 2;
+        l.half = 4 * (size_t)(l.width[1] + HF_PAD) * (size_t)l.height[1];
+        l.lines = 20 * (size_t)(l.tents + HF_PAD) + 4 * (size_t)(2 * l.tents + HF_PAD);
+    }
+    l.sums = (l.sums + 15) & ~(size_t)15;
+    l.rows = (l.rows + 15) & ~(size_t)15;
+    l.list = (sizeof(struct hf_splats) / sizeof(float) + 15) & ~(size_t)15;
+    return l;
+}
+
+size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height)
+{
+    size_t most = 0;
+    for (int field = 0; field < 2; field++) {
+        const struct layout l = layout_of(t, field, cell_width, cell_height);
+        const size_t all = l.sums + l.rows + l.list + l.half + l.lines;
+        most = all > most ? all : most;
+    }
+    return most;
+}
+
+// Rows of the result of one level: where settled rows go.
+struct target {
+    float *ch[4];
+    ptrdiff_t stride;
+};
+
+static void settle(struct walk *w, const struct target *to, int y)
+{
+    float *out[4];
+    for (int c = 0; c < 4; c++)
+        out[c] = to->ch[c] ? to->ch[c] + (ptrdiff_t)(y - w->sums.y0) * to->stride : NULL;
+    w->f->k->settle(w->sums.lane + w->sums.row[y - w->sums.y0], w->sums.x1 - w->sums.x0, w->group->channels,
+                    w->t->unscale, out);
+}
+
+// All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
+static void walk_level(struct walk *w, const struct layout *l, const struct target *to)
+{
+    const struct hf_setup *s = w->f->s;
+    const int reach = w->t->reach_y[w->field][w->level], height = w->level ? s->half_height : s->height;
+    for (int y = 0; y < w->sums.y1 - w->sums.y0; y++)
+        w->sums.row[y] = (ptrdiff_t)(y % l->ring[w->level]) * l->stride[w->level];
+    memset(w->sums.lane, 0, sizeof *w->sums.lane * (size_t)l->stride[w->level] * (size_t)l->ring[w->level]);
+    int settled = w->sums.y0;
+    for (int y = hf_max(w->sums.y0 - reach, 0); y < hf_min(w->sums.y1 + reach, height); y++) {
+        while (settled < hf_min(y - reach, w->sums.y1))
+            settle(w, to, settled++);
+        if (w->level)
+            list_half(w, y);
+        else
+            list_full(w, y);
+    }
+    while (settled < w->sums.y1)
+        settle(w, to, settled++);
+}
+
+// Add half-resolution sums, bilinearly, to row y from pixel x0 on. from: of its pixel (first, top).
+static void add_half(const struct hf_setup *s, const float *from, ptrdiff_t stride, int first, int top, int x0, int x1,
+                     int y, float *out)
+{
+    const int ya = y >> 1, yb = beside(y, s->half_height);
+    const float *a = from + (ptrdiff_t)(ya - top) * stride - first, *b = from + (ptrdiff_t)(yb - top) * stride - first;
+    for (int x = x0; x < x1; x++) {
+        const int xa = x >> 1, xb = beside(x, s->half_width);
+        out[x - x0] += 0.75f * (0.75f * a[xa] + 0.25f * b[xa]) + 0.25f * (0.75f * a[xb] + 0.25f * b[xb]);
+    }
+}
+
+// One group's sums of a field on r.
+static void splat_group(struct walk *w, struct hf_rect r, int group, const struct hf_buf *sum,
+                        const struct hf_buf *weight)
+{
+    const struct hf_frame *f = w->f;
+    const struct hf_setup *s = f->s;
+    const struct layout l = layout_of(w->t, w->field, r.x1 - r.x0, r.y1 - r.y0);
+    float *memory = f->work;
+    w->group = &w->t->group[group];
+    w->sums.lane = (int64_t *)memory;
+    w->sums.row = (ptrdiff_t *)(memory += l.sums);
+    w->list = (struct hf_splats *)(memory += l.rows);
+    w->list->count = 0;
+    float *half = memory += l.list;
+    memory += l.half;
+    const int x0 = 2 * r.x0, x1 = hf_min(2 * r.x1, s->width), y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, s->height);
+    const struct hf_rect h = {hf_max(r.x0 - 1, 0), hf_max(r.y0 - 1, 0), hf_min(r.x1 + 1, s->half_width),
+                              hf_min(r.y1 + 1, s->half_height)};
+    const ptrdiff_t half_stride = h.x1 - h.x0 + HF_PAD, half_plane = half_stride * (h.y1 - h.y0);
+    if (w->t->reach_x[w->field][1] >= 0) {
+        for (int i = 0; i < 4; i++, memory += l.tents + HF_PAD)
+            w->quad[i] = memory;
+        for (int i = 0; i < 16; i++, memory += l.tents + HF_PAD)
+            w->tent[i >> 2][i & 3] = memory;
+        for (int i = 0; i < 4; i++, memory += 2 * l.tents + HF_PAD)
+            w->pixel[i] = memory;
+        const int reach = w->t->reach_x[w->field][1];
+        w->level = 1;
+        w->sums.x0 = h.x0, w->sums.x1 = h.x1, w->sums.y0 = h.y0, w->sums.y1 = h.y1;
+        w->tent_x0 = hf_max(h.x0 - reach - 1, 0);
+        w->tent_x1 = hf_min(h.x1 + reach + 1, s->half_width);
+        w->quads_done = w->tents_done = 0;
+        const struct target to = {{half, half + half_plane, half + 2 * half_plane, half + 3 * half_plane}, half_stride};
+        walk_level(w, &l, &to);
+    }
+    struct target to = {.stride = sum->stride};
+    for (int c = 0; c < w->group->channels; c++)
+        to.ch[c] = hf_at(sum, w->group->channel[c], x0, y0);
+    to.ch[3] = hf_at(weight, group, x0, y0);
+    if (w->t->reach_x[w->field][0] >= 0) {
+        w->level = 0;
+        w->sums.x0 = x0, w->sums.x1 = x1, w->sums.y0 = y0, w->sums.y1 = y1;
+        walk_level(w, &l, &to);
+    }
+    for (int c = 0; c < 4; c++)
+        for (int y = y0; y < y1 && to.ch[c]; y++) {
+            float *row = to.ch[c] + (ptrdiff_t)(y - y0) * to.stride;
+            if (w->t->reach_x[w->field][0] < 0)
+                memset(row, 0, sizeof *row * (size_t)(x1 - x0));
+            if (w->t->reach_x[w->field][1] >= 0)
+                add_half(s, half + c * half_plane, half_stride, h.x0, h.y0, x0, x1, y, row);
+        }
+}
+
+static void splat_field(const struct hf_frame *f, struct hf_rect r, int field, int sum, int weight)
+{
+    struct walk w = {.f = f, .t = f->s->tables, .field = field};
+    for (int group = 0; group < w.t->groups; group++)
+        splat_group(&w, r, group, &f->buf[sum], &f->buf[weight]);
+}
+
+void hf_splat_far(const struct hf_frame *f, struct hf_rect r)
+{
+    splat_field(f, r, 1, HF_BUF_FAR_SUM, HF_BUF_FAR_WEIGHT);
+}
+
+void hf_splat_near(const struct hf_frame *f, struct hf_rect r)
+{
+    splat_field(f, r, 0, HF_BUF_NEAR_SUM, HF_BUF_NEAR_WEIGHT);
+}

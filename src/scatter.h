@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the scatter engine knows of a frame: its levels, its scales, its options (engine/scatter.c, pass/scatter.c).
+#ifndef HF_SCATTER_H
+#define HF_SCATTER_H
+
+#include "aperture.h"
+
+// The engine's buffers.
+enum {
+    HF_BUF_SOURCE,  // colour of every pixel
+    HF_BUF_RADIUS,  // its signed radius
+    HF_BUF_FAR_SUM,
+    HF_BUF_FAR_WEIGHT,
+    HF_BUF_NEAR_SUM,
+    HF_BUF_NEAR_WEIGHT,
+    HF_SCATTER_BUFS
+};
+
+// Channels that share pictures, and so a sum of weights.
+struct hf_splat_group {
+    int channels, channel[3];
+    float factor[2];  // of the radius, near and far
+};
+
+struct hf_scatter {
+    const struct hf_aperture *aperture;
+    int groups;
+    struct hf_splat_group group[4];
+    int group_of[4];       // of each channel
+    int opaque;            // alpha is 1 everywhere, as the weights' ratio is
+    float largest[2];      // |r| of the frame, near and far
+    float half_from, half_to;  // radii between which pixels move from the full to the half-resolution sums
+    float fade, fade_slope;  // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
+    int exponent;          // the brightest blurred sample is below 2^exponent
+    int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
+    double scale[4], unscale[4];  // from a sample's share to the integers of the sums, and back
+};
+
+static inline float hf_saturate(float v)
+{
+    v = v > 0 ? v : 0;
+    return v < 1 ? v : 1;
+}
+
+// What still shows of a pixel of radius r >= 0 itself: 1 for a sharp one.
+static inline float hf_own_part(const struct hf_scatter *t, float r)
+{
+    return hf_saturate((t->fade - r) * t->fade_slope);
+}
+
+// Floats of scratch that the splats of such a cell need, half-resolution pixels.
+size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height);
+
+// Pixels that a pass of the sums draws, or that it keeps: one row's sources.
+enum { HF_SPLATS = 128 };
+
+struct hf_splats {
+    int count;
+    int32_t x[HF_SPLATS];        // the level's pixels
+    int32_t picture[HF_SPLATS];
+    _Alignas(64) int64_t share[HF_SPLATS][4];  // of each lane for 1 unit of weight
+};
+
+// A window of sums: differences along x, four lanes a pixel: three channels and the weight.
+struct hf_sums {
+    int64_t *lane;
+    ptrdiff_t *row;  // where each row y0.. of the window starts; rows are used again when they are settled
+    int x0, y0, x1, y1;
+    int stride;
+};
+
+#endif
