@@ -12,6 +12,7 @@
 #include "pass/gather_simd.h"
 #include "pass/fill_simd.h"
 #include "pass/composite_simd.h"
+#include "pass/splat_simd.h"
 
 void HF_INIT(struct hf_kernels *k);
 
@@ -22,6 +23,8 @@ void HF_INIT(struct hf_kernels *k)
     k->radius_row = radius_row_simd;
     k->zip = zip_row_simd;
     k->unzip = unzip_row_simd;
+    k->splat = splat_simd;
+    k->settle = settle_simd;
     k->pass[HF_PASS_DOWN] = down_simd;
     k->pass[HF_PASS_MAX_X] = max_x_simd;
     k->pass[HF_PASS_MAX_Y] = max_y_simd;

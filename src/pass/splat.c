@@ -326,7 +326,7 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
         l.width[level] = level ? cell_width + 2 : 2 * cell_width;
         l.height[level] = level ? cell_height + 2 : 2 * cell_height;
         l.ring[level] = hf_min(2 * t->reach_y[field][level] + 1, l.height[level]);
-        l.stride[level] = 4 * (l.width[level] + 2);
+        l.stride[level] = 4 * (l.width[level] + 4);
         const size_t sums = 2 * (size_t)l.stride[level] * (size_t)l.ring[level];
         l.sums = sums > l.sums ? sums : l.sums;
         l.rows = hf_max((int)l.rows, l.height[level]) * sizeof(ptrdiff_t) / sizeof(float);

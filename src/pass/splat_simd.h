@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows above
+// and below a source have the same run: each product serves eight additions.
+
+struct splat_unit {
+    vl one, whole;  // 1 and 256 units
+};
+
+// Columns are clamped to the window unless the picture is known to lie inside.
+HF_INLINE int64_t *splat_column(int64_t *row, int x, int width, const int clamp)
+{
+    return row + 4 * (ptrdiff_t)(clamp ? hf_max(hf_min(x, width), 0) : x);
+}
+
+HF_INLINE void splat_row(int64_t *row, int x, int n, int width, vl part, vl rest, const int clamp)
+{
+    int64_t *a = splat_column(row, x - n, width, clamp), *b = splat_column(row, x - n + 1, width, clamp);
+    int64_t *c = splat_column(row, x + n, width, clamp), *d = splat_column(row, x + n + 1, width, clamp);
+    vl_store(a, vl_add(vl_load(a), part));
+    vl_store(b, vl_add(vl_load(b), rest));
+    vl_store(c, vl_sub(vl_load(c), rest));
+    vl_store(d, vl_sub(vl_load(d), part));
+}
+
+HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, const int32_t *half, int x, int y,
+                         const int64_t *share, const int clamp)
+{
+    const vl one = vl_load(share), whole = vl_shl8(one);
+    const int width = s->x1 - s->x0, last = p->rows - 1;
+    const int down0 = hf_max(0, s->y0 - y), down1 = hf_min(last, s->y1 - 1 - y);
+    const int up0 = hf_max(1, y - s->y1 + 1), up1 = hf_min(last, y - s->y0);
+    const int both0 = hf_max(down0, up0), both1 = hf_min(down1, up1);
+    const ptrdiff_t *row = s->row + (y - s->y0);
+    for (int dy = both0; dy <= both1; dy++) {
+        const int n = half[dy] >> 8;
+        const vl part = vl_times(one, (uint32_t)half[dy] & 255), rest = vl_sub(whole, part);
+        splat_row(s->lane + row[dy], x, n, width, part, rest, clamp);
+        splat_row(s->lane + row[-dy], x, n, width, part, rest, clamp);
+    }
+    for (int dy = down0; dy <= down1; dy++) {
+        if (dy == both0 && both1 >= both0)
+            dy = both1 + 1;
+        if (dy > down1)
+            break;
+        const vl part = vl_times(one, (uint32_t)half[dy] & 255);
+        splat_row(s->lane + row[dy], x, half[dy] >> 8, width, part, vl_sub(whole, part), clamp);
+    }
+    for (int dy = up0; dy <= up1; dy++) {
+        if (dy == both0 && both1 >= both0)
+            dy = both1 + 1;
+        if (dy > up1)
+            break;
+        const vl part = vl_times(one, (uint32_t)half[dy] & 255);
+        splat_row(s->lane + row[-dy], x, half[dy] >> 8, width, part, vl_sub(whole, part), clamp);
+    }
+}
+
+static void splat_simd(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list)
+{
+    const int width = s->x1 - s->x0;
+    for (int i = 0; i < list->count; i++) {
+        const struct hf_picture *p = &a->picture[list->picture[i]];
+        const int x = list->x[i] - s->x0;
+        if (x - p->reach_x >= 0 && x + p->reach_x <= width)
+            splat_one(s, p, a->half + p->first, x, y, list->share[i], 0);
+        else
+            splat_one(s, p, a->half + p->first, x, y, list->share[i], 1);
+    }
+}
+
+static void settle_simd(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4])
+{
+    vl sum = vl_set1(0);
+    const vl zero = sum;
+    for (int x = 0; x < n; x += 4) {
+        v4 pixel[4];
+        for (int i = 0; i < 4; i++) {
+            sum = vl_add(sum, vl_load(lane + 4 * (x + i)));
+            pixel[i] = vl_scaled(sum, unscale);
+            vl_store(lane + 4 * (x + i), zero);
+        }
+        v4_transpose(pixel);
+        for (int c = 0; c < 4; c++)
+            if (c < channels || c == 3)
+                v4_store(out[c] + x, pixel[c]);
+    }
+    for (int x = n; x < n + 2; x++)
+        vl_store(lane + 4 * x, zero);
+}
