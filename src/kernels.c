@@ -24,6 +24,10 @@ void hf_kernels_c(struct hf_kernels *k)
     k->pass[HF_KERNEL_SCATTER_COMPOSITE] = hf_scatter_composite_c;
     k->splat = hf_splat_c;
     k->settle = hf_settle_c;
+    k->quad_row = hf_quad_row_c;
+    k->tent_weights = hf_tent_weights_c;
+    k->tent = hf_tent_c;
+    k->mean_row = hf_mean_row_c;
     hf_format_kernels_c(k);
 }
 

@@ -29,7 +29,9 @@ struct hf_scatter {
     int group_of[4];       // of each channel
     int opaque;            // alpha is 1 everywhere, as the weights' ratio is
     float largest[2];      // |r| of the frame, near and far
-    float half_from, half_to;  // radii between which pixels move from the full to the half-resolution sums
+    // Radii between which pixels move from the full to the half-resolution sums, half_slope 1 / their difference; below
+    // 0: there is nothing but the latter.
+    float half_from, half_to, half_slope;
     float fade, fade_slope;  // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
     int exponent;          // the brightest blurred sample is below 2^exponent
     int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
@@ -48,8 +50,24 @@ static inline float hf_own_part(const struct hf_scatter *t, float r)
     return hf_saturate((t->fade - r) * t->fade_slope);
 }
 
+// How much of a pixel of radius r > 0 the half-resolution sums take.
+static inline float hf_half_part(const struct hf_scatter *t, float r)
+{
+    return hf_saturate((r - t->half_from) * t->half_slope);
+}
+
 // Floats of scratch that the splats of such a cell need, half-resolution pixels.
 size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height);
+
+// A row of pixels as parts of half-resolution means: n of these from column 0 on, two pixels each.
+struct hf_tent_row {
+    const struct hf_scatter *scatter;
+    float sign;                // of the radii of the field
+    int n, channels;
+    const float *radius, *colour[3];
+    const float *own, *next;   // radii of the quads of this row, and of the row that its tent reaches; from -1 to n
+    float *pixel[2][4];        // even and odd: colour times weight, 3 the weight
+};
 
 // Pixels that a pass of the sums draws, or that it keeps: one row's sources.
 enum { HF_SPLATS = 128 };

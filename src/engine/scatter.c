@@ -63,9 +63,11 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
         return err;
     *t = (struct hf_scatter){.aperture = &c->aperture, .half_from = 24, .half_to = 28, .fade = 1.5f};
     if (s->resolution == HF_RESOLUTION_HALF) {
-        t->half_from = t->half_to = 0;
+        t->half_from = -1;
+        t->half_to = 0;
         t->fade = 2.5f;
     }
+    t->half_slope = 1 / (t->half_to - t->half_from);
     t->fade_slope = 1 / (t->fade - 0.5f);
     s->sharp_radius = 0.5f;
     set_groups(t, s);
@@ -159,6 +161,17 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return needs ? HF_FIELDS : 0;
 }
 
+// Cells large against the reach, for what lies around a cell is looked at twice; small enough for the rows of sums that
+// are being drawn on to stay in the cache.
+static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
+{
+    (void)sweep;
+    const int enough = hf_min(4 * s->reach_y, s->half_height / 2);
+    *height = hf_max(*height, hf_min(enough, 256));
+    if (s->reach_x > 24 && *width < 320)
+        *width = 320;
+}
+
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
     return s->tables ? hf_splat_work(s->tables, p->cell_width[2], p->cell_height[2]) : 0;
@@ -169,5 +182,5 @@ const struct hf_engine_def hf_scatter_engine = {
     .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = 2,
     .bufs = bufs, .buf_count = HF_SCATTER_BUFS, .measured = 1,
     .prepare = prepare, .measure = measure, .made = made, .channels = channels, .halo = halo, .spread = spread,
-    .reads = reads, .work = work,
+    .reads = reads, .cell = cell, .work = work,
 };

@@ -13,6 +13,7 @@
 #include "pass/fill_simd.h"
 #include "pass/composite_simd.h"
 #include "pass/splat_simd.h"
+#include "pass/tent_simd.h"
 
 void HF_INIT(struct hf_kernels *k);
 
@@ -25,6 +26,10 @@ void HF_INIT(struct hf_kernels *k)
     k->unzip = unzip_row_simd;
     k->splat = splat_simd;
     k->settle = settle_simd;
+    k->quad_row = quad_row_simd;
+    k->tent_weights = tent_weights_simd;
+    k->tent = tent_simd;
+    k->mean_row = mean_row_simd;
     k->pass[HF_PASS_DOWN] = down_simd;
     k->pass[HF_PASS_MAX_X] = max_x_simd;
     k->pass[HF_PASS_MAX_Y] = max_y_simd;

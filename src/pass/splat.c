@@ -63,6 +63,8 @@ void hf_settle_c(int64_t *lane, int n, int channels, const double unscale[4], fl
     memset(lane, 0, sizeof *lane * 4 * (size_t)(n + 2));
 }
 
+enum { TENT_LINES = 33 };
+
 // The walk over a window: one field's sums of one group and level.
 struct walk {
     const struct hf_frame *f;
@@ -73,18 +75,10 @@ struct walk {
     struct hf_sums sums;
     struct hf_splats *list;
     // level 1: of the last rows, source radii and pixels; see merge_row
-    float *quad[4], *tent[4][4], *pixel[4];
+    float *quad[4], *tent[4][4], *pixel[2][4], *mean[4], *nothing;
     int lone[4];
     int tent_x0, tent_x1, quads_done, tents_done;  // half-resolution columns; rows up to which they are made
 };
-
-// How much of a pixel of radius r > 0 the half-resolution sums take.
-static float half_part(const struct hf_scatter *t, float r)
-{
-    if (t->half_to <= 0)
-        return 1;
-    return hf_saturate((r - t->half_from) * (1 / (t->half_to - t->half_from)));
-}
 
 static void flush(struct walk *w, int y)
 {
@@ -109,14 +103,10 @@ static void add_source(struct walk *w, int x, int y, float radius, const float c
         flush(w, y);
 }
 
-// Weight of a source pixel in its field, both levels together; 0: not of this field. *radius gets |r|.
-static float field_weight(const struct walk *w, float signed_radius, float *radius)
+// What of a pixel's signed radius is drawn in a field, both levels together.
+static float field_weight(const struct hf_scatter *t, int field, float r)
 {
-    const float r = w->field ? signed_radius : -signed_radius;
-    *radius = r;
-    if (!(r > 0))
-        return 0;
-    return w->field ? 1 : 1 - hf_own_part(w->t, r);
+    return r > 0 ? field ? 1 : 1 - hf_own_part(t, r) : 0;
 }
 
 static void list_full(struct walk *w, int y)
@@ -129,11 +119,9 @@ static void list_full(struct walk *w, int y)
     for (int c = 0; c < w->group->channels; c++)
         colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], 0, y);
     for (int x = x0; x < x1; x++) {
-        float r, v[3];
-        float weight = field_weight(w, radius[x], &r);
-        if (!(weight > 0))
-            continue;
-        weight *= 1 - half_part(w->t, r);
+        const float r = w->field ? radius[x] : -radius[x];
+        const float weight = field_weight(w->t, w->field, r) * (1 - hf_half_part(w->t, r));
+        float v[3];
         if (!(weight > 0))
             continue;
         for (int c = 0; c < w->group->channels; c++)
@@ -144,31 +132,37 @@ static void list_full(struct walk *w, int y)
 }
 
 // Radius of a half-resolution pixel whose four have like ones, on this field's side; else 0.
-static float quad_radius(const float r[4])
+static float quad_radius(float r0, float r1, float r2, float r3)
 {
-    float least = r[0], most = r[0];
-    for (int i = 1; i < 4; i++) {
-        least = r[i] < least ? r[i] : least;
-        most = r[i] > most ? r[i] : most;
-    }
-    return least > 0 && most - least <= 0.5f + least * (1 / 32.0f) ? 0.25f * ((r[0] + r[1]) + (r[2] + r[3])) : 0;
+    const float low0 = r0 < r1 ? r0 : r1, low1 = r2 < r3 ? r2 : r3, least = low0 < low1 ? low0 : low1;
+    const float high0 = r0 > r1 ? r0 : r1, high1 = r2 > r3 ? r2 : r3, most = high0 > high1 ? high0 : high1;
+    return least > 0 && most - least <= 0.5f + least * (1 / 32.0f) ? 0.25f * ((r0 + r1) + (r2 + r3)) : 0;
+}
+
+void hf_quad_row_c(const float *above, const float *below, int n, float sign, float *out)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = quad_radius(sign * above[2 * i], sign * above[2 * i + 1], sign * below[2 * i],
+                             sign * below[2 * i + 1]);
 }
 
 static void quad_row(struct walk *w, int q)
 {
     const struct hf_setup *s = w->f->s;
-    const int y0 = 2 * q, y1 = hf_min(2 * q + 1, s->height - 1);
     const float sign = w->field ? 1 : -1;
-    const float *a = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 0, y0), *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 0, y1);
+    const int n = w->tent_x1 - w->tent_x0;
+    const float *a = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * w->tent_x0, 2 * q);
+    const float *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * w->tent_x0, hf_min(2 * q + 1, s->height - 1));
     float *out = w->quad[q & 3];
-    for (int x = w->tent_x0; x < w->tent_x1; x++) {
-        const int xa = 2 * x, xb = hf_min(2 * x + 1, s->width - 1);
-        const float r[4] = {sign * a[xa], sign * a[xb], sign * b[xa], sign * b[xb]};
-        out[x - w->tent_x0] = quad_radius(r);
-    }
+    const int odd_edge = 2 * w->tent_x1 > s->width;
+    w->f->k->quad_row(a, b, n - odd_edge, sign, out);
+    if (odd_edge)
+        out[n - 1] = quad_radius(sign * a[2 * n - 2], sign * a[2 * n - 2], sign * b[2 * n - 2], sign * b[2 * n - 2]);
+    out[-1] = out[0];
+    out[n] = out[n - 1];
 }
 
-// Is a pixel of radius r like those of the quad?
+// Is a pixel of radius r > 0 like those of the quad?
 static int alike(float quad, float r)
 {
     const float d = quad - r;
@@ -182,51 +176,68 @@ static int beside(int pixel, int count)
     return q < 0 ? 0 : q >= count ? count - 1 : q;
 }
 
-// Weight of pixel x of row y in the half-resolution sums; *radius gets |r| and *merged whether it is one of a mean.
-static float tent_weight(const struct walk *w, const float *radius_row, int x, int y, float *radius, int *merged)
+// Weight of pixel `odd` of half-resolution column i in the half-resolution sums; *merged: as a part of means.
+static float tent_weight(const struct hf_tent_row *t, int i, int odd, int *merged)
 {
-    float weight = field_weight(w, radius_row[x], radius);
-    if (!(weight > 0))
-        return 0;
-    weight *= half_part(w->t, *radius);
-    const int qx = (x >> 1) - w->tent_x0, nx = beside(x, w->f->s->half_width) - w->tent_x0;
-    const int qy = y >> 1, ny = beside(y, w->f->s->half_height);
-    const float *own = w->quad[qy & 3], *next = w->quad[ny & 3];
-    const int last = w->tent_x1 - w->tent_x0 - 1, mx = nx < 0 ? 0 : nx > last ? last : nx;
-    *merged = alike(own[qx], *radius) && alike(own[mx], *radius) && alike(next[qx], *radius) && alike(next[mx], *radius);
-    return weight;
+    const float r = t->sign * t->radius[2 * i + odd];
+    const int next = odd ? i + 1 : i - 1;
+    *merged = alike(t->own[i], r) && alike(t->own[next], r) && alike(t->next[i], r) && alike(t->next[next], r);
+    return field_weight(t->scatter, t->sign > 0, r) * hf_half_part(t->scatter, r);
+}
+
+int hf_tent_weights_c(const struct hf_tent_row *t, int first)
+{
+    int lone = 0;
+    for (int i = first; i < t->n; i++)
+        for (int odd = 0; odd < 2; odd++) {
+            int merged;
+            const float weight = tent_weight(t, i, odd, &merged);
+            t->pixel[odd][3][i] = merged ? weight : 0;
+            lone |= weight > 0 && !merged;
+            for (int c = 0; c < t->channels; c++)
+                t->pixel[odd][c][i] = t->colour[c][2 * i + odd] * t->pixel[odd][3][i];
+        }
+    return lone;
+}
+
+void hf_tent_c(const float *even, const float *odd, int n, float *out)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = 0.375f * (even[i] + odd[i]) + 0.125f * (odd[i - 1] + even[i + 1]);
+}
+
+// What the walk knows of row y for its means.
+static struct hf_tent_row tent_row_of(const struct walk *w, int y)
+{
+    const struct hf_frame *f = w->f;
+    struct hf_tent_row t = {.scatter = w->t, .sign = w->field ? 1 : -1, .n = w->tent_x1 - w->tent_x0,
+                            .channels = w->group->channels, .own = w->quad[y >> 1 & 3],
+                            .next = w->quad[beside(y, f->s->half_height) & 3],
+                            .radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 2 * w->tent_x0, y)};
+    for (int c = 0; c < t.channels; c++)
+        t.colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], 2 * w->tent_x0, y);
+    memcpy(t.pixel, w->pixel, sizeof t.pixel);
+    return t;
 }
 
 // One full-resolution row's pixels that are parts of means, weighted, and their tent along x. Lanes 0..2 are the
 // channels, 3 the weight. What the tent would put outside the frame stays at its edge.
 static void tent_row(struct walk *w, int y)
 {
-    const struct hf_frame *f = w->f;
-    const int width = f->s->width, n = w->tent_x1 - w->tent_x0, from = 2 * w->tent_x0 - 1;
-    const int end = hf_min(2 * w->tent_x1, width);
-    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
-    w->lone[y & 3] = 0;
-    for (int c = 0; c < 4; c++)
-        memset(w->pixel[c], 0, sizeof **w->pixel * (size_t)(2 * n + 2));
-    for (int x = 2 * w->tent_x0; x < end; x++) {
-        int merged;
-        float r;
-        const float weight = tent_weight(w, radius, x, y, &r, &merged);
-        if (!(weight > 0))
-            continue;
-        w->lone[y & 3] |= !merged;
-        for (int c = 0; merged && c < w->group->channels; c++)
-            w->pixel[c][x - from] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * weight;
-        w->pixel[3][x - from] = merged ? weight : 0;
-    }
+    const struct hf_tent_row t = tent_row_of(w, y);
+    const int n = t.n, width = w->f->s->width;
+    w->lone[y & 3] = w->f->k->tent_weights(&t, 0);
     for (int c = 0; c < 4; c++) {
-        float *m = w->pixel[c], *tent = w->tent[y & 3][c];
-        if (w->tent_x0 == 0)
-            m[0] = m[1];
-        if (end == width && width % 2 == 0)
-            m[end - from] = m[end - from - 1];
-        for (int i = 0; i < n; i++)
-            tent[i] = 0.375f * (m[2 * i + 1] + m[2 * i + 2]) + 0.125f * (m[2 * i] + m[2 * i + 3]);
+        float *even = t.pixel[0][c], *odd = t.pixel[1][c];
+        if (c >= t.channels && c < 3)
+            continue;
+        odd[-1] = w->tent_x0 == 0 ? even[0] : 0;
+        even[n] = 0;
+        if (2 * w->tent_x1 == width)
+            even[n] = odd[n - 1];
+        if (2 * w->tent_x1 > width)
+            odd[n - 1] = 0;
+        w->f->k->tent(even, odd, n, w->tent[y & 3][c]);
     }
 }
 
@@ -234,13 +245,13 @@ static void tent_row(struct walk *w, int y)
 static void list_lone(struct walk *w, int y, int q, float part)
 {
     const struct hf_frame *f = w->f;
-    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
     const int reach = w->t->reach_x[w->field][1];
     const int x0 = hf_max(w->sums.x0 - reach, 0), x1 = hf_min(w->sums.x1 + reach, f->s->half_width);
+    const struct hf_tent_row t = tent_row_of(w, y);
     for (int x = 2 * w->tent_x0; x < hf_min(2 * w->tent_x1, f->s->width); x++) {
         int merged;
-        float r;
-        const float weight = tent_weight(w, radius, x, y, &r, &merged);
+        const float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
+        const float r = t.sign * t.radius[x - 2 * w->tent_x0];
         if (!(weight > 0) || merged)
             continue;
         for (int side = 0; side < 2; side++) {
@@ -273,6 +284,12 @@ static void prepare_tents(struct walk *w, int q)
     }
 }
 
+void hf_mean_row_c(const float *const tent[4], const float part[4], int n, float *out)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = 0.5f * ((part[0] * tent[0][i] + part[3] * tent[3][i]) + (part[1] * tent[1][i] + part[2] * tent[2][i]));
+}
+
 static void list_half(struct walk *w, int q)
 {
     static const float parts[4] = {0.25f, 0.75f, 0.75f, 0.25f};  // of full-resolution rows 2q - 1 .. 2q + 2
@@ -289,20 +306,19 @@ static void list_half(struct walk *w, int q)
         if (part[i] > 0 && beside(row[i], s->half_height) == q && row[i] >> 1 == q)
             part[i] = 1;
     }
-    for (int x = x0; x < x1; x++) {
-        const int i = x - w->tent_x0;
-        const float r = w->quad[q & 3][i];
-        float v[4];
-        if (!(r > 0))
+    for (int c = 0; c < 4; c++) {
+        const float *tent[4];
+        if (c >= w->group->channels && c < 3)
             continue;
-        for (int c = 0; c < 4; c++) {
-            float t[4];
-            for (int k = 0; k < 4; k++)
-                t[k] = part[k] > 0 ? part[k] * w->tent[row[k] & 3][c][i] : 0;
-            v[c] = 0.5f * ((t[0] + t[3]) + (t[1] + t[2]));
-        }
-        if (v[3] > 0)
-            add_source(w, x, q, 0.5f * r, v, v[3]);
+        for (int k = 0; k < 4; k++)
+            tent[k] = (part[k] > 0 ? w->tent[row[k] & 3][c] : w->nothing) + x0 - w->tent_x0;
+        w->f->k->mean_row(tent, part, x1 - x0, w->mean[c]);
+    }
+    const float *radius = w->quad[q & 3] + x0 - w->tent_x0;
+    for (int i = 0; i < x1 - x0; i++) {
+        const float v[3] = {w->mean[0][i], w->mean[1][i], w->mean[2][i]};
+        if (radius[i] > 0 && w->mean[3][i] > 0)
+            add_source(w, x0 + i, q, 0.5f * radius[i], v, w->mean[3][i]);
     }
     flush(w, q);
     for (int k = 0; k < 4; k++)
@@ -334,7 +350,7 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
     if (t->reach_x[field][1] >= 0) {
         l.tents = l.width[1] + 2 * t->reach_x[field][1] + 2;
         l.half = 4 * (size_t)(l.width[1] + HF_PAD) * (size_t)l.height[1];
-        l.lines = 20 * (size_t)(l.tents + HF_PAD) + 4 * (size_t)(2 * l.tents + HF_PAD);
+        l.lines = TENT_LINES * (size_t)(((l.tents + 15) & ~15) + 2 * HF_PAD);
     }
     l.sums = (l.sums + 15) & ~(size_t)15;
     l.rows = (l.rows + 15) & ~(size_t)15;
@@ -401,6 +417,17 @@ static void add_half(const struct hf_setup *s, const float *from, ptrdiff_t stri
     }
 }
 
+// The rows of the half-resolution level, each with HF_PAD floats before and after it.
+static void place_lines(struct walk *w, float *memory, int length)
+{
+    float **const lines[] = {w->quad, w->tent[0], w->tent[1], w->tent[2], w->tent[3], w->pixel[0], w->pixel[1], w->mean};
+    memory += HF_PAD;
+    for (int i = 0; i < TENT_LINES - 1; i++, memory += length)
+        lines[i >> 2][i & 3] = memory;
+    w->nothing = memory;
+    memset(memory, 0, sizeof *memory * (size_t)(length - HF_PAD));
+}
+
 // One group's sums of a field on r.
 static void splat_group(struct walk *w, struct hf_rect r, int group, const struct hf_buf *sum,
                         const struct hf_buf *weight)
@@ -421,12 +448,7 @@ static void splat_group(struct walk *w, struct hf_rect r, int group, const struc
                               hf_min(r.y1 + 1, s->half_height)};
     const ptrdiff_t half_stride = h.x1 - h.x0 + HF_PAD, half_plane = half_stride * (h.y1 - h.y0);
     if (w->t->reach_x[w->field][1] >= 0) {
-        for (int i = 0; i < 4; i++, memory += l.tents + HF_PAD)
-            w->quad[i] = memory;
-        for (int i = 0; i < 16; i++, memory += l.tents + HF_PAD)
-            w->tent[i >> 2][i & 3] = memory;
-        for (int i = 0; i < 4; i++, memory += 2 * l.tents + HF_PAD)
-            w->pixel[i] = memory;
+        place_lines(w, memory, ((l.tents + 15) & ~15) + 2 * HF_PAD);
         const int reach = w->t->reach_x[w->field][1];
         w->level = 1;
         w->sums.x0 = h.x0, w->sums.x1 = h.x1, w->sums.y0 = h.y0, w->sums.y1 = h.y1;
