@@ -23,6 +23,8 @@ void hf_kernels_c(struct hf_kernels *k)
     k->pass[HF_KERNEL_SPLAT_NEAR] = hf_splat_near;
     k->pass[HF_KERNEL_SCATTER_COMPOSITE] = hf_scatter_composite_c;
     k->splat = hf_splat_c;
+    k->splat_runs = hf_splat_runs_c;
+    k->splat_taps = hf_splat_taps_c;
     k->settle = hf_settle_c;
     k->quad_row = hf_quad_row_c;
     k->tent_weights = hf_tent_weights_c;

@@ -88,8 +88,15 @@ typedef void hf_round_rgb(float *r, float *g, float *b, int n);
 struct hf_sums;
 struct hf_splats;
 struct hf_aperture;
+struct hf_run;
 // Scatter: draw a list of pictures, of sources on row y, into the sums (pass/splat.c).
 typedef void hf_splat(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list);
+// One outline's rows from row y on, around column x.
+typedef void hf_splat_runs(const struct hf_sums *s, int x, int y, const struct hf_run *run, int rows,
+                           const int64_t share[4]);
+// An image's rows from (x, y) on, as differences.
+typedef void hf_splat_taps(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
+                           const int64_t share[4]);
 // A finished row of n pixels of sums: integrated, scaled, split into planes (lane 3, the weight, to out[3]), and zeroed.
 typedef void hf_settle(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4]);
 
@@ -110,6 +117,8 @@ struct hf_kernels {
     hf_zip_row *zip;
     hf_unzip_row *unzip;
     hf_splat *splat;
+    hf_splat_runs *splat_runs;
+    hf_splat_taps *splat_taps;
     hf_settle *settle;
     hf_quad_row *quad_row;
     hf_tent_weights *tent_weights;

@@ -35,6 +35,8 @@ struct hf_scatter {
     float fade, fade_slope;  // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
     int exponent;          // the brightest blurred sample is below 2^exponent
     int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
+    float ring, cat_eye;   // radii of the hole, and by which the second circle moves in the corners
+    float corner;          // 1 / the picture's diagonal, pixels
     double scale[4], unscale[4];  // from a sample's share to the integers of the sums, and back
 };
 

@@ -44,7 +44,7 @@ static void set_groups(struct hf_scatter *t, const struct hf_setup *s)
         // Red is larger and blue smaller behind the focus, the other way in front of it.
         const float shift = c == 0 ? chromatic : c == 2 ? -chromatic : 0;
         struct hf_splat_group *g = &t->group[t->groups];
-        if (c == 0 || c == 3 || chromatic != 0) {
+        if (c == 0 || c == 3 || chromatic != 0 || t->aperture->planes == 3) {
             *g = (struct hf_splat_group){.factor = {1 - shift, 1 + shift}};
             t->groups++;
         } else {
@@ -67,16 +67,33 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
         t->half_to = 0;
         t->fade = 2.5f;
     }
+    if (p->aperture) {
+        // Every pixel of an image is drawn: sooner at half the resolution, and no larger than this.
+        s->max_radius = fminf(s->max_radius, 256);
+        if (t->half_to > 0)
+            t->half_from = 8, t->half_to = 12;
+    }
     t->half_slope = 1 / (t->half_to - t->half_from);
     t->fade_slope = 1 / (t->fade - 0.5f);
     s->sharp_radius = 0.5f;
-    set_groups(t, s);
     struct hf_aperture_key key;
     memset(&key, 0, sizeof key);
     const float largest = s->max_radius * (1 + fabsf(p->chromatic));
     key.largest = t->half_to > 0 && largest <= t->half_to ? largest : fmaxf(largest / 2, 1.5f * t->half_to);
+    key.blades = p->blades;
+    key.outline = p->cat_eye > 0;
+    if (p->blades) {
+        key.rotation = p->blade_rotation;
+        key.roundness = p->blade_roundness;
+    }
+    t->ring = p->aperture ? 0 : p->ring;
+    t->cat_eye = p->aperture ? 0 : p->cat_eye;
+    t->corner = 1 / hypotf((float)s->width, (float)s->height);
     key.scale_x = 1 / (p->pixel_aspect * p->squeeze);
-    return hf_aperture_build(&c->aperture, &key, &c->mem);
+    err = p->aperture ? hf_aperture_build_image(&c->aperture, &key, p->aperture, &c->mem)
+                      : hf_aperture_build(&c->aperture, &key, &c->mem);
+    set_groups(t, s);
+    return err;
 }
 
 // How far the largest pictures of a field reach on each level.
@@ -93,7 +110,7 @@ static void set_reach(struct hf_scatter *t, int field)
         float factor = 0;
         for (int g = 0; g < t->groups; g++)
             factor = fmaxf(factor, t->group[g].factor[field]);
-        const struct hf_picture *p = &t->aperture->picture[hf_picture_number(r * factor) + 1];
+        const struct hf_picture *p = &t->aperture->picture[hf_picture_number(r * factor) / t->aperture->steps + 1];
         t->reach_x[field][level] = p->reach_x;
         t->reach_y[field][level] = p->reach_y;
     }
@@ -119,14 +136,14 @@ static void made(struct hf_setup *s, const struct hf_counts *found)
     struct hf_scatter *t = s->tables;
     int exponent;
     frexpf(found->largest, &exponent);
-    const int room = 62 - t->aperture->headroom;
+    const int room = 62 - t->aperture->headroom - (t->ring > 0 ? 4 : 0) - (t->cat_eye > 0 ? 2 : 0);
     for (int c = 0; c < 4; c++) {
         const int bits = c == 3 ? room - 1 : room - exponent;
         t->scale[c] = ldexp(1, bits);
         t->unscale[c] = ldexp(1, -bits);
     }
     // With alpha 1 everywhere its sum is that of the weights.
-    t->opaque = s->channels == 4 && !found->transparent && s->params->chromatic == 0;
+    t->opaque = s->channels == 4 && !found->transparent && t->groups == 2;
     if (t->opaque)
         t->groups = 1;
 }

@@ -25,6 +25,8 @@ void HF_INIT(struct hf_kernels *k)
     k->zip = zip_row_simd;
     k->unzip = unzip_row_simd;
     k->splat = splat_simd;
+    k->splat_runs = splat_runs_simd;
+    k->splat_taps = splat_taps_simd;
     k->settle = settle_simd;
     k->quad_row = quad_row_simd;
     k->tent_weights = tent_weights_simd;

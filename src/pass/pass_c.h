@@ -16,6 +16,8 @@ hf_zip_row hf_zip_row_c;
 hf_unzip_row hf_unzip_row_c;
 hf_kernel hf_scatter_prepare_c, hf_splat_far, hf_splat_near, hf_scatter_composite_c;
 hf_splat hf_splat_c;
+hf_splat_runs hf_splat_runs_c;
+hf_splat_taps hf_splat_taps_c;
 hf_settle hf_settle_c;
 hf_quad_row hf_quad_row_c;
 hf_tent_weights hf_tent_weights_c;

@@ -30,12 +30,29 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
     }
 }
 
-static float composite_sample(float own, float show, const float far[2], const float near[2])
+// How much of a disc's area lies on this side of a line d radii off its centre, 0..1: within 0.002, and exact at the ends.
+static float segment(float d)
 {
-    float v = far[1] > 0 ? hf_lerp(own, far[0] / far[1], 1 - show) : own;
-    if (near[1] > 0)
-        v = hf_lerp(v, near[0] / near[1], near[1] < 1 ? near[1] : 1);
-    return v;
+    const float t = d < 1 ? d : 1, q = t * t;
+    return 0.5f + t * (0.63662f + q * (-0.10610f - q * 0.03052f));
+}
+
+// How much of the picture around a near pixel lies inside the frame: its sum of weights cannot be more.
+static float inside(const struct hf_setup *s, float reach_x, float reach_y, int x, int y)
+{
+    const float ix = 1 / reach_x, iy = 1 / reach_y;
+    const float left = ((float)x + 0.5f) * ix, right = ((float)(s->width - x) - 0.5f) * ix;
+    const float above = ((float)y + 0.5f) * iy, below = ((float)(s->height - y) - 0.5f) * iy;
+    return ((segment(left) + segment(right)) - 1) * ((segment(above) + segment(below)) - 1);
+}
+
+// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where no far one reaches, near hides it.
+static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2])
+{
+    const float front = near[1] > 0 ? near[0] / near[1] : own;
+    float v = far[1] > 0 ? far[0] / far[1] : is_near ? front : own;
+    v = hf_lerp(own, v, 1 - show);
+    return near[1] > 0 ? hf_lerp(v, front, cover < 1 ? cover : 1) : v;
 }
 
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
@@ -60,7 +77,9 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
                 near[1] = *hf_at(&f->buf[HF_BUF_NEAR_WEIGHT], group, x0 + x, y);
                 near[0] = is_weight ? near[1] : *hf_at(&f->buf[HF_BUF_NEAR_SUM], c, x0 + x, y);
             }
-            out[c][x] = composite_sample(out[c][x], hf_own_part(t, __builtin_fabsf(radius[x])), far, near);
+            const float size = __builtin_fabsf(radius[x]), scale_x = t->aperture->key.scale_x;
+            const float cover = radius[x] < 0 ? near[1] / inside(s, size * scale_x, size, x0 + x, y) : near[1];
+            out[c][x] = composite_sample(out[c][x], hf_own_part(t, size), cover, radius[x] < 0, far, near);
         }
     }
     hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)out, s->channels == 4);

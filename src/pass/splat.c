@@ -37,6 +37,34 @@ static void draw_half(const struct hf_sums *s, int x, int y, const uint64_t u[4]
     add_end(row, x + n, width, u, -(256 - j), -j);
 }
 
+void hf_splat_runs_c(const struct hf_sums *s, int x, int y, const struct hf_run *run, int rows, const int64_t share[4])
+{
+    for (int i = hf_max(s->y0 - y, 0); i < hf_min(s->y1 - y, rows); i++) {
+        int64_t *row = s->lane + s->row[y + i - s->y0];
+        const int width = s->x1 - s->x0, a = x - s->x0 + (run[i].a >> 8), b = x - s->x0 + (run[i].b >> 8);
+        const uint64_t fa = (uint64_t)run[i].a & 255, fb = (uint64_t)run[i].b & 255, weight = (uint64_t)run[i].weight;
+        uint64_t u[4];
+        for (int c = 0; c < 4; c++)
+            u[c] = (uint64_t)share[c] * weight;
+        add_end(row, a, width, u, 256 - fa, fa);
+        add_end(row, b, width, u, -(256 - fb), -fb);
+    }
+}
+
+void hf_splat_taps_c(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
+                     const int64_t share[4])
+{
+    for (int j = hf_max(s->y0 - y, 0); j < hf_min(s->y1 - y, rows); j++) {
+        int64_t *row = s->lane + s->row[y + j - s->y0];
+        for (int i = 0; i < columns; i++) {
+            int64_t *p = row + 4 * (ptrdiff_t)hf_max(hf_min(x + i - s->x0, s->x1 - s->x0), 0);
+            const uint64_t weight = (uint64_t)(int64_t)tap[(ptrdiff_t)j * columns + i];
+            for (int c = 0; c < 4; c++)
+                p[c] = (int64_t)((uint64_t)p[c] + (uint64_t)share[c] * weight);
+        }
+    }
+}
+
 void hf_splat_c(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list)
 {
     for (int i = 0; i < list->count; i++) {
@@ -74,33 +102,113 @@ struct walk {
     int level;  // 1: half resolution
     struct hf_sums sums;
     struct hf_splats *list;
+    struct hf_run *runs;  // of a picture that is its source's own
     // level 1: of the last rows, source radii and pixels; see merge_row
     float *quad[4], *tent[4][4], *pixel[2][4], *mean[4], *nothing;
     int lone[4];
     int tent_x0, tent_x1, quads_done, tents_done;  // half-resolution columns; rows up to which they are made
 };
 
+// The pictures of a group's channel.
+static const struct hf_picture *pictures(const struct walk *w)
+{
+    const struct hf_aperture *a = w->t->aperture;
+    const int plane = a->planes == 3 && w->group->channel[0] < 3 ? w->group->channel[0] : a->planes == 3;
+    return a->picture + plane * a->count;
+}
+
 static void flush(struct walk *w, int y)
 {
-    if (w->list->count)
-        w->f->k->splat(&w->sums, w->t->aperture, y, w->list);
+    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_splats *l = w->list;
+    for (int i = 0; a->tap && i < l->count; i++) {
+        const struct hf_picture *p = &pictures(w)[l->picture[i]];
+        w->f->k->splat_taps(&w->sums, l->x[i] - p->reach_x, y + p->top, a->tap + p->first, p->columns, p->rows,
+                            l->share[i]);
+    }
+    if (a->tap) {
+        w->list->count = 0;
+        return;
+    }
+    if (a->symmetric && l->count)
+        w->f->k->splat(&w->sums, a, y, l);
+    for (int i = 0; !a->symmetric && i < l->count; i++) {
+        const struct hf_picture *p = &a->picture[l->picture[i]];
+        w->f->k->splat_runs(&w->sums, l->x[i], y + p->top, a->run + p->first, p->rows, l->share[i]);
+    }
     w->list->count = 0;
 }
 
-// Add a source to the list of row y: colour already weighted.
-static void add_source(struct walk *w, int x, int y, float radius, const float colour[3], float weight)
+// What each lane of a source adds for 1 unit of weight.
+static void set_share(const struct walk *w, int64_t share[4], const float colour[3], float weight, float part)
+{
+    for (int c = 0; c < 3; c++)
+        share[c] = c < w->group->channels ? (int64_t)((double)(colour[c] * part) * w->t->scale[c]) : 0;
+    share[3] = (int64_t)((double)(weight * part) * w->t->scale[3]);
+}
+
+static void add_picture(struct walk *w, int x, int y, int number, const float colour[3], float weight, float part)
 {
     struct hf_splats *l = w->list;
-    const float r = radius * w->group->factor[w->field];
-    const int number = hf_picture_number(r);
-    const float part = w->t->aperture->picture[number].inverse;
     l->x[l->count] = x;
     l->picture[l->count] = number;
-    for (int c = 0; c < 3; c++)
-        l->share[l->count][c] = c < w->group->channels ? (int64_t)((double)(colour[c] * part) * w->t->scale[c]) : 0;
-    l->share[l->count][3] = (int64_t)((double)(weight * part) * w->t->scale[3]);
+    set_share(w, l->share[l->count], colour, weight, part);
     if (++l->count == HF_SPLATS)
         flush(w, y);
+}
+
+// The picture cut by the second circle of a cat's eye, off the lens's axis towards the corner that the source is near.
+static void add_cat_eye(struct walk *w, int x, int y, float r, const float colour[3], float weight)
+{
+    const struct hf_setup *s = w->f->s;
+    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_picture *p = &a->picture[hf_picture_number(r)];
+    const float step = w->level ? 2 : 1, toward = (w->field ? 1 : -1) * w->t->cat_eye * r;
+    const float cx = toward * (2 * (((float)x + 0.5f) * step) - (float)s->width) * w->t->corner;
+    const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
+    float area = 0;
+    for (int i = 0; i < p->rows; i++) {
+        const struct hf_run *run = &a->run[p->first + i];
+        const float dy = (float)(p->top + i) - cy, q = r * r - dy * dy;
+        const float half = q > 0 ? sqrtf(q) : 0, scale = 256 * a->key.scale_x;
+        const int32_t from = 128 + (int32_t)lrintf((cx - half) * scale), to = 128 + (int32_t)lrintf((cx + half) * scale);
+        struct hf_run cut = {hf_max(run->a, from), hf_min(run->b, to), run->weight};
+        if (cut.b <= cut.a)
+            cut = (struct hf_run){0};
+        area += (float)cut.weight * (float)(cut.b - cut.a);
+        w->runs[i] = cut;
+    }
+    if (area <= 0) {
+        w->runs[-p->top] = (struct hf_run){127, 129, 64};
+        area = 128;
+    }
+    int64_t share[4];
+    set_share(w, share, colour, weight, 1 / area);
+    w->f->k->splat_runs(&w->sums, x, y + p->top, w->runs, p->rows, share);
+}
+
+// Add a source to the list of row y: colour already weighted. A ring is its outline less its hole, which is the same
+// shape.
+static void add_source(struct walk *w, int x, int y, float radius, const float colour[3], float weight)
+{
+    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_picture *picture = pictures(w);
+    const float r = radius * w->group->factor[w->field];
+    const int number = a->tap ? (hf_picture_number(r) + a->steps / 2) / a->steps : hf_picture_number(r);
+    if (w->t->cat_eye > 0) {
+        add_cat_eye(w, x, y, r, colour, weight);
+        return;
+    }
+    if (w->t->ring <= 0) {
+        add_picture(w, x, y, number, colour, weight, 1 / picture[number].area);
+        return;
+    }
+    // A hole too small for a picture of its own is a faint one.
+    const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    const int inside = hf_picture_number(inner);
+    const float part = 1 / (picture[number].area - hole * picture[inside].area);
+    add_picture(w, x, y, number, colour, weight, part);
+    add_picture(w, x, y, inside, colour, weight, -hole * part);
 }
 
 // What of a pixel's signed radius is drawn in a field, both levels together.
@@ -330,7 +438,7 @@ static void list_half(struct walk *w, int q)
 struct layout {
     int width[2], height[2], ring[2], stride[2];  // of the sums, each level; stride in lanes
     int tents;                                    // columns of the rows of means
-    size_t sums, rows, list, half, lines;         // floats of each part
+    size_t sums, rows, list, runs, half, lines;         // floats of each part
 };
 
 static struct layout layout_of(const struct hf_scatter *t, int field, int cell_width, int cell_height)
@@ -354,6 +462,10 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
     }
     l.sums = (l.sums + 15) & ~(size_t)15;
     l.rows = (l.rows + 15) & ~(size_t)15;
+    int longest = 0;
+    for (int level = 0; level < 2; level++)
+        longest = hf_max(longest, t->reach_y[field][level]);
+    l.runs = ((size_t)(2 * longest + 3) * sizeof(struct hf_run) / sizeof(float) + 15) & ~(size_t)15;
     l.list = (sizeof(struct hf_splats) / sizeof(float) + 15) & ~(size_t)15;
     return l;
 }
@@ -363,7 +475,7 @@ size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height
     size_t most = 0;
     for (int field = 0; field < 2; field++) {
         const struct layout l = layout_of(t, field, cell_width, cell_height);
-        const size_t all = l.sums + l.rows + l.list + l.half + l.lines;
+        const size_t all = l.sums + l.rows + l.list + l.runs + l.half + l.lines;
         most = all > most ? all : most;
     }
     return most;
@@ -441,7 +553,8 @@ static void splat_group(struct walk *w, struct hf_rect r, int group, const struc
     w->sums.row = (ptrdiff_t *)(memory += l.sums);
     w->list = (struct hf_splats *)(memory += l.rows);
     w->list->count = 0;
-    float *half = memory += l.list;
+    w->runs = (struct hf_run *)(memory += l.list);
+    float *half = memory += l.runs;
     memory += l.half;
     const int x0 = 2 * r.x0, x1 = hf_min(2 * r.x1, s->width), y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, s->height);
     const struct hf_rect h = {hf_max(r.x0 - 1, 0), hf_max(r.y0 - 1, 0), hf_min(r.x1 + 1, s->half_width),

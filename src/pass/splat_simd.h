@@ -2,10 +2,6 @@
 // Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows above
 // and below a source have the same run: each product serves eight additions.
 
-struct splat_unit {
-    vl one, whole;  // 1 and 256 units
-};
-
 // Columns are clamped to the window unless the picture is known to lie inside.
 HF_INLINE int64_t *splat_column(int64_t *row, int x, int width, const int clamp)
 {
@@ -65,6 +61,48 @@ static void splat_simd(const struct hf_sums *s, const struct hf_aperture *a, int
             splat_one(s, p, a->half + p->first, x, y, list->share[i], 0);
         else
             splat_one(s, p, a->half + p->first, x, y, list->share[i], 1);
+    }
+}
+
+static void splat_runs_simd(const struct hf_sums *s, int x, int y, const struct hf_run *run, int rows,
+                            const int64_t share[4])
+{
+    const vl one = vl_load(share);
+    const int width = s->x1 - s->x0, end = hf_min(s->y1 - y, rows);
+    x -= s->x0;
+    for (int i = hf_max(s->y0 - y, 0); i < end; i++) {
+        int64_t *row = s->lane + s->row[y + i - s->y0];
+        const int a = x + (run[i].a >> 8), b = x + (run[i].b >> 8);
+        const vl unit = vl_times(one, (uint32_t)run[i].weight), whole = vl_shl8(unit);
+        const vl pa = vl_times(unit, (uint32_t)run[i].a & 255), pb = vl_times(unit, (uint32_t)run[i].b & 255);
+        int64_t *p = splat_column(row, a, width, 1), *q = splat_column(row, b, width, 1);
+        vl_store(p, vl_add(vl_load(p), vl_sub(whole, pa)));
+        p = splat_column(row, a + 1, width, 1);
+        vl_store(p, vl_add(vl_load(p), pa));
+        vl_store(q, vl_sub(vl_load(q), vl_sub(whole, pb)));
+        q = splat_column(row, b + 1, width, 1);
+        vl_store(q, vl_sub(vl_load(q), pb));
+    }
+}
+
+static void splat_taps_simd(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
+                            const int64_t share[4])
+{
+    const vl one = vl_load(share), offset = vl_shl8(vl_shl8(one));  // weights are made positive: products want that
+    const int width = s->x1 - s->x0, end = hf_min(s->y1 - y, rows);
+    x -= s->x0;
+    // Columns left of the window come together in its first, those right of it are of no use.
+    const int first = hf_max(hf_min(-x, columns), 0), last = hf_max(hf_min(columns, width - x), first);
+    for (int j = hf_max(s->y0 - y, 0); j < end; j++) {
+        const int16_t *t = tap + (ptrdiff_t)j * columns;
+        int64_t *row = s->lane + s->row[y + j - s->y0], *p = row + 4 * (ptrdiff_t)(x + first);
+        int before = 0;
+        for (int i = 0; i < first; i++)
+            before += t[i];
+        if (first)
+            vl_store(row, vl_add(vl_load(row), vl_sub(vl_times(one, (uint32_t)(before + 65536)), offset)));
+        for (int i = first; i < last; i++, p += 4)
+            vl_store(p, vl_add(vl_load(p), vl_sub(vl_times(one, (uint32_t)(t[i] + 65536)), offset)));
     }
 }
 
