@@ -2,6 +2,7 @@
 #include "aperture.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Integral from 0 to y of the half-width of a disc's rows, radius r.
@@ -11,10 +12,20 @@ static double half_disc(double r, double y)
     return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
 }
 
-// Half a disc's mean width over row dy, plus half a pixel, in 1/256 pixel.
+// What a disc covers of the height of its row dy, 1/16.
+static int row_height(double r, int dy)
+{
+    const double height = r - (abs(dy) - 0.5);
+    return dy == 0 || height >= 1 ? HF_WHOLE_ROW : height <= 0 ? 0 : (int)lround(HF_WHOLE_ROW * height);
+}
+
+// Half a disc's mean width over what it covers of row dy, plus half a pixel, in 1/256 pixel.
 static int32_t disc_row(double r, double scale_x, int dy)
 {
-    return (int32_t)lround(256 * ((half_disc(r, dy + 0.5) - half_disc(r, dy - 0.5)) * scale_x + 0.5));
+    const double height = dy ? fmin(1, r - (abs(dy) - 0.5)) : 1;
+    if (height <= 0)
+        return 128;
+    return (int32_t)lround(256 * ((half_disc(r, dy + 0.5) - half_disc(r, dy - 0.5)) / height * scale_x + 0.5));
 }
 
 // Rows on one side of the middle one, and that.
@@ -31,15 +42,16 @@ static void build_disc(struct hf_aperture *a, int number, int first)
     *p = (struct hf_picture){.first = first, .rows = rows_of(r)};
     for (int dy = 0; dy < p->rows; dy++) {
         a->half[first + dy] = disc_row(r, a->key.scale_x, dy);
-        area += (dy ? 2.0 : 1.0) * (2 * a->half[first + dy] - 256);
+        area += (dy ? 2.0 : 1.0) * (2 * a->half[first + dy] - 256) * row_height(r, dy);
     }
     // Rows that round to nothing.
-    while (p->rows > 1 && a->half[first + p->rows - 1] <= 128)
+    while (p->rows > 1 && (a->half[first + p->rows - 1] <= 128 || !row_height(r, p->rows - 1)))
         p->rows--;
     if (area <= 0) {
         a->half[first] = 129;
-        area = 2;
+        area = 2 * HF_WHOLE_ROW;
     }
+    p->cap = row_height(r, p->rows - 1);
     p->reach_y = p->rows - 1;
     p->reach_x = (a->half[first] >> 8) + 1;
     p->area = (float)area;
@@ -108,7 +120,7 @@ static struct hf_run polygon_row(const struct side *side, int sides, double r, d
     if (!hit)
         return (struct hf_run){0};
     return (struct hf_run){(int32_t)lround(256 * (a / hit * r * scale_x + 0.5)),
-                           (int32_t)lround(256 * (b / hit * r * scale_x + 0.5)), (64 * hit + parts / 2) / parts};
+                           (int32_t)lround(256 * (b / hit * r * scale_x + 0.5)), (HF_WHOLE_ROW * hit + parts / 2) / parts};
 }
 
 static void build_polygon(struct hf_aperture *a, const struct side *side, int sides, int number, int first)
@@ -125,8 +137,8 @@ static void build_polygon(struct hf_aperture *a, const struct side *side, int si
         p->reach_x = hf_max(p->reach_x, hf_max((run->b >> 8) + 1, -(run->a >> 8)) + 1);
     }
     if (area <= 0) {
-        a->run[first - p->top] = (struct hf_run){127, 129, 64};
-        area = 128;
+        a->run[first - p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
+        area = 2 * HF_WHOLE_ROW;
     }
     p->area = (float)area;
 }
@@ -141,13 +153,14 @@ static void build_runs_of_disc(struct hf_aperture *a, int number, int first)
     p->reach_y = rows_of(r) - 1;
     for (int i = 0; i < p->rows; i++) {
         const int32_t half = disc_row(r, a->key.scale_x, p->top + i);
-        a->run[first + i] = (struct hf_run){256 - half, half, 64};
-        area += 64.0 * (2 * half - 256);
+        const int weight = row_height(r, p->top + i);
+        a->run[first + i] = (struct hf_run){256 - half, half, weight};
+        area += (double)weight * (2 * half - 256);
         p->reach_x = hf_max(p->reach_x, (half >> 8) + 1);
     }
     if (area <= 0) {
-        a->run[first - p->top] = (struct hf_run){127, 129, 64};
-        area = 128;
+        a->run[first - p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
+        area = 2 * HF_WHOLE_ROW;
     }
     p->area = (float)area;
 }

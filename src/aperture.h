@@ -6,8 +6,10 @@
 #include "frame.h"
 #include "mem.h"
 
+enum { HF_WHOLE_ROW = 16 };
+
 // A row of a picture: the run from a to b, in 1/256 pixel from the left edge of the pixel it is drawn around, and its
-// weight in 1/64: below that where the picture covers only part of the row's height.
+// weight in 1/16: below that where the picture covers only part of the row's height.
 struct hf_run {
     int32_t a, b, weight;
 };
@@ -18,7 +20,8 @@ struct hf_picture {
     int columns;    // of an image's
     int top, rows;  // symmetric: top 0, rows 0..rows - 1 stand for both +dy and -dy
     int reach_x, reach_y;
-    float area;     // sum of the weights of its pixels: 256 each, outlines 256 * 64, images up to 1023
+    int cap;        // symmetric: weight of the last row, 1/16
+    float area;     // sum of the weights of its pixels: 256 * 16 each, images up to 1023
 };
 
 // 256 sizes an octave, from radius 0.5 on, each 0.2 to 0.4 % larger than the last. Nearest one to a radius.

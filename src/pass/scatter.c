@@ -46,13 +46,21 @@ static float inside(const struct hf_setup *s, float reach_x, float reach_y, int 
     return ((segment(left) + segment(right)) - 1) * ((segment(above) + segment(below)) - 1);
 }
 
-// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where no far one reaches, near hides it.
+// a + t (b - a), for t of 1 and more b's own bits, as a's for 0: next to a highlight b would lose them.
+static float mix(float a, float b, float t)
+{
+    return t < 1 ? hf_lerp(a, b, t) : b;
+}
+
+// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where far ones hardly reach, near hides it.
 static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2])
 {
     const float front = near[1] > 0 ? near[0] / near[1] : own;
-    float v = far[1] > 0 ? far[0] / far[1] : is_near ? front : own;
-    v = hf_lerp(own, v, 1 - show);
-    return near[1] > 0 ? hf_lerp(v, front, cover < 1 ? cover : 1) : v;
+    float v = far[1] > 0 ? far[0] / far[1] : own;
+    if (is_near)
+        v = mix(front, v, hf_saturate(16 * far[1]));
+    v = mix(own, v, 1 - show);
+    return near[1] > 0 ? mix(v, front, cover) : v;
 }
 
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)

@@ -69,9 +69,12 @@ void hf_splat_c(const struct hf_sums *s, const struct hf_aperture *a, int y, con
 {
     for (int i = 0; i < list->count; i++) {
         const struct hf_picture *p = &a->picture[list->picture[i]];
-        const uint64_t *u = (const uint64_t *)list->share[i];
         const int x = list->x[i] - s->x0;
         for (int dy = 0; dy < p->rows; dy++) {
+            const uint64_t weight = (uint64_t)(dy == p->rows - 1 ? p->cap : HF_WHOLE_ROW);
+            uint64_t u[4];
+            for (int c = 0; c < 4; c++)
+                u[c] = (uint64_t)list->share[i][c] * weight;
             draw_half(s, x, y + dy, u, a->half[p->first + dy]);
             if (dy)
                 draw_half(s, x, y - dy, u, a->half[p->first + dy]);
@@ -179,8 +182,8 @@ static void add_cat_eye(struct walk *w, int x, int y, float r, const float colou
         w->runs[i] = cut;
     }
     if (area <= 0) {
-        w->runs[-p->top] = (struct hf_run){127, 129, 64};
-        area = 128;
+        w->runs[-p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
+        area = 2 * HF_WHOLE_ROW;
     }
     int64_t share[4];
     set_share(w, share, colour, weight, 1 / area);

@@ -18,13 +18,14 @@ HF_INLINE void splat_row(int64_t *row, int x, int n, int width, vl part, vl rest
     vl_store(d, vl_sub(vl_load(d), part));
 }
 
-HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, const int32_t *half, int x, int y,
-                         const int64_t *share, const int clamp)
+// Rows `first` to `last` above and below a source.
+HF_INLINE void splat_rows(const struct hf_sums *s, const int32_t *half, int x, int y, vl one, int first, int last,
+                          const int clamp)
 {
-    const vl one = vl_load(share), whole = vl_shl8(one);
-    const int width = s->x1 - s->x0, last = p->rows - 1;
-    const int down0 = hf_max(0, s->y0 - y), down1 = hf_min(last, s->y1 - 1 - y);
-    const int up0 = hf_max(1, y - s->y1 + 1), up1 = hf_min(last, y - s->y0);
+    const vl whole = vl_shl8(one);
+    const int width = s->x1 - s->x0;
+    const int down0 = hf_max(first, s->y0 - y), down1 = hf_min(last, s->y1 - 1 - y);
+    const int up0 = hf_max(hf_max(first, 1), y - s->y1 + 1), up1 = hf_min(last, y - s->y0);
     const int both0 = hf_max(down0, up0), both1 = hf_min(down1, up1);
     const ptrdiff_t *row = s->row + (y - s->y0);
     for (int dy = both0; dy <= both1; dy++) {
@@ -33,22 +34,25 @@ HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, co
         splat_row(s->lane + row[dy], x, n, width, part, rest, clamp);
         splat_row(s->lane + row[-dy], x, n, width, part, rest, clamp);
     }
-    for (int dy = down0; dy <= down1; dy++) {
-        if (dy == both0 && both1 >= both0)
-            dy = both1 + 1;
-        if (dy > down1)
-            break;
-        const vl part = vl_times(one, (uint32_t)half[dy] & 255);
-        splat_row(s->lane + row[dy], x, half[dy] >> 8, width, part, vl_sub(whole, part), clamp);
-    }
-    for (int dy = up0; dy <= up1; dy++) {
-        if (dy == both0 && both1 >= both0)
-            dy = both1 + 1;
-        if (dy > up1)
-            break;
-        const vl part = vl_times(one, (uint32_t)half[dy] & 255);
-        splat_row(s->lane + row[-dy], x, half[dy] >> 8, width, part, vl_sub(whole, part), clamp);
-    }
+    // Rows of which the window holds but one: before, and after, those that it holds both of.
+    for (int side = 0; side < 2; side++)
+        for (int dy = side ? up0 : down0; dy <= (side ? up1 : down1); dy++) {
+            if (dy == both0 && both1 >= both0) {
+                dy = both1;
+                continue;
+            }
+            const vl part = vl_times(one, (uint32_t)half[dy] & 255);
+            splat_row(s->lane + row[side ? -dy : dy], x, half[dy] >> 8, width, part, vl_sub(whole, part), clamp);
+        }
+}
+
+HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, const int32_t *half, int x, int y,
+                         const int64_t *share, const int clamp)
+{
+    const vl unit = vl_load(share);
+    if (p->rows > 1)
+        splat_rows(s, half, x, y, vl_times(unit, HF_WHOLE_ROW), 0, p->rows - 2, clamp);
+    splat_rows(s, half, x, y, vl_times(unit, (uint32_t)p->cap), p->rows - 1, p->rows - 1, clamp);
 }
 
 static void splat_simd(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list)
