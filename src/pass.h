@@ -89,8 +89,8 @@ struct hf_sums;
 struct hf_splats;
 struct hf_aperture;
 struct hf_run;
-// Scatter: draw a list of pictures, of sources on row y, into the sums (pass/splat.c).
-typedef void hf_splat(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list);
+// Scatter: draw a list of pictures into the sums (pass/splat.c).
+typedef void hf_splat(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list);
 // One outline's rows from row y on, around column x.
 typedef void hf_splat_runs(const struct hf_sums *s, int x, int y, const struct hf_run *run, int rows,
                            const int64_t share[4]);

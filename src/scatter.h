@@ -71,12 +71,12 @@ struct hf_tent_row {
     float *pixel[2][4];        // even and odd: colour times weight, 3 the weight
 };
 
-// Pixels that a pass of the sums draws, or that it keeps: one row's sources.
+// Sources to be drawn.
 enum { HF_SPLATS = 128 };
 
 struct hf_splats {
     int count;
-    int32_t x[HF_SPLATS];        // the level's pixels
+    int32_t x[HF_SPLATS], y[HF_SPLATS];  // the level's pixels
     int32_t picture[HF_SPLATS];
     _Alignas(64) int64_t share[HF_SPLATS][4];  // of each lane for 1 unit of weight
 };

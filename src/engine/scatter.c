@@ -178,15 +178,20 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return needs ? HF_FIELDS : 0;
 }
 
-// Cells large against the reach, for what lies around a cell is looked at twice; small enough for the rows of sums that
-// are being drawn on to stay in the cache.
+// Cells large against the reach, for what lies around a cell is looked at twice; and narrow enough for the rows of sums that
+// are being drawn on, 32 bytes a pixel, to stay in the second level of the cache.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
-    (void)sweep;
+    const struct hf_scatter *t = s->tables;
     const int enough = hf_min(4 * s->reach_y, s->half_height / 2);
+    (void)sweep;
     *height = hf_max(*height, hf_min(enough, 256));
-    if (s->reach_x > 24 && *width < 320)
-        *width = 320;
+    for (int field = 0; t && field < 2; field++)
+        for (int level = 0; level < 2; level++) {
+            const int rows = 2 * hf_max(t->reach_y[field][level], 0) + 8;
+            const int columns = (level ? 1 : 2) * 32 * rows;  // bytes of one half-resolution column
+            *width = hf_min(*width, hf_max(hf_max(400000 / columns, s->reach_x) & ~15, 64));
+        }
 }
 
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)

@@ -65,11 +65,11 @@ void hf_splat_taps_c(const struct hf_sums *s, int x, int y, const int16_t *tap, 
     }
 }
 
-void hf_splat_c(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list)
+void hf_splat_c(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list)
 {
     for (int i = 0; i < list->count; i++) {
         const struct hf_picture *p = &a->picture[list->picture[i]];
-        const int x = list->x[i] - s->x0;
+        const int x = list->x[i] - s->x0, y = list->y[i];
         for (int dy = 0; dy < p->rows; dy++) {
             const uint64_t weight = (uint64_t)(dy == p->rows - 1 ? p->cap : HF_WHOLE_ROW);
             uint64_t u[4];
@@ -94,7 +94,7 @@ void hf_settle_c(int64_t *lane, int n, int channels, const double unscale[4], fl
     memset(lane, 0, sizeof *lane * 4 * (size_t)(n + 2));
 }
 
-enum { TENT_LINES = 33 };
+enum { TENT_LINES = 33, TOGETHER = 4 };  // the latter: rows of sources that are drawn at once
 
 // The walk over a window: one field's sums of one group and level.
 struct walk {
@@ -120,13 +120,13 @@ static const struct hf_picture *pictures(const struct walk *w)
     return a->picture + plane * a->count;
 }
 
-static void flush(struct walk *w, int y)
+static void flush(struct walk *w)
 {
     const struct hf_aperture *a = w->t->aperture;
     const struct hf_splats *l = w->list;
     for (int i = 0; a->tap && i < l->count; i++) {
         const struct hf_picture *p = &pictures(w)[l->picture[i]];
-        w->f->k->splat_taps(&w->sums, l->x[i] - p->reach_x, y + p->top, a->tap + p->first, p->columns, p->rows,
+        w->f->k->splat_taps(&w->sums, l->x[i] - p->reach_x, l->y[i] + p->top, a->tap + p->first, p->columns, p->rows,
                             l->share[i]);
     }
     if (a->tap) {
@@ -134,10 +134,10 @@ static void flush(struct walk *w, int y)
         return;
     }
     if (a->symmetric && l->count)
-        w->f->k->splat(&w->sums, a, y, l);
+        w->f->k->splat(&w->sums, a, l);
     for (int i = 0; !a->symmetric && i < l->count; i++) {
         const struct hf_picture *p = &a->picture[l->picture[i]];
-        w->f->k->splat_runs(&w->sums, l->x[i], y + p->top, a->run + p->first, p->rows, l->share[i]);
+        w->f->k->splat_runs(&w->sums, l->x[i], l->y[i] + p->top, a->run + p->first, p->rows, l->share[i]);
     }
     w->list->count = 0;
 }
@@ -154,10 +154,11 @@ static void add_picture(struct walk *w, int x, int y, int number, const float co
 {
     struct hf_splats *l = w->list;
     l->x[l->count] = x;
+    l->y[l->count] = y;
     l->picture[l->count] = number;
     set_share(w, l->share[l->count], colour, weight, part);
     if (++l->count == HF_SPLATS)
-        flush(w, y);
+        flush(w);
 }
 
 // The picture cut by the second circle of a cat's eye, off the lens's axis towards the corner that the source is near.
@@ -220,26 +221,26 @@ static float field_weight(const struct hf_scatter *t, int field, float r)
     return r > 0 ? field ? 1 : 1 - hf_own_part(t, r) : 0;
 }
 
-static void list_full(struct walk *w, int y)
+// Sources of full-resolution rows y0 to y1, column by column: the rows of one column draw on nearly the same lines of
+// the cache, which come from its second level and go back there once for all of them.
+static void list_full(struct walk *w, int y0, int y1)
 {
     const struct hf_frame *f = w->f;
     const int reach = w->t->reach_x[w->field][0];
     const int x0 = hf_max(w->sums.x0 - reach, 0), x1 = hf_min(w->sums.x1 + reach, f->s->width);
-    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
-    const float *colour[3] = {NULL};
-    for (int c = 0; c < w->group->channels; c++)
-        colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], 0, y);
-    for (int x = x0; x < x1; x++) {
-        const float r = w->field ? radius[x] : -radius[x];
-        const float weight = field_weight(w->t, w->field, r) * (1 - hf_half_part(w->t, r));
-        float v[3];
-        if (!(weight > 0))
-            continue;
-        for (int c = 0; c < w->group->channels; c++)
-            v[c] = colour[c][x] * weight;
-        add_source(w, x, y, r, v, weight);
-    }
-    flush(w, y);
+    const struct hf_buf *radius = &f->buf[HF_BUF_RADIUS], *source = &f->buf[HF_BUF_SOURCE];
+    for (int x = x0; x < x1; x++)
+        for (int y = y0; y < y1; y++) {
+            const float signed_radius = *hf_at(radius, 0, x, y), r = w->field ? signed_radius : -signed_radius;
+            const float weight = field_weight(w->t, w->field, r) * (1 - hf_half_part(w->t, r));
+            float v[3];
+            if (!(weight > 0))
+                continue;
+            for (int c = 0; c < w->group->channels; c++)
+                v[c] = *hf_at(source, w->group->channel[c], x, y) * weight;
+            add_source(w, x, y, r, v, weight);
+        }
+    flush(w);
 }
 
 // Radius of a half-resolution pixel whose four have like ones, on this field's side; else 0.
@@ -376,7 +377,7 @@ static void list_lone(struct walk *w, int y, int q, float part)
             add_source(w, column, q, 0.5f * r, v, share);
         }
     }
-    flush(w, q);
+    flush(w);
 }
 
 // Rows of quads up to q + 1 and of tents up to 2 q + 2.
@@ -431,7 +432,7 @@ static void list_half(struct walk *w, int q)
         if (radius[i] > 0 && w->mean[3][i] > 0)
             add_source(w, x0 + i, q, 0.5f * radius[i], v, w->mean[3][i]);
     }
-    flush(w, q);
+    flush(w);
     for (int k = 0; k < 4; k++)
         if (part[k] > 0 && w->lone[row[k] & 3])
             list_lone(w, row[k], q, 0.25f * part[k]);
@@ -452,7 +453,7 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
             continue;
         l.width[level] = level ? cell_width + 2 : 2 * cell_width;
         l.height[level] = level ? cell_height + 2 : 2 * cell_height;
-        l.ring[level] = hf_min(2 * t->reach_y[field][level] + 1, l.height[level]);
+        l.ring[level] = hf_min(2 * t->reach_y[field][level] + TOGETHER, l.height[level]);
         l.stride[level] = 4 * (l.width[level] + 4);
         const size_t sums = 2 * (size_t)l.stride[level] * (size_t)l.ring[level];
         l.sums = sums > l.sums ? sums : l.sums;
@@ -508,13 +509,14 @@ static void walk_level(struct walk *w, const struct layout *l, const struct targ
         w->sums.row[y] = (ptrdiff_t)(y % l->ring[w->level]) * l->stride[w->level];
     memset(w->sums.lane, 0, sizeof *w->sums.lane * (size_t)l->stride[w->level] * (size_t)l->ring[w->level]);
     int settled = w->sums.y0;
-    for (int y = hf_max(w->sums.y0 - reach, 0); y < hf_min(w->sums.y1 + reach, height); y++) {
+    const int end = hf_min(w->sums.y1 + reach, height), step = w->level ? 1 : TOGETHER;
+    for (int y = hf_max(w->sums.y0 - reach, 0); y < end; y += step) {
         while (settled < hf_min(y - reach, w->sums.y1))
             settle(w, to, settled++);
         if (w->level)
             list_half(w, y);
         else
-            list_full(w, y);
+            list_full(w, y, hf_min(y + step, end));
     }
     while (settled < w->sums.y1)
         settle(w, to, settled++);

@@ -55,12 +55,12 @@ HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, co
     splat_rows(s, half, x, y, vl_times(unit, (uint32_t)p->cap), p->rows - 1, p->rows - 1, clamp);
 }
 
-static void splat_simd(const struct hf_sums *s, const struct hf_aperture *a, int y, const struct hf_splats *list)
+static void splat_simd(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list)
 {
     const int width = s->x1 - s->x0;
     for (int i = 0; i < list->count; i++) {
         const struct hf_picture *p = &a->picture[list->picture[i]];
-        const int x = list->x[i] - s->x0;
+        const int x = list->x[i] - s->x0, y = list->y[i];
         if (x - p->reach_x >= 0 && x + p->reach_x <= width)
             splat_one(s, p, a->half + p->first, x, y, list->share[i], 0);
         else
