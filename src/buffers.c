@@ -35,7 +35,11 @@ static struct window window_of(const struct hf_plan *p, const struct hf_setup *s
 {
     const struct hf_buf_def *def = &p->engine->bufs[b];
     const int lx = log2_x(s, def), ly = log2_y(s, def);
-    struct window w = {.left = (scaled(p->buf[b].x, lx) + 15) & ~15, .top = scaled(p->buf[b].y, ly)};
+    struct window w = {0};
+    if (!def->bare) {
+        w.left = (scaled(p->buf[b].x, lx) + 15) & ~15;
+        w.top = scaled(p->buf[b].y, ly);
+    }
     w.stride = ((scaled(width, lx) + 15) & ~15) + 2 * w.left + HF_PAD;
     if (w.stride % 1024 == 0)
         w.stride += 16;  // rows 4 KB apart would share cache sets
@@ -201,7 +205,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
     const struct hf_buf_def *def = &e->bufs[b];
     const int lx = log2_x(s, def), ly = log2_y(s, def);
     const struct hf_reach reach = {scaled(c->plan.buf[b].x, lx), scaled(c->plan.buf[b].y, ly)};
-    if (!f->buf[b].ch[0] || (reach.x == 0 && reach.y == 0))
+    if (!f->buf[b].ch[0] || def->bare || (reach.x == 0 && reach.y == 0))
         return;
     const struct hf_rect have = hf_buffers_rect(s, def, r);
     struct hf_rect want = have;

@@ -3,6 +3,7 @@
 #ifndef HF_CONTEXT_H
 #define HF_CONTEXT_H
 
+#include "aperture.h"
 #include "budget.h"
 #include "cost.h"
 #include "engine.h"
@@ -29,6 +30,7 @@ struct hf_context {
     struct hf_worker *workers;
 
     struct hf_taps taps;
+    struct hf_aperture aperture;
     struct hf_block tables;   // of the other engines' prepare
     struct hf_plan plan;      // of the last frame: the next one guesses from it
     struct hf_block planes;   // buffers of the whole frame

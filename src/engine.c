@@ -7,6 +7,7 @@ const struct hf_engine_def *hf_engine_def(enum hf_engine engine)
         [HF_ENGINE_GATHER] = &hf_gather_engine,
         [HF_ENGINE_HEXAGON] = &hf_hexagon_engine,
         [HF_ENGINE_GAUSSIAN] = &hf_gaussian_engine,
+        [HF_ENGINE_SCATTER] = &hf_scatter_engine,
     };
     return (unsigned)engine < HF_ENGINE_COUNT ? engines[engine] : NULL;
 }

@@ -14,6 +14,7 @@ struct hf_buf_def {
     int x, y;          // log2 of its pixels per half-resolution pixel: 1 is full resolution, 0 half, -1 a quarter
     unsigned field;    // the field that it belongs to; 0: wanted for any
     int shrinks;       // x and y are those at full resolution, and smaller with the setup's
+    int bare;          // nothing is read beyond the frame: no border
 };
 
 struct hf_engine_def {
@@ -32,6 +33,8 @@ struct hf_engine_def {
     int (*prepare)(struct hf_context *c, struct hf_setup *s, const struct hf_params *p);
     // measured: called with what was counted over the frame; sets the reach.
     void (*measure)(struct hf_setup *s, const struct hf_counts *found);
+    // measured: called with what the whole first sweep has counted. NULL: nothing follows from it.
+    void (*made)(struct hf_setup *s, const struct hf_counts *found);
     // Channels of a buffer; 0: not wanted with these options.
     int (*channels)(const struct hf_setup *s, int buf);
     // Does a pass run with these options? NULL: all do.
@@ -48,7 +51,7 @@ struct hf_engine_def {
     size_t (*work)(const struct hf_setup *s, const struct hf_plan *p);
 };
 
-extern const struct hf_engine_def hf_gather_engine, hf_hexagon_engine, hf_gaussian_engine;
+extern const struct hf_engine_def hf_gather_engine, hf_hexagon_engine, hf_scatter_engine, hf_gaussian_engine;
 // Reaches and taps of the gather: its prepare, for a setup whose taps are anyone's.
 int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
 

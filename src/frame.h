@@ -109,6 +109,8 @@ struct hf_counts {
     float near_max, far_max;       // the gather's CoC
     float brightest, alpha_min;        // of the colour, if somebody asks
     uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes
+    float largest;                 // scatter: absolute sample of a blurred pixel
+    uint64_t transparent;          // scatter: blurred pixels whose alpha is not 1
 };
 
 // Lanes are looked at in groups of 64; there may be more than bits, then several share one.

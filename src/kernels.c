@@ -34,6 +34,18 @@ void hf_kernels_c(struct hf_kernels *k)
     k->wide_block = hf_wide_block_c;
     k->zip = hf_zip_row_c;
     k->unzip = hf_unzip_row_c;
+    k->pass[HF_KERNEL_SCATTER_PREPARE] = hf_scatter_prepare_c;
+    k->pass[HF_KERNEL_SPLAT_FAR] = hf_splat_far;
+    k->pass[HF_KERNEL_SPLAT_NEAR] = hf_splat_near;
+    k->pass[HF_KERNEL_SCATTER_COMPOSITE] = hf_scatter_composite_c;
+    k->splat = hf_splat_c;
+    k->splat_runs = hf_splat_runs_c;
+    k->splat_taps = hf_splat_taps_c;
+    k->settle = hf_settle_c;
+    k->quad_row = hf_quad_row_c;
+    k->tent_weights = hf_tent_weights_c;
+    k->tent = hf_tent_c;
+    k->mean_row = hf_mean_row_c;
     hf_format_kernels_c(k);
 }
 

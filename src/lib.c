@@ -134,6 +134,7 @@ void hf_close(struct hf_context **context)
     if (c->workers)
         c->mem.free(c->mem.cookie, c->workers);
     hf_taps_free(&c->taps, &c->mem);
+    hf_block_free(&c->aperture.block, &c->mem);
     hf_block_free(&c->planes, &c->mem);
     hf_block_free(&c->chunks, &c->mem);
     hf_block_free(&c->tiles, &c->mem);

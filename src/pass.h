@@ -36,6 +36,10 @@ enum {
     HF_KERNEL_WIDE_COLUMNS,            // gaussian, of any size
     HF_KERNEL_WIDE_ROWS,
     HF_KERNEL_GAUSSIAN_MERGE,
+    HF_KERNEL_SCATTER_PREPARE,
+    HF_KERNEL_SPLAT_FAR,
+    HF_KERNEL_SPLAT_NEAR,
+    HF_KERNEL_SCATTER_COMPOSITE,
     HF_KERNEL_COUNT
 };
 
@@ -112,6 +116,31 @@ typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
 typedef void hf_round_row(float *v, int n);
 typedef void hf_round_rgb(float *r, float *g, float *b, int n);
 
+struct hf_sums;
+struct hf_splats;
+struct hf_aperture;
+struct hf_run;
+// Scatter: draw a list of pictures into the sums (pass/splat.c).
+typedef void hf_splat(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list);
+// One outline's rows from row y on, around column x.
+typedef void hf_splat_runs(const struct hf_sums *s, int x, int y, const struct hf_run *run, int rows,
+                           const int64_t share[4]);
+// An image's rows from (x, y) on, as differences.
+typedef void hf_splat_taps(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
+                           const int64_t share[4]);
+// A finished row of n pixels of sums: integrated, scaled, split into planes (lane 3, the weight, to out[3]), and zeroed.
+typedef void hf_settle(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4]);
+
+struct hf_tent_row;
+// Radii of n half-resolution pixels that have four like ones, else 0; from two rows of 2n.
+typedef void hf_quad_row(const float *above, const float *below, int n, float sign, float *out);
+// Weights and weighted colours of a row's pixels from column `first` on; returns whether some are no part of a mean.
+typedef int hf_tent_weights(const struct hf_tent_row *t, int first);
+// Means over 1 3 3 1 in eighths, of even and odd pixels; even up to n and odd from -1 on.
+typedef void hf_tent(const float *even, const float *odd, int n, float *out);
+// Half the weighted sum of four rows.
+typedef void hf_mean_row(const float *const tent[4], const float part[4], int n, float *out);
+
 struct hf_kernels {
     hf_kernel *pass[HF_KERNEL_COUNT];
     hf_coc_row *coc_row;
@@ -124,6 +153,14 @@ struct hf_kernels {
     hf_wide_block *wide_block;
     hf_zip_row *zip;
     hf_unzip_row *unzip;
+    hf_splat *splat;
+    hf_splat_runs *splat_runs;
+    hf_splat_taps *splat_taps;
+    hf_settle *settle;
+    hf_quad_row *quad_row;
+    hf_tent_weights *tent_weights;
+    hf_tent *tent;
+    hf_mean_row *mean_row;
     hf_load_row *load[HF_FORMAT_COUNT];
     hf_store_row *store[HF_FORMAT_COUNT];
     hf_finite *finite_f32, *finite_f16, *finite_r11;

@@ -208,6 +208,8 @@ static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
     sum->far_max = c->far_max > sum->far_max ? c->far_max : sum->far_max;
     sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
     sum->radius_max = c->radius_max > sum->radius_max ? c->radius_max : sum->radius_max;
+    sum->largest = c->largest > sum->largest ? c->largest : sum->largest;
+    sum->transparent += c->transparent;
 }
 
 static struct hf_counts all_counts(const struct hf_context *c)
@@ -230,7 +232,7 @@ static void collect_stats(const struct job *j, int64_t start)
     if (j->s->blend == 0)
         t->sharp_pixels = (uint64_t)j->s->width * (uint64_t)j->s->height;
     t->memory = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
-                c->taps.block.size + c->tables.size + (c->pool ? hf_pool_bytes(c->threads) : 0);
+                c->taps.block.size + c->aperture.block.size + c->tables.size + (c->pool ? hf_pool_bytes(c->threads) : 0);
     for (int i = 0; i < c->threads; i++) {
         const struct hf_worker *w = &c->workers[i];
         for (int p = 0; p < HF_MAX_PASSES; p++) {
@@ -327,6 +329,10 @@ static int run_plan(struct job *j)
     struct hf_context *c = j->c;
     if (j->s->blend != 0 && c->plan.deferred_count)
         parallel(c, c->plan.deferred_count, first_sweep_deferred, j);
+    if (j->s->blend != 0 && c->plan.engine->made) {
+        const struct hf_counts found = all_counts(c);
+        c->plan.engine->made(j->s, &found);
+    }
     if (j->s->blend == 0 && j->copy.in_place)
         parallel(c, hf_plan_count(&c->plan, 2), scan_tile, j);
     const int err = j->copy.in_place ? hf_copy_repair(c) : HF_OK;

@@ -143,4 +143,45 @@ static inline vd vd_set1(double a) { return vdupq_n_f64(a); }
 static inline vd vd_add(vd a, vd b) { return vaddq_f64(a, b); }
 static inline vd vd_mul(vd a, vd b) { return vmulq_f64(a, b); }
 
+// Four 64-bit integers, and four floats: of 128 bits whatever the rest.
+typedef struct { int64x2_t a, b; } vl;
+typedef float32x4_t v4;
+static inline void v4_store(float *p, v4 a) { vst1q_f32(p, a); }
+static inline void v4_transpose(v4 a[4])
+{
+    const float32x4x2_t x = vtrnq_f32(a[0], a[1]), y = vtrnq_f32(a[2], a[3]);
+    for (int i = 0; i < 2; i++) {
+        a[i] = vcombine_f32(vget_low_f32(x.val[i]), vget_low_f32(y.val[i]));
+        a[i + 2] = vcombine_f32(vget_high_f32(x.val[i]), vget_high_f32(y.val[i]));
+    }
+}
+
+static inline vl vl_load(const int64_t *p) { return (vl){vld1q_s64(p), vld1q_s64(p + 2)}; }
+static inline void vl_store(int64_t *p, vl a)
+{
+    vst1q_s64(p, a.a);
+    vst1q_s64(p + 2, a.b);
+}
+
+static inline vl vl_set1(int64_t a) { return (vl){vdupq_n_s64(a), vdupq_n_s64(a)}; }
+static inline vl vl_add(vl a, vl b) { return (vl){vaddq_s64(a.a, b.a), vaddq_s64(a.b, b.b)}; }
+static inline vl vl_sub(vl a, vl b) { return (vl){vsubq_s64(a.a, b.a), vsubq_s64(a.b, b.b)}; }
+static inline vl vl_shl8(vl a) { return (vl){vshlq_n_s64(a.a, 8), vshlq_n_s64(a.b, 8)}; }
+
+static inline int64x2_t vl_times_half(int64x2_t a, uint32_t b)
+{
+    const uint64x2_t u = vreinterpretq_u64_s64(a), high = vmull_n_u32(vshrn_n_u64(u, 32), b);
+    return vreinterpretq_s64_u64(vaddq_u64(vmull_n_u32(vmovn_u64(u), b), vshlq_n_u64(high, 32)));
+}
+
+// a * b for any a, low 64 bits.
+static inline vl vl_times(vl a, uint32_t b) { return (vl){vl_times_half(a.a, b), vl_times_half(a.b, b)}; }
+// As floats, each times its scale.
+static inline v4 vl_scaled(vl a, const double scale[4])
+{
+    const float64x2_t x = vmulq_f64(vcvtq_f64_s64(a.a), vld1q_f64(scale));
+    const float64x2_t y = vmulq_f64(vcvtq_f64_s64(a.b), vld1q_f64(scale + 2));
+    return vcombine_f32(vcvt_f32_f64(x), vcvt_f32_f64(y));
+}
+
 #endif

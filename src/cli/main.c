@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hyperfocal INPUT -o OUTPUT: what to do comes from args, how from setup and frame; here is who says what to whom.
+#include "cli/aperture.h"
 #include "cli/explain.h"
 #include "cli/frame.h"
 #include "cli/help.h"
@@ -116,6 +117,7 @@ static int run(int argc, char **argv, struct cli_error *error)
 {
     struct cli_args args;
     struct cli_session session;
+    struct cli_aperture aperture;
     if (cli_parse_args(&args, argc, argv, error))
         return CLI_BAD_ARGUMENTS;
     if (args.help)
@@ -129,7 +131,10 @@ static int run(int argc, char **argv, struct cli_error *error)
         status = cli_session_open(&session, &args, error);
     if (status)
         return status;
-    status = run_frame(argc, argv, &args, &session, error);
+    status = cli_aperture_load(&aperture, &args, error);
+    if (!status)
+        status = run_frame(argc, argv, &args, &session, error);
+    cli_aperture_free(&aperture);
     hf_close(&session.context);
     return status;
 }

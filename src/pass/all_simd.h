@@ -16,6 +16,8 @@
 #include "pass/composite_simd.h"
 #include "pass/hexagon_simd.h"
 #include "pass/hexagon_ends_simd.h"
+#include "pass/splat_simd.h"
+#include "pass/tent_simd.h"
 
 void HF_INIT(struct hf_kernels *k);
 
@@ -32,6 +34,14 @@ void HF_INIT(struct hf_kernels *k)
     k->wide_block = wide_block_simd;
     k->zip = zip_row_simd;
     k->unzip = unzip_row_simd;
+    k->splat = splat_simd;
+    k->splat_runs = splat_runs_simd;
+    k->splat_taps = splat_taps_simd;
+    k->settle = settle_simd;
+    k->quad_row = quad_row_simd;
+    k->tent_weights = tent_weights_simd;
+    k->tent = tent_simd;
+    k->mean_row = mean_row_simd;
     k->pass[HF_PASS_DOWN] = down_simd;
     k->pass[HF_PASS_MAX_X] = max_x_simd;
     k->pass[HF_PASS_MAX_Y] = max_y_simd;

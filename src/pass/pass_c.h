@@ -22,6 +22,15 @@ hf_kernel hf_wide_columns_pass, hf_wide_rows_pass;
 hf_wide_block hf_wide_block_c;
 hf_zip_row hf_zip_row_c;
 hf_unzip_row hf_unzip_row_c;
+hf_kernel hf_scatter_prepare_c, hf_splat_far, hf_splat_near, hf_scatter_composite_c;
+hf_splat hf_splat_c;
+hf_splat_runs hf_splat_runs_c;
+hf_splat_taps hf_splat_taps_c;
+hf_settle hf_settle_c;
+hf_quad_row hf_quad_row_c;
+hf_tent_weights hf_tent_weights_c;
+hf_tent hf_tent_c;
+hf_mean_row hf_mean_row_c;
 
 // The variable that CoC is linear in at a pixel: z, -1/z with a lens, or the radius itself.
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);

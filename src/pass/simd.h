@@ -6,6 +6,7 @@
 #define HF_PASS_SIMD_H
 
 #include "pass/pass_c.h"
+#include "scatter.h"
 
 #define HF_INLINE static inline __attribute__((always_inline))
 

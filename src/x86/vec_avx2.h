@@ -6,6 +6,8 @@
 #include <immintrin.h>
 #include <stdint.h>
 
+#include "x86/vec_long.h"
+
 typedef __m256 vf;
 typedef __m256i vi;
 typedef __m256 vm;  // lanes all ones or all zeros

@@ -6,6 +6,8 @@
 #include <immintrin.h>
 #include <stdint.h>
 
+#include "x86/vec_long.h"
+
 typedef __m512 vf;
 typedef __m512i vi;
 typedef __mmask16 vm;

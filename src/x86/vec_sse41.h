@@ -136,4 +136,54 @@ static inline vd vd_set1(double a) { return _mm_set1_pd(a); }
 static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
 static inline vd vd_mul(vd a, vd b) { return _mm_mul_pd(a, b); }
 
+// Four 64-bit integers, and four floats: of 128 bits whatever the rest.
+typedef struct { __m128i a, b; } vl;
+typedef __m128 v4;
+static inline void v4_store(float *p, v4 a) { _mm_storeu_ps(p, a); }
+static inline void v4_transpose(v4 a[4]) { _MM_TRANSPOSE4_PS(a[0], a[1], a[2], a[3]); }
+static inline vl vl_load(const int64_t *p)
+{
+    return (vl){_mm_loadu_si128((const __m128i *)p), _mm_loadu_si128((const __m128i *)p + 1)};
+}
+
+static inline void vl_store(int64_t *p, vl a)
+{
+    _mm_storeu_si128((__m128i *)p, a.a);
+    _mm_storeu_si128((__m128i *)p + 1, a.b);
+}
+
+static inline vl vl_set1(int64_t a) { return (vl){_mm_set1_epi64x(a), _mm_set1_epi64x(a)}; }
+static inline vl vl_add(vl a, vl b) { return (vl){_mm_add_epi64(a.a, b.a), _mm_add_epi64(a.b, b.b)}; }
+static inline vl vl_sub(vl a, vl b) { return (vl){_mm_sub_epi64(a.a, b.a), _mm_sub_epi64(a.b, b.b)}; }
+static inline vl vl_shl8(vl a) { return (vl){_mm_slli_epi64(a.a, 8), _mm_slli_epi64(a.b, 8)}; }
+
+static inline __m128i vl_times_half(__m128i a, __m128i m)
+{
+    return _mm_add_epi64(_mm_mul_epu32(a, m), _mm_slli_epi64(_mm_mul_epu32(_mm_srli_epi64(a, 32), m), 32));
+}
+
+// a * b for any a, low 64 bits.
+static inline vl vl_times(vl a, uint32_t b)
+{
+    const __m128i m = _mm_set1_epi64x(b);
+    return (vl){vl_times_half(a.a, m), vl_times_half(a.b, m)};
+}
+
+// The integer's upper part, made a double by its exponent's bits, and its lower 48 bits are both exact: one rounding, as
+// that of a conversion.
+static inline __m128 vl_scaled_half(__m128i a, __m128d scale)
+{
+    const __m128d magic = _mm_set1_pd(442721857769029238784.0), all = _mm_set1_pd(442726361368656609280.0);
+    const __m128i upper = _mm_blend_epi16(_mm_srai_epi32(a, 16), _mm_setzero_si128(), 0x33);
+    const __m128i lower = _mm_blend_epi16(a, _mm_castpd_si128(_mm_set1_pd(0x1p52)), 0x88);
+    const __m128d d = _mm_sub_pd(_mm_castsi128_pd(_mm_add_epi64(upper, _mm_castpd_si128(magic))), all);
+    return _mm_cvtpd_ps(_mm_mul_pd(_mm_add_pd(d, _mm_castsi128_pd(lower)), scale));
+}
+
+// As floats, each times its scale.
+static inline v4 vl_scaled(vl a, const double scale[4])
+{
+    return _mm_movelh_ps(vl_scaled_half(a.a, _mm_loadu_pd(scale)), vl_scaled_half(a.b, _mm_loadu_pd(scale + 2)));
+}
+
 #endif

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the scatter engine knows of a frame: its levels, its scales, its options (engine/scatter.c, pass/scatter.c).
+#ifndef HF_SCATTER_H
+#define HF_SCATTER_H
+
+#include "aperture.h"
+
+// The engine's buffers.
+enum {
+    HF_BUF_SOURCE,  // colour of every pixel
+    HF_BUF_RADIUS,  // its signed radius
+    HF_BUF_FAR_SUM,
+    HF_BUF_FAR_WEIGHT,
+    HF_BUF_NEAR_SUM,
+    HF_BUF_NEAR_WEIGHT,
+    HF_SCATTER_BUFS
+};
+
+// Channels that share pictures, and so a sum of weights.
+struct hf_splat_group {
+    int channels, channel[3];
+    float factor[2];  // of the radius, near and far
+};
+
+struct hf_scatter {
+    const struct hf_aperture *aperture;
+    int groups;
+    struct hf_splat_group group[4];
+    int group_of[4];       // of each channel
+    int opaque;            // alpha is 1 everywhere, as the weights' ratio is
+    float largest[2];      // |r| of the frame, near and far
+    // Radii between which pixels move from the full to the half-resolution sums, half_slope 1 / their difference; below
+    // 0: there is nothing but the latter.
+    float half_from, half_to, half_slope;
+    float fade, fade_slope;  // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
+    int exponent;          // the brightest blurred sample is below 2^exponent
+    int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
+    float ring, cat_eye;   // radii of the hole, and by which the second circle moves in the corners
+    float corner;          // 1 / the picture's diagonal, pixels
+    double scale[4], unscale[4];  // from a sample's share to the integers of the sums, and back
+};
+
+static inline float hf_saturate(float v)
+{
+    v = v > 0 ? v : 0;
+    return v < 1 ? v : 1;
+}
+
+// What still shows of a pixel of radius r >= 0 itself: 1 for a sharp one.
+static inline float hf_own_part(const struct hf_scatter *t, float r)
+{
+    return hf_saturate((t->fade - r) * t->fade_slope);
+}
+
+// How much of a pixel of radius r > 0 the half-resolution sums take.
+static inline float hf_half_part(const struct hf_scatter *t, float r)
+{
+    return hf_saturate((r - t->half_from) * t->half_slope);
+}
+
+// Floats of scratch that the splats of such a cell need, half-resolution pixels.
+size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height);
+
+// A row of pixels as parts of half-resolution means: n of these from column 0 on, two pixels each.
+struct hf_tent_row {
+    const struct hf_scatter *scatter;
+    float sign;                // of the radii of the field
+    int n, channels;
+    const float *radius, *colour[3];
+    const float *own, *next;   // radii of the quads of this row, and of the row that its tent reaches; from -1 to n
+    float *pixel[2][4];        // even and odd: colour times weight, 3 the weight
+};
+
+// Sources to be drawn.
+enum { HF_SPLATS = 128 };
+
+struct hf_splats {
+    int count;
+    int32_t x[HF_SPLATS], y[HF_SPLATS];  // the level's pixels
+    int32_t picture[HF_SPLATS];
+    _Alignas(64) int64_t share[HF_SPLATS][4];  // of each lane for 1 unit of weight
+};
+
+// A window of sums: differences along x, four lanes a pixel: three channels and the weight.
+struct hf_sums {
+    int64_t *lane;
+    ptrdiff_t *row;  // where each row y0.. of the window starts; rows are used again when they are settled
+    int x0, y0, x1, y1;
+    int stride;
+};
+
+#endif
