@@ -19,6 +19,19 @@ HF_INLINE vf vf_fma(vf a, vf b, vf c)
 #endif
 }
 
+// A value that is used twice, and shall be loaded once: left alone, gcc takes it from memory each time.
+HF_INLINE vf vf_once(vf a)
+{
+#if defined __AVX512F__
+    __asm__("" : "+v"(a));
+#elif defined __AVX2__ || defined __SSE4_1__
+    __asm__("" : "+x"(a));
+#elif defined __aarch64__
+    __asm__("" : "+w"(a));
+#endif
+    return a;
+}
+
 // Sum of the lanes of a count.
 HF_INLINE uint32_t vi_sum(vi a)
 {
