@@ -9,7 +9,7 @@
 // cross cache lines are what there is too much of.
 #include "pass/hexagon.h"
 
-enum { HEX_S = VF_N == 16 ? 2 : 1, HEX_STEP = HEX_S * VF_N, HEX_WIDTH = 128, HEX_HEIGHT = 16 };
+enum { HEX_S = 1, HEX_STEP = HEX_S * VF_N, HEX_WIDTH = 128, HEX_HEIGHT = 16 };
 
 struct hex_range {
     float least, most;
@@ -352,18 +352,18 @@ HF_INLINE void hex_line_both(const struct hf_hexagon_field *in, const struct hf_
         const vf b = vf_set1(p->b), before = vf_set1(p->c);
 #pragma GCC unroll 8
         for (int v = 0; v < HEX_S; v++) {
-            const vf r = vf_load(radius + weight_at + v * VF_N), q = vf_sub(vf_zero(), r);
+            const vf r = vf_once(vf_load(radius + weight_at + v * VF_N)), q = vf_sub(vf_zero(), r);
             const vf n = vf_max(vf_min(vf_sub(q, before), b), vf_zero());
             vf w = vf_sub(r, before);
             if (limit)
                 w = vf_min(w, vf_mul(b, vf_sub(limit->limit[v], vf_mul(limit->slope[v], r))));
             w = vf_max(vf_min(w, b), vf_zero());
             for (int c = 0; c < channels; c++) {
-                const vf value = vf_load(colour[c] + at + v * VF_N);
+                const vf value = vf_once(vf_load(colour[c] + at + v * VF_N));
                 near->colour[c][v] = vf_fma(n, value, near->colour[c][v]);
                 far->colour[c][v] = vf_fma(w, value, far->colour[c][v]);
             }
-            const vf weight = vf_load(a + weight_at + v * VF_N);
+            const vf weight = vf_once(vf_load(a + weight_at + v * VF_N));
             near->a[v] = vf_fma(n, weight, near->a[v]);
             near->w[v] = vf_add(near->w[v], n);
             far->a[v] = vf_fma(w, weight, far->a[v]);

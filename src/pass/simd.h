@@ -23,6 +23,19 @@ HF_INLINE vf vf_fma(vf a, vf b, vf c)
 // The vector that begins n numbers into consecutive vectors v[0], v[1] ...; n is a literal.
 #define vf_shift(v, n) vf_align((v)[(n) / VF_N], (v)[(n) / VF_N + 1], (n) % VF_N)
 
+// A value that is used twice, and shall be loaded once: left alone, gcc takes it from memory each time.
+HF_INLINE vf vf_once(vf a)
+{
+#if defined __AVX512F__
+    __asm__("" : "+v"(a));
+#elif defined __AVX2__ || defined __SSE4_1__
+    __asm__("" : "+x"(a));
+#elif defined __aarch64__
+    __asm__("" : "+w"(a));
+#endif
+    return a;
+}
+
 // Sum of the lanes of a count.
 HF_INLINE uint32_t vi_sum(vi a)
 {

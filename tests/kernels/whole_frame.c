@@ -47,6 +47,15 @@ static void make_gaussian(struct world *w)
     }
 }
 
+static void make_hexagon(struct world *w)
+{
+    struct hf_params *p = &w->params;
+    p->engine = HF_ENGINE_HEXAGON;
+    p->storage = HF_STORAGE_FLOAT;
+    p->resolution = rng_one_in(&w->rng, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    p->uniform = rng_one_in(&w->rng, 8);
+}
+
 static void make_case(struct world *w, const struct frame_case *c)
 {
     world_clear(w);
@@ -59,6 +68,8 @@ static void make_case(struct world *w, const struct frame_case *c)
     } while (c->max_radius && (w->params.model == HF_MODEL_LENS || w->params.per_pixel_kernel));
     if (rng_one_in(&w->rng, 4))
         make_gaussian(w);
+    else if (rng_one_in(&w->rng, 3))
+        make_hexagon(w);
     const int in_place = rng_one_in(&w->rng, 4), bad = rng_one_in(&w->rng, 3);
     make_image(w, &w->src, SLOT_SRC, bad);
     if (in_place)
@@ -120,10 +131,14 @@ static double largest_sample(const struct world *w, int c)
 
 // Roundings on the way through all passes, see bound.c for each: downsample 25; the gather's sums, of colour and of
 // weight, and their quotient; a mean of nine 9; composite 68.
+// Hexagon: a line's taps, for the sums of its weights and of what they weigh, and 30 more for loading and dividing; what is
+// divided by is not less than a quarter, in each of two passes.
 static double frame_roundings(const struct world *w)
 {
     if (w->params.engine == HF_ENGINE_GAUSSIAN)
         return 0;  // nothing is ever fused
+    if (w->params.engine == HF_ENGINE_HEXAGON)
+        return 2 * 4 * (3 * 3 * (w->params.max_radius + 4) / fmin(w->params.pixel_aspect, 1) + 30);
     const float h = w->params.max_radius / 2;
     const double rx = ceilf(h / w->params.pixel_aspect), ry = ceilf(h);
     return 25 + 2 * (2 * rx + 2 * ry + 4 + 6) + 1 + 9 + 68;
@@ -195,9 +210,9 @@ static void check(int ok, const struct world *w, const struct level *l, const ch
         return;
     const struct hf_params *p = &w->params;
     printf("FAILED %s, frame %d of seed %llu (%s): %s\n", l->name, number, (unsigned long long)seed, name, message);
-    printf("    %d x %d, formats %d %d%s, storage %d, radius %g, strength %g, aspect %g, blades %d, fill %d, depth %d, "
+    printf("    %s, %d x %d, formats %d %d%s, storage %d, radius %g, strength %g, aspect %g, blades %d, fill %d, depth %d, "
            "model %d%s%s%s%s\n",
-           w->src.width, w->src.height, (int)w->src.format, (int)w->dst.format,
+           hf_engine_name(p->engine), w->src.width, w->src.height, (int)w->src.format, (int)w->dst.format,
            w->src.data[0] == w->dst.data[0] ? " in place" : "", (int)p->storage, p->max_radius, p->strength,
            p->pixel_aspect, p->blades, (int)p->fill, (int)w->depth.type, (int)p->model, p->karis ? ", karis" : "",
            p->per_pixel_kernel ? ", per-pixel" : "", p->bicubic ? ", bicubic" : "", p->faithful ? ", faithful" : "");
