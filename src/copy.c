@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "copy.h"
 
-#include <string.h>
-
 #include "repair.h"
 
 struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src)
@@ -20,7 +18,8 @@ static uint8_t *pixels_at(const struct hf_image *m, int plane, int x, int y)
     return (uint8_t *)m->data[plane] + (ptrdiff_t)y * m->stride[plane] + hf_row_bytes(m->format, x);
 }
 
-static int row_finite(const struct hf_frame *f, int x, int y, int n)
+// Is a row finite? Copied on the way to dst, if there is one.
+static int row_finite(const struct hf_frame *f, int x, int y, int n, const struct hf_image *dst)
 {
     const struct hf_image *m = f->src;
     hf_finite *finite = m->format == HF_FORMAT_RGBA16F      ? f->k->finite_f16
@@ -28,7 +27,7 @@ static int row_finite(const struct hf_frame *f, int x, int y, int n)
                                                             : f->k->finite_f32;
     const size_t words = hf_row_bytes(m->format, n) / (m->format == HF_FORMAT_RGBA16F ? 2 : 4);
     for (int p = 0; p < hf_plane_count(m); p++)
-        if (!finite(pixels_at(m, p, x, y), words))
+        if (!finite(pixels_at(m, p, x, y), words, dst ? pixels_at(dst, p, x, y) : NULL))
             return 0;
     return 1;
 }
@@ -37,7 +36,8 @@ void hf_copy_scan(struct hf_worker *w, struct hf_rect r)
 {
     const struct hf_setup *s = w->frame.s;
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, s->height); y++)
-        w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0);
+        w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0,
+                                                NULL);
 }
 
 void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_rect r)
@@ -54,11 +54,8 @@ void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_re
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         if (copy->raw && copy->in_place)
             continue;  // checked, and repaired if need be, after the first sweep
-        if (copy->raw && row_finite(f, x, y, n)) {
-            for (int p = 0; p < hf_plane_count(f->src); p++)
-                memcpy(pixels_at(f->dst, p, x, y), pixels_at(f->src, p, x, y), hf_row_bytes(f->src->format, n));
+        if (copy->raw && row_finite(f, x, y, n, f->dst))
             continue;
-        }
         float *const *alpha = hf_image_channels(f->src) == 4 ? even : NULL;
         hf_read_colour(f, r.x0, y, r.x1 - r.x0, even, odd, &w->counts);
         const float *const e[4] = {even[0], even[1], even[2], alpha ? even[3] : NULL};

@@ -185,18 +185,22 @@ static uint64_t store_row_c(const struct hf_image *m, int x, int y, int n, const
     return clamped;
 }
 
-static int finite_f32_c(const void *words, size_t n)
+static int finite_f32_c(const void *words, size_t n, void *copy)
 {
     const uint8_t *p = words;
+    if (copy)
+        memcpy(copy, words, n * 4);
     for (size_t i = 0; i < n; i++)
         if (!hf_is_finite(get_float(p + 4 * i)))
             return 0;
     return 1;
 }
 
-static int finite_f16_c(const void *words, size_t n)
+static int finite_f16_c(const void *words, size_t n, void *copy)
 {
     const uint8_t *p = words;
+    if (copy)
+        memcpy(copy, words, n * 2);
     for (size_t i = 0; i < n; i++) {
         uint16_t h;
         memcpy(&h, p + 2 * i, 2);
@@ -206,9 +210,11 @@ static int finite_f16_c(const void *words, size_t n)
     return 1;
 }
 
-static int finite_r11_c(const void *words, size_t n)
+static int finite_r11_c(const void *words, size_t n, void *copy)
 {
     const uint8_t *p = words;
+    if (copy)
+        memcpy(copy, words, n * 4);
     for (size_t i = 0; i < n; i++) {
         uint32_t u;
         memcpy(&u, p + 4 * i, 4);

@@ -79,8 +79,9 @@ typedef int hf_load_row(const struct hf_image *image, int x, int y, int n, float
 typedef uint64_t hf_store_row(const struct hf_image *image, int x, int y, int n, const float *const even[4],
                               const float *const odd[4]);
 
-// Is a run of n words finite: floats, halves, R11G11B10F words?
-typedef int hf_finite(const void *words, size_t n);
+// Is a run of n words finite: floats, halves, R11G11B10F words? They are copied on the way if copy is not NULL; if they
+// are not finite, not all of them may be.
+typedef int hf_finite(const void *words, size_t n, void *copy);
 
 // Near and far CoC of the n lanes from lane x of full-resolution row y, into four rows: near even, near odd, far even,
 // far odd. counts NULL: the near rows need not be written, and nothing is counted; else x is a multiple of 16.

@@ -374,7 +374,7 @@ static int composite_row_packed(const struct hf_frame *f, const struct composite
         plane_at(f->dst, 0, 4, x0, y),
         f->src->stride[0], f->depth->stride, f->dst->stride[0]};
     // In place, a sample that is not finite wants neighbours that have not been overwritten.
-    if (p.from == p.to && !f->k->finite_r11(p.from, (size_t)pixels))
+    if (p.from == p.to && !f->k->finite_r11(p.from, (size_t)pixels, NULL))
         return 0;
     const ptrdiff_t line = (ptrdiff_t)f->line_floats;
     float *const coc[4] = {hf_line(f, 8), hf_line(f, 9), hf_line(f, 10), hf_line(f, 11)};

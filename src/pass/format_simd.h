@@ -374,20 +374,40 @@ static uint64_t store_planar_simd(const struct hf_image *m, int x, int y, int n,
 
 // ---- checks and roundings ----
 
-// Are n words finite? mask selects a word's exponent; words of 16 bits are looked at in pairs.
-HF_INLINE int finite_words(const uint8_t *p, size_t bytes, const uint32_t masks[3], const int count)
+enum copy_how { COPY_NOT, COPY_PLAIN, COPY_STREAM };
+
+// Whole vectors of words: are they finite? masks select a word's exponents; words of 16 bits are looked at in pairs.
+HF_INLINE int finite_vectors(const uint8_t *p, size_t bytes, const uint32_t masks[3], const int count, uint8_t *to,
+                             const enum copy_how how)
 {
     vm bad = vf_gt(vf_zero(), vf_zero());
-    size_t i = 0;
-    for (; i + 4 * VF_N <= bytes; i += 4 * VF_N) {
+    for (size_t i = 0; i + 4 * VF_N <= bytes; i += 4 * VF_N) {
         const vi u = vi_load(p + i);
+        if (how == COPY_PLAIN)
+            vi_store(to + i, u);
+        if (how == COPY_STREAM)
+            vf_stream(to + i, vi_as_vf(u));
         for (int k = 0; k < count; k++) {
             const vi mask = vi_set1((int32_t)masks[k]);
             bad = vm_or(bad, vi_eq(vi_and(u, mask), mask));
         }
     }
-    if (vm_any(bad))
+    if (how == COPY_STREAM)
+        vf_stream_end();
+    return !vm_any(bad);
+}
+
+// Copies go past the caches if they are aligned: nobody here reads them again.
+HF_INLINE int finite_words(const uint8_t *p, size_t bytes, const uint32_t masks[3], const int count, uint8_t *to)
+{
+    const int finite = !to                            ? finite_vectors(p, bytes, masks, count, to, COPY_NOT)
+                       : (uintptr_t)to % (4 * VF_N) ? finite_vectors(p, bytes, masks, count, to, COPY_PLAIN)
+                                                      : finite_vectors(p, bytes, masks, count, to, COPY_STREAM);
+    size_t i = bytes / (4 * VF_N) * (4 * VF_N);
+    if (!finite)
         return 0;
+    if (to)
+        memcpy(to + i, p + i, bytes - i);
     for (; i < bytes; i += 4) {
         uint32_t u = 0;
         memcpy(&u, p + i, bytes - i < 4 ? bytes - i : 4);
@@ -398,22 +418,22 @@ HF_INLINE int finite_words(const uint8_t *p, size_t bytes, const uint32_t masks[
     return 1;
 }
 
-static int finite_f32_simd(const void *words, size_t n)
+static int finite_f32_simd(const void *words, size_t n, void *copy)
 {
     static const uint32_t masks[3] = {0x7f800000};
-    return finite_words(words, 4 * n, masks, 1);
+    return finite_words(words, 4 * n, masks, 1, copy);
 }
 
-static int finite_f16_simd(const void *words, size_t n)
+static int finite_f16_simd(const void *words, size_t n, void *copy)
 {
     static const uint32_t masks[3] = {0x7c00, 0x7c000000};
-    return finite_words(words, 2 * n, masks, 2);
+    return finite_words(words, 2 * n, masks, 2, copy);
 }
 
-static int finite_r11_simd(const void *words, size_t n)
+static int finite_r11_simd(const void *words, size_t n, void *copy)
 {
     static const uint32_t masks[3] = {0x7c0, 0x3e0000, 0xf8000000};
-    return finite_words(words, 4 * n, masks, 3);
+    return finite_words(words, 4 * n, masks, 3, copy);
 }
 
 HF_INLINE vf truncate_channel(vf v, const int c)

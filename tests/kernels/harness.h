@@ -107,10 +107,13 @@ struct world {
     size_t line_floats;
     size_t bytes[SLOT_COUNT];  // in use, at the end of the slot
 
-    // Rows: n lanes from lane x of row y; words for the finiteness checks.
+    // Rows: n lanes from lane x of row y; words for the finiteness checks, of what kind, and where
+    // a copy goes.
     int x, y, n, with_counts, no_alpha;
     const uint8_t *words;
+    uint8_t *copy;
     size_t word_count;
+    int finite;
 
     struct region regions[MAX_REGIONS];
     int region_count;
@@ -176,6 +179,7 @@ void store_make(struct world *w, int format);
 void store_call(struct world *w, const struct hf_kernels *k, enum arena a, int format);
 void finite_make(struct world *w, int which);
 void finite_call(struct world *w, const struct hf_kernels *k, enum arena a, int which);
+int finite_check(const struct world *w, const struct level *l, char message[256]);
 void round_make(struct world *w, int channels);
 void round_call(struct world *w, const struct hf_kernels *k, enum arena a, int channels);
 int row_check(const struct world *w, const struct level *l, char message[256]);

@@ -64,7 +64,8 @@ void world_clear(struct world *w)
     w->line_floats = 0;
     w->near = w->far = w->is_pass = 0;
     w->x = w->y = w->n = w->with_counts = w->no_alpha = 0;
-    w->words = NULL;
+    w->words = w->copy = NULL;
+    w->finite = 0;
     w->word_count = 0;
     // A buffer that a kernel has no business with lies where every access is a crash.
     for (int b = 0; b < HF_BUF_COUNT; b++) {
