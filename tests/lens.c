@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lens: signed radii against the form in which White and Barre-Brisebois's hexagonal blur gives CoC, for a depth d of
-// 0 at the near plane to 1 at the far one,
+// The lens: signed radii against the form in which White and Barre-Brisebois's hexagonal blur gives CoC, for a depth
+// d of 0 at the near plane to 1 at the far one,
 //     CoC(d) = d scale + bias,  scale = A L P (zf - zn) / ((P - L) zn zf),  bias = A L (zn - P) / ((P - L) zn),
 // a diameter on the sensor of a lens that breathes: A its aperture's diameter, L its focal length, P the distance in
 // focus, all in one unit. The radius in pixels of a picture W wide, with a field of view that does not breathe, is
@@ -20,8 +20,9 @@ struct lens {
 };
 
 static const struct lens lenses[] = {
-    {50, 2.8f, 36, 1, 10, 0.1f, 100, 1920}, {85, 1.4f, 36, 1, 2, 0.5f, 50, 1280}, {24, 8, 23.5f, 1, 3, 0.05f, 1000, 640},
-    {35, 2, 36, 0.01f, 250, 10, 20000, 1920}, {200, 4, 36, 1, 30, 1, 500, 4096}, {8, 1.8f, 6.4f, 1, 0.5f, 0.1f, 20, 800},
+    {50, 2.8f, 36, 1, 10, 0.1f, 100, 1920},  {85, 1.4f, 36, 1, 2, 0.5f, 50, 1280},
+    {24, 8, 23.5f, 1, 3, 0.05f, 1000, 640},  {35, 2, 36, 0.01f, 250, 10, 20000, 1920},
+    {200, 4, 36, 1, 30, 1, 500, 4096},       {8, 1.8f, 6.4f, 1, 0.5f, 0.1f, 20, 800},
 };
 
 static void radii_of(const struct lens *l, enum hf_depth_type type, const float *depth, float *out)
@@ -51,8 +52,8 @@ static void radii_of(const struct lens *l, enum hf_depth_type type, const float 
     k.radius_row(&f, 0, 0, N, out, &counts);
 }
 
-// Rounding: d scale and bias cancel at the focus, so errors are relative to the larger of the radius and what it tends to
-// far away, bias + scale at an infinite far plane.
+// Rounding: d scale and bias cancel at the focus, so errors are relative to the larger of the radius and what it
+// tends to far away, bias + scale at an infinite far plane.
 static void test_same_curve(const struct lens *l)
 {
     static float depth[N], got[N];

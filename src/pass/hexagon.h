@@ -2,28 +2,28 @@
 // The hexagon engine's buffers, its taps, and what its kernels in C and on vectors share.
 //
 // J. White and C. Barre-Brisebois, "More Performance! Five Rendering Ideas from Battlefield 3 and Need For Speed: The
-// Run", SIGGRAPH 2011: a hexagon is three rhombi, a rhombus is two blurs along its sides, and the three share blurs. With
-// u up, v down left, w down right, each a mean over a side's length:
+// Run", SIGGRAPH 2011: a hexagon is three rhombi, a rhombus is two blurs along its sides, and the three share blurs.
+// With u up, v down left, w down right, each a mean over a side's length:
 //     pass 1    U = u(c),  B = u(c) + v(c)
 //     pass 2    (v(U) + w(B)) / 3
 //
-// CoC differs from pixel to pixel, so each blur asks every sample whether it reaches: a sample of radius q spreads its
-// colour over the first q pixels of the line, 1/q on each. Near samples (in front of the focus) do so whatever they
-// reach; far ones only into far pixels, and only if q <= 2p, p being the radius there, with a soft edge of one pixel
-// (of p where p is smaller). The near field is therefore kept premultiplied by its coverage, with the mean
-// radius of what covers a pixel, so that pass 2 carries it as far as pass 1 did over pixels that are sharp themselves; the
-// far field is divided by what was found, and stays behind the edges of sharper things.
+// CoC differs from pixel to pixel, so each blur asks every sample whether it reaches: a sample of radius q spreads
+// its colour over the first q pixels of the line, 1/q on each. Near samples (in front of the focus) do so whatever
+// they reach; far ones only into far pixels, and only if q <= 2p, p being the radius there, with a soft edge of one
+// pixel (of p where p is smaller). The near field is therefore kept premultiplied by its coverage, with the mean
+// radius of what covers a pixel, so that pass 2 carries it as far as pass 1 did over pixels that are sharp
+// themselves; the far field is divided by what was found, and stays behind the edges of sharper things.
 //
 // What is left over is the pixel's own: what near coverage leaves of a sharp or far pixel shows that pixel, and a far
-// pixel that finds less than a quarter of its samples makes up a quarter with its own colour. All weights are continuous
-// in every radius and vanish with it, so nothing pops.
+// pixel that finds less than a quarter of its samples makes up a quarter with its own colour. All weights are
+// continuous in every radius and vanish with it, so nothing pops.
 #ifndef HF_PASS_HEXAGON_H
 #define HF_PASS_HEXAGON_H
 
 #include "pass/pass_c.h"
 
-// At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to both, and
-// each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
+// At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to
+// both, and each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
 enum hf_hexagon_buf {
     HF_HEXAGON_COLOUR,         // full resolution: colour x a
     HF_HEXAGON_WEIGHT,         // a, the signed radius, and a of far pixels alone
@@ -47,9 +47,9 @@ enum hf_hexagon_made {
 };
 enum { HF_HEXAGON_BUF_COUNT = HF_HEXAGON_MADE + 2 * HF_HEXAGON_MADE_COUNT };
 
-// The line of a blur: taps at k + 0.5 along it, bilinear, gathered to weights b of pixels in the order of their distance.
-// c is the sum of the weights before. A sample of radius q that lies there counts min(b, q - c), not less than 0:
-// the weights of a line of one radius sum to q for any q, and every weight grows from 0 as q does.
+// The line of a blur: taps at k + 0.5 along it, bilinear, gathered to weights b of pixels in the order of their
+// distance. c is the sum of the weights before. A sample of radius q that lies there counts min(b, q - c), not less
+// than 0: the weights of a line of one radius sum to q for any q, and every weight grows from 0 as q does.
 struct hf_hexagon_tap {
     int dx, dy;
     float b, c;
@@ -89,7 +89,9 @@ static inline const struct hf_buf *hf_hexagon_made(const struct hf_frame *f, enu
 static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f, unsigned field)
 {
     const int half = f->s->resolution == HF_RESOLUTION_HALF;
-    const int colour = !half ? HF_HEXAGON_COLOUR : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2 : HF_HEXAGON_FAR_COLOUR_2;
+    const int colour = !half              ? HF_HEXAGON_COLOUR
+                       : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2
+                                          : HF_HEXAGON_FAR_COLOUR_2;
     const struct hf_buf *weight = &f->buf[colour + 1];
     return (struct hf_hexagon_field){&f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f,
                                      half ? 2 : -1, half};

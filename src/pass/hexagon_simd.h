@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hexagon engine on vectors.
 //
-// A line's taps are the same for all pixels, so each is a load at a fixed offset. What a tap costs is asking how much of a
-// sample counts, so the radii around each block of pixels are looked at first: no tap is read that none of them reaches,
-// and those that all of them reach are plain products, four where there would be ten operations. Skipped taps
-// would add nothing and full ones have the same weight either way, so no bit depends on where a block lies. Where near
-// and far pixels mix at full resolution, both fields' sums are made at once: they read the same samples, and loads that
-// cross cache lines are what there is too much of.
+// A line's taps are the same for all pixels, so each is a load at a fixed offset. What a tap costs is asking how much
+// of a sample counts, so the radii around each block of pixels are looked at first: no tap is read that none of them
+// reaches, and those that all of them reach are plain products, four where there would be ten operations. Skipped
+// taps would add nothing and full ones have the same weight either way, so no bit depends on where a block lies.
+// Where near and far pixels mix at full resolution, both fields' sums are made at once: they read the same samples,
+// and loads that cross cache lines are what there is too much of.
 #include "pass/hexagon.h"
 
 enum { HEX_S = 1, HEX_STEP = HEX_S * VF_N, HEX_WIDTH = 128, HEX_HEIGHT = 16 };
