@@ -31,7 +31,8 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
     }
 }
 
-// How much of a disc's area lies on this side of a line d radii off its centre, 0..1: within 0.002, and exact at the ends.
+// How much of a disc's area lies on this side of a line d radii off its centre, 0..1: within 0.002, and exact at the
+// ends.
 static float segment(float d)
 {
     const float t = d < 1 ? d : 1, q = t * t;
@@ -53,7 +54,8 @@ static float mix(float a, float b, float t)
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
-// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where far ones hardly reach, near hides it.
+// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where far ones hardly reach, near
+// hides it.
 static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2])
 {
     const float front = near[1] > 0 ? near[0] / near[1] : own;

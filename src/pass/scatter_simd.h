@@ -19,7 +19,8 @@ static void scatter_note_simd(const float *radius, float *const colour[4], int c
     for (int i = 0; i < VF_N; i++)
         *largest = lane[i] > *largest ? lane[i] : *largest;
     *transparent += vi_sum(other);
-    float *const rest[4] = {colour[0] + whole, colour[1] + whole, colour[2] + whole, channels == 4 ? colour[3] + whole : NULL};
+    float *const rest[4] = {colour[0] + whole, colour[1] + whole, colour[2] + whole,
+                            channels == 4 ? colour[3] + whole : NULL};
     hf_scatter_note_c(radius + whole, rest, channels, n - whole, largest, transparent);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows above
+// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows
+// above
 // and below a source have the same run: each product serves eight additions.
 
 // Columns are clamped to the window unless the picture is known to lie inside.
@@ -112,7 +113,8 @@ HF_INLINE int splat_is_four(const struct hf_splats *list, int i)
     if (i + 4 > list->count)
         return 0;
     for (int k = 1; k < 4; k++)
-        if (list->picture[i + k] != list->picture[i] || list->x[i + k] != list->x[i] + k || list->y[i + k] != list->y[i])
+        if (list->picture[i + k] != list->picture[i] || list->x[i + k] != list->x[i] + k ||
+            list->y[i + k] != list->y[i])
             return 0;
     return 1;
 }
@@ -159,7 +161,7 @@ static void splat_runs_simd(const struct hf_sums *s, int x, int y, const struct 
 static void splat_taps_simd(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
                             const int64_t share[4])
 {
-    const vl one = vl_load(share), offset = vl_shl8(vl_shl8(one));  // weights are made positive: products want that
+    const vl one = vl_load(share), offset = vl_shl8(vl_shl8(one)); // weights are made positive: products want that
     const int width = s->x1 - s->x0, end = hf_min(s->y1 - y, rows);
     x -= s->x0;
     // Columns left of the window come together in its first, those right of it are of no use.
