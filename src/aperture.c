@@ -57,16 +57,18 @@ static void build_disc(struct hf_aperture *a, int number, int first)
     p->area = (float)area;
 }
 
-// A side of a polygon whose corners lie on the unit circle: the line x nx + y ny = d, or bent towards that circle an arc
+// A side of a polygon whose corners lie on the unit circle: the line x nx + y ny = d, or bent towards that circle an
+// arc
 // through the same corners, of a circle around (cx, cy).
 struct side {
-    double nx, ny, d, cx, cy, radius;  // radius 0: straight
+    double nx, ny, d, cx, cy, radius; // radius 0: straight
 };
 
 static int make_sides(struct side side[16], const struct hf_aperture_key *key)
 {
     const double pi = 3.14159265358979323846, d = cos(pi / key->blades), h = sin(pi / key->blades);
-    const double sagitta = key->roundness * (1 - d), radius = sagitta > 1e-6 ? (h * h + sagitta * sagitta) / (2 * sagitta) : 0;
+    const double sagitta = key->roundness * (1 - d),
+                 radius = sagitta > 1e-6 ? (h * h + sagitta * sagitta) / (2 * sagitta) : 0;
     for (int i = 0; i < key->blades; i++) {
         const double angle = 2 * pi * i / key->blades + key->rotation * (pi / 180), back = d + sagitta - radius;
         side[i] = (struct side){.nx = cos(angle), .ny = sin(angle), .d = d, .radius = radius};
@@ -120,7 +122,8 @@ static struct hf_run polygon_row(const struct side *side, int sides, double r, d
     if (!hit)
         return (struct hf_run){0};
     return (struct hf_run){(int32_t)lround(256 * (a / hit * r * scale_x + 0.5)),
-                           (int32_t)lround(256 * (b / hit * r * scale_x + 0.5)), (HF_WHOLE_ROW * hit + parts / 2) / parts};
+                           (int32_t)lround(256 * (b / hit * r * scale_x + 0.5)),
+                           (HF_WHOLE_ROW * hit + parts / 2) / parts};
 }
 
 static void build_polygon(struct hf_aperture *a, const struct side *side, int sides, int number, int first)

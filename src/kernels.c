@@ -46,6 +46,8 @@ void hf_kernels_c(struct hf_kernels *k)
     k->tent_weights = hf_tent_weights_c;
     k->tent = hf_tent_c;
     k->mean_row = hf_mean_row_c;
+    k->scatter_note = hf_scatter_note_c;
+    k->scatter_blend = hf_scatter_blend_c;
     hf_format_kernels_c(k);
 }
 

@@ -132,6 +132,12 @@ typedef void hf_splat_taps(const struct hf_sums *s, int x, int y, const int16_t 
 // A finished row of n pixels of sums: integrated, scaled, split into planes (lane 3, the weight, to out[3]), and zeroed.
 typedef void hf_settle(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4]);
 
+struct hf_scatter_row;
+// The largest sample of n blurred pixels, and how many have another alpha than 1.
+typedef void hf_scatter_note(const float *radius, float *const colour[4], int channels, int n, float *largest,
+                             uint64_t *transparent);
+// Put the fields over and under a row of pixels.
+typedef void hf_scatter_blend(const struct hf_scatter_row *row, float *out);
 struct hf_tent_row;
 // Radii of n half-resolution pixels that have four like ones, else 0; from two rows of 2n.
 typedef void hf_quad_row(const float *above, const float *below, int n, float sign, float *out);
@@ -162,6 +168,8 @@ struct hf_kernels {
     hf_tent_weights *tent_weights;
     hf_tent *tent;
     hf_mean_row *mean_row;
+    hf_scatter_note *scatter_note;
+    hf_scatter_blend *scatter_blend;
     hf_load_row *load[HF_FORMAT_COUNT];
     hf_store_row *store[HF_FORMAT_COUNT];
     hf_finite *finite_f32, *finite_f16, *finite_r11;

@@ -135,6 +135,9 @@ exr('lens.exr', dict(colour, Z=depth), floats=lens)
 exr('focus.exr', dict(colour, Z=depth), floats={'focus': 4})
 exr('stop.exr', dict(colour, Z=depth), floats={'focus': 4, 'aperture': 2})
 exr('flat.exr', colour)
+exr('aperture.exr', {'Y': lambda x, y: x > y}, window=(0, 0, 20, 20))
+exr('black.exr', {'Y': lambda x, y: 0}, window=(0, 0, 9, 9))
+open('broken.exr', 'wb').write(b'no picture')
 exr('offset.exr', dict(colour, Z=depth, A=lambda x, y: 1), window=(-10, 20, 53, 59), display=(0, 0, 63, 79))
 exr('nan.exr', dict(colour, R=lambda x, y: float('nan') if x == y == 9 else 0.5, Z=depth))
 exr('depth.exr', {'Y': depth})
@@ -254,6 +257,9 @@ bad 1 "--resolution quarter|gaussian|scatter" a.exr -o o.exr --engine scatter --
 bad 1 "--karis|gather|scatter" a.exr -o o.exr --engine scatter --karis
 bad 1 "--storage|gather|hexagon" a.exr -o o.exr --engine hexagon --storage half
 bad 1 "--explain-image|''" a.exr -o o.exr --explain-image ""
+for value in ngon:2 ngon:17 ngon:6:1.5 ring:1 ring:x; do
+    bad 1 "--aperture|$value" a.exr -o o.exr --engine scatter --aperture $value
+done
 bad 1 "--range|--fstop" a.exr -o o.exr --range 3 --fstop 2
 bad 1 "--strength|--focal-length" a.exr -o o.exr --focal-length 50 --strength 1
 bad 1 "--far-end|--fstop" a.exr -o o.exr --far-end 9 --fstop 2
@@ -367,6 +373,16 @@ picture_tests() {
     good plain.exr -o o.exr --focus 3 --fill none --aperture ngon:6:0:15 --threads 2 --no-skip --storage half
     good plain.exr -o o.exr --focus 3 --faithful --storage chapter --aperture disc --isa scalar
     good plain.exr -o o.exr --focus 3 --max-radius 0 --deterministic
+    good plain.exr -o o.exr --focus 3 --engine scatter
+    good plain.exr -o o.exr --focus 3 --engine scatter --max-radius 8 --aperture ngon:4:0.5:30 --chromatic 0.1 --resolution half
+    good plain.exr -o o.exr --focus 3 --engine scatter --max-radius 8 --aperture ring:0.5 --cat-eye 0.5 --squeeze 2
+    good plain.exr -o o.exr --focus 3 --engine scatter --max-radius 8 --aperture aperture.exr
+    good plain.exr -o whole.exr --focus 3 --engine scatter --max-radius 8
+    cmp -s o.exr whole.exr && fail=1 || fail=0
+    result "the aperture's picture shows" $fail
+    bad 1 "--aperture|nothing.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture nothing.exr
+    bad 1 "--aperture|black.exr|black" plain.exr -o o.exr --focus 3 --engine scatter --aperture black.exr
+    bad 1 "--aperture|broken.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture broken.exr
     good plain.exr -o o.exr --depth-type coc
     good plain.exr -o o.exr --focus 3 --depth-type ray
     good plain.exr -o o.exr --focus 3 --depth-type inverse

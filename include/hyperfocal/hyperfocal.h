@@ -283,10 +283,12 @@ struct hf_params {
 
     // scatter. Sides of the polygon bent towards the circle around it: 0 (default) straight .. 1 a disc.
     float blade_roundness;
-    // Radius of a central obstruction, as a mirror lens has, over the aperture's: 0 (default, none) .. 0.95.
+    // Radius of a central obstruction, as a mirror lens has, over the aperture's, and of its shape: 0 (default, none) ..
+    // 0.95.
     float ring;
     // A picture of the aperture, its centre the lens's axis and its shorter side the diameter; brightness is
-    // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during hf_render.
+    // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during hf_render. Every
+    // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then.
     const struct hf_image *aperture;
     // Axial chromatic aberration: red CoCs are larger by this fraction and blue ones smaller (behind the focus; the other
     // way in front of it), -0.5..0.5, default 0.

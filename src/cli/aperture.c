@@ -5,15 +5,15 @@
 
 #include "io/io.h"
 
-enum { MAX_SIDE = 4096 };  // pixels; beyond that an aperture has no more to say
+enum { MAX_SIDE = 4096 }; // pixels; beyond that an aperture has no more to say
 
 static int read_file(struct cli_aperture *a, struct hf_io_file *file, const char *path, struct cli_error *error)
 {
     struct hf_io_error io;
     const struct hf_io_view *v = hf_io_view(file, 0);
     if (v->width > MAX_SIDE || v->height > MAX_SIDE)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "--aperture %s: %d x %d pixels are more than %d a side", path, v->width,
-                        v->height, MAX_SIDE);
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "--aperture %s: %d x %d pixels are more than %d a side", path,
+                        v->width, v->height, MAX_SIDE);
     const size_t n = (size_t)v->width * (size_t)v->height;
     a->samples = malloc(3 * n * sizeof *a->samples);
     if (!a->samples)
@@ -25,7 +25,8 @@ static int read_file(struct cli_aperture *a, struct hf_io_file *file, const char
     for (size_t i = 0; i < 3 * n; i++)
         brightest = a->samples[i] > brightest ? a->samples[i] : brightest;
     if (brightest <= 0)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "--aperture %s: the picture is black, it lets no light through", path);
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "--aperture %s: the picture is black, it lets no light through",
+                        path);
     a->image = (struct hf_image){.width = v->width, .height = v->height, .format = HF_FORMAT_PLANAR32F};
     for (int c = 0; c < 3; c++) {
         a->image.data[c] = planes[c];

@@ -16,6 +16,7 @@
 #include "pass/composite_simd.h"
 #include "pass/hexagon_simd.h"
 #include "pass/hexagon_ends_simd.h"
+#include "pass/scatter_simd.h"
 #include "pass/splat_simd.h"
 #include "pass/tent_simd.h"
 
@@ -42,6 +43,8 @@ void HF_INIT(struct hf_kernels *k)
     k->tent_weights = tent_weights_simd;
     k->tent = tent_simd;
     k->mean_row = mean_row_simd;
+    k->scatter_note = scatter_note_simd;
+    k->scatter_blend = scatter_blend_simd;
     k->pass[HF_PASS_DOWN] = down_simd;
     k->pass[HF_PASS_MAX_X] = max_x_simd;
     k->pass[HF_PASS_MAX_Y] = max_y_simd;

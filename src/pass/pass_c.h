@@ -31,6 +31,8 @@ hf_quad_row hf_quad_row_c;
 hf_tent_weights hf_tent_weights_c;
 hf_tent hf_tent_c;
 hf_mean_row hf_mean_row_c;
+hf_scatter_note hf_scatter_note_c;
+hf_scatter_blend hf_scatter_blend_c;
 
 // The variable that CoC is linear in at a pixel: z, -1/z with a lens, or the radius itself.
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);

@@ -4,16 +4,17 @@
 
 #include "pass/pass_c.h"
 
-static void note_row(const struct hf_frame *f, const float *radius, float *const colour[4], int n)
+void hf_scatter_note_c(const float *radius, float *const colour[4], int channels, int n, float *largest,
+                       uint64_t *transparent)
 {
     for (int x = 0; x < n; x++) {
         if (radius[x] == 0)
             continue;
-        for (int c = 0; c < f->s->channels; c++) {
+        for (int c = 0; c < channels; c++) {
             const float v = __builtin_fabsf(colour[c][x]);
-            f->counts->largest = v > f->counts->largest ? v : f->counts->largest;
+            *largest = v > *largest ? v : *largest;
         }
-        f->counts->transparent += f->s->channels == 4 && colour[3][x] != 1;
+        *transparent += channels == 4 && colour[3][x] != 1;
     }
 }
 
@@ -26,11 +27,12 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
         hf_row(&f->buf[HF_BUF_SOURCE], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
         f->k->radius_row(f, x0, y, n, radius, NULL);
-        note_row(f, radius, colour, n);
+        f->k->scatter_note(radius, colour, f->s->channels, n, &f->counts->largest, &f->counts->transparent);
     }
 }
 
-// How much of a disc's area lies on this side of a line d radii off its centre, 0..1: within 0.002, and exact at the ends.
+// How much of a disc's area lies on this side of a line d radii off its centre, 0..1: within 0.002, and exact at the
+// ends.
 static float segment(float d)
 {
     const float t = d < 1 ? d : 1, q = t * t;
@@ -41,7 +43,7 @@ static float segment(float d)
 static float inside(const struct hf_setup *s, float reach_x, float reach_y, int x, int y)
 {
     const float ix = 1 / reach_x, iy = 1 / reach_y;
-    const float left = ((float)x + 0.5f) * ix, right = ((float)(s->width - x) - 0.5f) * ix;
+    const float left = ((float)x + 0.5f) * ix, right = (((float)s->width - (float)x) - 0.5f) * ix;
     const float above = ((float)y + 0.5f) * iy, below = ((float)(s->height - y) - 0.5f) * iy;
     return ((segment(left) + segment(right)) - 1) * ((segment(above) + segment(below)) - 1);
 }
@@ -52,7 +54,8 @@ static float mix(float a, float b, float t)
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
-// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where far ones hardly reach, near hides it.
+// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where far ones hardly reach, near
+// hides it.
 static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2])
 {
     const float front = near[1] > 0 ? near[0] / near[1] : own;
@@ -61,6 +64,18 @@ static float composite_sample(float own, float show, float cover, int is_near, c
         v = mix(front, v, hf_saturate(16 * far[1]));
     v = mix(own, v, 1 - show);
     return near[1] > 0 ? mix(v, front, cover) : v;
+}
+
+void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
+{
+    const struct hf_scatter *t = row->setup->tables;
+    for (int x = 0; x < row->n; x++) {
+        const float far[2] = {row->far ? row->far[x] : 0, row->far ? row->far_weight[x] : 0};
+        const float near[2] = {row->near ? row->near[x] : 0, row->near ? row->near_weight[x] : 0};
+        const float r = row->radius[x], size = __builtin_fabsf(r), reach_x = size * t->aperture->key.scale_x;
+        const float cover = r < 0 ? near[1] / inside(row->setup, reach_x, size, row->x + x, row->y) : near[1];
+        out[x] = composite_sample(out[x], hf_own_part(t, size), cover, r < 0, far, near);
+    }
 }
 
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
@@ -74,21 +89,18 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
         out[c] = hf_line(f, 8 + c);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, out, f->counts);
     for (int c = 0; c < s->channels; c++) {
-        const int group = t->opaque ? 0 : t->group_of[c], is_weight = t->opaque && c == 3;
-        for (int x = 0; x < n; x++) {
-            float far[2] = {0, 0}, near[2] = {0, 0};
-            if (f->far) {
-                far[1] = *hf_at(&f->buf[HF_BUF_FAR_WEIGHT], group, x0 + x, y);
-                far[0] = is_weight ? far[1] : *hf_at(&f->buf[HF_BUF_FAR_SUM], c, x0 + x, y);
-            }
-            if (f->near) {
-                near[1] = *hf_at(&f->buf[HF_BUF_NEAR_WEIGHT], group, x0 + x, y);
-                near[0] = is_weight ? near[1] : *hf_at(&f->buf[HF_BUF_NEAR_SUM], c, x0 + x, y);
-            }
-            const float size = __builtin_fabsf(radius[x]), scale_x = t->aperture->key.scale_x;
-            const float cover = radius[x] < 0 ? near[1] / inside(s, size * scale_x, size, x0 + x, y) : near[1];
-            out[c][x] = composite_sample(out[c][x], hf_own_part(t, size), cover, radius[x] < 0, far, near);
+        // With alpha 1 all over its sums are those of the weights.
+        const int is_weight = t->opaque && c == 3, group = t->opaque ? 0 : t->group_of[c];
+        struct hf_scatter_row row = {.setup = s, .x = x0, .y = y, .n = n, .radius = radius};
+        if (f->far) {
+            row.far_weight = hf_at(&f->buf[HF_BUF_FAR_WEIGHT], group, x0, y);
+            row.far = is_weight ? row.far_weight : hf_at(&f->buf[HF_BUF_FAR_SUM], c, x0, y);
         }
+        if (f->near) {
+            row.near_weight = hf_at(&f->buf[HF_BUF_NEAR_WEIGHT], group, x0, y);
+            row.near = is_weight ? row.near_weight : hf_at(&f->buf[HF_BUF_NEAR_SUM], c, x0, y);
+        }
+        f->k->scatter_blend(&row, out[c]);
     }
     hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)out, s->channels == 4);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows above
+// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows
+// above
 // and below a source have the same run: each product serves eight additions.
 
 // Columns are clamped to the window unless the picture is known to lie inside.
@@ -55,16 +56,84 @@ HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, co
     splat_rows(s, half, x, y, vl_times(unit, (uint32_t)p->cap), p->rows - 1, p->rows - 1, clamp);
 }
 
+// Four sources side by side with the same picture: their ends lie side by side too, and five additions do for eight.
+HF_INLINE void splat_four_row(int64_t *row, int x, int n, const vl *left, const vl *right)
+{
+    int64_t *a = row + 4 * (ptrdiff_t)(x - n), *b = row + 4 * (ptrdiff_t)(x + n);
+    for (int i = 0; i < 5; i++)
+        vl_store(a + 4 * i, vl_add(vl_load(a + 4 * i), left[i]));
+    for (int i = 0; i < 5; i++)
+        vl_store(b + 4 * i, vl_sub(vl_load(b + 4 * i), right[i]));
+}
+
+HF_INLINE void splat_four_rows(const struct hf_sums *s, const int32_t *half, int x, int y, const int64_t *share,
+                               uint32_t weight, int first, int last)
+{
+    vl one[4], whole[4], left[5], right[5];
+    for (int k = 0; k < 4; k++) {
+        one[k] = vl_times(vl_load(share + 4 * k), weight);
+        whole[k] = vl_shl8(one[k]);
+    }
+    for (int dy = first; dy <= last; dy++) {
+        const int above = y - dy >= s->y0 && y - dy < s->y1, below = y + dy >= s->y0 && y + dy < s->y1;
+        const int n = half[dy] >> 8;
+        vl part[4], rest[4];
+        if (!above && !below)
+            continue;
+        for (int k = 0; k < 4; k++) {
+            part[k] = vl_times(one[k], (uint32_t)half[dy] & 255);
+            rest[k] = vl_sub(whole[k], part[k]);
+        }
+        left[0] = part[0];
+        right[0] = rest[0];
+        for (int k = 1; k < 4; k++) {
+            left[k] = vl_add(rest[k - 1], part[k]);
+            right[k] = vl_add(part[k - 1], rest[k]);
+        }
+        left[4] = rest[3];
+        right[4] = part[3];
+        if (below)
+            splat_four_row(s->lane + s->row[y + dy - s->y0], x, n, left, right);
+        if (above && dy)
+            splat_four_row(s->lane + s->row[y - dy - s->y0], x, n, left, right);
+    }
+}
+
+HF_INLINE void splat_four(const struct hf_sums *s, const struct hf_picture *p, const int32_t *half, int x, int y,
+                          const int64_t *share)
+{
+    if (p->rows > 1)
+        splat_four_rows(s, half, x, y, share, HF_WHOLE_ROW, 0, p->rows - 2);
+    splat_four_rows(s, half, x, y, share, (uint32_t)p->cap, p->rows - 1, p->rows - 1);
+}
+
+// From source i on, four in a row with the same picture?
+HF_INLINE int splat_is_four(const struct hf_splats *list, int i)
+{
+    if (i + 4 > list->count)
+        return 0;
+    for (int k = 1; k < 4; k++)
+        if (list->picture[i + k] != list->picture[i] || list->x[i + k] != list->x[i] + k ||
+            list->y[i + k] != list->y[i])
+            return 0;
+    return 1;
+}
+
 static void splat_simd(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list)
 {
     const int width = s->x1 - s->x0;
     for (int i = 0; i < list->count; i++) {
         const struct hf_picture *p = &a->picture[list->picture[i]];
         const int x = list->x[i] - s->x0, y = list->y[i];
-        if (x - p->reach_x >= 0 && x + p->reach_x <= width)
+        const int inside = x - p->reach_x >= 0 && x + p->reach_x <= width;
+        if (inside && x + 3 + p->reach_x <= width && splat_is_four(list, i)) {
+            splat_four(s, p, a->half + p->first, x, y, list->share[i]);
+            i += 3;
+        } else if (inside) {
             splat_one(s, p, a->half + p->first, x, y, list->share[i], 0);
-        else
+        } else {
             splat_one(s, p, a->half + p->first, x, y, list->share[i], 1);
+        }
     }
 }
 
@@ -92,7 +161,7 @@ static void splat_runs_simd(const struct hf_sums *s, int x, int y, const struct 
 static void splat_taps_simd(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
                             const int64_t share[4])
 {
-    const vl one = vl_load(share), offset = vl_shl8(vl_shl8(one));  // weights are made positive: products want that
+    const vl one = vl_load(share), offset = vl_shl8(vl_shl8(one)); // weights are made positive: products want that
     const int width = s->x1 - s->x0, end = hf_min(s->y1 - y, rows);
     x -= s->x0;
     // Columns left of the window come together in its first, those right of it are of no use.

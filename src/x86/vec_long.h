@@ -8,19 +8,44 @@
 
 typedef __m256i vl;
 typedef __m128 v4;
-static inline void v4_store(float *p, v4 a) { _mm_storeu_ps(p, a); }
-static inline void v4_transpose(v4 a[4]) { _MM_TRANSPOSE4_PS(a[0], a[1], a[2], a[3]); }
-static inline vl vl_load(const int64_t *p) { return _mm256_loadu_si256((const __m256i *)p); }
-static inline void vl_store(int64_t *p, vl a) { _mm256_storeu_si256((__m256i *)p, a); }
-static inline vl vl_set1(int64_t a) { return _mm256_set1_epi64x(a); }
-static inline vl vl_add(vl a, vl b) { return _mm256_add_epi64(a, b); }
-static inline vl vl_sub(vl a, vl b) { return _mm256_sub_epi64(a, b); }
-static inline vl vl_shl8(vl a) { return _mm256_slli_epi64(a, 8); }
+static inline void v4_store(float *p, v4 a)
+{
+    _mm_storeu_ps(p, a);
+}
+static inline void v4_transpose(v4 a[4])
+{
+    _MM_TRANSPOSE4_PS(a[0], a[1], a[2], a[3]);
+}
+static inline vl vl_load(const int64_t *p)
+{
+    return _mm256_loadu_si256((const __m256i *)p);
+}
+static inline void vl_store(int64_t *p, vl a)
+{
+    _mm256_storeu_si256((__m256i *)p, a);
+}
+static inline vl vl_set1(int64_t a)
+{
+    return _mm256_set1_epi64x(a);
+}
+static inline vl vl_add(vl a, vl b)
+{
+    return _mm256_add_epi64(a, b);
+}
+static inline vl vl_sub(vl a, vl b)
+{
+    return _mm256_sub_epi64(a, b);
+}
+static inline vl vl_shl8(vl a)
+{
+    return _mm256_slli_epi64(a, 8);
+}
 // a * b for any a, low 64 bits.
 static inline vl vl_times(vl a, uint32_t b)
 {
     const vl m = _mm256_set1_epi64x(b);
-    return _mm256_add_epi64(_mm256_mul_epu32(a, m), _mm256_slli_epi64(_mm256_mul_epu32(_mm256_srli_epi64(a, 32), m), 32));
+    return _mm256_add_epi64(_mm256_mul_epu32(a, m),
+                            _mm256_slli_epi64(_mm256_mul_epu32(_mm256_srli_epi64(a, 32), m), 32));
 }
 
 // As floats, each times its scale. The integer's upper part, made a double by its exponent's bits, and its lower 48 bits

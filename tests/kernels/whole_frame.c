@@ -56,6 +56,22 @@ static void make_hexagon(struct world *w)
     p->uniform = rng_one_in(&w->rng, 8);
 }
 
+// The scatter instead of the gather, with some of its options. Its frames have the bits of the C whatever is fused.
+static void make_scatter(struct world *w)
+{
+    struct hf_params *p = &w->params;
+    struct rng *r = &w->rng;
+    p->engine = HF_ENGINE_SCATTER;
+    p->storage = HF_STORAGE_FLOAT;
+    p->resolution = rng_one_in(r, 4) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    p->blades = rng_one_in(r, 3) ? rng_int(r, 3, 16) : 0;
+    p->blade_roundness = rng_one_in(r, 2) ? rng_float(r, 0, 1) : 0;
+    p->ring = rng_one_in(r, 5) ? rng_float(r, 0, 0.95f) : 0;
+    p->chromatic = rng_one_in(r, 5) ? rng_float(r, -0.5f, 0.5f) : 0;
+    p->cat_eye = rng_one_in(r, 5) ? rng_float(r, 0, 1) : 0;
+    p->squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
+}
+
 static void make_case(struct world *w, const struct frame_case *c)
 {
     world_clear(w);
@@ -70,6 +86,8 @@ static void make_case(struct world *w, const struct frame_case *c)
         make_gaussian(w);
     else if (rng_one_in(&w->rng, 3))
         make_hexagon(w);
+    else if (rng_one_in(&w->rng, 3))
+        make_scatter(w);
     const int in_place = rng_one_in(&w->rng, 4), bad = rng_one_in(&w->rng, 3);
     make_image(w, &w->src, SLOT_SRC, bad);
     if (in_place)
@@ -77,6 +95,11 @@ static void make_case(struct world *w, const struct frame_case *c)
     else
         make_image(w, &w->dst, SLOT_DST, 0);
     make_depth(w, bad);
+}
+
+static int is_exact(const struct world *w, const struct level *l)
+{
+    return l->exact || w->params.engine == HF_ENGINE_SCATTER;
 }
 
 // Depth of one piece over blocks of a random size, so that there are tiles with nothing to do; and no CoC that is only
@@ -168,12 +191,12 @@ static int compare(const struct world *w, const struct level *l, char message[25
         got.data[i] = in_arena(ARENA_TEST, w->dst.data[i]);
     }
     for (int c = 0; c < hf_image_channels(&w->dst); c++) {
-        const double bound = l->exact ? 0 : frame_roundings(w) * FLT_EPSILON * largest_sample(w, c) + 0x1p-140;
-        for (int y = 0; y < want.height && (l->exact || has_bound(w)); y++)
+        const double bound = is_exact(w, l) ? 0 : frame_roundings(w) * FLT_EPSILON * largest_sample(w, c) + 0x1p-140;
+        for (int y = 0; y < want.height && (is_exact(w, l) || has_bound(w)); y++)
             for (int x = 0; x < want.width; x++) {
                 const float a = hf_sample(&want, c, x, y), b = hf_sample(&got, c, x, y);
-                const double step = l->exact ? 0 : format_step(w, c, fmax(fabs((double)a), fabs((double)b)));
-                if (hf_bits(a) == hf_bits(b) || (!l->exact && fabs((double)a - b) <= bound + step))
+                const double step = is_exact(w, l) ? 0 : format_step(w, c, fmax(fabs((double)a), fabs((double)b)));
+                if (hf_bits(a) == hf_bits(b) || (!is_exact(w, l) && fabs((double)a - b) <= bound + step))
                     continue;
                 snprintf(message, 256, "channel %d at (%d, %d): %a, the C %a, off by %g of %g", c, x, y, b, a,
                          fabs((double)a - b), bound + step);
