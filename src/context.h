@@ -10,6 +10,7 @@
 #include "plan.h"
 #include "pool.h"
 #include "setup.h"
+#include "wave.h"
 
 struct hf_worker {
     _Alignas(HF_ALIGN) struct hf_frame frame;
@@ -17,6 +18,7 @@ struct hf_worker {
     struct hf_counts seen, looked;
     int64_t ns[HF_MAX_PASSES];
     uint32_t tiles[HF_MAX_PASSES];
+    int64_t plan_ns;
     struct hf_block scratch;
 };
 
@@ -34,7 +36,8 @@ struct hf_context {
     struct hf_block tables;   // of the other engines' prepare
     struct hf_plan plan;      // of the last frame: the next one guesses from it
     struct hf_block planes;   // buffers of the whole frame
-    struct hf_block chunks, tiles;  // the plan's
+    struct hf_block chunks, tiles;  // the plan's; tiles: and the wave's
+    struct hf_wave wave;
     struct hf_block joined;   // full-resolution CoC for a dump
     struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
     struct hf_stats stats;

@@ -136,7 +136,8 @@ int hf_plan_count(const struct hf_plan *p, int sweep)
 
 size_t hf_plan_tile_bytes(const struct hf_plan *p)
 {
-    return (size_t)hf_plan_count(p, 2) * (sizeof *p->tile_active + 1);
+    const size_t bytes = (size_t)hf_plan_count(p, 2) * (sizeof *p->tile_active + 1);
+    return (bytes + HF_ALIGN - 1) / HF_ALIGN * HF_ALIGN;
 }
 
 void hf_plan_tile_memory(struct hf_plan *p, void *memory)
@@ -147,7 +148,7 @@ void hf_plan_tile_memory(struct hf_plan *p, void *memory)
 
 size_t hf_plan_chunk_bytes(const struct hf_plan *p)
 {
-    return (size_t)hf_plan_count(p, 1) * (2 * sizeof(uint64_t) + sizeof(int) + 2);
+    return (size_t)hf_plan_count(p, 1) * (2 * sizeof(uint64_t) + sizeof(int) + 3);
 }
 
 void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep)
@@ -157,8 +158,13 @@ void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep)
     p->found_far = p->found_near + chunks;
     p->deferred = (int *)(p->found_far + chunks);
     p->deferred_count = 0;
-    p->chunk_made = (uint8_t *)(p->deferred + chunks);
-    p->chunk_reads = p->chunk_made + chunks;
+    p->chunk_made = (atomic_uchar *)(p->deferred + chunks);
+    p->chunk_busy = p->chunk_made + chunks;
+    p->chunk_reads = (uint8_t *)(p->chunk_busy + chunks);
+    for (size_t i = 0; i < chunks; i++) {
+        atomic_init(&p->chunk_made[i], 0);
+        atomic_init(&p->chunk_busy[i], 0);
+    }
     if (!keep)
         memset(p->chunk_reads, 0, chunks);
 }
@@ -242,7 +248,7 @@ static void list_deferred(struct hf_plan *p)
 
 // What a tile needs, and in which part of it: looked at in blocks of a group's width and a chunk's height, as a tile is
 // much larger than what a thin thing in front of it blurs.
-static void classify_tile(struct hf_plan *p, const struct hf_setup *s, int i)
+void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
 {
     const struct hf_reach near = p->engine->spread(s, p, HF_NEAR), far = p->engine->spread(s, p, HF_FAR);
     const struct hf_rect tile = hf_plan_cell(p, 2, i);
@@ -263,25 +269,34 @@ static void classify_tile(struct hf_plan *p, const struct hf_setup *s, int i)
     p->tile_active[i] = s->no_skip ? tile : active;
 }
 
-void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s)
+unsigned hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks)
 {
-    const struct hf_engine_def *e = p->engine;
-    const struct hf_reach read = read_reach(p);
+    if (!p->tile_needs[tile])
+        return 0;
+    *chunks = chunks_around(p, hf_plan_active(p, tile), read_reach(p));
+    return p->engine->reads(s, p->tile_needs[tile]);
+}
+
+int hf_plan_chunk_rows(const struct hf_plan *p, const struct hf_setup *s, int row)
+{
+    const struct hf_reach spread = reach_max(p->engine->spread(s, p, HF_NEAR), p->engine->spread(s, p, HF_FAR));
+    return chunks_around(p, hf_plan_cell(p, 2, row * p->columns[2]), reach_max(read_reach(p), spread)).y1;
+}
+
+void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s)
+{
     const int chunks = hf_plan_count(p, 1), tiles = hf_plan_count(p, 2);
     memset(p->chunk_reads, 0, (size_t)chunks);
     p->needs = 0;
     for (int i = 0; i < tiles; i++) {
-        classify_tile(p, s, i);
+        struct hf_rect c = {0};
+        const unsigned reads = hf_plan_reads(p, s, i, &c);
         p->needs |= p->tile_needs[i];
-        if (!p->tile_needs[i])
-            continue;
-        const unsigned reads = e->reads(s, p->tile_needs[i]);
-        const struct hf_rect c = chunks_around(p, hf_plan_active(p, i), read);
-        for (int y = c.y0; y < c.y1; y++)
+        for (int y = c.y0; reads && y < c.y1; y++)
             for (int x = c.x0; x < c.x1; x++)
                 p->chunk_reads[y * p->columns[1] + x] |= (uint8_t)reads;
     }
-    p->reads = p->needs ? e->reads(s, p->needs) : 0;
+    p->reads = p->needs ? p->engine->reads(s, p->needs) : 0;
     if (p->needs && reads_all(p, s))
         memset(p->chunk_reads, (int)p->reads, (size_t)chunks);
     list_deferred(p);
@@ -289,6 +304,7 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s)
 
 void hf_plan_forget(struct hf_plan *p)
 {
-    memset(p->chunk_made, 0, (size_t)hf_plan_count(p, 1));
+    for (int i = 0; i < hf_plan_count(p, 1); i++)
+        p->chunk_made[i] = 0;
     list_deferred(p);
 }

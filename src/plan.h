@@ -3,6 +3,8 @@
 #ifndef HF_PLAN_H
 #define HF_PLAN_H
 
+#include <stdatomic.h>
+
 #include "engine.h"
 
 enum { HF_MAX_SWEEPS = 6 };
@@ -15,7 +17,8 @@ struct hf_plan {
     int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
     uint64_t *found_near, *found_far;  // groups of lanes in the chunk that have such CoC
-    uint8_t *chunk_made;   // fields whose buffers the first sweep has made
+    atomic_uchar *chunk_made;  // fields whose buffers the first sweep has made
+    atomic_uchar *chunk_busy;  // somebody is making what it has not
     uint8_t *chunk_reads;  // fields that some tile reads there; until they are known, those of the last frame
     int *deferred;         // chunks whose buffers are made once it is known that they are read
     int deferred_count;
@@ -40,8 +43,14 @@ size_t hf_plan_chunk_bytes(const struct hf_plan *p);
 // Memory for the chunks; keep: it holds what the last frame knew of the same chunks.
 void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep);
 
-// After the first sweep: what each tile needs, and which chunks it has to make after all.
-void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s);
+// What a tile needs: once the first sweep has been around it.
+void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int tile);
+// The chunks, as a rectangle of chunk numbers, that a tile reads; returns which of their fields.
+unsigned hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks);
+// When all tiles are known: what the frame needs and reads, and which chunks have to be made after all.
+void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s);
+// Rows of chunks, from the top, that a row of tiles depends on.
+int hf_plan_chunk_rows(const struct hf_plan *p, const struct hf_setup *s, int row);
 
 // Nothing has been made after all.
 void hf_plan_forget(struct hf_plan *p);

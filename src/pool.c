@@ -6,6 +6,7 @@
 #include "pool.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <time.h>
@@ -133,6 +134,14 @@ void hf_pool_run(struct hf_pool *p, int n, void (*fn)(void *arg, int i, int work
     while (atomic_load_explicit(&p->busy, memory_order_acquire))
         pthread_cond_wait(&p->done, &p->lock);
     pthread_mutex_unlock(&p->lock);
+}
+
+void hf_pool_relax(int n)
+{
+    if (n % 256 == 255)
+        sched_yield();
+    else
+        cpu_pause();
 }
 
 size_t hf_pool_bytes(int threads)

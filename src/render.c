@@ -19,6 +19,7 @@ struct job {
     unsigned have;  // fields whose buffers are allocated
     int sweep;
     int plan_only;  // look at the depth, make nothing
+    int known;      // the last frame had the same chunks: what it read is a guess at what this one does
 };
 
 static int64_t now_ns(void)
@@ -99,13 +100,10 @@ static void first_sweep(void *arg, int i, int worker)
         hf_copy_scan(w, r);
 }
 
-// A chunk that is read and was not made, or not all of it.
-static void first_sweep_deferred(void *arg, int i, int worker)
+// What is read of a chunk and was not made.
+static void make_missing(const struct job *j, struct hf_worker *w, int chunk, unsigned fields)
 {
-    struct job *j = arg;
     struct hf_plan *p = &j->c->plan;
-    struct hf_worker *w = &j->c->workers[worker];
-    const int chunk = p->deferred[i];
     const struct hf_rect r = hf_plan_cell(p, 1, chunk);
     int64_t clock = now_ns();
     hf_buffers_place(j->c, j->s, &w->frame, 1, r);
@@ -115,7 +113,15 @@ static void first_sweep_deferred(void *arg, int i, int worker)
         w->frame.k->pass[p->engine->passes[0].kernel](&w->frame, r);
         w->frame.counts = &w->counts;
     }
-    make_chunk(j, w, r, p->chunk_reads[chunk] & ~p->chunk_made[chunk], &clock);
+    make_chunk(j, w, r, fields, &clock);
+}
+
+static void first_sweep_deferred(void *arg, int i, int worker)
+{
+    const struct job *j = arg;
+    const struct hf_plan *p = &j->c->plan;
+    const int chunk = p->deferred[i];
+    make_missing(j, &j->c->workers[worker], chunk, p->chunk_reads[chunk] & ~p->chunk_made[chunk]);
 }
 
 // What of a tile is sharp: all of it, or what lies around its active part.
@@ -161,6 +167,57 @@ static void later_sweep(void *arg, int i, int worker)
         if (def->sweep == j->sweep && (!def->field || (def->field & needs)) && hf_plan_pass_runs(p, j->s, pass))
             run_pass(j, w, pass, cell, &clock);
     }
+}
+
+// The same among other tiles that may miss it too.
+static void make_missing_shared(const struct job *j, struct hf_worker *w, int chunk, unsigned reads)
+{
+    struct hf_plan *p = &j->c->plan;
+    if (!(reads & ~atomic_load_explicit(&p->chunk_made[chunk], memory_order_acquire)))
+        return;
+    for (int n = 0; atomic_exchange_explicit(&p->chunk_busy[chunk], 1, memory_order_acquire); n++)
+        hf_pool_relax(n);
+    const unsigned made = atomic_load_explicit(&p->chunk_made[chunk], memory_order_relaxed);
+    if (reads & ~made)
+        make_missing(j, w, chunk, reads & ~made);
+    atomic_store_explicit(&p->chunk_made[chunk], (uint8_t)(made | reads), memory_order_release);
+    atomic_store_explicit(&p->chunk_busy[chunk], 0, memory_order_release);
+}
+
+static void wave_tile(struct job *j, int tile, int worker)
+{
+    struct hf_plan *p = &j->c->plan;
+    struct hf_worker *w = &j->c->workers[worker];
+    struct hf_rect chunks = {0};
+    if (!hf_wave_await(&j->c->wave, p, tile))
+        return;
+    const int64_t start = now_ns();
+    hf_plan_classify(p, j->s, tile);
+    const unsigned reads = hf_plan_reads(p, j->s, tile, &chunks);
+    w->plan_ns += now_ns() - start;
+    if (reads & ~j->have) {
+        hf_wave_stop(&j->c->wave);
+        return;
+    }
+    for (int y = chunks.y0; reads && y < chunks.y1; y++)
+        for (int x = chunks.x0; x < chunks.x1; x++)
+            make_missing_shared(j, w, y * p->columns[1] + x, reads);
+    later_sweep(j, tile, worker);
+}
+
+static void wave_task(void *arg, int i, int worker)
+{
+    struct job *j = arg;
+    struct hf_wave *w = &j->c->wave;
+    const int task = w->task[i];
+    if (hf_wave_stopped(w))
+        return;
+    if (task < 0) {
+        wave_tile(j, ~task, worker);
+        return;
+    }
+    first_sweep(j, task, worker);
+    hf_wave_finish_chunk(w, &j->c->plan, task);
 }
 
 // What the colour is like where it will be read: for the report alone.
@@ -257,6 +314,7 @@ static void start_workers(const struct job *j, const struct hf_image *dst, const
         w->looked = (struct hf_counts){.brightest = -FLT_MAX, .alpha_min = 1};
         memset(w->ns, 0, sizeof w->ns);
         memset(w->tiles, 0, sizeof w->tiles);
+        w->plan_ns = 0;
         w->frame.s = j->s;
         w->frame.k = fused ? &c->fused : &c->exact;
         w->frame.src = src;
@@ -272,10 +330,12 @@ static int lay_out(struct job *j, unsigned fields)
 {
     struct hf_context *c = j->c;
     hf_plan_cells(&c->plan, j->s, c->config.tile_width, c->config.tile_height, c->threads, c->dump != NULL);
-    const int err = hf_block_grow(&c->tiles, hf_plan_tile_bytes(&c->plan), &c->mem);
+    const size_t tiles = hf_plan_tile_bytes(&c->plan);
+    const int err = hf_block_grow(&c->tiles, tiles + hf_wave_bytes(&c->plan), &c->mem);
     if (err)
         return err;
     hf_plan_tile_memory(&c->plan, c->tiles.data);
+    hf_wave_order(&c->wave, &c->plan, j->s, (char *)c->tiles.data + tiles);
     j->have = fields;
     return hf_buffers_allocate(c, j->s, fields);
 }
@@ -296,6 +356,7 @@ static int lay_out_chunks(struct job *j)
     hf_plan_chunk_memory(&c->plan, c->chunks.data, same);
     if (!same)
         c->plan.reads = 0;
+    j->known = same;
     return HF_OK;
 }
 
@@ -312,8 +373,11 @@ static int plan_frame(struct job *j)
     }
     if (err)
         return err;
-    if (j->s->blend != 0)
-        hf_plan_classify(p, j->s);
+    if (j->s->blend != 0) {
+        for (int i = 0; i < hf_plan_count(p, 2); i++)
+            hf_plan_classify(p, j->s, i);
+        hf_plan_settle(p, j->s);
+    }
     hf_report_plan(c, j->s, &found);
     if (j->plan_only || j->s->blend == 0 || !(p->reads & ~j->have))
         return HF_OK;
@@ -345,6 +409,52 @@ static int run_plan(struct job *j)
     return HF_OK;
 }
 
+// Can tiles follow their chunks? Not if all has to be known of the frame first, nor if a tile overwrites what chunks
+// have yet to read, nor on the host's threads, which need not begin tasks in order.
+static int can_wave(const struct job *j)
+{
+    const struct hf_context *c = j->c;
+    const struct hf_engine_def *e = c->plan.engine;
+    return j->known && e->sweeps == 2 && !e->measured && !e->made && j->s->blend != 0 && !j->s->colour_stats &&
+           !j->plan_only && !j->copy.in_place && !c->dump && c->pool;
+}
+
+// Chunks and tiles in one run. Returns 0 if a tile reads buffers that there are not: nothing has been made then.
+static int render_wave(struct job *j, int64_t planning)
+{
+    struct hf_context *c = j->c;
+    j->sweep = 2;
+    parallel(c, c->wave.tasks, wave_task, j);
+    if (hf_wave_stopped(&c->wave))
+        return 0;
+    planning -= now_ns();
+    hf_plan_settle(&c->plan, j->s);
+    const struct hf_counts found = all_counts(c);
+    hf_report_plan(c, j->s, &found);
+    planning += now_ns();
+    for (int i = 0; i < c->threads; i++)
+        planning += c->workers[i].plan_ns / c->threads;
+    c->report.plan_ms = (double)planning * 1e-6;
+    return 1;
+}
+
+// The sweeps one after the other, with the plan between them.
+static int render_sweeps(struct job *j, int64_t planning)
+{
+    struct hf_context *c = j->c;
+    if (j->s->blend != 0)
+        parallel(c, hf_plan_count(&c->plan, 1), first_sweep, j);
+    planning -= now_ns();
+    const int err = plan_frame(j);
+    planning += now_ns();
+    c->report.plan_ms = (double)planning * 1e-6;
+    if (!err && j->s->colour_stats && j->s->blend != 0) {
+        parallel(c, hf_plan_count(&c->plan, 1), look_at_colour, j);
+        hf_report_colour(c);
+    }
+    return err || j->plan_only ? err : run_plan(j);
+}
+
 int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
                     const struct hf_image *src, const struct hf_depth *depth, int fused, int plan_only)
 {
@@ -359,21 +469,13 @@ int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_im
         return err;
     if (plan_only)
         j.have = 0;
-    int64_t planning = now_ns() - start;
-    if (s->blend != 0)
-        parallel(c, hf_plan_count(&c->plan, 1), first_sweep, &j);
-    planning -= now_ns();
-    err = plan_frame(&j);
-    planning += now_ns();
-    c->report.plan_ms = (double)planning * 1e-6;
-    if (!err && s->colour_stats && s->blend != 0) {
-        parallel(c, hf_plan_count(&c->plan, 1), look_at_colour, &j);
-        hf_report_colour(c);
-    }
+    const int64_t planning = now_ns() - start;
+    const int waves = can_wave(&j), done = waves && render_wave(&j, planning);
+    if (waves && !done)
+        start_workers(&j, dst, src, depth, fused);
+    if (!done)
+        err = render_sweeps(&j, planning);
     if (err || plan_only)
-        return err;
-    err = run_plan(&j);
-    if (err)
         return err;
     collect_stats(&j, start);
     hf_report_frame(c, s);
