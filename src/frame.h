@@ -130,6 +130,7 @@ struct hf_frame {
     const struct hf_depth *depth;
     struct hf_buf buf[HF_MAX_BUFS];
     int near, far;        // which fields the tile at hand needs
+    int looking;          // nobody reads the CoC where there is none: it need not be written
     float *lines;         // scratch rows, see hf_line
     size_t line_floats;   // length of each
     float *work;          // scratch of the gather's row sums

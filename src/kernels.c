@@ -14,6 +14,7 @@ void hf_kernels_c(struct hf_kernels *k)
     k->pass[HF_PASS_FILL] = hf_fill_c;
     k->pass[HF_PASS_COMPOSITE] = hf_composite_c;
     k->coc_row = hf_coc_row_c;
+    k->sharp_row = hf_sharp_row_c;
     k->pass[HF_KERNEL_RADIUS] = hf_radius_c;
     k->radius_row = hf_radius_row_c;
     k->pass[HF_KERNEL_HEXAGON_LOAD] = hf_hexagon_load_c;

@@ -86,6 +86,8 @@ typedef int hf_finite(const void *words, size_t n, void *copy);
 // Near and far CoC of the n lanes from lane x of full-resolution row y, into four rows: near even, near odd, far even,
 // far odd. counts NULL: the near rows need not be written, and nothing is counted; else x is a multiple of 16.
 typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
+// Is every pixel of those lanes a surface without CoC? 0 where that takes longer to say than to make the CoC.
+typedef int hf_sharp_row(const struct hf_frame *f, int x, int y, int n);
 
 // Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted; else x is a multiple of 32.
 typedef void hf_radius_row(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts);
@@ -151,6 +153,7 @@ typedef void hf_mean_row(const float *const tent[4], const float part[4], int n,
 struct hf_kernels {
     hf_kernel *pass[HF_KERNEL_COUNT];
     hf_coc_row *coc_row;
+    hf_sharp_row *sharp_row;
     hf_radius_row *radius_row;
     hf_blend_row *blend_row;
     hf_lerp_row *lerp_row;

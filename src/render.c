@@ -87,7 +87,9 @@ static void first_sweep(void *arg, int i, int worker)
     hf_buffers_place(j->c, j->s, &w->frame, 1, r);
     w->counts.near_groups = w->counts.far_groups = 0;
     set_fields(&w->frame, HF_FIELDS);
+    w->frame.looking = !j->s->no_skip && !j->c->dump && !p->chunk_reads[i];
     run_pass(j, w, 0, r, &clock);
+    w->frame.looking = 0;
     p->found_near[i] = w->counts.near_groups;
     p->found_far[i] = w->counts.far_groups;
     const unsigned found = (p->found_near[i] ? HF_NEAR : 0u) | (p->found_far[i] ? HF_FAR : 0u);

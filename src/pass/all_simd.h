@@ -26,6 +26,7 @@ void HF_INIT(struct hf_kernels *k)
 {
     format_init(k);
     k->coc_row = coc_row_simd;
+    k->sharp_row = sharp_row_simd;
     k->radius_row = radius_row_simd;
     k->blend_row = blend_row_simd;
     k->lerp_row = lerp_row_simd;

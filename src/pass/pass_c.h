@@ -10,6 +10,7 @@
 
 hf_kernel hf_coc_c, hf_down_c, hf_max_x_c, hf_max_y_c, hf_blur_x_c, hf_blur_y_c, hf_gather_c, hf_fill_c, hf_composite_c;
 hf_coc_row hf_coc_row_c;
+hf_sharp_row hf_sharp_row_c;
 hf_kernel hf_radius_c;
 hf_radius_row hf_radius_row_c;
 hf_kernel hf_gaussian_depth_pass, hf_gaussian_rows_pass, hf_gaussian_columns_pass, hf_gaussian_merge_pass;

@@ -170,6 +170,8 @@ int pass_check(const struct world *w, const struct level *l, char message[256]);
 int pass_pixels(const struct world *w);
 
 // rows.c
+void sharp_row_make(struct world *w, int index);
+void sharp_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
 void coc_row_make(struct world *w, int index);
 void coc_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
 void load_make(struct world *w, int format);

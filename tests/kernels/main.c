@@ -20,6 +20,7 @@ const struct test tests[] = {
     PASS("fill", HF_PASS_FILL, 1600),
     PASS("composite", HF_PASS_COMPOSITE, 2400),
     ROW("coc_row", 0, 2000, coc_row_make, coc_row_call, row_check),
+    ROW("sharp_row", 0, 2000, sharp_row_make, sharp_row_call, row_check),
     ROW("load_rgba32f", HF_FORMAT_RGBA32F, 1000, load_make, load_call, load_check),
     ROW("load_rgb32f", HF_FORMAT_RGB32F, 1000, load_make, load_call, load_check),
     ROW("load_rgba16f", HF_FORMAT_RGBA16F, 1000, load_make, load_call, load_check),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kernels that work on rows: CoC of depth, images in and out, checks and roundings.
 #include <stdio.h>
+#include <string.h>
 
 #include "harness.h"
 
@@ -55,6 +56,30 @@ void coc_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int
     const struct hf_frame f = world_frame(w, k, a);
     float *const out[4] = {lane(w, a, 0), lane(w, a, 1), lane(w, a, 2), lane(w, a, 3)};
     k->coc_row(&f, w->x, w->y, w->n, out, w->with_counts ? &w->result[a].counts : NULL);
+}
+
+// In half of the cases the picture is sharp, but for one pixel in half of these.
+void sharp_row_make(struct world *w, int index)
+{
+    (void)index;
+    make_size(w);
+    random_row(w);
+    make_depth(w, rng_one_in(&w->rng, 2));
+    const float middle = 0.5f * (w->setup.near_0 + w->setup.far_0), z = w->setup.lens ? -1 / middle : middle;
+    const int odd_one = rng_one_in(&w->rng, 2) ? rng_int(&w->rng, 0, w->setup.width - 1) : -1;
+    if (rng_one_in(&w->rng, 2) && !w->bench)
+        return;
+    for (int y = 0; y < w->setup.height; y++)
+        for (int x = 0; x < w->setup.width; x++)
+            if (x != odd_one || w->bench)
+                memcpy((uint8_t *)(uintptr_t)w->depth.data + (ptrdiff_t)y * w->depth.stride + (size_t)x * 4, &z, 4);
+}
+
+void sharp_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
+{
+    (void)index;
+    const struct hf_frame f = world_frame(w, k, a);
+    w->result[a].returned = k->sharp_row(&f, w->x, w->y, w->n) != 0;
 }
 
 // ---- images ----
