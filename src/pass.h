@@ -54,7 +54,9 @@ struct hf_pass {
     enum hf_halo halo;
     int sweep;         // 1: over the input; 2 and more: per cell, from buffers to the output
     unsigned field;    // runs where this field is needed; 0: where any is
-    float ns;          // guess of its cost until it has been measured: nanoseconds per half-resolution pixel and field
+    // Guess of its cost until it has been measured: nanoseconds per half-resolution pixel and field, at radius 12, with
+    // AVX-512 at 3.7 GHz.
+    float ns;
 };
 
 struct hf_reach {

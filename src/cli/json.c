@@ -135,13 +135,14 @@ static void put_report(FILE *out, const struct hf_report *r)
             hf_engine_name(r->engine), resolutions[r->resolution], r->rings, r->budget_step, r->tile_width,
             r->tile_height, r->tile_count[HF_TILE_SHARP], r->tile_count[HF_TILE_NEAR], r->tile_count[HF_TILE_FAR],
             r->tile_count[HF_TILE_BOTH]);
+    if (r->colour_known)
+        fprintf(out, ",\n        \"brightest\": %.9g,\n        \"opaque\": %s,\n        \"not_finite\": %" PRIu64,
+                r->brightest, r->opaque ? "true" : "false", r->not_finite);
     fprintf(out,
-            ",\n        \"brightest\": %.9g,\n        \"opaque\": %s,\n        \"not_finite\": %" PRIu64
             ",\n        \"near_radius\": %.9g,\n        \"far_radius\": %.9g,\n        \"memory\": %zu"
             ",\n        \"memory_saved\": %zu,\n        \"plan_ms\": %.6f,\n        \"predicted_ms\": %.6f"
             ",\n        \"passes\": [",
-            r->colour_known ? r->brightest : 0, r->opaque ? "true" : "false", r->not_finite, r->near_radius,
-            r->far_radius, r->memory, r->memory_saved, r->plan_ms, r->predicted_ms);
+            r->near_radius, r->far_radius, r->memory, r->memory_saved, r->plan_ms, r->predicted_ms);
     for (int i = 0; i < r->passes; i++) {
         const struct hf_pass_report *p = &r->pass[i];
         fprintf(out, "%s\n          {\"name\": \"%s\", \"run\": %u, \"all\": %u, \"predicted_ms\": %.6f, \"ms\": %.6f",

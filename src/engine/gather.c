@@ -6,23 +6,23 @@
 #define B(name) HF_BIT(name)
 
 static const struct hf_pass passes[] = {
-    {"CoC generation", HF_PASS_COC, .writes = B(COC), .sweep = 1},
-    {"Downsample", HF_PASS_DOWN, .reads = B(COC), .writes = B(COLOR4) | B(COLORFAR4) | B(COC4), .sweep = 1},
+    {"CoC generation", HF_PASS_COC, .writes = B(COC), .sweep = 1, .ns = 1.7f},
+    {"Downsample", HF_PASS_DOWN, .reads = B(COC), .writes = B(COLOR4) | B(COLORFAR4) | B(COC4), .sweep = 1, .ns = 1.1f},
     {"Near CoC Max X", HF_PASS_MAX_X, .around = B(COC4), .writes = B(MAX_X), .halo = HF_HALO_MAX_X, .sweep = 2,
-     .field = HF_NEAR},
+     .field = HF_NEAR, .ns = 0.7f},
     {"Near CoC Max Y", HF_PASS_MAX_Y, .around = B(MAX_X), .writes = B(MAX), .halo = HF_HALO_MAX_Y, .sweep = 2,
-     .field = HF_NEAR},
+     .field = HF_NEAR, .ns = 0.25f},
     {"Near CoC Blur X", HF_PASS_BLUR_X, .around = B(MAX), .writes = B(BLUR_X), .halo = HF_HALO_MAX_X, .sweep = 2,
-     .field = HF_NEAR},
+     .field = HF_NEAR, .ns = 0.25f},
     {"Near CoC Blur Y", HF_PASS_BLUR_Y, .around = B(BLUR_X), .writes = B(BLUR), .halo = HF_HALO_MAX_Y, .sweep = 2,
-     .field = HF_NEAR},
+     .field = HF_NEAR, .ns = 0.27f},
     {"Computation", HF_PASS_GATHER, .reads = B(BLUR), .around = B(COLOR4) | B(COLORFAR4) | B(COC4),
      .writes = B(NEAR) | B(FAR), .inside = B(SUM), .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4),
-     .halo = HF_HALO_TAPS, .sweep = 2},
+     .halo = HF_HALO_TAPS, .sweep = 2, .ns = 4},
     {"Fill", HF_PASS_FILL, .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4),
-     .writes = B(NEAR_FILL) | B(FAR_FILL), .halo = HF_HALO_3X3, .sweep = 2},
+     .writes = B(NEAR_FILL) | B(FAR_FILL), .halo = HF_HALO_3X3, .sweep = 2, .ns = 0.75f},
     {"Composite", HF_PASS_COMPOSITE, .around = B(NEAR_FILL) | B(FAR_FILL) | B(BLUR) | B(COC4),
-     .halo = HF_HALO_UPSAMPLE, .sweep = 2},
+     .halo = HF_HALO_UPSAMPLE, .sweep = 2, .ns = 3.2f},
 };
 _Static_assert(sizeof passes / sizeof *passes == HF_PASS_COUNT, "one row per pass");
 

@@ -23,13 +23,14 @@ enum { WIDE_COLUMNS = 3, WIDE_ROWS, TILES };
 #define B(name) (1u << HF_GAUSSIAN_##name)
 
 static const struct hf_pass passes[] = {
-    {"Depth", HF_KERNEL_GAUSSIAN_DEPTH, .sweep = 1},
-    {"Horizontal blur", HF_KERNEL_GAUSSIAN_ROWS, .writes = B(ROWS), .sweep = 1},
-    {"Wide vertical blur", HF_KERNEL_WIDE_COLUMNS, .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_COLUMNS},
-    {"Wide horizontal blur", HF_KERNEL_WIDE_ROWS, .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_ROWS},
+    {"Depth", HF_KERNEL_GAUSSIAN_DEPTH, .sweep = 1, .ns = 1.7f},
+    {"Horizontal blur", HF_KERNEL_GAUSSIAN_ROWS, .writes = B(ROWS), .sweep = 1, .ns = 4},
+    {"Wide vertical blur", HF_KERNEL_WIDE_COLUMNS, .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_COLUMNS,
+     .ns = 15},
+    {"Wide horizontal blur", HF_KERNEL_WIDE_ROWS, .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_ROWS, .ns = 14},
     {"Vertical blur", HF_KERNEL_GAUSSIAN_COLUMNS, .around = B(ROWS), .writes = B(BLUR), .halo = HF_HALO_COLUMNS,
-     .sweep = TILES},
-    {"Merge", HF_KERNEL_GAUSSIAN_MERGE, .around = B(BLUR), .halo = HF_HALO_UPSAMPLE, .sweep = TILES},
+     .sweep = TILES, .ns = 4},
+    {"Merge", HF_KERNEL_GAUSSIAN_MERGE, .around = B(BLUR), .halo = HF_HALO_UPSAMPLE, .sweep = TILES, .ns = 5},
 };
 
 static const struct hf_buf_def bufs[HF_GAUSSIAN_BUFS] = {

@@ -15,13 +15,14 @@
 #define BETWEEN (MADE(NEAR_U) | MADE(NEAR_B) | MADE(NEAR_W) | MADE(FAR_U) | MADE(FAR_B))
 
 static const struct hf_pass passes[] = {
-    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1},
-    {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1},
-    {"Pass 1", HF_KERNEL_HEXAGON_1, .around = INPUT, .writes = BETWEEN, .halo = HF_HALO_RADIUS, .sweep = 2},
+    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1, .ns = 3},
+    {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1, .ns = 10},
+    {"Pass 1", HF_KERNEL_HEXAGON_1, .around = INPUT, .writes = BETWEEN, .halo = HF_HALO_RADIUS, .sweep = 2, .ns = 35},
     {"Pass 2", HF_KERNEL_HEXAGON_2, .around = BETWEEN | WEIGHTS, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
-     .halo = HF_HALO_RADIUS, .sweep = 2},
+     .halo = HF_HALO_RADIUS, .sweep = 2, .ns = 30},
     {"Composite", HF_KERNEL_HEXAGON_COMPOSITE, .reads = FRAME(WEIGHT),
-     .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2), .halo = HF_HALO_UPSAMPLE, .sweep = 2},
+     .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2), .halo = HF_HALO_UPSAMPLE, .sweep = 2,
+     .ns = 9},
 };
 
 #define FULL .x = 1, .y = 1

@@ -24,14 +24,14 @@
 #define B(name) HF_BIT(name)
 
 static const struct hf_pass passes[] = {
-    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1},
-    {"Prepare", HF_KERNEL_SCATTER_PREPARE, .writes = B(SOURCE) | B(RADIUS), .sweep = 1},
+    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1, .ns = 2.5f},
+    {"Prepare", HF_KERNEL_SCATTER_PREPARE, .writes = B(SOURCE) | B(RADIUS), .sweep = 1, .ns = 4},
     {"Far splats", HF_KERNEL_SPLAT_FAR, .around = B(SOURCE) | B(RADIUS), .writes = B(FAR_SUM) | B(FAR_WEIGHT),
-     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_FAR},
+     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_FAR, .ns = 75},
     {"Near splats", HF_KERNEL_SPLAT_NEAR, .around = B(SOURCE) | B(RADIUS), .writes = B(NEAR_SUM) | B(NEAR_WEIGHT),
-     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_NEAR},
+     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_NEAR, .ns = 75},
     {"Composite", HF_KERNEL_SCATTER_COMPOSITE,
-     .reads = B(RADIUS) | B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .sweep = 2},
+     .reads = B(RADIUS) | B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .sweep = 2, .ns = 9},
 };
 
 static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
