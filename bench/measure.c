@@ -206,8 +206,9 @@ int bench_measure_all(const struct bench_subject *s, double seconds, int least, 
 {
     enum { MOST = 401 };
     struct frame frames[MOST];
-    if (render(s, &frames[0], error))
-        return -1;
+    for (int i = 0; i < 2; i++)  // the first knows nothing of the scene, and pays for memory
+        if (render(s, &frames[0], error))
+            return -1;
     int n = 0;
     for (const double start = bench_now(); n < MOST && (n < least || bench_now() - start < seconds); n++)
         if (render(s, &frames[n], error))
