@@ -102,13 +102,20 @@ struct hf_setup {
 };
 
 // What the passes count. One per worker.
+// Where a chunk has CoC of a kind: groups of lanes, see hf_group, 0 if nowhere; and half-resolution rows.
+struct hf_found {
+    uint64_t groups;
+    int y0, y1;
+};
+
 struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
     float radius_min, radius_max;  // signed CoC radii; not the gather's
     float near_max, far_max;       // the gather's CoC
     float brightest, alpha_min;        // of the colour, if somebody asks
-    uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes
+    uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes of a row
+    struct hf_found near, far;         // and of a chunk
     float largest;                 // scatter: absolute sample of a blurred pixel
     uint64_t transparent;          // scatter: blurred pixels whose alpha is not 1
 };
@@ -118,6 +125,23 @@ enum { HF_GROUP = 64 };
 static inline int hf_group(int lane)
 {
     return lane / HF_GROUP & 63;
+}
+
+// What the first pass of a chunk does after each of its full-resolution rows.
+static inline void hf_found_row(struct hf_found *f, uint64_t *groups, int y)
+{
+    if (*groups) {
+        f->y0 = f->groups ? f->y0 : y / 2;
+        f->y1 = y / 2 + 1;
+    }
+    f->groups |= *groups;
+    *groups = 0;
+}
+
+static inline void hf_count_row(struct hf_counts *c, int y)
+{
+    hf_found_row(&c->near, &c->near_groups, y);
+    hf_found_row(&c->far, &c->far_groups, y);
 }
 
 struct hf_kernels;

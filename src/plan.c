@@ -148,15 +148,15 @@ void hf_plan_tile_memory(struct hf_plan *p, void *memory)
 
 size_t hf_plan_chunk_bytes(const struct hf_plan *p)
 {
-    return (size_t)hf_plan_count(p, 1) * (2 * sizeof(uint64_t) + sizeof(int) + 3);
+    return (size_t)hf_plan_count(p, 1) * (2 * sizeof(struct hf_found) + sizeof(int) + 3);
 }
 
 void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep)
 {
     const size_t chunks = (size_t)hf_plan_count(p, 1);
-    p->found_near = memory;
-    p->found_far = p->found_near + chunks;
-    p->deferred = (int *)(p->found_far + chunks);
+    p->near = memory;
+    p->far = p->near + chunks;
+    p->deferred = (int *)(p->far + chunks);
     p->deferred_count = 0;
     p->chunk_made = (atomic_uchar *)(p->deferred + chunks);
     p->chunk_busy = p->chunk_made + chunks;
@@ -190,33 +190,6 @@ static struct hf_rect chunks_around(const struct hf_plan *p, struct hf_rect r, s
                             hf_min((r.y1 + reach.y - 1) / h + 1, p->rows[1])};
 }
 
-// Is any of the groups of lanes from x0 to x1 of a mask set?
-static int in_groups(uint64_t groups, int x0, int x1)
-{
-    const int first = x0 / HF_GROUP, last = (x1 - 1) / HF_GROUP;
-    if (last - first >= 63)
-        return groups != 0;
-    for (int g = first; g <= last; g++)
-        if (groups >> (g & 63) & 1)
-            return 1;
-    return 0;
-}
-
-// Is there CoC of a kind within reach of r?
-static int found_around(const struct hf_plan *p, const uint64_t *found, struct hf_rect r, struct hf_reach reach)
-{
-    const struct hf_rect c = chunks_around(p, r, reach);
-    const int x0 = hf_max(r.x0 - reach.x, 0), x1 = hf_min(r.x1 + reach.x, p->width);
-    for (int y = c.y0; y < c.y1; y++)
-        for (int x = c.x0; x < c.x1; x++) {
-            const int left = x * p->cell_width[1], right = left + p->cell_width[1];
-            const uint64_t groups = found[y * p->columns[1] + x];
-            if (groups && in_groups(groups, hf_max(x0, left), hf_min(x1, right)))
-                return 1;
-        }
-    return 0;
-}
-
 // The reach within which a tile's passes read what the first sweep made.
 static struct hf_reach read_reach(const struct hf_plan *p)
 {
@@ -246,24 +219,53 @@ static void list_deferred(struct hf_plan *p)
             p->deferred[p->deferred_count++] = i;
 }
 
-// What a tile needs, and in which part of it: looked at in blocks of a group's width and a chunk's height, as a tile is
-// much larger than what a thin thing in front of it blurs.
+// Widen the active part of a tile by the blocks that a rectangle in it touches, counted from its corner: of a group's
+// width, and of four rows, which are whole ones of any buffer.
+static void widen(struct hf_rect *active, struct hf_rect tile, int x0, int x1, int y0, int y1)
+{
+    x0 = (x0 - tile.x0) / HF_GROUP * HF_GROUP + tile.x0;
+    x1 = hf_min((x1 - tile.x0 + HF_GROUP - 1) / HF_GROUP * HF_GROUP + tile.x0, tile.x1);
+    y0 = (y0 - tile.y0) / 4 * 4 + tile.y0;
+    y1 = hf_min((y1 - tile.y0 + 3) / 4 * 4 + tile.y0, tile.y1);
+    *active = (struct hf_rect){hf_min(active->x0, x0), hf_min(active->y0, y0), hf_max(active->x1, x1),
+                               hf_max(active->y1, y1)};
+}
+
+// What a chunk's CoC of a kind, spread by reach, makes active of a tile. Returns whether that is anything.
+static int spread_chunk(const struct hf_found *found, struct hf_rect chunk, struct hf_reach reach, struct hf_rect tile,
+                        struct hf_rect *active)
+{
+    const int y0 = hf_max(found->y0 - reach.y, tile.y0), y1 = hf_min(found->y1 + reach.y, tile.y1);
+    const int shared = chunk.x1 - chunk.x0 > 64 * HF_GROUP;  // bits are
+    int any = 0;
+    if (!found->groups || y0 >= y1)
+        return 0;
+    for (int x = chunk.x0; x < chunk.x1; x = (x / HF_GROUP + 1) * HF_GROUP) {
+        const int end = hf_min((x / HF_GROUP + 1) * HF_GROUP, chunk.x1);
+        if (!shared && !(found->groups >> hf_group(x) & 1))
+            continue;
+        const int x0 = hf_max(x - reach.x, tile.x0), x1 = hf_min(end + reach.x, tile.x1);
+        if (x0 >= x1)
+            continue;
+        widen(active, tile, x0, x1, y0, y1);
+        any = 1;
+    }
+    return any;
+}
+
+// What a tile needs, and in which part of it: a tile is much larger than what a thin thing in front of it blurs.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
 {
     const struct hf_reach near = p->engine->spread(s, p, HF_NEAR), far = p->engine->spread(s, p, HF_FAR);
-    const struct hf_rect tile = hf_plan_cell(p, 2, i);
+    const struct hf_rect tile = hf_plan_cell(p, 2, i), c = chunks_around(p, tile, reach_max(near, far));
     struct hf_rect active = {tile.x1, tile.y1, tile.x0, tile.y0};
     unsigned needs = 0;
-    for (int y = tile.y0; y < tile.y1; y += p->cell_height[1])
-        for (int x = tile.x0; x < tile.x1; x += HF_GROUP) {
-            const struct hf_rect block = {x, y, hf_min(x + HF_GROUP, tile.x1), hf_min(y + p->cell_height[1], tile.y1)};
-            const unsigned found = (found_around(p, p->found_near, block, near) ? HF_NEAR : 0u) |
-                                   (found_around(p, p->found_far, block, far) ? HF_FAR : 0u);
-            needs |= found;
-            if (!found)
-                continue;
-            active = (struct hf_rect){hf_min(active.x0, x), hf_min(active.y0, y), hf_max(active.x1, block.x1),
-                                      hf_max(active.y1, block.y1)};
+    for (int y = c.y0; y < c.y1; y++)
+        for (int x = c.x0; x < c.x1; x++) {
+            const int at = y * p->columns[1] + x;
+            const struct hf_rect chunk = hf_plan_cell(p, 1, at);
+            needs |= spread_chunk(&p->near[at], chunk, near, tile, &active) ? HF_NEAR : 0u;
+            needs |= spread_chunk(&p->far[at], chunk, far, tile, &active) ? HF_FAR : 0u;
         }
     p->tile_needs[i] = (uint8_t)(s->no_skip ? HF_FIELDS : needs);
     p->tile_active[i] = s->no_skip ? tile : active;

@@ -16,7 +16,7 @@ struct hf_plan {
     int width, height;  // of the frame, half-resolution pixels
     int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
-    uint64_t *found_near, *found_far;  // groups of lanes in the chunk that have such CoC
+    struct hf_found *near, *far;  // in each chunk
     atomic_uchar *chunk_made;  // fields whose buffers the first sweep has made
     atomic_uchar *chunk_busy;  // somebody is making what it has not
     uint8_t *chunk_reads;  // fields that some tile reads there; until they are known, those of the last frame

@@ -85,14 +85,14 @@ static void first_sweep(void *arg, int i, int worker)
     const struct hf_rect r = hf_plan_cell(p, 1, i);
     int64_t clock = now_ns();
     hf_buffers_place(j->c, j->s, &w->frame, 1, r);
-    w->counts.near_groups = w->counts.far_groups = 0;
+    w->counts.near = w->counts.far = (struct hf_found){0};
     set_fields(&w->frame, HF_FIELDS);
     w->frame.looking = !j->s->no_skip && !j->c->dump && !p->chunk_reads[i];
     run_pass(j, w, 0, r, &clock);
     w->frame.looking = 0;
-    p->found_near[i] = w->counts.near_groups;
-    p->found_far[i] = w->counts.far_groups;
-    const unsigned found = (p->found_near[i] ? HF_NEAR : 0u) | (p->found_far[i] ? HF_FAR : 0u);
+    p->near[i] = w->counts.near;
+    p->far[i] = w->counts.far;
+    const unsigned found = (p->near[i].groups ? HF_NEAR : 0u) | (p->far[i].groups ? HF_FAR : 0u);
     // What the last frame read there will be read again, most likely; what is not is made later.
     const unsigned fields = (j->s->no_skip ? HF_FIELDS : found ? found | p->chunk_reads[i] : 0) & j->have;
     p->chunk_made[i] = (uint8_t)fields;

@@ -110,5 +110,6 @@ void hf_coc_c(const struct hf_frame *f, struct hf_rect r)
         float *const out[4] = {hf_at(b, 0, r.x0, y), hf_at(b, 1, r.x0, y), hf_at(b, 2, r.x0, y),
                                hf_at(b, 3, r.x0, y)};
         f->k->coc_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
+        hf_count_row(f->counts, y);
     }
 }

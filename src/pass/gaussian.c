@@ -118,8 +118,10 @@ void hf_gaussian_up_c(const struct hf_buf *b, int c, int quarter, int x, int y, 
 void hf_gaussian_depth_pass(const struct hf_frame *f, struct hf_rect r)
 {
     float *const out[4] = {hf_line(f, 0), hf_line(f, 1), hf_line(f, 2), hf_line(f, 3)};
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         f->k->blend_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
+        hf_count_row(f->counts, y);
+    }
 }
 
 // Scratch of the first sweep.
