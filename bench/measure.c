@@ -22,7 +22,7 @@ enum {
 static const double warm_up_s = 0.3, run_s = 3.0, burst_s = 0.003;
 
 struct frame {
-    double all_ms;
+    double all_ms, planning_ms;
     double pass_ms[HF_MAX_PASSES];
 };
 
@@ -59,7 +59,10 @@ static int render(const struct bench_subject *s, struct frame *frame, struct ben
     if (err)
         return bench_fail(error, "rendering failed: %s", hf_error_string(err));
     struct hf_stats stats;
+    struct hf_report report;
     hf_get_stats(s->context, &stats);
+    hf_get_report(s->context, &report);
+    frame->planning_ms = report.plan_ms;
     frame->all_ms = round_ms((end - start) * 1e3);
     for (int p = 0; p < HF_MAX_PASSES; p++)
         frame->pass_ms[p] = round_ms(stats.pass_ms[p]);
@@ -131,6 +134,12 @@ static int warm_up(const struct bench_subject *s, double *frame_s, struct bench_
     return 0;
 }
 
+static int by_planning(const void *a, const void *b)
+{
+    const struct frame *x = a, *y = b;
+    return (x->planning_ms > y->planning_ms) - (x->planning_ms < y->planning_ms);
+}
+
 // An odd number, so that there is a frame in the middle.
 static int choose_frames(double frame_s)
 {
@@ -187,6 +196,8 @@ static void summarise(struct frame *frames, int n, struct bench_result *r)
         r->overhead_ms -= row->median_ms;
     }
     r->overhead_ms = round_ms(r->overhead_ms);
+    qsort(frames, (size_t)n, sizeof *frames, by_planning);
+    r->planning_ms = round_ms(frames[(n - 1) / 2].planning_ms);
     for (int p = 0; p < HF_MAX_PASSES; p++)
         r->pass[p].in = fused_into(r, p);
 }

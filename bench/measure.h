@@ -29,6 +29,7 @@ struct bench_result {
     int frames;
     struct bench_row pass[HF_MAX_PASSES];  // of stats.engine
     double overhead_ms;     // all.median_ms - sum of pass[].median_ms: waiting, dispatch, what belongs to no pass
+    double planning_ms;     // part of the overhead: hf_report.plan_ms, median
     struct bench_row all;   // wall time of hf_render, seen from outside
     double memcpy_ms;       // copying colour in to colour out and depth to scratch, same threads: median
     double fma_gflops;      // multiply-adds in registers, same threads, widest instruction set of the machine: best

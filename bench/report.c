@@ -94,7 +94,7 @@ void bench_report_table(FILE *out, const struct bench_run *run)
             fprintf(out, " %9.3f %9.3f\n", row->min_ms, row->max_ms);
     }
     table_row(out, "overhead", r->overhead_ms, all, 0);
-    fputc('\n', out);
+    fprintf(out, "   of which planning %.3f\n", r->planning_ms);
     table_row(out, "All", all, all, gather ? gtx660_all_ms : 0);
     fprintf(out, " %9.3f %9.3f\n\n", r->all.min_ms, r->all.max_ms);
     table_machine(out, run);
@@ -194,7 +194,7 @@ void bench_report_json(FILE *out, const struct bench_run *run)
             fprintf(out, ", \"in\": \"%s\"", hf_pass_name(r->stats.engine, row->in));
         fputc('}', out);
     }
-    fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n", r->overhead_ms);
+    fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n  \"planning_ms\": %.6f,\n", r->overhead_ms, r->planning_ms);
     fprintf(out, "  \"all\": {\"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f",
             r->all.median_ms, r->all.min_ms, r->all.max_ms);
     if (has_gtx660(r))
