@@ -11,17 +11,18 @@ struct phase {
 
 // Joint bilateral upsampling: bilinear weights 9 3 3 1 (sixteenths), each over 1 + 1000 |CoC difference|; what has
 // no far CoC has no far colour. Weights are kept in proportion by products instead of quotients, so that one division
-// serves all four; the factor 9 3 3 1 is 3 1 times that of the last distance. Returns 0 if no neighbour is far.
+// serves all four; the factors 9 3 3 1 are those of the other three distances: 81 27 27 9. Returns 0 if no neighbour is
+// far.
 static int far_weights(const struct hf_buf *coc, struct phase p, float f, float w[4])
 {
     const float g[4] = {*hf_at(coc, 1, p.x, p.y), *hf_at(coc, 1, p.nx, p.y), *hf_at(coc, 1, p.x, p.ny),
                         *hf_at(coc, 1, p.nx, p.ny)};
     float d[4];
-    for (int i = 0; i < 3; i++)
-        d[i] = 1 + 1000 * __builtin_fabsf(f - g[i]);
-    d[3] = 3 + 3000 * __builtin_fabsf(f - g[3]);
+    static const float factor[4] = {1, 3, 3, 9};
+    for (int i = 0; i < 4; i++)
+        d[i] = factor[i] + 1000 * factor[i] * __builtin_fabsf(f - g[i]);
     const float p01 = d[0] * d[1], p23 = d[2] * d[3];
-    w[0] = g[0] > 0 ? (3 * d[1]) * p23 : 0;
+    w[0] = g[0] > 0 ? d[1] * p23 : 0;
     w[1] = g[1] > 0 ? d[0] * p23 : 0;
     w[2] = g[2] > 0 ? d[3] * p01 : 0;
     w[3] = g[3] > 0 ? d[2] * p01 : 0;
@@ -66,22 +67,22 @@ static void blend_far(const struct hf_frame *f, struct phase p, float coc, float
     } else if (!far_weights(&f->buf[HF_BUF_COC4], p, coc, w)) {
         return;
     }
-    for (int c = 0; c < f->s->channels; c++) {
-        float sum = w[0] * *hf_at(far, c, p.x, p.y);
-        sum += w[1] * *hf_at(far, c, p.nx, p.y);
-        sum += w[2] * *hf_at(far, c, p.x, p.ny);
-        sum += w[3] * *hf_at(far, c, p.nx, p.ny);
-        colour[c][i] = hf_lerp(colour[c][i], sum, t);
+    for (int c = 0; c < f->s->channels && t != 0; c++) {
+        float rest = colour[c][i] - w[0] * *hf_at(far, c, p.x, p.y);  // of the colour, less the far field
+        rest -= w[1] * *hf_at(far, c, p.nx, p.y);
+        rest -= w[2] * *hf_at(far, c, p.x, p.ny);
+        rest -= w[3] * *hf_at(far, c, p.nx, p.ny);
+        colour[c][i] -= t * rest;
     }
 }
 
-// Bilinear at a quarter of the way to the neighbour; constants stay exact.
+// Sixteen times the bilinear value at a quarter of the way to the neighbour, in x first. Thrice a number and itself are
+// four times it, rounded or not: constants stay exact.
 static float upsample(const struct hf_buf *b, int c, struct phase p)
 {
-    const float own = *hf_at(b, c, p.x, p.y), beside = *hf_at(b, c, p.nx, p.y);
-    const float v = own + 0.25f * (*hf_at(b, c, p.x, p.ny) - own);
-    const float w = beside + 0.25f * (*hf_at(b, c, p.nx, p.ny) - beside);
-    return v + 0.25f * (w - v);
+    const float v = 3 * *hf_at(b, c, p.x, p.y) + *hf_at(b, c, p.nx, p.y);
+    const float w = 3 * *hf_at(b, c, p.x, p.ny) + *hf_at(b, c, p.nx, p.ny);
+    return 3 * v + w;
 }
 
 // Uniform cubic B-spline there.
@@ -104,9 +105,10 @@ static float upsample_cubic(const struct hf_buf *b, int c, struct phase p)
 static void blend_near(const struct hf_frame *f, struct phase p, float *const colour[4], int i)
 {
     float (*up)(const struct hf_buf *, int, struct phase) = f->s->bicubic ? upsample_cubic : upsample;
-    const float t = f->s->blend * up(&f->buf[HF_BUF_BLUR], 0, p);
+    const float scale = f->s->bicubic ? 1 : 1 / 16.0f;
+    const float t = f->s->blend * scale * up(&f->buf[HF_BUF_BLUR], 0, p);
     for (int c = 0; c < f->s->channels; c++)
-        colour[c][i] = hf_lerp(colour[c][i], up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);
+        colour[c][i] = hf_lerp(colour[c][i], scale * up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);
 }
 
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)

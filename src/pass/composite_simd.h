@@ -1,139 +1,162 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef PF_ROWS
-#define PF_ROWS 2
-#define PF_IN 1
-#define PF_OUT 1
-#endif
 // Composite on vectors. Even and odd pixels are lanes of their own, so the four phases of the upsampling are four
 // pieces of plain arithmetic over the same half-resolution loads; both phases in x are made together and share them.
+// So do two rows of the picture that lie between the same two half-resolution rows, where they can be made together.
 
-// The half-resolution row of a row of the picture and its neighbour, at lane 0. Channels lie a fixed distance apart, so
-// that a few registers address them all; vector stores may alias anything, and pointers kept in memory would be read
-// again after each.
-struct field_row {
-    const float *own, *next;
+// Two half-resolution rows, at lane 0: the one that the first row of the picture belongs to, and its neighbour, to
+// which the second row belongs if there is one. Channels lie a fixed distance apart, so that a few registers address
+// them all; vector stores may alias anything, and pointers kept in memory would be read again after each.
+struct field_rows {
+    const float *row[2];
     ptrdiff_t plane;
 };
 
-// What a row of the composite is made from.
-struct composite_row {
-    struct field_row far, far_coc;
-    struct field_row near, near_coc;  // in lines: interpolated in y, and without neighbours
+// What rows of the composite are made from.
+struct composite_rows {
+    struct field_rows far, far_coc;
+    struct field_rows near, near_coc;  // for the cubic in lines: interpolated in y, and without neighbours
     float blend;
     int down;  // the neighbour row is the one below
 };
 
-// Colours and far CoC of 2 VF_N pixels: even, odd.
+// Colours and far CoC of 2 VF_N pixels of a row or two: even, odd.
 struct composite_block {
-    vf colour[2][4];
-    vf coc[2];
+    vf colour[2][2][4];
+    vf coc[2][2];
 };
 
-// Far CoC of the neighbours of even and odd pixels: own, beside, next, and next beside.
-HF_INLINE void load_neighbours(const struct field_row *f, int c, int x, vf g[2][4])
+// A neighbourhood in a plane: both rows, columns before, at and after. With registers enough, each is loaded once.
+HF_INLINE void load_around(const struct field_rows *f, int c, int x, vf v[2][3])
 {
-    const float *own = f->own + c * f->plane + x, *next = f->next + c * f->plane + x;
-    g[0][0] = g[1][0] = vf_load(own);
-    g[0][1] = vf_load(own - 1);
-    g[1][1] = vf_load(own + 1);
-    g[0][2] = g[1][2] = vf_load(next);
-    g[0][3] = vf_load(next - 1);
-    g[1][3] = vf_load(next + 1);
-}
-
-// d: 1 + 1000 |CoC difference|, thrice that for the last.
-HF_INLINE void far_distances(vf coc, const vf g[4], vf d[4])
-{
-    for (int i = 0; i < 4; i++)
-        d[i] = vf_fma(vf_set1(i == 3 ? 3000 : 1000), vf_abs(vf_sub(coc, g[i])), vf_set1(i == 3 ? 3 : 1));
-}
-
-HF_INLINE void normalise(vf w[4], vf sum)
-{
-    const vf i = vf_div(vf_set1(1), sum);
-    for (int t = 0; t < 4; t++)
-        w[t] = vf_mul(w[t], i);
-}
-
-// Weights in proportion to 9 3 3 1 / d; returns t, or 0 where no neighbour is far: the pixel keeps its colour.
-HF_INLINE vf far_weights_block(vf coc, const vf g[4], vf t, vf w[4])
-{
-    vf d[4];
-    far_distances(coc, g, d);
-    const vf p01 = vf_mul(d[0], d[1]), p23 = vf_mul(d[2], d[3]);
-    w[0] = vf_keep(vf_gt(g[0], vf_zero()), vf_mul(vf_mul(vf_set1(3), d[1]), p23));
-    w[1] = vf_keep(vf_gt(g[1], vf_zero()), vf_mul(d[0], p23));
-    w[2] = vf_keep(vf_gt(g[2], vf_zero()), vf_mul(d[3], p01));
-    w[3] = vf_keep(vf_gt(g[3], vf_zero()), vf_mul(d[2], p01));
-    const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
-    t = vf_keep(vf_gt(sum, vf_zero()), t);
-    normalise(w, sum);
-    return t;
-}
-
-// Weights of even and odd pixels' neighbours, and how much the sums count.
-HF_INLINE void far_weights(const struct field_row *coc_row, int x, vf blend, const vf coc[2], vf w[2][4], vf t[2])
-{
-    vf g[2][4];
-    load_neighbours(coc_row, 0, x, g);
-    vi differs = vi_xor(vf_as_vi(coc[0]), vf_as_vi(coc[1]));
-    for (int i = 0; i < 4; i++)
-        for (int o = 0; o < 2; o++)
-            differs = vi_or_xor(differs, vf_as_vi(coc[0]), vf_as_vi(g[o][i]));
-    for (int o = 0; o < 2; o++)
-        t[o] = vf_mul(blend, coc[o]);
-    // Where all CoCs are the same, as inside a far field that is fully blurred, bilinear weights are what would come
-    // out.
-    if (vi_any(differs)) {
-        for (int o = 0; o < 2; o++)
-            t[o] = far_weights_block(coc[o], g[o], t[o], w[o]);
-    } else {
-        for (int o = 0; o < 2; o++) {
-            w[o][0] = vf_set1(9 / 16.0f);
-            w[o][1] = w[o][2] = vf_set1(3 / 16.0f);
-            w[o][3] = vf_set1(1 / 16.0f);
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 3; k++) {
+            v[i][k] = vf_load(f->row[i] + c * f->plane + x + k - 1);
+            if (VF_N == 16)
+                v[i][k] = vf_once(v[i][k]);
         }
-    }
 }
 
-HF_INLINE void blend_far_channel(const struct field_row *colour, int c, int x, vf w[2][4], const vf t[2],
-                                 struct composite_block *b)
+// Of the pixel's four neighbours in there: own, beside, next, and next beside.
+HF_INLINE vf around(vf v[2][3], int row, int odd, int i)
 {
-    vf v[2][4];
-    load_neighbours(colour, c, x, v);
-    for (int o = 0; o < 2; o++) {
-        vf sum = vf_mul(w[o][0], v[o][0]);
-        for (int i = 1; i < 4; i++)
-            sum = vf_fma(w[o][i], v[o][i], sum);
-        b->colour[o][c] = vf_lerp(b->colour[o][c], sum, t[o]);
+    return v[i < 2 ? row : !row][i % 2 == 0 ? 1 : odd ? 2 : 0];
+}
+
+HF_INLINE vf far_distance(vf coc, vf g, float factor)
+{
+    return vf_fma(vf_set1(1000 * factor), vf_abs(vf_sub(coc, g)), vf_set1(factor));
+}
+
+// Weights in proportion to 9 3 3 1 / d, d being 1 + 1000 |CoC difference|; returns t, or 0 where no neighbour is far:
+// the pixel keeps its colour.
+HF_INLINE vf far_weights_block(vf coc, vf g[2][3], const vm far[2][3], int row, int odd, vf t, vf w[4])
+{
+    static const float factor[4] = {1, 3, 3, 9};
+    vf d[4];
+    for (int i = 0; i < 4; i++)
+        d[i] = far_distance(coc, around(g, row, odd, i), factor[i]);
+    const vf p01 = vf_mul(d[0], d[1]), p23 = vf_mul(d[2], d[3]);
+    w[0] = vf_mul(d[1], p23);
+    w[1] = vf_mul(d[0], p23);
+    w[2] = vf_mul(d[3], p01);
+    w[3] = vf_mul(d[2], p01);
+    for (int i = 0; i < 4; i++)
+        w[i] = vf_keep(far[i < 2 ? row : !row][i % 2 == 0 ? 1 : odd ? 2 : 0], w[i]);
+    const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
+    const vm any = vf_gt(sum, vf_zero());
+    const vf inverse = vf_keep(any, vf_div(vf_set1(1), sum));
+    for (int i = 0; i < 4; i++)
+        w[i] = vf_mul(w[i], inverse);
+    return vf_keep(any, t);
+}
+
+// Are the CoCs of pixels and neighbours not all the same?
+HF_INLINE int far_differs(const struct field_rows *coc_rows, const int rows, int x, vf coc[2][2])
+{
+    vi differs = vi_xor(vf_as_vi(coc[0][0]), vf_as_vi(coc[0][1]));
+    for (int i = 2; i < 2 * rows; i++)
+        differs = vi_or_xor(differs, vf_as_vi(coc[0][0]), vf_as_vi(coc[i / 2][i % 2]));
+    if (vi_any(differs))
+        return 1;
+    vf g[2][3];
+    load_around(coc_rows, 0, x, g);
+    for (int i = 0; i < 6; i++)
+        differs = vi_or_xor(differs, vf_as_vi(coc[0][0]), vf_as_vi(g[i / 3][i % 3]));
+    return vi_any(differs);
+}
+
+// Weights of the neighbours of all pixels, and how much the sums count. Where all CoCs are the same, as inside a far
+// field that is fully blurred, bilinear weights are what would come out.
+HF_INLINE void far_weights(const struct field_rows *coc_rows, const int rows, const int differs, int x, vf blend,
+                           vf coc[2][2], vf w[2][2][4], vf t[2][2])
+{
+    vf g[2][3];
+    vm far[2][3];
+    const float inverse = 1 / 144.0f;
+    for (int i = 0; i < 2 * rows; i++) {
+        vf *of = w[i / 2][i % 2];
+        t[i / 2][i % 2] = vf_mul(blend, coc[i / 2][i % 2]);
+        of[0] = vf_set1(81 * inverse);
+        of[1] = of[2] = vf_set1(27 * inverse);
+        of[3] = vf_set1(9 * inverse);
+    }
+    if (!differs)
+        return;
+    load_around(coc_rows, 0, x, g);
+    for (int i = 0; i < 6; i++)
+        far[i / 3][i % 3] = vf_gt(g[i / 3][i % 3], vf_zero());
+#pragma GCC unroll 4
+    for (int i = 0; i < 2 * rows; i++)
+        t[i / 2][i % 2] = far_weights_block(coc[i / 2][i % 2], g, far, i / 2, i % 2, t[i / 2][i % 2], w[i / 2][i % 2]);
+}
+
+// v - t rest, rest being v less what it is blended with; v's own bits for t = 0, which it keeps anyway if it is plain:
+// finite and not -0.
+HF_INLINE vf blend_rest(vf v, vf rest, vf t, const int plain)
+{
+    const vf blended = vf_fnma(t, rest, v);
+    return plain ? blended : vf_select(vf_ne(t, vf_zero()), blended, v);
+}
+
+HF_INLINE void blend_far_channel(const struct field_rows *field, const int rows, int c, int x, vf w[2][2][4],
+                                 vf t[2][2], const int plain, struct composite_block *b)
+{
+    vf v[2][3];
+    load_around(field, c, x, v);
+    for (int i = 0; i < 2 * rows; i++) {
+        const int row = i / 2, odd = i % 2;
+        vf *to = &b->colour[row][odd][c], rest = *to;
+        for (int k = 0; k < 4; k++)
+            rest = vf_fnma(w[row][odd][k], around(v, row, odd, k), rest);
+        *to = blend_rest(*to, rest, t[row][odd], plain);
     }
 }
 
 // The published demo's: CoCs in reading order of the 2x2 block, which for even pixels is the one before.
-HF_INLINE void blend_far_faithful(const struct composite_row *r, const int channels, int x, vf blend,
+HF_INLINE void blend_far_faithful(const struct composite_rows *r, const int channels, int x, vf blend,
                                   struct composite_block *b)
 {
-    const float *coc[2] = {r->down ? r->far_coc.own : r->far_coc.next, r->down ? r->far_coc.next : r->far_coc.own};
-    const float *below = r->down ? r->far.next : r->far.own;
+    const float *coc[2] = {r->far_coc.row[!r->down], r->far_coc.row[r->down]};
+    const float *own = r->far.row[0], *below = r->far.row[r->down];
     for (int o = 0; o < 2; o++) {
         vf d[4], w[4];
-        for (int i = 0; i < 4; i++) {
-            const vf g = vf_load(coc[i >> 1] + x + (i & 1) - 1 + o);
-            d[i] = vf_fma(vf_set1(1000), vf_abs(vf_sub(b->coc[o], g)), vf_set1(1));
-        }
+        for (int i = 0; i < 4; i++)
+            d[i] = far_distance(b->coc[0][o], vf_load(coc[i >> 1] + x + (i & 1) - 1 + o), 1);
         const vf p01 = vf_mul(d[0], d[1]), p23 = vf_mul(d[2], d[3]);
         w[0] = vf_mul(d[1], p23);
         w[1] = vf_mul(d[0], p23);
         w[2] = vf_mul(d[3], p01);
         w[3] = vf_mul(d[2], p01);
-        normalise(w, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
+        const vf inverse = vf_div(vf_set1(1), vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
+        for (int i = 0; i < 4; i++)
+            w[i] = vf_mul(w[i], inverse);
         for (int c = 0; c < channels; c++) {
-            const float *p = r->far.own + c * r->far.plane + x, *q = below + c * r->far.plane + x;
-            vf sum = vf_mul(w[0], vf_load(p));
-            sum = vf_fma(w[1], vf_load(p + o), sum);
-            sum = vf_fma(w[2], vf_load(q), sum);
-            sum = vf_fma(w[3], vf_load(q + o), sum);
-            b->colour[o][c] = vf_lerp(b->colour[o][c], sum, vf_mul(blend, b->coc[o]));
+            const float *p = own + c * r->far.plane + x, *q = below + c * r->far.plane + x;
+            vf *to = &b->colour[0][o][c], rest = vf_fnma(w[0], vf_load(p), *to);
+            rest = vf_fnma(w[1], vf_load(p + o), rest);
+            rest = vf_fnma(w[2], vf_load(q), rest);
+            rest = vf_fnma(w[3], vf_load(q + o), rest);
+            *to = blend_rest(*to, rest, vf_mul(blend, b->coc[0][o]), 0);
         }
     }
 }
@@ -146,81 +169,94 @@ HF_INLINE vf cubic_vf(vf own, vf neighbour, vf other, vf behind)
     return vf_add(own, v);
 }
 
-// A quarter of the way.
-HF_INLINE vf lean(vf from, vf to)
-{
-    return vf_fma(vf_set1(0.25f), vf_sub(to, from), from);
-}
-
-// Sixteen lanes interpolate the near field in y as they need it; with fewer, a line of it made first is faster. The
-// cubic always has lines.
-enum { NEAR_LINES = VF_N < 16 };
-
-// A row of the near field interpolated in y, from 16 columns before x0, so that loads are aligned, to two behind its
-// end.
-static void near_line(const struct hf_setup *s, const struct hf_buf *b, int c, int y, struct hf_rect r, float *out)
+// A row of the near field interpolated in y by the cubic, from 16 columns before x0, so that loads are aligned, to two
+// behind its end.
+static void near_line(const struct hf_buf *b, int c, int y, struct hf_rect r, float *out)
 {
     const int hy = y / 2, step = y & 1 ? 1 : -1, x0 = r.x0 - 16, n = r.x1 - x0 + 2;
     const float *own = hf_at(b, c, x0, hy), *next = hf_at(b, c, x0, hy + step);
-    if (!s->bicubic) {
-        for (int x = 16 - VF_N; x < n; x += VF_N)
-            vf_store(out + x, lean(vf_load(own + x), vf_load(next + x)));
-        return;
-    }
     const float *other = hf_at(b, c, x0, hy - step), *behind = hf_at(b, c, x0, hy + 2 * step);
     for (int x = 16 - VF_N; x < n; x += VF_N)
         vf_store(out + x, cubic_vf(vf_load(own + x), vf_load(next + x), vf_load(other + x), vf_load(behind + x)));
 }
 
-// The same, a vector of it: either made here or in a line.
-HF_INLINE vf near_at(const struct field_row *f, const int line, ptrdiff_t x)
+// Sixteen times channel c of the near field at even and odd pixels of a row or two, in x first, which both rows share.
+// Thrice a number and itself are four times it, rounded or not: constants stay exact. The cubic: once.
+HF_INLINE void near_up(const struct field_rows *f, const int rows, const int bicubic, int c, int x, vf up[2][2])
 {
-    return line ? vf_load(f->own + x) : lean(vf_load(f->own + x), vf_load(f->next + x));
+    if (bicubic) {
+        const float *p = f->row[0] + c * f->plane + x;
+        const vf v = vf_load(p), before = vf_load(p - 1), after = vf_load(p + 1);
+        up[0][0] = cubic_vf(v, before, after, vf_load(p - 2));
+        up[0][1] = cubic_vf(v, after, before, vf_load(p + 2));
+        return;
+    }
+    const vf three = vf_set1(3);
+    vf v[2][3];
+    load_around(f, c, x, v);
+    for (int odd = 0; odd < 2; odd++) {
+        const vf a = vf_fma(three, v[0][1], v[0][2 * odd]), b = vf_fma(three, v[1][1], v[1][2 * odd]);
+        up[0][odd] = vf_fma(three, a, b);
+        if (rows == 2)
+            up[1][odd] = vf_fma(three, b, a);
+    }
 }
 
-// Channel c of the near field at even and odd pixels.
-HF_INLINE void near_up(const struct field_row *f, const int bicubic, int c, int x, vf up[2])
+// What there is to blend; of the near field there is the CoC too.
+enum { BLEND_NEAR = 1, BLEND_FAR = 2, BLEND_FAR_DIFFERS = 4 };
+
+HF_INLINE int blend_kind(const struct composite_rows *r, const int rows, int with_far, int with_near, const int bicubic,
+                         int x, vf coc[2][2], vf near_coc[2][2])
 {
-    const ptrdiff_t at = c * f->plane + x;
-    const int line = NEAR_LINES || bicubic;
-    const vf before = near_at(f, line, at - 1), v = near_at(f, line, at), after = near_at(f, line, at + 1);
-    up[0] = bicubic ? cubic_vf(v, before, after, near_at(f, 1, at - 2)) : lean(v, before);
-    up[1] = bicubic ? cubic_vf(v, after, before, near_at(f, 1, at + 2)) : lean(v, after);
+    int kind = 0;
+    vi far = vi_set1(0), near = vi_set1(0);
+    if (with_far) {
+        for (int i = 0; i < 2 * rows; i++)
+            far = vi_or(far, vf_as_vi(coc[i / 2][i % 2]));
+        if (vi_any(far))
+            kind = far_differs(&r->far_coc, rows, x, coc) ? BLEND_FAR | BLEND_FAR_DIFFERS : BLEND_FAR;
+    }
+    if (with_near) {
+        near_up(&r->near_coc, rows, bicubic, 0, x, near_coc);
+        for (int i = 0; i < 2 * rows; i++) {
+            near_coc[i / 2][i % 2] = vf_mul(vf_set1(r->blend * (bicubic ? 1 : 1 / 16.0f)), near_coc[i / 2][i % 2]);
+            near = vi_or(near, vf_as_vi(near_coc[i / 2][i % 2]));
+        }
+        kind |= vi_any(near) ? BLEND_NEAR : 0;
+    }
+    return kind;
 }
 
-// Returns 0 if there is nothing to blend: vectors without CoC are left alone. Colours of the near field are made before
-// the far field is blended: that is what there is to do while its weights wait for their division.
-HF_INLINE int composite_pixels(const struct composite_row *r, const int channels, const int with_far,
-                               const int with_near, const int faithful, const int bicubic, int x,
-                               struct composite_block *b)
+// Blends a block, of which words are the R11G11B10F words if it is packed: then colours are made here, as late as they
+// are needed, and *most is the bits of the largest sample, see r11_unpack.
+HF_INLINE void blend_block(const struct composite_rows *r, const int rows, const int channels, const int kind,
+                           const int faithful, const int bicubic, const int packed, int x, vf near_coc[2][2],
+                           vi words[2][2], vi *most, struct composite_block *b)
 {
-    const vf blend = vf_set1(r->blend);
-    vf near[2] = {vf_zero(), vf_zero()};
-    if (with_near)
-        near_up(&r->near_coc, bicubic, 0, x, near);
-    for (int o = 0; o < 2; o++)
-        near[o] = vf_mul(blend, near[o]);
-    const int is_far = with_far && vm_any(vm_or(vf_gt(b->coc[0], vf_zero()), vf_gt(b->coc[1], vf_zero())));
-    const int is_near = with_near && vm_any(vm_or(vf_ne(near[0], vf_zero()), vf_ne(near[1], vf_zero())));
-    vf w[2][4] = {{vf_zero()}}, t[2] = {vf_zero()}, up[4][2] = {{vf_zero()}};
-    if (is_far && !faithful)
-        far_weights(&r->far_coc, x, blend, b->coc, w, t);
-    if (is_near)
-        for (int c = 0; c < channels; c++)
-            near_up(&r->near, bicubic, c, x, up[c]);
-    if (is_far && faithful)
-        blend_far_faithful(r, channels, x, blend, b);
-    else if (is_far)
-        for (int c = 0; c < channels; c++)
-            blend_far_channel(&r->far, c, x, w, t, b);
-    if (is_near)
-        for (int c = 0; c < channels; c++)
-            for (int o = 0; o < 2; o++)
-                b->colour[o][c] = vf_lerp(b->colour[o][c], up[c][o], near[o]);
-    return is_far || is_near;
+    const int far = kind & BLEND_FAR, near = kind & BLEND_NEAR;
+    vf w[2][2][4] = {{{vf_zero()}}}, t[2][2] = {{vf_zero()}};
+    if (far && !faithful)
+        far_weights(&r->far_coc, rows, kind & BLEND_FAR_DIFFERS, x, vf_set1(r->blend), b->coc, w, t);
+    if (far && faithful)
+        blend_far_faithful(r, channels, x, vf_set1(r->blend), b);
+#pragma GCC unroll 4
+    for (int c = 0; c < channels; c++) {
+        vf up[2][2] = {{vf_zero()}};
+        if (near)
+            near_up(&r->near, rows, bicubic, c, x, up);
+        for (int i = 0; i < 2 * rows && packed; i++)
+            b->colour[i / 2][i % 2][c] = r11_channel(words[i / 2][i % 2], c, most);
+        if (far && !faithful)
+            blend_far_channel(&r->far, rows, c, x, w, t, packed, b);
+        for (int i = 0; i < 2 * rows && near; i++) {
+            vf *to = &b->colour[i / 2][i % 2][c];
+            const vf rest = vf_fnma(vf_set1(bicubic ? 1 : 1 / 16.0f), up[i / 2][i % 2], *to);
+            *to = blend_rest(*to, rest, near_coc[i / 2][i % 2], packed);
+        }
+    }
 }
 
-// ---- through lines: everything there is ----
+// ---- through lines: everything there is, row by row ----
 
 // Lanes of a row that have been read: the picture, even and odd, channel by channel, `line` floats apart; overwritten.
 // Far CoC: even, then odd.
@@ -231,30 +267,34 @@ struct composite_line {
     ptrdiff_t line;
 };
 
-HF_INLINE void composite_lines(const struct composite_row *row, const struct composite_line *lines, const int channels,
-                               const int far, const int near, const int faithful, const int bicubic)
+HF_INLINE void composite_lines(const struct composite_rows *rows, const struct composite_line *lines,
+                               const int channels, const int far, const int near, const int faithful,
+                               const int bicubic)
 {
-    const struct composite_row r = *row;  // see field_row
+    const struct composite_rows r = *rows;  // see field_rows
     const struct composite_line l = *lines;
     for (int x = 0; x < l.n; x += VF_N) {
         struct composite_block b;
-        for (int c = 0; c < channels; c++) {
-            b.colour[0][c] = vf_load(l.even + c * l.line + x);
-            b.colour[1][c] = vf_load(l.odd + c * l.line + x);
-        }
+        vf near_coc[2][2] = {{vf_zero()}};
         for (int o = 0; o < 2; o++)
-            b.coc[o] = vf_load(l.coc + o * l.line + x);
-        if (!composite_pixels(&r, channels, far, near, faithful, bicubic, l.first + x, &b))
+            b.coc[0][o] = vf_load(l.coc + o * l.line + x);
+        const int kind = blend_kind(&r, 1, far, near, bicubic, l.first + x, b.coc, near_coc);
+        if (!kind)
             continue;
         for (int c = 0; c < channels; c++) {
-            vf_store(l.even + c * l.line + x, b.colour[0][c]);
-            vf_store(l.odd + c * l.line + x, b.colour[1][c]);
+            b.colour[0][0][c] = vf_load(l.even + c * l.line + x);
+            b.colour[0][1][c] = vf_load(l.odd + c * l.line + x);
+        }
+        blend_block(&r, 1, channels, kind, faithful, bicubic, 0, l.first + x, near_coc, NULL, NULL, &b);
+        for (int c = 0; c < channels; c++) {
+            vf_store(l.even + c * l.line + x, b.colour[0][0][c]);
+            vf_store(l.odd + c * l.line + x, b.colour[0][1][c]);
         }
     }
 }
 
 // Options become constants, so that no pixel asks for them.
-HF_INLINE void composite_options(const struct composite_row *r, const struct composite_line *l,
+HF_INLINE void composite_options(const struct composite_rows *r, const struct composite_line *l,
                                  const struct hf_setup *s, int far, int near, const int channels)
 {
     if (s->faithful || s->bicubic)
@@ -268,7 +308,7 @@ HF_INLINE void composite_options(const struct composite_row *r, const struct com
 }
 
 // Row y of rectangle r, from its lane `first` on.
-static void composite_row_lines(const struct hf_frame *f, const struct composite_row *row, int y, struct hf_rect r,
+static void composite_row_lines(const struct hf_frame *f, const struct composite_rows *rows, int y, struct hf_rect r,
                                 int first)
 {
     const struct hf_setup *s = f->s;
@@ -284,9 +324,9 @@ static void composite_row_lines(const struct hf_frame *f, const struct composite
         f->k->coc_row(f, x0, y, n, coc, NULL);
     const struct composite_line l = {first, n, lane[0][0], lane[1][0], coc[2], (ptrdiff_t)f->line_floats};
     if (s->channels == 3)
-        composite_options(row, &l, s, f->far, f->near, 3);
+        composite_options(rows, &l, s, f->far, f->near, 3);
     else
-        composite_options(row, &l, s, f->far, f->near, 4);
+        composite_options(rows, &l, s, f->far, f->near, 4);
     hf_store_rgb(f, lane[0], n);
     hf_store_rgb(f, lane[1], n);
     if (s->channels == 3)
@@ -295,13 +335,15 @@ static void composite_row_lines(const struct hf_frame *f, const struct composite
                                                       (const float *const *)lane[1]);
 }
 
-// ---- in registers: R11G11B10F to R11G11B10F ----
+// ---- in registers: R11G11B10F to R11G11B10F, two rows at once ----
 
 // Rows of pixels from lane 0 on.
-struct packed_row {
-    const uint8_t *from, *depth;
-    uint8_t *to;
-    ptrdiff_t from_stride, depth_stride, to_stride;
+struct packed_rows {
+    const uint8_t *from[2], *depth[2];
+    uint8_t *to[2];
+    const float *coc[2];  // far CoC if it has been made: even, then odd
+    ptrdiff_t from_stride, depth_stride, to_stride, line;
+    int far, near;  // the fields there are
 };
 
 // 2 VF_N pixels of the row after next: a tile's rows are too short for hardware prefetchers to catch on.
@@ -322,115 +364,186 @@ HF_INLINE vm far_coc(const struct hf_setup *s, const uint8_t *depth, vf coc[2])
             coc[o] = coc_shape(coc[o]);
         coc[o] = coc_round(s->storage, coc[o]);
     }
-    return vm_or(vf_ne(d[0], d[0]), vf_ne(d[1], d[1]));
+    return vf_unordered(d[0], d[1]);
 }
 
-// n lanes: a multiple of VF_N, all inside the picture. made: far CoC is in coc, even, then odd; else it is made from
-// distances, a vector ahead, as the blending of the one at hand begins with it and is one long chain. Returns how many
-// lanes were done: all, or those before a sample that is not finite.
-HF_INLINE int composite_packed(const struct composite_row *row, const struct packed_row *packed,
-                               const struct hf_setup *s, const int far, const int near, const int made,
-                               const float *coc, ptrdiff_t line, int n, vi *clamped)
+// Lanes from x on that are all of one kind. Returns the first that is not, or n: all inside the picture, a multiple of
+// VF_N. *next: its kind, or -1 where a sample is not finite. One loop for each kind: in one for all the compiler has
+// more constants and more ways to meet than registers, and what is live goes through memory.
+HF_INLINE int composite_run(const struct composite_rows *rows, const struct packed_rows *packed,
+                            const struct hf_setup *s, const int kind, int x, int n, int *next, vi *clamped)
 {
-    const struct composite_row r = *row;  // see field_row
-    const struct packed_row p = *packed;
-    vf next[2];
-    vm next_bad = vf_gt(vf_zero(), vf_zero());
-    if (far && !made && n > 0)
-        next_bad = far_coc(s, p.depth, next);
-    for (int x = 0; x < n; x += VF_N) {
+    const struct composite_rows r = *rows;  // see field_rows
+    const struct packed_rows p = *packed;
+    const int with_far = kind & BLEND_FAR || p.far, with_near = kind & BLEND_NEAR || p.near;
+    for (; x < n; x += VF_N) {
         const size_t at = (size_t)x * 8;
         struct composite_block b;
-        FETCH_AHEAD(p.from + at, p.from_stride, 0);
-        FETCH_AHEAD(p.to + at, p.to_stride, 1);
-        for (int o = 0; o < 2 && far; o++)
-            b.coc[o] = made ? vf_load(coc + o * line + x) : next[o];
-        if (vm_any(vm_or(next_bad, load_block(HF_FORMAT_R11G11B10F, p.from + at, b.colour[0], b.colour[1]))))
-            return x;
-        composite_pixels(&r, 3, far, near, 0, 0, x, &b);
-        if (far && !made) {
-            FETCH_AHEAD(p.depth + at, p.depth_stride, 0);
-            next_bad = far_coc(s, p.depth + (size_t)hf_min(x + VF_N, n - VF_N) * 8, next);
+        vf near_coc[2][2] = {{vf_zero()}}, in[2][2];
+        vi words[2][2], most = vi_set1(0);
+        vm bad = vf_gt(vf_zero(), vf_zero());
+        for (int i = 0; i < 2; i++) {
+            if (with_far && p.coc[i]) {
+                b.coc[i][0] = vf_load(p.coc[i] + x);
+                b.coc[i][1] = vf_load(p.coc[i] + p.line + x);
+            } else if (with_far) {
+                FETCH_AHEAD(p.depth[i] + at, p.depth_stride, 0);
+                bad = vm_or(bad, far_coc(s, p.depth[i] + at, b.coc[i]));
+            }
         }
-        if (s->storage == HF_STORAGE_CHAPTER)
-            for (int c = 0; c < 6; c++)
-                b.colour[c / 3][c % 3] = truncate_channel(b.colour[c / 3][c % 3], c % 3);
-        store_block(HF_FORMAT_R11G11B10F, p.to + at, b.colour[0], b.colour[1], clamped);
+        const int is = blend_kind(&r, 2, with_far, with_near, 0, x, b.coc, near_coc);
+        if (is != kind) {
+            *next = is;
+            return x;
+        }
+        for (int i = 0; i < 2; i++) {
+            FETCH_AHEAD(p.from[i] + at, p.from_stride, 0);
+            FETCH_AHEAD(p.to[i] + at, p.to_stride, 1);
+            in[i][0] = vf_load(p.from[i] + at);
+            in[i][1] = vf_load(p.from[i] + at + 4 * VF_N);
+            vf even, odd;
+            vf_unzip(in[i][0], in[i][1], &even, &odd);
+            words[i][0] = vf_as_vi(even);
+            words[i][1] = vf_as_vi(odd);
+        }
+        blend_block(&r, 2, 3, kind, 0, 0, 1, x, near_coc, words, &most, &b);
+        if (vm_any(vm_or(bad, vm_not(vi_le(most, vi_set1((31 << 23) - 1)))))) {
+            *next = -1;
+            return x;
+        }
+        for (int i = 0; i < 2; i++) {
+            if (!kind) {
+                vf_store(p.to[i] + at, in[i][0]);
+                vf_store(p.to[i] + at + 4 * VF_N, in[i][1]);
+                continue;
+            }
+            if (s->storage == HF_STORAGE_CHAPTER) {
+                vf_zip(vi_as_vf(r11_pack_cut(b.colour[i][0])), vi_as_vf(r11_pack_cut(b.colour[i][1])), &in[i][0],
+                       &in[i][1]);
+                vf_store(p.to[i] + at, in[i][0]);
+                vf_store(p.to[i] + at + 4 * VF_N, in[i][1]);
+                continue;
+            }
+            store_block(HF_FORMAT_R11G11B10F, p.to[i] + at, b.colour[i][0], b.colour[i][1], clamped + i);
+        }
     }
     return n;
 }
 
-// What can be done in registers of row y of rectangle r: returns how many lanes, the rest goes through lines.
-static int composite_row_packed(const struct hf_frame *f, const struct composite_row *row, int y, struct hf_rect r)
+typedef int composite_run_of_kind(const struct composite_rows *rows, const struct packed_rows *packed,
+                                  const struct hf_setup *s, int x, int n, int *next, vi *clamped);
+
+#define COMPOSITE_RUN(kind)                                                                                          \
+    static __attribute__((noinline)) int composite_run_##kind(const struct composite_rows *rows,                     \
+                                                              const struct packed_rows *packed,                      \
+                                                              const struct hf_setup *s, int x, int n, int *next,     \
+                                                              vi *clamped)                                           \
+    {                                                                                                                \
+        return composite_run(rows, packed, s, kind, x, n, next, clamped);                                            \
+    }
+COMPOSITE_RUN(0)
+COMPOSITE_RUN(1)
+COMPOSITE_RUN(2)
+COMPOSITE_RUN(3)
+COMPOSITE_RUN(6)
+COMPOSITE_RUN(7)
+
+// n lanes. Returns how many of them were done: all, or those before a sample that is not finite.
+static int composite_packed(const struct composite_rows *rows, const struct packed_rows *packed,
+                            const struct hf_setup *s, int n, vi *clamped)
+{
+    static composite_run_of_kind *const run[] = {composite_run_0, composite_run_1, composite_run_2, composite_run_3,
+                                                 NULL,            NULL,            composite_run_6, composite_run_7};
+    int x = 0, kind = 0;
+    while (x < n && kind >= 0)
+        x = run[kind](rows, packed, s, x, n, &kind, clamped);
+    return x;
+}
+
+// What can be done in registers of the rows y[0] and y[1] of rectangle r, or of one of them alone, then the other is
+// -1. Returns how many lanes, the rest goes through lines.
+static int composite_rows_packed(const struct hf_frame *f, const struct composite_rows *rows, const int y[2],
+                                 struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     const int x0 = r.x0, pixels = hf_min(2 * r.x1, s->width) - 2 * x0, n = pixels / 2 / VF_N * VF_N;
-    if (f->src->format != HF_FORMAT_R11G11B10F || f->dst->format != HF_FORMAT_R11G11B10F ||
-        s->storage == HF_STORAGE_HALF || s->faithful || s->bicubic)
-        return 0;
-    const struct packed_row p = {
-        plane_at(f->src, 0, 4, x0, y),
-        (const uint8_t *)f->depth->data + (ptrdiff_t)y * f->depth->stride + (size_t)x0 * 8,
-        plane_at(f->dst, 0, 4, x0, y),
-        f->src->stride[0], f->depth->stride, f->dst->stride[0]};
-    // In place, a sample that is not finite wants neighbours that have not been overwritten.
-    if (p.from == p.to && !f->k->finite_r11(p.from, (size_t)pixels, NULL))
-        return 0;
     const ptrdiff_t line = (ptrdiff_t)f->line_floats;
-    float *const coc[4] = {hf_line(f, 8), hf_line(f, 9), hf_line(f, 10), hf_line(f, 11)};
-    const int made = s->form != HF_FORM_Z;
-    if (f->far && made)
-        f->k->coc_row(f, x0, y, n, coc, NULL);
-    vi clamped = vi_set1(0);
-    int done;
-    if (!f->far)
-        done = composite_packed(row, &p, s, 0, 1, 1, coc[2], line, n, &clamped);
-    else if (f->near)
-        done = made ? composite_packed(row, &p, s, 1, 1, 1, coc[2], line, n, &clamped)
-                    : composite_packed(row, &p, s, 1, 1, 0, coc[2], line, n, &clamped);
-    else
-        done = made ? composite_packed(row, &p, s, 1, 0, 1, coc[2], line, n, &clamped)
-                    : composite_packed(row, &p, s, 1, 0, 0, coc[2], line, n, &clamped);
-    f->counts->clamped += vi_sum(clamped);
+    struct packed_rows p = {.from_stride = f->src->stride[0], .depth_stride = f->depth->stride,
+                            .to_stride = f->dst->stride[0], .line = line, .far = f->far, .near = f->near};
+    for (int i = 0; i < 2; i++) {
+        const int at = y[i] < 0 ? y[!i] : y[i];  // what is not there is made from the other row, and thrown away
+        p.from[i] = plane_at(f->src, 0, 4, x0, at);
+        p.depth[i] = (const uint8_t *)f->depth->data + (ptrdiff_t)at * f->depth->stride + (size_t)x0 * 8;
+        p.to[i] = y[i] < 0 ? (uint8_t *)hf_line(f, 0) : plane_at(f->dst, 0, 4, x0, at);
+        // In place, a sample that is not finite wants neighbours that have not been overwritten.
+        if (p.from[i] == p.to[i] && !f->k->finite_r11(p.from[i], (size_t)pixels, NULL))
+            return 0;
+        if (f->far && s->form != HF_FORM_Z) {
+            float *const coc[4] = {hf_line(f, 8), hf_line(f, 9), hf_line(f, 10 + 2 * i), hf_line(f, 11 + 2 * i)};
+            f->k->coc_row(f, x0, at, n, coc, NULL);
+            p.coc[i] = coc[2];
+        }
+    }
+    vi clamped[2] = {vi_set1(0), vi_set1(0)};
+    const int done = composite_packed(rows, &p, s, n, clamped);
+    for (int i = 0; i < 2; i++)
+        if (y[i] >= 0)
+            f->counts->clamped += vi_sum(clamped[i]);
     return done;
 }
 
 // ---- rows ----
 
-static struct field_row field_at(const struct hf_buf *b, int c, int x, int y, int next_y)
+static struct field_rows field_at(const struct hf_buf *b, int c, int x, int y, int next_y)
 {
-    return (struct field_row){hf_at(b, c, x, y), hf_at(b, c, x, next_y), 0};
+    return (struct field_rows){{hf_at(b, c, x, y), hf_at(b, c, x, next_y)}, b->ch[1] - b->ch[0]};
 }
 
-static void composite_row_simd(const struct hf_frame *f, int y, struct hf_rect r)
+// The fields around row y of the picture.
+static struct composite_rows composite_rows_at(const struct hf_frame *f, int y, struct hf_rect r)
+{
+    const int down = y & 1, hy = (y - down) / 2, ny = down ? hy + 1 : hy - 1;
+    struct composite_rows rows = {.blend = f->s->blend, .down = down};
+    if (f->far) {
+        rows.far = field_at(&f->buf[HF_BUF_FAR_FILL], 0, r.x0, hy, ny);
+        rows.far_coc = field_at(&f->buf[HF_BUF_COC4], 1, r.x0, hy, ny);
+    }
+    if (f->near) {
+        rows.near = field_at(&f->buf[HF_BUF_NEAR_FILL], 0, r.x0, hy, ny);
+        rows.near_coc = field_at(&f->buf[HF_BUF_BLUR], 0, r.x0, hy, ny);
+    }
+    return rows;
+}
+
+static void composite_row_rest(const struct hf_frame *f, int y, struct hf_rect r, int first)
 {
     const struct hf_setup *s = f->s;
-    const int hy = y / 2, down = y & 1, ny = down ? hy + 1 : hy - 1;
-    struct composite_row row = {.blend = s->blend, .down = down};
-    if (f->far) {
-        row.far = field_at(&f->buf[HF_BUF_FAR_FILL], 0, r.x0, hy, ny);
-        row.far.plane = f->buf[HF_BUF_FAR_FILL].ch[1] - f->buf[HF_BUF_FAR_FILL].ch[0];
-        row.far_coc = field_at(&f->buf[HF_BUF_COC4], 1, r.x0, hy, ny);
-    }
-    if (f->near && !NEAR_LINES && !s->bicubic) {
-        row.near = field_at(&f->buf[HF_BUF_NEAR_FILL], 0, r.x0, hy, ny);
-        row.near.plane = f->buf[HF_BUF_NEAR_FILL].ch[1] - f->buf[HF_BUF_NEAR_FILL].ch[0];
-        row.near_coc = field_at(&f->buf[HF_BUF_BLUR], 0, r.x0, hy, ny);
-    } else if (f->near) {
+    struct composite_rows rows = composite_rows_at(f, y, r);
+    if (f->near && s->bicubic) {
         for (int c = 0; c < s->channels; c++)
-            near_line(s, &f->buf[HF_BUF_NEAR_FILL], c, y, r, hf_line(f, 12 + c));
-        near_line(s, &f->buf[HF_BUF_BLUR], 0, y, r, hf_line(f, 16));
-        const float *near = hf_line(f, 12) + 16, *near_coc = hf_line(f, 16) + 16;
-        row.near = (struct field_row){near, near, (ptrdiff_t)f->line_floats};
-        row.near_coc = (struct field_row){near_coc, near_coc, 0};
+            near_line(&f->buf[HF_BUF_NEAR_FILL], c, y, r, hf_line(f, 12 + c));
+        near_line(&f->buf[HF_BUF_BLUR], 0, y, r, hf_line(f, 16));
+        rows.near = (struct field_rows){{hf_line(f, 12) + 16}, (ptrdiff_t)f->line_floats};
+        rows.near_coc = (struct field_rows){{hf_line(f, 16) + 16}, 0};
     }
-    const int done = composite_row_packed(f, &row, y, r);
-    if (done < r.x1 - r.x0)
-        composite_row_lines(f, &row, y, r, done);
+    composite_row_lines(f, &rows, y, r, first);
 }
 
 static void composite_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
-        composite_row_simd(f, y, r);
+    const int end = hf_min(2 * r.y1, f->s->height);
+    const int packs = f->src->format == HF_FORMAT_R11G11B10F && f->dst->format == HF_FORMAT_R11G11B10F &&
+                      f->s->storage != HF_STORAGE_HALF && !f->s->faithful && !f->s->bicubic;
+    // Rows 2 k - 1 and 2 k lie between the half-resolution rows k - 1 and k.
+    for (int k = r.y0; 2 * k <= end; k++) {
+        const int y[2] = {k > r.y0 ? 2 * k - 1 : -1, 2 * k < end ? 2 * k : -1};
+        int done = 0;
+        if (packs) {
+            const struct composite_rows rows = composite_rows_at(f, 2 * k - 1, r);
+            done = composite_rows_packed(f, &rows, y, r);
+        }
+        for (int i = 0; i < 2 && done < r.x1 - r.x0; i++)
+            if (y[i] >= 0)
+                composite_row_rest(f, y[i], r, done);
+    }
 }

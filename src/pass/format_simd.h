@@ -26,25 +26,35 @@ HF_INLINE vi encode_small(vf v, const int m)
     return vf_as_vi(vf_select(vf_lt(v, vf_set1(0x1p-14f)), vi_as_vf(denormal), vi_as_vf(normal)));
 }
 
+// v as a float 2^112 times too small, so that the small format's exponent and m mantissa bits are its upper ones; what
+// is below them may be anything. As v is cut before the product, that is exact where it counts.
+HF_INLINE vi small_bits(vf v, const int m)
+{
+    const vi cut = vi_and(vf_as_vi(v), vi_set1((int32_t)(0xffffffffu << (23 - m))));
+    return vf_as_vi(vf_mul(vi_as_vf(cut), vf_set1(0x1p-112f)));
+}
+
 // Float holding v truncated to m mantissa bits and 5 exponent bits.
 HF_INLINE vf truncate_small(vf v, const int m)
 {
-    const vf normal = vi_as_vf(vi_and(vf_as_vi(v), vi_set1((int32_t)(0xffffffffu << (23 - m)))));
-    const float step = (float)(1 << (14 + m));
-    const vf denormal = vf_mul(vi_to_vf(vf_to_vi(vf_mul(v, vf_set1(step)))), vf_set1(1 / step));
-    return vf_select(vf_lt(v, vf_set1(0x1p-14f)), denormal, normal);
+    const vi bits = vi_and(small_bits(v, m), vi_set1((int32_t)(0xffffffffu << (23 - m))));
+    return vf_mul(vi_as_vf(bits), vf_set1(0x1p112f));
 }
 
-// *most: the bits of the largest so far, before it is put right; none is negative.
+// Channel c of R11G11B10F words. *most: the bits of the largest so far, before it is put right; none is negative.
+HF_INLINE vf r11_channel(vi u, const int c, vi *most)
+{
+    const vi v = c == 0   ? vi_and(vi_shl(u, 17), vi_set1(0x7ff << 17))
+                 : c == 1 ? vi_and(vi_shl(u, 6), vi_set1(0x7ff << 17))
+                          : vi_and(vi_shr(u, 4), vi_set1(0x3ff << 18));
+    *most = vi_max(*most, v);
+    return vf_mul(vi_as_vf(v), vf_set1(0x1p112f));
+}
+
 HF_INLINE void r11_unpack(vi u, vf out[3], vi *most)
 {
-    const vi r = vi_and(vi_shl(u, 17), vi_set1(0x7ff << 17)), g = vi_and(vi_shl(u, 6), vi_set1(0x7ff << 17));
-    const vi b = vi_and(vi_shr(u, 4), vi_set1(0x3ff << 18));
-    const vf up = vf_set1(0x1p112f);
-    out[0] = vf_mul(vi_as_vf(r), up);
-    out[1] = vf_mul(vi_as_vf(g), up);
-    out[2] = vf_mul(vi_as_vf(b), up);
-    *most = vi_max(*most, vi_max(vi_max(r, g), b));
+    for (int c = 0; c < 3; c++)
+        out[c] = r11_channel(u, c, most);
 }
 
 // The bits of v above 2^-14, which count from 0, to be cut off after rounding to m mantissa bits. Smaller numbers come
@@ -59,9 +69,11 @@ HF_INLINE vi r11_odd(vf v, const int m)
     return vi_and(vi_shr(vf_as_vi(v), 23 - m), vi_set1(1));
 }
 
-HF_INLINE vi r11_pack_any(const vf in[3], vi *clamped)
+// Out of line, and its arguments in registers: rare as it is, it shall not take them from those who do without it.
+HF_INLINE vi r11_pack_any(vf red, vf green, vf blue, vi *clamped)
 {
     static const float max[3] = {HF_R11_MAX, HF_R11_MAX, HF_R10_MAX};
+    const vf in[3] = {red, green, blue};
     vf v[3];
     for (int c = 0; c < 3; c++) {
         v[c] = clamp_unsigned(in[c], max[c]);
@@ -81,9 +93,9 @@ HF_INLINE void r11_pack(const vf in[2][4], vi out[2], vi *clamped)
             most = vi_max(most, v[o][c]);
         }
     const int32_t max = (int32_t)(0x477c0000u - (113u << 23) + 0xffff);  // the bits of HF_R10_MAX
-    if (vm_any(vm_not(vi_le(most, vi_set1(max))))) {
+    if (__builtin_expect(vm_any(vm_not(vi_le(most, vi_set1(max)))), 0)) {
         for (int o = 0; o < 2; o++)
-            out[o] = r11_pack_any(in[o], clamped);
+            out[o] = r11_pack_any(in[o][0], in[o][1], in[o][2], clamped);
         return;
     }
     for (int o = 0; o < 2; o++) {
@@ -94,6 +106,15 @@ HF_INLINE void r11_pack(const vf in[2][4], vi out[2], vi *clamped)
         u = vi_or_and(u, vi_shl(v[o][2], 4), vi_set1((int32_t)(0x3ffu << 22)));
         out[o] = vi_add(u, vi_set1(1 << 6 | 1 << 17 | 1 << 27));  // the exponent of 2^-14
     }
+}
+
+// Truncated instead: nothing to round, no denormals to look for.
+HF_INLINE vi r11_pack_cut(const vf in[3])
+{
+    const vi r = small_bits(clamp_unsigned(in[0], HF_R11_MAX), 6), g = small_bits(clamp_unsigned(in[1], HF_R11_MAX), 6);
+    const vi b = small_bits(clamp_unsigned(in[2], HF_R10_MAX), 5);
+    const vi rg = vi_or_and(vi_shr(r, 17), vi_shr(g, 6), vi_set1(0x7ff << 11));
+    return vi_or_and(rg, vi_shl(b, 4), vi_set1((int32_t)(0x3ffu << 22)));
 }
 
 #ifdef VF_SOFT_HALF

@@ -20,6 +20,16 @@ HF_INLINE vf vf_fma(vf a, vf b, vf c)
 #endif
 }
 
+// c - a * b
+HF_INLINE vf vf_fnma(vf a, vf b, vf c)
+{
+#if HF_FUSED
+    return vf_mulsub_fused(a, b, c);
+#else
+    return vf_sub(c, vf_mul(a, b));
+#endif
+}
+
 // The vector that begins n numbers into consecutive vectors v[0], v[1] ...; n is a literal.
 #define vf_shift(v, n) vf_align((v)[(n) / VF_N], (v)[(n) / VF_N + 1], (n) % VF_N)
 

@@ -30,12 +30,14 @@ static inline vf vf_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
 static inline vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
 static inline vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
 static inline vf vf_muladd_fused(vf a, vf b, vf c) { return _mm_add_ps(_mm_mul_ps(a, b), c); }
+static inline vf vf_mulsub_fused(vf a, vf b, vf c) { return _mm_sub_ps(c, _mm_mul_ps(a, b)); }
 
 static inline vm vf_gt(vf a, vf b) { return _mm_cmpgt_ps(a, b); }
 static inline vm vf_lt(vf a, vf b) { return _mm_cmplt_ps(a, b); }
 static inline vm vf_le(vf a, vf b) { return _mm_cmple_ps(a, b); }
 static inline vm vf_eq(vf a, vf b) { return _mm_cmpeq_ps(a, b); }
 static inline vm vf_ne(vf a, vf b) { return _mm_cmpneq_ps(a, b); }  // true for NaN
+static inline vm vf_unordered(vf a, vf b) { return _mm_cmpunord_ps(a, b); }  // either is NaN
 static inline vm vm_and(vm a, vm b) { return _mm_and_ps(a, b); }
 static inline vm vm_or(vm a, vm b) { return _mm_or_ps(a, b); }
 static inline vm vm_not(vm a) { return _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1))); }

@@ -166,9 +166,9 @@ double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y
     return bound > 0 ? bound + 0x1p-140 + storage_step(w, c, want, got) : 0;
 }
 
-// Composite. A far weight: d 2, products 9 with the bilinear factor, their sum 11, inverse 12, together 22; the sum of
-// weighted colours 25, the blend 5 more. The near field: bilinear 3, its weight 4 of a difference of up to twice the
-// largest colour, the blend 5: 16. The cubic: 10, 11 twice, 5.
+// Composite. A far weight: d 2, products 8, their sum 10, inverse 11, together 20; what is left of the colour 25, the
+// blend 3 more. The near field: bilinear 3, its weight 4 of a difference of up to twice the largest colour, blend 5:
+// 16. The cubic: 10, 11 twice, 5.
 double bound_pixel(const struct world *w, int c, int x, int y, float want, float got)
 {
     const int reach = w->setup.bicubic ? 2 : 1;
