@@ -55,16 +55,33 @@ struct hf_hexagon_tap {
     float b, c;
 };
 
+// The same for some rows of pixels at once: a sample (dx, dy) from the first of them, and what each row's own tap there
+// weighs. A line that is not steep meets a column in two or three taps, so that neighbouring rows share their samples.
+// Each row meets its taps in their order.
+enum { HF_HEXAGON_ROWS = 4 };
+
+struct hf_hexagon_step {
+    int dx, dy;
+    unsigned rows;  // bit i: row i has a tap there
+    float least;    // the least c of them
+    float b[HF_HEXAGON_ROWS], c[HF_HEXAGON_ROWS];
+};
+
+struct hf_hexagon_steps {
+    struct hf_hexagon_step *step;
+    int count;  // 0: rows cannot be taken together, as a line's end lies beyond the picture
+};
+
 struct hf_hexagon_line {
     struct hf_hexagon_tap *taps;
     int count;
     int x0, y0, x1, y1;  // the largest offsets, both included
+    struct hf_hexagon_steps one, two, four;  // rows at once
 };
 
 // Lines u, v, w.
 struct hf_hexagon {
     struct hf_hexagon_line line[3];
-    int most;  // taps that a line has room for
 };
 
 // Samples of one field: planes of colour x weight, of weight, and of radius x sign. At half resolution a sample may be
