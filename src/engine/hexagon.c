@@ -12,13 +12,11 @@
      1u << (HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##name))
 #define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
 #define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
-#define BETWEEN (MADE(NEAR_U) | MADE(NEAR_B) | MADE(NEAR_W) | MADE(FAR_U) | MADE(FAR_B))
 
 static const struct hf_pass passes[] = {
     {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1},
     {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1},
-    {"Pass 1", HF_KERNEL_HEXAGON_1, .around = INPUT, .writes = BETWEEN, .halo = HF_HALO_RADIUS, .sweep = 2},
-    {"Pass 2", HF_KERNEL_HEXAGON_2, .around = BETWEEN | WEIGHTS, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
+    {"Passes 1 and 2", HF_KERNEL_HEXAGON_BLUR, .around = INPUT, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
      .halo = HF_HALO_RADIUS, .sweep = 2},
     {"Composite", HF_KERNEL_HEXAGON_COMPOSITE, .reads = FRAME(WEIGHT),
      .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2), .halo = HF_HALO_UPSAMPLE, .sweep = 2},
@@ -36,11 +34,6 @@ static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
     [HF_HEXAGON_NEAR_WEIGHT_2] = {"nearweight", .frame = 1},
     [HF_HEXAGON_FAR_COLOUR_2] = {"farcolour", .frame = 1},
     [HF_HEXAGON_FAR_WEIGHT_2] = {"farweight", .frame = 1},
-    NAMED(NEAR_U, "nearup", .field = HF_NEAR),
-    NAMED(NEAR_B, "nearboth", .field = HF_NEAR),
-    NAMED(NEAR_W, "nearcover", .field = HF_NEAR),
-    NAMED(FAR_U, "farup", .field = HF_FAR),
-    NAMED(FAR_B, "farboth", .field = HF_FAR),
     NAMED(NEAR, "near", .field = HF_NEAR),
     NAMED(COVERAGE, "nearcoverage", .field = HF_NEAR),
     NAMED(FAR, "far", .field = HF_FAR),
@@ -93,6 +86,7 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
     if (err)
         return err;
     struct hf_hexagon *h = s->tables = c->tables.data;
+    *h = (struct hf_hexagon){0};
     struct hf_hexagon_step *step = (struct hf_hexagon_step *)(h + 1);
     for (int i = 0; i < 3; i++, step += taps + two + four)
         h->line[i] = (struct hf_hexagon_line){.one.step = step, .two.step = step + taps, .four.step = step + taps + two};
@@ -213,6 +207,11 @@ static int keep_inside(const struct hf_setup *s, struct hf_hexagon_line *l)
     return outside;
 }
 
+static int half_resolution(const struct hf_setup *s, int working)
+{
+    return s->resolution == HF_RESOLUTION_HALF ? working : (working + 1) / 2;
+}
+
 static void measure(struct hf_setup *s, const struct hf_counts *found)
 {
     struct hf_hexagon *h = s->tables;
@@ -232,16 +231,20 @@ static void measure(struct hf_setup *s, const struct hf_counts *found)
         x = hf_max(x, hf_max(-l->x0, l->x1));
         y = hf_max(y, hf_max(-l->y0, l->y1));
     }
-    const int half = s->resolution == HF_RESOLUTION_HALF;
-    s->reach_x = half ? x : (x + 1) / 2;
-    s->reach_y = half ? y : (y + 1) / 2;
+    const struct hf_hexagon_line *v = &h->line[1], *w = &h->line[2];
+    s->reach_x = half_resolution(s, x);
+    s->reach_y = half_resolution(s, y);
+    h->left = half_resolution(s, -hf_min(v->x0, w->x0));
+    h->right = half_resolution(s, hf_max(v->x1, w->x1));
+    h->above = half_resolution(s, -hf_min(v->y0, w->y0));
+    h->below = half_resolution(s, hf_max(v->y1, w->y1));
 }
 
 static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
 {
     const int upsample = s->resolution == HF_RESOLUTION_HALF;
     if (halo == HF_HALO_RADIUS)
-        return (struct hf_reach){s->reach_x, s->reach_y};
+        return (struct hf_reach){2 * s->reach_x, 2 * s->reach_y};
     return halo == HF_HALO_UPSAMPLE ? (struct hf_reach){upsample, upsample} : (struct hf_reach){0, 0};
 }
 
@@ -259,19 +262,19 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return needs ? HF_FIELDS : 0;
 }
 
-// A row of radii.
+// A row of radii, or a band. What is made is a pixel wider on either side where it is sampled up.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    (void)s;
-    return p->line_floats;
+    const size_t band = s->tables ? hf_hexagon_band_floats(s, p->cell_width[2] + 2) : 0;
+    return band > p->line_floats ? band : p->line_floats;
 }
 
-// Pass 1 runs on a tile and its rim: with a large reach, tiles that are not much smaller.
+// Narrow enough that a band stays in the second-level cache, but wider than the rim that is made of it twice.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     (void)sweep;
-    *width = hf_max(*width, (2 * s->reach_x + 15) & ~15);
-    *height = hf_max(*height, 2 * s->reach_y);
+    *width = hf_max(hf_min(*width, 192), (4 * s->reach_x + 15) & ~15);
+    *height = hf_max(*height, 4 * s->reach_y);
 }
 
 const struct hf_engine_def hf_hexagon_engine = {

@@ -79,10 +79,15 @@ struct hf_hexagon_line {
     struct hf_hexagon_steps one, two, four;  // rows at once
 };
 
-// Lines u, v, w.
+// Lines u, v, w, and how far pass 2 reads around a pixel what pass 1 made, half-resolution pixels.
 struct hf_hexagon {
     struct hf_hexagon_line line[3];
+    int left, right, above, below;
 };
+
+// Rows of a band, half-resolution pixels (hexagon_bands.c), and floats of scratch for bands of that width.
+enum { HF_HEXAGON_BAND = 8 };
+size_t hf_hexagon_band_floats(const struct hf_setup *s, int width);
 
 // Samples of one field: planes of colour x weight, of weight, and of radius x sign. At half resolution a sample may be
 // there in part, and its weight is that much smaller.
@@ -141,6 +146,6 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 #define HEXAGON_LEAST 0.25f
 #define HEXAGON_ALL 2.0f
 
-hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_composite_c;
+hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_composite_c;
 
 #endif
