@@ -174,6 +174,18 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
     for (int y = (b).y0; y < (b).y1; y = y + rows < (b).y1 ? hf_min(y + rows, (b).y1 - rows) : (b).y1)                \
         for (int x = (b).x0; x < (b).x1; x = (x + VF_N) & ~(VF_N - 1))
 
+// Fetch the samples under a vector that the block below will be the first to read: from here to there they lie too far
+// apart for the hardware to foresee.
+HF_INLINE void hex_fetch(const struct hf_hexagon_field *in, const int channels, const int rows, int x, int y)
+{
+    for (int i = 0; i < rows; i++) {
+        for (int c = 0; c < channels; c++)
+            __builtin_prefetch(hf_at(in->colour, c, x, y + i), 0, 2);
+        __builtin_prefetch(hf_at(in->weight, in->a, x, y + i), 0, 2);
+        __builtin_prefetch(hf_at(in->radius, in->q, x, y + i), 0, 2);
+    }
+}
+
 // ---- near ----
 
 HF_INLINE void hex_store_near(const struct hf_frame *f, const struct hex_sums *s, const int channels,
@@ -210,6 +222,7 @@ HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int 
 {
     const struct hf_hexagon *h = f->s->tables;
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_NEAR);
+    const int below = hf_max(h->line[0].y1, h->line[1].y1);
     const struct hex_run up = hex_run(&h->line[0], rows, hex_range(&in, &h->line[0], b));
     const struct hex_run left = hex_run(&h->line[1], rows, hex_range(&in, &h->line[1], b));
     if (up.end == up.step && left.end == left.step) {
@@ -220,6 +233,7 @@ HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int 
     }
     HEX_EACH(b, rows, x, y) {
         struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
+        hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
         hex_line(&in, &up, channels, weights, rows, x, y, NULL, u);
         for (int i = 0; i < rows; i++)
             hex_store_near(f, &u[i], channels, HF_HEXAGON_NEAR_U, 0, x, y + i);
@@ -320,6 +334,8 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
 {
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     const struct hf_buf *up_out = hf_hexagon_made(f, HF_HEXAGON_FAR_U), *both = hf_hexagon_made(f, HF_HEXAGON_FAR_B);
+    const struct hf_hexagon *h = f->s->tables;
+    const int below = hf_max(h->line[0].y1, h->line[1].y1);
     const float least = hex_least_far(&in, b);
     if (least == FLT_MAX) {
         hex_clear(up_out, b, channels);
@@ -329,6 +345,7 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
     const struct hex_far up = hex_far(f, &in, 0, least, b, rows), left = hex_far(f, &in, 1, least, b, rows);
     HEX_EACH(b, rows, x, y) {
         vf p[HEX_ROWS], u[HEX_ROWS][4], v[HEX_ROWS][4];
+        hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
         for (int i = 0; i < rows; i++)
             p[i] = vf_load(hf_at(in.radius, in.q, x, y + i));
         hex_far_line(&up, channels, rows, x, y, p, u);
