@@ -145,6 +145,8 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
         const ptrdiff_t at = p->dy * stride + p->dx, weight_at = p->dy * weight_stride + p->dx;
         vf v[4], whole = vf_zero();
         const vf q = vf_once(vf_mul(sign, vf_load(radius + weight_at)));
+        if (!vm_any(vf_gt(q, vf_set1(p->least))))
+            continue;
         for (int c = 0; c < channels; c++)
             v[c] = vf_once(vf_load(colour[c] + at));
         const vf weight = vf_once(vf_load(a + weight_at));
