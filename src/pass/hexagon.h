@@ -20,6 +20,8 @@
 #ifndef HF_PASS_HEXAGON_H
 #define HF_PASS_HEXAGON_H
 
+#include <float.h>
+
 #include "pass/pass_c.h"
 
 // At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to
@@ -145,6 +147,12 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 // Of what a pixel of radius p finds, how little is too little, and from which p on it need not be all.
 #define HEXAGON_LEAST 0.25f
 #define HEXAGON_ALL 2.0f
+
+// Colours are summed up this much darker, so that no sum overflows where none of its samples does: a line's weights add
+// up to at most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times
+// their sum. A power of two, so that no bit changes. What rounds up beyond the largest number is that number.
+#define HEXAGON_SCALE 0x1p-10f
+#define HEXAGON_MOST (FLT_MAX * HEXAGON_SCALE)
 
 hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_composite_c;
 
