@@ -20,6 +20,7 @@ void hf_kernels_c(struct hf_kernels *k)
     k->pass[HF_KERNEL_HEXAGON_LOAD] = hf_hexagon_load_c;
     k->pass[HF_KERNEL_HEXAGON_1] = hf_hexagon_1_c;
     k->pass[HF_KERNEL_HEXAGON_2] = hf_hexagon_2_c;
+    k->pass[HF_KERNEL_HEXAGON_BLUR] = hf_hexagon_blur_pass;
     k->pass[HF_KERNEL_HEXAGON_COMPOSITE] = hf_hexagon_composite_c;
     k->pass[HF_KERNEL_GAUSSIAN_DEPTH] = hf_gaussian_depth_pass;
     k->pass[HF_KERNEL_GAUSSIAN_ROWS] = hf_gaussian_rows_pass;

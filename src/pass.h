@@ -29,6 +29,7 @@ enum {
     HF_KERNEL_HEXAGON_LOAD,
     HF_KERNEL_HEXAGON_1,
     HF_KERNEL_HEXAGON_2,
+    HF_KERNEL_HEXAGON_BLUR,            // both, band by band
     HF_KERNEL_HEXAGON_COMPOSITE,
     HF_KERNEL_GAUSSIAN_DEPTH,          // looks at the depth: counts
     HF_KERNEL_GAUSSIAN_ROWS,

@@ -416,6 +416,34 @@ static void test_sharp(void)
     picture_free(&r);
 }
 
+// The largest numbers there are, of both signs: no sum of them overflows, and a constant stays what it is.
+static void test_largest(struct rng *rng)
+{
+    static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_AUTO};
+    for (int i = 0; i < 48; i++) {
+        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 40 + rng_below(rng, 60),
+                                   30 + rng_below(rng, 40), 3);
+        const int same = i / 4 % 2;
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < s.colour.width * s.colour.height; k++)
+                s.colour.plane[c][k] = same || rng_below(rng, 2) ? FLT_MAX : rng_below(rng, 2) ? -3e38f : 3e38f;
+        struct hf_params p = hexagon_params();
+        random_options(rng, &p);
+        p.max_radius = i % 3 ? 12 : 40;
+        p.uniform = i % 8 == 5;
+        const struct hf_depth depth = picture_depth(&s.depth);
+        struct picture out = rendered_isa(isas[i % 2], &s.colour, &depth, &p);
+        int wrong = 0;
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < out.width * out.height; k++)
+                wrong += !isfinite(out.plane[c][k]) ||
+                         (same && !(fabs(out.plane[c][k] / (double)FLT_MAX - 1) <= bound(&p, p.max_radius)));
+        CHECK_MSG(wrong == 0, "frame %d: %d samples are infinite or not what all are", i, wrong);
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
 static void test_sizes(struct rng *rng)
 {
     static const int sizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {2, 2}, {3, 5}, {15, 17}, {16, 16}, {33, 7}};
@@ -460,6 +488,7 @@ int main(int argc, char **argv)
     test_no_popping(&rng);
     test_parameters(&rng);
     test_sharp();
+    test_largest(&rng);
     test_sizes(&rng);
     return check_report();
 }

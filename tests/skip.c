@@ -54,8 +54,8 @@ static struct scene random_scene(struct rng *rng, enum hf_engine engine, const c
                 if (i % w >= w / 3 || i / w >= h / 2)
                     s.depth.plane[0][i] = 20;
     }
-    // What blending with a weight of 0 would change. Sums that overflow are for the gather alone.
-    const float odd[] = {-0.0f, -1e-3f, 1e-42f, engine == HF_ENGINE_GATHER ? FLT_MAX : 1e30f, NAN, INFINITY};
+    // What blending with a weight of 0 would change. Sums that overflow are not for all engines.
+    const float odd[] = {-0.0f, -1e-3f, 1e-42f, engine == HF_ENGINE_GATHER || engine == HF_ENGINE_HEXAGON ? FLT_MAX : 1e30f, NAN, INFINITY};
     for (int k = 0; k < w * h / 30; k++)
         s.colour.plane[rng_below(rng, 3)][rng_below(rng, w * h)] = odd[rng_below(rng, rng_below(rng, 8) ? 3 : 6)];
     return s;

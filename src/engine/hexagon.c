@@ -12,14 +12,12 @@
      1u << (HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##name))
 #define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
 #define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
-#define BETWEEN (MADE(NEAR_U) | MADE(NEAR_B) | MADE(NEAR_W) | MADE(FAR_U) | MADE(FAR_B))
 
 static const struct hf_pass passes[] = {
     {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1, .ns = 3},
-    {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1, .ns = 10},
-    {"Pass 1", HF_KERNEL_HEXAGON_1, .around = INPUT, .writes = BETWEEN, .halo = HF_HALO_RADIUS, .sweep = 2, .ns = 35},
-    {"Pass 2", HF_KERNEL_HEXAGON_2, .around = BETWEEN | WEIGHTS, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
-     .halo = HF_HALO_RADIUS, .sweep = 2, .ns = 30},
+    {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1, .ns = 8},
+    {"Passes 1 and 2", HF_KERNEL_HEXAGON_BLUR, .around = INPUT, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
+     .halo = HF_HALO_RADIUS, .sweep = 2, .ns = 40},
     {"Composite", HF_KERNEL_HEXAGON_COMPOSITE, .reads = FRAME(WEIGHT),
      .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2), .halo = HF_HALO_UPSAMPLE, .sweep = 2,
      .ns = 9},
@@ -37,11 +35,6 @@ static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
     [HF_HEXAGON_NEAR_WEIGHT_2] = {"nearweight", .frame = 1},
     [HF_HEXAGON_FAR_COLOUR_2] = {"farcolour", .frame = 1},
     [HF_HEXAGON_FAR_WEIGHT_2] = {"farweight", .frame = 1},
-    NAMED(NEAR_U, "nearup", .field = HF_NEAR),
-    NAMED(NEAR_B, "nearboth", .field = HF_NEAR),
-    NAMED(NEAR_W, "nearcover", .field = HF_NEAR),
-    NAMED(FAR_U, "farup", .field = HF_FAR),
-    NAMED(FAR_B, "farboth", .field = HF_FAR),
     NAMED(NEAR, "near", .field = HF_NEAR),
     NAMED(COVERAGE, "nearcoverage", .field = HF_NEAR),
     NAMED(FAR, "far", .field = HF_FAR),
@@ -86,21 +79,39 @@ static int tap_count(const struct hf_setup *s, float radius)
 static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
 {
     (void)p;
-    const size_t most = 4 * (size_t)tap_count(s, s->max_radius);
-    const int err = hf_block_grow(&c->tables, sizeof(struct hf_hexagon) + 3 * most * sizeof(struct hf_hexagon_tap),
-                                  &c->mem);
+    // Four taps to a bilinear one, and one more step. Rows together add to each column, of which there are n + 1 at most,
+    // what is new to each row.
+    const size_t n = (size_t)tap_count(s, s->max_radius), taps = 4 * n + 1, two = taps + n + 1, four = taps + 3 * (n + 1);
+    const size_t line = taps * sizeof(struct hf_hexagon_tap) + (taps + two + four) * sizeof(struct hf_hexagon_step);
+    const int err = hf_block_grow(&c->tables, sizeof(struct hf_hexagon) + 3 * line, &c->mem);
     if (err)
         return err;
     struct hf_hexagon *h = s->tables = c->tables.data;
-    h->most = (int)most;
+    *h = (struct hf_hexagon){0};
+    struct hf_hexagon_step *step = (struct hf_hexagon_step *)(h + 1);
+    for (int i = 0; i < 3; i++, step += taps + two + four)
+        h->line[i] = (struct hf_hexagon_line){.one.step = step, .two.step = step + taps, .four.step = step + taps + two};
     for (int i = 0; i < 3; i++)
-        h->line[i] = (struct hf_hexagon_line){.taps = (struct hf_hexagon_tap *)(h + 1) + i * most};
+        h->line[i].taps = (struct hf_hexagon_tap *)step + i * taps;
     return HF_OK;
 }
 
-// Add weight to the pixel (dx, dy), t along the line: it has some already, or goes where t belongs. A pixel's
-// bilinear neighbours follow each other closely, and so do their distances. c holds t for now.
-static void add_tap(struct hf_hexagon_line *l, int dx, int dy, float t, double weight)
+// A line's direction in 2^-40 of a pixel: distances along it are exact, so that what comes first is the same from
+// everywhere.
+struct direction {
+    int64_t x, y;
+};
+
+// Does (ax, ay) come before (bx, by)?
+static int comes_before(const struct direction *d, int ax, int ay, int bx, int by)
+{
+    const int64_t t = (ax - bx) * d->x + (ay - by) * d->y;
+    return t != 0 ? t < 0 : ax != bx ? ax < bx : ay < by;
+}
+
+// Add weight to the pixel (dx, dy): it has some already, or goes where its distance belongs. A pixel's bilinear
+// neighbours follow each other closely, and so do their distances.
+static void add_tap(struct hf_hexagon_line *l, const struct direction *d, int dx, int dy, double weight)
 {
     struct hf_hexagon_tap *p = l->taps;
     if (weight == 0)
@@ -111,13 +122,14 @@ static void add_tap(struct hf_hexagon_line *l, int dx, int dy, float t, double w
             return;
         }
     int i = l->count++;
-    for (; i > 0 && p[i - 1].c > t; i--)
+    for (; i > 0 && comes_before(d, dx, dy, p[i - 1].dx, p[i - 1].dy); i--)
         p[i] = p[i - 1];
-    p[i] = (struct hf_hexagon_tap){dx, dy, (float)weight, t};
+    p[i] = (struct hf_hexagon_tap){dx, dy, (float)weight, 0};
 }
 
 // Taps of a line in direction (ux, uy), pixels of height 1, as far as a sample of this radius reaches.
-static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, double ux, double uy, float radius)
+static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, const struct direction *d, double ux,
+                      double uy, float radius)
 {
     const double step = step_of(s), aspect = s->pixel_aspect;
     l->count = 0;
@@ -128,8 +140,7 @@ static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, doubl
         const int ix = (int)floor(x), iy = (int)floor(y);
         for (int i = 0; i < 4; i++) {
             const int dx = ix + (i & 1), dy = iy + (i >> 1);
-            add_tap(l, dx, dy, (float)(dx * aspect * ux + dy * uy),
-                    step * (1 - fabs(x - dx)) * (1 - fabs(y - dy)));
+            add_tap(l, d, dx, dy, step * (1 - fabs(x - dx)) * (1 - fabs(y - dy)));
         }
     }
     float c = 0;
@@ -140,15 +151,66 @@ static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, doubl
         struct hf_hexagon_tap *p = &l->taps[n];
         p->c = c;
         c += p->b;
-        // From anywhere in the picture, that far and farther is its edge.
-        p->dx = hf_max(hf_min(p->dx, s->width - 1), 1 - s->width);
-        p->dy = hf_max(hf_min(p->dy, s->height - 1), 1 - s->height);
         l->x0 = hf_min(l->x0, p->dx);
         l->x1 = hf_max(l->x1, p->dx);
         l->y0 = hf_min(l->y0, p->dy);
         l->y1 = hf_max(l->y1, p->dy);
     }
     l->count = n;
+}
+
+// Rows taken together meet each of their samples once, in the order of its distance from the first row, which is that
+// of the distances from each of them.
+static void make_steps(const struct hf_hexagon_line *l, const struct direction *d, int rows, struct hf_hexagon_steps *s)
+{
+    int next[HF_HEXAGON_ROWS] = {0};
+    for (s->count = 0;; s->count++) {
+        struct hf_hexagon_step *step = &s->step[s->count];
+        *step = (struct hf_hexagon_step){.least = INFINITY};
+        int first = -1;
+        for (int i = 0; i < rows; i++) {
+            const struct hf_hexagon_tap *t = &l->taps[next[i]];
+            if (next[i] == l->count || (first >= 0 && !comes_before(d, t->dx, t->dy + i, step->dx, step->dy)))
+                continue;
+            first = i;
+            step->dx = t->dx;
+            step->dy = t->dy + i;
+        }
+        if (first < 0)
+            return;
+        for (int i = 0; i < rows; i++) {
+            const struct hf_hexagon_tap *t = &l->taps[next[i]];
+            if (next[i] == l->count || t->dx != step->dx || t->dy + i != step->dy)
+                continue;
+            step->rows |= 1u << i;
+            step->b[i] = t->b;
+            step->c[i] = t->c;
+            step->least = fminf(step->least, t->c);
+            next[i]++;
+        }
+    }
+}
+
+// From anywhere in the picture, that far and farther is its edge. Returns whether there is such a tap.
+static int keep_inside(const struct hf_setup *s, struct hf_hexagon_line *l)
+{
+    const int x = s->width - 1, y = s->height - 1, outside = l->x0 < -x || l->x1 > x || l->y0 < -y || l->y1 > y;
+    for (int i = 0; i < l->count; i++) {
+        l->taps[i].dx = hf_max(hf_min(l->taps[i].dx, x), -x);
+        l->taps[i].dy = hf_max(hf_min(l->taps[i].dy, y), -y);
+        l->one.step[i].dx = l->taps[i].dx;
+        l->one.step[i].dy = l->taps[i].dy;
+    }
+    l->x0 = hf_max(l->x0, -x);
+    l->x1 = hf_min(l->x1, x);
+    l->y0 = hf_max(l->y0, -y);
+    l->y1 = hf_min(l->y1, y);
+    return outside;
+}
+
+static int half_resolution(const struct hf_setup *s, int working)
+{
+    return s->resolution == HF_RESOLUTION_HALF ? working : (working + 1) / 2;
 }
 
 static void measure(struct hf_setup *s, const struct hf_counts *found)
@@ -159,20 +221,31 @@ static void measure(struct hf_setup *s, const struct hf_counts *found)
     for (int i = 0; i < 3; i++) {
         struct hf_hexagon_line *l = &h->line[i];
         const double angle = (s->rotation + (i == 0 ? 0 : i == 1 ? 240 : 120)) * (M_PI / 180);
-        make_line(s, l, sin(angle), -cos(angle), radius);
+        const double ux = sin(angle), uy = -cos(angle);
+        const struct direction d = {llround(ux * s->pixel_aspect * 0x1p40), llround(uy * 0x1p40)};
+        make_line(s, l, &d, ux, uy, radius);
+        make_steps(l, &d, 1, &l->one);
+        make_steps(l, &d, 2, &l->two);
+        make_steps(l, &d, 4, &l->four);
+        if (keep_inside(s, l))
+            l->two.count = l->four.count = 0;
         x = hf_max(x, hf_max(-l->x0, l->x1));
         y = hf_max(y, hf_max(-l->y0, l->y1));
     }
-    const int half = s->resolution == HF_RESOLUTION_HALF;
-    s->reach_x = half ? x : (x + 1) / 2;
-    s->reach_y = half ? y : (y + 1) / 2;
+    const struct hf_hexagon_line *v = &h->line[1], *w = &h->line[2];
+    s->reach_x = half_resolution(s, x);
+    s->reach_y = half_resolution(s, y);
+    h->left = half_resolution(s, -hf_min(v->x0, w->x0));
+    h->right = half_resolution(s, hf_max(v->x1, w->x1));
+    h->above = half_resolution(s, -hf_min(v->y0, w->y0));
+    h->below = half_resolution(s, hf_max(v->y1, w->y1));
 }
 
 static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
 {
     const int upsample = s->resolution == HF_RESOLUTION_HALF;
     if (halo == HF_HALO_RADIUS)
-        return (struct hf_reach){s->reach_x, s->reach_y};
+        return (struct hf_reach){2 * s->reach_x, 2 * s->reach_y};
     return halo == HF_HALO_UPSAMPLE ? (struct hf_reach){upsample, upsample} : (struct hf_reach){0, 0};
 }
 
@@ -190,19 +263,19 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return needs ? HF_FIELDS : 0;
 }
 
-// A row of radii.
+// A row of radii, or a band. What is made is a pixel wider on either side where it is sampled up.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    (void)s;
-    return p->line_floats;
+    const size_t band = s->tables ? hf_hexagon_band_floats(s, p->cell_width[2] + 2) : 0;
+    return band > p->line_floats ? band : p->line_floats;
 }
 
-// Pass 1 runs on a tile and its rim: with a large reach, tiles that are not much smaller.
+// Narrow enough that a band stays in the second-level cache, but wider than the rim that is made of it twice.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     (void)sweep;
-    *width = hf_max(*width, (2 * s->reach_x + 15) & ~15);
-    *height = hf_max(*height, 2 * s->reach_y);
+    *width = hf_max(hf_min(*width, 192), (4 * s->reach_x + 15) & ~15);
+    *height = hf_max(*height, 4 * s->reach_y);
 }
 
 const struct hf_engine_def hf_hexagon_engine = {

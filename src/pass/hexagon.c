@@ -23,7 +23,7 @@ static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
         a[x] = 1 / (m > 1 ? m : 1);
         far[x] = q[x] > 0 ? a[x] : 0;
         for (int c = 0; c < f->s->channels; c++)
-            colour[c][x] *= a[x];
+            colour[c][x] *= a[x] * HEXAGON_SCALE;
     }
 }
 
@@ -44,6 +44,8 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
     *hf_at(&f->buf[colour + 1], 0, x, y) = sum * scale;
     *hf_at(&f->buf[colour + 1], 1, x, y) = q;
     *hf_at(&f->buf[colour + 1], 2, x, y) = 0.25f * sum;
+    for (int t = 0; t < 4; t++)
+        w[t] = w[t] * HEXAGON_SCALE;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(&f->buf[colour], c, x, y) = ((w[0] * lane[0][0][c][i] + w[1] * lane[0][1][c][i]) +
                                             (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) * scale;
@@ -271,11 +273,16 @@ static void composite_pixel(const struct hf_frame *f, int x, int y, float p, flo
     float near[5], far[5];
     (half ? fields_half : fields_full)(f, x, y, near, far);
     const float left = left_over(near[4], p), scale = 1 / (near[4] + left);
-    for (int c = 0; c < f->s->channels; c++) {
-        float b = colour[c][i];
-        if (p > 0 && far[4] > 0)
-            b = half ? hf_lerp(b, far[c] / far[4], saturate(0.5f * p)) : far[c];
-        colour[c][i] = near[4] == 0 ? b : (near[c] + left * b) * scale;
+    const int has_far = f->far && p > 0 && far[4] > 0;
+    for (int c = 0; c < f->s->channels && (has_far || near[4] != 0); c++) {
+        float v = colour[c][i] * HEXAGON_SCALE;
+        if (has_far)
+            v = half ? hf_lerp(v, far[c] / far[4], saturate(0.5f * p)) : far[c];
+        if (near[4] != 0)
+            v = (near[c] + left * v) * scale;
+        v = v < HEXAGON_MOST ? v : HEXAGON_MOST;
+        v = v > -HEXAGON_MOST ? v : -HEXAGON_MOST;
+        colour[c][i] = v * (1 / HEXAGON_SCALE);
     }
 }
 

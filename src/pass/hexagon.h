@@ -20,6 +20,8 @@
 #ifndef HF_PASS_HEXAGON_H
 #define HF_PASS_HEXAGON_H
 
+#include <float.h>
+
 #include "pass/pass_c.h"
 
 // At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to
@@ -55,17 +57,39 @@ struct hf_hexagon_tap {
     float b, c;
 };
 
+// The same for some rows of pixels at once: a sample (dx, dy) from the first of them, and what each row's own tap there
+// weighs. A line that is not steep meets a column in two or three taps, so that neighbouring rows share their samples.
+// Each row meets its taps in their order.
+enum { HF_HEXAGON_ROWS = 4 };
+
+struct hf_hexagon_step {
+    int dx, dy;
+    unsigned rows;  // bit i: row i has a tap there
+    float least;    // the least c of them
+    float b[HF_HEXAGON_ROWS], c[HF_HEXAGON_ROWS];
+};
+
+struct hf_hexagon_steps {
+    struct hf_hexagon_step *step;
+    int count;  // 0: rows cannot be taken together, as a line's end lies beyond the picture
+};
+
 struct hf_hexagon_line {
     struct hf_hexagon_tap *taps;
     int count;
     int x0, y0, x1, y1;  // the largest offsets, both included
+    struct hf_hexagon_steps one, two, four;  // rows at once
 };
 
-// Lines u, v, w.
+// Lines u, v, w, and how far pass 2 reads around a pixel what pass 1 made, half-resolution pixels.
 struct hf_hexagon {
     struct hf_hexagon_line line[3];
-    int most;  // taps that a line has room for
+    int left, right, above, below;
 };
+
+// Rows of a band, half-resolution pixels (hexagon_bands.c), and floats of scratch for bands of that width.
+enum { HF_HEXAGON_BAND = 8 };
+size_t hf_hexagon_band_floats(const struct hf_setup *s, int width);
 
 // Samples of one field: planes of colour x weight, of weight, and of radius x sign. At half resolution a sample may be
 // there in part, and its weight is that much smaller.
@@ -124,6 +148,12 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 #define HEXAGON_LEAST 0.25f
 #define HEXAGON_ALL 2.0f
 
-hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_composite_c;
+// Colours are summed up this much darker, so that no sum overflows where none of its samples does: a line's weights add
+// up to at most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times
+// their sum. A power of two, so that no bit changes. What rounds up beyond the largest number is that number.
+#define HEXAGON_SCALE 0x1p-10f
+#define HEXAGON_MOST (FLT_MAX * HEXAGON_SCALE)
+
+hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_composite_c;
 
 #endif

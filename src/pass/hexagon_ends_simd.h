@@ -15,8 +15,9 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
         const vf own = vf_load(q + x), w = vf_div(vf_set1(1), vf_max(vf_abs(own), vf_set1(1)));
         vf_store(a + x, w);
         vf_store(far + x, vf_keep(vf_gt(own, vf_zero()), w));
+        const vf darker = vf_mul(w, vf_set1(HEXAGON_SCALE));
         for (int c = 0; c < f->s->channels; c++)
-            vf_store(colour[c] + x, vf_mul(vf_load(colour[c] + x), w));
+            vf_store(colour[c] + x, vf_mul(vf_load(colour[c] + x), darker));
     }
 }
 
@@ -35,6 +36,8 @@ HF_INLINE void hex_load_quads(const struct hf_frame *f, int colour, int x, int y
     vf_store(hf_at(&f->buf[colour + 1], 0, x, y), vf_mul(sum, scale));
     vf_store(hf_at(&f->buf[colour + 1], 1, x, y), q);
     vf_store(hf_at(&f->buf[colour + 1], 2, x, y), vf_mul(vf_set1(0.25f), sum));
+    for (int t = 0; t < 4; t++)
+        w[t] = vf_mul(w[t], vf_set1(HEXAGON_SCALE));
     for (int c = 0; c < f->s->channels; c++) {
         const vf top = vf_fma(w[1], vf_load(lane[0][1][c] + i), vf_mul(w[0], vf_load(lane[0][0][c] + i)));
         const vf bottom = vf_fma(w[3], vf_load(lane[1][1][c] + i), vf_mul(w[2], vf_load(lane[1][0][c] + i)));
@@ -94,6 +97,14 @@ HF_INLINE vf hex_over(vf near, vf coverage, vf left, vf scale, vf b)
     return vf_select(vf_eq(coverage, vf_zero()), b, vf_mul(vf_fma(left, b, near), scale));
 }
 
+// Where a field shows, the blend in full brightness.
+HF_INLINE void hex_store_blend(vm shows, vf blend, float *colour)
+{
+    const vf most = vf_set1(HEXAGON_MOST), least = vf_set1(-HEXAGON_MOST);
+    const vf v = vf_mul(vf_max(vf_min(blend, most), least), vf_set1(1 / HEXAGON_SCALE));
+    vf_store(colour, vf_select(shows, v, vf_load(colour)));
+}
+
 HF_INLINE vf hex_left_over(vf coverage, vf p)
 {
     const vf own = hex_own(coverage, vf_sub(vf_zero(), p));
@@ -111,13 +122,14 @@ HF_INLINE void hex_composite_full(const struct hf_frame *f, int x0, int y, int n
     for (int x = 0; x < n; x += VF_N) {
         const vf p = vf_load(radius + x), a = has_near ? vf_load(coverage[0] + x) : vf_zero();
         const vf left = hex_left_over(a, p), scale = vf_div(vf_set1(1), vf_add(a, left));
+        const vm is_far = vf_gt(p, vf_zero()), is_near = vf_ne(a, vf_zero());
         for (int c = 0; c < f->s->channels; c++) {
-            vf b = vf_load(colour[c] + x);
+            vf b = vf_mul(vf_load(colour[c] + x), vf_set1(HEXAGON_SCALE));
             if (has_far)
-                b = vf_select(vf_gt(p, vf_zero()), vf_load(far[c] + x), b);
+                b = vf_select(is_far, vf_load(far[c] + x), b);
             if (has_near)
                 b = hex_over(vf_load(near[c] + x), a, left, scale, b);
-            vf_store(colour[c] + x, b);
+            hex_store_blend(!has_far ? is_near : has_near ? vm_or(is_near, is_far) : is_far, b, colour[c] + x);
         }
     }
 }
@@ -172,15 +184,15 @@ HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const
         }
         const vf left = hex_left_over(a, p), scale = vf_div(vf_set1(1), vf_add(a, left));
         const vf blend = coc_saturate(vf_mul(vf_set1(0.5f), p));
-        const vm is_far = vm_and(vf_gt(p, vf_zero()), vf_gt(far_sum, vf_zero()));
+        const vm is_near = vf_ne(a, vf_zero()), is_far = vm_and(vf_gt(p, vf_zero()), vf_gt(far_sum, vf_zero()));
         for (int c = 0; c < f->s->channels; c++) {
-            vf b = vf_load(colour[c] + x);
+            vf b = vf_mul(vf_load(colour[c] + x), vf_set1(HEXAGON_SCALE));
             if (f->far)
                 b = vf_select(is_far, vf_lerp(b, vf_div(hex_bilinear(far, c, x0 + x, corner, far_w), far_sum), blend),
                               b);
             if (f->near)
                 b = hex_over(hex_bilinear(near, c, x0 + x, corner, w), a, left, scale, b);
-            vf_store(colour[c] + x, b);
+            hex_store_blend(f->far ? vm_or(is_near, is_far) : is_near, b, colour[c] + x);
         }
     }
 }
