@@ -132,9 +132,9 @@ static void measure(struct hf_setup *s, const struct hf_counts *found)
     s->reach_x = s->reach_y = 0;
     for (int field = 0; field < 2; field++) {
         set_reach(t, field);
-        // A level's own pixels, and one around it for the tent and one for the upsampling.
-        s->reach_x = hf_max(s->reach_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 2));
-        s->reach_y = hf_max(s->reach_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 2));
+        // A level's own pixels, and one around it for the upsampling, one for the tent and one for its radii.
+        s->reach_x = hf_max(s->reach_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
+        s->reach_y = hf_max(s->reach_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
     }
 }
 
@@ -192,9 +192,9 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     const struct hf_scatter *t = s->tables;
-    const int enough = hf_min(4 * s->reach_y, s->half_height / 2);
+    const int enough = hf_min(12 * s->reach_y, (s->half_height + 1) / 2);
     (void)sweep;
-    *height = hf_max(*height, hf_min(enough, 256));
+    *height = hf_max(*height, hf_min(enough, 512));
     for (int field = 0; t && field < 2; field++) {
         const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8); // bytes, of a half-resolution one
         if (t->reach_x[field][1] < 0)

@@ -44,6 +44,7 @@ void HF_INIT(struct hf_kernels *k)
     k->list_row = list_row_simd;
     k->settle = settle_simd;
     k->quad_row = quad_row_simd;
+    k->site_row = site_row_simd;
     k->tent_weights = tent_weights_simd;
     k->tent = tent_simd;
     k->mean_row = mean_row_simd;

@@ -31,6 +31,7 @@ hf_source_pictures hf_source_pictures_c;
 hf_list_row hf_list_row_c;
 hf_settle hf_settle_c;
 hf_quad_row hf_quad_row_c;
+hf_site_row hf_site_row_c;
 hf_tent_weights hf_tent_weights_c;
 hf_tent hf_tent_c;
 hf_mean_row hf_mean_row_c;

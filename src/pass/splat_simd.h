@@ -25,11 +25,12 @@ HF_INLINE int splat_has(const struct hf_sums *s, int y)
     return y >= s->y0 && y < s->y1;
 }
 
-// Rows `first` to `last` above and below one source. clip: the window may not hold all of them.
-HF_INLINE void splat_rows(const struct hf_sums *s, const int32_t *half, int x, int y, vl unit, int32_t weight,
-                          int first, int last, const int clip)
+// Rows `first` to `last` above and below one source, one: a unit of it times a row's weight. clip: the window may not
+// hold all of them.
+HF_INLINE void splat_rows(const struct hf_sums *s, const int32_t *half, int x, int y, vl one, int first, int last,
+                          const int clip)
 {
-    const vl one = vl_product(unit, vl_set1(weight)), whole = vl_shl8(one);
+    const vl whole = vl_shl8(one);
     const int width = s->x1 - s->x0;
     const ptrdiff_t *row = s->row + (y - s->y0);
     for (int dy = first; dy <= last; dy++) {
@@ -53,12 +54,11 @@ HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, co
                          const int64_t *share, int first, const int clip)
 {
     const vl unit = vl_load(share);
-    splat_rows(s, half, x, y, unit, HF_WHOLE_ROW, first, p->rows - 2, clip);
-    splat_rows(s, half, x, y, unit, p->cap, p->rows - 1, p->rows - 1, clip);
+    splat_rows(s, half, x, y, vl_product(unit, vl_set1(HF_WHOLE_ROW)), first, p->rows - 2, clip);
+    splat_rows(s, half, x, y, vl_product(unit, vl_set1(p->cap)), p->rows - 1, p->rows - 1, clip);
 }
 
-// Four sources side by side whose runs are as long, but for what lies within a pixel: their ends lie side by side too,
-// and five additions do for eight.
+// The ends of four sources' runs that lie side by side: five additions do for eight.
 HF_INLINE void splat_four_row(int64_t *begin, int64_t *end, const vl part[4], const vl rest[4])
 {
     splat_add(begin, part[0]);
@@ -71,44 +71,56 @@ HF_INLINE void splat_four_row(int64_t *begin, int64_t *end, const vl part[4], co
     splat_take(end + 16, part[3]);
 }
 
-// Four sources side by side. Rows of different length are drawn one by one.
+// Rows dy above and below four sources side by side, of weight one[]. Where runs are not as long, but for what lies within
+// a pixel, they are drawn one by one.
+HF_INLINE void splat_four_rows(const struct hf_sums *s, const int32_t *const half[4], int x, int y, int dy,
+                               const vl one[4], const int clip)
+{
+    const int width = s->x1 - s->x0, n = half[0][dy] >> 8;
+    const ptrdiff_t *row = s->row + (y - s->y0);
+    if (((half[0][dy] ^ half[1][dy]) | (half[0][dy] ^ half[2][dy]) | (half[0][dy] ^ half[3][dy])) >> 8) {
+        for (int k = 0; k < 4; k++)
+            splat_rows(s, half[k], x + k, y, one[k], dy, dy, clip);
+        return;
+    }
+    const ptrdiff_t begin = splat_column(x - n, width, 4, clip), end = splat_column(x + n, width, 4, clip);
+    vl part[4], rest[4];
+    for (int k = 0; k < 4; k++) {
+        part[k] = vl_product(one[k], vl_low8(half[k] + dy));
+        rest[k] = vl_sub(vl_shl8(one[k]), part[k]);
+    }
+    for (int side = dy ? 0 : 1; side < 2; side++)
+        if (!clip || splat_has(s, side ? y + dy : y - dy)) {
+            int64_t *lane = s->lane + row[side ? dy : -dy];
+            splat_four_row(lane + begin, lane + end, part, rest);
+        }
+}
+
 HF_INLINE void splat_four(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list, int i,
                           const int clip)
 {
-    const int width = s->x1 - s->x0, x = list->x[i] - s->x0, y = list->y[i];
-    const ptrdiff_t *row = s->row + (y - s->y0);
+    const int x = list->x[i] - s->x0, y = list->y[i];
     const struct hf_picture *p[4];
     const int32_t *half[4];
-    vl one[4], whole[4];
-    int rows = 1 << 30;
+    vl one[4];
+    int rows = 1 << 30, most = 0;
     for (int k = 0; k < 4; k++) {
         p[k] = &a->picture[list->picture[i + k]];
         half[k] = a->half + p[k]->first;
         one[k] = vl_product(vl_load(list->share[i + k]), vl_set1(HF_WHOLE_ROW));
-        whole[k] = vl_shl8(one[k]);
-        rows = hf_min(rows, p[k]->rows - 1);
+        rows = hf_min(rows, p[k]->rows);
+        most = hf_max(most, p[k]->rows);
     }
-    for (int dy = 0; dy < rows; dy++) {
-        const int n = half[0][dy] >> 8;
-        if (((half[0][dy] ^ half[1][dy]) | (half[0][dy] ^ half[2][dy]) | (half[0][dy] ^ half[3][dy])) >> 8) {
-            for (int k = 0; k < 4; k++)
-                splat_rows(s, half[k], x + k, y, vl_load(list->share[i + k]), HF_WHOLE_ROW, dy, dy, clip);
-            continue;
-        }
-        const ptrdiff_t begin = splat_column(x - n, width, 4, clip), end = splat_column(x + n, width, 4, clip);
-        vl part[4], rest[4];
-        for (int k = 0; k < 4; k++) {
-            part[k] = vl_product(one[k], vl_low8(half[k] + dy));
-            rest[k] = vl_sub(whole[k], part[k]);
-        }
-        for (int side = dy ? 0 : 1; side < 2; side++)
-            if (!clip || splat_has(s, side ? y + dy : y - dy)) {
-                int64_t *lane = s->lane + row[side ? dy : -dy];
-                splat_four_row(lane + begin, lane + end, part, rest);
-            }
+    for (int dy = 0; dy < rows - 1; dy++)
+        splat_four_rows(s, half, x, y, dy, one, clip);
+    if (rows == most) {
+        for (int k = 0; k < 4; k++)
+            one[k] = vl_product(vl_load(list->share[i + k]), vl_set1(p[k]->cap));
+        splat_four_rows(s, half, x, y, rows - 1, one, clip);
+        return;
     }
     for (int k = 0; k < 4; k++)
-        splat_one(s, p[k], half[k], x + k, y, list->share[i + k], rows, clip);
+        splat_one(s, p[k], half[k], x + k, y, list->share[i + k], rows - 1, clip);
 }
 
 // How many sources side by side begin with source i, 4 or 1; *picture is the largest of theirs.

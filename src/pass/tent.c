@@ -1,46 +1,94 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: sources of half resolution. Each is the tent-weighted mean of 4x4 pixels (1 3 3 1), which keeps centroids,
 // where those have like radii; else pixels are drawn one by one, each on the four nearest.
+#include <math.h>
 #include <string.h>
 
 #include "pass/walk.h"
 
-// Radius of a half-resolution pixel whose four have like ones, on this field's side; else 0.
-static float quad_radius(float r0, float r1, float r2, float r3)
+// The radius in the middle of like ones between two positive ones; -1: they are not alike.
+static float middle(float least, float most)
 {
-    const float low0 = r0 < r1 ? r0 : r1, low1 = r2 < r3 ? r2 : r3, least = low0 < low1 ? low0 : low1;
-    const float high0 = r0 > r1 ? r0 : r1, high1 = r2 > r3 ? r2 : r3, most = high0 > high1 ? high0 : high1;
-    return least > 0 && most - least <= 0.5f + least * (1 / 32.0f) ? 0.25f * ((r0 + r1) + (r2 + r3)) : 0;
+    return most - least <= 0.5f + least * (1 / 32.0f) ? 0.5f * (least + most) : -1;
+}
+
+// Radius of a half-resolution pixel: of those of its four that are in the field. 0: none is; -1: they are not alike.
+static float quad_radius(const float r[4])
+{
+    float least = INFINITY, most = 0;
+    for (int i = 0; i < 4; i++) {
+        if (!(r[i] > 0))
+            continue;
+        least = r[i] < least ? r[i] : least;
+        most = r[i] > most ? r[i] : most;
+    }
+    return most > 0 ? middle(least, most) : 0;
 }
 
 void hf_quad_row_c(const float *above, const float *below, int n, float sign, float *out)
 {
-    for (int i = 0; i < n; i++)
-        out[i] =
-            quad_radius(sign * above[2 * i], sign * above[2 * i + 1], sign * below[2 * i], sign * below[2 * i + 1]);
+    for (int i = 0; i < n; i++) {
+        const float r[4] = {sign * above[2 * i], sign * above[2 * i + 1], sign * below[2 * i], sign * below[2 * i + 1]};
+        out[i] = quad_radius(r);
+    }
 }
 
+// A row of quads, and nothing beyond the frame.
 static void quad_row(struct walk *w, int q)
 {
     const struct hf_setup *s = w->f->s;
     const float sign = w->field ? 1 : -1;
-    const int n = w->tent_x1 - w->tent_x0;
-    const float *a = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * w->tent_x0, 2 * q);
-    const float *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * w->tent_x0, hf_min(2 * q + 1, s->height - 1));
-    float *out = w->quad[q & 3];
-    const int odd_edge = 2 * w->tent_x1 > s->width;
+    const int x0 = hf_max(w->tent_x0 - 1, 0), x1 = hf_min(w->tent_x1 + 1, s->half_width), n = x1 - x0;
+    const float *a = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * x0, 2 * q);
+    const float *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * x0, hf_min(2 * q + 1, s->height - 1));
+    float *out = w->quad[q & 3] + (x0 - w->tent_x0);
+    const int odd_edge = 2 * x1 > s->width;
     w->f->k->quad_row(a, b, n - odd_edge, sign, out);
-    if (odd_edge)
-        out[n - 1] = quad_radius(sign * a[2 * n - 2], sign * a[2 * n - 2], sign * b[2 * n - 2], sign * b[2 * n - 2]);
+    if (odd_edge) {
+        const float r[4] = {sign * a[2 * n - 2], sign * a[2 * n - 2], sign * b[2 * n - 2], sign * b[2 * n - 2]};
+        out[n - 1] = quad_radius(r);
+    }
+    if (x0 == 0)
+        out[-1] = 0;
+    if (x1 == s->half_width)
+        out[n] = 0;
+}
+
+void hf_site_row_c(const float *const quad[3], int n, float *out)
+{
+    for (int i = 0; i < n; i++) {
+        float least = INFINITY, most = 0;
+        for (int k = 0; k < 9; k++) {
+            const float r = quad[k / 3][i + k % 3 - 1];
+            least = r > 0 && r < least ? r : least;
+            most = r > most ? r : most;
+        }
+        const float v = quad[1][i] != 0 ? quad[1][i] : most > 0 ? middle(least, most) : 0;
+        out[i] = v > 0 ? v : 0;
+    }
+}
+
+// Radii of a row of half-resolution sources: that of its quad, or where there is none in the field, as just beside an
+// object, that of the quads around.
+static void site_row(struct walk *w, int q)
+{
+    const int n = w->tent_x1 - w->tent_x0;
+    const float *quad[3];
+    float *out = w->site[q & 3];
+    for (int k = 0; k < 3; k++) {
+        const int row = q + k - 1;
+        quad[k] = row < 0 || row >= w->f->s->half_height ? w->nothing + HF_PAD : w->quad[row & 3];
+    }
+    w->f->k->site_row(quad, n, out);
     out[-1] = out[0];
     out[n] = out[n - 1];
 }
 
 // Is a pixel of radius r > 0 like those of the quad?
-static int alike(float quad, float r)
+static int alike(float site, float r)
 {
-    const float d = quad - r;
-    return quad > 0 && (d < 0 ? -d : d) <= 0.5f + r * (1 / 32.0f);
+    const float d = site - r;
+    return site > 0 && (d < 0 ? -d : d) <= 0.5f + r * (1 / 32.0f);
 }
 
 // Weight of pixel `odd` of half-resolution column i in the half-resolution sums; *merged: as a part of means.
@@ -81,8 +129,8 @@ static struct hf_tent_row tent_row_of(const struct walk *w, int y)
                             .sign = w->field ? 1 : -1,
                             .n = w->tent_x1 - w->tent_x0,
                             .channels = w->group->channels,
-                            .own = w->quad[y >> 1 & 3],
-                            .next = w->quad[hf_beside(y, f->s->half_height) & 3],
+                            .own = w->site[y >> 1 & 3],
+                            .next = w->site[hf_beside(y, f->s->half_height) & 3],
                             .radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 2 * w->tent_x0, y)};
     for (int c = 0; c < t.channels; c++)
         t.colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], 2 * w->tent_x0, y);
@@ -138,20 +186,20 @@ static void list_lone(struct walk *w, int y, int q, float part)
     hf_flush_sources(w);
 }
 
-// Rows of quads up to q + 1 and of tents up to 2 q + 2.
+// Rows of sources up to q + 2 and of tents up to 2 q + 2.
 static void prepare_tents(struct walk *w, int q)
 {
     const struct hf_setup *s = w->f->s;
-    if (w->quads_done < hf_max(q - 1, 0))
-        w->quads_done = hf_max(q - 1, 0);
-    if (w->tents_done < hf_max(2 * q - 1, 0))
-        w->tents_done = hf_max(2 * q - 1, 0);
-    // A row of tents needs quads of up to one row on.
-    while (w->tents_done <= hf_min(2 * q + 2, s->height - 1)) {
-        while (w->quads_done <= hf_min((w->tents_done >> 1) + 1, s->half_height - 1))
+    w->quads_done = hf_max(w->quads_done, hf_max(q - 2, 0));
+    w->sites_done = hf_max(w->sites_done, hf_max(q - 1, 0));
+    w->tents_done = hf_max(w->tents_done, hf_max(2 * q - 1, 0));
+    while (w->sites_done <= hf_min(q + 2, s->half_height - 1)) {
+        while (w->quads_done <= hf_min(w->sites_done + 1, s->half_height - 1))
             quad_row(w, w->quads_done++);
-        tent_row(w, w->tents_done++);
+        site_row(w, w->sites_done++);
     }
+    while (w->tents_done <= hf_min(2 * q + 2, s->height - 1))
+        tent_row(w, w->tents_done++);
 }
 
 void hf_mean_row_c(const float *const tent[4], const float part[4], int n, float *out)
@@ -180,7 +228,7 @@ void hf_list_half(struct walk *w, int q)
     hf_walk_columns(w, &x0, &x1);
     prepare_tents(w, q);
     set_parts(w->f->s, q, row, part);
-    struct hf_source_row r = {.x = x0, .y = q, .weight = w->mean[3], .radius = w->quad[q & 3] + x0 - w->tent_x0,
+    struct hf_source_row r = {.x = x0, .y = q, .weight = w->mean[3], .radius = w->site[q & 3] + x0 - w->tent_x0,
                               .scale = 0.5f * w->group->factor[w->field], .picture = (int32_t *)w->mean[4]};
     for (int c = 0; c < 4; c++) {
         const float *tent[4];
@@ -207,11 +255,11 @@ int hf_tent_columns(const struct hf_scatter *t, int field, int width)
 
 void hf_tent_start(struct walk *w, float *memory, int length)
 {
-    float **const lines[] = {w->quad, w->tent[0], w->tent[1], w->tent[2], w->tent[3], w->pixel[0], w->pixel[1], w->mean};
+    float **const lines[] = {w->quad, w->site, w->tent[0], w->tent[1], w->tent[2], w->tent[3], w->pixel[0], w->pixel[1], w->mean};
     const int reach = w->t->reach_x[w->field][1];
     w->tent_x0 = hf_max(w->sums.x0 - reach - 1, 0);
     w->tent_x1 = hf_min(w->sums.x1 + reach + 1, w->f->s->half_width);
-    w->quads_done = w->tents_done = 0;
+    w->quads_done = w->sites_done = w->tents_done = 0;
     memory += HF_PAD;
     for (int i = 0; i < HF_TENT_LINES - 1; i++, memory += length)
         lines[i >> 2][i & 3] = memory;

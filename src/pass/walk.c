@@ -51,11 +51,11 @@ static size_t whole_lines(size_t floats)
     return (floats + 15) & ~(size_t)15;
 }
 
-// Lanes of a row of sums. Rows lie 5 lines of the cache further on each, so that the ends of a picture's do not share
+// Lanes of a row of sums. Rows lie 9 lines of the cache further on each, so that the ends of a picture's do not share
 // its sets.
 static int stride_of(int width)
 {
-    enum { PAGE = 4096 / sizeof(int64_t), STEP = 5 * 64 / sizeof(int64_t) };
+    enum { PAGE = 4096 / sizeof(int64_t), STEP = 9 * 64 / sizeof(int64_t) };
     const int lanes = 4 * (width + 2 * HF_SUMS_MARGIN);
     return lanes + (int)((unsigned)(STEP - lanes) % PAGE);
 }
