@@ -184,7 +184,8 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
     size_t rows = 0;
     for (int i = 0; i < a->count; i++)
         rows += (size_t)rows_of(hf_picture_radius(i));
-    const int err = hf_block_grow(&a->block, (size_t)a->count * (sizeof *a->picture + sizeof *a->inverse) + rows * row, mem);
+    const size_t picture = sizeof *a->picture + sizeof *a->inverse;
+    const int err = hf_block_grow(&a->block, (size_t)a->count * picture + rows * row, mem);
     if (err) {
         a->count = 0;
         return err;

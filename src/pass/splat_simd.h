@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows above
-// and below a source have the same run: each product serves both.
+// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows
+// above and below a source have the same run: each product serves both.
 
-// Column of a run's end, in lanes. clip: it may lie outside the window; then it comes to lie in the margins, with `more`
-// pixels after it.
+// Column of a run's end, in lanes. clip: it may lie outside the window; then it comes to lie in the margins, with
+// `more` pixels after it.
 HF_INLINE ptrdiff_t splat_column(int x, int width, int more, const int clip)
 {
     return 4 * (ptrdiff_t)(clip ? hf_max(hf_min(x, width), -1 - more) : x);
@@ -71,8 +71,8 @@ HF_INLINE void splat_four_row(int64_t *begin, int64_t *end, const vl part[4], co
     splat_take(end + 16, part[3]);
 }
 
-// Rows dy above and below four sources side by side, of weight one[]. Where runs are not as long, but for what lies within
-// a pixel, they are drawn one by one.
+// Rows dy above and below four sources side by side, of weight one[]. Where runs are not as long, but for what lies
+// within a pixel, they are drawn one by one.
 HF_INLINE void splat_four_rows(const struct hf_sums *s, const int32_t *const half[4], int x, int y, int dy,
                                const vl one[4], const int clip)
 {

@@ -208,8 +208,8 @@ void hf_mean_row_c(const float *const tent[4], const float part[4], int n, float
         out[i] = 0.5f * ((part[0] * tent[0][i] + part[3] * tent[3][i]) + (part[1] * tent[1][i] + part[2] * tent[2][i]));
 }
 
-// What of full-resolution rows 2q - 1 .. 2q + 2 goes to row q; what a tent would put outside the frame stays in its last
-// row.
+// What of full-resolution rows 2q - 1 .. 2q + 2 goes to row q; what a tent would put outside the frame stays in its
+// last row.
 static void set_parts(const struct hf_setup *s, int q, int row[4], float part[4])
 {
     static const float parts[4] = {0.25f, 0.75f, 0.75f, 0.25f};
@@ -255,7 +255,8 @@ int hf_tent_columns(const struct hf_scatter *t, int field, int width)
 
 void hf_tent_start(struct walk *w, float *memory, int length)
 {
-    float **const lines[] = {w->quad, w->site, w->tent[0], w->tent[1], w->tent[2], w->tent[3], w->pixel[0], w->pixel[1], w->mean};
+    float **const lines[] = {w->quad,    w->site,     w->tent[0],  w->tent[1], w->tent[2],
+                             w->tent[3], w->pixel[0], w->pixel[1], w->mean};
     const int reach = w->t->reach_x[w->field][1];
     w->tent_x0 = hf_max(w->sums.x0 - reach - 1, 0);
     w->tent_x1 = hf_min(w->sums.x1 + reach + 1, w->f->s->half_width);
