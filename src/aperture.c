@@ -184,13 +184,15 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
     size_t rows = 0;
     for (int i = 0; i < a->count; i++)
         rows += (size_t)rows_of(hf_picture_radius(i));
-    const int err = hf_block_grow(&a->block, (size_t)a->count * sizeof *a->picture + rows * row, mem);
+    const size_t picture = sizeof *a->picture + sizeof *a->inverse;
+    const int err = hf_block_grow(&a->block, (size_t)a->count * picture + rows * row, mem);
     if (err) {
         a->count = 0;
         return err;
     }
     a->picture = a->block.data;
-    a->half = (int32_t *)(a->picture + a->count);
+    a->inverse = (float *)(a->picture + a->count);
+    a->half = (int32_t *)(a->inverse + a->count);
     a->run = (struct hf_run *)a->half;
     struct side side[16];
     const int sides = key->blades ? make_sides(side, key) : 0;
@@ -201,6 +203,7 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
             build_polygon(a, side, sides, i, first);
         else
             build_runs_of_disc(a, i, first);
+        a->inverse[i] = 1 / a->picture[i].area;
         first += (a->symmetric ? 1 : 2) * rows_of(hf_picture_radius(i));
     }
     return HF_OK;

@@ -42,6 +42,7 @@ struct hf_aperture {
     int count;
     int headroom; // bits by which sums may exceed the largest sample
     struct hf_picture *picture;
+    float *inverse;     // shapes: 1 / area of each picture
     int32_t *half;      // symmetric: half a row's width plus half a pixel, 1/256 pixel
     struct hf_run *run; // outlines
     int16_t *tap;       // images: differences of weights along each row

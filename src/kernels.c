@@ -43,8 +43,12 @@ void hf_kernels_c(struct hf_kernels *k)
     k->splat = hf_splat_c;
     k->splat_runs = hf_splat_runs_c;
     k->splat_taps = hf_splat_taps_c;
+    k->source_weights = hf_source_weights_c;
+    k->source_pictures = hf_source_pictures_c;
+    k->list_row = hf_list_row_c;
     k->settle = hf_settle_c;
     k->quad_row = hf_quad_row_c;
+    k->site_row = hf_site_row_c;
     k->tent_weights = hf_tent_weights_c;
     k->tent = hf_tent_c;
     k->mean_row = hf_mean_row_c;

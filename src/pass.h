@@ -134,7 +134,18 @@ typedef void hf_splat_runs(const struct hf_sums *s, int x, int y, const struct h
 // An image's rows from (x, y) on, as differences.
 typedef void hf_splat_taps(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
                            const int64_t share[4]);
-// A finished row of n pixels of sums: integrated, scaled, split into planes (lane 3, the weight, to out[3]), and zeroed.
+struct hf_scatter;
+struct hf_source_row;
+// Scatter: weights of n pixels in a field at full resolution, out[3], and their weighted colours. sign: of its radii.
+typedef void hf_source_weights(const struct hf_scatter *t, float sign, const float *radius, const float *const colour[3],
+                               int channels, int n, float *const out[4]);
+// Numbers of the pictures of n sources, -1 where weight or radius is not positive.
+typedef void hf_source_pictures(const float *radius, const float *weight, float scale, int n, int32_t *out);
+// Sources `from` to `to` of a row go to the list, which has room. inverse: 1 / area of each picture.
+typedef void hf_list_row(struct hf_splats *list, const struct hf_source_row *row, int from, int to,
+                         const float *inverse, const double scale[4]);
+// A finished row of n pixels of sums, and its margins: integrated, scaled, split into planes (lane 3, the weight, to
+// out[3]), and zeroed.
 typedef void hf_settle(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4]);
 
 struct hf_scatter_row;
@@ -144,8 +155,11 @@ typedef void hf_scatter_note(const float *radius, float *const colour[4], int ch
 // Put the fields over and under a row of pixels.
 typedef void hf_scatter_blend(const struct hf_scatter_row *row, float *out);
 struct hf_tent_row;
-// Radii of n half-resolution pixels that have four like ones, else 0; from two rows of 2n.
+// Radii of n half-resolution pixels from two rows of 2n: 0 where none of the four is in the field, -1 where those that
+// are differ.
 typedef void hf_quad_row(const float *above, const float *below, int n, float sign, float *out);
+// The same of n half-resolution sources, 0 for none, from three rows of quads; these from -1 to n.
+typedef void hf_site_row(const float *const quad[3], int n, float *out);
 // Weights and weighted colours of a row's pixels from column `first` on; returns whether some are no part of a mean.
 typedef int hf_tent_weights(const struct hf_tent_row *t, int first);
 // Means over 1 3 3 1 in eighths, of even and odd pixels; even up to n and odd from -1 on.
@@ -169,8 +183,12 @@ struct hf_kernels {
     hf_splat *splat;
     hf_splat_runs *splat_runs;
     hf_splat_taps *splat_taps;
+    hf_source_weights *source_weights;
+    hf_source_pictures *source_pictures;
+    hf_list_row *list_row;
     hf_settle *settle;
     hf_quad_row *quad_row;
+    hf_site_row *site_row;
     hf_tent_weights *tent_weights;
     hf_tent *tent;
     hf_mean_row *mean_row;

@@ -58,6 +58,12 @@ static inline float hf_half_part(const struct hf_scatter *t, float r)
     return hf_saturate((r - t->half_from) * t->half_slope);
 }
 
+// What of a pixel's radius, positive on the side of the field, is drawn in it, both levels together.
+static inline float hf_field_weight(const struct hf_scatter *t, int field, float r)
+{
+    return r > 0 ? field ? 1 : 1 - hf_own_part(t, r) : 0;
+}
+
 // Floats of scratch that the splats of such a cell need, half-resolution pixels.
 size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height);
 
@@ -85,15 +91,26 @@ struct hf_splats {
     int count;
     int32_t x[HF_SPLATS], y[HF_SPLATS]; // the level's pixels
     int32_t picture[HF_SPLATS];
-    _Alignas(64) int64_t share[HF_SPLATS][4]; // of each lane for 1 unit of weight
+    _Alignas(64) int64_t share[HF_SPLATS + 4][4]; // of each lane for 1 unit of weight
 };
 
-// A window of sums: differences along x, four lanes a pixel: three channels and the weight.
+// A row of sources, the level's pixels from column x on.
+struct hf_source_row {
+    int x, y;
+    const float *colour[3], *weight; // colours are weighted
+    const float *radius;             // times scale: of the picture
+    float scale;
+    const int32_t *picture; // its number; -1: no source
+};
+
+// A window of sums: differences along x, four lanes a pixel: three channels and the weight. A row has pixels to spare
+// before and after it, where all that begins or ends outside may come together.
+enum { HF_SUMS_MARGIN = 8 };
+
 struct hf_sums {
     int64_t *lane;
-    ptrdiff_t *row; // where each row y0.. of the window starts; rows are used again when they are settled
+    ptrdiff_t *row; // where pixel x0 of each row y0.. of the window is; rows are used again when they are settled
     int x0, y0, x1, y1;
-    int stride;
 };
 
 #endif

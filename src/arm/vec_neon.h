@@ -170,14 +170,28 @@ static inline vl vl_add(vl a, vl b) { return (vl){vaddq_s64(a.a, b.a), vaddq_s64
 static inline vl vl_sub(vl a, vl b) { return (vl){vsubq_s64(a.a, b.a), vsubq_s64(a.b, b.b)}; }
 static inline vl vl_shl8(vl a) { return (vl){vshlq_n_s64(a.a, 8), vshlq_n_s64(a.b, 8)}; }
 
-static inline int64x2_t vl_times_half(int64x2_t a, uint32_t b)
+static inline int64x2_t vl_product_half(int64x2_t a, int64x2_t b)
 {
-    const uint64x2_t u = vreinterpretq_u64_s64(a), high = vmull_n_u32(vshrn_n_u64(u, 32), b);
-    return vreinterpretq_s64_u64(vaddq_u64(vmull_n_u32(vmovn_u64(u), b), vshlq_n_u64(high, 32)));
+    const uint64x2_t u = vreinterpretq_u64_s64(a);
+    const uint32x2_t m = vmovn_u64(vreinterpretq_u64_s64(b));
+    const uint64x2_t high = vmull_u32(vshrn_n_u64(u, 32), m);
+    return vreinterpretq_s64_u64(vaddq_u64(vmull_u32(vmovn_u64(u), m), vshlq_n_u64(high, 32)));
 }
 
-// a * b for any a, low 64 bits.
-static inline vl vl_times(vl a, uint32_t b) { return (vl){vl_times_half(a.a, b), vl_times_half(a.b, b)}; }
+// a * b for any a and b of 0 to 2^32 - 1, low 64 bits.
+static inline vl vl_product(vl a, vl b) { return (vl){vl_product_half(a.a, b.a), vl_product_half(a.b, b.b)}; }
+// The low 8 bits of *p, in every lane.
+static inline vl vl_low8(const int32_t *p) { return vl_set1(*p & 255); }
+static inline v4 v4_load(const float *p) { return vld1q_f32(p); }
+static inline v4 v4_mul(v4 a, v4 b) { return vmulq_f32(a, b); }
+
+// Times a scale, cut to integers.
+static inline vl vl_from(v4 a, const double scale[4])
+{
+    return (vl){vcvtq_s64_f64(vmulq_f64(vcvt_f64_f32(vget_low_f32(a)), vld1q_f64(scale))),
+                vcvtq_s64_f64(vmulq_f64(vcvt_high_f64_f32(a), vld1q_f64(scale + 2)))};
+}
+
 // As floats, each times its scale.
 static inline v4 vl_scaled(vl a, const double scale[4])
 {

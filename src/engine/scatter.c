@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scatter: B. Wronski, "Bokeh depth of field - going insane! part 1", 2014. Every blurred pixel becomes the
-// picture of
-// the aperture. Near and far are summed apart, each is divided by its weights, and they are put together back to front:
-// far, the pixels in focus, near. The near one's sum of weights, 1 inside a large object and less across its
+// The scatter: B. Wronski, "Bokeh depth of field - going insane! part 1", 2014. Every blurred pixel becomes the picture
+// of the aperture. Near and far are summed apart, each is divided by its weights, and they are put together back to
+// front: far, the pixels in focus, near. The near one's sum of weights, 1 inside a large object and less across its
 // silhouette, is its coverage: so it melts into what is behind.
 //
-// Cost of a blurred pixel of radius r: a disc takes 4 (2 r + 1) additions of four 64-bit lanes, 2.5 (2 r + 1) where
-// four
-// side by side have the same radius to 0.4 %; a polygon or a cat's eye as many and four products a row; a ring twice
-// that; a picture from a file 4 r^2. From radius 24 to 28 on (8 to 12 for files) at half the resolution: half the
-// rows for
-// a quarter of the pixels, where neighbours have like radii. Alpha that is not 1 doubles all of it, chromatic
-// aberration
-// and coloured pictures take it three times. What lies far off a cell is looked at, not drawn.
+// Cost of a blurred pixel of radius r, in additions of four 64-bit lanes (OPTIMISATION.md has the times):
+//     disc         4 (2 r + 1); 2.5 (2 r + 1) where four side by side have rows equally long to a pixel
+//     polygon      4 (2 r + 1), and three products a row for one
+//     ring of R    1 + R times its outline
+//     cat's eye    as a polygon, and a square root and two conversions a row
+//     file         4 r^2, for each channel if it is coloured
+// From radius 24 to 28 on (8 to 12 for files) at half the resolution, where neighbours have like radii: a quarter of
+// the sources and half the rows of each, an eighth in all (a sixteenth for files). Alpha that is not 1 doubles all of
+// it, chromatic aberration takes it three times. What lies far off a cell is looked at, not drawn.
 #include "scatter.h"
 
 #include <math.h>
@@ -132,9 +132,9 @@ static void measure(struct hf_setup *s, const struct hf_counts *found)
     s->reach_x = s->reach_y = 0;
     for (int field = 0; field < 2; field++) {
         set_reach(t, field);
-        // A level's own pixels, and one around it for the tent and one for the upsampling.
-        s->reach_x = hf_max(s->reach_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 2));
-        s->reach_y = hf_max(s->reach_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 2));
+        // A level's own pixels, and one around it for the upsampling, one for the tent and one for its radii.
+        s->reach_x = hf_max(s->reach_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
+        s->reach_y = hf_max(s->reach_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
     }
 }
 
@@ -186,15 +186,14 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return needs ? HF_FIELDS : 0;
 }
 
-// Cells large against the reach, for what lies around a cell is looked at twice; and narrow enough for the rows of
-// sums that
-// are being drawn on, 32 bytes a pixel, to stay in the second level of the cache.
+// Cells large against the reach, for what lies around a cell is looked at twice; and narrow enough for the rows of sums
+// that are being drawn on, 32 bytes a pixel, to stay in the second level of the cache.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     const struct hf_scatter *t = s->tables;
-    const int enough = hf_min(4 * s->reach_y, s->half_height / 2);
+    const int enough = hf_min(12 * s->reach_y, (s->half_height + 1) / 2);
     (void)sweep;
-    *height = hf_max(*height, hf_min(enough, 256));
+    *height = hf_max(*height, hf_min(enough, 512));
     for (int field = 0; t && field < 2; field++) {
         const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8); // bytes, of a half-resolution one
         if (t->reach_x[field][1] < 0)

@@ -17,6 +17,7 @@
 #include "pass/hexagon_simd.h"
 #include "pass/hexagon_ends_simd.h"
 #include "pass/scatter_simd.h"
+#include "pass/source_simd.h"
 #include "pass/splat_simd.h"
 #include "pass/tent_simd.h"
 
@@ -39,8 +40,12 @@ void HF_INIT(struct hf_kernels *k)
     k->splat = splat_simd;
     k->splat_runs = splat_runs_simd;
     k->splat_taps = splat_taps_simd;
+    k->source_weights = source_weights_simd;
+    k->source_pictures = source_pictures_simd;
+    k->list_row = list_row_simd;
     k->settle = settle_simd;
     k->quad_row = quad_row_simd;
+    k->site_row = site_row_simd;
     k->tent_weights = tent_weights_simd;
     k->tent = tent_simd;
     k->mean_row = mean_row_simd;

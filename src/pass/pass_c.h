@@ -27,8 +27,12 @@ hf_kernel hf_scatter_prepare_c, hf_splat_far, hf_splat_near, hf_scatter_composit
 hf_splat hf_splat_c;
 hf_splat_runs hf_splat_runs_c;
 hf_splat_taps hf_splat_taps_c;
+hf_source_weights hf_source_weights_c;
+hf_source_pictures hf_source_pictures_c;
+hf_list_row hf_list_row_c;
 hf_settle hf_settle_c;
 hf_quad_row hf_quad_row_c;
+hf_site_row hf_site_row_c;
 hf_tent_weights hf_tent_weights_c;
 hf_tent hf_tent_c;
 hf_mean_row hf_mean_row_c;

@@ -79,11 +79,11 @@ void hf_splat_c(const struct hf_sums *s, const struct hf_aperture *a, const stru
 void hf_settle_c(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4])
 {
     uint64_t sum[4] = {0};
-    for (int x = 0; x < n; x++)
+    for (int x = -HF_SUMS_MARGIN; x < n; x++)
         for (int c = 0; c < 4; c++) {
             sum[c] += (uint64_t)lane[4 * x + c];
-            if (c < channels || c == 3)
+            if (x >= 0 && (c < channels || c == 3))
                 out[c][x] = (float)((double)(int64_t)sum[c] * unscale[c]);
         }
-    memset(lane, 0, sizeof *lane * 4 * (size_t)(n + 2));
+    memset(lane - 4 * HF_SUMS_MARGIN, 0, sizeof *lane * 4 * (size_t)(n + 2 * HF_SUMS_MARGIN));
 }

@@ -1,20 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: the half-resolution means on vectors. Nothing is fused: what is alike has one answer everywhere.
 
+// Smallest and largest of the positive ones so far.
+HF_INLINE void tent_range(vf r, vf *least, vf *most)
+{
+    *least = vf_select(vf_gt(r, vf_zero()), vf_min(r, *least), *least);
+    *most = vf_max(r, *most);
+}
+
+// In the middle between the two; -1: they are not alike; 0: there are none.
+HF_INLINE vf tent_middle(vf least, vf most)
+{
+    const vf bound = vf_add(vf_set1(0.5f), vf_mul(least, vf_set1(1 / 32.0f)));
+    const vf v = vf_select(vf_le(vf_sub(most, least), bound), vf_mul(vf_set1(0.5f), vf_add(least, most)), vf_set1(-1));
+    return vf_keep(vf_gt(most, vf_zero()), v);
+}
+
 static void quad_row_simd(const float *above, const float *below, int n, float sign, float *out)
 {
     const vf s = vf_set1(sign);
     for (int i = 0; i < n; i += VF_N) {
-        vf r[4];
+        vf r[4], least = vf_set1(__builtin_inff()), most = vf_zero();
         vf_unzip(vf_load(above + 2 * i), vf_load(above + 2 * i + VF_N), &r[0], &r[1]);
         vf_unzip(vf_load(below + 2 * i), vf_load(below + 2 * i + VF_N), &r[2], &r[3]);
         for (int k = 0; k < 4; k++)
-            r[k] = vf_mul(s, r[k]);
-        const vf least = vf_min(vf_min(r[0], r[1]), vf_min(r[2], r[3]));
-        const vf most = vf_max(vf_max(r[0], r[1]), vf_max(r[2], r[3]));
-        const vf bound = vf_add(vf_set1(0.5f), vf_mul(least, vf_set1(1 / 32.0f)));
-        const vm like = vm_and(vf_gt(least, vf_zero()), vf_le(vf_sub(most, least), bound));
-        vf_store(out + i, vf_keep(like, vf_mul(vf_set1(0.25f), vf_add(vf_add(r[0], r[1]), vf_add(r[2], r[3])))));
+            tent_range(vf_mul(s, r[k]), &least, &most);
+        vf_store(out + i, tent_middle(least, most));
+    }
+}
+
+static void site_row_simd(const float *const quad[3], int n, float *out)
+{
+    for (int i = 0; i < n; i += VF_N) {
+        vf own = vf_load(quad[1] + i);
+        if (vm_any(vf_eq(own, vf_zero()))) {
+            vf least = vf_set1(__builtin_inff()), most = vf_zero();
+            for (int k = 0; k < 9; k++)
+                tent_range(vf_load(quad[k / 3] + i + k % 3 - 1), &least, &most);
+            own = vf_select(vf_eq(own, vf_zero()), tent_middle(least, most), own);
+        }
+        vf_store(out + i, vf_max(own, vf_zero()));
     }
 }
 

@@ -40,12 +40,40 @@ static inline vl vl_shl8(vl a)
 {
     return _mm256_slli_epi64(a, 8);
 }
-// a * b for any a, low 64 bits.
-static inline vl vl_times(vl a, uint32_t b)
+// a * b for any a and b of 0 to 2^32 - 1, low 64 bits.
+static inline vl vl_product(vl a, vl b)
 {
-    const vl m = _mm256_set1_epi64x(b);
-    return _mm256_add_epi64(_mm256_mul_epu32(a, m),
-                            _mm256_slli_epi64(_mm256_mul_epu32(_mm256_srli_epi64(a, 32), m), 32));
+#if defined __AVX512DQ__ && defined __AVX512VL__
+    return _mm256_mullo_epi64(a, b);
+#else
+    return _mm256_add_epi64(_mm256_mul_epu32(a, b),
+                            _mm256_slli_epi64(_mm256_mul_epu32(_mm256_srli_epi64(a, 32), b), 32));
+#endif
+}
+// The low 8 bits of *p, in every lane.
+static inline vl vl_low8(const int32_t *p)
+{
+    return _mm256_and_si256(_mm256_set1_epi32(*p), _mm256_set1_epi64x(255));
+}
+static inline v4 v4_load(const float *p)
+{
+    return _mm_loadu_ps(p);
+}
+static inline v4 v4_mul(v4 a, v4 b)
+{
+    return _mm_mul_ps(a, b);
+}
+// Times a scale, cut to integers.
+static inline vl vl_from(v4 a, const double scale[4])
+{
+    const __m256d d = _mm256_mul_pd(_mm256_cvtps_pd(a), _mm256_loadu_pd(scale));
+#if defined __AVX512DQ__ && defined __AVX512VL__
+    return _mm256_cvttpd_epi64(d);
+#else
+    const __m128d low = _mm256_castpd256_pd128(d), high = _mm256_extractf128_pd(d, 1);
+    return _mm256_set_epi64x(_mm_cvttsd_si64(_mm_unpackhi_pd(high, high)), _mm_cvttsd_si64(high),
+                             _mm_cvttsd_si64(_mm_unpackhi_pd(low, low)), _mm_cvttsd_si64(low));
+#endif
 }
 
 // As floats, each times its scale. The integer's upper part, made a double by its exponent's bits, and its lower 48 bits

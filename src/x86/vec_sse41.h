@@ -159,16 +159,28 @@ static inline vl vl_add(vl a, vl b) { return (vl){_mm_add_epi64(a.a, b.a), _mm_a
 static inline vl vl_sub(vl a, vl b) { return (vl){_mm_sub_epi64(a.a, b.a), _mm_sub_epi64(a.b, b.b)}; }
 static inline vl vl_shl8(vl a) { return (vl){_mm_slli_epi64(a.a, 8), _mm_slli_epi64(a.b, 8)}; }
 
-static inline __m128i vl_times_half(__m128i a, __m128i m)
+static inline __m128i vl_product_half(__m128i a, __m128i m)
 {
     return _mm_add_epi64(_mm_mul_epu32(a, m), _mm_slli_epi64(_mm_mul_epu32(_mm_srli_epi64(a, 32), m), 32));
 }
 
-// a * b for any a, low 64 bits.
-static inline vl vl_times(vl a, uint32_t b)
+// a * b for any a and b of 0 to 2^32 - 1, low 64 bits.
+static inline vl vl_product(vl a, vl b) { return (vl){vl_product_half(a.a, b.a), vl_product_half(a.b, b.b)}; }
+// The low 8 bits of *p, in every lane.
+static inline vl vl_low8(const int32_t *p) { return vl_set1(*p & 255); }
+static inline v4 v4_load(const float *p) { return _mm_loadu_ps(p); }
+static inline v4 v4_mul(v4 a, v4 b) { return _mm_mul_ps(a, b); }
+
+static inline __m128i vl_from_half(__m128d d)
 {
-    const __m128i m = _mm_set1_epi64x(b);
-    return (vl){vl_times_half(a.a, m), vl_times_half(a.b, m)};
+    return _mm_set_epi64x(_mm_cvttsd_si64(_mm_unpackhi_pd(d, d)), _mm_cvttsd_si64(d));
+}
+
+// Times a scale, cut to integers.
+static inline vl vl_from(v4 a, const double scale[4])
+{
+    return (vl){vl_from_half(_mm_mul_pd(_mm_cvtps_pd(a), _mm_loadu_pd(scale))),
+                vl_from_half(_mm_mul_pd(_mm_cvtps_pd(_mm_movehl_ps(a, a)), _mm_loadu_pd(scale + 2)))};
 }
 
 // The integer's upper part, made a double by its exponent's bits, and its lower 48 bits are both exact: one rounding, as

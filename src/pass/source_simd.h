@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatter: lists of sources on vectors. Nothing is fused: what is drawn has one answer everywhere.
+
+static void source_weights_simd(const struct hf_scatter *t, float sign, const float *radius,
+                                const float *const colour[3], int channels, int n, float *const out[4])
+{
+    const vf zero = vf_zero(), one = vf_set1(1);
+    for (int i = 0; i < n; i += VF_N) {
+        const vf r = vf_mul(vf_set1(sign), vf_load(radius + i));
+        const vf half = vf_mul(vf_sub(r, vf_set1(t->half_from)), vf_set1(t->half_slope));
+        const vf own = vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope));
+        const vf near = sign > 0 ? one : vf_sub(one, vf_min(vf_max(own, zero), one));
+        const vf weight = vf_mul(vf_keep(vf_gt(r, zero), near), vf_sub(one, vf_min(vf_max(half, zero), one)));
+        vf_store(out[3] + i, weight);
+        for (int c = 0; c < channels; c++)
+            vf_store(out[c] + i, vf_mul(vf_load(colour[c] + i), weight));
+    }
+}
+
+static void source_pictures_simd(const float *radius, const float *weight, float scale, int n, int32_t *out)
+{
+    const vi first = vi_set1(0x3f000000 - (1 << (22 - HF_SIZES_LOG2))), none = vi_set1(-1);
+    for (int i = 0; i < n; i += VF_N) {
+        const vf r = vf_mul(vf_load(radius + i), vf_set1(scale));
+        const vm is = vm_and(vf_gt(r, vf_zero()), vf_gt(vf_load(weight + i), vf_zero()));
+        const vi bits = vi_sub(vf_as_vi(vf_max(r, vf_set1(0.5f))), first);
+        vf_store(out + i, vf_select(is, vi_as_vf(vi_shr(bits, 23 - HF_SIZES_LOG2)), vi_as_vf(none)));
+    }
+}
+
+// Four sources side by side: their colours become rows of lanes.
+HF_INLINE void source_shares(const struct hf_source_row *row, int i, const float *inverse, const double scale[4],
+                             vl share[4])
+{
+    float part[4];
+    for (int k = 0; k < 4; k++)
+        part[k] = inverse[hf_max(row->picture[i + k], 0)];
+    const v4 parts = v4_load(part);
+    v4 v[4] = {v4_mul(v4_load(row->colour[0] + i), parts), v4_mul(v4_load(row->colour[1] + i), parts),
+               v4_mul(v4_load(row->colour[2] + i), parts), v4_mul(v4_load(row->weight + i), parts)};
+    v4_transpose(v);
+    for (int k = 0; k < 4; k++)
+        share[k] = vl_from(v[k], scale);
+}
+
+static void list_row_simd(struct hf_splats *list, const struct hf_source_row *row, int from, int to,
+                          const float *inverse, const double scale[4])
+{
+    int n = list->count;
+    for (int i = from; i < to; i += 4) {
+        const int32_t *p = row->picture + i;
+        vl share[4];
+        if ((p[0] & p[1] & p[2] & p[3]) < 0)
+            continue;
+        source_shares(row, i, inverse, scale, share);
+        for (int k = 0; k < 4; k++) {
+            if (p[k] < 0 || i + k >= to)
+                continue;
+            list->x[n] = row->x + i + k;
+            list->y[n] = row->y;
+            list->picture[n] = p[k];
+            vl_store(list->share[n++], share[k]);
+        }
+    }
+    list->count = n;
+}
