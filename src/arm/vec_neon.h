@@ -37,7 +37,7 @@ static inline vm vf_lt(vf a, vf b) { return vcltq_f32(a, b); }
 static inline vm vf_le(vf a, vf b) { return vcleq_f32(a, b); }
 static inline vm vf_eq(vf a, vf b) { return vceqq_f32(a, b); }
 static inline vm vf_ne(vf a, vf b) { return vmvnq_u32(vceqq_f32(a, b)); }  // true for NaN
-static inline vm vf_unordered(vf a, vf b) { return vm_or(vf_ne(a, a), vf_ne(b, b)); }  // either is NaN
+static inline vm vf_unordered(vf a, vf b) { return vorrq_u32(vf_ne(a, a), vf_ne(b, b)); }  // either is NaN
 static inline vm vm_and(vm a, vm b) { return vandq_u32(a, b); }
 static inline vm vm_or(vm a, vm b) { return vorrq_u32(a, b); }
 static inline vm vm_not(vm a) { return vmvnq_u32(a); }
