@@ -326,6 +326,20 @@ static void effects(struct hf_context *c, const char *isa)
         CHECK_MSG(picture_same_bits(&a, &plain) == (i == 11), "%s: parameter %d has no effect", isa, i);
         picture_free(&a);
     }
+    // With sigma, which is in pixels' heights, their aspect counts; with a lens the radius of full blur.
+    for (int i = 0; i < 4; i++) {
+        struct hf_params one = base, two;
+        one.sigma = i < 2 ? 3.0f : 0;
+        one.model = i < 2 ? base.model : HF_MODEL_LENS;
+        one.f_number = 0.05f;
+        two = one;
+        two.pixel_aspect = i == 0 ? 2 : 1;
+        two.max_radius = i == 2 ? one.max_radius / 4 : one.max_radius;
+        struct picture a = render(c, &s, NULL, &one), b = render(c, &s, NULL, &two);
+        CHECK_MSG(picture_same_bits(&a, &b) == (i % 2 == 1), "%s: case %d has no effect, or one by itself", isa, i);
+        picture_free(&a);
+        picture_free(&b);
+    }
     // The near plane counts when faithful, for what lies before it.
     struct hf_params p = base;
     p.faithful = 1;

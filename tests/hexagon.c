@@ -377,6 +377,34 @@ static void test_parameters(struct rng *rng)
         CHECK_MSG(!picture_same_bits(&out, &base), "parameter %d has no effect", i);
         picture_free(&out);
     }
+    // The limit with a lens, whose radii have none of their own; one that no radius reaches changes nothing.
+    struct hf_params lens = plain;
+    lens.model = HF_MODEL_LENS;
+    lens.f_number = 0.02f;
+    struct picture open[3];
+    for (int i = 0; i < 3; i++) {
+        lens.max_radius = i == 0 ? HF_DERIVE : i == 1 ? 250 : 2;
+        open[i] = rendered(&s.colour, &depth, &lens);
+    }
+    CHECK(picture_same_bits(&open[0], &open[1]));
+    CHECK(!picture_same_bits(&open[0], &open[2]));
+    for (int i = 0; i < 3; i++)
+        picture_free(&open[i]);
+    // What is the default, or belongs to other engines, changes nothing.
+    struct hf_params same[6];
+    for (int i = 0; i < 6; i++)
+        same[i] = plain;
+    same[0].blade_rotation = 0;
+    same[1].pixel_aspect = 1;
+    same[2].blades = 5;
+    same[3].iterations = 7;
+    same[4].sigma = 3;
+    same[5].resolution = HF_RESOLUTION_FULL;
+    for (int i = 0; i < 6; i++) {
+        struct picture out = rendered(&s.colour, &depth, &same[i]);
+        CHECK_MSG(picture_same_bits(&out, &base), "parameter %d has an effect at its default", i);
+        picture_free(&out);
+    }
     // Same shape after a sixth of a turn, but other sides of its bilinear taps; nothing where there is no radius.
     struct hf_params none = plain;
     none.strength = 0;

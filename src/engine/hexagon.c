@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon: two passes of blurs along lines, see pass/hexagon.h. A pixel costs O(largest radius around it) taps.
+// The hexagon: two passes of blurs along lines, see pass/hexagon.h. A pixel costs O(largest radius around it) taps, and
+// with one radius everywhere (uniform) O(radius): a line upwards of one tap a pixel and three slanted ones of some
+// three.
 #include <math.h>
 
 #include "context.h"
@@ -79,9 +81,9 @@ static int tap_count(const struct hf_setup *s, float radius)
 static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
 {
     (void)p;
-    // Four taps to a bilinear one, and one more step. Rows together add to each column, of which there are n + 1 at most,
-    // what is new to each row.
-    const size_t n = (size_t)tap_count(s, s->max_radius), taps = 4 * n + 1, two = taps + n + 1, four = taps + 3 * (n + 1);
+    // Four taps to a bilinear one, and a step to end with. Rows together add one to each of n + 1 columns, or three.
+    const size_t n = (size_t)tap_count(s, s->max_radius), taps = 4 * n + 1;
+    const size_t two = taps + n + 1, four = taps + 3 * (n + 1);
     const size_t line = taps * sizeof(struct hf_hexagon_tap) + (taps + two + four) * sizeof(struct hf_hexagon_step);
     const int err = hf_block_grow(&c->tables, sizeof(struct hf_hexagon) + 3 * line, &c->mem);
     if (err)
@@ -90,7 +92,8 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
     *h = (struct hf_hexagon){0};
     struct hf_hexagon_step *step = (struct hf_hexagon_step *)(h + 1);
     for (int i = 0; i < 3; i++, step += taps + two + four)
-        h->line[i] = (struct hf_hexagon_line){.one.step = step, .two.step = step + taps, .four.step = step + taps + two};
+        h->line[i] = (struct hf_hexagon_line){
+            .one.step = step, .two.step = step + taps, .four.step = step + taps + two};
     for (int i = 0; i < 3; i++)
         h->line[i].taps = (struct hf_hexagon_tap *)step + i * taps;
     return HF_OK;

@@ -5,10 +5,10 @@
 // A line that is not steep meets a column of pixels in two or three taps: rows are taken together, as many as the
 // registers have room for the sums of, and a sample is loaded once for all that meet it (hf_hexagon_step).
 //
-// What a tap costs beyond that is asking how much of a sample counts, so the radii around each block of pixels are looked
-// at first: no tap is read that none of them reaches, and those that all of them reach are plain products, four where
-// there would be ten operations. Skipped taps would add nothing and full ones have the same weight either way, and each
-// pixel's sums keep their order, so no bit depends on where a block lies.
+// What a tap costs beyond that is asking how much of a sample counts, so the radii around each block of pixels are
+// looked at first: no tap is read that none of them reaches, and those that all of them reach are plain products, four
+// where there would be ten operations. Skipped taps would add nothing and full ones have the same weight either way,
+// and each pixel's sums keep their order, so no bit depends on where a block lies.
 #include "pass/hexagon.h"
 
 #if defined __aarch64__
@@ -170,8 +170,8 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
     }
 }
 
-// A block is walked in groups of rows. What does not fill the last of them or of a row's vectors is made twice: but for the
-// first, vectors are aligned.
+// A block is walked in groups of rows. The last of them overlaps the one before where rows are left over, and a row's
+// second vector its first: from there on they are aligned.
 #define HEX_EACH(b, rows, x, y)                                                                                      \
     for (int y = (b).y0; y < (b).y1; y = y + rows < (b).y1 ? hf_min(y + rows, (b).y1 - rows) : (b).y1)                \
         for (int x = (b).x0; x < (b).x1; x = (x + VF_N) & ~(VF_N - 1))
