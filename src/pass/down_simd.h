@@ -100,14 +100,6 @@ HF_INLINE void down_unpack(const vi u[4], vf quad[3][4])
     }
 }
 
-// To what the storage holds.
-HF_INLINE vf down_round(enum hf_storage storage, vf v, const int c)
-{
-    if (storage == HF_STORAGE_CHAPTER)
-        return truncate_channel(v, c);
-    return storage == HF_STORAGE_HALF ? round_half_vf(v) : v;
-}
-
 HF_INLINE void down_put(float *p, vf v, const int stream)
 {
     if (stream)
@@ -127,7 +119,7 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
     for (int c = 0; c < 3; c++) {
         mean[c] = vf_mul(down_sum(quad[c]), vf_set1(0x1p110f));
         if (near)
-            down_put(d->colour[c] + x, down_round(storage, mean[c], c), stream);
+            down_put(d->colour[c] + x, round_stored(storage, mean[c], c), stream);
     }
     if (far && down_differ(g)) {
         vf w[4];
@@ -135,11 +127,11 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
         for (int c = 0; c < 3; c++) {
             for (int i = 0; i < 4; i++)
                 quad[c][i] = vf_mul(quad[c][i], vf_set1(0x1p112f));
-            down_put(d->colour_far[c] + x, down_round(storage, down_far(w, quad[c], g[0]), c), stream);
+            down_put(d->colour_far[c] + x, round_stored(storage, down_far(w, quad[c], g[0]), c), stream);
         }
     } else if (far) { // quarters of small floats are exact, so that their sum is the mean
         for (int c = 0; c < 3; c++)
-            down_put(d->colour_far[c] + x, down_round(storage, vf_mul(mean[c], g[0]), c), stream);
+            down_put(d->colour_far[c] + x, round_stored(storage, vf_mul(mean[c], g[0]), c), stream);
     }
     if (near)
         down_put(d->coc[0] + x, vf_load(d->near + x), stream);

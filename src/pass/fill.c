@@ -94,9 +94,10 @@ void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
                 if (f->far)
                     far[c][x - r.x0] = fill_far(f, c, x, y);
             }
-        if (f->near)
+        // The largest of what a storage holds is what it holds.
+        if (f->near && f->s->fill == HF_FILL_MEAN)
             hf_store_rgb(f, near, r.x1 - r.x0);
-        if (f->far)
+        if (f->far && f->s->fill == HF_FILL_MEAN)
             hf_store_rgb(f, far, r.x1 - r.x0);
     }
 }

@@ -130,7 +130,9 @@ static void fill_row(const struct hf_frame *f, enum hf_buf_id in, enum hf_buf_id
             else
                 fill_mean_row(from[c], stride, w, to[c], n, f->work);
     }
-    hf_store_rgb(f, to, n);
+    // The largest of what a storage holds is what it holds.
+    if (s->fill == HF_FILL_MEAN)
+        hf_store_rgb(f, to, n);
 }
 
 static void fill_simd(const struct hf_frame *f, struct hf_rect r)

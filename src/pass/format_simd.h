@@ -462,6 +462,15 @@ HF_INLINE vf truncate_channel(vf v, const int c)
     return truncate_small(clamp_unsigned(v, c == 2 ? HF_R10_MAX : HF_R11_MAX), c == 2 ? 5 : 6);
 }
 
+// Channel c as the storage of buffers holds it. On the way out of a pass: a second run over its rows took 0.1 ms of a
+// frame of 1920x1080, in Computation and Fill each.
+HF_INLINE vf round_stored(enum hf_storage storage, vf v, const int c)
+{
+    if (storage == HF_STORAGE_CHAPTER && c < 3)
+        return truncate_channel(v, c);
+    return storage == HF_STORAGE_HALF ? round_half_vf(v) : v;
+}
+
 static void truncate_r11_simd(float *r, float *g, float *b, int n)
 {
     for (int i = 0; i < n; i += VF_N) {

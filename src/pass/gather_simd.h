@@ -252,10 +252,9 @@ static void finish_near(const struct hf_frame *f, struct hf_rect r)
                 vf v = vf_load(near[c] + x);
                 if (sum)
                     v = vf_div(v, vf_load(sum + x));
-                vf_store(near[c] + x, vf_select(is_near, v, vf_load(colour[c] + x)));
+                vf_store(near[c] + x, round_stored(s->storage, vf_select(is_near, v, vf_load(colour[c] + x)), c));
             }
         }
-        hf_store_rgb(f, near, r.x1 - r.x0);
     }
 }
 
@@ -332,14 +331,14 @@ static void finish_far(const struct hf_frame *f, struct hf_rect r)
             const vm is_far = vf_gt(own, vf_zero()), alone = vm_and(is_far, vm_not(vf_gt(total, vf_zero())));
             const vf inverse = vf_div(vf_set1(1), vf_max(total, vf_set1(FLT_MIN)));
             for (int c = 0; c < s->channels; c++)
-                vf_store(far[c] + x, vf_keep(is_far, vf_mul(vf_load(far[c] + x), inverse)));
+                vf_store(far[c] + x,
+                         round_stored(s->storage, vf_keep(is_far, vf_mul(vf_load(far[c] + x), inverse)), c));
             if (vm_any(alone))
                 for (int c = 0; c < s->channels; c++) {
                     const vf v = vf_div(vf_load(hf_at(&f->buf[HF_BUF_COLORFAR4], c, r.x0 + x, y)), own);
-                    vf_store(far[c] + x, vf_select(alone, v, vf_load(far[c] + x)));
+                    vf_store(far[c] + x, round_stored(s->storage, vf_select(alone, v, vf_load(far[c] + x)), c));
                 }
         }
-        hf_store_rgb(f, far, r.x1 - r.x0);
     }
 }
 
