@@ -123,7 +123,7 @@ HF_INLINE void blur_byte_column(const char *in, ptrdiff_t stride, float *out, pt
 // Bytes as whole numbers.
 HF_INLINE vf narrow_load(const int bytes, const char *p)
 {
-    return bytes == 1 ? vi_to_vf(vi_load_u8(p)) : bytes == 2 ? vf_load_half(p) : vf_load(p);
+    return bytes == 1 ? vi_to_vf(vi_load_u8(p)) : bytes == 2 ? coc_load_half(p) : vf_load(p);
 }
 
 HF_INLINE vf blur_sum(vf centre, vf left, vf right)
@@ -140,10 +140,13 @@ HF_INLINE void blur_put(const int bytes, const int widen, char *p, vf mean)
             vf_store(p, vf_mul(vi_to_vf(k), vf_set1(1 / 255.0f)));
         else
             vi_store_u8(p, k);
-    } else if (bytes == 2 && !widen) {
-        vf_store_half(p, mean);
+    } else if (bytes == 2) {
+        uint16_t half[VF_N];
+        coc_store_half(widen ? (char *)half : p, mean);
+        if (widen)
+            vf_store(p, coc_load_half(half));
     } else {
-        vf_store(p, bytes == 2 ? round_half_vf(mean) : mean);
+        vf_store(p, mean);
     }
 }
 
@@ -246,14 +249,14 @@ static void blur_x_simd(const struct hf_frame *f, struct hf_rect r)
         blur_rows(f, r, 4);
 }
 
-// 13 high, a vector wide: the windows in reach stay in registers on the way down. Until the first row there are only
-// windows to make, and nothing to write.
+// 13 high, a vector wide: the windows in reach stay in registers on the way down, and so do halves made floats. Until
+// the first row there are only windows to make, and nothing to write.
 HF_INLINE void blur_column_13(const int bytes, const char *in, ptrdiff_t stride, float *out, ptrdiff_t out_stride,
                               int n)
 {
     enum { ROWS = 8 };
     const vf scale = vf_set1(1 / 13.0f);
-    vf a[ROWS + 2], w3[ROWS + 3], w6[ROWS + 7], first[10];
+    vf a[ROWS + 6], w3[ROWS + 3], w6[ROWS + 7], first[10];  // a: from the centre on
     for (int y = 0; y < 10; y++)
         first[y] = vf_add(vf_add(narrow_load(bytes, in + y * stride), narrow_load(bytes, in + (y + 2) * stride)),
                           narrow_load(bytes, in + (y + 1) * stride));
@@ -261,23 +264,23 @@ HF_INLINE void blur_column_13(const int bytes, const char *in, ptrdiff_t stride,
         w6[y] = vf_add(first[y], first[y + 3]);
     for (int y = 0; y < 3; y++)
         w3[y] = first[y + 7];
-    a[0] = narrow_load(bytes, in + 10 * stride);
-    a[1] = narrow_load(bytes, in + 11 * stride);
+    for (int y = 0; y < 6; y++)
+        a[y] = narrow_load(bytes, in + (y + 6) * stride);
     for (int y = 0; y < n; y += ROWS) {
 #pragma GCC unroll 8
         for (int k = 0; k < ROWS; k++) {
             if (y + k == n)
                 return;
-            a[k + 2] = narrow_load(bytes, in + 12 * stride);
-            w3[k + 3] = vf_add(vf_add(a[k], a[k + 2]), a[k + 1]);
+            const vf centre = bytes == 4 ? vf_load(in + 6 * stride) : a[k];
+            a[k + 6] = narrow_load(bytes, in + 12 * stride);
+            w3[k + 3] = vf_add(vf_add(a[k + 4], a[k + 6]), a[k + 5]);
             w6[k + 7] = vf_add(w3[k], w3[k + 3]);
-            blur_put(bytes, 1, (char *)out,
-                     vf_mul(blur_sum(narrow_load(bytes, in + 6 * stride), w6[k], w6[k + 7]), scale));
+            blur_put(bytes, 1, (char *)out, vf_mul(blur_sum(centre, w6[k], w6[k + 7]), scale));
             in += stride;
             out += out_stride;
         }
-        a[0] = a[ROWS];
-        a[1] = a[ROWS + 1];
+        for (int k = 0; k < 6; k++)
+            a[k] = a[ROWS + k];
         for (int k = 0; k < 3; k++)
             w3[k] = w3[ROWS + k];
         for (int k = 0; k < 7; k++)

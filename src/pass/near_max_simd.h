@@ -70,6 +70,29 @@ HF_INLINE void max_row_wide(const int bytes, const char *in, char *work, char *o
         vi_store(out + x, narrow_max(bytes, vi_load(in + x + second), vi_load(in + x)));
 }
 
+// Halves of 0..1: what has no sign and needs no clamp is cheaper where there are no instructions for halves.
+#ifdef VF_SOFT_HALF
+HF_INLINE vf coc_load_half(const void *p)
+{
+    return vf_mul(vi_as_vf(vi_shl(vi_load_u16(p), 13)), vf_set1(0x1p112f));
+}
+
+HF_INLINE void coc_store_half(void *p, vf v)
+{
+    vi_store_u16(p, encode_small(v, 10));
+}
+#else
+HF_INLINE vf coc_load_half(const void *p)
+{
+    return vf_load_half(p);
+}
+
+HF_INLINE void coc_store_half(void *p, vf v)
+{
+    vf_store_half(p, v);
+}
+#endif
+
 // A row of n CoCs that the storage holds exactly, as it holds them. Returns where: out, or for floats where they are.
 HF_INLINE const char *narrow_row(const int bytes, const float *in, int n, char *out)
 {
@@ -79,7 +102,7 @@ HF_INLINE const char *narrow_row(const int bytes, const float *in, int n, char *
         if (bytes == 1)
             vi_store_u8(out + x, vf_to_vi(vf_add(vf_mul(vf_load(in + x), vf_set1(255)), vf_set1(0.5f))));
         else
-            vf_store_half(out + 2 * x, vf_load(in + x));
+            coc_store_half(out + 2 * x, vf_load(in + x));
     return out;
 }
 
