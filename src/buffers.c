@@ -6,6 +6,7 @@
 // A buffer's window: size and where its first pixel lies relative to the area it surrounds.
 struct window {
     int stride, rows, left, top;
+    int bytes;  // of a pixel
 };
 
 // n half-resolution pixels in those of a buffer, rounded up.
@@ -30,17 +31,23 @@ static int log2_y(const struct hf_setup *s, const struct hf_buf_def *def)
     return def->y - (def->shrinks ? (int)s->resolution : 0);
 }
 
+static int bytes_of(const struct hf_setup *s, const struct hf_buf_def *def)
+{
+    return def->narrow ? hf_narrow_bytes(s->storage) : (int)sizeof(float);
+}
+
 // Of an area of width x height half-resolution pixels.
 static struct window window_of(const struct hf_plan *p, const struct hf_setup *s, int b, int width, int height)
 {
     const struct hf_buf_def *def = &p->engine->bufs[b];
     const int lx = log2_x(s, def), ly = log2_y(s, def);
-    struct window w = {0};
+    struct window w = {.bytes = bytes_of(s, def)};
+    const int mask = 64 / w.bytes - 1;  // rows begin on a cache line
     if (!def->bare) {
-        w.left = (scaled(p->buf[b].x, lx) + 15) & ~15;
+        w.left = (scaled(p->buf[b].x, lx) + mask) & ~mask;
         w.top = scaled(p->buf[b].y, ly);
     }
-    w.stride = ((scaled(width, lx) + 15) & ~15) + 2 * w.left + HF_PAD;
+    w.stride = (((scaled(width, lx) + mask) & ~mask) + 2 * w.left) * w.bytes / (int)sizeof(float) + HF_PAD;
     if (w.stride % 1024 == 0)
         w.stride += 16;  // rows 4 KB apart would share cache sets
     w.rows = scaled(height, ly) + 2 * w.top;
@@ -58,7 +65,7 @@ static float *place(struct hf_buf *buf, struct window w, int channels, float *me
 {
     buf->stride = w.stride;
     for (int c = 0; c < channels; c++) {
-        buf->ch[c] = memory + (ptrdiff_t)w.stride * (w.top - y0) + w.left - x0;
+        buf->ch[c] = memory + (ptrdiff_t)w.stride * (w.top - y0) + (w.left - x0) * w.bytes / (int)sizeof(float);
         memory += window_floats(w);
     }
     return memory;
@@ -180,21 +187,30 @@ struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def
                             hf_min(scaled(r.x1, lx), width), hf_min(scaled(r.y1, ly), height)};
 }
 
-static void extend(const struct hf_buf *b, int channels, struct hf_rect have, struct hf_rect want)
+// Samples of a row from x0 to x1 like the one at x.
+static void repeat(char *row, int bytes, int x, int x0, int x1)
+{
+    if (bytes == 1 && x0 < x1)
+        memset(row + x0, row[x], (size_t)(x1 - x0));
+    for (int i = x0; i < x1 && bytes == 2; i++)
+        ((uint16_t *)(void *)row)[i] = ((uint16_t *)(void *)row)[x];
+    for (int i = x0; i < x1 && bytes == 4; i++)
+        ((float *)(void *)row)[i] = ((float *)(void *)row)[x];
+}
+
+static void extend(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want)
 {
     for (int c = 0; c < channels; c++) {
         for (int y = have.y0; y < have.y1; y++) {
-            float *row = hf_at(b, c, 0, y);
-            for (int x = want.x0; x < have.x0; x++)
-                row[x] = row[have.x0];
-            for (int x = have.x1; x < want.x1; x++)
-                row[x] = row[have.x1 - 1];
+            char *row = hf_narrow_at(b, c, 0, y, bytes);
+            repeat(row, bytes, have.x0, want.x0, have.x0);
+            repeat(row, bytes, have.x1 - 1, have.x1, want.x1);
         }
-        const size_t bytes = (size_t)(want.x1 - want.x0) * sizeof(float);
+        const size_t n = (size_t)(want.x1 - want.x0) * (size_t)bytes;
         for (int y = want.y0; y < have.y0; y++)
-            memcpy(hf_at(b, c, want.x0, y), hf_at(b, c, want.x0, have.y0), bytes);
+            memcpy(hf_narrow_at(b, c, want.x0, y, bytes), hf_narrow_at(b, c, want.x0, have.y0, bytes), n);
         for (int y = have.y1; y < want.y1; y++)
-            memcpy(hf_at(b, c, want.x0, y), hf_at(b, c, want.x0, have.y1 - 1), bytes);
+            memcpy(hf_narrow_at(b, c, want.x0, y, bytes), hf_narrow_at(b, c, want.x0, have.y1 - 1, bytes), n);
     }
 }
 
@@ -219,5 +235,5 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
         want.x1 = x1 + reach.x;
     if (!def->frame || r.y1 == s->half_height)
         want.y1 = y1 + reach.y;
-    extend(&f->buf[b], e->channels(s, b), have, want);
+    extend(&f->buf[b], e->channels(s, b), bytes_of(s, def), have, want);
 }

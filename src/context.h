@@ -38,7 +38,7 @@ struct hf_context {
     struct hf_block planes;   // buffers of the whole frame
     struct hf_block chunks, tiles;  // the plan's; tiles: and the wave's
     struct hf_wave wave;
-    struct hf_block joined;   // full-resolution CoC for a dump
+    struct hf_block joined;   // CoC for a dump: of full resolution, or of narrow buffers
     struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
     struct hf_stats stats;
     struct hf_report report;

@@ -3,6 +3,7 @@
 #include "dump.h"
 
 #include "buffers.h"
+#include "format.h"
 
 // A full-resolution buffer of half-resolution columns holds even and odd pixels apart: put them side by side.
 static int join_lanes(struct hf_context *c, const struct hf_setup *s, const struct hf_buf *b, struct hf_buffer *out)
@@ -25,6 +26,21 @@ static int join_lanes(struct hf_context *c, const struct hf_setup *s, const stru
     return HF_OK;
 }
 
+static int widen(struct hf_context *c, const struct hf_setup *s, const struct hf_buf *b, struct hf_buffer *out)
+{
+    const int bytes = hf_narrow_bytes(s->storage);
+    const int err = hf_block_grow(&c->joined, (size_t)out->width * out->height * sizeof(float), &c->mem);
+    if (err)
+        return err;
+    float *p = c->joined.data;
+    out->data[0] = p;
+    for (int y = 0; y < out->height; y++)
+        for (int x = 0; x < out->width; x++)
+            *p++ = hf_narrow_load(s->storage, hf_narrow_at(b, 0, x, y, bytes));
+    out->stride = out->width * (ptrdiff_t)sizeof(float);
+    return HF_OK;
+}
+
 int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s)
 {
     const struct hf_engine_def *e = c->plan.engine;
@@ -39,7 +55,9 @@ int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s)
                                 .stride = f->buf[b].stride * (ptrdiff_t)sizeof(float)};
         for (int ch = 0; ch < out.channels; ch++)
             out.data[ch] = f->buf[b].ch[ch];
-        const int err = def->y > def->x ? join_lanes(c, s, &f->buf[b], &out) : HF_OK;
+        const int err = def->y > def->x ? join_lanes(c, s, &f->buf[b], &out)
+                        : def->narrow   ? widen(c, s, &f->buf[b], &out)
+                                        : HF_OK;
         if (err)
             return err;
         c->dump(c->dump_cookie, &out);

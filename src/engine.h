@@ -15,6 +15,7 @@ struct hf_buf_def {
     unsigned field;    // the field that it belongs to; 0: wanted for any
     int shrinks;       // x and y are those at full resolution, and smaller with the setup's
     int bare;          // nothing is read beyond the frame: no border
+    int narrow;        // of hf_narrow_bytes a sample
 };
 
 struct hf_engine_def {

@@ -96,6 +96,34 @@ static inline uint16_t hf_half_pack(float v)
     return (uint16_t)(sign | hf_encode_small(a, 10));
 }
 
+// A sample of a narrow buffer (frame.h), 0..1: a float that the storage holds exactly.
+static inline float hf_narrow_load(enum hf_storage storage, const void *p)
+{
+    float v;
+    uint16_t half;
+    if (storage == HF_STORAGE_CHAPTER)
+        return (float)*(const uint8_t *)p * (1 / 255.0f);
+    if (storage == HF_STORAGE_HALF) {
+        memcpy(&half, p, sizeof half);
+        return hf_half_unpack(half);
+    }
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+// Rounded to nearest.
+static inline void hf_narrow_store(enum hf_storage storage, void *p, float v)
+{
+    if (storage == HF_STORAGE_CHAPTER) {
+        *(uint8_t *)p = (uint8_t)(v * 255 + 0.5f);
+    } else if (storage == HF_STORAGE_HALF) {
+        const uint16_t half = hf_half_pack(v);
+        memcpy(p, &half, sizeof half);
+    } else {
+        memcpy(p, &v, sizeof v);
+    }
+}
+
 // One sample as the file formats' rows give it: channel c (0..3) of pixel (x, y); 1 for an alpha that is not there.
 // Not finite stays not finite.
 float hf_sample(const struct hf_image *image, int c, int x, int y);

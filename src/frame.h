@@ -43,10 +43,10 @@ enum hf_buf_id {
 enum { HF_MAX_BUFS = 24 };
 
 // Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is allocated is a window of
-// the frame, perhaps with a border around it.
+// the frame, perhaps with a border around it. A narrow buffer (engine.h) holds numbers of hf_narrow_bytes instead.
 struct hf_buf {
     float *ch[4];
-    ptrdiff_t stride;  // floats
+    ptrdiff_t stride;  // floats, whatever it holds
 };
 
 // How a depth sample d becomes the variable v in which CoC is linear (setup.c).
@@ -163,7 +163,7 @@ struct hf_frame {
 };
 
 enum { HF_LINES = 20 };  // scratch rows a frame has; the composite uses 17, the most
-enum { HF_PAD = 32 };    // floats that a vector loop may write past the end of a row
+enum { HF_PAD = 32 };    // floats that a vector loop may write past the end of a row; of a narrow one as many bytes
 
 // Scratch row i, 64-byte aligned.
 static inline float *hf_line(const struct hf_frame *f, int i)
@@ -174,6 +174,17 @@ static inline float *hf_line(const struct hf_frame *f, int i)
 static inline float *hf_at(const struct hf_buf *b, int c, int x, int y)
 {
     return b->ch[c] + (ptrdiff_t)y * b->stride + x;
+}
+
+// Narrow buffers hold CoC as the storage does: 8-bit, half, float.
+static inline int hf_narrow_bytes(enum hf_storage storage)
+{
+    return storage == HF_STORAGE_CHAPTER ? 1 : storage == HF_STORAGE_HALF ? 2 : 4;
+}
+
+static inline char *hf_narrow_at(const struct hf_buf *b, int c, int x, int y, int bytes)
+{
+    return (char *)hf_at(b, c, 0, y) + (ptrdiff_t)x * bytes;
 }
 
 static inline int hf_min(int a, int b)

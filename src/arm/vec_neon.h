@@ -71,6 +71,39 @@ static inline vf vi_as_vf(vi a) { return vreinterpretq_f32_u32(a); }
 static inline vi vf_to_vi(vf a) { return vreinterpretq_u32_s32(vcvtq_s32_f32(a)); }
 static inline vf vi_to_vf(vi a) { return vcvtq_f32_s32(vreinterpretq_s32_u32(a)); }
 
+// 16 bytes and 8 words, unsigned.
+#define VI_8(a) vreinterpretq_u8_u32(a)
+#define VI_16(a) vreinterpretq_u16_u32(a)
+static inline vi vi_max8(vi a, vi b) { return vreinterpretq_u32_u8(vmaxq_u8(VI_8(a), VI_8(b))); }
+static inline vi vi_max16(vi a, vi b) { return vreinterpretq_u32_u16(vmaxq_u16(VI_16(a), VI_16(b))); }
+static inline vi vi_set16(uint16_t a) { return vreinterpretq_u32_u16(vdupq_n_u16(a)); }
+static inline vi vi_add16(vi a, vi b) { return vreinterpretq_u32_u16(vaddq_u16(VI_16(a), VI_16(b))); }
+static inline vi vi_sub16(vi a, vi b) { return vreinterpretq_u32_u16(vsubq_u16(VI_16(a), VI_16(b))); }
+static inline vi vi_mulhi16(vi a, vi b)
+{
+    const vi low = vmull_u16(vget_low_u16(VI_16(a)), vget_low_u16(VI_16(b)));
+    const vi high = vmull_high_u16(VI_16(a), VI_16(b));
+    return vreinterpretq_u32_u16(vuzp2q_u16(VI_16(low), VI_16(high)));
+}
+#define vi_shl16(a, n) vreinterpretq_u32_u16(vshlq_n_u16(VI_16(a), n))
+#define vi_shr16(a, n) vreinterpretq_u32_u16(vshrq_n_u16(VI_16(a), n))
+// 16 bytes of a and b, one after the other, from byte n on; 0 <= n < 16.
+#define vi_align(a, b, n) vreinterpretq_u32_u8(vextq_u8(VI_8(a), VI_8(b), n))
+// 4 bytes as numbers, and back.
+static inline vi vi_load_u8(const void *p)
+{
+    uint32_t u;
+    __builtin_memcpy(&u, p, 4);
+    return vmovl_u16(vget_low_u16(vmovl_u8(vcreate_u8(u))));
+}
+
+static inline void vi_store_u8(void *p, vi a)
+{
+    const uint16x4_t words = vmovn_u32(a);
+    const uint32_t u = vget_lane_u32(vreinterpret_u32_u8(vmovn_u16(vcombine_u16(words, words))), 0);
+    __builtin_memcpy(p, &u, 4);
+}
+
 // 8 numbers in memory order to even and odd ones, and back.
 static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
 {

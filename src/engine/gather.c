@@ -31,9 +31,9 @@ static const struct hf_buf_def bufs[HF_BUF_COUNT] = {
     [HF_BUF_COLOR4] = {"color4", .frame = 1, .field = HF_NEAR},
     [HF_BUF_COLORFAR4] = {"colormulcoc4", .frame = 1, .field = HF_FAR},
     [HF_BUF_COC4] = {"coc4", .frame = 1},
-    [HF_BUF_MAX_X] = {"cocmaxx", .field = HF_NEAR},
-    [HF_BUF_MAX] = {"cocmax", .field = HF_NEAR},
-    [HF_BUF_BLUR_X] = {"cocblurx", .field = HF_NEAR},
+    [HF_BUF_MAX_X] = {"cocmaxx", .field = HF_NEAR, .narrow = 1},
+    [HF_BUF_MAX] = {"cocmax", .field = HF_NEAR, .narrow = 1},
+    [HF_BUF_BLUR_X] = {"cocblurx", .field = HF_NEAR, .narrow = 1},
     [HF_BUF_BLUR] = {"cocblur", .field = HF_NEAR},
     [HF_BUF_NEAR] = {"near", .field = HF_NEAR},
     [HF_BUF_FAR] = {"far", .field = HF_FAR},
@@ -97,14 +97,14 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return s->karis && needs ? HF_FIELDS : needs;
 }
 
-// What the kernels need for strips of up to 80 columns: terms and pairs of the gather, rows of the near max and partial
-// sums of the near blur; and three rows for the mean fill.
+// What the kernels need: terms and pairs of the gather for strips of up to 80 columns; values and partial sums of the near
+// blur for 16; and three rows for the mean fill.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
     const struct hf_taps *t = s->taps;
     const size_t rows = 2 * (size_t)t->ry + 1, columns = 2 * (size_t)t->rx + 1;
     const size_t gather = 2 * rows * columns + 16 + columns * 80;
-    const size_t near = 12 * ((size_t)p->cell_height[2] + 2 * (size_t)p->buf[HF_BUF_MAX_X].y + 64) * 64;
+    const size_t near = 2 * ((size_t)p->cell_height[2] + 2 * (size_t)p->buf[HF_BUF_BLUR_X].y) * 16;
     const size_t most = gather > near ? gather : near, fill = 3 * p->line_floats;
     return most > fill ? most : fill;
 }

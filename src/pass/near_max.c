@@ -4,31 +4,28 @@
 
 void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 {
-    const int m = f->s->max_x;
+    const int m = f->s->max_x, bytes = hf_narrow_bytes(f->s->storage);
     for (int y = r.y0; y < r.y1; y++) {
         const float *in = hf_at(&f->buf[HF_BUF_COC4], 0, 0, y);
-        float *out = hf_at(&f->buf[HF_BUF_MAX_X], 0, 0, y);
         for (int x = r.x0; x < r.x1; x++) {
             float v = in[x - m];
             for (int i = x - m + 1; i <= x + m; i++)
                 v = in[i] > v ? in[i] : v;
-            out[x] = v;
+            hf_narrow_store(f->s->storage, hf_narrow_at(&f->buf[HF_BUF_MAX_X], 0, x, y, bytes), v);
         }
     }
 }
 
 void hf_max_y_c(const struct hf_frame *f, struct hf_rect r)
 {
-    const int m = f->s->max_y;
-    const struct hf_buf *in = &f->buf[HF_BUF_MAX_X];
+    const int m = f->s->max_y, bytes = hf_narrow_bytes(f->s->storage);
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++) {
-            const float *p = hf_at(in, 0, x, y - m);
-            float v = *p;
-            for (int i = 0; i < 2 * m; i++) {
-                p += in->stride;
-                v = *p > v ? *p : v;
+            float most = 0;
+            for (int i = y - m; i <= y + m; i++) {
+                const float v = hf_narrow_load(f->s->storage, hf_narrow_at(&f->buf[HF_BUF_MAX_X], 0, x, i, bytes));
+                most = v > most ? v : most;
             }
-            *hf_at(&f->buf[HF_BUF_MAX], 0, x, y) = v;
+            hf_narrow_store(f->s->storage, hf_narrow_at(&f->buf[HF_BUF_MAX], 0, x, y, bytes), most);
         }
 }

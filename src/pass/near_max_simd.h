@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Near CoC max on vectors: along x maxima of 2, 4, 8 ... values come from each other, and two overlapping ones of those
-// cover any width; along y windows share what they have in common.
+// cover any width; along y windows share what they have in common. Values are bytes, halves or floats, whichever the
+// storage has; none is negative, so that all are compared as integers.
+
+enum { VECTOR = (int)sizeof(vi) };  // bytes
+
+HF_INLINE vi narrow_max(const int bytes, vi a, vi b)
+{
+    return bytes == 1 ? vi_max8(a, b) : bytes == 2 ? vi_max16(a, b) : vi_max(a, b);
+}
+
+// The vector that begins n bytes, or values, into consecutive vectors v[0], v[1] ...; n is a literal.
+#define vi_shift(v, n) vi_align((v)[(n) / VECTOR], (v)[(n) / VECTOR + 1], (n) % VECTOR)
+#define narrow_shift(bytes, v, n)                                                                                    \
+    ((bytes) == 1 ? vi_shift(v, n) : (bytes) == 2 ? vi_shift(v, 2 * (n)) : vi_shift(v, 4 * (n)))
 
 // Largest power of two <= 2m + 1.
 HF_INLINE int max_span(int m)
@@ -13,99 +26,166 @@ HF_INLINE int max_span(int m)
 
 // Maxima of 8 values, or of 13, the usual width, in registers: each level from the one before and itself further right.
 // A level lags a vector behind the one it is made from.
-HF_INLINE void max_row(const float *in, float *out, int n, const int width)
+HF_INLINE void max_row(const int bytes, const char *in, char *out, int n, const int width)
 {
-    enum { LAG = VF_N == 4 ? 5 : 4 }; // of the output behind the input, vectors
-    const int count = (n + VF_N - 1) / VF_N, inputs = (n + width - 1 + VF_N - 1) / VF_N;
-    const vf zero = vf_zero();
-    vf a[2] = {zero, zero}, m2[2] = {zero, zero}, m4[3] = {zero, zero, zero}, m8[4] = {zero, zero, zero, zero};
-    for (int i = 0; i < count + LAG; i++) {
+    const int lag = VECTOR == 4 * bytes ? 5 : 4;  // of the output behind the input, vectors
+    const int size = n * bytes, inputs = (n + width - 1) * bytes;
+    const vi zero = vi_set1(0);
+    vi a[2] = {zero, zero}, m2[2] = {zero, zero}, m4[3] = {zero, zero, zero}, m8[4] = {zero, zero, zero, zero};
+    for (int i = 0; i < size + lag * VECTOR; i += VECTOR) {
         a[0] = a[1];
         if (i < inputs)
-            a[1] = vf_load(in + i * VF_N);
+            a[1] = vi_load(in + i);
         m2[0] = m2[1];
-        m2[1] = vf_max(a[0], vf_shift(a, 1));
+        m2[1] = narrow_max(bytes, a[0], narrow_shift(bytes, a, 1));
         m4[0] = m4[1];
-        m4[1] = vf_max(m2[0], vf_shift(m2, 2));
+        m4[1] = narrow_max(bytes, m2[0], narrow_shift(bytes, m2, 2));
         m8[0] = m8[1];
         m8[1] = m8[2];
-        m8[LAG - 3] = vf_max(m4[0], vf_shift(m4, 4));
-        if (i >= LAG)
-            vf_store(out + (i - LAG) * VF_N, width == 8 ? m8[0] : vf_max(m8[0], vf_shift(m8, 5)));
+        m8[lag - 3] = narrow_max(bytes, m4[0], narrow_shift(bytes, m4, 4));
+        if (i >= lag * VECTOR)
+            vi_store(out + i - lag * VECTOR,
+                     width == 8 ? m8[0] : narrow_max(bytes, m8[0], narrow_shift(bytes, m8, 5)));
+    }
+}
+
+// A row of any width, from its first value; work: room for a row.
+HF_INLINE void max_row_wide(const int bytes, const char *in, char *work, char *out, int n, int m)
+{
+    const int span = max_span(m);
+    int len = 1;
+    if (span >= 8) {
+        max_row(bytes, in, work, n + 2 * m - 7, 8);
+        in = work;
+        len = 8;
+    }
+    for (; len < span; len *= 2) {
+        // In place: a value is read for the last time when it is replaced.
+        for (int x = 0; x < (n + 2 * (m - len) + 1) * bytes; x += VECTOR)
+            vi_store(work + x, narrow_max(bytes, vi_load(in + x + len * bytes), vi_load(in + x)));
+        in = work;
+    }
+    const int second = (2 * m + 1 - span) * bytes;
+    for (int x = 0; x < n * bytes; x += VECTOR)
+        vi_store(out + x, narrow_max(bytes, vi_load(in + x + second), vi_load(in + x)));
+}
+
+// Halves of 0..1: what has no sign and needs no clamp is cheaper where there are no instructions for halves.
+#ifdef VF_SOFT_HALF
+HF_INLINE vf coc_load_half(const void *p)
+{
+    return vf_mul(vi_as_vf(vi_shl(vi_load_u16(p), 13)), vf_set1(0x1p112f));
+}
+
+HF_INLINE void coc_store_half(void *p, vf v)
+{
+    vi_store_u16(p, encode_small(v, 10));
+}
+#else
+HF_INLINE vf coc_load_half(const void *p)
+{
+    return vf_load_half(p);
+}
+
+HF_INLINE void coc_store_half(void *p, vf v)
+{
+    vf_store_half(p, v);
+}
+#endif
+
+// A row of n CoCs that the storage holds exactly, as it holds them. Returns where: out, or for floats where they are.
+HF_INLINE const char *narrow_row(const int bytes, const float *in, int n, char *out)
+{
+    if (bytes == 4)
+        return (const char *)in;
+    for (int x = 0; x < n; x += VF_N)
+        if (bytes == 1)
+            vi_store_u8(out + x, vf_to_vi(vf_add(vf_mul(vf_load(in + x), vf_set1(255)), vf_set1(0.5f))));
+        else
+            coc_store_half(out + 2 * x, vf_load(in + x));
+    return out;
+}
+
+HF_INLINE void max_rows(const struct hf_frame *f, struct hf_rect r, const int bytes)
+{
+    const int m = f->s->max_x, n = r.x1 - r.x0;
+    const struct hf_buf *b = &f->buf[HF_BUF_COC4];
+    for (int y = r.y0; y < r.y1; y++) {
+        const float *coc = hf_at(b, 0, r.x0 - m, y);
+        char *out = hf_narrow_at(&f->buf[HF_BUF_MAX_X], 0, r.x0, y, bytes);
+        for (int x = 0; x < n + 2 * m + 15; x += 16)  // comes from memory, in rows too short for hardware prefetchers
+            __builtin_prefetch(coc + 4 * b->stride + x);
+        const char *in = narrow_row(bytes, coc, n + 2 * m, (char *)hf_line(f, 0));
+        if (m == 6)
+            max_row(bytes, in, out, n, 13);
+        else
+            max_row_wide(bytes, in, (char *)hf_line(f, 1), out, n, m);
     }
 }
 
 static void max_x_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    const int m = f->s->max_x, span = max_span(m), n = r.x1 - r.x0;
-    const struct hf_buf *b = &f->buf[HF_BUF_COC4];
-    float *row = hf_line(f, 0);
-    for (int y = r.y0; y < r.y1; y++) {
-        const float *in = hf_at(b, 0, r.x0 - m, y);
-        float *out = hf_at(&f->buf[HF_BUF_MAX_X], 0, r.x0, y);
-        int len = 1;
-        for (int x = 0; x < n + 2 * m + 15; x += 16) // comes from memory, in rows too short for hardware prefetchers
-            __builtin_prefetch(in + 4 * b->stride + x);
-        if (m == 6) {
-            max_row(in, out, n, 13);
-            continue;
-        }
-        if (span >= 8) {
-            max_row(in, row, n + 2 * m - 7, 8);
-            in = row;
-            len = 8;
-        }
-        for (; len < span; len *= 2) {
-            // In place: a value is read for the last time when it is replaced.
-            for (int x = 0; x < n + 2 * (m - len) + 1; x += VF_N)
-                vf_store(row + x, vf_max(vf_load(in + x + len), vf_load(in + x)));
-            in = row;
-        }
-        for (int x = 0; x < n; x += VF_N)
-            vf_store(out + x, vf_max(vf_load(in + x + 2 * m + 1 - span), vf_load(in + x)));
-    }
+    const int bytes = hf_narrow_bytes(f->s->storage);
+    if (bytes == 1)
+        max_rows(f, r, 1);
+    else if (bytes == 2)
+        max_rows(f, r, 2);
+    else
+        max_rows(f, r, 4);
 }
 
-// `rows` rows of a column, a vector wide. What their windows of 2m + 1 rows, not fewer, have in common is a core; upwards
-// from it each row extends it to an earlier window's beginning, which is put into `up`, downwards to a later one's end. For 13 and
-// 8 rows this takes 3 maxima and 2.5 loads a value, and `up` is in registers.
-HF_INLINE void max_column(const float *in, ptrdiff_t stride, float *out, ptrdiff_t out_stride, int m, const int rows,
-                          vf *up)
+// `rows` rows of a column, a vector wide. What their windows of 2m + 1 rows, not fewer, have in common is a core;
+// upwards from it each row extends it to an earlier window's beginning, which is put into `up`, downwards to a later
+// one's end. For 13 and 8 rows this takes 3 maxima and 2.5 loads a value, and `up` is in registers.
+HF_INLINE void max_column(const int bytes, const char *in, ptrdiff_t stride, char *out, ptrdiff_t out_stride, int m,
+                          const int rows, vi *up)
 {
-    vf window = vf_load(in + (rows - 1) * stride);
+    vi window = vi_load(in + (rows - 1) * stride);
     for (int y = rows; y <= 2 * m; y++)
-        window = vf_max(window, vf_load(in + y * stride));
+        window = narrow_max(bytes, window, vi_load(in + y * stride));
     up[rows - 1] = window;
 #pragma GCC unroll 8
     for (int y = rows - 2; y >= 0; y--)
-        up[y] = window = vf_max(window, vf_load(in + y * stride));
-    vf_store(out, window);
+        up[y] = window = narrow_max(bytes, window, vi_load(in + y * stride));
+    vi_store(out, window);
     if (rows > 1)
-        window = vf_load(in + (2 * m + 1) * stride);
+        window = vi_load(in + (2 * m + 1) * stride);
 #pragma GCC unroll 8
     for (int y = 1; y < rows; y++) {
         if (y > 1)
-            window = vf_max(window, vf_load(in + (2 * m + y) * stride));
-        vf_store(out + y * out_stride, vf_max(up[y], window));
+            window = narrow_max(bytes, window, vi_load(in + (2 * m + y) * stride));
+        vi_store(out + y * out_stride, narrow_max(bytes, up[y], window));
     }
 }
 
 enum { MAX_ROWS = 8, MAX_MANY = 64 };
 
-static void max_y_simd(const struct hf_frame *f, struct hf_rect r)
+HF_INLINE void max_columns(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_MAX_X], *to = &f->buf[HF_BUF_MAX];
+    const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float), out_stride = to->stride * (ptrdiff_t)sizeof(float);
     const int m = f->s->max_y, most = m < MAX_ROWS / 2 ? 2 * m + 1 : m < 24 ? MAX_ROWS : hf_min(2 * m + 1, MAX_MANY);
     for (int y = r.y0, rows; y < r.y1; y += rows) {
         rows = hf_min(most, r.y1 - y);
-        for (int x = r.x0; x < r.x1; x += VF_N) {
-            const float *in = hf_at(b, 0, x, y - m);
-            float *out = hf_at(to, 0, x, y);
-            vf up[MAX_MANY];
+        for (int x = r.x0; x < r.x1; x += VECTOR / bytes) {
+            const char *in = hf_narrow_at(b, 0, x, y - m, bytes);
+            char *out = hf_narrow_at(to, 0, x, y, bytes);
+            vi up[MAX_MANY];
             if (rows == MAX_ROWS)
-                max_column(in, b->stride, out, to->stride, m, MAX_ROWS, up);
+                max_column(bytes, in, stride, out, out_stride, m, MAX_ROWS, up);
             else
-                max_column(in, b->stride, out, to->stride, m, rows, up);
+                max_column(bytes, in, stride, out, out_stride, m, rows, up);
         }
     }
+}
+
+static void max_y_simd(const struct hf_frame *f, struct hf_rect r)
+{
+    const int bytes = hf_narrow_bytes(f->s->storage);
+    if (bytes == 1)
+        max_columns(f, r, 1);
+    else if (bytes == 2)
+        max_columns(f, r, 2);
+    else
+        max_columns(f, r, 4);
 }

@@ -72,6 +72,30 @@ static inline vf vi_as_vf(vi a) { return _mm256_castsi256_ps(a); }
 static inline vi vf_to_vi(vf a) { return _mm256_cvttps_epi32(a); }
 static inline vf vi_to_vf(vi a) { return _mm256_cvtepi32_ps(a); }
 
+// 32 bytes and 16 words, unsigned.
+static inline vi vi_max8(vi a, vi b) { return _mm256_max_epu8(a, b); }
+static inline vi vi_max16(vi a, vi b) { return _mm256_max_epu16(a, b); }
+static inline vi vi_set16(uint16_t a) { return _mm256_set1_epi16((short)a); }
+static inline vi vi_add16(vi a, vi b) { return _mm256_add_epi16(a, b); }
+static inline vi vi_sub16(vi a, vi b) { return _mm256_sub_epi16(a, b); }
+static inline vi vi_mulhi16(vi a, vi b) { return _mm256_mulhi_epu16(a, b); }
+#define vi_shl16(a, n) _mm256_slli_epi16(a, n)
+#define vi_shr16(a, n) _mm256_srli_epi16(a, n)
+// 32 bytes of a and b, one after the other, from byte n on; 0 <= n < 32.
+#define vi_middle(a, b) _mm256_permute2x128_si256(a, b, 0x21)
+#define vi_align(a, b, n)                                                                                            \
+    ((n) == 0    ? (a)                                                                                               \
+     : (n) < 16  ? _mm256_alignr_epi8(vi_middle(a, b), a, (n) & 15)                                                  \
+     : (n) == 16 ? vi_middle(a, b)                                                                                   \
+                 : _mm256_alignr_epi8(b, vi_middle(a, b), (n) & 15))
+// 8 bytes as numbers, and back.
+static inline vi vi_load_u8(const void *p) { return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)p)); }
+static inline void vi_store_u8(void *p, vi a)
+{
+    const __m128i words = _mm_packus_epi32(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
+    _mm_storel_epi64((__m128i *)p, _mm_packus_epi16(words, words));
+}
+
 // 16 numbers in memory order to even and odd ones, and back.
 static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
 {
@@ -100,12 +124,7 @@ static inline void vf_store_lanes(float *p, int step, vf a)
 }
 
 // 8 numbers of a and b, one after the other, from number n on; 0 <= n < 8.
-#define vf_middle(a, b) _mm256_permute2x128_si256(_mm256_castps_si256(a), _mm256_castps_si256(b), 0x21)
-#define vf_align(a, b, n)                                                                                            \
-    _mm256_castsi256_ps((n) == 0   ? _mm256_castps_si256(a)                                                          \
-                        : (n) < 4  ? _mm256_alignr_epi8(vf_middle(a, b), _mm256_castps_si256(a), 4 * (n) & 15)       \
-                        : (n) == 4 ? vf_middle(a, b)                                                                 \
-                                   : _mm256_alignr_epi8(_mm256_castps_si256(b), vf_middle(a, b), 4 * (n) & 15))
+#define vf_align(a, b, n) vi_as_vf(vi_align(vf_as_vi(a), vf_as_vi(b), 4 * (n)))
 
 #define vf_shuffle(a, b, imm) _mm256_shuffle_ps(a, b, imm)
 

@@ -73,6 +73,23 @@ static inline vf vi_as_vf(vi a) { return _mm512_castsi512_ps(a); }
 static inline vi vf_to_vi(vf a) { return _mm512_cvttps_epi32(a); }
 static inline vf vi_to_vf(vi a) { return _mm512_cvtepi32_ps(a); }
 
+// 64 bytes and 32 words, unsigned.
+static inline vi vi_max8(vi a, vi b) { return _mm512_max_epu8(a, b); }
+static inline vi vi_max16(vi a, vi b) { return _mm512_max_epu16(a, b); }
+static inline vi vi_set16(uint16_t a) { return _mm512_set1_epi16((short)a); }
+static inline vi vi_add16(vi a, vi b) { return _mm512_add_epi16(a, b); }
+static inline vi vi_sub16(vi a, vi b) { return _mm512_sub_epi16(a, b); }
+static inline vi vi_mulhi16(vi a, vi b) { return _mm512_mulhi_epu16(a, b); }
+#define vi_shl16(a, n) _mm512_slli_epi16(a, n)
+#define vi_shr16(a, n) _mm512_srli_epi16(a, n)
+// 64 bytes of a and b, one after the other, from byte n on; n < 64 is a multiple of 4, or below 16.
+#define vi_align(a, b, n)                                                                                            \
+    ((n) % 4 == 0 ? _mm512_alignr_epi32(b, a, (n) / 4 & 15)                                                          \
+                  : _mm512_alignr_epi8(_mm512_alignr_epi64(b, a, 2), a, (n) & 15))
+// 16 bytes as numbers, and back.
+static inline vi vi_load_u8(const void *p) { return _mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)p)); }
+static inline void vi_store_u8(void *p, vi a) { _mm_storeu_si128((__m128i *)p, _mm512_cvtepi32_epi8(a)); }
+
 // 32 numbers in memory order to even and odd ones, and back: one two-source permute each.
 static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
 {

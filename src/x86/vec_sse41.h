@@ -71,6 +71,32 @@ static inline vf vi_as_vf(vi a) { return _mm_castsi128_ps(a); }
 static inline vi vf_to_vi(vf a) { return _mm_cvttps_epi32(a); }
 static inline vf vi_to_vf(vi a) { return _mm_cvtepi32_ps(a); }
 
+// 16 bytes and 8 words, unsigned.
+static inline vi vi_max8(vi a, vi b) { return _mm_max_epu8(a, b); }
+static inline vi vi_max16(vi a, vi b) { return _mm_max_epu16(a, b); }
+static inline vi vi_set16(uint16_t a) { return _mm_set1_epi16((short)a); }
+static inline vi vi_add16(vi a, vi b) { return _mm_add_epi16(a, b); }
+static inline vi vi_sub16(vi a, vi b) { return _mm_sub_epi16(a, b); }
+static inline vi vi_mulhi16(vi a, vi b) { return _mm_mulhi_epu16(a, b); }
+#define vi_shl16(a, n) _mm_slli_epi16(a, n)
+#define vi_shr16(a, n) _mm_srli_epi16(a, n)
+// 16 bytes of a and b, one after the other, from byte n on; 0 <= n < 16.
+#define vi_align(a, b, n) _mm_alignr_epi8(b, a, n)
+// 4 bytes as numbers, and back.
+static inline vi vi_load_u8(const void *p)
+{
+    int32_t u;
+    __builtin_memcpy(&u, p, 4);
+    return _mm_cvtepu8_epi32(_mm_cvtsi32_si128(u));
+}
+
+static inline void vi_store_u8(void *p, vi a)
+{
+    const __m128i words = _mm_packus_epi32(a, a);
+    const int32_t u = _mm_cvtsi128_si32(_mm_packus_epi16(words, words));
+    __builtin_memcpy(p, &u, 4);
+}
+
 // 8 numbers in memory order to even and odd ones, and back.
 static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
 {
@@ -97,7 +123,7 @@ static inline void vf_store_lanes(float *p, int step, vf a)
 }
 
 // 4 numbers of a and b, one after the other, from number n on; 0 <= n < 4.
-#define vf_align(a, b, n) _mm_castsi128_ps(_mm_alignr_epi8(_mm_castps_si128(b), _mm_castps_si128(a), 4 * (n)))
+#define vf_align(a, b, n) vi_as_vf(vi_align(vf_as_vi(a), vf_as_vi(b), 4 * (n)))
 
 #define vf_shuffle(a, b, imm) _mm_shuffle_ps(a, b, imm)
 

@@ -45,6 +45,21 @@ static int compare_floats(const struct world *w, const struct level *l, const st
     return 1;
 }
 
+static int compare_narrow(const struct world *w, const struct region *g, char message[256])
+{
+    const int bytes = buf_bytes(w, (enum hf_buf_id)g->buf);
+    for (int y = 0; y < g->rows; y++)
+        for (size_t i = 0; i < g->row_bytes; i += (size_t)bytes) {
+            const uint8_t *a = region_row(w, ARENA_REFERENCE, g, y) + i, *b = region_row(w, ARENA_TEST, g, y) + i;
+            if (!memcmp(a, b, (size_t)bytes))
+                continue;
+            snprintf(message, 256, "slot %d at (%d, %d): %a, the C %a", g->slot, g->x0 + (int)i / bytes, g->y0 + y,
+                     hf_narrow_load(w->setup.storage, b), hf_narrow_load(w->setup.storage, a));
+            return 0;
+        }
+    return 1;
+}
+
 // One pixel of dst; first and count: its channels in the region's plane.
 static int compare_pixel(const struct world *w, const struct region *g, int x, int y, char message[256])
 {
@@ -129,6 +144,7 @@ int world_compare(const struct world *w, const struct level *l, char message[256
     for (int i = 0; i < w->region_count; i++) {
         const struct region *g = &w->regions[i];
         if ((g->kind == REGION_FLOATS && !compare_floats(w, l, g, message)) ||
+            (g->kind == REGION_NARROW && !compare_narrow(w, g, message)) ||
             (g->kind == REGION_PIXELS && !compare_pixels(w, l, g, message)))
             return 0;
     }

@@ -69,6 +69,7 @@ enum {
 enum region_kind {
     REGION_FLOATS,   // compared, with tolerance where the kernel may fuse
     REGION_PIXELS,   // of dst, likewise
+    REGION_NARROW,   // CoC as the storage has it: compared without tolerance
     REGION_SCRATCH,  // may be written, is not looked at
 };
 
@@ -142,6 +143,9 @@ void make_lines(struct world *w, int lines, size_t floats);
 // Buffer b may be read in r; random means that it holds something there.
 void make_buf(struct world *w, enum hf_buf_id b, struct hf_rect r);
 float *world_at(const struct world *w, enum arena a, enum hf_buf_id b, int c, int x, int y);
+// A sample of a buffer: how many bytes it has, and made the nearest to v that they hold.
+int buf_bytes(const struct world *w, enum hf_buf_id b);
+void world_put(struct world *w, enum hf_buf_id b, int c, int x, int y, float v);
 struct hf_frame world_frame(struct world *w, const struct hf_kernels *k, enum arena a);
 int buf_channels(const struct world *w, enum hf_buf_id b);
 

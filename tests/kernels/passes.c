@@ -57,8 +57,7 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
                 const int patch = pattern >> ((x - r.x0) / size + 3 * ((y - r.y0) / 2) + 5 * (c / 2)) % 32 & 1;
-                *world_at(w, ARENA_MADE, b, c, x, y) =
-                    is_coc(b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y);
+                world_put(w, b, c, x, y, is_coc(b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y));
             }
 }
 
@@ -93,8 +92,10 @@ static void make_inputs(struct world *w, int pass)
 
 static void add_region(struct world *w, enum region_kind kind, int b, int c, struct hf_rect r)
 {
-    struct region *g = world_region(w, kind, SLOT_BUF + 4 * b + c, world_at(w, ARENA_MADE, b, c, r.x0, r.y0),
-                                    (size_t)(r.x1 - r.x0) * sizeof(float), HF_PAD * sizeof(float), r.y1 - r.y0,
+    const int bytes = buf_bytes(w, b);
+    struct region *g = world_region(w, bytes < 4 ? REGION_NARROW : kind, SLOT_BUF + 4 * b + c,
+                                    hf_narrow_at(&w->buf[b], c, r.x0, r.y0, bytes),
+                                    (size_t)(r.x1 - r.x0) * (size_t)bytes, HF_PAD * sizeof(float), r.y1 - r.y0,
                                     w->buf[b].stride * (ptrdiff_t)sizeof(float));
     g->buf = b;
     g->channel = c;
@@ -157,7 +158,7 @@ static void make_scratch(struct world *w)
     const int width = w->r.x1 - w->r.x0, height = w->r.y1 - w->r.y0;
     make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(s->max_x, t->rx) + 8 + 2 * HF_PAD));
     const size_t rows = 2 * (size_t)t->ry + 1, gather = (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 2) * 128;
-    const size_t near = 12 * (size_t)(height + 4 * s->max_y + 68) * 64, fill = 3 * w->line_floats;
+    const size_t near = 64 * (size_t)(height + 2 * s->max_y), fill = 3 * w->line_floats;
     const size_t floats = gather > near ? gather : near;
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);
 }
@@ -181,6 +182,11 @@ void pass_make(struct world *w, int pass)
     const int half_width = rng_int(&w->rng, 1, 70), half_height = rng_int(&w->rng, 1, 10);
     make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
     random_area(w);
+    // Any width and height; of the gather such a reach would be too much.
+    if (!w->bench && pass >= HF_PASS_MAX_X && pass <= HF_PASS_BLUR_Y && rng_one_in(&w->rng, 4)) {
+        w->setup.max_x = rng_int(&w->rng, 1, 140);
+        w->setup.max_y = rng_int(&w->rng, 1, 140);
+    }
     if (pass == HF_PASS_COC)
         w->r.x0 &= ~15;  // as cells are
     w->is_pass = 1;

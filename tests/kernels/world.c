@@ -118,12 +118,18 @@ static int round_down(int x, int to)
     return x - ((x % to) + to) % to;
 }
 
-// Laid out as render.c does it: pixels whose x is a multiple of 16 are aligned to 64 bytes, HF_PAD floats follow the
-// last row.
+int buf_bytes(const struct world *w, enum hf_buf_id b)
+{
+    return hf_gather_engine.bufs[b].narrow ? hf_narrow_bytes(w->setup.storage) : (int)sizeof(float);
+}
+
+// Laid out as render.c does it: pixels whose x is a multiple of 16, of narrow buffers of more, are aligned to 64 bytes,
+// HF_PAD floats follow the last row.
 void make_buf(struct world *w, enum hf_buf_id b, struct hf_rect r)
 {
     enum { FRONT = 64 };  // floats before the first row
-    const int left = round_down(r.x0, 16), right = round_down(r.x1 + HF_PAD + 15, 16), height = r.y1 - r.y0;
+    const int bytes = buf_bytes(w, b), per = 64 / bytes, height = r.y1 - r.y0;
+    const int left = round_down(r.x0, per) * bytes / 4, right = round_down(r.x1 * bytes / 4 + HF_PAD + 16, 16);
     const int stride = right - left + 16 * rng_int(&w->rng, 0, 2);
     const size_t floats = FRONT + (size_t)(height - 1) * stride + (size_t)(right - left);
     w->buf[b].stride = stride;
@@ -136,6 +142,12 @@ void make_buf(struct world *w, enum hf_buf_id b, struct hf_rect r)
 float *world_at(const struct world *w, enum arena a, enum hf_buf_id b, int c, int x, int y)
 {
     return in_arena(a, hf_at(&w->buf[b], c, x, y));
+}
+
+void world_put(struct world *w, enum hf_buf_id b, int c, int x, int y, float v)
+{
+    const enum hf_storage storage = hf_gather_engine.bufs[b].narrow ? w->setup.storage : HF_STORAGE_FLOAT;
+    hf_narrow_store(storage, hf_narrow_at(&w->buf[b], c, x, y, buf_bytes(w, b)), v);
 }
 
 void make_lines(struct world *w, int lines, size_t floats)

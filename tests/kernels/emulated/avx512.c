@@ -83,9 +83,30 @@ static int wrong_back(void)
     return wrong;
 }
 
+static int wrong_bytes(void)
+{
+    uint8_t in[128], out[64];
+    uint16_t words[32];
+    uint32_t wide[16];
+    for (int i = 0; i < 128; i++)
+        in[i] = (uint8_t)(37 * i);
+    const vi a = vi_load(in), b = vi_load(in + 64);
+    vi_store(out, vi_align(a, b, 5));
+    int wrong = memcmp(out, in + 5, 64) != 0;
+    vi_store(out, vi_align(a, b, 20));
+    wrong += memcmp(out, in + 20, 64) != 0;
+    vi_store(words, vi_mulhi16(vi_set16(50000), vi_set16(60001)));
+    vi_store(wide, vi_load_u8(in));
+    vi_store_u8(out, vi_load_u8(in));
+    wrong += memcmp(out, in, 16) != 0;
+    for (int i = 0; i < 16; i++)
+        wrong += (words[2 * i + 1] != (50000u * 60001u) >> 16) + (wide[i] != in[i]);
+    return wrong;
+}
+
 int emulated_check_vectors(void)
 {
-    int wrong = wrong_halves() + wrong_roundings() + wrong_back();
+    int wrong = wrong_halves() + wrong_roundings() + wrong_back() + wrong_bytes();
     for (int i = 0; i < 16; i++)
         for (int k = 0; k < 16; k++)
             wrong += wrong_pair(special[i], special[k]);

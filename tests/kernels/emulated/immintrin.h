@@ -160,6 +160,56 @@ static inline __m512i emulated_alignr(__m512i a, __m512i b, int n)
     return a;
 }
 
+// Of each 128 bits.
+static inline __m512i emulated_alignr8(__m512i a, __m512i b, int n)
+{
+    uint8_t x[64], y[64], lanes[32];
+    memcpy(x, &a, sizeof x);
+    memcpy(y, &b, sizeof y);
+    for (int i = 0; i < 64; i += 16) {
+        memcpy(lanes, y + i, 16);
+        memcpy(lanes + 16, x + i, 16);
+        memcpy(x + i, lanes + n, 16);
+    }
+    memcpy(&a, x, sizeof a);
+    return a;
+}
+
+static inline __m512i emulated_mulhi(__m512i a, __m512i b)
+{
+    uint16_t x[32], y[32];
+    memcpy(x, &a, sizeof x);
+    memcpy(y, &b, sizeof y);
+    for (int i = 0; i < 32; i++)
+        x[i] = (uint16_t)((uint32_t)x[i] * y[i] >> 16);
+    memcpy(&a, x, sizeof a);
+    return a;
+}
+
+static inline __m512i emulated_widen(__m128i a)
+{
+    uint8_t x[16];
+    uint32_t r[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++)
+        r[i] = x[i];
+    __m512i v;
+    memcpy(&v, r, sizeof v);
+    return v;
+}
+
+static inline __m128i emulated_narrow(__m512i a)
+{
+    uint32_t x[16];
+    uint8_t r[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++)
+        r[i] = (uint8_t)x[i];
+    __m128i v;
+    memcpy(&v, r, sizeof v);
+    return v;
+}
+
 static inline __m512d emulated_to_double(__m256 a)
 {
     float x[8];
@@ -194,6 +244,16 @@ static inline __m256 emulated_to_float(__m512d a)
 #define _mm512_stream_ps(p, a) _mm512_storeu_ps(p, a)
 #undef _mm512_alignr_epi32
 #define _mm512_alignr_epi32(a, b, n) emulated_alignr(a, b, n)
+#undef _mm512_alignr_epi64
+#define _mm512_alignr_epi64(a, b, n) emulated_alignr(a, b, 2 * (n))
+#undef _mm512_alignr_epi8
+#define _mm512_alignr_epi8(a, b, n) emulated_alignr8(a, b, n)
+#undef _mm512_mulhi_epu16
+#define _mm512_mulhi_epu16(a, b) emulated_mulhi(a, b)
+#undef _mm512_cvtepu8_epi32
+#define _mm512_cvtepu8_epi32(a) emulated_widen(a)
+#undef _mm512_cvtepi32_epi8
+#define _mm512_cvtepi32_epi8(a) emulated_narrow(a)
 #undef _mm512_mask3_fmadd_ps
 #define _mm512_mask3_fmadd_ps(a, b, c, m) _mm512_mask_mov_ps(c, m, emulated_fmadd(a, b, c))
 #undef _mm512_abs_ps
