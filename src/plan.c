@@ -4,8 +4,10 @@
 #include <string.h>
 
 // What measured fastest on two cores. Large tiles compute little twice at their rims and read memory in long runs;
-// smaller ones stay in the cache, and skip more. With more threads they are halved until each thread has a few.
-enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4, CHUNK_HEIGHT = 8 };
+// smaller ones stay in the cache, and skip more. With more threads they are halved until each thread has a few. Chunks are
+// wide and low: long runs again, and the wave needs but whole rows of them.
+enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4 };
+enum { CHUNK_WIDTH = 512, CHUNK_HEIGHT = 4 };
 
 static int ceil_div(int a, int b)
 {
@@ -91,12 +93,15 @@ static void set_cells(struct hf_plan *p, int sweep, int width, int height, int w
 void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s, int tile_width,
                     int tile_height, int threads, int whole)
 {
-    int width, height;
+    int width = CHUNK_WIDTH;
     p->engine = engine;
     p->width = s->half_width;
     p->height = s->half_height;
-    choose_tile(p, threads, &width, &height);
-    set_cells(p, 1, tile_width ? tile_width : width, hf_min(CHUNK_HEIGHT, tile_height ? tile_height : height), whole);
+    while (width > MIN_WIDTH &&
+           ceil_div(p->width, width) * ceil_div(p->height, CHUNK_HEIGHT) < TILES_A_THREAD * threads)
+        width /= 2;
+    set_cells(p, 1, tile_width ? tile_width : width, tile_height ? hf_min(CHUNK_HEIGHT, tile_height) : CHUNK_HEIGHT,
+              whole);
     p->line_floats = 2 * (size_t)p->cell_width[1] + 2 * HF_PAD;
 }
 
