@@ -358,11 +358,7 @@ HF_INLINE vm far_coc(const struct hf_setup *s, const uint8_t *depth, vf coc[2])
     vf_unzip(vf_load(depth), vf_load(depth + 4 * VF_N), &d[0], &d[1]);
     for (int o = 0; o < 2; o++) {
         vm none;
-        const vf v = coc_variable(s, HF_FORM_Z, d[o], vf_zero(), vf_zero(), &none);
-        coc[o] = coc_saturate(vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i)));
-        if (s->smoothstep)
-            coc[o] = coc_shape(coc[o]);
-        coc[o] = coc_round(s->storage, coc[o]);
+        coc[o] = coc_far(s, coc_variable(s, HF_FORM_Z, d[o], vf_zero(), vf_zero(), &none));
     }
     return vf_unordered(d[0], d[1]);
 }
