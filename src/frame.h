@@ -42,8 +42,9 @@ enum hf_buf_id {
 // No engine has more; others than the gather number theirs in engine/*.c.
 enum { HF_MAX_BUFS = 24 };
 
-// Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is allocated is a window of
-// the frame, perhaps with a border around it. A narrow buffer (engine.h) holds numbers of hf_narrow_bytes instead.
+// Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is
+// allocated is a window of the frame, perhaps with a border around it. A narrow buffer (engine.h) holds numbers of
+// hf_narrow_bytes instead.
 struct hf_buf {
     float *ch[4];
     ptrdiff_t stride;  // floats, whatever it holds

@@ -92,7 +92,8 @@ typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *co
 // Is every pixel of those lanes a surface without CoC? 0 where that takes longer to say than to make the CoC.
 typedef int hf_sharp_row(const struct hf_frame *f, int x, int y, int n);
 
-// Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted; else x is a multiple of 32.
+// Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted; else x is a
+// multiple of 32.
 typedef void hf_radius_row(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts);
 
 // gaussian: blend factors of the n lanes from lane x of row y into out[0], even, and out[1], odd; out[2] and out[3] are

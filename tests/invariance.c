@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hard cases of the gather engine, pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths around the vectors' length, a focus pull.
+// Hard cases of the gather engine, pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths
+// around the vectors' length, a focus pull.
 //
 //     invariance [seed]
 #include <float.h>

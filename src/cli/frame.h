@@ -36,7 +36,8 @@ struct cli_frame {
 // Start the library. Returns 0, or an exit code with *error filled.
 int cli_session_open(struct cli_session *session, const struct cli_args *args, struct cli_error *error);
 
-// The steps, in order; plan, which looks at the pictures but renders nothing, in place of render. Each returns 0, or an exit code with *error filled; close after any of them.
+// The steps, in order; plan, which looks at the pictures but renders nothing, in place of render. Each returns 0, or an
+// exit code with *error filled; close after any of them.
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, struct cli_error *error);
 int cli_frame_setup(struct cli_frame *frame, struct cli_error *error);
 int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);

@@ -17,7 +17,8 @@ const char *cli_model_name(enum cli_model model);
 // Render settings of one view.
 struct cli_setup {
     enum cli_model model;
-    const char *focus_from;  // "--focus", "--focus-at", "--focus center", "header", "the picture's centre"; NULL: none needed (coc)
+    // "--focus", "--focus-at", "--focus center", "header", "the picture's centre"; NULL: none needed (coc).
+    const char *focus_from;
     struct hf_params params;
     struct hf_depth depth;   // data is the caller's to set
 };

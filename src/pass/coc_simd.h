@@ -188,7 +188,8 @@ static int sharp_row_simd(const struct hf_frame *f, int x, int y, int n)
         for (int o = 0; o < 2; o++) {
             vm none;
             const vf v = coc_variable(s, HF_FORM_Z, ends[o], vf_zero(), vf_zero(), &none);
-            blurred = vm_or(vm_or(blurred, none), vm_or(vf_gt(coc_near(s, v), vf_zero()), vf_gt(coc_far(s, v), vf_zero())));
+            const vm any = vm_or(vf_gt(coc_near(s, v), vf_zero()), vf_gt(coc_far(s, v), vf_zero()));
+            blurred = vm_or(vm_or(blurred, none), any);
         }
         if (vm_any(blurred))
             return 0;
