@@ -100,14 +100,6 @@ HF_INLINE void down_unpack(const vi u[4], vf quad[3][4])
     }
 }
 
-HF_INLINE void down_put(float *p, vf v, const int stream)
-{
-    if (stream)
-        vf_stream(p, v);
-    else
-        vf_store(p, v);
-}
-
 // A vector of quads of R11G11B10F, in registers: u as down_unpack wants them, x from the row's beginning. Returns the
 // largest mean.
 HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, const int near, const int far, int x,
@@ -119,7 +111,7 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
     for (int c = 0; c < 3; c++) {
         mean[c] = vf_mul(down_sum(quad[c]), vf_set1(0x1p110f));
         if (near)
-            down_put(d->colour[c] + x, round_stored(storage, mean[c], c), stream);
+            vf_put(d->colour[c] + x, round_stored(storage, mean[c], c), stream);
     }
     if (far && down_differ(g)) {
         vf w[4];
@@ -127,16 +119,16 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
         for (int c = 0; c < 3; c++) {
             for (int i = 0; i < 4; i++)
                 quad[c][i] = vf_mul(quad[c][i], vf_set1(0x1p112f));
-            down_put(d->colour_far[c] + x, round_stored(storage, down_far(w, quad[c], g[0]), c), stream);
+            vf_put(d->colour_far[c] + x, round_stored(storage, down_far(w, quad[c], g[0]), c), stream);
         }
     } else if (far) { // quarters of small floats are exact, so that their sum is the mean
         for (int c = 0; c < 3; c++)
-            down_put(d->colour_far[c] + x, round_stored(storage, vf_mul(mean[c], g[0]), c), stream);
+            vf_put(d->colour_far[c] + x, round_stored(storage, vf_mul(mean[c], g[0]), c), stream);
     }
     if (near)
-        down_put(d->coc[0] + x, vf_load(d->near + x), stream);
+        vf_put(d->coc[0] + x, vf_load(d->near + x), stream);
     if (far)
-        down_put(d->coc[1] + x, g[0], stream);
+        vf_put(d->coc[1] + x, g[0], stream);
     return vf_max(vf_max(mean[0], mean[1]), mean[2]);
 }
 

@@ -3,21 +3,36 @@
 
 // ---- Load ----
 
+// Are the planes of a frame larger than a cache, and a row's place in them aligned? Then they are written past it: each
+// line would be fetched to be overwritten.
+static int hex_streams(const struct hf_frame *f, const float *row)
+{
+    enum { LARGE = 12 << 20 };
+    const size_t planes = 3 + (size_t)f->s->channels, stride = (size_t)f->buf[HF_HEXAGON_WEIGHT].stride;
+    return planes * stride * (size_t)f->s->height * sizeof(float) > LARGE && (uintptr_t)row % sizeof(vf) == 0;
+}
+
 static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
-    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    const struct hf_setup *s = f->s;
+    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, s->width) - x0;
     const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
-    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *far = hf_at(weight, 2, x0, y);
-    hf_row(&f->buf[HF_HEXAGON_COLOUR], f->s->channels, x0, y, colour);
+    float *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *far = hf_at(weight, 2, x0, y), *out[4];
+    float *const colour[4] = {hf_line(f, 8), hf_line(f, 9), hf_line(f, 10), hf_line(f, 11)}, *radius = hf_line(f, 12);
+    hf_row(&f->buf[HF_HEXAGON_COLOUR], s->channels, x0, y, out);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
-    f->k->radius_row(f, x0, y, n, q, NULL);
+    f->k->radius_row(f, x0, y, n, radius, NULL);
+    // What lies at the frame's edges is read at once, to be repeated outwards.
+    const int inner = y > 0 && y < s->height - 1 && hex_streams(f, a);
     for (int x = 0; x < n; x += VF_N) {
-        const vf own = vf_load(q + x), w = vf_div(vf_set1(1), vf_max(vf_abs(own), vf_set1(1)));
-        vf_store(a + x, w);
-        vf_store(far + x, vf_keep(vf_gt(own, vf_zero()), w));
+        const int stream = inner && x0 + x > 0 && x0 + x + VF_N < s->width;
+        const vf own = vf_load(radius + x), w = vf_div(vf_set1(1), vf_max(vf_abs(own), vf_set1(1)));
+        vf_put(a + x, w, stream);
+        vf_put(q + x, own, stream);
+        vf_put(far + x, vf_keep(vf_gt(own, vf_zero()), w), stream);
         const vf darker = vf_mul(w, vf_set1(HEXAGON_SCALE));
-        for (int c = 0; c < f->s->channels; c++)
-            vf_store(colour[c] + x, vf_mul(vf_load(colour[c] + x), darker));
+        for (int c = 0; c < s->channels; c++)
+            vf_put(out[c] + x, vf_mul(vf_load(colour[c] + x), darker), stream);
     }
 }
 
@@ -87,6 +102,7 @@ static void hexagon_load_simd(const struct hf_frame *f, struct hf_rect r)
             hex_load_half_row(f, y, r);
         else
             hex_load_full_row(f, y, r);
+    vf_stream_end();
 }
 
 // ---- Composite ----

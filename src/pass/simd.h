@@ -67,6 +67,15 @@ HF_INLINE float vf_most(vf a)
     return most;
 }
 
+// Stored, or past the caches: then p is aligned, and vf_stream_end follows.
+HF_INLINE void vf_put(float *p, vf v, const int stream)
+{
+    if (stream)
+        vf_stream(p, v);
+    else
+        vf_store(p, v);
+}
+
 // a + t (b - a), a's own bits for t = 0.
 HF_INLINE vf vf_lerp(vf a, vf b, vf t)
 {
