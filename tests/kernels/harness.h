@@ -192,6 +192,8 @@ int row_check(const struct world *w, const struct level *l, char message[256]);
 int row_pixels(const struct world *w);
 
 // gaussian.c
+void radius_make(struct world *w, int index);
+void radius_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
 void blend_row_make(struct world *w, int index);
 void blend_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
 void lerp_row_make(struct world *w, int index);
