@@ -109,6 +109,15 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
     return most > fill ? most : fill;
 }
 
+// Tiles lower than the default: more of a mixed picture is skipped, and its scratch is smaller.
+static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
+{
+    (void)s;
+    (void)sweep;
+    (void)width;
+    *height = hf_min(*height, 72);
+}
+
 int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
     const float h = s->max_radius / 2;
@@ -130,5 +139,6 @@ const struct hf_engine_def hf_gather_engine = {
     .name = "gather",
     .passes = passes, .pass_count = HF_PASS_COUNT, .sweeps = 2,
     .bufs = bufs, .buf_count = HF_BUF_COUNT,
-    .prepare = prepare, .channels = channels, .halo = hf_pass_halo, .spread = spread, .reads = reads, .work = work,
+    .prepare = prepare, .channels = channels, .halo = hf_pass_halo, .spread = spread, .reads = reads, .cell = cell,
+    .work = work,
 };
