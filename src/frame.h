@@ -188,6 +188,13 @@ static inline char *hf_narrow_at(const struct hf_buf *b, int c, int x, int y, in
     return (char *)hf_at(b, c, 0, y) + (ptrdiff_t)x * bytes;
 }
 
+// 0..1; NaN becomes 0.
+static inline float hf_saturate(float v)
+{
+    v = v > 0 ? v : 0;
+    return v < 1 ? v : 1;
+}
+
 static inline int hf_min(int a, int b)
 {
     return a < b ? a : b;

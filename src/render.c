@@ -332,12 +332,10 @@ static int lay_out(struct job *j, unsigned fields)
 {
     struct hf_context *c = j->c;
     hf_plan_cells(&c->plan, j->s, c->config.tile_width, c->config.tile_height, c->threads, c->dump != NULL);
-    const size_t tiles = hf_plan_tile_bytes(&c->plan);
-    const int err = hf_block_grow(&c->tiles, tiles + hf_wave_bytes(&c->plan), &c->mem);
+    const int err = hf_block_grow(&c->tiles, hf_plan_tile_bytes(&c->plan) + hf_wave_bytes(&c->plan), &c->mem);
     if (err)
         return err;
     hf_plan_tile_memory(&c->plan, c->tiles.data);
-    hf_wave_order(&c->wave, &c->plan, j->s, (char *)c->tiles.data + tiles);
     j->have = fields;
     return hf_buffers_allocate(c, j->s, fields);
 }
@@ -425,6 +423,9 @@ static int can_wave(const struct job *j)
 static int render_wave(struct job *j, int64_t planning)
 {
     struct hf_context *c = j->c;
+    planning -= now_ns();
+    hf_wave_order(&c->wave, &c->plan, j->s, (char *)c->tiles.data + hf_plan_tile_bytes(&c->plan));
+    planning += now_ns();
     j->sweep = 2;
     parallel(c, c->wave.tasks, wave_task, j);
     if (hf_wave_stopped(&c->wave))

@@ -40,12 +40,6 @@ struct hf_scatter {
     double scale[4], unscale[4];      // from a sample's share to the integers of the sums, and back
 };
 
-static inline float hf_saturate(float v)
-{
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
-}
-
 // What still shows of a pixel of radius r >= 0 itself: 1 for a sharp one.
 static inline float hf_own_part(const struct hf_scatter *t, float r)
 {

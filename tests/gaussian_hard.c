@@ -59,24 +59,6 @@ static void same_bits(struct hf_context *plain, enum hf_isa id, const char *isa)
     CHECK(run < all);
 }
 
-static struct picture flipped(const struct picture *p)
-{
-    struct picture out = picture_new(p->width, p->height, p->channels);
-    for (int c = 0; c < p->channels; c++)
-        for (int i = 0; i < p->width * p->height; i++)
-            out.plane[c][i] = p->plane[c][i / p->width * p->width + p->width - 1 - i % p->width];
-    return out;
-}
-
-static struct picture cut(const struct picture *p, int x0, int y0, int w, int h)
-{
-    struct picture out = picture_new(w, h, p->channels);
-    for (int c = 0; c < p->channels; c++)
-        for (int y = 0; y < h; y++)
-            memcpy(out.plane[c] + y * w, p->plane[c] + (y + y0) * p->width + x0, sizeof(float) * (size_t)w);
-    return out;
-}
-
 static void flips(struct hf_context *c, const char *isa)
 {
     for (unsigned i = 0; i < 30; i++) {
@@ -85,8 +67,8 @@ static void flips(struct hf_context *c, const char *isa)
         const int step = 1 << p.resolution;
         p.focus_distance = 20;  // the pixel in the middle is another one
         struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, step * (1 + rng_below(&rng, 90 / step)), 1 + rng_below(&rng, 50), 3);
-        struct scene mirror = {flipped(&s.colour), flipped(&s.depth)};
-        struct picture a = render(c, &s, NULL, &p), b = render(c, &mirror, NULL, &p), back = flipped(&b);
+        struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
+        struct picture a = render(c, &s, NULL, &p), b = render(c, &mirror, NULL, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u, %d x %d, resolution %d: flipping gives other bits", isa,
                   seed + i, s.colour.width, s.colour.height, p.resolution);
         picture_free(&a);
@@ -111,9 +93,9 @@ static void crops(struct hf_context *c, const char *isa)
         p.resolution = p.sigma > 0 ? HF_RESOLUTION_FULL : p.resolution;
         const int step = 2 << p.resolution, x0 = step * rng_below(&rng, 4), y0 = step * rng_below(&rng, 4);
         const int w = 108, h = 104, m = p.sigma > 0 ? 20 : (2 * p.iterations + 2) << p.resolution;
-        struct scene part = {cut(&s.colour, x0, y0, w, h), cut(&s.depth, x0, y0, w, h)};
+        struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
         struct picture whole = render(c, &s, NULL, &p), a = render(c, &part, NULL, &p);
-        struct picture b = cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m), inner = cut(&a, m, m, w - 2 * m, h - 2 * m);
+        struct picture b = picture_cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m), inner = picture_cut(&a, m, m, w - 2 * m, h - 2 * m);
         CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d), resolution %d: other bits", isa, seed + i,
                   x0, y0, p.resolution);
         picture_free(&whole);

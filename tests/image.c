@@ -31,6 +31,25 @@ struct picture picture_copy(const struct picture *p)
     return q;
 }
 
+struct picture picture_cut(const struct picture *p, int x0, int y0, int w, int h)
+{
+    struct picture out = picture_new(w, h, p->channels);
+    for (int c = 0; c < p->channels; c++)
+        for (int y = 0; y < h; y++)
+            memcpy(out.plane[c] + y * w, p->plane[c] + (y + y0) * p->width + x0, sizeof(float) * (size_t)w);
+    return out;
+}
+
+struct picture picture_flipped(const struct picture *p)
+{
+    struct picture out = picture_new(p->width, p->height, p->channels);
+    for (int c = 0; c < p->channels; c++)
+        for (int y = 0; y < p->height; y++)
+            for (int x = 0; x < p->width; x++)
+                out.plane[c][y * p->width + x] = p->plane[c][y * p->width + p->width - 1 - x];
+    return out;
+}
+
 void picture_free(struct picture *p)
 {
     for (int c = 0; c < 4; c++)

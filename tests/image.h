@@ -19,6 +19,9 @@ struct picture {
 // All samples 0. Running out of memory ends the program: these are tests.
 struct picture picture_new(int width, int height, int channels);
 struct picture picture_copy(const struct picture *p);
+// What lies in a picture from (x0, y0), and its mirror image, left to right.
+struct picture picture_cut(const struct picture *p, int x0, int y0, int w, int h);
+struct picture picture_flipped(const struct picture *p);
 void picture_free(struct picture *p);
 
 // Views of a picture for the API, format PLANAR32F; the picture keeps its memory.

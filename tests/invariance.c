@@ -23,26 +23,6 @@ static struct picture render(struct hf_context *c, const struct scene *s, const 
     return out;
 }
 
-// What lies in a picture from (x0, y0).
-static struct picture cut(const struct picture *p, int x0, int y0, int w, int h)
-{
-    struct picture out = picture_new(w, h, p->channels);
-    for (int c = 0; c < p->channels; c++)
-        for (int y = 0; y < h; y++)
-            memcpy(out.plane[c] + y * w, p->plane[c] + (y + y0) * p->width + x0, sizeof(float) * (size_t)w);
-    return out;
-}
-
-static struct picture flipped(const struct picture *p)
-{
-    struct picture out = picture_new(p->width, p->height, p->channels);
-    for (int c = 0; c < p->channels; c++)
-        for (int y = 0; y < p->height; y++)
-            for (int x = 0; x < p->width; x++)
-                out.plane[c][y * p->width + x] = p->plane[c][y * p->width + p->width - 1 - x];
-    return out;
-}
-
 static struct picture transposed(const struct picture *p)
 {
     struct picture out = picture_new(p->height, p->width, p->channels);
@@ -105,12 +85,12 @@ static void crops(struct hf_context *c, const char *isa)
         p.max_radius = fminf(p.max_radius, 17.5f);
         const int x0 = 2 * rng_below(&rng, 20), y0 = 2 * rng_below(&rng, 20);
         const int w = 140 + rng_below(&rng, 20), h = 110 + rng_below(&rng, 10);
-        struct scene part = {cut(&s.colour, x0, y0, w, h), cut(&s.depth, x0, y0, w, h)};
+        struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
         struct picture whole = render(c, &s, &p), a = render(c, &part, &p);
         const int mx = 2 * (2 * (int)ceilf(p.max_radius / 2 / p.pixel_aspect) + 4);
         const int my = 2 * (2 * (int)ceilf(p.max_radius / 2) + 4);
-        struct picture b = cut(&whole, x0 + mx, y0 + my, w - 2 * mx, h - 2 * my);
-        struct picture inner = cut(&a, mx, my, w - 2 * mx, h - 2 * my);
+        struct picture b = picture_cut(&whole, x0 + mx, y0 + my, w - 2 * mx, h - 2 * my);
+        struct picture inner = picture_cut(&a, mx, my, w - 2 * mx, h - 2 * my);
         CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d): other bits", isa, seed + i, x0, y0);
         picture_free(&whole);
         picture_free(&a);
@@ -139,8 +119,8 @@ static void flips(struct hf_context *c, const char *isa)
         struct scene s = quad_scene(&rng, 2 * (20 + rng_below(&rng, 50)), 2 * (10 + rng_below(&rng, 30)));
         struct hf_params p = random_params(&rng);
         p.faithful = p.per_pixel_kernel = p.blades = 0;
-        struct scene mirror = {flipped(&s.colour), flipped(&s.depth)};
-        struct picture a = render(c, &s, &p), b = render(c, &mirror, &p), back = flipped(&b);
+        struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
+        struct picture a = render(c, &s, &p), b = render(c, &mirror, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
                   " bicubic %d)", isa, seed + i, p.storage, p.fill, p.karis, p.bicubic);
         picture_free(&a);

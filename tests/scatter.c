@@ -315,25 +315,6 @@ static void same_bits(enum hf_isa isa, struct hf_context *scalar)
         hf_close(&tiled[i]);
 }
 
-static struct picture cut(const struct picture *p, int x0, int y0, int w, int h)
-{
-    struct picture out = picture_new(w, h, p->channels);
-    for (int c = 0; c < p->channels; c++)
-        for (int y = 0; y < h; y++)
-            memcpy(out.plane[c] + y * w, p->plane[c] + (y + y0) * p->width + x0, sizeof(float) * (size_t)w);
-    return out;
-}
-
-static struct picture flipped(const struct picture *p)
-{
-    struct picture out = picture_new(p->width, p->height, p->channels);
-    for (int c = 0; c < p->channels; c++)
-        for (int y = 0; y < p->height; y++)
-            for (int x = 0; x < p->width; x++)
-                out.plane[c][y * p->width + x] = p->plane[c][y * p->width + p->width - 1 - x];
-    return out;
-}
-
 static void moved(struct hf_context *c, const char *isa)
 {
     for (unsigned i = 0; i < 24; i++) {
@@ -345,8 +326,8 @@ static void moved(struct hf_context *c, const char *isa)
         p.pixel_aspect = fmaxf(p.pixel_aspect, 1);
         p.squeeze = fmaxf(p.squeeze, 1);
         p.blades = 0;
-        struct scene mirror = {flipped(&s.colour), flipped(&s.depth)};
-        struct picture a = render_scene(c, &s, &p), b = render_scene(c, &mirror, &p), back = flipped(&b);
+        struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
+        struct picture a = render_scene(c, &s, &p), b = render_scene(c, &mirror, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back),
                   "%s: seed %u: flipping gives other bits (radius %g, half %d, cat's eye %g)", isa, seed + 2000 + i,
                   p.max_radius, p.resolution, p.cat_eye);
@@ -361,11 +342,11 @@ static void moved(struct hf_context *c, const char *isa)
         const int x0 = 2 * rng_below(&rng, 10), y0 = 2 * rng_below(&rng, 10);
         const int w = 118 + rng_below(&rng, 2), h = 98 + rng_below(&rng, 2),
                   m = 2 * ((int)ceilf(p.max_radius * 0.75f) + 3);
-        struct scene part = {cut(&s.colour, x0, y0, w, h), cut(&s.depth, x0, y0, w, h)};
+        struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
         b = render_scene(c, &part, &p);
         if (w > 2 * m && h > 2 * m) {
-            struct picture want = cut(&a, x0 + m, y0 + m, w - 2 * m, h - 2 * m),
-                           got = cut(&b, m, m, w - 2 * m, h - 2 * m);
+            struct picture want = picture_cut(&a, x0 + m, y0 + m, w - 2 * m, h - 2 * m),
+                           got = picture_cut(&b, m, m, w - 2 * m, h - 2 * m);
             CHECK_MSG(picture_same_bits(&want, &got), "%s: seed %u: a crop has other bits (radius %g, half %d)", isa,
                       seed + 2000 + i, p.max_radius, p.resolution);
             picture_free(&want);

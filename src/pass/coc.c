@@ -4,18 +4,6 @@
 
 #include "pass/pass_c.h"
 
-// 0..1; NaN becomes 0.
-static float saturate(float v)
-{
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
-}
-
-static float shape(const struct hf_setup *s, float t)
-{
-    return s->smoothstep ? (t * t) * (3 - 2 * t) : t;
-}
-
 // The rounding of a storage's CoC.
 float hf_round_coc(enum hf_storage storage, float t)
 {
@@ -41,8 +29,8 @@ void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, 
 {
     const struct hf_setup *s = f->s;
     const float v = hf_coc_variable(f, x, y, counts);
-    *n = hf_round_coc(s->storage, shape(s, saturate((s->near_0 - v) * s->near_i)));
-    *far = hf_round_coc(s->storage, shape(s, saturate((v - s->far_0) * s->far_i)));
+    *n = hf_round_coc(s->storage, hf_ramp(s, (s->near_0 - v) * s->near_i));
+    *far = hf_round_coc(s->storage, hf_ramp(s, (v - s->far_0) * s->far_i));
 }
 
 static void count(struct hf_counts *c, int lane, float n, float f)

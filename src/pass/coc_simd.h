@@ -62,20 +62,21 @@ struct coc_sums {
     vm nan;
 };
 
-HF_INLINE vf coc_finish(const struct hf_setup *s, vf t)
+// From 0 to 1, of the shape that was asked for.
+HF_INLINE vf coc_ramp(const struct hf_setup *s, vf t)
 {
     t = coc_saturate(t);
-    return coc_round(s->storage, s->smoothstep ? coc_shape(t) : t);
+    return s->smoothstep ? coc_shape(t) : t;
 }
 
 HF_INLINE vf coc_near(const struct hf_setup *s, vf v)
 {
-    return coc_finish(s, vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i)));
+    return coc_round(s->storage, coc_ramp(s, vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i))));
 }
 
 HF_INLINE vf coc_far(const struct hf_setup *s, vf v)
 {
-    return coc_finish(s, vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i)));
+    return coc_round(s->storage, coc_ramp(s, vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i))));
 }
 
 // One vector of depth to near and far CoC. whole: near and the statistics too, not just far.

@@ -2,12 +2,6 @@
 // The kernels of the hexagon engine in plain C; what they compute is said in hexagon.h.
 #include "pass/hexagon.h"
 
-static float saturate(float v)
-{
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
-}
-
 // ---- Load ----
 
 static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
@@ -156,7 +150,7 @@ static void near_2(const struct hf_frame *f, int x, int y)
 // How much of its own colour a pixel of radius p > 0 adds to what it has found.
 static float own(float found, float p)
 {
-    float o = (1 - found) * saturate(HEXAGON_ALL - p);
+    float o = (1 - found) * hf_saturate(HEXAGON_ALL - p);
     const float least = HEXAGON_LEAST - found;
     o = o > least ? o : least;
     return o > 0 ? o : 0;
@@ -260,7 +254,7 @@ static void fields_half(const struct hf_frame *f, int x, int y, float near[5], f
             near[4] = near[4] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, u, v);
         if (!f->far)
             continue;
-        w = w * saturate(*hf_at(&f->buf[HF_HEXAGON_FAR_WEIGHT_2], 1, u, v));
+        w = w * hf_saturate(*hf_at(&f->buf[HF_HEXAGON_FAR_WEIGHT_2], 1, u, v));
         for (int c = 0; c < f->s->channels; c++)
             far[c] = far[c] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, u, v);
         far[4] = far[4] + w;
@@ -277,7 +271,7 @@ static void composite_pixel(const struct hf_frame *f, int x, int y, float p, flo
     for (int c = 0; c < f->s->channels && (has_far || near[4] != 0); c++) {
         float v = colour[c][i] * HEXAGON_SCALE;
         if (has_far)
-            v = half ? hf_lerp(v, far[c] / far[4], saturate(0.5f * p)) : far[c];
+            v = half ? hf_lerp(v, far[c] / far[4], hf_saturate(0.5f * p)) : far[c];
         if (near[4] != 0)
             v = (near[c] + left * v) * scale;
         v = v < HEXAGON_MOST ? v : HEXAGON_MOST;

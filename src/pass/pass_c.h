@@ -43,6 +43,14 @@ hf_scatter_blend hf_scatter_blend_c;
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);
 
 void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts);
+
+// CoC from 0 to 1, of the shape that was asked for; NaN becomes 0.
+static inline float hf_ramp(const struct hf_setup *s, float t)
+{
+    t = hf_saturate(t);
+    return s->smoothstep ? (t * t) * (3 - 2 * t) : t;
+}
+
 float hf_round_coc(enum hf_storage storage, float t);
 
 // Round n colours to what the storage holds when a pass writes them: channel 3 is alpha.

@@ -4,17 +4,6 @@
 
 #include "pass/pass_c.h"
 
-static float saturate(float v)
-{
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
-}
-
-static float shape(const struct hf_setup *s, float t)
-{
-    return s->smoothstep ? (t * t) * (3 - 2 * t) : t;
-}
-
 static float radius_of(const struct hf_setup *s, float v)
 {
     float r;
@@ -23,8 +12,8 @@ static float radius_of(const struct hf_setup *s, float v)
         r = r > -s->max_radius ? r : -s->max_radius;
         r = r < s->max_radius ? r : s->max_radius;
     } else {
-        const float n = shape(s, saturate((s->near_0 - v) * s->near_i));
-        const float f = shape(s, saturate((v - s->far_0) * s->far_i));
+        const float n = hf_ramp(s, (s->near_0 - v) * s->near_i);
+        const float f = hf_ramp(s, (v - s->far_0) * s->far_i);
         r = (s->strength * s->max_radius) * (f - n);
     }
     if (s->uniform)

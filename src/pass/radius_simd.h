@@ -8,12 +8,8 @@ HF_INLINE vf radius_of_vf(const struct hf_setup *s, vf v)
         r = vf_mul(vf_sub(v, vf_set1(s->radius_0)), vf_set1(s->radius_k));
         r = vf_min(vf_max(r, vf_set1(-s->max_radius)), vf_set1(s->max_radius));
     } else {
-        vf n = coc_saturate(vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i)));
-        vf f = coc_saturate(vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i)));
-        if (s->smoothstep) {
-            n = coc_shape(n);
-            f = coc_shape(f);
-        }
+        const vf n = coc_ramp(s, vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i)));
+        const vf f = coc_ramp(s, vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i)));
         r = vf_mul(vf_set1(s->strength * s->max_radius), vf_sub(f, n));
     }
     if (s->uniform)

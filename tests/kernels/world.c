@@ -96,21 +96,7 @@ struct region *world_region(struct world *w, enum region_kind kind, int slot, co
 
 int buf_channels(const struct world *w, enum hf_buf_id b)
 {
-    switch (b) {
-    case HF_BUF_COC:
-        return 4;
-    case HF_BUF_COC4:
-    case HF_BUF_SUM:
-    case HF_BUF_WEIGHT:
-        return 2;
-    case HF_BUF_MAX_X:
-    case HF_BUF_MAX:
-    case HF_BUF_BLUR_X:
-    case HF_BUF_BLUR:
-        return 1;
-    default:
-        return w->setup.channels;
-    }
+    return hf_gather_engine.channels(&w->setup, (int)b);
 }
 
 static int round_down(int x, int to)
