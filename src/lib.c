@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "context.h"
-#include "cpu.h"
+#include "frame/context.h"
+#include "base/cpu.h"
 
 enum { MAX_THREADS = 256 };
 

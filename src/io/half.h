@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#include "format.h"
+#include "pixel/format.h"
 
 static inline float hf_io_from_half(uint16_t h)
 {

@@ -7,8 +7,8 @@
 #ifndef HF_TESTS_HARNESS_H
 #define HF_TESTS_HARNESS_H
 
-#include "engine.h"
-#include "setup.h"
+#include "frame/engine.h"
+#include "params.h"
 
 // ---- random numbers: one seed, one sequence, so never two draws where C leaves the order open ----
 

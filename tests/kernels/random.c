@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "harness.h"
-#include "pass/pass_c.h"
+#include "pixel/pass_c.h"
 
 struct rng rng_from(uint64_t seed, uint64_t stream)
 {

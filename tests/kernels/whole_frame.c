@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "context.h"
+#include "frame/context.h"
 #include "harness.h"
 
 struct frame_case {

@@ -3,7 +3,7 @@
 // Compiled twice, as src/x86/avx512.c is.
 #define hf_kernels_avx512_fused emulated_avx512_fused
 #define hf_kernels_avx512_exact emulated_avx512_exact
-#include "x86/avx512.c"
+#include "simd/avx512.c"
 
 #if HF_FUSED
 int emulated_check_vectors(void);

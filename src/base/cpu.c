@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/cpu.h"
+
+#include <sched.h>
+#if HF_SIMD && HF_X86
+#include <cpuid.h>
+#endif
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const isa_names[] = {"auto", "scalar", "sse4.1", "avx2", "avx512", "neon"};
+enum { ISA_COUNT = sizeof isa_names / sizeof *isa_names };
+
+const char *hf_isa_name(enum hf_isa isa)
+{
+    return (unsigned)isa < ISA_COUNT ? isa_names[isa] : NULL;
+}
+
+#if HF_SIMD && HF_X86
+// __builtin_cpu_supports knows f16c only in newer compilers. Bit 29 of leaf 1; that the operating system saves the
+// registers is what asking for avx2 has told.
+static int has_f16c(void)
+{
+    unsigned a, b, c, d;
+    return __get_cpuid(1, &a, &b, &c, &d) && (c >> 29 & 1);
+}
+#endif
+
+int hf_isa_available(enum hf_isa isa)
+{
+    switch (isa) {
+    case HF_ISA_AUTO:
+    case HF_ISA_SCALAR:
+        return 1;
+#if HF_SIMD && HF_X86
+    // __builtin_cpu_supports also asks the operating system whether it saves the registers.
+    case HF_ISA_SSE41:
+        return __builtin_cpu_supports("sse4.1") != 0;
+    case HF_ISA_AVX2:
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && has_f16c();
+    case HF_ISA_AVX512:
+        return hf_isa_available(HF_ISA_AVX2) && __builtin_cpu_supports("avx512f") &&
+               __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512vl");
+#endif
+#if HF_SIMD && HF_ARM
+    case HF_ISA_NEON:
+        return 1;  // every AArch64 has it
+#endif
+    default:
+        return 0;
+    }
+}
+
+enum hf_isa hf_cpu_choose(enum hf_isa wanted)
+{
+    const char *name = getenv("HYPERFOCAL_ISA");
+    if (wanted == HF_ISA_AUTO && name && *name) {
+        for (int i = HF_ISA_AUTO; i < ISA_COUNT; i++)
+            if (!strcmp(name, isa_names[i]))
+                wanted = (enum hf_isa)i;
+        if (wanted == HF_ISA_AUTO && strcmp(name, isa_names[HF_ISA_AUTO]))
+            return HF_ISA_AUTO;
+    }
+    if (wanted != HF_ISA_AUTO)
+        return hf_isa_available(wanted) ? wanted : HF_ISA_AUTO;
+    enum hf_isa best = HF_ISA_SCALAR;
+    for (int i = HF_ISA_SCALAR; i < ISA_COUNT; i++)
+        if (hf_isa_available((enum hf_isa)i))
+            best = (enum hf_isa)i;
+    return best;
+}
+
+int hf_cpu_count(void)
+{
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set))
+        return 1;
+    const int n = CPU_COUNT(&set);
+    return n < 1 ? 1 : n;
+}

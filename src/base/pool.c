@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The only file that knows pthreads.
+//
+// A frame is two short runs, so a worker that slept at once would cost a wake-up (tens of microseconds) each: idle
+// workers spin for a moment before they sleep, and so does the caller before it waits for the last of them.
+#include "base/pool.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <time.h>
+
+#include "hyperfocal/hyperfocal.h"
+
+enum { SPIN_NS = 200000 };
+
+struct worker {
+    struct hf_pool *pool;
+    pthread_t thread;
+    int index;
+};
+
+struct hf_pool {
+    const struct hf_mem *mem;
+    int threads, started;
+
+    pthread_mutex_t lock;
+    pthread_cond_t wake, done;
+    atomic_uint generation;  // counts runs; a change is the signal to work
+    atomic_int busy;         // started workers that have not finished this run
+    int quit, sleepers;      // under the lock
+
+    atomic_int next;  // the queue
+    int n;
+    void (*fn)(void *arg, int i, int worker);
+    void *arg;
+
+    struct worker workers[];
+};
+
+static void cpu_pause(void)
+{
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+}
+
+static int64_t now_ns(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
+}
+
+static void work(struct hf_pool *p, int worker)
+{
+    for (int i; (i = atomic_fetch_add_explicit(&p->next, 1, memory_order_relaxed)) < p->n;)
+        p->fn(p->arg, i, worker);
+}
+
+// Wait until the generation is no longer `seen`; returns the new one.
+static unsigned await_generation(struct hf_pool *p, unsigned seen)
+{
+    for (int64_t end = now_ns() + SPIN_NS; now_ns() < end;) {
+        for (int i = 0; i < 64; i++) {
+            const unsigned g = atomic_load_explicit(&p->generation, memory_order_acquire);
+            if (g != seen)
+                return g;
+            cpu_pause();
+        }
+    }
+    pthread_mutex_lock(&p->lock);
+    p->sleepers++;
+    while (atomic_load_explicit(&p->generation, memory_order_acquire) == seen)
+        pthread_cond_wait(&p->wake, &p->lock);
+    p->sleepers--;
+    const unsigned g = atomic_load_explicit(&p->generation, memory_order_acquire);
+    pthread_mutex_unlock(&p->lock);
+    return g;
+}
+
+static void *worker_main(void *arg)
+{
+    struct worker *w = arg;
+    struct hf_pool *p = w->pool;
+    unsigned seen = 0;
+    for (;;) {
+        seen = await_generation(p, seen);
+        if (p->quit)  // written before the generation was
+            return NULL;
+        work(p, w->index);
+        if (atomic_fetch_sub_explicit(&p->busy, 1, memory_order_acq_rel) == 1) {
+            pthread_mutex_lock(&p->lock);
+            pthread_cond_signal(&p->done);
+            pthread_mutex_unlock(&p->lock);
+        }
+    }
+}
+
+// Publish a run (or the order to quit) to the workers.
+static void release_workers(struct hf_pool *p)
+{
+    pthread_mutex_lock(&p->lock);
+    atomic_fetch_add_explicit(&p->generation, 1, memory_order_release);
+    const int sleepers = p->sleepers;
+    pthread_mutex_unlock(&p->lock);
+    if (sleepers)
+        pthread_cond_broadcast(&p->wake);
+}
+
+void hf_pool_run(struct hf_pool *p, int n, void (*fn)(void *arg, int i, int worker), void *arg)
+{
+    p->fn = fn;
+    p->arg = arg;
+    p->n = n;
+    atomic_store_explicit(&p->next, 0, memory_order_relaxed);
+    atomic_store_explicit(&p->busy, p->started, memory_order_relaxed);
+    if (p->started)
+        release_workers(p);
+    work(p, 0);
+    if (!p->started)
+        return;
+    for (int64_t end = now_ns() + SPIN_NS; now_ns() < end;) {
+        for (int i = 0; i < 64; i++) {
+            if (!atomic_load_explicit(&p->busy, memory_order_acquire))
+                return;
+            cpu_pause();
+        }
+    }
+    pthread_mutex_lock(&p->lock);
+    while (atomic_load_explicit(&p->busy, memory_order_acquire))
+        pthread_cond_wait(&p->done, &p->lock);
+    pthread_mutex_unlock(&p->lock);
+}
+
+void hf_pool_relax(int n)
+{
+    if (n % 256 == 255)
+        sched_yield();
+    else
+        cpu_pause();
+}
+
+size_t hf_pool_bytes(int threads)
+{
+    return sizeof(struct hf_pool) + (size_t)threads * sizeof(struct worker);
+}
+
+int hf_pool_open(struct hf_pool **out, int threads, const struct hf_mem *mem)
+{
+    struct hf_pool *p = mem->alloc(mem->cookie, hf_pool_bytes(threads), HF_ALIGN);
+    *out = NULL;
+    if (!p)
+        return HF_ERR_MEMORY;
+    *p = (struct hf_pool){.mem = mem, .threads = threads};
+    pthread_mutex_init(&p->lock, NULL);
+    pthread_cond_init(&p->wake, NULL);
+    pthread_cond_init(&p->done, NULL);
+    for (int i = 1; i < threads; i++) {
+        struct worker *w = &p->workers[i];
+        *w = (struct worker){.pool = p, .index = i};
+        if (pthread_create(&w->thread, NULL, worker_main, w)) {
+            hf_pool_close(&p);
+            return HF_ERR_THREAD;
+        }
+        p->started++;
+    }
+    *out = p;
+    return HF_OK;
+}
+
+void hf_pool_close(struct hf_pool **pool)
+{
+    struct hf_pool *p = *pool;
+    if (!p)
+        return;
+    *pool = NULL;
+    p->quit = 1;
+    release_workers(p);
+    for (int i = 1; i <= p->started; i++)
+        pthread_join(p->workers[i].thread, NULL);
+    pthread_cond_destroy(&p->done);
+    pthread_cond_destroy(&p->wake);
+    pthread_mutex_destroy(&p->lock);
+    p->mem->free(p->mem->cookie, p);
+}

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame/budget.h"
+
+#include "gather/taps.h"
+
+// Frames beyond the budget before a cheaper setting; frames with room before the better one again, twice as many each
+// time that it turned out too slow.
+enum { OVER = 2, PATIENCE = 12, MOST_PATIENCE = 192 };
+// Part of the budget that the better setting may be expected to take: what lies between is hysteresis.
+static const float ROOM = 0.8f;
+
+static int add(struct hf_params *ladder, int n, const struct hf_params *p)
+{
+    if (n < HF_BUDGET_STEPS)
+        ladder[n++] = *p;
+    return n;
+}
+
+// Two thirds, then one third of the rings.
+static int add_rings(struct hf_params *ladder, int n, struct hf_params p, float radius)
+{
+    const int all = p.rings ? p.rings : hf_taps_rings(radius / 2);
+    int last = all;
+    for (int thirds = 2; thirds > 0 && p.fill != HF_FILL_NONE; thirds--) {
+        p.rings = (all * thirds + 2) / 3;
+        if (p.rings < last)
+            n = add(ladder, n, &p);
+        last = p.rings;
+    }
+    return n;
+}
+
+int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS])
+{
+    struct hf_params p = *asked;
+    int n = add(ladder, 0, &p);
+    // Storage other than float is more work here: packing costs more than the memory that it saves.
+    if (p.storage != HF_STORAGE_FLOAT && !p.faithful) {
+        p.storage = HF_STORAGE_FLOAT;
+        n = add(ladder, n, &p);
+    }
+    if (p.engine != HF_ENGINE_GATHER && p.resolution == HF_RESOLUTION_FULL) {
+        p.resolution = HF_RESOLUTION_HALF;
+        n = add(ladder, n, &p);
+    }
+    if (p.engine == HF_ENGINE_GAUSSIAN && p.resolution == HF_RESOLUTION_HALF) {
+        p.resolution = HF_RESOLUTION_QUARTER;
+        n = add(ladder, n, &p);
+    }
+    if (p.engine == HF_ENGINE_GAUSSIAN)
+        return n;
+    if (p.engine != HF_ENGINE_GATHER) {
+        p.engine = HF_ENGINE_GATHER;
+        p.resolution = HF_RESOLUTION_FULL;
+        if (p.blades && (p.blades < 5 || p.blades > 9))
+            p.blades = 0;
+        if (radius > 256)
+            p.max_radius = 256;
+        n = add(ladder, n, &p);
+    }
+    return add_rings(ladder, n, p, radius);
+}
+
+// What the ladder hangs on.
+static uint64_t hash_of(const struct hf_params *ladder, int steps)
+{
+    uint64_t hash = (uint64_t)steps;
+    for (int i = 0; i < steps; i++) {
+        const struct hf_params *p = &ladder[i];
+        const uint64_t word = (uint64_t)p->engine | (uint64_t)p->storage << 4 | (uint64_t)p->resolution << 8 |
+                              (uint64_t)p->rings << 12 | (uint64_t)p->fill << 20 | (uint64_t)p->iterations << 24;
+        hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
+        hash ^= hash >> 31;
+    }
+    return hash | 1;
+}
+
+static void enter(struct hf_budget *b, int step)
+{
+    b->climbed = step < b->step;
+    b->step = step;
+    b->frames = b->over = b->calm = 0;
+    b->ms = b->above = 0;
+}
+
+int hf_budget_choose(struct hf_budget *b, const struct hf_params *ladder, int steps)
+{
+    const uint64_t asked = hash_of(ladder, steps);
+    if (b->asked != asked)
+        *b = (struct hf_budget){.asked = asked, .patience = PATIENCE};
+    return b->step;
+}
+
+static void step_down(struct hf_budget *b)
+{
+    const float above = b->ms;
+    if (b->climbed && b->frames < PATIENCE)  // in vain
+        b->patience = 2 * b->patience < MOST_PATIENCE ? 2 * b->patience : MOST_PATIENCE;
+    enter(b, b->step + 1);
+    b->above = above;
+}
+
+void hf_budget_note(struct hf_budget *b, float budget_ms, int steps, float ms)
+{
+    // The first frame at a step pays for its memory.
+    if (b->frames++ == 0)
+        return;
+    if (b->frames == 2) {
+        b->ms = ms;
+        if (b->above > 0)
+            b->ratio[b->step] = b->above > ms ? b->above / ms : 1;
+    }
+    b->ms += 0.5f * (ms - b->ms);
+    b->over = ms > budget_ms ? b->over + 1 : 0;
+    if (b->over >= OVER && b->step + 1 < steps) {
+        step_down(b);
+        return;
+    }
+    const int room = b->step > 0 && b->ms * b->ratio[b->step] <= ROOM * budget_ms;
+    b->calm = room ? b->calm + 1 : 0;
+    if (b->calm >= b->patience)
+        enter(b, b->step - 1);
+}

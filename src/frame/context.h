@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a context holds between frames.
+#ifndef HF_CONTEXT_H
+#define HF_CONTEXT_H
+
+#include "pixel/aperture.h"
+#include "frame/budget.h"
+#include "frame/cost.h"
+#include "frame/engine.h"
+#include "frame/plan.h"
+#include "base/pool.h"
+#include "params.h"
+#include "frame/wave.h"
+
+struct hf_worker {
+    _Alignas(HF_ALIGN) struct hf_frame frame;
+    struct hf_counts counts;
+    struct hf_counts seen, looked;
+    int64_t ns[HF_MAX_PASSES];
+    uint32_t tiles[HF_MAX_PASSES];
+    int64_t plan_ns;
+    struct hf_block scratch;
+};
+
+struct hf_context {
+    struct hf_config config;  // the caller's, pointers checked
+    struct hf_mem mem;
+    enum hf_isa isa;
+    int threads;
+    struct hf_kernels fused, exact;
+    struct hf_pool *pool;  // NULL: the host's parallel_for
+    struct hf_worker *workers;
+
+    struct hf_taps taps;
+    struct hf_aperture aperture;
+    struct hf_block tables;   // of the other engines' prepare
+    struct hf_plan plan;      // of the last frame: the next one guesses from it
+    struct hf_block planes;   // buffers of the whole frame
+    struct hf_block chunks, tiles;  // the plan's; tiles: and the wave's
+    struct hf_wave wave;
+    struct hf_block joined;   // CoC for a dump: of full resolution, or of narrow buffers
+    struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
+    struct hf_stats stats;
+    struct hf_report report;
+    struct hf_work work;      // of the plan
+    struct hf_cost cost;
+    struct hf_budget budget;
+
+    void (*dump)(void *cookie, const struct hf_buffer *buffer);
+    void *dump_cookie;
+};
+
+// Run a frame whose arguments have been checked, or only plan it (render.c).
+int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
+                    const struct hf_image *src, const struct hf_depth *depth, int fused, int plan_only);
+
+#endif

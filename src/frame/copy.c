@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame/copy.h"
+
+#include "pixel/repair.h"
+
+struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src)
+{
+    const int same = dst->format == src->format && hf_image_channels(dst) == hf_image_channels(src);
+    return (struct hf_copy){
+        .in_place = dst->data[0] == src->data[0],
+        .raw = same && (s->blend == 0 || s->storage == HF_STORAGE_FLOAT || src->format == HF_FORMAT_R11G11B10F ||
+                        (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F))};
+}
+
+// First byte of the pixels of a rectangle's row in one plane.
+static uint8_t *pixels_at(const struct hf_image *m, int plane, int x, int y)
+{
+    return (uint8_t *)m->data[plane] + (ptrdiff_t)y * m->stride[plane] + hf_row_bytes(m->format, x);
+}
+
+// Is a row finite? Copied on the way to dst, if there is one.
+static int row_finite(const struct hf_frame *f, int x, int y, int n, const struct hf_image *dst)
+{
+    const struct hf_image *m = f->src;
+    hf_finite *finite = m->format == HF_FORMAT_RGBA16F      ? f->k->finite_f16
+                        : m->format == HF_FORMAT_R11G11B10F ? f->k->finite_r11
+                                                            : f->k->finite_f32;
+    const size_t words = hf_row_bytes(m->format, n) / (m->format == HF_FORMAT_RGBA16F ? 2 : 4);
+    for (int p = 0; p < hf_plane_count(m); p++)
+        if (!finite(pixels_at(m, p, x, y), words, dst ? pixels_at(dst, p, x, y) : NULL))
+            return 0;
+    return 1;
+}
+
+void hf_copy_scan(struct hf_worker *w, struct hf_rect r)
+{
+    const struct hf_setup *s = w->frame.s;
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, s->height); y++)
+        w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0,
+                                                NULL);
+}
+
+void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_rect r)
+{
+    const struct hf_frame *f = &w->frame;
+    const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x;
+    if (r.x0 >= r.x1)
+        return;
+    float *even[4], *odd[4];
+    for (int c = 0; c < 4; c++) {
+        even[c] = hf_line(f, c);
+        odd[c] = hf_line(f, 4 + c);
+    }
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+        if (copy->raw && copy->in_place)
+            continue;  // checked, and repaired if need be, after the first sweep
+        if (copy->raw && row_finite(f, x, y, n, f->dst))
+            continue;
+        float *const *alpha = hf_image_channels(f->src) == 4 ? even : NULL;
+        hf_read_colour(f, r.x0, y, r.x1 - r.x0, even, odd, &w->counts);
+        const float *const e[4] = {even[0], even[1], even[2], alpha ? even[3] : NULL};
+        const float *const o[4] = {odd[0], odd[1], odd[2], alpha ? odd[3] : NULL};
+        w->counts.clamped += f->k->store[f->dst->format](f->dst, r.x0, y, r.x1 - r.x0, e, o);
+    }
+}
+
+static int seen_bad(const struct hf_context *c)
+{
+    uint64_t n = 0;
+    for (int i = 0; i < c->threads; i++)
+        n += c->workers[i].seen.colour_repaired;
+    return n != 0;
+}
+
+int hf_copy_repair(struct hf_context *c)
+{
+    if (!seen_bad(c))
+        return HF_OK;
+    const struct hf_image *m = c->workers[0].frame.src;
+    const struct hf_rect all = {0, 0, m->width, m->height};
+    const size_t n = hf_repair_list(m, all, NULL, 0);
+    const int err = hf_block_grow(&c->repairs, n * sizeof(struct hf_repair), &c->mem);
+    if (err)
+        return err;
+    struct hf_repair *list = c->repairs.data;
+    hf_repair_list(m, all, list, n);
+    for (size_t i = 0; i < n; i++)
+        hf_put_sample(m, list[i].channel, list[i].x, list[i].y, list[i].value);
+    c->workers[0].counts.colour_repaired += n;
+    return HF_OK;
+}

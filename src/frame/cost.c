@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame/cost.h"
+
+#include <string.h>
+
+static uint64_t mix(uint64_t hash, uint64_t v)
+{
+    hash = (hash ^ v) * UINT64_C(0x9e3779b97f4a7c15);
+    return hash ^ hash >> 29;
+}
+
+// Options that change what a unit of work costs. Reaches count in steps of about an eighth: near ones cost alike.
+static uint64_t key_of(const struct hf_setup *s, enum hf_isa isa)
+{
+    const int numbers[] = {s->engine, s->channels, s->storage, s->faithful, s->karis, s->per_pixel_kernel, s->bicubic,
+                           s->smoothstep, s->fill, s->form, s->lens, s->resolution, s->uniform, s->iterations,
+                           s->sigma > 0, isa};
+    uint64_t hash = 1;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        hash = mix(hash, (uint64_t)numbers[i]);
+    uint32_t reach = s->engine == HF_ENGINE_GATHER ? (uint32_t)s->taps->first[s->taps->rows]
+                                                   : (uint32_t)hf_max(s->reach_x, s->reach_y);
+    int scale = 0;
+    for (; reach >= 16; reach /= 2)
+        scale++;
+    return mix(mix(hash, reach), (uint64_t)scale) | 1;
+}
+
+static int fields_of(unsigned fields)
+{
+    return (fields & HF_NEAR ? 1 : 0) + (fields & HF_FAR ? 1 : 0);
+}
+
+static double area(struct hf_rect r)
+{
+    return (double)(r.x1 - r.x0) * (r.y1 - r.y0);
+}
+
+// Fields for which a pass runs in a cell of a sweep.
+static unsigned fields_in(const struct hf_plan *p, const struct hf_pass *pass, int cell)
+{
+    const unsigned fields = pass->sweep == 1                  ? p->chunk_reads[cell]
+                            : hf_plan_is_tiled(p, pass->sweep) ? p->tile_needs[cell]
+                                                            : p->needs;
+    return pass->field ? fields & pass->field : fields;
+}
+
+// The part of a cell that is worked on.
+static struct hf_rect cell_of(const struct hf_plan *p, int sweep, int cell)
+{
+    return hf_plan_is_tiled(p, sweep) ? hf_plan_active(p, cell) : hf_plan_cell(p, sweep, cell);
+}
+
+void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s)
+{
+    *w = (struct hf_work){0};
+    for (int i = 0; i < p->engine->pass_count; i++) {
+        const struct hf_pass *pass = &p->engine->passes[i];
+        w->all[i] = (uint32_t)hf_plan_count(p, pass->sweep);
+        if (s->blend == 0 || !hf_plan_pass_runs(p, s, i))
+            continue;
+        for (int cell = 0; cell < (int)w->all[i]; cell++) {
+            const int fields = i == 0 ? 1 : fields_of(fields_in(p, pass, cell));
+            w->run[i] += fields > 0;
+            if (fields)
+                w->units[i] += fields * area(cell_of(p, pass->sweep, cell));
+        }
+    }
+}
+
+static struct hf_cost_entry *find(struct hf_cost *c, uint64_t key)
+{
+    for (size_t i = 0; i < sizeof c->entry / sizeof *c->entry; i++)
+        if (c->entry[i].key == key) {
+            c->entry[i].used = ++c->clock;
+            return &c->entry[i];
+        }
+    return NULL;
+}
+
+// How much slower than the table, which is of 16 floats a vector.
+static float isa_factor(enum hf_isa isa)
+{
+    switch (isa) {
+    case HF_ISA_SCALAR:
+        return 12;
+    case HF_ISA_SSE41:
+    case HF_ISA_NEON:
+        return 3;
+    case HF_ISA_AVX2:
+        return 1.5f;
+    default:
+        return 1;
+    }
+}
+
+void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads,
+                     const struct hf_work *w, double ms[HF_MAX_PASSES])
+{
+    const struct hf_engine_def *e = hf_engine_def(s->engine);
+    const struct hf_cost_entry *known = s->blend == 0 ? NULL : find(c, key_of(s, isa));
+    for (int i = 0; i < HF_MAX_PASSES; i++) {
+        ms[i] = 0;
+        if (i >= e->pass_count)
+            continue;
+        const float ns = known && known->ns[i] > 0 ? known->ns[i] : e->passes[i].ns * isa_factor(isa);
+        ms[i] = 1e-6 * ns * w->units[i] / threads;
+    }
+}
+
+void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads,
+                   const struct hf_work *w, const double ms[HF_MAX_PASSES])
+{
+    if (s->blend == 0)
+        return;
+    const uint64_t key = key_of(s, isa);
+    struct hf_cost_entry *e = find(c, key);
+    if (!e) {
+        e = &c->entry[0];
+        for (size_t i = 1; i < sizeof c->entry / sizeof *c->entry; i++)
+            if (c->entry[i].used < e->used)
+                e = &c->entry[i];
+        *e = (struct hf_cost_entry){.key = key, .used = ++c->clock};
+    }
+    // The first frame pays for memory that no later one needs: it counts until there is another.
+    const float share = e->frames < 2 ? 1 : 0.25f;
+    e->frames++;
+    for (int i = 0; i < HF_MAX_PASSES; i++)
+        if (w->units[i] > 0) {
+            const float ns = (float)(1e6 * ms[i] * threads / w->units[i]);
+            e->ns[i] += (e->ns[i] > 0 ? share : 1) * (ns - e->ns[i]);
+        }
+}

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame/plan.h"
+
+#include <string.h>
+
+// What measured fastest on two cores. Large tiles compute little twice at their rims and read memory in long runs;
+// smaller ones stay in the cache, and skip more. With more threads they are halved until each thread has a few. Chunks are
+// wide and low: long runs again, and the wave needs but whole rows of them.
+enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4 };
+enum { CHUNK_WIDTH = 512, CHUNK_HEIGHT = 4 };
+
+static int ceil_div(int a, int b)
+{
+    return (a + b - 1) / b;
+}
+
+static struct hf_reach reach_max(struct hf_reach a, struct hf_reach b)
+{
+    return (struct hf_reach){hf_max(a.x, b.x), hf_max(a.y, b.y)};
+}
+
+int hf_plan_is_tiled(const struct hf_plan *p, int sweep)
+{
+    return sweep > 1 && !(p->engine->across >> sweep & 1) && p->columns[sweep] == p->columns[2] &&
+           p->rows[sweep] == p->rows[2];
+}
+
+int hf_plan_pass_runs(const struct hf_plan *p, const struct hf_setup *s, int pass)
+{
+    return !p->engine->runs || p->engine->runs(s, pass);
+}
+
+int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sweep)
+{
+    for (int i = 0; i < p->engine->pass_count; i++)
+        if (p->engine->passes[i].sweep == sweep && hf_plan_pass_runs(p, s, i))
+            return 1;
+    return 0;
+}
+
+// Walk the passes backwards from the output, and carry along how far around a cell each buffer is read.
+static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
+{
+    const struct hf_engine_def *e = p->engine;
+    memset(p->buf, 0, sizeof p->buf);
+    for (int i = e->pass_count - 1; i >= 0; i--) {
+        const struct hf_pass *pass = &e->passes[i];
+        const struct hf_reach halo = e->halo(s, pass->halo);
+        struct hf_reach out = {0, 0};
+        // A buffer of the whole frame is made once, without rims.
+        for (int b = 0; b < e->buf_count; b++)
+            if (pass->writes >> b & 1 && !e->bufs[b].frame)
+                out = reach_max(out, p->buf[b]);
+        p->pass[i] = out;
+        const struct hf_reach around = {out.x + halo.x, out.y + halo.y};
+        for (int b = 0; b < e->buf_count; b++) {
+            if (pass->reads >> b & 1)
+                p->buf[b] = reach_max(p->buf[b], out);
+            if (pass->around >> b & 1)
+                p->buf[b] = reach_max(p->buf[b], around);
+            if (pass->inside >> b & 1)
+                p->buf[b] = out;
+            if (pass->weighed >> b & 1)
+                p->buf[b] = around;
+        }
+    }
+}
+
+// Tiles of the default size, smaller if there are many threads. Widths stay multiples of 16: kernels write whole vectors,
+// and a cell's last one must not reach into its neighbour.
+static void choose_tile(const struct hf_plan *p, int threads, int *width, int *height)
+{
+    *width = TILE_WIDTH;
+    *height = TILE_HEIGHT;
+    while (ceil_div(p->width, *width) * ceil_div(p->height, *height) < TILES_A_THREAD * threads) {
+        if (*width > 2 * *height && *width / 2 >= MIN_WIDTH)
+            *width /= 2;
+        else if (*height / 2 >= MIN_HEIGHT)
+            *height /= 2;
+        else
+            break;
+    }
+}
+
+static void set_cells(struct hf_plan *p, int sweep, int width, int height, int whole)
+{
+    p->cell_width[sweep] = whole ? (p->width + 15) & ~15 : width;
+    p->cell_height[sweep] = whole ? p->height : height;
+    p->columns[sweep] = ceil_div(p->width, p->cell_width[sweep]);
+    p->rows[sweep] = ceil_div(p->height, p->cell_height[sweep]);
+}
+
+void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s, int tile_width,
+                    int tile_height, int threads, int whole)
+{
+    int width = CHUNK_WIDTH;
+    p->engine = engine;
+    p->width = s->half_width;
+    p->height = s->half_height;
+    while (width > MIN_WIDTH &&
+           ceil_div(p->width, width) * ceil_div(p->height, CHUNK_HEIGHT) < TILES_A_THREAD * threads)
+        width /= 2;
+    set_cells(p, 1, tile_width ? tile_width : width, tile_height ? hf_min(CHUNK_HEIGHT, tile_height) : CHUNK_HEIGHT,
+              whole);
+    p->line_floats = 2 * (size_t)p->cell_width[1] + 2 * HF_PAD;
+}
+
+void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
+                   int whole)
+{
+    const struct hf_engine_def *e = p->engine;
+    int width, height;
+    choose_tile(p, threads, &width, &height);
+    for (int sweep = 2; sweep <= e->sweeps; sweep++) {
+        if (sweep > 2) {
+            width = p->cell_width[2];
+            height = p->cell_height[2];
+        }
+        if (e->cell)
+            e->cell(s, sweep, &width, &height);
+        set_cells(p, sweep, tile_width && sweep == 2 ? tile_width : width,
+                  tile_height && sweep == 2 ? tile_height : height, whole);
+    }
+    find_reaches(p, s);
+    int longest = 0;
+    for (int i = 0; i < e->pass_count; i++) {
+        const int sweep = e->passes[i].sweep;
+        for (int b = 0; hf_plan_pass_runs(p, s, i) && b < e->buf_count; b++) {
+            const int touched = (e->passes[i].reads | e->passes[i].around | e->passes[i].writes) >> b & 1;
+            const int length = (p->cell_width[sweep] + 2 * p->buf[b].x) << hf_max(e->bufs[b].x, 0);
+            longest = touched ? hf_max(longest, length) : longest;
+        }
+    }
+    p->line_floats = (size_t)((longest + 15) & ~15) + 2 * HF_PAD;
+}
+
+int hf_plan_count(const struct hf_plan *p, int sweep)
+{
+    return p->columns[sweep] * p->rows[sweep];
+}
+
+size_t hf_plan_tile_bytes(const struct hf_plan *p)
+{
+    const size_t bytes = (size_t)hf_plan_count(p, 2) * (sizeof *p->tile_active + 1);
+    return (bytes + HF_ALIGN - 1) / HF_ALIGN * HF_ALIGN;
+}
+
+void hf_plan_tile_memory(struct hf_plan *p, void *memory)
+{
+    p->tile_active = memory;
+    p->tile_needs = (uint8_t *)(p->tile_active + (size_t)hf_plan_count(p, 2));
+}
+
+size_t hf_plan_chunk_bytes(const struct hf_plan *p)
+{
+    return (size_t)hf_plan_count(p, 1) * (2 * sizeof(struct hf_found) + sizeof(int) + 3);
+}
+
+void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep)
+{
+    const size_t chunks = (size_t)hf_plan_count(p, 1);
+    p->near = memory;
+    p->far = p->near + chunks;
+    p->deferred = (int *)(p->far + chunks);
+    p->deferred_count = 0;
+    p->chunk_made = (atomic_uchar *)(p->deferred + chunks);
+    p->chunk_busy = p->chunk_made + chunks;
+    p->chunk_reads = (uint8_t *)(p->chunk_busy + chunks);
+    for (size_t i = 0; i < chunks; i++) {
+        atomic_init(&p->chunk_made[i], 0);
+        atomic_init(&p->chunk_busy[i], 0);
+    }
+    if (!keep)
+        memset(p->chunk_reads, 0, chunks);
+}
+
+struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i)
+{
+    const int w = p->cell_width[sweep], h = p->cell_height[sweep];
+    const int x = i % p->columns[sweep] * w, y = i / p->columns[sweep] * h;
+    return (struct hf_rect){x, y, hf_min(x + w, p->width), hf_min(y + h, p->height)};
+}
+
+struct hf_rect hf_plan_active(const struct hf_plan *p, int tile)
+{
+    return p->tile_active[tile];
+}
+
+// The chunks that touch r grown by reach, as a rectangle of chunk numbers.
+static struct hf_rect chunks_around(const struct hf_plan *p, struct hf_rect r, struct hf_reach reach)
+{
+    const int w = p->cell_width[1], h = p->cell_height[1];
+    return (struct hf_rect){hf_max(r.x0 - reach.x, 0) / w, hf_max(r.y0 - reach.y, 0) / h,
+                            hf_min((r.x1 + reach.x - 1) / w + 1, p->columns[1]),
+                            hf_min((r.y1 + reach.y - 1) / h + 1, p->rows[1])};
+}
+
+// The reach within which a tile's passes read what the first sweep made.
+static struct hf_reach read_reach(const struct hf_plan *p)
+{
+    struct hf_reach reach = {0, 0};
+    for (int b = 0; b < p->engine->buf_count; b++)
+        if (p->engine->bufs[b].frame)
+            reach = reach_max(reach, p->buf[b]);
+    return reach;
+}
+
+// A sweep with cells of its own reads across the frame: then all chunks are made.
+static int reads_all(const struct hf_plan *p, const struct hf_setup *s)
+{
+    for (int sweep = 3; sweep <= p->engine->sweeps; sweep++)
+        if (hf_plan_sweep_runs(p, s, sweep) &&
+            (p->engine->across >> sweep & 1 || p->cell_width[sweep] != p->cell_width[2] ||
+             p->cell_height[sweep] != p->cell_height[2]))
+            return 1;
+    return 0;
+}
+
+static void list_deferred(struct hf_plan *p)
+{
+    p->deferred_count = 0;
+    for (int i = 0; i < hf_plan_count(p, 1); i++)
+        if (p->chunk_reads[i] & ~p->chunk_made[i])
+            p->deferred[p->deferred_count++] = i;
+}
+
+// Widen the active part of a tile by the blocks that a rectangle in it touches, counted from its corner: of a group's
+// width, and of four rows, which are whole ones of any buffer.
+static void widen(struct hf_rect *active, struct hf_rect tile, int x0, int x1, int y0, int y1)
+{
+    x0 = (x0 - tile.x0) / HF_GROUP * HF_GROUP + tile.x0;
+    x1 = hf_min((x1 - tile.x0 + HF_GROUP - 1) / HF_GROUP * HF_GROUP + tile.x0, tile.x1);
+    y0 = (y0 - tile.y0) / 4 * 4 + tile.y0;
+    y1 = hf_min((y1 - tile.y0 + 3) / 4 * 4 + tile.y0, tile.y1);
+    *active = (struct hf_rect){hf_min(active->x0, x0), hf_min(active->y0, y0), hf_max(active->x1, x1),
+                               hf_max(active->y1, y1)};
+}
+
+// What a chunk's CoC of a kind, spread by reach, makes active of a tile. Returns whether that is anything.
+static int spread_chunk(const struct hf_found *found, struct hf_rect chunk, struct hf_reach reach, struct hf_rect tile,
+                        struct hf_rect *active)
+{
+    const int y0 = hf_max(found->y0 - reach.y, tile.y0), y1 = hf_min(found->y1 + reach.y, tile.y1);
+    const int shared = chunk.x1 - chunk.x0 > 64 * HF_GROUP;  // bits are
+    int any = 0;
+    if (!found->groups || y0 >= y1)
+        return 0;
+    for (int x = chunk.x0; x < chunk.x1; x = (x / HF_GROUP + 1) * HF_GROUP) {
+        const int end = hf_min((x / HF_GROUP + 1) * HF_GROUP, chunk.x1);
+        if (!shared && !(found->groups >> hf_group(x) & 1))
+            continue;
+        const int x0 = hf_max(x - reach.x, tile.x0), x1 = hf_min(end + reach.x, tile.x1);
+        if (x0 >= x1)
+            continue;
+        widen(active, tile, x0, x1, y0, y1);
+        any = 1;
+    }
+    return any;
+}
+
+// What a tile needs, and in which part of it: a tile is much larger than what a thin thing in front of it blurs.
+void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
+{
+    const struct hf_reach near = p->engine->spread(s, p, HF_NEAR), far = p->engine->spread(s, p, HF_FAR);
+    const struct hf_rect tile = hf_plan_cell(p, 2, i), c = chunks_around(p, tile, reach_max(near, far));
+    struct hf_rect active = {tile.x1, tile.y1, tile.x0, tile.y0};
+    unsigned needs = 0;
+    for (int y = c.y0; y < c.y1; y++)
+        for (int x = c.x0; x < c.x1; x++) {
+            const int at = y * p->columns[1] + x;
+            const struct hf_rect chunk = hf_plan_cell(p, 1, at);
+            needs |= spread_chunk(&p->near[at], chunk, near, tile, &active) ? HF_NEAR : 0u;
+            needs |= spread_chunk(&p->far[at], chunk, far, tile, &active) ? HF_FAR : 0u;
+        }
+    p->tile_needs[i] = (uint8_t)(s->no_skip ? HF_FIELDS : needs);
+    p->tile_active[i] = s->no_skip ? tile : active;
+}
+
+unsigned hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks)
+{
+    if (!p->tile_needs[tile])
+        return 0;
+    *chunks = chunks_around(p, hf_plan_active(p, tile), read_reach(p));
+    return p->engine->reads(s, p->tile_needs[tile]);
+}
+
+int hf_plan_chunk_rows(const struct hf_plan *p, const struct hf_setup *s, int row)
+{
+    const struct hf_reach spread = reach_max(p->engine->spread(s, p, HF_NEAR), p->engine->spread(s, p, HF_FAR));
+    return chunks_around(p, hf_plan_cell(p, 2, row * p->columns[2]), reach_max(read_reach(p), spread)).y1;
+}
+
+void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s)
+{
+    const int chunks = hf_plan_count(p, 1), tiles = hf_plan_count(p, 2);
+    memset(p->chunk_reads, 0, (size_t)chunks);
+    p->needs = 0;
+    for (int i = 0; i < tiles; i++) {
+        struct hf_rect c = {0};
+        const unsigned reads = hf_plan_reads(p, s, i, &c);
+        p->needs |= p->tile_needs[i];
+        for (int y = c.y0; reads && y < c.y1; y++)
+            for (int x = c.x0; x < c.x1; x++)
+                p->chunk_reads[y * p->columns[1] + x] |= (uint8_t)reads;
+    }
+    p->reads = p->needs ? p->engine->reads(s, p->needs) : 0;
+    if (p->needs && reads_all(p, s))
+        memset(p->chunk_reads, (int)p->reads, (size_t)chunks);
+    list_deferred(p);
+}
+
+void hf_plan_forget(struct hf_plan *p)
+{
+    for (int i = 0; i < hf_plan_count(p, 1); i++)
+        p->chunk_made[i] = 0;
+    list_deferred(p);
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which cell needs what, and how large the buffers around it have to be.
+#ifndef HF_PLAN_H
+#define HF_PLAN_H
+
+#include <stdatomic.h>
+
+#include "frame/engine.h"
+
+enum { HF_MAX_SWEEPS = 6 };
+
+// Cells of sweep i have cell_width[i] x cell_height[i] half-resolution pixels and lie in columns[i] x rows[i]; those of
+// sweep 1 are called chunks, those of sweep 2 tiles. [0] is not used.
+struct hf_plan {
+    const struct hf_engine_def *engine;
+    int width, height;  // of the frame, half-resolution pixels
+    int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
+
+    struct hf_found *near, *far;  // in each chunk
+    atomic_uchar *chunk_made;  // fields whose buffers the first sweep has made
+    atomic_uchar *chunk_busy;  // somebody is making what it has not
+    uint8_t *chunk_reads;  // fields that some tile reads there; until they are known, those of the last frame
+    int *deferred;         // chunks whose buffers are made once it is known that they are read
+    int deferred_count;
+    uint8_t *tile_needs;   // fields
+    struct hf_rect *tile_active;  // the part of each tile that is not sharp
+    unsigned needs, reads; // of all tiles
+
+    struct hf_reach pass[HF_MAX_PASSES];  // by how much a pass's rectangle exceeds the cell
+    struct hf_reach buf[HF_MAX_BUFS];     // and each buffer
+    size_t line_floats;                   // longest row that a pass may keep of a cell
+};
+
+// Sizes of the chunks for a number of threads; tile sizes 0: chosen. whole: one cell for all.
+void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s,
+                    int tile_width, int tile_height, int threads, int whole);
+// Reaches, and the other sweeps' cells: once the setup's reach is known.
+void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
+                   int whole);
+size_t hf_plan_tile_bytes(const struct hf_plan *p);
+void hf_plan_tile_memory(struct hf_plan *p, void *memory);
+size_t hf_plan_chunk_bytes(const struct hf_plan *p);
+// Memory for the chunks; keep: it holds what the last frame knew of the same chunks.
+void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep);
+
+// What a tile needs: once the first sweep has been around it.
+void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int tile);
+// The chunks, as a rectangle of chunk numbers, that a tile reads; returns which of their fields.
+unsigned hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks);
+// When all tiles are known: what the frame needs and reads, and which chunks have to be made after all.
+void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s);
+// Rows of chunks, from the top, that a row of tiles depends on.
+int hf_plan_chunk_rows(const struct hf_plan *p, const struct hf_setup *s, int row);
+
+// Nothing has been made after all.
+void hf_plan_forget(struct hf_plan *p);
+
+// Are a sweep's cells the tiles, which run as far as they need?
+int hf_plan_is_tiled(const struct hf_plan *p, int sweep);
+// Does a pass, or any of a sweep, run with these options?
+int hf_plan_pass_runs(const struct hf_plan *p, const struct hf_setup *s, int pass);
+int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sweep);
+
+int hf_plan_count(const struct hf_plan *p, int sweep);
+struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i);
+// The rows of a tile that its passes have to make; the others are sharp.
+struct hf_rect hf_plan_active(const struct hf_plan *p, int tile);
+
+#endif

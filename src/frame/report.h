@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The plan of a frame and what became of it, for people.
+#ifndef HF_REPORT_H
+#define HF_REPORT_H
+
+#include "frame/context.h"
+
+// Fill the context's report from its plan. fields: whose buffers the frame needs.
+void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct hf_counts *found);
+// Add what its workers saw of the colour.
+void hf_report_colour(struct hf_context *c);
+// Add what the frame's workers did, and learn from it.
+void hf_report_frame(struct hf_context *c, const struct hf_setup *s);
+
+#endif

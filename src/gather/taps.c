@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "gather/taps.h"
+
+#include <math.h>
+#include <string.h>
+
+// Weights below this are rounding of a tap that lies on a lattice line (the smallest real ones are above 1e-5).
+static const double NEGLIGIBLE = 1e-6;
+
+int hf_taps_rings(float radius)
+{
+    const int n = (int)ceil((double)radius / 2);
+    return n < 1 ? 1 : n;
+}
+
+static int ring_count(const struct hf_taps_key *k)
+{
+    return k->rings ? k->rings : hf_taps_rings(k->radius);
+}
+
+static int tap_count(const struct hf_taps_key *k)
+{
+    const int rings = ring_count(k);
+    return k->dense ? 144 : 1 + 4 * rings * (rings + 1);
+}
+
+// Distance from the centre to the side of a unit n-gon in direction t (Sousa 2013).
+static double polygon_radius(int n, double t)
+{
+    return cos(M_PI / n) / cos(t - 2 * M_PI / n * floor((n * t + M_PI) / (2 * M_PI)));
+}
+
+// A point of the square -1..1 to the unit disc, equal areas kept (Shirley and Chiu 1997).
+static void concentric(double x, double y, double *u, double *v)
+{
+    if (x == 0 && y == 0) {
+        *u = *v = 0;
+        return;
+    }
+    const int wide = fabs(x) > fabs(y);
+    const double r = wide ? x : y;
+    const double t = wide ? M_PI / 4 * (y / x) : M_PI / 2 - M_PI / 4 * (x / y);
+    *u = r * cos(t);
+    *v = r * sin(t);
+}
+
+static void place_taps(const struct hf_taps_key *k, float *dx, float *dy)
+{
+    const double reach = (double)k->radius * k->scale;
+    int n = 0;
+    if (k->dense) {
+        for (int i = 0; i < 144; i++, n++) {
+            double u, v;
+            concentric((i % 12 + 0.5) / 6 - 1, (i / 12 + 0.5) / 6 - 1, &u, &v);
+            if (k->blades) {
+                const double t = atan2(v, u) - k->rotation * M_PI / 180;
+                u *= polygon_radius(k->blades, t);
+                v *= polygon_radius(k->blades, t);
+            }
+            dx[n] = (float)(u * reach / k->pixel_aspect);
+            dy[n] = (float)(v * reach);
+        }
+        return;
+    }
+    dx[n] = dy[n] = 0;
+    n++;
+    const int rings = ring_count(k);
+    for (int ring = 1; ring <= rings; ring++) {
+        for (int i = 0; i < 8 * ring; i++, n++) {
+            const double t = 2 * M_PI * i / (8 * ring);
+            double r = reach * ring / rings;
+            if (k->blades)
+                r *= polygon_radius(k->blades, t - k->rotation * M_PI / 180);
+            dx[n] = (float)(r * cos(t) / k->pixel_aspect);
+            dy[n] = (float)(r * sin(t));
+        }
+    }
+}
+
+// Add a tap's four bilinear weights to the lattice w of (2 rx + 1) columns.
+static void splat(double *w, int rx, int ry, double x, double y)
+{
+    const double fx = floor(x), fy = floor(y);
+    const double ax = x - fx, ay = y - fy;
+    double *p = w + ((int)fy + ry) * (2 * rx + 1) + (int)fx + rx;
+    // A tap on the outermost lattice line has no weight beyond it, and there is no room for one.
+    if (1 - ax > NEGLIGIBLE && 1 - ay > NEGLIGIBLE)
+        p[0] += (1 - ax) * (1 - ay);
+    if (ax > NEGLIGIBLE && 1 - ay > NEGLIGIBLE)
+        p[1] += ax * (1 - ay);
+    p += 2 * rx + 1;
+    if (1 - ax > NEGLIGIBLE && ay > NEGLIGIBLE)
+        p[0] += (1 - ax) * ay;
+    if (ax > NEGLIGIBLE && ay > NEGLIGIBLE)
+        p[1] += ax * ay;
+}
+
+// Lattice points needed on either side of the centre.
+static int lattice_reach(const float *d, int count)
+{
+    float reach = 0;
+    for (int i = 0; i < count; i++)
+        reach = fmaxf(reach, fabsf(d[i]));
+    return (int)ceil((double)reach - NEGLIGIBLE);
+}
+
+static int mirrors(const double *w, int rx, int ry)
+{
+    const int row = 2 * rx + 1;
+    for (int y = -ry; y <= ry; y++)
+        for (int x = -rx; x <= rx; x++) {
+            const double a = w[(y + ry) * row + x + rx];
+            if (fabs(a - w[(y + ry) * row - x + rx]) > 1e-6 || fabs(a - w[(ry - y) * row + x + rx]) > 1e-6)
+                return 0;
+        }
+    return 1;
+}
+
+// Round the lattice to floats, keep what is not 0, and move what rounding took from the sum to the largest weight, so that
+// a constant stays one.
+static void round_weights(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
+{
+    const int row = 2 * t->rx + 1, columns = t->symmetric ? t->rx + 1 : row;
+    double sum = 0;
+    int n = 0, largest = 0, copies = 1;  // of the largest
+    for (int k = 0; k < t->rows; k++) {
+        first[k] = n;
+        for (int j = 0; j < columns; j++) {
+            const double *p = t->symmetric ? w + (k + t->ry) * row + j + t->rx : w + k * row + j;
+            const float v = (float)(*p / t->count);
+            const int mirrored = t->symmetric ? (1 + (k > 0)) * (1 + (j > 0)) : 1;
+            if (v == 0)
+                continue;
+            if (n == 0 || v > weight[largest]) {
+                largest = n;
+                copies = mirrored;
+            }
+            column[n] = j;
+            weight[n++] = v;
+            sum += (double)v * mirrored;
+        }
+    }
+    first[t->rows] = n;
+    weight[largest] += (float)((1 - sum) / copies);
+}
+
+int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem)
+{
+    if (!memcmp(k, &t->key, sizeof *k))
+        return HF_OK;
+    t->key = (struct hf_taps_key){0};
+    const int count = tap_count(k);
+    // Room for the largest reach there can be: a polygon's corners lie on its circle.
+    const int max_rx = (int)ceil((double)k->radius * k->scale / k->pixel_aspect) + 1;
+    const int max_ry = (int)ceil((double)k->radius * k->scale) + 1;
+    const size_t lattice = (size_t)(2 * max_rx + 1) * (2 * max_ry + 1);
+    const size_t size = lattice * (sizeof(double) + sizeof(float) + sizeof(int)) + 2 * (size_t)count * sizeof(float) +
+                        (size_t)(2 * max_ry + 2) * sizeof(int);
+    const int err = hf_block_grow(&t->block, size, mem);
+    if (err)
+        return err;
+    double *w = t->block.data;
+    float *dx = (float *)(w + lattice), *dy = dx + count, *weight = dy + count;
+    int *column = (int *)(weight + lattice), *first = column + lattice;
+    memset(w, 0, lattice * sizeof *w);
+    place_taps(k, dx, dy);
+    const int rx = lattice_reach(dx, count), ry = lattice_reach(dy, count);
+    // The positions are rounded to float for the per-pixel kernel; the lattice takes the same ones.
+    for (int i = 0; i < count; i++)
+        splat(w, rx, ry, dx[i], dy[i]);
+    t->count = count;
+    t->dx = dx;
+    t->dy = dy;
+    t->rx = rx;
+    t->ry = ry;
+    t->symmetric = mirrors(w, rx, ry);
+    t->rows = t->symmetric ? ry + 1 : 2 * ry + 1;
+    t->first = first;
+    t->column = column;
+    t->weight = weight;
+    round_weights(t, w, first, column, weight);
+    t->key = *k;
+    return HF_OK;
+}
+
+void hf_taps_free(struct hf_taps *t, const struct hf_mem *mem)
+{
+    hf_block_free(&t->block, mem);
+    *t = (struct hf_taps){0};
+}

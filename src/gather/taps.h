@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gather's tap set, and its exact collapse onto the half-resolution lattice.
+#ifndef HF_TAPS_H
+#define HF_TAPS_H
+
+#include "hyperfocal/hyperfocal.h"
+#include "base/mem.h"
+
+// What a tap set follows from. No padding: keys are compared byte by byte.
+struct hf_taps_key {
+    float radius;        // h: reach of the outermost ring, half-resolution pixels, > 0
+    float scale;         // kernel scale, 0.25..1
+    float pixel_aspect;  // x offsets are divided by it
+    int blades;          // 0: circles
+    float rotation;      // degrees
+    int dense;           // the 144-tap grid instead of rings
+    int rings;           // 0: as many as lie at most 2 apart
+};
+
+// All bilinear taps have fixed offsets, so together they are one convolution with fixed weights on whole pixels. The
+// 49 taps of the chapter touch 129 lattice points at kernel scale 1, 36 of them distinct by mirror symmetry.
+struct hf_taps {
+    int count;             // taps: the centre and the rings, or the dense grid, which has none on the centre
+    const float *dx, *dy;  // their offsets in half-resolution pixels, kernel scale included; the centre comes first
+
+    int rx, ry;       // lattice reach: offsets -rx..rx, -ry..ry
+    int symmetric;    // weights mirror in x and in y
+    // The weights, each tap 1/count, summing to 1: only those that are not 0, row by row. Row k has entries first[k] to
+    // first[k + 1]. symmetric: ry + 1 rows, for |dy| = k, with column |dx|. Else 2 ry + 1 rows, for dy = k - ry, with
+    // column dx + rx.
+    int rows;
+    const int *first, *column;
+    const float *weight;
+
+    struct hf_block block;  // owns all of the above
+    struct hf_taps_key key; // what it was built from; radius 0: nothing yet
+};
+
+// Rings that reach a radius of so many half-resolution pixels, at most 2 apart.
+int hf_taps_rings(float radius);
+
+// (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
+int hf_taps_build(struct hf_taps *taps, const struct hf_taps_key *key, const struct hf_mem *mem);
+void hf_taps_free(struct hf_taps *taps, const struct hf_mem *mem);
+
+#endif

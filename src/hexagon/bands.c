@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon's two passes in turn on bands of rows of a tile, for one field and then the other. What pass 1 makes of a
+// band is read by pass 2 while it is in the cache; rows that the next band reads too are moved up to its own, so that
+// none is made twice.
+#include <string.h>
+
+#include "hexagon/hexagon.h"
+
+// What pass 1 makes for a band: planes of rows, as far around the band's own as pass 2 reads.
+struct band {
+    float *memory;
+    ptrdiff_t stride;
+    int rows, planes, left;
+};
+
+static int scale_of(const struct hf_setup *s)
+{
+    return s->resolution == HF_RESOLUTION_HALF ? 1 : 2;
+}
+
+static struct band band_of(const struct hf_setup *s, int width)
+{
+    const struct hf_hexagon *h = s->tables;
+    const int scale = scale_of(s), left = (h->left * scale + 15) & ~15, right = (h->right * scale + 15) & ~15;
+    return (struct band){.stride = left + ((width * scale + 30) & ~15) + right + HF_PAD,
+                         .rows = (h->above + HF_HEXAGON_BAND + h->below) * scale, .left = left};
+}
+
+size_t hf_hexagon_band_floats(const struct hf_setup *s, int width)
+{
+    const struct band b = band_of(s, width);
+    return (2 * (size_t)s->channels + 4) * (size_t)b.rows * (size_t)b.stride + HF_PAD;
+}
+
+// The field's buffers as planes of the band whose first pixel is (x, y), half-resolution pixels.
+static void place(struct hf_frame *f, struct band *b, int x, int y)
+{
+    static const enum hf_hexagon_made made[2][3] = {{HF_HEXAGON_NEAR_U, HF_HEXAGON_NEAR_B, HF_HEXAGON_NEAR_W},
+                                                    {HF_HEXAGON_FAR_U, HF_HEXAGON_FAR_B}};
+    const struct hf_hexagon *h = f->s->tables;
+    const int scale = scale_of(f->s);
+    float *memory = b->memory + b->left - (x * scale & ~15) - (y - h->above) * scale * b->stride;
+    b->planes = 0;
+    for (int i = 0; i < (f->near ? 3 : 2); i++) {
+        struct hf_buf *buf = &f->buf[hf_hexagon_made(f, made[f->far][i]) - f->buf];
+        buf->stride = b->stride;
+        for (int c = 0; c < (i == 2 ? 4 : f->s->channels); c++)
+            buf->ch[c] = memory + b->planes++ * b->rows * b->stride;
+    }
+}
+
+// Beyond the frame what was made repeats: rows of `have`, all of it in `want`, are continued to its width, and rows
+// above and below the frame are copies of its first and last. Working pixels.
+static void extend(const struct hf_frame *f, const struct band *b, struct hf_rect have, struct hf_rect want, int height)
+{
+    const struct hf_buf *first = hf_hexagon_made(f, f->near ? HF_HEXAGON_NEAR_U : HF_HEXAGON_FAR_U);
+    const size_t bytes = (size_t)(want.x1 - want.x0) * sizeof(float);
+    for (int i = 0; i < b->planes; i++) {
+        float *plane = first->ch[0] + i * b->rows * b->stride;
+        for (int y = have.y0; y < have.y1; y++) {
+            float *row = plane + y * b->stride;
+            for (int x = want.x0; x < have.x0; x++)
+                row[x] = row[have.x0];
+            for (int x = have.x1; x < want.x1; x++)
+                row[x] = row[have.x1 - 1];
+        }
+        for (int y = want.y0; y < 0 && have.y0 == 0; y++)
+            memcpy(plane + y * b->stride + want.x0, plane + want.x0, bytes);
+        for (int y = height; y < want.y1; y++)
+            memcpy(plane + y * b->stride + want.x0, plane + (height - 1) * b->stride + want.x0, bytes);
+    }
+}
+
+static void blur(const struct hf_frame *frame, struct hf_rect r, unsigned field)
+{
+    struct hf_frame f = *frame;
+    const struct hf_setup *s = f.s;
+    const struct hf_hexagon *h = s->tables;
+    struct band b = band_of(s, r.x1 - r.x0);
+    const int scale = scale_of(s), height = scale == 2 ? s->height : s->half_height;
+    b.memory = f.work;
+    f.near = field == HF_NEAR;
+    f.far = field == HF_FAR;
+    struct hf_rect make = {hf_max(r.x0 - h->left, 0), 0, hf_min(r.x1 + h->right, s->half_width),
+                           hf_max(r.y0 - h->above, 0)};
+    for (int y = r.y0; y < r.y1; y += HF_HEXAGON_BAND) {
+        const struct hf_rect out = {r.x0, y, r.x1, hf_min(y + HF_HEXAGON_BAND, r.y1)};
+        const struct hf_rect want = {(out.x0 - h->left) * scale, (out.y0 - h->above) * scale,
+                                     (out.x1 + h->right) * scale, (out.y1 + h->below) * scale};
+        make.y0 = make.y1;
+        make.y1 = hf_min(out.y1 + h->below, s->half_height);
+        place(&f, &b, r.x0, y);
+        f.k->pass[HF_KERNEL_HEXAGON_1](&f, make);
+        extend(&f, &b, hf_hexagon_rect(s, make), want, height);
+        f.k->pass[HF_KERNEL_HEXAGON_2](&f, out);
+        for (int i = 0; i < b.planes; i++) {
+            float *plane = b.memory + i * b.rows * b.stride;
+            const ptrdiff_t by = HF_HEXAGON_BAND * scale;
+            memmove(plane, plane + by * b.stride, (size_t)((b.rows - by) * b.stride) * sizeof(float));
+        }
+    }
+}
+
+void hf_hexagon_blur_pass(const struct hf_frame *f, struct hf_rect r)
+{
+    if (f->near)
+        blur(f, r, HF_NEAR);
+    if (f->far)
+        blur(f, r, HF_FAR);
+}

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of the hexagon engine in plain C; what they compute is said in hexagon.h.
+#include "hexagon/hexagon.h"
+
+// ---- Load ----
+
+static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
+{
+    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
+    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *far = hf_at(weight, 2, x0, y);
+    hf_row(&f->buf[HF_HEXAGON_COLOUR], f->s->channels, x0, y, colour);
+    hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
+    f->k->radius_row(f, x0, y, n, q, NULL);
+    for (int x = 0; x < n; x++) {
+        const float m = __builtin_fabsf(q[x]);
+        a[x] = 1 / (m > 1 ? m : 1);
+        far[x] = q[x] > 0 ? a[x] : 0;
+        for (int c = 0; c < f->s->channels; c++)
+            colour[c][x] *= a[x] * HEXAGON_SCALE;
+    }
+}
+
+// A field's part of a quad of radii: its mean radius in half-resolution pixels, and of its area how much it is. A
+// pixel of less than half a pixel of radius counts less, so that none comes or goes at once.
+static void load_quad(const struct hf_frame *f, int colour, int x, int y, const float radius[4],
+                      float *const lane[2][2][4], int i)
+{
+    float w[4], q = 0, sum = 0;
+    for (int t = 0; t < 4; t++) {
+        const float m = radius[t] > 0 ? radius[t] : 0;
+        w[t] = 2 * m < 1 ? 2 * m : 1;
+        sum = sum + w[t];
+        q = q + w[t] * m;
+    }
+    q = sum > 0 ? 0.5f * (q / sum) : 0;
+    const float scale = 0.25f / (q > 1 ? q : 1);
+    *hf_at(&f->buf[colour + 1], 0, x, y) = sum * scale;
+    *hf_at(&f->buf[colour + 1], 1, x, y) = q;
+    *hf_at(&f->buf[colour + 1], 2, x, y) = 0.25f * sum;
+    for (int t = 0; t < 4; t++)
+        w[t] = w[t] * HEXAGON_SCALE;
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(&f->buf[colour], c, x, y) = ((w[0] * lane[0][0][c][i] + w[1] * lane[0][1][c][i]) +
+                                            (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) * scale;
+}
+
+static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
+{
+    const int n = r.x1 - r.x0, y1 = hf_min(2 * y + 1, f->s->height - 1), last = f->s->width - 1 - 2 * r.x0;
+    float *lane[2][2][4];  // [row][odd][channel]
+    for (int i = 0; i < 16; i++)
+        lane[i >> 3][i >> 2 & 1][i & 3] = hf_line(f, i);
+    float *top = hf_line(f, 16), *bottom = hf_line(f, 17);
+    hf_read_colour(f, r.x0, 2 * y, n, lane[0][0], lane[0][1], f->seen);
+    hf_read_colour(f, r.x0, y1, n, lane[1][0], lane[1][1], f->seen);
+    f->k->radius_row(f, 2 * r.x0, 2 * y, hf_min(2 * n, last + 1), top, NULL);
+    f->k->radius_row(f, 2 * r.x0, y1, hf_min(2 * n, last + 1), bottom, NULL);
+    for (int i = 0; i < n; i++) {
+        const int odd = hf_min(2 * i + 1, last);
+        const float far[4] = {top[2 * i], top[odd], bottom[2 * i], bottom[odd]};
+        const float near[4] = {-far[0], -far[1], -far[2], -far[3]};
+        load_quad(f, HF_HEXAGON_NEAR_COLOUR_2, r.x0 + i, y, near, lane, i);
+        load_quad(f, HF_HEXAGON_FAR_COLOUR_2, r.x0 + i, y, far, lane, i);
+    }
+}
+
+void hf_hexagon_load_c(const struct hf_frame *f, struct hf_rect r)
+{
+    const int half = f->s->resolution == HF_RESOLUTION_HALF;
+    for (int y = half ? r.y0 : 2 * r.y0; y < (half ? r.y1 : hf_min(2 * r.y1, f->s->height)); y++)
+        (half ? load_half_row : load_full_row)(f, y, r);
+}
+
+// ---- the passes ----
+
+// Sums along a line: of colour x weight, of the weights a, and of the line's own.
+struct sums {
+    float colour[4], a, w;
+};
+
+// A far pixel of radius p takes samples up to 2p, and less and less up to a pixel (p, where that is smaller) beyond:
+// limit - slope q, between 0 and 1.
+struct limit {
+    float limit, slope;
+};
+
+static struct limit limit_of(float p)
+{
+    const float slope = 1 / (p < 1 ? p : 1);
+    return (struct limit){(2 * p) * slope + 1, slope};
+}
+
+static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y,
+                            const struct limit *limit)
+{
+    const struct hf_hexagon_line *l = &((const struct hf_hexagon *)f->s->tables)->line[line];
+    struct sums sum = {{0}, 0, 0};
+    for (const struct hf_hexagon_tap *t = l->taps; t < l->taps + l->count; t++) {
+        const int u = x + t->dx, v = y + t->dy;
+        const float q = in->sign * *hf_at(in->radius, in->q, u, v);
+        float w = q - t->c;
+        if (limit) {
+            const float most = t->b * (limit->limit - limit->slope * q);
+            w = w < most ? w : most;
+        }
+        w = w < t->b ? w : t->b;
+        w = w > 0 ? w : 0;
+        for (int c = 0; c < f->s->channels; c++)
+            sum.colour[c] = sum.colour[c] + w * *hf_at(in->colour, c, u, v);
+        sum.a = sum.a + w * *hf_at(in->weight, in->a, u, v);
+        sum.w = sum.w + (in->part < 0 ? w : w * *hf_at(in->weight, in->part, u, v));
+    }
+    return sum;
+}
+
+// Near: coverage a, and as all that covers it spreads w / a far, each line pixel gets a / w of it.
+static void store_near(const struct hf_frame *f, const struct sums *s, enum hf_hexagon_made colour, int weight, int x,
+                       int y)
+{
+    const int any = s->a > 0;
+    const float share = any ? s->a / s->w : 0;
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(hf_hexagon_made(f, colour), c, x, y) = s->colour[c] * share;
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), weight, x, y) = s->a * share;
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), weight + 1, x, y) = any ? s->w / s->a : 0;
+}
+
+static void near_1(const struct hf_frame *f, int x, int y)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_NEAR);
+    struct sums u = sum_line(f, &in, 0, x, y, NULL), v = sum_line(f, &in, 1, x, y, NULL);
+    store_near(f, &u, HF_HEXAGON_NEAR_U, 0, x, y);
+    for (int c = 0; c < f->s->channels; c++)
+        u.colour[c] = u.colour[c] + v.colour[c];
+    u.a = u.a + v.a;
+    u.w = u.w + v.w;
+    store_near(f, &u, HF_HEXAGON_NEAR_B, 2, x, y);
+}
+
+static void near_2(const struct hf_frame *f, int x, int y)
+{
+    const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(f, HF_NEAR, 0), hf_hexagon_field_2(f, HF_NEAR, 1)};
+    const struct sums v = sum_line(f, &in[0], 1, x, y, NULL), w = sum_line(f, &in[1], 2, x, y, NULL);
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR), c, x, y) = (v.colour[c] + w.colour[c]) * (1 / 3.0f);
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, x, y) = (v.a + w.a) * (1 / 3.0f);
+}
+
+// How much of its own colour a pixel of radius p > 0 adds to what it has found.
+static float own(float found, float p)
+{
+    float o = (1 - found) * hf_saturate(HEXAGON_ALL - p);
+    const float least = HEXAGON_LEAST - found;
+    o = o > least ? o : least;
+    return o > 0 ? o : 0;
+}
+
+// A blur of the far field at a far pixel: colours of the samples that count, in proportion.
+static void far_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y, float p,
+                     float out[4])
+{
+    const struct limit limit = limit_of(p);
+    const struct sums s = sum_line(f, in, line, x, y, &limit);
+    const float o = own(s.a, p), mine = o / *hf_at(in->weight, in->a, x, y), i = 1 / (s.a + o);
+    for (int c = 0; c < f->s->channels; c++)
+        out[c] = (s.colour[c] + mine * *hf_at(in->colour, c, x, y)) * i;
+}
+
+static void far_1(const struct hf_frame *f, int x, int y)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    const float p = *hf_at(in.radius, in.q, x, y), a = *hf_at(in.weight, in.a, x, y);
+    float u[4] = {0}, v[4] = {0};
+    if (p > 0) {
+        far_line(f, &in, 0, x, y, p, u);
+        far_line(f, &in, 1, x, y, p, v);
+    }
+    for (int c = 0; c < f->s->channels; c++) {
+        *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_U), c, x, y) = u[c] * a;
+        *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_B), c, x, y) = (u[c] + v[c]) * a;
+    }
+}
+
+static void far_2(const struct hf_frame *f, int x, int y)
+{
+    const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(f, HF_FAR, 0), hf_hexagon_field_2(f, HF_FAR, 1)};
+    const float p = *hf_at(in[0].radius, in[0].q, x, y);
+    float v[4] = {0}, w[4] = {0};
+    if (p > 0) {
+        far_line(f, &in[0], 1, x, y, p, v);
+        far_line(f, &in[1], 2, x, y, p, w);
+    }
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, x, y) = (v[c] + w[c]) * (1 / 3.0f);
+}
+
+static void each_pixel(const struct hf_frame *f, struct hf_rect r, void (*fn)(const struct hf_frame *f, int x, int y))
+{
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
+    for (int y = p.y0; y < p.y1; y++)
+        for (int x = p.x0; x < p.x1; x++)
+            fn(f, x, y);
+}
+
+void hf_hexagon_1_c(const struct hf_frame *f, struct hf_rect r)
+{
+    if (f->near)
+        each_pixel(f, r, near_1);
+    if (f->far)
+        each_pixel(f, r, far_1);
+}
+
+void hf_hexagon_2_c(const struct hf_frame *f, struct hf_rect r)
+{
+    if (f->near)
+        each_pixel(f, r, near_2);
+    if (f->far)
+        each_pixel(f, r, far_2);
+}
+
+// ---- Composite ----
+
+// What near coverage leaves of the background; of a near pixel's own colour nothing, unless its radius is below 2.
+static float left_over(float coverage, float p)
+{
+    float o = p < 0 ? own(coverage, -p) : 1 - coverage;
+    return o > 0 ? o : 0;
+}
+
+// The fields at full-resolution pixel (x, y), colour as in [0..3], near coverage in near[4], far weight in far[4].
+static void fields_full(const struct hf_frame *f, int x, int y, float near[5], float far[5])
+{
+    for (int c = 0; c < f->s->channels; c++) {
+        near[c] = f->near ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR), c, x, y) : 0;
+        far[c] = f->far ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, x, y) : 0;
+    }
+    near[4] = f->near ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, x, y) : 0;
+    far[4] = 1;
+}
+
+// Bilinear between half-resolution pixels; far ones count as far as they are far.
+static void fields_half(const struct hf_frame *f, int x, int y, float near[5], float far[5])
+{
+    static const float weights[4] = {0.5625f, 0.1875f, 0.1875f, 0.0625f};
+    for (int c = 0; c < 5; c++)
+        near[c] = far[c] = 0;
+    for (int i = 0; i < 4; i++) {
+        const int u = x / 2 + (i & 1 ? (x & 1 ? 1 : -1) : 0), v = y / 2 + (i & 2 ? (y & 1 ? 1 : -1) : 0);
+        float w = weights[i];
+        for (int c = 0; c < f->s->channels && f->near; c++)
+            near[c] = near[c] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR), c, u, v);
+        if (f->near)
+            near[4] = near[4] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, u, v);
+        if (!f->far)
+            continue;
+        w = w * hf_saturate(*hf_at(&f->buf[HF_HEXAGON_FAR_WEIGHT_2], 1, u, v));
+        for (int c = 0; c < f->s->channels; c++)
+            far[c] = far[c] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, u, v);
+        far[4] = far[4] + w;
+    }
+}
+
+static void composite_pixel(const struct hf_frame *f, int x, int y, float p, float *const colour[4], int i)
+{
+    const int half = f->s->resolution == HF_RESOLUTION_HALF;
+    float near[5], far[5];
+    (half ? fields_half : fields_full)(f, x, y, near, far);
+    const float left = left_over(near[4], p), scale = 1 / (near[4] + left);
+    const int has_far = f->far && p > 0 && far[4] > 0;
+    for (int c = 0; c < f->s->channels && (has_far || near[4] != 0); c++) {
+        float v = colour[c][i] * HEXAGON_SCALE;
+        if (has_far)
+            v = half ? hf_lerp(v, far[c] / far[4], hf_saturate(0.5f * p)) : far[c];
+        if (near[4] != 0)
+            v = (near[c] + left * v) * scale;
+        v = v < HEXAGON_MOST ? v : HEXAGON_MOST;
+        v = v > -HEXAGON_MOST ? v : -HEXAGON_MOST;
+        colour[c][i] = v * (1 / HEXAGON_SCALE);
+    }
+}
+
+void hf_hexagon_composite_c(const struct hf_frame *f, struct hf_rect r)
+{
+    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    float *colour[4], *radius = hf_line(f, 12);
+    for (int c = 0; c < 4; c++)
+        colour[c] = hf_line(f, 8 + c);
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+        hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->counts);
+        f->k->radius_row(f, x0, y, n, radius, NULL);
+        for (int i = 0; i < n; i++)
+            composite_pixel(f, x0 + i, y, radius[i], colour, i);
+        hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)colour, f->s->channels == 4);
+    }
+}

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon: two passes of blurs along lines, see hexagon.h. A pixel costs O(largest radius around it) taps, and
+// with one radius everywhere (uniform) O(radius): a line upwards of one tap a pixel and three slanted ones of some
+// three.
+#include <math.h>
+
+#include "frame/context.h"
+#include "hexagon/hexagon.h"
+#include "frame/plan.h"
+
+#define FRAME(name) (1u << HF_HEXAGON_##name)
+#define MADE(name)                                                                                                   \
+    (1u << (HF_HEXAGON_MADE + HF_HEXAGON_##name) |                                                                   \
+     1u << (HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##name))
+#define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
+#define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
+
+static const struct hf_pass passes[] = {
+    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1, .ns = 3},
+    {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1, .ns = 8},
+    {"Passes 1 and 2", HF_KERNEL_HEXAGON_BLUR, .around = INPUT, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
+     .halo = HF_HALO_RADIUS, .sweep = 2, .ns = 40},
+    {"Composite", HF_KERNEL_HEXAGON_COMPOSITE, .reads = FRAME(WEIGHT),
+     .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2), .halo = HF_HALO_UPSAMPLE, .sweep = 2,
+     .ns = 9},
+};
+
+#define FULL .x = 1, .y = 1
+#define NAMED(b, name, ...)                                                                                          \
+    [HF_HEXAGON_MADE + HF_HEXAGON_##b] = {name, FULL, __VA_ARGS__},                                                  \
+    [HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##b] = {name, __VA_ARGS__}
+
+static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
+    [HF_HEXAGON_COLOUR] = {"colour", .frame = 1, FULL},
+    [HF_HEXAGON_WEIGHT] = {"weight", .frame = 1, FULL},
+    [HF_HEXAGON_NEAR_COLOUR_2] = {"nearcolour", .frame = 1},
+    [HF_HEXAGON_NEAR_WEIGHT_2] = {"nearweight", .frame = 1},
+    [HF_HEXAGON_FAR_COLOUR_2] = {"farcolour", .frame = 1},
+    [HF_HEXAGON_FAR_WEIGHT_2] = {"farweight", .frame = 1},
+    NAMED(NEAR, "near", .field = HF_NEAR),
+    NAMED(COVERAGE, "nearcoverage", .field = HF_NEAR),
+    NAMED(FAR, "far", .field = HF_FAR),
+};
+
+static int channels(const struct hf_setup *s, int b)
+{
+    const int half = s->resolution == HF_RESOLUTION_HALF;
+    if (half != (b >= HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT ||
+                 (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
+        return 0;
+    if (b < HF_HEXAGON_MADE)
+        return b % 2 ? 3 : s->channels;
+    switch ((b - HF_HEXAGON_MADE) % HF_HEXAGON_MADE_COUNT) {
+    case HF_HEXAGON_NEAR_W:
+        return 4;
+    case HF_HEXAGON_COVERAGE:
+        return 1;
+    default:
+        return s->channels;
+    }
+}
+
+// How far lines go, in working pixels: what is near by less than a pixel is spread over one, thinly.
+static float working(const struct hf_setup *s, float radius)
+{
+    return fmaxf(s->resolution == HF_RESOLUTION_HALF ? radius / 2 : radius, 1);
+}
+
+// The step between taps, in units of a pixel's height: 1, or less where that would leave out columns of narrow pixels.
+static double step_of(const struct hf_setup *s)
+{
+    return s->pixel_aspect < 1 ? s->pixel_aspect : 1;
+}
+
+// Past the end of a line, taps that still share pixels with those before.
+static int tap_count(const struct hf_setup *s, float radius)
+{
+    return (int)ceil((working(s, radius) + 4 + 2 * s->pixel_aspect) / step_of(s));
+}
+
+static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
+{
+    (void)p;
+    // Four taps to a bilinear one, and a step to end with. Rows together add one to each of n + 1 columns, or three.
+    const size_t n = (size_t)tap_count(s, s->max_radius), taps = 4 * n + 1;
+    const size_t two = taps + n + 1, four = taps + 3 * (n + 1);
+    const size_t line = taps * sizeof(struct hf_hexagon_tap) + (taps + two + four) * sizeof(struct hf_hexagon_step);
+    const int err = hf_block_grow(&c->tables, sizeof(struct hf_hexagon) + 3 * line, &c->mem);
+    if (err)
+        return err;
+    struct hf_hexagon *h = s->tables = c->tables.data;
+    *h = (struct hf_hexagon){0};
+    struct hf_hexagon_step *step = (struct hf_hexagon_step *)(h + 1);
+    for (int i = 0; i < 3; i++, step += taps + two + four)
+        h->line[i] = (struct hf_hexagon_line){
+            .one.step = step, .two.step = step + taps, .four.step = step + taps + two};
+    for (int i = 0; i < 3; i++)
+        h->line[i].taps = (struct hf_hexagon_tap *)step + i * taps;
+    return HF_OK;
+}
+
+// A line's direction in 2^-40 of a pixel: distances along it are exact, so that what comes first is the same from
+// everywhere.
+struct direction {
+    int64_t x, y;
+};
+
+// Does (ax, ay) come before (bx, by)?
+static int comes_before(const struct direction *d, int ax, int ay, int bx, int by)
+{
+    const int64_t t = (ax - bx) * d->x + (ay - by) * d->y;
+    return t != 0 ? t < 0 : ax != bx ? ax < bx : ay < by;
+}
+
+// Add weight to the pixel (dx, dy): it has some already, or goes where its distance belongs. A pixel's bilinear
+// neighbours follow each other closely, and so do their distances.
+static void add_tap(struct hf_hexagon_line *l, const struct direction *d, int dx, int dy, double weight)
+{
+    struct hf_hexagon_tap *p = l->taps;
+    if (weight == 0)
+        return;
+    for (int i = l->count - 1; i >= 0 && i >= l->count - 24; i--)
+        if (p[i].dx == dx && p[i].dy == dy) {
+            p[i].b += (float)weight;
+            return;
+        }
+    int i = l->count++;
+    for (; i > 0 && comes_before(d, dx, dy, p[i - 1].dx, p[i - 1].dy); i--)
+        p[i] = p[i - 1];
+    p[i] = (struct hf_hexagon_tap){dx, dy, (float)weight, 0};
+}
+
+// Taps of a line in direction (ux, uy), pixels of height 1, as far as a sample of this radius reaches.
+static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, const struct direction *d, double ux,
+                      double uy, float radius)
+{
+    const double step = step_of(s), aspect = s->pixel_aspect;
+    l->count = 0;
+    for (int k = 0; k < tap_count(s, radius); k++) {
+        // Whole 4096ths of a pixel: what lies on a row or column stays on it.
+        const double x = round((k + 0.5) * step * ux / aspect * 4096) / 4096;
+        const double y = round((k + 0.5) * step * uy * 4096) / 4096;
+        const int ix = (int)floor(x), iy = (int)floor(y);
+        for (int i = 0; i < 4; i++) {
+            const int dx = ix + (i & 1), dy = iy + (i >> 1);
+            add_tap(l, d, dx, dy, step * (1 - fabs(x - dx)) * (1 - fabs(y - dy)));
+        }
+    }
+    float c = 0;
+    const float reach = working(s, radius);
+    int n = 0;
+    l->x0 = l->y0 = l->x1 = l->y1 = 0;
+    for (; n < l->count && c < reach; n++) {
+        struct hf_hexagon_tap *p = &l->taps[n];
+        p->c = c;
+        c += p->b;
+        l->x0 = hf_min(l->x0, p->dx);
+        l->x1 = hf_max(l->x1, p->dx);
+        l->y0 = hf_min(l->y0, p->dy);
+        l->y1 = hf_max(l->y1, p->dy);
+    }
+    l->count = n;
+}
+
+// Rows taken together meet each of their samples once, in the order of its distance from the first row, which is that
+// of the distances from each of them.
+static void make_steps(const struct hf_hexagon_line *l, const struct direction *d, int rows, struct hf_hexagon_steps *s)
+{
+    int next[HF_HEXAGON_ROWS] = {0};
+    for (s->count = 0;; s->count++) {
+        struct hf_hexagon_step *step = &s->step[s->count];
+        *step = (struct hf_hexagon_step){.least = INFINITY};
+        int first = -1;
+        for (int i = 0; i < rows; i++) {
+            const struct hf_hexagon_tap *t = &l->taps[next[i]];
+            if (next[i] == l->count || (first >= 0 && !comes_before(d, t->dx, t->dy + i, step->dx, step->dy)))
+                continue;
+            first = i;
+            step->dx = t->dx;
+            step->dy = t->dy + i;
+        }
+        if (first < 0)
+            return;
+        for (int i = 0; i < rows; i++) {
+            const struct hf_hexagon_tap *t = &l->taps[next[i]];
+            if (next[i] == l->count || t->dx != step->dx || t->dy + i != step->dy)
+                continue;
+            step->rows |= 1u << i;
+            step->b[i] = t->b;
+            step->c[i] = t->c;
+            step->least = fminf(step->least, t->c);
+            next[i]++;
+        }
+    }
+}
+
+// From anywhere in the picture, that far and farther is its edge. Returns whether there is such a tap.
+static int keep_inside(const struct hf_setup *s, struct hf_hexagon_line *l)
+{
+    const int x = s->width - 1, y = s->height - 1, outside = l->x0 < -x || l->x1 > x || l->y0 < -y || l->y1 > y;
+    for (int i = 0; i < l->count; i++) {
+        l->taps[i].dx = hf_max(hf_min(l->taps[i].dx, x), -x);
+        l->taps[i].dy = hf_max(hf_min(l->taps[i].dy, y), -y);
+        l->one.step[i].dx = l->taps[i].dx;
+        l->one.step[i].dy = l->taps[i].dy;
+    }
+    l->x0 = hf_max(l->x0, -x);
+    l->x1 = hf_min(l->x1, x);
+    l->y0 = hf_max(l->y0, -y);
+    l->y1 = hf_min(l->y1, y);
+    return outside;
+}
+
+static int half_resolution(const struct hf_setup *s, int working)
+{
+    return s->resolution == HF_RESOLUTION_HALF ? working : (working + 1) / 2;
+}
+
+static void measure(struct hf_setup *s, const struct hf_counts *found)
+{
+    struct hf_hexagon *h = s->tables;
+    const float radius = fmaxf(-found->radius_min, found->radius_max);
+    int x = 0, y = 0;
+    for (int i = 0; i < 3; i++) {
+        struct hf_hexagon_line *l = &h->line[i];
+        const double angle = (s->rotation + (i == 0 ? 0 : i == 1 ? 240 : 120)) * (M_PI / 180);
+        const double ux = sin(angle), uy = -cos(angle);
+        const struct direction d = {llround(ux * s->pixel_aspect * 0x1p40), llround(uy * 0x1p40)};
+        make_line(s, l, &d, ux, uy, radius);
+        make_steps(l, &d, 1, &l->one);
+        make_steps(l, &d, 2, &l->two);
+        make_steps(l, &d, 4, &l->four);
+        if (keep_inside(s, l))
+            l->two.count = l->four.count = 0;
+        x = hf_max(x, hf_max(-l->x0, l->x1));
+        y = hf_max(y, hf_max(-l->y0, l->y1));
+    }
+    const struct hf_hexagon_line *v = &h->line[1], *w = &h->line[2];
+    s->reach_x = half_resolution(s, x);
+    s->reach_y = half_resolution(s, y);
+    h->left = half_resolution(s, -hf_min(v->x0, w->x0));
+    h->right = half_resolution(s, hf_max(v->x1, w->x1));
+    h->above = half_resolution(s, -hf_min(v->y0, w->y0));
+    h->below = half_resolution(s, hf_max(v->y1, w->y1));
+}
+
+static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
+{
+    const int upsample = s->resolution == HF_RESOLUTION_HALF;
+    if (halo == HF_HALO_RADIUS)
+        return (struct hf_reach){2 * s->reach_x, 2 * s->reach_y};
+    return halo == HF_HALO_UPSAMPLE ? (struct hf_reach){upsample, upsample} : (struct hf_reach){0, 0};
+}
+
+// A far pixel changes itself alone.
+static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
+{
+    if (field == HF_FAR)
+        return (struct hf_reach){0, 0};
+    return p->buf[s->resolution == HF_RESOLUTION_HALF ? HF_HEXAGON_NEAR_COLOUR_2 : HF_HEXAGON_COLOUR];
+}
+
+static unsigned reads(const struct hf_setup *s, unsigned needs)
+{
+    (void)s;
+    return needs ? HF_FIELDS : 0;
+}
+
+// A row of radii, or a band. What is made is a pixel wider on either side where it is sampled up.
+static size_t work(const struct hf_setup *s, const struct hf_plan *p)
+{
+    const size_t band = s->tables ? hf_hexagon_band_floats(s, p->cell_width[2] + 2) : 0;
+    return band > p->line_floats ? band : p->line_floats;
+}
+
+// Narrow enough that a band stays in the second-level cache, but wider than the rim that is made of it twice.
+static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
+{
+    (void)sweep;
+    *width = hf_max(hf_min(*width, 192), (4 * s->reach_x + 15) & ~15);
+    *height = hf_max(*height, 4 * s->reach_y);
+}
+
+const struct hf_engine_def hf_hexagon_engine = {
+    .name = "hexagon",
+    .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = 2,
+    .bufs = bufs, .buf_count = HF_HEXAGON_BUF_COUNT, .measured = 1,
+    .prepare = prepare, .measure = measure, .channels = channels, .halo = halo, .spread = spread, .reads = reads,
+    .cell = cell, .work = work,
+};

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon engine's buffers, its taps, and what its kernels in C and on vectors share.
+//
+// J. White and C. Barre-Brisebois, "More Performance! Five Rendering Ideas from Battlefield 3 and Need For Speed: The
+// Run", SIGGRAPH 2011: a hexagon is three rhombi, a rhombus is two blurs along its sides, and the three share blurs.
+// With u up, v down left, w down right, each a mean over a side's length:
+//     pass 1    U = u(c),  B = u(c) + v(c)
+//     pass 2    (v(U) + w(B)) / 3
+//
+// CoC differs from pixel to pixel, so each blur asks every sample whether it reaches: a sample of radius q spreads
+// its colour over the first q pixels of the line, 1/q on each. Near samples (in front of the focus) do so whatever
+// they reach; far ones only into far pixels, and only if q <= 2p, p being the radius there, with a soft edge of one
+// pixel (of p where p is smaller). The near field is therefore kept premultiplied by its coverage, with the mean
+// radius of what covers a pixel, so that pass 2 carries it as far as pass 1 did over pixels that are sharp
+// themselves; the far field is divided by what was found, and stays behind the edges of sharper things.
+//
+// What is left over is the pixel's own: what near coverage leaves of a sharp or far pixel shows that pixel, and a far
+// pixel that finds less than a quarter of its samples makes up a quarter with its own colour. All weights are
+// continuous in every radius and vanish with it, so nothing pops.
+#ifndef HF_PASS_HEXAGON_H
+#define HF_PASS_HEXAGON_H
+
+#include <float.h>
+
+#include "pixel/pass_c.h"
+
+// At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to
+// both, and each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
+enum hf_hexagon_buf {
+    HF_HEXAGON_COLOUR,         // full resolution: colour x a
+    HF_HEXAGON_WEIGHT,         // a, the signed radius, and a of far pixels alone
+    HF_HEXAGON_NEAR_COLOUR_2,  // half resolution: radii are not negative, and in half-resolution pixels
+    HF_HEXAGON_NEAR_WEIGHT_2,  // a, radius, and how much of the quad is near
+    HF_HEXAGON_FAR_COLOUR_2,
+    HF_HEXAGON_FAR_WEIGHT_2,
+    HF_HEXAGON_MADE,  // what the two passes make: full resolution, then the same again at half
+};
+
+enum hf_hexagon_made {
+    HF_HEXAGON_NEAR_U,    // coverage x colour x weight
+    HF_HEXAGON_NEAR_B,
+    HF_HEXAGON_NEAR_W,    // coverage x weight and mean radius, of U and of B
+    HF_HEXAGON_FAR_U,     // colour x weight
+    HF_HEXAGON_FAR_B,
+    HF_HEXAGON_NEAR,      // coverage x colour
+    HF_HEXAGON_COVERAGE,
+    HF_HEXAGON_FAR,
+    HF_HEXAGON_MADE_COUNT
+};
+enum { HF_HEXAGON_BUF_COUNT = HF_HEXAGON_MADE + 2 * HF_HEXAGON_MADE_COUNT };
+
+// The line of a blur: taps at k + 0.5 along it, bilinear, gathered to weights b of pixels in the order of their
+// distance. c is the sum of the weights before. A sample of radius q that lies there counts min(b, q - c), not less
+// than 0: the weights of a line of one radius sum to q for any q, and every weight grows from 0 as q does.
+struct hf_hexagon_tap {
+    int dx, dy;
+    float b, c;
+};
+
+// The same for some rows of pixels at once: a sample (dx, dy) from the first of them, and what each row's own tap there
+// weighs. A line that is not steep meets a column in two or three taps, so that neighbouring rows share their samples.
+// Each row meets its taps in their order.
+enum { HF_HEXAGON_ROWS = 4 };
+
+struct hf_hexagon_step {
+    int dx, dy;
+    unsigned rows;  // bit i: row i has a tap there
+    float least;    // the least c of them
+    float b[HF_HEXAGON_ROWS], c[HF_HEXAGON_ROWS];
+};
+
+struct hf_hexagon_steps {
+    struct hf_hexagon_step *step;
+    int count;  // 0: rows cannot be taken together, as a line's end lies beyond the picture
+};
+
+struct hf_hexagon_line {
+    struct hf_hexagon_tap *taps;
+    int count;
+    int x0, y0, x1, y1;  // the largest offsets, both included
+    struct hf_hexagon_steps one, two, four;  // rows at once
+};
+
+// Lines u, v, w, and how far pass 2 reads around a pixel what pass 1 made, half-resolution pixels.
+struct hf_hexagon {
+    struct hf_hexagon_line line[3];
+    int left, right, above, below;
+};
+
+// Rows of a band, half-resolution pixels (hexagon_bands.c), and floats of scratch for bands of that width.
+enum { HF_HEXAGON_BAND = 8 };
+size_t hf_hexagon_band_floats(const struct hf_setup *s, int width);
+
+// Samples of one field: planes of colour x weight, of weight, and of radius x sign. At half resolution a sample may be
+// there in part, and its weight is that much smaller.
+struct hf_hexagon_field {
+    const struct hf_buf *colour;
+    const struct hf_buf *weight;
+    int a;                       // channel of weight
+    const struct hf_buf *radius;
+    int q;                       // channel of radius
+    float sign;
+    int part;                    // channel of weight, -1: all are there in full
+    int alone;                   // colour and weight are 0 where the radius is not above 0
+};
+
+// Where things are at the setup's resolution.
+static inline const struct hf_buf *hf_hexagon_made(const struct hf_frame *f, enum hf_hexagon_made b)
+{
+    return &f->buf[HF_HEXAGON_MADE + (f->s->resolution == HF_RESOLUTION_HALF ? HF_HEXAGON_MADE_COUNT : 0) + b];
+}
+
+static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f, unsigned field)
+{
+    const int half = f->s->resolution == HF_RESOLUTION_HALF;
+    const int colour = !half              ? HF_HEXAGON_COLOUR
+                       : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2
+                                          : HF_HEXAGON_FAR_COLOUR_2;
+    const struct hf_buf *weight = &f->buf[colour + 1];
+    return (struct hf_hexagon_field){&f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f,
+                                     half ? 2 : -1, half};
+}
+
+// The samples that pass 2 reads: what pass 1 made along line v (0) or w (1).
+static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *f, unsigned field, int second)
+{
+    if (field == HF_NEAR) {
+        const struct hf_buf *weight = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
+        return (struct hf_hexagon_field){hf_hexagon_made(f, second ? HF_HEXAGON_NEAR_B : HF_HEXAGON_NEAR_U),
+                                         weight, 2 * second, weight, 2 * second + 1, 1, -1, 1};
+    }
+    struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    in.colour = hf_hexagon_made(f, second ? HF_HEXAGON_FAR_B : HF_HEXAGON_FAR_U);
+    in.a = f->s->resolution == HF_RESOLUTION_HALF ? 0 : 2;
+    in.alone = 1;
+    return in;
+}
+
+// r in pixels of the working resolution.
+static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf_rect r)
+{
+    if (s->resolution == HF_RESOLUTION_HALF)
+        return r;
+    return (struct hf_rect){2 * r.x0, 2 * r.y0, hf_min(2 * r.x1, s->width), hf_min(2 * r.y1, s->height)};
+}
+
+// Of what a pixel of radius p finds, how little is too little, and from which p on it need not be all.
+#define HEXAGON_LEAST 0.25f
+#define HEXAGON_ALL 2.0f
+
+// Colours are summed up this much darker, so that no sum overflows where none of its samples does: a line's weights add
+// up to at most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times
+// their sum. A power of two, so that no bit changes. What rounds up beyond the largest number is that number.
+#define HEXAGON_SCALE 0x1p-10f
+#define HEXAGON_MOST (FLT_MAX * HEXAGON_SCALE)
+
+hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_composite_c;
+
+#endif

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pixel/aperture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Integral from 0 to y of the half-width of a disc's rows, radius r.
+static double half_disc(double r, double y)
+{
+    const double t = y > r ? r : y < -r ? -r : y;
+    return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
+}
+
+// What a disc covers of the height of its row dy, 1/16.
+static int row_height(double r, int dy)
+{
+    const double height = r - (abs(dy) - 0.5);
+    return dy == 0 || height >= 1 ? HF_WHOLE_ROW : height <= 0 ? 0 : (int)lround(HF_WHOLE_ROW * height);
+}
+
+// Half a disc's mean width over what it covers of row dy, plus half a pixel, in 1/256 pixel.
+static int32_t disc_row(double r, double scale_x, int dy)
+{
+    const double height = dy ? fmin(1, r - (abs(dy) - 0.5)) : 1;
+    if (height <= 0)
+        return 128;
+    return (int32_t)lround(256 * ((half_disc(r, dy + 0.5) - half_disc(r, dy - 0.5)) / height * scale_x + 0.5));
+}
+
+// Rows on one side of the middle one, and that.
+static int rows_of(double r)
+{
+    return (int)ceil(r + 0.5);
+}
+
+static void build_disc(struct hf_aperture *a, int number, int first)
+{
+    struct hf_picture *p = &a->picture[number];
+    const double r = hf_picture_radius(number);
+    double area = 0;
+    *p = (struct hf_picture){.first = first, .rows = rows_of(r)};
+    for (int dy = 0; dy < p->rows; dy++) {
+        a->half[first + dy] = disc_row(r, a->key.scale_x, dy);
+        area += (dy ? 2.0 : 1.0) * (2 * a->half[first + dy] - 256) * row_height(r, dy);
+    }
+    // Rows that round to nothing.
+    while (p->rows > 1 && (a->half[first + p->rows - 1] <= 128 || !row_height(r, p->rows - 1)))
+        p->rows--;
+    if (area <= 0) {
+        a->half[first] = 129;
+        area = 2 * HF_WHOLE_ROW;
+    }
+    p->cap = row_height(r, p->rows - 1);
+    p->reach_y = p->rows - 1;
+    p->reach_x = (a->half[first] >> 8) + 1;
+    p->area = (float)area;
+}
+
+// A side of a polygon whose corners lie on the unit circle: the line x nx + y ny = d, or bent towards that circle an
+// arc
+// through the same corners, of a circle around (cx, cy).
+struct side {
+    double nx, ny, d, cx, cy, radius; // radius 0: straight
+};
+
+static int make_sides(struct side side[16], const struct hf_aperture_key *key)
+{
+    const double pi = 3.14159265358979323846, d = cos(pi / key->blades), h = sin(pi / key->blades);
+    const double sagitta = key->roundness * (1 - d),
+                 radius = sagitta > 1e-6 ? (h * h + sagitta * sagitta) / (2 * sagitta) : 0;
+    for (int i = 0; i < key->blades; i++) {
+        const double angle = 2 * pi * i / key->blades + key->rotation * (pi / 180), back = d + sagitta - radius;
+        side[i] = (struct side){.nx = cos(angle), .ny = sin(angle), .d = d, .radius = radius};
+        side[i].cx = side[i].nx * back;
+        side[i].cy = side[i].ny * back;
+    }
+    return key->blades;
+}
+
+// The run of row y of the shape that the sides enclose; 0: there is none.
+static int side_run(const struct side *side, int sides, double y, double *a, double *b)
+{
+    *a = -1;
+    *b = 1;
+    for (int i = 0; i < sides; i++) {
+        const struct side *s = &side[i];
+        if (s->radius > 0) {
+            const double q = s->radius * s->radius - (y - s->cy) * (y - s->cy), w = q > 0 ? sqrt(q) : -1;
+            if (w < 0)
+                return 0;
+            *a = fmax(*a, s->cx - w);
+            *b = fmin(*b, s->cx + w);
+        } else if (fabs(s->nx) < 1e-9) {
+            if (s->ny * y > s->d)
+                return 0;
+        } else {
+            const double x = (s->d - s->ny * y) / s->nx;
+            if (s->nx > 0)
+                *b = fmin(*b, x);
+            else
+                *a = fmax(*a, x);
+        }
+    }
+    return *b > *a;
+}
+
+// Row dy: the means of what lies within it, and how much of its height that is.
+static struct hf_run polygon_row(const struct side *side, int sides, double r, double scale_x, int dy)
+{
+    const int parts = r < 16 ? 16 : r < 64 ? 8 : 4;
+    double a = 0, b = 0;
+    int hit = 0;
+    for (int i = 0; i < parts; i++) {
+        double left, right;
+        if (!side_run(side, sides, (dy - 0.5 + (i + 0.5) / parts) / r, &left, &right))
+            continue;
+        a += left;
+        b += right;
+        hit++;
+    }
+    if (!hit)
+        return (struct hf_run){0};
+    return (struct hf_run){(int32_t)lround(256 * (a / hit * r * scale_x + 0.5)),
+                           (int32_t)lround(256 * (b / hit * r * scale_x + 0.5)),
+                           (HF_WHOLE_ROW * hit + parts / 2) / parts};
+}
+
+static void build_polygon(struct hf_aperture *a, const struct side *side, int sides, int number, int first)
+{
+    struct hf_picture *p = &a->picture[number];
+    const double r = hf_picture_radius(number);
+    double area = 0;
+    *p = (struct hf_picture){.first = first, .top = 1 - rows_of(r), .rows = 2 * rows_of(r) - 1};
+    p->reach_y = rows_of(r) - 1;
+    for (int i = 0; i < p->rows; i++) {
+        struct hf_run *run = &a->run[first + i];
+        *run = polygon_row(side, sides, r, a->key.scale_x, p->top + i);
+        area += (double)run->weight * (run->b - run->a);
+        p->reach_x = hf_max(p->reach_x, hf_max((run->b >> 8) + 1, -(run->a >> 8)) + 1);
+    }
+    if (area <= 0) {
+        a->run[first - p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
+        area = 2 * HF_WHOLE_ROW;
+    }
+    p->area = (float)area;
+}
+
+// Discs that are cut by a cat's eye are runs like any outline.
+static void build_runs_of_disc(struct hf_aperture *a, int number, int first)
+{
+    struct hf_picture *p = &a->picture[number];
+    const double r = hf_picture_radius(number);
+    double area = 0;
+    *p = (struct hf_picture){.first = first, .top = 1 - rows_of(r), .rows = 2 * rows_of(r) - 1};
+    p->reach_y = rows_of(r) - 1;
+    for (int i = 0; i < p->rows; i++) {
+        const int32_t half = disc_row(r, a->key.scale_x, p->top + i);
+        const int weight = row_height(r, p->top + i);
+        a->run[first + i] = (struct hf_run){256 - half, half, weight};
+        area += (double)weight * (2 * half - 256);
+        p->reach_x = hf_max(p->reach_x, (half >> 8) + 1);
+    }
+    if (area <= 0) {
+        a->run[first - p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
+        area = 2 * HF_WHOLE_ROW;
+    }
+    p->area = (float)area;
+}
+
+int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem)
+{
+    if (a->count && !memcmp(&a->key, key, sizeof *key))
+        return HF_OK;
+    a->count = hf_picture_number(key->largest) + 2;
+    a->key = *key;
+    a->tap = NULL;
+    a->planes = a->steps = 1;
+    a->symmetric = !key->blades && !key->outline;
+    // Pixels of any radii around one add up to 2 ln(r) + 6 times the brightest sample, more for smaller pictures of the
+    // same radius.
+    a->headroom = key->blades ? 7 : 5;
+    const size_t row = a->symmetric ? sizeof *a->half : 2 * sizeof *a->run;
+    size_t rows = 0;
+    for (int i = 0; i < a->count; i++)
+        rows += (size_t)rows_of(hf_picture_radius(i));
+    const size_t picture = sizeof *a->picture + sizeof *a->inverse;
+    const int err = hf_block_grow(&a->block, (size_t)a->count * picture + rows * row, mem);
+    if (err) {
+        a->count = 0;
+        return err;
+    }
+    a->picture = a->block.data;
+    a->inverse = (float *)(a->picture + a->count);
+    a->half = (int32_t *)(a->inverse + a->count);
+    a->run = (struct hf_run *)a->half;
+    struct side side[16];
+    const int sides = key->blades ? make_sides(side, key) : 0;
+    for (int i = 0, first = 0; i < a->count; i++) {
+        if (a->symmetric)
+            build_disc(a, i, first);
+        else if (sides)
+            build_polygon(a, side, sides, i, first);
+        else
+            build_runs_of_disc(a, i, first);
+        a->inverse[i] = 1 / a->picture[i].area;
+        first += (a->symmetric ? 1 : 2) * rows_of(hf_picture_radius(i));
+    }
+    return HF_OK;
+}

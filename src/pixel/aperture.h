@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures of the aperture at every size, as runs of pixels row by row: what the scatter engine draws.
+#ifndef HF_APERTURE_H
+#define HF_APERTURE_H
+
+#include "frame/frame.h"
+#include "base/mem.h"
+
+enum { HF_WHOLE_ROW = 16 };
+
+// A row of a picture: the run from a to b, in 1/256 pixel from the left edge of the pixel it is drawn around, and its
+// weight in 1/16: below that where the picture covers only part of the row's height.
+struct hf_run {
+    int32_t a, b, weight;
+};
+
+// One size of the picture. Every shape has rows from `top` down to bottom.
+struct hf_picture {
+    int first;     // row 0 (symmetric) or row `top`, in half[] or run[]
+    int columns;   // of an image's
+    int top, rows; // symmetric: top 0, rows 0..rows - 1 stand for both +dy and -dy
+    int reach_x, reach_y;
+    int cap;    // symmetric: weight of the last row, 1/16
+    float area; // sum of the weights of its pixels: 256 * 16 each, images up to 1023
+};
+
+// 256 sizes an octave, from radius 0.5 on, each 0.2 to 0.4 % larger than the last. Nearest one to a radius.
+enum { HF_SIZES_LOG2 = 8, HF_SIZES = 1 << HF_SIZES_LOG2 };
+
+// What the pictures follow from. No padding: keys are compared byte by byte.
+struct hf_aperture_key {
+    float largest;       // radius, pixels
+    float scale_x;       // widths are multiplied by it: pixel aspect and squeeze
+    int blades, outline; // outline: discs as runs too
+    float rotation, roundness;
+    int width, height; // of an image
+    uint64_t image;    // its hash; 0: a shape
+};
+
+struct hf_aperture {
+    int symmetric; // disc: about both axes, half[] alone
+    int count;
+    int headroom; // bits by which sums may exceed the largest sample
+    struct hf_picture *picture;
+    float *inverse;     // shapes: 1 / area of each picture
+    int32_t *half;      // symmetric: half a row's width plus half a pixel, 1/256 pixel
+    struct hf_run *run; // outlines
+    int16_t *tap;       // images: differences of weights along each row
+    int planes, steps;  // images: pictures of each channel, and of how many sizes one is kept
+    struct hf_block block;
+    struct hf_aperture_key key;
+};
+
+// (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
+int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem);
+
+// The same for pictures of an image, its centre the axis and its shorter side the diameter.
+int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_image *image,
+                            const struct hf_mem *mem);
+
+// Number of the picture for a radius; smaller ones than 0.5 count as that. radius is finite.
+static inline int hf_picture_number(float radius)
+{
+    union {
+        float f;
+        int32_t i;
+    } r = {radius > 0.5f ? radius : 0.5f};
+    return (r.i - 0x3f000000 + (1 << (22 - HF_SIZES_LOG2))) >> (23 - HF_SIZES_LOG2);
+}
+
+// Its radius.
+static inline float hf_picture_radius(int number)
+{
+    union {
+        int32_t i;
+        float f;
+    } r = {0x3f000000 + number * (1 << (23 - HF_SIZES_LOG2))};
+    return r.f;
+}
+
+#endif

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CoC generation: normalised near and far circle of confusion of every pixel, from depth.
+#include <math.h>
+
+#include "pixel/pass_c.h"
+
+// The rounding of a storage's CoC.
+float hf_round_coc(enum hf_storage storage, float t)
+{
+    if (storage == HF_STORAGE_CHAPTER)
+        return floorf(t * 255 + 0.5f) * (1 / 255.0f);
+    return storage == HF_STORAGE_HALF ? hf_half_unpack(hf_half_pack(t)) : t;
+}
+
+float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts)
+{
+    const struct hf_setup *s = f->s;
+    int repaired = 0;
+    const float z = hf_depth_surface(s, f->depth, x, y, &repaired);
+    if (counts) {
+        counts->depth_repaired += (unsigned)repaired;
+        counts->no_surface += z >= 1e10f;
+    }
+    return s->lens ? -1 / z : z;
+}
+
+// Near and far CoC of one pixel.
+void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts)
+{
+    const struct hf_setup *s = f->s;
+    const float v = hf_coc_variable(f, x, y, counts);
+    *n = hf_round_coc(s->storage, hf_ramp(s, (s->near_0 - v) * s->near_i));
+    *far = hf_round_coc(s->storage, hf_ramp(s, (v - s->far_0) * s->far_i));
+}
+
+static void count(struct hf_counts *c, int lane, float n, float f)
+{
+    c->near_groups |= (uint64_t)(n > 0) << hf_group(lane);
+    c->far_groups |= (uint64_t)(f > 0) << hf_group(lane);
+    c->near_pixels += n > 0;
+    c->far_pixels += f > 0;
+    c->sharp_pixels += !(n > 0 || f > 0);
+    c->near_max = n > c->near_max ? n : c->near_max;
+    c->far_max = f > c->far_max ? f : c->far_max;
+}
+
+void hf_coc_row_c(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts)
+{
+    for (int i = 0; i < n; i++) {
+        const int px = 2 * (x + i);
+        hf_coc_pixel(f, px, y, &out[0][i], &out[2][i], counts);
+        if (counts)
+            count(counts, x + i, out[0][i], out[2][i]);
+        if (px + 1 < f->s->width) {
+            hf_coc_pixel(f, px + 1, y, &out[1][i], &out[3][i], counts);
+            if (counts)
+                count(counts, x + i, out[1][i], out[3][i]);
+        } else {
+            out[1][i] = out[0][i];
+            out[3][i] = out[2][i];
+        }
+    }
+}
+
+int hf_sharp_row_c(const struct hf_frame *f, int x, int y, int n)
+{
+    const float *depth = (const float *)((const char *)f->depth->data + (ptrdiff_t)y * f->depth->stride);
+    for (int i = 2 * x; i < hf_min(2 * (x + n), f->s->width); i++) {
+        float near, far;
+        if (f->s->form != HF_FORM_Z || !(depth[i] > 0 && depth[i] < 1e10f))
+            return 0;
+        hf_coc_pixel(f, i, y, &near, &far, NULL);
+        if (near > 0 || far > 0)
+            return 0;
+    }
+    return 1;
+}
+
+// Most of most pictures is sharp or has been looked at before: two comparisons a pixel say so.
+static int is_sharp(const struct hf_frame *f, struct hf_rect r)
+{
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
+        if (!f->k->sharp_row(f, r.x0, y, r.x1 - r.x0))
+            return 0;
+    return 1;
+}
+
+// r in half-resolution pixels: the rows 2y and 2y + 1 of each.
+void hf_coc_c(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_buf *b = &f->buf[HF_BUF_COC];
+    if (f->looking && is_sharp(f, r)) {
+        f->counts->sharp_pixels += (uint64_t)(hf_min(2 * r.x1, f->s->width) - 2 * r.x0) *
+                                   (uint64_t)(hf_min(2 * r.y1, f->s->height) - 2 * r.y0);
+        return;
+    }
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+        float *const out[4] = {hf_at(b, 0, r.x0, y), hf_at(b, 1, r.x0, y), hf_at(b, 2, r.x0, y),
+                               hf_at(b, 3, r.x0, y)};
+        f->k->coc_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
+        hf_count_row(f->counts, y);
+    }
+}

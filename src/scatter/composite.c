@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatter: what happens before and after the splats (splat.c).
+#include "scatter/scatter.h"
+
+#include "pixel/pass_c.h"
+
+void hf_scatter_note_c(const float *radius, float *const colour[4], int channels, int n, float *largest,
+                       uint64_t *transparent)
+{
+    for (int x = 0; x < n; x++) {
+        if (radius[x] == 0)
+            continue;
+        for (int c = 0; c < channels; c++) {
+            const float v = __builtin_fabsf(colour[c][x]);
+            *largest = v > *largest ? v : *largest;
+        }
+        *transparent += channels == 4 && colour[3][x] != 1;
+    }
+}
+
+// Colour and radius of every pixel that some tile reads, and how bright those that will be drawn can be.
+void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
+{
+    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+        float *colour[4] = {NULL}, *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y);
+        hf_row(&f->buf[HF_BUF_SOURCE], f->s->channels, x0, y, colour);
+        hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
+        f->k->radius_row(f, x0, y, n, radius, NULL);
+        f->k->scatter_note(radius, colour, f->s->channels, n, &f->counts->largest, &f->counts->transparent);
+    }
+}
+
+// How much of a disc's area lies on this side of a line d radii off its centre, 0..1: within 0.002, and exact at the
+// ends.
+static float segment(float d)
+{
+    const float t = d < 1 ? d : 1, q = t * t;
+    return 0.5f + t * (0.63662f + q * (-0.10610f - q * 0.03052f));
+}
+
+// How much of the picture around a near pixel lies inside the frame: its sum of weights cannot be more.
+static float inside(const struct hf_setup *s, float reach_x, float reach_y, int x, int y)
+{
+    const float ix = 1 / reach_x, iy = 1 / reach_y;
+    const float left = ((float)x + 0.5f) * ix, right = (((float)s->width - (float)x) - 0.5f) * ix;
+    const float above = ((float)y + 0.5f) * iy, below = ((float)(s->height - y) - 0.5f) * iy;
+    return ((segment(left) + segment(right)) - 1) * ((segment(above) + segment(below)) - 1);
+}
+
+// a + t (b - a), for t of 1 and more b's own bits, as a's for 0: next to a highlight b would lose them.
+static float mix(float a, float b, float t)
+{
+    return t < 1 ? hf_lerp(a, b, t) : b;
+}
+
+// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where far ones hardly reach, near
+// hides it.
+static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2])
+{
+    const float front = near[1] > 0 ? near[0] / near[1] : own;
+    float v = far[1] > 0 ? far[0] / far[1] : own;
+    if (is_near)
+        v = mix(front, v, hf_saturate(16 * far[1]));
+    v = mix(own, v, 1 - show);
+    return near[1] > 0 ? mix(v, front, cover) : v;
+}
+
+void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
+{
+    const struct hf_scatter *t = row->setup->tables;
+    for (int x = 0; x < row->n; x++) {
+        const float far[2] = {row->far ? row->far[x] : 0, row->far ? row->far_weight[x] : 0};
+        const float near[2] = {row->near ? row->near[x] : 0, row->near ? row->near_weight[x] : 0};
+        const float r = row->radius[x], size = __builtin_fabsf(r), reach_x = size * t->aperture->key.scale_x;
+        const float cover = r < 0 ? near[1] / inside(row->setup, reach_x, size, row->x + x, row->y) : near[1];
+        out[x] = composite_sample(out[x], hf_own_part(t, size), cover, r < 0, far, near);
+    }
+}
+
+static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    const struct hf_scatter *t = s->tables;
+    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, s->width) - x0;
+    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y);
+    float *out[4];
+    for (int c = 0; c < 4; c++)
+        out[c] = hf_line(f, 8 + c);
+    hf_read_pixels(f, r.x0, y, r.x1 - r.x0, out, f->counts);
+    for (int c = 0; c < s->channels; c++) {
+        // With alpha 1 all over its sums are those of the weights.
+        const int is_weight = t->opaque && c == 3, group = t->opaque ? 0 : t->group_of[c];
+        struct hf_scatter_row row = {.setup = s, .x = x0, .y = y, .n = n, .radius = radius};
+        if (f->far) {
+            row.far_weight = hf_at(&f->buf[HF_BUF_FAR_WEIGHT], group, x0, y);
+            row.far = is_weight ? row.far_weight : hf_at(&f->buf[HF_BUF_FAR_SUM], c, x0, y);
+        }
+        if (f->near) {
+            row.near_weight = hf_at(&f->buf[HF_BUF_NEAR_WEIGHT], group, x0, y);
+            row.near = is_weight ? row.near_weight : hf_at(&f->buf[HF_BUF_NEAR_SUM], c, x0, y);
+        }
+        f->k->scatter_blend(&row, out[c]);
+    }
+    hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)out, s->channels == 4);
+}
+
+void hf_scatter_composite_c(const struct hf_frame *f, struct hf_rect r)
+{
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
+        composite_row(f, y, r);
+}

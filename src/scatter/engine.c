@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The scatter: B. Wronski, "Bokeh depth of field - going insane! part 1", 2014. Every blurred pixel becomes the picture
+// of the aperture. Near and far are summed apart, each is divided by its weights, and they are put together back to
+// front: far, the pixels in focus, near. The near one's sum of weights, 1 inside a large object and less across its
+// silhouette, is its coverage: so it melts into what is behind.
+//
+// Cost of a blurred pixel of radius r, in additions of four 64-bit lanes (OPTIMISATION.md has the times):
+//     disc         4 (2 r + 1); 2.5 (2 r + 1) where four side by side have rows equally long to a pixel
+//     polygon      4 (2 r + 1), and three products a row for one
+//     ring of R    1 + R times its outline
+//     cat's eye    as a polygon, and a square root and two conversions a row
+//     file         4 r^2, for each channel if it is coloured
+// From radius 24 to 28 on (8 to 12 for files) at half the resolution, where neighbours have like radii: a quarter of
+// the sources and half the rows of each, an eighth in all (a sixteenth for files). Alpha that is not 1 doubles all of
+// it, chromatic aberration takes it three times. What lies far off a cell is looked at, not drawn.
+#include "scatter/scatter.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "frame/context.h"
+#include "frame/plan.h"
+
+#define B(name) HF_BIT(name)
+
+static const struct hf_pass passes[] = {
+    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1, .ns = 2.5f},
+    {"Prepare", HF_KERNEL_SCATTER_PREPARE, .writes = B(SOURCE) | B(RADIUS), .sweep = 1, .ns = 4},
+    {"Far splats", HF_KERNEL_SPLAT_FAR, .around = B(SOURCE) | B(RADIUS), .writes = B(FAR_SUM) | B(FAR_WEIGHT),
+     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_FAR, .ns = 75},
+    {"Near splats", HF_KERNEL_SPLAT_NEAR, .around = B(SOURCE) | B(RADIUS), .writes = B(NEAR_SUM) | B(NEAR_WEIGHT),
+     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_NEAR, .ns = 75},
+    {"Composite", HF_KERNEL_SCATTER_COMPOSITE,
+     .reads = B(RADIUS) | B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .sweep = 2, .ns = 9},
+};
+
+static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
+    [HF_BUF_SOURCE] = {"source", .frame = 1, .bare = 1, .x = 1, .y = 1},
+    [HF_BUF_RADIUS] = {"radius", .frame = 1, .bare = 1, .x = 1, .y = 1},
+    [HF_BUF_FAR_SUM] = {"far", .x = 1, .y = 1, .field = HF_FAR},
+    [HF_BUF_FAR_WEIGHT] = {"farweight", .x = 1, .y = 1, .field = HF_FAR},
+    [HF_BUF_NEAR_SUM] = {"near", .x = 1, .y = 1, .field = HF_NEAR},
+    [HF_BUF_NEAR_WEIGHT] = {"nearweight", .x = 1, .y = 1, .field = HF_NEAR},
+};
+
+// Until the frame has been looked at, alpha may be anything: then it is a group of its own.
+static void set_groups(struct hf_scatter *t, const struct hf_setup *s)
+{
+    const float chromatic = s->params->chromatic;
+    t->groups = 0;
+    for (int c = 0; c < s->channels; c++) {
+        // Red is larger and blue smaller behind the focus, the other way in front of it.
+        const float shift = c == 0 ? chromatic : c == 2 ? -chromatic : 0;
+        struct hf_splat_group *g = &t->group[t->groups];
+        if (c == 0 || c == 3 || chromatic != 0 || t->aperture->planes == 3) {
+            *g = (struct hf_splat_group){.factor = {1 - shift, 1 + shift}};
+            t->groups++;
+        } else {
+            g--;
+        }
+        g->channel[g->channels++] = c;
+        t->group_of[c] = t->groups - 1;
+    }
+}
+
+static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
+{
+    int err = hf_block_grow(&c->tables, sizeof(struct hf_scatter), &c->mem);
+    struct hf_scatter *t = s->tables = c->tables.data;
+    if (err)
+        return err;
+    *t = (struct hf_scatter){.aperture = &c->aperture, .half_from = 24, .half_to = 28, .fade = 1.5f};
+    if (s->resolution == HF_RESOLUTION_HALF) {
+        t->half_from = -1;
+        t->half_to = 0;
+        t->fade = 2.5f;
+    }
+    if (p->aperture) {
+        // Every pixel of an image is drawn: sooner at half the resolution, and no larger than this.
+        s->max_radius = fminf(s->max_radius, 256);
+        if (t->half_to > 0)
+            t->half_from = 8, t->half_to = 12;
+    }
+    t->half_slope = 1 / (t->half_to - t->half_from);
+    t->fade_slope = 1 / (t->fade - 0.5f);
+    s->sharp_radius = 0.5f;
+    struct hf_aperture_key key;
+    memset(&key, 0, sizeof key);
+    const float largest = s->max_radius * (1 + fabsf(p->chromatic));
+    key.largest = t->half_to > 0 && largest <= t->half_to ? largest : fmaxf(largest / 2, 1.5f * t->half_to);
+    key.blades = p->blades;
+    key.outline = p->cat_eye > 0;
+    if (p->blades) {
+        key.rotation = p->blade_rotation;
+        key.roundness = p->blade_roundness;
+    }
+    t->ring = p->aperture ? 0 : p->ring;
+    t->cat_eye = p->aperture ? 0 : p->cat_eye;
+    t->corner = 1 / hypotf((float)s->width, (float)s->height);
+    key.scale_x = 1 / (p->pixel_aspect * p->squeeze);
+    err = p->aperture ? hf_aperture_build_image(&c->aperture, &key, p->aperture, &c->mem)
+                      : hf_aperture_build(&c->aperture, &key, &c->mem);
+    set_groups(t, s);
+    return err;
+}
+
+// How far the largest pictures of a field reach on each level.
+static void set_reach(struct hf_scatter *t, int field)
+{
+    for (int level = 0; level < 2; level++)
+        t->reach_x[field][level] = t->reach_y[field][level] = -1;
+    if (t->largest[field] <= 0)
+        return;
+    for (int level = 0; level < 2; level++) {
+        float r = level ? t->largest[field] / 2 : fminf(t->largest[field], t->half_to);
+        if (level ? t->largest[field] <= t->half_from : t->half_to <= 0)
+            continue;
+        float factor = 0;
+        for (int g = 0; g < t->groups; g++)
+            factor = fmaxf(factor, t->group[g].factor[field]);
+        const struct hf_picture *p = &t->aperture->picture[hf_picture_number(r * factor) / t->aperture->steps + 1];
+        t->reach_x[field][level] = p->reach_x;
+        t->reach_y[field][level] = p->reach_y;
+    }
+}
+
+static void measure(struct hf_setup *s, const struct hf_counts *found)
+{
+    struct hf_scatter *t = s->tables;
+    t->largest[0] = -found->radius_min;
+    t->largest[1] = found->radius_max;
+    s->reach_x = s->reach_y = 0;
+    for (int field = 0; field < 2; field++) {
+        set_reach(t, field);
+        // A level's own pixels, and one around it for the upsampling, one for the tent and one for its radii.
+        s->reach_x = hf_max(s->reach_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
+        s->reach_y = hf_max(s->reach_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
+    }
+}
+
+// The sums' fixed point: shares of the brightest sample still leave room for all that may come together in a pixel.
+static void made(struct hf_setup *s, const struct hf_counts *found)
+{
+    struct hf_scatter *t = s->tables;
+    int exponent;
+    frexpf(found->largest, &exponent);
+    const int room = 62 - t->aperture->headroom - (t->ring > 0 ? 4 : 0) - (t->cat_eye > 0 ? 2 : 0);
+    for (int c = 0; c < 4; c++) {
+        const int bits = c == 3 ? room - 1 : room - exponent;
+        t->scale[c] = ldexp(1, bits);
+        t->unscale[c] = ldexp(1, -bits);
+    }
+    // With alpha 1 everywhere its sum is that of the weights.
+    t->opaque = s->channels == 4 && !found->transparent && t->groups == 2;
+    if (t->opaque)
+        t->groups = 1;
+}
+
+static int channels(const struct hf_setup *s, int b)
+{
+    const struct hf_scatter *t = s->tables;
+    if (b == HF_BUF_RADIUS)
+        return 1;
+    return b == HF_BUF_FAR_WEIGHT || b == HF_BUF_NEAR_WEIGHT ? (t ? t->groups : 1) : s->channels;
+}
+
+static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
+{
+    return halo == HF_HALO_RADIUS ? (struct hf_reach){s->reach_x, s->reach_y} : (struct hf_reach){0, 0};
+}
+
+// A far field shows only on pixels that are blurred themselves: far ones, or near ones that it shines through.
+static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
+{
+    const struct hf_scatter *t = s->tables;
+    (void)p;
+    if (field == HF_FAR && t->largest[0] <= 0)
+        return (struct hf_reach){0, 0};
+    return (struct hf_reach){s->reach_x, s->reach_y};
+}
+
+// All of a source is made at once, whatever field it is for.
+static unsigned reads(const struct hf_setup *s, unsigned needs)
+{
+    (void)s;
+    return needs ? HF_FIELDS : 0;
+}
+
+// Cells large against the reach, for what lies around a cell is looked at twice; and narrow enough for the rows of sums
+// that are being drawn on, 32 bytes a pixel, to stay in the second level of the cache.
+static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
+{
+    const struct hf_scatter *t = s->tables;
+    const int enough = hf_min(12 * s->reach_y, (s->half_height + 1) / 2);
+    (void)sweep;
+    *height = hf_max(*height, hf_min(enough, 512));
+    for (int field = 0; t && field < 2; field++) {
+        const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8); // bytes, of a half-resolution one
+        if (t->reach_x[field][1] < 0)
+            *width = hf_min(*width, hf_max(hf_max(400000 / column, 4 * s->reach_x) & ~15, 64));
+    }
+}
+
+static size_t work(const struct hf_setup *s, const struct hf_plan *p)
+{
+    return s->tables ? hf_splat_work(s->tables, p->cell_width[2], p->cell_height[2]) : 0;
+}
+
+const struct hf_engine_def hf_scatter_engine = {
+    .name = "scatter",
+    .passes = passes,
+    .pass_count = sizeof passes / sizeof *passes,
+    .sweeps = 2,
+    .bufs = bufs,
+    .buf_count = HF_SCATTER_BUFS,
+    .measured = 1,
+    .prepare = prepare,
+    .measure = measure,
+    .made = made,
+    .channels = channels,
+    .halo = halo,
+    .spread = spread,
+    .reads = reads,
+    .cell = cell,
+    .work = work,
+};

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatter: from pixels to lists of pictures (walk.c), and shapes that are each source's own.
+#include <math.h>
+
+#include "scatter/walk.h"
+
+void hf_source_weights_c(const struct hf_scatter *t, float sign, const float *radius, const float *const colour[3],
+                         int channels, int n, float *const out[4])
+{
+    for (int i = 0; i < n; i++) {
+        const float weight = hf_field_weight(t, sign > 0, sign * radius[i]) * (1 - hf_half_part(t, sign * radius[i]));
+        out[3][i] = weight;
+        for (int c = 0; c < channels; c++)
+            out[c][i] = colour[c][i] * weight;
+    }
+}
+
+void hf_source_pictures_c(const float *radius, const float *weight, float scale, int n, int32_t *out)
+{
+    for (int i = 0; i < n; i++) {
+        const float r = radius[i] * scale;
+        out[i] = r > 0 && weight[i] > 0 ? hf_picture_number(r) : -1;
+    }
+}
+
+void hf_list_row_c(struct hf_splats *list, const struct hf_source_row *row, int from, int to, const float *inverse,
+                   const double scale[4])
+{
+    for (int i = from; i < to; i++) {
+        if (row->picture[i] < 0)
+            continue;
+        const int k = list->count++;
+        const float part = inverse[row->picture[i]];
+        list->x[k] = row->x + i;
+        list->y[k] = row->y;
+        list->picture[k] = row->picture[i];
+        for (int c = 0; c < 3; c++)
+            list->share[k][c] = (int64_t)((double)(row->colour[c][i] * part) * scale[c]);
+        list->share[k][3] = (int64_t)((double)(row->weight[i] * part) * scale[3]);
+    }
+}
+
+// The pictures of a group's channel.
+static const struct hf_picture *pictures(const struct walk *w)
+{
+    const struct hf_aperture *a = w->t->aperture;
+    const int plane = a->planes == 3 && w->group->channel[0] < 3 ? w->group->channel[0] : a->planes == 3;
+    return a->picture + plane * a->count;
+}
+
+void hf_flush_sources(struct walk *w)
+{
+    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_splats *l = w->list;
+    if (a->symmetric)
+        w->f->k->splat(&w->sums, a, l);
+    for (int i = 0; !a->symmetric && i < l->count; i++) {
+        const struct hf_picture *p = &pictures(w)[l->picture[i]];
+        if (a->tap)
+            w->f->k->splat_taps(&w->sums, l->x[i] - p->reach_x, l->y[i] + p->top, a->tap + p->first, p->columns,
+                                p->rows, l->share[i]);
+        else
+            w->f->k->splat_runs(&w->sums, l->x[i], l->y[i] + p->top, a->run + p->first, p->rows, l->share[i]);
+    }
+    w->list->count = 0;
+}
+
+// What each lane of a source adds for 1 unit of weight.
+static void set_share(const struct walk *w, int64_t share[4], const float colour[3], float weight, float part)
+{
+    for (int c = 0; c < 3; c++)
+        share[c] = c < w->group->channels ? (int64_t)((double)(colour[c] * part) * w->t->scale[c]) : 0;
+    share[3] = (int64_t)((double)(weight * part) * w->t->scale[3]);
+}
+
+static void add_picture(struct walk *w, int x, int y, int number, const float colour[3], float weight, float part)
+{
+    struct hf_splats *l = w->list;
+    l->x[l->count] = x;
+    l->y[l->count] = y;
+    l->picture[l->count] = number;
+    set_share(w, l->share[l->count], colour, weight, part);
+    if (++l->count == HF_SPLATS)
+        hf_flush_sources(w);
+}
+
+// A picture cut by the second circle of a cat's eye, of radius r around (cx, cy): its rows go to w->runs. Returns the
+// sum of their weights.
+static float cut_picture(struct walk *w, const struct hf_picture *p, float r, float cx, float cy)
+{
+    const struct hf_aperture *a = w->t->aperture;
+    const float scale = 256 * a->key.scale_x;
+    float area = 0;
+    for (int i = 0; i < p->rows; i++) {
+        const struct hf_run *run = &a->run[p->first + i];
+        const float dy = (float)(p->top + i) - cy, q = r * r - dy * dy, half = q > 0 ? sqrtf(q) : 0;
+        const int32_t from = 128 + (int32_t)lrintf((cx - half) * scale);
+        const int32_t to = 128 + (int32_t)lrintf((cx + half) * scale);
+        struct hf_run cut = {hf_max(run->a, from), hf_min(run->b, to), run->weight};
+        if (cut.b <= cut.a)
+            cut = (struct hf_run){0};
+        area += (float)cut.weight * (float)(cut.b - cut.a);
+        w->runs[i] = cut;
+    }
+    return area;
+}
+
+// The same with what is to be drawn of it.
+static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, const float colour[3], float weight,
+                     float part)
+{
+    int64_t share[4];
+    set_share(w, share, colour, weight, part);
+    w->f->k->splat_runs(&w->sums, x, y + p->top, w->runs, p->rows, share);
+}
+
+// The second circle moves off the lens's axis, towards the corner that the source is near.
+static void add_cat_eye(struct walk *w, int x, int y, float r, const float colour[3], float weight)
+{
+    const struct hf_setup *s = w->f->s;
+    const struct hf_picture *picture = w->t->aperture->picture, *p = &picture[hf_picture_number(r)];
+    const float step = w->level ? 2 : 1, toward = (w->field ? 1 : -1) * w->t->cat_eye * r;
+    const float cx = toward * (2 * (((float)x + 0.5f) * step) - (float)s->width) * w->t->corner;
+    const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
+    const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    const struct hf_picture *inside = &picture[hf_picture_number(inner)];
+    const float hidden = hole > 0 ? hole * cut_picture(w, inside, r, cx, cy) : 0;
+    float area = cut_picture(w, p, r, cx, cy) - hidden;
+    if (area <= 0) {
+        w->runs[-p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
+        area = 2 * HF_WHOLE_ROW;
+    }
+    draw_cut(w, x, y, p, colour, weight, 1 / area);
+    if (hidden > 0) {
+        cut_picture(w, inside, r, cx, cy);
+        draw_cut(w, x, y, inside, colour, weight, -hole / area);
+    }
+}
+
+// A ring is its outline less its hole, which is the same shape.
+void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight)
+{
+    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_picture *picture = pictures(w);
+    const int number = a->tap ? (hf_picture_number(r) + a->steps / 2) / a->steps : hf_picture_number(r);
+    if (w->t->cat_eye > 0) {
+        add_cat_eye(w, x, y, r, colour, weight);
+        return;
+    }
+    if (w->t->ring <= 0) {
+        add_picture(w, x, y, number, colour, weight, 1 / picture[number].area);
+        return;
+    }
+    // A hole too small for a picture of its own is a faint one.
+    const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    const int inside = hf_picture_number(inner);
+    const float part = 1 / (picture[number].area - hole * picture[inside].area);
+    add_picture(w, x, y, number, colour, weight, part);
+    add_picture(w, x, y, inside, colour, weight, -hole * part);
+}
+
+void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to)
+{
+    const struct hf_scatter *t = w->t;
+    if (!t->aperture->tap && t->ring <= 0 && t->cat_eye <= 0) {
+        for (int at = from; at < to; at += HF_SPLATS) {
+            const int end = hf_min(at + HF_SPLATS, to);
+            if (w->list->count + end - at > HF_SPLATS)
+                hf_flush_sources(w);
+            w->f->k->list_row(w->list, row, at, end, t->aperture->inverse, t->scale);
+        }
+        return;
+    }
+    for (int i = from; i < to; i++) {
+        const float v[3] = {row->colour[0][i], row->colour[1][i], row->colour[2][i]};
+        if (row->picture[i] >= 0)
+            hf_add_source(w, row->x + i, row->y, row->radius[i] * row->scale, v, row->weight[i]);
+    }
+}

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatter: sources of half resolution. Each is the tent-weighted mean of 4x4 pixels (1 3 3 1), which keeps centroids,
+// where those have like radii; else pixels are drawn one by one, each on the four nearest.
+#include <math.h>
+#include <string.h>
+
+#include "scatter/walk.h"
+
+// The radius in the middle of like ones between two positive ones; -1: they are not alike.
+static float middle(float least, float most)
+{
+    return most - least <= 0.5f + least * (1 / 32.0f) ? 0.5f * (least + most) : -1;
+}
+
+// Radius of a half-resolution pixel: of those of its four that are in the field. 0: none is; -1: they are not alike.
+static float quad_radius(const float r[4])
+{
+    float least = INFINITY, most = 0;
+    for (int i = 0; i < 4; i++) {
+        if (!(r[i] > 0))
+            continue;
+        least = r[i] < least ? r[i] : least;
+        most = r[i] > most ? r[i] : most;
+    }
+    return most > 0 ? middle(least, most) : 0;
+}
+
+void hf_quad_row_c(const float *above, const float *below, int n, float sign, float *out)
+{
+    for (int i = 0; i < n; i++) {
+        const float r[4] = {sign * above[2 * i], sign * above[2 * i + 1], sign * below[2 * i], sign * below[2 * i + 1]};
+        out[i] = quad_radius(r);
+    }
+}
+
+// A row of quads, and nothing beyond the frame.
+static void quad_row(struct walk *w, int q)
+{
+    const struct hf_setup *s = w->f->s;
+    const float sign = w->field ? 1 : -1;
+    const int x0 = hf_max(w->tent_x0 - 1, 0), x1 = hf_min(w->tent_x1 + 1, s->half_width), n = x1 - x0;
+    const float *a = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * x0, 2 * q);
+    const float *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * x0, hf_min(2 * q + 1, s->height - 1));
+    float *out = w->quad[q & 3] + (x0 - w->tent_x0);
+    const int odd_edge = 2 * x1 > s->width;
+    w->f->k->quad_row(a, b, n - odd_edge, sign, out);
+    if (odd_edge) {
+        const float r[4] = {sign * a[2 * n - 2], sign * a[2 * n - 2], sign * b[2 * n - 2], sign * b[2 * n - 2]};
+        out[n - 1] = quad_radius(r);
+    }
+    if (x0 == 0)
+        out[-1] = 0;
+    if (x1 == s->half_width)
+        out[n] = 0;
+}
+
+void hf_site_row_c(const float *const quad[3], int n, float *out)
+{
+    for (int i = 0; i < n; i++) {
+        float least = INFINITY, most = 0;
+        for (int k = 0; k < 9; k++) {
+            const float r = quad[k / 3][i + k % 3 - 1];
+            least = r > 0 && r < least ? r : least;
+            most = r > most ? r : most;
+        }
+        const float v = quad[1][i] != 0 ? quad[1][i] : most > 0 ? middle(least, most) : 0;
+        out[i] = v > 0 ? v : 0;
+    }
+}
+
+// Radii of a row of half-resolution sources: that of its quad, or where there is none in the field, as just beside an
+// object, that of the quads around.
+static void site_row(struct walk *w, int q)
+{
+    const int n = w->tent_x1 - w->tent_x0;
+    const float *quad[3];
+    float *out = w->site[q & 3];
+    for (int k = 0; k < 3; k++) {
+        const int row = q + k - 1;
+        quad[k] = row < 0 || row >= w->f->s->half_height ? w->nothing + HF_PAD : w->quad[row & 3];
+    }
+    w->f->k->site_row(quad, n, out);
+    out[-1] = out[0];
+    out[n] = out[n - 1];
+}
+
+// Is a pixel of radius r > 0 like those of the quad?
+static int alike(float site, float r)
+{
+    const float d = site - r;
+    return site > 0 && (d < 0 ? -d : d) <= 0.5f + r * (1 / 32.0f);
+}
+
+// Weight of pixel `odd` of half-resolution column i in the half-resolution sums; *merged: as a part of means.
+static float tent_weight(const struct hf_tent_row *t, int i, int odd, int *merged)
+{
+    const float r = t->sign * t->radius[2 * i + odd];
+    const int next = odd ? i + 1 : i - 1;
+    *merged = alike(t->own[i], r) && alike(t->own[next], r) && alike(t->next[i], r) && alike(t->next[next], r);
+    return hf_field_weight(t->scatter, t->sign > 0, r) * hf_half_part(t->scatter, r);
+}
+
+int hf_tent_weights_c(const struct hf_tent_row *t, int first)
+{
+    int lone = 0;
+    for (int i = first; i < t->n; i++)
+        for (int odd = 0; odd < 2; odd++) {
+            int merged;
+            const float weight = tent_weight(t, i, odd, &merged);
+            t->pixel[odd][3][i] = merged ? weight : 0;
+            lone |= weight > 0 && !merged;
+            for (int c = 0; c < t->channels; c++)
+                t->pixel[odd][c][i] = t->colour[c][2 * i + odd] * t->pixel[odd][3][i];
+        }
+    return lone;
+}
+
+void hf_tent_c(const float *even, const float *odd, int n, float *out)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = 0.375f * (even[i] + odd[i]) + 0.125f * (odd[i - 1] + even[i + 1]);
+}
+
+// What the walk knows of row y for its means.
+static struct hf_tent_row tent_row_of(const struct walk *w, int y)
+{
+    const struct hf_frame *f = w->f;
+    struct hf_tent_row t = {.scatter = w->t,
+                            .sign = w->field ? 1 : -1,
+                            .n = w->tent_x1 - w->tent_x0,
+                            .channels = w->group->channels,
+                            .own = w->site[y >> 1 & 3],
+                            .next = w->site[hf_beside(y, f->s->half_height) & 3],
+                            .radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 2 * w->tent_x0, y)};
+    for (int c = 0; c < t.channels; c++)
+        t.colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], 2 * w->tent_x0, y);
+    memcpy(t.pixel, w->pixel, sizeof t.pixel);
+    return t;
+}
+
+// One full-resolution row's pixels that are parts of means, weighted, and their tent along x. Lanes 0..2 are the
+// channels, 3 the weight. What the tent would put outside the frame stays at its edge.
+static void tent_row(struct walk *w, int y)
+{
+    const struct hf_tent_row t = tent_row_of(w, y);
+    const int n = t.n, width = w->f->s->width;
+    w->lone[y & 3] = w->f->k->tent_weights(&t, 0);
+    for (int c = 0; c < 4; c++) {
+        float *even = t.pixel[0][c], *odd = t.pixel[1][c];
+        if (c >= t.channels && c < 3)
+            continue;
+        odd[-1] = w->tent_x0 == 0 ? even[0] : 0;
+        even[n] = 0;
+        if (2 * w->tent_x1 == width)
+            even[n] = odd[n - 1];
+        if (2 * w->tent_x1 > width)
+            odd[n - 1] = 0;
+        w->f->k->tent(even, odd, n, w->tent[y & 3][c]);
+    }
+}
+
+// Draw the pixels of row y that have no like neighbours, on half-resolution row q, with a share of `part`.
+static void list_lone(struct walk *w, int y, int q, float part)
+{
+    const struct hf_frame *f = w->f;
+    const struct hf_tent_row t = tent_row_of(w, y);
+    const float half = 0.5f * w->group->factor[w->field];
+    int x0, x1;
+    hf_walk_columns(w, &x0, &x1);
+    for (int x = 2 * w->tent_x0; x < hf_min(2 * w->tent_x1, f->s->width); x++) {
+        int merged;
+        const float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
+        if (!(weight > 0) || merged)
+            continue;
+        for (int side = 0; side < 2; side++) {
+            const int column = side ? hf_beside(x, f->s->half_width) : x >> 1;
+            const float share = weight * part * (side ? 0.25f : 0.75f);
+            float v[3] = {0};
+            if (column < x0 || column >= x1)
+                continue;
+            for (int c = 0; c < w->group->channels; c++)
+                v[c] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * share;
+            hf_add_source(w, column, q, t.sign * t.radius[x - 2 * w->tent_x0] * half, v, share);
+        }
+    }
+    hf_flush_sources(w);
+}
+
+// Rows of sources up to q + 2 and of tents up to 2 q + 2.
+static void prepare_tents(struct walk *w, int q)
+{
+    const struct hf_setup *s = w->f->s;
+    w->quads_done = hf_max(w->quads_done, hf_max(q - 2, 0));
+    w->sites_done = hf_max(w->sites_done, hf_max(q - 1, 0));
+    w->tents_done = hf_max(w->tents_done, hf_max(2 * q - 1, 0));
+    while (w->sites_done <= hf_min(q + 2, s->half_height - 1)) {
+        while (w->quads_done <= hf_min(w->sites_done + 1, s->half_height - 1))
+            quad_row(w, w->quads_done++);
+        site_row(w, w->sites_done++);
+    }
+    while (w->tents_done <= hf_min(2 * q + 2, s->height - 1))
+        tent_row(w, w->tents_done++);
+}
+
+void hf_mean_row_c(const float *const tent[4], const float part[4], int n, float *out)
+{
+    for (int i = 0; i < n; i++)
+        out[i] = 0.5f * ((part[0] * tent[0][i] + part[3] * tent[3][i]) + (part[1] * tent[1][i] + part[2] * tent[2][i]));
+}
+
+// What of full-resolution rows 2q - 1 .. 2q + 2 goes to row q; what a tent would put outside the frame stays in its
+// last row.
+static void set_parts(const struct hf_setup *s, int q, int row[4], float part[4])
+{
+    static const float parts[4] = {0.25f, 0.75f, 0.75f, 0.25f};
+    for (int i = 0; i < 4; i++) {
+        row[i] = 2 * q - 1 + i;
+        part[i] = row[i] < 0 || row[i] >= s->height ? 0 : parts[i];
+        if (part[i] > 0 && hf_beside(row[i], s->half_height) == q && row[i] >> 1 == q)
+            part[i] = 1;
+    }
+}
+
+void hf_list_half(struct walk *w, int q)
+{
+    int x0, x1, row[4];
+    float part[4];
+    hf_walk_columns(w, &x0, &x1);
+    prepare_tents(w, q);
+    set_parts(w->f->s, q, row, part);
+    struct hf_source_row r = {.x = x0, .y = q, .weight = w->mean[3], .radius = w->site[q & 3] + x0 - w->tent_x0,
+                              .scale = 0.5f * w->group->factor[w->field], .picture = (int32_t *)w->mean[4]};
+    for (int c = 0; c < 4; c++) {
+        const float *tent[4];
+        if (c < 3)
+            r.colour[c] = c < w->group->channels ? w->mean[c] : w->nothing;
+        if (c >= w->group->channels && c < 3)
+            continue;
+        for (int k = 0; k < 4; k++)
+            tent[k] = (part[k] > 0 ? w->tent[row[k] & 3][c] : w->nothing) + x0 - w->tent_x0;
+        w->f->k->mean_row(tent, part, x1 - x0, w->mean[c]);
+    }
+    w->f->k->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)w->mean[4]);
+    hf_list_sources(w, &r, 0, x1 - x0);
+    hf_flush_sources(w);
+    for (int k = 0; k < 4; k++)
+        if (part[k] > 0 && w->lone[row[k] & 3])
+            list_lone(w, row[k], q, 0.25f * part[k]);
+}
+
+int hf_tent_columns(const struct hf_scatter *t, int field, int width)
+{
+    return width + 2 * t->reach_x[field][1] + 2;
+}
+
+void hf_tent_start(struct walk *w, float *memory, int length)
+{
+    float **const lines[] = {w->quad,    w->site,     w->tent[0],  w->tent[1], w->tent[2],
+                             w->tent[3], w->pixel[0], w->pixel[1], w->mean};
+    const int reach = w->t->reach_x[w->field][1];
+    w->tent_x0 = hf_max(w->sums.x0 - reach - 1, 0);
+    w->tent_x1 = hf_min(w->sums.x1 + reach + 1, w->f->s->half_width);
+    w->quads_done = w->sites_done = w->tents_done = 0;
+    memory += HF_PAD;
+    for (int i = 0; i < HF_TENT_LINES - 1; i++, memory += length)
+        lines[i >> 2][i & 3] = memory;
+    w->mean[4] = memory;
+}

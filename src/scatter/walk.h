@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the parts of the scatter's walk share: walk.c goes over a window, tent.c makes the half-resolution sources,
+// source.c draws what they list.
+#ifndef HF_WALK_H
+#define HF_WALK_H
+
+#include "pixel/pass_c.h"
+#include "scatter/scatter.h"
+
+enum { TOGETHER = 4 }; // rows of full-resolution sources that are drawn at once
+
+// The walk over a window: one field's sums of one group and level.
+struct walk {
+    const struct hf_frame *f;
+    const struct hf_scatter *t;
+    const struct hf_splat_group *group;
+    int field; // 0 near, 1 far
+    int level; // 1: half resolution
+    struct hf_sums sums;
+    struct hf_splats *list;
+    struct hf_run *runs;           // of a picture that is its source's own
+    float *source[TOGETHER][5];    // level 0: channels, weight, and numbers of pictures
+    // level 1: of the last rows, source radii and pixels; see hf_list_half
+    float *quad[4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *nothing;
+    int lone[4];
+    int tent_x0, tent_x1, quads_done, sites_done, tents_done; // half-resolution columns; rows up to which they are made
+};
+
+// Sources of columns x0 to x1 that reach the window.
+static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
+{
+    const int reach = w->t->reach_x[w->field][w->level];
+    *x0 = hf_max(w->sums.x0 - reach, 0);
+    *x1 = hf_min(w->sums.x1 + reach, w->level ? w->f->s->half_width : w->f->s->width);
+}
+
+// The neighbour of a pixel's half-resolution one that its tent reaches, on one axis.
+static inline int hf_beside(int pixel, int count)
+{
+    const int q = (pixel >> 1) + (pixel & 1 ? 1 : -1);
+    return q < 0 ? 0 : q >= count ? count - 1 : q;
+}
+
+// Add sources `from` to `to` of a row to the list, which is drawn when it is full.
+void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to);
+// One source, its colour already weighted. r: of its picture.
+void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight);
+// Draw the list.
+void hf_flush_sources(struct walk *w);
+
+// Columns of means, and floats of each line and how many there are, that a window so wide needs.
+int hf_tent_columns(const struct hf_scatter *t, int field, int width);
+enum { HF_TENT_LINES = 4 + 4 + 16 + 8 + 5 };
+// Lay out its lines, each with HF_PAD floats before and after it. Before the first hf_list_half of a window.
+void hf_tent_start(struct walk *w, float *memory, int length);
+// Sources of half-resolution row q.
+void hf_list_half(struct walk *w, int q);
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the vector bodies share. This file and the *_simd.h bodies are compiled once per instruction set, over one of
+// the vec_*.h (see all_simd.h); HF_FUSED says whether multiply-add may be fused. Loops run in steps of VF_N lanes and
+// may compute and write past the end of a row: rows are padded by HF_PAD floats.
+#ifndef HF_PASS_SIMD_H
+#define HF_PASS_SIMD_H
+
+#include "pixel/pass_c.h"
+#include "scatter/scatter.h"
+
+#define HF_INLINE static inline __attribute__((always_inline))
+
+// a * b + c
+HF_INLINE vf vf_fma(vf a, vf b, vf c)
+{
+#if HF_FUSED
+    return vf_muladd_fused(a, b, c);
+#else
+    return vf_add(vf_mul(a, b), c);
+#endif
+}
+
+// c - a * b
+HF_INLINE vf vf_fnma(vf a, vf b, vf c)
+{
+#if HF_FUSED
+    return vf_mulsub_fused(a, b, c);
+#else
+    return vf_sub(c, vf_mul(a, b));
+#endif
+}
+
+// The vector that begins n numbers into consecutive vectors v[0], v[1] ...; n is a literal.
+#define vf_shift(v, n) vf_align((v)[(n) / VF_N], (v)[(n) / VF_N + 1], (n) % VF_N)
+
+// A value that is used twice, and shall be loaded once: left alone, gcc takes it from memory each time.
+HF_INLINE vf vf_once(vf a)
+{
+#if defined __AVX512F__
+    __asm__("" : "+v"(a));
+#elif defined __AVX2__ || defined __SSE4_1__
+    __asm__("" : "+x"(a));
+#elif defined __aarch64__
+    __asm__("" : "+w"(a));
+#endif
+    return a;
+}
+
+// Sum of the lanes of a count.
+HF_INLINE uint32_t vi_sum(vi a)
+{
+    uint32_t lane[VF_N], sum = 0;
+    vi_store(lane, a);
+    for (int i = 0; i < VF_N; i++)
+        sum += lane[i];
+    return sum;
+}
+
+// Largest of the lanes, none of them NaN.
+HF_INLINE float vf_most(vf a)
+{
+    float lane[VF_N], most;
+    vf_store(lane, a);
+    most = lane[0];
+    for (int i = 1; i < VF_N; i++)
+        most = lane[i] > most ? lane[i] : most;
+    return most;
+}
+
+// Stored, or past the caches: then p is aligned, and vf_stream_end follows.
+HF_INLINE void vf_put(float *p, vf v, const int stream)
+{
+    if (stream)
+        vf_stream(p, v);
+    else
+        vf_store(p, v);
+}
+
+// a + t (b - a), a's own bits for t = 0.
+HF_INLINE vf vf_lerp(vf a, vf b, vf t)
+{
+    const vm m = vf_ne(t, vf_zero());
+#if HF_FUSED
+    return vf_muladd_where_fused(m, t, vf_sub(b, a), a);
+#else
+    return vf_add_where(m, vf_mul(t, vf_sub(b, a)), a);
+#endif
+}
+
+#endif

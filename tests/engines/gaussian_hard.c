@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hard cases of the gaussian engine: the same bits from any tiles and instruction set, flips, crops, exposure, bad
+// samples, constants, copies, a focus pull.
+//
+//     gaussian_hard [seed]
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/gaussian.h"
+#include "support/reference.h"
+
+static const double U = FLT_EPSILON / 2;
+static unsigned seed = 1;
+
+// Tiles, threads, skipping, in place, other instruction sets: the same bits, deterministic or not.
+static void same_bits(struct hf_context *plain, enum hf_isa id, const char *isa)
+{
+    static const int setups[][3] = {{1, 0, 0}, {2, 16, 16}, {3, 48, 17}, {2, 32, 33}};
+    uint64_t run = 0, all = 0;
+    for (int k = 0; k < 4; k++) {
+        struct hf_config config = scene_config(id, setups[k][0]);
+        config.tile_width = setups[k][1];
+        config.tile_height = setups[k][2];
+        struct hf_context *c;
+        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
+            return;
+        for (unsigned i = 0; i < 40; i++) {
+            struct rng rng = rng_seed(seed + i);
+            const enum scene_kind kind = (enum scene_kind)rng_below(&rng, SCENE_KINDS);
+            const int w = 1 + rng_below(&rng, i % 4 ? 90 : 330), h = 1 + rng_below(&rng, i % 4 ? 60 : 200);
+            struct scene s = scene_new(&rng, kind, w, h, 3 + rng_below(&rng, 2));
+            struct hf_params p = random_params(&rng);
+            p.deterministic = rng_below(&rng, 2);
+            for (int j = 0; j < w * h / 20; j++)
+                s.colour.plane[rng_below(&rng, 3)][rng_below(&rng, w * h)] = rng_below(&rng, 2) ? -0.0f : -1e-3f;
+            struct picture a = render(c, &s, NULL, &p);
+            struct hf_stats stats;
+            hf_get_stats(c, &stats);
+            run += stats.tiles_run[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1];
+            all += stats.tiles_all[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1];
+            p.no_skip = 1;
+            struct picture b = render(plain, &s, NULL, &p);
+            CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u, %s %d x %d, setup %d: skipping gives other bits", isa,
+                      seed + i, scene_name(kind), w, h, k);
+            p.no_skip = 0;
+            const struct hf_image image = picture_image(&s.colour);
+            const struct hf_depth depth = picture_depth(&s.depth);
+            CHECK_INT(hf_render(c, &image, &image, &depth, &p), HF_OK);
+            CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: seed %u, %d x %d, setup %d: in place gives other bits", isa,
+                      seed + i, w, h, k);
+            picture_free(&a);
+            picture_free(&b);
+            scene_free(&s);
+        }
+        hf_close(&c);
+    }
+    printf("%s: skipping: %.0f %% of the tiles merged\n", isa, 100.0 * (double)run / (double)all);
+    CHECK(run < all);
+}
+
+static void flips(struct hf_context *c, const char *isa)
+{
+    for (unsigned i = 0; i < 30; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct hf_params p = random_params(&rng);
+        const int step = 1 << p.resolution;
+        p.focus_distance = 20;  // the pixel in the middle is another one
+        struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, step * (1 + rng_below(&rng, 90 / step)), 1 + rng_below(&rng, 50), 3);
+        struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
+        struct picture a = render(c, &s, NULL, &p), b = render(c, &mirror, NULL, &p), back = picture_flipped(&b);
+        CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u, %d x %d, resolution %d: flipping gives other bits", isa,
+                  seed + i, s.colour.width, s.colour.height, p.resolution);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&back);
+        scene_free(&mirror);
+        scene_free(&s);
+    }
+}
+
+// By whole pixels of the working buffer: what lies farther from the crop's edge than the blur reaches is the same.
+static void crops(struct hf_context *c, const char *isa)
+{
+    for (unsigned i = 0; i < 30; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 150 + rng_below(&rng, 60), 140 + rng_below(&rng, 20), 3);
+        struct hf_params p = random_params(&rng);
+        p.focus_distance = 20;
+        p.display_width = 200;
+        p.iterations = hf_default_params.iterations;
+        p.sigma = i % 3 ? 0 : fminf(p.sigma, 2);
+        p.resolution = p.sigma > 0 ? HF_RESOLUTION_FULL : p.resolution;
+        const int step = 2 << p.resolution, x0 = step * rng_below(&rng, 4), y0 = step * rng_below(&rng, 4);
+        const int w = 108, h = 104, m = p.sigma > 0 ? 20 : (2 * p.iterations + 2) << p.resolution;
+        struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
+        struct picture whole = render(c, &s, NULL, &p), a = render(c, &part, NULL, &p);
+        struct picture b = picture_cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m), inner = picture_cut(&a, m, m, w - 2 * m, h - 2 * m);
+        CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d), resolution %d: other bits", isa, seed + i,
+                  x0, y0, p.resolution);
+        picture_free(&whole);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&inner);
+        scene_free(&part);
+        scene_free(&s);
+    }
+}
+
+static void exposures(struct hf_context *c, const char *isa)
+{
+    static const int exponents[] = {-20, -3, 1, 12, 30};
+    for (unsigned i = 0; i < 20; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 30 + rng_below(&rng, 60), 20 + rng_below(&rng, 40), 4);
+        struct hf_params p = random_params(&rng);
+        struct picture a = render(c, &s, NULL, &p);
+        const float scale = ldexpf(1, exponents[i % 5]);
+        for (int k = 0; k < 4; k++)
+            for (int j = 0; j < a.width * a.height; j++) {
+                s.colour.plane[k][j] *= scale;
+                a.plane[k][j] *= scale;
+            }
+        struct picture b = render(c, &s, NULL, &p);
+        CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: exposure x 2^%d gives other bits", isa, seed + i, exponents[i % 5]);
+        picture_free(&a);
+        picture_free(&b);
+        scene_free(&s);
+    }
+}
+
+// ---- values ----
+
+static void bad_samples(struct hf_context *c, const char *isa)
+{
+    static const float strange[] = {NAN, INFINITY, -INFINITY, 1e-40f, -1e-42f, -3, 65504, 1e30f, -0.0f, -1e30f, FLT_MAX};
+    for (unsigned i = 0; i < 8; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_BLOCKS, 61, 45, 4);
+        uint64_t bad = 0, holes = 0;
+        for (int k = 0; k < 150; k++) {
+            s.colour.plane[rng_below(&rng, 4)][rng_below(&rng, 61 * 45)] = strange[rng_below(&rng, 11)];
+            s.depth.plane[0][rng_below(&rng, 61 * 45)] = NAN;
+        }
+        struct scene mended = {picture_copy(&s.colour), picture_copy(&s.depth)};
+        const struct hf_depth depth = picture_depth(&s.depth);
+        double *v = malloc(sizeof *v * 61 * 45);
+        ref_depths(v, &depth, 1, 61, 45);
+        for (int k = 0; k < 61 * 45; k++) {
+            holes += isnan(s.depth.plane[0][k]) != 0;
+            mended.depth.plane[0][k] = (float)v[k];
+        }
+        for (int ch = 0; ch < 4; ch++) {
+            ref_repair(v, s.colour.plane[ch], 61, 45);
+            for (int k = 0; k < 61 * 45; k++) {
+                bad += !isfinite(s.colour.plane[ch][k]);
+                mended.colour.plane[ch][k] = isfinite(s.colour.plane[ch][k]) ? s.colour.plane[ch][k] : (float)v[k];
+            }
+        }
+        free(v);
+        struct hf_params p = random_params(&rng);
+        p.no_skip = i % 2;
+        struct picture a = render(c, &s, NULL, &p);
+        struct hf_stats stats;
+        hf_get_stats(c, &stats);
+        CHECK_INT(stats.colour_repaired, bad);
+        CHECK_INT(stats.depth_repaired, holes);
+        CHECK_INT(stats.near_pixels + stats.sharp_pixels + stats.far_pixels, 61 * 45);
+        struct picture b = render(c, &mended, NULL, &p);
+        CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: mending first gives other bits", isa, seed + i);
+        for (int ch = 0; ch < 4; ch++)
+            for (int k = 0; k < 61 * 45; k++)
+                CHECK(isfinite(a.plane[ch][k]));
+        picture_free(&a);
+        picture_free(&b);
+        scene_free(&mended);
+        scene_free(&s);
+    }
+}
+
+// A constant picture stays what it is, bit for bit; a denormal one to within a few of its steps. Faithfully the
+// weights add up to 1 but for their rounding: 20 roundings an iteration, and as many for resampling.
+static void constants(struct hf_context *c, const char *isa)
+{
+    static const float values[] = {0.1f, 1, -3.3f, 65504, 1e30f, FLT_MAX, 0};
+    for (unsigned i = 0; i < 42; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_NOISE, 1 + rng_below(&rng, 80), 1 + rng_below(&rng, 60), 3);
+        struct hf_params p = random_params(&rng);
+        const float value = values[i % 7];
+        p.faithful &= value != FLT_MAX;
+        for (int ch = 0; ch < 3; ch++)
+            for (int k = 0; k < s.colour.width * s.colour.height; k++)
+                s.colour.plane[ch][k] = value;
+        struct picture a = render(c, &s, NULL, &p);
+        const double bound = p.faithful ? (20 * p.iterations + 20) * U * fabs((double)value) : 0;
+        CHECK_MSG(largest_difference(&a, &s.colour) <= bound, "%s: seed %u: constant %g changes by %g, bound %g", isa,
+                  seed + i, value, largest_difference(&a, &s.colour), bound);
+        picture_free(&a);
+        scene_free(&s);
+    }
+}
+
+// Where a picture is copied, it is copied bit for bit.
+static void copies(struct hf_context *c, const char *isa)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, SCENE_NEGATIVE, 90, 70, 4);
+    for (int i = 0; i < 5; i++) {
+        struct hf_params p = gaussian_params();
+        p.strength = i == 0 ? 0 : 1;
+        p.max_radius = i == 1 ? 0 : 12;
+        p.iterations = i == 2 ? 0 : 3;
+        p.range = i == 3 ? INFINITY : HF_DERIVE;
+        if (i == 4) {
+            p.model = HF_MODEL_LENS;
+            p.f_number = INFINITY;
+        }
+        struct picture a = render(c, &s, NULL, &p);
+        CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: copy %d is none", isa, i);
+        picture_free(&a);
+    }
+    scene_free(&s);
+}
+
+// Tiny steps of the focus are tiny steps of the picture: 3 |d(focus) - d| has slope 3 / 100 a unit, the merge at most
+// 1.
+static void focus_pull(struct hf_context *c, const char *isa)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, SCENE_RAMP, 80, 60, 3);
+    struct hf_params p = gaussian_params();
+    const float step = 1.0f / 512;
+    struct picture before = render(c, &s, NULL, &p);
+    double worst = 0;
+    for (int i = 1; i <= 30; i++) {
+        p.focus_distance = 20 + (float)i * step;
+        struct picture now = render(c, &s, NULL, &p);
+        worst = worse(worst, largest_difference(&now, &before));
+        picture_free(&before);
+        before = now;
+    }
+    const double lipschitz = worst / step / largest_sample(&s.colour), bound = 3.0 / 100 + 64 * U / step;
+    printf("%s: focus pull: Lipschitz constant %.3g a unit, bound %.3g\n", isa, lipschitz, bound);
+    CHECK(lipschitz <= bound);
+    picture_free(&before);
+    scene_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+    seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
+    printf("seed %u\n", seed);
+    const struct hf_config plain_config = scene_config(HF_ISA_SCALAR, 2);
+    struct hf_context *plain;
+    CHECK_INT(hf_open(&plain, &plain_config), HF_OK);
+    for (int id = HF_ISA_SCALAR; id <= HF_ISA_NEON; id++) {
+        if (!hf_isa_available((enum hf_isa)id))
+            continue;
+        const struct hf_config config = scene_config((enum hf_isa)id, 2);
+        const char *isa = hf_isa_name((enum hf_isa)id);
+        struct hf_context *c;
+        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
+            continue;
+        same_bits(plain, (enum hf_isa)id, isa);
+        flips(c, isa);
+        crops(c, isa);
+        exposures(c, isa);
+        bad_samples(c, isa);
+        constants(c, isa);
+        copies(c, isa);
+        focus_pull(c, isa);
+        hf_close(&c);
+    }
+    hf_close(&plain);
+    return check_report();
+}

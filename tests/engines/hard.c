@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hard cases of the gather engine, values: bad samples, exact copies, constants, energy, ranges, extreme sizes.
+// What must hold between two pictures (shifts, flips, threads, skipping) is in invariance.c.
+//
+//     hard [seed]
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "support/reference.h"
+#include "support/random_scene.h"
+
+static unsigned seed = 1;
+
+struct run {
+    struct hf_context *c;
+    const char *isa;
+};
+
+static struct picture render(struct hf_context *c, const struct picture *colour, const struct hf_depth *depth,
+                             const struct hf_params *p)
+{
+    struct picture out = picture_new(colour->width, colour->height, colour->channels);
+    const struct hf_image dst = picture_image(&out), src = picture_image(colour);
+    const int err = hf_render(c, &dst, &src, depth, p);
+    CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
+    return out;
+}
+
+static size_t samples_of(const struct picture *p)
+{
+    return (size_t)p->width * (size_t)p->height;
+}
+
+static int all_finite(const struct picture *p)
+{
+    for (int c = 0; c < p->channels; c++)
+        for (size_t i = 0; i < samples_of(p); i++)
+            if (!isfinite(p->plane[c][i]))
+                return 0;
+    return 1;
+}
+
+// Bad and strange colour samples. Rendering them must give, bit for bit, what rendering the repaired picture gives.
+static void bad_colours(const struct run *run, unsigned variant)
+{
+    static const float strange[] = {NAN, INFINITY, -INFINITY, 1e-40f, -1e-42f, -3, 65504, 1e30f, -0.0f, -1e30f};
+    struct rng rng = rng_seed(seed + variant);
+    struct scene s = scene_new(&rng, SCENE_BLOCKS, 61, 45, 4);
+    const struct hf_depth depth = picture_depth(&s.depth);
+    uint64_t bad = 0;
+    for (int i = 0; i < 150; i++)
+        s.colour.plane[rng_below(&rng, 4)][rng_below(&rng, 61 * 45)] = strange[rng_below(&rng, 10)];
+    for (int y = 10; y < 14; y++)  // a patch that the mean cannot mend whole
+        for (int x = 20; x < 25; x++)
+            s.colour.plane[1][y * 61 + x] = NAN;
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i < 61 * 45; i++)
+            bad += !isfinite(s.colour.plane[c][i]);
+    struct hf_params p = scene_params();
+    p.strength = 0;  // a copy, repaired
+    struct picture repaired = render(run->c, &s.colour, &depth, &p);
+    struct hf_stats stats;
+    hf_get_stats(run->c, &stats);
+    CHECK_INT(stats.colour_repaired, bad);
+    double *want = malloc(sizeof *want * 61 * 45);
+    for (int c = 0; c < 4; c++) {
+        ref_repair(want, s.colour.plane[c], 61, 45);
+        for (int i = 0; i < 61 * 45; i++) {
+            const float in = s.colour.plane[c][i], out = repaired.plane[c][i];
+            if (isfinite(in))
+                CHECK_MSG(memcmp(&in, &out, 4) == 0, "%s: finite sample %g copied as %g", run->isa, in, out);
+            else  // summed in double: one rounding
+                CHECK_MSG(out == (float)want[i], "%s: channel %d (%d, %d) repaired to %g, expected %g", run->isa, c,
+                          i % 61, i / 61, out, want[i]);
+        }
+    }
+    free(want);
+    p.strength = 1;
+    p.karis = variant % 2 == 1;
+    p.fill = (enum hf_fill)(variant % 3);
+    p.per_pixel_kernel = variant % 4 == 3;
+    for (int no_skip = 0; no_skip < 2; no_skip++) {
+        p.no_skip = no_skip;
+        struct picture a = render(run->c, &s.colour, &depth, &p);
+        hf_get_stats(run->c, &stats);
+        CHECK_INT(stats.colour_repaired, bad);
+        struct picture b = render(run->c, &repaired, &depth, &p);
+        CHECK_MSG(all_finite(&a), "%s: bad colours spread", run->isa);
+        CHECK_MSG(picture_same_bits(&a, &b), "%s: repairing first gives other bits, variant %u", run->isa, variant);
+        picture_free(&a);
+        picture_free(&b);
+    }
+    picture_free(&repaired);
+    scene_free(&s);
+}
+
+static void all_bad(const struct run *run)
+{
+    struct picture colour = picture_new(9, 6, 3), depth = picture_new(9, 6, 1);
+    for (int i = 0; i < 54; i++) {
+        for (int c = 0; c < 3; c++)
+            colour.plane[c][i] = i % 2 ? NAN : INFINITY;
+        depth.plane[0][i] = NAN;
+    }
+    const struct hf_depth d = picture_depth(&depth);
+    const struct hf_params p = scene_params();
+    struct picture out = render(run->c, &colour, &d, &p);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 54; i++)
+            CHECK_MSG(out.plane[c][i] == 0, "%s: nothing finite gives %g", run->isa, out.plane[c][i]);
+    struct hf_stats stats;
+    hf_get_stats(run->c, &stats);
+    CHECK_INT(stats.colour_repaired, 3 * 54);
+    CHECK_INT(stats.depth_repaired, 54);
+    CHECK_INT(stats.no_surface, 54);
+    picture_free(&out);
+    picture_free(&colour);
+    picture_free(&depth);
+}
+
+// NaN depths: the same bits as the depth repaired by hand; 0, negative, infinite and huge ones: as 1e10.
+static void bad_depths(const struct run *run)
+{
+    struct rng rng = rng_seed(seed);
+    for (int i = 0; i < 6; i++) {
+        struct scene s = scene_new(&rng, SCENE_BLOCKS, 50 + i, 31 + i, 3);
+        const int n = (50 + i) * (31 + i);
+        static const float strange[] = {NAN, NAN, NAN, 0, -0.0f, -5, INFINITY, -INFINITY, 1e10f, 3e38f, 1e-42f};
+        for (int k = 0; k < 200; k++)
+            s.depth.plane[0][rng_below(&rng, n)] = strange[rng_below(&rng, 11)];
+        struct picture mended = picture_copy(&s.depth);
+        const struct hf_depth depth = picture_depth(&s.depth), clean = picture_depth(&mended);
+        double *z = malloc(sizeof *z * (size_t)n);
+        ref_depths(z, &depth, 1, 50 + i, 31 + i);
+        int repaired = 0, no_surface = 0;
+        for (int k = 0; k < n; k++) {
+            mended.plane[0][k] = (float)fmin(z[k], 1e10);
+            repaired += isnan(s.depth.plane[0][k]);
+            no_surface += isinf(z[k]);
+        }
+        free(z);
+        struct hf_params p = scene_params();
+        p.model = i % 2 ? HF_MODEL_LENS : HF_MODEL_RANGE;
+        p.f_number = 0.1f;
+        struct picture a = render(run->c, &s.colour, &depth, &p);
+        struct hf_stats stats;
+        hf_get_stats(run->c, &stats);
+        CHECK_INT(stats.depth_repaired, repaired);
+        CHECK_INT(stats.no_surface, no_surface);
+        struct picture b = render(run->c, &s.colour, &clean, &p);
+        CHECK_MSG(picture_same_bits(&a, &b), "%s: mending depth by hand gives other bits", run->isa);
+        CHECK(all_finite(&a));
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&mended);
+        scene_free(&s);
+    }
+}
+
+// What "no surface" is in the other types, and what 0 is.
+static void special_depths(const struct run *run)
+{
+    static const struct {
+        enum hf_depth_type type;
+        float value, far_plane;
+        int sign;  // of the CoC: -1 near, 0 sharp, 1 far
+    } cases[] = {
+        {HF_DEPTH_INVERSE, 0, 0, 1},         {HF_DEPTH_INVERSE, -1, 0, 1},
+        {HF_DEPTH_INVERSE, INFINITY, 0, -1}, {HF_DEPTH_INVERSE, 1, 0, -1},
+        {HF_DEPTH_NDC_D3D, 0, 100, -1},      {HF_DEPTH_NDC_D3D, 1, 100, 1},
+        {HF_DEPTH_NDC_D3D, 1, INFINITY, 1},  {HF_DEPTH_NDC_GL, -1, 100, -1},
+        {HF_DEPTH_NDC_GL, 0, 3, -1},         {HF_DEPTH_NDC_GL, 1, INFINITY, 1},
+        {HF_DEPTH_NDC_REVERSED, 0, 100, 1},  {HF_DEPTH_NDC_REVERSED, 0, INFINITY, 1},
+        {HF_DEPTH_NDC_REVERSED, 1, 100, -1}, {HF_DEPTH_COC, 0, 0, 0},
+        {HF_DEPTH_COC, -0.0f, 0, 0},         {HF_DEPTH_COC, INFINITY, 0, 1},
+        {HF_DEPTH_COC, -INFINITY, 0, -1},    {HF_DEPTH_COC, -1e30f, 0, -1},
+        {HF_DEPTH_RAY, 0, 0, 1},             {HF_DEPTH_RAY, -2, 0, 1},
+        {HF_DEPTH_RAY, 2, 0, -1},            {HF_DEPTH_RAY, INFINITY, 0, 1},
+    };
+    struct picture colour = picture_new(8, 8, 3), depth = picture_new(8, 8, 1);
+    const struct hf_params p = scene_params();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        for (int k = 0; k < 64; k++)
+            depth.plane[0][k] = cases[i].value;
+        struct hf_depth d = picture_depth(&depth);
+        d.type = cases[i].type;
+        d.near_plane = 1;
+        d.far_plane = cases[i].far_plane;
+        d.focal_px = 8;
+        struct picture out = render(run->c, &colour, &d, &p);
+        struct hf_stats s;
+        hf_get_stats(run->c, &s);
+        const int sign = s.near_pixels == 64 ? -1 : s.far_pixels == 64 ? 1 : s.sharp_pixels == 64 ? 0 : 99;
+        CHECK_MSG(sign == cases[i].sign, "%s: depth type %d, %g: CoC sign %d, expected %d", run->isa, cases[i].type,
+                  cases[i].value, sign, cases[i].sign);
+        picture_free(&out);
+    }
+    picture_free(&colour);
+    picture_free(&depth);
+}
+
+// No blur at all: the input's bits, in every storage, whatever they are.
+static void copies(const struct run *run)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, SCENE_NOISE, 83, 29, 4);
+    static const float strange[] = {1e-40f, -0.0f, -3, 65504, 1e30f, FLT_MAX, -FLT_MAX};
+    for (int i = 0; i < 100; i++)
+        s.colour.plane[rng_below(&rng, 4)][rng_below(&rng, 83 * 29)] = strange[rng_below(&rng, 7)];
+    const struct hf_depth depth = picture_depth(&s.depth);
+    for (int i = 0; i < 60; i++) {
+        struct hf_params p = scene_params();
+        p.storage = (enum hf_storage)(i / 5 % 3);
+        p.faithful = i / 15 % 2;
+        p.no_skip = i / 30;
+        struct hf_depth d = depth;
+        switch (i % 5) {
+        case 0:
+            p.range = INFINITY;
+            break;
+        case 1:
+            p.strength = 0;
+            break;
+        case 2:
+            p.max_radius = 0;
+            break;
+        case 3:
+            p.model = HF_MODEL_LENS;
+            p.f_number = INFINITY;
+            break;
+        case 4:  // given distances that leave all in focus
+            p.near_begin = p.near_end = 0;
+            p.far_begin = p.far_end = 2e10f;
+            break;
+        }
+        if (i % 5 == 4) {
+            // No surface is behind any far_begin: only finite depths here.
+            for (int k = 0; k < 83 * 29; k++)
+                if (!(s.depth.plane[0][k] > 0 && s.depth.plane[0][k] < 1e10f))
+                    s.depth.plane[0][k] = 20;
+        }
+        struct picture out = render(run->c, &s.colour, &d, &p);
+        // The other storages round what they read; only a copy leaves the bits alone.
+        if (i % 5 != 4 || p.storage == HF_STORAGE_FLOAT)
+            CHECK_MSG(picture_same_bits(&out, &s.colour), "%s: case %d, storage %d: not the input's bits", run->isa,
+                      i % 5, p.storage);
+        picture_free(&out);
+    }
+    scene_free(&s);
+}
+
+// A constant picture stays constant, whatever the depth. Returns the largest error in ulps.
+static double constant(const struct run *run, const struct hf_params *p, float value, int w, int h, unsigned number)
+{
+    struct rng rng = rng_seed(seed + number);
+    struct scene s = scene_new(&rng, (enum scene_kind)(number % SCENE_HIGHLIGHTS), w, h, 4);
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i < w * h; i++)
+            s.colour.plane[c][i] = value * (float)(1 + c);
+    const struct hf_depth depth = picture_depth(&s.depth);
+    struct picture out = render(run->c, &s.colour, &depth, p);
+    double worst = 0;
+    for (int c = 0; c < 4; c++)
+        for (int i = 0; i < w * h; i++)
+            worst = worse(worst, fabs((double)out.plane[c][i] - s.colour.plane[c][i]) / (value * (1 + c)));
+    picture_free(&out);
+    scene_free(&s);
+    return worst / FLT_EPSILON;
+}
+
+static void constants(const struct run *run)
+{
+    static const float values[] = {0.1f, 1.0f / 3, 7.77f, 1e-3f, 60000};
+    double worst[2] = {0, 0};  // convolved; with the per-pixel kernel
+    for (unsigned i = 0; i < 120; i++) {
+        struct hf_params p = scene_params();
+        p.karis = i % 5 == 1;
+        p.bicubic = i % 3 == 1;
+        p.per_pixel_kernel = i % 7 == 2;
+        p.fill = (enum hf_fill)(i / 3 % 3);
+        p.blades = i % 4 == 3 ? 5 + (int)(i / 4 % 5) : 0;
+        p.strength = i % 6 == 5 ? 0.2f : i % 6 == 4 ? 0.7f : 1;
+        p.max_radius = i % 10 == 9 ? 40 : i % 10 == 8 ? 3 : 12;
+        double *w = &worst[p.per_pixel_kernel];
+        *w = worse(*w, constant(run, &p, values[i % 5], 70 - (int)(i % 9), 40 + (int)(i % 5), i));
+        // CoC larger than the picture.
+        p.max_radius = 100;
+        *w = worse(*w, constant(run, &p, values[i % 5], 1 + (int)(i % 9), 1 + (int)(i % 5), i));
+    }
+    printf("%s: constant in, constant out: %.1f ulp, per-pixel kernel %.1f ulp\n", run->isa, worst[0], worst[1]);
+    CHECK_MSG(worst[0] <= 16, "%s: a constant moves by %.1f ulp", run->isa, worst[0]);
+    // Taps are added up one by one, 2601 of them at a radius of 100: a rounding each (half an ulp) above and below.
+    CHECK_MSG(worst[1] <= 2601, "%s: a constant moves by %.1f ulp with the per-pixel kernel", run->isa, worst[1]);
+}
+
+// The energy of one highlight where everything is equally out of focus, far or near.
+static void energy(const struct run *run)
+{
+    double max_fill = 0;
+    for (int i = 0; i < 96; i++) {
+        struct picture colour = picture_new(96, 90, 3), z = picture_new(96, 90, 1);
+        for (int k = 0; k < 96 * 90; k++)
+            z.plane[0][k] = i & 1 ? 1 : INFINITY;
+        const int x = 46 + i / 2 % 2, y = 44 + i / 4 % 2;
+        for (int c = 0; c < 3; c++)
+            colour.plane[c][y * 96 + x] = 1e4f;
+        struct hf_params p = scene_params();
+        p.fill = (enum hf_fill)(i / 8 % 3);
+        p.bicubic = i / 24 % 2;
+        p.blades = i / 48 ? 7 : 0;
+        const struct hf_depth depth = picture_depth(&z);
+        struct picture out = render(run->c, &colour, &depth, &p);
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int k = 0; k < 96 * 90; k++)
+                sum += out.plane[c][k];
+            if (p.fill == HF_FILL_MAX)
+                max_fill = worse(max_fill, sum / 1e4);
+            else
+                CHECK_MSG(fabs(sum / 1e4 - 1) <= 1e-5, "%s: case %d: energy of a highlight %.8f", run->isa, i,
+                          sum / 1e4);
+        }
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&z);
+    }
+    printf("%s: maximum fill: energy x %.3f\n", run->isa, max_fill);
+    CHECK(max_fill > 1 && max_fill < 9);
+}
+
+// No sample outside the range of its sources, up to rounding. 60 ulp: the roundings of all passes, gather.c.
+static void ranges(const struct run *run)
+{
+    for (int i = 0; i < 24; i++) {
+        struct rng rng = rng_seed(seed + (unsigned)i);
+        struct scene s = scene_new(&rng, (enum scene_kind)(i % SCENE_KINDS), 65, 44, 3);
+        const struct hf_depth depth = picture_depth(&s.depth);
+        struct hf_params p = scene_params();
+        p.fill = (enum hf_fill)(i % 3);
+        p.bicubic = i / 3 % 2;
+        p.karis = i / 6 % 2;
+        p.per_pixel_kernel = i / 12;
+        p.storage = i % 5 == 4 ? HF_STORAGE_CHAPTER : HF_STORAGE_FLOAT;
+        struct picture out = render(run->c, &s.colour, &depth, &p);
+        for (int c = 0; c < 3; c++) {
+            float low = INFINITY, high = 0;
+            for (size_t k = 0; k < samples_of(&out); k++) {
+                low = fminf(low, s.colour.plane[c][k]);
+                high = fmaxf(high, s.colour.plane[c][k]);
+            }
+            if (p.storage == HF_STORAGE_CHAPTER)
+                low *= 0.85f;  // five truncations of up to 1/32
+            int outside = 0;
+            for (size_t k = 0; k < samples_of(&out); k++)
+                outside += !(out.plane[c][k] >= low - 60 * FLT_EPSILON * high &&
+                             out.plane[c][k] <= high * (1 + 60 * FLT_EPSILON));
+            CHECK_MSG(outside == 0, "%s: case %d: %d samples outside %g..%g", run->isa, i, outside, low, high);
+        }
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
+// The longest rows and columns there are: the ends are those of a short picture of the same content.
+static void long_pictures(const struct run *run)
+{
+    for (int tall = 0; tall < 2; tall++) {
+        const int n = 65536, w = tall ? 3 : n, h = tall ? n : 3;
+        struct picture colour = picture_new(w, h, 3), z = picture_new(w, h, 1);
+        struct picture end = picture_new(tall ? 3 : 200, tall ? 200 : 3, 3);
+        struct picture end_z = picture_new(end.width, end.height, 1);
+        struct rng rng = rng_seed(seed);
+        for (int i = 0; i < w * h; i++) {
+            for (int c = 0; c < 3; c++)
+                colour.plane[c][i] = rng_float(&rng);
+            z.plane[0][i] = 5 + (float)rng_below(&rng, 6) * 5;
+        }
+        const int dx = w - end.width, dy = h - end.height;
+        for (int y = 0; y < end.height; y++) {
+            for (int x = 0; x < end.width; x++) {
+                for (int c = 0; c < 3; c++)
+                    end.plane[c][y * end.width + x] = colour.plane[c][(y + dy) * w + x + dx];
+                end_z.plane[0][y * end.width + x] = z.plane[0][(y + dy) * w + x + dx];
+            }
+        }
+        const struct hf_depth depth = picture_depth(&z), end_depth = picture_depth(&end_z);
+        const struct hf_params p = scene_params();
+        struct picture a = render(run->c, &colour, &depth, &p), b = render(run->c, &end, &end_depth, &p);
+        int wrong = 0;
+        for (int y = tall ? 60 : 0; y < end.height; y++)
+            for (int x = tall ? 0 : 60; x < end.width; x++)
+                for (int c = 0; c < 3; c++)
+                    wrong += memcmp(&a.plane[c][(y + dy) * w + x + dx], &b.plane[c][y * end.width + x], 4) != 0;
+        CHECK_MSG(wrong == 0, "%s: %d samples at the end of a %d x %d picture differ", run->isa, wrong, w, h);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&colour);
+        picture_free(&z);
+        picture_free(&end);
+        picture_free(&end_z);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
+    printf("seed %u\n", seed);
+    for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
+        if (!hf_isa_available((enum hf_isa)isa))
+            continue;
+        const struct hf_config config = scene_config((enum hf_isa)isa, 2);
+        struct run run = {NULL, hf_isa_name((enum hf_isa)isa)};
+        if (!CHECK_INT(hf_open(&run.c, &config), HF_OK))
+            continue;
+        for (unsigned variant = 0; variant < 8; variant++)
+            bad_colours(&run, variant);
+        all_bad(&run);
+        bad_depths(&run);
+        special_depths(&run);
+        copies(&run);
+        constants(&run);
+        energy(&run);
+        ranges(&run);
+        long_pictures(&run);
+        hf_close(&run.c);
+    }
+    return check_report();
+}

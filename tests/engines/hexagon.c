@@ -1,0 +1,522 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon engine: against a reference in double precision, its shape, its energy, and that neither
+// instruction sets, threads, tiles nor skipping show.
+//
+//     hexagon [seed]
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "support/random_scene.h"
+#include "support/reference_hexagon.h"
+
+static const double U = FLT_EPSILON / 2;
+
+// ---- rendering ----
+
+static struct hf_params hexagon_params(void)
+{
+    struct hf_params p = scene_params();
+    p.engine = HF_ENGINE_HEXAGON;
+    p.max_radius = 9;
+    return p;
+}
+
+static int render_with(const struct hf_config *g, struct picture *out, const struct picture *in,
+                       const struct hf_depth *depth, const struct hf_params *p)
+{
+    struct hf_context *c;
+    if (hf_open(&c, g))
+        return -1;
+    *out = picture_new(in->width, in->height, in->channels);
+    const struct hf_image src = picture_image(in), dst = picture_image(out);
+    const int err = hf_render(c, &dst, &src, depth, p);
+    hf_close(&c);
+    return err;
+}
+
+static struct picture rendered(const struct picture *in, const struct hf_depth *depth, const struct hf_params *p)
+{
+    const struct hf_config g = scene_config(HF_ISA_AUTO, 2);
+    struct picture out;
+    CHECK(render_with(&g, &out, in, depth, p) == HF_OK);
+    return out;
+}
+
+static struct picture rendered_isa(enum hf_isa isa, const struct picture *in, const struct hf_depth *depth,
+                                   const struct hf_params *p)
+{
+    const struct hf_config g = scene_config(isa, 1);
+    struct picture out;
+    CHECK(render_with(&g, &out, in, depth, p) == HF_OK);
+    return out;
+}
+
+// A depth buffer of radii.
+static struct hf_depth radii(const struct picture *r)
+{
+    struct hf_depth d = picture_depth(r);
+    d.type = HF_DEPTH_COC;
+    return d;
+}
+
+static double largest(const struct picture *p)
+{
+    double most = 0;
+    for (int c = 0; c < p->channels; c++)
+        for (int i = 0; i < p->width * p->height; i++)
+            most = worse(most, fabs((double)p->plane[c][i]));
+    return most;
+}
+
+static double distance(const struct picture *a, const struct picture *b)
+{
+    double most = 0;
+    for (int c = 0; c < a->channels; c++)
+        for (int i = 0; i < a->width * a->height; i++)
+            most = worse(most, fabs((double)a->plane[c][i] - b->plane[c][i]));
+    return most;
+}
+
+// A line of n pixels rounds its weights' sums n times and n more for what they weigh; radii and colours carry some
+// 30 more through loading, dividing, upsampling. What is divided by is not less than a quarter, in each of two passes.
+static double bound(const struct hf_params *p, double reach)
+{
+    const double taps = 3 * (reach + 4) / fmin(p->pixel_aspect, 1);
+    return 2 * 4 * (3 * taps + 30) * U;
+}
+
+static void random_radii(struct rng *rng, const struct scene *s, struct picture *r, double most)
+{
+    for (int i = 0; i < r->width * r->height; i++) {
+        const double t = (s->depth.plane[0][i] - 20) / 10;
+        r->plane[0][i] = (float)(most * fmax(-1, fmin(1, t == 0 || !isfinite(t) ? 0 : t + 0 * rng_float(rng))));
+    }
+}
+
+static void random_options(struct rng *rng, struct hf_params *p)
+{
+    p->resolution = rng_below(rng, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    p->blade_rotation = rng_below(rng, 2) ? 0 : rng_range(rng, -180, 180);
+    p->pixel_aspect = rng_below(rng, 3) ? 1 : rng_range(rng, 0.4f, 2.5f);
+    p->max_radius = HF_DERIVE;
+}
+
+static void test_reference(struct rng *rng)
+{
+    for (int i = 0; i < 60; i++) {
+        const int channels = 3 + rng_below(rng, 2);
+        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 1 + rng_below(rng, 70),
+                                   1 + rng_below(rng, 50), channels);
+        struct picture r = picture_new(s.colour.width, s.colour.height, 1);
+        struct hf_params p = hexagon_params();
+        random_options(rng, &p);
+        const double reach = rng_range(rng, 0.2f, rng_below(rng, 4) ? 8 : 30);
+        random_radii(rng, &s, &r, reach);
+        const struct hf_depth depth = radii(&r);
+        struct picture want = hexagon_reference(&s.colour, &r, &p);
+        for (p.deterministic = 0; p.deterministic < 2; p.deterministic++) {
+            struct picture got = rendered(&s.colour, &depth, &p);
+            const double d = distance(&got, &want), most = bound(&p, reach) * largest(&s.colour);
+            CHECK_MSG(d <= most, "frame %d, %s, %d x %d, %s, rotation %g, aspect %g, radius %g: off by %g of %g", i,
+                      scene_name((enum scene_kind)(i % SCENE_KINDS)), s.colour.width, s.colour.height,
+                      p.resolution ? "half" : "full", p.blade_rotation, p.pixel_aspect, reach, d, most);
+            picture_free(&got);
+        }
+        picture_free(&want);
+        picture_free(&r);
+        scene_free(&s);
+    }
+}
+
+// ---- the same bits ----
+
+static void test_same_bits(struct rng *rng)
+{
+    static const enum hf_isa isas[] = {HF_ISA_SSE41, HF_ISA_AVX2, HF_ISA_AVX512, HF_ISA_NEON};
+    for (int i = 0; i < 40; i++) {
+        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 1 + rng_below(rng, 200),
+                                   1 + rng_below(rng, 120), 3 + rng_below(rng, 2));
+        struct hf_params p = hexagon_params();
+        random_options(rng, &p);
+        p.max_radius = rng_range(rng, 0.3f, 20);
+        p.uniform = rng_below(rng, 6) == 0;
+        const struct hf_depth depth = picture_depth(&s.depth);
+        struct picture fused = rendered_isa(HF_ISA_AUTO, &s.colour, &depth, &p);
+        p.no_skip = 1;
+        struct picture all = rendered_isa(HF_ISA_AUTO, &s.colour, &depth, &p);
+        CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: skipping shows", i);
+        picture_free(&all);
+        p.no_skip = 0;
+        struct hf_config g = scene_config(HF_ISA_AUTO, 3);
+        g.tile_width = 16 * (1 + rng_below(rng, 4));
+        g.tile_height = 16 + rng_below(rng, 30);
+        CHECK(render_with(&g, &all, &s.colour, &depth, &p) == HF_OK);
+        CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: tiles of %d x %d show", i, g.tile_width, g.tile_height);
+        picture_free(&all);
+        all = picture_copy(&s.colour);
+        struct hf_context *c;
+        CHECK(hf_open(&c, &g) == HF_OK);
+        const struct hf_image image = picture_image(&all);
+        CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK);
+        CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: not the same in place", i);
+        hf_close(&c);
+        picture_free(&all);
+        p.deterministic = 1;
+        struct picture plain = rendered_isa(HF_ISA_SCALAR, &s.colour, &depth, &p);
+        CHECK_MSG(distance(&fused, &plain) <= bound(&p, p.max_radius) * largest(&s.colour),
+                  "frame %d: fused is off by %g", i, distance(&fused, &plain));
+        for (int k = 0; k < 4; k++) {
+            g = scene_config(isas[k], 1);
+            if (render_with(&g, &all, &s.colour, &depth, &p) != HF_OK)
+                continue;
+            CHECK_MSG(picture_same_bits(&plain, &all), "frame %d: %s is not the C", i, hf_isa_name(isas[k]));
+            picture_free(&all);
+        }
+        picture_free(&plain);
+        picture_free(&fused);
+        scene_free(&s);
+    }
+}
+
+// ---- shape and energy ----
+
+static struct picture filled(int width, int height, int channels, float value)
+{
+    struct picture p = picture_new(width, height, channels);
+    for (int c = 0; c < channels; c++)
+        for (int i = 0; i < width * height; i++)
+            p.plane[c][i] = value;
+    return p;
+}
+
+// Is (x, y) in the hexagon of side s whose corner is up, turned by degrees?
+static int in_hexagon(double x, double y, double s, double degrees)
+{
+    for (int i = 0; i < 6; i++) {
+        const double angle = (degrees + 60 * i) * M_PI / 180;
+        if (x * cos(angle) + y * sin(angle) > s * sqrt(3) / 2)
+            return 0;
+    }
+    return 1;
+}
+
+// One highlight in a picture of one radius: its energy, its area, its outline.
+static void test_highlight(float radius, float degrees, enum hf_resolution resolution, int uniform)
+{
+    enum { N = 121 };
+    struct picture in = filled(N, N, 3, 0), r = filled(N, N, 1, radius);
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 4; k++)
+            in.plane[c][(60 + k / 2) * N + 60 + k % 2] = 1e4f;
+    struct hf_params p = hexagon_params();
+    p.max_radius = fabsf(radius);
+    p.blade_rotation = degrees;
+    p.resolution = resolution;
+    p.uniform = uniform;
+    const struct hf_depth depth = radii(&r);
+    struct picture out = rendered(&in, &depth, &p);
+    double sum = 0, inside = 0, wrong = 0;
+    const double s = fabs(radius), soft = resolution == HF_RESOLUTION_HALF ? 7 : 3;
+    const double flat = 4e4 / (1.5 * sqrt(3) * s * s);
+    for (int y = 0; y < N; y++)
+        for (int x = 0; x < N; x++) {
+            const double v = out.plane[0][y * N + x], dx = x - 60.5, dy = y - 60.5;
+            sum += v;
+            if (in_hexagon(dx, dy, s - soft, degrees)) {
+                inside++;
+                wrong = fmax(wrong, fabs(v / flat - 1));
+            } else if (!in_hexagon(dx, dy, s + soft, degrees)) {
+                CHECK_MSG(v == 0, "radius %g, %s: light %g at (%g, %g)", radius, resolution ? "half" : "full", v / flat,
+                          dx, dy);
+            }
+        }
+    // Each pixel rounds as often as bound() says, and they err apart.
+    CHECK_MSG(fabs(sum / 4e4 - 1) <= 1e-5, "radius %g, %g degrees: energy %.8g of 1", radius, degrees, sum / 4e4);
+    // Of a square of 2 x 2 the rhombi's seams and bilinear taps make some unevenness.
+    CHECK_MSG(wrong < 0.4 && inside > 0, "radius %g, %g degrees, %s: uneven by %g", radius, degrees,
+              resolution ? "half" : "full", wrong);
+    picture_free(&out);
+    picture_free(&in);
+    picture_free(&r);
+}
+
+static void test_shape(void)
+{
+    static const float turns[] = {0, 30, 15, 90, -7.5f};
+    for (int i = 0; i < 5; i++)
+        for (int half = 0; half < 2; half++) {
+            test_highlight(14, turns[i], (enum hf_resolution)half, 0);
+            test_highlight(-14, turns[i], (enum hf_resolution)half, 0);
+            test_highlight(20.4f, turns[i], (enum hf_resolution)half, 1);
+        }
+}
+
+static void test_constant(struct rng *rng)
+{
+    for (int i = 0; i < 30; i++) {
+        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 1 + rng_below(rng, 90),
+                                   1 + rng_below(rng, 60), 4);
+        struct picture in = filled(s.colour.width, s.colour.height, 4, rng_range(rng, 0.1f, 100));
+        struct hf_params p = hexagon_params();
+        random_options(rng, &p);
+        p.max_radius = rng_range(rng, 0.5f, 12);
+        const struct hf_depth depth = picture_depth(&s.depth);
+        struct picture out = rendered(&in, &depth, &p);
+        const double d = distance(&in, &out), most = bound(&p, p.max_radius) * in.plane[0][0];
+        CHECK_MSG(d <= most, "frame %d: a constant picture is off by %g of %g", i, d, most);
+        picture_free(&out);
+        picture_free(&in);
+        scene_free(&s);
+    }
+}
+
+// ---- invariances ----
+
+static struct picture crop(const struct picture *p, int x0, int y0, int w, int h)
+{
+    struct picture out = picture_new(w, h, p->channels);
+    for (int c = 0; c < p->channels; c++)
+        for (int y = 0; y < h; y++)
+            memcpy(out.plane[c] + y * w, p->plane[c] + (y + y0) * p->width + x0, sizeof(float) * (size_t)w);
+    return out;
+}
+
+static void test_invariance(struct rng *rng)
+{
+    for (int i = 0; i < 8; i++) {
+        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 160, 140, 3);
+        struct hf_params p = hexagon_params();
+        p.max_radius = 6;
+        p.resolution = (enum hf_resolution)(i % 2);
+        struct hf_depth depth = picture_depth(&s.depth);
+        struct picture whole = rendered(&s.colour, &depth, &p);
+        // A part with a margin of the reach: two lines and their bilinear neighbours, and what upsampling adds.
+        const int margin = 24, x0 = 2 * rng_below(rng, 20), y0 = 2 * rng_below(rng, 20);
+        struct picture part = crop(&s.colour, x0, y0, 110, 96), z = crop(&s.depth, x0, y0, 110, 96);
+        depth = picture_depth(&z);
+        struct picture out = rendered(&part, &depth, &p);
+        struct picture a = crop(&whole, x0 + margin, y0 + margin, 110 - 2 * margin, 96 - 2 * margin);
+        struct picture b = crop(&out, margin, margin, 110 - 2 * margin, 96 - 2 * margin);
+        CHECK_MSG(picture_same_bits(&a, &b), "frame %d: the part at (%d, %d) differs", i, x0, y0);
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < 160 * 140; k++)
+                s.colour.plane[c][k] *= 64;
+        depth = picture_depth(&s.depth);
+        struct picture bright = rendered(&s.colour, &depth, &p);
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < 160 * 140; k++)
+                bright.plane[c][k] /= 64;
+        CHECK_MSG(picture_same_bits(&bright, &whole), "frame %d: 64 times as bright is not 64 times the result", i);
+        picture_free(&bright);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&out);
+        picture_free(&part);
+        picture_free(&z);
+        picture_free(&whole);
+        scene_free(&s);
+    }
+}
+
+// Radii that change by e change a sample's share by some e, on two lines: no more than a few e per pixel of radius.
+static void test_no_popping(struct rng *rng)
+{
+    for (int i = 0; i < 24; i++) {
+        struct scene s = scene_new(rng, i % 3 == 0 ? SCENE_RAMP : i % 3 == 1 ? SCENE_BLOCKS : SCENE_NOISE, 60, 44, 3);
+        struct picture r = picture_new(60, 44, 1), moved = picture_new(60, 44, 1);
+        const float e = 0x1p-10f;
+        random_radii(rng, &s, &r, 6);
+        // A focus pull moves all radii alike; every other time through the focus, and to where rounding starts.
+        for (int k = 0; k < 60 * 44; k++) {
+            r.plane[0][k] += i % 2 ? rng_range(rng, -2, 2) : -e / 2;
+            moved.plane[0][k] = r.plane[0][k] + e;
+        }
+        struct hf_params p = hexagon_params();
+        p.max_radius = HF_DERIVE;
+        p.resolution = (enum hf_resolution)(i / 2 % 2);
+        struct hf_depth depth = radii(&r);
+        struct picture a = rendered(&s.colour, &depth, &p);
+        depth = radii(&moved);
+        struct picture b = rendered(&s.colour, &depth, &p);
+        const double rate = distance(&a, &b) / e / largest(&s.colour);
+        CHECK_MSG(rate < 40, "frame %d, %s: the picture changes by %g per pixel of radius", i,
+                  p.resolution ? "half" : "full", rate);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&r);
+        picture_free(&moved);
+        scene_free(&s);
+    }
+}
+
+// ---- parameters, hard cases ----
+
+static void test_parameters(struct rng *rng)
+{
+    struct scene s = scene_new(rng, SCENE_HIGHLIGHTS, 90, 70, 3);
+    const struct hf_depth depth = picture_depth(&s.depth);
+    const struct hf_params plain = hexagon_params();
+    struct picture base = rendered(&s.colour, &depth, &plain);
+    struct hf_params changed[8];
+    for (int i = 0; i < 8; i++)
+        changed[i] = plain;
+    changed[0].blade_rotation = 20;
+    changed[1].resolution = HF_RESOLUTION_HALF;
+    changed[2].uniform = 1;
+    changed[3].max_radius = 5;
+    changed[4].pixel_aspect = 2;
+    changed[5].strength = 0.5f;
+    changed[6].focus_distance = 15;
+    changed[7].blend = HF_BLEND_SMOOTHSTEP;
+    for (int i = 0; i < 8; i++) {
+        struct picture out = rendered(&s.colour, &depth, &changed[i]);
+        CHECK_MSG(!picture_same_bits(&out, &base), "parameter %d has no effect", i);
+        picture_free(&out);
+    }
+    // The limit with a lens, whose radii have none of their own; one that no radius reaches changes nothing.
+    struct hf_params lens = plain;
+    lens.model = HF_MODEL_LENS;
+    lens.f_number = 0.02f;
+    struct picture open[3];
+    for (int i = 0; i < 3; i++) {
+        lens.max_radius = i == 0 ? HF_DERIVE : i == 1 ? 250 : 2;
+        open[i] = rendered(&s.colour, &depth, &lens);
+    }
+    CHECK(picture_same_bits(&open[0], &open[1]));
+    CHECK(!picture_same_bits(&open[0], &open[2]));
+    for (int i = 0; i < 3; i++)
+        picture_free(&open[i]);
+    // What is the default, or belongs to other engines, changes nothing.
+    struct hf_params same[6];
+    for (int i = 0; i < 6; i++)
+        same[i] = plain;
+    same[0].blade_rotation = 0;
+    same[1].pixel_aspect = 1;
+    same[2].blades = 5;
+    same[3].iterations = 7;
+    same[4].sigma = 3;
+    same[5].resolution = HF_RESOLUTION_FULL;
+    for (int i = 0; i < 6; i++) {
+        struct picture out = rendered(&s.colour, &depth, &same[i]);
+        CHECK_MSG(picture_same_bits(&out, &base), "parameter %d has an effect at its default", i);
+        picture_free(&out);
+    }
+    // Same shape after a sixth of a turn, but other sides of its bilinear taps; nothing where there is no radius.
+    struct hf_params none = plain;
+    none.strength = 0;
+    struct picture out = rendered(&s.colour, &depth, &none);
+    CHECK(picture_same_bits(&out, &s.colour));
+    picture_free(&out);
+    none = plain;
+    none.max_radius = 0;
+    out = rendered(&s.colour, &depth, &none);
+    CHECK(picture_same_bits(&out, &s.colour));
+    picture_free(&out);
+    picture_free(&base);
+    scene_free(&s);
+}
+
+// Radius 0 and nothing that reaches: the input's bits, -0 too.
+static void test_sharp(void)
+{
+    struct picture in = filled(64, 48, 3, -0.0f), r = filled(64, 48, 1, 0);
+    r.plane[0][20 * 64 + 10] = -3;
+    r.plane[0][20 * 64 + 50] = 5;
+    struct hf_params p = hexagon_params();
+    for (int half = 0; half < 2; half++) {
+        p.resolution = (enum hf_resolution)half;
+        p.no_skip = 1;
+        const struct hf_depth depth = radii(&r);
+        struct picture out = rendered(&in, &depth, &p);
+        for (int y = 0; y < 48; y++)
+            for (int x = 0; x < 64; x++) {
+                const int clear = abs(x - 10) > 12 || abs(y - 20) > 12;
+                if (clear && !(x == 50 && y == 20))
+                    CHECK_MSG(signbit(out.plane[0][y * 64 + x]), "(%d, %d) lost its sign", x, y);
+            }
+        picture_free(&out);
+    }
+    picture_free(&in);
+    picture_free(&r);
+}
+
+// The largest numbers there are, of both signs: no sum of them overflows, and a constant stays what it is.
+static void test_largest(struct rng *rng)
+{
+    static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_AUTO};
+    for (int i = 0; i < 48; i++) {
+        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 40 + rng_below(rng, 60),
+                                   30 + rng_below(rng, 40), 3);
+        const int same = i / 4 % 2;
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < s.colour.width * s.colour.height; k++)
+                s.colour.plane[c][k] = same || rng_below(rng, 2) ? FLT_MAX : rng_below(rng, 2) ? -3e38f : 3e38f;
+        struct hf_params p = hexagon_params();
+        random_options(rng, &p);
+        p.max_radius = i % 3 ? 12 : 40;
+        p.uniform = i % 8 == 5;
+        const struct hf_depth depth = picture_depth(&s.depth);
+        struct picture out = rendered_isa(isas[i % 2], &s.colour, &depth, &p);
+        int wrong = 0;
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < out.width * out.height; k++)
+                wrong += !isfinite(out.plane[c][k]) ||
+                         (same && !(fabs(out.plane[c][k] / (double)FLT_MAX - 1) <= bound(&p, p.max_radius)));
+        CHECK_MSG(wrong == 0, "frame %d: %d samples are infinite or not what all are", i, wrong);
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
+static void test_sizes(struct rng *rng)
+{
+    static const int sizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {2, 2}, {3, 5}, {15, 17}, {16, 16}, {33, 7}};
+    static const float reaches[] = {1, 12, 300, 2048};
+    for (int i = 0; i < 8; i++)
+        for (int k = 0; k < 4; k++) {
+            struct scene s = scene_new(rng, SCENE_NOISE, sizes[i][0], sizes[i][1], 3);
+            struct picture r = picture_new(sizes[i][0], sizes[i][1], 1);
+            random_radii(rng, &s, &r, reaches[k]);
+            s.colour.plane[0][0] = NAN;
+            s.colour.plane[1][sizes[i][0] * sizes[i][1] - 1] = -INFINITY;
+            struct hf_params p = hexagon_params();
+            p.max_radius = HF_DERIVE;
+            p.resolution = (enum hf_resolution)(k % 2);
+            const struct hf_depth depth = radii(&r);
+            struct picture out = rendered(&s.colour, &depth, &p);
+            double low = 0, high = 0;
+            for (int c = 0; c < 3; c++)
+                for (int at = 0; at < out.width * out.height; at++) {
+                    CHECK(isfinite(out.plane[c][at]));
+                    low = fmin(low, out.plane[c][at]);
+                    high = fmax(high, out.plane[c][at]);
+                }
+            CHECK_MSG(low >= 0 && high <= 1.3 * 1.001, "%d x %d: values from %g to %g", out.width, out.height, low,
+                      high);
+            picture_free(&out);
+            picture_free(&r);
+            scene_free(&s);
+        }
+}
+
+int main(int argc, char **argv)
+{
+    const uint64_t seed = argc > 1 ? strtoull(argv[1], NULL, 0) : 1;
+    printf("seed %llu\n", (unsigned long long)seed);
+    struct rng rng = rng_seed(seed);
+    test_reference(&rng);
+    test_same_bits(&rng);
+    test_shape();
+    test_constant(&rng);
+    test_invariance(&rng);
+    test_no_popping(&rng);
+    test_parameters(&rng);
+    test_sharp();
+    test_largest(&rng);
+    test_sizes(&rng);
+    return check_report();
+}

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hard cases of the gather engine, pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths
+// around the vectors' length, a focus pull.
+//
+//     invariance [seed]
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "support/random_scene.h"
+
+static unsigned seed = 1;
+
+static struct picture render(struct hf_context *c, const struct scene *s, const struct hf_params *p)
+{
+    struct picture out = picture_new(s->colour.width, s->colour.height, s->colour.channels);
+    const struct hf_image dst = picture_image(&out), src = picture_image(&s->colour);
+    const struct hf_depth depth = picture_depth(&s->depth);
+    const int err = hf_render(c, &dst, &src, &depth, p);
+    CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
+    return out;
+}
+
+static struct picture transposed(const struct picture *p)
+{
+    struct picture out = picture_new(p->height, p->width, p->channels);
+    for (int c = 0; c < p->channels; c++)
+        for (int y = 0; y < p->height; y++)
+            for (int x = 0; x < p->width; x++)
+                out.plane[c][x * p->height + y] = p->plane[c][y * p->width + x];
+    return out;
+}
+
+static double largest_sample(const struct picture *p)
+{
+    double largest = 0;
+    for (int c = 0; c < p->channels; c++)
+        for (int i = 0; i < p->width * p->height; i++)
+            if (fabsf(p->plane[c][i]) > largest)
+                largest = fabsf(p->plane[c][i]);
+    return largest;
+}
+
+static double largest_difference(const struct picture *a, const struct picture *b)
+{
+    double largest = 0;
+    for (int c = 0; c < a->channels; c++)
+        for (int i = 0; i < a->width * a->height; i++)
+            largest = worse(largest, fabs((double)a->plane[c][i] - b->plane[c][i]));
+    return largest;
+}
+
+// Any valid options. Not the lens, whose blur is tied to the picture's width.
+static struct hf_params random_params(struct rng *rng)
+{
+    struct hf_params p = scene_params();
+    static const float radii[] = {1, 3, 4, 8, 12, 12, 17.5f, 40};
+    static const float strengths[] = {1, 1, 1, 0.7f, 0.3f, 0.1f};
+    p.max_radius = radii[rng_below(rng, 8)];
+    p.strength = strengths[rng_below(rng, 6)];
+    p.faithful = rng_below(rng, 3) == 0;
+    p.karis = rng_below(rng, 3) == 0;
+    p.per_pixel_kernel = rng_below(rng, 3) == 0;
+    p.bicubic = rng_below(rng, 3) == 0;
+    p.fill = (enum hf_fill)rng_below(rng, 3);
+    p.blend = (enum hf_blend)rng_below(rng, 2);
+    p.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
+    p.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
+    p.blade_rotation = (float)rng_below(rng, 90);
+    p.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
+    p.range = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
+    return p;
+}
+
+// A crop of whole half-resolution pixels is what the crop of the result is, but for a margin: the near CoC comes from
+// twice the reach, and one pixel more each for fill and for upsampling (two for the cubic).
+static void crops(struct hf_context *c, const char *isa)
+{
+    for (unsigned i = 0; i < 40; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 200 + rng_below(&rng, 60), 160 + rng_below(&rng, 20), 3);
+        struct hf_params p = random_params(&rng);
+        p.max_radius = fminf(p.max_radius, 17.5f);
+        const int x0 = 2 * rng_below(&rng, 20), y0 = 2 * rng_below(&rng, 20);
+        const int w = 140 + rng_below(&rng, 20), h = 110 + rng_below(&rng, 10);
+        struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
+        struct picture whole = render(c, &s, &p), a = render(c, &part, &p);
+        const int mx = 2 * (2 * (int)ceilf(p.max_radius / 2 / p.pixel_aspect) + 4);
+        const int my = 2 * (2 * (int)ceilf(p.max_radius / 2) + 4);
+        struct picture b = picture_cut(&whole, x0 + mx, y0 + my, w - 2 * mx, h - 2 * my);
+        struct picture inner = picture_cut(&a, mx, my, w - 2 * mx, h - 2 * my);
+        CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d): other bits", isa, seed + i, x0, y0);
+        picture_free(&whole);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&inner);
+        scene_free(&part);
+        scene_free(&s);
+    }
+}
+
+// Depth constant per quad, even size, default composite, taps that mirror, no per-pixel kernel (which adds its
+// taps up in the order of their angles).
+static struct scene quad_scene(struct rng *rng, int w, int h)
+{
+    struct scene s = scene_new(rng, SCENE_BLOCKS, w, h, 4);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            s.depth.plane[0][y * w + x] = s.depth.plane[0][(y & ~1) * w + (x & ~1)];
+    return s;
+}
+
+static void flips(struct hf_context *c, const char *isa)
+{
+    for (unsigned i = 0; i < 40; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = quad_scene(&rng, 2 * (20 + rng_below(&rng, 50)), 2 * (10 + rng_below(&rng, 30)));
+        struct hf_params p = random_params(&rng);
+        p.faithful = p.per_pixel_kernel = p.blades = 0;
+        struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
+        struct picture a = render(c, &s, &p), b = render(c, &mirror, &p), back = picture_flipped(&b);
+        CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
+                  " bicubic %d)", isa, seed + i, p.storage, p.fill, p.karis, p.bicubic);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&back);
+        scene_free(&mirror);
+        scene_free(&s);
+    }
+}
+
+// Transposing changes the order of sums only: twice the roundings of all passes (gather.c) in units of the largest
+// sample, 2 * (2 * 129 lattice weights + 12 + 32 + 11 + 102) * FLT_EPSILON / 2.
+static void transposes(struct hf_context *c, const char *isa)
+{
+    const double bound = (2 * 129 + 12 + 32 + 11 + 102) * (double)FLT_EPSILON;
+    double worst = 0;
+    for (unsigned i = 0; i < 30; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_BLOCKS, 40 + rng_below(&rng, 60), 30 + rng_below(&rng, 50), 3);
+        struct hf_params p = random_params(&rng);
+        p.pixel_aspect = 1;
+        p.blades = 0;
+        p.max_radius = 12;
+        p.storage = HF_STORAGE_FLOAT;
+        p.per_pixel_kernel = 0;  // its threshold on CoC differences apart, it is in gather.c
+        struct scene turned = {transposed(&s.colour), transposed(&s.depth)};
+        struct picture a = render(c, &s, &p), b = render(c, &turned, &p), back = transposed(&b);
+        worst = worse(worst, largest_difference(&a, &back) / largest_sample(&s.colour));
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&back);
+        scene_free(&turned);
+        scene_free(&s);
+    }
+    printf("%s: transpose: %.2g of the largest sample, bound %.2g\n", isa, worst, bound);
+    CHECK_MSG(worst <= bound, "%s: transposing changes %g of the largest sample, bound %g", isa, worst, bound);
+}
+
+static void exposures(struct hf_context *c, const char *isa)
+{
+    static const int exponents[] = {-20, -3, 1, 12, 30};
+    for (unsigned i = 0; i < 40; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 60 + rng_below(&rng, 60), 40 + rng_below(&rng, 40), 4);
+        struct hf_params p = random_params(&rng);
+        p.karis = 0;
+        p.storage = HF_STORAGE_FLOAT;
+        struct picture a = render(c, &s, &p);
+        const float scale = ldexpf(1, exponents[i % 5]);
+        for (int k = 0; k < 4; k++)
+            for (int j = 0; j < a.width * a.height; j++) {
+                s.colour.plane[k][j] *= scale;
+                a.plane[k][j] *= scale;
+            }
+        struct picture b = render(c, &s, &p);
+        CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: exposure x 2^%d gives other bits", isa, seed + i,
+                  exponents[i % 5]);
+        picture_free(&a);
+        picture_free(&b);
+        scene_free(&s);
+    }
+}
+
+// 1 to 7 threads, tiles of as many sizes, and repetition.
+static void threads(enum hf_isa isa)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 401, 307, 3);
+    for (int storage = 0; storage < 3; storage++) {
+        struct picture first = {0};
+        for (int n = 1; n <= 7; n++) {
+            struct hf_config config = scene_config(isa, n);
+            config.tile_width = 16 * (n - 1);
+            config.tile_height = n > 1 ? 14 + 3 * n : 0;
+            struct hf_context *c;
+            struct hf_params p = scene_params();
+            p.storage = (enum hf_storage)storage;
+            p.karis = storage == 1;
+            CHECK_INT(hf_open(&c, &config), HF_OK);
+            for (int i = 0; i < 2; i++) {
+                struct picture out = render(c, &s, &p);
+                if (!first.width)
+                    first = picture_copy(&out);
+                CHECK_MSG(picture_same_bits(&first, &out), "%s: %d threads, frame %d: other bits", hf_isa_name(isa), n,
+                          i);
+                picture_free(&out);
+            }
+            hf_close(&c);
+        }
+        picture_free(&first);
+    }
+    scene_free(&s);
+}
+
+// Every width around the length of vectors, against plain C.
+static void widths(struct hf_context *c, struct hf_context *plain, const char *isa)
+{
+    for (int w = 1; w <= 70; w++) {
+        for (int h = 1; h <= 5; h += 2) {
+            struct rng rng = rng_seed(seed + (unsigned)(8 * w + h));
+            struct scene s = scene_new(&rng, SCENE_NOISE, w, h, 3 + w % 2);
+            struct hf_params p = random_params(&rng);
+            p.deterministic = 1;
+            struct picture a = render(c, &s, &p), b = render(plain, &s, &p);
+            CHECK_MSG(picture_same_bits(&a, &b), "%s: %d x %d: not the bits of plain C", isa, w, h);
+            picture_free(&a);
+            picture_free(&b);
+            scene_free(&s);
+        }
+    }
+}
+
+// Pull the focus in tiny steps through a floor of random colours: the picture follows in tiny steps. The measured
+// constant is the largest change of a sample (of colours up to 1) per change of CoC.
+static void focus_pull(struct hf_context *c, const char *isa)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, SCENE_RAMP, 160, 90, 3);
+    for (int i = 0; i < 160 * 90; i++)  // straight on, unbroken
+        s.depth.plane[0][i] = 10 + 25 * (float)(i % 160 + 2 * (i / 160)) / 340;
+    struct hf_params p = scene_params();
+    const float step = 1.0f / 512;  // CoC: a tenth of it
+    struct picture before = render(c, &s, &p);
+    double worst = 0;
+    for (int i = 1; i <= 60; i++) {
+        p.focus_distance = 20 + (float)i * step;
+        struct picture now = render(c, &s, &p);
+        worst = worse(worst, largest_difference(&now, &before));
+        picture_free(&before);
+        before = now;
+    }
+    picture_free(&before);
+    const double lipschitz = worst / (step / p.range);
+    printf("%s: focus pull: largest step %.3g, Lipschitz constant %.2f\n", isa, worst, lipschitz);
+    CHECK_MSG(lipschitz <= 20, "%s: Lipschitz constant %.2f", isa, lipschitz);
+    scene_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+    seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
+    printf("seed %u\n", seed);
+    const struct hf_config plain_config = scene_config(HF_ISA_SCALAR, 2);
+    struct hf_context *plain;
+    CHECK_INT(hf_open(&plain, &plain_config), HF_OK);
+    for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
+        if (!hf_isa_available((enum hf_isa)isa))
+            continue;
+        const struct hf_config config = scene_config((enum hf_isa)isa, 2);
+        const char *name = hf_isa_name((enum hf_isa)isa);
+        struct hf_context *c;
+        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
+            continue;
+        crops(c, name);
+        flips(c, name);
+        transposes(c, name);
+        exposures(c, name);
+        threads((enum hf_isa)isa);
+        widths(c, plain, name);
+        focus_pull(c, name);
+        hf_close(&c);
+    }
+    hf_close(&plain);
+    return check_report();
+}

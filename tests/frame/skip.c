@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Skipping is invisible: for every engine, with random options, sizes and scenes, what is rendered where the scene calls
+// for it equals what no_skip renders, bit for bit. The skipping contexts live on from scene to scene, as those of a shot
+// do, so that what they remember of the last frame is wrong as often as right.
+//
+//     skip [seed]
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "support/random_scene.h"
+
+enum { SCENES = 300, CONTEXTS = 4 };
+
+static unsigned seed = 1;
+
+// Half-resolution pixels; 0: the library's choice.
+static const int tile_sizes[CONTEXTS][2] = {{0, 0}, {16, 16}, {48, 16}, {32, 40}};
+
+// Sharp but for a few pixels, which lie where tiles of 32 pixels and their multiples meet: just inside, just outside.
+static struct scene corners(struct rng *rng, int w, int h, int channels)
+{
+    struct scene s = scene_new(rng, SCENE_SHARP, w, h, channels);
+    for (int n = 1 + rng_below(rng, 3); n > 0; n--) {
+        const int x = 32 * rng_below(rng, w / 32 + 1) - rng_below(rng, 3) + 1;
+        const int y = 32 * rng_below(rng, h / 32 + 1) - rng_below(rng, 3) + 1;
+        if (x < 0 || y < 0 || x >= w || y >= h)
+            continue;
+        const int i = y * w + x;
+        // Full, hardly any, and so little that the smallest storage rounds it to 0.
+        static const float depths[] = {5, 12, 19.9999f, 19.5f, 40, 28, 20.0001f, 20.5f, 1e10f};
+        s.depth.plane[0][i] = depths[rng_below(rng, 9)];
+        for (int c = 0; c < channels; c++)
+            s.colour.plane[c][i] = c == 3 ? 1 : rng_range(rng, 100, 2000);
+    }
+    return s;
+}
+
+static struct scene random_scene(struct rng *rng, enum hf_engine engine, const char **name)
+{
+    const int large = rng_below(rng, 6) == 0;
+    const int w = 1 + rng_below(rng, large ? 330 : 120), h = 1 + rng_below(rng, large ? 230 : 90);
+    const int channels = 3 + rng_below(rng, 2), kind = rng_below(rng, SCENE_KINDS + 4);
+    struct scene s;
+    if (kind >= SCENE_KINDS) {
+        *name = "corners";
+        s = corners(rng, w, h, channels);
+    } else {
+        *name = scene_name((enum scene_kind)kind);
+        s = scene_new(rng, (enum scene_kind)kind, w, h, channels);
+        if (rng_below(rng, 2))  // only part of it
+            for (int i = 0; i < w * h; i++)
+                if (i % w >= w / 3 || i / w >= h / 2)
+                    s.depth.plane[0][i] = 20;
+    }
+    // What blending with a weight of 0 would change. Sums that overflow are not for all engines.
+    const float odd[] = {-0.0f, -1e-3f, 1e-42f, engine == HF_ENGINE_GATHER || engine == HF_ENGINE_HEXAGON ? FLT_MAX : 1e30f, NAN, INFINITY};
+    for (int k = 0; k < w * h / 30; k++)
+        s.colour.plane[rng_below(rng, 3)][rng_below(rng, w * h)] = odd[rng_below(rng, rng_below(rng, 8) ? 3 : 6)];
+    return s;
+}
+
+static struct hf_params random_params(struct rng *rng, enum hf_engine engine)
+{
+    static const float radii[] = {1, 3, 4, 8, 12, 12, 17.5f, 40};
+    static const float strengths[] = {1, 1, 1, 0.7f, 0.3f, 0.1f};
+    struct hf_params p = scene_params();
+    p.engine = engine;
+    p.max_radius = radii[rng_below(rng, 8)];
+    p.strength = strengths[rng_below(rng, 6)];
+    p.blend = (enum hf_blend)rng_below(rng, 2);
+    p.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
+    p.range = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
+    p.blade_rotation = (float)rng_below(rng, 90);
+    p.deterministic = rng_below(rng, 2);
+    if (engine == HF_ENGINE_GATHER) {
+        p.faithful = rng_below(rng, 3) == 0;
+        p.karis = rng_below(rng, 3) == 0;
+        p.per_pixel_kernel = rng_below(rng, 3) == 0;
+        p.bicubic = rng_below(rng, 3) == 0;
+        p.fill = (enum hf_fill)rng_below(rng, 3);
+        p.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
+        p.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
+        p.rings = rng_below(rng, 3) ? 0 : 1 + rng_below(rng, 4);
+        return p;
+    }
+    p.resolution = (enum hf_resolution)rng_below(rng, engine == HF_ENGINE_GAUSSIAN ? 3 : 2);
+    p.uniform = engine == HF_ENGINE_HEXAGON && rng_below(rng, 6) == 0;
+    if (engine == HF_ENGINE_SCATTER) {
+        p.blades = rng_below(rng, 3) ? 0 : 3 + rng_below(rng, 7);
+        p.blade_roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
+        p.ring = rng_below(rng, 4) ? 0 : 0.5f;
+        p.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.3f, 0.3f);
+        p.cat_eye = rng_below(rng, 4) ? 0 : rng_float(rng);
+        p.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
+    }
+    if (engine == HF_ENGINE_GAUSSIAN) {
+        p.faithful = rng_below(rng, 4) == 0;
+        p.iterations = rng_below(rng, 6);
+        p.sigma = rng_below(rng, 3) ? 0 : rng_range(rng, 0.3f, 9);
+        p.range = rng_below(rng, 3) ? p.range : HF_DERIVE;
+        p.focus_distance = rng_below(rng, 3) ? p.focus_distance : HF_DERIVE;
+    }
+    return p;
+}
+
+// The scene's colour into a picture that holds it already, in place or not.
+static void render(struct hf_context *c, const struct scene *s, struct picture *into, const struct hf_params *p,
+                   int in_place)
+{
+    const struct hf_image dst = picture_image(into), src = in_place ? dst : picture_image(&s->colour);
+    const struct hf_depth depth = picture_depth(&s->depth);
+    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
+}
+
+struct tally {
+    uint64_t run, all;  // tiles that were not sharp, of how many
+};
+
+static void check_scene(struct hf_context *skipping, struct hf_context *whole, enum hf_engine engine, unsigned n,
+                        struct tally *tally)
+{
+    struct rng rng = rng_seed(seed + 1000 * (unsigned)engine + n);
+    const char *name;
+    struct scene s = random_scene(&rng, engine, &name);
+    struct hf_params p = random_params(&rng, engine);
+    struct picture a = picture_copy(&s.colour), b = picture_copy(&s.colour);
+    struct hf_report report;
+    render(skipping, &s, &a, &p, n % 3 == 0);
+    hf_get_report(skipping, &report);
+    tally->all += (uint64_t)report.columns * (uint64_t)report.rows;
+    tally->run += (uint64_t)report.columns * (uint64_t)report.rows - report.tile_count[HF_TILE_SHARP];
+    p.no_skip = 1;
+    render(whole, &s, &b, &p, 0);
+    CHECK_MSG(picture_same_bits(&a, &b), "%s, %s: seed %u, scene %u (%s, %d x %d, %d channels): skipping gives other bits",
+              hf_isa_name(hf_context_isa(skipping)), hf_engine_name(engine), seed, n, name, a.width, a.height,
+              a.channels);
+    picture_free(&a);
+    picture_free(&b);
+    scene_free(&s);
+}
+
+static void check_engine(enum hf_isa isa, enum hf_engine engine)
+{
+    struct hf_context *skipping[CONTEXTS], *whole;
+    struct hf_config config = scene_config(isa, 2);
+    struct tally tally = {0, 0};
+    CHECK_INT(hf_open(&whole, &config), HF_OK);
+    for (int i = 0; i < CONTEXTS; i++) {
+        config.tile_width = tile_sizes[i][0];
+        config.tile_height = tile_sizes[i][1];
+        CHECK_INT(hf_open(&skipping[i], &config), HF_OK);
+    }
+    for (unsigned n = 0; n < SCENES; n++)
+        check_scene(skipping[n % CONTEXTS], whole, engine, n, &tally);
+    printf("%s, %s: %.0f %% of the tiles were not sharp\n", hf_isa_name(isa), hf_engine_name(engine),
+           100.0 * (double)tally.run / (double)tally.all);
+    CHECK(tally.run < tally.all);
+    for (int i = 0; i < CONTEXTS; i++)
+        hf_close(&skipping[i]);
+    hf_close(&whole);
+}
+
+int main(int argc, char **argv)
+{
+    seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
+    printf("seed %u\n", seed);
+    for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++)
+        for (int engine = 0; engine < HF_ENGINE_COUNT; engine++)
+            if (hf_isa_available((enum hf_isa)isa) && hf_engine_name((enum hf_engine)engine))
+                check_engine((enum hf_isa)isa, (enum hf_engine)engine);
+    return check_report();
+}

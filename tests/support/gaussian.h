@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of the gaussian engine share.
+#ifndef HF_TESTS_GAUSSIAN_H
+#define HF_TESTS_GAUSSIAN_H
+
+#include <math.h>
+
+#include "support/check.h"
+#include "support/random_scene.h"
+
+static inline struct picture render(struct hf_context *c, const struct scene *s, const struct hf_depth *depth,
+                             const struct hf_params *p)
+{
+    const struct hf_depth view = picture_depth(&s->depth);
+    struct picture out = picture_new(s->colour.width, s->colour.height, s->colour.channels);
+    const struct hf_image dst = picture_image(&out), src = picture_image(&s->colour);
+    const int err = hf_render(c, &dst, &src, depth ? depth : &view, p);
+    CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
+    return out;
+}
+
+static inline double largest_sample(const struct picture *p)
+{
+    double largest = 0;
+    for (int c = 0; c < p->channels; c++)
+        for (int i = 0; i < p->width * p->height; i++)
+            if (isfinite(p->plane[c][i]))
+                largest = fmax(largest, fabs((double)p->plane[c][i]));
+    return largest;
+}
+
+static inline double largest_difference(const struct picture *a, const struct picture *b)
+{
+    double largest = 0;
+    for (int c = 0; c < a->channels; c++)
+        for (int i = 0; i < a->width * a->height; i++)
+            largest = worse(largest, fabs((double)a->plane[c][i] - b->plane[c][i]));
+    return largest;
+}
+
+static inline struct hf_params gaussian_params(void)
+{
+    struct hf_params p = hf_default_params;
+    p.engine = HF_ENGINE_GAUSSIAN;
+    p.focus_distance = 20;
+    p.max_radius = 12;
+    return p;
+}
+
+static inline struct hf_params random_params(struct rng *rng)
+{
+    static const float strengths[] = {1, 1, 0.6f, 0.2f};
+    struct hf_params p = gaussian_params();
+    p.iterations = rng_below(rng, 5) ? 1 + rng_below(rng, 4) : rng_below(rng, 12);
+    p.resolution = (enum hf_resolution)(rng_below(rng, 2) * rng_below(rng, 3));
+    p.focus_distance = rng_below(rng, 3) ? 20 : HF_DERIVE;
+    p.faithful = rng_below(rng, 3) == 0;
+    p.blend = (enum hf_blend)rng_below(rng, 2);
+    p.strength = strengths[rng_below(rng, 4)];
+    p.range = rng_below(rng, 2) ? HF_DERIVE : 10;
+    p.model = rng_below(rng, 4) ? HF_MODEL_RANGE : HF_MODEL_LENS;
+    p.f_number = 0.05f;
+    if (rng_below(rng, 4) == 0)
+        p.sigma = rng_below(rng, 2) ? rng_range(rng, 0.2f, 8) : rng_range(rng, 8, 256);
+    return p;
+}
+
+#endif

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon engine in double precision, from its description, pixel by pixel.
+#include "support/reference_hexagon.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double clamp01(double v)
+{
+    return v < 0 ? 0 : v > 1 ? 1 : v;
+}
+
+static int clampi(int v, int n)
+{
+    return v < 0 ? 0 : v < n ? v : n - 1;
+}
+
+enum { MAX_TAPS = 4000 };
+
+struct tap {
+    int dx, dy;
+    double b, t;
+};
+
+struct line {
+    struct tap tap[MAX_TAPS];
+    int count;
+};
+
+static int nearer(const void *a, const void *b)
+{
+    const struct tap *p = a, *q = b;
+    return (p->t > q->t) - (p->t < q->t);
+}
+
+// Pixels that bilinear taps at half steps along a direction touch, by distance along it.
+static void make_line(struct line *l, double degrees, double aspect, double reach)
+{
+    const double ux = sin(degrees * M_PI / 180), uy = -cos(degrees * M_PI / 180), step = aspect < 1 ? aspect : 1;
+    l->count = 0;
+    for (double d = step / 2; d < reach + 5 + 2 * aspect; d += step) {
+        const double x = floor(d * ux / aspect * 4096 + 0.5) / 4096, y = floor(d * uy * 4096 + 0.5) / 4096;
+        for (int j = (int)floor(y); j <= (int)floor(y) + 1; j++)
+            for (int i = (int)floor(x); i <= (int)floor(x) + 1; i++) {
+                const double b = step * (1 - fabs(x - i)) * (1 - fabs(y - j));
+                int k = 0;
+                while (k < l->count && !(l->tap[k].dx == i && l->tap[k].dy == j))
+                    k++;
+                if (b == 0)
+                    continue;
+                if (k == l->count)
+                    l->tap[l->count++] = (struct tap){i, j, 0, (float)(i * aspect * ux + j * uy)};
+                l->tap[k].b += b;
+            }
+    }
+    qsort(l->tap, (size_t)l->count, sizeof *l->tap, nearer);
+}
+
+struct field {
+    int width, height, channels;
+    double *colour[4], *a, *q, *part;
+};
+
+static struct field field_new(int width, int height, int channels)
+{
+    struct field f = {.width = width, .height = height, .channels = channels};
+    const size_t n = (size_t)width * (size_t)height;
+    f.a = calloc(n, sizeof *f.a);
+    f.q = calloc(n, sizeof *f.q);
+    f.part = calloc(n, sizeof *f.part);
+    for (int c = 0; c < channels; c++)
+        f.colour[c] = calloc(n, sizeof *f.a);
+    return f;
+}
+
+static void field_free(struct field *f)
+{
+    for (int c = 0; c < f->channels; c++)
+        free(f->colour[c]);
+    free(f->a);
+    free(f->q);
+    free(f->part);
+}
+
+struct sum {
+    double colour[4], a, w;
+};
+
+// Sum along a line at a pixel; p < 0: near, every sample counts.
+static struct sum sum_of(const struct field *f, const struct line *l, int x, int y, double p)
+{
+    struct sum s = {{0}, 0, 0};
+    double before = 0;
+    for (int i = 0; i < l->count; i++) {
+        const struct tap *t = &l->tap[i];
+        const int at = clampi(y + t->dy, f->height) * f->width + clampi(x + t->dx, f->width);
+        const double q = f->q[at];
+        double w = fmin(t->b, q - before);
+        if (p > 0)
+            w = fmin(w, t->b * (1 + (2 * p - q) / fmin(p, 1)));
+        w = fmax(w, 0);
+        before += t->b;
+        for (int c = 0; c < f->channels; c++)
+            s.colour[c] += w * f->colour[c][at];
+        s.a += w * f->a[at];
+        s.w += w * f->part[at];
+    }
+    return s;
+}
+
+static double own_of(double found, double p)
+{
+    return fmax(0, fmax((1 - found) * clamp01(2 - p), 0.25 - found));
+}
+
+static void put_near(struct field *out, const struct sum *s, int at)
+{
+    if (!(s->a > 0))
+        return;
+    out->q[at] = s->w / s->a;
+    out->a[at] = s->a / out->q[at];
+    for (int c = 0; c < out->channels; c++)
+        out->colour[c][at] = s->colour[c] / out->q[at];
+}
+
+static void near_field(const struct field *in, const struct line l[3], struct field *out)
+{
+    struct field u = field_new(in->width, in->height, in->channels), b = field_new(in->width, in->height, in->channels);
+    for (int at = 0; at < in->width * in->height; at++) {
+        struct sum s = sum_of(in, &l[0], at % in->width, at / in->width, -1);
+        const struct sum v = sum_of(in, &l[1], at % in->width, at / in->width, -1);
+        put_near(&u, &s, at);
+        for (int c = 0; c < in->channels; c++)
+            s.colour[c] += v.colour[c];
+        s.a += v.a;
+        s.w += v.w;
+        put_near(&b, &s, at);
+    }
+    for (int at = 0; at < in->width * in->height; at++) {
+        const struct sum v = sum_of(&u, &l[1], at % in->width, at / in->width, -1);
+        const struct sum w = sum_of(&b, &l[2], at % in->width, at / in->width, -1);
+        for (int c = 0; c < in->channels; c++)
+            out->colour[c][at] = (v.colour[c] + w.colour[c]) / 3;
+        out->a[at] = (v.a + w.a) / 3;
+    }
+    field_free(&u);
+    field_free(&b);
+}
+
+// Blur of premultiplied colours at a far pixel, to plain ones.
+static void far_blur(const struct field *in, const struct line *l, int at, double out[4])
+{
+    const double p = in->q[at];
+    const struct sum s = sum_of(in, l, at % in->width, at / in->width, p);
+    const double o = own_of(s.a, p);
+    for (int c = 0; c < in->channels; c++)
+        out[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
+}
+
+static void far_field(const struct field *in, const struct line l[3], struct field *out)
+{
+    struct field u = field_new(in->width, in->height, in->channels), b = field_new(in->width, in->height, in->channels);
+    const size_t bytes = (size_t)in->width * (size_t)in->height * sizeof(double);
+    memcpy(u.a, in->a, bytes);
+    memcpy(u.q, in->q, bytes);
+    memcpy(b.a, in->a, bytes);
+    memcpy(b.q, in->q, bytes);
+    for (int at = 0; at < in->width * in->height; at++) {
+        double up[4], left[4];
+        if (!(in->q[at] > 0))
+            continue;
+        far_blur(in, &l[0], at, up);
+        far_blur(in, &l[1], at, left);
+        for (int c = 0; c < in->channels; c++) {
+            u.colour[c][at] = up[c] * in->a[at];
+            b.colour[c][at] = (up[c] + left[c]) * in->a[at];
+        }
+    }
+    for (int at = 0; at < in->width * in->height; at++) {
+        double left[4], right[4];
+        if (!(in->q[at] > 0))
+            continue;
+        far_blur(&u, &l[1], at, left);
+        far_blur(&b, &l[2], at, right);
+        for (int c = 0; c < in->channels; c++)
+            out->colour[c][at] = (left[c] + right[c]) / 3;
+    }
+    field_free(&u);
+    field_free(&b);
+}
+
+static void load_full(const struct picture *colour, const float *r, struct field *f, int sign)
+{
+    for (int at = 0; at < f->width * f->height; at++) {
+        f->q[at] = sign * (double)r[at];
+        f->part[at] = 1;
+        f->a[at] = 1 / fmax(fabs(f->q[at]), 1);
+        for (int c = 0; c < f->channels; c++)
+            f->colour[c][at] = colour->plane[c][at] * f->a[at];
+    }
+}
+
+static void load_half(const struct picture *colour, const float *r, struct field *f, int sign)
+{
+    for (int at = 0; at < f->width * f->height; at++) {
+        double sum = 0, q = 0, mean[4] = {0};
+        for (int i = 0; i < 4; i++) {
+            const int x = clampi(at % f->width * 2 + i % 2, colour->width);
+            const int y = clampi(at / f->width * 2 + i / 2, colour->height), from = y * colour->width + x;
+            const double m = fmax(sign * (double)r[from], 0), w = fmin(2 * m, 1);
+            sum += w;
+            q += w * m;
+            for (int c = 0; c < f->channels; c++)
+                mean[c] += w * colour->plane[c][from];
+        }
+        f->q[at] = sum > 0 ? q / sum / 2 : 0;
+        f->part[at] = sum / 4;
+        f->a[at] = sum / 4 / fmax(f->q[at], 1);
+        for (int c = 0; c < f->channels; c++)
+            f->colour[c][at] = mean[c] / 4 / fmax(f->q[at], 1);
+    }
+}
+
+// Near premultiplied, its coverage, far, at a full-resolution pixel.
+static double fields_at(const struct field *near, const struct field *far, const struct field *far_in, int half, int x,
+                        int y, double near_out[4], double far_out[4])
+{
+    double coverage = 0, sum = 0;
+    memset(near_out, 0, 4 * sizeof *near_out);
+    memset(far_out, 0, 4 * sizeof *far_out);
+    for (int i = 0; i < (half ? 4 : 1); i++) {
+        const int u = half ? clampi(i % 2 ? x / 2 + (x % 2 ? 1 : -1) : x / 2, near->width) : x;
+        const int v = half ? clampi(i / 2 ? y / 2 + (y % 2 ? 1 : -1) : y / 2, near->height) : y;
+        const double w = half ? (i % 2 ? 0.25 : 0.75) * (i / 2 ? 0.25 : 0.75) : 1;
+        const int at = v * near->width + u;
+        const double wf = half ? w * clamp01(far_in->q[at]) : 1;
+        coverage += w * near->a[at];
+        sum += wf;
+        for (int c = 0; c < near->channels; c++) {
+            near_out[c] += w * near->colour[c][at];
+            far_out[c] += wf * far->colour[c][at];
+        }
+    }
+    for (int c = 0; c < near->channels && sum > 0; c++)
+        far_out[c] /= sum;
+    return coverage;
+}
+
+struct picture hexagon_reference(const struct picture *colour, const struct picture *r, const struct hf_params *p)
+{
+    static struct line l[3];
+    const int half = p->resolution == HF_RESOLUTION_HALF, n = colour->channels;
+    const int w = half ? (colour->width + 1) / 2 : colour->width, h = half ? (colour->height + 1) / 2 : colour->height;
+    double reach = 0;
+    for (int i = 0; i < r->width * r->height; i++)
+        reach = worse(reach, fabs((double)r->plane[0][i]));
+    for (int i = 0; i < 3; i++)
+        make_line(&l[i], p->blade_rotation + (i == 0 ? 0 : i == 1 ? 240 : 120), p->pixel_aspect, reach);
+    struct field near_in = field_new(w, h, n), far_in = field_new(w, h, n);
+    struct field near = field_new(w, h, n), far = field_new(w, h, n);
+    (half ? load_half : load_full)(colour, r->plane[0], &near_in, -1);
+    (half ? load_half : load_full)(colour, r->plane[0], &far_in, 1);
+    near_field(&near_in, l, &near);
+    far_field(&far_in, l, &far);
+    struct picture out = picture_new(colour->width, colour->height, n);
+    for (int i = 0; i < out.width * out.height; i++) {
+        double nc[4], fc[4];
+        const double q = r->plane[0][i];
+        const double cover = fields_at(&near, &far, &far_in, half, i % out.width, i / out.width, nc, fc);
+        const double left = q < 0 ? own_of(cover, -q) : fmax(0, 1 - cover);
+        for (int c = 0; c < n; c++) {
+            double b = colour->plane[c][i];
+            if (q > 0)
+                b += (half ? clamp01(q / 2) : 1) * (fc[c] - b);
+            out.plane[c][i] = (float)(cover == 0 ? b : (nc[c] + left * b) / (cover + left));
+        }
+    }
+    field_free(&near_in);
+    field_free(&far_in);
+    field_free(&near);
+    field_free(&far);
+    return out;
+}

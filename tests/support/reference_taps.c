@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reference: where the gather samples.
+#include <math.h>
+#include <stdlib.h>
+
+#include "support/reference.h"
+
+static const double pi = 3.14159265358979323846;
+
+// Sousa's polygon: what a radius shrinks to at an angle.
+static double polygon(const struct hf_params *p, double angle)
+{
+    if (p->blades == 0)
+        return 1;
+    const double n = p->blades;
+    const double t = angle - p->blade_rotation * pi / 180;
+    return cos(pi / n) / cos(t - 2 * pi / n * floor((n * t + pi) / (2 * pi)));
+}
+
+static void add_tap(struct reference *r, double radius, double angle)
+{
+    const double scaled = radius * polygon(&r->params, angle) * r->kernel_scale;
+    r->tap_x[r->taps] = scaled * cos(angle) / r->params.pixel_aspect;
+    r->tap_y[r->taps] = scaled * sin(angle);
+    r->taps++;
+}
+
+static void make_rings(struct reference *r)
+{
+    const int rings = (int)fmax(1, ceil(r->reach_y / 2));
+    for (int k = 1; k <= rings; k++)
+        for (int i = 0; i < 8 * k; i++)
+            add_tap(r, r->reach_y * k / rings, 2 * pi * i / (8 * k));
+    r->centre = 1;
+}
+
+// Shirley and Chiu: squares around the centre become circles.
+static void make_grid(struct reference *r)
+{
+    for (int j = 0; j < 12; j++) {
+        for (int i = 0; i < 12; i++) {
+            const double a = 2 * (i + 0.5) / 12 - 1, b = 2 * (j + 0.5) / 12 - 1;
+            double radius, angle;
+            if (fabs(a) > fabs(b)) {
+                radius = a;
+                angle = pi / 4 * (b / a);
+            } else {
+                radius = b;
+                angle = pi / 2 - pi / 4 * (a / b);
+            }
+            if (radius < 0) {
+                radius = -radius;
+                angle += pi;
+            }
+            add_tap(r, r->reach_y * radius, angle);
+        }
+    }
+    r->centre = 0;
+}
+
+void ref_make_taps(struct reference *r)
+{
+    r->tap_x = malloc(sizeof *r->tap_x * REF_MAX_TAPS);
+    r->tap_y = malloc(sizeof *r->tap_y * REF_MAX_TAPS);
+    r->taps = 0;
+    if (r->params.fill == HF_FILL_NONE)
+        make_grid(r);
+    else
+        make_rings(r);
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/scatter_reference.h"
+
+#include <stdlib.h>
+
+// A radius as the nearest of 256 an octave, and half the width of its row dy in 1/256 pixel.
+static double kept_radius(float r)
+{
+    int exponent;
+    const double m = frexp(fmax(r, 0.5), &exponent); // 0.5..1
+    return ldexp(floor(m * 512 + 0.5) / 512, exponent);
+}
+
+static double row_width(double r, int dy)
+{
+    double y[2] = {dy - 0.5, dy + 0.5}, g[2];
+    for (int i = 0; i < 2; i++) {
+        const double t = fmin(fmax(y[i], -r), r);
+        g[i] = (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
+    }
+    const double height = dy == 0 ? 1 : fmin(1, r - (abs(dy) - 0.5));
+    return height <= 0 ? 0 : floor(256 * (g[1] - g[0]) / height + 0.5) / 256;
+}
+
+// What the last row of a disc covers of its height, in sixteenths: that is its weight, 1 for the others.
+static double row_weight(double r, int dy)
+{
+    const double height = fmin(1, r - (abs(dy) - 0.5));
+    return dy == 0 || height >= 1 ? 1 : height <= 0 ? 0 : floor(16 * height + 0.5) / 16;
+}
+
+static double overlap(double a0, double a1, double b0, double b1)
+{
+    return fmax(0, fmin(a1, b1) - fmax(a0, b0));
+}
+
+static void splat(double *sum, const struct picture *c, int x, int y, float radius, double part)
+{
+    const double r = kept_radius(radius);
+    const int reach = (int)ceil(r) + 1, n = c->channels;
+    double area = 0;
+    for (int dy = -reach; dy <= reach; dy++)
+        area += 2 * row_width(r, dy) * row_weight(r, dy);
+    for (int dy = -reach; dy <= reach; dy++)
+        for (int dx = -reach; dx <= reach; dx++) {
+            const int px = x + dx, py = y + dy;
+            if (px < 0 || py < 0 || px >= c->width || py >= c->height)
+                continue;
+            const double w = row_width(r, dy),
+                         share = part * row_weight(r, dy) * overlap(-w, w, dx - 0.5, dx + 0.5) / area;
+            double *out = sum + (size_t)(py * c->width + px) * 5;
+            for (int k = 0; k < n; k++)
+                out[k] += share * c->plane[k][y * c->width + x];
+            out[4] += share;
+        }
+}
+
+static double segment(double d)
+{
+    const double t = fmin(d, 1);
+    return 0.5 + t * (0.63662 + t * t * (-0.10610 - t * t * 0.03052));
+}
+
+static double visible_part(const struct picture *c, double r, int x, int y)
+{
+    return (segment((x + 0.5) / r) + segment((c->width - x - 0.5) / r) - 1) *
+           (segment((y + 0.5) / r) + segment((c->height - y - 0.5) / r) - 1);
+}
+
+static double clamp01(double v)
+{
+    return fmin(fmax(v, 0), 1);
+}
+
+struct picture scatter_reference(const struct picture *c, const float *radius)
+{
+    const int n = c->width * c->height;
+    double *sum[2] = {calloc((size_t)n * 5, sizeof(double)), calloc((size_t)n * 5, sizeof(double))};
+    struct picture out = picture_copy(c);
+    for (int i = 0; i < n; i++)
+        if (fabsf(radius[i]) > 0.5f) {
+            const double own = clamp01(1.5 - fabs((double)radius[i]));
+            splat(sum[radius[i] > 0], c, i % c->width, i / c->width, fabsf(radius[i]), radius[i] > 0 ? 1 : 1 - own);
+        }
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < c->channels; k++) {
+            const double *near = sum[0] + 5 * (size_t)i, *far = sum[1] + 5 * (size_t)i, size = fabs((double)radius[i]);
+            const double own = size <= 0.5 ? 1 : clamp01(1.5 - size), v = c->plane[k][i];
+            const double front = near[4] > 0 ? near[k] / near[4] : v;
+            double back = far[4] > 0 ? far[k] / far[4] : v;
+            double cover = near[4];
+            if (radius[i] < -0.5f)
+                back = front + clamp01(16 * far[4]) * (back - front);
+            if (radius[i] < -0.5f)
+                cover /= visible_part(c, size, i % c->width, i / c->width);
+            const double base = back + own * (v - back);
+            out.plane[k][i] = (float)(base + clamp01(cover) * (front - base));
+        }
+    free(sum[0]);
+    free(sum[1]);
+    return out;
+}
