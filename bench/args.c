@@ -19,19 +19,21 @@ struct option {
                               // order of the enum
     const char *help;
     enum kind kind;
-    size_t offset;     // in struct bench_args, of what the option sets
-    double min, max;   // of a number, inclusive
-    int above_min;     // ... but min itself is excluded
-    int inf;           // inf is accepted
-    size_t given;      // offset of a flag that says that the option was there; 0: none
+    size_t offset;    // in struct bench_args, of what the option sets
+    double min, max;  // of a number, inclusive
+    int above_min;    // ... but min itself is excluded
+    int inf;          // inf is accepted
+    size_t given;     // offset of a flag that says that the option was there; 0: none
 };
 
 _Static_assert(HF_STORAGE_FLOAT == 0 && HF_STORAGE_HALF == 1 && HF_STORAGE_CHAPTER == 2, "order of --storage");
 _Static_assert(HF_FILL_MAX == 0 && HF_FILL_MEAN == 1 && HF_FILL_NONE == 2, "order of --fill");
-_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 &&
-                   HF_ISA_AVX512 == 4 && HF_ISA_NEON == 5, "order of --isa");
-_Static_assert(HF_FORMAT_RGBA32F == 0 && HF_FORMAT_RGB32F == 1 && HF_FORMAT_RGBA16F == 2 &&
-                   HF_FORMAT_R11G11B10F == 3 && HF_FORMAT_PLANAR32F == 4, "order of --in and --out");
+_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 && HF_ISA_AVX512 == 4 &&
+                   HF_ISA_NEON == 5,
+               "order of --isa");
+_Static_assert(HF_FORMAT_RGBA32F == 0 && HF_FORMAT_RGB32F == 1 && HF_FORMAT_RGBA16F == 2 && HF_FORMAT_R11G11B10F == 3 &&
+                   HF_FORMAT_PLANAR32F == 4,
+               "order of --in and --out");
 _Static_assert(sizeof(enum hf_isa) == sizeof(int), "choices are stored as int");
 
 #define FORMATS "rgba32f|rgb32f|rgba16f|r11g11b10f|planar32f"
@@ -42,8 +44,7 @@ static const struct option options[] = {
     {"--size", "WxH", "size of a built-in scene, pixels (1920x1080)", SIZE, AT(width), GIVEN(size_given)},
     {"--scene", "NAME|FILE", "mixed, near, far, both, focus, band:PERCENT, or an EXR file (mixed)", TEXT, AT(scene)},
     {"--images", "DIR", "truth: folder of NAME.exr and NAME.truth.exr (images)", TEXT, AT(images)},
-    {"--frames", "N", "frames to measure (as many as take a few seconds)", COUNT, AT(frames), .min = 1,
-     .max = 1000000},
+    {"--frames", "N", "frames to measure (as many as take a few seconds)", COUNT, AT(frames), .min = 1, .max = 1000000},
     {"--threads", "N", "threads, up to 256; 0: one per processor (0)", COUNT, AT(threads), .max = 256},
     {"--isa", "auto|scalar|sse4.1|avx2|avx512|neon", "instruction set (auto)", CHOICE, AT(isa)},
     {"--engine", "gather|hexagon|scatter|gaussian", "engine (gather)", CHOICE, AT(params.engine)},

@@ -12,9 +12,9 @@
 struct bench_subject {
     struct hf_context *context;
     struct hf_params params;
-    struct bench_image in, out;  // same size
-    struct hf_depth depth;       // rows packed tightly
-    float *scratch;              // a second plane of depth's size
+    struct bench_image in, out;     // same size
+    struct hf_depth depth;          // rows packed tightly
+    float *scratch;                 // a second plane of depth's size
     struct bench_workers *workers;  // as many threads as the context
 };
 
@@ -22,7 +22,7 @@ struct bench_subject {
 struct bench_row {
     double median_ms;  // in the frame whose All is the median, so that the rows of that frame add up
     double min_ms, max_ms;
-    int in;            // pass into which this one is fused, so that its own time is 0; -1: none
+    int in;  // pass into which this one is fused, so that its own time is 0; -1: none
 };
 
 struct bench_result {

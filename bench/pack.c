@@ -11,8 +11,8 @@ static const struct {
     size_t pixel;  // bytes of a pixel in a plane
     int planes;
 } formats[] = {
-    [HF_FORMAT_RGBA32F] = {"rgba32f", 16, 1},       [HF_FORMAT_RGB32F] = {"rgb32f", 12, 1},
-    [HF_FORMAT_RGBA16F] = {"rgba16f", 8, 1},        [HF_FORMAT_R11G11B10F] = {"r11g11b10f", 4, 1},
+    [HF_FORMAT_RGBA32F] = {"rgba32f", 16, 1},    [HF_FORMAT_RGB32F] = {"rgb32f", 12, 1},
+    [HF_FORMAT_RGBA16F] = {"rgba16f", 8, 1},     [HF_FORMAT_R11G11B10F] = {"r11g11b10f", 4, 1},
     [HF_FORMAT_PLANAR32F] = {"planar32f", 4, 3},
 };
 enum { FORMATS = sizeof formats / sizeof *formats };

@@ -10,7 +10,18 @@ typedef struct bench_colour colour;
 typedef struct bench_surface surface;
 
 enum seed {
-    LEAF, LEAF_SHAPE, LEAF_EDGE, WOOD, BRICK, BRICK_GRAIN, WINDOW, LIGHT, LIGHT_COLOUR, TOWN, TOWN_LIT, STREET
+    LEAF,
+    LEAF_SHAPE,
+    LEAF_EDGE,
+    WOOD,
+    BRICK,
+    BRICK_GRAIN,
+    WINDOW,
+    LIGHT,
+    LIGHT_COLOUR,
+    TOWN,
+    TOWN_LIT,
+    STREET
 };
 
 float bench_hash(int x, int y, uint32_t seed)
@@ -202,8 +213,9 @@ static bool house(float u, float v, float aspect, surface *out)
     const float grain = 0.75f + 0.5f * noise(u * 300, v * 300, BRICK_GRAIN);
     const float tint = mortar ? 1 : 0.6f + 0.8f * bench_hash((int)floorf(x), (int)row, BRICK);
     const colour base = mortar ? (colour){0.16f, 0.15f, 0.14f} : (colour){0.22f, 0.095f, 0.06f};
-    out->colour = scale((colour){base.r * (0.35f + light), base.g * (0.4f + 0.8f * light),
-                                 base.b * (0.5f + 0.5f * light)}, tint * grain * 0.7f);
+    out->colour =
+        scale((colour){base.r * (0.35f + light), base.g * (0.4f + 0.8f * light), base.b * (0.5f + 0.5f * light)},
+              tint * grain * 0.7f);
     return true;
 }
 
@@ -263,8 +275,8 @@ static surface far_away(float u, float v)
         return out;
     const float p = clamp01(v / 0.6f), cloud = noise(u * 4, v * 9, STREET);
     out.t = 3;
-    out.colour = (colour){0.006f + 0.10f * p * p * (0.5f + cloud), 0.009f + 0.05f * p * p * (0.5f + cloud),
-                          0.03f + 0.05f * p};
+    out.colour =
+        (colour){0.006f + 0.10f * p * p * (0.5f + cloud), 0.009f + 0.05f * p * p * (0.5f + cloud), 0.03f + 0.05f * p};
     return out;
 }
 

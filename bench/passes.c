@@ -50,8 +50,13 @@ int bench_passes(struct bench_args *args, struct bench_error *error)
             bench_fail(error, "%s", log.text);
     }
     if (!err) {
-        const struct bench_run run = {"passes", args, scene.width, scene.height, hf_context_threads(subject.context),
-                                      hf_context_isa(subject.context), &result};
+        const struct bench_run run = {"passes",
+                                      args,
+                                      scene.width,
+                                      scene.height,
+                                      hf_context_threads(subject.context),
+                                      hf_context_isa(subject.context),
+                                      &result};
         err = bench_write_report(args, table, json, &run, error);
     }
     bench_subject_close(&subject);

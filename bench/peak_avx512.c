@@ -23,4 +23,4 @@ static float run(long n)
     return _mm512_cvtss_f32(sum);
 }
 
-const struct bench_peak bench_peak_avx512 = {"avx512", 2 * LANES * CHAINS, run};
+const struct bench_peak bench_peak_avx512 = {"avx512", 2 * LANES *CHAINS, run};

@@ -24,4 +24,4 @@ static float run(long n)
     return sum[0];
 }
 
-const struct bench_peak bench_peak_c = {"scalar", 2 * LANES * CHAINS, run};
+const struct bench_peak bench_peak_c = {"scalar", 2 * LANES *CHAINS, run};

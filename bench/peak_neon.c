@@ -24,4 +24,4 @@ static float run(long n)
     return vgetq_lane_f32(sum, 0);
 }
 
-const struct bench_peak bench_peak_neon = {"neon", 2 * LANES * CHAINS, run};
+const struct bench_peak bench_peak_neon = {"neon", 2 * LANES *CHAINS, run};

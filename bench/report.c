@@ -69,8 +69,8 @@ static void table_machine(FILE *out, const struct bench_run *run)
     fprintf(out, "%s storage, %s to %s, radius %g, %d frames, %.1f MB held; hyperfocal %s, %s\n",
             storage[run->args->params.storage], bench_format_name(run->args->in), bench_format_name(run->args->out),
             r->stats.max_radius, r->frames, (double)r->stats.memory * 1e-6, hf_version(), compiler);
-    fprintf(out, "memcpy %.3f ms, peak %.1f GFLOP/s, cost %.1f MFLOP (All x peak), All / memcpy %.2f\n",
-            r->memcpy_ms, r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
+    fprintf(out, "memcpy %.3f ms, peak %.1f GFLOP/s, cost %.1f MFLOP (All x peak), All / memcpy %.2f\n", r->memcpy_ms,
+            r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
 }
 
 // The chapter timed the gather alone, at one size.
@@ -84,7 +84,8 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     const struct bench_result *r = run->result;
     const double all = r->all.median_ms;
     const int gather = has_gtx660(r);
-    fprintf(out, "%-16s %9s %7s%s %9s %9s\n", "Pass", "ms", "of All", gather ? "   GTX 660    ratio" : "", "min", "max");
+    fprintf(out, "%-16s %9s %7s%s %9s %9s\n", "Pass", "ms", "of All", gather ? "   GTX 660    ratio" : "", "min",
+            "max");
     for (int p = 0; p < hf_pass_count(r->stats.engine); p++) {
         const struct bench_row *row = &r->pass[p];
         table_row(out, hf_pass_name(r->stats.engine, p), row->median_ms, all, gather ? gtx660_ms[p] : 0);
@@ -149,12 +150,9 @@ static void json_settings(FILE *out, const struct bench_run *run)
     const struct {
         const char *name;
         int value;
-    } flags[] = {{"faithful", a->params.faithful},
-                 {"deterministic", a->params.deterministic},
-                 {"no_skip", a->params.no_skip},
-                 {"karis", a->params.karis},
-                 {"bicubic", a->params.bicubic},
-                 {"per_pixel_kernel", a->params.per_pixel_kernel}};
+    } flags[] = {{"faithful", a->params.faithful}, {"deterministic", a->params.deterministic},
+                 {"no_skip", a->params.no_skip},   {"karis", a->params.karis},
+                 {"bicubic", a->params.bicubic},   {"per_pixel_kernel", a->params.per_pixel_kernel}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         fprintf(out, "  \"%s\": %s,\n", flags[i].name, flags[i].value ? "true" : "false");
 }
@@ -186,8 +184,8 @@ void bench_report_json(FILE *out, const struct bench_run *run)
     fputs("  \"passes\": [", out);
     for (int p = 0; p < hf_pass_count(r->stats.engine); p++) {
         const struct bench_row *row = &r->pass[p];
-        fprintf(out, "%s\n    {\"name\": \"%s\", \"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f",
-                p ? "," : "", hf_pass_name(r->stats.engine, p), row->median_ms, row->min_ms, row->max_ms);
+        fprintf(out, "%s\n    {\"name\": \"%s\", \"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", p ? "," : "",
+                hf_pass_name(r->stats.engine, p), row->median_ms, row->min_ms, row->max_ms);
         if (has_gtx660(r))
             fprintf(out, ", \"gtx660_ms\": %g", gtx660_ms[p]);
         if (row->in >= 0)
@@ -195,8 +193,8 @@ void bench_report_json(FILE *out, const struct bench_run *run)
         fputc('}', out);
     }
     fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n  \"planning_ms\": %.6f,\n", r->overhead_ms, r->planning_ms);
-    fprintf(out, "  \"all\": {\"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f",
-            r->all.median_ms, r->all.min_ms, r->all.max_ms);
+    fprintf(out, "  \"all\": {\"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", r->all.median_ms, r->all.min_ms,
+            r->all.max_ms);
     if (has_gtx660(r))
         fprintf(out, ", \"gtx660_ms\": %g", gtx660_all_ms);
     fputs("}\n}\n", out);

@@ -11,8 +11,8 @@
 struct bench_run {
     const char *command;  // "passes"
     const struct bench_args *args;
-    int width, height;    // of the scene
-    int threads;          // that were used
+    int width, height;  // of the scene
+    int threads;        // that were used
     enum hf_isa isa;
     const struct bench_result *result;
 };

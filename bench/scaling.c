@@ -14,11 +14,11 @@ enum {
     SIZES = sizeof sizes / sizeof *sizes,
     SHARES = sizeof shares / sizeof *shares,
     KINDS = sizeof kinds / sizeof *kinds,
-    HD = 2,      // place of 1920x1080
+    HD = 2,  // place of 1920x1080
     // A point is measured in so many rounds over all of a size, as other work on the machine comes and goes: ratios are
     // of what was measured within seconds. Its time is the middle of its rounds' medians.
     ROUNDS = 5,
-    LEAST = 2,   // frames of a point in a round
+    LEAST = 2,  // frames of a point in a round
 };
 static const double seconds = 0.06;  // of a point in a round
 
@@ -93,17 +93,19 @@ static void json_point(FILE *out, const struct scaling *r, int i, int k, int j)
 {
     const struct size_result *s = &r->size[i];
     const struct point *p = &s->point[k][j];
-    fprintf(out,
-            "    {\"width\": %d, \"height\": %d, \"kind\": \"%s\", \"share\": %d, \"median_ms\": %.6f, \"min_ms\": %.6f, "
-            "\"max_ms\": %.6f, \"ms_per_megapixel\": %.6f, \"memcpy_ms\": %.6f, \"memory\": %zu}",
-            s->width, s->height, kinds[k], shares[j], p->all.median_ms, p->all.min_ms, p->all.max_ms,
-            p->all.median_ms / megapixels(s), s->memcpy_ms, p->memory);
+    fprintf(
+        out,
+        "    {\"width\": %d, \"height\": %d, \"kind\": \"%s\", \"share\": %d, \"median_ms\": %.6f, \"min_ms\": %.6f, "
+        "\"max_ms\": %.6f, \"ms_per_megapixel\": %.6f, \"memcpy_ms\": %.6f, \"memory\": %zu}",
+        s->width, s->height, kinds[k], shares[j], p->all.median_ms, p->all.min_ms, p->all.max_ms,
+        p->all.median_ms / megapixels(s), s->memcpy_ms, p->memory);
 }
 
 static void json(FILE *out, const void *what)
 {
     const struct scaling *r = what;
-    fprintf(out, "{\n  \"command\": \"scaling\",\n  \"engine\": \"%s\",\n  \"threads\": %d,\n  \"isa\": \"%s\",\n"
+    fprintf(out,
+            "{\n  \"command\": \"scaling\",\n  \"engine\": \"%s\",\n  \"threads\": %d,\n  \"isa\": \"%s\",\n"
             "  \"max_radius\": %g,\n  \"peak_memory\": %.0f,\n  \"points\": [\n",
             hf_engine_name(r->args->params.engine), r->threads, hf_isa_name(r->isa), r->max_radius, peak_memory());
     const char *comma = "";
@@ -116,7 +118,8 @@ static void json(FILE *out, const void *what)
     fputs("\n  ],\n  \"sizes\": [\n", out);
     for (int i = 0; i < r->count; i++) {
         const struct size_result *s = &r->size[i];
-        fprintf(out, "    {\"width\": %d, \"height\": %d, \"memcpy_ms\": %.6f, \"ten_over_all\": "
+        fprintf(out,
+                "    {\"width\": %d, \"height\": %d, \"memcpy_ms\": %.6f, \"ten_over_all\": "
                 "{\"near\": %.4f, \"far\": %.4f, \"both\": %.4f}, \"per_megapixel_over_1080p\": %.4f}%s\n",
                 s->width, s->height, s->memcpy_ms, tenth(s, 0), tenth(s, 1), tenth(s, 2), growth(r, i),
                 i + 1 < r->count ? "," : "");
@@ -206,7 +209,7 @@ int bench_scaling(struct bench_args *args, struct bench_error *error)
         r.count++;
     }
     if (!r.count)
-        return bench_fail(error, "--size %dx%d is less than the smallest, %dx%d", args->width, args->height, sizes[0][0],
-                          sizes[0][1]);
+        return bench_fail(error, "--size %dx%d is less than the smallest, %dx%d", args->width, args->height,
+                          sizes[0][0], sizes[0][1]);
     return bench_write_report(args, table, json, &r, error);
 }

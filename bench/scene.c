@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const bench_scene_names[] = {"mixed", "near", "far", "both", "focus", "band:P", "band-near:P", "band-far:P",
-                                         "band-both:P", NULL};
+const char *const bench_scene_names[] = {"mixed",  "near",        "far",        "both",        "focus",
+                                         "band:P", "band-near:P", "band-far:P", "band-both:P", NULL};
 
 enum scene_kind { MIXED, NEAR, FAR, BOTH, FOCUS, BAND, BAND_NEAR, BAND_FAR, BAND_BOTH, KINDS };
 

@@ -9,14 +9,14 @@
 static void keep_message(void *cookie, enum hf_log_level level, const char *message)
 {
     if (level == HF_LOG_ERROR)
-        snprintf(((struct bench_error *)cookie)->text, sizeof ((struct bench_error *)cookie)->text, "%s", message);
+        snprintf(((struct bench_error *)cookie)->text, sizeof((struct bench_error *)cookie)->text, "%s", message);
 }
 
 int bench_subject_open(struct bench_subject *s, const struct bench_args *args, const struct bench_scene *scene,
                        struct bench_error *log, struct bench_error *error)
 {
-    const struct hf_config config = {.threads = args->threads, .isa = args->isa, .log = keep_message,
-                                     .log_cookie = log};
+    const struct hf_config config = {
+        .threads = args->threads, .isa = args->isa, .log = keep_message, .log_cookie = log};
     const int err = hf_open(&s->context, &config);
     if (err)
         return bench_fail(error, "%s", *log->text ? log->text : hf_error_string(err));

@@ -11,8 +11,8 @@
 static const struct {
     const char *name;
     double none, blender, blender_s, gegl;
-} scenes[] = {{"lights", 14.21, 25.85, 8.3, 25.37}, {"fence", 19.85, 21.51, 2.7, 24.36},
-              {"foliage", 22.11, 27.76, 16.9, 29.34}};
+} scenes[] = {
+    {"lights", 14.21, 25.85, 8.3, 25.37}, {"fence", 19.85, 21.51, 2.7, 24.36}, {"foliage", 22.11, 27.76, 16.9, 29.34}};
 enum { SCENES = sizeof scenes / sizeof *scenes, LEAST = 3 };
 
 struct truth {
@@ -52,8 +52,8 @@ static int set_reach(struct bench_subject *s, const struct bench_args *args, str
     const int err = hf_plan(s->context, &s->out.image, &s->in.image, &s->depth, &p, &r);
     if (err)
         return bench_fail(error, "planning failed: %s", hf_error_string(err));
-    s->params.max_radius = args->max_radius_given ? args->params.max_radius
-                                                  : fminf(256, ceilf(fmaxf(r.near_radius, r.far_radius)));
+    s->params.max_radius =
+        args->max_radius_given ? args->params.max_radius : fminf(256, ceilf(fmaxf(r.near_radius, r.far_radius)));
     return 0;
 }
 
@@ -89,7 +89,8 @@ static int measure_scene(struct truth *t, int i, struct bench_error *log, struct
     if (!err)
         err = bench_scene_read(&want, path, 0, NULL, error);
     if (!err && (want.width != scene.width || want.height != scene.height))
-        err = bench_fail(error, "%s is %dx%d, its scene %dx%d", path, want.width, want.height, scene.width, scene.height);
+        err =
+            bench_fail(error, "%s is %dx%d, its scene %dx%d", path, want.width, want.height, scene.width, scene.height);
     if (!err)
         err = bench_subject_open(&subject, &args, &scene, log, error);
     if (!err) {
@@ -131,7 +132,8 @@ static void table(FILE *out, const void *what)
     fprintf(out, "\n%-16s", "GEGL lens-blur");
     for (int i = 0; i < SCENES; i++)
         fprintf(out, " %9.2f %10s", scenes[i].gegl, "");
-    fprintf(out, "\n\n%d threads; the last three as measured by others on two threads, GEGL in about 300 ms\n", t->threads);
+    fprintf(out, "\n\n%d threads; the last three as measured by others on two threads, GEGL in about 300 ms\n",
+            t->threads);
 }
 
 static void json(FILE *out, const void *what)
@@ -140,9 +142,12 @@ static void json(FILE *out, const void *what)
     fprintf(out, "{\n  \"command\": \"truth\",\n  \"threads\": %d,\n  \"results\": [\n", t->threads);
     for (int i = 0; i < SCENES; i++)
         for (int e = 0; e < HF_ENGINE_COUNT; e++)
-            fprintf(out, "    {\"scene\": \"%s\", \"engine\": \"%s\", \"psnr_db\": %.4f, \"linear_rmse\": %.6g, \"median_ms\": "
-                    "%.4f}%s\n", scenes[i].name, hf_engine_name((enum hf_engine)e), t->at[i][e].psnr, t->at[i][e].rmse,
-                    t->at[i][e].ms, i + 1 < SCENES || e + 1 < HF_ENGINE_COUNT ? "," : "");
+            fprintf(
+                out,
+                "    {\"scene\": \"%s\", \"engine\": \"%s\", \"psnr_db\": %.4f, \"linear_rmse\": %.6g, \"median_ms\": "
+                "%.4f}%s\n",
+                scenes[i].name, hf_engine_name((enum hf_engine)e), t->at[i][e].psnr, t->at[i][e].rmse, t->at[i][e].ms,
+                i + 1 < SCENES || e + 1 < HF_ENGINE_COUNT ? "," : "");
     fputs("  ]\n}\n", out);
 }
 

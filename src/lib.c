@@ -64,8 +64,10 @@ static int check_config(const struct hf_config *g)
     }
     if (g->tile_width < 0 || g->tile_width > 65536 || g->tile_width % 16 || g->tile_height < 0 ||
         g->tile_height > 65536 || (g->tile_height && g->tile_height < 16)) {
-        say(g, HF_LOG_ERROR, "config.tile_width is %d and tile_height %d; they must be 0 or 16 to 65536, the width "
-            "a multiple of 16", g->tile_width, g->tile_height);
+        say(g, HF_LOG_ERROR,
+            "config.tile_width is %d and tile_height %d; they must be 0 or 16 to 65536, the width "
+            "a multiple of 16",
+            g->tile_width, g->tile_height);
         return HF_ERR_ARG;
     }
     if (!hf_isa_name(g->isa)) {
@@ -213,8 +215,8 @@ int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_
     return run(c, dst, src, depth, params, 0);
 }
 
-int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-            const struct hf_depth *depth, const struct hf_params *params, struct hf_report *report)
+int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
+            const struct hf_params *params, struct hf_report *report)
 {
     const int err = run(c, dst, src, depth, params, 1);
     if (report)

@@ -95,9 +95,8 @@ struct band {
 static struct band band_of(const struct hf_params *p)
 {
     const float focus = p->focus_distance, range = derive(p->range, focus / 2);
-    return (struct band){
-        derive(p->near_begin, focus - range > 0 ? focus - range : 0), derive(p->near_end, focus),
-        derive(p->far_begin, focus), derive(p->far_end, focus + range)};
+    return (struct band){derive(p->near_begin, focus - range > 0 ? focus - range : 0), derive(p->near_end, focus),
+                         derive(p->far_begin, focus), derive(p->far_end, focus + range)};
 }
 
 static int check_range_model(const struct hf_params *p, char message[HF_MESSAGE])
@@ -178,9 +177,8 @@ static void depth_planes(const struct hf_depth *depth, float *near, float *far)
 
 static int check_between(const char *name, float value, float least, float most, char message[HF_MESSAGE])
 {
-    return value >= least && value <= most
-               ? HF_OK
-               : bad(message, "%s is %g; it must be %g to %g", name, value, least, most);
+    return value >= least && value <= most ? HF_OK
+                                           : bad(message, "%s is %g; it must be %g to %g", name, value, least, most);
 }
 
 static int check_scatter(const struct hf_params *p, char message[HF_MESSAGE])
@@ -192,8 +190,10 @@ static int check_scatter(const struct hf_params *p, char message[HF_MESSAGE])
     const struct {
         const char *name;
         float value, least, most;
-    } ranges[] = {{"blade_roundness", p->blade_roundness, 0, 1}, {"ring", p->ring, 0, 0.95f},
-                  {"chromatic", p->chromatic, -0.5f, 0.5f}, {"cat_eye", p->cat_eye, 0, 1},
+    } ranges[] = {{"blade_roundness", p->blade_roundness, 0, 1},
+                  {"ring", p->ring, 0, 0.95f},
+                  {"chromatic", p->chromatic, -0.5f, 0.5f},
+                  {"cat_eye", p->cat_eye, 0, 1},
                   {"squeeze", p->squeeze, 0.25f, 4}};
     for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
         if (check_between(ranges[i].name, ranges[i].value, ranges[i].least, ranges[i].most, message))
@@ -322,16 +322,30 @@ static void set_depth_blend(struct hf_setup *s, const struct hf_depth *depth, fl
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
                    const struct hf_depth *depth, const struct hf_params *p, struct hf_taps *taps)
 {
-    *s = (struct hf_setup){
-        .width = src->width, .height = src->height,
-        .half_width = (src->width + 1) / 2, .half_height = (src->height + 1) / 2,
-        .engine = p->engine, .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
-        .storage = p->storage, .colour_stats = p->colour_stats, .faithful = p->faithful, .no_skip = p->no_skip,
-        .karis = p->karis,
-        .per_pixel_kernel = p->per_pixel_kernel, .bicubic = p->bicubic, .fill = p->fill,
-        .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP, .taps = taps, .rings = p->rings, .pixel_aspect = p->pixel_aspect,
-        .resolution = p->resolution, .rotation = p->blade_rotation, .uniform = p->uniform,
-        .iterations = p->iterations, .sigma = p->sigma, .params = p};
+    *s = (struct hf_setup){.width = src->width,
+                           .height = src->height,
+                           .half_width = (src->width + 1) / 2,
+                           .half_height = (src->height + 1) / 2,
+                           .engine = p->engine,
+                           .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
+                           .storage = p->storage,
+                           .colour_stats = p->colour_stats,
+                           .faithful = p->faithful,
+                           .no_skip = p->no_skip,
+                           .karis = p->karis,
+                           .per_pixel_kernel = p->per_pixel_kernel,
+                           .bicubic = p->bicubic,
+                           .fill = p->fill,
+                           .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP,
+                           .taps = taps,
+                           .rings = p->rings,
+                           .pixel_aspect = p->pixel_aspect,
+                           .resolution = p->resolution,
+                           .rotation = p->blade_rotation,
+                           .uniform = p->uniform,
+                           .iterations = p->iterations,
+                           .sigma = p->sigma,
+                           .params = p};
     hf_setup_depth(s, depth, p->pixel_aspect);
     s->max_radius = radius_limit(s, p);
     struct hf_params focused = *p;
@@ -348,8 +362,8 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
     const int no_coc = s->near_i == 0 && s->far_i == 0 && !(s->uniform && p->engine == HF_ENGINE_HEXAGON);
     if (s->sigma > 0)
         s->iterations = 0;
-    const int no_blur = p->engine == HF_ENGINE_GAUSSIAN && s->resolution == HF_RESOLUTION_FULL && s->iterations == 0 &&
-                        s->sigma == 0;
+    const int no_blur =
+        p->engine == HF_ENGINE_GAUSSIAN && s->resolution == HF_RESOLUTION_FULL && s->iterations == 0 && s->sigma == 0;
     if (s->max_radius == 0 || no_coc || no_blur)
         s->blend = 0;
 }

@@ -119,10 +119,10 @@ enum hf_format {
 // A picture in the caller's memory. Any stride of at least one row's bytes, or of at most minus that (bottom-up
 // pictures: data points to the top row). What lies between rows is neither read nor written.
 struct hf_image {
-    int width, height;       // pixels, 1..65536 each
+    int width, height;  // pixels, 1..65536 each
     enum hf_format format;
-    void *data[4];           // top left pixel. PLANAR32F: R, G, B, A (A may be NULL: no alpha). Others: data[0]
-    ptrdiff_t stride[4];     // bytes from one row to the next, one per plane in use
+    void *data[4];        // top left pixel. PLANAR32F: R, G, B, A (A may be NULL: no alpha). Others: data[0]
+    ptrdiff_t stride[4];  // bytes from one row to the next, one per plane in use
 };
 
 // What the numbers of a depth buffer mean; z is view depth. "No surface" counts as infinitely far.
@@ -139,9 +139,9 @@ enum hf_depth_type {
 // Depth of a picture, same width and height. It is never written. A NaN counts as the largest finite depth among
 // its 8 neighbours, else as no surface.
 struct hf_depth {
-    const float *data;       // top left pixel
-    ptrdiff_t stride;        // bytes from one row to the next, as for hf_image
-    enum hf_depth_type type; // default (0): HF_DEPTH_VIEW
+    const float *data;        // top left pixel
+    ptrdiff_t stride;         // bytes from one row to the next, as for hf_image
+    enum hf_depth_type type;  // default (0): HF_DEPTH_VIEW
     // Clip planes, scene units, for NDC_*: 0 < near_plane < far_plane. far_plane may be INFINITY. The gaussian engine
     // measures depth by them, whatever the type: 0 (default) means 1 and 100 times that.
     float near_plane, far_plane;
@@ -344,18 +344,18 @@ HF_API const char *hf_pass_name(enum hf_engine engine, int pass);
 
 // What the last hf_render of a context did.
 struct hf_stats {
-    double total_ms;                     // wall time of the call
-    enum hf_engine engine;               // that rendered it; numbers its passes
-    double pass_ms[HF_MAX_PASSES];       // time in each pass, summed over the threads / number of threads
-    uint32_t tiles_run[HF_MAX_PASSES];   // tiles that ran the pass ...
-    uint32_t tiles_all[HF_MAX_PASSES];   // ... of how many
+    double total_ms;                                 // wall time of the call
+    enum hf_engine engine;                           // that rendered it; numbers its passes
+    double pass_ms[HF_MAX_PASSES];                   // time in each pass, summed over the threads / number of threads
+    uint32_t tiles_run[HF_MAX_PASSES];               // tiles that ran the pass ...
+    uint32_t tiles_all[HF_MAX_PASSES];               // ... of how many
     uint64_t near_pixels, sharp_pixels, far_pixels;  // pixels by their own CoC: n > 0, both 0, f > 0
-    uint64_t colour_repaired;            // colour samples (channels of pixels) that were NaN or infinite
-    uint64_t depth_repaired;             // depth samples that were NaN
-    uint64_t no_surface;                 // pixels without a surface
-    uint64_t clamped;                    // output samples outside the range of their format, and clamped to it
-    size_t memory;                       // bytes that the context holds
-    float max_radius;                    // the largest CoC radius that was used, pixels
+    uint64_t colour_repaired;                        // colour samples (channels of pixels) that were NaN or infinite
+    uint64_t depth_repaired;                         // depth samples that were NaN
+    uint64_t no_surface;                             // pixels without a surface
+    uint64_t clamped;  // output samples outside the range of their format, and clamped to it
+    size_t memory;     // bytes that the context holds
+    float max_radius;  // the largest CoC radius that was used, pixels
 };
 
 // Copy the statistics of the last frame. Zeros before the first.
@@ -367,23 +367,23 @@ enum hf_tile { HF_TILE_SHARP, HF_TILE_NEAR, HF_TILE_FAR, HF_TILE_BOTH };
 // A pass in a plan: on how many tiles it runs, and what it costs.
 struct hf_pass_report {
     const char *name;
-    const char *skipped;    // why the other tiles do without; NULL if all run
-    uint32_t run, all;      // tiles, or chunks of the first sweep
-    double predicted_ms;    // time in the pass over the number of threads, from earlier frames or a table
-    double ms;              // what it was; 0 in a plan that has not run
+    const char *skipped;  // why the other tiles do without; NULL if all run
+    uint32_t run, all;    // tiles, or chunks of the first sweep
+    double predicted_ms;  // time in the pass over the number of threads, from earlier frames or a table
+    double ms;            // what it was; 0 in a plan that has not run
 };
 
 // What a frame calls for.
 struct hf_report {
     enum hf_engine engine;  // the settings in use: what was asked for, or what a budget left of it
     enum hf_resolution resolution;
-    int rings;              // of taps, gather; 0 for the others
-    int budget_step;        // 0: as asked for; each step is cheaper
+    int rings;        // of taps, gather; 0 for the others
+    int budget_step;  // 0: as asked for; each step is cheaper
 
     int tile_width, tile_height;  // full-resolution pixels
     int columns, rows;            // of tiles
-    const uint8_t *tiles;         // columns * rows of enum hf_tile, from the top left; lives until the context's next call
-    uint32_t tile_count[4];       // by enum hf_tile
+    const uint8_t *tiles;    // columns * rows of enum hf_tile, from the top left; lives until the context's next call
+    uint32_t tile_count[4];  // by enum hf_tile
     int passes;
     struct hf_pass_report pass[HF_MAX_PASSES];
 
@@ -410,18 +410,17 @@ HF_API void hf_get_report(const struct hf_context *c, struct hf_report *report);
 
 // One intermediate buffer, for looking at and for tests: planes of floats.
 struct hf_buffer {
-    const char *name;       // gather: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far,
-                            // nearfill, farfill
-    int width, height;      // full, half or quarter resolution
-    int channels;           // 1..4: near and far CoC, one CoC, or R, G, B and perhaps A
+    const char *name;   // gather: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far,
+                        // nearfill, farfill
+    int width, height;  // full, half or quarter resolution
+    int channels;       // 1..4: near and far CoC, one CoC, or R, G, B and perhaps A
     const float *data[4];
-    ptrdiff_t stride;       // bytes from one row to the next, the same for all channels
+    ptrdiff_t stride;  // bytes from one row to the next, the same for all channels
 };
 
 // From now on call fn with every intermediate buffer of each frame, after it; NULL ends it. The frame then runs as
 // with no_skip, pass by pass over whole buffers: same bits, more time and memory. The buffers live until fn returns.
-HF_API void hf_set_dump(struct hf_context *c, void (*fn)(void *cookie, const struct hf_buffer *buffer),
-                        void *cookie);
+HF_API void hf_set_dump(struct hf_context *c, void (*fn)(void *cookie, const struct hf_buffer *buffer), void *cookie);
 
 #ifdef __cplusplus
 }

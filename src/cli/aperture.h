@@ -7,7 +7,7 @@
 
 struct cli_aperture {
     struct hf_image image;
-    float *samples; // owns its pixels
+    float *samples;  // owns its pixels
 };
 
 // Read the file, if there is one, and enter it in args->params. Returns 0 or an exit status with *error filled.

@@ -13,8 +13,8 @@ int cli_is_exr(const char *path)
 static void set_defaults(struct cli_args *args)
 {
     *args = (struct cli_args){.params = hf_default_params};
-    float *const unset[] = {&args->focus,        &args->range,     &args->strength,  &args->near_begin,
-                            &args->near_end,     &args->far_begin, &args->far_end,   &args->fstop,
+    float *const unset[] = {&args->focus,        &args->range,        &args->strength,   &args->near_begin,
+                            &args->near_end,     &args->far_begin,    &args->far_end,    &args->fstop,
                             &args->focal_length, &args->sensor_width, &args->world_unit, &args->near_plane,
                             &args->far_plane};
     for (size_t i = 0; i < sizeof(unset) / sizeof(unset[0]); i++)
@@ -65,8 +65,7 @@ static int parse_input(struct cli_args *args, const char *word, struct cli_error
     if (word[0] == '\0')
         return cli_fail(error, -1, "INPUT: '' is empty, it must be a file name");
     if (args->input)
-        return cli_fail(error, -1, "'%s' is a second INPUT after '%s', but there can be only one", word,
-                        args->input);
+        return cli_fail(error, -1, "'%s' is a second INPUT after '%s', but there can be only one", word, args->input);
     args->input = word;
     return 0;
 }
@@ -117,16 +116,17 @@ static int check_model(const struct cli_args *args, struct cli_error *error)
         return cli_fail(error, -1, "--%s cannot be used with --depth-type coc, which holds the blur already",
                         range ? range : lens);
     if (range && lens)
-        return cli_fail(error, -1, "--%s and --%s cannot be given together: one chooses the range model, the other "
-                        "the lens", range, lens);
+        return cli_fail(error, -1,
+                        "--%s and --%s cannot be given together: one chooses the range model, the other "
+                        "the lens",
+                        range, lens);
     if (args->focus_given && args->focus_at_given)
         return cli_fail(error, -1, "--focus and --focus-at cannot be given together");
     if (args->near_begin > args->near_end)
         return cli_fail(error, -1, "--near-begin %g must not be more than --near-end %g", args->near_begin,
                         args->near_end);
     if (args->far_begin > args->far_end)
-        return cli_fail(error, -1, "--far-begin %g must not be more than --far-end %g", args->far_begin,
-                        args->far_end);
+        return cli_fail(error, -1, "--far-begin %g must not be more than --far-end %g", args->far_begin, args->far_end);
     return check_depth(args, error);
 }
 
@@ -162,11 +162,15 @@ static int check_engine(const struct cli_args *args, struct cli_error *error)
                             rules[i].engines, hf_engine_name(p->engine));
     const int plain = !args->aperture_file && p->ring == 0 && p->blade_roundness == 0;
     if (args->aperture && gather && (!plain || (p->blades && (p->blades < 5 || p->blades > 9))))
-        return cli_fail(error, -1, "--aperture: '%s' is not an aperture of the gather engine, which takes disc or "
-                        "ngon:N[:0[:DEGREES]] with 5 to 9 sides", args->aperture);
+        return cli_fail(error, -1,
+                        "--aperture: '%s' is not an aperture of the gather engine, which takes disc or "
+                        "ngon:N[:0[:DEGREES]] with 5 to 9 sides",
+                        args->aperture);
     if (args->aperture && hexagon && (!plain || (p->blades != 6)))
-        return cli_fail(error, -1, "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
-                        "ngon:6[:0[:DEGREES]]", args->aperture);
+        return cli_fail(error, -1,
+                        "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
+                        "ngon:6[:0[:DEGREES]]",
+                        args->aperture);
     if (args->aperture && gaussian)
         return cli_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon and scatter",
                         args->aperture);

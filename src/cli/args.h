@@ -41,13 +41,13 @@ struct cli_args {
     const char *aperture;       // as given
     const char *aperture_file;  // NULL: the shape in params
 
-    const char *views;       // NULL: all, else names with commas
+    const char *views;  // NULL: all, else names with commas
     const char *compression;
     const char *dump_dir;
     int explain;
     const char *explain_image;
     int json;
-    const char *json_file;   // NULL: stdout
+    const char *json_file;  // NULL: stdout
     int threads;
     enum hf_isa isa;
 };
@@ -60,17 +60,17 @@ typedef int cli_parse(struct cli_args *args, const struct cli_option *option, co
 
 // One row of the table.
 struct cli_option {
-    const char *name;         // without the dashes
-    char letter;              // short form, 0: none
+    const char *name;  // without the dashes
+    char letter;       // short form, 0: none
     enum cli_group group;
     const char *placeholder;  // of the value; NULL: takes none; "[FILE]": may have one. Of a choice the very list
                               // of words that are accepted, "a|b"
     const char *help;
     cli_parse *parse;
-    size_t offset;            // in struct cli_args, of what parse sets
-    float min, max;           // of a number, inclusive
-    int above_min;            // ... but min itself is excluded
-    int inf;                  // inf is accepted
+    size_t offset;   // in struct cli_args, of what parse sets
+    float min, max;  // of a number, inclusive
+    int above_min;   // ... but min itself is excluded
+    int inf;         // inf is accepted
 };
 
 extern const struct cli_option cli_options[];

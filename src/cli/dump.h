@@ -7,7 +7,7 @@
 
 struct cli_dump {
     const char *dir;
-    char prefix[80];         // "left." when the frame has several views
+    char prefix[80];  // "left." when the frame has several views
     int failed;
     struct cli_error error;  // the first one
 };

@@ -39,8 +39,8 @@ static void print_settings(FILE *out, const struct hf_report *r)
 static void print_report(FILE *out, const struct hf_report *r, int ran)
 {
     print_settings(out, r);
-    fprintf(out, "  %-18s %7s %9s %13s %12s   %s\n", "pass", "runs on", "skips", "predicted ms", ran ? "measured ms" : "",
-            "because");
+    fprintf(out, "  %-18s %7s %9s %13s %12s   %s\n", "pass", "runs on", "skips", "predicted ms",
+            ran ? "measured ms" : "", "because");
     for (int i = 0; i < r->passes; i++) {
         const struct hf_pass_report *p = &r->pass[i];
         fprintf(out, "  %-18s %7u %9u %13.3f ", p->name, p->run, p->all - p->run, p->predicted_ms);

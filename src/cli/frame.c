@@ -33,8 +33,7 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, s
     if (!hf_isa_available(args->isa))
         return cli_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
                         isa);
-    const struct hf_config config = {
-        .threads = args->threads, .isa = args->isa, .log = on_log, .log_cookie = session};
+    const struct hf_config config = {.threads = args->threads, .isa = args->isa, .log = on_log, .log_cookie = session};
     const int status = hf_open(&session->context, &config);
     if (status == HF_OK)
         return 0;
@@ -119,8 +118,8 @@ static int read_colour(struct cli_frame *frame, struct cli_view *v, struct cli_e
 }
 
 // All that is needed to render a view; *image is its colour.
-static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
-                     struct hf_image *image, struct cli_error *error)
+static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
+                     struct cli_error *error)
 {
     int status = v->depth ? 0 : read_depth(frame, v, error);
     if (!status)
@@ -170,8 +169,7 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     return !status && frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : status;
 }
 
-static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
-                     struct cli_error *error)
+static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct cli_error *error)
 {
     struct hf_image image;
     int status = load_view(frame, v, session, &image, error);
@@ -218,8 +216,8 @@ int cli_frame_write(struct cli_frame *frame, struct cli_error *error)
             results[i].planes[c] = frame->views[i].planes[c];
     }
     const double start = now_ms();
-    const int status = hf_io_write(frame->file, frame->args->output, results, frame->view_count, &options,
-                                   &frame->clamped, &io);
+    const int status =
+        hf_io_write(frame->file, frame->args->output, results, frame->view_count, &options, &frame->clamped, &io);
     frame->write_ms += now_ms() - start;
     free(results);
     return status ? cli_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;

@@ -13,15 +13,15 @@ struct cli_session {
 };
 
 struct cli_view {
-    int index;             // in the file
+    int index;  // in the file
     const struct hf_io_view *view;
-    char *label;           // "shot.exr", "shot.exr, view left"
+    char *label;  // "shot.exr", "shot.exr, view left"
     struct cli_setup setup;
-    float *depth;          // NULL: not read yet, or not needed any more
+    float *depth;  // NULL: not read yet, or not needed any more
     float *planes[4];
     struct hf_stats stats;
     struct hf_report report;
-    uint8_t *tiles;        // of the report; NULL unless asked for
+    uint8_t *tiles;  // of the report; NULL unless asked for
 };
 
 struct cli_frame {
@@ -30,7 +30,7 @@ struct cli_frame {
     struct cli_view *views;  // the selected ones, in the order of the file
     int view_count;
     double read_ms, write_ms;
-    uint64_t clamped;        // samples that did not fit the output's channels
+    uint64_t clamped;  // samples that did not fit the output's channels
 };
 
 // Start the library. Returns 0, or an exit code with *error filled.

@@ -8,9 +8,11 @@
 // Length of the UTF-8 sequence at s, 0 when it is none: file names may be any bytes.
 static int utf8_length(const unsigned char *s)
 {
-    const int n = s[0] < 0x80 ? 1 : s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : s[0] >= 0xe0 && s[0] < 0xf0 ? 3
-                  : s[0] >= 0xf0 && s[0] < 0xf5                 ? 4
-                                                                : 0;
+    const int n = s[0] < 0x80                   ? 1
+                  : s[0] >= 0xc2 && s[0] < 0xe0 ? 2
+                  : s[0] >= 0xe0 && s[0] < 0xf0 ? 3
+                  : s[0] >= 0xf0 && s[0] < 0xf5 ? 4
+                                                : 0;
     for (int i = 1; i < n; i++)
         if ((s[i] & 0xc0) != 0x80)
             return 0;
@@ -172,8 +174,7 @@ static void put_view(FILE *out, const struct cli_view *v, const struct cli_frame
     fputs("\n    }", out);
 }
 
-void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame,
-                    const struct hf_context *context)
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context)
 {
     const struct cli_args *args = frame->args;
     char name[32];
@@ -184,12 +185,10 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     put_text(out, args->input);
     fputs(",\n  \"output\": ", out);
     put_text(out, args->output);
-    fprintf(out, ",\n  \"engine\": \"%s\"",
-            cli_choice_name("engine", (int)args->params.engine, name, sizeof(name)));
+    fprintf(out, ",\n  \"engine\": \"%s\"", cli_choice_name("engine", (int)args->params.engine, name, sizeof(name)));
     fprintf(out, ",\n  \"isa\": \"%s\",\n  \"threads\": %d", hf_isa_name(hf_context_isa(context)),
             hf_context_threads(context));
-    fprintf(out, ",\n  \"storage\": \"%s\"",
-            cli_choice_name("storage", (int)args->params.storage, name, sizeof(name)));
+    fprintf(out, ",\n  \"storage\": \"%s\"", cli_choice_name("storage", (int)args->params.storage, name, sizeof(name)));
     if (args->dry_run)
         fputs(",\n  \"dry_run\": true", out);
     else

@@ -7,7 +7,6 @@
 #include <stdio.h>
 
 // One JSON object about a frame: what was asked for, what was done, how long it took. Of a --dry-run the first only.
-void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame,
-                    const struct hf_context *context);
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context);
 
 #endif

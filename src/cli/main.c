@@ -20,8 +20,8 @@ static void print_plan(const struct cli_frame *frame, const struct hf_context *c
     printf("%s: would write %s\n", args->input, args->output ? args->output : "nothing, as there is no -o");
     printf("  engine %s, %s storage, %d threads, %s\n",
            cli_choice_name("engine", (int)args->params.engine, engine, sizeof(engine)),
-           cli_choice_name("storage", (int)args->params.storage, storage, sizeof(storage)),
-           hf_context_threads(context), hf_isa_name(hf_context_isa(context)));
+           cli_choice_name("storage", (int)args->params.storage, storage, sizeof(storage)), hf_context_threads(context),
+           hf_isa_name(hf_context_isa(context)));
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
         const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
@@ -56,8 +56,8 @@ static void print_warnings(const struct cli_frame *frame)
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
         if (v->stats.colour_repaired)
-            cli_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place",
-                           v->label, v->stats.colour_repaired);
+            cli_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place", v->label,
+                           v->stats.colour_repaired);
         if (v->stats.depth_repaired)
             cli_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
                            v->stats.depth_repaired);

@@ -82,12 +82,14 @@ static int focus_at(float *focus, const struct hf_depth *depth, const struct hf_
 {
     const struct hf_io_box *data = &view->data_window;
     if (x < data->x0 || x >= data->x1 || y < data->y0 || y >= data->y1)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, which is outside the data window %d,%d to "
-                        "%d,%d", label, option, x, y, data->x0, data->y0, data->x1 - 1, data->y1 - 1);
+        return cli_fail(error, CLI_BAD_ARGUMENTS,
+                        "%s: %s is pixel %d,%d, which is outside the data window %d,%d to "
+                        "%d,%d",
+                        label, option, x, y, data->x0, data->y0, data->x1 - 1, data->y1 - 1);
     const int status = hf_depth_at(depth, view->width, view->height, x - data->x0, y - data->y0, focus);
     if (status == HF_ERR_FOCUS)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, where there is no surface to focus on",
-                        label, option, x, y);
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, where there is no surface to focus on", label,
+                        option, x, y);
     if (status != HF_OK)
         return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s at pixel %d,%d: %s", label, option, x, y,
                         hf_error_string(status));
@@ -125,8 +127,10 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     }
     const float unit = given(args->world_unit) ? args->world_unit : 1;
     if (!usable(view->camera.focus / unit))
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: there is no focus distance in the header, give one with "
-                        "--focus or --focus-at", label);
+        return cli_fail(error, CLI_BAD_ARGUMENTS,
+                        "%s: there is no focus distance in the header, give one with "
+                        "--focus or --focus-at",
+                        label);
     setup->focus_from = "header";
     *focus = view->camera.focus / unit;
     return 0;
@@ -140,8 +144,10 @@ static int set_lens(struct hf_params *p, const struct cli_args *args, const stru
     p->sensor_width_mm = first_usable(args->sensor_width, camera->sensor_width_mm, 36);
     p->world_unit_m = given(args->world_unit) ? args->world_unit : 1;
     if (!given(p->focal_length_mm))
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --fstop %g needs --focal-length, the header has no "
-                        "pinholeFocalLength", label, args->fstop);
+        return cli_fail(error, CLI_BAD_ARGUMENTS,
+                        "%s: --fstop %g needs --focal-length, the header has no "
+                        "pinholeFocalLength",
+                        label, args->fstop);
     if (!given(p->f_number))
         return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --focal-length %g needs --fstop, the header has no aperture",
                         label, args->focal_length);

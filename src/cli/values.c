@@ -58,8 +58,7 @@ static int number(const struct cli_option *option, const char *text, float *out,
     return 0;
 }
 
-int cli_parse_flag(struct cli_args *args, const struct cli_option *option, const char *value,
-                   struct cli_error *error)
+int cli_parse_flag(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     (void)value;
     (void)error;
@@ -67,8 +66,7 @@ int cli_parse_flag(struct cli_args *args, const struct cli_option *option, const
     return 0;
 }
 
-int cli_parse_number(struct cli_args *args, const struct cli_option *option, const char *value,
-                     struct cli_error *error)
+int cli_parse_number(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     return number(option, value, field(args, option), error);
 }
@@ -86,20 +84,18 @@ static int read_int(const char *text, int *value, char **end)
     return 0;
 }
 
-int cli_parse_count(struct cli_args *args, const struct cli_option *option, const char *value,
-                    struct cli_error *error)
+int cli_parse_count(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     char *end;
     int count;
     if (read_int(value, &count, &end) || *end || count < option->min || count > option->max)
-        return cli_fail(error, -1, "--%s: '%s' must be a whole number from %g to %g", option->name, value,
-                        option->min, option->max);
+        return cli_fail(error, -1, "--%s: '%s' must be a whole number from %g to %g", option->name, value, option->min,
+                        option->max);
     *(int *)field(args, option) = count;
     return 0;
 }
 
-int cli_parse_text(struct cli_args *args, const struct cli_option *option, const char *value,
-                   struct cli_error *error)
+int cli_parse_text(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     if (value[0] == '\0')
         return cli_fail(error, -1, "--%s: '' is empty, it must be %s", option->name, option->placeholder);
@@ -134,8 +130,7 @@ static int choice(const struct cli_option *option, const char *value, struct cli
     return i;
 }
 
-int cli_parse_choice(struct cli_args *args, const struct cli_option *option, const char *value,
-                     struct cli_error *error)
+int cli_parse_choice(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     const int i = choice(option, value, error);
     if (i >= 0)
@@ -167,8 +162,7 @@ const char *cli_choice_name(const char *option, int value, char *buf, size_t siz
     return buf;
 }
 
-int cli_parse_focus(struct cli_args *args, const struct cli_option *option, const char *value,
-                    struct cli_error *error)
+int cli_parse_focus(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     args->focus_given = 1;
     args->focus_by = CLI_FOCUS_CENTER;
@@ -228,8 +222,8 @@ int cli_parse_aperture(struct cli_args *args, const struct cli_option *option, c
         return parse_ngon(p, value, error);
     if (strncmp(value, "ring:", 5)) {
         args->aperture_file = value;
-        return value[0] ? 0 : cli_fail(error, -1, "--%s: '' is empty, it must be %s", option->name,
-                                       option->placeholder);
+        return value[0] ? 0
+                        : cli_fail(error, -1, "--%s: '' is empty, it must be %s", option->name, option->placeholder);
     }
     if (read_number(value + 5, &hole) || !(hole >= 0 && hole <= 0.95))
         return cli_fail(error, -1, "--%s: the hole of '%s' must be 0 to 0.95 of the radius", option->name, value);
@@ -237,8 +231,7 @@ int cli_parse_aperture(struct cli_args *args, const struct cli_option *option, c
     return 0;
 }
 
-int cli_parse_json(struct cli_args *args, const struct cli_option *option, const char *value,
-                   struct cli_error *error)
+int cli_parse_json(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     if (value && value[0] == '\0')
         return cli_fail(error, -1, "--%s: '' is empty, it must be a file name", option->name);

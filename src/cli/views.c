@@ -57,8 +57,10 @@ static int check_window(const struct hf_io_box *box, const char *name, const cha
 {
     const int64_t width = (int64_t)box->x1 - box->x0, height = (int64_t)box->y1 - box->y0;
     if (width < 1 || height < 1 || width > MAX_SIZE || height > MAX_SIZE)
-        return cli_fail(error, CLI_ALL_FAILED, "%s: the %s is %lld x %lld, but 1 to %d pixels each way can be "
-                        "worked with", label, name, (long long)width, (long long)height, (int)MAX_SIZE);
+        return cli_fail(error, CLI_ALL_FAILED,
+                        "%s: the %s is %lld x %lld, but 1 to %d pixels each way can be "
+                        "worked with",
+                        label, name, (long long)width, (long long)height, (int)MAX_SIZE);
     return 0;
 }
 

@@ -8,14 +8,14 @@
 enum { HF_BUDGET_STEPS = 8 };
 
 struct hf_budget {
-    uint64_t asked;              // hash of what the ladder was made for; 0: nothing yet
-    int step;                    // in use
-    int frames;                  // rendered at it
-    int over, calm;              // frames on end beyond the budget, and with room for the step above
-    int patience;                // calm frames to wait for before going up
-    int climbed;                 // this step was reached from a cheaper one
-    float ms;                    // of a frame at this step, smoothed
-    float above;                 // of the step above when it was left for this one; 0: it was not
+    uint64_t asked;                // hash of what the ladder was made for; 0: nothing yet
+    int step;                      // in use
+    int frames;                    // rendered at it
+    int over, calm;                // frames on end beyond the budget, and with room for the step above
+    int patience;                  // calm frames to wait for before going up
+    int climbed;                   // this step was reached from a cheaper one
+    float ms;                      // of a frame at this step, smoothed
+    float above;                   // of the step above when it was left for this one; 0: it was not
     float ratio[HF_BUDGET_STEPS];  // cost of the step above over this one's, seen then
 };
 

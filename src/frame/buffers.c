@@ -130,8 +130,8 @@ static size_t frame_floats(const struct hf_context *c, const struct hf_setup *s,
     size_t floats = 0;
     for (int b = 0; b < e->buf_count; b++)
         if (e->bufs[b].frame && is_wanted(&e->bufs[b], fields))
-            floats += (size_t)e->channels(s, b) *
-                      window_floats(window_of(&c->plan, s, b, s->half_width, s->half_height));
+            floats +=
+                (size_t)e->channels(s, b) * window_floats(window_of(&c->plan, s, b, s->half_width, s->half_height));
     return floats;
 }
 
@@ -172,8 +172,7 @@ void hf_buffers_place(const struct hf_context *c, const struct hf_setup *s, stru
     float *memory = f->work + work_floats(c, s) + (c->dump ? scratch_floats(c, s, sweep - 1) : 0);
     for (int b = 0; b < e->buf_count; b++)
         if (bufs >> b & 1)
-            memory = place(&f->buf[b],
-                           window_of(&c->plan, s, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]),
+            memory = place(&f->buf[b], window_of(&c->plan, s, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]),
                            e->channels(s, b), memory, offset(cell.x0, log2_x(s, &e->bufs[b])),
                            offset(cell.y0, log2_y(s, &e->bufs[b])));
 }
@@ -183,8 +182,8 @@ struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def
     const int lx = log2_x(s, def), ly = log2_y(s, def);
     const int width = lx > 0 ? s->width : scaled(s->half_width, lx);
     const int height = ly > 0 ? s->height : scaled(s->half_height, ly);
-    return (struct hf_rect){hf_max(offset(r.x0, lx), 0), hf_max(offset(r.y0, ly), 0),
-                            hf_min(scaled(r.x1, lx), width), hf_min(scaled(r.y1, ly), height)};
+    return (struct hf_rect){hf_max(offset(r.x0, lx), 0), hf_max(offset(r.y0, ly), 0), hf_min(scaled(r.x1, lx), width),
+                            hf_min(scaled(r.y1, ly), height)};
 }
 
 // Samples of a row from x0 to x1 like the one at x.

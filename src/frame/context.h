@@ -33,16 +33,16 @@ struct hf_context {
 
     struct hf_taps taps;
     struct hf_aperture aperture;
-    struct hf_block tables;   // of the other engines' prepare
-    struct hf_plan plan;      // of the last frame: the next one guesses from it
-    struct hf_block planes;   // buffers of the whole frame
+    struct hf_block tables;         // of the other engines' prepare
+    struct hf_plan plan;            // of the last frame: the next one guesses from it
+    struct hf_block planes;         // buffers of the whole frame
     struct hf_block chunks, tiles;  // the plan's; tiles: and the wave's
     struct hf_wave wave;
     struct hf_block joined;   // CoC for a dump: of full resolution, or of narrow buffers
     struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
     struct hf_stats stats;
     struct hf_report report;
-    struct hf_work work;      // of the plan
+    struct hf_work work;  // of the plan
     struct hf_cost cost;
     struct hf_budget budget;
 
@@ -51,7 +51,7 @@ struct hf_context {
 };
 
 // Run a frame whose arguments have been checked, or only plan it (render.c).
-int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
-                    const struct hf_image *src, const struct hf_depth *depth, int fused, int plan_only);
+int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src,
+                    const struct hf_depth *depth, int fused, int plan_only);
 
 #endif

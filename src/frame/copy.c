@@ -6,10 +6,10 @@
 struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src)
 {
     const int same = dst->format == src->format && hf_image_channels(dst) == hf_image_channels(src);
-    return (struct hf_copy){
-        .in_place = dst->data[0] == src->data[0],
-        .raw = same && (s->blend == 0 || s->storage == HF_STORAGE_FLOAT || src->format == HF_FORMAT_R11G11B10F ||
-                        (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F))};
+    return (struct hf_copy){.in_place = dst->data[0] == src->data[0],
+                            .raw = same && (s->blend == 0 || s->storage == HF_STORAGE_FLOAT ||
+                                            src->format == HF_FORMAT_R11G11B10F ||
+                                            (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F))};
 }
 
 // First byte of the pixels of a rectangle's row in one plane.
@@ -36,8 +36,7 @@ void hf_copy_scan(struct hf_worker *w, struct hf_rect r)
 {
     const struct hf_setup *s = w->frame.s;
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, s->height); y++)
-        w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0,
-                                                NULL);
+        w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0, NULL);
 }
 
 void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_rect r)

@@ -12,9 +12,9 @@ static uint64_t mix(uint64_t hash, uint64_t v)
 // Options that change what a unit of work costs. Reaches count in steps of about an eighth: near ones cost alike.
 static uint64_t key_of(const struct hf_setup *s, enum hf_isa isa)
 {
-    const int numbers[] = {s->engine, s->channels, s->storage, s->faithful, s->karis, s->per_pixel_kernel, s->bicubic,
-                           s->smoothstep, s->fill, s->form, s->lens, s->resolution, s->uniform, s->iterations,
-                           s->sigma > 0, isa};
+    const int numbers[] = {s->engine,  s->channels,   s->storage,   s->faithful, s->karis, s->per_pixel_kernel,
+                           s->bicubic, s->smoothstep, s->fill,      s->form,     s->lens,  s->resolution,
+                           s->uniform, s->iterations, s->sigma > 0, isa};
     uint64_t hash = 1;
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         hash = mix(hash, (uint64_t)numbers[i]);
@@ -39,9 +39,9 @@ static double area(struct hf_rect r)
 // Fields for which a pass runs in a cell of a sweep.
 static unsigned fields_in(const struct hf_plan *p, const struct hf_pass *pass, int cell)
 {
-    const unsigned fields = pass->sweep == 1                  ? p->chunk_reads[cell]
+    const unsigned fields = pass->sweep == 1                   ? p->chunk_reads[cell]
                             : hf_plan_is_tiled(p, pass->sweep) ? p->tile_needs[cell]
-                                                            : p->needs;
+                                                               : p->needs;
     return pass->field ? fields & pass->field : fields;
 }
 
@@ -94,8 +94,8 @@ static float isa_factor(enum hf_isa isa)
     }
 }
 
-void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads,
-                     const struct hf_work *w, double ms[HF_MAX_PASSES])
+void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,
+                     double ms[HF_MAX_PASSES])
 {
     const struct hf_engine_def *e = hf_engine_def(s->engine);
     const struct hf_cost_entry *known = s->blend == 0 ? NULL : find(c, key_of(s, isa));
@@ -108,8 +108,8 @@ void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa is
     }
 }
 
-void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads,
-                   const struct hf_work *w, const double ms[HF_MAX_PASSES])
+void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,
+                   const double ms[HF_MAX_PASSES])
 {
     if (s->blend == 0)
         return;

@@ -26,10 +26,10 @@ struct hf_work {
 void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s);
 
 // Milliseconds of each pass, over the number of threads.
-void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads,
-                     const struct hf_work *w, double ms[HF_MAX_PASSES]);
+void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,
+                     double ms[HF_MAX_PASSES]);
 // Learn from a frame: milliseconds likewise.
-void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads,
-                   const struct hf_work *w, const double ms[HF_MAX_PASSES]);
+void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,
+                   const double ms[HF_MAX_PASSES]);
 
 #endif

@@ -51,7 +51,10 @@ int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s)
         if (!def->name || !e->channels(s, b))
             continue;
         const struct hf_rect r = hf_buffers_rect(s, def, all);
-        struct hf_buffer out = {.name = def->name, .width = r.x1, .height = r.y1, .channels = e->channels(s, b),
+        struct hf_buffer out = {.name = def->name,
+                                .width = r.x1,
+                                .height = r.y1,
+                                .channels = e->channels(s, b),
                                 .stride = f->buf[b].stride * (ptrdiff_t)sizeof(float)};
         for (int ch = 0; ch < out.channels; ch++)
             out.data[ch] = f->buf[b].ch[ch];

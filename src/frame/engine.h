@@ -22,7 +22,7 @@ struct hf_engine_def {
     const char *name;  // the command line's
     const struct hf_pass *passes;
     int pass_count;
-    int sweeps;        // sweep 1 is over chunks: its first pass looks at depth alone and counts what there is
+    int sweeps;  // sweep 1 is over chunks: its first pass looks at depth alone and counts what there is
     const struct hf_buf_def *bufs;
     int buf_count;
     // Bit i: sweep i takes whole rows or columns, so all of its cells run if any tile needs something.

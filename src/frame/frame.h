@@ -32,10 +32,10 @@ enum hf_buf_id {
     HF_BUF_FAR,
     HF_BUF_NEAR_FILL,
     HF_BUF_FAR_FILL,
-    HF_BUF_SUM,          // inside the gather: sums of weights, near and far
-    HF_BUF_WEIGHT,       // with Karis average: w and far CoC x w
-    HF_BUF_COLORW4,      // colour x w
-    HF_BUF_COLORFARW4,   // colour x far CoC x w
+    HF_BUF_SUM,         // inside the gather: sums of weights, near and far
+    HF_BUF_WEIGHT,      // with Karis average: w and far CoC x w
+    HF_BUF_COLORW4,     // colour x w
+    HF_BUF_COLORFARW4,  // colour x far CoC x w
     HF_BUF_COUNT
 };
 
@@ -69,16 +69,16 @@ struct hf_setup {
     enum hf_fill fill;
 
     enum hf_depth_form form;
-    int lens;                       // v is -1/z rather than z
-    float e_a, e_b, iz_a, iz_b;     // HF_FORM_IZ
-    float ray_cx, ray_cy;           // HF_FORM_RAY: optical axis, pixels
-    float ray_sx, ray_sy;           // 1 / focal length squared, per axis
-    float near_0, near_i;           // n = sat((near_0 - v) * near_i)
-    float far_0, far_i;             // f = sat((v - far_0) * far_i)
+    int lens;                    // v is -1/z rather than z
+    float e_a, e_b, iz_a, iz_b;  // HF_FORM_IZ
+    float ray_cx, ray_cy;        // HF_FORM_RAY: optical axis, pixels
+    float ray_sx, ray_sy;        // 1 / focal length squared, per axis
+    float near_0, near_i;        // n = sat((near_0 - v) * near_i)
+    float far_0, far_i;          // f = sat((v - far_0) * far_i)
 
-    float max_radius;      // rho, full-resolution pixels
-    float strength;        // 1 outside the range model
-    float blend;           // of the fields with the picture; 0: the picture is copied
+    float max_radius;  // rho, full-resolution pixels
+    float strength;    // 1 outside the range model
+    float blend;       // of the fields with the picture; 0: the picture is copied
     float pixel_aspect;
 
     // gather
@@ -92,10 +92,10 @@ struct hf_setup {
     float sharp_radius;        // up to here a pixel counts as sharp, and its radius as 0
     int reach_x, reach_y;      // of the frame at hand, half-resolution pixels, once it is known
     enum hf_resolution resolution;
-    float rotation;            // degrees
+    float rotation;  // degrees
     int uniform;
     int iterations;
-    int by_depth;              // gaussian: blend by the distance in depth from the focus
+    int by_depth;                          // gaussian: blend by the distance in depth from the focus
     float plane_near, plane_far, focus_d;  // see hf_gaussian_depth
     float sigma;
     const struct hf_params *params;  // for what only one engine reads
@@ -112,13 +112,13 @@ struct hf_found {
 struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
-    float radius_min, radius_max;  // signed CoC radii; not the gather's
-    float near_max, far_max;       // the gather's CoC
+    float radius_min, radius_max;      // signed CoC radii; not the gather's
+    float near_max, far_max;           // the gather's CoC
     float brightest, alpha_min;        // of the colour, if somebody asks
     uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes of a row
     struct hf_found near, far;         // and of a chunk
-    float largest;                 // scatter: absolute sample of a blurred pixel
-    uint64_t transparent;          // scatter: blurred pixels whose alpha is not 1
+    float largest;                     // scatter: absolute sample of a blurred pixel
+    uint64_t transparent;              // scatter: blurred pixels whose alpha is not 1
 };
 
 // Lanes are looked at in groups of 64; there may be more than bits, then several share one.
@@ -154,11 +154,11 @@ struct hf_frame {
     const struct hf_image *src, *dst;
     const struct hf_depth *depth;
     struct hf_buf buf[HF_MAX_BUFS];
-    int near, far;        // which fields the tile at hand needs
-    int looking;          // nobody reads the CoC where there is none: it need not be written
-    float *lines;         // scratch rows, see hf_line
-    size_t line_floats;   // length of each
-    float *work;          // scratch of the gather's row sums
+    int near, far;       // which fields the tile at hand needs
+    int looking;         // nobody reads the CoC where there is none: it need not be written
+    float *lines;        // scratch rows, see hf_line
+    size_t line_floats;  // length of each
+    float *work;         // scratch of the gather's row sums
     struct hf_counts *counts;
     struct hf_counts *seen;  // for colour read a second time: whether there was something to repair, not how often
 };

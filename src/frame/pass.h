@@ -9,8 +9,8 @@
 // How far around a pixel a pass reads its .around buffers; the engine gives the numbers.
 enum hf_halo {
     HF_HALO_NONE,
-    HF_HALO_3X3,       // one pixel
-    HF_HALO_MAX_X,     // gather: reach of the near max and blur, along one axis
+    HF_HALO_3X3,    // one pixel
+    HF_HALO_MAX_X,  // gather: reach of the near max and blur, along one axis
     HF_HALO_MAX_Y,
     HF_HALO_TAPS,      // gather: reach of the taps
     HF_HALO_UPSAMPLE,  // one pixel, two for the cubic
@@ -29,12 +29,12 @@ enum {
     HF_KERNEL_HEXAGON_LOAD,
     HF_KERNEL_HEXAGON_1,
     HF_KERNEL_HEXAGON_2,
-    HF_KERNEL_HEXAGON_BLUR,            // both, band by band
+    HF_KERNEL_HEXAGON_BLUR,  // both, band by band
     HF_KERNEL_HEXAGON_COMPOSITE,
-    HF_KERNEL_GAUSSIAN_DEPTH,          // looks at the depth: counts
+    HF_KERNEL_GAUSSIAN_DEPTH,  // looks at the depth: counts
     HF_KERNEL_GAUSSIAN_ROWS,
     HF_KERNEL_GAUSSIAN_COLUMNS,
-    HF_KERNEL_WIDE_COLUMNS,            // gaussian, of any size
+    HF_KERNEL_WIDE_COLUMNS,  // gaussian, of any size
     HF_KERNEL_WIDE_ROWS,
     HF_KERNEL_GAUSSIAN_MERGE,
     HF_KERNEL_SCATTER_PREPARE,
@@ -46,15 +46,15 @@ enum {
 
 struct hf_pass {
     const char *name;
-    int kernel;        // which one in hf_kernels.pass
-    unsigned reads;    // buffers read at the pixel itself
-    unsigned around;   // buffers read in its halo
+    int kernel;       // which one in hf_kernels.pass
+    unsigned reads;   // buffers read at the pixel itself
+    unsigned around;  // buffers read in its halo
     unsigned writes;
     unsigned inside;   // scratch of the pass itself, as large as what it writes ...
     unsigned weighed;  // ... and larger by the halo
     enum hf_halo halo;
-    int sweep;         // 1: over the input; 2 and more: per cell, from buffers to the output
-    unsigned field;    // runs where this field is needed; 0: where any is
+    int sweep;       // 1: over the input; 2 and more: per cell, from buffers to the output
+    unsigned field;  // runs where this field is needed; 0: where any is
     // Guess of its cost until it has been measured: nanoseconds per half-resolution pixel and field, at radius 12, with
     // AVX-512 at 3.7 GHz.
     float ns;
@@ -75,8 +75,7 @@ typedef void hf_kernel(const struct hf_frame *f, struct hf_rect r);
 // pixel of the last lane of an odd width repeats the even one. even and odd are 64-byte aligned and have HF_PAD floats
 // to spare. Returns non-zero if a sample is not finite (then repair.c has to look at the row). A missing alpha is left
 // alone.
-typedef int hf_load_row(const struct hf_image *image, int x, int y, int n, float *const even[4],
-                        float *const odd[4]);
+typedef int hf_load_row(const struct hf_image *image, int x, int y, int n, float *const even[4], float *const odd[4]);
 // The other way. even and odd may hold anything past their n lanes. even[3] NULL: alpha 1 if the format has one.
 // Returns the number of samples that had to be clamped.
 typedef uint64_t hf_store_row(const struct hf_image *image, int x, int y, int n, const float *const even[4],
@@ -138,8 +137,8 @@ typedef void hf_splat_taps(const struct hf_sums *s, int x, int y, const int16_t 
 struct hf_scatter;
 struct hf_source_row;
 // Scatter: weights of n pixels in a field at full resolution, out[3], and their weighted colours. sign: of its radii.
-typedef void hf_source_weights(const struct hf_scatter *t, float sign, const float *radius, const float *const colour[3],
-                               int channels, int n, float *const out[4]);
+typedef void hf_source_weights(const struct hf_scatter *t, float sign, const float *radius,
+                               const float *const colour[3], int channels, int n, float *const out[4]);
 // Numbers of the pictures of n sources, -1 where weight or radius is not positive.
 typedef void hf_source_pictures(const float *radius, const float *weight, float scale, int n, int32_t *out);
 // Sources `from` to `to` of a row go to the list, which has room. inverse: 1 / area of each picture.

@@ -105,8 +105,7 @@ void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const
     p->line_floats = 2 * (size_t)p->cell_width[1] + 2 * HF_PAD;
 }
 
-void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
-                   int whole)
+void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads, int whole)
 {
     const struct hf_engine_def *e = p->engine;
     int width, height;

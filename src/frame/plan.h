@@ -17,14 +17,14 @@ struct hf_plan {
     int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
     struct hf_found *near, *far;  // in each chunk
-    atomic_uchar *chunk_made;  // fields whose buffers the first sweep has made
-    atomic_uchar *chunk_busy;  // somebody is making what it has not
-    uint8_t *chunk_reads;  // fields that some tile reads there; until they are known, those of the last frame
-    int *deferred;         // chunks whose buffers are made once it is known that they are read
+    atomic_uchar *chunk_made;     // fields whose buffers the first sweep has made
+    atomic_uchar *chunk_busy;     // somebody is making what it has not
+    uint8_t *chunk_reads;         // fields that some tile reads there; until they are known, those of the last frame
+    int *deferred;                // chunks whose buffers are made once it is known that they are read
     int deferred_count;
-    uint8_t *tile_needs;   // fields
+    uint8_t *tile_needs;          // fields
     struct hf_rect *tile_active;  // the part of each tile that is not sharp
-    unsigned needs, reads; // of all tiles
+    unsigned needs, reads;        // of all tiles
 
     struct hf_reach pass[HF_MAX_PASSES];  // by how much a pass's rectangle exceeds the cell
     struct hf_reach buf[HF_MAX_BUFS];     // and each buffer
@@ -32,8 +32,8 @@ struct hf_plan {
 };
 
 // Sizes of the chunks for a number of threads; tile sizes 0: chosen. whole: one cell for all.
-void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s,
-                    int tile_width, int tile_height, int threads, int whole);
+void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s, int tile_width,
+                    int tile_height, int threads, int whole);
 // Reaches, and the other sweeps' cells: once the setup's reach is known.
 void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
                    int whole);

@@ -284,14 +284,20 @@ static void collect_stats(const struct job *j, int64_t start)
     struct hf_context *c = j->c;
     struct hf_stats *t = &c->stats;
     const struct hf_counts n = all_counts(c);
-    *t = (struct hf_stats){.engine = j->s->engine, .max_radius = j->s->max_radius,
-                           .near_pixels = n.near_pixels, .far_pixels = n.far_pixels, .sharp_pixels = n.sharp_pixels,
-                           .colour_repaired = n.colour_repaired, .depth_repaired = n.depth_repaired,
-                           .no_surface = n.no_surface, .clamped = n.clamped};
+    *t = (struct hf_stats){.engine = j->s->engine,
+                           .max_radius = j->s->max_radius,
+                           .near_pixels = n.near_pixels,
+                           .far_pixels = n.far_pixels,
+                           .sharp_pixels = n.sharp_pixels,
+                           .colour_repaired = n.colour_repaired,
+                           .depth_repaired = n.depth_repaired,
+                           .no_surface = n.no_surface,
+                           .clamped = n.clamped};
     if (j->s->blend == 0)
         t->sharp_pixels = (uint64_t)j->s->width * (uint64_t)j->s->height;
     t->memory = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
-                c->taps.block.size + c->aperture.block.size + c->tables.size + (c->pool ? hf_pool_bytes(c->threads) : 0);
+                c->taps.block.size + c->aperture.block.size + c->tables.size +
+                (c->pool ? hf_pool_bytes(c->threads) : 0);
     for (int i = 0; i < c->threads; i++) {
         const struct hf_worker *w = &c->workers[i];
         for (int p = 0; p < HF_MAX_PASSES; p++) {
@@ -344,8 +350,8 @@ static int lay_out_chunks(struct job *j)
 {
     struct hf_context *c = j->c;
     const struct hf_plan last = c->plan;
-    hf_plan_chunks(&c->plan, hf_engine_def(j->s->engine), j->s, c->config.tile_width, c->config.tile_height,
-                   c->threads, c->dump != NULL);
+    hf_plan_chunks(&c->plan, hf_engine_def(j->s->engine), j->s, c->config.tile_width, c->config.tile_height, c->threads,
+                   c->dump != NULL);
     const int same = last.engine == c->plan.engine && last.width == c->plan.width && last.height == c->plan.height &&
                      last.cell_width[1] == c->plan.cell_width[1] && last.cell_height[1] == c->plan.cell_height[1];
     const int err = hf_block_grow(&c->chunks, hf_plan_chunk_bytes(&c->plan), &c->mem);
@@ -458,8 +464,8 @@ static int render_sweeps(struct job *j, int64_t planning)
     return err || j->plan_only ? err : run_plan(j);
 }
 
-int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst,
-                    const struct hf_image *src, const struct hf_depth *depth, int fused, int plan_only)
+int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src,
+                    const struct hf_depth *depth, int fused, int plan_only)
 {
     const int64_t start = now_ns();
     struct job j = {.c = c, .s = s, .copy = hf_copy_plan(s, dst, src), .plan_only = plan_only};

@@ -24,9 +24,14 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     const struct hf_engine_def *e = p->engine;
     struct hf_report *r = &c->report;
     double ms[HF_MAX_PASSES];
-    *r = (struct hf_report){.engine = s->engine, .resolution = s->resolution, .budget_step = c->budget.step,
-                            .tile_width = 2 * p->cell_width[2], .tile_height = 2 * p->cell_height[2],
-                            .columns = p->columns[2], .rows = p->rows[2], .tiles = p->tile_needs,
+    *r = (struct hf_report){.engine = s->engine,
+                            .resolution = s->resolution,
+                            .budget_step = c->budget.step,
+                            .tile_width = 2 * p->cell_width[2],
+                            .tile_height = 2 * p->cell_height[2],
+                            .columns = p->columns[2],
+                            .rows = p->rows[2],
+                            .tiles = p->tile_needs,
                             .passes = e->pass_count};
     if (s->engine == HF_ENGINE_GATHER && s->blend != 0)
         r->rings = s->rings ? s->rings : hf_taps_rings(s->max_radius / 2);
@@ -36,8 +41,8 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     hf_cost_predict(&c->cost, s, c->isa, c->threads, &c->work, ms);
     for (int i = 0; i < e->pass_count; i++) {
         struct hf_pass_report *row = &r->pass[i];
-        *row = (struct hf_pass_report){.name = e->passes[i].name, .run = c->work.run[i], .all = c->work.all[i],
-                                       .predicted_ms = ms[i]};
+        *row = (struct hf_pass_report){
+            .name = e->passes[i].name, .run = c->work.run[i], .all = c->work.all[i], .predicted_ms = ms[i]};
         if (row->run < row->all)
             row->skipped = reason(p, s, i);
         r->predicted_ms += ms[i];

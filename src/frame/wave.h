@@ -9,7 +9,7 @@
 #include "frame/plan.h"
 
 struct hf_wave {
-    int *task;         // in the order in which they are begun: chunk i, or ~i for tile i
+    int *task;  // in the order in which they are begun: chunk i, or ~i for tile i
     int tasks;
     int *needs;        // rows of chunks that a row of tiles waits for
     atomic_int *done;  // chunks finished in a row

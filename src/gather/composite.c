@@ -40,8 +40,7 @@ static int far_weights(const struct hf_buf *coc, struct phase p, float f, float 
 static void far_weights_faithful(const struct hf_buf *coc, struct phase p, float f, float w[4])
 {
     const int x0 = hf_min(p.x, p.nx), x1 = hf_max(p.x, p.nx), y0 = hf_min(p.y, p.ny), y1 = hf_max(p.y, p.ny);
-    const float g[4] = {*hf_at(coc, 1, x0, y0), *hf_at(coc, 1, x1, y0), *hf_at(coc, 1, x0, y1),
-                        *hf_at(coc, 1, x1, y1)};
+    const float g[4] = {*hf_at(coc, 1, x0, y0), *hf_at(coc, 1, x1, y0), *hf_at(coc, 1, x0, y1), *hf_at(coc, 1, x1, y1)};
     float d[4];
     for (int i = 0; i < 4; i++)
         d[i] = 1 + 1000 * __builtin_fabsf(f - g[i]);
@@ -97,8 +96,8 @@ static float upsample_cubic(const struct hf_buf *b, int c, struct phase p)
     const int columns[4] = {p.x, p.nx, p.x - dx, p.nx + dx};
     float v[4];
     for (int i = 0; i < 4; i++)
-        v[i] = cubic(*hf_at(b, c, columns[i], p.y), *hf_at(b, c, columns[i], p.ny),
-                     *hf_at(b, c, columns[i], p.y - dy), *hf_at(b, c, columns[i], p.ny + dy));
+        v[i] = cubic(*hf_at(b, c, columns[i], p.y), *hf_at(b, c, columns[i], p.ny), *hf_at(b, c, columns[i], p.y - dy),
+                     *hf_at(b, c, columns[i], p.ny + dy));
     return cubic(v[0], v[1], v[2], v[3]);
 }
 
@@ -136,8 +135,8 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
     }
     if (f->s->channels == 3)
         lane[0][3] = lane[1][3] = NULL;
-    f->counts->clamped += f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)lane[0],
-                                                      (const float *const *)lane[1]);
+    f->counts->clamped +=
+        f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
 }
 
 void hf_composite_c(const struct hf_frame *f, struct hf_rect r)

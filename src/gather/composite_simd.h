@@ -268,8 +268,7 @@ struct composite_line {
 };
 
 HF_INLINE void composite_lines(const struct composite_rows *rows, const struct composite_line *lines,
-                               const int channels, const int far, const int near, const int faithful,
-                               const int bicubic)
+                               const int channels, const int far, const int near, const int faithful, const int bicubic)
 {
     const struct composite_rows r = *rows;  // see field_rows
     const struct composite_line l = *lines;
@@ -331,8 +330,8 @@ static void composite_row_lines(const struct hf_frame *f, const struct composite
     hf_store_rgb(f, lane[1], n);
     if (s->channels == 3)
         lane[0][3] = lane[1][3] = NULL;
-    f->counts->clamped += f->k->store[f->dst->format](f->dst, x0, y, n, (const float *const *)lane[0],
-                                                      (const float *const *)lane[1]);
+    f->counts->clamped +=
+        f->k->store[f->dst->format](f->dst, x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
 }
 
 // ---- in registers: R11G11B10F to R11G11B10F, two rows at once ----
@@ -347,8 +346,8 @@ struct packed_rows {
 };
 
 // 2 VF_N pixels of the row after next: a tile's rows are too short for hardware prefetchers to catch on.
-#define FETCH_AHEAD(p, stride, write)                                                                                \
-    for (int k_ = 0; k_ < 8 * VF_N; k_ += 64)                                                                        \
+#define FETCH_AHEAD(p, stride, write)                                                                                  \
+    for (int k_ = 0; k_ < 8 * VF_N; k_ += 64)                                                                          \
     __builtin_prefetch((const uint8_t *)((uintptr_t)(p) + (uintptr_t)(2 * (stride))) + k_, write)
 
 // Far CoC of 2 VF_N pixels from their distances. Returns lanes that are no number.
@@ -429,13 +428,12 @@ HF_INLINE int composite_run(const struct composite_rows *rows, const struct pack
 typedef int composite_run_of_kind(const struct composite_rows *rows, const struct packed_rows *packed,
                                   const struct hf_setup *s, int x, int n, int *next, vi *clamped);
 
-#define COMPOSITE_RUN(kind)                                                                                          \
-    static __attribute__((noinline)) int composite_run_##kind(const struct composite_rows *rows,                     \
-                                                              const struct packed_rows *packed,                      \
-                                                              const struct hf_setup *s, int x, int n, int *next,     \
-                                                              vi *clamped)                                           \
-    {                                                                                                                \
-        return composite_run(rows, packed, s, kind, x, n, next, clamped);                                            \
+#define COMPOSITE_RUN(kind)                                                                                            \
+    static __attribute__((noinline)) int composite_run_##kind(                                                         \
+        const struct composite_rows *rows, const struct packed_rows *packed, const struct hf_setup *s, int x, int n,   \
+        int *next, vi *clamped)                                                                                        \
+    {                                                                                                                  \
+        return composite_run(rows, packed, s, kind, x, n, next, clamped);                                              \
     }
 COMPOSITE_RUN(0)
 COMPOSITE_RUN(1)
@@ -448,8 +446,9 @@ COMPOSITE_RUN(7)
 static int composite_packed(const struct composite_rows *rows, const struct packed_rows *packed,
                             const struct hf_setup *s, int n, vi *clamped)
 {
-    static composite_run_of_kind *const run[] = {composite_run_0, composite_run_1, composite_run_2, composite_run_3,
-                                                 NULL,            NULL,            composite_run_6, composite_run_7};
+    static composite_run_of_kind *const run[] = {
+        composite_run_0, composite_run_1, composite_run_2, composite_run_3, NULL, NULL,
+        composite_run_6, composite_run_7};
     int x = 0, kind = 0;
     while (x < n && kind >= 0)
         x = run[kind](rows, packed, s, x, n, &kind, clamped);
@@ -464,8 +463,12 @@ static int composite_rows_packed(const struct hf_frame *f, const struct composit
     const struct hf_setup *s = f->s;
     const int x0 = r.x0, pixels = hf_min(2 * r.x1, s->width) - 2 * x0, n = pixels / 2 / VF_N * VF_N;
     const ptrdiff_t line = (ptrdiff_t)f->line_floats;
-    struct packed_rows p = {.from_stride = f->src->stride[0], .depth_stride = f->depth->stride,
-                            .to_stride = f->dst->stride[0], .line = line, .far = f->far, .near = f->near};
+    struct packed_rows p = {.from_stride = f->src->stride[0],
+                            .depth_stride = f->depth->stride,
+                            .to_stride = f->dst->stride[0],
+                            .line = line,
+                            .far = f->far,
+                            .near = f->near};
     for (int i = 0; i < 2; i++) {
         const int at = y[i] < 0 ? y[!i] : y[i];  // what is not there is made from the other row, and thrown away
         p.from[i] = plane_at(f->src, 0, 4, x0, at);

@@ -3,7 +3,7 @@
 
 // Where the rows of r begin in the buffers.
 struct down_row {
-    const float *near, *far[4]; // full-resolution CoC: near of a quad's first pixel, far of all
+    const float *near, *far[4];  // full-resolution CoC: near of a quad's first pixel, far of all
     float *colour[4], *colour_far[4], *coc[4];
 };
 
@@ -59,7 +59,7 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, cons
                               int x1, int y)
 {
     const int n = x1 - x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
-    float *lane[4][4]; // [row and even or odd][channel]
+    float *lane[4][4];  // [row and even or odd][channel]
     for (int i = 0; i < 16; i++)
         lane[i >> 2][i & 3] = hf_line(f, i);
     hf_read_colour(f, x0, 2 * y, n, lane[0], lane[1], f->seen);
@@ -121,7 +121,7 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
                 quad[c][i] = vf_mul(quad[c][i], vf_set1(0x1p112f));
             vf_put(d->colour_far[c] + x, round_stored(storage, down_far(w, quad[c], g[0]), c), stream);
         }
-    } else if (far) { // quarters of small floats are exact, so that their sum is the mean
+    } else if (far) {  // quarters of small floats are exact, so that their sum is the mean
         for (int c = 0; c < 3; c++)
             vf_put(d->colour_far[c] + x, round_stored(storage, vf_mul(mean[c], g[0]), c), stream);
     }

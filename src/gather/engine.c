@@ -19,10 +19,10 @@ static const struct hf_pass passes[] = {
     {"Computation", HF_PASS_GATHER, .reads = B(BLUR), .around = B(COLOR4) | B(COLORFAR4) | B(COC4),
      .writes = B(NEAR) | B(FAR), .inside = B(SUM), .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4),
      .halo = HF_HALO_TAPS, .sweep = 2, .ns = 4},
-    {"Fill", HF_PASS_FILL, .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4),
-     .writes = B(NEAR_FILL) | B(FAR_FILL), .halo = HF_HALO_3X3, .sweep = 2, .ns = 0.75f},
-    {"Composite", HF_PASS_COMPOSITE, .around = B(NEAR_FILL) | B(FAR_FILL) | B(BLUR) | B(COC4),
-     .halo = HF_HALO_UPSAMPLE, .sweep = 2, .ns = 3.2f},
+    {"Fill", HF_PASS_FILL, .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4), .writes = B(NEAR_FILL) | B(FAR_FILL),
+     .halo = HF_HALO_3X3, .sweep = 2, .ns = 0.75f},
+    {"Composite", HF_PASS_COMPOSITE, .around = B(NEAR_FILL) | B(FAR_FILL) | B(BLUR) | B(COC4), .halo = HF_HALO_UPSAMPLE,
+     .sweep = 2, .ns = 3.2f},
 };
 _Static_assert(sizeof passes / sizeof *passes == HF_PASS_COUNT, "one row per pass");
 
@@ -123,10 +123,13 @@ int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct 
     const float h = s->max_radius / 2;
     s->max_x = (int)__builtin_ceilf(h / p->pixel_aspect);
     s->max_y = (int)__builtin_ceilf(h);
-    const struct hf_taps_key key = {.radius = h, .scale = s->strength >= 0.25f ? s->strength : 0.25f,
-                                    .pixel_aspect = p->pixel_aspect, .blades = p->blades,
+    const struct hf_taps_key key = {.radius = h,
+                                    .scale = s->strength >= 0.25f ? s->strength : 0.25f,
+                                    .pixel_aspect = p->pixel_aspect,
+                                    .blades = p->blades,
                                     .rotation = p->blades ? p->blade_rotation : 0,
-                                    .dense = p->fill == HF_FILL_NONE, .rings = s->rings};
+                                    .dense = p->fill == HF_FILL_NONE,
+                                    .rings = s->rings};
     return hf_taps_build(s->taps, &key, mem);
 }
 
@@ -137,8 +140,16 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
 
 const struct hf_engine_def hf_gather_engine = {
     .name = "gather",
-    .passes = passes, .pass_count = HF_PASS_COUNT, .sweeps = 2,
-    .bufs = bufs, .buf_count = HF_BUF_COUNT,
-    .prepare = prepare, .channels = channels, .halo = hf_pass_halo, .spread = spread, .reads = reads, .cell = cell,
+    .passes = passes,
+    .pass_count = HF_PASS_COUNT,
+    .sweeps = 2,
+    .bufs = bufs,
+    .buf_count = HF_BUF_COUNT,
+    .prepare = prepare,
+    .channels = channels,
+    .halo = hf_pass_halo,
+    .spread = spread,
+    .reads = reads,
+    .cell = cell,
     .work = work,
 };

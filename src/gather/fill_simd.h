@@ -65,8 +65,8 @@ static void fill_mean_row(const float *in, ptrdiff_t stride, const float *want, 
     for (int x = 0; x < n; x += VF_N) {
         const float *p = sums + x;
         const vf v = sum3(vf_load(p), vf_load(p + n + HF_PAD), vf_load(p + 2 * (size_t)(n + HF_PAD)));
-        vf_store(out + x, vf_select(vf_gt(vf_load(want + x), vf_zero()), vf_mul(v, vf_set1(1 / 9.0f)),
-                                    vf_load(in + x)));
+        vf_store(out + x,
+                 vf_select(vf_gt(vf_load(want + x), vf_zero()), vf_mul(v, vf_set1(1 / 9.0f)), vf_load(in + x)));
     }
 }
 
@@ -98,9 +98,8 @@ HF_INLINE void fill_far_picked(const struct hf_setup *s, const float *in, ptrdif
             sum[j + 1] = sum3(t[0], t[1], t[2]);
             count[j + 1] = sum3(w[0], w[1], w[2]);
         }
-        const vf v = s->fill == HF_FILL_MAX
-                         ? vf_add(best, vf_zero())
-                         : vf_div(sum3(sum[0], sum[1], sum[2]), sum3(count[0], count[1], count[2]));
+        const vf v = s->fill == HF_FILL_MAX ? vf_add(best, vf_zero())
+                                            : vf_div(sum3(sum[0], sum[1], sum[2]), sum3(count[0], count[1], count[2]));
         vf_store(out + x, vf_select(vf_gt(own, vf_zero()), v, value));
     }
 }

@@ -105,7 +105,7 @@ static float bilinear(const float *p, ptrdiff_t stride, float ax, float ay)
 // The far sums of one pixel, tap offsets scaled by its own CoC. Eight taps at a time are summed apart, so that many of
 // them round little.
 static void sample_taps(const struct hf_frame *f, int x, int y, const struct hf_buf *colour,
-                         const struct hf_buf *weight)
+                        const struct hf_buf *weight)
 {
     const struct hf_taps *t = f->s->taps;
     const float scale = *hf_at(&f->buf[HF_BUF_COC4], 1, x, y);

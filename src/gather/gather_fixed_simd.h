@@ -41,9 +41,9 @@ HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
     // A vector of 64 bytes that is not aligned is two loads. The right neighbours are shifted out of aligned ones: half
     // of the values, as shifts share a pipe with the sums.
     const vf next = vf_load(p + VF_N);
-#define PAIR(j) \
-    if (j <= r) \
-        h[j] = vf_add(vf_load(p - j), vf_align(h[0], next, j))
+#define PAIR(j)                                                                                                        \
+    if (j <= r)                                                                                                        \
+    h[j] = vf_add(vf_load(p - j), vf_align(h[0], next, j))
     PAIR(1);
     PAIR(2);
     PAIR(3);
@@ -149,26 +149,26 @@ typedef void fixed_column(const float *weight, const float *in, ptrdiff_t in_str
                           int height);
 
 // Two functions: inlined into one, the compiler keeps the weights of all rows as vectors, and spills them.
-#define FIXED_COLUMN(rows, r)                                                                                         \
-    static __attribute__((noinline)) void rows##_edge(const float *weight, const float *in, int d, int top,           \
-                                                      float *out, ptrdiff_t stride, int height)                       \
-    {                                                                                                                 \
-        fixed_edge(rows, r, weight, in, d, top, out, stride, height);                                                 \
-    }                                                                                                                 \
-    static __attribute__((noinline)) void rows##_inside(const float *weight, const float *in, ptrdiff_t in_stride,    \
-                                                        float *out, ptrdiff_t out_stride, int height)                 \
-    {                                                                                                                 \
-        fixed_inside(rows, r, weight, in, in_stride, out, out_stride, height);                                        \
-    }                                                                                                                 \
-    static void rows##_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out,                  \
-                              ptrdiff_t out_stride, int height)                                                       \
-    {                                                                                                                 \
-        for (int d = r; d >= 1; d--)                                                                                  \
-            rows##_edge(weight, in - d * in_stride, d, 1, out, out_stride, height);                                   \
-        rows##_inside(weight, in, in_stride, out, out_stride, height);                                                \
-        for (int d = 1; d <= r; d++)                                                                                  \
-            rows##_edge(weight, in + (height - 1 + d) * in_stride, d, 0, out + (height - 1) * out_stride,             \
-                        -out_stride, height);                                                                         \
+#define FIXED_COLUMN(rows, r)                                                                                          \
+    static __attribute__((noinline)) void rows##_edge(const float *weight, const float *in, int d, int top,            \
+                                                      float *out, ptrdiff_t stride, int height)                        \
+    {                                                                                                                  \
+        fixed_edge(rows, r, weight, in, d, top, out, stride, height);                                                  \
+    }                                                                                                                  \
+    static __attribute__((noinline)) void rows##_inside(const float *weight, const float *in, ptrdiff_t in_stride,     \
+                                                        float *out, ptrdiff_t out_stride, int height)                  \
+    {                                                                                                                  \
+        fixed_inside(rows, r, weight, in, in_stride, out, out_stride, height);                                         \
+    }                                                                                                                  \
+    static void rows##_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out,                   \
+                              ptrdiff_t out_stride, int height)                                                        \
+    {                                                                                                                  \
+        for (int d = r; d >= 1; d--)                                                                                   \
+            rows##_edge(weight, in - d * in_stride, d, 1, out, out_stride, height);                                    \
+        rows##_inside(weight, in, in_stride, out, out_stride, height);                                                 \
+        for (int d = 1; d <= r; d++)                                                                                   \
+            rows##_edge(weight, in + (height - 1 + d) * in_stride, d, 0, out + (height - 1) * out_stride, -out_stride, \
+                        height);                                                                                       \
     }
 
 FIXED_COLUMN(rings_4, 4)
@@ -188,6 +188,8 @@ static const float *fixed_weights(const struct hf_taps *t, float *work)
 // NULL: none fits.
 static fixed_column *fixed_column_for(const struct hf_taps *t)
 {
-    return taps_are(t, rings_6, 6) ? rings_6_column : taps_are(t, rings_4, 4) ? rings_4_column
-         : taps_are(t, rings_8, 8) ? rings_8_column : NULL;
+    return taps_are(t, rings_6, 6)   ? rings_6_column
+           : taps_are(t, rings_4, 4) ? rings_4_column
+           : taps_are(t, rings_8, 8) ? rings_8_column
+                                     : NULL;
 }

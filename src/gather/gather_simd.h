@@ -141,8 +141,8 @@ HF_INLINE void rows_needed(const struct gather_job *j, int x, int height, const 
 }
 
 // A strip of s vectors from column x of all planes.
-HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j, int x, int height,
-                            const int symmetric, const int s, float *work)
+HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j, int x, int height, const int symmetric,
+                            const int s, float *work)
 {
     struct gather_term *terms = (struct gather_term *)work;
     const int n = t->first[t->rows];
@@ -152,16 +152,16 @@ HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j,
     int y0, y1;
     rows_needed(j, x, height, s, &y0, &y1);
     for (int i = 0; i < j->planes && y0 < y1; i++)
-        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
-                       j->out[i] + y0 * j->out_stride[i] + x, j->out_stride[i], y1 - y0, symmetric, s, terms, h);
+        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i], j->out[i] + y0 * j->out_stride[i] + x,
+                       j->out_stride[i], y1 - y0, symmetric, s, terms, h);
 }
 
-HF_INLINE void gather_any(const struct hf_taps *t, const struct gather_job *j, int x, int height,
-                          const int symmetric, int s, float *work)
+HF_INLINE void gather_any(const struct hf_taps *t, const struct gather_job *j, int x, int height, const int symmetric,
+                          int s, float *work)
 {
-#define STRIP(n)                                                                                                     \
-    case n:                                                                                                          \
-        gather_strip(t, j, x, height, symmetric, n <= GATHER_S ? n : GATHER_S, work);                                \
+#define STRIP(n)                                                                                                       \
+    case n:                                                                                                            \
+        gather_strip(t, j, x, height, symmetric, n <= GATHER_S ? n : GATHER_S, work);                                  \
         break;
     switch (s) {
         STRIP(1) STRIP(2) STRIP(3) STRIP(4) STRIP(5) STRIP(6) STRIP(7) STRIP(8) STRIP(9)

@@ -205,8 +205,7 @@ HF_INLINE void blur_row_13(const int bytes, const char *in, char *out, int n)
             w6[k] = w6[k + 1];
         w6[LAG - 2] = vf_add(w3[0], vf_shift(w3, 3));
         if (i >= LAG)
-            blur_put(bytes, 0, out + (i - LAG) * size,
-                     vf_mul(blur_sum(vf_shift(a, 6), w6[0], vf_shift(w6, 7)), scale));
+            blur_put(bytes, 0, out + (i - LAG) * size, vf_mul(blur_sum(vf_shift(a, 6), w6[0], vf_shift(w6, 7)), scale));
     }
 }
 

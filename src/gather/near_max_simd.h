@@ -12,7 +12,7 @@ HF_INLINE vi narrow_max(const int bytes, vi a, vi b)
 
 // The vector that begins n bytes, or values, into consecutive vectors v[0], v[1] ...; n is a literal.
 #define vi_shift(v, n) vi_align((v)[(n) / VECTOR], (v)[(n) / VECTOR + 1], (n) % VECTOR)
-#define narrow_shift(bytes, v, n)                                                                                    \
+#define narrow_shift(bytes, v, n)                                                                                      \
     ((bytes) == 1 ? vi_shift(v, n) : (bytes) == 2 ? vi_shift(v, 2 * (n)) : vi_shift(v, 4 * (n)))
 
 // Largest power of two <= 2m + 1.
@@ -44,8 +44,7 @@ HF_INLINE void max_row(const int bytes, const char *in, char *out, int n, const 
         m8[1] = m8[2];
         m8[lag - 3] = narrow_max(bytes, m4[0], narrow_shift(bytes, m4, 4));
         if (i >= lag * VECTOR)
-            vi_store(out + i - lag * VECTOR,
-                     width == 8 ? m8[0] : narrow_max(bytes, m8[0], narrow_shift(bytes, m8, 5)));
+            vi_store(out + i - lag * VECTOR, width == 8 ? m8[0] : narrow_max(bytes, m8[0], narrow_shift(bytes, m8, 5)));
     }
 }
 

@@ -23,8 +23,8 @@ struct hf_taps {
     int count;             // taps: the centre and the rings, or the dense grid, which has none on the centre
     const float *dx, *dy;  // their offsets in half-resolution pixels, kernel scale included; the centre comes first
 
-    int rx, ry;       // lattice reach: offsets -rx..rx, -ry..ry
-    int symmetric;    // weights mirror in x and in y
+    int rx, ry;     // lattice reach: offsets -rx..rx, -ry..ry
+    int symmetric;  // weights mirror in x and in y
     // The weights, each tap 1/count, summing to 1: only those that are not 0, row by row. Row k has entries first[k] to
     // first[k + 1]. symmetric: ry + 1 rows, for |dy| = k, with column |dx|. Else 2 ry + 1 rows, for dy = k - ry, with
     // column dx + rx.
@@ -32,8 +32,8 @@ struct hf_taps {
     const int *first, *column;
     const float *weight;
 
-    struct hf_block block;  // owns all of the above
-    struct hf_taps_key key; // what it was built from; radius 0: nothing yet
+    struct hf_block block;   // owns all of the above
+    struct hf_taps_key key;  // what it was built from; radius 0: nothing yet
 };
 
 // Rings that reach a radius of so many half-resolution pixels, at most 2 apart.

@@ -42,8 +42,8 @@ static void gaussian_line_simd(const float *in, int n, float *out, int faithful)
     if (faithful) {
         for (int i = 0; i < n; i += VF_N) {
             const float *p = in + i;
-            vf_store(out + i, five_faithful_vf(vf_load(p - 2), vf_load(p - 1), vf_load(p), vf_load(p + 1),
-                                               vf_load(p + 2)));
+            vf_store(out + i,
+                     five_faithful_vf(vf_load(p - 2), vf_load(p - 1), vf_load(p), vf_load(p + 1), vf_load(p + 2)));
         }
         return;
     }

@@ -101,8 +101,17 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 
 const struct hf_engine_def hf_gaussian_engine = {
     .name = "gaussian",
-    .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = TILES,
+    .passes = passes,
+    .pass_count = sizeof passes / sizeof *passes,
+    .sweeps = TILES,
     .across = 1 << WIDE_COLUMNS | 1 << WIDE_ROWS,
-    .bufs = bufs, .buf_count = HF_GAUSSIAN_BUFS,
-    .channels = channels, .halo = halo, .spread = spread, .reads = reads, .work = work, .runs = runs, .cell = cell,
+    .bufs = bufs,
+    .buf_count = HF_GAUSSIAN_BUFS,
+    .channels = channels,
+    .halo = halo,
+    .spread = spread,
+    .reads = reads,
+    .work = work,
+    .runs = runs,
+    .cell = cell,
 };

@@ -23,7 +23,8 @@ static struct band band_of(const struct hf_setup *s, int width)
     const struct hf_hexagon *h = s->tables;
     const int scale = scale_of(s), left = (h->left * scale + 15) & ~15, right = (h->right * scale + 15) & ~15;
     return (struct band){.stride = left + ((width * scale + 30) & ~15) + right + HF_PAD,
-                         .rows = (h->above + HF_HEXAGON_BAND + h->below) * scale, .left = left};
+                         .rows = (h->above + HF_HEXAGON_BAND + h->below) * scale,
+                         .left = left};
 }
 
 size_t hf_hexagon_band_floats(const struct hf_setup *s, int width)

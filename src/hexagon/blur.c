@@ -42,7 +42,8 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
         w[t] = w[t] * HEXAGON_SCALE;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(&f->buf[colour], c, x, y) = ((w[0] * lane[0][0][c][i] + w[1] * lane[0][1][c][i]) +
-                                            (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) * scale;
+                                            (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) *
+                                           scale;
 }
 
 static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)

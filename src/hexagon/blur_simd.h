@@ -172,8 +172,8 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
 
 // A block is walked in groups of rows. The last of them overlaps the one before where rows are left over, and a row's
 // second vector its first: from there on they are aligned.
-#define HEX_EACH(b, rows, x, y)                                                                                      \
-    for (int y = (b).y0; y < (b).y1; y = y + rows < (b).y1 ? hf_min(y + rows, (b).y1 - rows) : (b).y1)                \
+#define HEX_EACH(b, rows, x, y)                                                                                        \
+    for (int y = (b).y0; y < (b).y1; y = y + rows < (b).y1 ? hf_min(y + rows, (b).y1 - rows) : (b).y1)                 \
         for (int x = (b).x0; x < (b).x1; x = (x + VF_N) & ~(VF_N - 1))
 
 // Fetch the samples under a vector that the block below will be the first to read: from here to there they lie too far
@@ -233,7 +233,8 @@ HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int 
         hex_clear(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), b, 4);
         return;
     }
-    HEX_EACH(b, rows, x, y) {
+    HEX_EACH(b, rows, x, y)
+    {
         struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
         hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
         hex_line(&in, &up, channels, weights, rows, x, y, NULL, u);
@@ -260,7 +261,8 @@ HF_INLINE void hex_near_2(const struct hf_frame *f, struct hf_rect b, const int 
         hex_clear(a, b, 1);
         return;
     }
-    HEX_EACH(b, rows, x, y) {
+    HEX_EACH(b, rows, x, y)
+    {
         struct hex_sums v[HEX_ROWS], w[HEX_ROWS];
         hex_line(&in[0], &left, channels, HEX_NONE, rows, x, y, NULL, v);
         hex_line(&in[1], &right, channels, HEX_NONE, rows, x, y, NULL, w);
@@ -345,7 +347,8 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
         return;
     }
     const struct hex_far up = hex_far(f, &in, 0, least, b, rows), left = hex_far(f, &in, 1, least, b, rows);
-    HEX_EACH(b, rows, x, y) {
+    HEX_EACH(b, rows, x, y)
+    {
         vf p[HEX_ROWS], u[HEX_ROWS][4], v[HEX_ROWS][4];
         hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
         for (int i = 0; i < rows; i++)
@@ -372,7 +375,8 @@ HF_INLINE void hex_far_2(const struct hf_frame *f, struct hf_rect b, const int c
         return;
     }
     const struct hex_far left = hex_far(f, &in[0], 1, least, b, rows), right = hex_far(f, &in[1], 2, least, b, rows);
-    HEX_EACH(b, rows, x, y) {
+    HEX_EACH(b, rows, x, y)
+    {
         vf p[HEX_ROWS], v[HEX_ROWS][4], w[HEX_ROWS][4];
         for (int i = 0; i < rows; i++)
             p[i] = vf_load(hf_at(in[0].radius, in[0].q, x, y + i));

@@ -181,8 +181,8 @@ HF_INLINE vf hex_bilinear(const struct hf_buf *b, int channel, int x, const stru
     return sum;
 }
 
-HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const float *radius,
-                                  float *const colour[4], const struct hex_corner corner[4])
+HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const float *radius, float *const colour[4],
+                                  const struct hex_corner corner[4])
 {
     const struct hf_buf *near = hf_hexagon_made(f, HF_HEXAGON_NEAR), *far = hf_hexagon_made(f, HF_HEXAGON_FAR);
     const struct hf_buf *coverage = hf_hexagon_made(f, HF_HEXAGON_COVERAGE);

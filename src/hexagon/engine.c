@@ -9,9 +9,8 @@
 #include "frame/plan.h"
 
 #define FRAME(name) (1u << HF_HEXAGON_##name)
-#define MADE(name)                                                                                                   \
-    (1u << (HF_HEXAGON_MADE + HF_HEXAGON_##name) |                                                                   \
-     1u << (HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##name))
+#define MADE(name)                                                                                                     \
+    (1u << (HF_HEXAGON_MADE + HF_HEXAGON_##name) | 1u << (HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##name))
 #define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
 #define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
 
@@ -26,9 +25,9 @@ static const struct hf_pass passes[] = {
 };
 
 #define FULL .x = 1, .y = 1
-#define NAMED(b, name, ...)                                                                                          \
-    [HF_HEXAGON_MADE + HF_HEXAGON_##b] = {name, FULL, __VA_ARGS__},                                                  \
-    [HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##b] = {name, __VA_ARGS__}
+#define NAMED(b, name, ...)                                                                                            \
+    [HF_HEXAGON_MADE + HF_HEXAGON_##b] = {name, FULL, __VA_ARGS__},                                                    \
+                       [HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##b] = {name, __VA_ARGS__}
 
 static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
     [HF_HEXAGON_COLOUR] = {"colour", .frame = 1, FULL},
@@ -45,8 +44,8 @@ static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
 static int channels(const struct hf_setup *s, int b)
 {
     const int half = s->resolution == HF_RESOLUTION_HALF;
-    if (half != (b >= HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT ||
-                 (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
+    if (half !=
+        (b >= HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT || (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
         return 0;
     if (b < HF_HEXAGON_MADE)
         return b % 2 ? 3 : s->channels;
@@ -92,8 +91,8 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
     *h = (struct hf_hexagon){0};
     struct hf_hexagon_step *step = (struct hf_hexagon_step *)(h + 1);
     for (int i = 0; i < 3; i++, step += taps + two + four)
-        h->line[i] = (struct hf_hexagon_line){
-            .one.step = step, .two.step = step + taps, .four.step = step + taps + two};
+        h->line[i] =
+            (struct hf_hexagon_line){.one.step = step, .two.step = step + taps, .four.step = step + taps + two};
     for (int i = 0; i < 3; i++)
         h->line[i].taps = (struct hf_hexagon_tap *)step + i * taps;
     return HF_OK;
@@ -283,8 +282,18 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 
 const struct hf_engine_def hf_hexagon_engine = {
     .name = "hexagon",
-    .passes = passes, .pass_count = sizeof passes / sizeof *passes, .sweeps = 2,
-    .bufs = bufs, .buf_count = HF_HEXAGON_BUF_COUNT, .measured = 1,
-    .prepare = prepare, .measure = measure, .channels = channels, .halo = halo, .spread = spread, .reads = reads,
-    .cell = cell, .work = work,
+    .passes = passes,
+    .pass_count = sizeof passes / sizeof *passes,
+    .sweeps = 2,
+    .bufs = bufs,
+    .buf_count = HF_HEXAGON_BUF_COUNT,
+    .measured = 1,
+    .prepare = prepare,
+    .measure = measure,
+    .channels = channels,
+    .halo = halo,
+    .spread = spread,
+    .reads = reads,
+    .cell = cell,
+    .work = work,
 };

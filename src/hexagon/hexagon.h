@@ -37,12 +37,12 @@ enum hf_hexagon_buf {
 };
 
 enum hf_hexagon_made {
-    HF_HEXAGON_NEAR_U,    // coverage x colour x weight
+    HF_HEXAGON_NEAR_U,  // coverage x colour x weight
     HF_HEXAGON_NEAR_B,
-    HF_HEXAGON_NEAR_W,    // coverage x weight and mean radius, of U and of B
-    HF_HEXAGON_FAR_U,     // colour x weight
+    HF_HEXAGON_NEAR_W,  // coverage x weight and mean radius, of U and of B
+    HF_HEXAGON_FAR_U,   // colour x weight
     HF_HEXAGON_FAR_B,
-    HF_HEXAGON_NEAR,      // coverage x colour
+    HF_HEXAGON_NEAR,  // coverage x colour
     HF_HEXAGON_COVERAGE,
     HF_HEXAGON_FAR,
     HF_HEXAGON_MADE_COUNT
@@ -77,7 +77,7 @@ struct hf_hexagon_steps {
 struct hf_hexagon_line {
     struct hf_hexagon_tap *taps;
     int count;
-    int x0, y0, x1, y1;  // the largest offsets, both included
+    int x0, y0, x1, y1;                      // the largest offsets, both included
     struct hf_hexagon_steps one, two, four;  // rows at once
 };
 
@@ -96,12 +96,12 @@ size_t hf_hexagon_band_floats(const struct hf_setup *s, int width);
 struct hf_hexagon_field {
     const struct hf_buf *colour;
     const struct hf_buf *weight;
-    int a;                       // channel of weight
+    int a;  // channel of weight
     const struct hf_buf *radius;
-    int q;                       // channel of radius
+    int q;  // channel of radius
     float sign;
-    int part;                    // channel of weight, -1: all are there in full
-    int alone;                   // colour and weight are 0 where the radius is not above 0
+    int part;   // channel of weight, -1: all are there in full
+    int alone;  // colour and weight are 0 where the radius is not above 0
 };
 
 // Where things are at the setup's resolution.
@@ -118,7 +118,7 @@ static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f,
                                           : HF_HEXAGON_FAR_COLOUR_2;
     const struct hf_buf *weight = &f->buf[colour + 1];
     return (struct hf_hexagon_field){&f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f,
-                                     half ? 2 : -1, half};
+                                     half ? 2 : -1,   half};
 }
 
 // The samples that pass 2 reads: what pass 1 made along line v (0) or w (1).
@@ -127,7 +127,13 @@ static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *
     if (field == HF_NEAR) {
         const struct hf_buf *weight = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
         return (struct hf_hexagon_field){hf_hexagon_made(f, second ? HF_HEXAGON_NEAR_B : HF_HEXAGON_NEAR_U),
-                                         weight, 2 * second, weight, 2 * second + 1, 1, -1, 1};
+                                         weight,
+                                         2 * second,
+                                         weight,
+                                         2 * second + 1,
+                                         1,
+                                         -1,
+                                         1};
     }
     struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     in.colour = hf_hexagon_made(f, second ? HF_HEXAGON_FAR_B : HF_HEXAGON_FAR_U);

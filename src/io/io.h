@@ -20,10 +20,10 @@ struct hf_io_error {
 
 // Camera attributes of a header; NAN where the header has none. Names are those of the EXR attributes.
 struct hf_io_camera {
-    float focus;               // metres
-    float f_number;            // "aperture"
-    float focal_length_mm;     // "pinholeFocalLength"
-    float sensor_width_mm;     // "sensorOverallDimensions".x
+    float focus;            // metres
+    float f_number;         // "aperture"
+    float focal_length_mm;  // "pinholeFocalLength"
+    float sensor_width_mm;  // "sensorOverallDimensions".x
 };
 
 struct hf_io_box {
@@ -32,12 +32,12 @@ struct hf_io_box {
 
 // One picture that can be defocused: a set of colour channels and their depth. A stereo file has one per view.
 struct hf_io_view {
-    char name[64];           // view name ("left"), or "" when the file names none
-    int part;                // part that holds the colour
-    int depth_part;          // part that holds the depth; -1: no depth channel found
-    char colour[4][256];     // full channel names of R, G, B, A in the part; "" when there is no such channel
-    char depth[256];         // full channel name of the depth; ""
-    int width, height;       // of the colour's data window
+    char name[64];        // view name ("left"), or "" when the file names none
+    int part;             // part that holds the colour
+    int depth_part;       // part that holds the depth; -1: no depth channel found
+    char colour[4][256];  // full channel names of R, G, B, A in the part; "" when there is no such channel
+    char depth[256];      // full channel name of the depth; ""
+    int width, height;    // of the colour's data window
     struct hf_io_box data_window, display_window;
     float pixel_aspect;
     float screen_center_x, screen_center_y;  // screenWindowCenter

@@ -61,7 +61,7 @@ static void build_disc(struct hf_aperture *a, int number, int first)
 // arc
 // through the same corners, of a circle around (cx, cy).
 struct side {
-    double nx, ny, d, cx, cy, radius; // radius 0: straight
+    double nx, ny, d, cx, cy, radius;  // radius 0: straight
 };
 
 static int make_sides(struct side side[16], const struct hf_aperture_key *key)

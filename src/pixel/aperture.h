@@ -16,12 +16,12 @@ struct hf_run {
 
 // One size of the picture. Every shape has rows from `top` down to bottom.
 struct hf_picture {
-    int first;     // row 0 (symmetric) or row `top`, in half[] or run[]
-    int columns;   // of an image's
-    int top, rows; // symmetric: top 0, rows 0..rows - 1 stand for both +dy and -dy
+    int first;      // row 0 (symmetric) or row `top`, in half[] or run[]
+    int columns;    // of an image's
+    int top, rows;  // symmetric: top 0, rows 0..rows - 1 stand for both +dy and -dy
     int reach_x, reach_y;
-    int cap;    // symmetric: weight of the last row, 1/16
-    float area; // sum of the weights of its pixels: 256 * 16 each, images up to 1023
+    int cap;     // symmetric: weight of the last row, 1/16
+    float area;  // sum of the weights of its pixels: 256 * 16 each, images up to 1023
 };
 
 // 256 sizes an octave, from radius 0.5 on, each 0.2 to 0.4 % larger than the last. Nearest one to a radius.
@@ -29,24 +29,24 @@ enum { HF_SIZES_LOG2 = 8, HF_SIZES = 1 << HF_SIZES_LOG2 };
 
 // What the pictures follow from. No padding: keys are compared byte by byte.
 struct hf_aperture_key {
-    float largest;       // radius, pixels
-    float scale_x;       // widths are multiplied by it: pixel aspect and squeeze
-    int blades, outline; // outline: discs as runs too
+    float largest;        // radius, pixels
+    float scale_x;        // widths are multiplied by it: pixel aspect and squeeze
+    int blades, outline;  // outline: discs as runs too
     float rotation, roundness;
-    int width, height; // of an image
-    uint64_t image;    // its hash; 0: a shape
+    int width, height;  // of an image
+    uint64_t image;     // its hash; 0: a shape
 };
 
 struct hf_aperture {
-    int symmetric; // disc: about both axes, half[] alone
+    int symmetric;  // disc: about both axes, half[] alone
     int count;
-    int headroom; // bits by which sums may exceed the largest sample
+    int headroom;  // bits by which sums may exceed the largest sample
     struct hf_picture *picture;
-    float *inverse;     // shapes: 1 / area of each picture
-    int32_t *half;      // symmetric: half a row's width plus half a pixel, 1/256 pixel
-    struct hf_run *run; // outlines
-    int16_t *tap;       // images: differences of weights along each row
-    int planes, steps;  // images: pictures of each channel, and of how many sizes one is kept
+    float *inverse;      // shapes: 1 / area of each picture
+    int32_t *half;       // symmetric: half a row's width plus half a pixel, 1/256 pixel
+    struct hf_run *run;  // outlines
+    int16_t *tap;        // images: differences of weights along each row
+    int planes, steps;   // images: pictures of each channel, and of how many sizes one is kept
     struct hf_block block;
     struct hf_aperture_key key;
 };

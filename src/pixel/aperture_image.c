@@ -43,7 +43,7 @@ static int has_colour(const struct hf_image *m)
 
 // Integral of the image over [0, x) x [0, y), which may lie between its pixels or outside.
 struct integral {
-    const double *sum; // (width + 1) x (height + 1)
+    const double *sum;  // (width + 1) x (height + 1)
     int width, height;
 };
 
@@ -79,7 +79,7 @@ static struct hf_picture frame_of(const struct hf_image *m, double r, double sca
                            .reach_y = (int)ceil(r * fmin(m->height / shorter, LONGEST) + 0.5)};
     p.top = -p.reach_y;
     p.rows = 2 * p.reach_y + 1;
-    p.columns = 2 * p.reach_x + 2; // one more, for differences
+    p.columns = 2 * p.reach_x + 2;  // one more, for differences
     return p;
 }
 
@@ -152,7 +152,7 @@ int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key 
             p->first = first;
             first += p->rows * p->columns;
             double area = draw(a, p, &t, r);
-            if (area <= 0) { // a black picture: the pixel itself
+            if (area <= 0) {  // a black picture: the pixel itself
                 int16_t *tap = a->tap + p->first - (ptrdiff_t)p->top * p->columns + p->reach_x;
                 tap[0] = 1;
                 tap[1] = -1;

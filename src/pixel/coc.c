@@ -95,8 +95,7 @@ void hf_coc_c(const struct hf_frame *f, struct hf_rect r)
         return;
     }
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
-        float *const out[4] = {hf_at(b, 0, r.x0, y), hf_at(b, 1, r.x0, y), hf_at(b, 2, r.x0, y),
-                               hf_at(b, 3, r.x0, y)};
+        float *const out[4] = {hf_at(b, 0, r.x0, y), hf_at(b, 1, r.x0, y), hf_at(b, 2, r.x0, y), hf_at(b, 3, r.x0, y)};
         f->k->coc_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
         hf_count_row(f->counts, y);
     }

@@ -198,21 +198,23 @@ static int sharp_row_simd(const struct hf_frame *f, int x, int y, int n)
     return whole == n || hf_sharp_row_c(f, x + whole, y, n - whole);
 }
 
-static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *const out[4],
-                         struct hf_counts *counts)
+static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts)
 {
     const int whole = hf_min(n, (f->s->width - 2 * x) / 2) / VF_N * VF_N;
     const vm no = vf_gt(vf_zero(), vf_zero());
-    struct coc_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(),
-                            no, no, 0, 0, no};
+    struct coc_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(), no, no, 0, 0, no};
     if (counts)
         coc_row_form(f, 1, x, y, whole, out, &sums);
     else
         coc_row_form(f, 0, x, y, whole, out, &sums);
-    struct hf_counts c = {.near_pixels = vi_sum(sums.near), .far_pixels = vi_sum(sums.far),
-                          .sharp_pixels = 2 * (uint64_t)whole - vi_sum(sums.any), .no_surface = vi_sum(sums.none),
-                          .near_max = vf_most(sums.near_max), .far_max = vf_most(sums.far_max),
-                          .near_groups = sums.near_groups, .far_groups = sums.far_groups};
+    struct hf_counts c = {.near_pixels = vi_sum(sums.near),
+                          .far_pixels = vi_sum(sums.far),
+                          .sharp_pixels = 2 * (uint64_t)whole - vi_sum(sums.any),
+                          .no_surface = vi_sum(sums.none),
+                          .near_max = vf_most(sums.near_max),
+                          .far_max = vf_most(sums.far_max),
+                          .near_groups = sums.near_groups,
+                          .far_groups = sums.far_groups};
     // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
     const int from = vm_any(sums.nan) ? 0 : whole;
     if (from == 0)

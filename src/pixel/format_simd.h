@@ -356,18 +356,18 @@ HF_INLINE uint8_t *plane_at(const struct hf_image *m, int plane, int bpp, int x,
     return (uint8_t *)m->data[plane] + (ptrdiff_t)y * m->stride[plane] + (size_t)x * 2 * bpp;
 }
 
-#define HF_FORMAT_ROWS(name, format, bpp, channels)                                                                  \
-    static int load_##name##_simd(const struct hf_image *m, int x, int y, int n, float *const even[4],               \
-                                  float *const odd[4])                                                               \
-    {                                                                                                                \
-        return load_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n, m->width - 2 * x,       \
-                          even, odd);                                                                                \
-    }                                                                                                                \
-    static uint64_t store_##name##_simd(const struct hf_image *m, int x, int y, int n, const float *const even[4],   \
-                                        const float *const odd[4])                                                   \
-    {                                                                                                                \
-        return store_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n,                        \
-                           hf_min(m->width - 2 * x, 2 * n), even, odd);                                              \
+#define HF_FORMAT_ROWS(name, format, bpp, channels)                                                                    \
+    static int load_##name##_simd(const struct hf_image *m, int x, int y, int n, float *const even[4],                 \
+                                  float *const odd[4])                                                                 \
+    {                                                                                                                  \
+        return load_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n, m->width - 2 * x, even,   \
+                          odd);                                                                                        \
+    }                                                                                                                  \
+    static uint64_t store_##name##_simd(const struct hf_image *m, int x, int y, int n, const float *const even[4],     \
+                                        const float *const odd[4])                                                     \
+    {                                                                                                                  \
+        return store_plane(format, bpp, channels, plane_at(m, 0, bpp, x, y), m->stride[0], n,                          \
+                           hf_min(m->width - 2 * x, 2 * n), even, odd);                                                \
     }
 
 HF_FORMAT_ROWS(rgba32f, HF_FORMAT_RGBA32F, 16, 4)
@@ -421,9 +421,9 @@ HF_INLINE int finite_vectors(const uint8_t *p, size_t bytes, const uint32_t mask
 // Copies go past the caches if they are aligned: nobody here reads them again.
 HF_INLINE int finite_words(const uint8_t *p, size_t bytes, const uint32_t masks[3], const int count, uint8_t *to)
 {
-    const int finite = !to                            ? finite_vectors(p, bytes, masks, count, to, COPY_NOT)
+    const int finite = !to                          ? finite_vectors(p, bytes, masks, count, to, COPY_NOT)
                        : (uintptr_t)to % (4 * VF_N) ? finite_vectors(p, bytes, masks, count, to, COPY_PLAIN)
-                                                      : finite_vectors(p, bytes, masks, count, to, COPY_STREAM);
+                                                    : finite_vectors(p, bytes, masks, count, to, COPY_STREAM);
     size_t i = bytes / (4 * VF_N) * (4 * VF_N);
     if (!finite)
         return 0;

@@ -195,7 +195,7 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     (void)sweep;
     *height = hf_max(*height, hf_min(enough, 512));
     for (int field = 0; t && field < 2; field++) {
-        const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8); // bytes, of a half-resolution one
+        const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8);  // bytes, of a half-resolution one
         if (t->reach_x[field][1] < 0)
             *width = hf_min(*width, hf_max(hf_max(400000 / column, 4 * s->reach_x) & ~15, 64));
     }

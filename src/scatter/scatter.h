@@ -7,8 +7,8 @@
 
 // The engine's buffers.
 enum {
-    HF_BUF_SOURCE, // colour of every pixel
-    HF_BUF_RADIUS, // its signed radius
+    HF_BUF_SOURCE,  // colour of every pixel
+    HF_BUF_RADIUS,  // its signed radius
     HF_BUF_FAR_SUM,
     HF_BUF_FAR_WEIGHT,
     HF_BUF_NEAR_SUM,
@@ -19,25 +19,25 @@ enum {
 // Channels that share pictures, and so a sum of weights.
 struct hf_splat_group {
     int channels, channel[3];
-    float factor[2]; // of the radius, near and far
+    float factor[2];  // of the radius, near and far
 };
 
 struct hf_scatter {
     const struct hf_aperture *aperture;
     int groups;
     struct hf_splat_group group[4];
-    int group_of[4];  // of each channel
-    int opaque;       // alpha is 1 everywhere, as the weights' ratio is
-    float largest[2]; // |r| of the frame, near and far
+    int group_of[4];   // of each channel
+    int opaque;        // alpha is 1 everywhere, as the weights' ratio is
+    float largest[2];  // |r| of the frame, near and far
     // Radii between which pixels move from the full to the half-resolution sums, half_slope 1 / their difference; below
     // 0: there is nothing but the latter.
     float half_from, half_to, half_slope;
-    float fade, fade_slope;           // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
-    int exponent;                     // the brightest blurred sample is below 2^exponent
-    int reach_x[2][2], reach_y[2][2]; // [field: near, far][level]: of the pictures, the level's pixels; -1: none
-    float ring, cat_eye;              // radii of the hole, and by which the second circle moves in the corners
-    float corner;                     // 1 / the picture's diagonal, pixels
-    double scale[4], unscale[4];      // from a sample's share to the integers of the sums, and back
+    float fade, fade_slope;            // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
+    int exponent;                      // the brightest blurred sample is below 2^exponent
+    int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
+    float ring, cat_eye;               // radii of the hole, and by which the second circle moves in the corners
+    float corner;                      // 1 / the picture's diagonal, pixels
+    double scale[4], unscale[4];       // from a sample's share to the integers of the sums, and back
 };
 
 // What still shows of a pixel of radius r >= 0 itself: 1 for a sharp one.
@@ -71,11 +71,11 @@ struct hf_scatter_row {
 // A row of pixels as parts of half-resolution means: n of these from column 0 on, two pixels each.
 struct hf_tent_row {
     const struct hf_scatter *scatter;
-    float sign; // of the radii of the field
+    float sign;  // of the radii of the field
     int n, channels;
     const float *radius, *colour[3];
-    const float *own, *next; // radii of the quads of this row, and of the row that its tent reaches; from -1 to n
-    float *pixel[2][4];      // even and odd: colour times weight, 3 the weight
+    const float *own, *next;  // radii of the quads of this row, and of the row that its tent reaches; from -1 to n
+    float *pixel[2][4];       // even and odd: colour times weight, 3 the weight
 };
 
 // Sources to be drawn.
@@ -83,18 +83,18 @@ enum { HF_SPLATS = 128 };
 
 struct hf_splats {
     int count;
-    int32_t x[HF_SPLATS], y[HF_SPLATS]; // the level's pixels
+    int32_t x[HF_SPLATS], y[HF_SPLATS];  // the level's pixels
     int32_t picture[HF_SPLATS];
-    _Alignas(64) int64_t share[HF_SPLATS + 4][4]; // of each lane for 1 unit of weight
+    _Alignas(64) int64_t share[HF_SPLATS + 4][4];  // of each lane for 1 unit of weight
 };
 
 // A row of sources, the level's pixels from column x on.
 struct hf_source_row {
     int x, y;
-    const float *colour[3], *weight; // colours are weighted
-    const float *radius;             // times scale: of the picture
+    const float *colour[3], *weight;  // colours are weighted
+    const float *radius;              // times scale: of the picture
     float scale;
-    const int32_t *picture; // its number; -1: no source
+    const int32_t *picture;  // its number; -1: no source
 };
 
 // A window of sums: differences along x, four lanes a pixel: three channels and the weight. A row has pixels to spare
@@ -103,7 +103,7 @@ enum { HF_SUMS_MARGIN = 8 };
 
 struct hf_sums {
     int64_t *lane;
-    ptrdiff_t *row; // where pixel x0 of each row y0.. of the window is; rows are used again when they are settled
+    ptrdiff_t *row;  // where pixel x0 of each row y0.. of the window is; rows are used again when they are settled
     int x0, y0, x1, y1;
 };
 

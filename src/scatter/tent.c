@@ -228,8 +228,12 @@ void hf_list_half(struct walk *w, int q)
     hf_walk_columns(w, &x0, &x1);
     prepare_tents(w, q);
     set_parts(w->f->s, q, row, part);
-    struct hf_source_row r = {.x = x0, .y = q, .weight = w->mean[3], .radius = w->site[q & 3] + x0 - w->tent_x0,
-                              .scale = 0.5f * w->group->factor[w->field], .picture = (int32_t *)w->mean[4]};
+    struct hf_source_row r = {.x = x0,
+                              .y = q,
+                              .weight = w->mean[3],
+                              .radius = w->site[q & 3] + x0 - w->tent_x0,
+                              .scale = 0.5f * w->group->factor[w->field],
+                              .picture = (int32_t *)w->mean[4]};
     for (int c = 0; c < 4; c++) {
         const float *tent[4];
         if (c < 3)

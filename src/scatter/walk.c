@@ -12,8 +12,12 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y)
     const struct hf_frame *f = w->f;
     const float sign = w->field ? 1 : -1, *colour[3] = {NULL};
     float **row = w->source[y % TOGETHER];
-    struct hf_source_row r = {.x = x0, .y = y, .weight = row[3], .scale = sign * w->group->factor[w->field],
-                              .radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y), .picture = (int32_t *)row[4]};
+    struct hf_source_row r = {.x = x0,
+                              .y = y,
+                              .weight = row[3],
+                              .scale = sign * w->group->factor[w->field],
+                              .radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y),
+                              .picture = (int32_t *)row[4]};
     for (int c = 0; c < 3; c++) {
         r.colour[c] = c < w->group->channels ? row[c] : w->nothing;
         if (c < w->group->channels)
@@ -41,9 +45,9 @@ static void list_full(struct walk *w, int y0, int y1)
 
 // Widths and heights of what a pass keeps while it draws on a rectangle of half-resolution pixels.
 struct layout {
-    int width[2], height[2], ring[2], stride[2]; // of the sums, each level; stride in lanes
-    int line[2];                                 // floats of a row of sources, and its padding
-    size_t sums, rows, list, runs, half, lines;  // floats of each part
+    int width[2], height[2], ring[2], stride[2];  // of the sums, each level; stride in lanes
+    int line[2];                                  // floats of a row of sources, and its padding
+    size_t sums, rows, list, runs, half, lines;   // floats of each part
 };
 
 static size_t whole_lines(size_t floats)
@@ -86,7 +90,7 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
     l.rows = whole_lines(l.rows * sizeof(ptrdiff_t) / sizeof(float));
     l.runs = whole_lines((size_t)(2 * longest + 3) * sizeof(struct hf_run) / sizeof(float));
     l.list = whole_lines(sizeof(struct hf_splats) / sizeof(float));
-    l.lines += (size_t)hf_max(l.line[0], l.line[1]); // and one of zeros
+    l.lines += (size_t)hf_max(l.line[0], l.line[1]);  // and one of zeros
     return l;
 }
 

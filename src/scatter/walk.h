@@ -7,23 +7,24 @@
 #include "pixel/pass_c.h"
 #include "scatter/scatter.h"
 
-enum { TOGETHER = 4 }; // rows of full-resolution sources that are drawn at once
+enum { TOGETHER = 4 };  // rows of full-resolution sources that are drawn at once
 
 // The walk over a window: one field's sums of one group and level.
 struct walk {
     const struct hf_frame *f;
     const struct hf_scatter *t;
     const struct hf_splat_group *group;
-    int field; // 0 near, 1 far
-    int level; // 1: half resolution
+    int field;  // 0 near, 1 far
+    int level;  // 1: half resolution
     struct hf_sums sums;
     struct hf_splats *list;
-    struct hf_run *runs;           // of a picture that is its source's own
-    float *source[TOGETHER][5];    // level 0: channels, weight, and numbers of pictures
+    struct hf_run *runs;         // of a picture that is its source's own
+    float *source[TOGETHER][5];  // level 0: channels, weight, and numbers of pictures
     // level 1: of the last rows, source radii and pixels; see hf_list_half
     float *quad[4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *nothing;
     int lone[4];
-    int tent_x0, tent_x1, quads_done, sites_done, tents_done; // half-resolution columns; rows up to which they are made
+    int tent_x0, tent_x1, quads_done, sites_done,
+        tents_done;  // half-resolution columns; rows up to which they are made
 };
 
 // Sources of columns x0 to x1 that reach the window.

@@ -25,8 +25,8 @@ static struct call call_new(int width, int height, int channels)
 {
     struct rng rng = rng_seed(seed);
     struct call c = {.scene = scene_new(&rng, SCENE_BLOCKS, width, height, channels),
-                      .out = picture_new(width, height, channels),
-                      .params = scene_params()};
+                     .out = picture_new(width, height, channels),
+                     .params = scene_params()};
     c.dst = picture_image(&c.out);
     c.src = picture_image(&c.scene.colour);
     c.depth = picture_depth(&c.scene.depth);
@@ -63,17 +63,17 @@ static void strings(void)
     static const char *const isas[] = {"auto", "scalar", "sse4.1", "avx2", "avx512", "neon"};
     for (int i = 0; i <= HF_ISA_NEON; i++)
         CHECK(strcmp(hf_isa_name((enum hf_isa)i), isas[i]) == 0);
-    CHECK(!hf_isa_name((enum hf_isa)99) && !hf_isa_name((enum hf_isa)-1));
+    CHECK(!hf_isa_name((enum hf_isa)99) && !hf_isa_name((enum hf_isa) - 1));
     CHECK_INT(hf_isa_available(HF_ISA_SCALAR), 1);
     CHECK_INT(hf_isa_available(HF_ISA_AUTO), 1);
     CHECK_INT(hf_isa_available((enum hf_isa)99), 0);
     static const char *const passes[] = {"CoC generation",  "Downsample",      "Near CoC Max X", "Near CoC Max Y",
-                                          "Near CoC Blur X", "Near CoC Blur Y", "Computation",    "Fill",
-                                          "Composite"};
+                                         "Near CoC Blur X", "Near CoC Blur Y", "Computation",    "Fill",
+                                         "Composite"};
     for (int i = 0; i < HF_PASS_COUNT; i++)
         CHECK(strcmp(hf_pass_name(HF_ENGINE_GATHER, i), passes[i]) == 0);
     CHECK(!hf_pass_name(HF_ENGINE_GATHER, HF_PASS_COUNT) && !hf_pass_name(HF_ENGINE_GATHER, -1) &&
-          !hf_pass_name((enum hf_engine)-1, 0));
+          !hf_pass_name((enum hf_engine) - 1, 0));
 }
 
 static void *some_alloc(void *cookie, size_t size, size_t align)
@@ -93,9 +93,9 @@ static void opening(void)
     struct hf_context *c;
     CHECK_INT(hf_open(NULL, NULL), HF_ERR_ARG);
     const struct hf_config bad[] = {
-        {.threads = -1}, {.threads = 257}, {.isa = (enum hf_isa)17}, {.isa = (enum hf_isa)-1},
-        {.alloc = some_alloc}, {.free = some_free}, {.tile_width = 8}, {.tile_width = 40},
-        {.tile_width = -16},   {.tile_height = 15}, {.tile_height = -1}, {.tile_width = 65552},
+        {.threads = -1},       {.threads = 257},    {.isa = (enum hf_isa)17}, {.isa = (enum hf_isa) - 1},
+        {.alloc = some_alloc}, {.free = some_free}, {.tile_width = 8},        {.tile_width = 40},
+        {.tile_width = -16},   {.tile_height = 15}, {.tile_height = -1},      {.tile_width = 65552},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         c = (struct hf_context *)&c;
@@ -137,17 +137,17 @@ static void accepted(struct hf_context *c, const struct call *call, const char *
     CHECK_MSG(err == HF_OK, "%s: %s (%s)", what, hf_error_string(err), last_log);
 }
 
-#define SPOIL(assignment)                                                                                             \
-    do {                                                                                                              \
-        struct call s = good;                                                                                         \
-        s.assignment;                                                                                                 \
-        refused(c, &s, #assignment);                                                                                  \
+#define SPOIL(assignment)                                                                                              \
+    do {                                                                                                               \
+        struct call s = good;                                                                                          \
+        s.assignment;                                                                                                  \
+        refused(c, &s, #assignment);                                                                                   \
     } while (0)
-#define ALLOW(assignment)                                                                                             \
-    do {                                                                                                              \
-        struct call s = good;                                                                                         \
-        s.assignment;                                                                                                 \
-        accepted(c, &s, #assignment);                                                                                 \
+#define ALLOW(assignment)                                                                                              \
+    do {                                                                                                               \
+        struct call s = good;                                                                                          \
+        s.assignment;                                                                                                  \
+        accepted(c, &s, #assignment);                                                                                  \
     } while (0)
 
 static void bad_images(struct hf_context *c)
@@ -167,7 +167,7 @@ static void bad_images(struct hf_context *c)
     SPOIL(dst.width = 19);
     SPOIL(src.height = 9);
     SPOIL(src.format = (enum hf_format)9);
-    SPOIL(dst.format = (enum hf_format)-1);
+    SPOIL(dst.format = (enum hf_format) - 1);
     SPOIL(src.data[0] = NULL);
     SPOIL(src.data[2] = NULL);
     SPOIL(dst.data[1] = NULL);
@@ -181,7 +181,7 @@ static void bad_images(struct hf_context *c)
     SPOIL(depth.stride = 79);
     SPOIL(depth.stride = -4);
     SPOIL(depth.type = (enum hf_depth_type)7);
-    SPOIL(depth.type = (enum hf_depth_type)-1);
+    SPOIL(depth.type = (enum hf_depth_type) - 1);
     for (int type = HF_DEPTH_NDC_D3D; type <= HF_DEPTH_NDC_REVERSED; type++) {
         good.depth.type = (enum hf_depth_type)type;
         good.depth.near_plane = 0.5f;
@@ -211,7 +211,7 @@ static void bad_params(struct hf_context *c)
     struct call good = call_new(20, 10, 3);
     SPOIL(params.engine = (enum hf_engine)99);
     SPOIL(params.model = (enum hf_model)2);
-    SPOIL(params.model = (enum hf_model)-1);
+    SPOIL(params.model = (enum hf_model) - 1);
     static const float not_positive[] = {0, -0.0f, -1, NAN, -INFINITY, INFINITY};
     for (int i = 0; i < 6; i++)
         SPOIL(params.focus_distance = not_positive[i]);
@@ -252,7 +252,7 @@ static void bad_params(struct hf_context *c)
     ALLOW(params.pixel_aspect = 0.1f);
     SPOIL(params.storage = (enum hf_storage)3);
     SPOIL(params.fill = (enum hf_fill)3);
-    SPOIL(params.blend = (enum hf_blend)-1);
+    SPOIL(params.blend = (enum hf_blend) - 1);
     for (int blades = -1; blades <= 11; blades++) {
         if (blades == 0 || (blades >= 5 && blades <= 9))
             ALLOW(params.blades = blades);
@@ -411,8 +411,8 @@ static void repairs(struct hf_context *c, enum hf_format format, int variant)
     int wrong = 0;
     for (int k = 0; k < before.channels; k++)
         for (int i = 0; i < before.width * before.height; i++)
-            wrong += !isfinite(out.plane[k][i]) || (p.strength == 0 && isfinite(before.plane[k][i]) &&
-                                                    out.plane[k][i] != before.plane[k][i]);
+            wrong += !isfinite(out.plane[k][i]) ||
+                     (p.strength == 0 && isfinite(before.plane[k][i]) && out.plane[k][i] != before.plane[k][i]);
     CHECK_MSG(wrong == 0, "format %d, variant %d: %d samples not finite, or changed by a copy", format, variant, wrong);
     picture_free(&before);
     picture_free(&out);

@@ -227,10 +227,11 @@ static void host_threads(void)
     for (int threads = 1; threads <= 8; threads++) {
         for (int kind = 0; kind < 3; kind++) {
             struct host h = {.threads = threads};
-            const struct hf_config config = {.threads = threads, .parallel_for = kind == 0   ? backwards
-                                                                                 : kind == 1 ? forwards
-                                                                                             : NULL,
-                                              .parallel_cookie = &h};
+            const struct hf_config config = {.threads = threads,
+                                             .parallel_for = kind == 0   ? backwards
+                                                             : kind == 1 ? forwards
+                                                                         : NULL,
+                                             .parallel_cookie = &h};
             CHECK_INT(hf_open(&c, &config), HF_OK);
             CHECK_INT(hf_context_threads(c), threads);
             for (int i = 0; i < 3; i++) {
@@ -275,7 +276,7 @@ static void *use_context(void *arg)
 
 static void many_contexts(void)
 {
-    enum {USERS = 6};
+    enum { USERS = 6 };
     struct rng rng = rng_seed(seed);
     struct scene scene[USERS];
     struct picture want[USERS];

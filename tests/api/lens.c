@@ -20,18 +20,18 @@ struct lens {
 };
 
 static const struct lens lenses[] = {
-    {50, 2.8f, 36, 1, 10, 0.1f, 100, 1920},  {85, 1.4f, 36, 1, 2, 0.5f, 50, 1280},
-    {24, 8, 23.5f, 1, 3, 0.05f, 1000, 640},  {35, 2, 36, 0.01f, 250, 10, 20000, 1920},
-    {200, 4, 36, 1, 30, 1, 500, 4096},       {8, 1.8f, 6.4f, 1, 0.5f, 0.1f, 20, 800},
+    {50, 2.8f, 36, 1, 10, 0.1f, 100, 1920}, {85, 1.4f, 36, 1, 2, 0.5f, 50, 1280},
+    {24, 8, 23.5f, 1, 3, 0.05f, 1000, 640}, {35, 2, 36, 0.01f, 250, 10, 20000, 1920},
+    {200, 4, 36, 1, 30, 1, 500, 4096},      {8, 1.8f, 6.4f, 1, 0.5f, 0.1f, 20, 800},
 };
 
 static void radii_of(const struct lens *l, enum hf_depth_type type, const float *depth, float *out)
 {
     static float colour[3 * N];
-    const struct hf_image image = {.width = N, .height = 1, .format = HF_FORMAT_RGB32F, .data = {colour},
-                                   .stride = {sizeof colour}};
-    const struct hf_depth d = {.data = depth, .stride = N * sizeof(float), .type = type, .near_plane = l->near,
-                               .far_plane = l->far};
+    const struct hf_image image = {
+        .width = N, .height = 1, .format = HF_FORMAT_RGB32F, .data = {colour}, .stride = {sizeof colour}};
+    const struct hf_depth d = {
+        .data = depth, .stride = N * sizeof(float), .type = type, .near_plane = l->near, .far_plane = l->far};
     struct hf_params p = hf_default_params;
     p.engine = HF_ENGINE_HEXAGON;
     p.model = HF_MODEL_LENS;

@@ -38,11 +38,12 @@ struct job {
 
 static void on_buffer(void *cookie, const struct hf_buffer *b)
 {
-    static const char *const names[] = {[REF_COC] = "coc", [REF_COC4] = "coc4", [REF_COCMAXX] = "cocmaxx",
-                                         [REF_COCMAX] = "cocmax", [REF_COCBLURX] = "cocblurx",
-                                         [REF_COCBLUR] = "cocblur", [REF_COLOR4] = "color4",
-                                         [REF_COLORMULCOC4] = "colormulcoc4", [REF_NEAR] = "near", [REF_FAR] = "far",
-                                         [REF_NEARFILL] = "nearfill", [REF_FARFILL] = "farfill"};
+    static const char *const names[] = {[REF_COC] = "coc",           [REF_COC4] = "coc4",
+                                        [REF_COCMAXX] = "cocmaxx",   [REF_COCMAX] = "cocmax",
+                                        [REF_COCBLURX] = "cocblurx", [REF_COCBLUR] = "cocblur",
+                                        [REF_COLOR4] = "color4",     [REF_COLORMULCOC4] = "colormulcoc4",
+                                        [REF_NEAR] = "near",         [REF_FAR] = "far",
+                                        [REF_NEARFILL] = "nearfill", [REF_FARFILL] = "farfill"};
     struct capture *capture = cookie;
     for (int id = REF_COC; id < REF_RESULT; id++) {
         if (strcmp(b->name, names[id]) != 0)
@@ -52,8 +53,8 @@ static void on_buffer(void *cookie, const struct hf_buffer *b)
         capture->count++;
         for (int c = 0; c < b->channels; c++)
             for (int y = 0; y < b->height; y++)
-                memcpy(capture->buffer[id].plane[c] + (ptrdiff_t)y * b->width,
-                       (const char *)b->data[c] + y * b->stride, sizeof(float) * (size_t)b->width);
+                memcpy(capture->buffer[id].plane[c] + (ptrdiff_t)y * b->width, (const char *)b->data[c] + y * b->stride,
+                       sizeof(float) * (size_t)b->width);
         return;
     }
     CHECK_MSG(0, "unknown buffer %s", b->name);
@@ -113,8 +114,8 @@ static double coc_bound(const struct reference *r, const struct job *job)
         converted = 6 * end / range * end / job->depth->near_plane;
     double bound = 8 + 4 * end / range + converted;
     if (lens)
-        bound = 8 + 12 * p->focal_length_mm * p->focal_length_mm / 2000 / p->f_number / p->sensor_width_mm *
-                        r->width / f / r->rho;
+        bound = 8 + 12 * p->focal_length_mm * p->focal_length_mm / 2000 / p->f_number / p->sensor_width_mm * r->width /
+                        f / r->rho;
     return U * (p->blend == HF_BLEND_SMOOTHSTEP ? 1.5 * bound + 6 : bound);
 }
 
@@ -149,7 +150,7 @@ static double bound_of(const struct reference *r, const struct job *job, enum re
     case REF_COC4:
     case REF_COCMAXX:
     case REF_COCMAX:
-        return 0;  // copies
+        return 0;       // copies
     case REF_COCBLURX:  // 2 m + 1 positive terms, and the scale
         return U * want * (2 * ceil(r->reach_x) + 3);
     case REF_COCBLUR:
@@ -290,8 +291,13 @@ static const struct option options[] = {
     {"derived radius", {.max_radius = HF_DERIVE, .display_height = 700}, 0},
     {"derived radius faithful", {.max_radius = HF_DERIVE, .faithful = ON}, 0},
     {"lens", {.model = HF_MODEL_LENS, .f_number = 0.05f}, 1},
-    {"lens smoothstep display", {.model = HF_MODEL_LENS, .f_number = 0.3f, .display_width = 500,
-                                   .blend = HF_BLEND_SMOOTHSTEP, .world_unit_m = 0.5f}, 0},
+    {"lens smoothstep display",
+     {.model = HF_MODEL_LENS,
+      .f_number = 0.3f,
+      .display_width = 500,
+      .blend = HF_BLEND_SMOOTHSTEP,
+      .world_unit_m = 0.5f},
+     0},
 };
 enum { OPTIONS = sizeof options / sizeof *options };
 

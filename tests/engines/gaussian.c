@@ -49,7 +49,8 @@ static void blur(struct plane *p, int dx, int dy, int faithful)
     for (int y = 0; y < p->height; y++)
         for (int x = 0; x < p->width; x++)
             for (int i = -2; i <= 2; i++)
-                out.v[y * p->width + x] += (faithful ? printed[i + 2] : mended[i + 2] / 16) * at(p, x + i * dx, y + i * dy);
+                out.v[y * p->width + x] +=
+                    (faithful ? printed[i + 2] : mended[i + 2] / 16) * at(p, x + i * dx, y + i * dy);
     free(p->v);
     *p = out;
 }
@@ -177,7 +178,8 @@ static double bound_of(const struct hf_params *p, const struct hf_depth *d)
     const double iterations = (p->faithful ? 20 : 8) * p->iterations, sizes = p->resolution ? 17 + 12 : 0;
     const double z = d->type == HF_DEPTH_VIEW ? 2 : 24;  // distances in NDC: what cancels is amplified
     double t = 3 * (3 + 3 + 2 * z) + 8;
-    if (!p->faithful && !nothing_given(p))  // max(n, f): slopes times twice the roundings of the largest depth that counts
+    if (!p->faithful &&
+        !nothing_given(p))  // max(n, f): slopes times twice the roundings of the largest depth that counts
         t = 16 + 8 * (p->model == HF_MODEL_LENS ? 200 : 30 / 10);
     return (iterations + sizes + 2 * (3 + t)) * U;
 }
@@ -190,7 +192,8 @@ static void against_double(struct hf_context *c, const char *isa)
     for (unsigned i = 0; i < 100; i++) {
         struct rng rng = rng_seed(seed + i);
         const enum scene_kind kind = (enum scene_kind)rng_below(&rng, SCENE_KINDS);
-        struct scene s = scene_new(&rng, kind, 1 + rng_below(&rng, 120), 1 + rng_below(&rng, 70), 3 + rng_below(&rng, 2));
+        struct scene s =
+            scene_new(&rng, kind, 1 + rng_below(&rng, 120), 1 + rng_below(&rng, 70), 3 + rng_below(&rng, 2));
         struct hf_params p = random_params(&rng);
         p.sigma = 0;
         struct picture samples = {0};
@@ -203,10 +206,11 @@ static void against_double(struct hf_context *c, const char *isa)
         struct picture want = expected(&s, &depth, &p), got = render(c, &s, &depth, &p);
         const double error = largest_difference(&want, &got), bound = bound_of(&p, &depth) * largest_sample(&s.colour);
         worst = worse(worst, error / bound);
-        CHECK_MSG(error <= bound, "%s: seed %u, %s %d x %d: off by %g, bound %g (iterations %d, resolution %d, faithful %d, "
-                  "range %g, model %d, depth %d, focus %g)", isa, seed + i, scene_name(kind), s.colour.width,
-                  s.colour.height, error, bound, p.iterations, p.resolution, p.faithful, p.range, p.model, depth.type,
-                  p.focus_distance);
+        CHECK_MSG(error <= bound,
+                  "%s: seed %u, %s %d x %d: off by %g, bound %g (iterations %d, resolution %d, faithful %d, "
+                  "range %g, model %d, depth %d, focus %g)",
+                  isa, seed + i, scene_name(kind), s.colour.width, s.colour.height, error, bound, p.iterations,
+                  p.resolution, p.faithful, p.range, p.model, depth.type, p.focus_distance);
         picture_free(&want);
         picture_free(&got);
         if (samples.width)
@@ -247,7 +251,8 @@ static void against_gaussian(struct hf_context *c, const char *isa)
             variance += a.plane[0][x] * (x - MIDDLE) * (x - MIDDLE);
         }
         CHECK_MSG(fabs(mass - 1) < 1e-6, "%s: sigma %g: a line of 1 becomes %g", isa, sigmas[i], mass);
-        CHECK_MSG(fabs(variance / (sigmas[i] * sigmas[i]) - 1) < 1e-5, "%s: sigma %g: variance %g", isa, sigmas[i], variance);
+        CHECK_MSG(fabs(variance / (sigmas[i] * sigmas[i]) - 1) < 1e-5, "%s: sigma %g: variance %g", isa, sigmas[i],
+                  variance);
         for (int ch = 0; ch < 3 && sigmas[i] >= 1; ch++) {
             struct plane want = plane_new(W, 1);
             for (int k = 0; k < W; k++)
@@ -263,8 +268,8 @@ static void against_gaussian(struct hf_context *c, const char *isa)
         picture_free(&a);
         scene_free(&s);
     }
-    printf("%s: four boxes against a gaussian: a line %.2g of its height, a step %.2g, noise %.2g\n", isa, worst[0], worst[1],
-           worst[2]);
+    printf("%s: four boxes against a gaussian: a line %.2g of its height, a step %.2g, noise %.2g\n", isa, worst[0],
+           worst[1], worst[2]);
     for (int ch = 0; ch < 3; ch++)
         CHECK_MSG(worst[ch] <= bounds[ch], "%s: off by %g, bound %g", isa, worst[ch], bounds[ch]);
 }

@@ -47,8 +47,8 @@ static void same_bits(struct hf_context *plain, enum hf_isa id, const char *isa)
             const struct hf_image image = picture_image(&s.colour);
             const struct hf_depth depth = picture_depth(&s.depth);
             CHECK_INT(hf_render(c, &image, &image, &depth, &p), HF_OK);
-            CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: seed %u, %d x %d, setup %d: in place gives other bits", isa,
-                      seed + i, w, h, k);
+            CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: seed %u, %d x %d, setup %d: in place gives other bits",
+                      isa, seed + i, w, h, k);
             picture_free(&a);
             picture_free(&b);
             scene_free(&s);
@@ -66,7 +66,8 @@ static void flips(struct hf_context *c, const char *isa)
         struct hf_params p = random_params(&rng);
         const int step = 1 << p.resolution;
         p.focus_distance = 20;  // the pixel in the middle is another one
-        struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, step * (1 + rng_below(&rng, 90 / step)), 1 + rng_below(&rng, 50), 3);
+        struct scene s =
+            scene_new(&rng, SCENE_HIGHLIGHTS, step * (1 + rng_below(&rng, 90 / step)), 1 + rng_below(&rng, 50), 3);
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
         struct picture a = render(c, &s, NULL, &p), b = render(c, &mirror, NULL, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u, %d x %d, resolution %d: flipping gives other bits", isa,
@@ -95,9 +96,10 @@ static void crops(struct hf_context *c, const char *isa)
         const int w = 108, h = 104, m = p.sigma > 0 ? 20 : (2 * p.iterations + 2) << p.resolution;
         struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
         struct picture whole = render(c, &s, NULL, &p), a = render(c, &part, NULL, &p);
-        struct picture b = picture_cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m), inner = picture_cut(&a, m, m, w - 2 * m, h - 2 * m);
-        CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d), resolution %d: other bits", isa, seed + i,
-                  x0, y0, p.resolution);
+        struct picture b = picture_cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m),
+                       inner = picture_cut(&a, m, m, w - 2 * m, h - 2 * m);
+        CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d), resolution %d: other bits", isa,
+                  seed + i, x0, y0, p.resolution);
         picture_free(&whole);
         picture_free(&a);
         picture_free(&b);
@@ -122,7 +124,8 @@ static void exposures(struct hf_context *c, const char *isa)
                 a.plane[k][j] *= scale;
             }
         struct picture b = render(c, &s, NULL, &p);
-        CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: exposure x 2^%d gives other bits", isa, seed + i, exponents[i % 5]);
+        CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: exposure x 2^%d gives other bits", isa, seed + i,
+                  exponents[i % 5]);
         picture_free(&a);
         picture_free(&b);
         scene_free(&s);
@@ -133,7 +136,8 @@ static void exposures(struct hf_context *c, const char *isa)
 
 static void bad_samples(struct hf_context *c, const char *isa)
 {
-    static const float strange[] = {NAN, INFINITY, -INFINITY, 1e-40f, -1e-42f, -3, 65504, 1e30f, -0.0f, -1e30f, FLT_MAX};
+    static const float strange[] = {NAN,   INFINITY, -INFINITY, 1e-40f, -1e-42f, -3,
+                                    65504, 1e30f,    -0.0f,     -1e30f, FLT_MAX};
     for (unsigned i = 0; i < 8; i++) {
         struct rng rng = rng_seed(seed + i);
         struct scene s = scene_new(&rng, SCENE_BLOCKS, 61, 45, 4);

@@ -258,8 +258,8 @@ static void test_shape(void)
 static void test_constant(struct rng *rng)
 {
     for (int i = 0; i < 30; i++) {
-        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 1 + rng_below(rng, 90),
-                                   1 + rng_below(rng, 60), 4);
+        struct scene s =
+            scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 1 + rng_below(rng, 90), 1 + rng_below(rng, 60), 4);
         struct picture in = filled(s.colour.width, s.colour.height, 4, rng_range(rng, 0.1f, 100));
         struct hf_params p = hexagon_params();
         random_options(rng, &p);
@@ -449,8 +449,8 @@ static void test_largest(struct rng *rng)
 {
     static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_AUTO};
     for (int i = 0; i < 48; i++) {
-        struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 40 + rng_below(rng, 60),
-                                   30 + rng_below(rng, 40), 3);
+        struct scene s =
+            scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 40 + rng_below(rng, 60), 30 + rng_below(rng, 40), 3);
         const int same = i / 4 % 2;
         for (int c = 0; c < 3; c++)
             for (int k = 0; k < s.colour.width * s.colour.height; k++)

@@ -121,8 +121,10 @@ static void flips(struct hf_context *c, const char *isa)
         p.faithful = p.per_pixel_kernel = p.blades = 0;
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
         struct picture a = render(c, &s, &p), b = render(c, &mirror, &p), back = picture_flipped(&b);
-        CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
-                  " bicubic %d)", isa, seed + i, p.storage, p.fill, p.karis, p.bicubic);
+        CHECK_MSG(picture_same_bits(&a, &back),
+                  "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
+                  " bicubic %d)",
+                  isa, seed + i, p.storage, p.fill, p.karis, p.bicubic);
         picture_free(&a);
         picture_free(&b);
         picture_free(&back);

@@ -101,7 +101,7 @@ static void against_reference(struct hf_context *c, const char *isa)
 // ---- one highlight before black, the whole picture at one radius
 
 struct spot {
-    double energy[3], area[3], width, height; // of the channels; area: energy over the value in the middle
+    double energy[3], area[3], width, height;  // of the channels; area: energy over the value in the middle
     struct picture out;
 };
 
@@ -133,7 +133,7 @@ static struct spot spot_at(struct hf_context *c, float radius, const struct hf_p
 
 static struct spot spot(struct hf_context *c, float radius, const struct hf_params *p)
 {
-    const int size = 2 * (int)(2.6f * fabsf(radius) + 8); // its neighbours' pictures lie inside as well
+    const int size = 2 * (int)(2.6f * fabsf(radius) + 8);  // its neighbours' pictures lie inside as well
     return spot_at(c, radius, p, size, size, size / 2, size / 2);
 }
 
@@ -186,7 +186,7 @@ static void options(struct hf_context *c, const char *isa)
     struct {
         const char *name;
         struct hf_params p;
-        double area[3], ratio; // expected: over the disc's, height over width; 0: any
+        double area[3], ratio;  // expected: over the disc's, height over width; 0: any
     } cases[9];
     int n = 0;
     const double ring = 1 - 0.5 * 0.5, hexagon = 6 * sin(2 * PI / 6) / 2 / PI;

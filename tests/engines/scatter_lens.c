@@ -93,9 +93,9 @@ static void neutral(struct hf_context *c)
     struct hf_params cases[6];
     for (int i = 0; i < 6; i++)
         cases[i] = base;
-    cases[0].blade_rotation = 30; // of a disc
+    cases[0].blade_rotation = 30;  // of a disc
     cases[1].blade_roundness = 0.7f;
-    cases[2].max_radius = 200; // beyond what there is
+    cases[2].max_radius = 200;  // beyond what there is
     cases[3].ring = cases[3].chromatic = cases[3].cat_eye = 0;
     cases[4].squeeze = cases[4].pixel_aspect = 1;
     cases[5].resolution = HF_RESOLUTION_FULL;

@@ -55,7 +55,9 @@ static struct scene random_scene(struct rng *rng, enum hf_engine engine, const c
                     s.depth.plane[0][i] = 20;
     }
     // What blending with a weight of 0 would change. Sums that overflow are not for all engines.
-    const float odd[] = {-0.0f, -1e-3f, 1e-42f, engine == HF_ENGINE_GATHER || engine == HF_ENGINE_HEXAGON ? FLT_MAX : 1e30f, NAN, INFINITY};
+    const float odd[] = {-0.0f,  -1e-3f,
+                         1e-42f, engine == HF_ENGINE_GATHER || engine == HF_ENGINE_HEXAGON ? FLT_MAX : 1e30f,
+                         NAN,    INFINITY};
     for (int k = 0; k < w * h / 30; k++)
         s.colour.plane[rng_below(rng, 3)][rng_below(rng, w * h)] = odd[rng_below(rng, rng_below(rng, 8) ? 3 : 6)];
     return s;
@@ -133,9 +135,9 @@ static void check_scene(struct hf_context *skipping, struct hf_context *whole, e
     tally->run += (uint64_t)report.columns * (uint64_t)report.rows - report.tile_count[HF_TILE_SHARP];
     p.no_skip = 1;
     render(whole, &s, &b, &p, 0);
-    CHECK_MSG(picture_same_bits(&a, &b), "%s, %s: seed %u, scene %u (%s, %d x %d, %d channels): skipping gives other bits",
-              hf_isa_name(hf_context_isa(skipping)), hf_engine_name(engine), seed, n, name, a.width, a.height,
-              a.channels);
+    CHECK_MSG(
+        picture_same_bits(&a, &b), "%s, %s: seed %u, scene %u (%s, %d x %d, %d channels): skipping gives other bits",
+        hf_isa_name(hf_context_isa(skipping)), hf_engine_name(engine), seed, n, name, a.width, a.height, a.channels);
     picture_free(&a);
     picture_free(&b);
     scene_free(&s);

@@ -37,8 +37,8 @@ static int compare_floats(const struct world *w, const struct level *l, const st
                 if (close_enough(want, got, bound))
                     continue;
             }
-            snprintf(message, 256, "slot %d channel %d at (%d, %d): %a, the C %a, off by %g of %g", g->slot,
-                     g->channel, g->x0 + (int)x, g->y0 + y, got, want, fabs((double)got - want), bound);
+            snprintf(message, 256, "slot %d channel %d at (%d, %d): %a, the C %a, off by %g of %g", g->slot, g->channel,
+                     g->x0 + (int)x, g->y0 + y, got, want, fabs((double)got - want), bound);
             return 0;
         }
     }
@@ -125,8 +125,7 @@ static int untouched(const struct world *w, enum arena a, char message[256])
         for (int i = 0; i < w->region_count; i++) {
             const struct region *g = &w->regions[i];
             for (int y = 0; y < g->rows && g->slot == s; y++)
-                memcpy(expected + g->offset + y * g->stride, got + g->offset + y * g->stride,
-                       g->row_bytes + g->spare);
+                memcpy(expected + g->offset + y * g->stride, got + g->offset + y * g->stride, g->row_bytes + g->spare);
         }
         if (!memcmp(expected, got, n))
             continue;

@@ -52,7 +52,8 @@ void blend_row_make(struct world *w, int index)
     make_lines(w, 4, (size_t)w->n + HF_PAD);
     for (int i = 0; i < 4; i++)
         world_region(w, i < 2 ? REGION_FLOATS : REGION_SCRATCH, SLOT_LINES,
-                     floats_of(w, ARENA_MADE, SLOT_LINES) + (size_t)i * w->line_floats, (size_t)w->n * 4, HF_PAD * 4, 1, 0);
+                     floats_of(w, ARENA_MADE, SLOT_LINES) + (size_t)i * w->line_floats, (size_t)w->n * 4, HF_PAD * 4, 1,
+                     0);
 }
 
 void blend_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
@@ -91,7 +92,8 @@ static void line_make(struct world *w)
     w->n = w->bench ? 256 : rng_int(&w->rng, 1, 140);
     fill(w, SLOT_WORK, (size_t)w->n + 2 * HF_PAD);
     make_lines(w, 1, (size_t)w->n + HF_PAD);
-    world_region(w, REGION_FLOATS, SLOT_LINES, floats_of(w, ARENA_MADE, SLOT_LINES), (size_t)w->n * 4, HF_PAD * 4, 1, 0);
+    world_region(w, REGION_FLOATS, SLOT_LINES, floats_of(w, ARENA_MADE, SLOT_LINES), (size_t)w->n * 4, HF_PAD * 4, 1,
+                 0);
 }
 
 static void columns_make(struct world *w, int in_place)
@@ -123,8 +125,8 @@ static void up_make(struct world *w, int scale)
     fill(w, SLOT_WORK, (size_t)(now.rows * now.in_stride));
     make_lines(w, 2, (size_t)w->n + HF_PAD);
     for (int i = 0; i < 2; i++)
-        world_region(w, REGION_FLOATS, SLOT_LINES,
-                     floats_of(w, ARENA_MADE, SLOT_LINES) + (size_t)i * w->line_floats, (size_t)w->n * 4, HF_PAD * 4, 1, 0);
+        world_region(w, REGION_FLOATS, SLOT_LINES, floats_of(w, ARENA_MADE, SLOT_LINES) + (size_t)i * w->line_floats,
+                     (size_t)w->n * 4, HF_PAD * 4, 1, 0);
 }
 
 void gaussian_make(struct world *w, int which)

@@ -78,7 +78,7 @@ struct region {
     enum region_kind kind;
     int slot;
     size_t offset, row_bytes;
-    size_t spare;      // bytes after each row that may be written too
+    size_t spare;  // bytes after each row that may be written too
     int rows;
     ptrdiff_t stride;  // bytes
     int buf, channel, x0, y0;

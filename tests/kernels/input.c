@@ -57,8 +57,8 @@ static void random_depth_type(struct rng *r, struct hf_depth *d, int width, int 
 static void random_format(struct world *w, struct hf_image *m, int width, int height)
 {
     static char there;
-    *m = (struct hf_image){.width = width, .height = height,
-                           .format = (enum hf_format)rng_int(&w->rng, 0, HF_FORMAT_COUNT - 1)};
+    *m = (struct hf_image){
+        .width = width, .height = height, .format = (enum hf_format)rng_int(&w->rng, 0, HF_FORMAT_COUNT - 1)};
     if (w->bench)
         m->format = HF_FORMAT_R11G11B10F;
     for (int i = 0; i < (m->format != HF_FORMAT_PLANAR32F ? 1 : rng_one_in(&w->rng, 2) ? 4 : 3); i++)
@@ -145,8 +145,8 @@ void make_image(struct world *w, struct hf_image *m, int slot, int bad)
 
 static float random_depth(struct world *w)
 {
-    static const float odd[] = {0,     -0.0f, -1,    1e-45f, 1e10f, 0x1.2a05f0p+33f, 1e30f, INFINITY,
-                                -5e9f, 1,     -1e4f, 0.5f,   1e-9f, -INFINITY};
+    static const float odd[] = {0,        -0.0f, -1, 1e-45f, 1e10f, 0x1.2a05f0p+33f, 1e30f,
+                                INFINITY, -5e9f, 1,  -1e4f,  0.5f,  1e-9f,           -INFINITY};
     struct rng *r = &w->rng;
     if (rng_one_in(r, 8))
         return odd[rng_int(r, 0, (int)(sizeof odd / sizeof *odd) - 1)];

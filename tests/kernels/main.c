@@ -6,8 +6,14 @@
 
 #include "harness.h"
 
-#define ROW(name, index, cases, make, call, check) {name, index, cases, make, call, check, row_pixels}
-#define PASS(name, index, cases) {name, index, cases, pass_make, pass_call, pass_check, pass_pixels}
+#define ROW(name, index, cases, make, call, check)                                                                     \
+    {                                                                                                                  \
+        name, index, cases, make, call, check, row_pixels                                                              \
+    }
+#define PASS(name, index, cases)                                                                                       \
+    {                                                                                                                  \
+        name, index, cases, pass_make, pass_call, pass_check, pass_pixels                                              \
+    }
 
 const struct test tests[] = {
     PASS("coc", HF_PASS_COC, 1200),

@@ -93,10 +93,10 @@ static void make_inputs(struct world *w, int pass)
 static void add_region(struct world *w, enum region_kind kind, int b, int c, struct hf_rect r)
 {
     const int bytes = buf_bytes(w, b);
-    struct region *g = world_region(w, bytes < 4 ? REGION_NARROW : kind, SLOT_BUF + 4 * b + c,
-                                    hf_narrow_at(&w->buf[b], c, r.x0, r.y0, bytes),
-                                    (size_t)(r.x1 - r.x0) * (size_t)bytes, HF_PAD * sizeof(float), r.y1 - r.y0,
-                                    w->buf[b].stride * (ptrdiff_t)sizeof(float));
+    struct region *g =
+        world_region(w, bytes < 4 ? REGION_NARROW : kind, SLOT_BUF + 4 * b + c,
+                     hf_narrow_at(&w->buf[b], c, r.x0, r.y0, bytes), (size_t)(r.x1 - r.x0) * (size_t)bytes,
+                     HF_PAD * sizeof(float), r.y1 - r.y0, w->buf[b].stride * (ptrdiff_t)sizeof(float));
     g->buf = b;
     g->channel = c;
     g->x0 = r.x0;
@@ -124,11 +124,11 @@ static void make_dst(struct world *w)
     const struct hf_image *m = &w->dst;
     const int slot = m->data[0] == w->src.data[0] ? SLOT_SRC : SLOT_DST;
     for (int i = 0; i < hf_plane_count(m); i++) {
-        struct region *g = world_region(
-            w, REGION_PIXELS, slot + i,
-            (uint8_t *)m->data[i] + 2 * r.y0 * m->stride[i] + hf_row_bytes(m->format, 2 * r.x0),
-            hf_row_bytes(m->format, hf_min(2 * r.x1, m->width) - 2 * r.x0), 0,
-            hf_min(2 * r.y1, m->height) - 2 * r.y0, m->stride[i]);
+        struct region *g =
+            world_region(w, REGION_PIXELS, slot + i,
+                         (uint8_t *)m->data[i] + 2 * r.y0 * m->stride[i] + hf_row_bytes(m->format, 2 * r.x0),
+                         hf_row_bytes(m->format, hf_min(2 * r.x1, m->width) - 2 * r.x0), 0,
+                         hf_min(2 * r.y1, m->height) - 2 * r.y0, m->stride[i]);
         g->channel = i;
         g->x0 = 2 * r.x0;
         g->y0 = 2 * r.y0;

@@ -56,9 +56,9 @@ float random_coc(struct rng *r, enum hf_storage storage)
 
 float random_store_value(struct rng *r)
 {
-    static const float ends[] = {0,         65504,    65519.996f, 65520,     65024,   65023.996f, 65536,     64512,
-                                 64511.99f, 0x1p-14f, 0x1p-15f,   0x1p-20f,  0x1p-19f, 0x1p-21f,   0x1p-24f, 0x1p-25f,
-                                 0x1.8p-24f, 1e-45f,  1e-38f,     3.4e38f,   1e10f,   0x1.ffep-15f};
+    static const float ends[] = {0,          65504,    65519.996f, 65520,    65024,    65023.996f,  65536,    64512,
+                                 64511.99f,  0x1p-14f, 0x1p-15f,   0x1p-20f, 0x1p-19f, 0x1p-21f,    0x1p-24f, 0x1p-25f,
+                                 0x1.8p-24f, 1e-45f,   1e-38f,     3.4e38f,  1e10f,    0x1.ffep-15f};
     const int what = rng_int(r, 0, 7);
     const uint32_t exponent = (uint32_t)rng_int(r, 98, 144), mantissa = rng_next(r);
     float v;

@@ -177,10 +177,10 @@ void store_make(struct world *w, int format)
     fill_lanes(w, lanes, LANES);
     w->no_alpha = rng_one_in(&w->rng, 3);
     for (int i = 0; i < hf_plane_count(m); i++) {
-        struct region *g = world_region(
-            w, REGION_PIXELS, SLOT_DST + i,
-            (uint8_t *)m->data[i] + w->y * m->stride[i] + hf_row_bytes(m->format, 2 * w->x),
-            hf_row_bytes(m->format, hf_min(2 * (w->x + w->n), m->width) - 2 * w->x), 0, 1, m->stride[i]);
+        struct region *g =
+            world_region(w, REGION_PIXELS, SLOT_DST + i,
+                         (uint8_t *)m->data[i] + w->y * m->stride[i] + hf_row_bytes(m->format, 2 * w->x),
+                         hf_row_bytes(m->format, hf_min(2 * (w->x + w->n), m->width) - 2 * w->x), 0, 1, m->stride[i]);
         g->channel = i;
         g->x0 = 2 * w->x;
         g->y0 = w->y;

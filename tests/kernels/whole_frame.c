@@ -233,7 +233,8 @@ static void check(int ok, const struct world *w, const struct level *l, const ch
         return;
     const struct hf_params *p = &w->params;
     printf("FAILED %s, frame %d of seed %llu (%s): %s\n", l->name, number, (unsigned long long)seed, name, message);
-    printf("    %s, %d x %d, formats %d %d%s, storage %d, radius %g, strength %g, aspect %g, blades %d, fill %d, depth %d, "
+    printf("    %s, %d x %d, formats %d %d%s, storage %d, radius %g, strength %g, aspect %g, blades %d, fill %d, depth "
+           "%d, "
            "model %d%s%s%s%s\n",
            hf_engine_name(p->engine), w->src.width, w->src.height, (int)w->src.format, (int)w->dst.format,
            w->src.data[0] == w->dst.data[0] ? " in place" : "", (int)p->storage, p->max_radius, p->strength,

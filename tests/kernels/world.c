@@ -88,8 +88,13 @@ struct region *world_region(struct world *w, enum region_kind kind, int slot, co
     if (w->region_count == MAX_REGIONS)
         abort();
     struct region *g = &w->regions[w->region_count++];
-    *g = (struct region){.kind = kind, .slot = slot, .row_bytes = row_bytes, .spare = spare, .rows = rows,
-                         .stride = stride, .buf = -1,
+    *g = (struct region){.kind = kind,
+                         .slot = slot,
+                         .row_bytes = row_bytes,
+                         .spare = spare,
+                         .rows = rows,
+                         .stride = stride,
+                         .buf = -1,
                          .offset = (size_t)((const uint8_t *)first - slot_start(w, ARENA_MADE, slot))};
     return g;
 }
@@ -157,11 +162,17 @@ struct hf_frame world_frame(struct world *w, const struct hf_kernels *k, enum ar
     static struct hf_depth depths[ARENA_COUNT];
     depths[a] = w->depth;
     depths[a].data = in_arena(a, w->depth.data);
-    struct hf_frame f = {.s = &w->setup, .k = k, .src = image_in(a, &w->src, &images[a][0]),
-                         .dst = image_in(a, &w->dst, &images[a][1]), .depth = &depths[a],
-                         .near = w->near, .far = w->far, .line_floats = w->line_floats,
+    struct hf_frame f = {.s = &w->setup,
+                         .k = k,
+                         .src = image_in(a, &w->src, &images[a][0]),
+                         .dst = image_in(a, &w->dst, &images[a][1]),
+                         .depth = &depths[a],
+                         .near = w->near,
+                         .far = w->far,
+                         .line_floats = w->line_floats,
                          .lines = (float *)(void *)slot_start(w, a, SLOT_LINES),
-                         .work = (float *)(void *)slot_start(w, a, SLOT_WORK), .counts = &w->result[a].counts,
+                         .work = (float *)(void *)slot_start(w, a, SLOT_WORK),
+                         .counts = &w->result[a].counts,
                          .seen = &w->result[a].seen};
     for (int b = 0; b < HF_BUF_COUNT; b++) {
         f.buf[b].stride = w->buf[b].stride;

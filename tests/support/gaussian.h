@@ -9,7 +9,7 @@
 #include "support/random_scene.h"
 
 static inline struct picture render(struct hf_context *c, const struct scene *s, const struct hf_depth *depth,
-                             const struct hf_params *p)
+                                    const struct hf_params *p)
 {
     const struct hf_depth view = picture_depth(&s->depth);
     struct picture out = picture_new(s->colour.width, s->colour.height, s->colour.channels);

@@ -34,8 +34,8 @@ struct rng {
 };
 struct rng rng_seed(uint64_t seed);
 uint32_t rng_u32(struct rng *r);
-int rng_below(struct rng *r, int n);                       // 0..n-1
-float rng_float(struct rng *r);                            // [0, 1)
+int rng_below(struct rng *r, int n);  // 0..n-1
+float rng_float(struct rng *r);       // [0, 1)
 float rng_range(struct rng *r, float low, float high);
 
 // An image in any format with its own memory: rows `stride` bytes apart (negative: bottom-up), first pixel `offset`
@@ -58,7 +58,7 @@ struct picture packed_read(const struct packed *p);
 int packed_junk_intact(const struct packed *p, unsigned char junk);
 
 double half_to_double(uint16_t bits);
-uint16_t double_to_half(double v);      // nearest even; beyond 65504 clamped, NaN kept
+uint16_t double_to_half(double v);  // nearest even; beyond 65504 clamped, NaN kept
 double uf_to_double(uint32_t bits, int mantissa_bits);
 
 // The larger of two errors; NaN is the largest of all, and stays.

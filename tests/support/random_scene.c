@@ -68,8 +68,8 @@ struct scene scene_new(struct rng *rng, enum scene_kind kind, int width, int hei
     } else {
         paint(&s, rng, 0, 0, width, height, 0);
         for (int i = 0; i < width * height; i++)
-            s.depth.plane[0][i] = depth_of_kind(rng, kind, (float)(i % width) / (float)width,
-                                                (float)(i / width) / (float)height);
+            s.depth.plane[0][i] =
+                depth_of_kind(rng, kind, (float)(i % width) / (float)width, (float)(i / width) / (float)height);
     }
     for (int i = 0; kind == SCENE_HIGHLIGHTS && i < 1 + width * height / 200; i++)
         for (int c = 0; c < channels && c < 3; c++)

@@ -7,8 +7,8 @@
 #include <string.h>
 
 static const char *const names[REF_COUNT] = {
-    "colour", "coc",  "coc4", "cocmaxx",  "cocmax",  "cocblurx", "cocblur", "color4", "colormulcoc4",
-    "near",   "far",  "nearfill", "farfill", "result",
+    "colour", "coc",          "coc4", "cocmaxx", "cocmax",   "cocblurx", "cocblur",
+    "color4", "colormulcoc4", "near", "far",     "nearfill", "farfill",  "result",
 };
 
 static int clamp(int v, int low, int high)
@@ -228,10 +228,13 @@ static void computation(struct reference *r)
             const int alone = far_weight < 1e-9 * f * taps;
             for (int c = 0; c < r->channels; c++) {
                 const double own = at(&r->buffer[REF_COLORMULCOC4], c, x, y) / f;
-                store(r, REF_NEAR, c, x, y, has_near ? gather_one(r, &p.near, c, x, y, 1) / near_weight
-                                                     : at(&r->buffer[REF_COLOR4], c, x, y));
-                store(r, REF_FAR, c, x, y, !(f > 0) ? 0 : alone ? own
-                                                    : gather_one(r, &p.far, c, x, y, scale) / far_weight);
+                store(r, REF_NEAR, c, x, y,
+                      has_near ? gather_one(r, &p.near, c, x, y, 1) / near_weight
+                               : at(&r->buffer[REF_COLOR4], c, x, y));
+                store(r, REF_FAR, c, x, y,
+                      !(f > 0) ? 0
+                      : alone  ? own
+                               : gather_one(r, &p.far, c, x, y, scale) / far_weight);
             }
         }
     }

@@ -42,13 +42,13 @@ enum ref_id {
 struct reference {
     int width, height, half_width, half_height, channels;
     struct hf_params params;
-    double rho;                // largest CoC radius, full-resolution pixels
-    double reach_y, reach_x;   // rho / 2, and that in pixels of x
-    double strength;           // of the range model; 1 with a lens or given radii
+    double rho;               // largest CoC radius, full-resolution pixels
+    double reach_y, reach_x;  // rho / 2, and that in pixels of x
+    double strength;          // of the range model; 1 with a lens or given radii
     double kernel_scale, blend;
-    int taps;                  // without the centre
-    double *tap_x, *tap_y;     // half-resolution pixels, kernel scale included
-    int centre;                // 1: the centre counts as a tap more
+    int taps;                      // without the centre
+    double *tap_x, *tap_y;         // half-resolution pixels, kernel scale included
+    int centre;                    // 1: the centre counts as a tap more
     double *near_mean, *far_mean;  // mean weight of the taps of a half-resolution pixel; 0 where none was taken
     struct ref_buffer buffer[REF_COUNT];
 };

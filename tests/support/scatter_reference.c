@@ -7,7 +7,7 @@
 static double kept_radius(float r)
 {
     int exponent;
-    const double m = frexp(fmax(r, 0.5), &exponent); // 0.5..1
+    const double m = frexp(fmax(r, 0.5), &exponent);  // 0.5..1
     return ldexp(floor(m * 512 + 0.5) / 512, exponent);
 }
 

@@ -8,8 +8,8 @@
 #if HF_FUSED
 int emulated_check_vectors(void);
 
-static const float special[16] = {0.0f,       -0.0f,     1.5f,       -1.5f,      __builtin_inff(), -__builtin_inff(),
-                                  NAN,        1e-40f,    -1e-45f,    65519.996f, 65520.0f,         -65504.0f,
+static const float special[16] = {0.0f,       -0.0f,      1.5f,       -1.5f,      __builtin_inff(), -__builtin_inff(),
+                                  NAN,        1e-40f,     -1e-45f,    65519.996f, 65520.0f,         -65504.0f,
                                   0x1.004p0f, 0x1.00cp0f, 0x1.8p-25f, 3e9f};
 
 static float lane(vf v, int i)
@@ -61,8 +61,8 @@ static int wrong_halves(void)
 
 static int wrong_roundings(void)
 {
-    static const int32_t whole[16] = {0, 0, 1, -1, INT32_MIN, INT32_MIN, INT32_MIN, 0,
-                                      0, 65519, 65520, -65504, 1, 1, 0, INT32_MIN};
+    static const int32_t whole[16] = {0, 0,     1,     -1,     INT32_MIN, INT32_MIN, INT32_MIN, 0,
+                                      0, 65519, 65520, -65504, 1,         1,         0,         INT32_MIN};
     int32_t got[16];
     vi_store(got, vf_to_vi(vf_load(special)));
     int wrong = memcmp(got, whole, sizeof got) != 0;
