@@ -2,70 +2,16 @@
 // Opening files and choosing who handles them.
 #include <errno.h>
 #include <fcntl.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/exr.h"
-#include "io/oiio.h"
+#include "io/exr/exr.h"
+#include "io/file.h"
+#include "io/oiio/oiio.h"
 
-int hf_io_fail(struct hf_io_error *err, const char *format, ...)
-{
-    va_list args;
-    if (!err)
-        return -1;
-    va_start(args, format);
-    vsnprintf(err->message, sizeof(err->message), format, args);
-    va_end(args);
-    for (char *p = err->message; *p; p++)
-        if (*p == '\n' || *p == '\r')  // libraries end their messages with one now and then
-            *p = p[1] ? ' ' : 0;
-    return -1;
-}
-
-const char *hf_io_extension(const char *path)
-{
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    return dot && (!slash || dot > slash) ? dot + 1 : "";
-}
-
-bool hf_io_is_exr_name(const char *path)
-{
-    return !strcasecmp(hf_io_extension(path), "exr");
-}
-
-int hf_io_check_window(const char *path, const char *which, struct hf_io_box b, struct hf_io_error *err)
-{
-    const int far = HF_IO_MAX_COORDINATE;
-    if (b.x1 > b.x0 && b.y1 > b.y0 && b.x0 >= -far && b.y0 >= -far && b.x1 <= far && b.y1 <= far &&
-        b.x1 - b.x0 <= HF_IO_MAX_SIDE && b.y1 - b.y0 <= HF_IO_MAX_SIDE)
-        return 0;
-    return hf_io_fail(err, "%s: %s (%d %d) - (%lld %lld) is empty, too far out, or larger than %d a side", path, which,
-                      b.x0, b.y0, (long long)b.x1 - 1, (long long)b.y1 - 1, HF_IO_MAX_SIDE);
-}
-
-void hf_io_list(char *buf, size_t size, const char *part, const char *name)
-{
-    const size_t n = strlen(buf);
-    if (n < size)
-        snprintf(buf + n, size - n, "%s%s%s%s", n ? ", " : "", part ? part : "", part ? ":" : "", name);
-}
-
-struct hf_io_view *hf_io_add_view(struct hf_io_file *file)
-{
-    const size_t n = (size_t)file->view_count;
-    struct hf_io_view *views = realloc(file->views, (n + 1) * sizeof(*views));
-    if (!views)
-        return NULL;
-    file->views = views;
-    file->view_count++;
-    memset(&views[n], 0, sizeof(views[n]));
-    return &views[n];
-}
+static const struct hf_exr_codec dwa = {hf_oiio_read_samples, hf_oiio_write_samples};
 
 // EXR files are known by their first bytes, whatever they are called.
 static int open_fd(const char *path, bool *exr, struct hf_io_error *err)
@@ -108,14 +54,14 @@ int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_
     }
     int status;
     if (exr) {
-        status = hf_exr_open(&file->exr, file->path, fd, err);
+        status = hf_exr_open(&file->exr, file->path, fd, &dwa, err);
         if (!status)
-            status = hf_exr_find_views(file, depth_channel, err);
+            status = hf_exr_find_views(file->exr, &file->views, depth_channel, err);
     } else {
-        status = hf_io_has_oiio() ? hf_io_check_png(path, fd, err) : 0;
+        status = hf_oiio_available() ? hf_io_check_png(path, fd, err) : 0;
         close(fd);
         if (!status)
-            status = hf_oiio_open(file, depth_channel, err);
+            status = hf_oiio_open(&file->oiio, file->path, depth_channel, &file->views, err);
     }
     if (status)
         hf_io_close(&file);
@@ -128,7 +74,7 @@ int hf_io_open(struct hf_io_file **out, const char *path, const char *depth_chan
     char names[300] = "";
     if (hf_io_open_any(out, path, depth_channel, err))
         return -1;
-    if ((*out)->view_count)
+    if ((*out)->views.count)
         return 0;
     hf_io_channels(*out, names, sizeof(names));
     hf_io_close(out);
@@ -141,7 +87,7 @@ void hf_io_close(struct hf_io_file **file)
         return;
     hf_exr_close((*file)->exr);
     hf_oiio_close((*file)->oiio);
-    free((*file)->views);
+    free((*file)->views.view);
     free((*file)->path);
     free(*file);
     *file = NULL;
@@ -149,12 +95,12 @@ void hf_io_close(struct hf_io_file **file)
 
 int hf_io_view_count(const struct hf_io_file *file)
 {
-    return file->view_count;
+    return file->views.count;
 }
 
 const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view)
 {
-    return view >= 0 && view < file->view_count ? &file->views[view] : NULL;
+    return view >= 0 && view < file->views.count ? &file->views.view[view] : NULL;
 }
 
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)
@@ -170,7 +116,7 @@ void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)
 
 static int check_view(const struct hf_io_file *file, int view, struct hf_io_error *err)
 {
-    if (view < 0 || view >= file->view_count)
+    if (view < 0 || view >= file->views.count)
         return hf_io_fail(err, "%s: there is no view number %d", file->path, view);
     return 0;
 }
@@ -180,8 +126,8 @@ int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struc
     if (check_view(file, view, err))
         return -1;
     if (file->exr)
-        return hf_exr_read_colour(file->exr, &file->views[view], planes, err);
-    return hf_oiio_read_colour(file, planes, err);
+        return hf_exr_read_colour(file->exr, &file->views.view[view], planes, err);
+    return hf_oiio_read_colour(file->oiio, planes, err);
 }
 
 int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err)
@@ -189,13 +135,13 @@ int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_
     char names[300];
     if (check_view(file, view, err))
         return -1;
-    const struct hf_io_view *v = &file->views[view];
+    const struct hf_io_view *v = &file->views.view[view];
     if (v->depth_part < 0) {
         hf_io_channels(file, names, sizeof(names));
         return hf_io_fail(err, "%s: no depth channel among: %s", file->path, names);
     }
     if (!file->exr)
-        return hf_oiio_read_depth(file, depth, err);
+        return hf_oiio_read_depth(file->oiio, depth, err);
     const int c = hf_exr_find_channel(&file->exr->parts[v->depth_part], v->depth);
     return hf_exr_read_depth(file->exr, v->depth_part, c, v->data_window, depth, err);
 }
@@ -232,7 +178,7 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, const str
     if (hf_io_open_any(&file, path, NULL, err))
         return -1;
     const int status = file->exr ? exr_depth_only(file, depth_channel, view, depth, err)
-                                 : hf_oiio_read_depth_only(file, depth_channel, view, depth, err);
+                                 : hf_oiio_read_depth_only(file->oiio, depth_channel, view, depth, err);
     hf_io_close(&file);
     return status;
 }
@@ -252,4 +198,9 @@ int hf_io_write_planes(const char *path, int width, int height, int channels, co
         .stride = stride,
     };
     return hf_exr_write_new(path, &picture, err);
+}
+
+int hf_io_has_oiio(void)
+{
+    return hf_oiio_available();
 }

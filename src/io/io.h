@@ -1,49 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Picture files for the programs (the library itself knows no files). EXR goes through OpenEXRCore (exr_*.c), all
-// else and DWA-compressed EXR through OpenImageIO (oiio.cpp, the only C++). Nothing here prints.
+// Picture files for the programs (the library itself knows no files). The floors: errors,
+// pictures and files being written (error, picture, out, half); on them, beside each other, EXR by OpenEXRCore (exr)
+// and everything else by OpenImageIO (oiio); on top what chooses between them (file, write). Nothing here prints.
 #ifndef HF_IO_H
 #define HF_IO_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "io/picture.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-enum { HF_IO_MESSAGE = 512 };
-
-// What went wrong, one sentence that names the file and, where there is one, the channel and the value.
-struct hf_io_error {
-    char message[HF_IO_MESSAGE];
-};
-
-// Camera attributes of a header; NAN where the header has none. Names are those of the EXR attributes.
-struct hf_io_camera {
-    float focus;            // metres
-    float f_number;         // "aperture"
-    float focal_length_mm;  // "pinholeFocalLength"
-    float sensor_width_mm;  // "sensorOverallDimensions".x
-};
-
-struct hf_io_box {
-    int x0, y0, x1, y1;  // x1, y1 exclusive
-};
-
-// One picture that can be defocused: a set of colour channels and their depth. A stereo file has one per view.
-struct hf_io_view {
-    char name[64];        // view name ("left"), or "" when the file names none
-    int part;             // part that holds the colour
-    int depth_part;       // part that holds the depth; -1: no depth channel found
-    char colour[4][256];  // full channel names of R, G, B, A in the part; "" when there is no such channel
-    char depth[256];      // full channel name of the depth; ""
-    int width, height;    // of the colour's data window
-    struct hf_io_box data_window, display_window;
-    float pixel_aspect;
-    float screen_center_x, screen_center_y;  // screenWindowCenter
-    float screen_width;                      // screenWindowWidth
-    struct hf_io_camera camera;
-};
 
 // An open picture file: headers parsed, no pixels read.
 struct hf_io_file;
@@ -73,13 +39,6 @@ int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_
 // its only channel, or R). Must have the same data window size as the view.
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
                           struct hf_io_error *err);
-
-// What to put in the place of a view's colour. planes[c] NULL: channel kept as it was. Greyscale files take the Rec. 709
-// luminance of the three.
-struct hf_io_result {
-    int view;
-    const float *planes[4];
-};
 
 struct hf_io_write_options {
     const char *compression;  // "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", or NULL:

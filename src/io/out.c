@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/common.h"
+#include "io/picture.h"
 
 static int write_error(const struct hf_out *o, struct hf_io_error *err)
 {

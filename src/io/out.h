@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "io/io.h"
+#include "io/error.h"
 
 #ifdef __cplusplus
 extern "C" {

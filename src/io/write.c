@@ -3,8 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/exr.h"
-#include "io/oiio.h"
+#include "io/exr/exr.h"
+#include "io/file.h"
+#include "io/oiio/oiio.h"
 #include "io/out.h"
 
 // The planes of one view as they will be: the given ones, and the file's own where none is given.
@@ -22,7 +23,7 @@ static void free_picture(struct picture *pic)
 static int load_picture(struct hf_io_file *file, const struct hf_io_result *r, struct picture *pic,
                         struct hf_io_error *err)
 {
-    const struct hf_io_view *v = &file->views[r->view];
+    const struct hf_io_view *v = &file->views.view[r->view];
     bool missing = false;
     memset(pic, 0, sizeof(*pic));
     for (int k = 0; k < 4; k++) {
@@ -58,7 +59,7 @@ static int write_new_exr(const char *path, const struct hf_io_view *v, const flo
     return hf_exr_write_new(path, &picture, err);
 }
 
-static int write_by_oiio(const struct hf_io_file *source, const char *path, const struct hf_io_view *v,
+static int write_by_oiio(const struct hf_oiio *source, const char *path, const struct hf_io_view *v,
                          const float *const planes[4], const char *compression, struct hf_io_error *err)
 {
     struct hf_out out;
@@ -78,12 +79,12 @@ static int write_view(struct hf_io_file *file, const char *path, const struct hf
     struct picture pic;
     if (n_results != 1)
         return hf_io_fail(err, "%s: only EXR files hold several views, and there are %d to write", path, n_results);
-    const struct hf_io_view *v = &file->views[results[0].view];
+    const struct hf_io_view *v = &file->views.view[results[0].view];
     int status = load_picture(file, &results[0], &pic, err);
     if (!status && hf_io_is_exr_name(path) && !(exr_compression >= 0 && hf_exr_is_dwa(exr_compression)))
         status = write_new_exr(path, v, pic.planes, exr_compression, err);
     else if (!status)
-        status = write_by_oiio(file, path, v, pic.planes, compression, err);
+        status = write_by_oiio(file->oiio, path, v, pic.planes, compression, err);
     free_picture(&pic);
     return status;
 }
@@ -102,7 +103,8 @@ int hf_io_write(struct hf_io_file *file, const char *path, const struct hf_io_re
             return hf_io_fail(err, "%s: there is no view number %d", file->path, results[i].view);
     if (compression && exr_compression < 0 && hf_io_is_exr_name(path))
         return hf_io_fail(err, "%s: unknown compression %s", path, compression);
+    const struct hf_exr_job job = {&file->views, results, n_results, exr_compression};
     if (file->exr && hf_io_is_exr_name(path))
-        return hf_exr_write(file, path, results, n_results, exr_compression, clamped, err);
+        return hf_exr_write(file->exr, path, &job, clamped, err);
     return write_view(file, path, results, n_results, compression, exr_compression, err);
 }

@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/exr.h"
-#include "io/oiio.h"
+#include "io/exr/exr.h"
 
 static size_t sample_bytes(const struct hf_exr_part *part, int c)
 {
@@ -83,14 +82,14 @@ static void copy_row(void *arg, int c, int x, int y, const uint8_t *samples, int
     memcpy(hf_exr_pixel_row(r->px, c, y) + (size_t)x * (size_t)bytes, samples, (size_t)count * (size_t)bytes);
 }
 
-// Every row of the part, whole rows, by OpenImageIO.
-static int read_by_oiio(struct hf_exr *e, int p, struct hf_exr_pixels *px, struct hf_io_error *err)
+// Every row of the part, whole rows, by the codec.
+static int read_by_codec(struct hf_exr *e, int p, struct hf_exr_pixels *px, struct hf_io_error *err)
 {
-    struct hf_oiio_samples s;
+    struct hf_io_samples s;
     struct hf_exr_names names;
     if (hf_exr_samples(px, e->path, &s, &names, err))
         return -1;
-    const int status = hf_oiio_read_samples(e->path, p, &s, err);
+    const int status = e->dwa->read(e->path, p, &s, err);
     hf_exr_free_names(&names);
     return status;
 }
@@ -102,7 +101,7 @@ int hf_exr_read_pixels(struct hf_exr *e, int p, struct hf_exr_pixels *px, struct
     if (hf_exr_alloc_pixels(px, e->path, &e->parts[p], err))
         return -1;
     if (hf_exr_is_dwa(e->parts[p].compression))
-        status = read_by_oiio(e, p, px, err);
+        status = read_by_codec(e, p, px, err);
     else
         status = hf_exr_rows(e, p, copy_row, &r, err);
     if (!status && r.bad)
@@ -113,24 +112,24 @@ int hf_exr_read_pixels(struct hf_exr *e, int p, struct hf_exr_pixels *px, struct
     return status;
 }
 
-int hf_exr_samples(const struct hf_exr_pixels *px, const char *path, struct hf_oiio_samples *s,
+int hf_exr_samples(const struct hf_exr_pixels *px, const char *path, struct hf_io_samples *s,
                    struct hf_exr_names *names, struct hf_io_error *err)
 {
     const struct hf_exr_part *part = px->part;
     const size_t n = (size_t)part->channel_count;
     names->names = calloc(n, sizeof(*names->names));
     names->types = calloc(n, sizeof(*names->types));
-    *s = (struct hf_oiio_samples){.x = part->window.min.x,
-                                  .y = part->window.min.y,
-                                  .width = part->width,
-                                  .height = part->height,
-                                  .channel_count = part->channel_count,
-                                  .data = px->data,
-                                  .tile_width = part->tile_width,
-                                  .tile_height = part->tile_height,
-                                  .row_bytes = px->row[1],
-                                  .names = names->names,
-                                  .types = names->types};
+    *s = (struct hf_io_samples){.x = part->window.min.x,
+                                .y = part->window.min.y,
+                                .width = part->width,
+                                .height = part->height,
+                                .channel_count = part->channel_count,
+                                .data = px->data,
+                                .tile_width = part->tile_width,
+                                .tile_height = part->tile_height,
+                                .row_bytes = px->row[1],
+                                .names = names->names,
+                                .types = names->types};
     if (!names->names || !names->types) {
         hf_exr_free_names(names);
         return hf_io_fail(err, "%s: out of memory", path);

@@ -7,9 +7,8 @@
 #include <unistd.h>
 #include <fcntl.h>
 
-#include "io/exr_chunks.h"
+#include "io/exr/chunks.h"
 #include "io/half.h"
-#include "io/oiio.h"
 
 struct part_plan {
     bool changed;
@@ -20,9 +19,7 @@ struct part_plan {
 
 struct writer {
     struct hf_exr *e;
-    const struct hf_io_file *file;
-    const struct hf_io_result *results;
-    int n_results;
+    const struct hf_exr_job *job;
     struct part_plan *plans;
     struct hf_out out;
     uint64_t at;
@@ -30,16 +27,17 @@ struct writer {
     struct hf_io_error *err;
 };
 
-static int plan_part(struct writer *w, int p, int compression)
+static int plan_part(struct writer *w, int p)
 {
+    const int compression = w->job->compression;
     const struct hf_exr_part *part = &w->e->parts[p];
     struct part_plan *plan = &w->plans[p];
     plan->compression = part->compression;
     plan->chunk_count = part->chunk_count;
-    for (int i = 0; i < w->n_results; i++) {
-        const struct hf_io_view *v = &w->file->views[w->results[i].view];
+    for (int i = 0; i < w->job->n_results; i++) {
+        const struct hf_io_view *v = &w->job->views->view[w->job->results[i].view];
         for (int k = 0; k < 4; k++) {
-            if (v->part != p || !w->results[i].planes[k] || !v->colour[k][0])
+            if (v->part != p || !w->job->results[i].planes[k] || !v->colour[k][0])
                 continue;
             const int c = hf_exr_find_channel(part, v->colour[k]);
             if (part->channels[c].type == EXR_PIXEL_UINT)
@@ -195,12 +193,12 @@ static int encode_part(struct writer *w, int p, const struct hf_exr_pixels *px)
     return status;
 }
 
-// Have OpenImageIO write the part as a file of its own and take the chunks out of that: it alone can compress DWA,
+// Have the codec write the part as a file of its own and take the chunks out of that: it alone can compress DWA,
 // but would not keep the rest of the file as it is.
 static int encode_dwa(struct writer *w, int p, const struct hf_exr_pixels *px)
 {
     struct hf_exr_target t = target_of(w, p);
-    struct hf_oiio_samples s;
+    struct hf_io_samples s;
     struct hf_exr_names names;
     struct hf_out temp;
     struct hf_exr *made = NULL;
@@ -211,13 +209,13 @@ static int encode_dwa(struct writer *w, int p, const struct hf_exr_pixels *px)
         return -1;
     int status = hf_out_open(&temp, w->out.path, w->err);
     if (!status)
-        status = hf_oiio_write_samples(&temp, &s, hf_exr_compression_name(w->plans[p].compression), level, w->err);
+        status = w->e->dwa->write(&temp, &s, hf_exr_compression_name(w->plans[p].compression), level, w->err);
     if (!status)
         status = hf_out_detach(&temp, w->err);
     if (!status) {
         const int fd = open(temp.temp, O_RDONLY | O_CLOEXEC);
         status = fd < 0 ? hf_io_fail(w->err, "%s: cannot read what was written", w->out.path)
-                        : hf_exr_open(&made, w->out.path, fd, w->err);
+                        : hf_exr_open(&made, w->out.path, fd, w->e->dwa, w->err);
     }
     if (!status &&
         (made->parts[0].chunk_count != w->plans[p].chunk_count || made->parts[0].storage != px->part->storage))
@@ -243,10 +241,10 @@ static int write_part(struct writer *w, int p)
     if (hf_exr_read_pixels(w->e, p, &px, w->err))
         return -1;
     int status = 0;
-    for (int i = 0; i < w->n_results && !status; i++) {
-        const struct hf_io_view *v = &w->file->views[w->results[i].view];
+    for (int i = 0; i < w->job->n_results && !status; i++) {
+        const struct hf_io_view *v = &w->job->views->view[w->job->results[i].view];
         if (v->part == p)
-            status = put_colours(w, &px, v, w->results[i].planes);
+            status = put_colours(w, &px, v, w->job->results[i].planes);
     }
     if (!status)
         status = hf_exr_is_dwa(w->plans[p].compression) ? encode_dwa(w, p, &px) : encode_part(w, p, &px);
@@ -270,15 +268,14 @@ static int write_all(struct writer *w, const char *path)
     return hf_out_commit(&w->out, w->err);
 }
 
-int hf_exr_write(struct hf_io_file *file, const char *path, const struct hf_io_result *results, int n_results,
-                 int compression, uint64_t *clamped, struct hf_io_error *err)
+int hf_exr_write(struct hf_exr *e, const char *path, const struct hf_exr_job *job, uint64_t *clamped,
+                 struct hf_io_error *err)
 {
-    struct writer w = {
-        .e = file->exr, .file = file, .results = results, .n_results = n_results, .clamped = clamped, .err = err};
+    struct writer w = {.e = e, .job = job, .clamped = clamped, .err = err};
     w.plans = calloc((size_t)w.e->part_count, sizeof(*w.plans));
     int status = w.plans ? 0 : hf_io_fail(err, "%s: out of memory", path);
     for (int p = 0; p < w.e->part_count && !status; p++)
-        status = plan_part(&w, p, compression);
+        status = plan_part(&w, p);
     if (!status)
         status = write_all(&w, path);
     hf_out_abort(&w.out);

@@ -2,7 +2,7 @@
 #ifndef HF_IO_EXR_CHUNKS_H
 #define HF_IO_EXR_CHUNKS_H
 
-#include "io/exr.h"
+#include "io/exr/exr.h"
 
 // A chunk of the table: where in the file, and its number.
 struct hf_exr_slot {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Everything OpenImageIO does for us, behind a C interface that no exception leaves.
-#include "io/oiio.h"
+#include "io/oiio/oiio.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +23,7 @@ using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 struct hf_oiio {
+    const char *path;
     ImageSpec spec;
     int colour[4];  // channel indices; -1
     int depth;
@@ -226,10 +227,10 @@ void fill_view(struct hf_io_view *v, const hf_oiio *o)
 }
 
 // Channel c of all pixels as floats: integers become 0 .. 1.
-int read_channel(Input &input, const hf_io_file *file, int c, float *plane, hf_io_error *err)
+int read_channel(Input &input, const hf_oiio *o, int c, float *plane, hf_io_error *err)
 {
     if (!input.in->read_image(0, 0, c, c + 1, TypeDesc::FLOAT, plane))
-        return input.fail(file->path, err);
+        return input.fail(o->path, err);
     return 0;
 }
 
@@ -239,19 +240,18 @@ void premultiply(float *plane, const float *alpha, size_t n)
         plane[i] *= alpha[i];
 }
 
-int read_colour(hf_io_file *file, float *planes[4], hf_io_error *err)
+int read_colour(const hf_oiio *o, float *planes[4], hf_io_error *err)
 {
-    const hf_oiio *o = file->oiio;
     const size_t n = (size_t)o->spec.width * (size_t)o->spec.height;
     const bool curve = is_integer(o->spec.format);
     const bool straight = o->colour[3] >= 0 && o->spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
     std::vector<float> alpha;
     Input input;
-    if (open_input(input, file->path, err))
+    if (open_input(input, o->path, err))
         return -1;
     if (o->colour[3] >= 0 && (straight || planes[3])) {
         alpha.resize(n);
-        if (read_channel(input, file, o->colour[3], alpha.data(), err))
+        if (read_channel(input, o, o->colour[3], alpha.data(), err))
             return -1;
         if (planes[3])
             std::copy(alpha.begin(), alpha.end(), planes[3]);
@@ -263,7 +263,7 @@ int read_colour(hf_io_file *file, float *planes[4], hf_io_error *err)
             std::copy(planes[0], planes[0] + n, planes[k]);
             continue;
         }
-        if (read_channel(input, file, o->colour[k], planes[k], err))
+        if (read_channel(input, o, o->colour[k], planes[k], err))
             return -1;
         if (curve)
             for (size_t i = 0; i < n; i++)
@@ -275,10 +275,10 @@ int read_colour(hf_io_file *file, float *planes[4], hf_io_error *err)
 }
 
 // The pixel type to ask a format for. Those that hold floats get them, unless the source itself had integers.
-TypeDesc output_type(const char *path, const hf_io_file *source)
+TypeDesc output_type(const char *path, const hf_oiio *source)
 {
     const char *ext = hf_io_extension(path);
-    const TypeDesc from = source->oiio ? source->oiio->spec.format : TypeDesc(TypeDesc::FLOAT);
+    const TypeDesc from = source ? source->spec.format : TypeDesc(TypeDesc::FLOAT);
     if (!strcasecmp(ext, "hdr") || !strcasecmp(ext, "rgbe") || !strcasecmp(ext, "pfm") || !strcasecmp(ext, "exr"))
         return TypeDesc::FLOAT;
     if (!strcasecmp(ext, "tif") || !strcasecmp(ext, "tiff"))
@@ -307,7 +307,7 @@ std::vector<float> interleave(const struct hf_io_view *v, const float *const pla
     return pixels;
 }
 
-int write_picture(hf_out *target, const hf_io_file *source, const struct hf_io_view *v, const float *const planes[4],
+int write_picture(hf_out *target, const hf_oiio *source, const struct hf_io_view *v, const float *const planes[4],
                   const char *compression, hf_io_error *err)
 {
     const char *path = target->path;
@@ -365,7 +365,7 @@ void copy_strided(uint8_t *to, size_t to_step, const uint8_t *from, size_t from_
         memcpy(to + (size_t)i * to_step, from + (size_t)i * from_step, bytes);
 }
 
-int read_samples(const char *path, int part, hf_oiio_samples *s, hf_io_error *err)
+int read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
 {
     Input input;
     input.in = ImageInput::create("openexr");
@@ -396,7 +396,7 @@ int read_samples(const char *path, int part, hf_oiio_samples *s, hf_io_error *er
     return 0;
 }
 
-ImageSpec samples_spec(const hf_oiio_samples *s, const char *compression, float level)
+ImageSpec samples_spec(const hf_io_samples *s, const char *compression, float level)
 {
     ImageSpec spec(s->width, s->height, s->channel_count, exr_types[s->types[0]]);
     spec.x = spec.full_x = s->x;
@@ -411,7 +411,7 @@ ImageSpec samples_spec(const hf_oiio_samples *s, const char *compression, float 
     return spec;
 }
 
-int write_samples(hf_out *target, const hf_oiio_samples *s, const char *compression, float level, hf_io_error *err)
+int write_samples(hf_out *target, const hf_io_samples *s, const char *compression, float level, hf_io_error *err)
 {
     Output output(target, err, "openexr");
     const ImageSpec spec = samples_spec(s, compression, level);
@@ -432,26 +432,26 @@ int write_samples(hf_out *target, const hf_oiio_samples *s, const char *compress
 
 }  // namespace
 
-int hf_io_has_oiio(void)
+int hf_oiio_available(void)
 {
     return 1;
 }
 
-int hf_oiio_open(hf_io_file *file, const char *depth_channel, hf_io_error *err)
+int hf_oiio_open(hf_oiio **out, const char *path, const char *depth_channel, hf_io_views *views, hf_io_error *err)
 {
-    return guarded(file->path, err, [&] {
+    return guarded(path, err, [&] {
         Input input;
-        if (open_input(input, file->path, err) || check_spec(input.in->spec(), file->path, err))
+        if (open_input(input, path, err) || check_spec(input.in->spec(), path, err))
             return -1;
-        file->oiio = new hf_oiio{input.in->spec(), {-1, -1, -1, -1}, -1};
-        find_colour(file->oiio->spec, file->oiio->colour);
-        file->oiio->depth = find_depth(file->oiio->spec, depth_channel);
-        if (file->oiio->colour[0] < 0)
+        hf_oiio *o = *out = new hf_oiio{path, input.in->spec(), {-1, -1, -1, -1}, -1};
+        find_colour(o->spec, o->colour);
+        o->depth = find_depth(o->spec, depth_channel);
+        if (o->colour[0] < 0)
             return 0;
-        struct hf_io_view *v = hf_io_add_view(file);
+        struct hf_io_view *v = hf_io_add_view(views);
         if (!v)
-            return hf_io_fail(err, "%s: out of memory", file->path);
-        fill_view(v, file->oiio);
+            return hf_io_fail(err, "%s: out of memory", path);
+        fill_view(v, o);
         return 0;
     });
 }
@@ -467,50 +467,49 @@ void hf_oiio_channels(const hf_oiio *oiio, char *buf, size_t size)
         hf_io_list(buf, size, nullptr, name.c_str());
 }
 
-int hf_oiio_read_colour(hf_io_file *file, float *planes[4], hf_io_error *err)
+int hf_oiio_read_colour(hf_oiio *o, float *planes[4], hf_io_error *err)
 {
-    return guarded(file->path, err, [&] { return read_colour(file, planes, err); });
+    return guarded(o->path, err, [&] { return read_colour(o, planes, err); });
 }
 
-int hf_oiio_read_depth(hf_io_file *file, float *depth, hf_io_error *err)
+int hf_oiio_read_depth(hf_oiio *o, float *depth, hf_io_error *err)
 {
-    return guarded(file->path, err, [&] {
+    return guarded(o->path, err, [&] {
         Input input;
-        return open_input(input, file->path, err) ? -1 : read_channel(input, file, file->oiio->depth, depth, err);
+        return open_input(input, o->path, err) ? -1 : read_channel(input, o, o->depth, depth, err);
     });
 }
 
-int hf_oiio_read_depth_only(hf_io_file *file, const char *depth_channel, const struct hf_io_view *view, float *depth,
+int hf_oiio_read_depth_only(hf_oiio *o, const char *depth_channel, const struct hf_io_view *view, float *depth,
                             hf_io_error *err)
 {
-    return guarded(file->path, err, [&] {
-        const ImageSpec &spec = file->oiio->spec;
+    return guarded(o->path, err, [&] {
+        const ImageSpec &spec = o->spec;
         int c = find_depth(spec, depth_channel);
         if (c < 0 && !depth_channel)
-            c = spec.nchannels == 1 ? 0 : file->oiio->colour[0];
+            c = spec.nchannels == 1 ? 0 : o->colour[0];
         if (c < 0)
-            return hf_io_fail(err, "%s: no depth channel %s", file->path,
-                              depth_channel ? depth_channel : "Z, *depth*, R");
+            return hf_io_fail(err, "%s: no depth channel %s", o->path, depth_channel ? depth_channel : "Z, *depth*, R");
         if (spec.width != view->width || spec.height != view->height)
-            return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d", file->path, spec.width,
+            return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d", o->path, spec.width,
                               spec.height, view->width, view->height);
         Input input;
-        return open_input(input, file->path, err) ? -1 : read_channel(input, file, c, depth, err);
+        return open_input(input, o->path, err) ? -1 : read_channel(input, o, c, depth, err);
     });
 }
 
-int hf_oiio_write(hf_out *out, const hf_io_file *source, const struct hf_io_view *view, const float *const planes[4],
+int hf_oiio_write(hf_out *out, const hf_oiio *source, const struct hf_io_view *view, const float *const planes[4],
                   const char *compression, hf_io_error *err)
 {
     return guarded(out->path, err, [&] { return write_picture(out, source, view, planes, compression, err); });
 }
 
-int hf_oiio_read_samples(const char *path, int part, hf_oiio_samples *s, hf_io_error *err)
+int hf_oiio_read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
 {
     return guarded(path, err, [&] { return read_samples(path, part, s, err); });
 }
 
-int hf_oiio_write_samples(hf_out *out, const hf_oiio_samples *s, const char *compression, float level, hf_io_error *err)
+int hf_oiio_write_samples(hf_out *out, const hf_io_samples *s, const char *compression, float level, hf_io_error *err)
 {
     return guarded(out->path, err, [&] { return write_samples(out, s, compression, level, err); });
 }

@@ -3,7 +3,7 @@
 // whose output goes nowhere; the compressed bytes are taken out of its pipeline.
 #include <string.h>
 
-#include "io/exr.h"
+#include "io/exr/exr.h"
 
 static int64_t write_nowhere(exr_const_context_t core, void *user, const void *data, uint64_t size, uint64_t offset,
                              exr_stream_error_func_ptr_t error)

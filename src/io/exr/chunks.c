@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/exr_chunks.h"
+#include "io/exr/chunks.h"
 
 enum { PIECE = 1 << 18 };
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "io/exr.h"
+#include "io/exr/exr.h"
 
 enum { NAME = 256 };
 
@@ -136,13 +136,13 @@ static int fill_windows(const struct hf_exr *e, struct hf_io_view *v, struct hf_
 }
 
 // Add the view with these channels to the file.
-static int add_view(struct hf_io_file *file, int p, const char *name, const char *prefix, struct hf_io_error *err)
+static int add_view(const struct hf_exr *e, struct hf_io_views *views, int p, const char *name, const char *prefix,
+                    struct hf_io_error *err)
 {
-    const struct hf_exr *e = file->exr;
     const struct hf_exr_part *part = &e->parts[p];
-    struct hf_io_view *v = hf_io_add_view(file);
+    struct hf_io_view *v = hf_io_add_view(views);
     if (!v)
-        return hf_io_fail(err, "%s: out of memory", file->path);
+        return hf_io_fail(err, "%s: out of memory", e->path);
     const bool rgb = has_colour(part, prefix);
     v->part = p;
     v->depth_part = -1;
@@ -161,22 +161,22 @@ static int add_view(struct hf_io_file *file, int p, const char *name, const char
     return fill_windows(e, v, err);
 }
 
-static bool known_view(const struct hf_io_file *file, const char *name)
+static bool known_view(const struct hf_io_views *views, const char *name)
 {
-    for (int v = 0; v < file->view_count; v++)
-        if (!strncmp(file->views[v].name, name, sizeof(file->views[v].name) - 1))
+    for (int v = 0; v < views->count; v++)
+        if (!strncmp(views->view[v].name, name, sizeof(views->view[v].name) - 1))
             return true;
     return false;
 }
 
-static int views_in_part(struct hf_io_file *file, int p, bool layers, struct hf_io_error *err)
+static int views_in_part(const struct hf_exr *e, struct hf_io_views *views, int p, bool layers, struct hf_io_error *err)
 {
-    const struct hf_exr_part *part = &file->exr->parts[p];
-    const struct views_of_part names = views_of(file->exr, p);
+    const struct hf_exr_part *part = &e->parts[p];
+    const struct views_of_part names = views_of(e, p);
     for (int i = 0; i < names.count; i++) {
         const char *name = view_name(&names, i);
         char prefix[2 * NAME] = "", layer[NAME];
-        if (known_view(file, name))
+        if (known_view(views, name))
             continue;
         if (names.multiview && i > 0)
             snprintf(prefix, sizeof(prefix), "%.*s.", NAME, name);
@@ -190,7 +190,7 @@ static int views_in_part(struct hf_io_file *file, int p, bool layers, struct hf_
         }
         if (!has_colour(part, prefix) && find_prefixed(part, prefix, "Y") < 0)
             continue;
-        if (add_view(file, p, name, prefix, err))
+        if (add_view(e, views, p, name, prefix, err))
             return -1;
     }
     return 0;
@@ -319,10 +319,10 @@ static const char *full_name(const struct hf_exr *e, const struct hf_io_view *v,
     return v->name;
 }
 
-static int set_depth(struct hf_io_file *file, struct hf_io_view *v, const char *given, struct hf_io_error *err)
+static int set_depth(const struct hf_exr *e, struct hf_io_view *v, bool alone, const char *given,
+                     struct hf_io_error *err)
 {
-    const struct hf_exr *e = file->exr;
-    struct depth_search s = {.e = e, .colour_part = v->part, .any_part = file->view_count == 1};
+    struct depth_search s = {.e = e, .colour_part = v->part, .any_part = alone};
     char prefix[NAME];
     int c = -1;
     s.view = full_name(e, v, &s.unprefixed);
@@ -340,15 +340,15 @@ static int set_depth(struct hf_io_file *file, struct hf_io_view *v, const char *
     return hf_exr_check_part(e, v->depth_part, err);
 }
 
-int hf_exr_find_views(struct hf_io_file *file, const char *depth_channel, struct hf_io_error *err)
+int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const char *depth_channel,
+                      struct hf_io_error *err)
 {
-    const struct hf_exr *e = file->exr;
-    for (int layers = 0; layers < 2 && !file->view_count; layers++)
+    for (int layers = 0; layers < 2 && !views->count; layers++)
         for (int p = 0; p < e->part_count; p++)
-            if (!hf_exr_is_deep(&e->parts[p]) && views_in_part(file, p, layers, err))
+            if (!hf_exr_is_deep(&e->parts[p]) && views_in_part(e, views, p, layers, err))
                 return -1;
-    for (int v = 0; v < file->view_count; v++)
-        if (set_depth(file, &file->views[v], depth_channel, err))
+    for (int v = 0; v < views->count; v++)
+        if (set_depth(e, &views->view[v], views->count == 1, depth_channel, err))
             return -1;
     return 0;
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/common.h"
+#include "io/oiio/oiio.h"
 
 // CRC-32 as PNG has it, four bits at a time.
 static uint32_t crc32_of(uint32_t crc, const uint8_t *data, size_t size)

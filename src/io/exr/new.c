@@ -2,7 +2,7 @@
 // A new EXR file of float channels, where there is no source to copy from.
 #include <string.h>
 
-#include "io/exr.h"
+#include "io/exr/exr.h"
 
 struct new_file {
     struct hf_exr messages;  // only for what Core says

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/exr.h"
+#include "io/exr/exr.h"
 #include "io/half.h"
 
 // Chunk number index of level 0, in table order.
@@ -70,7 +70,7 @@ static bool chunk_rows(const struct hf_exr *e, int p, const exr_decode_pipeline_
     return true;
 }
 
-static int rows_by_oiio(struct hf_exr *e, int p, hf_exr_row *row, void *arg, struct hf_io_error *err)
+static int rows_by_codec(struct hf_exr *e, int p, hf_exr_row *row, void *arg, struct hf_io_error *err)
 {
     struct hf_exr_pixels px;
     if (hf_exr_read_pixels(e, p, &px, err))
@@ -87,7 +87,7 @@ int hf_exr_rows(struct hf_exr *e, int p, hf_exr_row *row, void *arg, struct hf_i
     const struct hf_exr_part *part = &e->parts[p];
     struct decoder d = {.decompress = NULL};
     if (hf_exr_is_dwa(part->compression))
-        return rows_by_oiio(e, p, row, arg, err);
+        return rows_by_codec(e, p, row, arg, err);
     const int lines = part->storage == EXR_STORAGE_TILED ? part->tile_height : part->chunk_lines;
     const int across = part->storage == EXR_STORAGE_TILED ? (part->width - 1) / part->tile_width + 1 : 1;
     const int count = ((part->height - 1) / lines + 1) * across;

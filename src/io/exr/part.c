@@ -3,7 +3,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "io/exr.h"
+#include "io/exr/exr.h"
 
 static const struct {
     const char *name;

@@ -7,8 +7,8 @@
 
 #include <openexr.h>
 
-#include "io/common.h"
 #include "io/out.h"
+#include "io/picture.h"
 
 struct hf_exr_channel {
     const char *name;
@@ -37,8 +37,18 @@ struct hf_exr_part {
     const exr_attr_chlist_t *list;
 };
 
+// Who reads and writes the samples of parts whose compression Core does not know (DWA). Both return 0, or -1 with *err
+// filled.
+struct hf_exr_codec {
+    int (*read)(const char *path, int part, struct hf_io_samples *s, struct hf_io_error *err);
+    // A new single-part EXR. level: the quality, 0 for the default.
+    int (*write)(struct hf_out *out, const struct hf_io_samples *s, const char *compression, float level,
+                 struct hf_io_error *err);
+};
+
 struct hf_exr {
-    const char *path;  // owned by hf_io_file
+    const char *path;  // not owned
+    const struct hf_exr_codec *dwa;
     int fd;
     uint64_t size;
     uint64_t header_size;
@@ -49,8 +59,8 @@ struct hf_exr {
     struct hf_exr_part *parts;
 };
 
-// Takes fd over, also on failure.
-int hf_exr_open(struct hf_exr **out, const char *path, int fd, struct hf_io_error *err);
+// Takes fd over, also on failure. path and dwa must outlive the file.
+int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_exr_codec *dwa, struct hf_io_error *err);
 void hf_exr_close(struct hf_exr *e);
 int hf_exr_read_at(const struct hf_exr *e, void *data, size_t size, uint64_t offset);  // 0 or -1
 // Forget what Core said; report what it said since. code: what Core returned.
@@ -73,7 +83,8 @@ bool hf_exr_row_has(const struct hf_exr_part *part, int c, int y);
 int hf_exr_check_part(const struct hf_exr *e, int part, struct hf_io_error *err);
 
 // exr_views.c
-int hf_exr_find_views(struct hf_io_file *file, const char *depth_channel, struct hf_io_error *err);
+int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const char *depth_channel,
+                      struct hf_io_error *err);
 // Part and channel of the depth for a view called name, in a file that may have no colour.
 int hf_exr_find_depth_only(const struct hf_exr *e, const char *depth_channel, const char *name, int *channel);
 void hf_exr_channels(const struct hf_exr *e, char *buf, size_t size);
@@ -98,13 +109,12 @@ int hf_exr_alloc_pixels(struct hf_exr_pixels *px, const char *path, const struct
                         struct hf_io_error *err);
 void hf_exr_free_pixels(struct hf_exr_pixels *px);
 uint8_t *hf_exr_pixel_row(const struct hf_exr_pixels *px, int c, int y);
-// The same as OpenImageIO's side wants it; names holds what s points at, and is to be freed.
-struct hf_oiio_samples;
+// The same as a codec wants it; names holds what s points at, and is to be freed.
 struct hf_exr_names {
     const char **names;
     uint8_t *types;
 };
-int hf_exr_samples(const struct hf_exr_pixels *px, const char *path, struct hf_oiio_samples *s,
+int hf_exr_samples(const struct hf_exr_pixels *px, const char *path, struct hf_io_samples *s,
                    struct hf_exr_names *names, struct hf_io_error *err);
 void hf_exr_free_names(struct hf_exr_names *names);
 
@@ -124,8 +134,14 @@ int hf_exr_encode(struct hf_exr_encoder *en, int index, const void **data, size_
 void hf_exr_encoder_close(struct hf_exr_encoder *en);
 
 // exr_write.c
-int hf_exr_write(struct hf_io_file *file, const char *path, const struct hf_io_result *results, int n_results,
-                 int compression, uint64_t *clamped, struct hf_io_error *err);  // compression -1: as it was
+struct hf_exr_job {
+    const struct hf_io_views *views;
+    const struct hf_io_result *results;
+    int n_results;
+    int compression;  // -1: as it was
+};
+int hf_exr_write(struct hf_exr *e, const char *path, const struct hf_exr_job *job, uint64_t *clamped,
+                 struct hf_io_error *err);
 
 // exr_planes.c
 struct hf_exr_new {

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/exr.h"
+#include "io/exr/exr.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "sample rows are used as they are stored, which is little endian"
@@ -270,7 +270,7 @@ static int load_part(struct hf_exr *e, int p, struct hf_io_error *err)
     return load_channels(e, p, err);
 }
 
-int hf_exr_open(struct hf_exr **out, const char *path, int fd, struct hf_io_error *err)
+int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_exr_codec *dwa, struct hf_io_error *err)
 {
     struct hf_exr *e = calloc(1, sizeof(*e));
     exr_context_initializer_t init;
@@ -281,6 +281,7 @@ int hf_exr_open(struct hf_exr **out, const char *path, int fd, struct hf_io_erro
     }
     e->fd = fd;
     e->path = path;
+    e->dwa = dwa;
     e->size = (uint64_t)lseek(fd, 0, SEEK_END);
     hf_exr_context_init(e, &init);
     init.read_fn = core_read;

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The top of this folder: an open file, whoever handles it.
+#ifndef HF_IO_FILE_H
+#define HF_IO_FILE_H
+
+#include "io/io.h"
+
+struct hf_exr;
+struct hf_oiio;
+
+struct hf_io_file {
+    char *path;
+    struct hf_exr *exr;  // one of these two is set
+    struct hf_oiio *oiio;
+    struct hf_io_views views;
+};
+
+// As hf_io_open, but a file without colour (a depth map) is fine and has no views.
+int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_channel, struct hf_io_error *err);
+
+#endif
