@@ -290,5 +290,5 @@ int main(int argc, char **argv)
     hf_taps_free(&w.taps, &hf_mem_default);
     printf("hash of the C's pictures: %08x\n", hash);
     printf("%d passed, %d failed\n", passed, failed);
-    return failed != 0;
+    return failed || !passed;
 }

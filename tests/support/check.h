@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Counting checks for the test programs. A failure prints where and what and lets the program go on; main ends with
-// `return check_report();`. Exit status: 0 all passed, 1 some failed, 77 the test could not run (meson: skipped).
+// `return check_report();`. Exit status: 0 all passed, 1 some failed or nothing was checked, 77 the test could not run
+// (meson: skipped).
 #ifndef HF_TESTS_CHECK_H
 #define HF_TESTS_CHECK_H
 
@@ -46,8 +47,11 @@ static inline int check_report(void)
     const int failed = atomic_load(&check_failed);
     if (failed > CHECK_PRINTED)
         fprintf(stderr, "(%d more failures not printed)\n", failed - CHECK_PRINTED);
-    printf("%d passed, %d failed\n", atomic_load(&check_passed), failed);
-    return failed ? 1 : 0;
+    const int passed = atomic_load(&check_passed);
+    if (!passed && !failed)
+        fprintf(stderr, "nothing was checked\n");
+    printf("%d passed, %d failed\n", passed, failed);
+    return failed || !passed ? 1 : 0;
 }
 
 #endif
