@@ -16,10 +16,11 @@ _Static_assert(HF_BLEND_LINEAR == 0 && HF_BLEND_SMOOTHSTEP == 1, "order of --ble
 _Static_assert(HF_DEPTH_VIEW == 0 && HF_DEPTH_RAY == 1 && HF_DEPTH_NDC_D3D == 2 && HF_DEPTH_NDC_GL == 3 &&
                    HF_DEPTH_NDC_REVERSED == 4 && HF_DEPTH_INVERSE == 5 && HF_DEPTH_COC == 6,
                "order of --depth-type");
-_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 &&
-                   HF_ISA_AVX512 == 4 && HF_ISA_NEON == 5,
+_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 && HF_ISA_AVX512 == 4 &&
+                   HF_ISA_NEON == 5,
                "order of --isa");
 
+// clang-format off
 const char *const cli_group_names[CLI_GROUPS] = {
     [CLI_FILES] = "Files",
     [CLI_FOCUS] = "Focus and range (scene units are those of the depth)",
@@ -139,5 +140,6 @@ const struct cli_option cli_options[] = {
     {"help", 'h', CLI_RUN, NULL, "Print this.", FLAG(help)},
     {"version", 0, CLI_RUN, NULL, "Print the version.", FLAG(version)},
 };
+// clang-format on
 
 const int cli_option_count = sizeof(cli_options) / sizeof(cli_options[0]);
