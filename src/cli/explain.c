@@ -120,7 +120,8 @@ static int write_image(const struct cli_frame *frame, const struct cli_view *v, 
         struct hf_io_error io;
         paint(v, planes);
         const struct hf_io_result result = {.view = v->index, .planes = {planes[0], planes[1], planes[2]}};
-        if (hf_io_write(frame->file, path, &result, 1, NULL, NULL, &io))
+        const struct hf_io_job job = {.path = path, .results = &result, .result_count = 1};
+        if (hf_io_write(frame->file, &job, NULL, &io))
             status = cli_fail(error, CLI_ALL_FAILED, "--explain-image: %s", io.message);
     }
     free(memory);

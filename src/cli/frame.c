@@ -205,7 +205,6 @@ int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struc
 
 int cli_frame_write(struct cli_frame *frame, struct cli_error *error)
 {
-    const struct hf_io_write_options options = {.compression = frame->args->compression};
     struct hf_io_error io;
     struct hf_io_result *results = calloc((size_t)frame->view_count, sizeof(*results));
     if (!results)
@@ -216,8 +215,13 @@ int cli_frame_write(struct cli_frame *frame, struct cli_error *error)
             results[i].planes[c] = frame->views[i].planes[c];
     }
     const double start = now_ms();
-    const int status =
-        hf_io_write(frame->file, frame->args->output, results, frame->view_count, &options, &frame->clamped, &io);
+    const struct hf_io_job job = {.path = frame->args->output,
+                                  .results = results,
+                                  .result_count = frame->view_count,
+                                  .compression = frame->args->compression};
+    struct hf_io_written written;
+    const int status = hf_io_write(frame->file, &job, &written, &io);
+    frame->clamped = written.clamped;
     frame->write_ms += now_ms() - start;
     free(results);
     return status ? cli_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;

@@ -121,20 +121,15 @@ static int check_view(const struct hf_io_file *file, int view, struct hf_io_erro
     return 0;
 }
 
-int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struct hf_io_error *err)
+static int read_colour(struct hf_io_file *file, int view, float *const planes[4], struct hf_io_error *err)
 {
-    if (check_view(file, view, err))
-        return -1;
-    if (file->exr)
-        return hf_exr_read_colour(file->exr, &file->views.view[view], planes, err);
-    return hf_oiio_read_colour(file->oiio, planes, err);
+    return file->exr ? hf_exr_read_colour(file->exr, &file->views.view[view], planes, err)
+                     : hf_oiio_read_colour(file->oiio, planes, err);
 }
 
-int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err)
+static int read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err)
 {
     char names[300];
-    if (check_view(file, view, err))
-        return -1;
     const struct hf_io_view *v = &file->views.view[view];
     if (v->depth_part < 0) {
         hf_io_channels(file, names, sizeof(names));
@@ -144,6 +139,40 @@ int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_
         return hf_oiio_read_depth(file->oiio, depth, err);
     const int c = hf_exr_find_channel(&file->exr->parts[v->depth_part], v->depth);
     return hf_exr_read_depth(file->exr, v->depth_part, c, v->data_window, depth, err);
+}
+
+int hf_io_fetch(struct hf_io_file *file, const struct hf_io_want *wants, int count, struct hf_io_error *err)
+{
+    for (int i = 0; i < count; i++)
+        if (check_view(file, wants[i].view, err))
+            return -1;
+    return 0;
+}
+
+int hf_io_decode(struct hf_io_file *file, const struct hf_io_want *wants, int count, const struct hf_io_run *run,
+                 struct hf_io_error *err)
+{
+    (void)run;
+    for (int i = 0; i < count; i++) {
+        const struct hf_io_want *w = &wants[i];
+        if (check_view(file, w->view, err) || (w->depth && read_depth(file, w->view, w->depth, err)) ||
+            ((w->planes[0] || w->planes[1] || w->planes[2] || w->planes[3]) &&
+             read_colour(file, w->view, w->planes, err)))
+            return -1;
+    }
+    return 0;
+}
+
+int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struct hf_io_error *err)
+{
+    const struct hf_io_want want = {.view = view, .planes = {planes[0], planes[1], planes[2], planes[3]}};
+    return hf_io_decode(file, &want, 1, NULL, err);
+}
+
+int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err)
+{
+    const struct hf_io_want want = {.view = view, .depth = depth};
+    return hf_io_decode(file, &want, 1, NULL, err);
 }
 
 static int exr_depth_only(struct hf_io_file *file, const char *depth_channel, const struct hf_io_view *view,
@@ -181,23 +210,6 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, const str
                                  : hf_oiio_read_depth_only(file->oiio, depth_channel, view, depth, err);
     hf_io_close(&file);
     return status;
-}
-
-int hf_io_write_planes(const char *path, int width, int height, int channels, const char *const names[],
-                       const float *const planes[], ptrdiff_t stride, struct hf_io_error *err)
-{
-    const struct hf_exr_new picture = {
-        .data_window = {0, 0, width, height},
-        .display_window = {0, 0, width, height},
-        .pixel_aspect = 1,
-        .screen_width = 1,
-        .compression = EXR_COMPRESSION_ZIP,
-        .channel_count = channels,
-        .names = names,
-        .planes = planes,
-        .stride = stride,
-    };
-    return hf_exr_write_new(path, &picture, err);
 }
 
 int hf_io_has_oiio(void)

@@ -1,11 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Picture files for the programs (the library itself knows no files). The floors: errors,
-// pictures and files being written (error, picture, out, half); on them, beside each other, EXR by OpenEXRCore (exr)
-// and everything else by OpenImageIO (oiio); on top what chooses between them (file, write). Nothing here prints.
+// Picture files for the programs (the library itself knows no files). The floors: errors, pictures, files being written
+// and threads (error, picture, out, half, run); on them, beside each other, EXR by OpenEXRCore (exr) and everything
+// else by OpenImageIO (oiio); on top what chooses between them (file, write). Nothing here prints.
+//
+// A frame goes through stages, which a program may overlap with those of other frames:
+//
+//     hf_io_open     headers                                          a few reads
+//     hf_io_fetch    bytes of the chunks that will be needed          disk alone
+//     hf_io_decode   planes of floats                                 computing, on the caller's threads
+//     hf_io_encode   the bytes of the new file, in memory             computing, on the caller's threads
+//     hf_io_save     a temporary file, then renamed                   disk alone
+//
+// Each stage of one file may run on another thread than the one before, but two stages of a file never run at the same
+// time. Different files know nothing of each other.
 #ifndef HF_IO_H
 #define HF_IO_H
 
 #include "io/picture.h"
+#include "io/run.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -29,31 +41,70 @@ const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view);
 // size.
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size);
 
-// Read a view's colour into tightly packed float planes of width * height (planes[3] may be NULL or the channel
-// absent: left alone). Greyscale files fill R, G, B with the same. Values are the file's, NaN and Inf included.
+// What to read of a view: tightly packed planes of width * height floats, the caller's; NULL what is not wanted.
+struct hf_io_want {
+    int view;
+    // R, G, B, A. A channel that the file does not have is left alone; greyscale files fill R, G and B with the same.
+    // Values are the file's, NaN and Inf included.
+    float *planes[4];
+    // On the grid of the colour's data window. Where the depth's own data window does not reach: +Inf (no surface).
+    // An error when there is no overlap at all, or no depth channel.
+    float *depth;
+};
+
+// Read the bytes that hf_io_decode of the same views will need into memory that the file owns. Optional: without it
+// decode reads as it goes. What planes point at does not matter, only whether they are NULL.
+int hf_io_fetch(struct hf_io_file *file, const struct hf_io_want *wants, int count, struct hf_io_error *err);
+// Decode what is wanted, each chunk once. run NULL: on this thread. The file keeps what is not colour or depth as it
+// was stored, until hf_io_encode or hf_io_close; nothing is decoded a second time.
+int hf_io_decode(struct hf_io_file *file, const struct hf_io_want *wants, int count, const struct hf_io_run *run,
+                 struct hf_io_error *err);
+
+// The same for one view's colour or depth, in one call on this thread.
 int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struct hf_io_error *err);
-// Read the view's depth onto the grid of its colour's data window: width * height floats. Where the depth's own data
-// window does not reach: +Inf (no surface). Error when there is no overlap at all, or no depth channel.
 int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err);
 // Depth from a file of its own, any format OpenImageIO or OpenEXRCore reads: its depth channel as searched above (or
 // its only channel, or R). Must have the same data window size as the view.
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
                           struct hf_io_error *err);
 
-struct hf_io_write_options {
+// What to write, and how. All that is zero is the default.
+struct hf_io_job {
+    const char *path;
+    const struct hf_io_result *results;
+    int result_count;
     const char *compression;  // "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", or NULL:
                               // as it was
+    bool unsynced;            // do not wait until the disk has it: after a power failure the new file may be empty
+    const struct hf_io_run *run;  // NULL: on this thread
 };
 
-// Write a copy of the file to path with the colours of some views replaced: everything else (windows, attributes,
-// parts, channels and their types, tiling, compression, line order) stays; parts with nothing to change are copied as
-// raw chunks. *clamped counts samples that did not fit a half channel (clamped to +-65504). Written to a temporary file
-// beside path, then renamed; on error nothing is left. The format follows path's extension; an EXR source
-// written as something else (png, tif, jpg ...) keeps only one view's colour; formats of 8 and 16 bit integers get the
-// sRGB curve (reading takes it off again), floats stay linear. When path is not .exr, results must hold exactly one view.
-// clamped, options and err may be NULL. path may be the file's own.
-int hf_io_write(struct hf_io_file *file, const char *path, const struct hf_io_result *results, int n_results,
-                const struct hf_io_write_options *options, uint64_t *clamped, struct hf_io_error *err);
+// What became of it.
+struct hf_io_written {
+    uint64_t clamped;          // samples that did not fit a half channel and became +-65504
+    char note[HF_IO_MESSAGE];  // a sentence about what could not be kept as it was, or ""
+};
+
+// A new file in memory, ready to be saved.
+struct hf_io_output;
+
+// Make a copy of the file, to be saved as path, with the colours of some views replaced: everything else (windows,
+// attributes, parts, channels and their types, tiling, compression, line order) stays; parts with nothing to change are
+// copied as raw chunks when it is saved. The format follows path's extension; an EXR source written as something else
+// (png, tif, jpg ...) keeps only one view's colour; formats of 8 and 16 bit integers get the sRGB curve (reading takes
+// it off again), floats stay linear. When path is not .exr, results must hold exactly one view.
+// The planes and the job are the caller's again when this returns; the file must stay open until the output is freed.
+// written (which is set to zero first) and err may be NULL.
+int hf_io_encode(struct hf_io_output **out, struct hf_io_file *file, const struct hf_io_job *job,
+                 struct hf_io_written *written, struct hf_io_error *err);
+// Write it to a temporary file beside path (.hyperfocal-PID-N.ext), then rename; on error nothing is left. path may be
+// the source's own. A note may be added to *written, which may be NULL.
+int hf_io_save(struct hf_io_output *out, struct hf_io_written *written, struct hf_io_error *err);
+void hf_io_output_free(struct hf_io_output **out);
+
+// Both in one call.
+int hf_io_write(struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_written *written,
+                struct hf_io_error *err);
 
 // Write planes of floats as a new single-part EXR of float channels (names[c], any order): intermediate buffers, tests.
 int hf_io_write_planes(const char *path, int width, int height, int channels, const char *const names[],

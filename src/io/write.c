@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hf_io_write: an EXR made from an EXR is a copy with new colours; anything else is a new picture of one view.
+// hf_io_encode: an EXR made from an EXR is a copy with new colours; anything else is a new picture of one view.
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,7 +39,8 @@ static int load_picture(struct hf_io_file *file, const struct hf_io_result *r, s
     return missing ? hf_io_read_colour(file, r->view, pic->own, err) : 0;
 }
 
-static int write_new_exr(const char *path, const struct hf_io_view *v, const float *const planes[4], int compression,
+// Colours alone.
+static int write_new_exr(struct hf_out *out, const struct hf_io_view *v, const float *const planes[4], int compression,
                          struct hf_io_error *err)
 {
     static const char *const names[4] = {"R", "G", "B", "A"};
@@ -56,55 +57,119 @@ static int write_new_exr(const char *path, const struct hf_io_view *v, const flo
         .planes = planes,
         .stride = v->width,
     };
-    return hf_exr_write_new(path, &picture, err);
-}
-
-static int write_by_oiio(const struct hf_oiio *source, const char *path, const struct hf_io_view *v,
-                         const float *const planes[4], const char *compression, struct hf_io_error *err)
-{
-    struct hf_out out;
-    int status = hf_out_open(&out, path, err);
-    if (!status)
-        status = hf_oiio_write(&out, source, v, planes, compression, err);
-    if (!status)
-        status = hf_out_commit(&out, err);
-    hf_out_abort(&out);
-    return status;
+    return hf_exr_write_new(out, &picture, err);
 }
 
 // A picture with nothing but the colours of one view.
-static int write_view(struct hf_io_file *file, const char *path, const struct hf_io_result *results, int n_results,
-                      const char *compression, int exr_compression, struct hf_io_error *err)
+static int write_view(struct hf_io_file *file, struct hf_out *out, const struct hf_io_job *job, int compression,
+                      struct hf_io_error *err)
 {
     struct picture pic;
-    if (n_results != 1)
-        return hf_io_fail(err, "%s: only EXR files hold several views, and there are %d to write", path, n_results);
-    const struct hf_io_view *v = &file->views.view[results[0].view];
-    int status = load_picture(file, &results[0], &pic, err);
-    if (!status && hf_io_is_exr_name(path) && !(exr_compression >= 0 && hf_exr_is_dwa(exr_compression)))
-        status = write_new_exr(path, v, pic.planes, exr_compression, err);
+    if (job->result_count != 1)
+        return hf_io_fail(err, "%s: only EXR files hold several views, and there are %d to write", job->path,
+                          job->result_count);
+    const struct hf_io_view *v = &file->views.view[job->results[0].view];
+    int status = load_picture(file, &job->results[0], &pic, err);
+    if (!status && hf_io_is_exr_name(job->path) && !(compression >= 0 && hf_exr_is_dwa(compression)))
+        status = write_new_exr(out, v, pic.planes, compression, err);
     else if (!status)
-        status = write_by_oiio(file->oiio, path, v, pic.planes, compression, err);
+        status = hf_oiio_write(out, file->oiio, v, pic.planes, job->compression, err);
     free_picture(&pic);
     return status;
 }
 
-int hf_io_write(struct hf_io_file *file, const char *path, const struct hf_io_result *results, int n_results,
-                const struct hf_io_write_options *options, uint64_t *clamped, struct hf_io_error *err)
+struct hf_io_output {
+    struct hf_out out;
+    char *path;
+};
+
+void hf_io_output_free(struct hf_io_output **out)
 {
-    const char *compression = options ? options->compression : NULL;
-    const int exr_compression = compression ? hf_exr_compression(compression) : -1;
-    uint64_t ignored;
-    if (!clamped)
-        clamped = &ignored;
-    *clamped = 0;
-    for (int i = 0; i < n_results; i++)
-        if (!hf_io_view(file, results[i].view))
-            return hf_io_fail(err, "%s: there is no view number %d", file->path, results[i].view);
-    if (compression && exr_compression < 0 && hf_io_is_exr_name(path))
-        return hf_io_fail(err, "%s: unknown compression %s", path, compression);
-    const struct hf_exr_job job = {&file->views, results, n_results, exr_compression};
-    if (file->exr && hf_io_is_exr_name(path))
-        return hf_exr_write(file->exr, path, &job, clamped, err);
-    return write_view(file, path, results, n_results, compression, exr_compression, err);
+    if (!*out)
+        return;
+    hf_out_abort(&(*out)->out);
+    free((*out)->path);
+    free(*out);
+    *out = NULL;
+}
+
+static int check_job(const struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_error *err)
+{
+    for (int i = 0; i < job->result_count; i++)
+        if (!hf_io_view(file, job->results[i].view))
+            return hf_io_fail(err, "%s: there is no view number %d", file->path, job->results[i].view);
+    if (job->compression && hf_exr_compression(job->compression) < 0 && hf_io_is_exr_name(job->path))
+        return hf_io_fail(err, "%s: unknown compression %s", job->path, job->compression);
+    return 0;
+}
+
+int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const struct hf_io_job *job,
+                 struct hf_io_written *written, struct hf_io_error *err)
+{
+    struct hf_io_written ignored;
+    *result = NULL;
+    if (!written)
+        written = &ignored;
+    memset(written, 0, sizeof(*written));
+    if (check_job(file, job, err))
+        return -1;
+    struct hf_io_output *o = calloc(1, sizeof(*o));
+    if (o)
+        o->path = strdup(job->path);
+    if (!o || !o->path) {
+        hf_io_output_free(&o);
+        return hf_io_fail(err, "%s: out of memory", job->path);
+    }
+    const int compression = job->compression ? hf_exr_compression(job->compression) : -1;
+    const struct hf_exr_job exr = {&file->views, job->results, job->result_count, compression};
+    int status = hf_out_open(&o->out, o->path, err);
+    if (!status)
+        status = file->exr && hf_io_is_exr_name(job->path)
+                     ? hf_exr_write(file->exr, &o->out, &exr, &written->clamped, err)
+                     : write_view(file, &o->out, job, compression, err);
+    if (status)
+        hf_io_output_free(&o);
+    *result = o;
+    return status;
+}
+
+int hf_io_save(struct hf_io_output *out, struct hf_io_written *written, struct hf_io_error *err)
+{
+    (void)written;
+    return hf_out_commit(&out->out, err);
+}
+
+int hf_io_write(struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_written *written,
+                struct hf_io_error *err)
+{
+    struct hf_io_output *out;
+    int status = hf_io_encode(&out, file, job, written, err);
+    if (!status)
+        status = hf_io_save(out, written, err);
+    hf_io_output_free(&out);
+    return status;
+}
+
+int hf_io_write_planes(const char *path, int width, int height, int channels, const char *const names[],
+                       const float *const planes[], ptrdiff_t stride, struct hf_io_error *err)
+{
+    const struct hf_exr_new picture = {
+        .data_window = {0, 0, width, height},
+        .display_window = {0, 0, width, height},
+        .pixel_aspect = 1,
+        .screen_width = 1,
+        .compression = EXR_COMPRESSION_ZIP,
+        .channel_count = channels,
+        .names = names,
+        .planes = planes,
+        .stride = stride,
+    };
+    struct hf_out out;
+    int status = hf_out_open(&out, path, err);
+    if (!status)
+        status = hf_exr_write_new(&out, &picture, err);
+    if (!status)
+        status = hf_out_commit(&out, err);
+    hf_out_abort(&out);
+    return status;
 }

@@ -73,12 +73,11 @@ static void check_written(const char *path, const struct hf_io_file *source, con
 static void round_trip(const char *path, const char *compression, bool half, bool exact)
 {
     const char *target = in_folder("out.exr");
-    struct hf_io_write_options options = {compression};
     struct hf_io_result results[4];
     struct planes planes[4];
     struct hf_io_file *f;
     struct hf_io_error err = {""};
-    uint64_t clamped = 0;
+    struct hf_io_written written;
     int too_large = 0;
     if (!CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))
         return;
@@ -89,10 +88,11 @@ static void round_trip(const char *path, const char *compression, bool half, boo
     }
     unlink(target);
     const int files = files_in(folder);
-    if (CHECK_MSG(!hf_io_write(f, target, results, n, &options, &clamped, &err), "%s", err.message)) {
+    const struct hf_io_job job = {.path = target, .results = results, .result_count = n, .compression = compression};
+    if (CHECK_MSG(!hf_io_write(f, &job, &written, &err), "%s", err.message)) {
         CHECK_INT(files_in(folder), files + 1);
         if (hf_io_view(f, 0)->colour[1][0] == 'G' || !strcmp(hf_io_view(f, 0)->colour[0], "R"))
-            CHECK_INT(clamped, half ? too_large : 0);
+            CHECK_INT(written.clamped, half ? too_large : 0);
         if (!compression)
             compare_headers(path, target);
         compare_channels(path, target, f, results, n);
@@ -355,13 +355,13 @@ static int rewrite(const char *path, const char *target, struct hf_io_error *err
 {
     struct hf_io_file *f;
     int ignored = 0;
-    uint64_t clamped;
     if (hf_io_open(&f, path, NULL, err))
         return -1;
     const struct hf_io_view *v = hf_io_view(f, 0);
     struct planes planes = make_planes(v, &ignored);
     const struct hf_io_result r = {0, {planes.p[0], planes.p[1], planes.p[2], planes.p[3]}};
-    const int status = hf_io_write(f, target, &r, 1, NULL, &clamped, err);
+    const struct hf_io_job job = {.path = target, .results = &r, .result_count = 1};
+    const int status = hf_io_write(f, &job, NULL, err);
     free_planes(&planes);
     hf_io_close(&f);
     return status;
@@ -467,7 +467,8 @@ static bool survive(const char *path, const char *target)
         ok &= !hf_io_read_colour(f, i, planes.p, &err);
         ok &= v->depth_part >= 0 && !hf_io_read_depth(f, i, planes.p[3], &err);
         const struct hf_io_result r = {i, {planes.p[0], NULL, NULL, NULL}};
-        ok &= !hf_io_write(f, target, &r, 1, NULL, NULL, &err);
+        const struct hf_io_job job = {.path = target, .results = &r, .result_count = 1};
+        ok &= !hf_io_write(f, &job, NULL, &err);
         free_planes(&planes);
     }
     hf_io_close(&f);
@@ -579,7 +580,8 @@ static void format_trip(const char *name, float bound, bool alpha)
     if (!CHECK_MSG(!hf_io_open(&f, exr, NULL, &err), "%s", err.message))
         return;
     const struct hf_io_result r = {0, {NULL, planes[1], NULL, NULL}};
-    CHECK_MSG(!hf_io_write(f, path, &r, 1, NULL, NULL, &err), "%s", err.message);
+    const struct hf_io_job job = {.path = path, .results = &r, .result_count = 1};
+    CHECK_MSG(!hf_io_write(f, &job, NULL, &err), "%s", err.message);
     hf_io_close(&f);
     if (!CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))
         return;

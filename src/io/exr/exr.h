@@ -93,7 +93,8 @@ void hf_exr_channels(const struct hf_exr *e, char *buf, size_t size);
 // counted from the corner of the data window.
 typedef void hf_exr_row(void *arg, int c, int x, int y, const uint8_t *samples, int count);
 int hf_exr_rows(struct hf_exr *e, int part, hf_exr_row *row, void *arg, struct hf_io_error *err);
-int hf_exr_read_colour(struct hf_exr *e, const struct hf_io_view *view, float *planes[4], struct hf_io_error *err);
+int hf_exr_read_colour(struct hf_exr *e, const struct hf_io_view *view, float *const planes[4],
+                       struct hf_io_error *err);
 // Depth channel c of a part onto a grid of pixels, given in EXR pixel coordinates.
 int hf_exr_read_depth(struct hf_exr *e, int part, int c, struct hf_io_box grid, float *depth, struct hf_io_error *err);
 
@@ -140,7 +141,8 @@ struct hf_exr_job {
     int n_results;
     int compression;  // -1: as it was
 };
-int hf_exr_write(struct hf_exr *e, const char *path, const struct hf_exr_job *job, uint64_t *clamped,
+// All of the new file goes to out, which the caller has opened and commits.
+int hf_exr_write(struct hf_exr *e, struct hf_out *out, const struct hf_exr_job *job, uint64_t *clamped,
                  struct hf_io_error *err);
 
 // exr_planes.c
@@ -153,6 +155,6 @@ struct hf_exr_new {
     const float *const *planes;
     ptrdiff_t stride;  // floats from row to row
 };
-int hf_exr_write_new(const char *path, const struct hf_exr_new *picture, struct hf_io_error *err);
+int hf_exr_write_new(struct hf_out *out, const struct hf_exr_new *picture, struct hf_io_error *err);
 
 #endif

@@ -6,7 +6,7 @@
 
 struct new_file {
     struct hf_exr messages;  // only for what Core says
-    struct hf_out out;
+    struct hf_out *out;
     uint64_t at;
     struct hf_io_error *err;
     bool failed;  // *err has been filled by writing
@@ -18,7 +18,7 @@ static int64_t write_out(exr_const_context_t core, void *user, const void *data,
     struct new_file *n = (struct new_file *)((char *)user - offsetof(struct new_file, messages));
     (void)core;
     (void)error;
-    if ((n->at != offset && hf_out_seek(&n->out, offset, n->err)) || hf_out_write(&n->out, data, size, n->err)) {
+    if ((n->at != offset && hf_out_seek(n->out, offset, n->err)) || hf_out_write(n->out, data, size, n->err)) {
         n->failed = true;
         return -1;
     }
@@ -106,17 +106,14 @@ static int check_new(const char *path, const struct hf_exr_new *picture, struct 
     return 0;
 }
 
-int hf_exr_write_new(const char *path, const struct hf_exr_new *picture, struct hf_io_error *err)
+int hf_exr_write_new(struct hf_out *out, const struct hf_exr_new *picture, struct hf_io_error *err)
 {
-    struct new_file n = {.messages = {.path = path}, .err = err};
+    const char *path = out->path;
+    struct new_file n = {.messages = {.path = path}, .out = out, .err = err};
     exr_context_initializer_t init;
     exr_context_t core = NULL;
     if (check_new(path, picture, err))
         return -1;
-    if (hf_out_open(&n.out, path, err)) {
-        hf_out_abort(&n.out);
-        return -1;
-    }
     hf_exr_context_init(&n.messages, &init);
     init.write_fn = write_out;
     init.zip_level = 4;
@@ -131,8 +128,5 @@ int hf_exr_write_new(const char *path, const struct hf_exr_new *picture, struct 
     if (rv && !n.failed)
         status = hf_io_fail(err, "%s: cannot write: %s", path,
                             n.messages.core_message[0] ? n.messages.core_message : exr_get_default_error_message(rv));
-    if (!status)
-        status = hf_out_commit(&n.out, err);
-    hf_out_abort(&n.out);
     return status;
 }

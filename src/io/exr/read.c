@@ -129,7 +129,7 @@ static void to_floats(float *to, const uint8_t *samples, int count, exr_pixel_ty
 struct colour_rows {
     const struct hf_exr_part *part;
     int channel[4];
-    float **planes;
+    float *const *planes;
 };
 
 static void colour_row(void *arg, int c, int x, int y, const uint8_t *samples, int count)
@@ -140,7 +140,7 @@ static void colour_row(void *arg, int c, int x, int y, const uint8_t *samples, i
             to_floats(r->planes[k] + (size_t)y * (size_t)r->part->width + x, samples, count, r->part->channels[c].type);
 }
 
-int hf_exr_read_colour(struct hf_exr *e, const struct hf_io_view *view, float *planes[4], struct hf_io_error *err)
+int hf_exr_read_colour(struct hf_exr *e, const struct hf_io_view *view, float *const planes[4], struct hf_io_error *err)
 {
     struct colour_rows r = {.part = &e->parts[view->part], .planes = planes};
     for (int k = 0; k < 4; k++)

@@ -21,7 +21,7 @@ struct writer {
     struct hf_exr *e;
     const struct hf_exr_job *job;
     struct part_plan *plans;
-    struct hf_out out;
+    struct hf_out *out;
     uint64_t at;
     uint64_t *clamped;
     struct hf_io_error *err;
@@ -76,7 +76,7 @@ static int write_header(struct writer *w)
             memcpy(header + part->chunk_count_at, &count, sizeof(count));
     }
     if (!status)
-        status = hf_out_write(&w->out, header, e->header_size, w->err);
+        status = hf_out_write(w->out, header, e->header_size, w->err);
     w->at = e->header_size;
     free(header);
     return status;
@@ -86,7 +86,7 @@ static int write_tables(struct writer *w)
 {
     for (int p = 0; p < w->e->part_count; p++) {
         const size_t size = (size_t)w->plans[p].chunk_count * sizeof(uint64_t);
-        if (hf_out_write(&w->out, w->plans[p].table, size, w->err))
+        if (hf_out_write(w->out, w->plans[p].table, size, w->err))
             return -1;
     }
     return 0;
@@ -141,7 +141,7 @@ static int put_colours(struct writer *w, struct hf_exr_pixels *px, const struct 
 
 static struct hf_exr_target target_of(struct writer *w, int p)
 {
-    return (struct hf_exr_target){&w->out, w->at, w->e->multipart, p, w->plans[p].table};
+    return (struct hf_exr_target){w->out, w->at, w->e->multipart, p, w->plans[p].table};
 }
 
 static int put_chunk(struct hf_exr_target *t, const struct hf_exr_pixels *px, int index, int chunk_lines,
@@ -207,19 +207,19 @@ static int encode_dwa(struct writer *w, int p, const struct hf_exr_pixels *px)
         level = 0;
     if (hf_exr_samples(px, w->e->path, &s, &names, w->err))
         return -1;
-    int status = hf_out_open(&temp, w->out.path, w->err);
+    int status = hf_out_open(&temp, w->out->path, w->err);
     if (!status)
         status = w->e->dwa->write(&temp, &s, hf_exr_compression_name(w->plans[p].compression), level, w->err);
     if (!status)
         status = hf_out_detach(&temp, w->err);
     if (!status) {
         const int fd = open(temp.temp, O_RDONLY | O_CLOEXEC);
-        status = fd < 0 ? hf_io_fail(w->err, "%s: cannot read what was written", w->out.path)
-                        : hf_exr_open(&made, w->out.path, fd, w->e->dwa, w->err);
+        status = fd < 0 ? hf_io_fail(w->err, "%s: cannot read what was written", w->out->path)
+                        : hf_exr_open(&made, w->out->path, fd, w->e->dwa, w->err);
     }
     if (!status &&
         (made->parts[0].chunk_count != w->plans[p].chunk_count || made->parts[0].storage != px->part->storage))
-        status = hf_io_fail(w->err, "%s: OpenImageIO cut the picture into other chunks than it should", w->out.path);
+        status = hf_io_fail(w->err, "%s: OpenImageIO cut the picture into other chunks than it should", w->out->path);
     if (!status)
         status = hf_exr_copy_chunks(made, 0, &t, w->err);
     w->at = t.at;
@@ -252,10 +252,8 @@ static int write_part(struct writer *w, int p)
     return status;
 }
 
-static int write_all(struct writer *w, const char *path)
+static int write_all(struct writer *w)
 {
-    if (hf_out_open(&w->out, path, w->err))
-        return -1;
     if (write_header(w) || write_tables(w))
         return -1;
     for (int p = 0; p < w->e->part_count; p++)
@@ -263,22 +261,19 @@ static int write_all(struct writer *w, const char *path)
     for (int p = 0; p < w->e->part_count; p++)
         if (write_part(w, p))
             return -1;
-    if (hf_out_seek(&w->out, w->e->header_size, w->err) || write_tables(w))
-        return -1;
-    return hf_out_commit(&w->out, w->err);
+    return hf_out_seek(w->out, w->e->header_size, w->err) || write_tables(w) ? -1 : 0;
 }
 
-int hf_exr_write(struct hf_exr *e, const char *path, const struct hf_exr_job *job, uint64_t *clamped,
+int hf_exr_write(struct hf_exr *e, struct hf_out *out, const struct hf_exr_job *job, uint64_t *clamped,
                  struct hf_io_error *err)
 {
-    struct writer w = {.e = e, .job = job, .clamped = clamped, .err = err};
+    struct writer w = {.e = e, .out = out, .job = job, .clamped = clamped, .err = err};
     w.plans = calloc((size_t)w.e->part_count, sizeof(*w.plans));
-    int status = w.plans ? 0 : hf_io_fail(err, "%s: out of memory", path);
+    int status = w.plans ? 0 : hf_io_fail(err, "%s: out of memory", out->path);
     for (int p = 0; p < w.e->part_count && !status; p++)
         status = plan_part(&w, p);
     if (!status)
-        status = write_all(&w, path);
-    hf_out_abort(&w.out);
+        status = write_all(&w);
     for (int p = 0; w.plans && p < w.e->part_count; p++)
         free(w.plans[p].table);
     free(w.plans);

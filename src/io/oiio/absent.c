@@ -33,7 +33,7 @@ void hf_oiio_channels(const struct hf_oiio *oiio, char *buf, size_t size)
     (void)oiio, (void)buf, (void)size;
 }
 
-int hf_oiio_read_colour(struct hf_oiio *oiio, float *planes[4], struct hf_io_error *err)
+int hf_oiio_read_colour(struct hf_oiio *oiio, float *const planes[4], struct hf_io_error *err)
 {
     (void)oiio, (void)planes;
     return absent("", err);

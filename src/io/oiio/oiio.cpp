@@ -240,7 +240,7 @@ void premultiply(float *plane, const float *alpha, size_t n)
         plane[i] *= alpha[i];
 }
 
-int read_colour(const hf_oiio *o, float *planes[4], hf_io_error *err)
+int read_colour(const hf_oiio *o, float *const planes[4], hf_io_error *err)
 {
     const size_t n = (size_t)o->spec.width * (size_t)o->spec.height;
     const bool curve = is_integer(o->spec.format);
@@ -467,7 +467,7 @@ void hf_oiio_channels(const hf_oiio *oiio, char *buf, size_t size)
         hf_io_list(buf, size, nullptr, name.c_str());
 }
 
-int hf_oiio_read_colour(hf_oiio *o, float *planes[4], hf_io_error *err)
+int hf_oiio_read_colour(hf_oiio *o, float *const planes[4], hf_io_error *err)
 {
     return guarded(o->path, err, [&] { return read_colour(o, planes, err); });
 }

@@ -21,7 +21,7 @@ int hf_oiio_open(struct hf_oiio **out, const char *path, const char *depth_chann
                  struct hf_io_error *err);
 void hf_oiio_close(struct hf_oiio *oiio);
 void hf_oiio_channels(const struct hf_oiio *oiio, char *buf, size_t size);
-int hf_oiio_read_colour(struct hf_oiio *oiio, float *planes[4], struct hf_io_error *err);
+int hf_oiio_read_colour(struct hf_oiio *oiio, float *const planes[4], struct hf_io_error *err);
 int hf_oiio_read_depth(struct hf_oiio *oiio, float *depth, struct hf_io_error *err);
 // Depth of a file that may have nothing else: see hf_io_read_depth_file.
 int hf_oiio_read_depth_only(struct hf_oiio *oiio, const char *depth_channel, const struct hf_io_view *view,
