@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/exr/exr.h"
+#include "io/exr/chunks.h"
 #include "io/file.h"
 #include "io/oiio/oiio.h"
 
@@ -101,6 +101,26 @@ int hf_io_view_count(const struct hf_io_file *file)
 const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view)
 {
     return view >= 0 && view < file->views.count ? &file->views.view[view] : NULL;
+}
+
+const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size)
+{
+    const char *text = "";
+    int32_t length = 0;
+    if (!file->exr || exr_attr_get_string(file->exr->core, 0, name, &length, &text) != EXR_ERR_SUCCESS || !text)
+        length = 0;
+    snprintf(buf, size, "%.*s", (int)length, text);
+    return buf;
+}
+
+int hf_io_check_whole(const struct hf_io_file *file, struct hf_io_error *err)
+{
+    if (!file->exr)
+        return hf_io_fail(err, "%s: not an EXR file", file->path);
+    for (int p = 0; p < file->exr->part_count; p++)
+        if (hf_exr_check_chunks(file->exr, p, err))
+            return -1;
+    return 0;
 }
 
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)

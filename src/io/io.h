@@ -41,6 +41,12 @@ const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view);
 // size.
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size);
 
+// A text in the header of an EXR file's first part, cut off at size; "" when there is none. Returns buf.
+const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size);
+// Are all chunks of an EXR file there, as long as they say and none after the file's end? Looks at no pixels. 0, or -1
+// with *err filled, also for files that are no EXR.
+int hf_io_check_whole(const struct hf_io_file *file, struct hf_io_error *err);
+
 // What to read of a view: tightly packed planes of width * height floats, the caller's; NULL what is not wanted.
 struct hf_io_want {
     int view;
@@ -75,7 +81,9 @@ struct hf_io_job {
     int result_count;
     const char *compression;  // "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", or NULL:
                               // as it was
-    bool unsynced;            // do not wait until the disk has it: after a power failure the new file may be empty
+    const struct hf_io_text *texts;  // for the header of an EXR made from an EXR, in place of those of the same names
+    int text_count;
+    bool unsynced;                // do not wait until the disk has it: after a power failure the new file may be empty
     const struct hf_io_run *run;  // NULL: on this thread
 };
 

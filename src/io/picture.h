@@ -58,6 +58,11 @@ struct hf_io_result {
     const float *planes[4];
 };
 
+// A text in a file's header: an EXR attribute of type string, with a name of at most 31 characters.
+struct hf_io_text {
+    const char *name, *value;
+};
+
 // Append a view, all zero. NULL when there is no memory.
 struct hf_io_view *hf_io_add_view(struct hf_io_views *views);
 

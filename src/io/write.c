@@ -121,7 +121,8 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
         return hf_io_fail(err, "%s: out of memory", job->path);
     }
     const int compression = job->compression ? hf_exr_compression(job->compression) : -1;
-    const struct hf_exr_job exr = {&file->views, job->results, job->result_count, compression};
+    const struct hf_exr_job exr = {&file->views, job->results, job->result_count,
+                                   compression,  job->texts,   job->text_count};
     int status = hf_out_open(&o->out, o->path, err);
     if (!status)
         status = file->exr && hf_io_is_exr_name(job->path)

@@ -86,6 +86,22 @@ static int read_leader(const struct hf_exr *e, int p, uint64_t offset, struct le
     return 0;
 }
 
+int hf_exr_check_chunks(const struct hf_exr *e, int p, struct hf_io_error *err)
+{
+    struct hf_exr_slot *slots = hf_exr_file_order(e, p, err);
+    struct leader l;
+    int status = slots ? 0 : -1;
+    for (int i = 0; i < e->parts[p].chunk_count && !status; i++) {
+        const uint64_t at = slots[i].offset, head = e->multipart ? 4 : 0;
+        if (at < e->header_size || at > e->size || read_leader(e, p, at, &l) || l.size + head > e->size - at ||
+            l.data_size > e->size - at - l.size - head)
+            status = hf_io_fail(err, "%s: truncated or corrupt: chunk %d of part %d is not whole", e->path,
+                                slots[i].index, p);
+    }
+    free(slots);
+    return status;
+}
+
 static int copy_bytes(const struct hf_exr *e, uint64_t from, uint64_t size, struct hf_out *out, uint8_t *buf,
                       struct hf_io_error *err)
 {

@@ -21,6 +21,8 @@ struct hf_exr_target {
 
 // The chunk table of a part sorted by offset; to be freed. NULL with *err filled.
 struct hf_exr_slot *hf_exr_file_order(const struct hf_exr *e, int part, struct hf_io_error *err);
+// 0 if all chunks of a part lie within the file, as long as their leaders say.
+int hf_exr_check_chunks(const struct hf_exr *e, int part, struct hf_io_error *err);
 // Copy all chunks of a part, in the order in which they stand in the file.
 int hf_exr_copy_chunks(const struct hf_exr *e, int part, struct hf_exr_target *t, struct hf_io_error *err);
 // Write a chunk's leader: the part number if the file wants one, and what is given.

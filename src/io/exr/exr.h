@@ -140,10 +140,16 @@ struct hf_exr_job {
     const struct hf_io_result *results;
     int n_results;
     int compression;  // -1: as it was
+    const struct hf_io_text *texts;
+    int text_count;
 };
 // All of the new file goes to out, which the caller has opened and commits.
 int hf_exr_write(struct hf_exr *e, struct hf_out *out, const struct hf_exr_job *job, uint64_t *clamped,
                  struct hf_io_error *err);
+
+// stamp.c: a copy of a file's first bytes, up to the chunk tables, with texts put into the first part's header in place of
+// those that have the same names. To be freed; NULL without memory.
+uint8_t *hf_exr_stamp(const uint8_t *header, size_t *size, const struct hf_io_text *texts, int count);
 
 // exr_planes.c
 struct hf_exr_new {

@@ -22,7 +22,7 @@ struct writer {
     const struct hf_exr_job *job;
     struct part_plan *plans;
     struct hf_out *out;
-    uint64_t at;
+    uint64_t at, header_size;
     uint64_t *clamped;
     struct hf_io_error *err;
 };
@@ -61,6 +61,7 @@ static int plan_part(struct writer *w, int p)
 static int write_header(struct writer *w)
 {
     const struct hf_exr *e = w->e;
+    size_t size = e->header_size;
     uint8_t *header = malloc(e->header_size);
     if (!header)
         return hf_io_fail(w->err, "%s: out of memory", e->path);
@@ -75,9 +76,15 @@ static int write_header(struct writer *w)
         if (count != part->chunk_count && part->chunk_count_at)
             memcpy(header + part->chunk_count_at, &count, sizeof(count));
     }
+    if (!status && w->job->text_count) {
+        uint8_t *stamped = hf_exr_stamp(header, &size, w->job->texts, w->job->text_count);
+        status = stamped ? 0 : hf_io_fail(w->err, "%s: out of memory", e->path);
+        free(header);
+        header = stamped;
+    }
     if (!status)
-        status = hf_out_write(w->out, header, e->header_size, w->err);
-    w->at = e->header_size;
+        status = hf_out_write(w->out, header, size, w->err);
+    w->at = w->header_size = size;
     free(header);
     return status;
 }
@@ -261,7 +268,7 @@ static int write_all(struct writer *w)
     for (int p = 0; p < w->e->part_count; p++)
         if (write_part(w, p))
             return -1;
-    return hf_out_seek(w->out, w->e->header_size, w->err) || write_tables(w) ? -1 : 0;
+    return hf_out_seek(w->out, w->header_size, w->err) || write_tables(w) ? -1 : 0;
 }
 
 int hf_exr_write(struct hf_exr *e, struct hf_out *out, const struct hf_exr_job *job, uint64_t *clamped,
