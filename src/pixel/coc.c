@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CoC generation: normalised near and far circle of confusion of every pixel, from depth.
 #include <math.h>
+#include <string.h>
 
 #include "pixel/pass_c.h"
 
@@ -64,10 +65,12 @@ void hf_coc_row_c(const struct hf_frame *f, int x, int y, int n, float *const ou
 
 int hf_sharp_row_c(const struct hf_frame *f, int x, int y, int n)
 {
-    const float *depth = (const float *)((const char *)f->depth->data + (ptrdiff_t)y * f->depth->stride);
+    // Strides are the caller's: rows need not be aligned.
+    const char *depth = (const char *)f->depth->data + (ptrdiff_t)y * f->depth->stride;
     for (int i = 2 * x; i < hf_min(2 * (x + n), f->s->width); i++) {
-        float near, far;
-        if (f->s->form != HF_FORM_Z || !(depth[i] > 0 && depth[i] < 1e10f))
+        float d, near, far;
+        memcpy(&d, depth + (size_t)i * sizeof d, sizeof d);
+        if (f->s->form != HF_FORM_Z || !(d > 0 && d < 1e10f))
             return 0;
         hf_coc_pixel(f, i, y, &near, &far, NULL);
         if (near > 0 || far > 0)

@@ -46,15 +46,17 @@ HF_INLINE void source_shares(const struct hf_source_row *row, int i, const float
 static void list_row_simd(struct hf_splats *list, const struct hf_source_row *row, int from, int to,
                           const float *inverse, const double scale[4])
 {
+    // Past the row there is whatever memory holds, which is no picture's number.
+    const int whole = from + (to - from) / 4 * 4;
     int n = list->count;
-    for (int i = from; i < to; i += 4) {
+    for (int i = from; i < whole; i += 4) {
         const int32_t *p = row->picture + i;
         vl share[4];
         if ((p[0] & p[1] & p[2] & p[3]) < 0)
             continue;
         source_shares(row, i, inverse, scale, share);
         for (int k = 0; k < 4; k++) {
-            if (p[k] < 0 || i + k >= to)
+            if (p[k] < 0)
                 continue;
             list->x[n] = row->x + i + k;
             list->y[n] = row->y;
@@ -63,4 +65,5 @@ static void list_row_simd(struct hf_splats *list, const struct hf_source_row *ro
         }
     }
     list->count = n;
+    hf_list_row_c(list, row, whole, to, inverse, scale);
 }

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What fresh memory holds: no engine's result may hang on it, at any width, resolution and instruction set.
+//
+//     fresh [seed]
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "support/check.h"
+#include "support/random_scene.h"
+
+enum { HEIGHT = 20, WIDEST = 70, SEEDS = 3 };
+
+static unsigned seed = 1;
+
+// ---- memory that was used before
+
+// Words of an old heap: any bits; plausible radii and colours; small integers; numbers near the largest.
+static uint32_t old_word(struct rng *rng)
+{
+    const float value[2] = {rng_range(rng, -40, 40), rng_range(rng, -3e38f, 3e38f)};
+    uint32_t bits = rng_u32(rng);
+    switch (rng_below(rng, 4)) {
+    case 0:
+        memcpy(&bits, &value[0], 4);
+        return bits;
+    case 1:
+        memcpy(&bits, &value[1], 4);
+        return bits;
+    case 2:
+        return bits % 5000;
+    default:
+        return bits;
+    }
+}
+
+// Blocks end where pages that nobody may touch begin: what is read as an index and lies far off does not go unseen.
+enum { OLD_WORDS = 1 << 16, HEAD = 64, GUARD = 1 << 20 };
+
+struct heap {
+    uint32_t word[OLD_WORDS];
+};
+
+static struct heap *heap_new(unsigned heap_seed)
+{
+    struct heap *heap = malloc(sizeof *heap);
+    struct rng rng = rng_seed(heap_seed);
+    for (int i = 0; heap && i < OLD_WORDS; i++)
+        heap->word[i] = old_word(&rng);
+    return heap;
+}
+
+static void *alloc_old(void *cookie, size_t size, size_t align)
+{
+    const struct heap *heap = cookie;
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), block = (size + align - 1) / align * align;
+    const size_t whole = (block + HEAD + page - 1) / page * page;
+    char *memory = mmap(NULL, whole + GUARD, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED || align > HEAD || mprotect(memory + whole, GUARD, PROT_NONE))
+        return NULL;
+    char *p = memory + whole - block;
+    const size_t head[2] = {(size_t)(p - memory), whole + GUARD};
+    memcpy(p - HEAD, head, sizeof head);
+    for (size_t i = 0; i < size; i += sizeof heap->word)
+        memcpy(p + i, heap->word, size - i < sizeof heap->word ? size - i : sizeof heap->word);
+    return p;
+}
+
+static void free_old(void *cookie, void *p)
+{
+    (void)cookie;
+    size_t head[2];
+    memcpy(head, (char *)p - HEAD, sizeof head);
+    munmap((char *)p - head[0], head[1]);
+}
+
+// ---- scenes: every kind of pixel beside every other, up to the edge
+
+static struct scene patches(struct rng *rng, int width, float radius)
+{
+    struct scene s = {picture_new(width, HEIGHT, 4), picture_new(width, HEIGHT, 1)};
+    static const float parts[] = {1, -1, 0, 0.5f, -0.03f};
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < width; x++) {
+            const int i = y * width + x;
+            s.depth.plane[0][i] = x && rng_below(rng, 4) ? s.depth.plane[0][i - 1] : radius * parts[rng_below(rng, 5)];
+            for (int c = 0; c < 3; c++)
+                s.colour.plane[c][i] = rng_float(rng);
+            s.colour.plane[3][i] = 1;
+        }
+    return s;
+}
+
+static struct heap *heaps[SEEDS];
+
+static struct picture render_fresh(const struct scene *s, const struct hf_params *p, enum hf_isa isa, struct heap *heap)
+{
+    // One cell: the widths decide what lies past the end of a row.
+    const struct hf_config config = {
+        .isa = isa, .threads = 1, .alloc = alloc_old, .free = free_old, .alloc_cookie = heap};
+    struct picture out = picture_new(s->colour.width, s->colour.height, 4);
+    const struct hf_image src = picture_image(&s->colour), dst = picture_image(&out);
+    struct hf_depth depth = picture_depth(&s->depth);
+    struct hf_context *c;
+    depth.type = HF_DEPTH_COC;
+    CHECK_INT(hf_open(&c, &config), HF_OK);
+    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
+    hf_close(&c);
+    return out;
+}
+
+// Renders that differ from that of the first heap.
+static int others(const struct scene *s, const struct hf_params *p, enum hf_isa isa)
+{
+    struct picture want = render_fresh(s, p, isa, heaps[0]);
+    int n = 0;
+    for (int i = 1; i < SEEDS; i++) {
+        struct picture got = render_fresh(s, p, isa, heaps[i]);
+        n += !picture_same_bits(&want, &got);
+        picture_free(&got);
+    }
+    picture_free(&want);
+    return n;
+}
+
+static void widths(enum hf_engine engine, const char *name, enum hf_isa isa)
+{
+    // The last is less than any normal number.
+    static const float radii[] = {1, 8, 30, 1e-42f};
+    for (int i = 0; i < 4; i++)
+        for (int half = 0; half < 2; half++)
+            for (int width = 1; width <= WIDEST; width++) {
+                struct rng rng = rng_seed(seed + 100 * (unsigned)width);
+                struct scene s = patches(&rng, width, radii[i]);
+                struct hf_params p = scene_params();
+                p.engine = engine;
+                p.max_radius = radii[i] < 1 ? HF_DERIVE : radii[i];
+                p.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+                const int n = others(&s, &p, isa);
+                CHECK_MSG(!n, "%s, %s, %d wide, radius %g, %s resolution: %d of %d heaps give other bits", name,
+                          hf_isa_name(isa), width, (double)radii[i], half ? "half" : "full", n, SEEDS - 1);
+                scene_free(&s);
+            }
+}
+
+int main(int argc, char **argv)
+{
+    static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_SSE41, HF_ISA_AVX2, HF_ISA_AVX512, HF_ISA_NEON};
+    static const struct {
+        enum hf_engine engine;
+        const char *name;
+    } engines[] = {{HF_ENGINE_GATHER, "gather"},
+                   {HF_ENGINE_HEXAGON, "hexagon"},
+                   {HF_ENGINE_SCATTER, "scatter"},
+                   {HF_ENGINE_GAUSSIAN, "gaussian"}};
+    seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 0) : 1;
+    printf("seed %u\n", seed);
+    for (unsigned i = 0; i < SEEDS; i++)
+        heaps[i] = heap_new(seed + i);
+    for (size_t i = 0; i < sizeof isas / sizeof *isas && heaps[SEEDS - 1]; i++)
+        for (size_t k = 0; k < sizeof engines / sizeof *engines && hf_isa_available(isas[i]); k++)
+            widths(engines[k].engine, engines[k].name, isas[i]);
+    for (int i = 0; i < SEEDS; i++)
+        free(heaps[i]);
+    return check_report();
+}
