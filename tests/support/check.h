@@ -11,7 +11,8 @@
 
 enum { CHECK_SKIP = 77, CHECK_PRINTED = 40 };
 
-static atomic_int check_passed, check_failed;
+// One pair for all files of a program, whichever of them checks.
+__attribute__((weak)) atomic_int check_passed, check_failed;
 
 // One check from any thread. The message is printed for the first CHECK_PRINTED failures only.
 __attribute__((format(printf, 4, 5))) static inline int check_that(int ok, const char *file, int line,

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rendering for the tests, and what is asked of the pictures that come out. A call that fails is a failed check.
+#ifndef HF_TESTS_RENDER_H
+#define HF_TESTS_RENDER_H
+
+#include "support/random_scene.h"
+
+// A context whose memory comes filled with NaN. Tile sizes 0: the library's choice.
+struct hf_context *context_new(enum hf_isa isa, int threads, int tile_width, int tile_height);
+
+struct picture render(struct hf_context *c, const struct picture *colour, const struct hf_depth *depth,
+                      const struct hf_params *p);
+struct picture render_scene(struct hf_context *c, const struct scene *s, const struct hf_params *p);
+// Every pixel's radius is that of the plane, in pixels.
+struct hf_depth picture_radii(const struct picture *radii);
+
+size_t samples_of(const struct picture *p);  // of a plane
+int all_finite(const struct picture *p);
+double largest_sample(const struct picture *p);                               // of the finite ones, its magnitude
+double largest_difference(const struct picture *a, const struct picture *b);  // NaN if either holds one
+struct picture picture_transposed(const struct picture *p);
+void picture_fill(struct picture *p, int channel, float value);
+
+#endif
