@@ -105,8 +105,6 @@ int hf_open(struct hf_context **out, const struct hf_config *config)
     c->mem = mem;
     c->isa = isa;
     c->threads = g->threads ? g->threads : hf_min(hf_cpu_count(), MAX_THREADS);
-    hf_kernels_init(&c->fused, isa, 1);
-    hf_kernels_init(&c->exact, isa, 0);
     const size_t bytes = (size_t)c->threads * sizeof *c->workers;
     c->workers = mem.alloc(mem.cookie, bytes, HF_ALIGN);
     if (!c->workers) {
@@ -114,6 +112,8 @@ int hf_open(struct hf_context **out, const struct hf_config *config)
         goto error;
     }
     memset(c->workers, 0, bytes);
+    if ((err = hf_engines_open(c)))
+        goto error;
     if (!g->parallel_for && (err = hf_pool_open(&c->pool, c->threads, &c->mem)))
         goto error;
     *out = c;
@@ -135,12 +135,10 @@ void hf_close(struct hf_context **context)
         hf_block_free(&c->workers[i].scratch, &c->mem);
     if (c->workers)
         c->mem.free(c->mem.cookie, c->workers);
-    hf_taps_free(&c->taps, &c->mem);
-    hf_block_free(&c->aperture.block, &c->mem);
+    hf_engines_close(c);
     hf_block_free(&c->planes, &c->mem);
     hf_block_free(&c->chunks, &c->mem);
     hf_block_free(&c->tiles, &c->mem);
-    hf_block_free(&c->tables, &c->mem);
     hf_block_free(&c->joined, &c->mem);
     hf_block_free(&c->repairs, &c->mem);
     const struct hf_mem mem = c->mem;
@@ -187,11 +185,11 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     struct hf_setup s;
     struct hf_params ladder[HF_BUDGET_STEPS];
     int steps = 1;
-    hf_setup_make(&s, src, dst, depth, p, &c->taps);
+    hf_setup_make(&s, src, dst, depth, p, c->engine[p->engine].own);
     if (p->budget_ms > 0 && !c->dump) {
         steps = hf_budget_ladder(p, s.max_radius, ladder);
         p = &ladder[hf_budget_choose(&c->budget, ladder, steps)];
-        hf_setup_make(&s, src, dst, depth, p, &c->taps);
+        hf_setup_make(&s, src, dst, depth, p, c->engine[p->engine].own);
     } else {
         c->budget.step = 0;
     }
@@ -199,7 +197,7 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
         s.no_skip = 1;
     const struct hf_engine_def *engine = hf_engine_def(p->engine);
     if (engine->prepare && s.blend != 0)
-        err = engine->prepare(c, &s, p);
+        err = engine->prepare(c->engine[p->engine].own, &s, p, &c->mem);
     if (!err)
         err = hf_render_frame(c, &s, dst, src, depth, !p->deterministic, plan_only);
     if (err)

@@ -147,7 +147,7 @@ static int check_options(const struct hf_params *p, char message[HF_MESSAGE])
 }
 
 // Autofocus: what the pixel in the middle shows, at infinity if that is nothing.
-static float focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height)
+float hf_focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height)
 {
     if (p->engine != HF_ENGINE_GAUSSIAN || p->focus_distance != HF_DERIVE || depth->type == HF_DEPTH_COC)
         return p->focus_distance;
@@ -159,7 +159,7 @@ static float focus_of(const struct hf_params *p, const struct hf_depth *depth, i
 }
 
 // Does the gaussian engine blend by the distance in depth, as its source does?
-static int blends_by_depth(const struct hf_params *p, enum hf_depth_type type)
+int hf_blends_by_depth(const struct hf_params *p, enum hf_depth_type type)
 {
     const float given[] = {p->range, p->near_begin, p->near_end, p->far_begin, p->far_end};
     int derived = p->model == HF_MODEL_RANGE;
@@ -169,7 +169,7 @@ static int blends_by_depth(const struct hf_params *p, enum hf_depth_type type)
 }
 
 // The planes that bound its depths: those of the depth, else 1 and 100.
-static void depth_planes(const struct hf_depth *depth, float *near, float *far)
+void hf_depth_planes(const struct hf_depth *depth, float *near, float *far)
 {
     *near = depth->near_plane > 0 ? depth->near_plane : 1;
     *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
@@ -247,13 +247,13 @@ int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const
         if (!autofocus && !(p->focus_distance > 0 && hf_is_finite(p->focus_distance)))
             return bad(message, "focus_distance is %g; it must be > 0 and finite", p->focus_distance);
         struct hf_params focused = *p;
-        focused.focus_distance = focus_of(p, depth, src->width, src->height);
+        focused.focus_distance = hf_focus_of(p, depth, src->width, src->height);
         const int err = p->model == HF_MODEL_LENS ? check_lens(p, message) : check_range_model(&focused, message);
         if (err)
             return err;
         float near, far;
-        depth_planes(depth, &near, &far);
-        if (blends_by_depth(p, depth->type) && !(near < far))
+        hf_depth_planes(depth, &near, &far);
+        if (hf_blends_by_depth(p, depth->type) && !(near < far))
             return bad(message, "depth.near_plane is %g and far_plane %g; near must be less than far", near, far);
     }
     const int err = check_options(p, message);
@@ -268,9 +268,9 @@ static float slope(float distance)
     return i < FLT_MAX ? i : FLT_MAX;
 }
 
-static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
+static void set_coc_model(struct hf_setup *s, const struct hf_params *p, int by_depth)
 {
-    if (s->by_depth) {
+    if (by_depth) {
         s->near_i = s->far_i = 1;  // there is blur
         return;
     }
@@ -311,16 +311,8 @@ static float radius_limit(const struct hf_setup *s, const struct hf_params *p)
     return p->faithful ? 12 : fminf(12 * display_height / 1080, MAX_RADIUS);
 }
 
-static void set_depth_blend(struct hf_setup *s, const struct hf_depth *depth, float focus)
-{
-    depth_planes(depth, &s->plane_near, &s->plane_far);
-    if (!s->faithful)
-        s->plane_near = 0;  // nothing but the far plane counts
-    s->focus_d = hf_gaussian_depth(s, focus);
-}
-
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                   const struct hf_depth *depth, const struct hf_params *p, struct hf_taps *taps)
+                   const struct hf_depth *depth, const struct hf_params *p, void *own)
 {
     *s = (struct hf_setup){.width = src->width,
                            .height = src->height,
@@ -332,38 +324,24 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
                            .colour_stats = p->colour_stats,
                            .faithful = p->faithful,
                            .no_skip = p->no_skip,
-                           .karis = p->karis,
-                           .per_pixel_kernel = p->per_pixel_kernel,
-                           .bicubic = p->bicubic,
-                           .fill = p->fill,
                            .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP,
-                           .taps = taps,
-                           .rings = p->rings,
                            .pixel_aspect = p->pixel_aspect,
                            .resolution = p->resolution,
-                           .rotation = p->blade_rotation,
-                           .uniform = p->uniform,
-                           .iterations = p->iterations,
-                           .sigma = p->sigma,
-                           .params = p};
+                           .own = own};
     hf_setup_depth(s, depth, p->pixel_aspect);
     s->max_radius = radius_limit(s, p);
     struct hf_params focused = *p;
-    focused.focus_distance = focus_of(p, depth, s->width, s->height);
-    s->by_depth = blends_by_depth(p, depth->type);
-    set_coc_model(s, &focused);
-    if (s->by_depth)
-        set_depth_blend(s, depth, focused.focus_distance);
-    const int range_model = s->form != HF_FORM_COC && (p->model == HF_MODEL_RANGE || s->by_depth);
+    focused.focus_distance = hf_focus_of(p, depth, s->width, s->height);
+    const int by_depth = hf_blends_by_depth(p, depth->type);
+    set_coc_model(s, &focused, by_depth);
+    const int range_model = s->form != HF_FORM_COC && (p->model == HF_MODEL_RANGE || by_depth);
     s->strength = range_model ? p->strength : 1;
     s->blend = s->strength >= 0.25f ? 1 : 4 * s->strength;
     if (p->engine != HF_ENGINE_GATHER && s->blend > 0)
         s->blend = 1;  // their strength is in the radius, or in the gaussian's blend factor
-    const int no_coc = s->near_i == 0 && s->far_i == 0 && !(s->uniform && p->engine == HF_ENGINE_HEXAGON);
-    if (s->sigma > 0)
-        s->iterations = 0;
-    const int no_blur =
-        p->engine == HF_ENGINE_GAUSSIAN && s->resolution == HF_RESOLUTION_FULL && s->iterations == 0 && s->sigma == 0;
-    if (s->max_radius == 0 || no_coc || no_blur)
+    const struct hf_engine_def *engine = hf_engine_def(p->engine);
+    if (engine->resolve)
+        engine->resolve(own, s, depth, p);
+    if (s->max_radius == 0 || (s->near_i == 0 && s->far_i == 0 && !s->uniform))
         s->blend = 0;
 }

@@ -11,9 +11,9 @@ enum { HF_MESSAGE = 256 };
 int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
                    const struct hf_params *params, char message[HF_MESSAGE]);
 
-// Fill *s from checked arguments. The engine's own tables, taps among them, are made by its prepare.
+// Fill *s from checked arguments, and the engine's own numbers, whose memory that is; its tables are its prepare's.
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                   const struct hf_depth *depth, const struct hf_params *params, struct hf_taps *taps);
+                   const struct hf_depth *depth, const struct hf_params *params, void *own);
 
 // View depth (INFINITY: no surface) or for HF_FORM_COC the radius of depth sample d at pixel (x, y). NaN gives NaN.
 float hf_depth_decode(const struct hf_setup *s, float d, int x, int y);
@@ -23,12 +23,11 @@ float hf_depth_surface(const struct hf_setup *s, const struct hf_depth *depth, i
 void hf_setup_depth(struct hf_setup *s, const struct hf_depth *depth, float pixel_aspect);
 int hf_check_depth(const struct hf_depth *depth, int width, char message[HF_MESSAGE]);
 
-// What the gaussian engine compares: z over the far plane, or as its source has it.
-static inline float hf_gaussian_depth(const struct hf_setup *s, float z)
-{
-    z = z > s->plane_near ? z : s->plane_near;
-    z = z < s->plane_far ? z : s->plane_far;
-    return s->faithful ? (2 * z) / (z + s->plane_far) : z / s->plane_far;
-}
+// Autofocus: what the pixel in the middle shows, at infinity if that is nothing.
+float hf_focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height);
+// Does the gaussian engine blend by the distance in depth, as its source does?
+int hf_blends_by_depth(const struct hf_params *p, enum hf_depth_type type);
+// The planes that bound its depths: those of the depth, else 1 and 100.
+void hf_depth_planes(const struct hf_depth *depth, float *near, float *far);
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/budget.h"
 
-#include "gather/taps.h"
+#include "frame/engine.h"
 
 // Frames beyond the budget before a cheaper setting; frames with room before the better one again, twice as many each
 // time that it turned out too slow.
@@ -16,18 +16,16 @@ static int add(struct hf_params *ladder, int n, const struct hf_params *p)
     return n;
 }
 
-// Two thirds, then one third of the rings.
-static int add_rings(struct hf_params *ladder, int n, struct hf_params p, float radius)
+// The engine's own cheaper settings.
+static int add_cheaper(struct hf_params *ladder, int n, float radius)
 {
-    const int all = p.rings ? p.rings : hf_taps_rings(radius / 2);
-    int last = all;
-    for (int thirds = 2; thirds > 0 && p.fill != HF_FILL_NONE; thirds--) {
-        p.rings = (all * thirds + 2) / 3;
-        if (p.rings < last)
-            n = add(ladder, n, &p);
-        last = p.rings;
+    const struct hf_params best = ladder[n - 1];
+    for (int step = 1;; step++) {
+        struct hf_params p = best;
+        if (!hf_engine_def(p.engine)->cheaper || !hf_engine_def(p.engine)->cheaper(&p, radius, step))
+            return n;
+        n = add(ladder, n, &p);
     }
-    return n;
 }
 
 int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS])
@@ -39,26 +37,14 @@ int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_para
         p.storage = HF_STORAGE_FLOAT;
         n = add(ladder, n, &p);
     }
-    if (p.engine != HF_ENGINE_GATHER && p.resolution == HF_RESOLUTION_FULL) {
-        p.resolution = HF_RESOLUTION_HALF;
-        n = add(ladder, n, &p);
-    }
-    if (p.engine == HF_ENGINE_GAUSSIAN && p.resolution == HF_RESOLUTION_HALF) {
-        p.resolution = HF_RESOLUTION_QUARTER;
-        n = add(ladder, n, &p);
-    }
-    if (p.engine == HF_ENGINE_GAUSSIAN)
+    n = add_cheaper(ladder, n, radius);
+    if (!hf_engine_def(p.engine)->gives_up)
         return n;
-    if (p.engine != HF_ENGINE_GATHER) {
-        p.engine = HF_ENGINE_GATHER;
-        p.resolution = HF_RESOLUTION_FULL;
-        if (p.blades && (p.blades < 5 || p.blades > 9))
-            p.blades = 0;
-        if (radius > 256)
-            p.max_radius = 256;
-        n = add(ladder, n, &p);
-    }
-    return add_rings(ladder, n, p, radius);
+    p = ladder[n - 1];
+    p.engine = hf_default_params.engine;
+    hf_engine_def(p.engine)->adopt(&p, radius);
+    n = add(ladder, n, &p);
+    return add_cheaper(ladder, n, radius);
 }
 
 // What the ladder hangs on.

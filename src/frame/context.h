@@ -3,13 +3,13 @@
 #ifndef HF_CONTEXT_H
 #define HF_CONTEXT_H
 
-#include "pixel/aperture.h"
 #include "frame/budget.h"
 #include "frame/cost.h"
 #include "frame/engine.h"
 #include "frame/plan.h"
 #include "base/pool.h"
 #include "params.h"
+#include "pixel/kernels.h"
 #include "frame/wave.h"
 
 struct hf_worker {
@@ -22,18 +22,23 @@ struct hf_worker {
     struct hf_block scratch;
 };
 
+// What an engine keeps between frames.
+struct hf_engine_state {
+    void *own;
+    void *kernels[2];  // exact, fused
+};
+
 struct hf_context {
     struct hf_config config;  // the caller's, pointers checked
     struct hf_mem mem;
     enum hf_isa isa;
     int threads;
-    struct hf_kernels fused, exact;
-    struct hf_pool *pool;  // NULL: the host's parallel_for
+    struct hf_pixel_kernels kernels[2];  // exact, fused
+    struct hf_engine_state engine[HF_ENGINE_COUNT];
+    struct hf_block engines;  // owns their memory
+    struct hf_pool *pool;     // NULL: the host's parallel_for
     struct hf_worker *workers;
 
-    struct hf_taps taps;
-    struct hf_aperture aperture;
-    struct hf_block tables;         // of the other engines' prepare
     struct hf_plan plan;            // of the last frame: the next one guesses from it
     struct hf_block planes;         // buffers of the whole frame
     struct hf_block chunks, tiles;  // the plan's; tiles: and the wave's
@@ -50,6 +55,11 @@ struct hf_context {
     void *dump_cookie;
 };
 
+// Make and give back what engines keep. HF_ERR_MEMORY.
+int hf_engines_open(struct hf_context *c);
+void hf_engines_close(struct hf_context *c);
+// Bytes of all that.
+size_t hf_engines_bytes(const struct hf_context *c);
 // Run a frame whose arguments have been checked, or only plan it (render.c).
 int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src,
                     const struct hf_depth *depth, int fused, int plan_only);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/copy.h"
 
+#include "pixel/pass_c.h"
 #include "pixel/repair.h"
 
 struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src)

@@ -12,18 +12,19 @@ static uint64_t mix(uint64_t hash, uint64_t v)
 // Options that change what a unit of work costs. Reaches count in steps of about an eighth: near ones cost alike.
 static uint64_t key_of(const struct hf_setup *s, enum hf_isa isa)
 {
-    const int numbers[] = {s->engine,  s->channels,   s->storage,   s->faithful, s->karis, s->per_pixel_kernel,
-                           s->bicubic, s->smoothstep, s->fill,      s->form,     s->lens,  s->resolution,
-                           s->uniform, s->iterations, s->sigma > 0, isa};
+    const int common[] = {(int)s->engine, s->channels,  (int)s->storage, s->faithful,
+                          s->smoothstep,  (int)s->form, s->lens,         (int)isa};
+    int own[HF_COST_NUMBERS], reach = 0;
+    const int count = hf_engine_def(s->engine)->cost(s, own, &reach);
     uint64_t hash = 1;
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        hash = mix(hash, (uint64_t)numbers[i]);
-    uint32_t reach = s->engine == HF_ENGINE_GATHER ? (uint32_t)s->taps->first[s->taps->rows]
-                                                   : (uint32_t)hf_max(s->reach_x, s->reach_y);
+    for (size_t i = 0; i < sizeof common / sizeof *common; i++)
+        hash = mix(hash, (uint64_t)common[i]);
+    for (int i = 0; i < count; i++)
+        hash = mix(hash, (uint64_t)own[i]);
     int scale = 0;
     for (; reach >= 16; reach /= 2)
         scale++;
-    return mix(mix(hash, reach), (uint64_t)scale) | 1;
+    return mix(mix(hash, (uint64_t)reach), (uint64_t)scale) | 1;
 }
 
 static int fields_of(unsigned fields)

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/engine.h"
 
+#include "gather/gather.h"
+#include "gaussian/kernels.h"
+#include "hexagon/kernels.h"
+#include "scatter/kernels.h"
+
 const struct hf_engine_def *hf_engine_def(enum hf_engine engine)
 {
     static const struct hf_engine_def *const engines[HF_ENGINE_COUNT] = {

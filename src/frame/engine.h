@@ -1,12 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An engine is a list of passes and of the buffers between them. Everything else, which passes run where, how large the
-// buffers are, who works on what, follows from these tables (plan.c, render.c).
+// buffers are, who works on what, follows from these tables (plan.c, schedule.c).
+//
+// To add one: a folder src/NAME with
+//     NAME.h      its passes, buffers and halos, numbered; struct hf_NAME, what it makes of its parameters and finds in
+//                 the depth; struct hf_NAME_kernels, whose first member is struct hf_passes
+//     engine.c    the tables below, and HF_CHOOSE_KERNELS(hf_NAME_kernels) (simd/choose.h)
+//     *.c         its passes in C, the specification, and *_simd.h on vectors; simd.c enters these in the table
+//     meson.build lists the files
+// then a line in src/frame/engine.c, the folder in src/meson.build, and its number in enum hf_engine. A pass gets a struct
+// hf_frame and a rectangle: its buffers, the images, the depth, f->k for rows of pixels (pixel/kernels.h), f->kernels for
+// the engine's own table and f->s->own for its own numbers. It writes what its row of the table says, and nothing else.
 #ifndef HF_ENGINE_H
 #define HF_ENGINE_H
 
-#include "frame/pass.h"
+#include "base/mem.h"
+#include "frame/frame.h"
+#include "simd/choose.h"
 
-struct hf_plan;
+// The two fields: what a scene asks of a tile, was found in a chunk, or a pass or buffer serves.
+enum { HF_NEAR = 1, HF_FAR = 2, HF_FIELDS = HF_NEAR | HF_FAR };
+
+// An engine's table of kernels begins with its passes, in their order.
+struct hf_passes {
+    hf_kernel *pass[HF_MAX_PASSES];
+};
+
+struct hf_pass {
+    const char *name;
+    unsigned reads;   // buffers read at the pixel itself
+    unsigned around;  // buffers read in its halo
+    unsigned writes;
+    unsigned inside;   // scratch of the pass itself, as large as what it writes ...
+    unsigned weighed;  // ... and larger by the halo
+    int halo;          // the engine's number; 0: none
+    int sweep;         // 1: over the input; 2 and more: per cell, from buffers to the output
+    unsigned field;    // runs where this field is needed; 0: where any is
+    // Guess of its cost until it has been measured: nanoseconds per half-resolution pixel and field, at radius 12, with
+    // AVX-512 at 3.7 GHz.
+    float ns;
+};
+
+struct hf_reach {
+    int x, y;  // half-resolution pixels
+};
 
 struct hf_buf_def {
     const char *name;  // in dumps; NULL: not shown
@@ -17,6 +54,10 @@ struct hf_buf_def {
     int bare;          // nothing is read beyond the frame: no border
     int narrow;        // of hf_narrow_bytes a sample
 };
+
+struct hf_plan;
+
+enum { HF_COST_NUMBERS = 12 };
 
 struct hf_engine_def {
     const char *name;  // the command line's
@@ -30,18 +71,29 @@ struct hf_engine_def {
     // The reach of a frame is known only when its depth has been looked at: nothing but the first pass runs before.
     int measured;
 
-    // Tables that follow from the parameters. NULL: none.
-    int (*prepare)(struct hf_context *c, struct hf_setup *s, const struct hf_params *p);
+    // Its table of kernels, for an instruction set.
+    size_t kernels_bytes;
+    void (*kernels)(void *table, enum hf_isa isa, int fused);
+
+    // What setups call own: zero at first, then as prepare left it for the frame before. It owns memory until release.
+    size_t own_bytes;
+    // Numbers that follow from the parameters; s holds what is common to all engines, and may be changed. NULL: none.
+    void (*resolve)(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p);
+    // Tables likewise, if there is anything to blur; returns HF_ERR_MEMORY. NULL: none.
+    int (*prepare)(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
+    void (*release)(void *own, const struct hf_mem *mem);
+    size_t (*bytes)(const void *own);  // of that memory
     // measured: called with what was counted over the frame; sets the reach.
-    void (*measure)(struct hf_setup *s, const struct hf_counts *found);
+    void (*measure)(void *own, const struct hf_setup *s, const struct hf_counts *found);
     // measured: called with what the whole first sweep has counted. NULL: nothing follows from it.
-    void (*made)(struct hf_setup *s, const struct hf_counts *found);
+    void (*made)(void *own, const struct hf_setup *s, const struct hf_counts *found);
+
     // Channels of a buffer; 0: not wanted with these options.
     int (*channels)(const struct hf_setup *s, int buf);
     // Does a pass run with these options? NULL: all do.
     int (*runs)(const struct hf_setup *s, int pass);
-    // How far around a pixel a pass reads.
-    struct hf_reach (*halo)(const struct hf_setup *s, enum hf_halo halo);
+    // How far around a pixel a pass reads. Not called for 0.
+    struct hf_reach (*halo)(const struct hf_setup *s, int halo);
     // A tile needs a field if there is CoC of that kind within this reach.
     struct hf_reach (*spread)(const struct hf_setup *s, const struct hf_plan *p, unsigned field);
     // Fields of the first sweep's buffers that the passes of a tile with these needs read.
@@ -50,11 +102,18 @@ struct hf_engine_def {
     void (*cell)(const struct hf_setup *s, int sweep, int *width, int *height);
     // Floats of scratch (hf_frame.work) that a pass may use. NULL: none.
     size_t (*work)(const struct hf_setup *s, const struct hf_plan *p);
-};
 
-extern const struct hf_engine_def hf_gather_engine, hf_hexagon_engine, hf_scatter_engine, hf_gaussian_engine;
-// Reaches and taps of the gather: its prepare, for a setup whose taps are anyone's.
-int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
+    // Options that change what a unit of work costs; returns how many, at most HF_COST_NUMBERS. *reach: of its blur.
+    int (*cost)(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach);
+    // Rings of taps, for the report. NULL: it has none.
+    int (*rings)(const struct hf_setup *s);
+    // Make *p the step-th cheaper setting within the engine, step >= 1, and return 1, or 0 if there are no more. radius:
+    // the largest there may be.
+    int (*cheaper)(struct hf_params *p, float radius, int step);
+    // After these, the default engine's settings. Then that makes the parameters some that it takes.
+    int gives_up;
+    void (*adopt)(struct hf_params *p, float radius);
+};
 
 // NULL for a number that is no engine.
 const struct hf_engine_def *hf_engine_def(enum hf_engine engine);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a pass sees of a frame: its parameters, its buffers, the caller's images.
+// What a pass sees of a frame: its numbers, its buffers, the caller's images.
 //
 // Everything is processed in half-resolution lanes. A full-resolution row is kept split into its even and its odd
 // pixels, so that lane x stands for the pixels 2x and 2x + 1 and no pass ever shuffles: the quad of the downsample
@@ -11,35 +11,13 @@
 #include <stdint.h>
 
 #include "hyperfocal/hyperfocal.h"
-#include "gather/taps.h"
 
 // Half-open, in half-resolution pixels unless said otherwise.
 struct hf_rect {
     int x0, y0, x1, y1;
 };
 
-// The buffers of the chapter's figure 3.6.
-enum hf_buf_id {
-    HF_BUF_COC,        // full resolution: near even, near odd, far even, far odd lanes of each row
-    HF_BUF_COLOR4,     // half-resolution colour, R G B (A)
-    HF_BUF_COLORFAR4,  // half-resolution colour x far CoC
-    HF_BUF_COC4,       // half-resolution near and far CoC
-    HF_BUF_MAX_X,      // near CoC: the four steps of its outward blur
-    HF_BUF_MAX,
-    HF_BUF_BLUR_X,
-    HF_BUF_BLUR,
-    HF_BUF_NEAR,  // fields: colour
-    HF_BUF_FAR,
-    HF_BUF_NEAR_FILL,
-    HF_BUF_FAR_FILL,
-    HF_BUF_SUM,         // inside the gather: sums of weights, near and far
-    HF_BUF_WEIGHT,      // with Karis average: w and far CoC x w
-    HF_BUF_COLORW4,     // colour x w
-    HF_BUF_COLORFARW4,  // colour x far CoC x w
-    HF_BUF_COUNT
-};
-
-// No engine has more; others than the gather number theirs in engine/*.c.
+// No engine has more; each numbers its own.
 enum { HF_MAX_BUFS = 24 };
 
 // Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is
@@ -58,15 +36,15 @@ enum hf_depth_form {
     HF_FORM_COC,  // d is the signed radius
 };
 
-// Everything that follows from the arguments of a render call.
+// What follows from the arguments of a render call: const once it is made.
 struct hf_setup {
     int width, height, half_width, half_height;
     enum hf_engine engine;
     int channels;  // blurred: 3, or 4 with alpha
     enum hf_storage storage;
-    int colour_stats;
-    int faithful, no_skip, karis, per_pixel_kernel, bicubic, smoothstep;
-    enum hf_fill fill;
+    enum hf_resolution resolution;
+    int colour_stats, no_skip;
+    int faithful, smoothstep;
 
     enum hf_depth_form form;
     int lens;                    // v is -1/z rather than z
@@ -81,44 +59,32 @@ struct hf_setup {
     float blend;       // of the fields with the picture; 0: the picture is copied
     float pixel_aspect;
 
-    // gather
-    int rings;             // 0: derived
-    int max_x, max_y;      // near max and blur reach to either side
-    struct hf_taps *taps;  // its kernel
-
-    // The other engines: signed CoC radius in full-resolution pixels, see hf_radius_row.
+    // Signed CoC radius in full-resolution pixels, see hf_radius_row.
     float radius_0, radius_k;  // linear: r = (v - radius_0) * radius_k, within +-max_radius; radius_k 0: by range,
                                // r = strength * max_radius * (f - n)
     float sharp_radius;        // up to here a pixel counts as sharp, and its radius as 0
-    int reach_x, reach_y;      // of the frame at hand, half-resolution pixels, once it is known
-    enum hf_resolution resolution;
-    float rotation;  // degrees
-    int uniform;
-    int iterations;
-    int by_depth;                          // gaussian: blend by the distance in depth from the focus
-    float plane_near, plane_far, focus_d;  // see hf_gaussian_depth
-    float sigma;
-    const struct hf_params *params;  // for what only one engine reads
-    void *tables;                    // what that engine's prepare made
+    int uniform;               // the radius is max_radius everywhere
+
+    const void *own;  // what the engine made of its parameters, and found in the depth
 };
 
-// What the passes count. One per worker.
 // Where a chunk has CoC of a kind: groups of lanes, see hf_group, 0 if nowhere; and half-resolution rows.
 struct hf_found {
     uint64_t groups;
     int y0, y1;
 };
 
+// What the passes count. One per worker.
 struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
-    float radius_min, radius_max;      // signed CoC radii; not the gather's
-    float near_max, far_max;           // the gather's CoC
+    float radius_min, radius_max;      // of passes that make signed radii
+    float near_max, far_max;           // of those that make near and far CoC
     float brightest, alpha_min;        // of the colour, if somebody asks
     uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes of a row
     struct hf_found near, far;         // and of a chunk
-    float largest;                     // scatter: absolute sample of a blurred pixel
-    uint64_t transparent;              // scatter: blurred pixels whose alpha is not 1
+    float largest;                     // absolute sample of a blurred pixel, if the engine's first sweep notes it
+    uint64_t transparent;              // and blurred pixels whose alpha is not 1
 };
 
 // Lanes are looked at in groups of 64; there may be more than bits, then several share one.
@@ -145,12 +111,13 @@ static inline void hf_count_row(struct hf_counts *c, int y)
     hf_found_row(&c->far, &c->far_groups, y);
 }
 
-struct hf_kernels;
+struct hf_pixel_kernels;
 
 // One worker's view of the frame.
 struct hf_frame {
     const struct hf_setup *s;
-    const struct hf_kernels *k;
+    const struct hf_pixel_kernels *k;  // what all engines share
+    const void *kernels;               // the engine's own table
     const struct hf_image *src, *dst;
     const struct hf_depth *depth;
     struct hf_buf buf[HF_MAX_BUFS];
@@ -158,10 +125,14 @@ struct hf_frame {
     int looking;         // nobody reads the CoC where there is none: it need not be written
     float *lines;        // scratch rows, see hf_line
     size_t line_floats;  // length of each
-    float *work;         // scratch of the gather's row sums
+    float *work;         // scratch that the engine asked for
     struct hf_counts *counts;
     struct hf_counts *seen;  // for colour read a second time: whether there was something to repair, not how often
 };
+
+// Computes r of the pass's output buffers, nothing else: r lies inside the frame, in half-resolution pixels. May
+// write up to HF_PAD floats past the end of each row of them.
+typedef void hf_kernel(const struct hf_frame *f, struct hf_rect r);
 
 enum { HF_LINES = 20 };  // scratch rows a frame has; the composite uses 17, the most
 enum { HF_PAD = 32 };    // floats that a vector loop may write past the end of a row; of a narrow one as many bytes

@@ -45,7 +45,7 @@ static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
     memset(p->buf, 0, sizeof p->buf);
     for (int i = e->pass_count - 1; i >= 0; i--) {
         const struct hf_pass *pass = &e->passes[i];
-        const struct hf_reach halo = e->halo(s, pass->halo);
+        const struct hf_reach halo = pass->halo ? e->halo(s, pass->halo) : (struct hf_reach){0, 0};
         struct hf_reach out = {0, 0};
         // A buffer of the whole frame is made once, without rims.
         for (int b = 0; b < e->buf_count; b++)

@@ -11,6 +11,7 @@
 #include "frame/copy.h"
 #include "frame/dump.h"
 #include "frame/report.h"
+#include "pixel/pass_c.h"
 
 struct job {
     struct hf_context *c;
@@ -52,7 +53,7 @@ static void run_pass(const struct job *j, struct hf_worker *w, int pass, struct 
     const struct hf_plan *p = &j->c->plan;
     const struct hf_pass *def = &p->engine->passes[pass];
     const struct hf_rect r = grown_in_frame(p, cell, p->pass[pass]);
-    w->frame.k->pass[def->kernel](&w->frame, r);
+    ((const struct hf_passes *)w->frame.kernels)->pass[pass](&w->frame, r);
     for (int b = 0; b < p->engine->buf_count; b++)
         if (def->writes >> b & 1)
             hf_buffers_extend(j->c, j->s, &w->frame, b, r, cell);
@@ -112,7 +113,7 @@ static void make_missing(const struct job *j, struct hf_worker *w, int chunk, un
     if (p->engine->passes[0].writes) {  // they have to be made again
         struct hf_counts twice = {0};
         w->frame.counts = &twice;
-        w->frame.k->pass[p->engine->passes[0].kernel](&w->frame, r);
+        ((const struct hf_passes *)w->frame.kernels)->pass[0](&w->frame, r);
         w->frame.counts = &w->counts;
     }
     make_chunk(j, w, r, fields, &clock);
@@ -296,8 +297,7 @@ static void collect_stats(const struct job *j, int64_t start)
     if (j->s->blend == 0)
         t->sharp_pixels = (uint64_t)j->s->width * (uint64_t)j->s->height;
     t->memory = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
-                c->taps.block.size + c->aperture.block.size + c->tables.size +
-                (c->pool ? hf_pool_bytes(c->threads) : 0);
+                hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0);
     for (int i = 0; i < c->threads; i++) {
         const struct hf_worker *w = &c->workers[i];
         for (int p = 0; p < HF_MAX_PASSES; p++) {
@@ -324,7 +324,8 @@ static void start_workers(const struct job *j, const struct hf_image *dst, const
         memset(w->tiles, 0, sizeof w->tiles);
         w->plan_ns = 0;
         w->frame.s = j->s;
-        w->frame.k = fused ? &c->fused : &c->exact;
+        w->frame.k = &c->kernels[fused];
+        w->frame.kernels = c->engine[j->s->engine].kernels[fused];
         w->frame.src = src;
         w->frame.dst = dst;
         w->frame.depth = depth;
@@ -374,7 +375,7 @@ static int plan_frame(struct job *j)
     const struct hf_counts found = all_counts(c);
     int err = HF_OK;
     if (p->engine->measured && j->s->blend != 0) {
-        p->engine->measure(j->s, &found);
+        p->engine->measure(c->engine[j->s->engine].own, j->s, &found);
         err = lay_out(j, 0);
     }
     if (err)
@@ -401,7 +402,7 @@ static int run_plan(struct job *j)
         parallel(c, c->plan.deferred_count, first_sweep_deferred, j);
     if (j->s->blend != 0 && c->plan.engine->made) {
         const struct hf_counts found = all_counts(c);
-        c->plan.engine->made(j->s, &found);
+        c->plan.engine->made(c->engine[j->s->engine].own, j->s, &found);
     }
     if (j->s->blend == 0 && j->copy.in_place)
         parallel(c, hf_plan_count(&c->plan, 2), scan_tile, j);

@@ -33,8 +33,8 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
                             .rows = p->rows[2],
                             .tiles = p->tile_needs,
                             .passes = e->pass_count};
-    if (s->engine == HF_ENGINE_GATHER && s->blend != 0)
-        r->rings = s->rings ? s->rings : hf_taps_rings(s->max_radius / 2);
+    if (e->rings && s->blend != 0)
+        r->rings = e->rings(s);
     for (int i = 0; i < hf_plan_count(p, 2); i++)
         r->tile_count[s->blend == 0 ? 0 : p->tile_needs[i]]++;
     hf_cost_work(&c->work, p, s);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Composite: the far field, upsampled where its CoC is like the pixel's, then the near field, over the picture.
-#include "pixel/pass_c.h"
+#include "gather/gather.h"
 
 // The half-resolution neighbourhood of a full-resolution pixel: its own half-resolution pixel (x, y) and the
 // neighbours on the side where the pixel lies.
@@ -103,8 +103,8 @@ static float upsample_cubic(const struct hf_buf *b, int c, struct phase p)
 
 static void blend_near(const struct hf_frame *f, struct phase p, float *const colour[4], int i)
 {
-    float (*up)(const struct hf_buf *, int, struct phase) = f->s->bicubic ? upsample_cubic : upsample;
-    const float scale = f->s->bicubic ? 1 : 1 / 16.0f;
+    float (*up)(const struct hf_buf *, int, struct phase) = hf_gather(f->s)->bicubic ? upsample_cubic : upsample;
+    const float scale = hf_gather(f->s)->bicubic ? 1 : 1 / 16.0f;
     const float t = f->s->blend * scale * up(&f->buf[HF_BUF_BLUR], 0, p);
     for (int c = 0; c < f->s->channels; c++)
         colour[c][i] = hf_lerp(colour[c][i], scale * up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);

@@ -2,6 +2,8 @@
 // Composite on vectors. Even and odd pixels are lanes of their own, so the four phases of the upsampling are four
 // pieces of plain arithmetic over the same half-resolution loads; both phases in x are made together and share them.
 // So do two rows of the picture that lie between the same two half-resolution rows, where they can be made together.
+#include "gather/gather.h"
+#include "pixel/coc_vf.h"
 
 // Two half-resolution rows, at lane 0: the one that the first row of the picture belongs to, and its neighbour, to
 // which the second row belongs if there is one. Channels lie a fixed distance apart, so that a few registers address
@@ -296,8 +298,8 @@ HF_INLINE void composite_lines(const struct composite_rows *rows, const struct c
 HF_INLINE void composite_options(const struct composite_rows *r, const struct composite_line *l,
                                  const struct hf_setup *s, int far, int near, const int channels)
 {
-    if (s->faithful || s->bicubic)
-        composite_lines(r, l, channels, far, near, s->faithful, s->bicubic);
+    if (s->faithful || hf_gather(s)->bicubic)
+        composite_lines(r, l, channels, far, near, s->faithful, hf_gather(s)->bicubic);
     else if (far && near)
         composite_lines(r, l, channels, 1, 1, 0, 0);
     else if (far)
@@ -518,7 +520,7 @@ static void composite_row_rest(const struct hf_frame *f, int y, struct hf_rect r
 {
     const struct hf_setup *s = f->s;
     struct composite_rows rows = composite_rows_at(f, y, r);
-    if (f->near && s->bicubic) {
+    if (f->near && hf_gather(s)->bicubic) {
         for (int c = 0; c < s->channels; c++)
             near_line(&f->buf[HF_BUF_NEAR_FILL], c, y, r, hf_line(f, 12 + c));
         near_line(&f->buf[HF_BUF_BLUR], 0, y, r, hf_line(f, 16));
@@ -532,7 +534,7 @@ static void composite_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const int end = hf_min(2 * r.y1, f->s->height);
     const int packs = f->src->format == HF_FORMAT_R11G11B10F && f->dst->format == HF_FORMAT_R11G11B10F &&
-                      f->s->storage != HF_STORAGE_HALF && !f->s->faithful && !f->s->bicubic;
+                      f->s->storage != HF_STORAGE_HALF && !f->s->faithful && !hf_gather(f->s)->bicubic;
     // Rows 2 k - 1 and 2 k lie between the half-resolution rows k - 1 and k.
     for (int k = r.y0; 2 * k <= end; k++) {
         const int y[2] = {k > r.y0 ? 2 * k - 1 : -1, 2 * k < end ? 2 * k : -1};

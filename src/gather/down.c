@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Downsample: half-resolution colour and near CoC for the near field, colour x far CoC and far CoC for the far one.
-#include "pixel/pass_c.h"
+#include "gather/gather.h"
 
 // Weights of a 2x2 quad for the far field: like pixels count, relative to its top left one. The chapter has w00 =
 // 1000 and w = 1 / (|df| + 0.001); a thousandth of that is w00 = 1 and w = 1 / (1000 |df| + 1), exactly 1 for equal

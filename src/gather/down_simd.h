@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Downsample on vectors: rows come split into even and odd pixels, so a quad is four aligned loads.
+#include "gather/gather.h"
+#include "pixel/coc_vf.h"
 
 // Where the rows of r begin in the buffers.
 struct down_row {

@@ -1,30 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The gather: order, names and buffers of the chapter's figure 3.6 and table 3.1.
-#include "frame/context.h"
 #include "frame/plan.h"
+#include "gather/gather.h"
 
-#define B(name) HF_BIT(name)
+#define B(name) (1u << HF_BUF_##name)
 
 static const struct hf_pass passes[] = {
-    {"CoC generation", HF_PASS_COC, .writes = B(COC), .sweep = 1, .ns = 1.7f},
-    {"Downsample", HF_PASS_DOWN, .reads = B(COC), .writes = B(COLOR4) | B(COLORFAR4) | B(COC4), .sweep = 1, .ns = 1.1f},
-    {"Near CoC Max X", HF_PASS_MAX_X, .around = B(COC4), .writes = B(MAX_X), .halo = HF_HALO_MAX_X, .sweep = 2,
-     .field = HF_NEAR, .ns = 0.7f},
-    {"Near CoC Max Y", HF_PASS_MAX_Y, .around = B(MAX_X), .writes = B(MAX), .halo = HF_HALO_MAX_Y, .sweep = 2,
-     .field = HF_NEAR, .ns = 0.25f},
-    {"Near CoC Blur X", HF_PASS_BLUR_X, .around = B(MAX), .writes = B(BLUR_X), .halo = HF_HALO_MAX_X, .sweep = 2,
-     .field = HF_NEAR, .ns = 0.25f},
-    {"Near CoC Blur Y", HF_PASS_BLUR_Y, .around = B(BLUR_X), .writes = B(BLUR), .halo = HF_HALO_MAX_Y, .sweep = 2,
-     .field = HF_NEAR, .ns = 0.27f},
-    {"Computation", HF_PASS_GATHER, .reads = B(BLUR), .around = B(COLOR4) | B(COLORFAR4) | B(COC4),
-     .writes = B(NEAR) | B(FAR), .inside = B(SUM), .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4),
-     .halo = HF_HALO_TAPS, .sweep = 2, .ns = 4},
-    {"Fill", HF_PASS_FILL, .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4), .writes = B(NEAR_FILL) | B(FAR_FILL),
+    {"CoC generation", .writes = B(COC), .sweep = 1, .ns = 1.7f},
+    {"Downsample", .reads = B(COC), .writes = B(COLOR4) | B(COLORFAR4) | B(COC4), .sweep = 1, .ns = 1.1f},
+    {"Near CoC Max X", .around = B(COC4), .writes = B(MAX_X), .halo = HF_HALO_MAX_X, .sweep = 2, .field = HF_NEAR,
+     .ns = 0.7f},
+    {"Near CoC Max Y", .around = B(MAX_X), .writes = B(MAX), .halo = HF_HALO_MAX_Y, .sweep = 2, .field = HF_NEAR,
+     .ns = 0.25f},
+    {"Near CoC Blur X", .around = B(MAX), .writes = B(BLUR_X), .halo = HF_HALO_MAX_X, .sweep = 2, .field = HF_NEAR,
+     .ns = 0.25f},
+    {"Near CoC Blur Y", .around = B(BLUR_X), .writes = B(BLUR), .halo = HF_HALO_MAX_Y, .sweep = 2, .field = HF_NEAR,
+     .ns = 0.27f},
+    {"Computation", .reads = B(BLUR), .around = B(COLOR4) | B(COLORFAR4) | B(COC4), .writes = B(NEAR) | B(FAR),
+     .inside = B(SUM), .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4), .halo = HF_HALO_TAPS, .sweep = 2, .ns = 4},
+    {"Fill", .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4), .writes = B(NEAR_FILL) | B(FAR_FILL),
      .halo = HF_HALO_3X3, .sweep = 2, .ns = 0.75f},
-    {"Composite", HF_PASS_COMPOSITE, .around = B(NEAR_FILL) | B(FAR_FILL) | B(BLUR) | B(COC4), .halo = HF_HALO_UPSAMPLE,
-     .sweep = 2, .ns = 3.2f},
+    {"Composite", .around = B(NEAR_FILL) | B(FAR_FILL) | B(BLUR) | B(COC4), .halo = HF_HALO_UPSAMPLE, .sweep = 2,
+     .ns = 3.2f},
 };
-_Static_assert(sizeof passes / sizeof *passes == HF_PASS_COUNT, "one row per pass");
+_Static_assert(sizeof passes / sizeof *passes == HF_GATHER_PASSES, "one row per pass");
 
 static const struct hf_buf_def bufs[HF_BUF_COUNT] = {
     [HF_BUF_COC] = {"coc", .y = 1},
@@ -55,29 +54,30 @@ static int channels(const struct hf_setup *s, int b)
     case HF_BUF_BLUR:
         return 1;
     case HF_BUF_WEIGHT:
-        return s->karis ? 2 : 0;
+        return hf_gather(s)->karis ? 2 : 0;
     case HF_BUF_COLORW4:
     case HF_BUF_COLORFARW4:
-        return s->karis ? s->channels : 0;
+        return hf_gather(s)->karis ? s->channels : 0;
     default:
         return s->channels;
     }
 }
 
-struct hf_reach hf_pass_halo(const struct hf_setup *s, enum hf_halo halo)
+struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo)
 {
+    const struct hf_gather *g = hf_gather(s);
     switch (halo) {
     case HF_HALO_3X3:
         return (struct hf_reach){1, 1};
     case HF_HALO_MAX_X:
-        return (struct hf_reach){s->max_x, 0};
+        return (struct hf_reach){g->max_x, 0};
     case HF_HALO_MAX_Y:
-        return (struct hf_reach){0, s->max_y};
+        return (struct hf_reach){0, g->max_y};
     case HF_HALO_TAPS:
         // One more for the per-pixel kernel, whose bilinear taps read a neighbour even with weight 0.
-        return (struct hf_reach){s->taps->rx + s->per_pixel_kernel, s->taps->ry + s->per_pixel_kernel};
+        return (struct hf_reach){g->taps.rx + g->per_pixel_kernel, g->taps.ry + g->per_pixel_kernel};
     case HF_HALO_UPSAMPLE:
-        return s->bicubic ? (struct hf_reach){2, 2} : (struct hf_reach){1, 1};
+        return g->bicubic ? (struct hf_reach){2, 2} : (struct hf_reach){1, 1};
     default:
         return (struct hf_reach){0, 0};
     }
@@ -88,20 +88,20 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p,
 {
     if (field == HF_FAR)
         return (struct hf_reach){0, 0};
-    return (struct hf_reach){p->pass[HF_PASS_MAX_X].x + s->max_x, p->pass[HF_PASS_MAX_X].y};
+    return (struct hf_reach){p->pass[HF_GATHER_MAX_X].x + hf_gather(s)->max_x, p->pass[HF_GATHER_MAX_X].y};
 }
 
 // Karis weights are made from the colour, whatever they weigh.
 static unsigned reads(const struct hf_setup *s, unsigned needs)
 {
-    return s->karis && needs ? HF_FIELDS : needs;
+    return hf_gather(s)->karis && needs ? HF_FIELDS : needs;
 }
 
 // What the kernels need: terms and pairs of the gather for strips of up to 80 columns; values and partial sums of the near
 // blur for 16; and three rows for the mean fill.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    const struct hf_taps *t = s->taps;
+    const struct hf_taps *t = &hf_gather(s)->taps;
     const size_t rows = 2 * (size_t)t->ry + 1, columns = 2 * (size_t)t->rx + 1;
     const size_t gather = 2 * rows * columns + 16 + columns * 80;
     const size_t near = 2 * ((size_t)p->cell_height[2] + 2 * (size_t)p->buf[HF_BUF_BLUR_X].y) * 16;
@@ -118,38 +118,128 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     *height = hf_min(*height, 72);
 }
 
-int hf_gather_setup(struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
+static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
+    struct hf_gather *g = own;
     const float h = s->max_radius / 2;
-    s->max_x = (int)__builtin_ceilf(h / p->pixel_aspect);
-    s->max_y = (int)__builtin_ceilf(h);
-    const struct hf_taps_key key = {.radius = h,
-                                    .scale = s->strength >= 0.25f ? s->strength : 0.25f,
-                                    .pixel_aspect = p->pixel_aspect,
-                                    .blades = p->blades,
-                                    .rotation = p->blades ? p->blade_rotation : 0,
-                                    .dense = p->fill == HF_FILL_NONE,
-                                    .rings = s->rings};
-    return hf_taps_build(s->taps, &key, mem);
+    (void)depth;
+    g->karis = p->karis;
+    g->per_pixel_kernel = p->per_pixel_kernel;
+    g->bicubic = p->bicubic;
+    g->fill = p->fill;
+    g->rings = p->rings;
+    g->max_x = (int)__builtin_ceilf(h / s->pixel_aspect);
+    g->max_y = (int)__builtin_ceilf(h);
 }
 
-static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
+static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
-    return hf_gather_setup(s, p, &c->mem);
+    struct hf_gather *g = own;
+    const struct hf_taps_key key = {.radius = s->max_radius / 2,
+                                    .scale = s->strength >= 0.25f ? s->strength : 0.25f,
+                                    .pixel_aspect = s->pixel_aspect,
+                                    .blades = p->blades,
+                                    .rotation = p->blades ? p->blade_rotation : 0,
+                                    .dense = g->fill == HF_FILL_NONE,
+                                    .rings = g->rings};
+    return hf_taps_build(&g->taps, &key, mem);
+}
+
+static void release(void *own, const struct hf_mem *mem)
+{
+    hf_taps_free(&((struct hf_gather *)own)->taps, mem);
+}
+
+static size_t bytes(const void *own)
+{
+    return ((const struct hf_gather *)own)->taps.block.size;
+}
+
+static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
+{
+    const struct hf_gather *g = hf_gather(s);
+    numbers[0] = g->karis;
+    numbers[1] = g->per_pixel_kernel;
+    numbers[2] = g->bicubic;
+    numbers[3] = (int)g->fill;
+    *reach = g->taps.first[g->taps.rows];  // weights
+    return 4;
+}
+
+static int rings(const struct hf_setup *s)
+{
+    return hf_gather(s)->rings ? hf_gather(s)->rings : hf_taps_rings(s->max_radius / 2);
+}
+
+// Two thirds, then one third of the rings.
+static int cheaper(struct hf_params *p, float radius, int step)
+{
+    const int all = p->rings ? p->rings : hf_taps_rings(radius / 2);
+    int last = all;
+    for (int thirds = 2; thirds > 0 && p->fill != HF_FILL_NONE; thirds--) {
+        const int some = (all * thirds + 2) / 3;
+        if (some < last && --step == 0) {
+            p->rings = some;
+            return 1;
+        }
+        last = some;
+    }
+    return 0;
+}
+
+static void adopt(struct hf_params *p, float radius)
+{
+    p->resolution = HF_RESOLUTION_FULL;
+    if (p->blades && (p->blades < 5 || p->blades > 9))
+        p->blades = 0;
+    if (radius >= 256)
+        p->max_radius = 256;
+}
+
+HF_CHOOSE_KERNELS(hf_gather_kernels)
+
+void hf_gather_kernels_c(struct hf_gather_kernels *k)
+{
+    *k = (struct hf_gather_kernels){{{
+        [HF_GATHER_COC] = hf_gather_coc,
+        [HF_GATHER_DOWN] = hf_down_c,
+        [HF_GATHER_MAX_X] = hf_max_x_c,
+        [HF_GATHER_MAX_Y] = hf_max_y_c,
+        [HF_GATHER_BLUR_X] = hf_blur_x_c,
+        [HF_GATHER_BLUR_Y] = hf_blur_y_c,
+        [HF_GATHER_COMPUTATION] = hf_gather_c,
+        [HF_GATHER_FILL] = hf_fill_c,
+        [HF_GATHER_COMPOSITE] = hf_composite_c,
+    }}};
+}
+
+static void kernels(void *table, enum hf_isa isa, int fused)
+{
+    hf_gather_kernels_init(table, isa, fused);
 }
 
 const struct hf_engine_def hf_gather_engine = {
     .name = "gather",
     .passes = passes,
-    .pass_count = HF_PASS_COUNT,
+    .pass_count = HF_GATHER_PASSES,
     .sweeps = 2,
     .bufs = bufs,
     .buf_count = HF_BUF_COUNT,
+    .kernels_bytes = sizeof(struct hf_gather_kernels),
+    .kernels = kernels,
+    .own_bytes = sizeof(struct hf_gather),
+    .resolve = resolve,
     .prepare = prepare,
+    .release = release,
+    .bytes = bytes,
     .channels = channels,
-    .halo = hf_pass_halo,
+    .halo = hf_gather_halo,
     .spread = spread,
     .reads = reads,
     .cell = cell,
     .work = work,
+    .cost = cost,
+    .rings = rings,
+    .cheaper = cheaper,
+    .adopt = adopt,
 };

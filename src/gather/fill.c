@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fill: closes the gaps between the taps by a 3x3 maximum, which makes highlights round and brighter, or a mean,
 // which keeps their energy.
-#include "pixel/pass_c.h"
+#include "gather/gather.h"
 
 // The per-pixel kernel takes only far neighbours of about its own CoC (chapter 3.5).
 static const float SIMILAR = 0.25f;
@@ -30,9 +30,9 @@ static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
 // Does a far neighbour of CoC g count for a pixel of CoC f? For the mean it has to hold far colour at all.
 static int counts(const struct hf_setup *s, float f, float g)
 {
-    if (s->per_pixel_kernel && !(__builtin_fabsf(f - g) <= SIMILAR))
+    if (hf_gather(s)->per_pixel_kernel && !(__builtin_fabsf(f - g) <= SIMILAR))
         return 0;
-    return s->fill == HF_FILL_MAX || g > 0;
+    return hf_gather(s)->fill == HF_FILL_MAX || g > 0;
 }
 
 static float far_max(const struct hf_frame *f, int c, int x, int y)
@@ -69,16 +69,16 @@ static float far_mean(const struct hf_frame *f, int c, int x, int y)
 static float fill_near(const struct hf_frame *f, int c, int x, int y)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_NEAR];
-    if (f->s->fill == HF_FILL_NONE || !(*hf_at(&f->buf[HF_BUF_BLUR], 0, x, y) > 0))
+    if (hf_gather(f->s)->fill == HF_FILL_NONE || !(*hf_at(&f->buf[HF_BUF_BLUR], 0, x, y) > 0))
         return *hf_at(b, c, x, y);
-    return f->s->fill == HF_FILL_MAX ? max_3x3(b, c, x, y) : mean_3x3(b, c, x, y);
+    return hf_gather(f->s)->fill == HF_FILL_MAX ? max_3x3(b, c, x, y) : mean_3x3(b, c, x, y);
 }
 
 static float fill_far(const struct hf_frame *f, int c, int x, int y)
 {
-    if (f->s->fill == HF_FILL_NONE || !(*hf_at(&f->buf[HF_BUF_COC4], 1, x, y) > 0))
+    if (hf_gather(f->s)->fill == HF_FILL_NONE || !(*hf_at(&f->buf[HF_BUF_COC4], 1, x, y) > 0))
         return *hf_at(&f->buf[HF_BUF_FAR], c, x, y);
-    return f->s->fill == HF_FILL_MAX ? far_max(f, c, x, y) : far_mean(f, c, x, y);
+    return hf_gather(f->s)->fill == HF_FILL_MAX ? far_max(f, c, x, y) : far_mean(f, c, x, y);
 }
 
 void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
@@ -95,9 +95,9 @@ void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
                     far[c][x - r.x0] = fill_far(f, c, x, y);
             }
         // The largest of what a storage holds is what it holds.
-        if (f->near && f->s->fill == HF_FILL_MEAN)
+        if (f->near && hf_gather(f->s)->fill == HF_FILL_MEAN)
             hf_store_rgb(f, near, r.x1 - r.x0);
-        if (f->far && f->s->fill == HF_FILL_MEAN)
+        if (f->far && hf_gather(f->s)->fill == HF_FILL_MEAN)
             hf_store_rgb(f, far, r.x1 - r.x0);
     }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fill on vectors. Maximum and mean are separable: a column's three values are combined once and serve three
 // pixels. Only the per-pixel kernel, which picks its neighbours, and the far mean, which counts them, look at all nine.
+#include "gather/gather.h"
+#include "pixel/format_vf.h"
 
 HF_INLINE vf max3(vf a, vf b, vf c)
 {
@@ -88,8 +90,8 @@ HF_INLINE void fill_far_picked(const struct hf_setup *s, const float *in, ptrdif
             vf t[3], w[3];
             for (int i = -1; i <= 1; i++) {
                 const vf g = vf_load(coc + j * coc_stride + x + i), v = vf_load(in + j * stride + x + i);
-                vm counts = s->fill == HF_FILL_MAX ? vf_eq(own, own) : vf_gt(g, vf_zero());
-                if (s->per_pixel_kernel)
+                vm counts = hf_gather(s)->fill == HF_FILL_MAX ? vf_eq(own, own) : vf_gt(g, vf_zero());
+                if (hf_gather(s)->per_pixel_kernel)
                     counts = vm_and(counts, vf_le(vf_abs(vf_sub(own, g)), vf_set1(0.25f)));
                 best = vf_select(counts, vf_max(v, best), best);
                 t[i + 1] = vf_keep(counts, v);
@@ -98,8 +100,9 @@ HF_INLINE void fill_far_picked(const struct hf_setup *s, const float *in, ptrdif
             sum[j + 1] = sum3(t[0], t[1], t[2]);
             count[j + 1] = sum3(w[0], w[1], w[2]);
         }
-        const vf v = s->fill == HF_FILL_MAX ? vf_add(best, vf_zero())
-                                            : vf_div(sum3(sum[0], sum[1], sum[2]), sum3(count[0], count[1], count[2]));
+        const vf v = hf_gather(s)->fill == HF_FILL_MAX
+                         ? vf_add(best, vf_zero())
+                         : vf_div(sum3(sum[0], sum[1], sum[2]), sum3(count[0], count[1], count[2]));
         vf_store(out + x, vf_select(vf_gt(own, vf_zero()), v, value));
     }
 }
@@ -114,15 +117,15 @@ static void fill_row(const struct hf_frame *f, enum hf_buf_id in, enum hf_buf_id
     float *to[4], *from[4];
     hf_row(&f->buf[out], s->channels, r.x0, y, to);
     hf_row(&f->buf[in], s->channels, r.x0, y, from);
-    const int picked = in == HF_BUF_FAR && (s->per_pixel_kernel || s->fill == HF_FILL_MEAN);
-    if (s->fill == HF_FILL_MAX && !picked) {
+    const int picked = in == HF_BUF_FAR && (hf_gather(s)->per_pixel_kernel || hf_gather(s)->fill == HF_FILL_MEAN);
+    if (hf_gather(s)->fill == HF_FILL_MAX && !picked) {
         if (s->channels == 3)
             fill_max_row(from, stride, w, to, n, r.x0, 3);
         else
             fill_max_row(from, stride, w, to, n, r.x0, 4);
     } else {
         for (int c = 0; c < s->channels; c++)
-            if (s->fill == HF_FILL_NONE)
+            if (hf_gather(s)->fill == HF_FILL_NONE)
                 fill_copy_row(from[c], to[c], n);
             else if (picked)
                 fill_far_picked(s, from[c], stride, w, want->stride, to[c], n);
@@ -130,7 +133,7 @@ static void fill_row(const struct hf_frame *f, enum hf_buf_id in, enum hf_buf_id
                 fill_mean_row(from[c], stride, w, to[c], n, f->work);
     }
     // The largest of what a storage holds is what it holds.
-    if (s->fill == HF_FILL_MEAN)
+    if (hf_gather(s)->fill == HF_FILL_MEAN)
         hf_store_rgb(f, to, n);
 }
 

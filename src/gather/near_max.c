@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Near CoC max: the first half of the near field's outward blur, 2 max_x + 1 wide, then 2 max_y + 1 high.
-#include "pixel/pass_c.h"
+#include "gather/gather.h"
 
 void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 {
-    const int m = f->s->max_x, bytes = hf_narrow_bytes(f->s->storage);
+    const int m = hf_gather(f->s)->max_x, bytes = hf_narrow_bytes(f->s->storage);
     for (int y = r.y0; y < r.y1; y++) {
         const float *in = hf_at(&f->buf[HF_BUF_COC4], 0, 0, y);
         for (int x = r.x0; x < r.x1; x++) {
@@ -18,7 +18,7 @@ void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 
 void hf_max_y_c(const struct hf_frame *f, struct hf_rect r)
 {
-    const int m = f->s->max_y, bytes = hf_narrow_bytes(f->s->storage);
+    const int m = hf_gather(f->s)->max_y, bytes = hf_narrow_bytes(f->s->storage);
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++) {
             float most = 0;

@@ -2,6 +2,8 @@
 // Near CoC max on vectors: along x maxima of 2, 4, 8 ... values come from each other, and two overlapping ones of those
 // cover any width; along y windows share what they have in common. Values are bytes, halves or floats, whichever the
 // storage has; none is negative, so that all are compared as integers.
+#include "gather/gather.h"
+#include "pixel/format_vf.h"
 
 enum { VECTOR = (int)sizeof(vi) };  // bytes
 
@@ -107,7 +109,7 @@ HF_INLINE const char *narrow_row(const int bytes, const float *in, int n, char *
 
 HF_INLINE void max_rows(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
-    const int m = f->s->max_x, n = r.x1 - r.x0;
+    const int m = hf_gather(f->s)->max_x, n = r.x1 - r.x0;
     const struct hf_buf *b = &f->buf[HF_BUF_COC4];
     for (int y = r.y0; y < r.y1; y++) {
         const float *coc = hf_at(b, 0, r.x0 - m, y);
@@ -163,7 +165,9 @@ HF_INLINE void max_columns(const struct hf_frame *f, struct hf_rect r, const int
 {
     const struct hf_buf *b = &f->buf[HF_BUF_MAX_X], *to = &f->buf[HF_BUF_MAX];
     const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float), out_stride = to->stride * (ptrdiff_t)sizeof(float);
-    const int m = f->s->max_y, most = m < MAX_ROWS / 2 ? 2 * m + 1 : m < 24 ? MAX_ROWS : hf_min(2 * m + 1, MAX_MANY);
+    const int m = hf_gather(f->s)->max_y, most = m < MAX_ROWS / 2 ? 2 * m + 1
+                                                 : m < 24         ? MAX_ROWS
+                                                                  : hf_min(2 * m + 1, MAX_MANY);
     for (int y = r.y0, rows; y < r.y1; y += rows) {
         rows = hf_min(most, r.y1 - y);
         for (int x = r.x0; x < r.x1; x += VECTOR / bytes) {

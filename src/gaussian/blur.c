@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The gaussian engine's passes (engine.c says what they compute), and their rows in plain C. Nothing is fused
 // that fusing would change: the bits are the same on every machine, deterministic or not.
-#include "gaussian/gaussian.h"
+#include "gaussian/kernels.h"
 
 #include "pixel/pass_c.h"
 
@@ -54,14 +54,14 @@ static float shape(const struct hf_setup *s, float t)
 
 static float blend_of(const struct hf_setup *s, float z)
 {
-    const float t = 3 * __builtin_fabsf(hf_gaussian_depth(s, z) - s->focus_d);
+    const float t = 3 * __builtin_fabsf(hf_gaussian_depth(hf_gaussian(s), s->faithful, z) - hf_gaussian(s)->focus_d);
     return s->strength * shape(s, t < 1 ? t : 1);
 }
 
 void hf_blend_row_c(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts)
 {
     const struct hf_setup *s = f->s;
-    if (!s->by_depth) {
+    if (!hf_gaussian(s)->by_depth) {
         struct hf_counts unused = {0};
         f->k->coc_row(f, x, y, n, out, counts ? counts : &unused);
         for (int i = 0; i < n; i++)
@@ -119,7 +119,7 @@ void hf_gaussian_depth_pass(const struct hf_frame *f, struct hf_rect r)
 {
     float *const out[4] = {hf_line(f, 0), hf_line(f, 1), hf_line(f, 2), hf_line(f, 3)};
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
-        f->k->blend_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
+        hf_gaussian_kernels(f)->blend_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
         hf_count_row(f->counts, y);
     }
 }
@@ -184,7 +184,7 @@ static void make_line(const struct hf_frame *f, const struct lines *l, int c, in
 // All iterations on the line of n pixels in l->line[0]; the `count` pixels from `first` on to out.
 static void blur_line(const struct hf_frame *f, const struct lines *l, int n, int first, int count, float *out)
 {
-    const int iterations = f->s->iterations;
+    const int iterations = hf_gaussian(f->s)->iterations;
     // The last iteration writes whole vectors, and a quarter of a chunk is not one.
     const int direct = iterations > 0 && f->s->resolution != HF_RESOLUTION_QUARTER;
     for (int i = 0; i < iterations; i++) {
@@ -192,9 +192,9 @@ static void blur_line(const struct hf_frame *f, const struct lines *l, int n, in
         line[-2] = line[-1] = line[0];
         line[n] = line[n + 1] = line[n - 1];
         if (direct && i == iterations - 1)
-            f->k->gaussian_line(line + first, count, out, f->s->faithful);
+            hf_gaussian_kernels(f)->line(line + first, count, out, f->s->faithful);
         else
-            f->k->gaussian_line(line, n, l->line[(i + 1) % 2], f->s->faithful);
+            hf_gaussian_kernels(f)->line(line, n, l->line[(i + 1) % 2], f->s->faithful);
     }
     if (!direct)
         memcpy(out, l->line[iterations % 2] + first, (size_t)count * sizeof(float));
@@ -223,7 +223,8 @@ static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     const struct hf_buf *in = &f->buf[HF_GAUSSIAN_ROWS], *out = &f->buf[HF_GAUSSIAN_BLUR];
-    const int columns = r.x1 - r.x0, n = s->iterations, height = hf_gaussian_size(s, s->height, s->half_height);
+    const int columns = r.x1 - r.x0, n = hf_gaussian(s)->iterations,
+              height = hf_gaussian_size(s, s->height, s->half_height);
     const int top = hf_max(r.y0 - hf_gaussian_reach(s), 0);
     const float *from = hf_at(in, c, r.x0, 0);
     ptrdiff_t stride = in->stride;
@@ -235,7 +236,7 @@ static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
         const int a = hf_max(r.y0 - 2 * (n - i), 0), b = hf_min(r.y1 + 2 * (n - i), height);
         float *to = i == n ? hf_at(out, c, r.x0, a) : f->work + (ptrdiff_t)(a - top) * HF_GAUSSIAN_STRIP;
         const ptrdiff_t to_stride = i == n ? out->stride : HF_GAUSSIAN_STRIP;
-        f->k->gaussian_columns(from, stride, height, a, b, to, to_stride, columns, s->faithful);
+        hf_gaussian_kernels(f)->columns(from, stride, height, a, b, to, to_stride, columns, s->faithful);
         from = f->work - (ptrdiff_t)top * HF_GAUSSIAN_STRIP;
         stride = HF_GAUSSIAN_STRIP;
     }
@@ -261,15 +262,15 @@ static void merge_row(const struct hf_frame *f, int y, struct hf_rect r)
         lane[1][i] = hf_line(f, 4 + i);
         blend[i] = hf_line(f, 8 + i);
     }
-    f->k->blend_row(f, r.x0, y, n, blend, NULL);
+    hf_gaussian_kernels(f)->blend_row(f, r.x0, y, n, blend, NULL);
     hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
     for (int c = 0; c < s->channels; c++) {
         if (s->resolution == HF_RESOLUTION_FULL)
             f->k->unzip(hf_at(blur, c, 2 * r.x0, y), n, even, odd);
         else
-            f->k->gaussian_up(blur, c, s->resolution == HF_RESOLUTION_QUARTER, r.x0, y, n, even, odd);
-        f->k->lerp_row(lane[0][c], even, blend[0], n);
-        f->k->lerp_row(lane[1][c], odd, blend[1], n);
+            hf_gaussian_kernels(f)->up(blur, c, s->resolution == HF_RESOLUTION_QUARTER, r.x0, y, n, even, odd);
+        hf_gaussian_kernels(f)->lerp_row(lane[0][c], even, blend[0], n);
+        hf_gaussian_kernels(f)->lerp_row(lane[1][c], odd, blend[1], n);
     }
     if (s->channels == 3)
         lane[0][3] = lane[1][3] = NULL;

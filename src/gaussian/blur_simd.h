@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows of the gaussian engine on vectors. Nothing is fused that fusing would change: the same bits everywhere, fast or
 // deterministic.
-#include "gaussian/gaussian.h"
+#include "gaussian/kernels.h"
+#include "pixel/coc_vf.h"
 
 // 1 2 1. Doubling is exact, so that fusing changes no bit, and may be done where bits are promised.
 HF_INLINE vf smooth_vf(vf a, vf b, vf c)
@@ -119,8 +120,8 @@ static void lerp_row_simd(float *a, const float *b, const float *t, int n)
 // As hf_gaussian_depth.
 HF_INLINE vf gaussian_depth_vf(const struct hf_setup *s, const int faithful, vf z)
 {
-    const vf far = vf_set1(s->plane_far);
-    z = vf_min(vf_max(z, vf_set1(s->plane_near)), far);
+    const vf far = vf_set1(hf_gaussian(s)->plane_far);
+    z = vf_min(vf_max(z, vf_set1(hf_gaussian(s)->plane_near)), far);
     return faithful ? vf_div(vf_mul(vf_set1(2), z), vf_add(z, far)) : vf_div(z, far);
 }
 
@@ -134,7 +135,7 @@ HF_INLINE vf blend_vf(const struct hf_setup *s, const enum hf_depth_form form, c
 {
     vm none;
     const vf z = coc_variable(s, form, d, px, py, &none);
-    const vf distance = vf_abs(vf_sub(gaussian_depth_vf(s, faithful, z), vf_set1(s->focus_d)));
+    const vf distance = vf_abs(vf_sub(gaussian_depth_vf(s, faithful, z), vf_set1(hf_gaussian(s)->focus_d)));
     vf t = vf_min(vf_mul(vf_set1(3), distance), vf_set1(1));
     if (s->smoothstep)
         t = coc_shape(t);
@@ -191,7 +192,7 @@ static void blend_coc(const struct hf_frame *f, int x, int y, int n, float *cons
 
 static void blend_row_simd(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts)
 {
-    if (!f->s->by_depth) {
+    if (!hf_gaussian(f->s)->by_depth) {
         blend_coc(f, x, y, n, out, counts);
         return;
     }

@@ -13,8 +13,9 @@
 // d = sat(z / f), faithfully 2n / (f + n - zw (f - n)) with window depth zw = f (z - n) / (z (f - n)) in 0..1. With
 // z' = z clamped to n..f that is 2 z' / (z' + f), which does not cancel. n = 1 and f = 100 n but for the clip planes of
 // the depth. Given a range, a lens or radii: strength * max(n, f) of the gather's near and far CoC.
-#include "frame/context.h"
-#include "gaussian/wide.h"
+#include "frame/plan.h"
+#include "gaussian/kernels.h"
+#include "params.h"
 
 // Sweep 2 has no passes, but its cells are the tiles. With sigma, whole columns and then whole rows are blurred in
 // between.
@@ -22,15 +23,16 @@ enum { WIDE_COLUMNS = 3, WIDE_ROWS, TILES };
 
 #define B(name) (1u << HF_GAUSSIAN_##name)
 
+// Reach of the iterations down the columns; and a pixel.
+enum { HALO_COLUMNS = 1, HALO_UPSAMPLE };
+
 static const struct hf_pass passes[] = {
-    {"Depth", HF_KERNEL_GAUSSIAN_DEPTH, .sweep = 1, .ns = 1.7f},
-    {"Horizontal blur", HF_KERNEL_GAUSSIAN_ROWS, .writes = B(ROWS), .sweep = 1, .ns = 4},
-    {"Wide vertical blur", HF_KERNEL_WIDE_COLUMNS, .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_COLUMNS,
-     .ns = 15},
-    {"Wide horizontal blur", HF_KERNEL_WIDE_ROWS, .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_ROWS, .ns = 14},
-    {"Vertical blur", HF_KERNEL_GAUSSIAN_COLUMNS, .around = B(ROWS), .writes = B(BLUR), .halo = HF_HALO_COLUMNS,
-     .sweep = TILES, .ns = 4},
-    {"Merge", HF_KERNEL_GAUSSIAN_MERGE, .around = B(BLUR), .halo = HF_HALO_UPSAMPLE, .sweep = TILES, .ns = 5},
+    {"Depth", .sweep = 1, .ns = 1.7f},
+    {"Horizontal blur", .writes = B(ROWS), .sweep = 1, .ns = 4},
+    {"Wide vertical blur", .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_COLUMNS, .ns = 15},
+    {"Wide horizontal blur", .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_ROWS, .ns = 14},
+    {"Vertical blur", .around = B(ROWS), .writes = B(BLUR), .halo = HALO_COLUMNS, .sweep = TILES, .ns = 4},
+    {"Merge", .around = B(BLUR), .halo = HALO_UPSAMPLE, .sweep = TILES, .ns = 5},
 };
 
 static const struct hf_buf_def bufs[HF_GAUSSIAN_BUFS] = {
@@ -44,13 +46,13 @@ static int channels(const struct hf_setup *s, int buf)
     return s->channels;
 }
 
-static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
+static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
     const int one = s->resolution;  // a pixel of a smaller buffer, in half-resolution pixels
     switch (halo) {
-    case HF_HALO_COLUMNS:
+    case HALO_COLUMNS:
         return (struct hf_reach){0, hf_gaussian_halo(s)};
-    case HF_HALO_UPSAMPLE:
+    case HALO_UPSAMPLE:
         return (struct hf_reach){one, one};
     default:
         return (struct hf_reach){0, 0};
@@ -75,7 +77,7 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 
 static int runs(const struct hf_setup *s, int pass)
 {
-    return s->sigma > 0 || (passes[pass].sweep != WIDE_COLUMNS && passes[pass].sweep != WIDE_ROWS);
+    return hf_gaussian(s)->sigma > 0 || (passes[pass].sweep != WIDE_COLUMNS && passes[pass].sweep != WIDE_ROWS);
 }
 
 // Strips of 32 columns of the working buffer, and of 16 rows.
@@ -94,9 +96,63 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
     const size_t rows = HF_GAUSSIAN_LINES * hf_gaussian_line_floats(s, p->cell_width[1]);
     const size_t columns = (2 * (size_t)p->cell_height[2] + 2 * (size_t)hf_gaussian_reach(s) + 16) * HF_GAUSSIAN_STRIP;
-    const size_t wide = s->sigma > 0 ? hf_wide_floats(hf_max(s->width, s->height)) : 0;
+    const size_t wide = hf_gaussian(s)->sigma > 0 ? hf_wide_floats(hf_max(s->width, s->height)) : 0;
     const size_t most = rows > columns ? rows : columns;
     return most > wide ? most : wide;
+}
+
+static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
+{
+    struct hf_gaussian *g = own;
+    *g = (struct hf_gaussian){.iterations = p->sigma > 0 ? 0 : p->iterations, .sigma = p->sigma};
+    if (s->resolution == HF_RESOLUTION_FULL && g->iterations == 0 && g->sigma == 0)
+        s->blend = 0;
+    g->by_depth = hf_blends_by_depth(p, depth->type);
+    if (!g->by_depth)
+        return;
+    hf_depth_planes(depth, &g->plane_near, &g->plane_far);
+    if (!s->faithful)
+        g->plane_near = 0;  // nothing but the far plane counts
+    g->focus_d = hf_gaussian_depth(g, s->faithful, hf_focus_of(p, depth, s->width, s->height));
+}
+
+static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
+{
+    numbers[0] = (int)s->resolution;
+    numbers[1] = hf_gaussian(s)->iterations;
+    numbers[2] = hf_gaussian(s)->sigma > 0;
+    *reach = 0;
+    return 3;
+}
+
+static int cheaper(struct hf_params *p, float radius, int step)
+{
+    (void)radius;
+    if ((int)p->resolution + step > HF_RESOLUTION_QUARTER)
+        return 0;
+    p->resolution = (enum hf_resolution)((int)p->resolution + step);
+    return 1;
+}
+
+HF_CHOOSE_KERNELS(hf_gaussian_kernels)
+
+void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
+{
+    *k = (struct hf_gaussian_kernels){
+        .passes = {{hf_gaussian_depth_pass, hf_gaussian_rows_pass, hf_wide_columns_pass, hf_wide_rows_pass,
+                    hf_gaussian_columns_pass, hf_gaussian_merge_pass}},
+        .blend_row = hf_blend_row_c,
+        .lerp_row = hf_lerp_row_c,
+        .line = hf_gaussian_line_c,
+        .columns = hf_gaussian_columns_c,
+        .up = hf_gaussian_up_c,
+        .wide_block = hf_wide_block_c,
+    };
+}
+
+static void kernels(void *table, enum hf_isa isa, int fused)
+{
+    hf_gaussian_kernels_init(table, isa, fused);
 }
 
 const struct hf_engine_def hf_gaussian_engine = {
@@ -107,6 +163,10 @@ const struct hf_engine_def hf_gaussian_engine = {
     .across = 1 << WIDE_COLUMNS | 1 << WIDE_ROWS,
     .bufs = bufs,
     .buf_count = HF_GAUSSIAN_BUFS,
+    .kernels_bytes = sizeof(struct hf_gaussian_kernels),
+    .kernels = kernels,
+    .own_bytes = sizeof(struct hf_gaussian),
+    .resolve = resolve,
     .channels = channels,
     .halo = halo,
     .spread = spread,
@@ -114,4 +174,6 @@ const struct hf_engine_def hf_gaussian_engine = {
     .work = work,
     .runs = runs,
     .cell = cell,
+    .cost = cost,
+    .cheaper = cheaper,
 };

@@ -14,16 +14,36 @@ enum {
 // Columns of a strip that is taken through all iterations while it is in the first-level cache.
 enum { HF_GAUSSIAN_STRIP = 32 };
 
+struct hf_gaussian {
+    int iterations;
+    float sigma;                           // full-resolution pixels; 0: iterations
+    int by_depth;                          // blend by the distance in depth from the focus
+    float plane_near, plane_far, focus_d;  // see hf_gaussian_depth
+};
+
+static inline const struct hf_gaussian *hf_gaussian(const struct hf_setup *s)
+{
+    return s->own;
+}
+
+// What is compared: z over the far plane, or as the source has it.
+static inline float hf_gaussian_depth(const struct hf_gaussian *g, int faithful, float z)
+{
+    z = z > g->plane_near ? z : g->plane_near;
+    z = z < g->plane_far ? z : g->plane_far;
+    return faithful ? (2 * z) / (z + g->plane_far) : z / g->plane_far;
+}
+
 // Pixels that the iterations reach to either side in the working buffer.
 static inline int hf_gaussian_reach(const struct hf_setup *s)
 {
-    return 2 * s->iterations;
+    return 2 * hf_gaussian(s)->iterations;
 }
 
 // The same in half-resolution pixels.
 static inline int hf_gaussian_halo(const struct hf_setup *s)
 {
-    return s->iterations << s->resolution;
+    return hf_gaussian(s)->iterations << s->resolution;
 }
 
 // Floats of one line of scratch of the first sweep: a chunk's row and the reach to either side.

@@ -11,7 +11,7 @@
 #include <math.h>
 
 #include "pixel/pass_c.h"
-#include "gaussian/wide.h"
+#include "gaussian/kernels.h"
 
 struct hf_wide hf_wide_of(double variance)
 {
@@ -67,7 +67,7 @@ static struct hf_wide wide_along(const struct hf_setup *s, double sigma)
 // Whole columns.
 void hf_wide_columns_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_wide wide = wide_along(f->s, f->s->sigma);
+    const struct hf_wide wide = wide_along(f->s, hf_gaussian(f->s)->sigma);
     const struct hf_rect w = hf_gaussian_working(f->s, r);
     const struct hf_buf *b = &f->buf[HF_GAUSSIAN_ROWS];
     const int n = w.y1;
@@ -78,7 +78,7 @@ void hf_wide_columns_pass(const struct hf_frame *f, struct hf_rect r)
             memset(block, 0, sizeof(float) * HF_WIDE_LANES * (size_t)n);
             for (int y = 0; y < n; y++)
                 memcpy(block + HF_WIDE_LANES * (size_t)y, hf_at(b, c, x, y), bytes);
-            f->k->wide_block(block, n, &wide, work);
+            hf_gaussian_kernels(f)->wide_block(block, n, &wide, work);
             for (int y = 0; y < n; y++)
                 memcpy(hf_at(b, c, x, y), block + HF_WIDE_LANES * (size_t)y, bytes);
         }
@@ -87,7 +87,7 @@ void hf_wide_columns_pass(const struct hf_frame *f, struct hf_rect r)
 // Whole rows, turned into columns.
 void hf_wide_rows_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_wide wide = wide_along(f->s, f->s->sigma / f->s->pixel_aspect);
+    const struct hf_wide wide = wide_along(f->s, hf_gaussian(f->s)->sigma / f->s->pixel_aspect);
     const struct hf_rect w = hf_gaussian_working(f->s, r);
     const struct hf_buf *b = &f->buf[HF_GAUSSIAN_ROWS];
     const int n = w.x1;
@@ -98,7 +98,7 @@ void hf_wide_rows_pass(const struct hf_frame *f, struct hf_rect r)
             for (int x = 0; x < n; x++)
                 for (int i = 0; i < HF_WIDE_LANES; i++)
                     block[x * HF_WIDE_LANES + i] = i < rows ? *hf_at(b, c, x, y + i) : 0;
-            f->k->wide_block(block, n, &wide, work);
+            hf_gaussian_kernels(f)->wide_block(block, n, &wide, work);
             for (int i = 0; i < rows; i++) {
                 float *row = hf_at(b, c, 0, y + i);
                 for (int x = 0; x < n; x++)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Boxes of any size on vectors of doubles, one column a lane. Nothing is fused, and the order is that of the C.
-#include "gaussian/wide.h"
+#include "gaussian/kernels.h"
+#include "simd/simd.h"
 
 HF_INLINE void wide_suffixes(const float *in, int n, int width, double *suffix)
 {

@@ -4,7 +4,7 @@
 // none is made twice.
 #include <string.h>
 
-#include "hexagon/hexagon.h"
+#include "hexagon/kernels.h"
 
 // What pass 1 makes for a band: planes of rows, as far around the band's own as pass 2 reads.
 struct band {
@@ -20,7 +20,7 @@ static int scale_of(const struct hf_setup *s)
 
 static struct band band_of(const struct hf_setup *s, int width)
 {
-    const struct hf_hexagon *h = s->tables;
+    const struct hf_hexagon *h = hf_hexagon(s);
     const int scale = scale_of(s), left = (h->left * scale + 15) & ~15, right = (h->right * scale + 15) & ~15;
     return (struct band){.stride = left + ((width * scale + 30) & ~15) + right + HF_PAD,
                          .rows = (h->above + HF_HEXAGON_BAND + h->below) * scale,
@@ -38,7 +38,7 @@ static void place(struct hf_frame *f, struct band *b, int x, int y)
 {
     static const enum hf_hexagon_made made[2][3] = {{HF_HEXAGON_NEAR_U, HF_HEXAGON_NEAR_B, HF_HEXAGON_NEAR_W},
                                                     {HF_HEXAGON_FAR_U, HF_HEXAGON_FAR_B}};
-    const struct hf_hexagon *h = f->s->tables;
+    const struct hf_hexagon *h = hf_hexagon(f->s);
     const int scale = scale_of(f->s);
     float *memory = b->memory + b->left - (x * scale & ~15) - (y - h->above) * scale * b->stride;
     b->planes = 0;
@@ -76,7 +76,7 @@ static void blur(const struct hf_frame *frame, struct hf_rect r, unsigned field)
 {
     struct hf_frame f = *frame;
     const struct hf_setup *s = f.s;
-    const struct hf_hexagon *h = s->tables;
+    const struct hf_hexagon *h = hf_hexagon(s);
     struct band b = band_of(s, r.x1 - r.x0);
     const int scale = scale_of(s), height = scale == 2 ? s->height : s->half_height;
     b.memory = f.work;
@@ -91,9 +91,9 @@ static void blur(const struct hf_frame *frame, struct hf_rect r, unsigned field)
         make.y0 = make.y1;
         make.y1 = hf_min(out.y1 + h->below, s->half_height);
         place(&f, &b, r.x0, y);
-        f.k->pass[HF_KERNEL_HEXAGON_1](&f, make);
+        hf_hexagon_kernels(&f)->first(&f, make);
         extend(&f, &b, hf_hexagon_rect(s, make), want, height);
-        f.k->pass[HF_KERNEL_HEXAGON_2](&f, out);
+        hf_hexagon_kernels(&f)->second(&f, out);
         for (int i = 0; i < b.planes; i++) {
             float *plane = b.memory + i * b.rows * b.stride;
             const ptrdiff_t by = HF_HEXAGON_BAND * scale;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels of the hexagon engine in plain C; what they compute is said in hexagon.h.
-#include "hexagon/hexagon.h"
+#include "hexagon/kernels.h"
 
 // ---- Load ----
 
@@ -95,7 +95,7 @@ static struct limit limit_of(float p)
 static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y,
                             const struct limit *limit)
 {
-    const struct hf_hexagon_line *l = &((const struct hf_hexagon *)f->s->tables)->line[line];
+    const struct hf_hexagon_line *l = &hf_hexagon(f->s)->line[line];
     struct sums sum = {{0}, 0, 0};
     for (const struct hf_hexagon_tap *t = l->taps; t < l->taps + l->count; t++) {
         const int u = x + t->dx, v = y + t->dy;

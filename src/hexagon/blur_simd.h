@@ -9,7 +9,8 @@
 // looked at first: no tap is read that none of them reaches, and those that all of them reach are plain products, four
 // where there would be ten operations. Skipped taps would add nothing and full ones have the same weight either way,
 // and each pixel's sums keep their order, so no bit depends on where a block lies.
-#include "hexagon/hexagon.h"
+#include "hexagon/kernels.h"
+#include "pixel/coc_vf.h"
 
 #if defined __aarch64__
 enum { HEX_REGISTERS = 32 };
@@ -222,7 +223,7 @@ HF_INLINE void hex_clear(const struct hf_buf *out, struct hf_rect b, const int c
 HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int channels,
                           const enum hex_weights weights, const int rows)
 {
-    const struct hf_hexagon *h = f->s->tables;
+    const struct hf_hexagon *h = hf_hexagon(f->s);
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_NEAR);
     const int below = hf_max(h->line[0].y1, h->line[1].y1);
     const struct hex_run up = hex_run(&h->line[0], rows, hex_range(&in, &h->line[0], b));
@@ -250,7 +251,7 @@ HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int 
 
 HF_INLINE void hex_near_2(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
-    const struct hf_hexagon *h = f->s->tables;
+    const struct hf_hexagon *h = hf_hexagon(f->s);
     const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(f, HF_NEAR, 0), hf_hexagon_field_2(f, HF_NEAR, 1)};
     const struct hex_run left = hex_run(&h->line[1], rows, hex_range(&in[0], &h->line[1], b));
     const struct hex_run right = hex_run(&h->line[2], rows, hex_range(&in[1], &h->line[2], b));
@@ -294,7 +295,7 @@ struct hex_far {
 HF_INLINE struct hex_far hex_far(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, float least,
                                  struct hf_rect b, const int rows)
 {
-    const struct hf_hexagon_line *l = &((const struct hf_hexagon *)f->s->tables)->line[line];
+    const struct hf_hexagon_line *l = &hf_hexagon(f->s)->line[line];
     const struct hex_range r = hex_range(in, l, b);
     // Clearly below 2p, where limit - slope q is not less than 1 however it is rounded.
     return (struct hex_far){*in, hex_run(l, rows, r), !(r.most <= 1.9999f * least)};
@@ -338,7 +339,7 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
 {
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     const struct hf_buf *up_out = hf_hexagon_made(f, HF_HEXAGON_FAR_U), *both = hf_hexagon_made(f, HF_HEXAGON_FAR_B);
-    const struct hf_hexagon *h = f->s->tables;
+    const struct hf_hexagon *h = hf_hexagon(f->s);
     const int below = hf_max(h->line[0].y1, h->line[1].y1);
     const float least = hex_least_far(&in, b);
     if (least == FLT_MAX) {
@@ -417,7 +418,7 @@ HF_INLINE int hex_is_shared(const struct hf_hexagon *h)
 HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect r, const int second, const int channels)
 {
     const struct hf_rect p = hf_hexagon_rect(f->s, r);
-    const int shared = hex_is_shared(f->s->tables);
+    const int shared = hex_is_shared(hf_hexagon(f->s));
     for (int y = p.y0; y < p.y1; y += HEX_HEIGHT)
         for (int x = p.x0; x < p.x1; x = (x + HEX_WIDTH) & ~(HEX_WIDTH - 1)) {
             const struct hf_rect b = {x, y, hf_min((x + HEX_WIDTH) & ~(HEX_WIDTH - 1), p.x1),

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hexagon engine on vectors: what comes before its two passes, and after.
+#include "hexagon/kernels.h"
+#include "pixel/coc_vf.h"
 
 // ---- Load ----
 

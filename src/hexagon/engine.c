@@ -4,9 +4,8 @@
 // three.
 #include <math.h>
 
-#include "frame/context.h"
-#include "hexagon/hexagon.h"
 #include "frame/plan.h"
+#include "hexagon/kernels.h"
 
 #define FRAME(name) (1u << HF_HEXAGON_##name)
 #define MADE(name)                                                                                                     \
@@ -14,14 +13,16 @@
 #define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
 #define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
 
-static const struct hf_pass passes[] = {
-    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1, .ns = 3},
-    {"Load", HF_KERNEL_HEXAGON_LOAD, .writes = INPUT, .sweep = 1, .ns = 8},
-    {"Passes 1 and 2", HF_KERNEL_HEXAGON_BLUR, .around = INPUT, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR),
-     .halo = HF_HALO_RADIUS, .sweep = 2, .ns = 40},
-    {"Composite", HF_KERNEL_HEXAGON_COMPOSITE, .reads = FRAME(WEIGHT),
-     .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2), .halo = HF_HALO_UPSAMPLE, .sweep = 2,
-     .ns = 9},
+// The largest CoC radius, twice; and a pixel.
+enum { HALO_RADIUS = 1, HALO_UPSAMPLE };
+
+static const struct hf_pass passes[HF_HEXAGON_PASSES] = {
+    {"CoC generation", .sweep = 1, .ns = 3},
+    {"Load", .writes = INPUT, .sweep = 1, .ns = 8},
+    {"Passes 1 and 2", .around = INPUT, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR), .halo = HALO_RADIUS,
+     .sweep = 2, .ns = 40},
+    {"Composite", .reads = FRAME(WEIGHT), .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2),
+     .halo = HALO_UPSAMPLE, .sweep = 2, .ns = 9},
 };
 
 #define FULL .x = 1, .y = 1
@@ -77,8 +78,18 @@ static int tap_count(const struct hf_setup *s, float radius)
     return (int)ceil((working(s, radius) + 4 + 2 * s->pixel_aspect) / step_of(s));
 }
 
-static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
+static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
+    struct hf_hexagon *h = own;
+    (void)depth;
+    h->ready = h->reach_x = h->reach_y = 0;
+    h->rotation = p->blade_rotation;
+    s->uniform = p->uniform;
+}
+
+static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
+{
+    struct hf_hexagon *h = own;
     (void)p;
     // Below this, weights and colours times radii would be denormal, and a pixel's soft edge has no slope.
     s->sharp_radius = 0x1p-40f;
@@ -86,18 +97,27 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
     const size_t n = (size_t)tap_count(s, s->max_radius), taps = 4 * n + 1;
     const size_t two = taps + n + 1, four = taps + 3 * (n + 1);
     const size_t line = taps * sizeof(struct hf_hexagon_tap) + (taps + two + four) * sizeof(struct hf_hexagon_step);
-    const int err = hf_block_grow(&c->tables, sizeof(struct hf_hexagon) + 3 * line, &c->mem);
+    const int err = hf_block_grow(&h->block, 3 * line, mem);
     if (err)
         return err;
-    struct hf_hexagon *h = s->tables = c->tables.data;
-    *h = (struct hf_hexagon){0};
-    struct hf_hexagon_step *step = (struct hf_hexagon_step *)(h + 1);
+    h->ready = 1;
+    struct hf_hexagon_step *step = h->block.data;
     for (int i = 0; i < 3; i++, step += taps + two + four)
         h->line[i] =
             (struct hf_hexagon_line){.one.step = step, .two.step = step + taps, .four.step = step + taps + two};
     for (int i = 0; i < 3; i++)
         h->line[i].taps = (struct hf_hexagon_tap *)step + i * taps;
     return HF_OK;
+}
+
+static void release(void *own, const struct hf_mem *mem)
+{
+    hf_block_free(&((struct hf_hexagon *)own)->block, mem);
+}
+
+static size_t bytes(const void *own)
+{
+    return ((const struct hf_hexagon *)own)->block.size;
 }
 
 // A line's direction in 2^-40 of a pixel: distances along it are exact, so that what comes first is the same from
@@ -217,14 +237,14 @@ static int half_resolution(const struct hf_setup *s, int working)
     return s->resolution == HF_RESOLUTION_HALF ? working : (working + 1) / 2;
 }
 
-static void measure(struct hf_setup *s, const struct hf_counts *found)
+static void measure(void *own, const struct hf_setup *s, const struct hf_counts *found)
 {
-    struct hf_hexagon *h = s->tables;
+    struct hf_hexagon *h = own;
     const float radius = fmaxf(-found->radius_min, found->radius_max);
     int x = 0, y = 0;
     for (int i = 0; i < 3; i++) {
         struct hf_hexagon_line *l = &h->line[i];
-        const double angle = (s->rotation + (i == 0 ? 0 : i == 1 ? 240 : 120)) * (M_PI / 180);
+        const double angle = (h->rotation + (i == 0 ? 0 : i == 1 ? 240 : 120)) * (M_PI / 180);
         const double ux = sin(angle), uy = -cos(angle);
         const struct direction d = {llround(ux * s->pixel_aspect * 0x1p40), llround(uy * 0x1p40)};
         make_line(s, l, &d, ux, uy, radius);
@@ -237,20 +257,20 @@ static void measure(struct hf_setup *s, const struct hf_counts *found)
         y = hf_max(y, hf_max(-l->y0, l->y1));
     }
     const struct hf_hexagon_line *v = &h->line[1], *w = &h->line[2];
-    s->reach_x = half_resolution(s, x);
-    s->reach_y = half_resolution(s, y);
+    h->reach_x = half_resolution(s, x);
+    h->reach_y = half_resolution(s, y);
     h->left = half_resolution(s, -hf_min(v->x0, w->x0));
     h->right = half_resolution(s, hf_max(v->x1, w->x1));
     h->above = half_resolution(s, -hf_min(v->y0, w->y0));
     h->below = half_resolution(s, hf_max(v->y1, w->y1));
 }
 
-static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
+static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
     const int upsample = s->resolution == HF_RESOLUTION_HALF;
-    if (halo == HF_HALO_RADIUS)
-        return (struct hf_reach){2 * s->reach_x, 2 * s->reach_y};
-    return halo == HF_HALO_UPSAMPLE ? (struct hf_reach){upsample, upsample} : (struct hf_reach){0, 0};
+    if (halo == HALO_RADIUS)
+        return (struct hf_reach){2 * hf_hexagon(s)->reach_x, 2 * hf_hexagon(s)->reach_y};
+    return halo == HALO_UPSAMPLE ? (struct hf_reach){upsample, upsample} : (struct hf_reach){0, 0};
 }
 
 // A far pixel changes itself alone.
@@ -270,7 +290,7 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 // A row of radii, or a band. What is made is a pixel wider on either side where it is sampled up.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    const size_t band = s->tables ? hf_hexagon_band_floats(s, p->cell_width[2] + 2) : 0;
+    const size_t band = hf_hexagon(s)->ready ? hf_hexagon_band_floats(s, p->cell_width[2] + 2) : 0;
     return band > p->line_floats ? band : p->line_floats;
 }
 
@@ -278,19 +298,58 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     (void)sweep;
-    *width = hf_max(hf_min(*width, 192), (4 * s->reach_x + 15) & ~15);
-    *height = hf_max(*height, 4 * s->reach_y);
+    *width = hf_max(hf_min(*width, 192), (4 * hf_hexagon(s)->reach_x + 15) & ~15);
+    *height = hf_max(*height, 4 * hf_hexagon(s)->reach_y);
+}
+
+static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
+{
+    numbers[0] = (int)s->resolution;
+    numbers[1] = s->uniform;
+    *reach = hf_max(hf_hexagon(s)->reach_x, hf_hexagon(s)->reach_y);
+    return 2;
+}
+
+static int cheaper(struct hf_params *p, float radius, int step)
+{
+    (void)radius;
+    if (step > 1 || p->resolution != HF_RESOLUTION_FULL)
+        return 0;
+    p->resolution = HF_RESOLUTION_HALF;
+    return 1;
+}
+
+HF_CHOOSE_KERNELS(hf_hexagon_kernels)
+
+void hf_hexagon_kernels_c(struct hf_hexagon_kernels *k)
+{
+    *k = (struct hf_hexagon_kernels){
+        .passes = {{hf_radius_pass, hf_hexagon_load_c, hf_hexagon_blur_pass, hf_hexagon_composite_c}},
+        .first = hf_hexagon_1_c,
+        .second = hf_hexagon_2_c,
+    };
+}
+
+static void kernels(void *table, enum hf_isa isa, int fused)
+{
+    hf_hexagon_kernels_init(table, isa, fused);
 }
 
 const struct hf_engine_def hf_hexagon_engine = {
     .name = "hexagon",
     .passes = passes,
-    .pass_count = sizeof passes / sizeof *passes,
+    .pass_count = HF_HEXAGON_PASSES,
     .sweeps = 2,
     .bufs = bufs,
     .buf_count = HF_HEXAGON_BUF_COUNT,
     .measured = 1,
+    .kernels_bytes = sizeof(struct hf_hexagon_kernels),
+    .kernels = kernels,
+    .own_bytes = sizeof(struct hf_hexagon),
+    .resolve = resolve,
     .prepare = prepare,
+    .release = release,
+    .bytes = bytes,
     .measure = measure,
     .channels = channels,
     .halo = halo,
@@ -298,4 +357,7 @@ const struct hf_engine_def hf_hexagon_engine = {
     .reads = reads,
     .cell = cell,
     .work = work,
+    .cost = cost,
+    .cheaper = cheaper,
+    .gives_up = 1,
 };

@@ -22,7 +22,10 @@
 
 #include <float.h>
 
+#include "frame/engine.h"
 #include "pixel/pass_c.h"
+
+enum hf_hexagon_pass { HF_HEXAGON_COC, HF_HEXAGON_LOAD, HF_HEXAGON_BLUR, HF_HEXAGON_COMPOSITE, HF_HEXAGON_PASSES };
 
 // At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to
 // both, and each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
@@ -83,9 +86,18 @@ struct hf_hexagon_line {
 
 // Lines u, v, w, and how far pass 2 reads around a pixel what pass 1 made, half-resolution pixels.
 struct hf_hexagon {
+    int ready;       // prepared: the rest is valid
+    float rotation;  // degrees
     struct hf_hexagon_line line[3];
     int left, right, above, below;
+    int reach_x, reach_y;  // of one blur in this frame, half-resolution pixels, once its depth has been looked at
+    struct hf_block block;
 };
+
+static inline const struct hf_hexagon *hf_hexagon(const struct hf_setup *s)
+{
+    return s->own;
+}
 
 // Rows of a band, half-resolution pixels (hexagon_bands.c), and floats of scratch for bands of that width.
 enum { HF_HEXAGON_BAND = 8 };
@@ -159,7 +171,5 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 // their sum. A power of two, so that no bit changes. What rounds up beyond the largest number is that number.
 #define HEXAGON_SCALE 0x1p-10f
 #define HEXAGON_MOST (FLT_MAX * HEXAGON_SCALE)
-
-hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_composite_c;
 
 #endif

@@ -2,7 +2,7 @@
 // Rows of images in every format, in plain C: the specification of the vector versions.
 #include "pixel/format.h"
 
-#include "frame/pass.h"
+#include "pixel/kernels.h"
 
 static const uint8_t *row_of(const struct hf_image *m, int plane, int y)
 {
@@ -239,7 +239,7 @@ static void round_half_c(float *v, int n)
         v[i] = hf_half_unpack(hf_half_pack(v[i]));
 }
 
-void hf_format_kernels_c(struct hf_kernels *k)
+void hf_format_kernels_c(struct hf_pixel_kernels *k)
 {
     for (int i = 0; i < HF_FORMAT_COUNT; i++) {
         k->load[i] = load_row_c;

@@ -5,39 +5,15 @@
 #ifndef HF_PASS_C_H
 #define HF_PASS_C_H
 
-#include "frame/pass.h"
 #include "params.h"
+#include "pixel/kernels.h"
 
-hf_kernel hf_coc_c, hf_down_c, hf_max_x_c, hf_max_y_c, hf_blur_x_c, hf_blur_y_c, hf_gather_c, hf_fill_c, hf_composite_c;
 hf_coc_row hf_coc_row_c;
 hf_sharp_row hf_sharp_row_c;
-hf_kernel hf_radius_c;
+hf_kernel hf_radius_pass;
 hf_radius_row hf_radius_row_c;
-hf_kernel hf_gaussian_depth_pass, hf_gaussian_rows_pass, hf_gaussian_columns_pass, hf_gaussian_merge_pass;
-hf_blend_row hf_blend_row_c;
-hf_lerp_row hf_lerp_row_c;
-hf_gaussian_line hf_gaussian_line_c;
-hf_gaussian_columns hf_gaussian_columns_c;
-hf_gaussian_up hf_gaussian_up_c;
-hf_kernel hf_wide_columns_pass, hf_wide_rows_pass;
-hf_wide_block hf_wide_block_c;
 hf_zip_row hf_zip_row_c;
 hf_unzip_row hf_unzip_row_c;
-hf_kernel hf_scatter_prepare_c, hf_splat_far, hf_splat_near, hf_scatter_composite_c;
-hf_splat hf_splat_c;
-hf_splat_runs hf_splat_runs_c;
-hf_splat_taps hf_splat_taps_c;
-hf_source_weights hf_source_weights_c;
-hf_source_pictures hf_source_pictures_c;
-hf_list_row hf_list_row_c;
-hf_settle hf_settle_c;
-hf_quad_row hf_quad_row_c;
-hf_site_row hf_site_row_c;
-hf_tent_weights hf_tent_weights_c;
-hf_tent hf_tent_c;
-hf_mean_row hf_mean_row_c;
-hf_scatter_note hf_scatter_note_c;
-hf_scatter_blend hf_scatter_blend_c;
 
 // The variable that CoC is linear in at a pixel: z, -1/z with a lens, or the radius itself.
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);
@@ -52,6 +28,16 @@ static inline float hf_ramp(const struct hf_setup *s, float t)
 }
 
 float hf_round_coc(enum hf_storage storage, float t);
+
+// Load a row of the frame's colour: loaded, repaired where not finite, in chapter storage truncated.
+// Returns nothing; repaired samples are counted in counts when it is not NULL.
+void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                    struct hf_counts *counts);
+// The same for 2n pixels in order from pixel 2x on. Uses scratch rows 0 to 7.
+void hf_read_pixels(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
+// Store 2n pixels in order from pixel 2x of row y on, as the target's format wants them; what it clamps is counted.
+// alpha 0: in[3] is not there, and is 1 if the format has one. Uses scratch rows 0 to 7.
+void hf_write_pixels(const struct hf_frame *f, int x, int y, int n, const float *const in[4], int alpha);
 
 // Round n colours to what the storage holds when a pass writes them: channel 3 is alpha.
 static inline void hf_store_rgb(const struct hf_frame *f, float *const ch[4], int n)
@@ -75,11 +61,5 @@ static inline float hf_lerp(float a, float b, float t)
 {
     return t == 0 ? a : a + t * (b - a);
 }
-
-// Uniform cubic B-spline a quarter of a pixel off the centre: weights of the neighbour on that side, of the one on
-// the other side, and of the one behind the neighbour. The rest, 235/384, is the pixel's own.
-#define CUBIC_NEIGHBOUR (121 / 384.0f)
-#define CUBIC_OTHER (27 / 384.0f)
-#define CUBIC_BEHIND (1 / 384.0f)
 
 #endif

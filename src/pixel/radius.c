@@ -38,7 +38,7 @@ void hf_radius_row_c(const struct hf_frame *f, int x, int y, int n, float *out, 
     }
 }
 
-void hf_radius_c(const struct hf_frame *f, struct hf_rect r)
+void hf_radius_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, x1 = hf_min(2 * r.x1, f->s->width);
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {

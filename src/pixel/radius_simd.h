@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Signed CoC radii on vectors. As in CoC generation nothing is fused, so that what is sharp has one answer everywhere.
+#include "pixel/coc_vf.h"
 
 HF_INLINE vf radius_of_vf(const struct hf_setup *s, vf v)
 {

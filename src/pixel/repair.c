@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pixel/repair.h"
 
+#include "pixel/pass_c.h"
+
 static float repaired(const struct hf_image *m, int c, int x, int y)
 {
     double sum = 0;  // eight floats cannot overflow it

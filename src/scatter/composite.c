@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: what happens before and after the splats (splat.c).
-#include "scatter/scatter.h"
+#include "scatter/kernels.h"
 
 #include "pixel/pass_c.h"
 
@@ -27,7 +27,7 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
         hf_row(&f->buf[HF_BUF_SOURCE], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
         f->k->radius_row(f, x0, y, n, radius, NULL);
-        f->k->scatter_note(radius, colour, f->s->channels, n, &f->counts->largest, &f->counts->transparent);
+        hf_scatter_kernels(f)->note(radius, colour, f->s->channels, n, &f->counts->largest, &f->counts->transparent);
     }
 }
 
@@ -68,11 +68,11 @@ static float composite_sample(float own, float show, float cover, int is_near, c
 
 void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
 {
-    const struct hf_scatter *t = row->setup->tables;
+    const struct hf_scatter *t = hf_scatter(row->setup);
     for (int x = 0; x < row->n; x++) {
         const float far[2] = {row->far ? row->far[x] : 0, row->far ? row->far_weight[x] : 0};
         const float near[2] = {row->near ? row->near[x] : 0, row->near ? row->near_weight[x] : 0};
-        const float r = row->radius[x], size = __builtin_fabsf(r), reach_x = size * t->aperture->key.scale_x;
+        const float r = row->radius[x], size = __builtin_fabsf(r), reach_x = size * t->aperture.key.scale_x;
         const float cover = r < 0 ? near[1] / inside(row->setup, reach_x, size, row->x + x, row->y) : near[1];
         out[x] = composite_sample(out[x], hf_own_part(t, size), cover, r < 0, far, near);
     }
@@ -81,7 +81,7 @@ void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const struct hf_scatter *t = s->tables;
+    const struct hf_scatter *t = hf_scatter(s);
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, s->width) - x0;
     const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y);
     float *out[4];
@@ -100,7 +100,7 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
             row.near_weight = hf_at(&f->buf[HF_BUF_NEAR_WEIGHT], group, x0, y);
             row.near = is_weight ? row.near_weight : hf_at(&f->buf[HF_BUF_NEAR_SUM], c, x0, y);
         }
-        f->k->scatter_blend(&row, out[c]);
+        hf_scatter_kernels(f)->blend(&row, out[c]);
     }
     hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)out, s->channels == 4);
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter's ends on vectors. Nothing is fused: this engine has the same bits everywhere.
+#include "pixel/pass_c.h"
+#include "scatter/kernels.h"
+#include "simd/simd.h"
 
 static void scatter_note_simd(const float *radius, float *const colour[4], int channels, int n, float *largest,
                               uint64_t *transparent)
@@ -51,8 +54,8 @@ HF_INLINE vf scatter_inside(const struct hf_setup *s, vf reach_x, vf reach_y, vf
 static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
 {
     static const float steps[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const struct hf_scatter *t = row->setup->tables;
-    const vf zero = vf_zero(), one = vf_set1(1), scale_x = vf_set1(t->aperture->key.scale_x);
+    const struct hf_scatter *t = hf_scatter(row->setup);
+    const vf zero = vf_zero(), one = vf_set1(1), scale_x = vf_set1(t->aperture.key.scale_x);
     for (int x = 0; x < row->n; x += VF_N) {
         const vf own = vf_load(out + x), r = vf_load(row->radius + x), size = vf_abs(r);
         const vf fade = vf_mul(vf_sub(vf_set1(t->fade), size), vf_set1(t->fade_slope));

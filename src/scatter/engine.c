@@ -13,25 +13,27 @@
 // From radius 24 to 28 on (8 to 12 for files) at half the resolution, where neighbours have like radii: a quarter of
 // the sources and half the rows of each, an eighth in all (a sixteenth for files). Alpha that is not 1 doubles all of
 // it, chromatic aberration takes it three times. What lies far off a cell is looked at, not drawn.
-#include "scatter/scatter.h"
-
 #include <math.h>
 #include <string.h>
 
-#include "frame/context.h"
 #include "frame/plan.h"
+#include "pixel/pass_c.h"
+#include "scatter/kernels.h"
 
-#define B(name) HF_BIT(name)
+#define B(name) (1u << HF_BUF_##name)
 
-static const struct hf_pass passes[] = {
-    {"CoC generation", HF_KERNEL_RADIUS, .sweep = 1, .ns = 2.5f},
-    {"Prepare", HF_KERNEL_SCATTER_PREPARE, .writes = B(SOURCE) | B(RADIUS), .sweep = 1, .ns = 4},
-    {"Far splats", HF_KERNEL_SPLAT_FAR, .around = B(SOURCE) | B(RADIUS), .writes = B(FAR_SUM) | B(FAR_WEIGHT),
-     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_FAR, .ns = 75},
-    {"Near splats", HF_KERNEL_SPLAT_NEAR, .around = B(SOURCE) | B(RADIUS), .writes = B(NEAR_SUM) | B(NEAR_WEIGHT),
-     .halo = HF_HALO_RADIUS, .sweep = 2, .field = HF_NEAR, .ns = 75},
-    {"Composite", HF_KERNEL_SCATTER_COMPOSITE,
-     .reads = B(RADIUS) | B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .sweep = 2, .ns = 9},
+enum { HALO_RADIUS = 1 };  // the largest CoC radius
+
+enum { COC, PREPARE, FAR, NEAR, COMPOSITE, PASSES };
+
+static const struct hf_pass passes[PASSES] = {
+    {"CoC generation", .sweep = 1, .ns = 2.5f},
+    {"Prepare", .writes = B(SOURCE) | B(RADIUS), .sweep = 1, .ns = 4},
+    {"Far splats", .around = B(SOURCE) | B(RADIUS), .writes = B(FAR_SUM) | B(FAR_WEIGHT), .halo = HALO_RADIUS,
+     .sweep = 2, .field = HF_FAR, .ns = 75},
+    {"Near splats", .around = B(SOURCE) | B(RADIUS), .writes = B(NEAR_SUM) | B(NEAR_WEIGHT), .halo = HALO_RADIUS,
+     .sweep = 2, .field = HF_NEAR, .ns = 75},
+    {"Composite", .reads = B(RADIUS) | B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .sweep = 2, .ns = 9},
 };
 
 static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
@@ -44,15 +46,14 @@ static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
 };
 
 // Until the frame has been looked at, alpha may be anything: then it is a group of its own.
-static void set_groups(struct hf_scatter *t, const struct hf_setup *s)
+static void set_groups(struct hf_scatter *t, const struct hf_setup *s, float chromatic)
 {
-    const float chromatic = s->params->chromatic;
     t->groups = 0;
     for (int c = 0; c < s->channels; c++) {
         // Red is larger and blue smaller behind the focus, the other way in front of it.
         const float shift = c == 0 ? chromatic : c == 2 ? -chromatic : 0;
         struct hf_splat_group *g = &t->group[t->groups];
-        if (c == 0 || c == 3 || chromatic != 0 || t->aperture->planes == 3) {
+        if (c == 0 || c == 3 || chromatic != 0 || t->aperture.planes == 3) {
             *g = (struct hf_splat_group){.factor = {1 - shift, 1 + shift}};
             t->groups++;
         } else {
@@ -63,27 +64,34 @@ static void set_groups(struct hf_scatter *t, const struct hf_setup *s)
     }
 }
 
-static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_params *p)
+static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
-    int err = hf_block_grow(&c->tables, sizeof(struct hf_scatter), &c->mem);
-    struct hf_scatter *t = s->tables = c->tables.data;
-    if (err)
-        return err;
-    *t = (struct hf_scatter){.aperture = &c->aperture, .half_from = 24, .half_to = 28, .fade = 1.5f};
+    struct hf_scatter *t = own;
+    (void)depth;
+    t->ready = t->around_x = t->around_y = 0;
+    s->sharp_radius = 0.5f;
+    // Every pixel of an image is drawn: no larger than this.
+    if (p->aperture)
+        s->max_radius = fminf(s->max_radius, 256);
+}
+
+static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
+{
+    struct hf_scatter *t = own;
+    struct hf_aperture *aperture = &t->aperture;
+    *t = (struct hf_scatter){.aperture = *aperture, .half_from = 24, .half_to = 28, .fade = 1.5f};
     if (s->resolution == HF_RESOLUTION_HALF) {
         t->half_from = -1;
         t->half_to = 0;
         t->fade = 2.5f;
     }
     if (p->aperture) {
-        // Every pixel of an image is drawn: sooner at half the resolution, and no larger than this.
-        s->max_radius = fminf(s->max_radius, 256);
+        // Every pixel of an image is drawn: sooner at half the resolution.
         if (t->half_to > 0)
             t->half_from = 8, t->half_to = 12;
     }
     t->half_slope = 1 / (t->half_to - t->half_from);
     t->fade_slope = 1 / (t->fade - 0.5f);
-    s->sharp_radius = 0.5f;
     struct hf_aperture_key key;
     memset(&key, 0, sizeof key);
     const float largest = s->max_radius * (1 + fabsf(p->chromatic));
@@ -98,10 +106,21 @@ static int prepare(struct hf_context *c, struct hf_setup *s, const struct hf_par
     t->cat_eye = p->aperture ? 0 : p->cat_eye;
     t->corner = 1 / hypotf((float)s->width, (float)s->height);
     key.scale_x = 1 / (p->pixel_aspect * p->squeeze);
-    err = p->aperture ? hf_aperture_build_image(&c->aperture, &key, p->aperture, &c->mem)
-                      : hf_aperture_build(&c->aperture, &key, &c->mem);
-    set_groups(t, s);
+    const int err = p->aperture ? hf_aperture_build_image(aperture, &key, p->aperture, mem)
+                                : hf_aperture_build(aperture, &key, mem);
+    t->ready = !err;
+    set_groups(t, s, p->chromatic);
     return err;
+}
+
+static void release(void *own, const struct hf_mem *mem)
+{
+    hf_block_free(&((struct hf_scatter *)own)->aperture.block, mem);
+}
+
+static size_t bytes(const void *own)
+{
+    return ((const struct hf_scatter *)own)->aperture.block.size;
 }
 
 // How far the largest pictures of a field reach on each level.
@@ -118,33 +137,34 @@ static void set_reach(struct hf_scatter *t, int field)
         float factor = 0;
         for (int g = 0; g < t->groups; g++)
             factor = fmaxf(factor, t->group[g].factor[field]);
-        const struct hf_picture *p = &t->aperture->picture[hf_picture_number(r * factor) / t->aperture->steps + 1];
+        const struct hf_picture *p = &t->aperture.picture[hf_picture_number(r * factor) / t->aperture.steps + 1];
         t->reach_x[field][level] = p->reach_x;
         t->reach_y[field][level] = p->reach_y;
     }
 }
 
-static void measure(struct hf_setup *s, const struct hf_counts *found)
+static void measure(void *own, const struct hf_setup *s, const struct hf_counts *found)
 {
-    struct hf_scatter *t = s->tables;
+    struct hf_scatter *t = own;
+    (void)s;
     t->largest[0] = -found->radius_min;
     t->largest[1] = found->radius_max;
-    s->reach_x = s->reach_y = 0;
+    t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
         set_reach(t, field);
         // A level's own pixels, and one around it for the upsampling, one for the tent and one for its radii.
-        s->reach_x = hf_max(s->reach_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
-        s->reach_y = hf_max(s->reach_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
+        t->around_x = hf_max(t->around_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
+        t->around_y = hf_max(t->around_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
     }
 }
 
 // The sums' fixed point: shares of the brightest sample still leave room for all that may come together in a pixel.
-static void made(struct hf_setup *s, const struct hf_counts *found)
+static void made(void *own, const struct hf_setup *s, const struct hf_counts *found)
 {
-    struct hf_scatter *t = s->tables;
+    struct hf_scatter *t = own;
     int exponent;
     frexpf(found->largest, &exponent);
-    const int room = 62 - t->aperture->headroom - (t->ring > 0 ? 4 : 0) - (t->cat_eye > 0 ? 2 : 0);
+    const int room = 62 - t->aperture.headroom - (t->ring > 0 ? 4 : 0) - (t->cat_eye > 0 ? 2 : 0);
     for (int c = 0; c < 4; c++) {
         const int bits = c == 3 ? room - 1 : room - exponent;
         t->scale[c] = ldexp(1, bits);
@@ -158,25 +178,26 @@ static void made(struct hf_setup *s, const struct hf_counts *found)
 
 static int channels(const struct hf_setup *s, int b)
 {
-    const struct hf_scatter *t = s->tables;
+    const struct hf_scatter *t = hf_scatter(s);
     if (b == HF_BUF_RADIUS)
         return 1;
-    return b == HF_BUF_FAR_WEIGHT || b == HF_BUF_NEAR_WEIGHT ? (t ? t->groups : 1) : s->channels;
+    return b == HF_BUF_FAR_WEIGHT || b == HF_BUF_NEAR_WEIGHT ? (t->ready ? t->groups : 1) : s->channels;
 }
 
-static struct hf_reach halo(const struct hf_setup *s, enum hf_halo halo)
+static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
-    return halo == HF_HALO_RADIUS ? (struct hf_reach){s->reach_x, s->reach_y} : (struct hf_reach){0, 0};
+    const struct hf_scatter *t = hf_scatter(s);
+    return halo == HALO_RADIUS ? (struct hf_reach){t->around_x, t->around_y} : (struct hf_reach){0, 0};
 }
 
 // A far field shows only on pixels that are blurred themselves: far ones, or near ones that it shines through.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
 {
-    const struct hf_scatter *t = s->tables;
+    const struct hf_scatter *t = hf_scatter(s);
     (void)p;
     if (field == HF_FAR && t->largest[0] <= 0)
         return (struct hf_reach){0, 0};
-    return (struct hf_reach){s->reach_x, s->reach_y};
+    return (struct hf_reach){t->around_x, t->around_y};
 }
 
 // All of a source is made at once, whatever field it is for.
@@ -190,31 +211,82 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 // that are being drawn on, 32 bytes a pixel, to stay in the second level of the cache.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
-    const struct hf_scatter *t = s->tables;
-    const int enough = hf_min(12 * s->reach_y, (s->half_height + 1) / 2);
+    const struct hf_scatter *t = hf_scatter(s);
+    const int enough = hf_min(12 * t->around_y, (s->half_height + 1) / 2);
     (void)sweep;
     *height = hf_max(*height, hf_min(enough, 512));
-    for (int field = 0; t && field < 2; field++) {
+    for (int field = 0; t->ready && field < 2; field++) {
         const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8);  // bytes, of a half-resolution one
         if (t->reach_x[field][1] < 0)
-            *width = hf_min(*width, hf_max(hf_max(400000 / column, 4 * s->reach_x) & ~15, 64));
+            *width = hf_min(*width, hf_max(hf_max(400000 / column, 4 * t->around_x) & ~15, 64));
     }
 }
 
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    return s->tables ? hf_splat_work(s->tables, p->cell_width[2], p->cell_height[2]) : 0;
+    return hf_scatter(s)->ready ? hf_splat_work(hf_scatter(s), p->cell_width[2], p->cell_height[2]) : 0;
+}
+
+static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
+{
+    const struct hf_scatter *t = hf_scatter(s);
+    numbers[0] = (int)s->resolution;
+    *reach = hf_max(t->around_x, t->around_y);
+    return 1;
+}
+
+static int cheaper(struct hf_params *p, float radius, int step)
+{
+    (void)radius;
+    if (step > 1 || p->resolution != HF_RESOLUTION_FULL)
+        return 0;
+    p->resolution = HF_RESOLUTION_HALF;
+    return 1;
+}
+
+HF_CHOOSE_KERNELS(hf_scatter_kernels)
+
+void hf_scatter_kernels_c(struct hf_scatter_kernels *k)
+{
+    *k = (struct hf_scatter_kernels){
+        .passes = {{hf_radius_pass, hf_scatter_prepare_c, hf_splat_far, hf_splat_near, hf_scatter_composite_c}},
+        .splat = hf_splat_c,
+        .splat_runs = hf_splat_runs_c,
+        .splat_taps = hf_splat_taps_c,
+        .source_weights = hf_source_weights_c,
+        .source_pictures = hf_source_pictures_c,
+        .list_row = hf_list_row_c,
+        .settle = hf_settle_c,
+        .quad_row = hf_quad_row_c,
+        .site_row = hf_site_row_c,
+        .tent_weights = hf_tent_weights_c,
+        .tent = hf_tent_c,
+        .mean_row = hf_mean_row_c,
+        .note = hf_scatter_note_c,
+        .blend = hf_scatter_blend_c,
+    };
+}
+
+static void kernels(void *table, enum hf_isa isa, int fused)
+{
+    hf_scatter_kernels_init(table, isa, fused);
 }
 
 const struct hf_engine_def hf_scatter_engine = {
     .name = "scatter",
     .passes = passes,
-    .pass_count = sizeof passes / sizeof *passes,
+    .pass_count = PASSES,
     .sweeps = 2,
     .bufs = bufs,
     .buf_count = HF_SCATTER_BUFS,
     .measured = 1,
+    .kernels_bytes = sizeof(struct hf_scatter_kernels),
+    .kernels = kernels,
+    .own_bytes = sizeof(struct hf_scatter),
+    .resolve = resolve,
     .prepare = prepare,
+    .release = release,
+    .bytes = bytes,
     .measure = measure,
     .made = made,
     .channels = channels,
@@ -223,4 +295,7 @@ const struct hf_engine_def hf_scatter_engine = {
     .reads = reads,
     .cell = cell,
     .work = work,
+    .cost = cost,
+    .cheaper = cheaper,
+    .gives_up = 1,
 };

@@ -23,7 +23,8 @@ struct hf_splat_group {
 };
 
 struct hf_scatter {
-    const struct hf_aperture *aperture;
+    int ready;  // prepared: the rest is valid
+    struct hf_aperture aperture;
     int groups;
     struct hf_splat_group group[4];
     int group_of[4];   // of each channel
@@ -35,10 +36,16 @@ struct hf_scatter {
     float fade, fade_slope;            // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
     int exponent;                      // the brightest blurred sample is below 2^exponent
     int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
+    int around_x, around_y;            // of the frame, half-resolution pixels, once its depth has been looked at
     float ring, cat_eye;               // radii of the hole, and by which the second circle moves in the corners
     float corner;                      // 1 / the picture's diagonal, pixels
     double scale[4], unscale[4];       // from a sample's share to the integers of the sums, and back
 };
+
+static inline const struct hf_scatter *hf_scatter(const struct hf_setup *s)
+{
+    return s->own;
+}
 
 // What still shows of a pixel of radius r >= 0 itself: 1 for a sharp one.
 static inline float hf_own_part(const struct hf_scatter *t, float r)

@@ -43,24 +43,25 @@ void hf_list_row_c(struct hf_splats *list, const struct hf_source_row *row, int 
 // The pictures of a group's channel.
 static const struct hf_picture *pictures(const struct walk *w)
 {
-    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_aperture *a = &w->t->aperture;
     const int plane = a->planes == 3 && w->group->channel[0] < 3 ? w->group->channel[0] : a->planes == 3;
     return a->picture + plane * a->count;
 }
 
 void hf_flush_sources(struct walk *w)
 {
-    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_aperture *a = &w->t->aperture;
     const struct hf_splats *l = w->list;
     if (a->symmetric)
-        w->f->k->splat(&w->sums, a, l);
+        hf_scatter_kernels(w->f)->splat(&w->sums, a, l);
     for (int i = 0; !a->symmetric && i < l->count; i++) {
         const struct hf_picture *p = &pictures(w)[l->picture[i]];
         if (a->tap)
-            w->f->k->splat_taps(&w->sums, l->x[i] - p->reach_x, l->y[i] + p->top, a->tap + p->first, p->columns,
-                                p->rows, l->share[i]);
+            hf_scatter_kernels(w->f)->splat_taps(&w->sums, l->x[i] - p->reach_x, l->y[i] + p->top, a->tap + p->first,
+                                                 p->columns, p->rows, l->share[i]);
         else
-            w->f->k->splat_runs(&w->sums, l->x[i], l->y[i] + p->top, a->run + p->first, p->rows, l->share[i]);
+            hf_scatter_kernels(w->f)->splat_runs(&w->sums, l->x[i], l->y[i] + p->top, a->run + p->first, p->rows,
+                                                 l->share[i]);
     }
     w->list->count = 0;
 }
@@ -88,7 +89,7 @@ static void add_picture(struct walk *w, int x, int y, int number, const float co
 // sum of their weights.
 static float cut_picture(struct walk *w, const struct hf_picture *p, float r, float cx, float cy)
 {
-    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_aperture *a = &w->t->aperture;
     const float scale = 256 * a->key.scale_x;
     float area = 0;
     for (int i = 0; i < p->rows; i++) {
@@ -111,14 +112,14 @@ static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, c
 {
     int64_t share[4];
     set_share(w, share, colour, weight, part);
-    w->f->k->splat_runs(&w->sums, x, y + p->top, w->runs, p->rows, share);
+    hf_scatter_kernels(w->f)->splat_runs(&w->sums, x, y + p->top, w->runs, p->rows, share);
 }
 
 // The second circle moves off the lens's axis, towards the corner that the source is near.
 static void add_cat_eye(struct walk *w, int x, int y, float r, const float colour[3], float weight)
 {
     const struct hf_setup *s = w->f->s;
-    const struct hf_picture *picture = w->t->aperture->picture, *p = &picture[hf_picture_number(r)];
+    const struct hf_picture *picture = w->t->aperture.picture, *p = &picture[hf_picture_number(r)];
     const float step = w->level ? 2 : 1, toward = (w->field ? 1 : -1) * w->t->cat_eye * r;
     const float cx = toward * (2 * (((float)x + 0.5f) * step) - (float)s->width) * w->t->corner;
     const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
@@ -140,7 +141,7 @@ static void add_cat_eye(struct walk *w, int x, int y, float r, const float colou
 // A ring is its outline less its hole, which is the same shape.
 void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight)
 {
-    const struct hf_aperture *a = w->t->aperture;
+    const struct hf_aperture *a = &w->t->aperture;
     const struct hf_picture *picture = pictures(w);
     const int number = a->tap ? (hf_picture_number(r) + a->steps / 2) / a->steps : hf_picture_number(r);
     if (w->t->cat_eye > 0) {
@@ -162,12 +163,12 @@ void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3],
 void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to)
 {
     const struct hf_scatter *t = w->t;
-    if (!t->aperture->tap && t->ring <= 0 && t->cat_eye <= 0) {
+    if (!t->aperture.tap && t->ring <= 0 && t->cat_eye <= 0) {
         for (int at = from; at < to; at += HF_SPLATS) {
             const int end = hf_min(at + HF_SPLATS, to);
             if (w->list->count + end - at > HF_SPLATS)
                 hf_flush_sources(w);
-            w->f->k->list_row(w->list, row, at, end, t->aperture->inverse, t->scale);
+            hf_scatter_kernels(w->f)->list_row(w->list, row, at, end, t->aperture.inverse, t->scale);
         }
         return;
     }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: lists of sources on vectors. Nothing is fused: what is drawn has one answer everywhere.
+#include "pixel/pass_c.h"
+#include "scatter/kernels.h"
+#include "simd/simd.h"
 
 static void source_weights_simd(const struct hf_scatter *t, float sign, const float *radius,
                                 const float *const colour[3], int channels, int n, float *const out[4])

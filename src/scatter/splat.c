@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "pixel/pass_c.h"
-#include "scatter/scatter.h"
+#include "scatter/kernels.h"
 
 // Share of a run's end: j units of u where it begins and 256 - j one pixel on.
 static void add_end(int64_t *row, int x, int width, const uint64_t u[4], uint64_t first, uint64_t second)

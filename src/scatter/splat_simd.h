@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows
 // above and below a source have the same run: each product serves both.
+#include "pixel/pass_c.h"
+#include "scatter/kernels.h"
+#include "simd/simd.h"
 
 // Column of a run's end, in lanes. clip: it may lie outside the window; then it comes to lie in the margins, with
 // `more` pixels after it.

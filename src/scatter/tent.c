@@ -43,7 +43,7 @@ static void quad_row(struct walk *w, int q)
     const float *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * x0, hf_min(2 * q + 1, s->height - 1));
     float *out = w->quad[q & 3] + (x0 - w->tent_x0);
     const int odd_edge = 2 * x1 > s->width;
-    w->f->k->quad_row(a, b, n - odd_edge, sign, out);
+    hf_scatter_kernels(w->f)->quad_row(a, b, n - odd_edge, sign, out);
     if (odd_edge) {
         const float r[4] = {sign * a[2 * n - 2], sign * a[2 * n - 2], sign * b[2 * n - 2], sign * b[2 * n - 2]};
         out[n - 1] = quad_radius(r);
@@ -79,7 +79,7 @@ static void site_row(struct walk *w, int q)
         const int row = q + k - 1;
         quad[k] = row < 0 || row >= w->f->s->half_height ? w->nothing + HF_PAD : w->quad[row & 3];
     }
-    w->f->k->site_row(quad, n, out);
+    hf_scatter_kernels(w->f)->site_row(quad, n, out);
     out[-1] = out[0];
     out[n] = out[n - 1];
 }
@@ -144,7 +144,7 @@ static void tent_row(struct walk *w, int y)
 {
     const struct hf_tent_row t = tent_row_of(w, y);
     const int n = t.n, width = w->f->s->width;
-    w->lone[y & 3] = w->f->k->tent_weights(&t, 0);
+    w->lone[y & 3] = hf_scatter_kernels(w->f)->tent_weights(&t, 0);
     for (int c = 0; c < 4; c++) {
         float *even = t.pixel[0][c], *odd = t.pixel[1][c];
         if (c >= t.channels && c < 3)
@@ -155,7 +155,7 @@ static void tent_row(struct walk *w, int y)
             even[n] = odd[n - 1];
         if (2 * w->tent_x1 > width)
             odd[n - 1] = 0;
-        w->f->k->tent(even, odd, n, w->tent[y & 3][c]);
+        hf_scatter_kernels(w->f)->tent(even, odd, n, w->tent[y & 3][c]);
     }
 }
 
@@ -242,9 +242,9 @@ void hf_list_half(struct walk *w, int q)
             continue;
         for (int k = 0; k < 4; k++)
             tent[k] = (part[k] > 0 ? w->tent[row[k] & 3][c] : w->nothing) + x0 - w->tent_x0;
-        w->f->k->mean_row(tent, part, x1 - x0, w->mean[c]);
+        hf_scatter_kernels(w->f)->mean_row(tent, part, x1 - x0, w->mean[c]);
     }
-    w->f->k->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)w->mean[4]);
+    hf_scatter_kernels(w->f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)w->mean[4]);
     hf_list_sources(w, &r, 0, x1 - x0);
     hf_flush_sources(w);
     for (int k = 0; k < 4; k++)

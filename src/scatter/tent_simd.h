@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: the half-resolution means on vectors. Nothing is fused: what is alike has one answer everywhere.
+#include "pixel/pass_c.h"
+#include "scatter/kernels.h"
+#include "simd/simd.h"
 
 // Smallest and largest of the positive ones so far.
 HF_INLINE void tent_range(vf r, vf *least, vf *most)

@@ -23,8 +23,8 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y)
         if (c < w->group->channels)
             colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x0, y);
     }
-    f->k->source_weights(w->t, sign, r.radius, colour, w->group->channels, x1 - x0, row);
-    f->k->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
+    hf_scatter_kernels(f)->source_weights(w->t, sign, r.radius, colour, w->group->channels, x1 - x0, row);
+    hf_scatter_kernels(f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
     return r;
 }
 
@@ -116,8 +116,8 @@ static void settle(struct walk *w, const struct target *to, int y)
     float *out[4];
     for (int c = 0; c < 4; c++)
         out[c] = to->ch[c] ? to->ch[c] + (ptrdiff_t)(y - w->sums.y0) * to->stride : NULL;
-    w->f->k->settle(w->sums.lane + w->sums.row[y - w->sums.y0], w->sums.x1 - w->sums.x0, w->group->channels,
-                    w->t->unscale, out);
+    hf_scatter_kernels(w->f)->settle(w->sums.lane + w->sums.row[y - w->sums.y0], w->sums.x1 - w->sums.x0,
+                                     w->group->channels, w->t->unscale, out);
 }
 
 // All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
@@ -213,7 +213,7 @@ static void splat_group(struct walk *w, struct hf_rect r, int group, const struc
 
 static void splat_field(const struct hf_frame *f, struct hf_rect r, int field, int sum, int weight)
 {
-    struct walk w = {.f = f, .t = f->s->tables, .field = field};
+    struct walk w = {.f = f, .t = hf_scatter(f->s), .field = field};
     for (int group = 0; group < w.t->groups; group++)
         splat_group(&w, r, group, &f->buf[sum], &f->buf[weight]);
 }

@@ -5,7 +5,7 @@
 #define HF_WALK_H
 
 #include "pixel/pass_c.h"
-#include "scatter/scatter.h"
+#include "scatter/kernels.h"
 
 enum { TOGETHER = 4 };  // rows of full-resolution sources that are drawn at once
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the vector bodies share. This file and the *_simd.h bodies are compiled once per instruction set, over one of
-// the vec_*.h (see all_simd.h); HF_FUSED says whether multiply-add may be fused. Loops run in steps of VF_N lanes and
+// the vec_*.h, which HF_VEC names; HF_FUSED says whether multiply-add may be fused. Loops run in steps of VF_N lanes and
 // may compute and write past the end of a row: rows are padded by HF_PAD floats.
-#ifndef HF_PASS_SIMD_H
-#define HF_PASS_SIMD_H
+#ifndef HF_SIMD_H
+#define HF_SIMD_H
 
-#include "pixel/pass_c.h"
-#include "scatter/scatter.h"
+#include <stddef.h>
+#include <stdint.h>
+
+#include "simd/choose.h"
+#include HF_VEC
 
 #define HF_INLINE static inline __attribute__((always_inline))
 

@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 #include "support/check.h"
-#include "frame/pass.h"
+#include "hexagon/kernels.h"
 #include "params.h"
 
 enum { N = 1001 };
@@ -43,11 +43,12 @@ static void radii_of(const struct lens *l, enum hf_depth_type type, const float 
     p.display_width = l->width;
     char message[HF_MESSAGE];
     struct hf_setup s;
-    struct hf_kernels k;
+    struct hf_pixel_kernels k;
+    struct hf_hexagon own = {0};
     struct hf_counts counts = {0};
     CHECK_MSG(hf_setup_check(&image, &image, &d, &p, message) == HF_OK, "%s", message);
-    hf_setup_make(&s, &image, &image, &d, &p, NULL);
-    hf_kernels_init(&k, HF_ISA_SCALAR, 0);
+    hf_setup_make(&s, &image, &image, &d, &p, &own);
+    hf_pixel_kernels_init(&k, HF_ISA_SCALAR, 0);
     const struct hf_frame f = {.s = &s, .k = &k, .src = &image, .dst = &image, .depth = &d, .counts = &counts};
     k.radius_row(&f, 0, 0, N, out, &counts);
 }

@@ -35,13 +35,13 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void repeat(struct world *w, const struct test *t, const struct hf_kernels *k, int n)
+static void repeat(struct world *w, const struct test *t, const struct kernels *k, int n)
 {
     for (int i = 0; i < n; i++)
         t->call(w, k, ARENA_TEST, t->index);
 }
 
-static struct timing time_kernel(struct world *w, const struct test *t, const struct hf_kernels *k)
+static struct timing time_kernel(struct world *w, const struct test *t, const struct kernels *k)
 {
     world_reset(w, ARENA_TEST);
     // As many calls a sample as the clock needs to be exact; this is the warming up too.

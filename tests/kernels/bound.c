@@ -75,7 +75,7 @@ static double mirrored(const struct world *w, enum hf_buf_id b, int c, int x, in
 // Sum of |weight x value| over the lattice.
 static double lattice_sum(const struct world *w, enum hf_buf_id b, int c, int x, int y)
 {
-    const struct hf_taps *t = w->setup.taps;
+    const struct hf_taps *t = &w->gather.taps;
     double sum = 0;
     for (int k = 0; k < t->rows; k++)
         for (int i = t->first[k]; i < t->first[k + 1]; i++)
@@ -88,7 +88,7 @@ static double lattice_sum(const struct world *w, enum hf_buf_id b, int c, int x,
 // Sum of the magnitudes of all four neighbours of all taps of the per-pixel kernel.
 static double taps_sum(const struct world *w, enum hf_buf_id b, int c, int x, int y)
 {
-    const struct hf_taps *t = w->setup.taps;
+    const struct hf_taps *t = &w->gather.taps;
     const float scale = reference_at(w, HF_BUF_COC4, 1, x, y);
     double sum = 0;
     for (int i = 0; i < t->count; i++) {
@@ -103,8 +103,8 @@ static double taps_sum(const struct world *w, enum hf_buf_id b, int c, int x, in
 // addition per row. Karis: luminance 3, the weight 5, times the value 6 more.
 static double gather_roundings(const struct world *w)
 {
-    const struct hf_taps *t = w->setup.taps;
-    return 2 * t->rx + 2 * t->ry + 4 + (w->setup.karis ? 6 : 0);
+    const struct hf_taps *t = &w->gather.taps;
+    return 2 * t->rx + 2 * t->ry + 4 + (w->gather.karis ? 6 : 0);
 }
 
 // A quotient of sums: errors of both, and those of the division or of the inverse and the product with it.
@@ -121,7 +121,7 @@ static double bound_near(const struct world *w, int c, int x, int y, float want)
     const double k = gather_roundings(w) * FLT_EPSILON;
     if (!(reference_at(w, HF_BUF_BLUR, 0, x, y) > 0))
         return 0;  // a copy
-    if (!w->setup.karis)
+    if (!w->gather.karis)
         return k * lattice_sum(w, HF_BUF_COLOR4, c, x, y);
     const double divisor = lattice_sum(w, HF_BUF_WEIGHT, 0, x, y);
     return quotient_bound(k * lattice_sum(w, HF_BUF_COLORW4, c, x, y), k * divisor, divisor, fabs((double)want));
@@ -129,19 +129,19 @@ static double bound_near(const struct world *w, int c, int x, int y, float want)
 
 static double bound_far(const struct world *w, int c, int x, int y, float want)
 {
-    const enum hf_buf_id colour = w->setup.karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_buf_id weight = w->setup.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    const enum hf_buf_id colour = w->gather.karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_buf_id weight = w->gather.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
     if (!(reference_at(w, HF_BUF_COC4, 1, x, y) > 0))
         return 0;
     // Products of denormals are off by their own step.
-    const int n = w->setup.per_pixel_kernel ? 4 * w->setup.taps->count
-                                            : (2 * w->setup.taps->rx + 1) * (2 * w->setup.taps->ry + 1);
+    const int n = w->gather.per_pixel_kernel ? 4 * w->gather.taps.count
+                                             : (2 * w->gather.taps.rx + 1) * (2 * w->gather.taps.ry + 1);
     const double denormal = n * 0x1p-149;
     double k = gather_roundings(w) * FLT_EPSILON, sum, divisor, divisor_sum;
-    if (w->setup.per_pixel_kernel) {
+    if (w->gather.per_pixel_kernel) {
         // Three interpolations of 3 roundings each, the last of which sees the others' magnitudes: 6 of all four
         // neighbours. Then an addition per tap.
-        k = (6 + w->setup.taps->count + (w->setup.karis ? 6 : 0)) * FLT_EPSILON;
+        k = (6 + w->gather.taps.count + (w->gather.karis ? 6 : 0)) * FLT_EPSILON;
         sum = taps_sum(w, colour, c, x, y);
         divisor_sum = taps_sum(w, weight, 1, x, y);
         divisor = reference_at(w, HF_BUF_SUM, 1, x, y);
@@ -156,7 +156,7 @@ double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y
 {
     double bound = 0;
     // Luminance of colours of both signs can cancel, and then means nothing.
-    const int cancels = w->setup.karis && w->colours == COLOURS_MIXED;
+    const int cancels = w->gather.karis && w->colours == COLOURS_MIXED;
     if (b == HF_BUF_COLORFAR4)
         bound = bound_down(w, c, x, y);
     else if (b == HF_BUF_NEAR)
@@ -171,7 +171,7 @@ double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y
 // 16. The cubic: 10, 11 twice, 5.
 double bound_pixel(const struct world *w, int c, int x, int y, float want, float got)
 {
-    const int reach = w->setup.bicubic ? 2 : 1;
+    const int reach = w->gather.bicubic ? 2 : 1;
     double most = largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
     for (int v = y / 2 - reach; v <= y / 2 + reach && c < w->setup.channels; v++)
         for (int u = x / 2 - reach; u <= x / 2 + reach; u++) {
@@ -180,7 +180,7 @@ double bound_pixel(const struct world *w, int c, int x, int y, float want, float
             if (w->far && abs(u - x / 2) < 2 && abs(v - y / 2) < 2)
                 most = fmax(most, fabs((double)reference_at(w, HF_BUF_FAR_FILL, c, u, v)));
         }
-    const int roundings = (w->far ? 30 : 0) + (w->near ? (w->setup.bicubic ? 37 : 16) : 0);
+    const int roundings = (w->far ? 30 : 0) + (w->near ? (w->gather.bicubic ? 37 : 16) : 0);
     return (roundings + 1) * FLT_EPSILON * most + 0x1p-140 + storage_step(w, c, want, got) +
            format_step(w, c, want, got);
 }

@@ -28,8 +28,8 @@ void crash_handlers(void)
         sigaction(signals[i], &action, NULL);
 }
 
-int guarded(void (*call)(struct world *, const struct hf_kernels *, enum arena, int), struct world *w,
-            const struct hf_kernels *k, enum arena a, int index)
+int guarded(void (*call)(struct world *, const struct kernels *, enum arena, int), struct world *w,
+            const struct kernels *k, enum arena a, int index)
 {
     const int number = sigsetjmp(crash, 1);
     if (!number) {

@@ -41,7 +41,7 @@ void blend_row_make(struct world *w, int index)
         w->params.model = HF_MODEL_RANGE;
         w->params.range = w->params.near_begin = w->params.far_end = HF_DERIVE;
     }
-    hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->taps);
+    hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->gaussian);
     const int half = w->setup.half_width;
     w->x = rng_one_in(r, 2) || w->bench ? 0 : rng_int(r, 0, half - 1);
     w->n = half - w->x;
@@ -56,14 +56,14 @@ void blend_row_make(struct world *w, int index)
                      0);
 }
 
-void blend_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
+void blend_row_call(struct world *w, const struct kernels *k, enum arena a, int index)
 {
     (void)index;
     const struct hf_frame f = world_frame(w, k, a);
     float *out[4];
     for (int i = 0; i < 4; i++)
         out[i] = floats_of(w, a, SLOT_LINES) + (size_t)i * w->line_floats;
-    k->blend_row(&f, w->x, w->y, w->n, out, w->with_counts ? &w->result[a].counts : NULL);
+    k->gaussian.blend_row(&f, w->x, w->y, w->n, out, w->with_counts ? &w->result[a].counts : NULL);
 }
 
 void lerp_row_make(struct world *w, int index)
@@ -80,11 +80,11 @@ void lerp_row_make(struct world *w, int index)
     world_region(w, REGION_FLOATS, SLOT_LINES, p, (size_t)w->n * 4, HF_PAD * 4, 1, 0);
 }
 
-void lerp_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
+void lerp_row_call(struct world *w, const struct kernels *k, enum arena a, int index)
 {
     (void)index;
     float *p = floats_of(w, a, SLOT_LINES);
-    k->lerp_row(p, p + w->line_floats, p + 2 * w->line_floats, w->n);
+    k->gaussian.lerp_row(p, p + w->line_floats, p + 2 * w->line_floats, w->n);
 }
 
 static void line_make(struct world *w)
@@ -140,18 +140,18 @@ void gaussian_make(struct world *w, int which)
         up_make(w, which == UP_HALF ? 2 : 4);
 }
 
-void gaussian_call(struct world *w, const struct hf_kernels *k, enum arena a, int which)
+void gaussian_call(struct world *w, const struct kernels *k, enum arena a, int which)
 {
     float *in = floats_of(w, a, SLOT_WORK), *out = floats_of(w, a, SLOT_LINES);
     if (which <= LINE_FAITHFUL) {
-        k->gaussian_line(in + HF_PAD, w->n, out, which == LINE_FAITHFUL);
+        k->gaussian.line(in + HF_PAD, w->n, out, which == LINE_FAITHFUL);
     } else if (which <= COLUMNS_IN_PLACE) {
-        k->gaussian_columns(in, now.in_stride, now.rows, now.from, now.to,
+        k->gaussian.columns(in, now.in_stride, now.rows, now.from, now.to,
                             which == COLUMNS_IN_PLACE ? in + now.from * now.in_stride : out, now.out_stride, w->n,
                             which == COLUMNS_FAITHFUL);
     } else {
         const struct hf_buf b = {.ch = {in + now.in_stride + now.left}, .stride = now.in_stride};
-        k->gaussian_up(&b, 0, which == UP_QUARTER, w->x, w->y, w->n, out, out + w->line_floats);
+        k->gaussian.up(&b, 0, which == UP_QUARTER, w->x, w->y, w->n, out, out + w->line_floats);
     }
 }
 
@@ -170,8 +170,8 @@ void wide_make(struct world *w, int index)
     world_region(w, REGION_SCRATCH, SLOT_WORK, floats_of(w, ARENA_MADE, SLOT_WORK), 2 * bytes, 0, 1, 0);
 }
 
-void wide_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
+void wide_call(struct world *w, const struct kernels *k, enum arena a, int index)
 {
     (void)index;
-    k->wide_block(floats_of(w, a, SLOT_LINES), w->n, &now.wide, floats_of(w, a, SLOT_WORK));
+    k->gaussian.wide_block(floats_of(w, a, SLOT_LINES), w->n, &now.wide, floats_of(w, a, SLOT_WORK));
 }

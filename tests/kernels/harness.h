@@ -7,8 +7,10 @@
 #ifndef HF_TESTS_HARNESS_H
 #define HF_TESTS_HARNESS_H
 
-#include "frame/engine.h"
-#include "params.h"
+#include "gather/gather.h"
+#include "gaussian/kernels.h"
+#include "hexagon/kernels.h"
+#include "scatter/kernels.h"
 
 // ---- random numbers: one seed, one sequence, so never two draws where C leaves the order open ----
 
@@ -36,18 +38,27 @@ float random_store_value(struct rng *r);
 
 // ---- instruction sets ----
 
+// All tables of an instruction set.
+struct kernels {
+    struct hf_pixel_kernels pixel;
+    struct hf_gather_kernels gather;
+    struct hf_hexagon_kernels hexagon;
+    struct hf_scatter_kernels scatter;
+    struct hf_gaussian_kernels gaussian;
+};
+
 struct level {
     char name[32];
     enum hf_isa isa;  // 0: emulated
     int exact;        // promises the bits of the C
-    struct hf_kernels k;
+    struct kernels k;
 };
 
 enum { MAX_LEVELS = 12 };
 // Every table this CPU can run, the C first; filter: NULL, or part of a name. Returns how many.
 int levels_make(struct level levels[MAX_LEVELS], const char *filter);
 // AVX-512 in plain C (emulated/). Returns 0 if this build has none.
-int emulated_kernels(struct hf_kernels *k, int fused);
+int emulated_kernels(struct kernels *k, int fused);
 // Does the emulation do what the instructions do? Returns the number of operations that do not.
 int emulated_check(void);
 
@@ -97,7 +108,10 @@ struct world {
     int bench;  // typical input instead of random one
     struct hf_params params;
     struct hf_setup setup;
-    struct hf_taps taps;
+    struct hf_gather gather;
+    struct hf_gaussian gaussian;
+    struct hf_hexagon hexagon;
+    struct hf_scatter scatter;
     enum colours colours;
     struct hf_image src, dst;  // in ARENA_MADE
     struct hf_depth depth;
@@ -146,7 +160,7 @@ float *world_at(const struct world *w, enum arena a, enum hf_buf_id b, int c, in
 // A sample of a buffer: how many bytes it has, and made the nearest to v that they hold.
 int buf_bytes(const struct world *w, enum hf_buf_id b);
 void world_put(struct world *w, enum hf_buf_id b, int c, int x, int y, float v);
-struct hf_frame world_frame(struct world *w, const struct hf_kernels *k, enum arena a);
+struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena a);
 int buf_channels(const struct world *w, enum hf_buf_id b);
 
 // ---- tests ----
@@ -157,7 +171,7 @@ struct test {
     int cases;
     void (*make)(struct world *w, int index);
     // Call the kernel, nothing else: this is what the benchmark times too.
-    void (*call)(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+    void (*call)(struct world *w, const struct kernels *k, enum arena a, int index);
     // Compares what the call returned. Returns 0 and says why if it is wrong.
     int (*check)(const struct world *w, const struct level *l, char message[256]);
     // Half-resolution pixels of the typical case, for the benchmark.
@@ -169,39 +183,39 @@ extern const int test_count;
 
 // passes.c
 void pass_make(struct world *w, int pass);
-void pass_call(struct world *w, const struct hf_kernels *k, enum arena a, int pass);
+void pass_call(struct world *w, const struct kernels *k, enum arena a, int pass);
 int pass_check(const struct world *w, const struct level *l, char message[256]);
 int pass_pixels(const struct world *w);
 
 // rows.c
 void sharp_row_make(struct world *w, int index);
-void sharp_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void sharp_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void coc_row_make(struct world *w, int index);
-void coc_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void coc_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void load_make(struct world *w, int format);
-void load_call(struct world *w, const struct hf_kernels *k, enum arena a, int format);
+void load_call(struct world *w, const struct kernels *k, enum arena a, int format);
 int load_check(const struct world *w, const struct level *l, char message[256]);
 void store_make(struct world *w, int format);
-void store_call(struct world *w, const struct hf_kernels *k, enum arena a, int format);
+void store_call(struct world *w, const struct kernels *k, enum arena a, int format);
 void finite_make(struct world *w, int which);
-void finite_call(struct world *w, const struct hf_kernels *k, enum arena a, int which);
+void finite_call(struct world *w, const struct kernels *k, enum arena a, int which);
 int finite_check(const struct world *w, const struct level *l, char message[256]);
 void round_make(struct world *w, int channels);
-void round_call(struct world *w, const struct hf_kernels *k, enum arena a, int channels);
+void round_call(struct world *w, const struct kernels *k, enum arena a, int channels);
 int row_check(const struct world *w, const struct level *l, char message[256]);
 int row_pixels(const struct world *w);
 
 // gaussian.c
 void radius_make(struct world *w, int index);
-void radius_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void radius_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void blend_row_make(struct world *w, int index);
-void blend_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void blend_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void lerp_row_make(struct world *w, int index);
-void lerp_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void lerp_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void gaussian_make(struct world *w, int which);
-void gaussian_call(struct world *w, const struct hf_kernels *k, enum arena a, int which);
+void gaussian_call(struct world *w, const struct kernels *k, enum arena a, int which);
 void wide_make(struct world *w, int index);
-void wide_call(struct world *w, const struct hf_kernels *k, enum arena a, int index);
+void wide_call(struct world *w, const struct kernels *k, enum arena a, int index);
 
 // compare.c: all regions, and everything outside them.
 int world_compare(const struct world *w, const struct level *l, char message[256]);
@@ -217,8 +231,8 @@ double bound_pixel(const struct world *w, int c, int x, int y, float want, float
 void crash_handlers(void);
 extern const char *volatile crash_step;
 // ... but not one in here: it returns the number of the signal, else 0.
-int guarded(void (*call)(struct world *, const struct hf_kernels *, enum arena, int), struct world *w,
-            const struct hf_kernels *k, enum arena a, int index);
+int guarded(void (*call)(struct world *, const struct kernels *, enum arena, int), struct world *w,
+            const struct kernels *k, enum arena a, int index);
 
 // bench.c
 void bench_run(struct world *w, const struct level *levels, int level_count, const char *name);

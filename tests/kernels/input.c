@@ -81,8 +81,9 @@ void make_setup(struct world *w, int half_width, int half_height)
             random_model(r, &w->params);
             random_options(r, &w->params);
         }
-        hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->taps);
-        if (w->setup.blend != 0 && hf_gather_setup(&w->setup, &w->params, &hf_mem_default) != HF_OK)
+        hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->gather);
+        if (w->setup.blend != 0 &&
+            hf_gather_engine.prepare(&w->gather, &w->setup, &w->params, &hf_mem_default) != HF_OK)
             abort();
     } while (w->setup.blend == 0);
     w->colours = (enum colours)(w->bench ? COLOURS_PLAIN : rng_int(r, 0, COLOURS_COUNT - 1));

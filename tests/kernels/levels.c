@@ -19,18 +19,28 @@ static int add(struct level *levels, int n, enum hf_isa isa, const char *suffix,
     return n + 1;
 }
 
+static void init(struct kernels *k, enum hf_isa isa, int fused)
+{
+    memset(k, 0, sizeof *k);
+    hf_pixel_kernels_init(&k->pixel, isa, fused);
+    hf_gather_kernels_init(&k->gather, isa, fused);
+    hf_hexagon_kernels_init(&k->hexagon, isa, fused);
+    hf_scatter_kernels_init(&k->scatter, isa, fused);
+    hf_gaussian_kernels_init(&k->gaussian, isa, fused);
+}
+
 int levels_make(struct level levels[MAX_LEVELS], const char *filter)
 {
     memset(levels, 0, sizeof *levels * MAX_LEVELS);
-    hf_kernels_c(&levels[0].k);
+    init(&levels[0].k, HF_ISA_SCALAR, 0);
     int n = add(levels, 0, HF_ISA_SCALAR, "", 1, NULL);
     for (int i = 0; i < (int)(sizeof isas / sizeof *isas); i++) {
-        struct hf_kernels exact, fused;
+        struct kernels exact, fused;
         crash_step = hf_isa_name(isas[i]);
         if (!hf_isa_available(isas[i]))
             continue;
-        hf_kernels_init(&exact, isas[i], 0);
-        hf_kernels_init(&fused, isas[i], 1);
+        init(&exact, isas[i], 0);
+        init(&fused, isas[i], 1);
         const int both = memcmp(&exact, &fused, sizeof exact) != 0;
         levels[n].k = exact;
         n = add(levels, n, isas[i], both ? " exact" : "", 1, filter);

@@ -16,15 +16,15 @@
     }
 
 const struct test tests[] = {
-    PASS("coc", HF_PASS_COC, 1200),
-    PASS("down", HF_PASS_DOWN, 2000),
-    PASS("max_x", HF_PASS_MAX_X, 960),
-    PASS("max_y", HF_PASS_MAX_Y, 960),
-    PASS("blur_x", HF_PASS_BLUR_X, 960),
-    PASS("blur_y", HF_PASS_BLUR_Y, 960),
-    PASS("gather", HF_PASS_GATHER, 1600),
-    PASS("fill", HF_PASS_FILL, 1600),
-    PASS("composite", HF_PASS_COMPOSITE, 2400),
+    PASS("coc", HF_GATHER_COC, 1200),
+    PASS("down", HF_GATHER_DOWN, 2000),
+    PASS("max_x", HF_GATHER_MAX_X, 960),
+    PASS("max_y", HF_GATHER_MAX_Y, 960),
+    PASS("blur_x", HF_GATHER_BLUR_X, 960),
+    PASS("blur_y", HF_GATHER_BLUR_Y, 960),
+    PASS("gather", HF_GATHER_COMPUTATION, 1600),
+    PASS("fill", HF_GATHER_FILL, 1600),
+    PASS("composite", HF_GATHER_COMPOSITE, 2400),
     ROW("coc_row", 0, 2000, coc_row_make, coc_row_call, row_check),
     ROW("sharp_row", 0, 2000, sharp_row_make, sharp_row_call, row_check),
     ROW("load_rgba32f", HF_FORMAT_RGBA32F, 1000, load_make, load_call, load_check),
@@ -78,9 +78,10 @@ static void report(const struct test *t, const struct level *l, uint64_t seed, i
     printf("    frame %d x %d, area %d..%d x %d..%d, channels %d, storage %d, radius %g, strength %g, blades %d, fill "
            "%d%s%s%s%s%s%s, formats %d %d, row %d lane %d + %d\n",
            s->width, s->height, w->r.x0, w->r.x1, w->r.y0, w->r.y1, s->channels, (int)s->storage, s->max_radius,
-           w->params.strength, w->params.blades, (int)s->fill, s->karis ? ", karis" : "",
-           s->per_pixel_kernel ? ", per-pixel" : "", s->bicubic ? ", bicubic" : "", s->faithful ? ", faithful" : "",
-           w->near ? ", near" : "", w->far ? ", far" : "", (int)w->src.format, (int)w->dst.format, w->y, w->x, w->n);
+           w->params.strength, w->params.blades, (int)w->gather.fill, w->gather.karis ? ", karis" : "",
+           w->gather.per_pixel_kernel ? ", per-pixel" : "", w->gather.bicubic ? ", bicubic" : "",
+           s->faithful ? ", faithful" : "", w->near ? ", near" : "", w->far ? ", far" : "", (int)w->src.format,
+           (int)w->dst.format, w->y, w->x, w->n);
 }
 
 static int run_level(struct world *w, const struct test *t, const struct level *l, char message[256])
@@ -216,6 +217,6 @@ int main(int argc, char **argv)
     const int failed = run_tests(&world, &o, levels, level_count);
     if (!failed && o.bench)
         bench_run(&world, levels, level_count, o.kernel);
-    hf_taps_free(&world.taps, &hf_mem_default);
+    hf_taps_free(&world.gather.taps, &hf_mem_default);
     return failed != 0;
 }

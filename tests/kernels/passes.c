@@ -4,6 +4,8 @@
 
 #include "harness.h"
 
+#define BIT(buf) (1u << HF_BUF_##buf)
+
 static struct hf_rect grow(struct hf_rect r, struct hf_reach by)
 {
     return (struct hf_rect){r.x0 - by.x, r.y0 - by.y, r.x1 + by.x, r.y1 + by.y};
@@ -64,15 +66,15 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
 // A buffer that the flags leave out is there, but nobody has written it.
 static int wanted(const struct world *w, int b)
 {
-    const unsigned near = HF_BIT(NEAR) | HF_BIT(NEAR_FILL) | HF_BIT(BLUR) | HF_BIT(COLOR4);
-    const unsigned far = HF_BIT(FAR) | HF_BIT(FAR_FILL) | HF_BIT(COLORFAR4);
+    const unsigned near = BIT(NEAR) | BIT(NEAR_FILL) | BIT(BLUR) | BIT(COLOR4);
+    const unsigned far = BIT(FAR) | BIT(FAR_FILL) | BIT(COLORFAR4);
     return !(!w->near && (near >> b & 1)) && !(!w->far && (far >> b & 1));
 }
 
 static void make_inputs(struct world *w, int pass)
 {
     const struct hf_pass *p = &hf_gather_engine.passes[pass];
-    const struct hf_reach halo = hf_pass_halo(&w->setup, p->halo);
+    const struct hf_reach halo = hf_gather_halo(&w->setup, p->halo);
     const unsigned all = p->reads | p->around;
     for (int i = -1; i < HF_BUF_COUNT; i++) {
         const int b = i < 0 ? HF_BUF_COC4 : i;  // first: others depend on it
@@ -81,12 +83,12 @@ static void make_inputs(struct world *w, int pass)
         const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? grow(w->r, halo) : w->r);
         make_buf(w, b, r);
         // Karis weights come from the colour, whatever the field.
-        if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->setup.karis))
+        if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->gather.karis))
             fill_buf(w, b, r);
     }
-    if (pass == HF_PASS_COC || pass == HF_PASS_COMPOSITE)
-        make_depth(w, pass == HF_PASS_COC || rng_one_in(&w->rng, 4));
-    if (pass == HF_PASS_DOWN || pass == HF_PASS_COMPOSITE)
+    if (pass == HF_GATHER_COC || pass == HF_GATHER_COMPOSITE)
+        make_depth(w, pass == HF_GATHER_COC || rng_one_in(&w->rng, 4));
+    if (pass == HF_GATHER_DOWN || pass == HF_GATHER_COMPOSITE)
         make_image(w, &w->src, SLOT_SRC, rng_one_in(&w->rng, 4));
 }
 
@@ -140,25 +142,24 @@ static void make_outputs(struct world *w, int pass)
     for (int b = 0; b < HF_BUF_COUNT; b++)
         if (hf_gather_engine.passes[pass].writes >> b & 1)
             make_output(w, REGION_FLOATS, b, rows_of(w, b, w->r));
-    if (pass == HF_PASS_GATHER) {
+    if (pass == HF_GATHER_COMPUTATION) {
         make_output(w, REGION_SCRATCH, HF_BUF_SUM, w->r);
-        const struct hf_rect weighed = grow(w->r, hf_pass_halo(&w->setup, HF_HALO_TAPS));
-        for (int b = HF_BUF_WEIGHT; b <= HF_BUF_COLORFARW4 && w->setup.karis; b++)
+        const struct hf_rect weighed = grow(w->r, hf_gather_halo(&w->setup, HF_HALO_TAPS));
+        for (int b = HF_BUF_WEIGHT; b <= HF_BUF_COLORFARW4 && w->gather.karis; b++)
             make_output(w, REGION_SCRATCH, b, weighed);
     }
-    if (pass == HF_PASS_COMPOSITE)
+    if (pass == HF_GATHER_COMPOSITE)
         make_dst(w);
 }
 
 // Longer than render.c makes them: whether those are long enough is for whole_frame.c to say.
 static void make_scratch(struct world *w)
 {
-    const struct hf_setup *s = &w->setup;
-    const struct hf_taps *t = s->taps;
+    const struct hf_taps *t = &w->gather.taps;
     const int width = w->r.x1 - w->r.x0, height = w->r.y1 - w->r.y0;
-    make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(s->max_x, t->rx) + 8 + 2 * HF_PAD));
+    make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(w->gather.max_x, t->rx) + 8 + 2 * HF_PAD));
     const size_t rows = 2 * (size_t)t->ry + 1, gather = (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 2) * 128;
-    const size_t near = 64 * (size_t)(height + 2 * s->max_y), fill = 3 * w->line_floats;
+    const size_t near = 64 * (size_t)(height + 2 * w->gather.max_y), fill = 3 * w->line_floats;
     const size_t floats = gather > near ? gather : near;
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);
 }
@@ -183,27 +184,27 @@ void pass_make(struct world *w, int pass)
     make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
     random_area(w);
     // Any width and height; of the gather such a reach would be too much.
-    if (!w->bench && pass >= HF_PASS_MAX_X && pass <= HF_PASS_BLUR_Y && rng_one_in(&w->rng, 4)) {
-        w->setup.max_x = rng_int(&w->rng, 1, 140);
-        w->setup.max_y = rng_int(&w->rng, 1, 140);
+    if (!w->bench && pass >= HF_GATHER_MAX_X && pass <= HF_GATHER_BLUR_Y && rng_one_in(&w->rng, 4)) {
+        w->gather.max_x = rng_int(&w->rng, 1, 140);
+        w->gather.max_y = rng_int(&w->rng, 1, 140);
     }
-    if (pass == HF_PASS_COC)
+    if (pass == HF_GATHER_COC)
         w->r.x0 &= ~15;  // as cells are
     w->is_pass = 1;
     w->near = w->far = 1;
-    if (!w->bench && (pass == HF_PASS_DOWN || pass >= HF_PASS_GATHER) && rng_one_in(&w->rng, 3))
+    if (!w->bench && (pass == HF_GATHER_DOWN || pass >= HF_GATHER_COMPUTATION) && rng_one_in(&w->rng, 3))
         rng_one_in(&w->rng, 2) ? (w->near = 0) : (w->far = 0);
     make_scratch(w);
     make_inputs(w, pass);
     make_outputs(w, pass);
 }
 
-void pass_call(struct world *w, const struct hf_kernels *k, enum arena a, int pass)
+void pass_call(struct world *w, const struct kernels *k, enum arena a, int pass)
 {
     const struct hf_frame f = world_frame(w, k, a);
     if (a == ARENA_REFERENCE)
         w->reference = f;
-    k->pass[pass](&f, w->r);
+    k->gather.passes.pass[pass](&f, w->r);
 }
 
 int pass_check(const struct world *w, const struct level *l, char message[256])

@@ -27,7 +27,8 @@ static void make_radii(struct world *w)
     struct rng *r = &w->rng;
     w->params.engine = rng_one_in(r, 2) ? HF_ENGINE_HEXAGON : HF_ENGINE_SCATTER;
     w->params.uniform = w->params.engine == HF_ENGINE_HEXAGON && rng_one_in(r, 8);
-    hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->taps);
+    hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params,
+                  w->params.engine == HF_ENGINE_HEXAGON ? (void *)&w->hexagon : &w->scatter);
     w->setup.sharp_radius = rng_one_in(r, 2) ? 0 : rng_float(r, 0, 2);
     make_depth(w, rng_one_in(r, 2));
     w->with_counts = !rng_one_in(r, 3);
@@ -59,13 +60,13 @@ void radius_make(struct world *w, int index)
         output(w, i, w->n);
 }
 
-void radius_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
+void radius_call(struct world *w, const struct kernels *k, enum arena a, int index)
 {
     const struct hf_frame f = world_frame(w, k, a);
     if (index == RADIUS)
-        k->radius_row(&f, w->x, w->y, w->n, line(w, a, 0), w->with_counts ? &w->result[a].counts : NULL);
+        k->pixel.radius_row(&f, w->x, w->y, w->n, line(w, a, 0), w->with_counts ? &w->result[a].counts : NULL);
     else if (index == ZIP)
-        k->zip(line(w, a, 0), line(w, a, 1), w->n, line(w, a, 2));
+        k->pixel.zip(line(w, a, 0), line(w, a, 1), w->n, line(w, a, 2));
     else
-        k->unzip(line(w, a, 2), w->n, line(w, a, 0), line(w, a, 1));
+        k->pixel.unzip(line(w, a, 2), w->n, line(w, a, 0), line(w, a, 1));
 }

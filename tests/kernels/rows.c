@@ -50,12 +50,12 @@ void coc_row_make(struct world *w, int index)
         lane_region(w, i < 2 && !w->with_counts ? REGION_SCRATCH : REGION_FLOATS, i);
 }
 
-void coc_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
+void coc_row_call(struct world *w, const struct kernels *k, enum arena a, int index)
 {
     (void)index;
     const struct hf_frame f = world_frame(w, k, a);
     float *const out[4] = {lane(w, a, 0), lane(w, a, 1), lane(w, a, 2), lane(w, a, 3)};
-    k->coc_row(&f, w->x, w->y, w->n, out, w->with_counts ? &w->result[a].counts : NULL);
+    k->pixel.coc_row(&f, w->x, w->y, w->n, out, w->with_counts ? &w->result[a].counts : NULL);
 }
 
 // In half of the cases the picture is sharp, but for one pixel in half of these.
@@ -75,11 +75,11 @@ void sharp_row_make(struct world *w, int index)
                 memcpy((uint8_t *)(uintptr_t)w->depth.data + (ptrdiff_t)y * w->depth.stride + (size_t)x * 4, &z, 4);
 }
 
-void sharp_row_call(struct world *w, const struct hf_kernels *k, enum arena a, int index)
+void sharp_row_call(struct world *w, const struct kernels *k, enum arena a, int index)
 {
     (void)index;
     const struct hf_frame f = world_frame(w, k, a);
-    w->result[a].returned = k->sharp_row(&f, w->x, w->y, w->n) != 0;
+    w->result[a].returned = k->pixel.sharp_row(&f, w->x, w->y, w->n) != 0;
 }
 
 // ---- images ----
@@ -112,12 +112,12 @@ void load_make(struct world *w, int format)
     }
 }
 
-void load_call(struct world *w, const struct hf_kernels *k, enum arena a, int format)
+void load_call(struct world *w, const struct kernels *k, enum arena a, int format)
 {
     const struct hf_frame f = world_frame(w, k, a);
     float *const even[4] = {lane(w, a, 0), lane(w, a, 1), lane(w, a, 2), lane(w, a, 3)};
     float *const odd[4] = {lane(w, a, 4), lane(w, a, 5), lane(w, a, 6), lane(w, a, 7)};
-    w->result[a].returned = k->load[format](f.src, w->x, w->y, w->n, even, odd) != 0;
+    w->result[a].returned = k->pixel.load[format](f.src, w->x, w->y, w->n, even, odd) != 0;
 }
 
 // A false alarm is allowed if there is something to repair in the row at all: it only costs time.
@@ -187,7 +187,7 @@ void store_make(struct world *w, int format)
     }
 }
 
-void store_call(struct world *w, const struct hf_kernels *k, enum arena a, int format)
+void store_call(struct world *w, const struct kernels *k, enum arena a, int format)
 {
     const struct hf_frame f = world_frame(w, k, a);
     const float *even[4], *odd[4];
@@ -195,7 +195,7 @@ void store_call(struct world *w, const struct hf_kernels *k, enum arena a, int f
         even[c] = c == 3 && w->no_alpha ? NULL : lane(w, a, c);
         odd[c] = c == 3 && w->no_alpha ? NULL : lane(w, a, 4 + c);
     }
-    w->result[a].clamped = k->store[format](f.dst, w->x, w->y, w->n, even, odd);
+    w->result[a].clamped = k->pixel.store[format](f.dst, w->x, w->y, w->n, even, odd);
 }
 
 // ---- checks and roundings ----
@@ -240,9 +240,11 @@ void finite_make(struct world *w, int which)
         world_region(w, REGION_SCRATCH, SLOT_DST, w->copy, w->word_count * size, 0, 1, 0);
 }
 
-void finite_call(struct world *w, const struct hf_kernels *k, enum arena a, int which)
+void finite_call(struct world *w, const struct kernels *k, enum arena a, int which)
 {
-    hf_finite *const f = which == FINITE_F32 ? k->finite_f32 : which == FINITE_F16 ? k->finite_f16 : k->finite_r11;
+    hf_finite *const f = which == FINITE_F32   ? k->pixel.finite_f32
+                         : which == FINITE_F16 ? k->pixel.finite_f16
+                                               : k->pixel.finite_r11;
     w->result[a].returned = f(in_arena(a, w->words), w->word_count, in_arena(a, w->copy)) != 0;
 }
 
@@ -269,12 +271,12 @@ void round_make(struct world *w, int channels)
         lane_region(w, REGION_FLOATS, c);
 }
 
-void round_call(struct world *w, const struct hf_kernels *k, enum arena a, int channels)
+void round_call(struct world *w, const struct kernels *k, enum arena a, int channels)
 {
     if (channels == 3)
-        k->truncate_r11(lane(w, a, 0), lane(w, a, 1), lane(w, a, 2), w->n);
+        k->pixel.truncate_r11(lane(w, a, 0), lane(w, a, 1), lane(w, a, 2), w->n);
     else
-        k->round_half(lane(w, a, 0), w->n);
+        k->pixel.round_half(lane(w, a, 0), w->n);
 }
 
 int row_check(const struct world *w, const struct level *l, char message[256])

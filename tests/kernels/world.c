@@ -156,14 +156,15 @@ static struct hf_image *image_in(enum arena a, const struct hf_image *made, stru
 }
 
 // Images and depth are pointed to: one set per arena.
-struct hf_frame world_frame(struct world *w, const struct hf_kernels *k, enum arena a)
+struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena a)
 {
     static struct hf_image images[ARENA_COUNT][2];
     static struct hf_depth depths[ARENA_COUNT];
     depths[a] = w->depth;
     depths[a].data = in_arena(a, w->depth.data);
     struct hf_frame f = {.s = &w->setup,
-                         .k = k,
+                         .k = &k->pixel,
+                         .kernels = w->setup.engine == HF_ENGINE_GAUSSIAN ? (const void *)&k->gaussian : &k->gather,
                          .src = image_in(a, &w->src, &images[a][0]),
                          .dst = image_in(a, &w->dst, &images[a][1]),
                          .depth = &depths[a],

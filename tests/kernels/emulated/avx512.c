@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The AVX-512 kernels for CPUs without AVX-512: immintrin.h beside this file does the instructions in plain C.
-// Compiled twice, as src/x86/avx512.c is.
-#define hf_kernels_avx512_fused emulated_avx512_fused
-#define hf_kernels_avx512_exact emulated_avx512_exact
-#include "simd/avx512.c"
+// What AVX-512 would do, for CPUs without it: immintrin.h beside this file does the instructions in plain C, and the
+// kernels are compiled over it (tests/kernels/meson.build). Here: does it do what the instructions do?
+#include <math.h>
+
+#include "pixel/format_vf.h"
 
 #if HF_FUSED
 int emulated_check_vectors(void);

@@ -2,7 +2,7 @@
 // In place of avx512_emulated.c where SIMDe is not installed, and on other architectures.
 #include "harness.h"
 
-int emulated_kernels(struct hf_kernels *k, int fused)
+int emulated_kernels(struct kernels *k, int fused)
 {
     (void)k;
     (void)fused;

@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../harness.h"
 
-void emulated_avx512_fused(struct hf_kernels *k);
-void emulated_avx512_exact(struct hf_kernels *k);
 int emulated_check_vectors(void);
 
-int emulated_kernels(struct hf_kernels *k, int fused)
+#define DECLARE(name)                                                                                                  \
+    void name##_emulated_exact(struct name *k);                                                                        \
+    void name##_emulated_fused(struct name *k)
+DECLARE(hf_pixel_kernels);
+DECLARE(hf_gather_kernels);
+DECLARE(hf_hexagon_kernels);
+DECLARE(hf_scatter_kernels);
+DECLARE(hf_gaussian_kernels);
+
+#define INIT(name, k)                                                                                                  \
+    name##_c(k);                                                                                                       \
+    (fused ? name##_emulated_fused : name##_emulated_exact)(k)
+
+int emulated_kernels(struct kernels *k, int fused)
 {
-    hf_kernels_c(k);
-    (fused ? emulated_avx512_fused : emulated_avx512_exact)(k);
+    memset(k, 0, sizeof *k);
+    INIT(hf_pixel_kernels, &k->pixel);
+    INIT(hf_gather_kernels, &k->gather);
+    INIT(hf_hexagon_kernels, &k->hexagon);
+    INIT(hf_scatter_kernels, &k->scatter);
+    INIT(hf_gaussian_kernels, &k->gaussian);
     return 1;
 }
 

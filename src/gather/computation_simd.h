@@ -4,12 +4,14 @@
 // Per input row the pairs h[j] = in[x - j] + in[x + j] are formed once, then a row sum per distinct row of weights,
 // r[k] = sum over j of w[k][j] h[j]; an output row is the sum of 2 ry + 1 of those. 36 multiplications a pixel and
 // plane at the default reach where the 48 bilinear taps would load 192 values. Tap sets that are known when this is
-// compiled are gather_fixed_simd.h's. For all others columns are worked off in strips of up to GATHER_S vectors: enough
+// compiled are fixed_simd.h's. For all others columns are worked off in strips of up to GATHER_S vectors: enough
 // independent sums to hide the latency of the multiply-add, one broadcast weight for all of them, and output rows that
 // stay in the first-level cache.
+#include "gather/gather.h"
+#include "pixel/format_vf.h"
 #include <float.h>
 
-#include "gather/gather_fixed_simd.h"
+#include "gather/fixed_simd.h"
 
 enum { GATHER_S = VF_N == 16 ? 5 : 9 };
 
@@ -188,7 +190,7 @@ static void gather_columns(const float *weights, const struct gather_job *j, fix
 static void gather_run(const struct hf_frame *f, struct hf_rect r, struct gather_job *j, const struct hf_buf *need,
                        int need_channel, hf_kernel *finish)
 {
-    const struct hf_taps *t = f->s->taps;
+    const struct hf_taps *t = &hf_gather(f->s)->taps;
     fixed_column *column = fixed_column_for(t);
     const float *weights = column ? fixed_weights(t, f->work) : NULL;
     const int most = column ? FIXED_STRIP : GATHER_S, width = r.x1 - r.x0, height = r.y1 - r.y0;
@@ -211,7 +213,7 @@ static void gather_run(const struct hf_frame *f, struct hf_rect r, struct gather
 
 static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_reach taps = hf_pass_halo(f->s, HF_HALO_TAPS);
+    const struct hf_reach taps = hf_gather_halo(f->s, HF_HALO_TAPS);
     const int rx = taps.x, ry = taps.y, n = r.x1 - r.x0 + 2 * rx, channels = f->s->channels;
     for (int y = r.y0 - ry; y < r.y1 + ry; y++) {
         float *colour[4], *far[4], *coc[4], *weight[4], *colour_w[4], *far_w[4];
@@ -242,7 +244,7 @@ static void finish_near(const struct hf_frame *f, struct hf_rect r)
     const struct hf_setup *s = f->s;
     for (int y = r.y0; y < r.y1; y++) {
         float *near[4], *colour[4];
-        const float *sum = s->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
+        const float *sum = hf_gather(s)->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
         const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y);
         hf_row(&f->buf[HF_BUF_NEAR], s->channels, r.x0, y, near);
         hf_row(&f->buf[HF_BUF_COLOR4], s->channels, r.x0, y, colour);
@@ -263,8 +265,8 @@ static void gather_near_simd(const struct hf_frame *f, struct hf_rect r)
     const struct hf_setup *s = f->s;
     struct gather_job j = {.planes = 0};
     for (int c = 0; c < s->channels; c++)
-        gather_plane(&j, f, r, s->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
-    if (s->karis)
+        gather_plane(&j, f, r, hf_gather(s)->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
+    if (hf_gather(s)->karis)
         gather_plane(&j, f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
     gather_run(f, r, &j, &f->buf[HF_BUF_BLUR], 0, finish_near);
 }
@@ -289,7 +291,7 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
                              const struct hf_buf *weight)
 {
     static const int32_t lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const struct hf_taps *t = f->s->taps;
+    const struct hf_taps *t = &hf_gather(f->s)->taps;
     const vi lane = vi_load(lanes);
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x += VF_N) {
@@ -345,9 +347,9 @@ static void finish_far(const struct hf_frame *f, struct hf_rect r)
 static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const enum hf_buf_id colour = s->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_buf_id weight = s->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
-    if (s->per_pixel_kernel) {
+    const enum hf_buf_id colour = hf_gather(s)->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_buf_id weight = hf_gather(s)->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    if (hf_gather(s)->per_pixel_kernel) {
         sample_taps_simd(f, r, &f->buf[colour], &f->buf[weight]);
         finish_far(f, r);
         return;
@@ -361,7 +363,7 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
 
 static void gather_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    if (f->s->karis)
+    if (hf_gather(f->s)->karis)
         weigh_simd(f, r);
     if (f->near)
         gather_near_simd(f, r);

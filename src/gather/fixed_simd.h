@@ -6,6 +6,8 @@
 // each of the 2 r + 1 output rows that it reaches. A sum moves one place up as the next row is added to it, which costs
 // nothing in an instruction of three operands. So an output row is stored once, no pair is stored at all, and what is
 // left of the loads are the weights and the shifted values.
+#include "gather/gather.h"
+#include "pixel/format_vf.h"
 
 // Which columns the rows of weights have, bit j for |dx| = j.
 static const uint16_t rings_4[] = {0x15, 0x1e, 0x1f, 0x0e, 0x07};

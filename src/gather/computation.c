@@ -8,7 +8,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "pixel/pass_c.h"
+#include "gather/gather.h"
 
 // One output row of a convolution. With mirrored weights, pairs of columns are added first. Each row of weights is
 // summed, and the rows are added from top to bottom.
@@ -42,7 +42,7 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
 static void convolve(const struct hf_frame *f, struct hf_rect r, enum hf_buf_id in, int c_in, enum hf_buf_id out,
                      int c_out)
 {
-    const struct hf_taps *t = f->s->taps;
+    const struct hf_taps *t = &hf_gather(f->s)->taps;
     const struct hf_buf *a = &f->buf[in], *b = &f->buf[out];
     for (int y = r.y0; y < r.y1; y++)
         convolve_row(t, hf_at(a, c_in, r.x0, y), a->stride, hf_at(b, c_out, r.x0, y), r.x1 - r.x0, hf_line(f, 0));
@@ -51,7 +51,7 @@ static void convolve(const struct hf_frame *f, struct hf_rect r, enum hf_buf_id 
 // Karis average: planes of w = 1 / (1 + luminance) times what is to be averaged, wherever taps of r reach.
 static void weigh(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_reach taps = hf_pass_halo(f->s, HF_HALO_TAPS);
+    const struct hf_reach taps = hf_gather_halo(f->s, HF_HALO_TAPS);
     const int rx = taps.x, ry = taps.y, n = r.x1 - r.x0 + 2 * rx;
     for (int y = r.y0 - ry; y < r.y1 + ry; y++) {
         float *colour[4], *far[4], *coc[4], *weight[4], *colour_w[4], *far_w[4];
@@ -78,12 +78,12 @@ static void gather_near(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     for (int c = 0; c < s->channels; c++)
-        convolve(f, r, s->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
-    if (s->karis)
+        convolve(f, r, hf_gather(s)->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
+    if (hf_gather(s)->karis)
         convolve(f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
     for (int y = r.y0; y < r.y1; y++) {
         float *near[4];
-        const float *sum = s->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
+        const float *sum = hf_gather(s)->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
         const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y);
         hf_row(&f->buf[HF_BUF_NEAR], s->channels, r.x0, y, near);
         for (int c = 0; c < s->channels; c++) {
@@ -107,7 +107,7 @@ static float bilinear(const float *p, ptrdiff_t stride, float ax, float ay)
 static void sample_taps(const struct hf_frame *f, int x, int y, const struct hf_buf *colour,
                         const struct hf_buf *weight)
 {
-    const struct hf_taps *t = f->s->taps;
+    const struct hf_taps *t = &hf_gather(f->s)->taps;
     const float scale = *hf_at(&f->buf[HF_BUF_COC4], 1, x, y);
     float total[5] = {0}, sum[5];
     for (int i = 0; i < t->count; i++) {
@@ -129,9 +129,9 @@ static void sample_taps(const struct hf_frame *f, int x, int y, const struct hf_
 static void gather_far(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const enum hf_buf_id colour = s->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_buf_id weight = s->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
-    if (s->per_pixel_kernel) {
+    const enum hf_buf_id colour = hf_gather(s)->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_buf_id weight = hf_gather(s)->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    if (hf_gather(s)->per_pixel_kernel) {
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++)
                 sample_taps(f, x, y, &f->buf[colour], &f->buf[weight]);
@@ -160,7 +160,7 @@ static void gather_far(const struct hf_frame *f, struct hf_rect r)
 
 void hf_gather_c(const struct hf_frame *f, struct hf_rect r)
 {
-    if (f->s->karis)
+    if (hf_gather(f->s)->karis)
         weigh(f, r);
     if (f->near)
         gather_near(f, r);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CoC of a vector of depth. Nothing is fused here, so that "is there any CoC" has one answer on every machine.
+#ifndef HF_COC_VF_H
+#define HF_COC_VF_H
+
+#include "pixel/format_vf.h"
+
+// 0..1; NaN becomes 0.
+HF_INLINE vf coc_saturate(vf v)
+{
+    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
+}
+
+HF_INLINE vf coc_shape(vf t)
+{
+    return vf_mul(vf_mul(t, t), vf_sub(vf_set1(3), vf_mul(vf_set1(2), t)));
+}
+
+HF_INLINE vf coc_round_unorm(vf t)
+{
+    // The sum is positive: truncation is floor.
+    const vf k = vi_to_vf(vf_to_vi(vf_add(vf_mul(t, vf_set1(255)), vf_set1(0.5f))));
+    return vf_mul(k, vf_set1(1 / 255.0f));
+}
+
+HF_INLINE vf coc_round(enum hf_storage storage, vf t)
+{
+    if (storage == HF_STORAGE_CHAPTER)
+        return coc_round_unorm(t);
+    return storage == HF_STORAGE_HALF ? round_half_vf(t) : t;
+}
+
+// Depth samples d to the variable that CoC is linear in. none: lanes without a surface. py: y + 1/2 - axis; px: pixel
+// centres likewise.
+HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form form, vf d, vf px, vf py, vm *none)
+{
+    const vf infinity = vf_set1(__builtin_inff()), minus_one = vf_set1(-1);
+    vf z;
+    if (form == HF_FORM_COC) {
+        *none = vm_not(vf_lt(d, vf_set1(1e10f)));
+        return d;
+    }
+    if (form == HF_FORM_IZ) {
+        const vf e = vf_add(vf_set1(s->e_a), vf_mul(vf_set1(s->e_b), d));
+        const vf iz = vf_add(vf_set1(s->iz_a), vf_mul(vf_set1(s->iz_b), e));
+        z = vf_select(vf_gt(iz, vf_set1(1e-10f)), vf_div(vf_set1(1), iz), infinity);
+    } else {
+        const vm surface = vm_and(vf_gt(d, vf_zero()), vf_lt(d, vf_set1(1e10f)));
+        z = vf_select(surface, d, infinity);
+        *none = vm_not(surface);
+        if (form == HF_FORM_RAY) {
+            const vf x2 = vf_mul(vf_mul(px, px), vf_set1(s->ray_sx)), y2 = vf_mul(vf_mul(py, py), vf_set1(s->ray_sy));
+            z = vf_div(z, vf_sqrt(vf_add(vf_set1(1), vf_add(x2, y2))));
+        }
+    }
+    if (form != HF_FORM_Z)
+        *none = vm_not(vf_lt(z, vf_set1(1e10f)));
+    return s->lens ? vf_div(minus_one, z) : z;
+}
+
+// From 0 to 1, of the shape that was asked for.
+HF_INLINE vf coc_ramp(const struct hf_setup *s, vf t)
+{
+    t = coc_saturate(t);
+    return s->smoothstep ? coc_shape(t) : t;
+}
+
+HF_INLINE vf coc_near(const struct hf_setup *s, vf v)
+{
+    return coc_round(s->storage, coc_ramp(s, vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i))));
+}
+
+HF_INLINE vf coc_far(const struct hf_setup *s, vf v)
+{
+    return coc_round(s->storage, coc_ramp(s, vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i))));
+}
+
+#endif

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pixel/pass_c.h"
+
+HF_CHOOSE_KERNELS(hf_pixel_kernels)
+
+void hf_pixel_kernels_c(struct hf_pixel_kernels *k)
+{
+    *k = (struct hf_pixel_kernels){.coc_row = hf_coc_row_c,
+                                   .sharp_row = hf_sharp_row_c,
+                                   .radius_row = hf_radius_row_c,
+                                   .zip = hf_zip_row_c,
+                                   .unzip = hf_unzip_row_c};
+    hf_format_kernels_c(k);
+}

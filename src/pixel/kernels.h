@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Kernels that all engines share: rows of images, of depth as CoC or radius, of pixels in order.
+#ifndef HF_PIXEL_KERNELS_H
+#define HF_PIXEL_KERNELS_H
+
+#include "frame/frame.h"
+#include "pixel/format.h"
+#include "simd/choose.h"
+
+// Rows of an image: n lanes from lane x of row y (that is 2n pixels from 2x), split into even and odd pixels. The odd
+// pixel of the last lane of an odd width repeats the even one. even and odd are 64-byte aligned and have HF_PAD floats
+// to spare. Returns non-zero if a sample is not finite (then repair.c has to look at the row). A missing alpha is left
+// alone.
+typedef int hf_load_row(const struct hf_image *image, int x, int y, int n, float *const even[4], float *const odd[4]);
+// The other way. even and odd may hold anything past their n lanes. even[3] NULL: alpha 1 if the format has one.
+// Returns the number of samples that had to be clamped.
+typedef uint64_t hf_store_row(const struct hf_image *image, int x, int y, int n, const float *const even[4],
+                              const float *const odd[4]);
+
+// Is a run of n words finite: floats, halves, R11G11B10F words? They are copied on the way if copy is not NULL; if they
+// are not finite, not all of them may be.
+typedef int hf_finite(const void *words, size_t n, void *copy);
+
+// Near and far CoC of the n lanes from lane x of full-resolution row y, into four rows: near even, near odd, far even,
+// far odd. counts NULL: the near rows need not be written, and nothing is counted; else x is a multiple of 16.
+typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
+// Is every pixel of those lanes a surface without CoC? 0 where that takes longer to say than to make the CoC.
+typedef int hf_sharp_row(const struct hf_frame *f, int x, int y, int n);
+
+// Signed CoC radii of n full-resolution pixels from (x, y) on, in order. counts NULL: nothing is counted; else x is a
+// multiple of 32.
+typedef void hf_radius_row(const struct hf_frame *f, int x, int y, int n, float *out, struct hf_counts *counts);
+
+// Rows of 2n pixels in order, from their n even and n odd ones, and back.
+typedef void hf_zip_row(const float *even, const float *odd, int n, float *out);
+typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
+
+// Round a row of n floats to what a storage holds, in place; may touch HF_PAD floats more.
+typedef void hf_round_row(float *v, int n);
+typedef void hf_round_rgb(float *r, float *g, float *b, int n);
+
+struct hf_pixel_kernels {
+    hf_coc_row *coc_row;
+    hf_sharp_row *sharp_row;
+    hf_radius_row *radius_row;
+    hf_zip_row *zip;
+    hf_unzip_row *unzip;
+    hf_load_row *load[HF_FORMAT_COUNT];
+    hf_store_row *store[HF_FORMAT_COUNT];
+    hf_finite *finite_f32, *finite_f16, *finite_r11;
+    hf_round_rgb *truncate_r11;  // R11G11B10F, towards zero
+    hf_round_row *round_half;    // to nearest even, clamped to +-65504
+};
+HF_DECLARE_KERNELS(hf_pixel_kernels);
+
+void hf_format_kernels_c(struct hf_pixel_kernels *k);  // the rows of images among them (format.c)
+
+#endif

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The shared kernels of an instruction set.
+#include "pixel/rows_simd.h"
+#include "pixel/coc_simd.h"
+#include "pixel/radius_simd.h"
+
+void HF_SIMD_NAME(hf_pixel_kernels)(struct hf_pixel_kernels *k)
+{
+    format_init(k);
+    k->coc_row = coc_row_simd;
+    k->sharp_row = sharp_row_simd;
+    k->radius_row = radius_row_simd;
+    k->zip = zip_row_simd;
+    k->unzip = unzip_row_simd;
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A table of kernels for an instruction set: all in C first, then overwritten by what vectors do better. The files simd.c
+// are compiled once for each instruction set, with and without fused multiply-add: src/meson.build.
+#ifndef HF_CHOOSE_H
+#define HF_CHOOSE_H
+
+#include "hyperfocal/hyperfocal.h"
+
+// For struct NAME, functions of the same name: NAME_c fills it; NAME_avx2_exact and the like overwrite it, exact ones with
+// kernels that give the bits of the C; NAME_init makes the table of an instruction set. SSE4.1 has nothing to fuse.
+#define HF_DECLARE_KERNELS(name)                                                                                       \
+    void name##_c(struct name *k);                                                                                     \
+    void name##_sse41_exact(struct name *k);                                                                           \
+    void name##_avx2_exact(struct name *k);                                                                            \
+    void name##_avx2_fused(struct name *k);                                                                            \
+    void name##_avx512_exact(struct name *k);                                                                          \
+    void name##_avx512_fused(struct name *k);                                                                          \
+    void name##_neon_exact(struct name *k);                                                                            \
+    void name##_neon_fused(struct name *k);                                                                            \
+    void name##_init(struct name *k, enum hf_isa isa, int fused)
+
+#if HF_SIMD && HF_X86
+#define HF_CHOOSE_KERNELS(name)                                                                                        \
+    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    {                                                                                                                  \
+        name##_c(k);                                                                                                   \
+        if (isa == HF_ISA_SSE41)                                                                                       \
+            name##_sse41_exact(k);                                                                                     \
+        if (isa == HF_ISA_AVX2)                                                                                        \
+            (fused ? name##_avx2_fused : name##_avx2_exact)(k);                                                        \
+        if (isa == HF_ISA_AVX512)                                                                                      \
+            (fused ? name##_avx512_fused : name##_avx512_exact)(k);                                                    \
+    }
+#elif HF_SIMD && HF_ARM
+#define HF_CHOOSE_KERNELS(name)                                                                                        \
+    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    {                                                                                                                  \
+        name##_c(k);                                                                                                   \
+        if (isa == HF_ISA_NEON)                                                                                        \
+            (fused ? name##_neon_fused : name##_neon_exact)(k);                                                        \
+    }
+#else
+#define HF_CHOOSE_KERNELS(name)                                                                                        \
+    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    {                                                                                                                  \
+        (void)isa;                                                                                                     \
+        (void)fused;                                                                                                   \
+        name##_c(k);                                                                                                   \
+    }
+#endif
+
+// The name of a simd.c's own function. HF_SUFFIX: avx2_fused ...
+#define HF_SIMD_NAME(name) HF_JOIN_(name, HF_SUFFIX)
+#define HF_JOIN_(name, suffix) HF_JOIN__(name, suffix)
+#define HF_JOIN__(name, suffix) name##_##suffix
+
+#endif
