@@ -58,10 +58,8 @@ int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_
         if (!status)
             status = hf_exr_find_views(file->exr, &file->views, depth_channel, err);
     } else {
-        status = hf_oiio_available() ? hf_io_check_png(path, fd, err) : 0;
         close(fd);
-        if (!status)
-            status = hf_oiio_open(&file->oiio, file->path, depth_channel, &file->views, err);
+        status = hf_oiio_open(&file->oiio, file->path, depth_channel, &file->views, err);
     }
     if (status)
         hf_io_close(&file);

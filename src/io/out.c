@@ -90,15 +90,6 @@ int hf_out_seek(struct hf_out *o, uint64_t offset, struct hf_io_error *err)
     return 0;
 }
 
-int hf_out_detach(struct hf_out *o, struct hf_io_error *err)
-{
-    FILE *f = o->f;
-    o->f = NULL;
-    if (f && fclose(f))
-        return write_error(o, err);
-    return 0;
-}
-
 // Some file systems cannot sync and say so; that is no failure to write.
 static int sync_fd(int fd)
 {
@@ -107,24 +98,14 @@ static int sync_fd(int fd)
 
 static int finish(struct hf_out *o)
 {
-    if (o->f) {
-        const bool bad = fflush(o->f) || sync_fd(fileno(o->f));
-        const int code = errno;
-        FILE *f = o->f;
-        o->f = NULL;
-        if (fclose(f))
-            return -1;
-        errno = code;
-        return bad ? -1 : 0;
-    }
-    const int fd = open(o->temp, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return -1;
-    const int bad = sync_fd(fd);
+    const bool bad = fflush(o->f) || sync_fd(fileno(o->f));
     const int code = errno;
-    close(fd);
+    FILE *f = o->f;
+    o->f = NULL;
+    if (fclose(f))
+        return -1;
     errno = code;
-    return bad;
+    return bad ? -1 : 0;
 }
 
 int hf_out_commit(struct hf_out *o, struct hf_io_error *err)

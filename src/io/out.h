@@ -18,15 +18,13 @@ struct hf_out {
     const char *path;  // as the user wrote it, for messages; not owned
     char *target;      // path with symbolic links resolved
     char *temp;        // same folder and extension as target
-    FILE *f;           // NULL once hf_out_detach was called
+    FILE *f;
 };
 
 // All return 0, or -1 with *err filled; then hf_out_abort must be called (it may always be called).
 int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err);
 int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_error *err);
 int hf_out_seek(struct hf_out *o, uint64_t offset, struct hf_io_error *err);
-// Leave an empty file at o->temp for somebody else to fill.
-int hf_out_detach(struct hf_out *o, struct hf_io_error *err);
 // Flush to the disk and take the target's place.
 int hf_out_commit(struct hf_out *o, struct hf_io_error *err);
 // Close and remove what was not committed.

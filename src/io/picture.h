@@ -76,6 +76,12 @@ int hf_io_check_window(const char *path, const char *which, struct hf_io_box box
 // Append name to a list "a, b, c" in buf; what does not fit is cut off.
 void hf_io_list(char *buf, size_t size, const char *part, const char *name);
 
+// A file in memory; data is to be freed.
+struct hf_io_bytes {
+    uint8_t *data;
+    size_t size;
+};
+
 // Samples as OpenEXR stores them: row after row, in a row channel after channel, in alphabetical order, little endian.
 // All channels have full resolution.
 struct hf_io_samples {
@@ -86,6 +92,7 @@ struct hf_io_samples {
     int tile_width, tile_height;  // 0: scan lines
     size_t row_bytes;
     uint8_t *data;  // height * row_bytes
+    int threads;    // that may work on them; 0: as many as there are processors
 };
 
 #ifdef __cplusplus

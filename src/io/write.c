@@ -60,6 +60,22 @@ static int write_new_exr(struct hf_out *out, const struct hf_io_view *v, const f
     return hf_exr_write_new(out, &picture, err);
 }
 
+static int write_by_oiio(const struct hf_io_file *file, struct hf_out *out, const struct hf_io_view *v,
+                         const struct picture *pic, const char *compression, struct hf_io_error *err)
+{
+    const struct hf_oiio_picture picture = {.path = out->path,
+                                            .view = v,
+                                            .planes = {pic->planes[0], pic->planes[1], pic->planes[2], pic->planes[3]},
+                                            .bits = file->oiio ? hf_oiio_bits(file->oiio) : 0,
+                                            .compression = compression};
+    struct hf_io_bytes made;
+    int status = hf_oiio_write(&made, &picture, err);
+    if (!status)
+        status = hf_out_write(out, made.data, made.size, err);
+    free(made.data);
+    return status;
+}
+
 // A picture with nothing but the colours of one view.
 static int write_view(struct hf_io_file *file, struct hf_out *out, const struct hf_io_job *job, int compression,
                       struct hf_io_error *err)
@@ -73,7 +89,7 @@ static int write_view(struct hf_io_file *file, struct hf_out *out, const struct 
     if (!status && hf_io_is_exr_name(job->path) && !(compression >= 0 && hf_exr_is_dwa(compression)))
         status = write_new_exr(out, v, pic.planes, compression, err);
     else if (!status)
-        status = hf_oiio_write(out, file->oiio, v, pic.planes, job->compression, err);
+        status = write_by_oiio(file, out, v, &pic, job->compression, err);
     free_picture(&pic);
     return status;
 }

@@ -176,6 +176,10 @@ result "--help fits 80 columns" $?
 run --version
 [ "$status" -eq 0 ] && [ ! -s "$dir/err" ] && grep -Eq '^hyperfocal [0-9]+\.[0-9]+\.[0-9]+' "$dir/out"
 result "--version" $?
+if command -v ldd >/dev/null; then
+    ! ldd "$program" | grep -qi -e OpenImageIO -e stdc++
+    result "the program does not load OpenImageIO" $?
+fi
 if [ -w /dev/full ]; then
     "$program" --help >/dev/full 2>"$dir/err"
     status=$? command="--help >/dev/full"

@@ -600,6 +600,28 @@ static void format_trip(const char *name, float bound, bool alpha)
     hf_io_close(&f);
 }
 
+// What OpenImageIO reads: half a file is an error, and rubbish, which crashes some of its readers, is survived.
+static void test_damaged(const char *name)
+{
+    const char *path = in_folder("bad"), *target = in_folder("out.exr");
+    struct hf_io_error err = {""};
+    size_t size;
+    CHECK_MSG(!rewrite(in_folder("ramp.exr"), in_folder(name), &err), "%s", err.message);
+    uint8_t *data = slurp(in_folder(name), &size), *copy = allocate(size);
+    spill(path, data, size / 2);
+    CHECK_MSG(!survive(path, target), "half of %s is read as a picture", name);
+    for (int i = 0; i < 12; i++) {
+        memcpy(copy, data, size);
+        for (uint32_t k = 0, n = 1 + rnd() % 4; k < n; k++)
+            copy[rnd() % (i & 1 ? size : size < 300 ? size : 300)] = (uint8_t)rnd();
+        spill(path, copy, size);
+        survive(path, target);
+    }
+    unlink(path);
+    free(copy);
+    free(data);
+}
+
 static void test_formats(void)
 {
     struct hf_io_error err = {""};
@@ -622,6 +644,14 @@ static void test_formats(void)
     CHECK(!make_exr(in_folder("a.exr"), parts, NULL));
     full_disk(in_folder("a.exr"), in_folder("full.tif"));
     full_disk(in_folder("a.exr"), in_folder("full.png"));
+    full_disk(in_folder("a.exr"), in_folder("full.sgi"));
+    full_disk(in_folder("a.exr"), in_folder("full.rgb"));
+    expect_error(rewrite(in_folder("a.exr"), in_folder("a.term"), &err), &err, "holds no whole picture");
+    format_trip("a.sgi", 0.5f / 255 * 2.3f, false);
+    format_trip("b.dpx", 0.5f / 255 * 2.3f, false);
+    static const char *const damaged[] = {"a.png", "a.jpg", "a.tif", "a.iff", "a.dpx", "a.sgi", "a.hdr", "a.bmp"};
+    for (size_t i = 0; i < sizeof(damaged) / sizeof(damaged[0]); i++)
+        test_damaged(damaged[i]);
     for (int i = 0; i < 8; i++) {  // a picture cut short
         size_t size;
         uint8_t *data = slurp(in_folder("a.png"), &size);

@@ -42,14 +42,15 @@ struct hf_exr_part {
 struct hf_exr_codec {
     int (*read)(const char *path, int part, struct hf_io_samples *s, struct hf_io_error *err);
     // A new single-part EXR. level: the quality, 0 for the default.
-    int (*write)(struct hf_out *out, const struct hf_io_samples *s, const char *compression, float level,
-                 struct hf_io_error *err);
+    int (*write)(struct hf_io_bytes *made, const char *path, const struct hf_io_samples *s, const char *compression,
+                 float level, struct hf_io_error *err);
 };
 
 struct hf_exr {
     const char *path;  // not owned
     const struct hf_exr_codec *dwa;
     int fd;
+    const uint8_t *memory;  // all of the file; NULL: fd is read. Not owned
     uint64_t size;
     uint64_t header_size;
     bool multipart;
@@ -61,6 +62,8 @@ struct hf_exr {
 
 // Takes fd over, also on failure. path and dwa must outlive the file.
 int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_exr_codec *dwa, struct hf_io_error *err);
+// A file in memory, which must outlive it.
+int hf_exr_open_memory(struct hf_exr **out, const char *path, const struct hf_io_bytes *bytes, struct hf_io_error *err);
 void hf_exr_close(struct hf_exr *e);
 int hf_exr_read_at(const struct hf_exr *e, void *data, size_t size, uint64_t offset);  // 0 or -1
 // Forget what Core said; report what it said since. code: what Core returned.

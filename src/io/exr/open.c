@@ -14,6 +14,12 @@
 int hf_exr_read_at(const struct hf_exr *e, void *data, size_t size, uint64_t offset)
 {
     char *to = data;
+    if (e->memory) {
+        if (offset > e->size || size > e->size - offset)
+            return -1;
+        memcpy(data, e->memory + offset, size);
+        return 0;
+    }
     while (size) {
         const ssize_t n = pread(e->fd, to, size, (off_t)offset);
         if (n < 0 && errno == EINTR)
@@ -270,24 +276,15 @@ static int load_part(struct hf_exr *e, int p, struct hf_io_error *err)
     return load_channels(e, p, err);
 }
 
-int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_exr_codec *dwa, struct hf_io_error *err)
+// e holds what is to be read; it is closed on failure.
+static int open_core(struct hf_exr **out, struct hf_exr *e, struct hf_io_error *err)
 {
-    struct hf_exr *e = calloc(1, sizeof(*e));
     exr_context_initializer_t init;
-    *out = NULL;
-    if (!e) {
-        close(fd);
-        return hf_io_fail(err, "%s: out of memory", path);
-    }
-    e->fd = fd;
-    e->path = path;
-    e->dwa = dwa;
-    e->size = (uint64_t)lseek(fd, 0, SEEK_END);
     hf_exr_context_init(e, &init);
     init.read_fn = core_read;
     init.size_fn = core_size;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;  // half a picture is an error, not a puzzle
-    exr_result_t rv = exr_start_read(&e->core, path, &init);
+    exr_result_t rv = exr_start_read(&e->core, e->path, &init);
     if (!rv)
         rv = exr_get_count(e->core, &e->part_count);
     if (rv || e->part_count < 1) {
@@ -296,7 +293,7 @@ int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_e
     }
     e->parts = calloc((size_t)e->part_count, sizeof(*e->parts));
     if (!e->parts) {
-        hf_io_fail(err, "%s: out of memory", path);
+        hf_io_fail(err, "%s: out of memory", e->path);
         goto error;
     }
     for (int p = 0; p < e->part_count; p++)
@@ -311,6 +308,34 @@ error:
     return -1;
 }
 
+int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_exr_codec *dwa, struct hf_io_error *err)
+{
+    struct hf_exr *e = calloc(1, sizeof(*e));
+    *out = NULL;
+    if (!e) {
+        close(fd);
+        return hf_io_fail(err, "%s: out of memory", path);
+    }
+    e->fd = fd;
+    e->path = path;
+    e->dwa = dwa;
+    e->size = (uint64_t)lseek(fd, 0, SEEK_END);
+    return open_core(out, e, err);
+}
+
+int hf_exr_open_memory(struct hf_exr **out, const char *path, const struct hf_io_bytes *bytes, struct hf_io_error *err)
+{
+    struct hf_exr *e = calloc(1, sizeof(*e));
+    *out = NULL;
+    if (!e)
+        return hf_io_fail(err, "%s: out of memory", path);
+    e->fd = -1;
+    e->path = path;
+    e->memory = bytes->data;
+    e->size = bytes->size;
+    return open_core(out, e, err);
+}
+
 void hf_exr_close(struct hf_exr *e)
 {
     if (!e)
@@ -320,6 +345,7 @@ void hf_exr_close(struct hf_exr *e)
     for (int p = 0; e->parts && p < e->part_count; p++)
         free(e->parts[p].channels);
     free(e->parts);
-    close(e->fd);
+    if (e->fd >= 0)
+        close(e->fd);
     free(e);
 }

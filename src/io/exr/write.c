@@ -4,8 +4,6 @@
 // whole is compressed again.
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
-#include <fcntl.h>
 
 #include "io/exr/chunks.h"
 #include "io/half.h"
@@ -207,23 +205,17 @@ static int encode_dwa(struct writer *w, int p, const struct hf_exr_pixels *px)
     struct hf_exr_target t = target_of(w, p);
     struct hf_io_samples s;
     struct hf_exr_names names;
-    struct hf_out temp;
+    struct hf_io_bytes bytes = {0};
     struct hf_exr *made = NULL;
     float level = 0;
     if (exr_attr_get_float(w->e->core, p, "dwaCompressionLevel", &level) != EXR_ERR_SUCCESS)
         level = 0;
     if (hf_exr_samples(px, w->e->path, &s, &names, w->err))
         return -1;
-    int status = hf_out_open(&temp, w->out->path, w->err);
+    int status =
+        w->e->dwa->write(&bytes, w->out->path, &s, hf_exr_compression_name(w->plans[p].compression), level, w->err);
     if (!status)
-        status = w->e->dwa->write(&temp, &s, hf_exr_compression_name(w->plans[p].compression), level, w->err);
-    if (!status)
-        status = hf_out_detach(&temp, w->err);
-    if (!status) {
-        const int fd = open(temp.temp, O_RDONLY | O_CLOEXEC);
-        status = fd < 0 ? hf_io_fail(w->err, "%s: cannot read what was written", w->out->path)
-                        : hf_exr_open(&made, w->out->path, fd, w->e->dwa, w->err);
-    }
+        status = hf_exr_open_memory(&made, w->out->path, &bytes, w->err);
     if (!status &&
         (made->parts[0].chunk_count != w->plans[p].chunk_count || made->parts[0].storage != px->part->storage))
         status = hf_io_fail(w->err, "%s: OpenImageIO cut the picture into other chunks than it should", w->out->path);
@@ -231,7 +223,7 @@ static int encode_dwa(struct writer *w, int p, const struct hf_exr_pixels *px)
         status = hf_exr_copy_chunks(made, 0, &t, w->err);
     w->at = t.at;
     hf_exr_close(made);
-    hf_out_abort(&temp);
+    free(bytes.data);
     hf_exr_free_names(&names);
     return status;
 }

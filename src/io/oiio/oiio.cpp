@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything OpenImageIO does for us, behind a C interface that no exception leaves.
+// Everything OpenImageIO does for us, behind a C interface that no exception leaves. Part of the helper program.
 #include "io/oiio/oiio.h"
 
 #include <algorithm>
@@ -11,8 +11,11 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <strings.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -71,15 +74,17 @@ struct Input {
     }
 };
 
-// A writer into memory, because OpenImageIO does not notice when a disk is full; we do when we write what it made.
-// Formats that insist on a file of their own get the one at target->temp.
+// A writer into memory: what goes wrong on a disk is then the program's business, who looks at what write() returns.
+// Formats that insist on a file of their own get one in memory, and are read back, as they do not look either.
 struct Output {
-    hf_out *target;
+    const char *path;
     hf_io_error *err;
     OIIO::Filesystem::IOVecOutput memory;
     std::unique_ptr<ImageOutput> out;
+    int file = -1;
+    char name[64] = "";
 
-    Output(hf_out *t, hf_io_error *e, const std::string &format) : target(t), err(e), out(ImageOutput::create(format))
+    Output(const char *p, hf_io_error *e, const std::string &format) : path(p), err(e), out(ImageOutput::create(format))
     {
     }
 
@@ -88,30 +93,60 @@ struct Output {
         if (out)
             out->geterror();
         OIIO::geterror();
+        if (file >= 0)
+            ::close(file);
     }
 
     int fail()
     {
         const std::string message = out && out->has_error() ? out->geterror() : OIIO::geterror();
-        return hf_io_fail(err, "%s: cannot write: %s", target->path, why(message).c_str());
+        return hf_io_fail(err, "%s: cannot write: %s", path, why(message).c_str());
     }
 
     int open(const ImageSpec &spec)
     {
         if (!out)
             return fail();
-        if (out->supports("ioproxy"))
+        if (out->supports("ioproxy")) {
             out->set_ioproxy(&memory);
-        else if (hf_out_detach(target, err))
-            return -1;
-        return out->open(target->temp, spec) ? 0 : fail();
+        } else {
+            file = memfd_create("picture", MFD_CLOEXEC);
+            snprintf(name, sizeof(name), "/proc/self/fd/%d", file);
+        }
+        return out->open(file >= 0 ? name : path, spec) ? 0 : fail();
     }
 
-    int write(TypeDesc type, const void *pixels)
+    int read_back(const ImageSpec &spec)
     {
+        Input input;
+        input.in = ImageInput::create(out->format_name());
+        ImageSpec found;
+        if (!input.in || !input.in->open(name, found))
+            return input.fail(path, err);
+        std::vector<float> pixels((size_t)found.width * (size_t)found.height * (size_t)found.nchannels);
+        if (found.width != spec.width || found.height != spec.height || found.nchannels != spec.nchannels)
+            return hf_io_fail(err, "%s: cannot write: the format holds another picture than it was given", path);
+        return input.in->read_image(0, 0, 0, found.nchannels, TypeDesc::FLOAT, pixels.data()) ? 0
+                                                                                              : input.fail(path, err);
+    }
+
+    int write(TypeDesc type, const void *pixels, hf_io_bytes *made)
+    {
+        const ImageSpec spec = out->spec();
+        struct stat st;
         if (!out->write_image(type, pixels) || !out->close())
             return fail();
-        return target->f ? hf_out_write(target, memory.buffer().data(), memory.buffer().size(), err) : 0;
+        if (file >= 0 && (read_back(spec) || fstat(file, &st)))
+            return -1;
+        made->size = file >= 0 ? (size_t)st.st_size : memory.buffer().size();
+        made->data = made->size ? (uint8_t *)malloc(made->size) : nullptr;
+        if (!made->data)
+            return hf_io_fail(err, "%s: cannot write: %s", path, made->size ? "out of memory" : "nothing was written");
+        if (file < 0)
+            memcpy(made->data, memory.buffer().data(), made->size);
+        else if (pread(file, made->data, made->size, 0) != (ssize_t)made->size)
+            return hf_io_fail(err, "%s: cannot write: the format's writer lost its file", path);
+        return 0;
     }
 };
 
@@ -123,8 +158,12 @@ int open_input(Input &input, const char *path, hf_io_error *err)
     input.in = ImageInput::open(path, &config);
     if (!input.in)
         return input.fail(path, err);
-    // OpenImageIO 2.4 writes past its buffer when it reads an icon.
-    return strcmp(input.in->format_name(), "ico") ? 0 : hf_io_fail(err, "%s: icons are not supported", path);
+    // No pictures, or read by code that writes past its buffers.
+    static const char *const refused[] = {"ico", "null", "ffmpeg", "openvdb", "dicom"};
+    for (const char *name : refused)
+        if (!strcmp(input.in->format_name(), name))
+            return hf_io_fail(err, "%s: files of this kind (%s) are not supported", path, name);
+    return 0;
 }
 
 int find_channel(const ImageSpec &spec, const char *name)
@@ -198,8 +237,8 @@ int check_spec(const ImageSpec &spec, const char *path, hf_io_error *err)
     if (spec.nchannels < 1 || spec.nchannels > 1024)
         return hf_io_fail(err, "%s: %d channels are not supported", path, spec.nchannels);
     // Some formats pack a plain colour very well, but nothing justifies gigabytes for a few bytes.
-    if (stat(path, &st) == 0 &&
-        (uint64_t)spec.width * (uint64_t)spec.height * (uint64_t)spec.nchannels / 65536 > (uint64_t)st.st_size)
+    const uint64_t samples = (uint64_t)spec.width * (uint64_t)spec.height * (uint64_t)spec.nchannels;
+    if (stat(path, &st) == 0 && samples > 1 << 25 && samples / 4096 > (uint64_t)st.st_size)
         return hf_io_fail(err, "%s: truncated or corrupt: %lld bytes cannot hold %d x %d pixels", path,
                           (long long)st.st_size, spec.width, spec.height);
     return 0;
@@ -231,7 +270,9 @@ int read_channel(Input &input, const hf_oiio *o, int c, float *plane, hf_io_erro
 {
     if (!input.in->read_image(0, 0, c, c + 1, TypeDesc::FLOAT, plane))
         return input.fail(o->path, err);
-    return 0;
+    // Half a picture counts as read for some readers (JPEG, TIFF, IFF), who only leave a message.
+    const std::string message = input.in->geterror();
+    return message.empty() ? 0 : hf_io_fail(err, "%s: truncated or corrupt: %s", o->path, why(message).c_str());
 }
 
 void premultiply(float *plane, const float *alpha, size_t n)
@@ -275,15 +316,14 @@ int read_colour(const hf_oiio *o, float *const planes[4], hf_io_error *err)
 }
 
 // The pixel type to ask a format for. Those that hold floats get them, unless the source itself had integers.
-TypeDesc output_type(const char *path, const hf_oiio *source)
+TypeDesc output_type(const char *path, int bits)
 {
     const char *ext = hf_io_extension(path);
-    const TypeDesc from = source ? source->spec.format : TypeDesc(TypeDesc::FLOAT);
     if (!strcasecmp(ext, "hdr") || !strcasecmp(ext, "rgbe") || !strcasecmp(ext, "pfm") || !strcasecmp(ext, "exr"))
         return TypeDesc::FLOAT;
     if (!strcasecmp(ext, "tif") || !strcasecmp(ext, "tiff"))
-        return from == TypeDesc::UINT8 || from == TypeDesc::UINT16 ? from : TypeDesc(TypeDesc::FLOAT);
-    return from == TypeDesc::UINT16 ? from : TypeDesc(TypeDesc::UINT8);
+        return bits == 8 ? TypeDesc::UINT8 : bits == 16 ? TypeDesc::UINT16 : TypeDesc::FLOAT;
+    return bits == 16 ? TypeDesc::UINT16 : TypeDesc::UINT8;
 }
 
 // Interleave the planes as the format wants them: with the sRGB curve and straight alpha for integers.
@@ -307,19 +347,26 @@ std::vector<float> interleave(const struct hf_io_view *v, const float *const pla
     return pixels;
 }
 
-int write_picture(hf_out *target, const hf_oiio *source, const struct hf_io_view *v, const float *const planes[4],
-                  const char *compression, hf_io_error *err)
+int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
 {
-    const char *path = target->path;
-    Output output(target, err, target->temp);
+    static const char *const trusted[] = {"bmp",     "dpx", "fits", "gif", "hdr", "heif",  "iff",  "jpeg", "jpeg2000",
+                                          "openexr", "png", "pnm",  "rla", "sgi", "targa", "tiff", "webp"};
+    const char *path = picture->path;
+    const hf_io_view *v = picture->view;
+    const float *const *planes = picture->planes;
+    Output output(path, err, path);
     if (!output.out) {
         OIIO::geterror();
         return hf_io_fail(err, "%s: cannot write: OpenImageIO does not know the format \"%s\"", path,
                           hf_io_extension(path));
     }
+    if (std::none_of(std::begin(trusted), std::end(trusted),
+                     [&](const char *name) { return !strcmp(name, output.out->format_name()); }))
+        return hf_io_fail(err, "%s: cannot write: the format \"%s\" holds no whole picture", path,
+                          hf_io_extension(path));
     const bool grey = !strcmp(v->colour[0], v->colour[1]);
     const bool alpha = planes[3] && output.out->supports("alpha");
-    ImageSpec spec(v->width, v->height, (grey ? 1 : 3) + (alpha ? 1 : 0), output_type(path, source));
+    ImageSpec spec(v->width, v->height, (grey ? 1 : 3) + (alpha ? 1 : 0), output_type(path, picture->bits));
     spec.channelnames.clear();
     for (int c = 0; c < (grey ? 1 : 3); c++)
         spec.channelnames.push_back(grey ? "Y" : std::string(1, "RGB"[c]));
@@ -332,8 +379,8 @@ int write_picture(hf_out *target, const hf_oiio *source, const struct hf_io_view
     // Not in TIFF: there it makes an EXIF directory, which OpenImageIO 2.4 then links in place of the picture's.
     if (is_integer(spec.format) && strcmp(output.out->format_name(), "tiff"))
         spec.attribute("oiio:ColorSpace", "sRGB");
-    if (compression)
-        spec.attribute("compression", compression);
+    if (picture->compression)
+        spec.attribute("compression", picture->compression);
     if (hf_io_is_exr_name(path)) {
         spec.x = v->data_window.x0;
         spec.y = v->data_window.y0;
@@ -348,7 +395,7 @@ int write_picture(hf_out *target, const hf_oiio *source, const struct hf_io_view
     ImageSpec actual = output.out->spec();
     actual.nchannels = spec.nchannels;
     const std::vector<float> pixels = interleave(v, planes, actual, alpha);
-    return output.write(TypeDesc::FLOAT, pixels.data());
+    return output.write(TypeDesc::FLOAT, pixels.data(), made);
 }
 
 const TypeDesc exr_types[3] = {TypeDesc::UINT32, TypeDesc::HALF, TypeDesc::FLOAT};
@@ -365,8 +412,15 @@ void copy_strided(uint8_t *to, size_t to_step, const uint8_t *from, size_t from_
         memcpy(to + (size_t)i * to_step, from + (size_t)i * from_step, bytes);
 }
 
+void set_threads(const hf_io_samples *s)
+{
+    OIIO::attribute("threads", s->threads);
+    OIIO::attribute("exr_threads", s->threads > 1 ? s->threads : s->threads == 1 ? -1 : 0);
+}
+
 int read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
 {
+    set_threads(s);
     Input input;
     input.in = ImageInput::create("openexr");
     ImageSpec spec;
@@ -411,9 +465,11 @@ ImageSpec samples_spec(const hf_io_samples *s, const char *compression, float le
     return spec;
 }
 
-int write_samples(hf_out *target, const hf_io_samples *s, const char *compression, float level, hf_io_error *err)
+int write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, const char *compression, float level,
+                  hf_io_error *err)
 {
-    Output output(target, err, "openexr");
+    set_threads(s);
+    Output output(path, err, "openexr");
     const ImageSpec spec = samples_spec(s, compression, level);
     size_t step = 0, at = 0, offset = 0;
     for (int c = 0; c < s->channel_count; c++)
@@ -427,14 +483,15 @@ int write_samples(hf_out *target, const hf_io_samples *s, const char *compressio
         offset += bytes;
         at += bytes * (size_t)s->width;
     }
-    return output.open(spec) ? -1 : output.write(TypeDesc::UNKNOWN, pixels.data());
+    return output.open(spec) ? -1 : output.write(TypeDesc::UNKNOWN, pixels.data(), made);
 }
 
 }  // namespace
 
-int hf_oiio_available(void)
+int hf_oiio_bits(const hf_oiio *o)
 {
-    return 1;
+    const TypeDesc type = o->spec.format;
+    return is_integer(type) ? (int)type.basesize() * 8 : 0;
 }
 
 int hf_oiio_open(hf_oiio **out, const char *path, const char *depth_channel, hf_io_views *views, hf_io_error *err)
@@ -443,6 +500,7 @@ int hf_oiio_open(hf_oiio **out, const char *path, const char *depth_channel, hf_
         Input input;
         if (open_input(input, path, err) || check_spec(input.in->spec(), path, err))
             return -1;
+        OIIO::attribute("threads", 1);
         hf_oiio *o = *out = new hf_oiio{path, input.in->spec(), {-1, -1, -1, -1}, -1};
         find_colour(o->spec, o->colour);
         o->depth = find_depth(o->spec, depth_channel);
@@ -498,10 +556,9 @@ int hf_oiio_read_depth_only(hf_oiio *o, const char *depth_channel, const struct 
     });
 }
 
-int hf_oiio_write(hf_out *out, const hf_oiio *source, const struct hf_io_view *view, const float *const planes[4],
-                  const char *compression, hf_io_error *err)
+int hf_oiio_write(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
 {
-    return guarded(out->path, err, [&] { return write_picture(out, source, view, planes, compression, err); });
+    return guarded(picture->path, err, [&] { return write_picture(made, picture, err); });
 }
 
 int hf_oiio_read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
@@ -509,7 +566,8 @@ int hf_oiio_read_samples(const char *path, int part, hf_io_samples *s, hf_io_err
     return guarded(path, err, [&] { return read_samples(path, part, s, err); });
 }
 
-int hf_oiio_write_samples(hf_out *out, const hf_io_samples *s, const char *compression, float level, hf_io_error *err)
+int hf_oiio_write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, const char *compression,
+                          float level, hf_io_error *err)
 {
-    return guarded(out->path, err, [&] { return write_samples(out, s, compression, level, err); });
+    return guarded(path, err, [&] { return write_samples(made, path, s, compression, level, err); });
 }
