@@ -85,14 +85,14 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     h->ready = h->reach_x = h->reach_y = 0;
     h->rotation = p->blade_rotation;
     s->uniform = p->uniform;
+    // Below this, weights and colours times radii would be denormal, and a pixel's soft edge has no slope.
+    s->sharp_radius = 0x1p-40f;
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
     struct hf_hexagon *h = own;
     (void)p;
-    // Below this, weights and colours times radii would be denormal, and a pixel's soft edge has no slope.
-    s->sharp_radius = 0x1p-40f;
     // Four taps to a bilinear one, and a step to end with. Rows together add one to each of n + 1 columns, or three.
     const size_t n = (size_t)tap_count(s, s->max_radius), taps = 4 * n + 1;
     const size_t two = taps + n + 1, four = taps + 3 * (n + 1);
