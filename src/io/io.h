@@ -105,7 +105,7 @@ struct hf_io_output;
 // written (which is set to zero first) and err may be NULL.
 int hf_io_encode(struct hf_io_output **out, struct hf_io_file *file, const struct hf_io_job *job,
                  struct hf_io_written *written, struct hf_io_error *err);
-// Write it to a temporary file beside path (.hyperfocal-PID-N.ext), then rename; on error nothing is left. path may be
+// Write it to a temporary file beside path (.hyperfocal-HOST-PID-N.ext), then rename; on error nothing is left. path may be
 // the source's own. A note may be added to *written, which may be NULL.
 int hf_io_save(struct hf_io_output *out, struct hf_io_written *written, struct hf_io_error *err);
 void hf_io_output_free(struct hf_io_output **out);

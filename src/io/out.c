@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/out.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdatomic.h>
@@ -16,20 +17,54 @@ static int write_error(const struct hf_out *o, struct hf_io_error *err)
     return hf_io_fail(err, "%s: cannot write: %s", o->path, strerror(errno));
 }
 
-// A fresh name beside the target: short, because the target's own may already be as long as names get.
+enum { HOST_LENGTH = 32 };
+#define TEMP_PREFIX ".hyperfocal-"
+
+// This machine's name, as far as it can stand in a file's name between dashes.
+static const char *host_name(char buf[HOST_LENGTH + 1])
+{
+    if (gethostname(buf, HOST_LENGTH + 1))
+        buf[0] = 0;
+    buf[HOST_LENGTH] = 0;
+    for (char *c = buf; *c; c++)
+        if (!isalnum((unsigned char)*c) && *c != '.')
+            *c = '_';
+    return buf[0] ? buf : "_";
+}
+
+// A fresh name beside the target: short, because the target's own may already be as long as names get. Machine and
+// process are in it, so that two that write to one folder do not meet, and what a dead one left is known.
 static char *temp_name(const char *target)
 {
     static atomic_uint counter;
+    char host[HOST_LENGTH + 1];
     const char *slash = strrchr(target, '/');
     const char *ext = hf_io_extension(target);
     const int folder = slash ? (int)(slash - target + 1) : 0;
     char *name;
     if (strlen(ext) > 16)
         ext = "";
-    if (asprintf(&name, "%.*s.hyperfocal-%ld-%u%s%s", folder, target, (long)getpid(), atomic_fetch_add(&counter, 1),
-                 *ext ? "." : "", ext) < 0)
+    if (asprintf(&name, "%.*s" TEMP_PREFIX "%s-%ld-%u%s%s", folder, target, host_name(host), (long)getpid(),
+                 atomic_fetch_add(&counter, 1), *ext ? "." : "", ext) < 0)
         return NULL;
     return name;
+}
+
+enum hf_out_owner hf_out_owner_of(const char *name, long *pid)
+{
+    char host[HOST_LENGTH + 1], *end;
+    if (strncmp(name, TEMP_PREFIX, strlen(TEMP_PREFIX)))
+        return HF_OUT_NOT_OURS;
+    const char *theirs = name + strlen(TEMP_PREFIX), *dash = strchr(theirs, '-');
+    if (!dash || !isdigit((unsigned char)dash[1]))
+        return HF_OUT_NOT_OURS;
+    errno = 0;
+    *pid = strtol(dash + 1, &end, 10);
+    if (errno || *pid < 1 || *end != '-' || !isdigit((unsigned char)end[1]))
+        return HF_OUT_NOT_OURS;
+    const char *own = host_name(host);
+    return strlen(own) == (size_t)(dash - theirs) && !memcmp(own, theirs, strlen(own)) ? HF_OUT_THIS_HOST
+                                                                                       : HF_OUT_OTHER_HOST;
 }
 
 // O_EXCL: never follows or overwrites what somebody else put there.
