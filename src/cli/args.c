@@ -2,6 +2,8 @@
 #include "cli/args.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 int cli_is_exr(const char *path)
@@ -12,11 +14,11 @@ int cli_is_exr(const char *path)
 
 static void set_defaults(struct cli_args *args)
 {
-    *args = (struct cli_args){.params = hf_default_params};
+    *args = (struct cli_args){.params = hf_default_params, .focus_smooth = -1};
     float *const unset[] = {&args->focus,        &args->range,        &args->strength,   &args->near_begin,
                             &args->near_end,     &args->far_begin,    &args->far_end,    &args->fstop,
                             &args->focal_length, &args->sensor_width, &args->world_unit, &args->near_plane,
-                            &args->far_plane};
+                            &args->far_plane,    &args->memory_limit};
     for (size_t i = 0; i < sizeof(unset) / sizeof(unset[0]); i++)
         *unset[i] = NAN;
 }
@@ -34,6 +36,39 @@ static const struct cli_option *find_option(const char *word)
     return NULL;
 }
 
+// Does an option change the pixels of a frame? Then it is part of what the frame was made with. Names of files and what
+// differs from frame to frame are left to resume.c.
+static int makes_picture(const struct cli_option *o)
+{
+    static const char *const others[] = {"views", "compression", "deterministic", "budget-ms"};
+    static const char *const per_frame[] = {"depth-file", "keys", "keys-blend", "focus-smooth", "print-focus"};
+    for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+        if (!strcmp(o->name, others[i]))
+            return 1;
+    for (size_t i = 0; i < sizeof(per_frame) / sizeof(per_frame[0]); i++)
+        if (!strcmp(o->name, per_frame[i]))
+            return 0;
+    return o->group == CLI_FOCUS || o->group == CLI_LENS || o->group == CLI_DEPTH || o->group == CLI_LOOK;
+}
+
+static int note_setting(struct cli_args *args, const struct cli_option *o, const char *value, struct cli_error *error)
+{
+    char *settings;
+    if (!makes_picture(o))
+        return 0;
+    if (asprintf(&settings, "%s%s--%s%s%s", args->settings ? args->settings : "", args->settings ? " " : "", o->name,
+                 value ? " " : "", value ? value : "") < 0)
+        return cli_fail(error, -1, "out of memory");
+    free(args->settings);
+    args->settings = settings;
+    return 0;
+}
+
+static int parse_value(struct cli_args *args, const struct cli_option *o, const char *value, struct cli_error *error)
+{
+    return o->parse(args, o, value, error) || note_setting(args, o, value, error) ? -1 : 0;
+}
+
 // Parse the option at argv[i]; returns how many words it took, or -1.
 static int parse_option(struct cli_args *args, int argc, char **argv, int i, struct cli_error *error)
 {
@@ -45,10 +80,10 @@ static int parse_option(struct cli_args *args, int argc, char **argv, int i, str
     if (!o->placeholder) {
         if (value)
             return cli_fail(error, -1, "--%s takes no value, but '%s' was given", o->name, value + 1);
-        return o->parse(args, o, NULL, error) ? -1 : 1;
+        return parse_value(args, o, NULL, error) ? -1 : 1;
     }
     if (value)
-        return o->parse(args, o, value + 1, error) ? -1 : 1;
+        return parse_value(args, o, value + 1, error) ? -1 : 1;
 
     // A number may be negative, but what looks like a long option is one: its value was forgotten.
     const int optional = o->placeholder[0] == '[';
@@ -57,17 +92,24 @@ static int parse_option(struct cli_args *args, int argc, char **argv, int i, str
         next = NULL;
     if (!next && !optional)
         return cli_fail(error, -1, "%s needs a value, %s", word, o->placeholder);
-    return o->parse(args, o, next, error) ? -1 : next ? 2 : 1;
+    return parse_value(args, o, next, error) ? -1 : next ? 2 : 1;
 }
 
 static int parse_input(struct cli_args *args, const char *word, struct cli_error *error)
 {
     if (word[0] == '\0')
         return cli_fail(error, -1, "INPUT: '' is empty, it must be a file name");
-    if (args->input)
-        return cli_fail(error, -1, "'%s' is a second INPUT after '%s', but there can be only one", word, args->input);
-    args->input = word;
+    args->inputs[args->input_count++] = word;
+    args->input = args->inputs[0];
     return 0;
+}
+
+void cli_free_args(struct cli_args *args)
+{
+    free(args->settings);
+    free(args->inputs);
+    args->settings = NULL;
+    args->inputs = NULL;
 }
 
 static int given(float number)
@@ -181,7 +223,7 @@ static int check_files(const struct cli_args *args, struct cli_error *error)
 {
     if (!args->input)
         return cli_fail(error, -1, "there is no INPUT, see hyperfocal --help");
-    if (!args->output && !args->dry_run)
+    if (!args->output && !args->dry_run && !args->print_focus)
         return cli_fail(error, -1, "there is no OUTPUT for %s, name it with -o", args->input);
     if (args->output && args->compression && !cli_is_exr(args->output))
         return cli_fail(error, -1, "--compression %s is for EXR, but OUTPUT is %s", args->compression, args->output);
@@ -201,6 +243,9 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_erro
     const char *json_word = NULL;  // the word after a --json, which may turn out to be INPUT
     int words_only = 0;            // after "--"
     set_defaults(args);
+    args->inputs = calloc((size_t)argc + 1, sizeof(*args->inputs));
+    if (!args->inputs)
+        return cli_fail(error, -1, "out of memory");
     for (int i = 1; i < argc && !args->help && !args->version;) {
         const char *word = argv[i];
         int taken = 1;
@@ -219,8 +264,9 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_erro
     if (args->help || args->version)
         return 0;
     if (!args->input && json_word && args->json_file == json_word) {
-        args->input = json_word;
         args->json_file = NULL;
+        if (parse_input(args, json_word, error))
+            return -1;
     }
     if (args->views && !strcmp(args->views, "all"))
         args->views = NULL;

@@ -17,8 +17,12 @@ enum cli_focus {
     CLI_FOCUS_AT,        // --focus-at X,Y
 };
 
+enum cli_keys_blend { CLI_KEYS_LINEAR, CLI_KEYS_SMOOTH };
+
 // What was asked for. Numbers that were not given are NAN, texts NULL.
 struct cli_args {
+    const char **inputs;  // as given; input: of the frame at hand
+    int input_count;
     const char *input, *output;
     int help, version, dry_run;
 
@@ -40,6 +44,16 @@ struct cli_args {
 
     const char *aperture;       // as given
     const char *aperture_file;  // NULL: the shape in params
+
+    // A shot: see shot.h, keys.h, track.h, batch.h.
+    const char *frames, *chunk, *keys, *log_file;
+    enum cli_keys_blend keys_blend;
+    int focus_smooth;        // frames to each side; -1: not given
+    int focus_per_view;      // each eye its own
+    const char *focus_from;  // whence the focus of a frame; NULL: --focus
+    int print_focus, resume, stop_on_error;
+    float memory_limit;  // GiB
+    char *settings;      // the options that change pixels, as they were given
 
     const char *views;  // NULL: all, else names with commas
     const char *compression;
@@ -87,6 +101,7 @@ const char *cli_choice_name(const char *option, int value, char *buf, size_t siz
 // Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
 // --version the rest of the line is not looked at.
 int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_error *error);
+void cli_free_args(struct cli_args *args);
 
 // 1 if a name ends in .exr, whatever its case.
 int cli_is_exr(const char *path);

@@ -4,6 +4,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+atomic_int cli_bar_shown;
+
 int cli_fail(struct cli_error *error, int code, const char *format, ...)
 {
     va_list list;
@@ -23,5 +25,5 @@ void cli_print_line(const char *format, ...)
     for (char *c = line; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
-    fprintf(stderr, "hyperfocal: %s\n", line);
+    fprintf(stderr, "%shyperfocal: %s\n", atomic_exchange(&cli_bar_shown, 0) ? "\r\033[K" : "", line);
 }

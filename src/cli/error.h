@@ -3,6 +3,7 @@
 #ifndef HF_CLI_ERROR_H
 #define HF_CLI_ERROR_H
 
+#include <stdatomic.h>
 #include <stddef.h>
 
 struct cli_error {
@@ -14,5 +15,8 @@ int cli_fail(struct cli_error *error, int code, const char *format, ...) __attri
 
 // "hyperfocal: TEXT" as one line on stderr; control characters, which names may hold, are shown as '?'.
 void cli_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+// Set while a progress bar is on the terminal's line: what is printed next takes its place.
+extern atomic_int cli_bar_shown;
 
 #endif

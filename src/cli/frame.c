@@ -2,6 +2,7 @@
 #include "cli/frame.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "cli/dump.h"
@@ -25,7 +26,15 @@ static void on_log(void *cookie, enum hf_log_level level, const char *message)
         cli_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", message);
 }
 
-int cli_session_open(struct cli_session *session, const struct cli_args *args, struct cli_error *error)
+const char *const cli_stage_names[CLI_STAGES] = {"read", "decode", "defocus", "encode", "write"};
+
+void cli_session_close(struct cli_session *session)
+{
+    hf_close(&session->context);
+    hf_io_threads_close(&session->run);
+}
+
+int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct cli_error *error)
 {
     char isa[32];
     cli_choice_name("isa", (int)args->isa, isa, sizeof(isa));
@@ -33,8 +42,11 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, s
     if (!hf_isa_available(args->isa))
         return cli_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
                         isa);
-    const struct hf_config config = {.threads = args->threads, .isa = args->isa, .log = on_log, .log_cookie = session};
+    const struct hf_config config = {.threads = threads, .isa = args->isa, .log = on_log, .log_cookie = session};
     const int status = hf_open(&session->context, &config);
+    // Without threads of their own files are read and written on this one.
+    if (status == HF_OK)
+        hf_io_threads_open(&session->run, hf_context_threads(session->context));
     if (status == HF_OK)
         return 0;
     const char *why = session->log.text[0] ? session->log.text : hf_error_string(status);
@@ -46,84 +58,121 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, s
                     "--threads %d, --isa %s: %s", args->threads, isa, why);
 }
 
-int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, struct cli_error *error)
+int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
+                   struct cli_error *error)
 {
     struct hf_io_error io;
-    *frame = (struct cli_frame){.args = args};
+    *frame = (struct cli_frame){.args = args, .run = run};
     const double start = now_ms();
     // With a depth file the channel's name is meant for that one.
     if (hf_io_open(&frame->file, args->input, args->depth_file ? NULL : args->depth_channel, &io))
         return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
-    frame->read_ms += now_ms() - start;
+    frame->ms[CLI_READ] += now_ms() - start;
     return cli_select_views(frame, error);
 }
 
-static size_t pixel_count(const struct hf_io_view *view)
+static int new_plane(const struct cli_view *v, float **plane, struct cli_error *error)
 {
-    return (size_t)view->width * (size_t)view->height;
+    *plane = malloc((size_t)v->view->width * (size_t)v->view->height * sizeof(float));
+    return *plane ? 0
+                  : cli_fail(error, CLI_ALL_FAILED, "%s: out of memory for %d x %d pixels", v->label, v->view->width,
+                             v->view->height);
 }
 
-static float *new_plane(const struct cli_view *v, struct cli_error *error)
-{
-    float *plane = malloc(pixel_count(v->view) * sizeof(float));
-    if (!plane)
-        cli_fail(error, CLI_ALL_FAILED, "%s: out of memory for %d x %d pixels", v->label, v->view->width,
-                 v->view->height);
-    return plane;
-}
-
-static int read_depth(struct cli_frame *frame, struct cli_view *v, struct cli_error *error)
+static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct cli_error *error)
 {
     const struct cli_args *args = frame->args;
     struct hf_io_error io;
-    v->depth = new_plane(v, error);
-    if (!v->depth)
-        return CLI_ALL_FAILED;
     const double start = now_ms();
-    if (args->depth_file ? hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, &io)
-                         : hf_io_read_depth(frame->file, v->index, v->depth, &io))
+    if (hf_io_fetch(frame->file, wants, frame->view_count, &io))
         return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
-    frame->read_ms += now_ms() - start;
+    const double fetched = now_ms();
+    if (hf_io_decode(frame->file, wants, frame->view_count, frame->run, &io))
+        return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    for (int i = 0; i < frame->view_count && args->depth_file; i++)
+        if (hf_io_read_depth_file(args->depth_file, args->depth_channel, frame->views[i].view, frame->views[i].depth,
+                                  &io))
+            return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    frame->ms[CLI_READ] += fetched - start;
+    frame->ms[CLI_DECODE] += now_ms() - fetched;
     return 0;
+}
+
+// The pixels of all views, if they are not there yet.
+static int load(struct cli_frame *frame, struct cli_error *error)
+{
+    if (frame->loaded)
+        return 0;
+    struct hf_io_want *wants = calloc((size_t)frame->view_count, sizeof(*wants));
+    int status = wants ? 0 : cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->input);
+    for (int i = 0; i < frame->view_count && !status; i++) {
+        struct cli_view *v = &frame->views[i];
+        wants[i].view = v->index;
+        for (int c = 0; c < 4 && !status; c++)
+            if (c < 3 || v->view->colour[3][0])
+                status = new_plane(v, &v->planes[c], error);
+        if (!status)
+            status = new_plane(v, &v->depth, error);
+        memcpy(wants[i].planes, v->planes, sizeof(v->planes));
+        wants[i].depth = frame->args->depth_file ? NULL : v->depth;
+    }
+    if (!status)
+        status = read_files(frame, wants, error);
+    free(wants);
+    frame->loaded = !status;
+    return status;
+}
+
+int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *error)
+{
+    struct cli_view *v = &frame->views[0];
+    struct hf_io_error io;
+    int status = 0;
+    if (cli_focus_needs_depth(frame->args)) {
+        status = new_plane(v, &v->depth, error);
+        if (!status &&
+            (frame->args->depth_file
+                 ? hf_io_read_depth_file(frame->args->depth_file, frame->args->depth_channel, v->view, v->depth, &io)
+                 : hf_io_read_depth(frame->file, v->index, v->depth, &io)))
+            status = cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    }
+    if (!status)
+        status = cli_setup_view(&v->setup, frame->args, v->view, v->depth, v->label, error);
+    if (!status)
+        *focus = v->setup.params.focus_distance;
+    return status;
+}
+
+// Where the focus is read from the picture, all views share that of the first: what one eye sees sharp, the other has
+// to see sharp too.
+static void share_focus(struct cli_frame *frame, struct cli_args *args)
+{
+    const struct cli_setup *first = &frame->views[0].setup;
+    if (!cli_focus_needs_depth(frame->args) || frame->args->focus_per_view)
+        return;
+    args->focus_by = CLI_FOCUS_DISTANCE;
+    args->focus = first->params.focus_distance;
+    args->focus_from = first->focus_from;
 }
 
 int cli_frame_setup(struct cli_frame *frame, struct cli_error *error)
 {
-    for (int i = 0; i < frame->view_count; i++) {
+    struct cli_args args = *frame->args;
+    int status = cli_focus_needs_depth(&args) ? load(frame, error) : 0;
+    for (int i = 0; i < frame->view_count && !status; i++) {
         struct cli_view *v = &frame->views[i];
-        int status = cli_focus_needs_depth(frame->args) ? read_depth(frame, v, error) : 0;
-        if (!status)
-            status = cli_setup_view(&v->setup, frame->args, v->view, v->depth, v->label, error);
-        if (status)
-            return status;
+        status = cli_setup_view(&v->setup, &args, v->view, v->depth, v->label, error);
+        if (!status && i == 0)
+            share_focus(frame, &args);
     }
-    return 0;
-}
-
-static int read_colour(struct cli_frame *frame, struct cli_view *v, struct cli_error *error)
-{
-    struct hf_io_error io;
-    for (int c = 0; c < 4; c++) {
-        if (c == 3 && v->view->colour[3][0] == '\0')
-            continue;
-        v->planes[c] = new_plane(v, error);
-        if (!v->planes[c])
-            return CLI_ALL_FAILED;
-    }
-    const double start = now_ms();
-    if (hf_io_read_colour(frame->file, v->index, v->planes, &io))
-        return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
-    frame->read_ms += now_ms() - start;
-    return 0;
+    return status;
 }
 
 // All that is needed to render a view; *image is its colour.
 static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
                      struct cli_error *error)
 {
-    int status = v->depth ? 0 : read_depth(frame, v, error);
-    if (!status)
-        status = read_colour(frame, v, error);
+    const int status = load(frame, error);
     if (status)
         return status;
     *image = (struct hf_image){.width = v->view->width, .height = v->view->height, .format = HF_FORMAT_PLANAR32F};
@@ -164,7 +213,9 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     if (frame->args->dump_dir)
         cli_dump_begin(&dump, session->context, frame, v);
     v->setup.params.colour_stats = frame->args->explain;
+    const double start = now_ms();
     status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
+    frame->ms[CLI_DEFOCUS] += now_ms() - start;
     status = finish_view(frame, v, session, status, error);
     return !status && frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : status;
 }
@@ -203,7 +254,7 @@ int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struc
     return each_view(frame, session, render_view, error);
 }
 
-int cli_frame_write(struct cli_frame *frame, struct cli_error *error)
+int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct cli_error *error)
 {
     struct hf_io_error io;
     struct hf_io_result *results = calloc((size_t)frame->view_count, sizeof(*results));
@@ -218,12 +269,22 @@ int cli_frame_write(struct cli_frame *frame, struct cli_error *error)
     const struct hf_io_job job = {.path = frame->args->output,
                                   .results = results,
                                   .result_count = frame->view_count,
-                                  .compression = frame->args->compression};
-    struct hf_io_written written;
-    const int status = hf_io_write(frame->file, &job, &written, &io);
-    frame->clamped = written.clamped;
-    frame->write_ms += now_ms() - start;
+                                  .compression = frame->args->compression,
+                                  .texts = texts,
+                                  .text_count = text_count,
+                                  .run = frame->run};
+    const int status = hf_io_encode(&frame->output, frame->file, &job, &frame->written, &io);
+    frame->ms[CLI_ENCODE] += now_ms() - start;
     free(results);
+    return status ? cli_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
+}
+
+int cli_frame_save(struct cli_frame *frame, struct cli_error *error)
+{
+    struct hf_io_error io;
+    const double start = now_ms();
+    const int status = hf_io_save(frame->output, &frame->written, &io);
+    frame->ms[CLI_WRITE] += now_ms() - start;
     return status ? cli_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
 }
 
@@ -238,6 +299,7 @@ void cli_frame_close(struct cli_frame *frame)
         free(v->tiles);
     }
     free(frame->views);
+    hf_io_output_free(&frame->output);
     hf_io_close(&frame->file);
     *frame = (struct cli_frame){0};
 }

@@ -5,9 +5,10 @@
 
 #include "cli/setup.h"
 
-// The library, kept from frame to frame, and what it said last.
+// The library and threads for files, kept from frame to frame, and what the library said last.
 struct cli_session {
     struct hf_context *context;
+    struct hf_io_run run;
     struct cli_error log;
     const char *label;  // what is being rendered, for warnings
 };
@@ -24,25 +25,38 @@ struct cli_view {
     uint8_t *tiles;  // of the report; NULL unless asked for
 };
 
+// Where a frame's time goes. Only computing keeps threads busy; reading and writing wait for the disk.
+enum cli_stage { CLI_READ, CLI_DECODE, CLI_DEFOCUS, CLI_ENCODE, CLI_WRITE, CLI_STAGES };
+extern const char *const cli_stage_names[CLI_STAGES];
+
 struct cli_frame {
     const struct cli_args *args;
+    const struct hf_io_run *run;  // threads to decode and encode on
     struct hf_io_file *file;
+    struct hf_io_output *output;
     struct cli_view *views;  // the selected ones, in the order of the file
     int view_count;
-    double read_ms, write_ms;
-    uint64_t clamped;  // samples that did not fit the output's channels
+    int loaded;  // the pixels are there
+    double ms[CLI_STAGES];
+    struct hf_io_written written;
 };
 
-// Start the library. Returns 0, or an exit code with *error filled.
-int cli_session_open(struct cli_session *session, const struct cli_args *args, struct cli_error *error);
+// Start the library, on some threads (0: one per processor). Returns 0, or an exit code with *error filled.
+int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct cli_error *error);
+void cli_session_close(struct cli_session *session);
 
 // The steps, in order; plan, which looks at the pictures but renders nothing, in place of render. Each returns 0, or an
 // exit code with *error filled; close after any of them.
-int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, struct cli_error *error);
+int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
+                   struct cli_error *error);
+// The focus of the first view, its depth being all that is decoded. In place of the others.
+int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *error);
 int cli_frame_setup(struct cli_frame *frame, struct cli_error *error);
 int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);
 int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);
-int cli_frame_write(struct cli_frame *frame, struct cli_error *error);
+// The new file in memory, with some texts in its header; then to the disk.
+int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct cli_error *error);
+int cli_frame_save(struct cli_frame *frame, struct cli_error *error);
 void cli_frame_close(struct cli_frame *frame);
 
 #endif

@@ -40,7 +40,7 @@ static void put_escaped(FILE *out, const char *text, size_t length)
     }
 }
 
-static void put_text(FILE *out, const char *text)
+void cli_json_text(FILE *out, const char *text)
 {
     if (!text) {
         fputs("null", out);
@@ -52,7 +52,7 @@ static void put_text(FILE *out, const char *text)
 }
 
 // JSON has no infinity and no NaN.
-static void put_number(FILE *out, double number)
+void cli_json_number(FILE *out, double number)
 {
     if (isfinite(number))
         fprintf(out, "%.9g", number);
@@ -60,8 +60,7 @@ static void put_number(FILE *out, double number)
         fputs("null", out);
 }
 
-// The command line as one text, in which words that a shell would not take as they are stand in single quotes.
-static void put_command(FILE *out, int argc, char **argv)
+void cli_json_command(FILE *out, int argc, char **argv)
 {
     putc('"', out);
     for (int i = 0; i < argc; i++) {
@@ -88,9 +87,9 @@ static void put_model(FILE *out, const struct cli_setup *setup)
     const struct hf_params *p = &setup->params;
     fprintf(out, ",\n      \"model\": \"%s\"", cli_model_name(setup->model));
     fputs(",\n      \"focus\": ", out);
-    put_number(out, setup->focus_from && p->focus_distance != HF_DERIVE ? p->focus_distance : NAN);
+    cli_json_number(out, setup->focus_from && p->focus_distance != HF_DERIVE ? p->focus_distance : NAN);
     fputs(",\n      \"focus_from\": ", out);
-    put_text(out, setup->focus_from);
+    cli_json_text(out, setup->focus_from);
     if (setup->model != CLI_MODEL_LENS)
         return;
     const struct {
@@ -102,7 +101,7 @@ static void put_model(FILE *out, const struct cli_setup *setup)
                 {"world_unit", p->world_unit_m}};
     for (size_t i = 0; i < sizeof(lens) / sizeof(lens[0]); i++) {
         fprintf(out, ",\n      \"%s\": ", lens[i].name);
-        put_number(out, lens[i].value);
+        cli_json_number(out, lens[i].value);
     }
 }
 
@@ -111,9 +110,9 @@ static void put_stats(FILE *out, const struct cli_view *v, const struct cli_fram
     const struct hf_stats *s = &v->stats;
     const double pixels = (double)v->view->width * v->view->height;
     // The file layer counts over all views, so with several only the sum is known, which is beside them.
-    const uint64_t clamped = s->clamped + (frame->view_count == 1 ? frame->clamped : 0);
+    const uint64_t clamped = s->clamped + (frame->view_count == 1 ? frame->written.clamped : 0);
     fprintf(out, ",\n      \"max_radius\": ");
-    put_number(out, s->max_radius);
+    cli_json_number(out, s->max_radius);
     fprintf(out,
             ",\n      \"near_share\": %.9g,\n      \"sharp_share\": %.9g,\n      \"far_share\": %.9g"
             ",\n      \"colour_repaired\": %" PRIu64 ",\n      \"depth_repaired\": %" PRIu64
@@ -160,7 +159,7 @@ static void put_view(FILE *out, const struct cli_view *v, const struct cli_frame
 {
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
     fputs("\n    {\n      \"name\": ", out);
-    put_text(out, v->view->name);
+    cli_json_text(out, v->view->name);
     fprintf(out,
             ",\n      \"width\": %d,\n      \"height\": %d,\n      \"data_window\": [%d, %d, %d, %d]"
             ",\n      \"display_window\": [%d, %d, %d, %d]",
@@ -179,12 +178,12 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     const struct cli_args *args = frame->args;
     char name[32];
     fputs("{\n  \"command\": ", out);
-    put_command(out, argc, argv);
+    cli_json_command(out, argc, argv);
     fprintf(out, ",\n  \"version\": \"%s\"", hf_version());
     fputs(",\n  \"input\": ", out);
-    put_text(out, args->input);
+    cli_json_text(out, args->input);
     fputs(",\n  \"output\": ", out);
-    put_text(out, args->output);
+    cli_json_text(out, args->output);
     fprintf(out, ",\n  \"engine\": \"%s\"", cli_choice_name("engine", (int)args->params.engine, name, sizeof(name)));
     fprintf(out, ",\n  \"isa\": \"%s\",\n  \"threads\": %d", hf_isa_name(hf_context_isa(context)),
             hf_context_threads(context));
@@ -192,8 +191,9 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     if (args->dry_run)
         fputs(",\n  \"dry_run\": true", out);
     else
-        fprintf(out, ",\n  \"read_ms\": %.6f,\n  \"write_ms\": %.6f,\n  \"clamped\": %" PRIu64, frame->read_ms,
-                frame->write_ms, frame->clamped);
+        fprintf(out, ",\n  \"read_ms\": %.6f,\n  \"write_ms\": %.6f,\n  \"clamped\": %" PRIu64,
+                frame->ms[CLI_READ] + frame->ms[CLI_DECODE], frame->ms[CLI_ENCODE] + frame->ms[CLI_WRITE],
+                frame->written.clamped);
     fputs(",\n  \"views\": [", out);
     for (int i = 0; i < frame->view_count; i++) {
         fputs(i ? "," : "", out);

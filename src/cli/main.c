@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hyperfocal INPUT -o OUTPUT: what to do comes from args, how from setup and frame; here is who says what to whom.
 #include "cli/aperture.h"
+#include "cli/batch.h"
 #include "cli/explain.h"
 #include "cli/frame.h"
 #include "cli/help.h"
 #include "cli/json.h"
+#include "cli/preview.h"
 #include "cli/target.h"
 
 #include <errno.h>
@@ -62,9 +64,9 @@ static void print_warnings(const struct cli_frame *frame)
             cli_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
                            v->stats.depth_repaired);
     }
-    if (frame->clamped)
+    if (frame->written.clamped)
         cli_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
-                       frame->clamped);
+                       frame->written.clamped);
 }
 
 static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
@@ -88,15 +90,17 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
 {
     struct cli_frame frame;
     const int explain = args->explain || args->explain_image;
-    int status = cli_frame_open(&frame, args, error);
+    int status = cli_frame_open(&frame, args, &session->run, error);
     if (!status)
         status = cli_frame_setup(&frame, error);
     if (!status && !args->dry_run)
         status = cli_frame_render(&frame, session, error);
     else if (!status && explain)
         status = cli_frame_plan(&frame, session, error);
+    if (!status && !args->dry_run)
+        status = cli_frame_encode(&frame, NULL, 0, error);
     if (!status && !args->dry_run) {
-        status = cli_frame_write(&frame, error);
+        status = cli_frame_save(&frame, error);
         if (!status)
             print_warnings(&frame);
     }
@@ -113,29 +117,85 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     return status;
 }
 
+// What is written about one frame only.
+static int check_alone(const struct cli_args *args, struct cli_error *error)
+{
+    const char *option = args->json            ? "--json"
+                         : args->explain       ? "--explain"
+                         : args->explain_image ? "--explain-image"
+                         : args->dump_dir      ? "--dump-passes"
+                                               : NULL;
+    if (option)
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s is for one frame; for a shot there is --log", option);
+    if (args->resume && args->output && !cli_is_exr(args->output))
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "--resume needs an EXR OUTPUT, as %s does not say what made it",
+                        args->output);
+    return 0;
+}
+
+static int run_shot(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot,
+                    struct cli_error *error)
+{
+    int status = check_alone(args, error);
+    if (!status && shot->jobs.count == 0)
+        cli_print_line("no frame of the shot is this process's part: nothing to do");
+    else if (!status && args->dry_run)
+        status = cli_preview(args, shot, error);
+    else if (!status)
+        status = cli_batch(argc, argv, args, shot, error);
+    return status;
+}
+
+// One frame, with all that can be said of it.
+static int run_alone(int argc, char **argv, struct cli_args *args, const struct cli_job *job, struct cli_error *error)
+{
+    struct cli_session session;
+    args->output = job->output;
+    args->depth_file = job->depth_file;
+    int status = cli_session_open(&session, args, args->threads, error);
+    if (!status)
+        status = run_frame(argc, argv, args, &session, error);
+    if (session.context)
+        cli_session_close(&session);
+    return status;
+}
+
+static int run_args(int argc, char **argv, struct cli_args *args, struct cli_error *error)
+{
+    const struct cli_shot_request request = {args->inputs, args->input_count, args->output, args->depth_file,
+                                             args->frames, args->chunk,       args->views};
+    struct cli_shot shot;
+    struct cli_aperture aperture = {0};
+    int status = cli_shot_make(&shot, &request, error);
+    for (int i = 0; i < shot.jobs.count && !status; i++) {
+        struct cli_args own = *args;
+        own.output = shot.jobs.list[i].output;
+        status = cli_check_targets(&own, error);
+    }
+    if (!status)
+        status = cli_aperture_load(&aperture, args, error);
+    if (!status && args->print_focus)
+        status = cli_print_focus(args, &shot, error);
+    else if (!status && cli_batch_wanted(args, &shot))
+        status = run_shot(argc, argv, args, &shot, error);
+    else if (!status)
+        status = run_alone(argc, argv, args, &shot.jobs.list[0], error);
+    cli_aperture_free(&aperture);
+    cli_shot_free(&shot);
+    return status;
+}
+
 static int run(int argc, char **argv, struct cli_error *error)
 {
     struct cli_args args;
-    struct cli_session session;
-    struct cli_aperture aperture;
-    if (cli_parse_args(&args, argc, argv, error))
-        return CLI_BAD_ARGUMENTS;
-    if (args.help)
+    int status = cli_parse_args(&args, argc, argv, error) ? CLI_BAD_ARGUMENTS : CLI_DONE;
+    if (!status && args.help)
         cli_print_help();
-    if (args.version)
+    else if (!status && args.version)
         printf("hyperfocal %s\n", hf_version());
-    if (args.help || args.version)
-        return CLI_DONE;
-    int status = cli_check_targets(&args, error);
-    if (!status)
-        status = cli_session_open(&session, &args, error);
-    if (status)
-        return status;
-    status = cli_aperture_load(&aperture, &args, error);
-    if (!status)
-        status = run_frame(argc, argv, &args, &session, error);
-    cli_aperture_free(&aperture);
-    hf_close(&session.context);
+    else if (!status)
+        status = run_args(argc, argv, &args, error);
+    cli_free_args(&args);
     return status;
 }
 
@@ -143,12 +203,13 @@ int main(int argc, char **argv)
 {
     // A file that grows too large for the system's limit is an error like a full disk, not the end of the process.
     signal(SIGXFSZ, SIG_IGN);
-    struct cli_error error;
+    struct cli_error error = {""};
     int status = run(argc, argv, &error);
     const int failed = ferror(stdout);
     if ((fflush(stdout) || failed) && !status)
         status = cli_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
-    if (status)
+    // Of a shot all has been said.
+    if (status && error.text[0])
         cli_print_line("%s", error.text);
     return status;
 }

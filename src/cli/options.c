@@ -40,6 +40,11 @@ const char *const cli_group_names[CLI_GROUPS] = {
 const struct cli_option cli_options[] = {
     {"output", 'o', CLI_FILES, "OUTPUT", "Picture to write: a copy of INPUT with its colours defocused. A name other "
      "than .exr keeps the colour of one view only.", TEXT(output)},
+    {"frames", 0, CLI_FILES, "LIST", "Frames of an INPUT with a place for the number: 1-100, 1-100x2 (every second), "
+     "10-1 (backwards), 1,5,9-20x3, -5--1, 1-100:3 (every third first, then those between). Default: those that there "
+     "are.", TEXT(frames)},
+    {"chunk", 0, CLI_FILES, "auto|I/N", "Only part I of N of the frames, for farms. auto: this task's part in a Slurm "
+     "array.", TEXT(chunk)},
     {"views", 0, CLI_FILES, "all|NAME,...", "Views to defocus, each by its own depth; the others are kept as they "
      "are. Default all.", TEXT(views)},
     {"compression", 0, CLI_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
@@ -50,6 +55,17 @@ const struct cli_option cli_options[] = {
      .max = FLT_MAX, .above_min = 1},
     {"focus-at", 0, CLI_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates.",
      .parse = cli_parse_focus_at},
+    {"focus-smooth", 0, CLI_FOCUS, "N", "A focus that is read from the pictures of a shot follows the mean of N frames "
+     "before and after, so that it does not jump, 0 to 1000. Default 6.", .parse = cli_parse_count, FIELD(focus_smooth),
+     .max = 1000},
+    {"focus-per-view", 0, CLI_FOCUS, NULL, "A focus that is read from the picture is each view's own. Default: all "
+     "have that of the first.", FLAG(focus_per_view)},
+    {"print-focus", 0, CLI_FOCUS, NULL, "Print the focus of each frame, as a file for --keys, and do nothing else.",
+     FLAG(print_focus)},
+    {"keys", 0, CLI_FOCUS, "FILE", "Values that change over a shot, as CSV: a column frame and any of focus, range, "
+     "strength, fstop, focal-length, max-radius, focus-at (X:Y). They go before the options.", TEXT(keys)},
+    {"keys-blend", 0, CLI_FOCUS, "linear|smooth", "How values go from key to key. Default linear.",
+     CHOICE(keys_blend)},
     {"range", 0, CLI_FOCUS, "D", "Distance from the focus to full blur, scene units, 0 or more, or inf. Default: "
      "half the focus distance.", NUMBER(range, 0, FLT_MAX), .inf = 1},
     {"strength", 0, CLI_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1)},
@@ -122,6 +138,14 @@ const struct cli_option cli_options[] = {
 
     {"threads", 0, CLI_RUN, "N", "Threads to work on, up to 256; 0 (default): one per processor.",
      .parse = cli_parse_count, FIELD(threads), .max = 256},
+    {"memory-limit", 0, CLI_RUN, "GIB", "Memory to keep within, GiB: as many frames are worked on at once as fit. "
+     "Default: 2, or half of what there is if that is less.", POSITIVE(memory_limit)},
+    {"resume", 0, CLI_RUN, NULL, "Skip frames whose OUTPUT is whole and was made with the same settings from the same "
+     "INPUT, make the others, and remove what killed processes left.", FLAG(resume)},
+    {"stop-on-error", 0, CLI_RUN, NULL, "Stop at the first frame that fails. Default: go on with the others.",
+     FLAG(stop_on_error)},
+    {"log", 0, CLI_RUN, "FILE", "Append what happens to each frame to FILE, one JSON object a line.",
+     TEXT(log_file)},
     {"isa", 0, CLI_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
      "this CPU.", CHOICE(isa)},
     {"deterministic", 0, CLI_RUN, NULL, "Same bits on every instruction set.", FLAG(params.deterministic)},

@@ -104,7 +104,7 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     const struct hf_io_box *display = &view->display_window;
     switch (args->focus_by) {
     case CLI_FOCUS_DISTANCE:
-        setup->focus_from = "--focus";
+        setup->focus_from = args->focus_from ? args->focus_from : "--focus";
         *focus = args->focus;
         return 0;
     case CLI_FOCUS_CENTER:

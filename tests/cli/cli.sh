@@ -190,11 +190,12 @@ fi
 bad 1 "INPUT|--help"
 bad 1 "INPUT" -o o.exr
 bad 1 "a.exr|-o" a.exr
-bad 1 "a.exr|b.exr" a.exr b.exr -o o.exr
+bad 1 "o.exr|####" a.exr b.exr -o o.exr
+bad 1 "--frames|####|a.exr" a.exr -o o.exr --frames=1-2
 bad 1 "--bogus|--help" a.exr -o o.exr --bogus
 bad 1 "--bogus=3|--help" a.exr -o o.exr --bogus=3
 bad 1 "-q|--help" -q a.exr -o o.exr
-for option in --quality=high --frames=1-2 --resume; do
+for option in --quality=high --frame=1-2 --resumed; do
     bad 1 "$option|--help" a.exr -o o.exr $option
 done
 bad 1 "-o" a.exr -o

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A frame is made from beginning to end by one worker, and there are as many workers as fit the threads and the memory:
+// then frames wait for nothing but the disk, and bits depend on none of it. What remains of the threads is spread within
+// the frames.
+#include "cli/batch.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "cli/frame.h"
+#include "cli/log.h"
+#include "cli/plan.h"
+#include "cli/progress.h"
+#include "cli/resume.h"
+
+enum { MAX_STEPS = 16 };
+static const double GIB = 1024. * 1024 * 1024;
+
+struct batch {
+    const struct cli_args *args;
+    const struct cli_shot *shot;
+    struct cli_plan plan;
+    struct cli_session *sessions;
+    int workers, threads;  // frames at once, threads for each
+    int next;              // the first job that is not done yet
+    struct cli_progress progress;
+    struct cli_log log;
+    atomic_int stop;               // after an error
+    atomic_int bad_arguments;      // frames that failed for what the command line says
+    atomic_int chosen[MAX_STEPS];  // frames by step of the time budget
+    int measuring;                 // one frame at a time, to see what it takes:
+    double frame_bytes;
+};
+
+static volatile sig_atomic_t stop_signal;
+
+// The frames in work are finished; a second signal ends the process as usual.
+static void on_signal(int number)
+{
+    stop_signal = number;
+}
+
+static void watch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)(SA_RESTART | SA_RESETHAND)};
+    sigemptyset(&action.sa_mask);
+    stop_signal = 0;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+static double peak_memory(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) ? 0 : 1024. * (double)usage.ru_maxrss;
+}
+
+// What was wrong with the pictures but did not stop the work.
+static void warn(const struct cli_frame *frame)
+{
+    unsigned long long colour = 0, depth = 0;
+    for (int i = 0; i < frame->view_count; i++) {
+        colour += frame->views[i].stats.colour_repaired;
+        depth += frame->views[i].stats.depth_repaired;
+    }
+    if (colour || depth)
+        cli_print_line("%s: %llu colour and %llu depth samples were not finite, neighbours took their place",
+                       frame->args->input, colour, depth);
+    if (frame->written.clamped)
+        cli_print_line("%s: %llu samples did not fit their channels and were clamped", frame->args->output,
+                       (unsigned long long)frame->written.clamped);
+    if (frame->written.note[0])
+        cli_print_line("%s", frame->written.note);
+}
+
+static int make_frame(struct cli_frame *frame, struct cli_session *session, const struct cli_stamp *stamp,
+                      const struct cli_args *args, struct cli_error *error)
+{
+    int status = cli_frame_open(frame, args, &session->run, error);
+    if (!status)
+        status = cli_frame_setup(frame, error);
+    if (!status)
+        status = cli_frame_render(frame, session, error);
+    if (!status)
+        status = cli_frame_encode(frame, stamp->texts, CLI_STAMP_TEXTS, error);
+    return status ? status : cli_frame_save(frame, error);
+}
+
+// What to say of a frame that is done.
+static void describe(const struct cli_frame *frame, const struct hf_report *report, double ms, char *text, size_t size)
+{
+    static const char *const resolutions[] = {"full", "half", "quarter"};
+    const struct cli_setup *setup = &frame->views[0].setup;
+    int n = snprintf(text, size, "%.2f s", ms / 1000);
+    if (setup->focus_from && setup->params.focus_distance != HF_DERIVE)
+        n += snprintf(text + n, size - (size_t)n, ", focus %.4g", setup->params.focus_distance);
+    if (report->budget_step)
+        snprintf(text + n, size - (size_t)n, ", for the budget %s at %s resolution (step %d)",
+                 hf_engine_name(report->engine), resolutions[report->resolution], report->budget_step);
+}
+
+static void finish(struct batch *b, struct cli_frame *frame, const struct cli_session *session, struct cli_record *r,
+                   const char *why)
+{
+    struct hf_report report = {0};
+    char text[256] = "";
+    const char *shown = text;
+    switch (r->status) {
+    case CLI_FRAME_DONE:
+        hf_get_report(session->context, &report);
+        r->report = &report;
+        // The peak of an earlier look at the shot may hide what this frame takes.
+        if (b->measuring)
+            b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.memory);
+        describe(frame, &report, r->ms, text, sizeof(text));
+        atomic_fetch_add(&b->chosen[report.budget_step < MAX_STEPS ? report.budget_step : MAX_STEPS - 1], 1);
+        for (int s = 0; s < CLI_STAGES; s++)
+            atomic_fetch_add(&b->progress.us[s], (long long)(1000 * frame->ms[s]));
+        atomic_fetch_add(&b->progress.rendered, 1);
+        atomic_fetch_add(&b->progress.done, 1);
+        break;
+    case CLI_FRAME_SKIPPED:
+        shown = "is there already";
+        atomic_fetch_add(&b->progress.skipped, 1);
+        break;
+    case CLI_FRAME_FAILED:
+        r->why = why;
+        shown = "failed";
+        atomic_fetch_add(&b->progress.failed, 1);
+        cli_print_line("%s", why);
+        if (b->args->stop_on_error)
+            atomic_store(&b->stop, 1);
+        break;
+    }
+    cli_log_frame(&b->log, r);
+    cli_progress_frame(&b->progress, frame->args->output, shown);
+}
+
+static void run_job(void *arg, int i, int worker)
+{
+    struct batch *b = arg;
+    struct cli_session *session = &b->sessions[worker];
+    struct cli_args args;
+    struct cli_stamp stamp;
+    struct cli_error error = {""};
+    i += b->next;
+    if (atomic_load(&b->stop) || stop_signal)
+        return;
+    cli_plan_args(&b->plan, i, &args);
+    struct cli_frame frame = {.args = &args};
+    struct cli_record record = {.job = &b->shot->jobs.list[i], .frame = &frame};
+    const double start = cli_now_ms();
+    int status = cli_stamp_make(&stamp, &args) ? cli_fail(&error, CLI_ALL_FAILED, "%s: out of memory", args.input) : 0;
+    record.stamp = &stamp;
+    if (!status && args.resume && cli_stamp_fits(&stamp, args.output)) {
+        record.status = CLI_FRAME_SKIPPED;
+    } else if (!status) {
+        status = make_frame(&frame, session, &stamp, &args, &error);
+        frame.args = &args;
+        if (!status)
+            warn(&frame);
+    }
+    if (status) {
+        record.status = CLI_FRAME_FAILED;
+        atomic_fetch_add(&b->bad_arguments, status == CLI_BAD_ARGUMENTS);
+    }
+    record.ms = cli_now_ms() - start;
+    finish(b, &frame, session, &record, error.text);
+    cli_frame_close(&frame);
+    cli_stamp_free(&stamp);
+}
+
+static void close_sessions(struct batch *b)
+{
+    for (int i = 0; i < b->workers && b->sessions; i++)
+        cli_session_close(&b->sessions[i]);
+    free(b->sessions);
+    b->sessions = NULL;
+    b->workers = 0;
+}
+
+static int open_sessions(struct batch *b, int workers, int threads, struct cli_error *error)
+{
+    close_sessions(b);
+    b->sessions = calloc((size_t)workers, sizeof(*b->sessions));
+    if (!b->sessions)
+        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", b->args->input);
+    for (; b->workers < workers; b->workers++) {
+        const int status = cli_session_open(&b->sessions[b->workers], b->args, threads, error);
+        if (status)
+            return status;
+    }
+    b->threads = hf_context_threads(b->sessions[0].context);
+    return 0;
+}
+
+// Frames are made one at a time until one has shown how much memory that takes.
+static void run_first(struct batch *b)
+{
+    const double before = peak_memory();
+    const int count = b->shot->jobs.count;
+    b->measuring = 1;
+    while (b->next < count && !atomic_load(&b->progress.rendered) && !atomic_load(&b->stop) && !stop_signal) {
+        run_job(b, 0, 0);
+        b->next++;
+    }
+    b->measuring = 0;
+    b->frame_bytes = fmax(peak_memory() - before, b->frame_bytes);
+}
+
+static int run_rest(struct batch *b, struct cli_error *error)
+{
+    const int left = b->shot->jobs.count - b->next;
+    if (left <= 0)
+        return 0;
+    const int workers = cli_plan_workers(b->args, left, peak_memory() - b->frame_bytes, b->frame_bytes);
+    struct hf_io_run run = {0};
+    if (workers > 1) {
+        const int status = open_sessions(b, workers, cli_plan_threads(b->args) / workers, error);
+        if (status)
+            return status;
+        hf_io_threads_open(&run, workers);
+    }
+    hf_io_run(&run, left, run_job, b);
+    hf_io_threads_close(&run);
+    return 0;
+}
+
+static void print_summary(struct batch *b)
+{
+    const struct cli_progress *p = &b->progress;
+    const int done = p->done, skipped = p->skipped, failed = p->failed;
+    const double seconds = (cli_now_ms() - p->start) / 1000;
+    double all = 0;
+    char shares[128] = "";
+    for (int s = 0; s < CLI_STAGES; s++)
+        all += (double)p->us[s];
+    for (int s = 0; s < CLI_STAGES && all > 0; s++)
+        snprintf(shares + strlen(shares), sizeof(shares) - strlen(shares), "%s%s %.0f %%", s ? ", " : "",
+                 cli_stage_names[s], 100 * (double)p->us[s] / all);
+    cli_print_line("%d done, %d there already, %d failed of %d frames in %.2f s (%.2f frames/s)", done, skipped, failed,
+                   p->total, seconds, seconds > 0 ? done / seconds : 0);
+    if (done)
+        cli_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->workers, b->threads,
+                       b->threads > 1 ? "s" : "", peak_memory() / GIB * 1024, shares);
+    for (int s = 0; s < MAX_STEPS && b->args->params.budget_ms > 0; s++)
+        if (b->chosen[s])
+            cli_print_line("--budget-ms %g: %d frames %s%.0d", b->args->params.budget_ms, (int)b->chosen[s],
+                           s ? "at step " : "as asked for", s);
+    if (done + skipped + failed < p->total)
+        cli_print_line("stopped%s; the same command with --resume makes the other %d frames",
+                       stop_signal ? " by a signal" : "", p->total - done - skipped);
+}
+
+static int exit_code(const struct batch *b)
+{
+    const struct cli_progress *p = &b->progress;
+    const int good = p->done + p->skipped;
+    if (good == p->total)
+        return CLI_DONE;
+    if (good)
+        return CLI_SOME_FAILED;
+    return p->failed && b->bad_arguments == p->failed ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED;
+}
+
+int cli_batch_wanted(const struct cli_args *args, const struct cli_shot *shot)
+{
+    return shot->sequence || args->resume || args->log_file || args->keys || args->chunk;
+}
+
+int cli_batch(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot, struct cli_error *error)
+{
+    struct batch b = {.args = args, .shot = shot};
+    error->text[0] = '\0';
+    if (shot->missing)
+        cli_print_line("%d frames are missing: %s", shot->missing, shot->gaps);
+    int status = cli_plan_open(&b.plan, args, shot, error);
+    if (!status)
+        status = cli_log_open(&b.log, args->log_file, argc, argv, shot->jobs.count, error);
+    if (!status)
+        status = open_sessions(&b, 1, cli_plan_threads(args), error);
+    if (!status) {
+        const int strays = args->resume ? cli_remove_strays(shot) : 0;
+        if (strays)
+            cli_print_line("%d files that killed processes left were removed", strays);
+        watch_signals();
+        cli_progress_begin(&b.progress, shot->jobs.count);
+        run_first(&b);
+        status = run_rest(&b, error);
+        cli_progress_end(&b.progress);
+        print_summary(&b);
+        cli_log_end(&b.log, &b.progress, peak_memory());
+        if (!status)
+            status = exit_code(&b);
+    }
+    cli_log_close(&b.log);
+    close_sessions(&b);
+    cli_plan_close(&b.plan);
+    return status;
+}

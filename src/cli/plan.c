@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/plan.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "cli/track.h"
+
+static const double GIB = 1024. * 1024 * 1024;
+
+int cli_plan_threads(const struct cli_args *args)
+{
+    const long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return args->threads ? args->threads : online > 0 ? (int)online : 1;
+}
+
+int cli_plan_open(struct cli_plan *plan, const struct cli_args *args, const struct cli_shot *shot,
+                  struct cli_error *error)
+{
+    *plan = (struct cli_plan){.args = args, .shot = shot};
+    int status = args->keys ? cli_keys_load(&plan->keys, args->keys, args->keys_blend == CLI_KEYS_SMOOTH, error) : 0;
+    if (status || !shot->jobs.count || !cli_track_wanted(args, &plan->keys))
+        return status;
+    struct hf_io_run run = {0};
+    plan->focus = malloc((size_t)shot->jobs.count * sizeof(*plan->focus));
+    if (!plan->focus)
+        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
+    hf_io_threads_open(&run, cli_plan_threads(args));
+    status = cli_track(plan->focus, shot, args, &plan->keys, &run, error);
+    hf_io_threads_close(&run);
+    return status;
+}
+
+void cli_plan_close(struct cli_plan *plan)
+{
+    cli_keys_free(&plan->keys);
+    free(plan->focus);
+    plan->focus = NULL;
+}
+
+void cli_plan_args(const struct cli_plan *plan, int i, struct cli_args *args)
+{
+    cli_frame_args(args, plan->args, &plan->shot->jobs.list[i], &plan->keys);
+    if (!plan->focus || isnan(plan->focus[i]))
+        return;
+    args->focus_from = args->focus_by == CLI_FOCUS_CENTER ? "--focus center" : "--focus-at";
+    args->focus_by = CLI_FOCUS_DISTANCE;
+    args->focus = plan->focus[i];
+}
+
+double cli_plan_frame_bytes(const struct cli_frame *frame, double library)
+{
+    // Planes of floats and the depth; the other channels as they are stored; the new file, which may not shrink.
+    double bytes = library;
+    for (int i = 0; i < frame->view_count; i++)
+        bytes += (double)frame->views[i].view->width * frame->views[i].view->height * (5 * sizeof(float) + 16);
+    return bytes;
+}
+
+static double memory_limit(const struct cli_args *args)
+{
+    if (!isnan(args->memory_limit))
+        return args->memory_limit * GIB;
+    const double half = 0.5 * (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    return half < 2 * GIB ? half : 2 * GIB;
+}
+
+int cli_plan_workers(const struct cli_args *args, int frames, double base, double frame_bytes)
+{
+    const double limit = memory_limit(args), fit = floor((limit - base) / frame_bytes);
+    const int threads = cli_plan_threads(args), most = frames < 1 ? 1 : frames < threads ? frames : threads;
+    if (fit < 1)
+        cli_print_line("a frame takes %.2f GiB, more than the limit of %.2f GiB: one at a time",
+                       (base + frame_bytes) / GIB, limit / GIB);
+    // A time budget learns from frame to frame, in one context.
+    return fit < 1 || args->params.budget_ms > 0 ? 1 : fit < most ? (int)fit : most;
+}
