@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/dump.h"
 
+#include "cli/target.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,6 +22,8 @@ static void write_buffer(void *cookie, const struct hf_buffer *buffer)
     // The directory is made only now that there is something to put into it.
     if (!path)
         dump->failed = cli_fail(&dump->error, 1, "--dump-passes %s: out of memory", dump->dir);
+    else if (cli_check_overwrite(dump->args, "--dump-passes", path, &dump->error))
+        dump->failed = 1;
     else if (mkdir(dump->dir, 0777) && errno != EEXIST)
         dump->failed = cli_fail(&dump->error, 1, "--dump-passes %s: %s", dump->dir, strerror(errno));
     else if (hf_io_write_planes(path, buffer->width, buffer->height, buffer->channels, names[buffer->channels],
@@ -31,7 +35,7 @@ static void write_buffer(void *cookie, const struct hf_buffer *buffer)
 void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const struct cli_frame *frame,
                     const struct cli_view *view)
 {
-    *dump = (struct cli_dump){.dir = frame->args->dump_dir};
+    *dump = (struct cli_dump){.args = frame->args, .dir = frame->args->dump_dir};
     if (frame->view_count > 1 && view->view->name[0])
         snprintf(dump->prefix, sizeof(dump->prefix), "%s.", view->view->name);
     else if (frame->view_count > 1)

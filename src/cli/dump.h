@@ -6,6 +6,7 @@
 #include "cli/frame.h"
 
 struct cli_dump {
+    const struct cli_args *args;
     const char *dir;
     char prefix[80];  // "left." when the frame has several views
     int failed;

@@ -15,6 +15,20 @@ int cli_fail(struct cli_error *error, int code, const char *format, ...)
     return code;
 }
 
+static void hide_controls(char *text)
+{
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+}
+
+const char *cli_shown(const char *text, char buf[CLI_SHOWN])
+{
+    snprintf(buf, CLI_SHOWN, "%s", text);
+    hide_controls(buf);
+    return buf;
+}
+
 void cli_print_line(const char *format, ...)
 {
     char line[sizeof(((struct cli_error *)0)->text)];
@@ -22,8 +36,6 @@ void cli_print_line(const char *format, ...)
     va_start(list, format);
     vsnprintf(line, sizeof(line), format, list);
     va_end(list);
-    for (char *c = line; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
+    hide_controls(line);
     fprintf(stderr, "%shyperfocal: %s\n", atomic_exchange(&cli_bar_shown, 0) ? "\r\033[K" : "", line);
 }

@@ -13,6 +13,10 @@ struct cli_error {
 // Sets the sentence and returns code, so that a caller can `return cli_fail(...)`.
 int cli_fail(struct cli_error *error, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+enum { CLI_SHOWN = 1024 };
+// A name as it may be shown on a terminal: control characters become '?'. Returns buf.
+const char *cli_shown(const char *text, char buf[CLI_SHOWN]);
+
 // "hyperfocal: TEXT" as one line on stderr; control characters, which names may hold, are shown as '?'.
 void cli_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

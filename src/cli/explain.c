@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/explain.h"
 
+#include "cli/target.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,7 +64,8 @@ static void print_report(FILE *out, const struct hf_report *r, int ran)
 void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
 {
     for (int i = 0; i < frame->view_count; i++) {
-        fprintf(out, "%s\n", frame->views[i].label);
+        char name[CLI_SHOWN];
+        fprintf(out, "%s\n", cli_shown(frame->views[i].label, name));
         print_report(out, &frame->views[i].report, ran);
     }
 }
@@ -105,6 +108,18 @@ static char *image_path(const struct cli_frame *frame, const struct cli_view *v)
         if (*c == '/')
             *c = '_';
     return path;
+}
+
+int cli_explain_check(const struct cli_frame *frame, struct cli_error *error)
+{
+    int status = 0;
+    for (int i = 0; i < frame->view_count && !status && frame->args->explain_image; i++) {
+        char *path = image_path(frame, &frame->views[i]);
+        status = path ? cli_check_overwrite(frame->args, "--explain-image", path, error)
+                      : cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->views[i].label);
+        free(path);
+    }
+    return status;
 }
 
 static int write_image(const struct cli_frame *frame, const struct cli_view *v, struct cli_error *error)

@@ -17,4 +17,7 @@ void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran);
 // of its own, its name before the extension. 0, or an exit code.
 int cli_explain_image(const struct cli_frame *frame, struct cli_error *error);
 
+// Before any work: does --explain-image write over another file that the arguments name? 0, or an exit code.
+int cli_explain_check(const struct cli_frame *frame, struct cli_error *error);
+
 #endif

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/json.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
+
+#include "io/out.h"
 
 // Length of the UTF-8 sequence at s, 0 when it is none: file names may be any bytes.
 static int utf8_length(const unsigned char *s)
@@ -200,4 +204,35 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
         put_view(out, &frame->views[i], frame);
     }
     fputs("\n  ]\n}\n", out);
+}
+
+static int write_device(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
+                        struct cli_error *error)
+{
+    const char *path = frame->args->json_file;
+    FILE *out = fopen(path, "w");
+    if (!out)
+        return cli_fail(error, CLI_ALL_FAILED, "--json %s cannot be written: %s", path, strerror(errno));
+    cli_write_json(out, argc, argv, frame, context);
+    const int failed = ferror(out);
+    if (fclose(out) || failed)
+        return cli_fail(error, CLI_ALL_FAILED, "--json %s could not be written", path);
+    return 0;
+}
+
+int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
+                        struct cli_error *error)
+{
+    struct hf_out out;
+    struct hf_io_error io;
+    struct stat st;
+    if (!stat(frame->args->json_file, &st) && !S_ISREG(st.st_mode))
+        return write_device(argc, argv, frame, context, error);
+    int status = hf_out_open(&out, frame->args->json_file, &io);
+    if (!status) {
+        cli_write_json(out.f, argc, argv, frame, context);
+        status = hf_out_commit(&out, &io);
+    }
+    hf_out_abort(&out);
+    return status ? cli_fail(error, CLI_ALL_FAILED, "--json %s", io.message) : 0;
 }

@@ -18,8 +18,9 @@
 static void print_plan(const struct cli_frame *frame, const struct hf_context *context)
 {
     const struct cli_args *args = frame->args;
-    char engine[32], storage[32], type[32];
-    printf("%s: would write %s\n", args->input, args->output ? args->output : "nothing, as there is no -o");
+    char engine[32], storage[32], type[32], name[CLI_SHOWN], other[CLI_SHOWN];
+    printf("%s: would write %s\n", cli_shown(args->input, name),
+           args->output ? cli_shown(args->output, other) : "nothing, as there is no -o");
     printf("  engine %s, %s storage, %d threads, %s\n",
            cli_choice_name("engine", (int)args->params.engine, engine, sizeof(engine)),
            cli_choice_name("storage", (int)args->params.storage, storage, sizeof(storage)), hf_context_threads(context),
@@ -29,9 +30,10 @@ static void print_plan(const struct cli_frame *frame, const struct hf_context *c
         const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
         const struct hf_params *p = &v->setup.params;
         printf("  view %s: %d x %d, data window %d,%d to %d,%d, display window %d,%d to %d,%d\n",
-               v->view->name[0] ? v->view->name : "(no name)", v->view->width, v->view->height, data->x0, data->y0,
-               data->x1 - 1, data->y1 - 1, display->x0, display->y0, display->x1 - 1, display->y1 - 1);
-        printf("    depth %s, type %s\n", args->depth_file ? args->depth_file : v->view->depth,
+               v->view->name[0] ? cli_shown(v->view->name, name) : "(no name)", v->view->width, v->view->height,
+               data->x0, data->y0, data->x1 - 1, data->y1 - 1, display->x0, display->y0, display->x1 - 1,
+               display->y1 - 1);
+        printf("    depth %s, type %s\n", cli_shown(args->depth_file ? args->depth_file : v->view->depth, name),
                cli_choice_name("depth-type", (int)args->depth_type, type, sizeof(type)));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)
@@ -72,16 +74,9 @@ static void print_warnings(const struct cli_frame *frame)
 static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
                       struct cli_error *error)
 {
-    const char *path = frame->args->json_file;
-    FILE *out = path ? fopen(path, "w") : stdout;
-    if (!out)
-        return cli_fail(error, CLI_ALL_FAILED, "--json %s cannot be written: %s", path, strerror(errno));
-    cli_write_json(out, argc, argv, frame, context);
-    if (!path)
-        return 0;  // main looks after stdout
-    const int failed = ferror(out);
-    if (fclose(out) || failed)
-        return cli_fail(error, CLI_ALL_FAILED, "--json %s could not be written", path);
+    if (frame->args->json_file)
+        return cli_write_json_file(argc, argv, frame, context, error);
+    cli_write_json(stdout, argc, argv, frame, context);  // main looks after stdout
     return 0;
 }
 
@@ -93,6 +88,8 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     int status = cli_frame_open(&frame, args, &session->run, error);
     if (!status)
         status = cli_frame_setup(&frame, error);
+    if (!status)
+        status = cli_explain_check(&frame, error);
     if (!status && !args->dry_run)
         status = cli_frame_render(&frame, session, error);
     else if (!status && explain)
@@ -203,6 +200,7 @@ int main(int argc, char **argv)
 {
     // A file that grows too large for the system's limit is an error like a full disk, not the end of the process.
     signal(SIGXFSZ, SIG_IGN);
+    hf_io_catch_signals();
     struct cli_error error = {""};
     int status = run(argc, argv, &error);
     const int failed = ferror(stdout);

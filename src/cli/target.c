@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "io/io.h"
+
 // The directory that a path lies in; to be freed.
 static char *directory_of(const char *path)
 {
@@ -66,13 +68,56 @@ static int check_dump_dir(const char *dir, struct cli_error *error)
     return status;
 }
 
+// The files that the arguments name.
+struct named {
+    const char *option, *path;
+    int output;
+};
+
+enum { NAMED = 6 };
+
+static void list_files(const struct cli_args *args, struct named files[NAMED])
+{
+    const struct named all[NAMED] = {
+        {"INPUT", args->input, 0}, {"--depth-file", args->depth_file, 0}, {"--aperture", args->aperture_file, 0},
+        {"-o", args->output, 1},   {"--json", args->json_file, 1},        {"--explain-image", args->explain_image, 1},
+    };
+    memcpy(files, all, sizeof(all));
+}
+
+int cli_check_overwrite(const struct cli_args *args, const char *option, const char *path, struct cli_error *error)
+{
+    struct named files[NAMED];
+    list_files(args, files);
+    for (int i = 0; i < NAMED; i++) {
+        if (!files[i].path || !strcmp(files[i].option, option) || !hf_io_same_file(path, files[i].path))
+            continue;
+        // The one way to change a picture in place.
+        if (!strcmp(option, "-o") && !strcmp(files[i].option, "INPUT"))
+            continue;
+        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s %s would write over %s %s, the same file", option, path,
+                        files[i].option, files[i].path);
+    }
+    return 0;
+}
+
 int cli_check_targets(const struct cli_args *args, struct cli_error *error)
 {
+    struct hf_io_error io;
+    struct named files[NAMED];
     int status = 0;
-    if (args->output)
-        status = check_file(args->output, "-o", 1, error);
-    if (!status && args->json_file)
-        status = check_file(args->json_file, "--json", 0, error);
+    list_files(args, files);
+    for (int i = 0; i < NAMED && !status; i++) {
+        const struct named *f = &files[i];
+        if (!f->output || !f->path)
+            continue;
+        const int json = f->path == args->json_file;
+        status = cli_check_overwrite(args, f->option, f->path, error);
+        if (!status)
+            status = check_file(f->path, f->option, !json, error);
+        if (!status && !json && hf_io_check_format(f->path, &io))
+            status = cli_fail(error, CLI_ALL_FAILED, "%s: %s", f->option, io.message);
+    }
     if (!status && args->dump_dir)
         status = check_dump_dir(args->dump_dir, error);
     return status;

@@ -9,4 +9,7 @@
 // Returns 0, or an exit code with *error filled.
 int cli_check_targets(const struct cli_args *args, struct cli_error *error);
 
+// The same for one file that turns out to be written later: is it another than all that the arguments name?
+int cli_check_overwrite(const struct cli_args *args, const char *option, const char *path, struct cli_error *error);
+
 #endif

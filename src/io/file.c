@@ -74,8 +74,12 @@ int hf_io_open(struct hf_io_file **out, const char *path, const char *depth_chan
         return -1;
     if ((*out)->views.count)
         return 0;
+    const bool deep = (*out)->exr && hf_exr_is_deep(&(*out)->exr->parts[0]);
     hf_io_channels(*out, names, sizeof(names));
     hf_io_close(out);
+    if (deep)
+        return hf_io_fail(
+            err, "%s: a deep picture (several samples per pixel), which is not supported: flatten it first", path);
     return hf_io_fail(err, "%s: no colour channels (R, G, B or Y) among: %s", path, names);
 }
 
@@ -228,6 +232,36 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, const str
                                  : hf_oiio_read_depth_only(file->oiio, depth_channel, view, depth, err);
     hf_io_close(&file);
     return status;
+}
+
+int hf_io_check_format(const char *path, struct hf_io_error *err)
+{
+    return hf_io_is_exr_name(path) ? 0 : hf_oiio_check_format(path, err);
+}
+
+int hf_io_same_file(const char *a, const char *b)
+{
+    struct stat x, y;
+    const bool there = !stat(a, &x);
+    if (there != !stat(b, &y))
+        return 0;
+    if (there)
+        return x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+    char *p = hf_out_resolve(a), *q = hf_out_resolve(b);
+    const int same = p && q && !strcmp(p, q);
+    free(p);
+    free(q);
+    return same;
+}
+
+void hf_io_remove_temporaries(void)
+{
+    hf_out_remove_all();
+}
+
+void hf_io_catch_signals(void)
+{
+    hf_out_catch_signals();
 }
 
 int hf_io_has_oiio(void)

@@ -118,6 +118,17 @@ int hf_io_write(struct hf_io_file *file, const struct hf_io_job *job, struct hf_
 int hf_io_write_planes(const char *path, int width, int height, int channels, const char *const names[],
                        const float *const planes[], ptrdiff_t stride, struct hf_io_error *err);
 
+// Can a picture be written under this name, as far as its format goes? Before any work, so that it is not in vain.
+int hf_io_check_format(const char *path, struct hf_io_error *err);
+
+// 1 if both names are of one file, or would be if something were written: other spellings and links are looked through.
+int hf_io_same_file(const char *a, const char *b);
+
+// SIGTERM, SIGINT and SIGHUP remove the temporary files of this process, then do what they do. A program with handlers
+// of its own calls the first in them, which is safe there.
+void hf_io_remove_temporaries(void);
+void hf_io_catch_signals(void);
+
 // 1 if this build can read and write anything but EXR.
 int hf_io_has_oiio(void);
 

@@ -4,6 +4,8 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +17,58 @@
 static int write_error(const struct hf_out *o, struct hf_io_error *err)
 {
     return hf_io_fail(err, "%s: cannot write: %s", o->path, strerror(errno));
+}
+
+// ---- temporary files, which a signal must find
+
+enum { LIVE = 64 };  // more than are ever written at a time; those beyond are not known to the handler
+
+static _Atomic(char *) live[LIVE];
+
+// Known before it is made, so that there is no moment in which a signal would leave it.
+static void enter(char *name)
+{
+    for (int i = 0; i < LIVE; i++) {
+        char *none = NULL;
+        if (atomic_compare_exchange_strong(&live[i], &none, name))
+            return;
+    }
+}
+
+static void leave(char *name)
+{
+    for (int i = 0; i < LIVE; i++) {
+        char *own = name;
+        if (name && atomic_compare_exchange_strong(&live[i], &own, NULL))
+            return;
+    }
+}
+
+void hf_out_remove_all(void)
+{
+    for (int i = 0; i < LIVE; i++) {
+        const char *name = atomic_load(&live[i]);
+        if (name)
+            unlink(name);
+    }
+}
+
+static void on_signal(int number)
+{
+    hf_out_remove_all();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+void hf_out_catch_signals(void)
+{
+    static const int numbers[] = {SIGTERM, SIGINT, SIGHUP};
+    for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++) {
+        struct sigaction was, ours = {.sa_handler = on_signal};
+        // Who starts us with a signal ignored (nohup) means it.
+        if (!sigaction(numbers[i], NULL, &was) && was.sa_handler == SIG_DFL)
+            sigaction(numbers[i], &ours, NULL);
+    }
 }
 
 enum { HOST_LENGTH = 32 };
@@ -67,19 +121,90 @@ enum hf_out_owner hf_out_owner_of(const char *name, long *pid)
                                                                                        : HF_OUT_OTHER_HOST;
 }
 
+static void forget_temp(struct hf_out *o)
+{
+    leave(o->temp);
+    free(o->temp);
+    o->temp = NULL;
+}
+
 // O_EXCL: never follows or overwrites what somebody else put there.
-static int create_temp(struct hf_out *o)
+static int create_temp(struct hf_out *o, mode_t mode)
 {
     for (int i = 0; i < 1000; i++) {
-        free(o->temp);
         o->temp = temp_name(o->target);
         if (!o->temp)
             return -1;
-        const int fd = open(o->temp, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST)
+        enter(o->temp);
+        const int fd = open(o->temp, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        if (fd >= 0)
             return fd;
+        const int code = errno;
+        forget_temp(o);  // not ours to remove
+        errno = code;
+        if (code != EEXIST)
+            return -1;
     }
     return -1;
+}
+
+// What a symbolic link says, relative to the folder it lies in. To be freed; NULL: no link.
+static char *link_target(const char *path)
+{
+    char text[PATH_MAX], *joined;
+    const ssize_t n = readlink(path, text, sizeof(text) - 1);
+    const char *slash = strrchr(path, '/');
+    if (n <= 0)
+        return NULL;
+    text[n] = 0;
+    const int folder = slash && text[0] != '/' ? (int)(slash - path + 1) : 0;
+    return asprintf(&joined, "%.*s%s", folder, path, text) < 0 ? NULL : joined;
+}
+
+char *hf_out_resolve(const char *path)
+{
+    char *at = realpath(path, NULL);
+    if (at)
+        return at;
+    at = strdup(path);
+    for (int i = 0; i < 40 && at; i++) {
+        char *next = link_target(at);
+        if (!next)
+            break;
+        free(at);
+        at = next;
+    }
+    struct stat st;
+    if (at && !lstat(at, &st) && S_ISLNK(st.st_mode)) {  // round and round
+        free(at);
+        return NULL;
+    }
+    // The folder's own links, so that two names of one file are one.
+    const char *slash = at ? strrchr(at, '/') : NULL;
+    char *folder = !at ? NULL : slash ? strndup(at, (size_t)(slash - at + 1)) : strdup(".");
+    char *real = folder ? realpath(folder, NULL) : NULL, *joined = NULL;
+    if (real && asprintf(&joined, "%s/%s", strcmp(real, "/") ? real : "", slash ? slash + 1 : at) > 0) {
+        free(at);
+        at = joined;
+    }
+    free(real);
+    free(folder);
+    return at;
+}
+
+// A file that is replaced keeps its mode and owner, as it would if it were written in place.
+static void keep_owner(struct hf_out *o, int fd, const struct stat *st)
+{
+    struct stat made;
+    if (fstat(fd, &made))
+        return;
+    if ((made.st_uid != st->st_uid || made.st_gid != st->st_gid) && fchown(fd, st->st_uid, st->st_gid) &&
+        (made.st_gid == st->st_gid || fchown(fd, (uid_t)-1, st->st_gid) || made.st_uid != st->st_uid))
+        snprintf(o->note, sizeof(o->note), "%s: it belonged to user %ld, group %ld, which could not be kept", o->path,
+                 (long)st->st_uid, (long)st->st_gid);
+    if ((made.st_mode & 07777) != (st->st_mode & 07777) && fchmod(fd, st->st_mode & 07777) && !o->note[0])
+        snprintf(o->note, sizeof(o->note), "%s: its mode %03o could not be kept", o->path,
+                 (unsigned)st->st_mode & 07777);
 }
 
 int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
@@ -87,21 +212,19 @@ int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
     struct stat st;
     memset(o, 0, sizeof(*o));
     o->path = path;
+    const bool there = stat(path, &st) == 0;
     // Renaming over a device or a pipe would replace it rather than write to it.
-    if (stat(path, &st) == 0 && !S_ISREG(st.st_mode))
+    if (there && !S_ISREG(st.st_mode))
         return hf_io_fail(err, "%s: cannot write: not a regular file", path);
-    o->target = realpath(path, NULL);
+    o->target = hf_out_resolve(path);
     if (!o->target)
-        o->target = strdup(path);
-    if (!o->target)
-        return hf_io_fail(err, "%s: out of memory", path);
-    const int fd = create_temp(o);
-    if (fd < 0) {
-        const int code = errno;
-        free(o->temp);  // not ours to remove
-        o->temp = NULL;
-        return hf_io_fail(err, "%s: cannot create a file there: %s", path, strerror(code));
-    }
+        return hf_io_fail(err, "%s: cannot write: out of memory, or its links go round", path);
+    // What was private is never readable by others, not even while it grows.
+    const int fd = create_temp(o, there ? st.st_mode & 0600 : 0666);
+    if (fd < 0)
+        return hf_io_fail(err, "%s: cannot create a file there: %s", path, strerror(errno));
+    if (there)
+        keep_owner(o, fd, &st);
     o->f = fdopen(fd, "wb");
     if (!o->f) {
         close(fd);
@@ -133,7 +256,7 @@ static int sync_fd(int fd)
 
 static int finish(struct hf_out *o)
 {
-    const bool bad = fflush(o->f) || sync_fd(fileno(o->f));
+    const bool bad = fflush(o->f) || (!o->unsynced && sync_fd(fileno(o->f)));
     const int code = errno;
     FILE *f = o->f;
     o->f = NULL;
@@ -149,9 +272,9 @@ int hf_out_commit(struct hf_out *o, struct hf_io_error *err)
         return write_error(o, err);
     if (rename(o->temp, o->target))
         return hf_io_fail(err, "%s: cannot rename the finished file: %s", o->path, strerror(errno));
-    free(o->temp);
-    o->temp = NULL;
-    hf_out_abort(o);
+    forget_temp(o);
+    free(o->target);
+    o->target = NULL;
     return 0;
 }
 
@@ -161,7 +284,7 @@ void hf_out_abort(struct hf_out *o)
         fclose(o->f);
     if (o->temp)
         unlink(o->temp);
-    free(o->temp);
+    forget_temp(o);
     free(o->target);
     memset(o, 0, sizeof(*o));
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file being written: it grows under another name beside its target and takes the target's name when complete, so
-// nobody ever sees half a picture, and the target may be the file that is being read.
+// nobody ever sees half a picture, and the target may be the file that is being read. A target that was there keeps its
+// mode and owner; a symbolic link stays one, and what it points at is written.
 #ifndef HF_IO_OUT_H
 #define HF_IO_OUT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -19,6 +21,8 @@ struct hf_out {
     char *target;      // path with symbolic links resolved
     char *temp;        // same folder and extension as target
     FILE *f;
+    bool unsynced;             // do not wait for the disk in hf_out_commit
+    char note[HF_IO_MESSAGE];  // what could not be kept of the old target, or ""
 };
 
 // Whose a file of that name (without folder) is, if it is a temporary one of ours; *pid is the process that made it.
@@ -33,6 +37,15 @@ int hf_out_seek(struct hf_out *o, uint64_t offset, struct hf_io_error *err);
 int hf_out_commit(struct hf_out *o, struct hf_io_error *err);
 // Close and remove what was not committed.
 void hf_out_abort(struct hf_out *o);
+
+// The file that writing to path would change: links followed to their end, also where nothing is there yet. To be freed;
+// NULL when there is no memory, or links go round.
+char *hf_out_resolve(const char *path);
+
+// Remove all temporary files of this process that are being written. Safe in a signal handler.
+void hf_out_remove_all(void);
+// SIGTERM, SIGINT and SIGHUP remove the temporary files, then do what they do.
+void hf_out_catch_signals(void);
 
 #ifdef __cplusplus
 }

@@ -140,6 +140,7 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
     const struct hf_exr_job exr = {&file->views, job->results, job->result_count,
                                    compression,  job->texts,   job->text_count};
     int status = hf_out_open(&o->out, o->path, err);
+    o->out.unsynced = job->unsynced;
     if (!status)
         status = file->exr && hf_io_is_exr_name(job->path)
                      ? hf_exr_write(file->exr, &o->out, &exr, &written->clamped, err)
@@ -152,7 +153,8 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
 
 int hf_io_save(struct hf_io_output *out, struct hf_io_written *written, struct hf_io_error *err)
 {
-    (void)written;
+    if (written && out->out.note[0])
+        memcpy(written->note, out->out.note, sizeof(written->note));
     return hf_out_commit(&out->out, err);
 }
 

@@ -407,6 +407,46 @@ picture_tests() {
     good same.exr -o same.exr --focus 3
     rm -f o.exr same.exr
 
+    # No output may be an input, or another output, whatever the name says.
+    cp plain.exr keep.exr && ln -s keep.exr link.exr && ln keep.exr hard.exr && cp depth.exr deep-map.exr
+    sum=$(cksum keep.exr deep-map.exr)
+    bad 1 "--explain-image|keep.exr|INPUT" keep.exr -o o.exr --focus 3 --explain-image keep.exr
+    bad 1 "--explain-image|hard.exr" keep.exr -o o.exr --focus 3 --explain-image hard.exr
+    bad 1 "--explain-image|./o.exr|-o" keep.exr -o o.exr --focus 3 --explain-image ./o.exr
+    bad 1 "--json|link" keep.exr -o o.exr --focus 3 --json=link.exr
+    bad 1 "--depth-file|-o" flat.exr -o ./deep-map.exr --focus 3 --depth-file deep-map.exr
+    ln -s keep.exr link.json
+    bad 1 "--json|link.json|INPUT" keep.exr -o o.exr --focus 3 --json=link.json
+    bad 1 "--explain-image|t.left.exr|-o" stereo.exr -o t.left.exr --focus 3 --explain-image t.exr
+    bad 3 "--explain-image|no/such" keep.exr -o o.exr --focus 3 --explain-image no/such/i.exr
+    bad 3 "--explain-image|nothing" keep.exr -o o.exr --focus 3 --explain-image i.nothing
+    bad 3 "-o|term" keep.exr -o o.term --focus 3
+    mkdir near-dir && cp plain.exr near-dir/near.exr
+    run near-dir/near.exr -o o.exr --focus 3 --dump-passes near-dir
+    [ "$status" -ne 0 ] && cmp -s plain.exr near-dir/near.exr
+    result "--dump-passes does not write over INPUT" $?
+    [ "$(cksum keep.exr deep-map.exr)" = "$sum" ]
+    result "inputs are as they were" $?
+    rm -rf near-dir link.json link.exr hard.exr deep-map.exr o.exr
+
+    # What is replaced keeps its mode; a link stays a link, also one that points at nothing yet.
+    cp plain.exr private.exr && chmod 600 private.exr
+    good plain.exr -o private.exr --focus 3
+    [ "$(stat -c %a private.exr)" = 600 ]
+    result "the mode of what is replaced is kept" $?
+    mkdir far-dir && ln -s far-dir/new.exr link.exr
+    good plain.exr -o link.exr --focus 3
+    [ -h link.exr ] && [ -s far-dir/new.exr ]
+    result "a dangling link is written through" $?
+    rm -rf private.exr link.exr far-dir keep.exr
+
+    # Names go to the terminal without their control characters.
+    name=$(printf 'a\033[31mb.exr') && cp plain.exr "$name"
+    run "$name" --dry-run --focus 3
+    [ "$status" -eq 0 ] && ! grep -q "$(printf '\033')" "$dir/out"
+    result "control characters in a name" $?
+    rm -f "$name"
+
     good plain.exr -o o.exr --focus 3 --json
     json_valid "$dir/out"
     result "--json is JSON" $?
@@ -510,6 +550,22 @@ if [ -f "$lights" ]; then
     [ "$status" -eq 3 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" full.exr &&
         [ -z "$(find . -name '*full*' -o -name '.hyperfocal*')" ]
     result "a full disk" $?
+    # Killed in the middle: nothing is left, and the target is the old file.
+    echo old >target.exr
+    left=0
+    for wait in 0.05 0.1 0.15 0.2 0.25 0.3 0.35 0.4 0.5 0.6; do
+        for signal in TERM INT HUP; do
+            # A background job of a shell ignores SIGINT; env gives it back.
+            env --default-signal=INT "$program" "$lights" -o target.exr --engine gather --compression piz 2>/dev/null &
+            sleep $wait
+            kill -$signal $! 2>/dev/null
+            wait $! 2>/dev/null
+            [ -z "$(find . -name '.hyperfocal*')" ] || { left=$((left + 1)); rm -f .hyperfocal*; }
+        done
+    done
+    command="killed by signals" status=$left
+    [ "$left" -eq 0 ]
+    result "no temporary file survives a signal" $?
 else
     skip "images/lights.exr"
 fi

@@ -525,6 +525,35 @@ static void test_huge_header(void)
     free(data);
 }
 
+// Headers that Core believes and other readers do not, and files that are called what they are.
+static void test_claims(void)
+{
+    struct part parts[MAX_PARTS] = {usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};
+    const char *path = in_folder("claim.exr"), *target = in_folder("none.exr");
+    static const char *const types[] = {"compression\0compression", "lineOrder\0lineOrder", "dataWindow\0box2i"};
+    static const size_t lengths[] = {23, 19, 16};
+    struct hf_io_error err = {""};
+    size_t size;
+    CHECK(!make_exr(path, parts, NULL));
+    uint8_t *data = slurp(path, &size);
+    for (int i = 0; i < 3; i++) {
+        uint8_t *at = memmem(data, size, types[i], lengths[i]);
+        if (!CHECK(at != NULL))
+            break;
+        at[lengths[i] - 1] ^= 1;
+        spill(path, data, size);
+        expect_error(rewrite(path, target, &err), &err, "claim.exr: truncated or corrupt");
+        at[lengths[i] - 1] ^= 1;
+    }
+    free(data);
+    parts[0] = (struct part){.storage = EXR_STORAGE_DEEP_SCANLINE, .width = 6, .height = 5};
+    parts[0].channels[0] = (struct channel){"A", EXR_PIXEL_HALF, 0};
+    parts[0].channels[1] = (struct channel){"Z", EXR_PIXEL_FLOAT, 0};
+    CHECK(!make_exr(path, parts, NULL));
+    expect_error(rewrite(path, target, &err), &err, "deep picture");
+    CHECK(access(target, F_OK));
+}
+
 // ---- other formats ----
 
 static void test_planes(void)
@@ -731,6 +760,7 @@ int main(void)
     test_errors();
     full_disk(in_folder("views.exr"), in_folder("full.exr"));
     test_huge_header();
+    test_claims();
     test_planes();
     test_formats();
     test_rubbish(in_folder("views.exr"));

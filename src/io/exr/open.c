@@ -148,6 +148,20 @@ static int64_t next_int(struct cursor *c)
     return v;
 }
 
+// Core takes these attributes whatever type they claim to have; other readers do not.
+static bool right_type(const char *name, const char *type)
+{
+    static const char *const types[][2] = {
+        {"channels", "chlist"},        {"compression", "compression"}, {"dataWindow", "box2i"},
+        {"displayWindow", "box2i"},    {"lineOrder", "lineOrder"},     {"pixelAspectRatio", "float"},
+        {"screenWindowCenter", "v2f"}, {"screenWindowWidth", "float"}, {"tiles", "tiledesc"},
+    };
+    for (size_t i = 0; i < sizeof(types) / sizeof(types[0]); i++)
+        if (!strcmp(name, types[i][0]))
+            return !strcmp(type, types[i][1]);
+    return true;
+}
+
 // One part's attributes up to and with the zero byte behind them.
 static int scan_part(struct cursor *c, struct hf_exr_part *part)
 {
@@ -159,7 +173,7 @@ static int scan_part(struct cursor *c, struct hf_exr_part *part)
         if (next_name(c, type) < 0)
             return -1;
         const int64_t size = next_int(c);
-        if (size < 0 || (uint64_t)size > c->e->size - c->at)
+        if (size < 0 || (uint64_t)size > c->e->size - c->at || !right_type(name, type))
             return -1;
         if (!strcmp(name, "compression") && size == 1)
             part->compression_at = c->at;
@@ -181,7 +195,8 @@ static int scan_header(struct hf_exr *e, struct hf_io_error *err)
     if (ok && e->multipart)
         ok = next_byte(&c) == 0;
     if (!ok)
-        return hf_io_fail(err, "%s: truncated or corrupt: the header does not end", e->path);
+        return hf_io_fail(err, "%s: truncated or corrupt: the header does not end, or an attribute has the wrong type",
+                          e->path);
     e->header_size = c.at;
     uint64_t at = c.at;
     for (int p = 0; p < e->part_count; p++) {

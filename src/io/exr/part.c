@@ -106,10 +106,10 @@ int hf_exr_check_part(const struct hf_exr *e, int p, struct hf_io_error *err)
     if (part->one_level ? part->chunk_count != needed : part->chunk_count < needed)
         return hf_io_fail(err, "%s: truncated or corrupt: part %d has %d chunks but its data window needs %d", e->path,
                           p, part->chunk_count, needed);
-    // No codec but DWA packs better than deflate's 1032:1 by much. Believing a header that promises more would let a
-    // short file ask for any amount of memory.
-    const uint64_t best = hf_exr_is_dwa(part->compression) ? 65536 : 2048;
-    if (decoded_bytes(part) / best > e->size)
+    // Pictures of one colour pack without end (PIZ, DWA), and black frames are honest. But believing any header would let
+    // a short file ask for any amount of memory: past half a gigabyte, no more than twice what deflate can do.
+    const uint64_t bytes = decoded_bytes(part);
+    if (bytes > (uint64_t)1 << 29 && bytes / 2048 > e->size)
         return hf_io_fail(err, "%s: truncated or corrupt: %llu bytes cannot hold %d x %d pixels of %d channels",
                           e->path, (unsigned long long)e->size, part->width, part->height, part->channel_count);
     return 0;

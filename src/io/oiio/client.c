@@ -293,6 +293,24 @@ int hf_oiio_read_depth_only(struct hf_oiio *o, const char *depth_channel, const 
     return ask_depth(o, HF_WIRE_DEPTH_ONLY, depth_channel, view, depth, err);
 }
 
+int hf_oiio_check_format(const char *path, struct hf_io_error *err)
+{
+    struct hf_wire_request *q = calloc(1, sizeof(*q));
+    struct hf_wire_reply *r = calloc(1, sizeof(*r));
+    int status = q && r ? set_path(q, path, err) : hf_io_fail(err, "%s: out of memory", path);
+    const int fd = status ? -1 : new_job(path, err);
+    status = fd < 0 ? -1 : status;
+    if (!status) {
+        q->op = HF_WIRE_FORMAT;
+        status = hf_wire_put(fd, q, sizeof(*q)) ? gone(path, err) : get_reply(fd, path, r, err);
+    }
+    if (fd >= 0)
+        close(fd);
+    free(q);
+    free(r);
+    return status;
+}
+
 // The file that the helper made.
 static int get_file(int fd, const char *path, struct hf_io_bytes *made, struct hf_io_error *err)
 {

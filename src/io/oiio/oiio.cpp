@@ -347,23 +347,29 @@ std::vector<float> interleave(const struct hf_io_view *v, const float *const pla
     return pixels;
 }
 
-int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
+// Can the format that path's extension says hold a picture?
+int check_format(ImageOutput *out, const char *path, hf_io_error *err)
 {
     static const char *const trusted[] = {"bmp",     "dpx", "fits", "gif", "hdr", "heif",  "iff",  "jpeg", "jpeg2000",
                                           "openexr", "png", "pnm",  "rla", "sgi", "targa", "tiff", "webp"};
+    OIIO::geterror();
+    if (!out)
+        return hf_io_fail(err, "%s: cannot write: OpenImageIO does not know the format \"%s\"", path,
+                          hf_io_extension(path));
+    for (const char *name : trusted)
+        if (!strcmp(name, out->format_name()))
+            return 0;
+    return hf_io_fail(err, "%s: cannot write: the format \"%s\" holds no whole picture", path, hf_io_extension(path));
+}
+
+int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
+{
     const char *path = picture->path;
     const hf_io_view *v = picture->view;
     const float *const *planes = picture->planes;
     Output output(path, err, path);
-    if (!output.out) {
-        OIIO::geterror();
-        return hf_io_fail(err, "%s: cannot write: OpenImageIO does not know the format \"%s\"", path,
-                          hf_io_extension(path));
-    }
-    if (std::none_of(std::begin(trusted), std::end(trusted),
-                     [&](const char *name) { return !strcmp(name, output.out->format_name()); }))
-        return hf_io_fail(err, "%s: cannot write: the format \"%s\" holds no whole picture", path,
-                          hf_io_extension(path));
+    if (check_format(output.out.get(), path, err))
+        return -1;
     const bool grey = !strcmp(v->colour[0], v->colour[1]);
     const bool alpha = planes[3] && output.out->supports("alpha");
     ImageSpec spec(v->width, v->height, (grey ? 1 : 3) + (alpha ? 1 : 0), output_type(path, picture->bits));
@@ -554,6 +560,11 @@ int hf_oiio_read_depth_only(hf_oiio *o, const char *depth_channel, const struct 
         Input input;
         return open_input(input, o->path, err) ? -1 : read_channel(input, o, c, depth, err);
     });
+}
+
+int hf_oiio_check_format(const char *path, hf_io_error *err)
+{
+    return guarded(path, err, [&] { return check_format(ImageOutput::create(path).get(), path, err); });
 }
 
 int hf_oiio_write(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)

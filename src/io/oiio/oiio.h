@@ -31,6 +31,9 @@ int hf_oiio_read_depth(struct hf_oiio *oiio, float *depth, struct hf_io_error *e
 int hf_oiio_read_depth_only(struct hf_oiio *oiio, const char *depth_channel, const struct hf_io_view *view,
                             float *depth, struct hf_io_error *err);
 
+// Is the format that path's extension says one that hf_oiio_write can write?
+int hf_oiio_check_format(const char *path, struct hf_io_error *err);
+
 // A new picture of one view's colours, in the format that path's extension says; the file itself is not touched.
 struct hf_oiio_picture {
     const char *path;

@@ -130,6 +130,13 @@ static int serve_depth(struct job *job, const struct hf_wire_request *q)
     return status;
 }
 
+static int serve_format(struct job *job, const struct hf_wire_request *q)
+{
+    struct hf_wire_reply r = {0};
+    r.status = hf_oiio_check_format(q->path, &r.err);
+    return send_reply(job, &r, NULL);
+}
+
 static int serve_write(struct job *job, const struct hf_wire_request *q)
 {
     struct hf_wire_reply r = {0};
@@ -209,6 +216,9 @@ static void serve(int fd)
         case HF_WIRE_DEPTH:
         case HF_WIRE_DEPTH_ONLY:
             status = serve_depth(&job, &q);
+            break;
+        case HF_WIRE_FORMAT:
+            status = serve_format(&job, &q);
             break;
         case HF_WIRE_WRITE:
             status = serve_write(&job, &q);

@@ -21,6 +21,7 @@ enum hf_wire_op {
     HF_WIRE_COLOUR,      // planes; the reply is followed by those that there are
     HF_WIRE_DEPTH,       // the reply is followed by the plane
     HF_WIRE_DEPTH_ONLY,  // view, name
+    HF_WIRE_FORMAT,      // path
     HF_WIRE_WRITE,       // view, planes, bits, name: compression; followed by the planes; then the file
     HF_WIRE_READ,        // samples, part, followed by the names; the reply by the data
     HF_WIRE_MAKE,        // samples, level, name: compression, followed by names and data; the reply by the file
