@@ -105,6 +105,16 @@ static int compare_pixels(const struct world *w, const struct level *l, const st
     return 1;
 }
 
+static int compare_bytes(const struct world *w, const struct region *g, char message[256])
+{
+    for (int y = 0; y < g->rows; y++)
+        if (memcmp(region_row(w, ARENA_REFERENCE, g, y), region_row(w, ARENA_TEST, g, y), g->row_bytes)) {
+            snprintf(message, 256, "slot %d row %d: other bytes than the C", g->slot, y);
+            return 0;
+        }
+    return 1;
+}
+
 // Everything outside the regions is as it was made.
 static int untouched(const struct world *w, enum arena a, char message[256])
 {
@@ -144,6 +154,7 @@ int world_compare(const struct world *w, const struct level *l, char message[256
         const struct region *g = &w->regions[i];
         if ((g->kind == REGION_FLOATS && !compare_floats(w, l, g, message)) ||
             (g->kind == REGION_NARROW && !compare_narrow(w, g, message)) ||
+            (g->kind == REGION_BYTES && !compare_bytes(w, g, message)) ||
             (g->kind == REGION_PIXELS && !compare_pixels(w, l, g, message)))
             return 0;
     }

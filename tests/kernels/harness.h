@@ -81,6 +81,7 @@ enum region_kind {
     REGION_FLOATS,   // compared, with tolerance where the kernel may fuse
     REGION_PIXELS,   // of dst, likewise
     REGION_NARROW,   // CoC as the storage has it: compared without tolerance
+    REGION_BYTES,    // compared bit by bit
     REGION_SCRATCH,  // may be written, is not looked at
 };
 
@@ -216,6 +217,26 @@ void gaussian_make(struct world *w, int which);
 void gaussian_call(struct world *w, const struct kernels *k, enum arena a, int which);
 void wide_make(struct world *w, int index);
 void wide_call(struct world *w, const struct kernels *k, enum arena a, int index);
+
+// scatter.c
+enum {
+    SCATTER_WEIGHTS,
+    SCATTER_PICTURES,
+    SCATTER_LIST,
+    SCATTER_QUAD,
+    SCATTER_SITE,
+    SCATTER_TENT_WEIGHTS,
+    SCATTER_TENT,
+    SCATTER_MEAN,
+    SCATTER_NOTE,
+    SCATTER_RUNS,
+    SCATTER_TAPS,
+    SCATTER_SPLAT,
+    SCATTER_SETTLE
+};
+void scatter_make(struct world *w, int which);
+void scatter_call(struct world *w, const struct kernels *k, enum arena a, int which);
+int scatter_check(const struct world *w, const struct level *l, char message[256]);
 
 // compare.c: all regions, and everything outside them.
 int world_compare(const struct world *w, const struct level *l, char message[256]);

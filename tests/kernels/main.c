@@ -55,6 +55,19 @@ const struct test tests[] = {
     ROW("gaussian_up_half", 5, 600, gaussian_make, gaussian_call, row_check),
     ROW("gaussian_up_quarter", 6, 600, gaussian_make, gaussian_call, row_check),
     ROW("wide_block", 0, 600, wide_make, wide_call, row_check),
+    ROW("source_weights", SCATTER_WEIGHTS, 800, scatter_make, scatter_call, scatter_check),
+    ROW("source_pictures", SCATTER_PICTURES, 800, scatter_make, scatter_call, scatter_check),
+    ROW("list_row", SCATTER_LIST, 800, scatter_make, scatter_call, scatter_check),
+    ROW("quad_row", SCATTER_QUAD, 800, scatter_make, scatter_call, scatter_check),
+    ROW("site_row", SCATTER_SITE, 800, scatter_make, scatter_call, scatter_check),
+    ROW("tent_weights", SCATTER_TENT_WEIGHTS, 800, scatter_make, scatter_call, scatter_check),
+    ROW("tent", SCATTER_TENT, 800, scatter_make, scatter_call, scatter_check),
+    ROW("mean_row", SCATTER_MEAN, 800, scatter_make, scatter_call, scatter_check),
+    ROW("scatter_note", SCATTER_NOTE, 800, scatter_make, scatter_call, scatter_check),
+    ROW("splat_runs", SCATTER_RUNS, 800, scatter_make, scatter_call, scatter_check),
+    ROW("splat_taps", SCATTER_TAPS, 800, scatter_make, scatter_call, scatter_check),
+    ROW("splat", SCATTER_SPLAT, 800, scatter_make, scatter_call, scatter_check),
+    ROW("settle", SCATTER_SETTLE, 800, scatter_make, scatter_call, scatter_check),
 };
 const int test_count = sizeof tests / sizeof *tests;
 
