@@ -8,6 +8,7 @@
 // independent sums to hide the latency of the multiply-add, one broadcast weight for all of them, and output rows that
 // stay in the first-level cache.
 #include "gather/gather.h"
+#include "pixel/coc_vf.h"
 #include "pixel/format_vf.h"
 #include <float.h>
 

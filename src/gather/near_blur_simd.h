@@ -3,6 +3,7 @@
 // does not drift. Halves and floats are summed as floats: the windows that the C sums for each pixel are shared between
 // pixels, 5 additions a value for 13 wide, and the bits do not depend on where a tile starts.
 #include "gather/gather.h"
+#include "gather/near_max_simd.h"
 #include "pixel/format_vf.h"
 
 // ---- bytes, up to 255 wide: no sum is larger than a word ----

@@ -2,6 +2,9 @@
 // Near CoC max on vectors: along x maxima of 2, 4, 8 ... values come from each other, and two overlapping ones of those
 // cover any width; along y windows share what they have in common. Values are bytes, halves or floats, whichever the
 // storage has; none is negative, so that all are compared as integers.
+#ifndef HF_NEAR_MAX_SIMD_H
+#define HF_NEAR_MAX_SIMD_H
+
 #include "gather/gather.h"
 #include "pixel/format_vf.h"
 
@@ -192,3 +195,5 @@ static void max_y_simd(const struct hf_frame *f, struct hf_rect r)
     else
         max_columns(f, r, 4);
 }
+
+#endif

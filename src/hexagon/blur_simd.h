@@ -9,6 +9,9 @@
 // looked at first: no tap is read that none of them reaches, and those that all of them reach are plain products, four
 // where there would be ten operations. Skipped taps would add nothing and full ones have the same weight either way,
 // and each pixel's sums keep their order, so no bit depends on where a block lies.
+#ifndef HF_HEXAGON_BLUR_SIMD_H
+#define HF_HEXAGON_BLUR_SIMD_H
+
 #include "hexagon/kernels.h"
 #include "pixel/coc_vf.h"
 
@@ -445,3 +448,5 @@ static void hexagon_2_simd(const struct hf_frame *f, struct hf_rect r)
     else
         hex_pass(f, r, 1, 3);
 }
+
+#endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hexagon engine on vectors: what comes before its two passes, and after.
+#include "hexagon/blur_simd.h"
 #include "hexagon/kernels.h"
 #include "pixel/coc_vf.h"
 
