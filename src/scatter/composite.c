@@ -54,14 +54,17 @@ static float mix(float a, float b, float t)
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
-// Far, the pixel itself, near. What lies behind a near pixel nobody has seen: where far ones hardly reach, near
-// hides it.
+// Far, the pixel itself, near. What still shows of a near pixel is a part of what covers it: what is behind shows
+// through neither. What lies there nobody has seen: where far ones hardly reach, near hides it.
 static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2])
 {
     const float front = near[1] > 0 ? near[0] / near[1] : own;
     float v = far[1] > 0 ? far[0] / far[1] : own;
-    if (is_near)
+    if (is_near) {
+        const float left = 1 - cover;
         v = mix(front, v, hf_saturate(16 * far[1]));
+        show = show < left ? show / left : 1;
+    }
     v = mix(own, v, 1 - show);
     return near[1] > 0 ? mix(v, front, cover) : v;
 }

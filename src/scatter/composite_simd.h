@@ -70,15 +70,19 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
             front = vf_select(vf_gt(near, zero), vf_div(vf_load(row->near + x), near), own);
         }
         const vm is_near = vf_lt(r, zero);
-        const vf reached = vf_mul(vf_set1(16), far);
-        v = vf_select(is_near, scatter_mix(front, v, vf_min(vf_max(reached, zero), one)), v);
-        v = scatter_mix(own, v, vf_sub(one, show));
+        vf cover = near, back = show;
         if (row->near) {
             const vf px = vf_add(vf_set1((float)(row->x + x)), vf_load(steps));
             const vf part = scatter_inside(row->setup, vf_mul(size, scale_x), size, px, row->y);
-            const vf cover = vf_select(is_near, vf_div(near, part), near);
-            v = vf_select(vf_gt(near, zero), scatter_mix(v, front, cover), v);
+            cover = vf_select(is_near, vf_div(near, part), near);
+            const vf left = vf_sub(one, cover);
+            back = vf_select(is_near, vf_select(vf_lt(show, left), vf_div(show, left), one), show);
         }
+        const vf reached = vf_mul(vf_set1(16), far);
+        v = vf_select(is_near, scatter_mix(front, v, vf_min(vf_max(reached, zero), one)), v);
+        v = scatter_mix(own, v, vf_sub(one, back));
+        if (row->near)
+            v = vf_select(vf_gt(near, zero), scatter_mix(v, front, cover), v);
         vf_store(out + x, v);
     }
 }

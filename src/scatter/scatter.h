@@ -59,10 +59,11 @@ static inline float hf_half_part(const struct hf_scatter *t, float r)
     return hf_saturate((r - t->half_from) * t->half_slope);
 }
 
-// What of a pixel's radius, positive on the side of the field, is drawn in it, both levels together.
-static inline float hf_field_weight(const struct hf_scatter *t, int field, float r)
+// How much of a pixel's radius, positive on the side of the field, is drawn in it, both levels together: what it does not
+// show itself.
+static inline float hf_field_weight(const struct hf_scatter *t, float r)
 {
-    return r > 0 ? field ? 1 : 1 - hf_own_part(t, r) : 0;
+    return r > 0 ? 1 - hf_own_part(t, r) : 0;
 }
 
 // Floats of scratch that the splats of such a cell need, half-resolution pixels.

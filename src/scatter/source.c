@@ -8,7 +8,7 @@ void hf_source_weights_c(const struct hf_scatter *t, float sign, const float *ra
                          int channels, int n, float *const out[4])
 {
     for (int i = 0; i < n; i++) {
-        const float weight = hf_field_weight(t, sign > 0, sign * radius[i]) * (1 - hf_half_part(t, sign * radius[i]));
+        const float weight = hf_field_weight(t, sign * radius[i]) * (1 - hf_half_part(t, sign * radius[i]));
         out[3][i] = weight;
         for (int c = 0; c < channels; c++)
             out[c][i] = colour[c][i] * weight;

@@ -97,7 +97,7 @@ static float tent_weight(const struct hf_tent_row *t, int i, int odd, int *merge
     const float r = t->sign * t->radius[2 * i + odd];
     const int next = odd ? i + 1 : i - 1;
     *merged = alike(t->own[i], r) && alike(t->own[next], r) && alike(t->next[i], r) && alike(t->next[next], r);
-    return hf_field_weight(t->scatter, t->sign > 0, r) * hf_half_part(t->scatter, r);
+    return hf_field_weight(t->scatter, r) * hf_half_part(t->scatter, r);
 }
 
 int hf_tent_weights_c(const struct hf_tent_row *t, int first)

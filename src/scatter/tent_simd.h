@@ -68,9 +68,8 @@ static int tent_weights_simd(const struct hf_tent_row *t, int first)
         for (int odd = 0; odd < 2; odd++) {
             const vf v = vf_mul(vf_set1(t->sign), r[odd]), bound = vf_add(vf_set1(0.5f), vf_mul(v, vf_set1(1 / 32.0f)));
             const vf part = tent_saturate(vf_mul(vf_sub(v, vf_set1(s->half_from)), vf_set1(s->half_slope)));
-            vf weight = vf_set1(1);
-            if (!(t->sign > 0))
-                weight = vf_sub(weight, tent_saturate(vf_mul(vf_sub(vf_set1(s->fade), v), vf_set1(s->fade_slope))));
+            const vf own = tent_saturate(vf_mul(vf_sub(vf_set1(s->fade), v), vf_set1(s->fade_slope)));
+            vf weight = vf_sub(vf_set1(1), own);
             weight = vf_mul(vf_keep(vf_gt(v, vf_zero()), weight), part);
             const int next = odd ? i + 1 : i - 1;
             const vm merged = vm_and(vm_and(tent_alike(t->own + i, v, bound), tent_alike(t->own + next, v, bound)),

@@ -476,7 +476,8 @@ static void melting(struct hf_context *c, const char *isa)
     }
 }
 
-// A focus pull: no sample moves by more than a steady share of the largest one for each pixel of radius.
+// A focus pull: no sample moves by more than a steady share of the largest one for each pixel of radius: all of it while a
+// pixel goes from sharp to blurred, 0.034 a step, and twice a size's 0.4 %.
 static void focus_pull(struct hf_context *c, const char *isa)
 {
     const int w = 96, h = 80, steps = 200;
@@ -501,7 +502,7 @@ static void focus_pull(struct hf_context *c, const char *isa)
         last = a;
     }
     printf("%s: focus pull: a step of 0.034 pixels changes no sample by more than %.3f\n", isa, worst);
-    CHECK_MSG(worst < 0.12, "%s: a step of 0.034 pixels changes a sample by %g", isa, worst);
+    CHECK_MSG(worst < 0.042, "%s: a step of 0.034 pixels changes a sample by %g", isa, worst);
     picture_free(&last);
     picture_free(&colour);
     picture_free(&coc);

@@ -80,7 +80,7 @@ struct picture scatter_reference(const struct picture *c, const float *radius)
     for (int i = 0; i < n; i++)
         if (fabsf(radius[i]) > 0.5f) {
             const double own = clamp01(1.5 - fabs((double)radius[i]));
-            splat(sum[radius[i] > 0], c, i % c->width, i / c->width, fabsf(radius[i]), radius[i] > 0 ? 1 : 1 - own);
+            splat(sum[radius[i] > 0], c, i % c->width, i / c->width, fabsf(radius[i]), 1 - own);
         }
     for (int i = 0; i < n; i++)
         for (int k = 0; k < c->channels; k++) {
@@ -93,7 +93,9 @@ struct picture scatter_reference(const struct picture *c, const float *radius)
                 back = front + clamp01(16 * far[4]) * (back - front);
             if (radius[i] < -0.5f)
                 cover /= visible_part(c, size, i % c->width, i / c->width);
-            const double base = back + own * (v - back);
+            // What shows of a near pixel itself covers what is behind as its picture does.
+            const double show = radius[i] < -0.5f && own < 1 - cover ? own / (1 - cover) : radius[i] < -0.5f ? 1 : own;
+            const double base = back + show * (v - back);
             out.plane[k][i] = (float)(base + clamp01(cover) * (front - base));
         }
     free(sum[0]);
