@@ -14,9 +14,11 @@ struct bench_args {
     int frames;         // 0: as many as take a few seconds
     int threads;        // 0: one per processor
     enum hf_isa isa;
-    const char *scene;   // name of a built-in scene, or of a file
-    const char *images;  // folder of the truth scenes
-    const char *json;    // file, "-" for stdout, NULL for none
+    const char *scene;        // name of a built-in scene, or of a file
+    const char *images;       // folder of the truth scenes
+    const char *compression;  // batch: one of EXR's, NULL for all
+    int engine_given;
+    const char *json;  // file, "-" for stdout, NULL for none
     enum hf_format in, out;
     struct hf_params params;
     int size_given, focus_given, range_given, max_radius_given;  // on the command line

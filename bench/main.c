@@ -11,6 +11,7 @@ static const struct {
     const char *help;
 } commands[] = {
     {"passes", bench_passes, "time of each pass of a frame, beside table 3.1 of the chapter"},
+    {"batch", bench_batch, "the command on a shot, beside copying its files and beside oiiotool, which must be there"},
     {"truth", bench_truth, "distance of each engine from ray-traced pictures, and its time"},
     {"scaling", bench_scaling, "time of a frame as its blurred part and its size grow; --size: up to that width"},
 };

@@ -294,7 +294,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         status = run_rest(&b, error);
         cli_progress_end(&b.progress);
         print_summary(&b);
-        cli_log_end(&b.log, &b.progress, peak_memory());
+        cli_log_end(&b.log, &b.progress, b.workers, peak_memory());
         if (!status)
             status = exit_code(&b);
     }

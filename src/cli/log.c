@@ -115,7 +115,7 @@ void cli_log_frame(struct cli_log *log, const struct cli_record *r)
     end(log, out, &line, &size);
 }
 
-void cli_log_end(struct cli_log *log, const struct cli_progress *p, double peak_memory)
+void cli_log_end(struct cli_log *log, const struct cli_progress *p, int at_once, double peak_memory)
 {
     char *line;
     size_t size;
@@ -125,6 +125,7 @@ void cli_log_end(struct cli_log *log, const struct cli_progress *p, double peak_
     const double seconds = (cli_now_ms() - p->start) / 1000;
     fprintf(out, ", \"event\": \"end\", \"frames\": %d, \"done\": %d, \"skipped\": %d, \"failed\": %d", p->total,
             (int)p->done, (int)p->skipped, (int)p->failed);
+    fprintf(out, ", \"at_once\": %d", at_once);
     fprintf(out, ", \"seconds\": %.3f, \"frames_per_second\": %.4f, \"peak_memory\": %.0f", seconds,
             seconds > 0 ? p->done / seconds : 0, peak_memory);
     for (int s = 0; s < CLI_STAGES; s++)

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a shot costs: the command itself on a shot made of one of the project's pictures, beside copying its files and
+// beside oiiotool reading and writing them, for each compression, in turns.
+#include "commands.h"
+
+#include <errno.h>
+#include <libgen.h>
+#include <limits.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+extern char **environ;
+
+enum { TURNS = 3, MAX_WORDS = 48, STAGES = 6 };
+static const char *const compressions[] = {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
+enum { COMPRESSIONS = sizeof(compressions) / sizeof(compressions[0]) };
+static const char *const stage_names[STAGES] = {"read", "decode", "defocus", "encode", "write", "wait"};
+
+// One compression: seconds, medians; shares of the threads' time.
+struct row {
+    const char *compression;
+    double batch, copy, oiiotool;
+    double stage[STAGES];
+    double peak_memory;  // bytes
+};
+
+struct bench {
+    const struct bench_args *args;
+    char program[PATH_MAX], dir[PATH_MAX];
+    char threads[16], frames[32], size[32];
+    struct bench_error *error;
+};
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Run a program with what follows its name, up to NULL. Returns seconds, or -1 with *error filled. Its output goes away.
+static double run(const struct bench *b, const char *const words[])
+{
+    posix_spawn_file_actions_t quiet;
+    pid_t pid;
+    int status = -1;
+    posix_spawn_file_actions_init(&quiet);
+    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", 1, 0);
+    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", 1, 0);
+    const double start = now();
+    const int failed = posix_spawnp(&pid, words[0], &quiet, NULL, (char *const *)words, environ);
+    if (!failed)
+        waitpid(pid, &status, 0);
+    const double seconds = now() - start;
+    posix_spawn_file_actions_destroy(&quiet);
+    if (failed)
+        return bench_fail(b->error, "%s cannot be started: %s", words[0], strerror(failed));
+    if (!WIFEXITED(status) || WEXITSTATUS(status))
+        return bench_fail(b->error, "%s failed, status %d, in %s", words[0], status, b->dir);
+    return seconds;
+}
+
+// The command of this build, else the installed one.
+static void find_program(struct bench *b)
+{
+    static const char *const places[] = {"../src/cli/hyperfocal", "hyperfocal"};
+    char self[PATH_MAX];
+    const ssize_t n = readlink("/proc/self/exe", self, sizeof(self) - 1);
+    self[n > 0 ? n : 0] = '\0';
+    char *folder = dirname(self);
+    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
+        snprintf(b->program, sizeof(b->program), "%.2000s/%s", folder, places[i]);
+        if (!access(b->program, X_OK))
+            return;
+    }
+    snprintf(b->program, sizeof(b->program), "hyperfocal");
+}
+
+static char *name(const struct bench *b, const char *file, char buf[PATH_MAX])
+{
+    snprintf(buf, PATH_MAX, "%.2000s/%s", b->dir, file);
+    return buf;
+}
+
+// Each frame is the picture moved on by some pixels, in half floats, depth too.
+static int make_shot(const struct bench *b, const char *compression)
+{
+    char source[PATH_MAX], file[64], target[PATH_MAX], shift[32];
+    snprintf(source, sizeof(source), "%.2000s/foliage.exr", b->args->images);
+    for (int i = 1; i <= b->args->frames; i++) {
+        snprintf(file, sizeof(file), "in.%04d.exr", i);
+        snprintf(shift, sizeof(shift), "+%d+0", 3 * i);
+        const char *const words[] = {
+            "oiiotool",  source, "--resize:filter=box", b->size, "--cshift", shift, "-d", "half", "--compression",
+            compression, "-o",   name(b, file, target), NULL};
+        if (run(b, words) < 0)
+            return -1;
+    }
+    return 0;
+}
+
+static double run_copy(const struct bench *b)
+{
+    char script[2 * PATH_MAX];
+    snprintf(script, sizeof(script), "for f in '%.2000s'/in.*; do cp \"$f\" \"${f%%/*}/copy.${f##*/}\" || exit 1; done",
+             b->dir);
+    const char *const words[] = {"sh", "-c", script, NULL};
+    return run(b, words);
+}
+
+static double run_oiiotool(const struct bench *b)
+{
+    char in[PATH_MAX], out[PATH_MAX];
+    const char *const words[] = {"oiiotool", "--threads",
+                                 b->threads, "--frames",
+                                 b->frames,  name(b, "in.#.exr", in),
+                                 "-o",       name(b, "oiio.#.exr", out),
+                                 NULL};
+    return run(b, words);
+}
+
+static double run_batch(const struct bench *b, const char *log)
+{
+    char in[PATH_MAX], out[PATH_MAX];
+    const char *words[MAX_WORDS] = {
+        b->program, name(b, "in.####.exr", in), "-o", name(b, "out.####.exr", out), "--threads", b->threads, "--log",
+        log};
+    int n = 8;
+    if (b->args->engine_given) {
+        words[n++] = "--engine";
+        words[n++] = hf_engine_name(b->args->params.engine);
+    }
+    return run(b, words);
+}
+
+// A number of the log's last line; 0 when it is not there.
+static double logged(const char *line, const char *key)
+{
+    char quoted[64];
+    snprintf(quoted, sizeof(quoted), "\"%s\": ", key);
+    const char *at = strstr(line, quoted);
+    return at ? strtod(at + strlen(quoted), NULL) : 0;
+}
+
+static int read_log(const struct bench *b, const char *path, struct row *row)
+{
+    char line[1 << 14] = "", key[32];
+    FILE *in = fopen(path, "r");
+    if (!in)
+        return bench_fail(b->error, "%s cannot be read: %s", path, strerror(errno));
+    while (fgets(line, sizeof(line), in))
+        ;
+    fclose(in);
+    const double seconds = logged(line, "seconds"), all = seconds * logged(line, "at_once");
+    double busy = 0;
+    for (int s = 0; s < STAGES - 1; s++) {
+        snprintf(key, sizeof(key), "%s_ms", stage_names[s]);
+        row->stage[s] = all > 0 ? logged(line, key) / 1000 / all : 0;
+        busy += row->stage[s];
+    }
+    row->stage[STAGES - 1] = busy < 1 ? 1 - busy : 0;
+    row->peak_memory = logged(line, "peak_memory");
+    return 0;
+}
+
+static double median(double *t)
+{
+    for (int i = 1; i < TURNS; i++)
+        for (int k = i; k > 0 && t[k] < t[k - 1]; k--) {
+            const double swap = t[k];
+            t[k] = t[k - 1];
+            t[k - 1] = swap;
+        }
+    return t[TURNS / 2];
+}
+
+static int measure(const struct bench *b, const char *compression, struct row *row)
+{
+    char log[PATH_MAX];
+    double batch[TURNS], copy[TURNS], oiiotool[TURNS];
+    *row = (struct row){.compression = compression};
+    if (make_shot(b, compression))
+        return -1;
+    for (int i = 0; i < TURNS; i++) {
+        if ((batch[i] = run_batch(b, name(b, "log", log))) < 0 || (oiiotool[i] = run_oiiotool(b)) < 0 ||
+            (copy[i] = run_copy(b)) < 0)
+            return -1;
+    }
+    row->batch = median(batch);
+    row->copy = median(copy);
+    row->oiiotool = median(oiiotool);
+    return read_log(b, log, row);
+}
+
+static void print_row(const struct bench *b, const struct row *r)
+{
+    printf("%-6s %9.2f %9.2f %9.2f %9.2f", r->compression, b->args->frames / r->batch, b->args->frames / r->copy,
+           b->args->frames / r->oiiotool, r->batch / r->oiiotool);
+    for (int s = 0; s < STAGES; s++)
+        printf(" %7.1f%%", 100 * r->stage[s]);
+    printf(" %8.0f\n", r->peak_memory / (1 << 20));
+    fflush(stdout);
+}
+
+static int write_json(const struct bench *b, const struct row *rows, int count)
+{
+    const int to_stdout = !strcmp(b->args->json, "-");
+    FILE *out = to_stdout ? stdout : fopen(b->args->json, "w");
+    if (!out)
+        return bench_fail(b->error, "--json %s cannot be written: %s", b->args->json, strerror(errno));
+    fprintf(out, "{\"command\": \"batch\", \"width\": %d, \"height\": %d, \"frames\": %d, \"threads\": %s, \"rows\": [",
+            b->args->width, b->args->height, b->args->frames, b->threads);
+    for (int i = 0; i < count; i++) {
+        const struct row *r = &rows[i];
+        fprintf(out, "%s\n  {\"compression\": \"%s\", \"seconds\": %.4f, \"copy_seconds\": %.4f, ", i ? "," : "",
+                r->compression, r->batch, r->copy);
+        fprintf(out, "\"oiiotool_seconds\": %.4f, \"frames_per_second\": %.4f, \"peak_memory\": %.0f", r->oiiotool,
+                b->args->frames / r->batch, r->peak_memory);
+        for (int s = 0; s < STAGES; s++)
+            fprintf(out, ", \"%s_share\": %.5f", stage_names[s], r->stage[s]);
+        fputc('}', out);
+    }
+    fputs("\n]}\n", out);
+    const int failed = ferror(out);
+    return (to_stdout ? fflush(out) : fclose(out)) || failed ? bench_fail(b->error, "the JSON could not be written")
+                                                             : 0;
+}
+
+static void clean(const struct bench *b)
+{
+    struct bench_error ignored;
+    struct bench quiet = *b;
+    const char *const words[] = {"rm", "-rf", b->dir, NULL};
+    quiet.error = &ignored;
+    run(&quiet, words);
+}
+
+int bench_batch(struct bench_args *args, struct bench_error *error)
+{
+    struct bench b = {.args = args, .error = error};
+    struct row rows[COMPRESSIONS];
+    int count = 0, status = 0;
+    const char *tmp = getenv("TMPDIR");
+    args->frames = args->frames ? args->frames : 16;
+    const long online = sysconf(_SC_NPROCESSORS_ONLN);
+    snprintf(b.threads, sizeof(b.threads), "%d", args->threads ? args->threads : (int)online);
+    snprintf(b.frames, sizeof(b.frames), "1-%d", args->frames);
+    snprintf(b.size, sizeof(b.size), "%dx%d", args->width, args->height);
+    snprintf(b.dir, sizeof(b.dir), "%.2000s/hyperfocal-bench-XXXXXX", tmp ? tmp : "/tmp");
+    find_program(&b);
+    if (!mkdtemp(b.dir))
+        return bench_fail(error, "%s cannot be made: %s", b.dir, strerror(errno));
+    const int table = !args->json || strcmp(args->json, "-");
+    if (table)
+        printf("%d frames of %s, half RGBA and Z, %s threads; frames/s, then where the threads' time goes\n"
+               "             batch      copy  oiiotool    /oiiot     read   decode  defocus   encode    write"
+               "     wait  peak MiB\n",
+               args->frames, b.size, b.threads);
+    fflush(stdout);
+    for (int i = 0; i < COMPRESSIONS && !status; i++) {
+        if (args->compression && strcmp(args->compression, compressions[i]))
+            continue;
+        status = measure(&b, compressions[i], &rows[count]);
+        if (!status && table)
+            print_row(&b, &rows[count]);
+        count += !status;
+    }
+    clean(&b);
+    if (!status && args->json)
+        status = write_json(&b, rows, count);
+    return status;
+}
