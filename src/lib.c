@@ -199,7 +199,7 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     if (engine->prepare && s.blend != 0)
         err = engine->prepare(c->engine[p->engine].own, &s, p, &c->mem);
     if (!err)
-        err = hf_render_frame(c, &s, dst, src, depth, !p->deterministic, plan_only);
+        err = hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !p->deterministic, plan_only});
     if (err)
         say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
     else if (p->budget_ms > 0 && !plan_only && !c->dump)

@@ -10,7 +10,6 @@
 #include "base/pool.h"
 #include "params.h"
 #include "pixel/kernels.h"
-#include "frame/wave.h"
 
 struct hf_worker {
     _Alignas(HF_ALIGN) struct hf_frame frame;
@@ -18,7 +17,6 @@ struct hf_worker {
     struct hf_counts seen, looked;
     int64_t ns[HF_MAX_PASSES];
     uint32_t tiles[HF_MAX_PASSES];
-    int64_t plan_ns;
     struct hf_block scratch;
 };
 
@@ -39,12 +37,11 @@ struct hf_context {
     struct hf_pool *pool;     // NULL: the host's parallel_for
     struct hf_worker *workers;
 
-    struct hf_plan plan;            // of the last frame: the next one guesses from it
+    struct hf_plan plan;
     struct hf_block planes;         // buffers of the whole frame
-    struct hf_block chunks, tiles;  // the plan's; tiles: and the wave's
-    struct hf_wave wave;
-    struct hf_block joined;   // CoC for a dump: of full resolution, or of narrow buffers
-    struct hf_block repairs;  // in place: what has to be written before a tile overwrites its neighbours
+    struct hf_block chunks, tiles;  // the plan's
+    struct hf_block joined;         // CoC for a dump: of full resolution, or of narrow buffers
+    struct hf_block repairs;        // in place: what has to be written before a tile overwrites its neighbours
     struct hf_stats stats;
     struct hf_report report;
     struct hf_work work;  // of the plan
@@ -60,8 +57,14 @@ int hf_engines_open(struct hf_context *c);
 void hf_engines_close(struct hf_context *c);
 // Bytes of all that.
 size_t hf_engines_bytes(const struct hf_context *c);
+// What a frame is rendered from and to.
+struct hf_job {
+    const struct hf_image *dst, *src;
+    const struct hf_depth *depth;
+    int fused, plan_only;
+};
+
 // Run a frame whose arguments have been checked, or only plan it (render.c).
-int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src,
-                    const struct hf_depth *depth, int fused, int plan_only);
+int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct hf_job *job);
 
 #endif

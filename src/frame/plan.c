@@ -5,9 +5,9 @@
 
 // What measured fastest on two cores. Large tiles compute little twice at their rims and read memory in long runs;
 // smaller ones stay in the cache, and skip more. With more threads they are halved until each thread has a few. Chunks are
-// wide and low: long runs again, and the wave needs but whole rows of them.
+// wide, for long runs again, and low enough for their CoC to stay in the cache: at 1024 x 8 it is 256 KB.
 enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4 };
-enum { CHUNK_WIDTH = 512, CHUNK_HEIGHT = 4 };
+enum { CHUNK_WIDTH = 1024, CHUNK_HEIGHT = 8 };
 
 static int ceil_div(int a, int b)
 {
@@ -155,22 +155,19 @@ size_t hf_plan_chunk_bytes(const struct hf_plan *p)
     return (size_t)hf_plan_count(p, 1) * (2 * sizeof(struct hf_found) + sizeof(int) + 3);
 }
 
-void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep)
+void hf_plan_chunk_memory(struct hf_plan *p, void *memory)
 {
     const size_t chunks = (size_t)hf_plan_count(p, 1);
     p->near = memory;
     p->far = p->near + chunks;
-    p->deferred = (int *)(p->far + chunks);
-    p->deferred_count = 0;
-    p->chunk_made = (atomic_uchar *)(p->deferred + chunks);
-    p->chunk_busy = p->chunk_made + chunks;
-    p->chunk_reads = (uint8_t *)(p->chunk_busy + chunks);
-    for (size_t i = 0; i < chunks; i++) {
-        atomic_init(&p->chunk_made[i], 0);
-        atomic_init(&p->chunk_busy[i], 0);
-    }
-    if (!keep)
-        memset(p->chunk_reads, 0, chunks);
+    p->rest = (int *)(p->far + chunks);
+    p->rest_count = 0;
+    p->chunk_known = (atomic_uchar *)(p->rest + chunks);
+    p->chunk_made = (uint8_t *)(p->chunk_known + chunks);
+    p->chunk_reads = p->chunk_made + chunks;
+    for (size_t i = 0; i < chunks; i++)
+        atomic_init(&p->chunk_known[i], 0);
+    memset(p->chunk_made, 0, 2 * chunks);
 }
 
 struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i)
@@ -215,14 +212,6 @@ static int reads_all(const struct hf_plan *p, const struct hf_setup *s)
     return 0;
 }
 
-static void list_deferred(struct hf_plan *p)
-{
-    p->deferred_count = 0;
-    for (int i = 0; i < hf_plan_count(p, 1); i++)
-        if (p->chunk_reads[i] & ~p->chunk_made[i])
-            p->deferred[p->deferred_count++] = i;
-}
-
 // Widen the active part of a tile by the blocks that a rectangle in it touches, counted from its corner: of a group's
 // width, and of four rows, which are whole ones of any buffer.
 static void widen(struct hf_rect *active, struct hf_rect tile, int x0, int x1, int y0, int y1)
@@ -257,6 +246,11 @@ static int spread_chunk(const struct hf_found *found, struct hf_rect chunk, stru
     return any;
 }
 
+static int is_whole(struct hf_rect active, struct hf_rect tile)
+{
+    return active.x0 == tile.x0 && active.y0 == tile.y0 && active.x1 == tile.x1 && active.y1 == tile.y1;
+}
+
 // What a tile needs, and in which part of it: a tile is much larger than what a thin thing in front of it blurs.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
 {
@@ -266,6 +260,8 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
     unsigned needs = 0;
     for (int y = c.y0; y < c.y1; y++)
         for (int x = c.x0; x < c.x1; x++) {
+            if (needs == HF_FIELDS && is_whole(active, tile))
+                break;
             const int at = y * p->columns[1] + x;
             const struct hf_rect chunk = hf_plan_cell(p, 1, at);
             needs |= spread_chunk(&p->near[at], chunk, near, tile, &active) ? HF_NEAR : 0u;
@@ -275,7 +271,34 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
     p->tile_active[i] = s->no_skip ? tile : active;
 }
 
-unsigned hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks)
+unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *counts)
+{
+    p->near[chunk] = counts->near;
+    p->far[chunk] = counts->far;
+    atomic_store_explicit(&p->chunk_known[chunk], 1, memory_order_release);
+    return (counts->near.groups ? HF_NEAR : 0u) | (counts->far.groups ? HF_FAR : 0u);
+}
+
+// Near CoC makes active what lies within its spread, and tiles read beyond what is active. Only what is certain counts, so
+// that what is made early is read.
+unsigned hf_plan_foreseen(const struct hf_plan *p, const struct hf_setup *s, int chunk)
+{
+    const int columns = p->columns[1], y0 = chunk / columns * p->cell_height[1], reads = read_reach(p).y;
+    const int near = p->engine->spread(s, p, HF_NEAR).y + reads, far = p->engine->spread(s, p, HF_FAR).y + reads;
+    unsigned needs = 0;
+    for (int i = chunk - columns; i >= 0 && needs != HF_FIELDS; i -= columns) {
+        if (y0 - (i / columns + 1) * p->cell_height[1] >= hf_max(near, far))
+            break;
+        if (!atomic_load_explicit(&p->chunk_known[i], memory_order_acquire))
+            continue;
+        needs |= p->near[i].groups && y0 - p->near[i].y1 < near ? HF_NEAR : 0u;
+        needs |= p->far[i].groups && y0 - p->far[i].y1 < far ? HF_FAR : 0u;
+    }
+    return needs ? p->engine->reads(s, needs) : 0;
+}
+
+// The chunks, as a rectangle of chunk numbers, that a tile reads; returns which of their fields.
+static unsigned reads_of(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks)
 {
     if (!p->tile_needs[tile])
         return 0;
@@ -283,20 +306,22 @@ unsigned hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, int ti
     return p->engine->reads(s, p->tile_needs[tile]);
 }
 
-int hf_plan_chunk_rows(const struct hf_plan *p, const struct hf_setup *s, int row)
+static void list_rest(struct hf_plan *p, int scan)
 {
-    const struct hf_reach spread = reach_max(p->engine->spread(s, p, HF_NEAR), p->engine->spread(s, p, HF_FAR));
-    return chunks_around(p, hf_plan_cell(p, 2, row * p->columns[2]), reach_max(read_reach(p), spread)).y1;
+    p->rest_count = 0;
+    for (int i = 0; i < hf_plan_count(p, 1); i++)
+        if ((p->chunk_reads[i] & ~p->chunk_made[i]) || (scan && !p->chunk_reads[i] && !p->chunk_made[i]))
+            p->rest[p->rest_count++] = i;
 }
 
-void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s)
+void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan)
 {
     const int chunks = hf_plan_count(p, 1), tiles = hf_plan_count(p, 2);
     memset(p->chunk_reads, 0, (size_t)chunks);
     p->needs = 0;
     for (int i = 0; i < tiles; i++) {
         struct hf_rect c = {0};
-        const unsigned reads = hf_plan_reads(p, s, i, &c);
+        const unsigned reads = reads_of(p, s, i, &c);
         p->needs |= p->tile_needs[i];
         for (int y = c.y0; reads && y < c.y1; y++)
             for (int x = c.x0; x < c.x1; x++)
@@ -305,12 +330,5 @@ void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s)
     p->reads = p->needs ? p->engine->reads(s, p->needs) : 0;
     if (p->needs && reads_all(p, s))
         memset(p->chunk_reads, (int)p->reads, (size_t)chunks);
-    list_deferred(p);
-}
-
-void hf_plan_forget(struct hf_plan *p)
-{
-    for (int i = 0; i < hf_plan_count(p, 1); i++)
-        p->chunk_made[i] = 0;
-    list_deferred(p);
+    list_rest(p, scan);
 }

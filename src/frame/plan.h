@@ -17,11 +17,11 @@ struct hf_plan {
     int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
     struct hf_found *near, *far;  // in each chunk
-    atomic_uchar *chunk_made;     // fields whose buffers the first sweep has made
-    atomic_uchar *chunk_busy;     // somebody is making what it has not
-    uint8_t *chunk_reads;         // fields that some tile reads there; until they are known, those of the last frame
-    int *deferred;                // chunks whose buffers are made once it is known that they are read
-    int deferred_count;
+    atomic_uchar *chunk_known;    // its depth has been looked at
+    uint8_t *chunk_made;          // fields whose buffers the first sweep has made
+    uint8_t *chunk_reads;         // fields that some tile reads there
+    int *rest;                    // chunks with more to make; in place, and with colour that nobody has looked at
+    int rest_count;
     uint8_t *tile_needs;          // fields
     struct hf_rect *tile_active;  // the part of each tile that is not sharp
     unsigned needs, reads;        // of all tiles
@@ -40,20 +40,18 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
 size_t hf_plan_tile_bytes(const struct hf_plan *p);
 void hf_plan_tile_memory(struct hf_plan *p, void *memory);
 size_t hf_plan_chunk_bytes(const struct hf_plan *p);
-// Memory for the chunks; keep: it holds what the last frame knew of the same chunks.
-void hf_plan_chunk_memory(struct hf_plan *p, void *memory, int keep);
+void hf_plan_chunk_memory(struct hf_plan *p, void *memory);
+
+// Note what was found in a chunk; returns which fields. Once for each, by any thread.
+unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *counts);
+// Fields that tiles will read of a chunk, as far as chunks above it show.
+unsigned hf_plan_foreseen(const struct hf_plan *p, const struct hf_setup *s, int chunk);
 
 // What a tile needs: once the first sweep has been around it.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int tile);
-// The chunks, as a rectangle of chunk numbers, that a tile reads; returns which of their fields.
-unsigned hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks);
-// When all tiles are known: what the frame needs and reads, and which chunks have to be made after all.
-void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s);
-// Rows of chunks, from the top, that a row of tiles depends on.
-int hf_plan_chunk_rows(const struct hf_plan *p, const struct hf_setup *s, int row);
-
-// Nothing has been made after all.
-void hf_plan_forget(struct hf_plan *p);
+// When all tiles are known: what the frame needs and reads, and which chunks are left for hf_sweep_rest. scan: those too
+// whose colour nobody reads.
+void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan);
 
 // Are a sweep's cells the tiles, which run as far as they need?
 int hf_plan_is_tiled(const struct hf_plan *p, int sweep);
