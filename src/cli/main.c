@@ -66,6 +66,8 @@ static void print_warnings(const struct cli_frame *frame)
             cli_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
                            v->stats.depth_repaired);
     }
+    if (frame->written.note[0])
+        cli_print_line("%s", frame->written.note);
     if (frame->written.clamped)
         cli_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
                        frame->written.clamped);

@@ -2,6 +2,7 @@
 // Opening files and choosing who handles them.
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -143,46 +144,107 @@ static int check_view(const struct hf_io_file *file, int view, struct hf_io_erro
     return 0;
 }
 
-static int read_colour(struct hf_io_file *file, int view, float *const planes[4], struct hf_io_error *err)
-{
-    return file->exr ? hf_exr_read_colour(file->exr, &file->views.view[view], planes, err)
-                     : hf_oiio_read_colour(file->oiio, planes, err);
-}
-
-static int read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err)
+// What is wanted of a view, as planes of an EXR file. Appends to list, which has room for five more.
+static int list_planes(const struct hf_io_file *file, const struct hf_io_want *w, struct hf_exr_plane *list, int *count,
+                       struct hf_io_error *err)
 {
     char names[300];
-    const struct hf_io_view *v = &file->views.view[view];
+    const struct hf_io_view *v = &file->views.view[w->view];
+    const struct hf_exr_part *parts = file->exr->parts;
+    for (int k = 0; k < 4; k++) {
+        const int c = v->colour[k][0] ? hf_exr_find_channel(&parts[v->part], v->colour[k]) : -1;
+        if (w->planes[k] && c >= 0)
+            list[(*count)++] = (struct hf_exr_plane){v->part, c, true, v->data_window, w->planes[k]};
+    }
+    if (!w->depth)
+        return 0;
     if (v->depth_part < 0) {
         hf_io_channels(file, names, sizeof(names));
         return hf_io_fail(err, "%s: no depth channel among: %s", file->path, names);
     }
-    if (!file->exr)
-        return hf_oiio_read_depth(file->oiio, depth, err);
-    const int c = hf_exr_find_channel(&file->exr->parts[v->depth_part], v->depth);
-    return hf_exr_read_depth(file->exr, v->depth_part, c, v->data_window, depth, err);
+    const struct hf_exr_part *part = &parts[v->depth_part];
+    const struct hf_io_box *g = &v->data_window;
+    const exr_attr_box2i_t *b = &part->window;
+    if (b->max.x < g->x0 || b->min.x >= g->x1 || b->max.y < g->y0 || b->min.y >= g->y1)
+        return hf_io_fail(
+            err, "%s: depth channel %s covers (%d %d) - (%d %d), nothing of the colour's (%d %d) - (%d %d)", file->path,
+            v->depth, b->min.x, b->min.y, b->max.x, b->max.y, g->x0, g->y0, g->x1 - 1, g->y1 - 1);
+    bool colours = false;  // its part will be written again
+    for (int i = 0; i < file->views.count; i++)
+        colours |= file->views.view[i].part == v->depth_part;
+    list[(*count)++] = (struct hf_exr_plane){v->depth_part, hf_exr_find_channel(part, v->depth), colours, *g, w->depth};
+    return 0;
+}
+
+// All that is wanted; to be freed. NULL with *err filled.
+static struct hf_exr_plane *all_planes(const struct hf_io_file *file, const struct hf_io_want *wants, int count,
+                                       int *planes, struct hf_io_error *err)
+{
+    struct hf_exr_plane *list = calloc((size_t)count * 5 + 1, sizeof(*list));
+    *planes = 0;
+    if (!list)
+        hf_io_fail(err, "%s: out of memory", file->path);
+    for (int i = 0; i < count && list; i++)
+        if (check_view(file, wants[i].view, err) || list_planes(file, &wants[i], list, planes, err)) {
+            free(list);
+            return NULL;
+        }
+    return list;
+}
+
+// Where the depth's own window does not reach there is no surface.
+static void clear_depth(const struct hf_io_file *file, const struct hf_io_want *w)
+{
+    const struct hf_io_view *v = &file->views.view[w->view];
+    const exr_attr_box2i_t *b = &file->exr->parts[v->depth_part].window;
+    const struct hf_io_box *g = &v->data_window;
+    const size_t n = (size_t)v->width * (size_t)v->height;
+    if (b->min.x > g->x0 || b->min.y > g->y0 || b->max.x + 1 < g->x1 || b->max.y + 1 < g->y1)
+        for (size_t i = 0; i < n; i++)
+            w->depth[i] = INFINITY;
 }
 
 int hf_io_fetch(struct hf_io_file *file, const struct hf_io_want *wants, int count, struct hf_io_error *err)
 {
-    for (int i = 0; i < count; i++)
-        if (check_view(file, wants[i].view, err))
-            return -1;
-    return 0;
+    int planes;
+    if (!file->exr)
+        return 0;
+    struct hf_exr_plane *list = all_planes(file, wants, count, &planes, err);
+    const int status = list ? hf_exr_fetch(file->exr, list, planes, err) : -1;
+    free(list);
+    return status;
+}
+
+static int decode_by_oiio(struct hf_io_file *file, const struct hf_io_want *w, struct hf_io_error *err)
+{
+    char names[300];
+    if (check_view(file, w->view, err))
+        return -1;
+    if (w->depth && file->views.view[w->view].depth_part < 0) {
+        hf_io_channels(file, names, sizeof(names));
+        return hf_io_fail(err, "%s: no depth channel among: %s", file->path, names);
+    }
+    if (w->depth && hf_oiio_read_depth(file->oiio, w->depth, err))
+        return -1;
+    const bool colour = w->planes[0] || w->planes[1] || w->planes[2] || w->planes[3];
+    return colour ? hf_oiio_read_colour(file->oiio, w->planes, err) : 0;
 }
 
 int hf_io_decode(struct hf_io_file *file, const struct hf_io_want *wants, int count, const struct hf_io_run *run,
                  struct hf_io_error *err)
 {
-    (void)run;
-    for (int i = 0; i < count; i++) {
-        const struct hf_io_want *w = &wants[i];
-        if (check_view(file, w->view, err) || (w->depth && read_depth(file, w->view, w->depth, err)) ||
-            ((w->planes[0] || w->planes[1] || w->planes[2] || w->planes[3]) &&
-             read_colour(file, w->view, w->planes, err)))
-            return -1;
-    }
-    return 0;
+    int planes, status = 0;
+    for (int i = 0; i < count && !file->exr && !status; i++)
+        status = decode_by_oiio(file, &wants[i], err);
+    if (!file->exr)
+        return status;
+    struct hf_exr_plane *list = all_planes(file, wants, count, &planes, err);
+    for (int i = 0; i < count && list; i++)
+        if (wants[i].depth)
+            clear_depth(file, &wants[i]);
+    status = list ? hf_exr_decode(file->exr, list, planes, run, err) : -1;
+    free(list);
+    return status;
 }
 
 int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struct hf_io_error *err)
@@ -219,7 +281,8 @@ static int exr_depth_only(struct hf_io_file *file, const char *depth_channel, co
                           part->height, view->width, view->height);
     const struct hf_io_box own = {part->window.min.x, part->window.min.y, part->window.max.x + 1,
                                   part->window.max.y + 1};
-    return hf_exr_read_depth(file->exr, p, c, own, depth, err);
+    const struct hf_exr_plane plane = {p, c, false, own, depth};
+    return hf_exr_decode(file->exr, &plane, 1, NULL, err);
 }
 
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,

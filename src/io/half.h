@@ -4,6 +4,7 @@
 #define HF_IO_HALF_H
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "pixel/format.h"
@@ -21,5 +22,10 @@ static inline uint16_t hf_io_to_half(float f, uint64_t *clamped)
     *clamped += f > HF_HALF_MAX || f < -HF_HALF_MAX;
     return isnan(f) ? 0 : hf_half_pack(f);
 }
+
+// Rows of n: halves as they lie in a file, at any address.
+void hf_io_halves_to_floats(float *to, const uint8_t *from, size_t n);
+// Adds the number of clamps to *clamped.
+void hf_io_floats_to_halves(uint8_t *to, const float *from, size_t n, uint64_t *clamped);
 
 #endif

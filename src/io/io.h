@@ -87,12 +87,6 @@ struct hf_io_job {
     const struct hf_io_run *run;  // NULL: on this thread
 };
 
-// What became of it.
-struct hf_io_written {
-    uint64_t clamped;          // samples that did not fit a half channel and became +-65504
-    char note[HF_IO_MESSAGE];  // a sentence about what could not be kept as it was, or ""
-};
-
 // A new file in memory, ready to be saved.
 struct hf_io_output;
 

@@ -207,15 +207,23 @@ static void keep_owner(struct hf_out *o, int fd, const struct stat *st)
                  (unsigned)st->st_mode & 07777);
 }
 
+int hf_out_check(const char *path, struct hf_io_error *err)
+{
+    struct stat st;
+    // Renaming over a device or a pipe would replace it rather than write to it.
+    if (stat(path, &st) == 0 && !S_ISREG(st.st_mode))
+        return hf_io_fail(err, "%s: cannot write: not a regular file", path);
+    return 0;
+}
+
 int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
 {
     struct stat st;
     memset(o, 0, sizeof(*o));
     o->path = path;
     const bool there = stat(path, &st) == 0;
-    // Renaming over a device or a pipe would replace it rather than write to it.
-    if (there && !S_ISREG(st.st_mode))
-        return hf_io_fail(err, "%s: cannot write: not a regular file", path);
+    if (hf_out_check(path, err))
+        return -1;
     o->target = hf_out_resolve(path);
     if (!o->target)
         return hf_io_fail(err, "%s: cannot write: out of memory, or its links go round", path);

@@ -29,6 +29,8 @@ struct hf_out {
 enum hf_out_owner { HF_OUT_NOT_OURS, HF_OUT_THIS_HOST, HF_OUT_OTHER_HOST };
 enum hf_out_owner hf_out_owner_of(const char *name, long *pid);
 
+// 0, or -1 with *err filled when path names something that is no plain file.
+int hf_out_check(const char *path, struct hf_io_error *err);
 // All return 0, or -1 with *err filled; then hf_out_abort must be called (it may always be called).
 int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err);
 int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_error *err);

@@ -63,6 +63,12 @@ struct hf_io_text {
     const char *name, *value;
 };
 
+// What became of a picture that was written.
+struct hf_io_written {
+    uint64_t clamped;          // samples that did not fit a half channel and became +-65504
+    char note[HF_IO_MESSAGE];  // a sentence about what could not be kept as it was, or ""
+};
+
 // Append a view, all zero. NULL when there is no memory.
 struct hf_io_view *hf_io_add_view(struct hf_io_views *views);
 

@@ -40,8 +40,8 @@ static int load_picture(struct hf_io_file *file, const struct hf_io_result *r, s
 }
 
 // Colours alone.
-static int write_new_exr(struct hf_out *out, const struct hf_io_view *v, const float *const planes[4], int compression,
-                         struct hf_io_error *err)
+static int make_exr(struct hf_io_bytes *made, const char *path, const struct hf_io_view *v,
+                    const float *const planes[4], int compression, struct hf_io_error *err)
 {
     static const char *const names[4] = {"R", "G", "B", "A"};
     const struct hf_exr_new picture = {
@@ -57,28 +57,23 @@ static int write_new_exr(struct hf_out *out, const struct hf_io_view *v, const f
         .planes = planes,
         .stride = v->width,
     };
-    return hf_exr_write_new(out, &picture, err);
+    return hf_exr_make_new(made, path, &picture, err);
 }
 
-static int write_by_oiio(const struct hf_io_file *file, struct hf_out *out, const struct hf_io_view *v,
-                         const struct picture *pic, const char *compression, struct hf_io_error *err)
+static int make_by_oiio(struct hf_io_bytes *made, const struct hf_io_file *file, const struct hf_io_job *job,
+                        const struct hf_io_view *v, const struct picture *pic, struct hf_io_error *err)
 {
-    const struct hf_oiio_picture picture = {.path = out->path,
+    const struct hf_oiio_picture picture = {.path = job->path,
                                             .view = v,
                                             .planes = {pic->planes[0], pic->planes[1], pic->planes[2], pic->planes[3]},
                                             .bits = file->oiio ? hf_oiio_bits(file->oiio) : 0,
-                                            .compression = compression};
-    struct hf_io_bytes made;
-    int status = hf_oiio_write(&made, &picture, err);
-    if (!status)
-        status = hf_out_write(out, made.data, made.size, err);
-    free(made.data);
-    return status;
+                                            .compression = job->compression};
+    return hf_oiio_write(made, &picture, err);
 }
 
 // A picture with nothing but the colours of one view.
-static int write_view(struct hf_io_file *file, struct hf_out *out, const struct hf_io_job *job, int compression,
-                      struct hf_io_error *err)
+static int make_view(struct hf_io_bytes *made, struct hf_io_file *file, const struct hf_io_job *job, int compression,
+                     struct hf_io_error *err)
 {
     struct picture pic;
     if (job->result_count != 1)
@@ -87,23 +82,27 @@ static int write_view(struct hf_io_file *file, struct hf_out *out, const struct 
     const struct hf_io_view *v = &file->views.view[job->results[0].view];
     int status = load_picture(file, &job->results[0], &pic, err);
     if (!status && hf_io_is_exr_name(job->path) && !(compression >= 0 && hf_exr_is_dwa(compression)))
-        status = write_new_exr(out, v, pic.planes, compression, err);
+        status = make_exr(made, job->path, v, pic.planes, compression, err);
     else if (!status)
-        status = write_by_oiio(file, out, v, &pic, job->compression, err);
+        status = make_by_oiio(made, file, job, v, &pic, err);
     free_picture(&pic);
     return status;
 }
 
+// One of the two is set.
 struct hf_io_output {
-    struct hf_out out;
     char *path;
+    bool unsynced;
+    struct hf_exr_made *exr;
+    struct hf_io_bytes bytes;
 };
 
 void hf_io_output_free(struct hf_io_output **out)
 {
     if (!*out)
         return;
-    hf_out_abort(&(*out)->out);
+    hf_exr_free_file((*out)->exr);
+    free((*out)->bytes.data);
     free((*out)->path);
     free(*out);
     *out = NULL;
@@ -111,6 +110,8 @@ void hf_io_output_free(struct hf_io_output **out)
 
 static int check_job(const struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_error *err)
 {
+    if (hf_out_check(job->path, err))
+        return -1;
     for (int i = 0; i < job->result_count; i++)
         if (!hf_io_view(file, job->results[i].view))
             return hf_io_fail(err, "%s: there is no view number %d", file->path, job->results[i].view);
@@ -139,23 +140,35 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
     const int compression = job->compression ? hf_exr_compression(job->compression) : -1;
     const struct hf_exr_job exr = {&file->views, job->results, job->result_count,
                                    compression,  job->texts,   job->text_count};
-    int status = hf_out_open(&o->out, o->path, err);
-    o->out.unsynced = job->unsynced;
-    if (!status)
-        status = file->exr && hf_io_is_exr_name(job->path)
-                     ? hf_exr_write(file->exr, &o->out, &exr, &written->clamped, err)
-                     : write_view(file, &o->out, job, compression, err);
+    o->unsynced = job->unsynced;
+    int status = file->exr && hf_io_is_exr_name(job->path)
+                     ? hf_exr_encode_file(&o->exr, file->exr, &exr, job->run, written, err)
+                     : make_view(&o->bytes, file, job, compression, err);
     if (status)
         hf_io_output_free(&o);
     *result = o;
     return status;
 }
 
+static int save(const char *path, bool unsynced, const struct hf_exr_made *exr, const struct hf_io_bytes *bytes,
+                struct hf_io_written *written, struct hf_io_error *err)
+{
+    struct hf_out out;
+    int status = hf_out_open(&out, path, err);
+    out.unsynced = unsynced;
+    if (!status)
+        status = exr ? hf_exr_put_file(exr, &out, err) : hf_out_write(&out, bytes->data, bytes->size, err);
+    if (!status)
+        status = hf_out_commit(&out, err);
+    if (written && out.note[0])
+        memcpy(written->note, out.note, sizeof(written->note));
+    hf_out_abort(&out);
+    return status;
+}
+
 int hf_io_save(struct hf_io_output *out, struct hf_io_written *written, struct hf_io_error *err)
 {
-    if (written && out->out.note[0])
-        memcpy(written->note, out->out.note, sizeof(written->note));
-    return hf_out_commit(&out->out, err);
+    return save(out->path, out->unsynced, out->exr, &out->bytes, written, err);
 }
 
 int hf_io_write(struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_written *written,
@@ -183,12 +196,10 @@ int hf_io_write_planes(const char *path, int width, int height, int channels, co
         .planes = planes,
         .stride = stride,
     };
-    struct hf_out out;
-    int status = hf_out_open(&out, path, err);
+    struct hf_io_bytes made;
+    int status = hf_exr_make_new(&made, path, &picture, err);
     if (!status)
-        status = hf_exr_write_new(&out, &picture, err);
-    if (!status)
-        status = hf_out_commit(&out, err);
-    hf_out_abort(&out);
+        status = save(path, false, NULL, &made, NULL, err);
+    free(made.data);
     return status;
 }

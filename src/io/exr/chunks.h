@@ -10,22 +10,20 @@ struct hf_exr_slot {
     int index;
 };
 
-// The part being written.
-struct hf_exr_target {
-    struct hf_out *out;
-    uint64_t at;  // bytes written so far
-    bool multipart;
-    int part;
-    uint64_t *table;  // filled: offset of each chunk
+// What stands before a chunk's data: the part's number in multi-part files, where in the picture it belongs, sizes.
+struct hf_exr_leader {
+    int32_t place[4];  // y of scan lines; x, y, level x, level y of a tile
+    size_t size;       // of the leader
+    uint64_t data, data_size;
 };
 
+// The chunk table of a part, or NULL with *err filled; to be freed.
+uint64_t *hf_exr_table(const struct hf_exr *e, int part, struct hf_io_error *err);
 // The chunk table of a part sorted by offset; to be freed. NULL with *err filled.
 struct hf_exr_slot *hf_exr_file_order(const struct hf_exr *e, int part, struct hf_io_error *err);
 // 0 if all chunks of a part lie within the file, as long as their leaders say.
 int hf_exr_check_chunks(const struct hf_exr *e, int part, struct hf_io_error *err);
-// Copy all chunks of a part, in the order in which they stand in the file.
-int hf_exr_copy_chunks(const struct hf_exr *e, int part, struct hf_exr_target *t, struct hf_io_error *err);
-// Write a chunk's leader: the part number if the file wants one, and what is given.
-int hf_exr_put_leader(struct hf_exr_target *t, const void *leader, size_t size, struct hf_io_error *err);
+// 0, or -1 when it or its data are not within the file, or it is another part's.
+int hf_exr_read_leader(const struct hf_exr *e, int part, uint64_t offset, struct hf_exr_leader *l);
 
 #endif

@@ -1,28 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A new EXR file of float channels, where there is no source to copy from.
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/exr/exr.h"
 
 struct new_file {
-    struct hf_exr messages;  // only for what Core says
-    struct hf_out *out;
-    uint64_t at;
-    struct hf_io_error *err;
-    bool failed;  // *err has been filled by writing
+    struct hf_io_bytes bytes;
+    size_t room;
 };
 
 static int64_t write_out(exr_const_context_t core, void *user, const void *data, uint64_t size, uint64_t offset,
                          exr_stream_error_func_ptr_t error)
 {
-    struct new_file *n = (struct new_file *)((char *)user - offsetof(struct new_file, messages));
+    struct new_file *n = user;
     (void)core;
     (void)error;
-    if ((n->at != offset && hf_out_seek(n->out, offset, n->err)) || hf_out_write(n->out, data, size, n->err)) {
-        n->failed = true;
+    if (size > SIZE_MAX / 4 || offset > SIZE_MAX / 4)
         return -1;
+    if (offset + size > n->room) {
+        const size_t room = 2 * (size_t)(offset + size);
+        uint8_t *grown = realloc(n->bytes.data, room);
+        if (!grown)
+            return -1;
+        n->bytes.data = grown;
+        n->room = room;
     }
-    n->at = offset + size;
+    if (offset > n->bytes.size)
+        memset(n->bytes.data + n->bytes.size, 0, (size_t)offset - n->bytes.size);
+    memcpy(n->bytes.data + offset, data, size);
+    n->bytes.size = offset + size > n->bytes.size ? (size_t)(offset + size) : n->bytes.size;
     return (int64_t)size;
 }
 
@@ -106,15 +113,17 @@ static int check_new(const char *path, const struct hf_exr_new *picture, struct 
     return 0;
 }
 
-int hf_exr_write_new(struct hf_out *out, const struct hf_exr_new *picture, struct hf_io_error *err)
+int hf_exr_make_new(struct hf_io_bytes *made, const char *path, const struct hf_exr_new *picture,
+                    struct hf_io_error *err)
 {
-    const char *path = out->path;
-    struct new_file n = {.messages = {.path = path}, .out = out, .err = err};
+    struct new_file n = {.room = 0};
     exr_context_initializer_t init;
     exr_context_t core = NULL;
+    *made = n.bytes;
     if (check_new(path, picture, err))
         return -1;
-    hf_exr_context_init(&n.messages, &init);
+    hf_exr_quiet();
+    hf_exr_context_init(&n, &init);
     init.write_fn = write_out;
     init.zip_level = 4;
     exr_result_t rv = exr_start_write(&core, path, EXR_WRITE_FILE_DIRECTLY, &init);
@@ -124,9 +133,10 @@ int hf_exr_write_new(struct hf_out *out, const struct hf_exr_new *picture, struc
         rv = write_chunks(core, picture);
     const exr_result_t end = core ? exr_finish(&core) : EXR_ERR_SUCCESS;  // writes the chunk table
     rv = rv ? rv : end;
-    int status = n.failed ? -1 : 0;
-    if (rv && !n.failed)
-        status = hf_io_fail(err, "%s: cannot write: %s", path,
-                            n.messages.core_message[0] ? n.messages.core_message : exr_get_default_error_message(rv));
-    return status;
+    if (rv) {
+        free(n.bytes.data);
+        return hf_io_fail(err, "%s: cannot write: %s", path, hf_exr_said(rv));
+    }
+    *made = n.bytes;
+    return 0;
 }

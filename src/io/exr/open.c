@@ -11,14 +11,26 @@
 #error "sample rows are used as they are stored, which is little endian"
 #endif
 
+const uint8_t *hf_exr_bytes(const struct hf_exr *e, size_t size, uint64_t offset)
+{
+    if (e->memory)
+        return offset <= e->size && size <= e->size - offset ? e->memory + offset : NULL;
+    for (int i = 0; i < e->fetched.count; i++) {
+        const struct hf_exr_range *r = &e->fetched.range[i];
+        if (offset >= r->from && offset <= r->to && size <= r->to - offset)
+            return e->fetched.bytes + offset;
+    }
+    return NULL;
+}
+
 int hf_exr_read_at(const struct hf_exr *e, void *data, size_t size, uint64_t offset)
 {
     char *to = data;
-    if (e->memory) {
-        if (offset > e->size || size > e->size - offset)
-            return -1;
-        memcpy(data, e->memory + offset, size);
-        return 0;
+    const uint8_t *bytes = hf_exr_bytes(e, size, offset);
+    if (bytes || e->memory) {
+        if (bytes)
+            memcpy(data, bytes, size);
+        return bytes ? 0 : -1;
     }
     while (size) {
         const ssize_t n = pread(e->fd, to, size, (off_t)offset);
@@ -64,38 +76,40 @@ static void core_free(void *p)
     free(p);
 }
 
-// Core reports the cause first and then what that cause led to.
+// Core reports the cause first and then what that cause led to. It does so on the thread that called it.
+static _Thread_local char core_message[256];
+
 static void core_error(exr_const_context_t core, exr_result_t code, const char *message)
 {
-    void *user = NULL;
-    (void)code;
-    if (!core || exr_get_user_data(core, &user) != EXR_ERR_SUCCESS || !user)
-        return;
-    struct hf_exr *e = user;
-    if (!e->core_message[0] && message)
-        snprintf(e->core_message, sizeof(e->core_message), "%s", message);
+    (void)core, (void)code;
+    if (!core_message[0] && message)
+        snprintf(core_message, sizeof(core_message), "%s", message);
 }
 
-void hf_exr_context_init(struct hf_exr *e, exr_context_initializer_t *init)
+void hf_exr_context_init(void *user_data, exr_context_initializer_t *init)
 {
     *init = (exr_context_initializer_t)EXR_DEFAULT_CONTEXT_INITIALIZER;
     init->error_handler_fn = core_error;
     init->alloc_fn = core_alloc;
     init->free_fn = core_free;
-    init->user_data = e;
+    init->user_data = user_data;
 }
 
-void hf_exr_quiet(struct hf_exr *e)
+void hf_exr_quiet(void)
 {
-    e->core_message[0] = 0;
+    core_message[0] = 0;
+}
+
+const char *hf_exr_said(exr_result_t code)
+{
+    return core_message[0] ? core_message : exr_get_default_error_message(code);
 }
 
 int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *err)
 {
-    const char *why = e->core_message[0] ? e->core_message : exr_get_default_error_message(code);
     if (code == EXR_ERR_OUT_OF_MEMORY)
         return hf_io_fail(err, "%s: out of memory", e->path);
-    return hf_io_fail(err, "%s: truncated or corrupt: %s", e->path, why);
+    return hf_io_fail(err, "%s: truncated or corrupt: %s", e->path, hf_exr_said(code));
 }
 
 // A cursor over the header bytes, for what Core does not tell: where things are.
@@ -299,6 +313,7 @@ static int open_core(struct hf_exr **out, struct hf_exr *e, struct hf_io_error *
     init.read_fn = core_read;
     init.size_fn = core_size;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;  // half a picture is an error, not a puzzle
+    hf_exr_quiet();
     exr_result_t rv = exr_start_read(&e->core, e->path, &init);
     if (!rv)
         rv = exr_get_count(e->core, &e->part_count);
@@ -357,8 +372,13 @@ void hf_exr_close(struct hf_exr *e)
         return;
     if (e->core)
         exr_finish(&e->core);
-    for (int p = 0; e->parts && p < e->part_count; p++)
+    for (int p = 0; e->parts && p < e->part_count; p++) {
+        hf_exr_free_layout(&e->parts[p]);
+        free(e->parts[p].samples);
         free(e->parts[p].channels);
+    }
+    free(e->fetched.bytes);
+    free(e->fetched.range);
     free(e->parts);
     if (e->fd >= 0)
         close(e->fd);

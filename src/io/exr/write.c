@@ -1,100 +1,158 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writing a copy of an EXR file with some colours replaced. Header bytes and the chunks of untouched parts are copied
-// as they are; in a touched part the new colours are put between the samples of the other channels, as stored, and the
-// whole is compressed again.
+// Making a copy of an EXR file with some colours replaced, as a list of pieces: header bytes with few changes, chunks of
+// the source where nothing changes, and new chunks where the new colours, put between the samples of the other channels
+// as stored, differ from the old.
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "io/exr/chunks.h"
 #include "io/half.h"
 
+// A chunk with its leader: in memory, or at `from` in the source.
+struct piece {
+    uint8_t *data;
+    uint64_t from;
+    size_t size;
+};
+
 struct part_plan {
     bool changed;
     exr_compression_t compression;
     int chunk_count;
-    uint64_t *table;  // new chunk offsets
+    struct piece *pieces;  // by number of chunk
+    int *order;            // in which they follow in the file
 };
 
-struct writer {
+struct hf_exr_made {
     struct hf_exr *e;
-    const struct hf_exr_job *job;
+    uint8_t *head;  // header and chunk tables
+    size_t header_size, head_size;
+    int part_count;
     struct part_plan *plans;
-    struct hf_out *out;
-    uint64_t at, header_size;
-    uint64_t *clamped;
+};
+
+// The work on one part.
+struct encoding {
+    struct hf_exr *e;
+    int part;
+    const struct hf_exr_job *job;
+    struct part_plan *plan;
+    uint64_t *table;  // of the source
+    struct encode_worker {
+        struct hf_exr_encoder en;
+        bool open;
+        uint8_t *raw;
+        size_t raw_size;
+        float *row;
+    } * workers;
+    atomic_int failed;
+    atomic_ullong clamped;
     struct hf_io_error *err;
 };
 
-static int plan_part(struct writer *w, int p)
+static int plan_part(struct hf_exr *e, int p, const struct hf_exr_job *job, struct part_plan *plan,
+                     struct hf_io_error *err)
 {
-    const int compression = w->job->compression;
-    const struct hf_exr_part *part = &w->e->parts[p];
-    struct part_plan *plan = &w->plans[p];
+    const struct hf_exr_part *part = &e->parts[p];
     plan->compression = part->compression;
     plan->chunk_count = part->chunk_count;
-    for (int i = 0; i < w->job->n_results; i++) {
-        const struct hf_io_view *v = &w->job->views->view[w->job->results[i].view];
+    for (int i = 0; i < job->n_results; i++) {
+        const struct hf_io_view *v = &job->views->view[job->results[i].view];
         for (int k = 0; k < 4; k++) {
-            if (v->part != p || !w->job->results[i].planes[k] || !v->colour[k][0])
+            if (v->part != p || !job->results[i].planes[k] || !v->colour[k][0])
                 continue;
             const int c = hf_exr_find_channel(part, v->colour[k]);
             if (part->channels[c].type == EXR_PIXEL_UINT)
-                return hf_io_fail(w->err, "%s: channel %s holds integers, which cannot take a blurred colour",
-                                  w->e->path, v->colour[k]);
+                return hf_io_fail(err, "%s: channel %s holds integers, which cannot take a blurred colour", e->path,
+                                  v->colour[k]);
             plan->changed = true;
         }
     }
     if (plan->changed && !part->one_level)
-        return hf_io_fail(w->err, "%s: part %d is mipmapped; writing new colours into it is not supported", w->e->path,
-                          p);
-    if (plan->changed && compression >= 0)
-        plan->compression = (exr_compression_t)compression;
+        return hf_io_fail(err, "%s: part %d is mipmapped; writing new colours into it is not supported", e->path, p);
+    if (plan->changed && job->compression >= 0)
+        plan->compression = (exr_compression_t)job->compression;
     if (plan->changed && part->storage == EXR_STORAGE_SCANLINE)
         plan->chunk_count = (part->height - 1) / hf_exr_compression_lines(plan->compression) + 1;
-    plan->table = calloc((size_t)plan->chunk_count, sizeof(*plan->table));
-    return plan->table ? 0 : hf_io_fail(w->err, "%s: out of memory", w->e->path);
+    plan->pieces = calloc((size_t)plan->chunk_count, sizeof(*plan->pieces));
+    plan->order = calloc((size_t)plan->chunk_count, sizeof(*plan->order));
+    return plan->pieces && plan->order ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
 }
 
-// The source's header with what a change of compression changes: one byte and one number per part.
-static int write_header(struct writer *w)
+// The source's header with what a change of compression changes, one byte and one number per part, and the texts.
+static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, struct hf_io_error *err)
 {
-    const struct hf_exr *e = w->e;
-    size_t size = e->header_size;
-    uint8_t *header = malloc(e->header_size);
+    const struct hf_exr *e = m->e;
+    size_t size = e->header_size, tables = 0;
+    uint8_t *header = malloc(size);
     if (!header)
-        return hf_io_fail(w->err, "%s: out of memory", e->path);
-    int status = hf_exr_read_at(e, header, e->header_size, 0);
+        return hf_io_fail(err, "%s: out of memory", e->path);
+    int status = hf_exr_read_at(e, header, size, 0);
     if (status)
-        hf_io_fail(w->err, "%s: cannot read the header again", e->path);
+        hf_io_fail(err, "%s: cannot read the header again", e->path);
     for (int p = 0; p < e->part_count && !status; p++) {
         const struct hf_exr_part *part = &e->parts[p];
-        const int32_t count = w->plans[p].chunk_count;
-        if (w->plans[p].compression != part->compression)
-            header[part->compression_at] = (uint8_t)w->plans[p].compression;
+        const int32_t count = m->plans[p].chunk_count;
+        tables += 8 * (size_t)count;
+        if (m->plans[p].compression != part->compression)
+            header[part->compression_at] = (uint8_t)m->plans[p].compression;
         if (count != part->chunk_count && part->chunk_count_at)
             memcpy(header + part->chunk_count_at, &count, sizeof(count));
     }
-    if (!status && w->job->text_count) {
-        uint8_t *stamped = hf_exr_stamp(header, &size, w->job->texts, w->job->text_count);
-        status = stamped ? 0 : hf_io_fail(w->err, "%s: out of memory", e->path);
+    if (!status && job->text_count) {
+        uint8_t *stamped = hf_exr_stamp(header, &size, job->texts, job->text_count);
+        status = stamped ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
         free(header);
         header = stamped;
     }
-    if (!status)
-        status = hf_out_write(w->out, header, size, w->err);
-    w->at = w->header_size = size;
-    free(header);
-    return status;
-}
-
-static int write_tables(struct writer *w)
-{
-    for (int p = 0; p < w->e->part_count; p++) {
-        const size_t size = (size_t)w->plans[p].chunk_count * sizeof(uint64_t);
-        if (hf_out_write(w->out, w->plans[p].table, size, w->err))
-            return -1;
+    m->header_size = size;
+    m->head_size = size + tables;
+    m->head = status ? NULL : realloc(header, m->head_size);
+    if (!m->head) {
+        free(header);
+        return status ? -1 : hf_io_fail(err, "%s: out of memory", e->path);
     }
     return 0;
+}
+
+// Where the chunks come to lie.
+static void fill_tables(struct hf_exr_made *m)
+{
+    uint64_t at = m->head_size;
+    uint8_t *table = m->head + m->header_size;
+    for (int p = 0; p < m->part_count; p++) {
+        const struct part_plan *plan = &m->plans[p];
+        for (int i = 0; i < plan->chunk_count; i++) {
+            memcpy(table + 8 * (size_t)plan->order[i], &at, sizeof(at));
+            at += plan->pieces[plan->order[i]].size;
+        }
+        table += 8 * (size_t)plan->chunk_count;
+    }
+}
+
+// All chunks of a part as they are, in the order in which they stand in e, which may be another file than the source:
+// then they are copied.
+static int take_chunks(struct hf_exr *e, int p, struct part_plan *plan, struct hf_io_error *err)
+{
+    const struct hf_exr_part *last = &e->parts[e->part_count - 1];
+    uint64_t end = last->table + 8 * (uint64_t)last->chunk_count;
+    struct hf_exr_slot *slots = hf_exr_file_order(e, p, err);
+    int status = slots ? 0 : -1;
+    for (int i = 0; i < plan->chunk_count && !status; i++) {
+        struct hf_exr_leader l;
+        // Chunks do not overlap: else a short file could make a long one.
+        if (slots[i].offset < end || hf_exr_read_leader(e, p, slots[i].offset, &l)) {
+            status = hf_io_fail(err, "%s: truncated or corrupt: chunk %d of part %d is not where its table says",
+                                e->path, slots[i].index, p);
+            break;
+        }
+        plan->order[i] = slots[i].index;
+        plan->pieces[slots[i].index] = (struct piece){.from = slots[i].offset, .size = l.size + (size_t)l.data_size};
+        end = l.data + l.data_size;
+    }
+    free(slots);
+    return status;
 }
 
 // One sample of a greyscale picture. Equal colours pass as they are.
@@ -107,174 +165,303 @@ static float grey(const float *const planes[4], size_t i)
 
 static void put_row(uint8_t *to, const float *from, int n, exr_pixel_type_t type, uint64_t *clamped)
 {
+    if (type == EXR_PIXEL_HALF) {
+        hf_io_floats_to_halves(to, from, (size_t)n, clamped);
+        return;
+    }
     for (int i = 0; i < n; i++) {
-        if (type == EXR_PIXEL_HALF) {
-            const uint16_t h = hf_io_to_half(from[i], clamped);
-            memcpy(to + 2 * (size_t)i, &h, sizeof(h));
-        } else {
-            const float f = isnan(from[i]) ? 0 : from[i];
-            memcpy(to + 4 * (size_t)i, &f, sizeof(f));
-        }
+        const float f = isnan(from[i]) ? 0 : from[i];
+        memcpy(to + 4 * (size_t)i, &f, sizeof(f));
     }
 }
 
-static int put_colours(struct writer *w, struct hf_exr_pixels *px, const struct hf_io_view *v,
-                       const float *const planes[4])
+// The new colours of one view, over the chunk's samples.
+static void put_view(const struct encoding *en, struct encode_worker *w, const struct hf_exr_chunk *k,
+                     const struct hf_io_result *r, uint64_t *clamped)
 {
-    const struct hf_exr_part *part = px->part;
+    const struct hf_io_view *v = &en->job->views->view[r->view];
+    const struct hf_exr_part *part = &en->e->parts[en->part];
     const bool y_only = !strcmp(v->colour[0], v->colour[1]);
-    float *row = malloc((size_t)part->width * sizeof(*row));
-    if (!row)
-        return hf_io_fail(w->err, "%s: out of memory", w->e->path);
-    for (int k = 0; k < 4; k++) {
-        if (!planes[k] || !v->colour[k][0] || (y_only && (k == 1 || k == 2)))
+    for (int c = 0; c < 4; c++) {
+        if (!r->planes[c] || !v->colour[c][0] || (y_only && (c == 1 || c == 2)))
             continue;
-        const int c = hf_exr_find_channel(part, v->colour[k]);
-        for (int y = 0; y < part->height; y++) {
-            const float *from = planes[k] + (size_t)y * (size_t)part->width;
-            if (y_only && k == 0) {
-                for (int x = 0; x < part->width; x++)
-                    row[x] = grey(planes, (size_t)y * (size_t)part->width + (size_t)x);
-                from = row;
-            }
-            put_row(hf_exr_pixel_row(px, c, y), from, part->width, part->channels[c].type, w->clamped);
+        const int channel = hf_exr_find_channel(part, v->colour[c]);
+        for (int y = k->y0; y < k->y0 + k->height; y++) {
+            const size_t at = (size_t)y * (size_t)part->width + (size_t)k->x0;
+            for (int x = 0; x < k->width && y_only && c == 0; x++)
+                w->row[x] = grey(r->planes, at + (size_t)x);
+            put_row(w->raw + hf_exr_row_at(part, k, channel, y), y_only && c == 0 ? w->row : r->planes[c] + at,
+                    k->width, part->channels[channel].type, clamped);
         }
     }
-    free(row);
+}
+
+static int prepare(struct encoding *en, struct encode_worker *w, size_t size, struct hf_io_error *err)
+{
+    const struct hf_exr_part *part = &en->e->parts[en->part];
+    if (!w->open) {
+        if (hf_exr_encoder_open(&w->en, en->e, part, en->plan->compression, err))
+            return -1;
+        w->open = true;
+        w->row = malloc((size_t)part->width * sizeof(*w->row));
+    }
+    if (size > w->raw_size || !w->raw) {
+        free(w->raw);
+        w->raw = malloc(size + 1);
+        w->raw_size = w->raw ? size : 0;
+    }
+    return w->raw && w->row ? 0 : hf_io_fail(err, "%s: out of memory", en->e->path);
+}
+
+// A chunk in memory, behind its leader.
+static int keep_piece(const struct encoding *en, const struct hf_exr_chunk *k, const uint8_t *data, size_t size,
+                      struct hf_io_error *err)
+{
+    const struct hf_exr_part *part = &en->e->parts[en->part];
+    int32_t leader[6];
+    int n = 0;
+    if (en->e->multipart)
+        leader[n++] = en->part;
+    if (part->storage == EXR_STORAGE_TILED) {
+        leader[n++] = k->x0 / part->tile_width;
+        leader[n++] = k->y0 / part->tile_height;
+        leader[n++] = 0;  // levels
+        leader[n++] = 0;
+    } else {
+        leader[n++] = part->window.min.y + k->y0;
+    }
+    leader[n++] = (int32_t)size;
+    struct piece *piece = &en->plan->pieces[k->index];
+    piece->size = (size_t)n * sizeof(*leader) + size;
+    piece->data = malloc(piece->size);
+    if (!piece->data)
+        return hf_io_fail(err, "%s: out of memory", en->e->path);
+    memcpy(piece->data, leader, (size_t)n * sizeof(*leader));
+    memcpy(piece->data + (size_t)n * sizeof(*leader), data, size);
     return 0;
 }
 
-static struct hf_exr_target target_of(struct writer *w, int p)
+static int encode_chunk(struct encoding *en, struct encode_worker *w, int i, struct hf_io_error *err)
 {
-    return (struct hf_exr_target){w->out, w->at, w->e->multipart, p, w->plans[p].table};
-}
-
-static int put_chunk(struct hf_exr_target *t, const struct hf_exr_pixels *px, int index, int chunk_lines,
-                     const void *data, size_t size, struct hf_io_error *err)
-{
-    const struct hf_exr_part *part = px->part;
-    int32_t leader[5] = {part->window.min.y + index * chunk_lines, (int32_t)size};
-    const bool tiled = part->storage == EXR_STORAGE_TILED;
-    if (tiled) {
-        const int nx = (part->width - 1) / part->tile_width + 1;
-        leader[0] = index % nx;
-        leader[1] = index / nx;
-        leader[4] = (int32_t)size;
-    }
-    t->table[index] = t->at;
-    if (hf_exr_put_leader(t, leader, tiled ? 20 : 8, err) || hf_out_write(t->out, data, size, err))
+    const struct hf_exr_part *part = &en->e->parts[en->part];
+    const int lines = hf_exr_compression_lines(en->plan->compression);
+    const struct hf_exr_chunk k = hf_exr_chunk_at(part, lines, i);
+    uint64_t clamped = 0;
+    const uint8_t *data;
+    size_t size;
+    struct hf_exr_leader l;
+    if (prepare(en, w, k.size, err))
         return -1;
-    t->at += size;
-    return 0;
+    memcpy(w->raw, part->samples + k.at, k.size);
+    for (int r = 0; r < en->job->n_results; r++)
+        if (en->job->views->view[en->job->results[r].view].part == en->part)
+            put_view(en, w, &k, &en->job->results[r], &clamped);
+    atomic_fetch_add(&en->clamped, clamped);
+    // What is as it was is copied, which is also what keeps lossy compression from losing more.
+    if (en->table && !memcmp(w->raw, part->samples + k.at, k.size) &&
+        !hf_exr_read_leader(en->e, en->part, en->table[i], &l)) {
+        en->plan->pieces[i] = (struct piece){.from = en->table[i], .size = l.size + (size_t)l.data_size};
+        return 0;
+    }
+    return hf_exr_encode(&w->en, &k, w->raw, &data, &size, err) || keep_piece(en, &k, data, size, err) ? -1 : 0;
 }
 
-// Compress all chunks, in the order the source has them where there are as many.
-static int encode_part(struct writer *w, int p, const struct hf_exr_pixels *px)
+static void encode_task(void *arg, int i, int worker)
 {
-    const struct part_plan *plan = &w->plans[p];
-    const struct hf_exr_part *part = px->part;
-    struct hf_exr_target t = target_of(w, p);
-    struct hf_exr_encoder en;
-    struct hf_exr_slot *slots = NULL;
-    if (hf_exr_encoder_open(&en, w->e, px, plan->compression, w->err))
-        return -1;
-    int status = 0;
-    if (plan->chunk_count == part->chunk_count) {
-        slots = hf_exr_file_order(w->e, p, w->err);
-        status = slots ? 0 : -1;
-    }
-    for (int i = 0; i < plan->chunk_count && !status; i++) {
-        const void *data;
-        size_t size;
-        const int backwards = plan->chunk_count - 1 - i;
-        const int index = slots ? slots[i].index : part->line_order == EXR_LINEORDER_DECREASING_Y ? backwards : i;
-        status = hf_exr_encode(&en, index, &data, &size, w->err);
-        if (!status)
-            status = put_chunk(&t, px, index, en.chunk_lines, data, size, w->err);
-    }
-    w->at = t.at;
-    free(slots);
-    hf_exr_encoder_close(&en);
-    return status;
+    struct encoding *en = arg;
+    struct hf_io_error err;
+    if (!atomic_load(&en->failed) && encode_chunk(en, &en->workers[worker], i, &err) &&
+        !atomic_exchange(&en->failed, 1) && en->err)
+        *en->err = err;
 }
 
-// Have the codec write the part as a file of its own and take the chunks out of that: it alone can compress DWA,
-// but would not keep the rest of the file as it is.
-static int encode_dwa(struct writer *w, int p, const struct hf_exr_pixels *px)
+static int encode_chunks(struct encoding *en, const struct hf_io_run *run)
 {
-    struct hf_exr_target t = target_of(w, p);
-    struct hf_io_samples s;
-    struct hf_exr_names names;
+    const int workers = hf_io_run_workers(run);
+    en->workers = calloc((size_t)workers, sizeof(*en->workers));
+    if (!en->workers)
+        return hf_io_fail(en->err, "%s: out of memory", en->e->path);
+    hf_io_run(run, en->plan->chunk_count, encode_task, en);
+    for (int i = 0; i < workers; i++) {
+        if (en->workers[i].open)
+            hf_exr_encoder_close(&en->workers[i].en);
+        free(en->workers[i].raw);
+        free(en->workers[i].row);
+    }
+    free(en->workers);
+    return atomic_load(&en->failed) ? -1 : 0;
+}
+
+// Have the codec make the part as a file of its own and take the chunks out of that.
+static int encode_by_codec(struct encoding *en, const struct hf_io_run *run)
+{
+    struct hf_exr *e = en->e, *made = NULL;
+    struct hf_exr_part *part = &e->parts[en->part];
+    struct part_plan *plan = en->plan;
     struct hf_io_bytes bytes = {0};
-    struct hf_exr *made = NULL;
-    float level = 0;
-    if (exr_attr_get_float(w->e->core, p, "dwaCompressionLevel", &level) != EXR_ERR_SUCCESS)
-        level = 0;
-    if (hf_exr_samples(px, w->e->path, &s, &names, w->err))
-        return -1;
-    int status =
-        w->e->dwa->write(&bytes, w->out->path, &s, hf_exr_compression_name(w->plans[p].compression), level, w->err);
+    struct encode_worker w = {.raw = malloc(part->layout.bytes + 1),
+                              .row = malloc((size_t)part->width * sizeof(float))};
+    int status = w.raw && w.row ? 0 : hf_io_fail(en->err, "%s: out of memory", e->path);
+    uint64_t clamped = 0;
+    uint8_t *whole = w.raw;
     if (!status)
-        status = hf_exr_open_memory(&made, w->out->path, &bytes, w->err);
-    if (!status &&
-        (made->parts[0].chunk_count != w->plans[p].chunk_count || made->parts[0].storage != px->part->storage))
-        status = hf_io_fail(w->err, "%s: OpenImageIO cut the picture into other chunks than it should", w->out->path);
+        memcpy(whole, part->samples, part->layout.bytes);
+    for (int i = 0; i < hf_exr_count_chunks(part, 32) && !status; i++) {
+        const struct hf_exr_chunk k = hf_exr_chunk_at(part, 32, i);
+        w.raw = whole + k.at;
+        for (int r = 0; r < en->job->n_results; r++)
+            if (en->job->views->view[en->job->results[r].view].part == en->part)
+                put_view(en, &w, &k, &en->job->results[r], &clamped);
+    }
+    atomic_fetch_add(&en->clamped, clamped);
+    // Nothing new: then nothing is lost by compressing again.
+    if (!status && plan->compression == part->compression && !memcmp(whole, part->samples, part->layout.bytes)) {
+        free(whole);
+        free(w.row);
+        return take_chunks(e, en->part, plan, en->err);
+    }
     if (!status)
-        status = hf_exr_copy_chunks(made, 0, &t, w->err);
-    w->at = t.at;
+        status = hf_exr_codec_write(e, en->part, plan->compression, whole, run ? run->workers : 1, &bytes, en->err);
+    free(whole);
+    free(w.row);
+    if (!status)
+        status = hf_exr_open_memory(&made, e->path, &bytes, en->err);
+    if (!status && (made->parts[0].chunk_count != plan->chunk_count || made->parts[0].storage != part->storage))
+        status = hf_io_fail(en->err, "%s: DWA was cut into other chunks than it should", e->path);
+    if (!status)
+        status = take_chunks(made, 0, plan, en->err);
+    for (int i = 0; i < plan->chunk_count && !status; i++) {
+        struct piece *piece = &plan->pieces[i];
+        const size_t number = e->multipart ? sizeof(int32_t) : 0;
+        const int32_t own = en->part;
+        piece->data = malloc(number + piece->size);
+        if (!piece->data) {
+            status = hf_io_fail(en->err, "%s: out of memory", e->path);
+            break;
+        }
+        memcpy(piece->data, &own, number);
+        memcpy(piece->data + number, bytes.data + piece->from, piece->size);
+        piece->size += number;
+    }
     hf_exr_close(made);
     free(bytes.data);
-    hf_exr_free_names(&names);
     return status;
 }
 
-static int write_part(struct writer *w, int p)
+// In the order of the source where it has as many chunks.
+static int order_chunks(const struct encoding *en)
 {
-    struct hf_exr_pixels px;
-    if (!w->plans[p].changed) {
-        struct hf_exr_target t = target_of(w, p);
-        const int status = hf_exr_copy_chunks(w->e, p, &t, w->err);
-        w->at = t.at;
-        return status;
-    }
-    if (hf_exr_read_pixels(w->e, p, &px, w->err))
+    struct part_plan *plan = en->plan;
+    const struct hf_exr_part *part = &en->e->parts[en->part];
+    const bool same = plan->chunk_count == part->chunk_count;
+    struct hf_exr_slot *slots = same ? hf_exr_file_order(en->e, en->part, en->err) : NULL;
+    if (same && !slots)
         return -1;
-    int status = 0;
-    for (int i = 0; i < w->job->n_results && !status; i++) {
-        const struct hf_io_view *v = &w->job->views->view[w->job->results[i].view];
-        if (v->part == p)
-            status = put_colours(w, &px, v, w->job->results[i].planes);
-    }
+    for (int i = 0; i < plan->chunk_count; i++)
+        plan->order[i] = slots                                            ? slots[i].index
+                         : part->line_order == EXR_LINEORDER_DECREASING_Y ? plan->chunk_count - 1 - i
+                                                                          : i;
+    free(slots);
+    return 0;
+}
+
+static int encode_part(struct hf_exr *e, int p, const struct hf_exr_job *job, struct part_plan *plan,
+                       const struct hf_io_run *run, struct hf_io_written *written, struct hf_io_error *err)
+{
+    if (!plan->changed)
+        return take_chunks(e, p, plan, err);
+    struct encoding en = {.e = e, .part = p, .job = job, .plan = plan, .err = err};
+    int status = hf_exr_load_samples(e, p, run, err);
     if (!status)
-        status = hf_exr_is_dwa(w->plans[p].compression) ? encode_dwa(w, p, &px) : encode_part(w, p, &px);
-    hf_exr_free_pixels(&px);
+        status = order_chunks(&en);
+    if (!status && hf_exr_is_dwa(plan->compression)) {
+        status = encode_by_codec(&en, run);
+    } else if (!status) {
+        if (plan->compression == e->parts[p].compression)
+            en.table = hf_exr_table(e, p, err);
+        status = encode_chunks(&en, run);
+        free(en.table);
+    }
+    written->clamped += atomic_load(&en.clamped);
     return status;
 }
 
-static int write_all(struct writer *w)
+int hf_exr_encode_file(struct hf_exr_made **out, struct hf_exr *e, const struct hf_exr_job *job,
+                       const struct hf_io_run *run, struct hf_io_written *written, struct hf_io_error *err)
 {
-    if (write_header(w) || write_tables(w))
+    struct hf_exr_made *m = calloc(1, sizeof(*m));
+    *out = NULL;
+    if (m)
+        m->plans = calloc((size_t)e->part_count, sizeof(*m->plans));
+    int status = m && m->plans ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
+    if (!status) {
+        m->e = e;
+        m->part_count = e->part_count;
+    }
+    for (int p = 0; p < e->part_count && !status; p++)
+        status = plan_part(e, p, job, &m->plans[p], err);
+    if (!status)
+        status = make_header(m, job, err);
+    for (int p = 0; p < e->part_count && !status; p++)
+        status = encode_part(e, p, job, &m->plans[p], run, written, err);
+    if (status) {
+        hf_exr_free_file(m);
         return -1;
-    for (int p = 0; p < w->e->part_count; p++)
-        w->at += (uint64_t)w->plans[p].chunk_count * sizeof(uint64_t);
-    for (int p = 0; p < w->e->part_count; p++)
-        if (write_part(w, p))
+    }
+    fill_tables(m);
+    *out = m;
+    return 0;
+}
+
+enum { PIECE = 1 << 20 };
+
+// Bytes of the source, in pieces unless they are in memory anyway.
+static int copy_range(const struct hf_exr *e, uint64_t from, uint64_t size, uint8_t *buf, struct hf_out *out,
+                      struct hf_io_error *err)
+{
+    const uint8_t *bytes = hf_exr_bytes(e, size, from);
+    if (bytes)
+        return hf_out_write(out, bytes, size, err);
+    while (size) {
+        const size_t n = size < PIECE ? (size_t)size : PIECE;
+        if (hf_exr_read_at(e, buf, n, from))
+            return hf_io_fail(err, "%s: truncated or corrupt: cannot read at byte %llu", e->path,
+                              (unsigned long long)from);
+        if (hf_out_write(out, buf, n, err))
             return -1;
-    return hf_out_seek(w->out, w->header_size, w->err) || write_tables(w) ? -1 : 0;
+        from += n;
+        size -= n;
+    }
+    return 0;
 }
 
-int hf_exr_write(struct hf_exr *e, struct hf_out *out, const struct hf_exr_job *job, uint64_t *clamped,
-                 struct hf_io_error *err)
+int hf_exr_put_file(const struct hf_exr_made *m, struct hf_out *out, struct hf_io_error *err)
 {
-    struct writer w = {.e = e, .out = out, .job = job, .clamped = clamped, .err = err};
-    w.plans = calloc((size_t)w.e->part_count, sizeof(*w.plans));
-    int status = w.plans ? 0 : hf_io_fail(err, "%s: out of memory", out->path);
-    for (int p = 0; p < w.e->part_count && !status; p++)
-        status = plan_part(&w, p);
-    if (!status)
-        status = write_all(&w);
-    for (int p = 0; w.plans && p < w.e->part_count; p++)
-        free(w.plans[p].table);
-    free(w.plans);
+    uint8_t *buf = malloc(PIECE);
+    int status = buf ? hf_out_write(out, m->head, m->head_size, err) : hf_io_fail(err, "%s: out of memory", out->path);
+    for (int p = 0; p < m->part_count; p++) {
+        const struct part_plan *plan = &m->plans[p];
+        for (int i = 0; i < plan->chunk_count && !status; i++) {
+            const struct piece *piece = &plan->pieces[plan->order[i]];
+            status = piece->data ? hf_out_write(out, piece->data, piece->size, err)
+                                 : copy_range(m->e, piece->from, piece->size, buf, out, err);
+        }
+    }
+    free(buf);
     return status;
+}
+
+void hf_exr_free_file(struct hf_exr_made *m)
+{
+    for (int p = 0; m && m->plans && p < m->part_count; p++) {
+        for (int i = 0; i < m->plans[p].chunk_count && m->plans[p].pieces; i++)
+            free(m->plans[p].pieces[i].data);
+        free(m->plans[p].pieces);
+        free(m->plans[p].order);
+    }
+    if (m) {
+        free(m->plans);
+        free(m->head);
+    }
+    free(m);
 }
