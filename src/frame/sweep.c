@@ -98,6 +98,10 @@ void hf_sweep_rest(void *arg, int i, int worker)
         w->frame.counts = &w->counts;
     }
     make_chunk(r, w, cell, missing, &clock);
+    // A chunk whose other field was made before has been counted.
+    for (int pass = 1; p->chunk_made[chunk] && pass < p->engine->pass_count && p->engine->passes[pass].sweep == 1;
+         pass++)
+        w->tiles[pass]--;
 }
 
 void hf_sweep_classify(void *arg, int row, int worker)
