@@ -19,21 +19,14 @@ struct option {
                               // order of the enum
     const char *help;
     enum kind kind;
-    size_t offset;    // in struct bench_args, of what the option sets
-    double min, max;  // of a number, inclusive
-    int above_min;    // ... but min itself is excluded
-    int inf;          // inf is accepted
-    size_t given;     // offset of a flag that says that the option was there; 0: none
+    size_t offset;        // in struct bench_args, of what the option sets
+    double min, max;      // of a number, inclusive
+    int above_min;        // ... but min itself is excluded
+    int inf;              // inf is accepted
+    enum hf_names names;  // of a choice
+    size_t given;         // offset of a flag that says that the option was there; 0: none
 };
 
-_Static_assert(HF_STORAGE_FLOAT == 0 && HF_STORAGE_HALF == 1 && HF_STORAGE_CHAPTER == 2, "order of --storage");
-_Static_assert(HF_FILL_MAX == 0 && HF_FILL_MEAN == 1 && HF_FILL_NONE == 2, "order of --fill");
-_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 && HF_ISA_AVX512 == 4 &&
-                   HF_ISA_NEON == 5,
-               "order of --isa");
-_Static_assert(HF_FORMAT_RGBA32F == 0 && HF_FORMAT_RGB32F == 1 && HF_FORMAT_RGBA16F == 2 && HF_FORMAT_R11G11B10F == 3 &&
-                   HF_FORMAT_PLANAR32F == 4,
-               "order of --in and --out");
 _Static_assert(sizeof(enum hf_isa) == sizeof(int), "choices are stored as int");
 
 #define FORMATS "rgba32f|rgb32f|rgba16f|r11g11b10f|planar32f"
@@ -48,32 +41,34 @@ static const struct option options[] = {
      TEXT, AT(compression)},
     {"--frames", "N", "frames to measure (as many as take a few seconds)", COUNT, AT(frames), .min = 1, .max = 1000000},
     {"--threads", "N", "threads, up to 256; 0: one per processor (0)", COUNT, AT(threads), .max = 256},
-    {"--isa", "auto|scalar|sse4.1|avx2|avx512|neon", "instruction set (auto)", CHOICE, AT(isa)},
+    {"--isa", "auto|scalar|sse4.1|avx2|avx512|neon", "instruction set (auto)", CHOICE, AT(isa), .names = HF_NAMES_ISA},
     {"--engine", "gather|hexagon|scatter|gaussian", "engine (gather)", CHOICE, AT(params.engine),
-     GIVEN(engine_given)},
+     .names = HF_NAMES_ENGINE, GIVEN(engine_given)},
     {"--resolution", "full|half|quarter", "working buffers of the engines other than gather (full)", CHOICE,
-     AT(params.resolution)},
-    {"--uniform", NULL, "hexagon: the same radius everywhere", FLAG, AT(params.uniform)},
-    {"--blades", "N", "sides of the aperture; 0: a disc (0)", COUNT, AT(params.blades), .max = 16},
-    {"--iterations", "N", "gaussian: passes of its 5-tap blur (3)", COUNT, AT(params.iterations), .max = 64},
-    {"--sigma", "PX", "gaussian: one blur of this standard deviation instead (0: none)", NUMBER, AT(params.sigma),
+     AT(resolution), .names = HF_NAMES_RESOLUTION},
+    {"--uniform", NULL, "hexagon: the same radius everywhere", FLAG, AT(params.hexagon.uniform)},
+    {"--blades", "N", "sides of the aperture; 0: a disc (0)", COUNT, AT(params.aperture.blades), .max = 16},
+    {"--iterations", "N", "gaussian: passes of its 5-tap blur (3)", COUNT, AT(params.gaussian.iterations), .max = 64},
+    {"--sigma", "PX", "gaussian: one blur of this standard deviation instead (none)", NUMBER, AT(params.gaussian.sigma),
      .max = 256},
-    {"--storage", "float|half|chapter", "buffers between passes (float)", CHOICE, AT(params.storage)},
-    {"--in", FORMATS, "format of the colour read (r11g11b10f)", CHOICE, AT(in)},
-    {"--out", FORMATS, "format of the colour written (r11g11b10f)", CHOICE, AT(out)},
-    {"--focus", "D", "focus distance, scene units (20, or the file's)", NUMBER, AT(params.focus_distance),
-     .above_min = 1, .max = 3e38, GIVEN(focus_given)},
+    {"--storage", "float|half|packed", "buffers between passes (float)", CHOICE, AT(params.gather.storage),
+     .names = HF_NAMES_STORAGE},
+    {"--in", FORMATS, "format of the colour read (r11g11b10f)", CHOICE, AT(in), .names = HF_NAMES_FORMAT},
+    {"--out", FORMATS, "format of the colour written (r11g11b10f)", CHOICE, AT(out), .names = HF_NAMES_FORMAT},
+    {"--focus", "D", "focus distance, scene units (20, or the file's)", NUMBER, AT(params.focus), .above_min = 1,
+     .max = 3e38, GIVEN(focus_given)},
     {"--range", "D", "distance from focus to full blur, scene units, or inf (10; for a file half its focus)", NUMBER,
-     AT(params.range), .max = 3e38, .inf = 1, GIVEN(range_given)},
-    {"--max-radius", "PX", "largest blur radius, pixels, up to 1024 (12)", NUMBER, AT(params.max_radius), .max = 1024,
+     AT(params.range.distance), .max = 3e38, .inf = 1, GIVEN(range_given)},
+    {"--max-radius", "PX", "largest blur radius, pixels, up to 2048 (12)", NUMBER, AT(params.max_radius), .max = 2048,
      GIVEN(max_radius_given)},
-    {"--fill", "max|mean|none", "how gaps between taps are closed (max)", CHOICE, AT(params.fill)},
-    {"--faithful", NULL, "the published demo, its flaws included", FLAG, AT(params.faithful)},
-    {"--deterministic", NULL, "same bits on every instruction set", FLAG, AT(params.deterministic)},
-    {"--no-skip", NULL, "every pass on every tile", FLAG, AT(params.no_skip)},
-    {"--karis", NULL, "weights against fireflies", FLAG, AT(params.karis)},
-    {"--bicubic", NULL, "near field upsampled with a B-spline", FLAG, AT(params.bicubic)},
-    {"--per-pixel-kernel", NULL, "far kernel scaled by each pixel's blur", FLAG, AT(params.per_pixel_kernel)},
+    {"--fill", "max|mean|none", "how gaps between taps are closed (max)", CHOICE, AT(params.gather.fill),
+     .names = HF_NAMES_FILL},
+    {"--faithful", NULL, "the published demo, its flaws included", FLAG, AT(faithful)},
+    {"--deterministic", NULL, "same bits on every instruction set", FLAG, AT(params.run.deterministic)},
+    {"--no-skip", NULL, "every pass on every tile", FLAG, AT(params.run.no_skip)},
+    {"--karis", NULL, "weights against fireflies", FLAG, AT(params.gather.karis)},
+    {"--bicubic", NULL, "near field upsampled with a B-spline", FLAG, AT(params.gather.bicubic)},
+    {"--per-pixel-kernel", NULL, "far kernel scaled by each pixel's blur", FLAG, AT(params.gather.per_pixel_kernel)},
     {"--json", "FILE|-", "write the numbers as JSON; -: to stdout, instead of the table", TEXT, AT(json)},
     {"--help", NULL, "print this (-h)", FLAG, AT(help)},
 };
@@ -90,8 +85,8 @@ void bench_args_default(struct bench_args *args)
         .out = HF_FORMAT_R11G11B10F,
         .params = hf_default_params,
     };
-    args->params.focus_distance = 20;
-    args->params.range = 10;
+    args->params.focus = 20;
+    args->params.range.distance = 10;
     args->params.max_radius = 12;
 }
 
@@ -127,20 +122,6 @@ static int parse_size(const char *text, int size[2])
     return 0;
 }
 
-// Place of a word in a list "a|b|c", or -1.
-static int parse_choice(const char *list, const char *word)
-{
-    const size_t length = strlen(word);
-    for (int i = 0;; i++) {
-        const size_t n = strcspn(list, "|");
-        if (n == length && !memcmp(list, word, n))
-            return i;
-        if (!list[n])
-            return -1;
-        list += n + 1;
-    }
-}
-
 static int bad_value(const struct option *o, const char *value, struct bench_error *error)
 {
     if (o->kind == CHOICE)
@@ -170,9 +151,8 @@ static int set_option(struct bench_args *args, const struct option *o, const cha
             return bad_value(o, value, error);
         break;
     case CHOICE:
-        if (parse_choice(o->placeholder, value) < 0)
+        if (hf_value(o->names, value, target))
             return bad_value(o, value, error);
-        *(int *)target = parse_choice(o->placeholder, value);
         break;
     case COUNT:
     case NUMBER:
@@ -221,6 +201,9 @@ int bench_args_parse(struct bench_args *args, int count, char **words, struct be
         if (args->help)
             return 0;
     }
+    struct hf_params *p = &args->params;
+    p->hexagon.resolution = p->scatter.resolution = p->gaussian.resolution = args->resolution;
+    p->gather.faithful = p->gaussian.faithful = args->faithful;
     if (!hf_isa_available(args->isa))
         return bench_fail(error, "--isa %s is not available on this CPU and in this build", hf_isa_name(args->isa));
     if (args->size_given && !bench_scene_builtin(args->scene, NULL))

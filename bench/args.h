@@ -21,6 +21,8 @@ struct bench_args {
     const char *json;  // file, "-" for stdout, NULL for none
     enum hf_format in, out;
     struct hf_params params;
+    enum hf_resolution resolution;                               // of whichever engine
+    int faithful;                                                // likewise
     int size_given, focus_given, range_given, max_radius_given;  // on the command line
 };
 

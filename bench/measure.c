@@ -58,14 +58,12 @@ static int render(const struct bench_subject *s, struct frame *frame, struct ben
     const double end = bench_now();
     if (err)
         return bench_fail(error, "rendering failed: %s", hf_error_string(err));
-    struct hf_stats stats;
     struct hf_report report;
-    hf_get_stats(s->context, &stats);
     hf_get_report(s->context, &report);
     frame->planning_ms = report.plan_ms;
     frame->all_ms = round_ms((end - start) * 1e3);
     for (int p = 0; p < HF_MAX_PASSES; p++)
-        frame->pass_ms[p] = round_ms(stats.pass_ms[p]);
+        frame->pass_ms[p] = round_ms(report.pass[p].ms);
     return 0;
 }
 
@@ -167,7 +165,7 @@ static int measure_frames(const struct bench_subject *s, struct frame *frames, i
 // that has, else the nearest after it.
 static int fused_into(const struct bench_result *r, int p)
 {
-    if (r->pass[p].max_ms > 0 || r->stats.tiles_run[p] == 0)
+    if (r->pass[p].max_ms > 0 || r->stats.pass[p].ran == 0)
         return -1;
     for (int q = p - 1; q >= 0; q--)
         if (r->pass[q].max_ms > 0)
@@ -213,7 +211,7 @@ double bench_measure_copy(const struct bench_subject *s)
 }
 
 int bench_measure_all(const struct bench_subject *s, double seconds, int least, struct bench_row *all,
-                      struct hf_stats *stats, struct bench_error *error)
+                      struct hf_report *stats, struct bench_error *error)
 {
     enum { MOST = 401 };
     struct frame frames[MOST];
@@ -226,7 +224,7 @@ int bench_measure_all(const struct bench_subject *s, double seconds, int least, 
             return -1;
     qsort(frames, (size_t)n, sizeof *frames, by_all);
     *all = (struct bench_row){frames[(n - 1) / 2].all_ms, frames[0].all_ms, frames[n - 1].all_ms, -1};
-    hf_get_stats(s->context, stats);
+    hf_get_report(s->context, stats);
     return 0;
 }
 
@@ -244,7 +242,7 @@ int bench_measure(const struct bench_subject *subject, int frames, struct bench_
     struct yardsticks y = {0};
     const int err = measure_frames(subject, list, n, &y, error);
     if (!err) {
-        hf_get_stats(subject->context, &result->stats);
+        hf_get_report(subject->context, &result->stats);
         summarise(list, n, result);
         qsort(y.copy_s, (size_t)y.copies, sizeof *y.copy_s, by_value);
         result->memcpy_ms = round_ms(y.copy_s[y.copies / 2] * 1e3);

@@ -28,12 +28,12 @@ struct bench_row {
 struct bench_result {
     int frames;
     struct bench_row pass[HF_MAX_PASSES];  // of stats.engine
-    double overhead_ms;     // all.median_ms - sum of pass[].median_ms: waiting, dispatch, what belongs to no pass
-    double planning_ms;     // part of the overhead: hf_report.plan_ms, median
-    struct bench_row all;   // wall time of hf_render, seen from outside
-    double memcpy_ms;       // copying colour in to colour out and depth to scratch, same threads: median
-    double fma_gflops;      // multiply-adds in registers, same threads, widest instruction set of the machine: best
-    struct hf_stats stats;  // of the last frame
+    double overhead_ms;      // all.median_ms - sum of pass[].median_ms: waiting, dispatch, what belongs to no pass
+    double planning_ms;      // part of the overhead: hf_report.plan_ms, median
+    struct bench_row all;    // wall time of hf_render, seen from outside
+    double memcpy_ms;        // copying colour in to colour out and depth to scratch, same threads: median
+    double fma_gflops;       // multiply-adds in registers, same threads, widest instruction set of the machine: best
+    struct hf_report stats;  // of the last frame
 };
 
 // Milliseconds of copying colour in to colour out and depth to scratch, same threads: median.
@@ -42,7 +42,7 @@ double bench_measure_copy(const struct bench_subject *subject);
 // Median, least and most of frames, as many as take about so many seconds, at least `least`, after one that is not
 // counted. The passes stay zero. *stats receives those of the last. Returns 0, or -1 with *error filled.
 int bench_measure_all(const struct bench_subject *subject, double seconds, int least, struct bench_row *all,
-                      struct hf_stats *stats, struct bench_error *error);
+                      struct hf_report *stats, struct bench_error *error);
 
 // frames 0: as many as take about three seconds. Returns 0, or -1 with *error filled.
 int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,

@@ -7,20 +7,12 @@
 #include <string.h>
 
 static const struct {
-    const char *name;
     size_t pixel;  // bytes of a pixel in a plane
     int planes;
 } formats[] = {
-    [HF_FORMAT_RGBA32F] = {"rgba32f", 16, 1},    [HF_FORMAT_RGB32F] = {"rgb32f", 12, 1},
-    [HF_FORMAT_RGBA16F] = {"rgba16f", 8, 1},     [HF_FORMAT_R11G11B10F] = {"r11g11b10f", 4, 1},
-    [HF_FORMAT_PLANAR32F] = {"planar32f", 4, 3},
+    [HF_FORMAT_RGBA32F] = {16, 1},   [HF_FORMAT_RGB32F] = {12, 1},   [HF_FORMAT_RGBA16F] = {8, 1},
+    [HF_FORMAT_R11G11B10F] = {4, 1}, [HF_FORMAT_PLANAR32F] = {4, 3},
 };
-enum { FORMATS = sizeof formats / sizeof *formats };
-
-const char *bench_format_name(enum hf_format format)
-{
-    return (unsigned)format < FORMATS ? formats[format].name : NULL;
-}
 
 int bench_image_alloc(struct bench_image *image, int width, int height, enum hf_format format)
 {

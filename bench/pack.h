@@ -14,9 +14,6 @@ struct bench_image {
     size_t bytes;
 };
 
-// "r11g11b10f" etc.; NULL for a number that is no format.
-const char *bench_format_name(enum hf_format format);
-
 // Returns 0, or -1 without memory. All bytes are written once, so that no frame pays for fresh pages. Planar pictures
 // have three planes.
 int bench_image_alloc(struct bench_image *image, int width, int height, enum hf_format format);

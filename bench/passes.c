@@ -10,7 +10,7 @@ static int make_scene(struct bench_args *args, struct bench_scene *scene, struct
 {
     struct hf_params *p = &args->params;
     if (bench_scene_builtin(args->scene, NULL)) {
-        const struct bench_optics optics = {p->focus_distance, p->range, p->max_radius};
+        const struct bench_optics optics = {p->focus, p->range.distance, p->max_radius};
         return bench_scene_paint(scene, args->scene, args->width, args->height, &optics, error);
     }
     struct bench_camera camera;
@@ -18,9 +18,9 @@ static int make_scene(struct bench_args *args, struct bench_scene *scene, struct
         return -1;
     const float focus = camera.focus;
     if (!args->focus_given && focus > 0 && isfinite(focus)) {
-        p->focus_distance = focus;
+        p->focus = focus;
         if (!args->range_given)
-            p->range = focus / 2;
+            p->range.distance = focus / 2;
     }
     return 0;
 }

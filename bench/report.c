@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-// Milliseconds at 1920x1080 on a GeForce GTX 660: table 3.1 of the chapter, in the order of hf_pass_id.
+// Milliseconds at 1920x1080 on a GeForce GTX 660: table 3.1 of the chapter, in the order of its passes.
 static const double gtx660_ms[HF_MAX_PASSES] = {0.13, 0.145, 0.08, 0.08, 0.08, 0.08, 0.455, 0.122, 0.334};
 static const double gtx660_all_ms = 1.506;
 
@@ -59,7 +59,6 @@ static void table_row(FILE *out, const char *name, double ms, double all_ms, dou
 static void table_machine(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
-    const char *const storage[] = {"float", "half", "chapter"};
     char cpu[128];
     cpu_name(cpu, sizeof cpu);
     fprintf(out, "%s, %s, %d thread%s, %dx%d, scene %s (near %.0f%%, sharp %.0f%%, far %.0f%%)\n", cpu,
@@ -67,8 +66,9 @@ static void table_machine(FILE *out, const struct bench_run *run)
             run->args->scene, 100 * share(r->stats.near_pixels, run), 100 * share(r->stats.sharp_pixels, run),
             100 * share(r->stats.far_pixels, run));
     fprintf(out, "%s storage, %s to %s, radius %g, %d frames, %.1f MB held; hyperfocal %s, %s\n",
-            storage[run->args->params.storage], bench_format_name(run->args->in), bench_format_name(run->args->out),
-            r->stats.max_radius, r->frames, (double)r->stats.memory * 1e-6, hf_version(), compiler);
+            hf_name(HF_NAMES_STORAGE, (int)run->args->params.gather.storage),
+            hf_name(HF_NAMES_FORMAT, (int)run->args->in), hf_name(HF_NAMES_FORMAT, (int)run->args->out),
+            r->stats.used.params.max_radius, r->frames, (double)r->stats.memory_held * 1e-6, hf_version(), compiler);
     fprintf(out, "memcpy %.3f ms, peak %.1f GFLOP/s, cost %.1f MFLOP (All x peak), All / memcpy %.2f\n", r->memcpy_ms,
             r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
 }
@@ -76,7 +76,7 @@ static void table_machine(FILE *out, const struct bench_run *run)
 // The chapter timed the gather alone, at one size.
 static int has_gtx660(const struct bench_result *r)
 {
-    return r->stats.engine == HF_ENGINE_GATHER;
+    return r->stats.used.params.engine == HF_ENGINE_GATHER;
 }
 
 void bench_report_table(FILE *out, const struct bench_run *run)
@@ -86,11 +86,11 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     const int gather = has_gtx660(r);
     fprintf(out, "%-16s %9s %7s%s %9s %9s\n", "Pass", "ms", "of All", gather ? "   GTX 660    ratio" : "", "min",
             "max");
-    for (int p = 0; p < hf_pass_count(r->stats.engine); p++) {
+    for (int p = 0; p < hf_pass_count(r->stats.used.params.engine); p++) {
         const struct bench_row *row = &r->pass[p];
-        table_row(out, hf_pass_name(r->stats.engine, p), row->median_ms, all, gather ? gtx660_ms[p] : 0);
+        table_row(out, hf_pass_name(r->stats.used.params.engine, p), row->median_ms, all, gather ? gtx660_ms[p] : 0);
         if (row->in >= 0)
-            fprintf(out, "   in %s\n", hf_pass_name(r->stats.engine, row->in));
+            fprintf(out, "   in %s\n", hf_pass_name(r->stats.used.params.engine, row->in));
         else
             fprintf(out, " %9.3f %9.3f\n", row->min_ms, row->max_ms);
     }
@@ -134,25 +134,27 @@ static void json_named(FILE *out, const char *name, const char *text)
 static void json_settings(FILE *out, const struct bench_run *run)
 {
     const struct bench_args *a = run->args;
-    const char *const storage[] = {"float", "half", "chapter"}, *const fill[] = {"max", "mean", "none"};
     json_named(out, "command", run->command);
-    json_named(out, "engine", hf_engine_name(run->result->stats.engine));
+    json_named(out, "engine", hf_engine_name(run->result->stats.used.params.engine));
     fprintf(out, "  \"width\": %d,\n  \"height\": %d,\n  \"threads\": %d,\n", run->width, run->height, run->threads);
     json_named(out, "isa", hf_isa_name(run->isa));
-    json_named(out, "storage", storage[a->params.storage]);
+    json_named(out, "storage", hf_name(HF_NAMES_STORAGE, (int)a->params.gather.storage));
     json_named(out, "scene", a->scene);
-    json_named(out, "in", bench_format_name(a->in));
-    json_named(out, "out", bench_format_name(a->out));
-    json_number(out, "focus", a->params.focus_distance);
-    json_number(out, "range", a->params.range);
-    json_number(out, "max_radius", run->result->stats.max_radius);
-    json_named(out, "fill", fill[a->params.fill]);
+    json_named(out, "in", hf_name(HF_NAMES_FORMAT, (int)a->in));
+    json_named(out, "out", hf_name(HF_NAMES_FORMAT, (int)a->out));
+    json_number(out, "focus", a->params.focus);
+    json_number(out, "range", a->params.range.distance);
+    json_number(out, "max_radius", run->result->stats.used.params.max_radius);
+    json_named(out, "fill", hf_name(HF_NAMES_FILL, (int)a->params.gather.fill));
     const struct {
         const char *name;
         int value;
-    } flags[] = {{"faithful", a->params.faithful}, {"deterministic", a->params.deterministic},
-                 {"no_skip", a->params.no_skip},   {"karis", a->params.karis},
-                 {"bicubic", a->params.bicubic},   {"per_pixel_kernel", a->params.per_pixel_kernel}};
+    } flags[] = {{"faithful", a->faithful},
+                 {"deterministic", a->params.run.deterministic},
+                 {"no_skip", a->params.run.no_skip},
+                 {"karis", a->params.gather.karis},
+                 {"bicubic", a->params.gather.bicubic},
+                 {"per_pixel_kernel", a->params.gather.per_pixel_kernel}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         fprintf(out, "  \"%s\": %s,\n", flags[i].name, flags[i].value ? "true" : "false");
 }
@@ -168,7 +170,7 @@ static void json_machine(FILE *out, const struct bench_run *run)
     json_number(out, "near_share", share(r->stats.near_pixels, run));
     json_number(out, "sharp_share", share(r->stats.sharp_pixels, run));
     json_number(out, "far_share", share(r->stats.far_pixels, run));
-    json_number(out, "memory_bytes", (double)r->stats.memory);
+    json_number(out, "memory_bytes", (double)r->stats.memory_held);
     fprintf(out, "  \"frames\": %d,\n", r->frames);
     json_number(out, "memcpy_ms", r->memcpy_ms);
     json_number(out, "fma_gflops", r->fma_gflops);
@@ -182,14 +184,14 @@ void bench_report_json(FILE *out, const struct bench_run *run)
     json_settings(out, run);
     json_machine(out, run);
     fputs("  \"passes\": [", out);
-    for (int p = 0; p < hf_pass_count(r->stats.engine); p++) {
+    for (int p = 0; p < hf_pass_count(r->stats.used.params.engine); p++) {
         const struct bench_row *row = &r->pass[p];
         fprintf(out, "%s\n    {\"name\": \"%s\", \"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", p ? "," : "",
-                hf_pass_name(r->stats.engine, p), row->median_ms, row->min_ms, row->max_ms);
+                hf_pass_name(r->stats.used.params.engine, p), row->median_ms, row->min_ms, row->max_ms);
         if (has_gtx660(r))
             fprintf(out, ", \"gtx660_ms\": %g", gtx660_ms[p]);
         if (row->in >= 0)
-            fprintf(out, ", \"in\": \"%s\"", hf_pass_name(r->stats.engine, row->in));
+            fprintf(out, ", \"in\": \"%s\"", hf_pass_name(r->stats.used.params.engine, row->in));
         fputc('}', out);
     }
     fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n  \"planning_ms\": %.6f,\n", r->overhead_ms, r->planning_ms);

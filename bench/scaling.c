@@ -151,18 +151,18 @@ static int measure_round(struct size_result *s, struct scaling *r, const struct 
                          const struct bench_subject *subject, float *depth, int round,
                          struct bench_row rows[KINDS][SHARES][ROUNDS], struct bench_error *error)
 {
-    const struct bench_optics optics = {r->args->params.focus_distance, r->args->params.range,
+    const struct bench_optics optics = {r->args->params.focus, r->args->params.range.distance,
                                         r->args->params.max_radius};
     for (int k = 0; k < KINDS; k++)
         for (int j = 0; j < SHARES; j++) {
             char name[32];
-            struct hf_stats stats;
+            struct hf_report stats;
             snprintf(name, sizeof name, "band-%s:%d", kinds[k], shares[j]);
             if (bench_scene_depth(scene, name, &optics, depth, error) ||
                 bench_measure_all(subject, seconds, LEAST, &rows[k][j][round], &stats, error))
                 return -1;
-            s->point[k][j].memory = stats.memory;
-            r->max_radius = stats.max_radius;
+            s->point[k][j].memory = stats.memory_held;
+            r->max_radius = stats.used.params.max_radius;
         }
     return 0;
 }
@@ -170,7 +170,7 @@ static int measure_round(struct size_result *s, struct scaling *r, const struct 
 static int measure_size(struct size_result *s, struct scaling *r, struct bench_error *log, struct bench_error *error)
 {
     const struct bench_args *a = r->args;
-    const struct bench_optics optics = {a->params.focus_distance, a->params.range, a->params.max_radius};
+    const struct bench_optics optics = {a->params.focus, a->params.range.distance, a->params.max_radius};
     struct bench_scene scene = {0};
     struct bench_subject subject = {0};
     float *depth = malloc((size_t)s->width * (size_t)s->height * sizeof(float));

@@ -61,7 +61,7 @@ static int measure_engine(struct truth *t, int scene, int engine, struct bench_s
                           struct bench_error *error)
 {
     struct bench_row all;
-    struct hf_stats stats;
+    struct hf_report stats;
     const size_t samples = 3 * (size_t)s->in.image.width * (size_t)s->in.image.height;
     s->params.engine = (enum hf_engine)engine;
     s->params.max_radius = t->args->max_radius_given ? t->args->params.max_radius : HF_DERIVE;
@@ -96,10 +96,10 @@ static int measure_scene(struct truth *t, int i, struct bench_error *log, struct
     if (!err) {
         struct hf_params *p = &subject.params;
         p->model = HF_MODEL_LENS;
-        p->focus_distance = camera.focus;
-        p->f_number = camera.f_number;
-        p->focal_length_mm = camera.focal_length_mm;
-        p->sensor_width_mm = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : 36;
+        p->focus = camera.focus;
+        p->lens.f_number = camera.f_number;
+        p->lens.focal_length_mm = camera.focal_length_mm;
+        p->lens.sensor_width_mm = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : 36;
         t->threads = hf_context_threads(subject.context);
     }
     for (int e = 0; e < HF_ENGINE_COUNT && !err; e++)

@@ -5,8 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "frame/context.h"
+#include "frame/buffers.h"
+#include "frame/report.h"
 #include "base/cpu.h"
 
 enum { MAX_THREADS = 256 };
@@ -29,7 +31,7 @@ const char *hf_error_string(int error)
     case HF_ERR_MEMORY:
         return "out of memory";
     case HF_ERR_THREAD:
-        return "a thread could not be started";
+        return "a thread could not be started, or is not in this process";
     case HF_ERR_ISA:
         return "the instruction set is not available on this CPU or in this build";
     case HF_ERR_FOCUS:
@@ -104,6 +106,7 @@ int hf_open(struct hf_context **out, const struct hf_config *config)
     c->config = *g;
     c->mem = mem;
     c->isa = isa;
+    c->pid = (int)getpid();
     c->threads = g->threads ? g->threads : hf_min(hf_cpu_count(), MAX_THREADS);
     const size_t bytes = (size_t)c->threads * sizeof *c->workers;
     c->workers = mem.alloc(mem.cookie, bytes, HF_ALIGN);
@@ -130,7 +133,10 @@ void hf_close(struct hf_context **context)
     if (!c)
         return;
     *context = NULL;
-    hf_pool_close(&c->pool);
+    if (c->pid == (int)getpid())
+        hf_pool_close(&c->pool);
+    else
+        hf_pool_abandon(&c->pool);
     for (int i = 0; c->workers && i < c->threads; i++)
         hf_block_free(&c->workers[i].scratch, &c->mem);
     if (c->workers)
@@ -169,56 +175,109 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
     return *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
 }
 
+enum job { RENDER, PLAN, PREPARE };
+
+// Memory for whatever the frame may turn out to need, each page written to so that it is there.
+static int allocate_all(struct hf_context *c, const struct hf_setup *s)
+{
+    if (s->blend == 0)
+        return HF_OK;
+    const int err = hf_buffers_allocate(c, s, HF_FIELDS);
+    if (err)
+        return err;
+    if (c->planes.data)
+        memset(c->planes.data, 0, c->planes.size);
+    for (int i = 0; i < c->threads; i++)
+        memset(c->workers[i].scratch.data, 0, c->workers[i].scratch.size);
+    return HF_OK;
+}
+
+// A frame whose settings are known.
+static int run_resolved(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                        const struct hf_depth *depth, const struct hf_resolved *r, enum job job)
+{
+    struct hf_setup s;
+    int err = HF_OK;
+    void *own = c->engine[r->params.engine].own;
+    hf_setup_make(&s, src, dst, depth, r, own);
+    if (c->dump)
+        s.no_skip = 1;
+    const struct hf_engine_def *engine = hf_engine_def(r->params.engine);
+    if (engine->prepare && s.blend != 0)
+        err = engine->prepare(own, &s, &r->params, &c->mem);
+    if (!err)
+        err = hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, job != RENDER});
+    return err || job != PREPARE ? err : allocate_all(c, &s);
+}
+
+// The cheapest settings that the budget asks for, and what they come to. Returns how many there are to choose from, or
+// an error.
+static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_params *p, const struct hf_depth *depth,
+                  char *message)
+{
+    struct hf_params ladder[HF_BUDGET_STEPS];
+    const int steps = hf_budget_ladder(p, r->params.max_radius, ladder);
+    const int step = hf_budget_choose(&c->budget, ladder, steps);
+    const int err = hf_params_resolve(r, r->width, r->height, depth, &ladder[step], message);
+    return err ? err : steps;
+}
+
 // Check, choose a setting that fits the budget, and go.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-               const struct hf_depth *depth, const struct hf_params *params, int plan_only)
+               const struct hf_depth *depth, const struct hf_params *params, enum job job)
 {
     if (!c)
         return HF_ERR_ARG;
     const struct hf_params *p = params ? params : &hf_default_params;
     char message[HF_MESSAGE];
-    int err = hf_setup_check(dst, src, depth, p, message);
+    struct hf_resolved r;
+    c->report = (struct hf_report){0};
+    if (c->pool && c->pid != (int)getpid()) {
+        say(&c->config, HF_LOG_ERROR, "the context was opened before fork(): its threads are in the parent process");
+        return HF_ERR_THREAD;
+    }
+    int err = hf_check_images(dst, src, message);
+    if (!err)
+        err = hf_check_depth(depth, src->width, message);
+    if (!err)
+        err = hf_params_resolve(&r, src->width, src->height, depth, p, message);
+    int steps = 0;
+    c->budget.step = c->dump || !(p->run.budget_ms > 0) ? 0 : c->budget.step;
+    if (!err && p->run.budget_ms > 0 && !c->dump) {
+        steps = choose(c, &r, p, depth, message);
+        err = hf_min(steps, 0);
+    }
     if (err) {
         say(&c->config, HF_LOG_ERROR, "%s", message);
         return err;
     }
-    struct hf_setup s;
-    struct hf_params ladder[HF_BUDGET_STEPS];
-    int steps = 1;
-    hf_setup_make(&s, src, dst, depth, p, c->engine[p->engine].own);
-    if (p->budget_ms > 0 && !c->dump) {
-        steps = hf_budget_ladder(p, s.max_radius, ladder);
-        p = &ladder[hf_budget_choose(&c->budget, ladder, steps)];
-        hf_setup_make(&s, src, dst, depth, p, c->engine[p->engine].own);
-    } else {
-        c->budget.step = 0;
-    }
-    if (c->dump)
-        s.no_skip = 1;
-    const struct hf_engine_def *engine = hf_engine_def(p->engine);
-    if (engine->prepare && s.blend != 0)
-        err = engine->prepare(c->engine[p->engine].own, &s, p, &c->mem);
-    if (!err)
-        err = hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !p->deterministic, plan_only});
-    if (err)
+    err = run_resolved(c, dst, src, depth, &r, job);
+    if (err) {
+        c->report = (struct hf_report){0};
         say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
-    else if (p->budget_ms > 0 && !plan_only && !c->dump)
-        hf_budget_note(&c->budget, p->budget_ms, steps, (float)c->stats.total_ms);
+    } else if (steps && job == RENDER) {
+        hf_budget_note(&c->budget, p->run.budget_ms, steps, (float)c->report.total_ms);
+    }
     return err;
 }
 
 int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
               const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, 0);
+    return run(c, dst, src, depth, params, RENDER);
+}
+
+int hf_prepare(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+               const struct hf_depth *depth, const struct hf_params *params)
+{
+    return run(c, dst, src, depth, params, PREPARE);
 }
 
 int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
             const struct hf_params *params, struct hf_report *report)
 {
-    const int err = run(c, dst, src, depth, params, 1);
-    if (report)
-        *report = err ? (struct hf_report){0} : c->report;
+    const int err = run(c, dst, src, depth, params, PLAN);
+    hf_get_report(c, report);
     return err;
 }
 
@@ -228,10 +287,9 @@ void hf_get_report(const struct hf_context *c, struct hf_report *report)
         *report = c ? c->report : (struct hf_report){0};
 }
 
-void hf_get_stats(const struct hf_context *c, struct hf_stats *stats)
+size_t hf_get_tiles(const struct hf_context *c, uint8_t *tiles, size_t size)
 {
-    if (stats)
-        *stats = c ? c->stats : (struct hf_stats){0};
+    return c ? hf_report_tiles(c, tiles, size) : 0;
 }
 
 void hf_set_dump(struct hf_context *c, void (*fn)(void *cookie, const struct hf_buffer *buffer), void *cookie)

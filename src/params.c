@@ -13,27 +13,25 @@
 const struct hf_params hf_default_params = {
     .engine = HF_ENGINE_GATHER,
     .model = HF_MODEL_RANGE,
-    .focus_distance = 10,
-    .range = HF_DERIVE,
-    .strength = 1,
-    .near_begin = HF_DERIVE,
-    .near_end = HF_DERIVE,
-    .far_begin = HF_DERIVE,
-    .far_end = HF_DERIVE,
-    .f_number = 2.8f,
-    .focal_length_mm = 50,
-    .sensor_width_mm = 36,
-    .world_unit_m = 1,
+    .focus = 10,
+    .range = {.distance = HF_DERIVE,
+              .strength = 1,
+              .near_begin = HF_DERIVE,
+              .near_end = HF_DERIVE,
+              .far_begin = HF_DERIVE,
+              .far_end = HF_DERIVE},
+    .lens = {.f_number = 2.8f, .focal_length_mm = 50, .sensor_width_mm = 36, .world_unit_m = 1},
     .max_radius = HF_DERIVE,
-    .pixel_aspect = 1,
-    .squeeze = 1,
-    .iterations = 3,
+    .aperture = {.squeeze = 1},
+    .view = {.display_width = HF_DERIVE, .display_height = HF_DERIVE, .pixel_aspect = 1},
+    .gather = {.rings = HF_DERIVE},
+    .gaussian = {.iterations = 3, .sigma = HF_DERIVE, .by_depth = HF_DERIVE},
 };
 
-enum { MAX_SIZE = 65536, MAX_ITERATIONS = 64, MAX_RINGS = 64 };
-static const float MAX_RADIUS = 256, MAX_LENS_RADIUS = 2048;
+enum { MAX_SIZE = 65536, MAX_BLADES = 16 };
+static const float MAX_RADIUS = 2048;
 
-__attribute__((format(printf, 2, 3))) static int bad(char message[HF_MESSAGE], const char *format, ...)
+int hf_bad(char *message, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -42,44 +40,77 @@ __attribute__((format(printf, 2, 3))) static int bad(char message[HF_MESSAGE], c
     return HF_ERR_ARG;
 }
 
-static int check_image(const struct hf_image *m, const char *name, char message[HF_MESSAGE])
+int hf_check_image(const struct hf_image *m, const char *name, char *message)
 {
     if (!m)
-        return bad(message, "%s is NULL", name);
+        return hf_bad(message, "%s is NULL", name);
     if (m->width < 1 || m->height < 1 || m->width > MAX_SIZE || m->height > MAX_SIZE)
-        return bad(message, "%s is %d x %d pixels; each side must be 1 to %d", name, m->width, m->height, MAX_SIZE);
+        return hf_bad(message, "%s is %d x %d pixels; each side must be 1 to %d", name, m->width, m->height, MAX_SIZE);
     if ((unsigned)m->format >= HF_FORMAT_COUNT)
-        return bad(message, "%s.format is %d, which is no format", name, (int)m->format);
+        return hf_bad(message, "%s.format is %d, which is no format", name, (int)m->format);
     for (int i = 0; i < hf_plane_count(m); i++) {
         if (!m->data[i])
-            return bad(message, "%s.data[%d] is NULL", name, i);
+            return hf_bad(message, "%s.data[%d] is NULL", name, i);
         if ((size_t)llabs((long long)m->stride[i]) < hf_row_bytes(m->format, m->width) && m->height > 1)
-            return bad(message, "%s.stride[%d] is %lld bytes, less than the %zu of a row", name, i,
-                       (long long)m->stride[i], hf_row_bytes(m->format, m->width));
+            return hf_bad(message, "%s.stride[%d] is %lld bytes, less than the %zu of a row", name, i,
+                          (long long)m->stride[i], hf_row_bytes(m->format, m->width));
     }
     return HF_OK;
 }
 
-int hf_check_depth(const struct hf_depth *d, int width, char message[HF_MESSAGE])
+// What its numbers mean, whether there are some yet or not.
+static int check_depth_type(const struct hf_depth *d, char *message)
 {
     if (!d)
-        return bad(message, "depth is NULL");
-    if (!d->data)
-        return bad(message, "depth.data is NULL");
-    if ((size_t)llabs((long long)d->stride) < (size_t)width * 4)
-        return bad(message, "depth.stride is %lld bytes, less than the %zu of a row", (long long)d->stride,
-                   (size_t)width * 4);
+        return hf_bad(message, "depth is NULL");
     if ((unsigned)d->type > HF_DEPTH_COC)
-        return bad(message, "depth.type is %d, which is no depth type", (int)d->type);
+        return hf_bad(message, "depth.type is %d, which is no depth type", (int)d->type);
     const int ndc = d->type == HF_DEPTH_NDC_D3D || d->type == HF_DEPTH_NDC_GL || d->type == HF_DEPTH_NDC_REVERSED;
     if (ndc && !(d->near_plane > 0 && d->near_plane < d->far_plane && hf_is_finite(d->near_plane)))
-        return bad(message, "depth.near_plane is %g and far_plane %g; they must be 0 < near < far", d->near_plane,
-                   d->far_plane);
+        return hf_bad(message, "depth.near_plane is %g and far_plane %g; they must be 0 < near < far", d->near_plane,
+                      d->far_plane);
     if (d->type == HF_DEPTH_RAY &&
         !(d->focal_px > 0 && hf_is_finite(d->focal_px) && hf_is_finite(d->center_x) && hf_is_finite(d->center_y)))
-        return bad(message, "depth.focal_px is %g and the centre (%g, %g); focal_px must be > 0, all finite",
-                   d->focal_px, d->center_x, d->center_y);
+        return hf_bad(message, "depth.focal_px is %g and the centre (%g, %g); focal_px must be > 0, all finite",
+                      d->focal_px, d->center_x, d->center_y);
     return HF_OK;
+}
+
+int hf_check_depth(const struct hf_depth *d, int width, char *message)
+{
+    const int err = check_depth_type(d, message);
+    if (err)
+        return err;
+    if (!d->data)
+        return hf_bad(message, "depth.data is NULL");
+    if ((size_t)llabs((long long)d->stride) < (size_t)width * 4)
+        return hf_bad(message, "depth.stride is %lld bytes, less than the %zu of a row", (long long)d->stride,
+                      (size_t)width * 4);
+    return HF_OK;
+}
+
+int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message)
+{
+    if (hf_check_image(src, "src", message) || hf_check_image(dst, "dst", message))
+        return HF_ERR_ARG;
+    if (src->width != dst->width || src->height != dst->height)
+        return hf_bad(message, "dst is %d x %d pixels and src %d x %d; they must be the same", dst->width, dst->height,
+                      src->width, src->height);
+    return HF_OK;
+}
+
+int hf_check_between(const char *name, float value, float least, float most, char *message)
+{
+    return value >= least && value <= most ? HF_OK
+                                           : hf_bad(message, "%s is %g; it must be %g to %g", name, value, least, most);
+}
+
+int hf_check_resolution(const char *engine, enum hf_resolution resolution, enum hf_resolution smallest, char *message)
+{
+    return (unsigned)resolution <= (unsigned)smallest
+               ? HF_OK
+               : hf_bad(message, "%s.resolution is %d, which the %s engine does not have", engine, (int)resolution,
+                        engine);
 }
 
 static float derive(float given, float otherwise)
@@ -87,177 +118,145 @@ static float derive(float given, float otherwise)
     return given == HF_DERIVE ? otherwise : given;
 }
 
-// The range model's four distances.
-struct band {
-    float nb, ne, fb, fe;
-};
-
-static struct band band_of(const struct hf_params *p)
+static int is_lens(const struct hf_params *p, const struct hf_depth *depth)
 {
-    const float focus = p->focus_distance, range = derive(p->range, focus / 2);
-    return (struct band){derive(p->near_begin, focus - range > 0 ? focus - range : 0), derive(p->near_end, focus),
-                         derive(p->far_begin, focus), derive(p->far_end, focus + range)};
+    return p->model == HF_MODEL_LENS && depth->type != HF_DEPTH_COC;
 }
 
-static int check_range_model(const struct hf_params *p, char message[HF_MESSAGE])
+static int check_range_model(struct hf_resolved *r, char *message)
 {
-    if (p->range != HF_DERIVE && !(p->range >= 0))
-        return bad(message, "range is %g; it must be >= 0", p->range);
+    struct hf_range_params *p = &r->params.range;
+    if (p->distance != HF_DERIVE && !(p->distance >= 0))
+        return hf_bad(message, "range.distance is %g; it must be >= 0", p->distance);
     if (!(p->strength >= 0 && p->strength <= 1))
-        return bad(message, "strength is %g; it must be 0 to 1", p->strength);
-    const struct band b = band_of(p);
-    const int endless = p->focus_distance == INFINITY;  // autofocus where there is nothing
-    if (!(b.nb >= 0 && b.nb <= b.ne && (b.ne < INFINITY || endless)))
-        return bad(message, "near_begin is %g and near_end %g; they must be 0 <= begin <= end, finite", b.nb, b.ne);
-    if (!(b.fb >= 0 && b.fb <= b.fe && (b.fb < INFINITY || endless)))
-        return bad(message, "far_begin is %g and far_end %g; they must be 0 <= begin <= end", b.fb, b.fe);
+        return hf_bad(message, "range.strength is %g; it must be 0 to 1", p->strength);
+    const float focus = r->params.focus;
+    const float range = p->distance = derive(p->distance, focus / 2);
+    // Before an endless range the near blur would begin at 0 - and stay finite - otherwise.
+    p->near_begin = derive(p->near_begin, range == INFINITY ? -INFINITY : focus - range > 0 ? focus - range : 0);
+    p->near_end = derive(p->near_end, focus);
+    p->far_begin = derive(p->far_begin, focus);
+    p->far_end = derive(p->far_end, focus + range);
+    const int endless = focus == INFINITY;  // autofocus where there is nothing
+    const float nb = p->near_begin == -INFINITY ? 0 : p->near_begin;
+    if (!(nb >= 0 && nb <= p->near_end && (p->near_end < INFINITY || endless)))
+        return hf_bad(message, "range.near_begin is %g and near_end %g; they must be 0 <= begin <= end, finite", nb,
+                      p->near_end);
+    if (!(p->far_begin >= 0 && p->far_begin <= p->far_end && (p->far_begin < INFINITY || endless)))
+        return hf_bad(message, "range.far_begin is %g and far_end %g; they must be 0 <= begin <= end", p->far_begin,
+                      p->far_end);
     return HF_OK;
 }
 
-static int check_lens(const struct hf_params *p, char message[HF_MESSAGE])
+static int check_lens(const struct hf_lens_params *p, char *message)
 {
     const float values[] = {p->focal_length_mm, p->sensor_width_mm, p->world_unit_m};
     const char *const names[] = {"focal_length_mm", "sensor_width_mm", "world_unit_m"};
     if (!(p->f_number > 0))
-        return bad(message, "f_number is %g; it must be > 0", p->f_number);
+        return hf_bad(message, "lens.f_number is %g; it must be > 0", p->f_number);
     for (int i = 0; i < 3; i++)
         if (!(values[i] > 0 && hf_is_finite(values[i])))
-            return bad(message, "%s is %g; it must be > 0 and finite", names[i], values[i]);
+            return hf_bad(message, "lens.%s is %g; it must be > 0 and finite", names[i], values[i]);
     return HF_OK;
 }
 
-static int check_options(const struct hf_params *p, char message[HF_MESSAGE])
+// In range, and something that the engine can draw.
+static int check_aperture(const struct hf_aperture_params *p, const struct hf_engine_def *e, char *message)
 {
-    if (p->max_radius != HF_DERIVE && !(p->max_radius >= 0 && p->max_radius <= MAX_RADIUS))
-        return bad(message, "max_radius is %g; it must be 0 to %g", p->max_radius, MAX_RADIUS);
-    if (p->display_width < 0 || p->display_height < 0)
-        return bad(message, "the display size is %d x %d; it must not be negative", p->display_width,
-                   p->display_height);
-    if (!(p->pixel_aspect >= 0.1f && p->pixel_aspect <= 10))
-        return bad(message, "pixel_aspect is %g; it must be 0.1 to 10", p->pixel_aspect);
-    if ((unsigned)p->storage > HF_STORAGE_CHAPTER)
-        return bad(message, "storage is %d, which is none", (int)p->storage);
-    if ((unsigned)p->fill > HF_FILL_NONE)
-        return bad(message, "fill is %d, which is none", (int)p->fill);
-    if ((unsigned)p->blend > HF_BLEND_SMOOTHSTEP)
-        return bad(message, "blend is %d, which is none", (int)p->blend);
-    if (!hf_is_finite(p->blade_rotation))
-        return bad(message, "blade_rotation is %g; it must be finite", p->blade_rotation);
-    return HF_OK;
-}
-
-// Autofocus: what the pixel in the middle shows, at infinity if that is nothing.
-float hf_focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height)
-{
-    if (p->engine != HF_ENGINE_GAUSSIAN || p->focus_distance != HF_DERIVE || depth->type == HF_DEPTH_COC)
-        return p->focus_distance;
-    struct hf_setup s = {.width = width, .height = height};
-    int repaired;
-    hf_setup_depth(&s, depth, p->pixel_aspect);
-    const float z = hf_depth_surface(&s, depth, width / 2, height / 2, &repaired);
-    return z < 1e10f ? z : INFINITY;
-}
-
-// Does the gaussian engine blend by the distance in depth, as its source does?
-int hf_blends_by_depth(const struct hf_params *p, enum hf_depth_type type)
-{
-    const float given[] = {p->range, p->near_begin, p->near_end, p->far_begin, p->far_end};
-    int derived = p->model == HF_MODEL_RANGE;
-    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
-        derived &= given[i] == HF_DERIVE;
-    return p->engine == HF_ENGINE_GAUSSIAN && type != HF_DEPTH_COC && (p->faithful || derived);
-}
-
-// The planes that bound its depths: those of the depth, else 1 and 100.
-void hf_depth_planes(const struct hf_depth *depth, float *near, float *far)
-{
-    *near = depth->near_plane > 0 ? depth->near_plane : 1;
-    *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
-}
-
-static int check_between(const char *name, float value, float least, float most, char message[HF_MESSAGE])
-{
-    return value >= least && value <= most ? HF_OK
-                                           : bad(message, "%s is %g; it must be %g to %g", name, value, least, most);
-}
-
-static int check_scatter(const struct hf_params *p, char message[HF_MESSAGE])
-{
-    if (p->blades != 0 && (p->blades < 3 || p->blades > 16))
-        return bad(message, "blades is %d; it must be 0 or 3 to 16", p->blades);
-    if (p->aperture && check_image(p->aperture, "aperture", message))
-        return HF_ERR_ARG;
+    if (p->blades != 0 && (p->blades < 3 || p->blades > MAX_BLADES))
+        return hf_bad(message, "aperture.blades is %d; it must be 0 or 3 to %d", p->blades, MAX_BLADES);
+    if (!hf_is_finite(p->rotation))
+        return hf_bad(message, "aperture.rotation is %g; it must be finite", p->rotation);
     const struct {
         const char *name;
-        float value, least, most;
-    } ranges[] = {{"blade_roundness", p->blade_roundness, 0, 1},
-                  {"ring", p->ring, 0, 0.95f},
-                  {"chromatic", p->chromatic, -0.5f, 0.5f},
-                  {"cat_eye", p->cat_eye, 0, 1},
-                  {"squeeze", p->squeeze, 0.25f, 4}};
-    for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
-        if (check_between(ranges[i].name, ranges[i].value, ranges[i].least, ranges[i].most, message))
+        float value, neutral, least, most;
+        unsigned bit;
+    } rows[] = {{"blades", (float)p->blades, 0, 0, MAX_BLADES, HF_APERTURE_BLADES},
+                {"roundness", p->roundness, 0, 0, 1, HF_APERTURE_ROUNDNESS},
+                {"ring", p->ring, 0, 0, 0.95f, HF_APERTURE_RING},
+                {"cat_eye", p->cat_eye, 0, 0, 1, HF_APERTURE_CAT_EYE},
+                {"squeeze", p->squeeze, 1, 0.25f, 4, HF_APERTURE_SQUEEZE}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "aperture.%s", rows[i].name);
+        if (hf_check_between(name, rows[i].value, rows[i].least, rows[i].most, message))
             return HF_ERR_ARG;
-    return HF_OK;
-}
-
-// What only some engines read is checked for those alone.
-static int check_engine(const struct hf_params *p, char message[HF_MESSAGE])
-{
-    if (!(p->budget_ms >= 0))
-        return bad(message, "budget_ms is %g; it must be >= 0", p->budget_ms);
-    if (p->engine == HF_ENGINE_GATHER && (p->rings < 0 || p->rings > MAX_RINGS))
-        return bad(message, "rings is %d; it must be 0 to %d", p->rings, MAX_RINGS);
-    if (p->engine == HF_ENGINE_GATHER && p->blades != 0 && (p->blades < 5 || p->blades > 9))
-        return bad(message, "blades is %d; it must be 0 or 5 to 9", p->blades);
-    if (p->engine == HF_ENGINE_GATHER)
-        return HF_OK;
-    if (p->storage != HF_STORAGE_FLOAT)
-        return bad(message, "storage is %d; the %s engine has float storage only", (int)p->storage,
-                   hf_engine_name(p->engine));
-    if ((unsigned)p->resolution > HF_RESOLUTION_QUARTER ||
-        (p->resolution == HF_RESOLUTION_QUARTER && p->engine != HF_ENGINE_GAUSSIAN))
-        return bad(message, "resolution is %d, which the %s engine does not have", (int)p->resolution,
-                   hf_engine_name(p->engine));
-    if (p->engine == HF_ENGINE_SCATTER)
-        return check_scatter(p, message);
-    if (p->engine == HF_ENGINE_GAUSSIAN) {
-        if (p->iterations < 0 || p->iterations > MAX_ITERATIONS)
-            return bad(message, "iterations is %d; it must be 0 to %d", p->iterations, MAX_ITERATIONS);
-        return check_between("sigma", p->sigma, 0, MAX_RADIUS, message);
+        if (rows[i].value != rows[i].neutral && !(e->aperture & rows[i].bit))
+            return hf_bad(message, "%s is %g; the %s engine cannot draw that", name, rows[i].value, e->name);
     }
-    return HF_OK;
+    if (!p->picture)
+        return HF_OK;
+    if (!(e->aperture & HF_APERTURE_PICTURE))
+        return hf_bad(message, "aperture.picture is given; the %s engine cannot draw it", e->name);
+    return hf_check_image(p->picture, "aperture.picture", message);
 }
 
-int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
-                   const struct hf_params *p, char message[HF_MESSAGE])
+static int check_view(struct hf_resolved *r, char *message)
 {
-    if (check_image(src, "src", message) || check_image(dst, "dst", message) ||
-        hf_check_depth(depth, src->width, message))
-        return HF_ERR_ARG;
-    if (src->width != dst->width || src->height != dst->height)
-        return bad(message, "dst is %d x %d pixels and src %d x %d; they must be the same", dst->width, dst->height,
-                   src->width, src->height);
-    if (!hf_engine_def(p->engine))
-        return bad(message, "engine is %d, which is none", (int)p->engine);
-    if ((unsigned)p->model > HF_MODEL_LENS)
-        return bad(message, "model is %d, which is none", (int)p->model);
-    if (depth->type != HF_DEPTH_COC) {
-        const int autofocus = p->engine == HF_ENGINE_GAUSSIAN && p->focus_distance == HF_DERIVE;
-        if (!autofocus && !(p->focus_distance > 0 && hf_is_finite(p->focus_distance)))
-            return bad(message, "focus_distance is %g; it must be > 0 and finite", p->focus_distance);
-        struct hf_params focused = *p;
-        focused.focus_distance = hf_focus_of(p, depth, src->width, src->height);
-        const int err = p->model == HF_MODEL_LENS ? check_lens(p, message) : check_range_model(&focused, message);
+    struct hf_view_params *v = &r->params.view;
+    if (v->display_width == HF_DERIVE)
+        v->display_width = r->width;
+    if (v->display_height == HF_DERIVE)
+        v->display_height = r->height;
+    if (v->display_width < 1 || v->display_height < 1)
+        return hf_bad(message, "the display size is %d x %d; it must be at least 1 x 1", v->display_width,
+                      v->display_height);
+    return hf_check_between("view.pixel_aspect", v->pixel_aspect, 0.1f, 10, message);
+}
+
+static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, const struct hf_engine_def *e,
+                       char *message)
+{
+    struct hf_params *p = &r->params;
+    if (p->focus == HF_DERIVE) {
+        struct hf_setup s = {.width = r->width, .height = r->height};
+        int repaired;
+        const int err = hf_check_depth(depth, r->width, message);
         if (err)
             return err;
-        float near, far;
-        hf_depth_planes(depth, &near, &far);
-        if (hf_blends_by_depth(p, depth->type) && !(near < far))
-            return bad(message, "depth.near_plane is %g and far_plane %g; near must be less than far", near, far);
+        hf_setup_depth(&s, depth, p->view.pixel_aspect);
+        const float z = hf_depth_surface(&s, depth, r->width / 2, r->height / 2, &repaired);
+        p->focus = z < 1e10f ? z : INFINITY;
+        if (p->focus == INFINITY && !e->focus_anywhere) {
+            hf_bad(message, "focus is to be that of pixel (%d, %d), where there is no surface", r->width / 2,
+                   r->height / 2);
+            return HF_ERR_FOCUS;
+        }
+        return HF_OK;
     }
-    const int err = check_options(p, message);
-    return err ? err : check_engine(p, message);
+    return p->focus > 0 && hf_is_finite(p->focus) ? HF_OK
+                                                  : hf_bad(message, "focus is %g; it must be > 0 and finite", p->focus);
+}
+
+// The limit of the radius, before the engine has its say.
+static int check_radius(struct hf_resolved *r, const struct hf_depth *depth, char *message)
+{
+    struct hf_params *p = &r->params;
+    if (p->max_radius != HF_DERIVE) {
+        r->limit = HF_LIMIT_GIVEN;
+        return hf_check_between("max_radius", p->max_radius, 0, MAX_RADIUS, message);
+    }
+    const int any = depth->type == HF_DEPTH_COC || p->model == HF_MODEL_LENS;
+    r->limit = any ? HF_LIMIT_NONE : HF_LIMIT_MODEL;
+    p->max_radius = any ? MAX_RADIUS : hf_model_radius(r);
+    return HF_OK;
+}
+
+float hf_model_radius(const struct hf_resolved *r)
+{
+    return fminf(12 * (float)r->params.view.display_height / 1080, MAX_RADIUS);
+}
+
+// Focal length in pixels, and K.
+static double lens_focal_px(const struct hf_params *p)
+{
+    return (double)p->lens.focal_length_mm / p->lens.sensor_width_mm * p->view.display_width;
+}
+
+static double lens_k(const struct hf_params *p)
+{
+    const double aperture = p->lens.focal_length_mm / 1000.0 / (2.0 * p->lens.f_number) / p->lens.world_unit_m;
+    return aperture * lens_focal_px(p);
 }
 
 // Slope of a CoC that grows from 0 to 1 over a distance. A zero distance is a step, which the steepest finite slope
@@ -268,80 +267,111 @@ static float slope(float distance)
     return i < FLT_MAX ? i : FLT_MAX;
 }
 
-static void set_coc_model(struct hf_setup *s, const struct hf_params *p, int by_depth)
+static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
 {
-    if (by_depth) {
-        s->near_i = s->far_i = 1;  // there is blur
-        return;
-    }
+    const struct hf_range_params *b = &p->range;
     if (s->form == HF_FORM_COC) {
         s->near_i = s->far_i = slope(s->max_radius);
         s->radius_k = 1;
         return;
     }
     if (p->model == HF_MODEL_RANGE) {
-        const struct band b = band_of(p);
-        s->near_0 = b.ne;
-        s->near_i = slope(b.ne - b.nb);
-        s->far_0 = b.fb;
-        s->far_i = slope(b.fe - b.fb);
-        if (p->range == INFINITY && p->near_begin == HF_DERIVE)
-            s->near_i = 0;  // the near blur would begin at 0 - and stay finite - otherwise
+        s->near_0 = b->near_end;
+        s->near_i = slope(b->near_end - b->near_begin);
+        s->far_0 = b->far_begin;
+        s->far_i = slope(b->far_end - b->far_begin);
         return;
     }
     // r = K (1/P - 1/z); v = -1/z, so n = (-1/P - v) K / rho and f = (v - -1/P) K / rho.
-    const double display_width = p->display_width ? p->display_width : s->width;
-    const double aperture = p->focal_length_mm / 1000.0 / (2.0 * p->f_number) / p->world_unit_m;
-    const double k = aperture * ((double)p->focal_length_mm / p->sensor_width_mm * display_width);
+    const double k = lens_k(p);
     s->lens = 1;
-    s->near_0 = s->far_0 = s->radius_0 = -1 / p->focus_distance;
+    s->near_0 = s->far_0 = s->radius_0 = -1 / p->focus;
     s->near_i = s->far_i = s->max_radius > 0 ? (float)fmin(k / s->max_radius, FLT_MAX) : 0;
     s->radius_k = s->near_i > 0 ? (float)fmin(k, FLT_MAX) : 0;
 }
 
-// rho. The lens and given radii have no limit of their own but in the gather, whose reach is fixed.
-static float radius_limit(const struct hf_setup *s, const struct hf_params *p)
+// From depth to CoC, as far as it is the same for all engines.
+static void set_coc(struct hf_setup *s, const struct hf_resolved *r, const struct hf_depth *depth)
 {
-    const float display_height = (float)(p->display_height ? p->display_height : s->height);
-    if (p->max_radius != HF_DERIVE)
-        return p->max_radius;
-    if (p->engine == HF_ENGINE_HEXAGON || p->engine == HF_ENGINE_SCATTER)
-        if (s->form == HF_FORM_COC || p->model == HF_MODEL_LENS)
-            return MAX_LENS_RADIUS;
-    return p->faithful ? 12 : fminf(12 * display_height / 1080, MAX_RADIUS);
+    const struct hf_params *p = &r->params;
+    s->max_radius = p->max_radius;
+    hf_setup_depth(s, depth, p->view.pixel_aspect);
+    set_coc_model(s, p);
+    s->strength = s->form != HF_FORM_COC && p->model == HF_MODEL_RANGE ? p->range.strength : 1;
+}
+
+int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct hf_depth *depth,
+                      const struct hf_params *params, char *message)
+{
+    *r = (struct hf_resolved){.params = *params, .width = width, .height = height};
+    struct hf_params *p = &r->params;
+    const struct hf_engine_def *e = hf_engine_def(p->engine);
+    if (width < 1 || height < 1 || width > MAX_SIZE || height > MAX_SIZE)
+        return hf_bad(message, "the picture is %d x %d pixels; each side must be 1 to %d", width, height, MAX_SIZE);
+    if (!e)
+        return hf_bad(message, "engine is %d, which is none", (int)p->engine);
+    if ((unsigned)p->model > HF_MODEL_LENS)
+        return hf_bad(message, "model is %d, which is none", (int)p->model);
+    if ((unsigned)p->range.blend > HF_BLEND_SMOOTHSTEP)
+        return hf_bad(message, "range.blend is %d, which is none", (int)p->range.blend);
+    if (!(p->run.budget_ms >= 0))
+        return hf_bad(message, "run.budget_ms is %g; it must be >= 0", p->run.budget_ms);
+    int err = check_depth_type(depth, message);
+    if (!err)
+        err = check_view(r, message);
+    if (!err && depth->type != HF_DEPTH_COC) {
+        err = check_focus(r, depth, e, message);
+        if (!err)
+            err = is_lens(p, depth) ? check_lens(&p->lens, message) : check_range_model(r, message);
+    }
+    if (!err)
+        err = check_radius(r, depth, message);
+    if (!err)
+        err = check_aperture(&p->aperture, e, message);
+    if (err)
+        return err;
+    if (is_lens(p, depth)) {
+        r->focal_px = (float)lens_focal_px(p);
+        r->lens_k = (float)fmin(lens_k(p), FLT_MAX);
+    }
+    struct hf_setup s = {.width = width, .height = height};
+    set_coc(&s, r, depth);
+    r->sharp = s.max_radius == 0 || s.strength == 0 || (s.near_i == 0 && s.far_i == 0);
+    return e->check ? e->check(r, params, depth, message) : HF_OK;
+}
+
+int hf_resolve(int width, int height, const struct hf_depth *depth, const struct hf_params *params,
+               struct hf_resolved *resolved, char *message, size_t size)
+{
+    struct hf_resolved r;
+    char sentence[HF_MESSAGE] = "";
+    const int err = hf_params_resolve(&r, width, height, depth, params ? params : &hf_default_params, sentence);
+    if (message && size)
+        snprintf(message, size, "%s", sentence);
+    if (resolved)
+        *resolved = err ? (struct hf_resolved){0} : r;
+    return err;
 }
 
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                   const struct hf_depth *depth, const struct hf_params *p, void *own)
+                   const struct hf_depth *depth, const struct hf_resolved *r, void *own)
 {
+    const struct hf_params *p = &r->params;
     *s = (struct hf_setup){.width = src->width,
                            .height = src->height,
                            .half_width = (src->width + 1) / 2,
                            .half_height = (src->height + 1) / 2,
                            .engine = p->engine,
                            .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
-                           .storage = p->storage,
-                           .colour_stats = p->colour_stats,
-                           .faithful = p->faithful,
-                           .no_skip = p->no_skip,
-                           .smoothstep = p->blend == HF_BLEND_SMOOTHSTEP,
-                           .pixel_aspect = p->pixel_aspect,
-                           .resolution = p->resolution,
+                           .colour_stats = p->run.colour_stats,
+                           .no_skip = p->run.no_skip,
+                           .smoothstep = p->range.blend == HF_BLEND_SMOOTHSTEP,
+                           .pixel_aspect = p->view.pixel_aspect,
+                           .blend = !r->sharp,
+                           .resolved = r,
                            .own = own};
-    hf_setup_depth(s, depth, p->pixel_aspect);
-    s->max_radius = radius_limit(s, p);
-    struct hf_params focused = *p;
-    focused.focus_distance = hf_focus_of(p, depth, s->width, s->height);
-    const int by_depth = hf_blends_by_depth(p, depth->type);
-    set_coc_model(s, &focused, by_depth);
-    const int range_model = s->form != HF_FORM_COC && (p->model == HF_MODEL_RANGE || by_depth);
-    s->strength = range_model ? p->strength : 1;
-    s->blend = s->strength >= 0.25f ? 1 : 4 * s->strength;
-    if (p->engine != HF_ENGINE_GATHER && s->blend > 0)
-        s->blend = 1;  // their strength is in the radius, or in the gaussian's blend factor
-    const struct hf_engine_def *engine = hf_engine_def(p->engine);
-    if (engine->resolve)
-        engine->resolve(own, s, depth, p);
-    if (s->max_radius == 0 || (s->near_i == 0 && s->far_i == 0 && !s->uniform))
-        s->blend = 0;
+    set_coc(s, r, depth);
+    const struct hf_engine_def *e = hf_engine_def(p->engine);
+    if (e->resolve)
+        e->resolve(own, s, depth, p);
 }

@@ -7,13 +7,27 @@
 
 enum { HF_MESSAGE = 256 };
 
-// Check the arguments. Returns HF_OK, or HF_ERR_ARG with one sentence in message that names argument and value.
-int hf_setup_check(const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
-                   const struct hf_params *params, char message[HF_MESSAGE]);
+// Put a sentence into message, which holds HF_MESSAGE bytes as all of these do. Returns HF_ERR_ARG.
+int hf_bad(char *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// Fill *s from checked arguments, and the engine's own numbers, whose memory that is; its tables are its prepare's.
+// Checks of one argument each. Return HF_OK, or HF_ERR_ARG with one sentence that names argument and value.
+int hf_check_image(const struct hf_image *image, const char *name, char *message);
+int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message);
+int hf_check_depth(const struct hf_depth *d, int width, char *message);
+int hf_check_between(const char *name, float value, float least, float most, char *message);
+// engine: its name, which is that of its parameters.
+int hf_check_resolution(const char *engine, enum hf_resolution resolution, enum hf_resolution smallest, char *message);
+
+// hf_resolve for an engine's and the library's own use: params must not be NULL.
+int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct hf_depth *depth,
+                      const struct hf_params *params, char *message);
+// The radius that the range model has unless told otherwise, the chapter's reach: 12 pixels at 1080 lines.
+float hf_model_radius(const struct hf_resolved *r);
+
+// Fill *s from resolved parameters, to which it will point, and the engine's own numbers, whose memory own is; its tables
+// are its prepare's.
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                   const struct hf_depth *depth, const struct hf_params *params, void *own);
+                   const struct hf_depth *depth, const struct hf_resolved *r, void *own);
 
 // View depth (INFINITY: no surface) or for HF_FORM_COC the radius of depth sample d at pixel (x, y). NaN gives NaN.
 float hf_depth_decode(const struct hf_setup *s, float d, int x, int y);
@@ -21,13 +35,5 @@ float hf_depth_decode(const struct hf_setup *s, float d, int x, int y);
 float hf_depth_surface(const struct hf_setup *s, const struct hf_depth *depth, int x, int y, int *repaired);
 // Fill the depth fields of a setup (form, e_a .. ray_sy): all that hf_depth_decode needs.
 void hf_setup_depth(struct hf_setup *s, const struct hf_depth *depth, float pixel_aspect);
-int hf_check_depth(const struct hf_depth *depth, int width, char message[HF_MESSAGE]);
-
-// Autofocus: what the pixel in the middle shows, at infinity if that is nothing.
-float hf_focus_of(const struct hf_params *p, const struct hf_depth *depth, int width, int height);
-// Does the gaussian engine blend by the distance in depth, as its source does?
-int hf_blends_by_depth(const struct hf_params *p, enum hf_depth_type type);
-// The planes that bound its depths: those of the depth, else 1 and 100.
-void hf_depth_planes(const struct hf_depth *depth, float *near, float *far);
 
 #endif

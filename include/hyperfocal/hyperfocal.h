@@ -6,8 +6,8 @@
 //
 //     struct hf_context *c;
 //     struct hf_params p = hf_default_params;      // copy the defaults, change what you need
-//     p.focus_distance = 20.0f;
-//     p.range = 10.0f;
+//     p.focus = 20.0f;
+//     p.range.distance = 10.0f;
 //     if (hf_open(&c, NULL) == HF_OK)
 //         err = hf_render(c, &picture, &picture, &depth, &p);      // in place
 //     hf_close(&c);
@@ -18,8 +18,9 @@
 // "Chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2018, the source of the default
 // engine and of its names.
 //
-// A context may be used by one thread at a time; any number of contexts may be used at once. Functions return
-// HF_OK (0) or a negative enum hf_error; none of them prints, exits or aborts.
+// A context may be used by one thread at a time; any number of contexts may be used at once. After fork() the child
+// has none of the context's threads: a context that has threads of its own answers HF_ERR_THREAD there, and hf_close
+// frees its memory. Functions return HF_OK (0) or a negative enum hf_error; none of them prints, exits or aborts.
 #ifndef HYPERFOCAL_H
 #define HYPERFOCAL_H
 
@@ -42,7 +43,7 @@ enum hf_error {
     HF_OK = 0,
     HF_ERR_ARG = -1,     // an argument is out of its documented range; the log names it and its value
     HF_ERR_MEMORY = -2,  // the allocator returned NULL
-    HF_ERR_THREAD = -3,  // a thread could not be started
+    HF_ERR_THREAD = -3,  // a thread could not be started, or is not in this process (after fork)
     HF_ERR_ISA = -4,     // the instruction set asked for is not one of this CPU or of this build
     HF_ERR_FOCUS = -5,   // there is no surface where focus was to be read
 };
@@ -161,7 +162,7 @@ enum hf_engine {
 };
 enum { HF_ENGINE_COUNT = HF_ENGINE_GAUSSIAN + 1 };
 
-// The command line's name for an engine; NULL for a number that is none.
+// The command line's name for an engine; NULL for a number that is none. As hf_name(HF_NAMES_ENGINE, engine).
 HF_API const char *hf_engine_name(enum hf_engine engine);
 
 // Size of the buffers in which the engines other than gather work. Smaller is faster and softer.
@@ -174,18 +175,18 @@ enum hf_resolution {
 // How the normalised near and far CoC follow from depth.
 enum hf_model {
     HF_MODEL_RANGE,  // focus distance F and range R: the chapter's empirical model
-    HF_MODEL_LENS,   // a thin lens: radius K * (1/P - 1/z), see the lens fields below
+    HF_MODEL_LENS,   // a thin lens: radius K * (1/P - 1/z), see struct hf_lens_params
 };
 
-// How intermediate buffers are stored between passes.
+// How the gather stores intermediate buffers between passes.
 enum hf_storage {
-    HF_STORAGE_FLOAT,    // float32 everywhere
-    HF_STORAGE_HALF,     // float16 everywhere, the colour read and the result included; clamped to +-65504
-    HF_STORAGE_CHAPTER,  // the same with R11G11B10F truncated towards zero for colour, 8 bits rounded for CoC; alpha
-                         // stays float32
+    HF_STORAGE_FLOAT,   // float32 everywhere
+    HF_STORAGE_HALF,    // float16 everywhere, the colour read and the result included; clamped to +-65504
+    HF_STORAGE_PACKED,  // the chapter's: R11G11B10F truncated towards zero for colour, 8 bits rounded for CoC, the
+                        // colour read and the result included; alpha stays float32
 };
 
-// How the gaps between the taps are closed (chapter 3.3.5).
+// How the gaps between the gather's taps are closed (chapter 3.3.5).
 enum hf_fill {
     HF_FILL_MAX,   // 3x3 maximum: brighter highlights than energy allows, the chapter's choice
     HF_FILL_MEAN,  // 3x3 mean: keeps energy
@@ -197,50 +198,153 @@ enum hf_blend {
     HF_BLEND_SMOOTHSTEP,  // 3t^2 - 2t^3 of that
 };
 
-// Value of the fields below that are worked out from others unless given.
-#define HF_DERIVE (-1.0f)
+// What a scene asks of a tile.
+enum hf_tile { HF_TILE_SHARP, HF_TILE_NEAR, HF_TILE_FAR, HF_TILE_BOTH };
 
-struct hf_params {
-    enum hf_engine engine;  // default HF_ENGINE_GATHER
-    enum hf_model model;    // default HF_MODEL_RANGE. Ignored for HF_DEPTH_COC.
+// Why a CoC radius cannot be larger than max_radius.
+enum hf_limit {
+    HF_LIMIT_NONE,     // nothing limits it short of the 2048 pixels that there can be
+    HF_LIMIT_GIVEN,    // max_radius was given
+    HF_LIMIT_MODEL,    // the range model blurs up to 12 pixels at 1080 lines unless told otherwise
+    HF_LIMIT_ENGINE,   // the engine reaches no farther unless told otherwise
+    HF_LIMIT_PICTURE,  // aperture.picture is drawn up to this size
+};
 
-    // Distance of the plane in focus, scene units of view depth, > 0, finite. Default 10. Both models.
-    // gaussian also takes HF_DERIVE: what pixel (width / 2, height / 2) shows; without a surface there, infinity.
-    // Ignored for HF_DEPTH_COC.
-    float focus_distance;
+// The words that command lines and files have for values. NULL for a number that is none.
+enum hf_names {
+    HF_NAMES_ISA,         // auto, scalar, sse4.1, avx2, avx512, neon
+    HF_NAMES_LOG_LEVEL,   // error, warning, info
+    HF_NAMES_FORMAT,      // rgba32f, rgb32f, rgba16f, r11g11b10f, planar32f
+    HF_NAMES_DEPTH_TYPE,  // view, ray, ndc-d3d, ndc-gl, ndc-reversed, inverse, coc
+    HF_NAMES_ENGINE,      // gather, hexagon, scatter, gaussian
+    HF_NAMES_RESOLUTION,  // full, half, quarter
+    HF_NAMES_MODEL,       // range, lens
+    HF_NAMES_STORAGE,     // float, half, packed
+    HF_NAMES_FILL,        // max, mean, none
+    HF_NAMES_BLEND,       // linear, smoothstep
+    HF_NAMES_TILE,        // sharp, near, far, both
+    HF_NAMES_LIMIT,       // none, given, model, engine, picture
+    HF_NAMES_COUNT
+};
+HF_API const char *hf_name(enum hf_names of, int value);
+// The other way: HF_OK with the value in *value, or HF_ERR_ARG for a word that is none. "chapter" is an old word for
+// packed.
+HF_API int hf_value(enum hf_names of, const char *name, int *value);
 
-    // Range model. Distance over which sharp turns into fully blurred, on both sides of the focus: >= 0, scene
-    // units, INFINITY for no blur at all. HF_DERIVE (default): half the focus distance. Chapter 3.2.
-    float range;
-    // Strength, 0 (the input, bit for bit) to 1 (default). From 0.25 up it scales the kernel's radius; below, the
-    // kernel stays at a quarter and the result is blended with the input by 4 * strength. Chapter, listing 3.14.
+// Value of whatever can be worked out from the rest, and is unless it is given: see each "HF_DERIVE". hf_resolve tells
+// what comes of it.
+#define HF_DERIVE (-1)
+
+// Distances of the range model, scene units of view depth; used with HF_MODEL_RANGE alone, but for blend.
+struct hf_range_params {
+    // Distance over which sharp turns into fully blurred, on both sides of the focus: >= 0, INFINITY for no blur at
+    // all. HF_DERIVE (default): half the focus distance. Chapter 3.2.
+    float distance;
+    // 0 (the input, bit for bit) to 1 (default). From 0.25 up it scales the kernel's radius; below, the kernel stays at
+    // a quarter and the result is blended with the input by 4 * strength. Chapter, listing 3.14.
     float strength;
-    // Near blur is full up to near_begin and gone at near_end; far blur starts at far_begin and is full at
-    // far_end: scene units, >= 0, near_begin <= near_end, far_begin <= far_end. HF_DERIVE (default):
-    // max(0, F - R), F, F, F + R. Chapter, figure 3.2.
+    // Near blur is full up to near_begin and gone at near_end; far blur starts at far_begin and is full at far_end:
+    // >= 0, near_begin <= near_end, far_begin <= far_end. HF_DERIVE (default): max(0, F - R), F, F, F + R. Chapter,
+    // figure 3.2.
     float near_begin, near_end, far_begin, far_end;
+    enum hf_blend blend;  // default HF_BLEND_LINEAR
+};
 
-    // Lens model: r(z) = K (1/focus_distance - 1/z), K = aperture radius in scene units * focal length in pixels,
-    // aperture radius = focal_length_mm / 1000 / (2 f_number) / world_unit_m, focal length in pixels =
-    // focal_length_mm / sensor_width_mm * display width. All > 0 and finite, but f_number may be INFINITY (no blur).
+// Lens model: r(z) = K (1/focus - 1/z), K = aperture radius in scene units * focal length in pixels, aperture radius =
+// focal_length_mm / 1000 / (2 f_number) / world_unit_m, focal length in pixels = focal_length_mm / sensor_width_mm *
+// display width. All > 0 and finite, but f_number may be INFINITY (no blur).
+struct hf_lens_params {
     float f_number;         // default 2.8
     float focal_length_mm;  // millimetres, default 50
     float sensor_width_mm;  // millimetres, default 36
     float world_unit_m;     // metres per scene unit, default 1
+};
 
-    // Largest CoC radius, full-resolution pixels, 0 (the input, bit for bit) to 256. HF_DERIVE (default):
-    // 12 at 1080 lines and proportional to the display height (always 12 when faithful), the chapter's reach; for the
-    // lens model and HF_DEPTH_COC in other engines than gather, no limit but that of 2048.
-    float max_radius;
-    // Size of the whole picture when the image given is a part of it: pixels, 0 (default): the image's own. Only
-    // scales blur: the height max_radius, the width the lens.
+// Shape of the aperture. What an engine cannot draw is HF_ERR_ARG: gather takes blades and rotation, hexagon its own six
+// sides and rotation, scatter all, gaussian none.
+struct hf_aperture_params {
+    // 0 (default) a disc, else a regular polygon with 3 to 16 sides, the middle of one on the +x axis turned by rotation
+    // degrees (any finite value, default 0).
+    int blades;
+    float rotation;
+    // Sides of the polygon bent towards the circle around it: 0 (default) straight .. 1 a disc.
+    float roundness;
+    // Radius of a central obstruction, as a mirror lens has, over the aperture's, and of its shape: 0 (default, none)
+    // .. 0.95.
+    float ring;
+    // Mechanical vignetting: how far the exit pupil's second circle moves towards the picture's corner there, in
+    // aperture radii, 0 (default, none) .. 1. Highlights in the corners become cat's eyes.
+    float cat_eye;
+    // Anamorphic squeeze: height over width of a highlight, 0.25..4, default 1. Heights are kept.
+    float squeeze;
+    // A picture of the aperture, its centre the lens's axis and its shorter side the diameter; brightness is
+    // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during the call. Every
+    // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then.
+    const struct hf_image *picture;
+};
+
+// Of what picture the image given is a part, and of what pixels.
+struct hf_view_params {
+    // Size of the whole picture when the image given is a part of it: pixels, > 0. HF_DERIVE (default): the image's own.
+    // Only scales blur: the height max_radius, the width the lens.
     int display_width, display_height;
     // Width of a pixel over its height, 0.1 to 10, default 1. Blur is narrower by this, counted in pixels of x.
     float pixel_aspect;
+};
 
+// What only one engine reads; the others' are not looked at.
+
+struct hf_gather_params {
     enum hf_storage storage;  // default HF_STORAGE_FLOAT
     // Reproduce the published demo, the flaws of its composite included. Default 0: those are mended.
     int faithful;
+    // Rings of taps, 1..64. HF_DERIVE (default): as many as keep them two half-resolution pixels apart, up to 64. Fewer
+    // are faster and leave gaps. Ignored with HF_FILL_NONE.
+    int rings;
+    // Weight samples by 1 / (1 + luminance) in the gather, against fireflies: darker highlights. Default 0.
+    // B. Karis, "Tone mapping", 2013; chapter 3.4.4.
+    int karis;
+    // Scale the far kernel by each pixel's own CoC; the far fill then takes only neighbours whose CoC is within
+    // 0.25. Default 0. Chapter 3.5.
+    int per_pixel_kernel;
+    // Upsample the near field with a uniform cubic B-spline instead of bilinearly. Default 0. Chapter 3.4.6.
+    int bicubic;
+    enum hf_fill fill;  // default HF_FILL_MAX
+};
+
+struct hf_hexagon_params {
+    enum hf_resolution resolution;  // full (default) or half
+    // Every pixel gets max_radius, whatever its depth: the plain blur, whose cost does not grow with the square of the
+    // radius. Default 0.
+    int uniform;
+};
+
+struct hf_scatter_params {
+    enum hf_resolution resolution;  // full (default) or half
+    // Axial chromatic aberration: red CoCs are larger by this fraction and blue ones smaller (behind the focus; the
+    // other way in front of it), -0.5..0.5, default 0.
+    float chromatic;
+};
+
+struct hf_gaussian_params {
+    enum hf_resolution resolution;  // default full
+    // Passes of the 5-tap kernel over the buffer, 0..64, default 3: a standard deviation of sqrt(iterations) of its
+    // pixels, square or not.
+    int iterations;
+    // Standard deviation in full-resolution pixels (of y; pixel_aspect narrows it) of one blur that costs the same for
+    // any, in place of the iterations: 0 (none) to 256. HF_DERIVE (default): iterations. Four boxes: within 1.3 % of a
+    // true gaussian's edge.
+    float sigma;
+    // The published weights and depth, whose flaws are its look. Default 0.
+    int faithful;
+    // 1: the blend with the picture is strength * sat(3 |d(focus) - d(z)|), d = sat(z / far plane). 0: strength *
+    // max(n, f) of the near and far CoC. HF_DERIVE (default): 1 when faithful, or for the range model when distance,
+    // near_* and far_* are all derived, else 0. Always 0 for HF_DEPTH_COC.
+    int by_depth;
+};
+
+// How a frame is run, apart from what it looks like.
+struct hf_run_params {
     // Same bits on every instruction set and architecture: no fused multiply-add. Default 0. Bits never depend on
     // threads or tiles, with or without this.
     int deterministic;
@@ -253,60 +357,28 @@ struct hf_params {
     // gather in place of a costlier engine, fewer rings of taps. It goes back only when the better setting would
     // leave a fifth of the budget for a dozen frames on end, so that a shot does not flicker between two looks.
     float budget_ms;
+};
 
-    // gather: rings of taps, 1..64; 0 (default): as many as keep them two half-resolution pixels apart. Fewer are
-    // faster and leave gaps. Ignored with HF_FILL_NONE.
-    int rings;
-    // Weight samples by 1 / (1 + luminance) in the gather, against fireflies: darker highlights. Default 0.
-    // B. Karis, "Tone mapping", 2013; chapter 3.4.4.
-    int karis;
-    // Scale the far kernel by each pixel's own CoC; the far fill then takes only neighbours whose CoC is within
-    // 0.25. Default 0. Chapter 3.5.
-    int per_pixel_kernel;
-    // Upsample the near field with a uniform cubic B-spline instead of bilinearly. Default 0. Chapter 3.4.6.
-    int bicubic;
-    enum hf_fill fill;    // default HF_FILL_MAX
-    enum hf_blend blend;  // default HF_BLEND_LINEAR
-    // Shape of the aperture. blades: 0 (default) a disc, else a regular polygon with that many sides, the middle of
-    // one on the +x axis turned by blade_rotation degrees (any finite value, default 0). gather: 5..9, its rings of
-    // taps take that shape (T. Sousa, SIGGRAPH 2013). scatter: 3..16, and its corners may be rounded.
-    // hexagon: always six sides; only blade_rotation counts.
-    int blades;
-    float blade_rotation;
-
-    // hexagon, scatter, gaussian: size of the working buffers. Default HF_RESOLUTION_FULL. scatter has no quarter,
-    // hexagon neither.
-    enum hf_resolution resolution;
-    // hexagon: every pixel gets max_radius, whatever its depth: the plain blur, whose cost does not grow with the
-    // square of the radius. Default 0.
-    int uniform;
-
-    // scatter. Sides of the polygon bent towards the circle around it: 0 (default) straight .. 1 a disc.
-    float blade_roundness;
-    // Radius of a central obstruction, as a mirror lens has, over the aperture's, and of its shape: 0 (default, none) ..
-    // 0.95.
-    float ring;
-    // A picture of the aperture, its centre the lens's axis and its shorter side the diameter; brightness is
-    // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during hf_render. Every
-    // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then.
-    const struct hf_image *aperture;
-    // Axial chromatic aberration: red CoCs are larger by this fraction and blue ones smaller (behind the focus; the other
-    // way in front of it), -0.5..0.5, default 0.
-    float chromatic;
-    // Mechanical vignetting: how far the exit pupil's second circle moves towards the picture's corner there, in
-    // aperture radii, 0 (default, none) .. 1. Highlights in the corners become cat's eyes.
-    float cat_eye;
-    // Anamorphic squeeze: height over width of a highlight, 0.25..4, default 1. Heights are kept.
-    float squeeze;
-
-    // gaussian: passes of the 5-tap kernel over the buffer, 0..64, default 3: a standard deviation of sqrt(iterations)
-    // of its pixels, square or not. With range, near_* and far_* all derived (and no lens), or faithful, the blend with
-    // the picture is strength * sat(3 |d(focus) - d(z)|), d = sat(z / far plane); else strength * max(n, f).
-    int iterations;
-    // gaussian: standard deviation in full-resolution pixels (of y; pixel_aspect narrows it) of one blur that costs the
-    // same for any, in place of the iterations; 0 (default): iterations. Up to 256. Four boxes: within 1.3 % of a true
-    // gaussian's edge.
-    float sigma;
+struct hf_params {
+    enum hf_engine engine;  // default HF_ENGINE_GATHER
+    enum hf_model model;    // default HF_MODEL_RANGE. Ignored for HF_DEPTH_COC.
+    // Distance of the plane in focus, scene units of view depth, > 0, finite. Default 10. Both models. HF_DERIVE: what
+    // pixel (width / 2, height / 2) shows; HF_ERR_FOCUS if that is no surface, but infinity for the gaussian engine.
+    // Ignored for HF_DEPTH_COC.
+    float focus;
+    struct hf_range_params range;
+    struct hf_lens_params lens;
+    // Largest CoC radius, full-resolution pixels, 0 (the input, bit for bit) to 2048. HF_DERIVE (default): 12 at 1080
+    // lines and proportional to the display height (always 12 when faithful), the chapter's reach; for the lens model
+    // and HF_DEPTH_COC in hexagon and scatter, 2048.
+    float max_radius;
+    struct hf_aperture_params aperture;
+    struct hf_view_params view;
+    struct hf_gather_params gather;
+    struct hf_hexagon_params hexagon;
+    struct hf_scatter_params scatter;
+    struct hf_gaussian_params gaussian;
+    struct hf_run_params run;
 };
 
 // The defaults given above. Copy it, then change what you need.
@@ -320,19 +392,27 @@ HF_API extern const struct hf_params hf_default_params;
 HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params);
 
-// The passes of the gather engine, in the order of the chapter's table 3.1.
-enum hf_pass_id {
-    HF_PASS_COC,
-    HF_PASS_DOWN,
-    HF_PASS_MAX_X,
-    HF_PASS_MAX_Y,
-    HF_PASS_BLUR_X,
-    HF_PASS_BLUR_Y,
-    HF_PASS_GATHER,
-    HF_PASS_FILL,
-    HF_PASS_COMPOSITE,
-    HF_PASS_COUNT
+// What parameters come to for a picture: numbers only.
+struct hf_resolved {
+    struct hf_params params;  // as given, but HF_DERIVE nowhere
+    int width, height;        // of the image
+    enum hf_limit limit;      // why params.max_radius is what it is
+    float lens_k;             // K, scene units * pixels; 0 unless the lens is in use
+    float focal_px;           // focal length of the lens, pixels of the display width
+    int sharp;                // nothing can be blurred: the frame will be a copy
 };
+
+// What hf_render would make of params (NULL: defaults) for a width x height picture, or why it would not: then the
+// sentence is in message, cut to size bytes (message may be NULL, size 0 then). depth->data may be NULL if there are no
+// pixels yet; then params->focus must not be HF_DERIVE. Errors: HF_ERR_ARG, HF_ERR_FOCUS.
+HF_API int hf_resolve(int width, int height, const struct hf_depth *depth, const struct hf_params *params,
+                      struct hf_resolved *resolved, char *message, size_t size);
+
+// Do what makes a first frame late: allocate and touch all memory that frames of this size with these parameters and
+// radii like this depth's will use, whatever parts of them turn out blurred. Renders nothing; dst and the colour of src
+// are not looked at. Errors as for hf_render.
+HF_API int hf_prepare(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                      const struct hf_depth *depth, const struct hf_params *params);
 
 // No engine has more passes.
 enum { HF_MAX_PASSES = 12 };
@@ -342,54 +422,33 @@ enum { HF_MAX_PASSES = 12 };
 HF_API int hf_pass_count(enum hf_engine engine);
 HF_API const char *hf_pass_name(enum hf_engine engine, int pass);
 
-// What the last hf_render of a context did.
-struct hf_stats {
-    double total_ms;                                 // wall time of the call
-    enum hf_engine engine;                           // that rendered it; numbers its passes
-    double pass_ms[HF_MAX_PASSES];                   // time in each pass, summed over the threads / number of threads
-    uint32_t tiles_run[HF_MAX_PASSES];               // tiles that ran the pass ...
-    uint32_t tiles_all[HF_MAX_PASSES];               // ... of how many
-    uint64_t near_pixels, sharp_pixels, far_pixels;  // pixels by their own CoC: n > 0, both 0, f > 0
-    uint64_t colour_repaired;                        // colour samples (channels of pixels) that were NaN or infinite
-    uint64_t depth_repaired;                         // depth samples that were NaN
-    uint64_t no_surface;                             // pixels without a surface
-    uint64_t clamped;  // output samples outside the range of their format, and clamped to it
-    size_t memory;     // bytes that the context holds
-    float max_radius;  // the largest CoC radius that was used, pixels
-};
-
-// Copy the statistics of the last frame. Zeros before the first.
-HF_API void hf_get_stats(const struct hf_context *c, struct hf_stats *stats);
-
-// What a scene asks of a tile.
-enum hf_tile { HF_TILE_SHARP, HF_TILE_NEAR, HF_TILE_FAR, HF_TILE_BOTH };
-
-// A pass in a plan: on how many tiles it runs, and what it costs.
+// A pass of a frame: on how many tiles it runs, and what it costs.
 struct hf_pass_report {
     const char *name;
-    const char *skipped;  // why the other tiles do without; NULL if all run
-    uint32_t run, all;    // tiles, or chunks of the first sweep
+    const char *skipped;  // why the other tiles do without; NULL if all run. Both texts live as long as the library
+    uint32_t run, all;    // tiles, or chunks of the first sweep, that call for the pass, of how many
+    uint32_t ran;         // that ran it; 0 in a plan
     double predicted_ms;  // time in the pass over the number of threads, from earlier frames or a table
-    double ms;            // what it was; 0 in a plan that has not run
+    double ms;            // what it was; 0 in a plan
 };
 
-// What a frame calls for.
+// What a frame calls for, and what became of it. All numbers, but for pass names: nothing in it ends with the context.
 struct hf_report {
-    enum hf_engine engine;  // the settings in use: what was asked for, or what a budget left of it
-    enum hf_resolution resolution;
-    int rings;        // of taps, gather; 0 for the others
+    // In use: what was asked for, or what a budget left of it. Of aperture.picture only whether there was one: it is
+    // NULL here, picture says so.
+    struct hf_resolved used;
+    int picture;
     int budget_step;  // 0: as asked for; each step is cheaper
 
     int tile_width, tile_height;  // full-resolution pixels
-    int columns, rows;            // of tiles
-    const uint8_t *tiles;    // columns * rows of enum hf_tile, from the top left; lives until the context's next call
-    uint32_t tile_count[4];  // by enum hf_tile
+    int columns, rows;            // of tiles, see hf_get_tiles
+    uint32_t tile_count[4];       // by enum hf_tile
     int passes;
     struct hf_pass_report pass[HF_MAX_PASSES];
 
     // CoC radii that there are, full-resolution pixels: the largest in front of the focus and behind it.
     float near_radius, far_radius;
-    // Colour where it is read for blurring; known only with params.colour_stats.
+    // Colour where it is read for blurring; known only with params.run.colour_stats.
     int colour_known;
     float brightest;      // largest finite sample of R, G and B
     int opaque;           // no alpha below 1
@@ -399,14 +458,25 @@ struct hf_report {
     size_t memory_saved;  // bytes that it would need besides with no_skip
     double plan_ms;       // time for planning, the look at the depth not included
     double predicted_ms;  // of the whole frame
-    double total_ms;      // what it was; 0 in a plan that has not run
+
+    // What follows is 0 in a plan.
+    double total_ms;                                 // wall time of the call
+    size_t memory_held;                              // bytes that the context holds
+    uint64_t near_pixels, sharp_pixels, far_pixels;  // pixels by their own CoC: n > 0, both 0, f > 0
+    uint64_t colour_repaired;                        // colour samples (channels of pixels) that were NaN or infinite
+    uint64_t depth_repaired;                         // depth samples that were NaN
+    uint64_t no_surface;                             // pixels without a surface
+    uint64_t clamped;  // output samples outside the range of their format, and clamped to it
 };
 
 // What hf_render would do with the same arguments, without rendering: looks at the depth only. Errors as for hf_render.
 HF_API int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                    const struct hf_depth *depth, const struct hf_params *params, struct hf_report *report);
-// What the last hf_render or hf_plan did. All zero before the first.
+// What the last hf_render, hf_plan or hf_prepare did. All zero before the first and after one that failed.
 HF_API void hf_get_report(const struct hf_context *c, struct hf_report *report);
+// Copy what the report's tiles are: enum hf_tile, row by row from the top left, as many as there are or fit. Returns how
+// many there are, columns * rows; 0 where the report is zero.
+HF_API size_t hf_get_tiles(const struct hf_context *c, uint8_t *tiles, size_t size);
 
 // One intermediate buffer, for looking at and for tests: planes of floats.
 struct hf_buffer {

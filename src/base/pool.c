@@ -187,3 +187,11 @@ void hf_pool_close(struct hf_pool **pool)
     pthread_mutex_destroy(&p->lock);
     p->mem->free(p->mem->cookie, p);
 }
+
+void hf_pool_abandon(struct hf_pool **pool)
+{
+    struct hf_pool *p = *pool;
+    *pool = NULL;
+    if (p)
+        p->mem->free(p->mem->cookie, p);
+}

@@ -12,6 +12,8 @@ int hf_pool_open(struct hf_pool **out, int threads, const struct hf_mem *mem);
 // What it takes from the allocator.
 size_t hf_pool_bytes(int threads);
 void hf_pool_close(struct hf_pool **pool);
+// The same in a child after fork(), where its threads are not: frees its memory alone.
+void hf_pool_abandon(struct hf_pool **pool);
 
 // Calls fn(arg, i, worker) for i in [0, n), each once, in this order, on all workers including the caller (worker 0).
 // Returns when all are done. worker < threads picks scratch memory.

@@ -46,7 +46,7 @@ int cli_aperture_load(struct cli_aperture *a, struct cli_args *args, struct cli_
         return cli_fail(error, CLI_BAD_ARGUMENTS, "--aperture: %s", io.message);
     const int status = read_file(a, file, args->aperture_file, error);
     hf_io_close(&file);
-    args->params.aperture = &a->image;
+    args->params.aperture.picture = &a->image;
     return status;
 }
 

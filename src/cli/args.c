@@ -133,8 +133,7 @@ static int check_depth(const struct cli_args *args, struct cli_error *error)
 {
     const int ndc = args->depth_type == HF_DEPTH_NDC_D3D || args->depth_type == HF_DEPTH_NDC_GL ||
                     args->depth_type == HF_DEPTH_NDC_REVERSED;
-    char type[32];
-    cli_choice_name("depth-type", (int)args->depth_type, type, sizeof(type));
+    const char *type = hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type);
     if (ndc && (!given(args->near_plane) || !given(args->far_plane)))
         return cli_fail(error, -1, "--depth-type %s needs --%s", type, given(args->near_plane) ? "far" : "near");
     if (args->near_plane >= args->far_plane)
@@ -183,32 +182,32 @@ static int check_engine(const struct cli_args *args, struct cli_error *error)
         int given, allowed;
         const char *option, *engines;
     } rules[] = {
-        {p->chromatic != d->chromatic, scatter, "chromatic", "scatter"},
-        {p->cat_eye != d->cat_eye, scatter, "cat-eye", "scatter"},
-        {p->squeeze != d->squeeze, scatter, "squeeze", "scatter"},
-        {p->uniform, hexagon, "uniform", "hexagon"},
-        {p->iterations != d->iterations, gaussian, "iterations", "gaussian"},
-        {p->sigma != d->sigma, gaussian, "sigma", "gaussian"},
-        {p->resolution == HF_RESOLUTION_HALF, !gather, "resolution half", "hexagon, scatter and gaussian"},
-        {p->resolution == HF_RESOLUTION_QUARTER, gaussian, "resolution quarter", "gaussian"},
-        {p->karis, gather, "karis", "gather"},
-        {p->per_pixel_kernel, gather, "per-pixel-kernel", "gather"},
-        {p->bicubic, gather, "bicubic", "gather"},
-        {p->fill != d->fill, gather, "fill", "gather"},
-        {p->storage != d->storage, gather, "storage", "gather"},
-        {p->faithful, gather || gaussian, "faithful", "gather and gaussian"},
+        {p->scatter.chromatic != d->scatter.chromatic, scatter, "chromatic", "scatter"},
+        {p->aperture.cat_eye != d->aperture.cat_eye, scatter, "cat-eye", "scatter"},
+        {p->aperture.squeeze != d->aperture.squeeze, scatter, "squeeze", "scatter"},
+        {p->hexagon.uniform, hexagon, "uniform", "hexagon"},
+        {p->gaussian.iterations != d->gaussian.iterations, gaussian, "iterations", "gaussian"},
+        {p->gaussian.sigma != d->gaussian.sigma, gaussian, "sigma", "gaussian"},
+        {args->resolution == HF_RESOLUTION_HALF, !gather, "resolution half", "hexagon, scatter and gaussian"},
+        {args->resolution == HF_RESOLUTION_QUARTER, gaussian, "resolution quarter", "gaussian"},
+        {p->gather.karis, gather, "karis", "gather"},
+        {p->gather.per_pixel_kernel, gather, "per-pixel-kernel", "gather"},
+        {p->gather.bicubic, gather, "bicubic", "gather"},
+        {p->gather.fill != d->gather.fill, gather, "fill", "gather"},
+        {p->gather.storage != d->gather.storage, gather, "storage", "gather"},
+        {args->faithful, gather || gaussian, "faithful", "gather and gaussian"},
     };
     for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++)
         if (rules[i].given && !rules[i].allowed)
             return cli_fail(error, -1, "--%s is of use only with --engine %s, not %s", rules[i].option,
                             rules[i].engines, hf_engine_name(p->engine));
-    const int plain = !args->aperture_file && p->ring == 0 && p->blade_roundness == 0;
-    if (args->aperture && gather && (!plain || (p->blades && (p->blades < 5 || p->blades > 9))))
+    const int plain = !args->aperture_file && p->aperture.ring == 0 && p->aperture.roundness == 0;
+    if (args->aperture && gather && !plain)
         return cli_fail(error, -1,
                         "--aperture: '%s' is not an aperture of the gather engine, which takes disc or "
-                        "ngon:N[:0[:DEGREES]] with 5 to 9 sides",
+                        "ngon:N[:0[:DEGREES]]",
                         args->aperture);
-    if (args->aperture && hexagon && (!plain || (p->blades != 6)))
+    if (args->aperture && hexagon && (!plain || (p->aperture.blades != 6)))
         return cli_fail(error, -1,
                         "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
                         "ngon:6[:0[:DEGREES]]",
@@ -263,6 +262,9 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_erro
     }
     if (args->help || args->version)
         return 0;
+    struct hf_params *p = &args->params;
+    p->hexagon.resolution = p->scatter.resolution = p->gaussian.resolution = args->resolution;
+    p->gather.faithful = p->gaussian.faithful = args->faithful;
     if (!args->input && json_word && args->json_file == json_word) {
         args->json_file = NULL;
         if (parse_input(args, json_word, error))

@@ -30,6 +30,9 @@ struct cli_args {
     // The model and what belongs to it depend on the file, see setup.h.
     struct hf_params params;
 
+    enum hf_resolution resolution;  // of whichever engine
+    int faithful;                   // likewise
+
     enum cli_focus focus_by;
     int focus_given, focus_at_given;  // --focus in either form, --focus-at
     float focus;                      // scene units
@@ -81,10 +84,11 @@ struct cli_option {
                               // of words that are accepted, "a|b"
     const char *help;
     cli_parse *parse;
-    size_t offset;   // in struct cli_args, of what parse sets
-    float min, max;  // of a number, inclusive
-    int above_min;   // ... but min itself is excluded
-    int inf;         // inf is accepted
+    size_t offset;        // in struct cli_args, of what parse sets
+    float min, max;       // of a number, inclusive
+    int above_min;        // ... but min itself is excluded
+    int inf;              // inf is accepted
+    enum hf_names names;  // of a choice that the library has words for
 };
 
 extern const struct cli_option cli_options[];
@@ -92,11 +96,9 @@ extern const int cli_option_count;
 extern const char *const cli_group_names[CLI_GROUPS];
 
 // Value parsers, the last column of the table. All return 0, or -1 with *error filled.
-cli_parse cli_parse_flag, cli_parse_number, cli_parse_count, cli_parse_text, cli_parse_choice, cli_parse_choice_text;
+cli_parse cli_parse_flag, cli_parse_number, cli_parse_count, cli_parse_text, cli_parse_name, cli_parse_choice,
+    cli_parse_choice_text;
 cli_parse cli_parse_focus, cli_parse_focus_at, cli_parse_aperture, cli_parse_json;
-
-// The word that stands for a value of an option that is a choice; "?" when there is none. buf receives it.
-const char *cli_choice_name(const char *option, int value, char *buf, size_t size);
 
 // Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
 // --version the rest of the line is not looked at.

@@ -4,6 +4,8 @@
 // the frames.
 #include "cli/batch.h"
 
+#include "cli/explain.h"
+
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -65,8 +67,8 @@ static void warn(const struct cli_frame *frame)
 {
     unsigned long long colour = 0, depth = 0;
     for (int i = 0; i < frame->view_count; i++) {
-        colour += frame->views[i].stats.colour_repaired;
-        depth += frame->views[i].stats.depth_repaired;
+        colour += frame->views[i].report.colour_repaired;
+        depth += frame->views[i].report.depth_repaired;
     }
     if (colour || depth)
         cli_print_line("%s: %llu colour and %llu depth samples were not finite, neighbours took their place",
@@ -94,14 +96,15 @@ static int make_frame(struct cli_frame *frame, struct cli_session *session, cons
 // What to say of a frame that is done.
 static void describe(const struct cli_frame *frame, const struct hf_report *report, double ms, char *text, size_t size)
 {
-    static const char *const resolutions[] = {"full", "half", "quarter"};
+    const struct hf_params *used = &report->used.params;
     const struct cli_setup *setup = &frame->views[0].setup;
     int n = snprintf(text, size, "%.2f s", ms / 1000);
-    if (setup->focus_from && setup->params.focus_distance != HF_DERIVE)
-        n += snprintf(text + n, size - (size_t)n, ", focus %.4g", setup->params.focus_distance);
+    if (setup->focus_from && setup->params.focus != HF_DERIVE)
+        n += snprintf(text + n, size - (size_t)n, ", focus %.4g", setup->params.focus);
     if (report->budget_step)
         snprintf(text + n, size - (size_t)n, ", for the budget %s at %s resolution (step %d)",
-                 hf_engine_name(report->engine), resolutions[report->resolution], report->budget_step);
+                 hf_engine_name(used->engine), hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(used)),
+                 report->budget_step);
 }
 
 static void finish(struct batch *b, struct cli_frame *frame, const struct cli_session *session, struct cli_record *r,
@@ -248,9 +251,9 @@ static void print_summary(struct batch *b)
     if (done)
         cli_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->workers, b->threads,
                        b->threads > 1 ? "s" : "", peak_memory() / GIB * 1024, shares);
-    for (int s = 0; s < MAX_STEPS && b->args->params.budget_ms > 0; s++)
+    for (int s = 0; s < MAX_STEPS && b->args->params.run.budget_ms > 0; s++)
         if (b->chosen[s])
-            cli_print_line("--budget-ms %g: %d frames %s%.0d", b->args->params.budget_ms, (int)b->chosen[s],
+            cli_print_line("--budget-ms %g: %d frames %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
                            s ? "at step " : "as asked for", s);
     if (done + skipped + failed < p->total)
         cli_print_line("stopped%s; the same command with --resume makes the other %d frames",

@@ -8,24 +8,37 @@
 
 int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct cli_error *error)
 {
-    hf_get_report(context, &v->report);
-    const size_t tiles = (size_t)v->report.columns * (size_t)v->report.rows;
-    v->tiles = malloc(tiles);
+    const size_t tiles = hf_get_tiles(context, NULL, 0);
+    v->tiles = malloc(tiles + 1);
     if (!v->tiles)
         return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
-    memcpy(v->tiles, v->report.tiles, tiles);
-    v->report.tiles = v->tiles;
+    hf_get_tiles(context, v->tiles, tiles);
     return 0;
+}
+
+enum hf_resolution cli_explain_resolution(const struct hf_params *p)
+{
+    switch (p->engine) {
+    case HF_ENGINE_HEXAGON:
+        return p->hexagon.resolution;
+    case HF_ENGINE_SCATTER:
+        return p->scatter.resolution;
+    case HF_ENGINE_GAUSSIAN:
+        return p->gaussian.resolution;
+    default:
+        return HF_RESOLUTION_FULL;
+    }
 }
 
 static void print_settings(FILE *out, const struct hf_report *r)
 {
-    static const char *const resolutions[] = {"full", "half", "quarter"};
-    fprintf(out, "  engine %s", hf_engine_name(r->engine));
-    if (r->engine == HF_ENGINE_GATHER)
-        fprintf(out, ", %d ring%s of taps", r->rings, r->rings == 1 ? "" : "s");
+    const struct hf_params *p = &r->used.params;
+    const int rings = p->gather.rings;
+    fprintf(out, "  engine %s", hf_engine_name(p->engine));
+    if (p->engine == HF_ENGINE_GATHER)
+        fprintf(out, ", %d ring%s of taps", rings, rings == 1 ? "" : "s");
     else
-        fprintf(out, ", %s resolution", resolutions[r->resolution]);
+        fprintf(out, ", %s resolution", hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(p)));
     if (r->budget_step > 0)
         fprintf(out, ", %d step%s below what was asked for, to keep the budget", r->budget_step,
                 r->budget_step == 1 ? "" : "s");

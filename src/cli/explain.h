@@ -10,6 +10,9 @@
 // Keep a context's report with its view, tiles included, which the context overwrites. 0, or an exit code.
 int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct cli_error *error);
 
+// Of the engine in use; full where it has none to choose.
+enum hf_resolution cli_explain_resolution(const struct hf_params *params);
+
 // The table of all views. ran: frames were rendered, not only planned.
 void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran);
 

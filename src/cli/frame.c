@@ -36,12 +36,10 @@ void cli_session_close(struct cli_session *session)
 
 int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct cli_error *error)
 {
-    char isa[32];
-    cli_choice_name("isa", (int)args->isa, isa, sizeof(isa));
     *session = (struct cli_session){0};
     if (!hf_isa_available(args->isa))
         return cli_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
-                        isa);
+                        hf_isa_name(args->isa));
     const struct hf_config config = {.threads = threads, .isa = args->isa, .log = on_log, .log_cookie = session};
     const int status = hf_open(&session->context, &config);
     // Without threads of their own files are read and written on this one.
@@ -55,7 +53,7 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, i
     if (status == HF_ERR_ISA && args->isa == HF_ISA_AUTO && variable)
         return cli_fail(error, CLI_BAD_ARGUMENTS, "HYPERFOCAL_ISA=%s: %s", variable, why);
     return cli_fail(error, status == HF_ERR_MEMORY || status == HF_ERR_THREAD ? CLI_ALL_FAILED : CLI_BAD_ARGUMENTS,
-                    "--threads %d, --isa %s: %s", args->threads, isa, why);
+                    "--threads %d, --isa %s: %s", args->threads, hf_isa_name(args->isa), why);
 }
 
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
@@ -139,7 +137,7 @@ int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *err
     if (!status)
         status = cli_setup_view(&v->setup, frame->args, v->view, v->depth, v->label, error);
     if (!status)
-        *focus = v->setup.params.focus_distance;
+        *focus = v->setup.params.focus;
     return status;
 }
 
@@ -151,7 +149,7 @@ static void share_focus(struct cli_frame *frame, struct cli_args *args)
     if (!cli_focus_needs_depth(frame->args) || frame->args->focus_per_view)
         return;
     args->focus_by = CLI_FOCUS_DISTANCE;
-    args->focus = first->params.focus_distance;
+    args->focus = first->params.focus;
     args->focus_from = first->focus_from;
 }
 
@@ -195,7 +193,7 @@ static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
         return cli_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
                         session->log.text[0] ? session->log.text : hf_error_string(status));
     }
-    hf_get_stats(session->context, &v->stats);
+    hf_get_report(session->context, &v->report);
     free(v->depth);
     v->depth = NULL;
     const struct cli_args *args = frame->args;
@@ -212,7 +210,7 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
         return status;
     if (frame->args->dump_dir)
         cli_dump_begin(&dump, session->context, frame, v);
-    v->setup.params.colour_stats = frame->args->explain;
+    v->setup.params.run.colour_stats = frame->args->explain;
     const double start = now_ms();
     status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
     frame->ms[CLI_DEFOCUS] += now_ms() - start;
@@ -226,7 +224,7 @@ static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     int status = load_view(frame, v, session, &image, error);
     if (status)
         return status;
-    v->setup.params.colour_stats = frame->args->explain;
+    v->setup.params.run.colour_stats = frame->args->explain;
     status = hf_plan(session->context, &image, &image, &v->setup.depth, &v->setup.params, NULL);
     return finish_view(frame, v, session, status, error);
 }

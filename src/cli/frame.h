@@ -20,7 +20,6 @@ struct cli_view {
     struct cli_setup setup;
     float *depth;  // NULL: not read yet, or not needed any more
     float *planes[4];
-    struct hf_stats stats;
     struct hf_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/json.h"
 
+#include "cli/explain.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -91,7 +93,7 @@ static void put_model(FILE *out, const struct cli_setup *setup)
     const struct hf_params *p = &setup->params;
     fprintf(out, ",\n      \"model\": \"%s\"", cli_model_name(setup->model));
     fputs(",\n      \"focus\": ", out);
-    cli_json_number(out, setup->focus_from && p->focus_distance != HF_DERIVE ? p->focus_distance : NAN);
+    cli_json_number(out, setup->focus_from && p->focus != HF_DERIVE ? p->focus : NAN);
     fputs(",\n      \"focus_from\": ", out);
     cli_json_text(out, setup->focus_from);
     if (setup->model != CLI_MODEL_LENS)
@@ -99,10 +101,10 @@ static void put_model(FILE *out, const struct cli_setup *setup)
     const struct {
         const char *name;
         float value;
-    } lens[] = {{"fstop", p->f_number},
-                {"focal_length", p->focal_length_mm},
-                {"sensor_width", p->sensor_width_mm},
-                {"world_unit", p->world_unit_m}};
+    } lens[] = {{"fstop", p->lens.f_number},
+                {"focal_length", p->lens.focal_length_mm},
+                {"sensor_width", p->lens.sensor_width_mm},
+                {"world_unit", p->lens.world_unit_m}};
     for (size_t i = 0; i < sizeof(lens) / sizeof(lens[0]); i++) {
         fprintf(out, ",\n      \"%s\": ", lens[i].name);
         cli_json_number(out, lens[i].value);
@@ -111,12 +113,12 @@ static void put_model(FILE *out, const struct cli_setup *setup)
 
 static void put_stats(FILE *out, const struct cli_view *v, const struct cli_frame *frame)
 {
-    const struct hf_stats *s = &v->stats;
+    const struct hf_report *s = &v->report;
     const double pixels = (double)v->view->width * v->view->height;
     // The file layer counts over all views, so with several only the sum is known, which is beside them.
     const uint64_t clamped = s->clamped + (frame->view_count == 1 ? frame->written.clamped : 0);
     fprintf(out, ",\n      \"max_radius\": ");
-    cli_json_number(out, s->max_radius);
+    cli_json_number(out, s->used.params.max_radius);
     fprintf(out,
             ",\n      \"near_share\": %.9g,\n      \"sharp_share\": %.9g,\n      \"far_share\": %.9g"
             ",\n      \"colour_repaired\": %" PRIu64 ",\n      \"depth_repaired\": %" PRIu64
@@ -124,22 +126,23 @@ static void put_stats(FILE *out, const struct cli_view *v, const struct cli_fram
             (double)s->near_pixels / pixels, (double)s->sharp_pixels / pixels, (double)s->far_pixels / pixels,
             s->colour_repaired, s->depth_repaired, s->no_surface, clamped);
     fprintf(out, ",\n      \"total_ms\": %.6f,\n      \"passes\": [", s->total_ms);
-    for (int i = 0; i < hf_pass_count(s->engine); i++)
-        fprintf(out, "%s\n        {\"name\": \"%s\", \"ms\": %.6f}", i ? "," : "", hf_pass_name(s->engine, i),
-                s->pass_ms[i]);
+    for (int i = 0; i < hf_pass_count(s->used.params.engine); i++)
+        fprintf(out, "%s\n        {\"name\": \"%s\", \"ms\": %.6f}", i ? "," : "",
+                hf_pass_name(s->used.params.engine, i), s->pass[i].ms);
     fputs("\n      ]", out);
 }
 
 static void put_report(FILE *out, const struct hf_report *r)
 {
-    static const char *const resolutions[] = {"full", "half", "quarter"};
+    const struct hf_params *used = &r->used.params;
+    const int rings = used->engine == HF_ENGINE_GATHER && !r->used.sharp ? used->gather.rings : 0;
     fprintf(out,
             ",\n      \"plan\": {\n        \"engine\": \"%s\",\n        \"resolution\": \"%s\",\n        \"rings\": %d"
             ",\n        \"budget_step\": %d,\n        \"tile_size\": [%d, %d]"
             ",\n        \"tiles\": {\"sharp\": %u, \"near\": %u, \"far\": %u, \"both\": %u}",
-            hf_engine_name(r->engine), resolutions[r->resolution], r->rings, r->budget_step, r->tile_width,
-            r->tile_height, r->tile_count[HF_TILE_SHARP], r->tile_count[HF_TILE_NEAR], r->tile_count[HF_TILE_FAR],
-            r->tile_count[HF_TILE_BOTH]);
+            hf_engine_name(used->engine), hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(used)), rings,
+            r->budget_step, r->tile_width, r->tile_height, r->tile_count[HF_TILE_SHARP], r->tile_count[HF_TILE_NEAR],
+            r->tile_count[HF_TILE_FAR], r->tile_count[HF_TILE_BOTH]);
     if (r->colour_known)
         fprintf(out, ",\n        \"brightest\": %.9g,\n        \"opaque\": %s,\n        \"not_finite\": %" PRIu64,
                 r->brightest, r->opaque ? "true" : "false", r->not_finite);
@@ -180,7 +183,6 @@ static void put_view(FILE *out, const struct cli_view *v, const struct cli_frame
 void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context)
 {
     const struct cli_args *args = frame->args;
-    char name[32];
     fputs("{\n  \"command\": ", out);
     cli_json_command(out, argc, argv);
     fprintf(out, ",\n  \"version\": \"%s\"", hf_version());
@@ -188,10 +190,10 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     cli_json_text(out, args->input);
     fputs(",\n  \"output\": ", out);
     cli_json_text(out, args->output);
-    fprintf(out, ",\n  \"engine\": \"%s\"", cli_choice_name("engine", (int)args->params.engine, name, sizeof(name)));
+    fprintf(out, ",\n  \"engine\": \"%s\"", hf_engine_name(args->params.engine));
     fprintf(out, ",\n  \"isa\": \"%s\",\n  \"threads\": %d", hf_isa_name(hf_context_isa(context)),
             hf_context_threads(context));
-    fprintf(out, ",\n  \"storage\": \"%s\"", cli_choice_name("storage", (int)args->params.storage, name, sizeof(name)));
+    fprintf(out, ",\n  \"storage\": \"%s\"", hf_name(HF_NAMES_STORAGE, (int)args->params.gather.storage));
     if (args->dry_run)
         fputs(",\n  \"dry_run\": true", out);
     else

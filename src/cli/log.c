@@ -73,13 +73,13 @@ static void put_views(FILE *out, const struct cli_frame *frame)
         fputs(i ? ", {\"name\": " : "{\"name\": ", out);
         cli_json_text(out, v->view->name);
         fputs(", \"focus\": ", out);
-        cli_json_number(out, s->focus_from && s->params.focus_distance > 0 ? s->params.focus_distance : NAN);
+        cli_json_number(out, s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
         fputs(", \"focus_from\": ", out);
         cli_json_text(out, s->focus_from);
         fputs(", \"max_radius\": ", out);
-        cli_json_number(out, v->stats.max_radius);
+        cli_json_number(out, v->report.used.params.max_radius);
         fprintf(out, ", \"colour_repaired\": %llu, \"depth_repaired\": %llu}",
-                (unsigned long long)v->stats.colour_repaired, (unsigned long long)v->stats.depth_repaired);
+                (unsigned long long)v->report.colour_repaired, (unsigned long long)v->report.depth_repaired);
     }
     fputc(']', out);
 }
@@ -105,7 +105,7 @@ void cli_log_frame(struct cli_log *log, const struct cli_record *r)
         put_stages(out, r->frame);
         put_views(out, r->frame);
         fprintf(out, ", \"clamped\": %llu, \"engine\": \"%s\", \"budget_step\": %d",
-                (unsigned long long)r->frame->written.clamped, hf_engine_name(r->report->engine),
+                (unsigned long long)r->frame->written.clamped, hf_engine_name(r->report->used.params.engine),
                 r->report->budget_step);
     }
     if (r->why) {

@@ -18,12 +18,11 @@
 static void print_plan(const struct cli_frame *frame, const struct hf_context *context)
 {
     const struct cli_args *args = frame->args;
-    char engine[32], storage[32], type[32], name[CLI_SHOWN], other[CLI_SHOWN];
+    char name[CLI_SHOWN], other[CLI_SHOWN];
     printf("%s: would write %s\n", cli_shown(args->input, name),
            args->output ? cli_shown(args->output, other) : "nothing, as there is no -o");
-    printf("  engine %s, %s storage, %d threads, %s\n",
-           cli_choice_name("engine", (int)args->params.engine, engine, sizeof(engine)),
-           cli_choice_name("storage", (int)args->params.storage, storage, sizeof(storage)), hf_context_threads(context),
+    printf("  engine %s, %s storage, %d threads, %s\n", hf_engine_name(args->params.engine),
+           hf_name(HF_NAMES_STORAGE, (int)args->params.gather.storage), hf_context_threads(context),
            hf_isa_name(hf_context_isa(context)));
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
@@ -34,22 +33,22 @@ static void print_plan(const struct cli_frame *frame, const struct hf_context *c
                data->x0, data->y0, data->x1 - 1, data->y1 - 1, display->x0, display->y0, display->x1 - 1,
                display->y1 - 1);
         printf("    depth %s, type %s\n", cli_shown(args->depth_file ? args->depth_file : v->view->depth, name),
-               cli_choice_name("depth-type", (int)args->depth_type, type, sizeof(type)));
+               hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)
-            printf(", f/%g, focal length %g mm, sensor %g mm, world unit %g m", p->f_number, p->focal_length_mm,
-                   p->sensor_width_mm, p->world_unit_m);
-        const int autofocus = p->focus_distance == HF_DERIVE;  // no number yet
+            printf(", f/%g, focal length %g mm, sensor %g mm, world unit %g m", p->lens.f_number,
+                   p->lens.focal_length_mm, p->lens.sensor_width_mm, p->lens.world_unit_m);
+        const int autofocus = p->focus == HF_DERIVE;  // no number yet
         if (autofocus)
             printf(", focus from %s", v->setup.focus_from);
         else if (v->setup.focus_from)
-            printf(", focus %g from %s", p->focus_distance, v->setup.focus_from);
-        if (v->setup.model == CLI_MODEL_RANGE && p->range != HF_DERIVE)
-            printf(", range %g", p->range);
+            printf(", focus %g from %s", p->focus, v->setup.focus_from);
+        if (v->setup.model == CLI_MODEL_RANGE && p->range.distance != HF_DERIVE)
+            printf(", range %g", p->range.distance);
         else if (v->setup.model == CLI_MODEL_RANGE && !autofocus)
-            printf(", range %g", p->focus_distance / 2);
+            printf(", range %g", p->focus / 2);
         if (v->setup.model == CLI_MODEL_RANGE)
-            printf(", strength %g", p->strength);
+            printf(", strength %g", p->range.strength);
         printf("\n");
     }
 }
@@ -59,12 +58,12 @@ static void print_warnings(const struct cli_frame *frame)
 {
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
-        if (v->stats.colour_repaired)
+        if (v->report.colour_repaired)
             cli_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place", v->label,
-                           v->stats.colour_repaired);
-        if (v->stats.depth_repaired)
+                           v->report.colour_repaired);
+        if (v->report.depth_repaired)
             cli_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
-                           v->stats.depth_repaired);
+                           v->report.depth_repaired);
     }
     if (frame->written.note[0])
         cli_print_line("%s", frame->written.note);

@@ -5,20 +5,8 @@
 #include <float.h>
 #include <stddef.h>
 
-// A choice is stored as its place in the list, so these lists are in the order of the enums.
-_Static_assert(HF_ENGINE_GATHER == 0 && HF_ENGINE_HEXAGON == 1 && HF_ENGINE_SCATTER == 2 && HF_ENGINE_GAUSSIAN == 3,
-               "order of --engine");
-_Static_assert(HF_RESOLUTION_FULL == 0 && HF_RESOLUTION_HALF == 1 && HF_RESOLUTION_QUARTER == 2,
-               "order of --resolution");
-_Static_assert(HF_STORAGE_FLOAT == 0 && HF_STORAGE_HALF == 1 && HF_STORAGE_CHAPTER == 2, "order of --storage");
-_Static_assert(HF_FILL_MAX == 0 && HF_FILL_MEAN == 1 && HF_FILL_NONE == 2, "order of --fill");
-_Static_assert(HF_BLEND_LINEAR == 0 && HF_BLEND_SMOOTHSTEP == 1, "order of --blend");
-_Static_assert(HF_DEPTH_VIEW == 0 && HF_DEPTH_RAY == 1 && HF_DEPTH_NDC_D3D == 2 && HF_DEPTH_NDC_GL == 3 &&
-                   HF_DEPTH_NDC_REVERSED == 4 && HF_DEPTH_INVERSE == 5 && HF_DEPTH_COC == 6,
-               "order of --depth-type");
-_Static_assert(HF_ISA_AUTO == 0 && HF_ISA_SCALAR == 1 && HF_ISA_SSE41 == 2 && HF_ISA_AVX2 == 3 && HF_ISA_AVX512 == 4 &&
-                   HF_ISA_NEON == 5,
-               "order of --isa");
+// A choice is stored as an int.
+_Static_assert(sizeof(enum hf_isa) == sizeof(int) && sizeof(enum hf_engine) == sizeof(int), "size of an enum");
 
 // clang-format off
 const char *const cli_group_names[CLI_GROUPS] = {
@@ -33,6 +21,7 @@ const char *const cli_group_names[CLI_GROUPS] = {
 #define FIELD(f) .offset = offsetof(struct cli_args, f)
 #define FLAG(f) .parse = cli_parse_flag, FIELD(f)
 #define TEXT(f) .parse = cli_parse_text, FIELD(f)
+#define NAME(f, of) .parse = cli_parse_name, FIELD(f), .names = HF_NAMES_##of
 #define CHOICE(f) .parse = cli_parse_choice, FIELD(f)
 #define NUMBER(f, least, most) .parse = cli_parse_number, FIELD(f), .min = (least), .max = (most)
 #define POSITIVE(f) NUMBER(f, 0, FLT_MAX), .above_min = 1
@@ -77,8 +66,8 @@ const struct cli_option cli_options[] = {
      NUMBER(far_begin, 0, FLT_MAX)},
     {"far-end", 0, CLI_FOCUS, "D", "Far blur is full from here on, scene units. Default: focus + range.",
      NUMBER(far_end, 0, FLT_MAX)},
-    {"max-radius", 0, CLI_FOCUS, "PX", "Largest blur radius, pixels, 0 (none) to 256. Default: 12 at 1080 lines, "
-     "in proportion to the height.", NUMBER(params.max_radius, 0, 256)},
+    {"max-radius", 0, CLI_FOCUS, "PX", "Largest blur radius, pixels, 0 (none) to 2048. Default: 12 at 1080 lines, "
+     "in proportion to the height.", NUMBER(params.max_radius, 0, 2048)},
 
     {"fstop", 0, CLI_LENS, "N", "f-number, more than 0, or inf (no blur). Default: the header's aperture.",
      POSITIVE(fstop), .inf = 1},
@@ -95,7 +84,7 @@ const struct cli_option cli_options[] = {
     {"depth-type", 0, CLI_DEPTH, "view|ray|ndc-d3d|ndc-gl|ndc-reversed|inverse|coc", "What depth holds: distance "
      "along the camera's axis (view, the default) or along the ray; a depth buffer from 0 to 1 (ndc-d3d), -1 to 1 "
      "(ndc-gl) or 1 to 0 (ndc-reversed), which need --near and --far; 1/distance; or signed blur radii in pixels, "
-     "near ones negative (coc), which need no focus.", CHOICE(depth_type)},
+     "near ones negative (coc), which need no focus.", NAME(depth_type, DEPTH_TYPE)},
     {"near", 0, CLI_DEPTH, "D", "Near clip plane of an ndc depth, scene units; with gaussian of any.",
      POSITIVE(near_plane)},
     {"far", 0, CLI_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf; with gaussian of any.",
@@ -103,38 +92,38 @@ const struct cli_option cli_options[] = {
 
     {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian", "How to blur. gather (default): half-resolution near "
      "and far fields, the fastest. hexagon: hexagonal highlights in two passes. scatter: every pixel becomes the "
-     "aperture's picture, the most accurate. gaussian: soft, with autofocus.", CHOICE(params.engine)},
+     "aperture's picture, the most accurate. gaussian: soft, with autofocus.", NAME(params.engine, ENGINE)},
     {"aperture", 0, CLI_LOOK, "disc|ngon:N[:ROUNDNESS[:DEGREES]]|ring:R|FILE", "Shape of a highlight: a disc "
-     "(default), or a polygon with 5 to 9 sides turned by some degrees. scatter: 3 to 16 sides, rounded by 0 to 1; a "
+     "(default), or a polygon with 3 to 16 sides turned by some degrees. scatter: rounded by 0 to 1; a "
      "ring whose hole has R of the radius, 0 to 0.95; or the picture in FILE. hexagon: ngon:6 and the degrees.",
      .parse = cli_parse_aperture},
     {"chromatic", 0, CLI_LOOK, "S", "scatter: red highlights larger by this fraction and blue ones smaller behind the "
-     "focus, the other way before it, -0.5 to 0.5. Default 0.", NUMBER(params.chromatic, -0.5, 0.5)},
+     "focus, the other way before it, -0.5 to 0.5. Default 0.", NUMBER(params.scatter.chromatic, -0.5, 0.5)},
     {"cat-eye", 0, CLI_LOOK, "S", "scatter: cut highlights towards the corners, 0 (default) to 1.",
-     NUMBER(params.cat_eye, 0, 1)},
+     NUMBER(params.aperture.cat_eye, 0, 1)},
     {"squeeze", 0, CLI_LOOK, "S", "scatter: height over width of a highlight, 0.25 to 4. Default 1.",
-     NUMBER(params.squeeze, 0.25, 4)},
-    {"uniform", 0, CLI_LOOK, NULL, "hexagon: the same blur everywhere, --max-radius.", FLAG(params.uniform)},
+     NUMBER(params.aperture.squeeze, 0.25, 4)},
+    {"uniform", 0, CLI_LOOK, NULL, "hexagon: the same blur everywhere, --max-radius.", FLAG(params.hexagon.uniform)},
     {"iterations", 0, CLI_LOOK, "N", "gaussian: passes of the 5-tap blur, 0 to 64. Default 3.",
-     .parse = cli_parse_count, FIELD(params.iterations), .max = 64},
+     .parse = cli_parse_count, FIELD(params.gaussian.iterations), .max = 64},
     {"sigma", 0, CLI_LOOK, "PX", "gaussian: one blur of this standard deviation, pixels, in place of --iterations, 0 "
-     "to 256. Default 0: iterations.", NUMBER(params.sigma, 0, 256)},
+     "to 256. Default: iterations.", NUMBER(params.gaussian.sigma, 0, 256)},
     {"resolution", 0, CLI_LOOK, "full|half|quarter", "hexagon, scatter, gaussian: size of the working buffers, quarter "
-     "only for gaussian. Default full.", CHOICE(params.resolution)},
+     "only for gaussian. Default full.", NAME(resolution, RESOLUTION)},
     {"fill", 0, CLI_LOOK, "max|mean|none", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, or "
-     "three times as many taps.", CHOICE(params.fill)},
+     "three times as many taps.", NAME(params.gather.fill, FILL)},
     {"blend", 0, CLI_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",
-     CHOICE(params.blend)},
-    {"rings", 0, CLI_LOOK, "N", "gather: rings of taps, 1 to 64; 0 (default): as many as lie two half-resolution pixels "
-     "apart. Fewer are faster.", .parse = cli_parse_count, FIELD(params.rings), .max = 64},
-    {"karis", 0, CLI_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(params.karis)},
+     NAME(params.range.blend, BLEND)},
+    {"rings", 0, CLI_LOOK, "N", "gather: rings of taps, 1 to 64. Default: as many as lie two half-resolution pixels "
+     "apart. Fewer are faster.", .parse = cli_parse_count, FIELD(params.gather.rings), .min = 1, .max = 64},
+    {"karis", 0, CLI_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(params.gather.karis)},
     {"per-pixel-kernel", 0, CLI_LOOK, NULL, "Scale the far kernel by each pixel's own blur.",
-     FLAG(params.per_pixel_kernel)},
+     FLAG(params.gather.per_pixel_kernel)},
     {"bicubic", 0, CLI_LOOK, NULL, "Upsample the near field with a B-spline, not bilinearly.",
-     FLAG(params.bicubic)},
-    {"faithful", 0, CLI_LOOK, NULL, "Reproduce the published demo, its flaws included.", FLAG(params.faithful)},
-    {"storage", 0, CLI_LOOK, "float|half|chapter", "Buffers between passes: 32-bit floats (default), 16-bit floats, "
-     "or the packed formats of the book chapter.", CHOICE(params.storage)},
+     FLAG(params.gather.bicubic)},
+    {"faithful", 0, CLI_LOOK, NULL, "Reproduce the published demo, its flaws included.", FLAG(faithful)},
+    {"storage", 0, CLI_LOOK, "float|half|packed", "Buffers between passes: 32-bit floats (default), 16-bit floats, "
+     "or the packed formats of the book chapter.", NAME(params.gather.storage, STORAGE)},
 
     {"threads", 0, CLI_RUN, "N", "Threads to work on, up to 256; 0 (default): one per processor.",
      .parse = cli_parse_count, FIELD(threads), .max = 256},
@@ -147,12 +136,12 @@ const struct cli_option cli_options[] = {
     {"log", 0, CLI_RUN, "FILE", "Append what happens to each frame to FILE, one JSON object a line.",
      TEXT(log_file)},
     {"isa", 0, CLI_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
-     "this CPU.", CHOICE(isa)},
-    {"deterministic", 0, CLI_RUN, NULL, "Same bits on every instruction set.", FLAG(params.deterministic)},
-    {"no-skip", 0, CLI_RUN, NULL, "Run every pass on every tile: same picture, slower.", FLAG(params.no_skip)},
+     "this CPU.", NAME(isa, ISA)},
+    {"deterministic", 0, CLI_RUN, NULL, "Same bits on every instruction set.", FLAG(params.run.deterministic)},
+    {"no-skip", 0, CLI_RUN, NULL, "Run every pass on every tile: same picture, slower.", FLAG(params.run.no_skip)},
     {"budget-ms", 0, CLI_RUN, "MS", "Milliseconds that a frame may take. When the frames before took longer, cheaper "
      "settings are chosen: smaller buffers, the gather, fewer rings. Default: any time.",
-     POSITIVE(params.budget_ms)},
+     POSITIVE(params.run.budget_ms)},
     {"explain", 0, CLI_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
      "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
     {"explain-image", 0, CLI_RUN, "FILE", "Write the picture with its tiles painted over: near red, far blue, both "

@@ -74,5 +74,5 @@ int cli_plan_workers(const struct cli_args *args, int frames, double base, doubl
         cli_print_line("a frame takes %.2f GiB, more than the limit of %.2f GiB: one at a time",
                        (base + frame_bytes) / GIB, limit / GIB);
     // A time budget learns from frame to frame, in one context.
-    return fit < 1 || args->params.budget_ms > 0 ? 1 : fit < most ? (int)fit : most;
+    return fit < 1 || args->params.run.budget_ms > 0 ? 1 : fit < most ? (int)fit : most;
 }

@@ -99,7 +99,7 @@ static int focus_at(float *focus, const struct hf_depth *depth, const struct hf_
 static int find_focus(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
                       const char *label, struct cli_error *error)
 {
-    float *focus = &setup->params.focus_distance;
+    float *focus = &setup->params.focus;
     char option[64];
     const struct hf_io_box *display = &view->display_window;
     switch (args->focus_by) {
@@ -139,16 +139,16 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
 static int set_lens(struct hf_params *p, const struct cli_args *args, const struct hf_io_camera *camera,
                     const char *label, struct cli_error *error)
 {
-    p->f_number = first_usable(args->fstop, camera->f_number, NAN);
-    p->focal_length_mm = first_usable(args->focal_length, camera->focal_length_mm, NAN);
-    p->sensor_width_mm = first_usable(args->sensor_width, camera->sensor_width_mm, 36);
-    p->world_unit_m = given(args->world_unit) ? args->world_unit : 1;
-    if (!given(p->focal_length_mm))
+    p->lens.f_number = first_usable(args->fstop, camera->f_number, NAN);
+    p->lens.focal_length_mm = first_usable(args->focal_length, camera->focal_length_mm, NAN);
+    p->lens.sensor_width_mm = first_usable(args->sensor_width, camera->sensor_width_mm, 36);
+    p->lens.world_unit_m = given(args->world_unit) ? args->world_unit : 1;
+    if (!given(p->lens.focal_length_mm))
         return cli_fail(error, CLI_BAD_ARGUMENTS,
                         "%s: --fstop %g needs --focal-length, the header has no "
                         "pinholeFocalLength",
                         label, args->fstop);
-    if (!given(p->f_number))
+    if (!given(p->lens.f_number))
         return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --focal-length %g needs --fstop, the header has no aperture",
                         label, args->focal_length);
     return 0;
@@ -157,23 +157,23 @@ static int set_lens(struct hf_params *p, const struct cli_args *args, const stru
 static int set_range(struct hf_params *p, const struct cli_args *args, const char *label, struct cli_error *error)
 {
     if (given(args->range))
-        p->range = args->range;
+        p->range.distance = args->range;
     if (given(args->strength))
-        p->strength = args->strength;
+        p->range.strength = args->strength;
     if (given(args->near_begin))
-        p->near_begin = args->near_begin;
+        p->range.near_begin = args->near_begin;
     if (given(args->near_end))
-        p->near_end = args->near_end;
+        p->range.near_end = args->near_end;
     if (given(args->far_begin))
-        p->far_begin = args->far_begin;
+        p->range.far_begin = args->far_begin;
     if (given(args->far_end))
-        p->far_end = args->far_end;
+        p->range.far_end = args->far_end;
 
     // Those that were not given follow from the focus and the range, which may put them on the wrong side. Where the
     // gaussian engine focuses by itself, it will say so.
-    if (p->focus_distance == HF_DERIVE)
+    if (p->focus == HF_DERIVE)
         return 0;
-    const float focus = p->focus_distance;
+    const float focus = p->focus;
     const float range = given(args->range) ? args->range : focus / 2;
     const float near_begin = given(args->near_begin) ? args->near_begin : fmaxf(0, focus - range);
     const float near_end = given(args->near_end) ? args->near_end : focus;
@@ -195,9 +195,9 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
     struct hf_params *p = &setup->params;
     describe_depth(&setup->depth, args, view, depth);
     p->model = setup->model == CLI_MODEL_LENS ? HF_MODEL_LENS : HF_MODEL_RANGE;
-    p->display_width = display_width(view);
-    p->display_height = view->display_window.y1 - view->display_window.y0;
-    p->pixel_aspect = view->pixel_aspect;
+    p->view.display_width = display_width(view);
+    p->view.display_height = view->display_window.y1 - view->display_window.y0;
+    p->view.pixel_aspect = view->pixel_aspect;
     const int status = find_focus(setup, args, view, label, error);
     if (status || setup->model == CLI_MODEL_COC)
         return status;

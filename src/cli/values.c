@@ -130,11 +130,17 @@ static int choice(const struct cli_option *option, const char *value, struct cli
     return i;
 }
 
+int cli_parse_name(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
+{
+    // Enums of the library are ints.
+    return hf_value(option->names, value, field(args, option)) == HF_OK || choice(option, value, error) >= 0 ? 0 : -1;
+}
+
 int cli_parse_choice(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
     const int i = choice(option, value, error);
     if (i >= 0)
-        *(int *)field(args, option) = i;  // enums of the library are ints
+        *(int *)field(args, option) = i;
     return i < 0 ? -1 : 0;
 }
 
@@ -145,21 +151,6 @@ int cli_parse_choice_text(struct cli_args *args, const struct cli_option *option
         return -1;
     *(const char **)field(args, option) = value;
     return 0;
-}
-
-const char *cli_choice_name(const char *option, int value, char *buf, size_t size)
-{
-    snprintf(buf, size, "?");
-    for (int i = 0; i < cli_option_count; i++) {
-        const char *list = cli_options[i].placeholder;
-        if (strcmp(cli_options[i].name, option))
-            continue;
-        for (int k = 0; k < value && list; k++)
-            list = strchr(list, '|') ? strchr(list, '|') + 1 : NULL;
-        if (list)
-            snprintf(buf, size, "%.*s", (int)strcspn(list, "|"), list);
-    }
-    return buf;
 }
 
 int cli_parse_focus(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
@@ -191,7 +182,8 @@ static int parse_ngon(struct hf_params *params, const char *value, struct cli_er
     char *end, part[32];
     const char *text = value + strlen("ngon:");
     double number[2] = {0, 0};  // roundness, degrees
-    if (read_int(text, &params->blades, &end) || (*end && *end != ':') || params->blades < 3 || params->blades > 16)
+    if (read_int(text, &params->aperture.blades, &end) || (*end && *end != ':') || params->aperture.blades < 3 ||
+        params->aperture.blades > 16)
         return cli_fail(error, -1, "--aperture: '%s' must have 3 to 16 sides, as in ngon:6", value);
     for (int i = 0; *end; i++) {
         const size_t n = strcspn(end + 1, ":");
@@ -202,8 +194,8 @@ static int parse_ngon(struct hf_params *params, const char *value, struct cli_er
     }
     if (!(number[0] >= 0 && number[0] <= 1))
         return cli_fail(error, -1, "--aperture: '%s' must be rounded by 0 to 1", value);
-    params->blade_roundness = (float)number[0];
-    params->blade_rotation = (float)number[1];
+    params->aperture.roundness = (float)number[0];
+    params->aperture.rotation = (float)number[1];
     return 0;
 }
 
@@ -212,8 +204,8 @@ int cli_parse_aperture(struct cli_args *args, const struct cli_option *option, c
 {
     struct hf_params *p = &args->params;
     double hole = 0;
-    p->blades = 0;
-    p->blade_rotation = p->blade_roundness = p->ring = 0;
+    p->aperture.blades = 0;
+    p->aperture.rotation = p->aperture.roundness = p->aperture.ring = 0;
     args->aperture = value;
     args->aperture_file = NULL;
     if (!strcmp(value, "disc"))
@@ -227,7 +219,7 @@ int cli_parse_aperture(struct cli_args *args, const struct cli_option *option, c
     }
     if (read_number(value + 5, &hole) || !(hole >= 0 && hole <= 0.95))
         return cli_fail(error, -1, "--%s: the hole of '%s' must be 0 to 0.95 of the radius", option->name, value);
-    p->ring = (float)hole;
+    p->aperture.ring = (float)hole;
     return 0;
 }
 

@@ -32,11 +32,6 @@ int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_para
 {
     struct hf_params p = *asked;
     int n = add(ladder, 0, &p);
-    // Storage other than float is more work here: packing costs more than the memory that it saves.
-    if (p.storage != HF_STORAGE_FLOAT && !p.faithful) {
-        p.storage = HF_STORAGE_FLOAT;
-        n = add(ladder, n, &p);
-    }
     n = add_cheaper(ladder, n, radius);
     if (!hf_engine_def(p.engine)->gives_up)
         return n;
@@ -53,8 +48,11 @@ static uint64_t hash_of(const struct hf_params *ladder, int steps)
     uint64_t hash = (uint64_t)steps;
     for (int i = 0; i < steps; i++) {
         const struct hf_params *p = &ladder[i];
-        const uint64_t word = (uint64_t)p->engine | (uint64_t)p->storage << 4 | (uint64_t)p->resolution << 8 |
-                              (uint64_t)p->rings << 12 | (uint64_t)p->fill << 20 | (uint64_t)p->iterations << 24;
+        const uint64_t resolution = (uint64_t)p->hexagon.resolution | (uint64_t)p->scatter.resolution << 2 |
+                                    (uint64_t)p->gaussian.resolution << 4;
+        const uint64_t word = (uint64_t)p->engine | (uint64_t)p->gather.storage << 4 | resolution << 8 |
+                              (uint64_t)(p->gather.rings + 1) << 16 | (uint64_t)p->gather.fill << 24 |
+                              (uint64_t)p->gaussian.iterations << 28;
         hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
         hash ^= hash >> 31;
     }

@@ -34,6 +34,7 @@ struct hf_context {
     struct hf_pixel_kernels kernels[2];  // exact, fused
     struct hf_engine_state engine[HF_ENGINE_COUNT];
     struct hf_block engines;  // owns their memory
+    int pid;                  // of the process that its threads are in
     struct hf_pool *pool;     // NULL: the host's parallel_for
     struct hf_worker *workers;
 
@@ -42,7 +43,6 @@ struct hf_context {
     struct hf_block chunks, tiles;  // the plan's
     struct hf_block joined;         // CoC for a dump: of full resolution, or of narrow buffers
     struct hf_block repairs;        // in place: what has to be written before a tile overwrites its neighbours
-    struct hf_stats stats;
     struct hf_report report;
     struct hf_work work;  // of the plan
     struct hf_cost cost;

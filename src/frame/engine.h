@@ -59,8 +59,20 @@ struct hf_plan;
 
 enum { HF_COST_NUMBERS = 12 };
 
+// What of hf_aperture_params an engine can draw.
+enum {
+    HF_APERTURE_BLADES = 1,
+    HF_APERTURE_ROUNDNESS = 2,
+    HF_APERTURE_RING = 4,
+    HF_APERTURE_CAT_EYE = 8,
+    HF_APERTURE_SQUEEZE = 16,
+    HF_APERTURE_PICTURE = 32,
+};
+
 struct hf_engine_def {
     const char *name;  // the command line's
+    unsigned aperture;
+    int focus_anywhere;  // where there is no surface to focus on, it focuses on infinity
     const struct hf_pass *passes;
     int pass_count;
     int sweeps;  // sweep 1 is over chunks: its first pass looks at depth alone and counts what there is
@@ -75,9 +87,15 @@ struct hf_engine_def {
     size_t kernels_bytes;
     void (*kernels)(void *table, enum hf_isa isa, int fused);
 
+    // Check its own parameters, put numbers where they say HF_DERIVE, and change r->params.max_radius, r->limit and
+    // r->sharp if they are others for this engine; asked: what was given. Returns HF_OK, or an error with one sentence in
+    // message (params.h). NULL: it has no parameters.
+    int (*check)(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message);
+
     // What setups call own: zero at first, then as prepare left it for the frame before. It owns memory until release.
     size_t own_bytes;
-    // Numbers that follow from the parameters; s holds what is common to all engines, and may be changed. NULL: none.
+    // Numbers that follow from the parameters, which are resolved; s holds what is common to all engines, and may be
+    // changed. NULL: none.
     void (*resolve)(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p);
     // Tables likewise, if there is anything to blur; returns HF_ERR_MEMORY. NULL: none.
     int (*prepare)(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
@@ -105,8 +123,6 @@ struct hf_engine_def {
 
     // Options that change what a unit of work costs; returns how many, at most HF_COST_NUMBERS. *reach: of its blur.
     int (*cost)(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach);
-    // Rings of taps, for the report. NULL: it has none.
-    int (*rings)(const struct hf_setup *s);
     // Make *p the step-th cheaper setting within the engine, step >= 1, and return 1, or 0 if there are no more. radius:
     // the largest there may be.
     int (*cheaper)(struct hf_params *p, float radius, int step);

@@ -65,7 +65,8 @@ struct hf_setup {
     float sharp_radius;        // up to here a pixel counts as sharp, and its radius as 0
     int uniform;               // the radius is max_radius everywhere
 
-    const void *own;  // what the engine made of its parameters, and found in the depth
+    const struct hf_resolved *resolved;  // what the frame is rendered with
+    const void *own;                     // what the engine made of its parameters, and found in the depth
 };
 
 // Where a chunk has CoC of a kind: groups of lanes, see hf_group, 0 if nowhere; and half-resolution rows.
@@ -151,7 +152,7 @@ static inline float *hf_at(const struct hf_buf *b, int c, int x, int y)
 // Narrow buffers hold CoC as the storage does: 8-bit, half, float.
 static inline int hf_narrow_bytes(enum hf_storage storage)
 {
-    return storage == HF_STORAGE_CHAPTER ? 1 : storage == HF_STORAGE_HALF ? 2 : 4;
+    return storage == HF_STORAGE_PACKED ? 1 : storage == HF_STORAGE_HALF ? 2 : 4;
 }
 
 static inline char *hf_narrow_at(const struct hf_buf *b, int c, int x, int y, int bytes)

@@ -23,62 +23,6 @@ static void parallel(struct hf_render *r, int n, void (*fn)(void *arg, int i, in
         c->config.parallel_for(c->config.parallel_cookie, n, fn, r);
 }
 
-static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
-{
-    sum->near_pixels += c->near_pixels;
-    sum->far_pixels += c->far_pixels;
-    sum->sharp_pixels += c->sharp_pixels;
-    sum->colour_repaired += c->colour_repaired;
-    sum->depth_repaired += c->depth_repaired;
-    sum->no_surface += c->no_surface;
-    sum->clamped += c->clamped;
-    sum->near_max = c->near_max > sum->near_max ? c->near_max : sum->near_max;
-    sum->far_max = c->far_max > sum->far_max ? c->far_max : sum->far_max;
-    sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
-    sum->radius_max = c->radius_max > sum->radius_max ? c->radius_max : sum->radius_max;
-    sum->largest = c->largest > sum->largest ? c->largest : sum->largest;
-    sum->transparent += c->transparent;
-}
-
-static struct hf_counts all_counts(const struct hf_context *c)
-{
-    struct hf_counts sum = {0};
-    for (int i = 0; i < c->threads; i++)
-        add_counts(&sum, &c->workers[i].counts);
-    return sum;
-}
-
-static void collect_stats(const struct hf_render *j, int64_t start)
-{
-    struct hf_context *c = j->c;
-    struct hf_stats *t = &c->stats;
-    const struct hf_counts n = all_counts(c);
-    *t = (struct hf_stats){.engine = j->s->engine,
-                           .max_radius = j->s->max_radius,
-                           .near_pixels = n.near_pixels,
-                           .far_pixels = n.far_pixels,
-                           .sharp_pixels = n.sharp_pixels,
-                           .colour_repaired = n.colour_repaired,
-                           .depth_repaired = n.depth_repaired,
-                           .no_surface = n.no_surface,
-                           .clamped = n.clamped};
-    if (j->s->blend == 0)
-        t->sharp_pixels = (uint64_t)j->s->width * (uint64_t)j->s->height;
-    t->memory = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
-                hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0);
-    for (int i = 0; i < c->threads; i++) {
-        const struct hf_worker *w = &c->workers[i];
-        for (int p = 0; p < HF_MAX_PASSES; p++) {
-            t->pass_ms[p] += (double)w->ns[p] * 1e-6 / c->threads;
-            t->tiles_run[p] += w->tiles[p];
-        }
-        t->memory += w->scratch.size + sizeof *w;
-    }
-    for (int p = 0; p < c->plan.engine->pass_count; p++)
-        t->tiles_all[p] = (uint32_t)hf_plan_count(&c->plan, c->plan.engine->passes[p].sweep);
-    t->total_ms = (double)(hf_now_ns() - start) * 1e-6;
-}
-
 static void start_workers(const struct hf_render *r, const struct hf_job *job)
 {
     struct hf_context *c = r->c;
@@ -138,7 +82,7 @@ static int make_plan(struct hf_render *r, int plan_only)
     struct hf_context *c = r->c;
     struct hf_plan *p = &c->plan;
     if (p->engine->measured) {
-        const struct hf_counts found = all_counts(c);
+        const struct hf_counts found = hf_report_counts(c);
         p->engine->measure(c->engine[r->s->engine].own, r->s, &found);
         const int err = lay_out_cells(r, 0);
         if (err)
@@ -160,7 +104,7 @@ static void finish_chunks(struct hf_render *r)
     struct hf_context *c = r->c;
     parallel(r, c->plan.rest_count, hf_sweep_rest);
     if (c->plan.engine->made) {
-        const struct hf_counts found = all_counts(c);
+        const struct hf_counts found = hf_report_counts(c);
         c->plan.engine->made(c->engine[r->s->engine].own, r->s, &found);
     }
 }
@@ -175,7 +119,7 @@ static void make_tiles(struct hf_render *r)
 
 static void report_plan(struct hf_render *r, int64_t planning)
 {
-    const struct hf_counts found = all_counts(r->c);
+    const struct hf_counts found = hf_report_counts(r->c);
     hf_report_plan(r->c, r->s, &found);
     r->c->report.plan_ms = (double)planning * 1e-6;
 }
@@ -225,7 +169,6 @@ int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct
         err = s->blend == 0 ? copy(&r, job->plan_only) : blur(&r, job->plan_only);
     if (err || job->plan_only)
         return err;
-    collect_stats(&r, start);
-    hf_report_frame(c, s);
+    hf_report_frame(c, s, (double)(hf_now_ns() - start) * 1e-6);
     return c->dump && s->blend != 0 ? hf_dump_buffers(c, s) : HF_OK;
 }

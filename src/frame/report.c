@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/report.h"
 
+#include <string.h>
+
 #include "frame/buffers.h"
 
 // Why a pass does not run everywhere.
@@ -18,23 +20,55 @@ static const char *reason(const struct hf_plan *p, const struct hf_setup *s, int
     return "sharp: copied";
 }
 
+static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
+{
+    sum->near_pixels += c->near_pixels;
+    sum->far_pixels += c->far_pixels;
+    sum->sharp_pixels += c->sharp_pixels;
+    sum->colour_repaired += c->colour_repaired;
+    sum->depth_repaired += c->depth_repaired;
+    sum->no_surface += c->no_surface;
+    sum->clamped += c->clamped;
+    sum->near_max = c->near_max > sum->near_max ? c->near_max : sum->near_max;
+    sum->far_max = c->far_max > sum->far_max ? c->far_max : sum->far_max;
+    sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
+    sum->radius_max = c->radius_max > sum->radius_max ? c->radius_max : sum->radius_max;
+    sum->largest = c->largest > sum->largest ? c->largest : sum->largest;
+    sum->transparent += c->transparent;
+}
+
+struct hf_counts hf_report_counts(const struct hf_context *c)
+{
+    struct hf_counts sum = {0};
+    for (int i = 0; i < c->threads; i++)
+        add_counts(&sum, &c->workers[i].counts);
+    return sum;
+}
+
+static size_t memory_held(const struct hf_context *c)
+{
+    size_t bytes = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
+                   hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0);
+    for (int i = 0; i < c->threads; i++)
+        bytes += c->workers[i].scratch.size + sizeof c->workers[i];
+    return bytes;
+}
+
 void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct hf_counts *found)
 {
     const struct hf_plan *p = &c->plan;
     const struct hf_engine_def *e = p->engine;
     struct hf_report *r = &c->report;
     double ms[HF_MAX_PASSES];
-    *r = (struct hf_report){.engine = s->engine,
-                            .resolution = s->resolution,
+    *r = (struct hf_report){.used = *s->resolved,
+                            .picture = s->resolved->params.aperture.picture != NULL,
                             .budget_step = c->budget.step,
                             .tile_width = 2 * p->cell_width[2],
                             .tile_height = 2 * p->cell_height[2],
                             .columns = p->columns[2],
                             .rows = p->rows[2],
-                            .tiles = p->tile_needs,
                             .passes = e->pass_count};
-    if (e->rings && s->blend != 0)
-        r->rings = e->rings(s);
+    r->used.params.aperture.picture = NULL;  // the caller's, and he may free it
     for (int i = 0; i < hf_plan_count(p, 2); i++)
         r->tile_count[s->blend == 0 ? 0 : p->tile_needs[i]]++;
     hf_cost_work(&c->work, p, s);
@@ -70,11 +104,34 @@ void hf_report_colour(struct hf_context *c)
     }
 }
 
-void hf_report_frame(struct hf_context *c, const struct hf_setup *s)
+void hf_report_frame(struct hf_context *c, const struct hf_setup *s, double total_ms)
 {
     struct hf_report *r = &c->report;
-    for (int i = 0; i < r->passes; i++)
-        r->pass[i].ms = c->stats.pass_ms[i];
-    r->total_ms = c->stats.total_ms;
-    hf_cost_learn(&c->cost, s, c->isa, c->threads, &c->work, c->stats.pass_ms);
+    const struct hf_counts n = hf_report_counts(c);
+    double ms[HF_MAX_PASSES] = {0};
+    r->total_ms = total_ms;
+    r->memory_held = memory_held(c);
+    r->near_pixels = n.near_pixels;
+    r->far_pixels = n.far_pixels;
+    r->sharp_pixels = s->blend == 0 ? (uint64_t)s->width * (uint64_t)s->height : n.sharp_pixels;
+    r->colour_repaired = n.colour_repaired;
+    r->depth_repaired = n.depth_repaired;
+    r->no_surface = n.no_surface;
+    r->clamped = n.clamped;
+    for (int i = 0; i < r->passes; i++) {
+        for (int k = 0; k < c->threads; k++) {
+            ms[i] += (double)c->workers[k].ns[i] * 1e-6 / c->threads;
+            r->pass[i].ran += c->workers[k].tiles[i];
+        }
+        r->pass[i].ms = ms[i];
+    }
+    hf_cost_learn(&c->cost, s, c->isa, c->threads, &c->work, ms);
+}
+
+size_t hf_report_tiles(const struct hf_context *c, uint8_t *tiles, size_t size)
+{
+    const size_t n = (size_t)c->report.columns * (size_t)c->report.rows;
+    if (n && tiles)
+        memcpy(tiles, c->plan.tile_needs, size < n ? size : n);
+    return n;
 }

@@ -10,6 +10,10 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
 // Add what its workers saw of the colour.
 void hf_report_colour(struct hf_context *c);
 // Add what the frame's workers did, and learn from it.
-void hf_report_frame(struct hf_context *c, const struct hf_setup *s);
+void hf_report_frame(struct hf_context *c, const struct hf_setup *s, double total_ms);
+// What all workers have counted so far.
+struct hf_counts hf_report_counts(const struct hf_context *c);
+// hf_get_tiles of the report as it stands.
+size_t hf_report_tiles(const struct hf_context *c, uint8_t *tiles, size_t size);
 
 #endif

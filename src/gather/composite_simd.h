@@ -414,7 +414,7 @@ HF_INLINE int composite_run(const struct composite_rows *rows, const struct pack
                 vf_store(p.to[i] + at + 4 * VF_N, in[i][1]);
                 continue;
             }
-            if (s->storage == HF_STORAGE_CHAPTER) {
+            if (s->storage == HF_STORAGE_PACKED) {
                 vf_zip(vi_as_vf(r11_pack_cut(b.colour[i][0])), vi_as_vf(r11_pack_cut(b.colour[i][1])), &in[i][0],
                        &in[i][1]);
                 vf_store(p.to[i] + at, in[i][0]);

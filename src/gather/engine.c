@@ -118,16 +118,41 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     *height = hf_min(*height, 72);
 }
 
+// With a lens, too, it reaches no farther than the chapter does; and faithfully that is 12 pixels at any size.
+static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+{
+    struct hf_gather_params *g = &r->params.gather;
+    (void)asked;
+    (void)depth;
+    if ((unsigned)g->storage > HF_STORAGE_PACKED)
+        return hf_bad(message, "gather.storage is %d, which is none", (int)g->storage);
+    if ((unsigned)g->fill > HF_FILL_NONE)
+        return hf_bad(message, "gather.fill is %d, which is none", (int)g->fill);
+    if (r->limit != HF_LIMIT_GIVEN) {
+        r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
+        r->params.max_radius = g->faithful ? 12 : hf_model_radius(r);
+    }
+    if (g->rings == HF_DERIVE)
+        g->rings = hf_taps_rings(r->params.max_radius / 2);
+    if (g->rings < 1 || g->rings > HF_MAX_RINGS)
+        return hf_bad(message, "gather.rings is %d; it must be 1 to %d", g->rings, HF_MAX_RINGS);
+    return HF_OK;
+}
+
 static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
     struct hf_gather *g = own;
     const float h = s->max_radius / 2;
     (void)depth;
-    g->karis = p->karis;
-    g->per_pixel_kernel = p->per_pixel_kernel;
-    g->bicubic = p->bicubic;
-    g->fill = p->fill;
-    g->rings = p->rings;
+    s->storage = p->gather.storage;
+    s->faithful = p->gather.faithful;
+    if (s->blend > 0 && s->strength < 0.25f)
+        s->blend = 4 * s->strength;
+    g->karis = p->gather.karis;
+    g->per_pixel_kernel = p->gather.per_pixel_kernel;
+    g->bicubic = p->gather.bicubic;
+    g->fill = p->gather.fill;
+    g->rings = p->gather.rings;
     g->max_x = (int)__builtin_ceilf(h / s->pixel_aspect);
     g->max_y = (int)__builtin_ceilf(h);
 }
@@ -138,8 +163,8 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     const struct hf_taps_key key = {.radius = s->max_radius / 2,
                                     .scale = s->strength >= 0.25f ? s->strength : 0.25f,
                                     .pixel_aspect = s->pixel_aspect,
-                                    .blades = p->blades,
-                                    .rotation = p->blades ? p->blade_rotation : 0,
+                                    .blades = p->aperture.blades,
+                                    .rotation = p->aperture.blades ? p->aperture.rotation : 0,
                                     .dense = g->fill == HF_FILL_NONE,
                                     .rings = g->rings};
     return hf_taps_build(&g->taps, &key, mem);
@@ -166,20 +191,21 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     return 4;
 }
 
-static int rings(const struct hf_setup *s)
-{
-    return hf_gather(s)->rings ? hf_gather(s)->rings : hf_taps_rings(s->max_radius / 2);
-}
-
-// Two thirds, then one third of the rings.
+// Storage in floats, as packing costs more here than the memory that it saves; then two thirds and one third of the rings.
 static int cheaper(struct hf_params *p, float radius, int step)
 {
-    const int all = p->rings ? p->rings : hf_taps_rings(radius / 2);
+    struct hf_gather_params *g = &p->gather;
+    const int all = g->rings == HF_DERIVE ? hf_taps_rings(radius / 2) : g->rings;
     int last = all;
-    for (int thirds = 2; thirds > 0 && p->fill != HF_FILL_NONE; thirds--) {
+    if (g->storage != HF_STORAGE_FLOAT && !g->faithful) {
+        g->storage = HF_STORAGE_FLOAT;
+        if (--step == 0)
+            return 1;
+    }
+    for (int thirds = 2; thirds > 0 && g->fill != HF_FILL_NONE; thirds--) {
         const int some = (all * thirds + 2) / 3;
         if (some < last && --step == 0) {
-            p->rings = some;
+            g->rings = some;
             return 1;
         }
         last = some;
@@ -189,9 +215,8 @@ static int cheaper(struct hf_params *p, float radius, int step)
 
 static void adopt(struct hf_params *p, float radius)
 {
-    p->resolution = HF_RESOLUTION_FULL;
-    if (p->blades && (p->blades < 5 || p->blades > 9))
-        p->blades = 0;
+    p->aperture = (struct hf_aperture_params){
+        .blades = p->aperture.blades, .rotation = p->aperture.rotation, .squeeze = hf_default_params.aperture.squeeze};
     if (radius >= 256)
         p->max_radius = 256;
 }
@@ -220,6 +245,8 @@ static void kernels(void *table, enum hf_isa isa, int fused)
 
 const struct hf_engine_def hf_gather_engine = {
     .name = "gather",
+    .aperture = HF_APERTURE_BLADES,
+    .check = check,
     .passes = passes,
     .pass_count = HF_GATHER_PASSES,
     .sweeps = 2,
@@ -239,7 +266,6 @@ const struct hf_engine_def hf_gather_engine = {
     .cell = cell,
     .work = work,
     .cost = cost,
-    .rings = rings,
     .cheaper = cheaper,
     .adopt = adopt,
 };

@@ -55,7 +55,7 @@ enum hf_gather_halo {
 struct hf_gather {
     int karis, per_pixel_kernel, bicubic;
     enum hf_fill fill;
-    int rings;         // 0: derived
+    int rings;
     int max_x, max_y;  // near max and blur reach to either side
     struct hf_taps taps;
 };

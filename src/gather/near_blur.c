@@ -33,7 +33,7 @@ static int mean_byte(const uint8_t *p, ptrdiff_t step, int m)
 
 static float blurred(enum hf_storage storage, const char *p, ptrdiff_t step, int m)
 {
-    if (storage == HF_STORAGE_CHAPTER)
+    if (storage == HF_STORAGE_PACKED)
         return (float)mean_byte((const uint8_t *)p, step, m) * (1 / 255.0f);
     return hf_round_coc(storage, mean(storage, p, step, m));
 }

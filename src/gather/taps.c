@@ -10,7 +10,7 @@ static const double NEGLIGIBLE = 1e-6;
 int hf_taps_rings(float radius)
 {
     const int n = (int)ceil((double)radius / 2);
-    return n < 1 ? 1 : n;
+    return n < 1 ? 1 : n > HF_MAX_RINGS ? HF_MAX_RINGS : n;
 }
 
 static int ring_count(const struct hf_taps_key *k)

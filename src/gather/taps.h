@@ -36,6 +36,7 @@ struct hf_taps {
     struct hf_taps_key key;  // what it was built from; radius 0: nothing yet
 };
 
+enum { HF_MAX_RINGS = 64 };
 // Rings that reach a radius of so many half-resolution pixels, at most 2 apart.
 int hf_taps_rings(float radius);
 

@@ -13,6 +13,8 @@
 // d = sat(z / f), faithfully 2n / (f + n - zw (f - n)) with window depth zw = f (z - n) / (z (f - n)) in 0..1. With
 // z' = z clamped to n..f that is 2 z' / (z' + f), which does not cancel. n = 1 and f = 100 n but for the clip planes of
 // the depth. Given a range, a lens or radii: strength * max(n, f) of the gather's near and far CoC.
+#include <math.h>
+
 #include "frame/plan.h"
 #include "gaussian/kernels.h"
 #include "params.h"
@@ -20,6 +22,9 @@
 // Sweep 2 has no passes, but its cells are the tiles. With sigma, whole columns and then whole rows are blurred in
 // between.
 enum { WIDE_COLUMNS = 3, WIDE_ROWS, TILES };
+
+enum { MAX_ITERATIONS = 64 };
+static const float MAX_SIGMA = 256;  // pixels
 
 #define B(name) (1u << HF_GAUSSIAN_##name)
 
@@ -101,19 +106,70 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
     return most > wide ? most : wide;
 }
 
+// The planes that bound its depths: those of the depth, else 1 and 100.
+static void depth_planes(const struct hf_depth *depth, float *near, float *far)
+{
+    *near = depth->near_plane > 0 ? depth->near_plane : 1;
+    *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
+}
+
+// Is nothing but a focus given, so that it blends by the distance in depth as its source does?
+static int only_focus(const struct hf_params *asked)
+{
+    const struct hf_range_params *g = &asked->range;
+    return asked->model == HF_MODEL_RANGE && g->distance == HF_DERIVE && g->near_begin == HF_DERIVE &&
+           g->near_end == HF_DERIVE && g->far_begin == HF_DERIVE && g->far_end == HF_DERIVE;
+}
+
+static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+{
+    struct hf_gaussian_params *g = &r->params.gaussian;
+    int err = hf_check_resolution("gaussian", g->resolution, HF_RESOLUTION_QUARTER, message);
+    if (err)
+        return err;
+    if (g->iterations < 0 || g->iterations > MAX_ITERATIONS)
+        return hf_bad(message, "gaussian.iterations is %d; it must be 0 to %d", g->iterations, MAX_ITERATIONS);
+    if (g->sigma == HF_DERIVE) {
+        g->sigma = sqrtf((float)g->iterations) * (float)(1 << g->resolution);
+    } else {
+        g->iterations = 0;
+        err = hf_check_between("gaussian.sigma", g->sigma, 0, MAX_SIGMA, message);
+    }
+    if (r->limit != HF_LIMIT_GIVEN) {
+        r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
+        r->params.max_radius = g->faithful ? 12 : hf_model_radius(r);
+    }
+    if (g->by_depth == HF_DERIVE)
+        g->by_depth = g->faithful || only_focus(asked);
+    g->by_depth = g->by_depth && depth->type != HF_DEPTH_COC;
+    if (g->by_depth)
+        r->sharp = r->params.max_radius == 0 || r->params.range.strength == 0;
+    r->sharp |= g->resolution == HF_RESOLUTION_FULL && g->sigma == 0;
+    float near, far;
+    depth_planes(depth, &near, &far);
+    if (!err && g->by_depth && !(near < far))
+        return hf_bad(message, "depth.near_plane is %g and far_plane %g; near must be less than far", near, far);
+    return err;
+}
+
 static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
+    const struct hf_gaussian_params *from = &p->gaussian;
     struct hf_gaussian *g = own;
-    *g = (struct hf_gaussian){.iterations = p->sigma > 0 ? 0 : p->iterations, .sigma = p->sigma};
-    if (s->resolution == HF_RESOLUTION_FULL && g->iterations == 0 && g->sigma == 0)
-        s->blend = 0;
-    g->by_depth = hf_blends_by_depth(p, depth->type);
+    *g = (struct hf_gaussian){.iterations = from->iterations, .sigma = from->iterations ? 0 : from->sigma};
+    s->resolution = from->resolution;
+    s->faithful = from->faithful;
+    g->by_depth = from->by_depth;
     if (!g->by_depth)
         return;
-    hf_depth_planes(depth, &g->plane_near, &g->plane_far);
+    s->lens = 0;
+    s->near_0 = s->far_0 = s->radius_0 = s->radius_k = 0;
+    s->near_i = s->far_i = 1;  // there is blur
+    s->strength = p->range.strength;
+    depth_planes(depth, &g->plane_near, &g->plane_far);
     if (!s->faithful)
         g->plane_near = 0;  // nothing but the far plane counts
-    g->focus_d = hf_gaussian_depth(g, s->faithful, hf_focus_of(p, depth, s->width, s->height));
+    g->focus_d = hf_gaussian_depth(g, s->faithful, p->focus);
 }
 
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
@@ -128,9 +184,9 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
 static int cheaper(struct hf_params *p, float radius, int step)
 {
     (void)radius;
-    if ((int)p->resolution + step > HF_RESOLUTION_QUARTER)
+    if ((int)p->gaussian.resolution + step > HF_RESOLUTION_QUARTER)
         return 0;
-    p->resolution = (enum hf_resolution)((int)p->resolution + step);
+    p->gaussian.resolution = (enum hf_resolution)((int)p->gaussian.resolution + step);
     return 1;
 }
 
@@ -157,6 +213,8 @@ static void kernels(void *table, enum hf_isa isa, int fused)
 
 const struct hf_engine_def hf_gaussian_engine = {
     .name = "gaussian",
+    .focus_anywhere = 1,
+    .check = check,
     .passes = passes,
     .pass_count = sizeof passes / sizeof *passes,
     .sweeps = TILES,

@@ -78,13 +78,26 @@ static int tap_count(const struct hf_setup *s, float radius)
     return (int)ceil((working(s, radius) + 4 + 2 * s->pixel_aspect) / step_of(s));
 }
 
+static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+{
+    const struct hf_params *p = &r->params;
+    (void)asked;
+    if (p->aperture.blades && p->aperture.blades != 6)
+        return hf_bad(message, "aperture.blades is %d; the hexagon engine has six sides", p->aperture.blades);
+    if (p->hexagon.uniform)  // whatever the depth
+        r->sharp =
+            p->max_radius == 0 || (depth->type != HF_DEPTH_COC && p->model == HF_MODEL_RANGE && p->range.strength == 0);
+    return hf_check_resolution("hexagon", p->hexagon.resolution, HF_RESOLUTION_HALF, message);
+}
+
 static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
     struct hf_hexagon *h = own;
     (void)depth;
     h->ready = h->reach_x = h->reach_y = 0;
-    h->rotation = p->blade_rotation;
-    s->uniform = p->uniform;
+    h->rotation = p->aperture.rotation;
+    s->resolution = p->hexagon.resolution;
+    s->uniform = p->hexagon.uniform;
     // Below this, weights and colours times radii would be denormal, and a pixel's soft edge has no slope.
     s->sharp_radius = 0x1p-40f;
 }
@@ -313,9 +326,9 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
 static int cheaper(struct hf_params *p, float radius, int step)
 {
     (void)radius;
-    if (step > 1 || p->resolution != HF_RESOLUTION_FULL)
+    if (step > 1 || p->hexagon.resolution != HF_RESOLUTION_FULL)
         return 0;
-    p->resolution = HF_RESOLUTION_HALF;
+    p->hexagon.resolution = HF_RESOLUTION_HALF;
     return 1;
 }
 
@@ -337,6 +350,8 @@ static void kernels(void *table, enum hf_isa isa, int fused)
 
 const struct hf_engine_def hf_hexagon_engine = {
     .name = "hexagon",
+    .aperture = HF_APERTURE_BLADES,
+    .check = check,
     .passes = passes,
     .pass_count = HF_HEXAGON_PASSES,
     .sweeps = 2,

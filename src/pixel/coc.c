@@ -8,7 +8,7 @@
 // The rounding of a storage's CoC.
 float hf_round_coc(enum hf_storage storage, float t)
 {
-    if (storage == HF_STORAGE_CHAPTER)
+    if (storage == HF_STORAGE_PACKED)
         return floorf(t * 255 + 0.5f) * (1 / 255.0f);
     return storage == HF_STORAGE_HALF ? hf_half_unpack(hf_half_pack(t)) : t;
 }

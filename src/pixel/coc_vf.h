@@ -25,7 +25,7 @@ HF_INLINE vf coc_round_unorm(vf t)
 
 HF_INLINE vf coc_round(enum hf_storage storage, vf t)
 {
-    if (storage == HF_STORAGE_CHAPTER)
+    if (storage == HF_STORAGE_PACKED)
         return coc_round_unorm(t);
     return storage == HF_STORAGE_HALF ? round_half_vf(t) : t;
 }

@@ -101,7 +101,7 @@ static inline float hf_narrow_load(enum hf_storage storage, const void *p)
 {
     float v;
     uint16_t half;
-    if (storage == HF_STORAGE_CHAPTER)
+    if (storage == HF_STORAGE_PACKED)
         return (float)*(const uint8_t *)p * (1 / 255.0f);
     if (storage == HF_STORAGE_HALF) {
         memcpy(&half, p, sizeof half);
@@ -114,7 +114,7 @@ static inline float hf_narrow_load(enum hf_storage storage, const void *p)
 // Rounded to nearest.
 static inline void hf_narrow_store(enum hf_storage storage, void *p, float v)
 {
-    if (storage == HF_STORAGE_CHAPTER) {
+    if (storage == HF_STORAGE_PACKED) {
         *(uint8_t *)p = (uint8_t)(v * 255 + 0.5f);
     } else if (storage == HF_STORAGE_HALF) {
         const uint16_t half = hf_half_pack(v);

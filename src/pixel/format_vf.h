@@ -202,7 +202,7 @@ HF_INLINE vf truncate_channel(vf v, const int c)
 // frame of 1920x1080, in Computation and Fill each.
 HF_INLINE vf round_stored(enum hf_storage storage, vf v, const int c)
 {
-    if (storage == HF_STORAGE_CHAPTER && c < 3)
+    if (storage == HF_STORAGE_PACKED && c < 3)
         return truncate_channel(v, c);
     return storage == HF_STORAGE_HALF ? round_half_vf(v) : v;
 }

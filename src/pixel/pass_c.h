@@ -42,7 +42,7 @@ void hf_write_pixels(const struct hf_frame *f, int x, int y, int n, const float 
 // Round n colours to what the storage holds when a pass writes them: channel 3 is alpha.
 static inline void hf_store_rgb(const struct hf_frame *f, float *const ch[4], int n)
 {
-    if (f->s->storage == HF_STORAGE_CHAPTER)
+    if (f->s->storage == HF_STORAGE_PACKED)
         f->k->truncate_r11(ch[0], ch[1], ch[2], n);
     else if (f->s->storage == HF_STORAGE_HALF)
         for (int c = 0; c < f->s->channels; c++)

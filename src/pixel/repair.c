@@ -59,7 +59,7 @@ void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const 
         if (counts)
             counts->colour_repaired += repairs;
     }
-    if (f->s->storage == HF_STORAGE_CHAPTER && f->src->format != HF_FORMAT_R11G11B10F) {
+    if (f->s->storage == HF_STORAGE_PACKED && f->src->format != HF_FORMAT_R11G11B10F) {
         f->k->truncate_r11(even[0], even[1], even[2], n);
         f->k->truncate_r11(odd[0], odd[1], odd[2], n);
     } else if (f->s->storage == HF_STORAGE_HALF && f->src->format != HF_FORMAT_RGBA16F &&

@@ -64,52 +64,65 @@ static void set_groups(struct hf_scatter *t, const struct hf_setup *s, float chr
     }
 }
 
+static const float MAX_PICTURE = 256;  // radius, pixels
+
+static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+{
+    struct hf_params *p = &r->params;
+    (void)asked;
+    (void)depth;
+    // Every pixel of a picture is drawn: no larger than this.
+    if (p->aperture.picture && p->max_radius > MAX_PICTURE) {
+        p->max_radius = MAX_PICTURE;
+        r->limit = HF_LIMIT_PICTURE;
+    }
+    const int err = hf_check_resolution("scatter", p->scatter.resolution, HF_RESOLUTION_HALF, message);
+    return err ? err : hf_check_between("scatter.chromatic", p->scatter.chromatic, -0.5f, 0.5f, message);
+}
+
 static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
     struct hf_scatter *t = own;
     (void)depth;
+    s->resolution = p->scatter.resolution;
     t->ready = t->around_x = t->around_y = 0;
     s->sharp_radius = 0.5f;
-    // Every pixel of an image is drawn: no larger than this.
-    if (p->aperture)
-        s->max_radius = fminf(s->max_radius, 256);
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
     struct hf_scatter *t = own;
     struct hf_aperture *aperture = &t->aperture;
+    const struct hf_aperture_params *a = &p->aperture;
     *t = (struct hf_scatter){.aperture = *aperture, .half_from = 24, .half_to = 28, .fade = 1.5f};
     if (s->resolution == HF_RESOLUTION_HALF) {
         t->half_from = -1;
         t->half_to = 0;
         t->fade = 2.5f;
     }
-    if (p->aperture) {
-        // Every pixel of an image is drawn: sooner at half the resolution.
-        if (t->half_to > 0)
-            t->half_from = 8, t->half_to = 12;
-    }
+    // Every pixel of an image is drawn: sooner at half the resolution.
+    if (a->picture && t->half_to > 0)
+        t->half_from = 8, t->half_to = 12;
     t->half_slope = 1 / (t->half_to - t->half_from);
     t->fade_slope = 1 / (t->fade - 0.5f);
     struct hf_aperture_key key;
     memset(&key, 0, sizeof key);
-    const float largest = s->max_radius * (1 + fabsf(p->chromatic));
+    const float largest = s->max_radius * (1 + fabsf(p->scatter.chromatic));
     key.largest = t->half_to > 0 && largest <= t->half_to ? largest : fmaxf(largest / 2, 1.5f * t->half_to);
-    key.blades = p->blades;
-    key.outline = p->cat_eye > 0;
-    if (p->blades) {
-        key.rotation = p->blade_rotation;
-        key.roundness = p->blade_roundness;
+    key.blades = a->blades;
+    key.outline = a->cat_eye > 0;
+    if (a->blades) {
+        key.rotation = a->rotation;
+        key.roundness = a->roundness;
     }
-    t->ring = p->aperture ? 0 : p->ring;
-    t->cat_eye = p->aperture ? 0 : p->cat_eye;
+    t->ring = a->picture ? 0 : a->ring;
+    t->cat_eye = a->picture ? 0 : a->cat_eye;
     t->corner = 1 / hypotf((float)s->width, (float)s->height);
-    key.scale_x = 1 / (p->pixel_aspect * p->squeeze);
-    const int err = p->aperture ? hf_aperture_build_image(aperture, &key, p->aperture, mem)
-                                : hf_aperture_build(aperture, &key, mem);
+    key.scale_x = 1 / (s->pixel_aspect * a->squeeze);
+    const int err =
+        a->picture ? hf_aperture_build_image(aperture, &key, a->picture, mem) : hf_aperture_build(aperture, &key, mem);
     t->ready = !err;
-    set_groups(t, s, p->chromatic);
+    set_groups(t, s, p->scatter.chromatic);
     return err;
 }
 
@@ -238,9 +251,9 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
 static int cheaper(struct hf_params *p, float radius, int step)
 {
     (void)radius;
-    if (step > 1 || p->resolution != HF_RESOLUTION_FULL)
+    if (step > 1 || p->scatter.resolution != HF_RESOLUTION_FULL)
         return 0;
-    p->resolution = HF_RESOLUTION_HALF;
+    p->scatter.resolution = HF_RESOLUTION_HALF;
     return 1;
 }
 
@@ -274,6 +287,9 @@ static void kernels(void *table, enum hf_isa isa, int fused)
 
 const struct hf_engine_def hf_scatter_engine = {
     .name = "scatter",
+    .aperture = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE |
+                HF_APERTURE_SQUEEZE | HF_APERTURE_PICTURE,
+    .check = check,
     .passes = passes,
     .pass_count = PASSES,
     .sweeps = 2,

@@ -70,9 +70,11 @@ static void strings(void)
     static const char *const passes[] = {"CoC generation",  "Downsample",      "Near CoC Max X", "Near CoC Max Y",
                                          "Near CoC Blur X", "Near CoC Blur Y", "Computation",    "Fill",
                                          "Composite"};
-    for (int i = 0; i < HF_PASS_COUNT; i++)
+    const int count = hf_pass_count(HF_ENGINE_GATHER);
+    CHECK_INT(count, sizeof passes / sizeof *passes);
+    for (int i = 0; i < count; i++)
         CHECK(strcmp(hf_pass_name(HF_ENGINE_GATHER, i), passes[i]) == 0);
-    CHECK(!hf_pass_name(HF_ENGINE_GATHER, HF_PASS_COUNT) && !hf_pass_name(HF_ENGINE_GATHER, -1) &&
+    CHECK(!hf_pass_name(HF_ENGINE_GATHER, count) && !hf_pass_name(HF_ENGINE_GATHER, -1) &&
           !hf_pass_name((enum hf_engine) - 1, 0));
 }
 
@@ -114,10 +116,10 @@ static void opening(void)
     CHECK_INT(hf_open(&c, NULL), HF_OK);
     CHECK(hf_context_threads(c) >= 1 && hf_context_threads(c) <= 256);
     CHECK(hf_context_isa(c) != HF_ISA_AUTO && hf_isa_available(hf_context_isa(c)));
-    struct hf_stats stats;
+    struct hf_report stats;
     memset(&stats, 0xff, sizeof stats);
-    hf_get_stats(c, &stats);
-    CHECK(stats.total_ms == 0 && stats.near_pixels == 0 && stats.tiles_all[0] == 0);
+    hf_get_report(c, &stats);
+    CHECK(stats.total_ms == 0 && stats.near_pixels == 0 && stats.pass[0].all == 0);
     hf_close(&c);
     hf_close(&c);
     hf_close(NULL);
@@ -214,61 +216,70 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.model = (enum hf_model) - 1);
     static const float not_positive[] = {0, -0.0f, -1, NAN, -INFINITY, INFINITY};
     for (int i = 0; i < 6; i++)
-        SPOIL(params.focus_distance = not_positive[i]);
-    SPOIL(params.range = -2);
-    SPOIL(params.range = NAN);
-    SPOIL(params.range = -INFINITY);
-    ALLOW(params.range = 0);
-    ALLOW(params.range = INFINITY);
-    SPOIL(params.strength = -0.01f);
-    SPOIL(params.strength = 1.01f);
-    SPOIL(params.strength = NAN);
-    ALLOW(params.strength = 0);
-    SPOIL(params.near_begin = 25);
-    SPOIL(params.near_begin = NAN);
-    SPOIL(params.near_begin = -3);
-    SPOIL(params.near_end = 5);
-    SPOIL(params.near_end = INFINITY);
-    SPOIL(params.far_begin = 31);
-    SPOIL(params.far_begin = NAN);
-    SPOIL(params.far_end = 19);
-    SPOIL(params.far_end = -7);
-    ALLOW(params.near_begin = 20);
-    ALLOW(params.far_end = 20);
-    ALLOW(params.far_end = INFINITY);
+        if (not_positive[i] != HF_DERIVE)
+            SPOIL(params.focus = not_positive[i]);
+    SPOIL(params.focus = -2);
+    SPOIL(params.range.distance = -2);
+    SPOIL(params.range.distance = NAN);
+    SPOIL(params.range.distance = -INFINITY);
+    ALLOW(params.range.distance = 0);
+    ALLOW(params.range.distance = INFINITY);
+    SPOIL(params.range.strength = -0.01f);
+    SPOIL(params.range.strength = 1.01f);
+    SPOIL(params.range.strength = NAN);
+    ALLOW(params.range.strength = 0);
+    SPOIL(params.range.near_begin = 25);
+    SPOIL(params.range.near_begin = NAN);
+    SPOIL(params.range.near_begin = -3);
+    SPOIL(params.range.near_end = 5);
+    SPOIL(params.range.near_end = INFINITY);
+    SPOIL(params.range.far_begin = 31);
+    SPOIL(params.range.far_begin = NAN);
+    SPOIL(params.range.far_end = 19);
+    SPOIL(params.range.far_end = -7);
+    ALLOW(params.range.near_begin = 20);
+    ALLOW(params.range.far_end = 20);
+    ALLOW(params.range.far_end = INFINITY);
     SPOIL(params.max_radius = -2);
-    SPOIL(params.max_radius = 1025);
+    SPOIL(params.max_radius = 2049);
     SPOIL(params.max_radius = NAN);
     SPOIL(params.max_radius = INFINITY);
     ALLOW(params.max_radius = 0);
     ALLOW(params.max_radius = 200);
-    SPOIL(params.display_width = -1);
-    SPOIL(params.display_height = -1080);
-    ALLOW(params.display_height = 1080);
-    SPOIL(params.pixel_aspect = 0);
-    SPOIL(params.pixel_aspect = 11);
-    SPOIL(params.pixel_aspect = NAN);
-    ALLOW(params.pixel_aspect = 10);
-    ALLOW(params.pixel_aspect = 0.1f);
-    SPOIL(params.storage = (enum hf_storage)3);
-    SPOIL(params.fill = (enum hf_fill)3);
-    SPOIL(params.blend = (enum hf_blend) - 1);
-    for (int blades = -1; blades <= 11; blades++) {
-        if (blades == 0 || (blades >= 5 && blades <= 9))
-            ALLOW(params.blades = blades);
+    ALLOW(params.max_radius = 2048);
+    SPOIL(params.view.display_width = -2);
+    SPOIL(params.view.display_width = 0);
+    SPOIL(params.view.display_height = -1080);
+    ALLOW(params.view.display_height = 1080);
+    SPOIL(params.view.pixel_aspect = 0);
+    SPOIL(params.view.pixel_aspect = 11);
+    SPOIL(params.view.pixel_aspect = NAN);
+    ALLOW(params.view.pixel_aspect = 10);
+    ALLOW(params.view.pixel_aspect = 0.1f);
+    SPOIL(params.gather.storage = (enum hf_storage)3);
+    SPOIL(params.gather.fill = (enum hf_fill)3);
+    SPOIL(params.range.blend = (enum hf_blend) - 1);
+    for (int blades = -1; blades <= 18; blades++) {
+        if (blades == 0 || (blades >= 3 && blades <= 16))
+            ALLOW(params.aperture.blades = blades);
         else
-            SPOIL(params.blades = blades);
+            SPOIL(params.aperture.blades = blades);
     }
-    SPOIL(params.blade_rotation = NAN);
-    SPOIL(params.blade_rotation = INFINITY);
+    SPOIL(params.aperture.rotation = NAN);
+    SPOIL(params.aperture.rotation = INFINITY);
+    SPOIL(params.aperture.ring = 0.5f);  // not the gather's
+    SPOIL(params.aperture.squeeze = 2);
+    SPOIL(params.gather.rings = 0);
+    SPOIL(params.gather.rings = 65);
+    SPOIL(params.run.budget_ms = NAN);
     good.params.model = HF_MODEL_LENS;
-    ALLOW(params.f_number = INFINITY);
+    ALLOW(params.lens.f_number = INFINITY);
     for (int i = 0; i < 6; i++) {
         if (i < 5)
-            SPOIL(params.f_number = not_positive[i]);
-        SPOIL(params.focal_length_mm = not_positive[i]);
-        SPOIL(params.sensor_width_mm = not_positive[i]);
-        SPOIL(params.world_unit_m = not_positive[i]);
+            SPOIL(params.lens.f_number = not_positive[i]);
+        SPOIL(params.lens.focal_length_mm = not_positive[i]);
+        SPOIL(params.lens.sensor_width_mm = not_positive[i]);
+        SPOIL(params.lens.world_unit_m = not_positive[i]);
     }
     call_free(&good);
 }
@@ -397,14 +408,14 @@ static void repairs(struct hf_context *c, enum hf_format format, int variant)
     for (int k = 0; k < before.channels; k++)
         for (int i = 0; i < before.width * before.height; i++)
             bad += !isfinite(before.plane[k][i]);
-    p.strength = (float)(variant % 2);
-    p.no_skip = variant / 2 % 2;
-    struct hf_stats stats;
+    p.range.strength = (float)(variant % 2);
+    p.run.no_skip = variant / 2 % 2;
+    struct hf_report stats;
     CHECK_INT(hf_render(c, &b.image, &a.image, &depth, &p), HF_OK);
-    hf_get_stats(c, &stats);
+    hf_get_report(c, &stats);
     CHECK_INT(stats.colour_repaired, bad);
     CHECK_INT(hf_render(c, &a.image, &a.image, &depth, &p), HF_OK);
-    hf_get_stats(c, &stats);
+    hf_get_report(c, &stats);
     CHECK_INT(stats.colour_repaired, bad);
     struct picture out = packed_read(&b), in_place = packed_read(&a);
     CHECK_MSG(picture_same_bits(&out, &in_place), "format %d, variant %d: repair in place differs", format, variant);
@@ -412,7 +423,7 @@ static void repairs(struct hf_context *c, enum hf_format format, int variant)
     for (int k = 0; k < before.channels; k++)
         for (int i = 0; i < before.width * before.height; i++)
             wrong += !isfinite(out.plane[k][i]) ||
-                     (p.strength == 0 && isfinite(before.plane[k][i]) && out.plane[k][i] != before.plane[k][i]);
+                     (p.range.strength == 0 && isfinite(before.plane[k][i]) && out.plane[k][i] != before.plane[k][i]);
     CHECK_MSG(wrong == 0, "format %d, variant %d: %d samples not finite, or changed by a copy", format, variant, wrong);
     picture_free(&before);
     picture_free(&out);
@@ -438,8 +449,8 @@ static void depth_strides(struct hf_context *c)
         good.depth.stride = i & 1 ? -stride : stride;
         accepted(c, &good, "depth strides");
         CHECK_MSG(picture_same_bits(&want, &good.out), "depth stride %td", good.depth.stride);
-        struct hf_stats stats;
-        hf_get_stats(c, &stats);
+        struct hf_report stats;
+        hf_get_report(c, &stats);
         CHECK_INT(stats.depth_repaired, 0);
         free(memory);
     }

@@ -85,8 +85,8 @@ static int render(struct hf_context *c, const struct scene *s, const struct hf_p
 static struct hf_params rich_params(void)
 {
     struct hf_params p = scene_params();
-    p.karis = p.per_pixel_kernel = p.bicubic = 1;
-    p.blades = 7;
+    p.gather.karis = p.gather.per_pixel_kernel = p.gather.bicubic = 1;
+    p.aperture.blades = 7;
     return p;
 }
 
@@ -109,9 +109,9 @@ static void memory(void)
     calls = n.calls;
     CHECK_INT(render(c, &big, &p, &big_out), HF_OK);
     CHECK_MSG(n.calls == calls, "%ld allocations on a second big frame", n.calls - calls);
-    struct hf_stats stats;
-    hf_get_stats(c, &stats);
-    CHECK_MSG(stats.memory == n.bytes, "statistics say %zu bytes, the allocator %zu", stats.memory, n.bytes);
+    struct hf_report stats;
+    hf_get_report(c, &stats);
+    CHECK_MSG(stats.memory_held == n.bytes, "statistics say %zu bytes, the allocator %zu", stats.memory_held, n.bytes);
     hf_close(&c);
     CHECK_INT(n.live, 0);
     CHECK_INT(n.bytes, 0);
@@ -303,14 +303,23 @@ static void many_contexts(void)
     }
 }
 
-static void check_stats(const struct hf_stats *s, int pixels)
+static const struct hf_pass_report *pass_of(const struct hf_report *r, const char *name)
+{
+    int i = 0;
+    while (i < r->passes && strcmp(r->pass[i].name, name))
+        i++;
+    CHECK_MSG(i < r->passes, "there is no pass %s", name);
+    return &r->pass[i % HF_MAX_PASSES];
+}
+
+static void check_stats(const struct hf_report *s, int pixels)
 {
     CHECK_INT(s->near_pixels + s->sharp_pixels + s->far_pixels, pixels);
-    CHECK(s->total_ms > 0 && s->memory > 0);
+    CHECK(s->total_ms > 0 && s->memory_held > 0);
     double sum = 0;
-    for (int i = 0; i < HF_PASS_COUNT; i++) {
-        CHECK(s->pass_ms[i] >= 0 && s->tiles_run[i] <= s->tiles_all[i] && s->tiles_all[i] > 0);
-        sum += s->pass_ms[i];
+    for (int i = 0; i < s->passes; i++) {
+        CHECK(s->pass[i].ms >= 0 && s->pass[i].ran <= s->pass[i].all && s->pass[i].all > 0);
+        sum += s->pass[i].ms;
     }
     CHECK_MSG(sum <= s->total_ms * 1.05 + 0.1, "passes %g ms, frame %g ms", sum, s->total_ms);
 }
@@ -319,18 +328,18 @@ static void statistics(void)
 {
     struct rng rng = rng_seed(seed);
     struct hf_context *c;
-    struct hf_stats stats;
+    struct hf_report stats;
     struct hf_params p = scene_params();
     struct picture out = picture_new(64, 48, 3);
     CHECK_INT(hf_open(&c, NULL), HF_OK);
     struct scene sharp = scene_new(&rng, SCENE_SHARP, 64, 48, 3);
     CHECK_INT(render(c, &sharp, &p, &out), HF_OK);
-    hf_get_stats(c, &stats);
+    hf_get_report(c, &stats);
     check_stats(&stats, 64 * 48);
     CHECK_INT(stats.sharp_pixels, 64 * 48);
-    CHECK_INT(stats.tiles_run[HF_PASS_GATHER], 0);
-    CHECK_INT(stats.tiles_run[HF_PASS_FILL], 0);
-    CHECK(stats.max_radius == 12);
+    CHECK_INT(pass_of(&stats, "Computation")->ran, 0);
+    CHECK_INT(pass_of(&stats, "Fill")->ran, 0);
+    CHECK(stats.used.params.max_radius == 12);
     CHECK(picture_same_bits(&out, &sharp.colour));
     // One near, two far, one without surface (far), one NaN (among sharp ones: sharp); two bad colour samples.
     sharp.depth.plane[0][5] = 12;
@@ -341,9 +350,9 @@ static void statistics(void)
     sharp.colour.plane[0][700] = NAN;
     sharp.colour.plane[2][701] = -INFINITY;
     for (int no_skip = 0; no_skip < 2; no_skip++) {
-        p.no_skip = no_skip;
+        p.run.no_skip = no_skip;
         CHECK_INT(render(c, &sharp, &p, &out), HF_OK);
-        hf_get_stats(c, &stats);
+        hf_get_report(c, &stats);
         check_stats(&stats, 64 * 48);
         CHECK_INT(stats.near_pixels, 1);
         CHECK_INT(stats.far_pixels, 3);
@@ -351,7 +360,7 @@ static void statistics(void)
         CHECK_INT(stats.depth_repaired, 1);
         CHECK_INT(stats.colour_repaired, 2);
         CHECK_INT(stats.clamped, 0);
-        CHECK(!no_skip || stats.tiles_run[HF_PASS_GATHER] == stats.tiles_all[HF_PASS_GATHER]);
+        CHECK(!no_skip || pass_of(&stats, "Computation")->ran == pass_of(&stats, "Computation")->all);
     }
     // Counts do not depend on what is skipped. Negative and too large samples are clamped by the format.
     struct packed packed = packed_new(64, 48, HF_FORMAT_R11G11B10F, 0, 0, 0, 0, 0);
@@ -362,17 +371,17 @@ static void statistics(void)
     const struct hf_image src = picture_image(&sharp.colour);
     const struct hf_depth depth = picture_depth(&sharp.depth);
     CHECK_INT(hf_render(c, &packed.image, &src, &depth, &p), HF_OK);
-    hf_get_stats(c, &stats);
+    hf_get_report(c, &stats);
     CHECK_INT(stats.clamped, 2);
     CHECK_INT(stats.colour_repaired, 0);
     packed_free(&packed);
     scene_free(&sharp);
     p.max_radius = HF_DERIVE;
-    p.display_height = 2160;
+    p.view.display_height = 2160;
     struct scene blocks = scene_new(&rng, SCENE_BLOCKS, 64, 48, 3);
     CHECK_INT(render(c, &blocks, &p, &out), HF_OK);
-    hf_get_stats(c, &stats);
-    CHECK_MSG(stats.max_radius == 24, "max_radius %g", stats.max_radius);
+    hf_get_report(c, &stats);
+    CHECK_MSG(stats.used.params.max_radius == 24, "max_radius %g", stats.used.params.max_radius);
     scene_free(&blocks);
     picture_free(&out);
     hf_close(&c);

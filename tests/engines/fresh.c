@@ -137,7 +137,8 @@ static void widths(enum hf_engine engine, const char *name, enum hf_isa isa)
                 struct hf_params p = scene_params();
                 p.engine = engine;
                 p.max_radius = radii[i] < 1 ? HF_DERIVE : radii[i];
-                p.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+                p.hexagon.resolution = p.scatter.resolution = p.gaussian.resolution =
+                    half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
                 const int n = others(&s, &p, isa);
                 CHECK_MSG(!n, "%s, %s, %d wide, radius %g, %s resolution: %d of %d heaps give other bits", name,
                           hf_isa_name(isa), width, (double)radii[i], half ? "half" : "full", n, SEEDS - 1);

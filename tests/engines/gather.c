@@ -91,7 +91,7 @@ static double buffer_near(const struct ref_buffer *b, int c, int x, int y, int r
 // cubic 4 rounded weights with 4 roundings each and 15 sums, twice (62). Two lerps, of differences (8).
 static double composite_bound(const struct reference *r, int c, int x, int y)
 {
-    const double roundings = 32 + (r->params.bicubic ? 62 : 14) + 8;
+    const double roundings = 32 + (r->params.gather.bicubic ? 62 : 14) + 8;
     const double fields = fmax(buffer_near(&r->buffer[REF_NEARFILL], c, x / 2, y / 2, 2),
                                buffer_near(&r->buffer[REF_FARFILL], c, x / 2, y / 2, 2));
     return many(roundings) * fmax(fabs(r->buffer[REF_COLOUR].data[c][y * r->width + x]), fields);
@@ -104,8 +104,8 @@ static double composite_bound(const struct reference *r, int c, int x, int y)
 static double coc_bound(const struct reference *r, const struct job *job)
 {
     const struct hf_params *p = &r->params;
-    const double lens = p->model == HF_MODEL_LENS, f = p->focus_distance;
-    const double range = p->range == HF_DERIVE ? f / 2 : fmax(p->range, 1e-6);
+    const double lens = p->model == HF_MODEL_LENS, f = p->focus;
+    const double range = p->range.distance == HF_DERIVE ? f / 2 : fmax(p->range.distance, 1e-6);
     const double end = f + range;  // depths beyond have CoC 1
     double converted = 0;
     if (job->depth->type == HF_DEPTH_RAY || job->depth->type == HF_DEPTH_INVERSE)
@@ -114,9 +114,9 @@ static double coc_bound(const struct reference *r, const struct job *job)
         converted = 6 * end / range * end / job->depth->near_plane;
     double bound = 8 + 4 * end / range + converted;
     if (lens)
-        bound = 8 + 12 * p->focal_length_mm * p->focal_length_mm / 2000 / p->f_number / p->sensor_width_mm * r->width /
-                        f / r->rho;
-    return U * (p->blend == HF_BLEND_SMOOTHSTEP ? 1.5 * bound + 6 : bound);
+        bound = 8 + 12 * p->lens.focal_length_mm * p->lens.focal_length_mm / 2000 / p->lens.f_number /
+                        p->lens.sensor_width_mm * r->width / f / r->rho;
+    return U * (p->range.blend == HF_BLEND_SMOOTHSTEP ? 1.5 * bound + 6 : bound);
 }
 
 // Pass 7. L lattice weights: L products and sums, one more rounding in each weight, for numerator and denominator, and
@@ -130,12 +130,12 @@ static double gather_bound(const struct reference *r, enum ref_id id, int c, int
     const double mean = id == REF_NEAR ? r->near_mean[pixel] : r->far_mean[pixel];
     if (mean == 0)
         return 2 * U * colour_near(r, c, x, y, 0, 0);  // own colour, at most divided by its CoC
-    const int per_pixel = id == REF_FAR && r->params.per_pixel_kernel;
+    const int per_pixel = id == REF_FAR && r->params.gather.per_pixel_kernel;
     const double points = per_pixel ? 4 * r->taps : fmin(4 * r->taps + 1, (2 * rx - 1) * (2 * ry - 1));
     const double moved = fmax(r->reach_x, r->reach_y) + 1 + (per_pixel ? r->half_width + r->half_height : 0);
     const double largest = colour_near(r, c, x, y, rx, ry);
     // Karis weights w = 1 / (1 + Y): w c <= 1 / 0.0722 for every channel.
-    const double sample = r->params.karis ? fmin(largest, 14) : largest;
+    const double sample = r->params.gather.karis ? fmin(largest, 14) : largest;
     return many(2 * points + 12) * largest + U * 4 * moved * sample / mean;
 }
 
@@ -164,9 +164,9 @@ static double bound_of(const struct reference *r, const struct job *job, enum re
     case REF_FAR:
         return gather_bound(r, id, c, x, y);
     case REF_NEARFILL:  // nine terms, and the quotient or a product with a rounded 1/9
-        return r->params.fill == HF_FILL_MEAN ? 11 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1) : 0;
+        return r->params.gather.fill == HF_FILL_MEAN ? 11 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1) : 0;
     case REF_FARFILL:
-        return r->params.fill == HF_FILL_MEAN ? 11 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1) : 0;
+        return r->params.gather.fill == HF_FILL_MEAN ? 11 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1) : 0;
     case REF_RESULT:
         return composite_bound(r, c, x, y);
     default:
@@ -181,7 +181,7 @@ static void compare(void *cookie, struct reference *r, enum ref_id id)
     struct ref_buffer *b = &r->buffer[id];
     const struct picture *got = &job->captured.buffer[id];
     const struct hf_params *p = &r->params;
-    const double unorm = p->storage == HF_STORAGE_CHAPTER ? 2 * U : 0;  // n / 255, or n * (1 / 255)
+    const double unorm = p->gather.storage == HF_STORAGE_PACKED ? 2 * U : 0;  // n / 255, or n * (1 / 255)
     if (!CHECK_MSG(got->width == b->width && got->height == b->height && got->channels == b->channels,
                    "%s: %s is %d x %d x %d, expected %d x %d x %d", job->label, b->name, got->width, got->height,
                    got->channels, b->width, b->height, b->channels))
@@ -195,8 +195,8 @@ static void compare(void *cookie, struct reference *r, enum ref_id id)
             const double raw = b->raw[c][i], have = got->plane[c][i];
             const double bound = bound_of(r, job, id, c, i % b->width, i / b->width);
             // What is stored must be what a value within the bound becomes by being stored.
-            const double low = ref_store(p->storage, stored_as, raw - bound) - unorm;
-            const double high = ref_store(p->storage, stored_as, raw + bound) + unorm;
+            const double low = ref_store(p->gather.storage, stored_as, raw - bound) - unorm;
+            const double high = ref_store(p->gather.storage, stored_as, raw + bound) + unorm;
             b->data[c][i] = have;
             if (have >= low && have <= high)
                 continue;
@@ -234,7 +234,7 @@ static void check_frame(struct hf_context *c, const struct scene *s, const struc
     reference_free(r);
     for (int no_skip = 0; no_skip < 2; no_skip++) {
         struct hf_params q = *p;
-        q.no_skip = no_skip;
+        q.run.no_skip = no_skip;
         struct picture fused = render(c, s, depth, &q);
         CHECK_MSG(picture_same_bits(&fused, &out), "%s: fused (no_skip %d) and dumped frames differ", label, no_skip);
         picture_free(&fused);
@@ -253,50 +253,56 @@ struct option {
 #define ON 1
 static const struct option options[] = {
     {"default", {0}, 1},
-    {"faithful", {.faithful = ON}, 1},
-    {"strength 0.1", {.strength = 0.1f}, 0},
-    {"strength 0.3", {.strength = 0.3f}, 0},
-    {"strength 0.6 faithful", {.strength = 0.6f, .faithful = ON}, 0},
-    {"karis", {.karis = ON}, 1},
-    {"per-pixel", {.per_pixel_kernel = ON}, 1},
-    {"per-pixel karis mean", {.per_pixel_kernel = ON, .karis = ON, .fill = HF_FILL_MEAN}, 0},
-    {"per-pixel none aspect 2", {.per_pixel_kernel = ON, .fill = HF_FILL_NONE, .pixel_aspect = 2}, 0},
-    {"bicubic", {.bicubic = ON}, 1},
-    {"bicubic faithful strength 0.2", {.bicubic = ON, .faithful = ON, .strength = 0.2f}, 0},
-    {"mean", {.fill = HF_FILL_MEAN}, 0},
-    {"none", {.fill = HF_FILL_NONE}, 0},
-    {"none radius 60", {.fill = HF_FILL_NONE, .max_radius = 60}, 0},
-    {"none radius 60 per-pixel", {.fill = HF_FILL_NONE, .max_radius = 60, .per_pixel_kernel = ON}, 0},
-    {"none karis 7-gon", {.fill = HF_FILL_NONE, .karis = ON, .blades = 7, .blade_rotation = 20}, 0},
-    {"smoothstep", {.blend = HF_BLEND_SMOOTHSTEP}, 0},
-    {"5-gon", {.blades = 5}, 0},
-    {"5-gon rotated", {.blades = 5, .blade_rotation = 33}, 1},
-    {"6-gon", {.blades = 6}, 0},
-    {"6-gon rotated", {.blades = 6, .blade_rotation = -10}, 0},
-    {"7-gon strength 0.6", {.blades = 7, .strength = 0.6f}, 0},
-    {"8-gon rotated", {.blades = 8, .blade_rotation = 400}, 0},
-    {"9-gon karis", {.blades = 9, .karis = ON}, 0},
-    {"aspect 2", {.pixel_aspect = 2}, 0},
-    {"aspect 0.6 karis", {.pixel_aspect = 0.6f, .karis = ON}, 0},
+    {"faithful", {.gather.faithful = ON}, 1},
+    {"strength 0.1", {.range.strength = 0.1f}, 0},
+    {"strength 0.3", {.range.strength = 0.3f}, 0},
+    {"strength 0.6 faithful", {.range.strength = 0.6f, .gather.faithful = ON}, 0},
+    {"karis", {.gather.karis = ON}, 1},
+    {"per-pixel", {.gather.per_pixel_kernel = ON}, 1},
+    {"per-pixel karis mean", {.gather.per_pixel_kernel = ON, .gather.karis = ON, .gather.fill = HF_FILL_MEAN}, 0},
+    {"per-pixel none aspect 2",
+     {.gather.per_pixel_kernel = ON, .gather.fill = HF_FILL_NONE, .view.pixel_aspect = 2},
+     0},
+    {"bicubic", {.gather.bicubic = ON}, 1},
+    {"bicubic faithful strength 0.2", {.gather.bicubic = ON, .gather.faithful = ON, .range.strength = 0.2f}, 0},
+    {"mean", {.gather.fill = HF_FILL_MEAN}, 0},
+    {"none", {.gather.fill = HF_FILL_NONE}, 0},
+    {"none radius 60", {.gather.fill = HF_FILL_NONE, .max_radius = 60}, 0},
+    {"none radius 60 per-pixel", {.gather.fill = HF_FILL_NONE, .max_radius = 60, .gather.per_pixel_kernel = ON}, 0},
+    {"none karis 7-gon",
+     {.gather.fill = HF_FILL_NONE, .gather.karis = ON, .aperture.blades = 7, .aperture.rotation = 20},
+     0},
+    {"smoothstep", {.range.blend = HF_BLEND_SMOOTHSTEP}, 0},
+    {"5-gon", {.aperture.blades = 5}, 0},
+    {"5-gon rotated", {.aperture.blades = 5, .aperture.rotation = 33}, 1},
+    {"6-gon", {.aperture.blades = 6}, 0},
+    {"6-gon rotated", {.aperture.blades = 6, .aperture.rotation = -10}, 0},
+    {"7-gon strength 0.6", {.aperture.blades = 7, .range.strength = 0.6f}, 0},
+    {"8-gon rotated", {.aperture.blades = 8, .aperture.rotation = 400}, 0},
+    {"9-gon karis", {.aperture.blades = 9, .gather.karis = ON}, 0},
+    {"aspect 2", {.view.pixel_aspect = 2}, 0},
+    {"aspect 0.6 karis", {.view.pixel_aspect = 0.6f, .gather.karis = ON}, 0},
     {"radius 1", {.max_radius = 1}, 0},
     {"radius 4", {.max_radius = 4}, 0},
-    {"radius 7.3 strength 0.45", {.max_radius = 7.3f, .strength = 0.45f}, 0},
+    {"radius 7.3 strength 0.45", {.max_radius = 7.3f, .range.strength = 0.45f}, 0},
     {"radius 40", {.max_radius = 40}, 0},
-    {"radius 40 6-gon karis aspect 2", {.max_radius = 40, .blades = 6, .karis = ON, .pixel_aspect = 2}, 0},
-    {"range 20 (near begin at 0)", {.range = 20}, 0},
-    {"range 35 (near begin clamped)", {.range = 35}, 0},
-    {"range 0", {.range = 1e-30f}, 0},
-    {"given distances", {.near_begin = 5, .near_end = 17, .far_begin = 22, .far_end = 31}, 0},
-    {"display 1080", {.max_radius = HF_DERIVE, .display_height = 1080}, 0},
-    {"derived radius", {.max_radius = HF_DERIVE, .display_height = 700}, 0},
-    {"derived radius faithful", {.max_radius = HF_DERIVE, .faithful = ON}, 0},
-    {"lens", {.model = HF_MODEL_LENS, .f_number = 0.05f}, 1},
+    {"radius 40 6-gon karis aspect 2",
+     {.max_radius = 40, .aperture.blades = 6, .gather.karis = ON, .view.pixel_aspect = 2},
+     0},
+    {"range 20 (near begin at 0)", {.range.distance = 20}, 0},
+    {"range 35 (near begin clamped)", {.range.distance = 35}, 0},
+    {"range 0", {.range.distance = 1e-30f}, 0},
+    {"given distances", {.range.near_begin = 5, .range.near_end = 17, .range.far_begin = 22, .range.far_end = 31}, 0},
+    {"display 1080", {.max_radius = HF_DERIVE, .view.display_height = 1080}, 0},
+    {"derived radius", {.max_radius = HF_DERIVE, .view.display_height = 700}, 0},
+    {"derived radius faithful", {.max_radius = HF_DERIVE, .gather.faithful = ON}, 0},
+    {"lens", {.model = HF_MODEL_LENS, .lens.f_number = 0.05f}, 1},
     {"lens smoothstep display",
      {.model = HF_MODEL_LENS,
-      .f_number = 0.3f,
-      .display_width = 500,
-      .blend = HF_BLEND_SMOOTHSTEP,
-      .world_unit_m = 0.5f},
+      .lens.f_number = 0.3f,
+      .view.display_width = 500,
+      .range.blend = HF_BLEND_SMOOTHSTEP,
+      .lens.world_unit_m = 0.5f},
      0},
 };
 enum { OPTIONS = sizeof options / sizeof *options };
@@ -310,8 +316,8 @@ static struct hf_params merge(const struct hf_params *set)
     for (size_t i = 0; i < sizeof p / 4; i++)
         if (memcmp((const char *)set + 4 * i, (const char *)&zero + 4 * i, 4) != 0)
             memcpy((char *)&p + 4 * i, (const char *)set + 4 * i, 4);
-    if (set->range == 1e-30f)
-        p.range = 0;
+    if (set->range.distance == 1e-30f)
+        p.range.distance = 0;
     return p;
 }
 
@@ -348,11 +354,11 @@ static void all_scenes_and_storages(struct hf_context *c, const char *isa, unsig
                 struct scene scene = scene_new(&rng, (enum scene_kind)kind, 45, 38, 3 + variant % 2);
                 const struct hf_depth depth = picture_depth(&scene.depth);
                 struct hf_params p = scene_params();
-                p.storage = (enum hf_storage)storage;
-                p.faithful = variant == 1;
-                p.karis = variant == 2;
-                p.bicubic = p.per_pixel_kernel = variant == 3;
-                p.fill = variant == 3 ? HF_FILL_MEAN : HF_FILL_MAX;
+                p.gather.storage = (enum hf_storage)storage;
+                p.gather.faithful = variant == 1;
+                p.gather.karis = variant == 2;
+                p.gather.bicubic = p.gather.per_pixel_kernel = variant == 3;
+                p.gather.fill = variant == 3 ? HF_FILL_MEAN : HF_FILL_MAX;
                 char label[120];
                 snprintf(label, sizeof label, "%s, storage %s, variant %d, %s", isa, storages[storage], variant,
                          scene_name((enum scene_kind)kind));
@@ -379,7 +385,7 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
         snprintf(label, sizeof label, "%s, depth %s", isa, types[type]);
         check_frame(c, &scene, &depth, &p, label);
         struct hf_params wide = p;
-        wide.pixel_aspect = 2;
+        wide.view.pixel_aspect = 2;
         check_frame(c, &scene, &depth, &wide, label);
         struct job job = {.depth = &depth};
         snprintf(job.label, sizeof job.label, "%s", label);
@@ -413,8 +419,8 @@ static void deterministic(struct hf_context *scalar, struct hf_context *c, const
         struct scene scene = scene_new(&rng, SCENE_HIGHLIGHTS, 77, 41, 3 + o % 2);
         const struct hf_depth depth = picture_depth(&scene.depth);
         struct hf_params p = merge(&options[o].p);
-        p.deterministic = 1;
-        p.storage = (enum hf_storage)(o % 3);
+        p.run.deterministic = 1;
+        p.gather.storage = (enum hf_storage)(o % 3);
         struct picture a = render(scalar, &scene, &depth, &p), b = render(c, &scene, &depth, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s, deterministic, %s: not the bits of scalar", isa, options[o].name);
         picture_free(&a);

@@ -104,7 +104,7 @@ static double sat(double v)
 
 static double shape(const struct hf_params *p, double t)
 {
-    return p->blend == HF_BLEND_SMOOTHSTEP ? t * t * (3 - 2 * t) : t;
+    return p->range.blend == HF_BLEND_SMOOTHSTEP ? t * t * (3 - 2 * t) : t;
 }
 
 static double clamp_depth(double z, double n, double f, int faithful)
@@ -117,34 +117,35 @@ static double clamp_depth(double z, double n, double f, int faithful)
 
 static int nothing_given(const struct hf_params *p)
 {
-    return p->model == HF_MODEL_RANGE && p->range == HF_DERIVE && p->near_begin == HF_DERIVE &&
-           p->near_end == HF_DERIVE && p->far_begin == HF_DERIVE && p->far_end == HF_DERIVE;
+    return p->model == HF_MODEL_RANGE && p->range.distance == HF_DERIVE && p->range.near_begin == HF_DERIVE &&
+           p->range.near_end == HF_DERIVE && p->range.far_begin == HF_DERIVE && p->range.far_end == HF_DERIVE;
 }
 
 static double blend_factor(const struct hf_params *p, const struct hf_depth *d, double z, double focus, int width)
 {
-    if (p->faithful || nothing_given(p)) {
+    if (p->gaussian.faithful || nothing_given(p)) {
         const double n = d->near_plane > 0 ? d->near_plane : 1;
         const double f = d->far_plane > 0 && d->far_plane < INFINITY ? d->far_plane : 100 * n;
-        const double distance = fabs(clamp_depth(focus, n, f, p->faithful) - clamp_depth(z, n, f, p->faithful));
-        return p->strength * shape(p, sat(3 * distance));
+        const double distance =
+            fabs(clamp_depth(focus, n, f, p->gaussian.faithful) - clamp_depth(z, n, f, p->gaussian.faithful));
+        return p->range.strength * shape(p, sat(3 * distance));
     }
     if (p->model == HF_MODEL_LENS) {
-        const double k = p->focal_length_mm / 1000. / (2 * p->f_number) / p->world_unit_m * p->focal_length_mm /
-                         p->sensor_width_mm * width;
+        const double k = p->lens.focal_length_mm / 1000. / (2 * p->lens.f_number) / p->lens.world_unit_m *
+                         p->lens.focal_length_mm / p->lens.sensor_width_mm * width;
         return shape(p, sat(fabs(k * (1 / focus - 1 / z)) / p->max_radius));
     }
-    const double near = sat((focus - z) / p->range), far = sat((z - focus) / p->range);
-    return p->strength * fmax(shape(p, near), shape(p, far));
+    const double near = sat((focus - z) / p->range.distance), far = sat((z - focus) / p->range.distance);
+    return p->range.strength * fmax(shape(p, near), shape(p, far));
 }
 
 static struct picture expected(const struct scene *s, const struct hf_depth *depth, const struct hf_params *p)
 {
-    const int w = s->colour.width, h = s->colour.height, size = 1 << p->resolution;
+    const int w = s->colour.width, h = s->colour.height, size = 1 << p->gaussian.resolution;
     struct picture out = picture_copy(&s->colour);
     double *z = malloc(sizeof *z * (size_t)(w * h));
     ref_depths(z, depth, 1, w, h);
-    const double focus = p->focus_distance == HF_DERIVE ? z[h / 2 * w + w / 2] : p->focus_distance;
+    const double focus = p->focus == HF_DERIVE ? z[h / 2 * w + w / 2] : p->focus;
     for (int c = 0; c < out.channels; c++) {
         struct plane colour = plane_new(w, h), b = plane_new(w, h);
         ref_repair(colour.v, s->colour.plane[c], w, h);
@@ -153,9 +154,9 @@ static struct picture expected(const struct scene *s, const struct hf_depth *dep
             free(b.v);
             b = shrunk(&colour, size);
         }
-        for (int i = 0; i < p->iterations; i++) {
-            blur(&b, 1, 0, p->faithful);
-            blur(&b, 0, 1, p->faithful);
+        for (int i = 0; i < p->gaussian.iterations; i++) {
+            blur(&b, 1, 0, p->gaussian.faithful);
+            blur(&b, 0, 1, p->gaussian.faithful);
         }
         for (int i = 0; i < w * h; i++) {
             const double blurred = size > 1 ? enlarged(&b, size, i % w, i / w) : b.v[i];
@@ -175,10 +176,11 @@ static struct picture expected(const struct scene *s, const struct hf_depth *dep
 // itself (NDC eight), times 3, and eight for the shape.
 static double bound_of(const struct hf_params *p, const struct hf_depth *d)
 {
-    const double iterations = (p->faithful ? 20 : 8) * p->iterations, sizes = p->resolution ? 17 + 12 : 0;
+    const double iterations = (p->gaussian.faithful ? 20 : 8) * p->gaussian.iterations,
+                 sizes = p->gaussian.resolution ? 17 + 12 : 0;
     const double z = d->type == HF_DEPTH_VIEW ? 2 : 24;  // distances in NDC: what cancels is amplified
     double t = 3 * (3 + 3 + 2 * z) + 8;
-    if (!p->faithful &&
+    if (!p->gaussian.faithful &&
         !nothing_given(p))  // max(n, f): slopes times twice the roundings of the largest depth that counts
         t = 16 + 8 * (p->model == HF_MODEL_LENS ? 200 : 30 / 10);
     return (iterations + sizes + 2 * (3 + t)) * U;
@@ -195,10 +197,10 @@ static void against_double(struct hf_context *c, const char *isa)
         struct scene s =
             scene_new(&rng, kind, 1 + rng_below(&rng, 120), 1 + rng_below(&rng, 70), 3 + rng_below(&rng, 2));
         struct hf_params p = random_params(&rng);
-        p.sigma = 0;
+        p.gaussian.sigma = HF_DERIVE;
         struct picture samples = {0};
         struct hf_depth depth = picture_depth(&s.depth);
-        if (p.faithful || nothing_given(&p)) {
+        if (p.gaussian.faithful || nothing_given(&p)) {
             depth = scene_depth_as(&s, types[i % 5], 12, &samples);
             if (i % 2 && depth.type == HF_DEPTH_VIEW)
                 depth.near_plane = depth.far_plane = 0;
@@ -209,8 +211,8 @@ static void against_double(struct hf_context *c, const char *isa)
         CHECK_MSG(error <= bound,
                   "%s: seed %u, %s %d x %d: off by %g, bound %g (iterations %d, resolution %d, faithful %d, "
                   "range %g, model %d, depth %d, focus %g)",
-                  isa, seed + i, scene_name(kind), s.colour.width, s.colour.height, error, bound, p.iterations,
-                  p.resolution, p.faithful, p.range, p.model, depth.type, p.focus_distance);
+                  isa, seed + i, scene_name(kind), s.colour.width, s.colour.height, error, bound, p.gaussian.iterations,
+                  p.gaussian.resolution, p.gaussian.faithful, p.range.distance, p.model, depth.type, p.focus);
         picture_free(&want);
         picture_free(&got);
         if (samples.width)
@@ -243,7 +245,7 @@ static void against_gaussian(struct hf_context *c, const char *isa)
             }
         }
         struct hf_params p = gaussian_params();
-        p.sigma = sigmas[i];
+        p.gaussian.sigma = sigmas[i];
         struct picture a = render(c, &s, NULL, &p);
         double mass = 0, variance = 0;
         for (int x = 0; x < W; x++) {
@@ -282,7 +284,7 @@ static void autofocus(struct hf_context *c, const char *isa)
         const int w = 3 + rng_below(&rng, 40), h = 3 + rng_below(&rng, 40), centre = h / 2 * w + w / 2;
         struct scene s = scene_new(&rng, SCENE_NOISE, w, h, 3);
         struct hf_params p = random_params(&rng);
-        p.focus_distance = HF_DERIVE;
+        p.focus = HF_DERIVE;
         float want = s.depth.plane[0][centre] = 7 + (float)i;
         if (i % 4 == 1) {  // the largest finite one around it
             s.depth.plane[0][centre] = NAN;
@@ -291,10 +293,10 @@ static void autofocus(struct hf_context *c, const char *isa)
         if (i % 4 == 2) {
             s.depth.plane[0][centre] = i % 8 == 2 ? INFINITY : 0;
             want = 1e9f;  // seen from the planes and through the lens: as far
-            p.range = HF_DERIVE;
+            p.range.distance = HF_DERIVE;
         }
         struct picture a = render(c, &s, NULL, &p);
-        p.focus_distance = want;
+        p.focus = want;
         struct picture b = render(c, &s, NULL, &p);
         const double bound = i % 4 == 2 ? 1e-6 : 0;
         CHECK_MSG(largest_difference(&a, &b) <= bound, "%s: seed %u: autofocus %u is not focus %g: %g", isa, seed + i,
@@ -315,17 +317,17 @@ static void effects(struct hf_context *c, const char *isa)
     for (int i = 0; i < 12; i++) {
         struct hf_params p = base;
         struct hf_depth depth = picture_depth(&s.depth);
-        p.iterations = i == 0 ? 4 : p.iterations;
-        p.resolution = i == 1 ? HF_RESOLUTION_HALF : i == 2 ? HF_RESOLUTION_QUARTER : p.resolution;
-        p.strength = i == 3 ? 0.5f : p.strength;
-        p.faithful = i == 4;
-        p.blend = i == 5 ? HF_BLEND_SMOOTHSTEP : p.blend;
-        p.range = i == 6 ? 10 : p.range;
-        p.far_begin = i == 7 ? 25 : p.far_begin;
-        p.far_end = i == 7 ? 30 : p.far_end;
+        p.gaussian.iterations = i == 0 ? 4 : p.gaussian.iterations;
+        p.gaussian.resolution = i == 1 ? HF_RESOLUTION_HALF : i == 2 ? HF_RESOLUTION_QUARTER : p.gaussian.resolution;
+        p.range.strength = i == 3 ? 0.5f : p.range.strength;
+        p.gaussian.faithful = i == 4;
+        p.range.blend = i == 5 ? HF_BLEND_SMOOTHSTEP : p.range.blend;
+        p.range.distance = i == 6 ? 10 : p.range.distance;
+        p.range.far_begin = i == 7 ? 25 : p.range.far_begin;
+        p.range.far_end = i == 7 ? 30 : p.range.far_end;
         p.model = i == 8 ? HF_MODEL_LENS : p.model;
-        p.f_number = i == 8 ? 0.05f : p.f_number;
-        p.focus_distance = i == 9 ? 25 : p.focus_distance;
+        p.lens.f_number = i == 8 ? 0.05f : p.lens.f_number;
+        p.focus = i == 9 ? 25 : p.focus;
         depth.far_plane = i == 10 ? 40 : 0;
         struct picture a = render(c, &s, &depth, &p);
         CHECK_MSG(picture_same_bits(&a, &plain) == (i == 11), "%s: parameter %d has no effect", isa, i);
@@ -334,11 +336,11 @@ static void effects(struct hf_context *c, const char *isa)
     // With sigma, which is in pixels' heights, their aspect counts; with a lens the radius of full blur.
     for (int i = 0; i < 4; i++) {
         struct hf_params one = base, two;
-        one.sigma = i < 2 ? 3.0f : 0;
+        one.gaussian.sigma = i < 2 ? 3.0f : HF_DERIVE;
         one.model = i < 2 ? base.model : HF_MODEL_LENS;
-        one.f_number = 0.05f;
+        one.lens.f_number = 0.05f;
         two = one;
-        two.pixel_aspect = i == 0 ? 2 : 1;
+        two.view.pixel_aspect = i == 0 ? 2 : 1;
         two.max_radius = i == 2 ? one.max_radius / 4 : one.max_radius;
         struct picture a = render(c, &s, NULL, &one), b = render(c, &s, NULL, &two);
         CHECK_MSG(picture_same_bits(&a, &b) == (i % 2 == 1), "%s: case %d has no effect, or one by itself", isa, i);
@@ -347,8 +349,8 @@ static void effects(struct hf_context *c, const char *isa)
     }
     // The near plane counts when faithful, for what lies before it.
     struct hf_params p = base;
-    p.faithful = 1;
-    p.focus_distance = 1;
+    p.gaussian.faithful = 1;
+    p.focus = 1;
     struct hf_depth depth = picture_depth(&s.depth);
     struct picture a = render(c, &s, &depth, &p);
     depth.near_plane = 15;

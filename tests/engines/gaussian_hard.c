@@ -31,19 +31,19 @@ static void same_bits(struct hf_context *plain, enum hf_isa id, const char *isa)
             const int w = 1 + rng_below(&rng, i % 4 ? 90 : 330), h = 1 + rng_below(&rng, i % 4 ? 60 : 200);
             struct scene s = scene_new(&rng, kind, w, h, 3 + rng_below(&rng, 2));
             struct hf_params p = random_params(&rng);
-            p.deterministic = rng_below(&rng, 2);
+            p.run.deterministic = rng_below(&rng, 2);
             for (int j = 0; j < w * h / 20; j++)
                 s.colour.plane[rng_below(&rng, 3)][rng_below(&rng, w * h)] = rng_below(&rng, 2) ? -0.0f : -1e-3f;
             struct picture a = render(c, &s, NULL, &p);
-            struct hf_stats stats;
-            hf_get_stats(c, &stats);
-            run += stats.tiles_run[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1];
-            all += stats.tiles_all[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1];
-            p.no_skip = 1;
+            struct hf_report stats;
+            hf_get_report(c, &stats);
+            run += stats.pass[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1].ran;
+            all += stats.pass[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1].all;
+            p.run.no_skip = 1;
             struct picture b = render(plain, &s, NULL, &p);
             CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u, %s %d x %d, setup %d: skipping gives other bits", isa,
                       seed + i, scene_name(kind), w, h, k);
-            p.no_skip = 0;
+            p.run.no_skip = 0;
             const struct hf_image image = picture_image(&s.colour);
             const struct hf_depth depth = picture_depth(&s.depth);
             CHECK_INT(hf_render(c, &image, &image, &depth, &p), HF_OK);
@@ -64,14 +64,14 @@ static void flips(struct hf_context *c, const char *isa)
     for (unsigned i = 0; i < 30; i++) {
         struct rng rng = rng_seed(seed + i);
         struct hf_params p = random_params(&rng);
-        const int step = 1 << p.resolution;
-        p.focus_distance = 20;  // the pixel in the middle is another one
+        const int step = 1 << p.gaussian.resolution;
+        p.focus = 20;  // the pixel in the middle is another one
         struct scene s =
             scene_new(&rng, SCENE_HIGHLIGHTS, step * (1 + rng_below(&rng, 90 / step)), 1 + rng_below(&rng, 50), 3);
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
         struct picture a = render(c, &s, NULL, &p), b = render(c, &mirror, NULL, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u, %d x %d, resolution %d: flipping gives other bits", isa,
-                  seed + i, s.colour.width, s.colour.height, p.resolution);
+                  seed + i, s.colour.width, s.colour.height, p.gaussian.resolution);
         picture_free(&a);
         picture_free(&b);
         picture_free(&back);
@@ -87,19 +87,20 @@ static void crops(struct hf_context *c, const char *isa)
         struct rng rng = rng_seed(seed + i);
         struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 150 + rng_below(&rng, 60), 140 + rng_below(&rng, 20), 3);
         struct hf_params p = random_params(&rng);
-        p.focus_distance = 20;
-        p.display_width = 200;
-        p.iterations = hf_default_params.iterations;
-        p.sigma = i % 3 ? 0 : fminf(p.sigma, 2);
-        p.resolution = p.sigma > 0 ? HF_RESOLUTION_FULL : p.resolution;
-        const int step = 2 << p.resolution, x0 = step * rng_below(&rng, 4), y0 = step * rng_below(&rng, 4);
-        const int w = 108, h = 104, m = p.sigma > 0 ? 20 : (2 * p.iterations + 2) << p.resolution;
+        p.focus = 20;
+        p.view.display_width = 200;
+        p.gaussian.iterations = hf_default_params.gaussian.iterations;
+        p.gaussian.sigma = i % 3 ? HF_DERIVE : fminf(p.gaussian.sigma, 2);
+        p.gaussian.resolution = p.gaussian.sigma > 0 ? HF_RESOLUTION_FULL : p.gaussian.resolution;
+        const int step = 2 << p.gaussian.resolution, x0 = step * rng_below(&rng, 4), y0 = step * rng_below(&rng, 4);
+        const int w = 108, h = 104,
+                  m = p.gaussian.sigma > 0 ? 20 : (2 * p.gaussian.iterations + 2) << p.gaussian.resolution;
         struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
         struct picture whole = render(c, &s, NULL, &p), a = render(c, &part, NULL, &p);
         struct picture b = picture_cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m),
                        inner = picture_cut(&a, m, m, w - 2 * m, h - 2 * m);
         CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d), resolution %d: other bits", isa,
-                  seed + i, x0, y0, p.resolution);
+                  seed + i, x0, y0, p.gaussian.resolution);
         picture_free(&whole);
         picture_free(&a);
         picture_free(&b);
@@ -163,10 +164,10 @@ static void bad_samples(struct hf_context *c, const char *isa)
         }
         free(v);
         struct hf_params p = random_params(&rng);
-        p.no_skip = i % 2;
+        p.run.no_skip = i % 2;
         struct picture a = render(c, &s, NULL, &p);
-        struct hf_stats stats;
-        hf_get_stats(c, &stats);
+        struct hf_report stats;
+        hf_get_report(c, &stats);
         CHECK_INT(stats.colour_repaired, bad);
         CHECK_INT(stats.depth_repaired, holes);
         CHECK_INT(stats.near_pixels + stats.sharp_pixels + stats.far_pixels, 61 * 45);
@@ -192,12 +193,12 @@ static void constants(struct hf_context *c, const char *isa)
         struct scene s = scene_new(&rng, SCENE_NOISE, 1 + rng_below(&rng, 80), 1 + rng_below(&rng, 60), 3);
         struct hf_params p = random_params(&rng);
         const float value = values[i % 7];
-        p.faithful &= value != FLT_MAX;
+        p.gaussian.faithful &= value != FLT_MAX;
         for (int ch = 0; ch < 3; ch++)
             for (int k = 0; k < s.colour.width * s.colour.height; k++)
                 s.colour.plane[ch][k] = value;
         struct picture a = render(c, &s, NULL, &p);
-        const double bound = p.faithful ? (20 * p.iterations + 20) * U * fabs((double)value) : 0;
+        const double bound = p.gaussian.faithful ? (20 * p.gaussian.iterations + 20) * U * fabs((double)value) : 0;
         CHECK_MSG(largest_difference(&a, &s.colour) <= bound, "%s: seed %u: constant %g changes by %g, bound %g", isa,
                   seed + i, value, largest_difference(&a, &s.colour), bound);
         picture_free(&a);
@@ -212,13 +213,13 @@ static void copies(struct hf_context *c, const char *isa)
     struct scene s = scene_new(&rng, SCENE_NEGATIVE, 90, 70, 4);
     for (int i = 0; i < 5; i++) {
         struct hf_params p = gaussian_params();
-        p.strength = i == 0 ? 0 : 1;
+        p.range.strength = i == 0 ? 0 : 1;
         p.max_radius = i == 1 ? 0 : 12;
-        p.iterations = i == 2 ? 0 : 3;
-        p.range = i == 3 ? INFINITY : HF_DERIVE;
+        p.gaussian.iterations = i == 2 ? 0 : 3;
+        p.range.distance = i == 3 ? INFINITY : HF_DERIVE;
         if (i == 4) {
             p.model = HF_MODEL_LENS;
-            p.f_number = INFINITY;
+            p.lens.f_number = INFINITY;
         }
         struct picture a = render(c, &s, NULL, &p);
         CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: copy %d is none", isa, i);
@@ -238,7 +239,7 @@ static void focus_pull(struct hf_context *c, const char *isa)
     struct picture before = render(c, &s, NULL, &p);
     double worst = 0;
     for (int i = 1; i <= 30; i++) {
-        p.focus_distance = 20 + (float)i * step;
+        p.focus = 20 + (float)i * step;
         struct picture now = render(c, &s, NULL, &p);
         worst = worse(worst, largest_difference(&now, &before));
         picture_free(&before);

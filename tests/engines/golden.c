@@ -65,7 +65,7 @@ static const struct own owns[] = {
          {53, 57, {0.6942778171, 0.666689393, 0.6355185184}},
      }},
     {"faithful",
-     {.faithful = 1},
+     {.gather.faithful = 1},
      {
          {0, 0, {0.474755358, 0.5293789884, 0.5006396801}},
          {95, 63, {0.5739471948, 0.6729065033, 0.6379232622}},
@@ -76,7 +76,7 @@ static const struct own owns[] = {
          {53, 57, {0.6950711916, 0.6671676961, 0.6354408985}},
      }},
     {"karis, bicubic, mean, 6-gon",
-     {.karis = 1, .bicubic = 1, .fill = HF_FILL_MEAN, .blades = 6},
+     {.gather.karis = 1, .gather.bicubic = 1, .gather.fill = HF_FILL_MEAN, .aperture.blades = 6},
      {
          {0, 0, {0.4588938311, 0.5232474704, 0.4843737309}},
          {95, 63, {0.4618032292, 0.5387925463, 0.523588222}},
@@ -93,12 +93,14 @@ static struct hf_params own_params(const struct own *own)
 {
     struct hf_params p = own->set;
     const struct hf_params d = hf_default_params;
-    p.focus_distance = 20;
-    p.range = 10;
-    p.strength = d.strength;
-    p.near_begin = p.near_end = p.far_begin = p.far_end = HF_DERIVE;
+    p.focus = 20;
+    p.range.distance = 10;
+    p.range.strength = d.range.strength;
+    p.range.near_begin = p.range.near_end = p.range.far_begin = p.range.far_end = HF_DERIVE;
     p.max_radius = 12;
-    p.pixel_aspect = 1;
+    p.view = d.view;
+    p.aperture.squeeze = d.aperture.squeeze;
+    p.gather.rings = d.gather.rings;
     return p;
 }
 
@@ -232,9 +234,9 @@ static void check_shared(struct hf_context *c, struct shared *shared, const stru
                          const struct picture *z)
 {
     struct hf_params p = hf_default_params;
-    p.focus_distance = 20;
-    p.range = 10;
-    p.faithful = 1;
+    p.focus = 20;
+    p.range.distance = 10;
+    p.gather.faithful = 1;
     hf_set_dump(c, on_buffer, shared);
     struct picture dumped = render(c, colour, z, &p);
     hf_set_dump(c, NULL, NULL);
@@ -246,7 +248,7 @@ static void check_shared(struct hf_context *c, struct shared *shared, const stru
     struct picture want;
     if (!CHECK(read_golden(&want, shared, "composite_chapter_formats", 3) == 0))
         return;
-    p.storage = HF_STORAGE_CHAPTER;
+    p.gather.storage = HF_STORAGE_PACKED;
     out = render(c, colour, z, &p);
     const double psnr = display_psnr(&out, &want);
     printf("%s: chapter      %.2f dB\n", shared->isa, psnr);

@@ -60,10 +60,10 @@ static void bad_colours(const struct run *run, unsigned variant)
         for (int i = 0; i < 61 * 45; i++)
             bad += !isfinite(s.colour.plane[c][i]);
     struct hf_params p = scene_params();
-    p.strength = 0;  // a copy, repaired
+    p.range.strength = 0;  // a copy, repaired
     struct picture repaired = render(run->c, &s.colour, &depth, &p);
-    struct hf_stats stats;
-    hf_get_stats(run->c, &stats);
+    struct hf_report stats;
+    hf_get_report(run->c, &stats);
     CHECK_INT(stats.colour_repaired, bad);
     double *want = malloc(sizeof *want * 61 * 45);
     for (int c = 0; c < 4; c++) {
@@ -78,14 +78,14 @@ static void bad_colours(const struct run *run, unsigned variant)
         }
     }
     free(want);
-    p.strength = 1;
-    p.karis = variant % 2 == 1;
-    p.fill = (enum hf_fill)(variant % 3);
-    p.per_pixel_kernel = variant % 4 == 3;
+    p.range.strength = 1;
+    p.gather.karis = variant % 2 == 1;
+    p.gather.fill = (enum hf_fill)(variant % 3);
+    p.gather.per_pixel_kernel = variant % 4 == 3;
     for (int no_skip = 0; no_skip < 2; no_skip++) {
-        p.no_skip = no_skip;
+        p.run.no_skip = no_skip;
         struct picture a = render(run->c, &s.colour, &depth, &p);
-        hf_get_stats(run->c, &stats);
+        hf_get_report(run->c, &stats);
         CHECK_INT(stats.colour_repaired, bad);
         struct picture b = render(run->c, &repaired, &depth, &p);
         CHECK_MSG(all_finite(&a), "%s: bad colours spread", run->isa);
@@ -111,8 +111,8 @@ static void all_bad(const struct run *run)
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 54; i++)
             CHECK_MSG(out.plane[c][i] == 0, "%s: nothing finite gives %g", run->isa, out.plane[c][i]);
-    struct hf_stats stats;
-    hf_get_stats(run->c, &stats);
+    struct hf_report stats;
+    hf_get_report(run->c, &stats);
     CHECK_INT(stats.colour_repaired, 3 * 54);
     CHECK_INT(stats.depth_repaired, 54);
     CHECK_INT(stats.no_surface, 54);
@@ -144,10 +144,10 @@ static void bad_depths(const struct run *run)
         free(z);
         struct hf_params p = scene_params();
         p.model = i % 2 ? HF_MODEL_LENS : HF_MODEL_RANGE;
-        p.f_number = 0.1f;
+        p.lens.f_number = 0.1f;
         struct picture a = render(run->c, &s.colour, &depth, &p);
-        struct hf_stats stats;
-        hf_get_stats(run->c, &stats);
+        struct hf_report stats;
+        hf_get_report(run->c, &stats);
         CHECK_INT(stats.depth_repaired, repaired);
         CHECK_INT(stats.no_surface, no_surface);
         struct picture b = render(run->c, &s.colour, &clean, &p);
@@ -202,8 +202,8 @@ static void special_depths(const struct run *run)
         d.far_plane = cases[i].far_plane;
         d.focal_px = 8;
         struct picture out = render(run->c, &colour, &d, &p);
-        struct hf_stats s;
-        hf_get_stats(run->c, &s);
+        struct hf_report s;
+        hf_get_report(run->c, &s);
         const int sign = s.near_pixels == 64 ? -1 : s.far_pixels == 64 ? 1 : s.sharp_pixels == 64 ? 0 : 99;
         CHECK_MSG(sign == cases[i].sign, "%s: depth type %d, %g: CoC sign %d, expected %d", run->isa, cases[i].type,
                   cases[i].value, sign, cases[i].sign);
@@ -224,27 +224,27 @@ static void copies(const struct run *run)
     const struct hf_depth depth = picture_depth(&s.depth);
     for (int i = 0; i < 60; i++) {
         struct hf_params p = scene_params();
-        p.storage = (enum hf_storage)(i / 5 % 3);
-        p.faithful = i / 15 % 2;
-        p.no_skip = i / 30;
+        p.gather.storage = (enum hf_storage)(i / 5 % 3);
+        p.gather.faithful = i / 15 % 2;
+        p.run.no_skip = i / 30;
         struct hf_depth d = depth;
         switch (i % 5) {
         case 0:
-            p.range = INFINITY;
+            p.range.distance = INFINITY;
             break;
         case 1:
-            p.strength = 0;
+            p.range.strength = 0;
             break;
         case 2:
             p.max_radius = 0;
             break;
         case 3:
             p.model = HF_MODEL_LENS;
-            p.f_number = INFINITY;
+            p.lens.f_number = INFINITY;
             break;
         case 4:  // given distances that leave all in focus
-            p.near_begin = p.near_end = 0;
-            p.far_begin = p.far_end = 2e10f;
+            p.range.near_begin = p.range.near_end = 0;
+            p.range.far_begin = p.range.far_end = 2e10f;
             break;
         }
         if (i % 5 == 4) {
@@ -255,9 +255,9 @@ static void copies(const struct run *run)
         }
         struct picture out = render(run->c, &s.colour, &d, &p);
         // The other storages round what they read; only a copy leaves the bits alone.
-        if (i % 5 != 4 || p.storage == HF_STORAGE_FLOAT)
+        if (i % 5 != 4 || p.gather.storage == HF_STORAGE_FLOAT)
             CHECK_MSG(picture_same_bits(&out, &s.colour), "%s: case %d, storage %d: not the input's bits", run->isa,
-                      i % 5, p.storage);
+                      i % 5, p.gather.storage);
         picture_free(&out);
     }
     scene_free(&s);
@@ -288,14 +288,14 @@ static void constants(const struct run *run)
     double worst[2] = {0, 0};  // convolved; with the per-pixel kernel
     for (unsigned i = 0; i < 120; i++) {
         struct hf_params p = scene_params();
-        p.karis = i % 5 == 1;
-        p.bicubic = i % 3 == 1;
-        p.per_pixel_kernel = i % 7 == 2;
-        p.fill = (enum hf_fill)(i / 3 % 3);
-        p.blades = i % 4 == 3 ? 5 + (int)(i / 4 % 5) : 0;
-        p.strength = i % 6 == 5 ? 0.2f : i % 6 == 4 ? 0.7f : 1;
+        p.gather.karis = i % 5 == 1;
+        p.gather.bicubic = i % 3 == 1;
+        p.gather.per_pixel_kernel = i % 7 == 2;
+        p.gather.fill = (enum hf_fill)(i / 3 % 3);
+        p.aperture.blades = i % 4 == 3 ? 5 + (int)(i / 4 % 5) : 0;
+        p.range.strength = i % 6 == 5 ? 0.2f : i % 6 == 4 ? 0.7f : 1;
         p.max_radius = i % 10 == 9 ? 40 : i % 10 == 8 ? 3 : 12;
-        double *w = &worst[p.per_pixel_kernel];
+        double *w = &worst[p.gather.per_pixel_kernel];
         *w = worse(*w, constant(run, &p, values[i % 5], 70 - (int)(i % 9), 40 + (int)(i % 5), i));
         // CoC larger than the picture.
         p.max_radius = 100;
@@ -319,16 +319,16 @@ static void energy(const struct run *run)
         for (int c = 0; c < 3; c++)
             colour.plane[c][y * 96 + x] = 1e4f;
         struct hf_params p = scene_params();
-        p.fill = (enum hf_fill)(i / 8 % 3);
-        p.bicubic = i / 24 % 2;
-        p.blades = i / 48 ? 7 : 0;
+        p.gather.fill = (enum hf_fill)(i / 8 % 3);
+        p.gather.bicubic = i / 24 % 2;
+        p.aperture.blades = i / 48 ? 7 : 0;
         const struct hf_depth depth = picture_depth(&z);
         struct picture out = render(run->c, &colour, &depth, &p);
         for (int c = 0; c < 3; c++) {
             double sum = 0;
             for (int k = 0; k < 96 * 90; k++)
                 sum += out.plane[c][k];
-            if (p.fill == HF_FILL_MAX)
+            if (p.gather.fill == HF_FILL_MAX)
                 max_fill = worse(max_fill, sum / 1e4);
             else
                 CHECK_MSG(fabs(sum / 1e4 - 1) <= 1e-5, "%s: case %d: energy of a highlight %.8f", run->isa, i,
@@ -350,11 +350,11 @@ static void ranges(const struct run *run)
         struct scene s = scene_new(&rng, (enum scene_kind)(i % SCENE_KINDS), 65, 44, 3);
         const struct hf_depth depth = picture_depth(&s.depth);
         struct hf_params p = scene_params();
-        p.fill = (enum hf_fill)(i % 3);
-        p.bicubic = i / 3 % 2;
-        p.karis = i / 6 % 2;
-        p.per_pixel_kernel = i / 12;
-        p.storage = i % 5 == 4 ? HF_STORAGE_CHAPTER : HF_STORAGE_FLOAT;
+        p.gather.fill = (enum hf_fill)(i % 3);
+        p.gather.bicubic = i / 3 % 2;
+        p.gather.karis = i / 6 % 2;
+        p.gather.per_pixel_kernel = i / 12;
+        p.gather.storage = i % 5 == 4 ? HF_STORAGE_PACKED : HF_STORAGE_FLOAT;
         struct picture out = render(run->c, &s.colour, &depth, &p);
         for (int c = 0; c < 3; c++) {
             float low = INFINITY, high = 0;
@@ -362,7 +362,7 @@ static void ranges(const struct run *run)
                 low = fminf(low, s.colour.plane[c][k]);
                 high = fmaxf(high, s.colour.plane[c][k]);
             }
-            if (p.storage == HF_STORAGE_CHAPTER)
+            if (p.gather.storage == HF_STORAGE_PACKED)
                 low *= 0.85f;  // five truncations of up to 1/32
             int outside = 0;
             for (size_t k = 0; k < samples_of(&out); k++)

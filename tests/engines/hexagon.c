@@ -85,7 +85,7 @@ static double distance(const struct picture *a, const struct picture *b)
 // 30 more through loading, dividing, upsampling. What is divided by is not less than a quarter, in each of two passes.
 static double bound(const struct hf_params *p, double reach)
 {
-    const double taps = 3 * (reach + 4) / fmin(p->pixel_aspect, 1);
+    const double taps = 3 * (reach + 4) / fmin(p->view.pixel_aspect, 1);
     return 2 * 4 * (3 * taps + 30) * U;
 }
 
@@ -99,9 +99,9 @@ static void random_radii(struct rng *rng, const struct scene *s, struct picture 
 
 static void random_options(struct rng *rng, struct hf_params *p)
 {
-    p->resolution = rng_below(rng, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
-    p->blade_rotation = rng_below(rng, 2) ? 0 : rng_range(rng, -180, 180);
-    p->pixel_aspect = rng_below(rng, 3) ? 1 : rng_range(rng, 0.4f, 2.5f);
+    p->hexagon.resolution = rng_below(rng, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    p->aperture.rotation = rng_below(rng, 2) ? 0 : rng_range(rng, -180, 180);
+    p->view.pixel_aspect = rng_below(rng, 3) ? 1 : rng_range(rng, 0.4f, 2.5f);
     p->max_radius = HF_DERIVE;
 }
 
@@ -118,12 +118,12 @@ static void test_reference(struct rng *rng)
         random_radii(rng, &s, &r, reach);
         const struct hf_depth depth = radii(&r);
         struct picture want = hexagon_reference(&s.colour, &r, &p);
-        for (p.deterministic = 0; p.deterministic < 2; p.deterministic++) {
+        for (p.run.deterministic = 0; p.run.deterministic < 2; p.run.deterministic++) {
             struct picture got = rendered(&s.colour, &depth, &p);
             const double d = distance(&got, &want), most = bound(&p, reach) * largest(&s.colour);
             CHECK_MSG(d <= most, "frame %d, %s, %d x %d, %s, rotation %g, aspect %g, radius %g: off by %g of %g", i,
                       scene_name((enum scene_kind)(i % SCENE_KINDS)), s.colour.width, s.colour.height,
-                      p.resolution ? "half" : "full", p.blade_rotation, p.pixel_aspect, reach, d, most);
+                      p.hexagon.resolution ? "half" : "full", p.aperture.rotation, p.view.pixel_aspect, reach, d, most);
             picture_free(&got);
         }
         picture_free(&want);
@@ -143,14 +143,14 @@ static void test_same_bits(struct rng *rng)
         struct hf_params p = hexagon_params();
         random_options(rng, &p);
         p.max_radius = rng_range(rng, 0.3f, 20);
-        p.uniform = rng_below(rng, 6) == 0;
+        p.hexagon.uniform = rng_below(rng, 6) == 0;
         const struct hf_depth depth = picture_depth(&s.depth);
         struct picture fused = rendered_isa(HF_ISA_AUTO, &s.colour, &depth, &p);
-        p.no_skip = 1;
+        p.run.no_skip = 1;
         struct picture all = rendered_isa(HF_ISA_AUTO, &s.colour, &depth, &p);
         CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: skipping shows", i);
         picture_free(&all);
-        p.no_skip = 0;
+        p.run.no_skip = 0;
         struct hf_config g = scene_config(HF_ISA_AUTO, 3);
         g.tile_width = 16 * (1 + rng_below(rng, 4));
         g.tile_height = 16 + rng_below(rng, 30);
@@ -165,7 +165,7 @@ static void test_same_bits(struct rng *rng)
         CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: not the same in place", i);
         hf_close(&c);
         picture_free(&all);
-        p.deterministic = 1;
+        p.run.deterministic = 1;
         struct picture plain = rendered_isa(HF_ISA_SCALAR, &s.colour, &depth, &p);
         CHECK_MSG(distance(&fused, &plain) <= bound(&p, p.max_radius) * largest(&s.colour),
                   "frame %d: fused is off by %g", i, distance(&fused, &plain));
@@ -214,9 +214,9 @@ static void test_highlight(float radius, float degrees, enum hf_resolution resol
             in.plane[c][(60 + k / 2) * N + 60 + k % 2] = 1e4f;
     struct hf_params p = hexagon_params();
     p.max_radius = fabsf(radius);
-    p.blade_rotation = degrees;
-    p.resolution = resolution;
-    p.uniform = uniform;
+    p.aperture.rotation = degrees;
+    p.hexagon.resolution = resolution;
+    p.hexagon.uniform = uniform;
     const struct hf_depth depth = radii(&r);
     struct picture out = rendered(&in, &depth, &p);
     double sum = 0, inside = 0, wrong = 0;
@@ -291,7 +291,7 @@ static void test_invariance(struct rng *rng)
         struct scene s = scene_new(rng, (enum scene_kind)(i % SCENE_KINDS), 160, 140, 3);
         struct hf_params p = hexagon_params();
         p.max_radius = 6;
-        p.resolution = (enum hf_resolution)(i % 2);
+        p.hexagon.resolution = (enum hf_resolution)(i % 2);
         struct hf_depth depth = picture_depth(&s.depth);
         struct picture whole = rendered(&s.colour, &depth, &p);
         // A part with a margin of the reach: two lines and their bilinear neighbours, and what upsampling adds.
@@ -337,14 +337,14 @@ static void test_no_popping(struct rng *rng)
         }
         struct hf_params p = hexagon_params();
         p.max_radius = HF_DERIVE;
-        p.resolution = (enum hf_resolution)(i / 2 % 2);
+        p.hexagon.resolution = (enum hf_resolution)(i / 2 % 2);
         struct hf_depth depth = radii(&r);
         struct picture a = rendered(&s.colour, &depth, &p);
         depth = radii(&moved);
         struct picture b = rendered(&s.colour, &depth, &p);
         const double rate = distance(&a, &b) / e / largest(&s.colour);
         CHECK_MSG(rate < 40, "frame %d, %s: the picture changes by %g per pixel of radius", i,
-                  p.resolution ? "half" : "full", rate);
+                  p.hexagon.resolution ? "half" : "full", rate);
         picture_free(&a);
         picture_free(&b);
         picture_free(&r);
@@ -364,14 +364,14 @@ static void test_parameters(struct rng *rng)
     struct hf_params changed[8];
     for (int i = 0; i < 8; i++)
         changed[i] = plain;
-    changed[0].blade_rotation = 20;
-    changed[1].resolution = HF_RESOLUTION_HALF;
-    changed[2].uniform = 1;
+    changed[0].aperture.rotation = 20;
+    changed[1].hexagon.resolution = HF_RESOLUTION_HALF;
+    changed[2].hexagon.uniform = 1;
     changed[3].max_radius = 5;
-    changed[4].pixel_aspect = 2;
-    changed[5].strength = 0.5f;
-    changed[6].focus_distance = 15;
-    changed[7].blend = HF_BLEND_SMOOTHSTEP;
+    changed[4].view.pixel_aspect = 2;
+    changed[5].range.strength = 0.5f;
+    changed[6].focus = 15;
+    changed[7].range.blend = HF_BLEND_SMOOTHSTEP;
     for (int i = 0; i < 8; i++) {
         struct picture out = rendered(&s.colour, &depth, &changed[i]);
         CHECK_MSG(!picture_same_bits(&out, &base), "parameter %d has no effect", i);
@@ -380,7 +380,7 @@ static void test_parameters(struct rng *rng)
     // The limit with a lens, whose radii have none of their own; one that no radius reaches changes nothing.
     struct hf_params lens = plain;
     lens.model = HF_MODEL_LENS;
-    lens.f_number = 0.02f;
+    lens.lens.f_number = 0.02f;
     struct picture open[3];
     for (int i = 0; i < 3; i++) {
         lens.max_radius = i == 0 ? HF_DERIVE : i == 1 ? 250 : 2;
@@ -394,12 +394,12 @@ static void test_parameters(struct rng *rng)
     struct hf_params same[6];
     for (int i = 0; i < 6; i++)
         same[i] = plain;
-    same[0].blade_rotation = 0;
-    same[1].pixel_aspect = 1;
-    same[2].blades = 5;
-    same[3].iterations = 7;
-    same[4].sigma = 3;
-    same[5].resolution = HF_RESOLUTION_FULL;
+    same[0].aperture.rotation = 0;
+    same[1].view.pixel_aspect = 1;
+    same[2].aperture.blades = 6;
+    same[3].gaussian.iterations = 7;
+    same[4].gaussian.sigma = 3;
+    same[5].hexagon.resolution = HF_RESOLUTION_FULL;
     for (int i = 0; i < 6; i++) {
         struct picture out = rendered(&s.colour, &depth, &same[i]);
         CHECK_MSG(picture_same_bits(&out, &base), "parameter %d has an effect at its default", i);
@@ -407,7 +407,7 @@ static void test_parameters(struct rng *rng)
     }
     // Same shape after a sixth of a turn, but other sides of its bilinear taps; nothing where there is no radius.
     struct hf_params none = plain;
-    none.strength = 0;
+    none.range.strength = 0;
     struct picture out = rendered(&s.colour, &depth, &none);
     CHECK(picture_same_bits(&out, &s.colour));
     picture_free(&out);
@@ -428,8 +428,8 @@ static void test_sharp(void)
     r.plane[0][20 * 64 + 50] = 5;
     struct hf_params p = hexagon_params();
     for (int half = 0; half < 2; half++) {
-        p.resolution = (enum hf_resolution)half;
-        p.no_skip = 1;
+        p.hexagon.resolution = (enum hf_resolution)half;
+        p.run.no_skip = 1;
         const struct hf_depth depth = radii(&r);
         struct picture out = rendered(&in, &depth, &p);
         for (int y = 0; y < 48; y++)
@@ -458,7 +458,7 @@ static void test_largest(struct rng *rng)
         struct hf_params p = hexagon_params();
         random_options(rng, &p);
         p.max_radius = i % 3 ? 12 : 40;
-        p.uniform = i % 8 == 5;
+        p.hexagon.uniform = i % 8 == 5;
         const struct hf_depth depth = picture_depth(&s.depth);
         struct picture out = rendered_isa(isas[i % 2], &s.colour, &depth, &p);
         int wrong = 0;
@@ -485,7 +485,7 @@ static void test_sizes(struct rng *rng)
             s.colour.plane[1][sizes[i][0] * sizes[i][1] - 1] = -INFINITY;
             struct hf_params p = hexagon_params();
             p.max_radius = HF_DERIVE;
-            p.resolution = (enum hf_resolution)(k % 2);
+            p.hexagon.resolution = (enum hf_resolution)(k % 2);
             const struct hf_depth depth = radii(&r);
             struct picture out = rendered(&s.colour, &depth, &p);
             double low = 0, high = 0;

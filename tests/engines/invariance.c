@@ -59,18 +59,18 @@ static struct hf_params random_params(struct rng *rng)
     static const float radii[] = {1, 3, 4, 8, 12, 12, 17.5f, 40};
     static const float strengths[] = {1, 1, 1, 0.7f, 0.3f, 0.1f};
     p.max_radius = radii[rng_below(rng, 8)];
-    p.strength = strengths[rng_below(rng, 6)];
-    p.faithful = rng_below(rng, 3) == 0;
-    p.karis = rng_below(rng, 3) == 0;
-    p.per_pixel_kernel = rng_below(rng, 3) == 0;
-    p.bicubic = rng_below(rng, 3) == 0;
-    p.fill = (enum hf_fill)rng_below(rng, 3);
-    p.blend = (enum hf_blend)rng_below(rng, 2);
-    p.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
-    p.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
-    p.blade_rotation = (float)rng_below(rng, 90);
-    p.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
-    p.range = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
+    p.range.strength = strengths[rng_below(rng, 6)];
+    p.gather.faithful = rng_below(rng, 3) == 0;
+    p.gather.karis = rng_below(rng, 3) == 0;
+    p.gather.per_pixel_kernel = rng_below(rng, 3) == 0;
+    p.gather.bicubic = rng_below(rng, 3) == 0;
+    p.gather.fill = (enum hf_fill)rng_below(rng, 3);
+    p.range.blend = (enum hf_blend)rng_below(rng, 2);
+    p.gather.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
+    p.aperture.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
+    p.aperture.rotation = (float)rng_below(rng, 90);
+    p.view.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
+    p.range.distance = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
     return p;
 }
 
@@ -87,7 +87,7 @@ static void crops(struct hf_context *c, const char *isa)
         const int w = 140 + rng_below(&rng, 20), h = 110 + rng_below(&rng, 10);
         struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
         struct picture whole = render(c, &s, &p), a = render(c, &part, &p);
-        const int mx = 2 * (2 * (int)ceilf(p.max_radius / 2 / p.pixel_aspect) + 4);
+        const int mx = 2 * (2 * (int)ceilf(p.max_radius / 2 / p.view.pixel_aspect) + 4);
         const int my = 2 * (2 * (int)ceilf(p.max_radius / 2) + 4);
         struct picture b = picture_cut(&whole, x0 + mx, y0 + my, w - 2 * mx, h - 2 * my);
         struct picture inner = picture_cut(&a, mx, my, w - 2 * mx, h - 2 * my);
@@ -118,13 +118,13 @@ static void flips(struct hf_context *c, const char *isa)
         struct rng rng = rng_seed(seed + i);
         struct scene s = quad_scene(&rng, 2 * (20 + rng_below(&rng, 50)), 2 * (10 + rng_below(&rng, 30)));
         struct hf_params p = random_params(&rng);
-        p.faithful = p.per_pixel_kernel = p.blades = 0;
+        p.gather.faithful = p.gather.per_pixel_kernel = p.aperture.blades = 0;
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
         struct picture a = render(c, &s, &p), b = render(c, &mirror, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back),
                   "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
                   " bicubic %d)",
-                  isa, seed + i, p.storage, p.fill, p.karis, p.bicubic);
+                  isa, seed + i, p.gather.storage, p.gather.fill, p.gather.karis, p.gather.bicubic);
         picture_free(&a);
         picture_free(&b);
         picture_free(&back);
@@ -143,11 +143,11 @@ static void transposes(struct hf_context *c, const char *isa)
         struct rng rng = rng_seed(seed + i);
         struct scene s = scene_new(&rng, SCENE_BLOCKS, 40 + rng_below(&rng, 60), 30 + rng_below(&rng, 50), 3);
         struct hf_params p = random_params(&rng);
-        p.pixel_aspect = 1;
-        p.blades = 0;
+        p.view.pixel_aspect = 1;
+        p.aperture.blades = 0;
         p.max_radius = 12;
-        p.storage = HF_STORAGE_FLOAT;
-        p.per_pixel_kernel = 0;  // its threshold on CoC differences apart, it is in gather.c
+        p.gather.storage = HF_STORAGE_FLOAT;
+        p.gather.per_pixel_kernel = 0;  // its threshold on CoC differences apart, it is in gather.c
         struct scene turned = {transposed(&s.colour), transposed(&s.depth)};
         struct picture a = render(c, &s, &p), b = render(c, &turned, &p), back = transposed(&b);
         worst = worse(worst, largest_difference(&a, &back) / largest_sample(&s.colour));
@@ -168,8 +168,8 @@ static void exposures(struct hf_context *c, const char *isa)
         struct rng rng = rng_seed(seed + i);
         struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 60 + rng_below(&rng, 60), 40 + rng_below(&rng, 40), 4);
         struct hf_params p = random_params(&rng);
-        p.karis = 0;
-        p.storage = HF_STORAGE_FLOAT;
+        p.gather.karis = 0;
+        p.gather.storage = HF_STORAGE_FLOAT;
         struct picture a = render(c, &s, &p);
         const float scale = ldexpf(1, exponents[i % 5]);
         for (int k = 0; k < 4; k++)
@@ -199,8 +199,8 @@ static void threads(enum hf_isa isa)
             config.tile_height = n > 1 ? 14 + 3 * n : 0;
             struct hf_context *c;
             struct hf_params p = scene_params();
-            p.storage = (enum hf_storage)storage;
-            p.karis = storage == 1;
+            p.gather.storage = (enum hf_storage)storage;
+            p.gather.karis = storage == 1;
             CHECK_INT(hf_open(&c, &config), HF_OK);
             for (int i = 0; i < 2; i++) {
                 struct picture out = render(c, &s, &p);
@@ -225,7 +225,7 @@ static void widths(struct hf_context *c, struct hf_context *plain, const char *i
             struct rng rng = rng_seed(seed + (unsigned)(8 * w + h));
             struct scene s = scene_new(&rng, SCENE_NOISE, w, h, 3 + w % 2);
             struct hf_params p = random_params(&rng);
-            p.deterministic = 1;
+            p.run.deterministic = 1;
             struct picture a = render(c, &s, &p), b = render(plain, &s, &p);
             CHECK_MSG(picture_same_bits(&a, &b), "%s: %d x %d: not the bits of plain C", isa, w, h);
             picture_free(&a);
@@ -248,14 +248,14 @@ static void focus_pull(struct hf_context *c, const char *isa)
     struct picture before = render(c, &s, &p);
     double worst = 0;
     for (int i = 1; i <= 60; i++) {
-        p.focus_distance = 20 + (float)i * step;
+        p.focus = 20 + (float)i * step;
         struct picture now = render(c, &s, &p);
         worst = worse(worst, largest_difference(&now, &before));
         picture_free(&before);
         before = now;
     }
     picture_free(&before);
-    const double lipschitz = worst / (step / p.range);
+    const double lipschitz = worst / (step / p.range.distance);
     printf("%s: focus pull: largest step %.3g, Lipschitz constant %.2f\n", isa, worst, lipschitz);
     CHECK_MSG(lipschitz <= 20, "%s: Lipschitz constant %.2f", isa, lipschitz);
     scene_free(&s);

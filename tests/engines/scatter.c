@@ -193,19 +193,19 @@ static void options(struct hf_context *c, const char *isa)
 #define CASE(title, field, value, a0, a1, a2, hw)                                                                      \
     cases[n].name = title, cases[n].p = p, cases[n].p.field = value, cases[n].area[0] = a0, cases[n].area[1] = a1,     \
     cases[n].area[2] = a2, cases[n++].ratio = hw
-    CASE("chromatic", chromatic, 0.1f, 1.21, 1, 0.81, 1);
-    CASE("squeeze", squeeze, 2, 0.5, 0.5, 0.5, 2);
-    CASE("pixel_aspect", pixel_aspect, 2, 0.5, 0.5, 0.5, 2);
-    CASE("blades", blades, 6, hexagon, hexagon, hexagon, 0);
-    CASE("roundness", blades, 6, 1, 1, 1, 1);
-    cases[n - 1].p.blade_roundness = 1;
-    CASE("rotation", blades, 4, 2 / PI, 2 / PI, 2 / PI, 1);
-    cases[n - 1].p.blade_rotation = 30;
-    CASE("half resolution", resolution, HF_RESOLUTION_HALF, 1, 1, 1, 1);
-    CASE("cat_eye in the middle", cat_eye, 1, 1, 1, 1, 1);
+    CASE("chromatic", scatter.chromatic, 0.1f, 1.21, 1, 0.81, 1);
+    CASE("squeeze", aperture.squeeze, 2, 0.5, 0.5, 0.5, 2);
+    CASE("pixel_aspect", view.pixel_aspect, 2, 0.5, 0.5, 0.5, 2);
+    CASE("blades", aperture.blades, 6, hexagon, hexagon, hexagon, 0);
+    CASE("roundness", aperture.blades, 6, 1, 1, 1, 1);
+    cases[n - 1].p.aperture.roundness = 1;
+    CASE("rotation", aperture.blades, 4, 2 / PI, 2 / PI, 2 / PI, 1);
+    cases[n - 1].p.aperture.rotation = 30;
+    CASE("half resolution", scatter.resolution, HF_RESOLUTION_HALF, 1, 1, 1, 1);
+    CASE("cat_eye in the middle", aperture.cat_eye, 1, 1, 1, 1, 1);
     for (int i = 0; i < n; i++) {
         // A shape that is another everywhere keeps no energy.
-        const double slack = cases[i].p.cat_eye > 0 ? 1e4 : 0.1;
+        const double slack = cases[i].p.aperture.cat_eye > 0 ? 1e4 : 0.1;
         struct spot s = spot(c, r, &cases[i].p);
         for (int k = 0; k < 3; k++) {
             CHECK_MSG(fabs(s.energy[k] - 1e4) <= slack, "%s: %s: energy %.8g", isa, cases[i].name, s.energy[k]);
@@ -219,27 +219,27 @@ static void options(struct hf_context *c, const char *isa)
         CHECK_MSG(!picture_same_bits(&s.out, &plain.out), "%s: %s: no effect", isa, cases[i].name);
         picture_free(&s.out);
     }
-    p.ring = 0.5f;
+    p.aperture.ring = 0.5f;
     struct spot hole = spot(c, r, &p);
     const double share = hole.out.plane[0][x * hole.out.width + x + 15];
     CHECK_MSG(fabs(hole.energy[0] - 1e4) <= 0.1, "%s: ring: energy %.8g", isa, hole.energy[0]);
     CHECK_MSG(hole.out.plane[0][x * hole.out.width + x] < 1e-3 * share, "%s: the ring has no hole", isa);
     CHECK_MSG(fabs(1e4 / share / plain.area[0] - ring) < 0.02, "%s: ring: area %g", isa, 1e4 / share);
-    p.ring = 0;
+    p.aperture.ring = 0;
     picture_free(&hole.out);
 
     // The lens of two circles one radius apart is 0.39 of one; a corner that is not the very corner has a bit more.
-    p.cat_eye = 1;
+    p.aperture.cat_eye = 1;
     struct spot corner = spot_at(c, r, &p, 600, 600, 60, 60);
     CHECK_MSG(corner.area[0] / plain.area[0] < 0.6 && corner.area[0] / plain.area[0] > 0.3,
               "%s: cat's eye: %g of the area", isa, corner.area[0] / plain.area[0]);
     picture_free(&corner.out);
-    p.cat_eye = 0;
+    p.aperture.cat_eye = 0;
 
     for (int coloured = 0; coloured < 2; coloured++) {
         struct picture image = aperture_picture(32, coloured);
         const struct hf_image aperture = picture_image(&image);
-        p.aperture = &aperture;
+        p.aperture.picture = &aperture;
         struct spot s = spot(c, r, &p);
         for (int k = 0; k < 3; k++)
             CHECK_MSG(fabs(s.energy[k] - 1e4) <= 0.1, "%s: image: energy %.8g", isa, s.energy[k]);
@@ -262,19 +262,19 @@ static struct hf_params random_params(struct rng *rng, struct hf_image *aperture
     struct hf_params p = params_new();
     static const float radii[] = {1, 3, 8, 12, 17, 26, 40, 70};
     p.max_radius = radii[rng_below(rng, 8)];
-    p.strength = rng_below(rng, 3) ? 1 : rng_range(rng, 0, 1);
-    p.resolution = (enum hf_resolution)(rng_below(rng, 4) == 0);
-    p.blades = rng_below(rng, 3) ? 0 : 3 + rng_below(rng, 14);
-    p.blade_rotation = (float)rng_below(rng, 90);
-    p.blade_roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
-    p.ring = rng_below(rng, 4) ? 0 : rng_range(rng, 0, 0.95f);
-    p.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.5f, 0.5f);
-    p.cat_eye = rng_below(rng, 5) ? 0 : rng_float(rng);
-    p.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
-    p.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
+    p.range.strength = rng_below(rng, 3) ? 1 : rng_range(rng, 0, 1);
+    p.scatter.resolution = (enum hf_resolution)(rng_below(rng, 4) == 0);
+    p.aperture.blades = rng_below(rng, 3) ? 0 : 3 + rng_below(rng, 14);
+    p.aperture.rotation = (float)rng_below(rng, 90);
+    p.aperture.roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
+    p.aperture.ring = rng_below(rng, 4) ? 0 : rng_range(rng, 0, 0.95f);
+    p.scatter.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.5f, 0.5f);
+    p.aperture.cat_eye = rng_below(rng, 5) ? 0 : rng_float(rng);
+    p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
+    p.view.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
     if (aperture && rng_below(rng, 6) == 0) {
         *aperture = picture_image(&shape_image);
-        p.aperture = aperture;
+        p.aperture.picture = aperture;
         p.max_radius = fminf(p.max_radius, 17);
     }
     return p;
@@ -299,14 +299,15 @@ static void same_bits(enum hf_isa isa, struct hf_context *scalar)
         for (int k = 0; s.colour.channels == 4 && rng_below(&rng, 2) && k < w * h; k++)
             s.colour.plane[3][k] = 1;
         struct picture a = render_scene(tiled[i % 4], &s, &p);
-        p.no_skip = 1;
-        p.deterministic = 1;
+        p.run.no_skip = 1;
+        p.run.deterministic = 1;
         struct picture b = render_scene(scalar, &s, &p);
         CHECK_MSG(picture_same_bits(&a, &b),
                   "%s: seed %u, %s %d x %d, tiles %d: other bits (radius %g, half %d, blades %d, "
                   "ring %g, chromatic %g, cat's eye %g, image %d)",
-                  hf_isa_name(isa), seed + 1000 + i, scene_name(kind), w, h, i % 4, p.max_radius, p.resolution,
-                  p.blades, p.ring, p.chromatic, p.cat_eye, p.aperture != NULL);
+                  hf_isa_name(isa), seed + 1000 + i, scene_name(kind), w, h, i % 4, p.max_radius, p.scatter.resolution,
+                  p.aperture.blades, p.aperture.ring, p.scatter.chromatic, p.aperture.cat_eye,
+                  p.aperture.picture != NULL);
         picture_free(&a);
         picture_free(&b);
         scene_free(&s);
@@ -323,21 +324,21 @@ static void moved(struct hf_context *c, const char *isa)
         struct scene s = scene_new(&rng, kind, 2 * (70 + rng_below(&rng, 30)), 2 * (60 + rng_below(&rng, 10)), 3);
         struct hf_params p = random_params(&rng, NULL);
         p.max_radius = fminf(p.max_radius, 30);
-        p.pixel_aspect = fmaxf(p.pixel_aspect, 1);
-        p.squeeze = fmaxf(p.squeeze, 1);
-        p.blades = 0;
+        p.view.pixel_aspect = fmaxf(p.view.pixel_aspect, 1);
+        p.aperture.squeeze = fmaxf(p.aperture.squeeze, 1);
+        p.aperture.blades = 0;
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
         struct picture a = render_scene(c, &s, &p), b = render_scene(c, &mirror, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back),
                   "%s: seed %u: flipping gives other bits (radius %g, half %d, cat's eye %g)", isa, seed + 2000 + i,
-                  p.max_radius, p.resolution, p.cat_eye);
+                  p.max_radius, p.scatter.resolution, p.aperture.cat_eye);
         picture_free(&b);
         picture_free(&back);
         scene_free(&mirror);
         picture_free(&a);
 
         // A crop, within what sources and their means reach; the cat's eye depends on where a pixel is.
-        p.cat_eye = 0;
+        p.aperture.cat_eye = 0;
         a = render_scene(c, &s, &p);
         const int x0 = 2 * rng_below(&rng, 10), y0 = 2 * rng_below(&rng, 10);
         const int w = 118 + rng_below(&rng, 2), h = 98 + rng_below(&rng, 2),
@@ -348,7 +349,7 @@ static void moved(struct hf_context *c, const char *isa)
             struct picture want = picture_cut(&a, x0 + m, y0 + m, w - 2 * m, h - 2 * m),
                            got = picture_cut(&b, m, m, w - 2 * m, h - 2 * m);
             CHECK_MSG(picture_same_bits(&want, &got), "%s: seed %u: a crop has other bits (radius %g, half %d)", isa,
-                      seed + 2000 + i, p.max_radius, p.resolution);
+                      seed + 2000 + i, p.max_radius, p.scatter.resolution);
             picture_free(&want);
             picture_free(&got);
         }
@@ -427,7 +428,7 @@ static void extremes(struct hf_context *c, const char *isa)
             depth.type = HF_DEPTH_COC;
             struct hf_params p = params_new();
             p.max_radius = HF_DERIVE;
-            p.resolution = (enum hf_resolution)half;
+            p.scatter.resolution = (enum hf_resolution)half;
             struct picture a = render(c, &s.colour, &depth, &p);
             int bad = 0;
             for (int k = 0; k < 4; k++)

@@ -13,8 +13,8 @@ static struct hf_params lens_params(void)
     struct hf_params p = hf_default_params;
     p.engine = HF_ENGINE_SCATTER;
     p.model = HF_MODEL_LENS;
-    p.focus_distance = 2;
-    p.f_number = 0.07f;
+    p.focus = 2;
+    p.lens.f_number = 0.07f;
     return p;
 }
 
@@ -47,9 +47,9 @@ static double radius_of(const struct picture *p)
 // r = |K (1 / P - 1 / z)|, K = aperture radius x focal length in pixels, and no more than the limit.
 static double expected(const struct hf_params *p, double z)
 {
-    const double aperture = p->focal_length_mm / 1000.0 / (2 * p->f_number) / p->world_unit_m;
-    const double width = p->display_width ? p->display_width : SIZE;
-    const double r = aperture * p->focal_length_mm / p->sensor_width_mm * width * fabs(1 / p->focus_distance - 1 / z);
+    const double aperture = p->lens.focal_length_mm / 1000.0 / (2 * p->lens.f_number) / p->lens.world_unit_m;
+    const double width = p->view.display_width != HF_DERIVE ? p->view.display_width : SIZE;
+    const double r = aperture * p->lens.focal_length_mm / p->lens.sensor_width_mm * width * fabs(1 / p->focus - 1 / z);
     return p->max_radius == HF_DERIVE ? r : fmin(r, p->max_radius);
 }
 
@@ -62,12 +62,12 @@ static void camera(struct hf_context *c)
     } cases[8];
     int n = 0;
 #define CASE(field, value) cases[n].name = #field, cases[n].p = base, cases[n++].p.field = value
-    CASE(f_number, 0.1f);
-    CASE(focal_length_mm, 35);
-    CASE(sensor_width_mm, 60);
-    CASE(world_unit_m, 2);
-    CASE(focus_distance, 2.5f);
-    CASE(display_width, 200);
+    CASE(lens.f_number, 0.1f);
+    CASE(lens.focal_length_mm, 35);
+    CASE(lens.sensor_width_mm, 60);
+    CASE(lens.world_unit_m, 2);
+    CASE(focus, 2.5f);
+    CASE(view.display_width, 200);
     CASE(max_radius, 7);
     CASE(max_radius, HF_DERIVE);
     static const float depths[] = {1.4f, 4};
@@ -93,12 +93,12 @@ static void neutral(struct hf_context *c)
     struct hf_params cases[6];
     for (int i = 0; i < 6; i++)
         cases[i] = base;
-    cases[0].blade_rotation = 30;  // of a disc
-    cases[1].blade_roundness = 0.7f;
+    cases[0].aperture.rotation = 30;  // of a disc
+    cases[1].aperture.roundness = 0.7f;
     cases[2].max_radius = 200;  // beyond what there is
-    cases[3].ring = cases[3].chromatic = cases[3].cat_eye = 0;
-    cases[4].squeeze = cases[4].pixel_aspect = 1;
-    cases[5].resolution = HF_RESOLUTION_FULL;
+    cases[3].aperture.ring = cases[3].scatter.chromatic = cases[3].aperture.cat_eye = 0;
+    cases[4].aperture.squeeze = cases[4].view.pixel_aspect = 1;
+    cases[5].scatter.resolution = HF_RESOLUTION_FULL;
     struct picture plain = spot(c, &base, 4);
     for (int i = 0; i < 6; i++) {
         struct picture out = spot(c, &cases[i], 4);
@@ -107,12 +107,12 @@ static void neutral(struct hf_context *c)
     }
     // The other way about: each has an effect once it is something else.
     struct hf_params blades = base;
-    blades.blades = 5;
+    blades.aperture.blades = 5;
     struct picture five = spot(c, &blades, 4);
     for (int i = 0; i < 2; i++) {
         struct hf_params p = blades;
-        p.blade_rotation = i ? 0 : 30;
-        p.blade_roundness = i ? 0.7f : 0;
+        p.aperture.rotation = i ? 0 : 30;
+        p.aperture.roundness = i ? 0.7f : 0;
         struct picture out = spot(c, &p, 4);
         CHECK_MSG(!picture_same_bits(&out, &five), "blades: option %d has no effect", i);
         picture_free(&out);

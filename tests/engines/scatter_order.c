@@ -16,7 +16,7 @@ static struct hf_params params_new(int half)
     struct hf_params p = scene_params();
     p.engine = HF_ENGINE_SCATTER;
     p.max_radius = HF_DERIVE;
-    p.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    p.scatter.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
     return p;
 }
 

@@ -120,7 +120,9 @@ static void only_what_is_called_for(void)
     CHECK_INT(r.tile_count[HF_TILE_NEAR], 0);
     CHECK_INT(run_of(&r, "Near CoC Max X"), 0);
     CHECK_INT(run_of(&r, "Computation"), 1);
-    CHECK_INT(r.tiles[3 * 10 + 5], HF_TILE_FAR);
+    uint8_t tiles[10 * 8] = {0};
+    CHECK_INT(hf_get_tiles(c, tiles, sizeof tiles), r.columns * r.rows);
+    CHECK_INT(tiles[3 * 10 + 5], HF_TILE_FAR);
     CHECK(r.near_radius == 0 && r.far_radius == 12);
     const size_t far_memory = r.memory;
     CHECK(r.memory_saved > 0);
@@ -135,11 +137,11 @@ static void only_what_is_called_for(void)
     CHECK_INT(r.tile_count[HF_TILE_FAR], 1);
     CHECK(r.memory > far_memory && r.memory_saved == 0);
 
-    p.no_skip = 1;
+    p.run.no_skip = 1;
     r = plan(c, &s, &p);
     CHECK_INT(r.tile_count[HF_TILE_BOTH], 70);
-    p.no_skip = 0;
-    p.strength = 0;
+    p.run.no_skip = 0;
+    p.range.strength = 0;
     r = plan(c, &s, &p);
     CHECK_INT(r.tile_count[HF_TILE_SHARP], 70);
     CHECK(r.memory == 0 || r.memory < far_memory);
@@ -173,7 +175,7 @@ static void budget(void)
     p.max_radius = 24;
     m.steps = hf_budget_ladder(&p, 24, m.ladder);
     CHECK_INT(m.steps, 3);  // 6 rings, 4, 2
-    CHECK(m.ladder[1].rings == 4 && m.ladder[2].rings == 2);
+    CHECK(m.ladder[1].gather.rings == 4 && m.ladder[2].gather.rings == 2);
 
     frames(&m, 50, 1, 12);
     CHECK_INT(m.b.step, 0);  // fits
@@ -216,16 +218,16 @@ static void ladders(void)
     p.engine = HF_ENGINE_SCATTER;
     p.max_radius = 20;
     const int n = hf_budget_ladder(&p, 20, ladder);
-    CHECK(n == 5 && ladder[1].resolution == HF_RESOLUTION_HALF && ladder[2].engine == HF_ENGINE_GATHER);
-    CHECK(ladder[0].engine == HF_ENGINE_SCATTER && ladder[4].rings == 2);
+    CHECK(n == 5 && ladder[1].scatter.resolution == HF_RESOLUTION_HALF && ladder[2].engine == HF_ENGINE_GATHER);
+    CHECK(ladder[0].engine == HF_ENGINE_SCATTER && ladder[4].gather.rings == 2);
     p.engine = HF_ENGINE_GAUSSIAN;
     CHECK_INT(hf_budget_ladder(&p, 20, ladder), 3);
-    CHECK_INT(ladder[2].resolution, HF_RESOLUTION_QUARTER);
+    CHECK_INT(ladder[2].gaussian.resolution, HF_RESOLUTION_QUARTER);
     p.engine = HF_ENGINE_GATHER;
-    p.storage = HF_STORAGE_CHAPTER;
-    p.fill = HF_FILL_NONE;
+    p.gather.storage = HF_STORAGE_PACKED;
+    p.gather.fill = HF_FILL_NONE;
     CHECK_INT(hf_budget_ladder(&p, 20, ladder), 2);
-    CHECK_INT(ladder[1].storage, HF_STORAGE_FLOAT);
+    CHECK_INT(ladder[1].gather.storage, HF_STORAGE_FLOAT);
 }
 
 // No frame fits into a microsecond: after a few, the cheapest setting; the report says so.
@@ -237,15 +239,15 @@ static void budget_of_frames(void)
     struct hf_report r = {.budget_step = -1};
     put(&s, 0, 0, 200, 100, 40);
     p.max_radius = 24;
-    p.budget_ms = 1e-3f;
+    p.run.budget_ms = 1e-3f;
     for (int i = 0; i < 12; i++)
         r = render(c, &s, &p);
     CHECK_INT(r.budget_step, 2);
-    CHECK_INT(r.rings, 2);
-    p.budget_ms = 0;
+    CHECK_INT(r.used.params.gather.rings, 2);
+    p.run.budget_ms = 0;
     r = render(c, &s, &p);
     CHECK_INT(r.budget_step, 0);
-    CHECK_INT(r.rings, 6);
+    CHECK_INT(r.used.params.gather.rings, 6);
     scene_free(&s);
     hf_close(&c);
 }
@@ -265,7 +267,7 @@ static void colour(void)
     s.colour.plane[0][215 * 640 + 333] = NAN;
     struct hf_report r = plan(c, &s, &p);
     CHECK(!r.colour_known);
-    p.colour_stats = 1;
+    p.run.colour_stats = 1;
     r = plan(c, &s, &p);
     CHECK(r.colour_known && r.brightest == 7 && r.opaque);
     CHECK_INT(r.not_finite, 1);

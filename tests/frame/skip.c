@@ -70,39 +70,40 @@ static struct hf_params random_params(struct rng *rng, enum hf_engine engine)
     struct hf_params p = scene_params();
     p.engine = engine;
     p.max_radius = radii[rng_below(rng, 8)];
-    p.strength = strengths[rng_below(rng, 6)];
-    p.blend = (enum hf_blend)rng_below(rng, 2);
-    p.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
-    p.range = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
-    p.blade_rotation = (float)rng_below(rng, 90);
-    p.deterministic = rng_below(rng, 2);
+    p.range.strength = strengths[rng_below(rng, 6)];
+    p.range.blend = (enum hf_blend)rng_below(rng, 2);
+    p.view.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
+    p.range.distance = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
+    p.aperture.rotation = (float)rng_below(rng, 90);
+    p.run.deterministic = rng_below(rng, 2);
     if (engine == HF_ENGINE_GATHER) {
-        p.faithful = rng_below(rng, 3) == 0;
-        p.karis = rng_below(rng, 3) == 0;
-        p.per_pixel_kernel = rng_below(rng, 3) == 0;
-        p.bicubic = rng_below(rng, 3) == 0;
-        p.fill = (enum hf_fill)rng_below(rng, 3);
-        p.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
-        p.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
-        p.rings = rng_below(rng, 3) ? 0 : 1 + rng_below(rng, 4);
+        p.gather.faithful = rng_below(rng, 3) == 0;
+        p.gather.karis = rng_below(rng, 3) == 0;
+        p.gather.per_pixel_kernel = rng_below(rng, 3) == 0;
+        p.gather.bicubic = rng_below(rng, 3) == 0;
+        p.gather.fill = (enum hf_fill)rng_below(rng, 3);
+        p.gather.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
+        p.aperture.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
+        p.gather.rings = rng_below(rng, 3) ? HF_DERIVE : 1 + rng_below(rng, 4);
         return p;
     }
-    p.resolution = (enum hf_resolution)rng_below(rng, engine == HF_ENGINE_GAUSSIAN ? 3 : 2);
-    p.uniform = engine == HF_ENGINE_HEXAGON && rng_below(rng, 6) == 0;
+    p.hexagon.resolution = p.scatter.resolution = p.gaussian.resolution =
+        (enum hf_resolution)rng_below(rng, engine == HF_ENGINE_GAUSSIAN ? 3 : 2);
+    p.hexagon.uniform = engine == HF_ENGINE_HEXAGON && rng_below(rng, 6) == 0;
     if (engine == HF_ENGINE_SCATTER) {
-        p.blades = rng_below(rng, 3) ? 0 : 3 + rng_below(rng, 7);
-        p.blade_roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
-        p.ring = rng_below(rng, 4) ? 0 : 0.5f;
-        p.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.3f, 0.3f);
-        p.cat_eye = rng_below(rng, 4) ? 0 : rng_float(rng);
-        p.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
+        p.aperture.blades = rng_below(rng, 3) ? 0 : 3 + rng_below(rng, 7);
+        p.aperture.roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
+        p.aperture.ring = rng_below(rng, 4) ? 0 : 0.5f;
+        p.scatter.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.3f, 0.3f);
+        p.aperture.cat_eye = rng_below(rng, 4) ? 0 : rng_float(rng);
+        p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
     }
     if (engine == HF_ENGINE_GAUSSIAN) {
-        p.faithful = rng_below(rng, 4) == 0;
-        p.iterations = rng_below(rng, 6);
-        p.sigma = rng_below(rng, 3) ? 0 : rng_range(rng, 0.3f, 9);
-        p.range = rng_below(rng, 3) ? p.range : HF_DERIVE;
-        p.focus_distance = rng_below(rng, 3) ? p.focus_distance : HF_DERIVE;
+        p.gaussian.faithful = rng_below(rng, 4) == 0;
+        p.gaussian.iterations = rng_below(rng, 6);
+        p.gaussian.sigma = rng_below(rng, 3) ? HF_DERIVE : rng_range(rng, 0.3f, 9);
+        p.range.distance = rng_below(rng, 3) ? p.range.distance : HF_DERIVE;
+        p.focus = rng_below(rng, 3) ? p.focus : HF_DERIVE;
     }
     return p;
 }
@@ -133,7 +134,7 @@ static void check_scene(struct hf_context *skipping, struct hf_context *whole, e
     hf_get_report(skipping, &report);
     tally->all += (uint64_t)report.columns * (uint64_t)report.rows;
     tally->run += (uint64_t)report.columns * (uint64_t)report.rows - report.tile_count[HF_TILE_SHARP];
-    p.no_skip = 1;
+    p.run.no_skip = 1;
     render(whole, &s, &b, &p, 0);
     CHECK_MSG(
         picture_same_bits(&a, &b), "%s, %s: seed %u, scene %u (%s, %d x %d, %d channels): skipping gives other bits",

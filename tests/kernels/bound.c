@@ -30,7 +30,7 @@ static double storage_step(const struct world *w, int c, float want, float got)
     const double v = fmax(fabs((double)want), fabs((double)got));
     if (w->setup.storage == HF_STORAGE_HALF)
         return half_step(v);
-    return w->setup.storage == HF_STORAGE_CHAPTER && c < 3 ? r11_step(c, v) : 0;
+    return w->setup.storage == HF_STORAGE_PACKED && c < 3 ? r11_step(c, v) : 0;
 }
 
 static double format_step(const struct world *w, int c, float want, float got)

@@ -37,11 +37,13 @@ void blend_row_make(struct world *w, int index)
     start(w);
     struct rng *r = &w->rng;
     w->params.engine = HF_ENGINE_GAUSSIAN;
+    w->params.gaussian.faithful = w->params.gather.faithful;
+    w->params.aperture.blades = 0;
     if (rng_one_in(r, 2)) {
         w->params.model = HF_MODEL_RANGE;
-        w->params.range = w->params.near_begin = w->params.far_end = HF_DERIVE;
+        w->params.range.distance = w->params.range.near_begin = w->params.range.far_end = HF_DERIVE;
     }
-    hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->gaussian);
+    world_setup(w, &w->gaussian);
     const int half = w->setup.half_width;
     w->x = rng_one_in(r, 2) || w->bench ? 0 : rng_int(r, 0, half - 1);
     w->n = half - w->x;

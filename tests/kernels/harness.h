@@ -108,6 +108,7 @@ struct world {
     struct rng rng;
     int bench;  // typical input instead of random one
     struct hf_params params;
+    struct hf_resolved resolved;
     struct hf_setup setup;
     struct hf_gather gather;
     struct hf_gaussian gaussian;
@@ -149,6 +150,8 @@ void world_reset(const struct world *w, enum arena a);
 struct region *world_region(struct world *w, enum region_kind kind, int slot, const void *first, size_t row_bytes,
                             size_t spare, int rows, ptrdiff_t stride);
 
+// From w->params to w->setup.
+void world_setup(struct world *w, void *own);
 // Random parameters of a picture of some size, formats and depth type; returns when setup has something to blur.
 void make_setup(struct world *w, int half_width, int half_height);
 void make_image(struct world *w, struct hf_image *m, int slot, int bad);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random frames: parameters, pictures, depth.
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "harness.h"
@@ -13,14 +14,14 @@ static float pick(struct rng *r, const float *from, int n)
 static void random_model(struct rng *r, struct hf_params *p)
 {
     static const float ranges[] = {0, 1, 4, HF_DERIVE, 30, INFINITY};
-    p->focus_distance = rng_float(r, 0.5f, 20);
+    p->focus = rng_float(r, 0.5f, 20);
     p->model = rng_one_in(r, 3) ? HF_MODEL_LENS : HF_MODEL_RANGE;
-    p->f_number = rng_float(r, 0.7f, 8);
-    p->range = pick(r, ranges, 6);
-    p->strength = rng_one_in(r, 2) ? 1 : rng_float(r, 0.02f, 1);
+    p->lens.f_number = rng_float(r, 0.7f, 8);
+    p->range.distance = pick(r, ranges, 6);
+    p->range.strength = rng_one_in(r, 2) ? 1 : rng_float(r, 0.02f, 1);
     if (rng_one_in(r, 4)) {
-        p->near_begin = rng_float(r, 0, p->focus_distance);
-        p->far_end = p->focus_distance * rng_float(r, 1, 3);
+        p->range.near_begin = rng_float(r, 0, p->focus);
+        p->range.far_end = p->focus * rng_float(r, 1, 3);
     }
 }
 
@@ -32,16 +33,16 @@ static void random_options(struct rng *r, struct hf_params *p)
     p->max_radius = rng_one_in(r, 3) ? (float)(4 * rng_int(r, 2, 4)) : rng_float(r, 0.1f, (float)most);
     if (rng_one_in(r, 2))
         p->max_radius = ceilf(p->max_radius);
-    p->pixel_aspect = rng_one_in(r, 2) ? 1 : rng_float(r, 0.5f, 2);
-    p->storage = (enum hf_storage)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
-    p->faithful = rng_one_in(r, 4);
-    p->karis = rng_one_in(r, 4);
-    p->per_pixel_kernel = rng_one_in(r, 4);
-    p->bicubic = rng_one_in(r, 3);
-    p->fill = (enum hf_fill)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
-    p->blend = rng_one_in(r, 3) ? HF_BLEND_SMOOTHSTEP : HF_BLEND_LINEAR;
-    p->blades = rng_one_in(r, 3) ? rng_int(r, 5, 9) : 0;
-    p->blade_rotation = rng_one_in(r, 2) ? 0 : rng_float(r, -180, 180);
+    p->view.pixel_aspect = rng_one_in(r, 2) ? 1 : rng_float(r, 0.5f, 2);
+    p->gather.storage = (enum hf_storage)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->gather.faithful = rng_one_in(r, 4);
+    p->gather.karis = rng_one_in(r, 4);
+    p->gather.per_pixel_kernel = rng_one_in(r, 4);
+    p->gather.bicubic = rng_one_in(r, 3);
+    p->gather.fill = (enum hf_fill)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->range.blend = rng_one_in(r, 3) ? HF_BLEND_SMOOTHSTEP : HF_BLEND_LINEAR;
+    p->aperture.blades = rng_one_in(r, 3) ? rng_int(r, 5, 9) : 0;
+    p->aperture.rotation = rng_one_in(r, 2) ? 0 : rng_float(r, -180, 180);
 }
 
 static void random_depth_type(struct rng *r, struct hf_depth *d, int width, int height)
@@ -65,6 +66,16 @@ static void random_format(struct world *w, struct hf_image *m, int width, int he
         m->data[i] = &there;  // for now
 }
 
+void world_setup(struct world *w, void *own)
+{
+    char message[HF_MESSAGE];
+    if (hf_params_resolve(&w->resolved, w->src.width, w->src.height, &w->depth, &w->params, message)) {
+        fprintf(stderr, "%s\n", message);
+        abort();
+    }
+    hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->resolved, own);
+}
+
 void make_setup(struct world *w, int half_width, int half_height)
 {
     struct rng *r = &w->rng;
@@ -81,9 +92,9 @@ void make_setup(struct world *w, int half_width, int half_height)
             random_model(r, &w->params);
             random_options(r, &w->params);
         }
-        hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params, &w->gather);
+        world_setup(w, &w->gather);
         if (w->setup.blend != 0 &&
-            hf_gather_engine.prepare(&w->gather, &w->setup, &w->params, &hf_mem_default) != HF_OK)
+            hf_gather_engine.prepare(&w->gather, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK)
             abort();
     } while (w->setup.blend == 0);
     w->colours = (enum colours)(w->bench ? COLOURS_PLAIN : rng_int(r, 0, COLOURS_COUNT - 1));
@@ -151,7 +162,7 @@ static float random_depth(struct world *w)
     struct rng *r = &w->rng;
     if (rng_one_in(r, 8))
         return odd[rng_int(r, 0, (int)(sizeof odd / sizeof *odd) - 1)];
-    const float focus = w->params.focus_distance;
+    const float focus = w->params.focus;
     if (rng_one_in(r, 8))
         return focus;
     switch (w->depth.type) {

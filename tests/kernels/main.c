@@ -91,7 +91,7 @@ static void report(const struct test *t, const struct level *l, uint64_t seed, i
     printf("    frame %d x %d, area %d..%d x %d..%d, channels %d, storage %d, radius %g, strength %g, blades %d, fill "
            "%d%s%s%s%s%s%s, formats %d %d, row %d lane %d + %d\n",
            s->width, s->height, w->r.x0, w->r.x1, w->r.y0, w->r.y1, s->channels, (int)s->storage, s->max_radius,
-           w->params.strength, w->params.blades, (int)w->gather.fill, w->gather.karis ? ", karis" : "",
+           w->params.range.strength, w->params.aperture.blades, (int)w->gather.fill, w->gather.karis ? ", karis" : "",
            w->gather.per_pixel_kernel ? ", per-pixel" : "", w->gather.bicubic ? ", bicubic" : "",
            s->faithful ? ", faithful" : "", w->near ? ", near" : "", w->far ? ", far" : "", (int)w->src.format,
            (int)w->dst.format, w->y, w->x, w->n);

@@ -26,9 +26,9 @@ static void make_radii(struct world *w)
 {
     struct rng *r = &w->rng;
     w->params.engine = rng_one_in(r, 2) ? HF_ENGINE_HEXAGON : HF_ENGINE_SCATTER;
-    w->params.uniform = w->params.engine == HF_ENGINE_HEXAGON && rng_one_in(r, 8);
-    hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->params,
-                  w->params.engine == HF_ENGINE_HEXAGON ? (void *)&w->hexagon : &w->scatter);
+    w->params.aperture.blades = 0;
+    w->params.hexagon.uniform = w->params.engine == HF_ENGINE_HEXAGON && rng_one_in(r, 8);
+    world_setup(w, w->params.engine == HF_ENGINE_HEXAGON ? (void *)&w->hexagon : &w->scatter);
     w->setup.sharp_radius = rng_one_in(r, 2) ? 0 : rng_float(r, 0, 2);
     make_depth(w, rng_one_in(r, 2));
     w->with_counts = !rng_one_in(r, 3);

@@ -36,14 +36,15 @@ static void make_gaussian(struct world *w)
 {
     struct hf_params *p = &w->params;
     p->engine = HF_ENGINE_GAUSSIAN;
-    p->storage = HF_STORAGE_FLOAT;
-    p->iterations = rng_int(&w->rng, 0, 6);
-    p->sigma = rng_one_in(&w->rng, 3) ? rng_float(&w->rng, 0.1f, 40) : 0;
-    p->resolution = (enum hf_resolution)rng_int(&w->rng, 0, 2);
+    p->gaussian.faithful = p->gather.faithful;
+    p->aperture.blades = 0;
+    p->gaussian.iterations = rng_int(&w->rng, 0, 6);
+    p->gaussian.sigma = rng_one_in(&w->rng, 3) ? rng_float(&w->rng, 0.1f, 40) : HF_DERIVE;
+    p->gaussian.resolution = (enum hf_resolution)rng_int(&w->rng, 0, 2);
     if (rng_one_in(&w->rng, 2)) {
         p->model = HF_MODEL_RANGE;
-        p->range = p->near_begin = p->far_end = HF_DERIVE;
-        p->focus_distance = rng_one_in(&w->rng, 2) ? HF_DERIVE : p->focus_distance;
+        p->range.distance = p->range.near_begin = p->range.far_end = HF_DERIVE;
+        p->focus = rng_one_in(&w->rng, 2) ? HF_DERIVE : p->focus;
     }
 }
 
@@ -51,9 +52,9 @@ static void make_hexagon(struct world *w)
 {
     struct hf_params *p = &w->params;
     p->engine = HF_ENGINE_HEXAGON;
-    p->storage = HF_STORAGE_FLOAT;
-    p->resolution = rng_one_in(&w->rng, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
-    p->uniform = rng_one_in(&w->rng, 8);
+    p->aperture.blades = 0;
+    p->hexagon.resolution = rng_one_in(&w->rng, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    p->hexagon.uniform = rng_one_in(&w->rng, 8);
 }
 
 // The scatter instead of the gather, with some of its options. Its frames have the bits of the C whatever is fused.
@@ -62,14 +63,13 @@ static void make_scatter(struct world *w)
     struct hf_params *p = &w->params;
     struct rng *r = &w->rng;
     p->engine = HF_ENGINE_SCATTER;
-    p->storage = HF_STORAGE_FLOAT;
-    p->resolution = rng_one_in(r, 4) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
-    p->blades = rng_one_in(r, 3) ? rng_int(r, 3, 16) : 0;
-    p->blade_roundness = rng_one_in(r, 2) ? rng_float(r, 0, 1) : 0;
-    p->ring = rng_one_in(r, 5) ? rng_float(r, 0, 0.95f) : 0;
-    p->chromatic = rng_one_in(r, 5) ? rng_float(r, -0.5f, 0.5f) : 0;
-    p->cat_eye = rng_one_in(r, 5) ? rng_float(r, 0, 1) : 0;
-    p->squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
+    p->scatter.resolution = rng_one_in(r, 4) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    p->aperture.blades = rng_one_in(r, 3) ? rng_int(r, 3, 16) : 0;
+    p->aperture.roundness = rng_one_in(r, 2) ? rng_float(r, 0, 1) : 0;
+    p->aperture.ring = rng_one_in(r, 5) ? rng_float(r, 0, 0.95f) : 0;
+    p->scatter.chromatic = rng_one_in(r, 5) ? rng_float(r, -0.5f, 0.5f) : 0;
+    p->aperture.cat_eye = rng_one_in(r, 5) ? rng_float(r, 0, 1) : 0;
+    p->aperture.squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
 }
 
 static void make_case(struct world *w, const struct frame_case *c)
@@ -78,10 +78,10 @@ static void make_case(struct world *w, const struct frame_case *c)
     do {
         make_setup(w, c->half_width, c->half_height);
         w->params.max_radius = c->max_radius ? c->max_radius : w->params.max_radius;
-        w->params.strength = c->strength ? c->strength : w->params.strength;
-        w->params.pixel_aspect = c->pixel_aspect ? c->pixel_aspect : w->params.pixel_aspect;
-        w->params.karis &= w->colours != COLOURS_MIXED;  // luminance would cancel
-    } while (c->max_radius && (w->params.model == HF_MODEL_LENS || w->params.per_pixel_kernel));
+        w->params.range.strength = c->strength ? c->strength : w->params.range.strength;
+        w->params.view.pixel_aspect = c->pixel_aspect ? c->pixel_aspect : w->params.view.pixel_aspect;
+        w->params.gather.karis &= w->colours != COLOURS_MIXED;  // luminance would cancel
+    } while (c->max_radius && (w->params.model == HF_MODEL_LENS || w->params.gather.per_pixel_kernel));
     if (rng_one_in(&w->rng, 4))
         make_gaussian(w);
     else if (rng_one_in(&w->rng, 3))
@@ -130,7 +130,7 @@ static void use_kernels(struct hf_context *c, const struct kernels *k)
     }
 }
 
-static int render(struct world *w, const struct level *l, enum arena a, struct hf_stats *stats)
+static int render(struct world *w, const struct level *l, enum arena a, struct hf_report *stats)
 {
     struct hf_config config = {.isa = l->isa ? l->isa : HF_ISA_SCALAR, .threads = 2};
     config.tile_width = rng_one_in(&w->rng, 2) ? 0 : 16 * rng_int(&w->rng, 1, 4);
@@ -144,9 +144,9 @@ static int render(struct world *w, const struct level *l, enum arena a, struct h
         use_kernels(c, &l->k);
     world_reset(w, a);
     const struct hf_frame f = world_frame(w, &l->k, a);
-    w->params.deterministic = l->exact;
+    w->params.run.deterministic = l->exact;
     err = hf_render(c, f.dst, f.src, f.depth, &w->params);
-    hf_get_stats(c, stats);
+    hf_get_report(c, stats);
     hf_close(&c);
     return err;
 }
@@ -172,9 +172,9 @@ static double frame_roundings(const struct world *w)
     if (w->params.engine == HF_ENGINE_GAUSSIAN)
         return 0;  // nothing is ever fused
     if (w->params.engine == HF_ENGINE_HEXAGON)
-        return 2 * 4 * (3 * 3 * (w->params.max_radius + 4) / fmin(w->params.pixel_aspect, 1) + 30);
+        return 2 * 4 * (3 * 3 * (w->params.max_radius + 4) / fmin(w->params.view.pixel_aspect, 1) + 30);
     const float h = w->params.max_radius / 2;
-    const double rx = ceilf(h / w->params.pixel_aspect), ry = ceilf(h);
+    const double rx = ceilf(h / w->params.view.pixel_aspect), ry = ceilf(h);
     return 25 + 2 * (2 * rx + 2 * ry + 4 + 6) + 1 + 9 + 68;
 }
 
@@ -182,7 +182,7 @@ static double frame_roundings(const struct world *w)
 // equality is tested.
 static int has_bound(const struct world *w)
 {
-    return w->params.storage == HF_STORAGE_FLOAT && !w->params.per_pixel_kernel;
+    return w->params.gather.storage == HF_STORAGE_FLOAT && !w->params.gather.per_pixel_kernel;
 }
 
 static double format_step(const struct world *w, int c, double v)
@@ -228,7 +228,7 @@ static void add_to_hash(const struct world *w)
                 hash = (hash ^ hf_bits(hf_sample(&m, c, x, y))) * 16777619u;
 }
 
-static int same_counts(const struct hf_stats *a, const struct hf_stats *b, const struct level *l)
+static int same_counts(const struct hf_report *a, const struct hf_report *b, const struct level *l)
 {
     return a->near_pixels == b->near_pixels && a->sharp_pixels == b->sharp_pixels && a->far_pixels == b->far_pixels &&
            a->colour_repaired == b->colour_repaired && a->depth_repaired == b->depth_repaired &&
@@ -248,9 +248,10 @@ static void check(int ok, const struct world *w, const struct level *l, const ch
            "%d, "
            "model %d%s%s%s%s\n",
            hf_engine_name(p->engine), w->src.width, w->src.height, (int)w->src.format, (int)w->dst.format,
-           w->src.data[0] == w->dst.data[0] ? " in place" : "", (int)p->storage, p->max_radius, p->strength,
-           p->pixel_aspect, p->blades, (int)p->fill, (int)w->depth.type, (int)p->model, p->karis ? ", karis" : "",
-           p->per_pixel_kernel ? ", per-pixel" : "", p->bicubic ? ", bicubic" : "", p->faithful ? ", faithful" : "");
+           w->src.data[0] == w->dst.data[0] ? " in place" : "", (int)p->gather.storage, p->max_radius,
+           p->range.strength, p->view.pixel_aspect, p->aperture.blades, (int)p->gather.fill, (int)w->depth.type,
+           (int)p->model, p->gather.karis ? ", karis" : "", p->gather.per_pixel_kernel ? ", per-pixel" : "",
+           p->gather.bicubic ? ", bicubic" : "", p->gather.faithful ? ", faithful" : "");
 }
 
 static void run_frame(struct world *w, const struct level *levels, int level_count, uint64_t seed, int number)
@@ -260,7 +261,7 @@ static void run_frame(struct world *w, const struct level *levels, int level_cou
     random.half_width = rng_int(&w->rng, 1, 70);
     random.half_height = rng_int(&w->rng, 1, 40);
     const struct frame_case *c = number < SPECIALS ? &special[number] : &random;
-    struct hf_stats want, got;
+    struct hf_report want, got;
     make_case(w, c);
     smooth_depth(w);
     const int err = render(w, &levels[0], ARENA_REFERENCE, &want);

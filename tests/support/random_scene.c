@@ -137,8 +137,8 @@ struct hf_depth scene_depth_as(const struct scene *s, enum hf_depth_type type, f
 struct hf_params scene_params(void)
 {
     struct hf_params p = hf_default_params;
-    p.focus_distance = focus;
-    p.range = range;
+    p.focus = focus;
+    p.range.distance = range;
     p.max_radius = 12;
     return p;
 }

@@ -75,7 +75,7 @@ static void store(struct reference *r, enum ref_id id, int c, int x, int y, doub
     struct ref_buffer *b = &r->buffer[id];
     const int is_coc = id >= REF_COC && id <= REF_COCBLUR;
     b->raw[c][y * b->width + x] = v;
-    b->data[c][y * b->width + x] = ref_store(r->params.storage, is_coc ? -1 : c, v);
+    b->data[c][y * b->width + x] = ref_store(r->params.gather.storage, is_coc ? -1 : c, v);
 }
 
 static struct ref_buffer *new_buffer(struct reference *r, enum ref_id id)
@@ -98,7 +98,7 @@ static void coc_generation(struct reference *r, const struct hf_depth *depth)
 {
     new_buffer(r, REF_COC);
     double *z = malloc(sizeof *z * (size_t)r->width * (size_t)r->height);
-    ref_depths(z, depth, r->params.pixel_aspect, r->width, r->height);
+    ref_depths(z, depth, r->params.view.pixel_aspect, r->width, r->height);
     for (int y = 0; y < r->height; y++) {
         for (int x = 0; x < r->width; x++) {
             double n, f;
@@ -177,7 +177,7 @@ static struct planes weigh(const struct reference *r)
     double *const *colour = r->buffer[REF_COLOR4].data;
     for (size_t i = 0; i < n; i++) {
         const double y709 = 0.2126 * colour[0][i] + 0.7152 * colour[1][i] + 0.0722 * colour[2][i];
-        const double w = r->params.karis ? 1 / (1 + fmax(y709, 0)) : 1;
+        const double w = r->params.gather.karis ? 1 / (1 + fmax(y709, 0)) : 1;
         p.near_weight.data[0][i] = w;
         p.far_weight.data[0][i] = r->buffer[REF_COC4].data[1][i] * w;
         for (int c = 0; c < r->channels; c++) {
@@ -219,7 +219,7 @@ static void computation(struct reference *r)
         for (int x = 0; x < r->half_width; x++) {
             const double f = at(&r->buffer[REF_COC4], 1, x, y);
             const int has_near = at(&r->buffer[REF_COCBLUR], 0, x, y) > 0;
-            const double scale = r->params.per_pixel_kernel ? f : 1;
+            const double scale = r->params.gather.per_pixel_kernel ? f : 1;
             const double near_weight = has_near ? gather_one(r, &p.near_weight, 0, x, y, 1) : 1;
             const double far_weight = f > 0 ? gather_one(r, &p.far_weight, 0, x, y, scale) : 1;
             r->near_mean[y * r->half_width + x] = has_near ? near_weight / taps : 0;
@@ -251,7 +251,7 @@ static double fill_one(const struct reference *r, const struct ref_buffer *b, co
     for (int j = y - 1; j <= y + 1; j++) {
         for (int i = x - 1; i <= x + 1; i++) {
             const double df = coc4 ? fabs(at(coc4, 1, i, j) - at(coc4, 1, x, y)) : 0;
-            if (r->params.per_pixel_kernel && df > 0.25)
+            if (r->params.gather.per_pixel_kernel && df > 0.25)
                 continue;
             largest = fmax(largest, at(b, c, i, j));
             if (coc4 && !(at(coc4, 1, i, j) > 0))
@@ -260,7 +260,7 @@ static double fill_one(const struct reference *r, const struct ref_buffer *b, co
             count++;
         }
     }
-    return r->params.fill == HF_FILL_MAX ? largest : sum / count;
+    return r->params.gather.fill == HF_FILL_MAX ? largest : sum / count;
 }
 
 // Pass 8.
@@ -268,7 +268,7 @@ static void fill(struct reference *r)
 {
     const struct ref_buffer *near = &r->buffer[REF_NEAR], *far = &r->buffer[REF_FAR];
     const struct ref_buffer *coc4 = &r->buffer[REF_COC4];
-    const int none = r->params.fill == HF_FILL_NONE;
+    const int none = r->params.gather.fill == HF_FILL_NONE;
     new_buffer(r, REF_NEARFILL);
     new_buffer(r, REF_FARFILL);
     for (int y = 0; y < r->half_height; y++) {
@@ -288,7 +288,7 @@ static int upsample_far(const struct reference *r, int x, int y, double out[4])
 {
     const struct ref_buffer *coc4 = &r->buffer[REF_COC4];
     const double f = at(&r->buffer[REF_COC], 1, x, y);
-    const int faithful = r->params.faithful;
+    const int faithful = r->params.gather.faithful;
     const double hx = (x + 0.5) / 2 - 0.5, hy = (y + 0.5) / 2 - 0.5;
     const int cx = (int)floor(hx), cy = (int)floor(hy);  // of the CoCs: (k-1, k) for 2k, (k, k+1) for 2k+1
     double weights = 0;
@@ -318,7 +318,8 @@ static double lerp(double a, double b, double t)
 // Pass 9.
 static void composite(struct reference *r)
 {
-    double (*const sample)(const struct ref_buffer *, int, double, double) = r->params.bicubic ? bicubic : bilinear;
+    double (*const sample)(const struct ref_buffer *, int, double, double) =
+        r->params.gather.bicubic ? bicubic : bilinear;
     new_buffer(r, REF_RESULT);
     for (int y = 0; y < r->height; y++) {
         for (int x = 0; x < r->width; x++) {
@@ -338,11 +339,11 @@ static void composite(struct reference *r)
 static void set_scales(struct reference *r, const struct hf_depth *depth)
 {
     const struct hf_params *p = &r->params;
-    const int display = p->display_height ? p->display_height : r->height;
-    r->rho = p->max_radius != HF_DERIVE ? p->max_radius : p->faithful ? 12 : 12.0 * display / 1080;
+    const int display = p->view.display_height != HF_DERIVE ? p->view.display_height : r->height;
+    r->rho = p->max_radius != HF_DERIVE ? p->max_radius : p->gather.faithful ? 12 : 12.0 * display / 1080;
     r->reach_y = r->rho / 2;
-    r->reach_x = r->reach_y / p->pixel_aspect;
-    r->strength = p->model == HF_MODEL_RANGE && depth->type != HF_DEPTH_COC ? p->strength : 1;
+    r->reach_x = r->reach_y / p->view.pixel_aspect;
+    r->strength = p->model == HF_MODEL_RANGE && depth->type != HF_DEPTH_COC ? p->range.strength : 1;
     r->kernel_scale = fmax(r->strength, 0.25);
     r->blend = fmin(1, 4 * r->strength);
 }

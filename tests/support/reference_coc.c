@@ -113,27 +113,28 @@ int ref_repair(double *out, const float *in, int width, int height)
 // The range model. An infinite range is no blur.
 static void coc_of_range(const struct hf_params *p, double z, double *n, double *f)
 {
-    const double focus = p->focus_distance;
-    const double range = p->range == HF_DERIVE ? focus / 2 : p->range;
-    const double nb = p->near_begin == HF_DERIVE ? fmax(0, focus - range) : p->near_begin;
-    const double ne = p->near_end == HF_DERIVE ? focus : p->near_end;
-    const double fb = p->far_begin == HF_DERIVE ? focus : p->far_begin;
-    const double fe = p->far_end == HF_DERIVE ? focus + range : p->far_end;
+    const double focus = p->focus;
+    const double range = p->range.distance == HF_DERIVE ? focus / 2 : p->range.distance;
+    const double nb = p->range.near_begin == HF_DERIVE ? fmax(0, focus - range) : p->range.near_begin;
+    const double ne = p->range.near_end == HF_DERIVE ? focus : p->range.near_end;
+    const double fb = p->range.far_begin == HF_DERIVE ? focus : p->range.far_begin;
+    const double fe = p->range.far_end == HF_DERIVE ? focus + range : p->range.far_end;
     *n = ne > nb ? saturate((ne - z) / (ne - nb)) : z < ne;
     *f = fe > fb ? (isinf(z) ? 1 : saturate((z - fb) / (fe - fb))) : z > fb;
-    if (isinf(range) && p->near_begin == HF_DERIVE)
+    if (isinf(range) && p->range.near_begin == HF_DERIVE)
         *n = 0;
-    if (isinf(range) && p->far_end == HF_DERIVE)
+    if (isinf(range) && p->range.far_end == HF_DERIVE)
         *f = 0;
 }
 
 static double radius_of_lens(const struct reference *r, double z)
 {
     const struct hf_params *p = &r->params;
-    const double aperture = (double)p->focal_length_mm / 1000 / (2 * (double)p->f_number) / p->world_unit_m;
-    const int display = p->display_width ? p->display_width : r->width;
-    const double focal_px = (double)p->focal_length_mm / p->sensor_width_mm * display;
-    return aperture * focal_px * (1 / (double)p->focus_distance - 1 / z);
+    const double aperture =
+        (double)p->lens.focal_length_mm / 1000 / (2 * (double)p->lens.f_number) / p->lens.world_unit_m;
+    const int display = p->view.display_width != HF_DERIVE ? p->view.display_width : r->width;
+    const double focal_px = (double)p->lens.focal_length_mm / p->lens.sensor_width_mm * display;
+    return aperture * focal_px * (1 / (double)p->focus - 1 / z);
 }
 
 void ref_coc(const struct reference *r, const struct hf_depth *depth, double z, double *n, double *f)
@@ -145,7 +146,7 @@ void ref_coc(const struct reference *r, const struct hf_depth *depth, double z, 
         *n = saturate(-radius / r->rho);
         *f = saturate(radius / r->rho);
     }
-    if (r->params.blend == HF_BLEND_SMOOTHSTEP) {
+    if (r->params.range.blend == HF_BLEND_SMOOTHSTEP) {
         *n = *n * *n * (3 - 2 * *n);
         *f = *f * *f * (3 - 2 * *f);
     }

@@ -250,13 +250,13 @@ static double fields_at(const struct field *near, const struct field *far, const
 struct picture hexagon_reference(const struct picture *colour, const struct picture *r, const struct hf_params *p)
 {
     static struct line l[3];
-    const int half = p->resolution == HF_RESOLUTION_HALF, n = colour->channels;
+    const int half = p->hexagon.resolution == HF_RESOLUTION_HALF, n = colour->channels;
     const int w = half ? (colour->width + 1) / 2 : colour->width, h = half ? (colour->height + 1) / 2 : colour->height;
     double reach = 0;
     for (int i = 0; i < r->width * r->height; i++)
         reach = worse(reach, fabs((double)r->plane[0][i]));
     for (int i = 0; i < 3; i++)
-        make_line(&l[i], p->blade_rotation + (i == 0 ? 0 : i == 1 ? 240 : 120), p->pixel_aspect, reach);
+        make_line(&l[i], p->aperture.rotation + (i == 0 ? 0 : i == 1 ? 240 : 120), p->view.pixel_aspect, reach);
     struct field near_in = field_new(w, h, n), far_in = field_new(w, h, n);
     struct field near = field_new(w, h, n), far = field_new(w, h, n);
     (half ? load_half : load_full)(colour, r->plane[0], &near_in, -1);

@@ -10,17 +10,17 @@ static const double pi = 3.14159265358979323846;
 // Sousa's polygon: what a radius shrinks to at an angle.
 static double polygon(const struct hf_params *p, double angle)
 {
-    if (p->blades == 0)
+    if (p->aperture.blades == 0)
         return 1;
-    const double n = p->blades;
-    const double t = angle - p->blade_rotation * pi / 180;
+    const double n = p->aperture.blades;
+    const double t = angle - p->aperture.rotation * pi / 180;
     return cos(pi / n) / cos(t - 2 * pi / n * floor((n * t + pi) / (2 * pi)));
 }
 
 static void add_tap(struct reference *r, double radius, double angle)
 {
     const double scaled = radius * polygon(&r->params, angle) * r->kernel_scale;
-    r->tap_x[r->taps] = scaled * cos(angle) / r->params.pixel_aspect;
+    r->tap_x[r->taps] = scaled * cos(angle) / r->params.view.pixel_aspect;
     r->tap_y[r->taps] = scaled * sin(angle);
     r->taps++;
 }
@@ -63,7 +63,7 @@ void ref_make_taps(struct reference *r)
     r->tap_x = malloc(sizeof *r->tap_x * REF_MAX_TAPS);
     r->tap_y = malloc(sizeof *r->tap_y * REF_MAX_TAPS);
     r->taps = 0;
-    if (r->params.fill == HF_FILL_NONE)
+    if (r->params.gather.fill == HF_FILL_NONE)
         make_grid(r);
     else
         make_rings(r);
