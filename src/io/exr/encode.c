@@ -9,7 +9,9 @@
 #include "io/exr/exr.h"
 #include "io/exr/zip.h"
 
-enum { ZIP_LEVEL = 4 };  // as the C++ library: half the time of 6 for files a few percent longer
+// Files are not to be longer than those of the C++ library (zlib, level 4). libdeflate's 4 is 1 % shorter on single lines,
+// but 0.7 % longer on 16 of a resampled picture; its 6 is shorter by 0.4 to 2 % and takes a quarter more time.
+enum { ZIPS_LEVEL = 4, ZIP_LEVEL = 6 };
 
 static int64_t write_nowhere(exr_const_context_t core, void *user, const void *data, uint64_t size, uint64_t offset,
                              exr_stream_error_func_ptr_t error)
@@ -68,7 +70,7 @@ int hf_exr_encoder_open(struct hf_exr_encoder *en, struct hf_exr *e, const struc
     en->compression = compression;
     en->lines = hf_exr_compression_lines(compression);
     if (is_zip(compression)) {
-        en->deflate = libdeflate_alloc_compressor(ZIP_LEVEL);
+        en->deflate = libdeflate_alloc_compressor(compression == EXR_COMPRESSION_ZIP ? ZIP_LEVEL : ZIPS_LEVEL);
         return en->deflate ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
     }
     if (compression == EXR_COMPRESSION_NONE)

@@ -5,6 +5,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "io/exr/chunks.h"
 #include "io/half.h"
@@ -365,6 +366,52 @@ static int order_chunks(const struct encoding *en)
     return 0;
 }
 
+static bool is_result(const struct hf_exr_job *job, int p, const char *channel)
+{
+    for (int i = 0; i < job->n_results; i++) {
+        const struct hf_io_view *v = &job->views->view[job->results[i].view];
+        for (int k = 0; k < 4; k++)
+            if (v->part == p && job->results[i].planes[k] && !strcmp(v->colour[k], channel))
+                return true;
+    }
+    return false;
+}
+
+// Does this compression change what it compresses a second time? DWA does so by the last piece of the name alone.
+static bool loses(exr_compression_t compression, const struct hf_exr_channel *ch)
+{
+    static const char *const lossy[] = {"R", "G", "B", "Y", "RY", "BY"};
+    const char *dot = strrchr(ch->name, '.'), *last = dot ? dot + 1 : ch->name;
+    if (compression == EXR_COMPRESSION_B44 || compression == EXR_COMPRESSION_B44A)
+        return ch->type == EXR_PIXEL_HALF;
+    for (size_t i = 0; i < sizeof(lossy) / sizeof(lossy[0]); i++)
+        if (hf_exr_is_dwa(compression) && ch->type != EXR_PIXEL_UINT && !strcasecmp(last, lossy[i]))
+            return true;
+    return false;
+}
+
+static void note_losses(const struct hf_exr *e, int p, const struct hf_exr_job *job, const struct part_plan *plan,
+                        struct hf_io_written *written)
+{
+    const struct hf_exr_part *part = &e->parts[p];
+    const char *first = NULL;
+    int count = 0;
+    bool made = false;
+    for (int i = 0; i < plan->chunk_count; i++)
+        made |= plan->pieces[i].data != NULL;
+    for (int c = 0; c < part->channel_count && made; c++)
+        if (loses(plan->compression, &part->channels[c]) && !is_result(job, p, part->channels[c].name)) {
+            first = first ? first : part->channels[c].name;
+            count++;
+        }
+    if (count && !written->note[0])
+        snprintf(written->note, sizeof(written->note),
+                 "%s: %d channel%s besides the colours (%s%s) went through %s a second time, which loses a little; "
+                 "--compression zip does not",
+                 e->path, count, count > 1 ? "s" : "", first, count > 1 ? ", ..." : "",
+                 hf_exr_compression_name(plan->compression));
+}
+
 static int encode_part(struct hf_exr *e, int p, const struct hf_exr_job *job, struct part_plan *plan,
                        const struct hf_io_run *run, struct hf_io_written *written, struct hf_io_error *err)
 {
@@ -383,6 +430,8 @@ static int encode_part(struct hf_exr *e, int p, const struct hf_exr_job *job, st
         free(en.table);
     }
     written->clamped += atomic_load(&en.clamped);
+    if (!status)
+        note_losses(e, p, job, plan, written);
     return status;
 }
 
