@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: what happens before and after the splats (splat.c).
+#include "scatter/behind.h"
 #include "scatter/kernels.h"
 
 #include "pixel/pass_c.h"
@@ -8,13 +9,13 @@ void hf_scatter_note_c(const float *radius, float *const colour[4], int channels
                        uint64_t *transparent)
 {
     for (int x = 0; x < n; x++) {
+        *transparent += channels == 4 && colour[3][x] != 1;
         if (radius[x] == 0)
             continue;
         for (int c = 0; c < channels; c++) {
             const float v = __builtin_fabsf(colour[c][x]);
             *largest = v > *largest ? v : *largest;
         }
-        *transparent += channels == 4 && colour[3][x] != 1;
     }
 }
 
@@ -56,13 +57,14 @@ static float mix(float a, float b, float t)
 
 // Far, the pixel itself, near. What still shows of a near pixel is a part of what covers it: what is behind shows
 // through neither. What lies there nobody has seen: where far ones hardly reach, near hides it.
-static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2])
+static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2],
+                              const float *behind)
 {
     const float front = near[1] > 0 ? near[0] / near[1] : own;
     float v = far[1] > 0 ? far[0] / far[1] : own;
     if (is_near) {
         const float left = 1 - cover;
-        v = mix(front, v, hf_saturate(16 * far[1]));
+        v = behind ? *behind : mix(front, v, hf_saturate(16 * far[1]));
         show = show < left ? show / left : 1;
     }
     v = mix(own, v, 1 - show);
@@ -77,11 +79,13 @@ void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
         const float near[2] = {row->near ? row->near[x] : 0, row->near ? row->near_weight[x] : 0};
         const float r = row->radius[x], size = __builtin_fabsf(r), reach_x = size * t->aperture.key.scale_x;
         const float cover = r < 0 ? near[1] / inside(row->setup, reach_x, size, row->x + x, row->y) : near[1];
-        out[x] = composite_sample(out[x], hf_own_part(t, size), cover, r < 0, far, near);
+        out[x] = composite_sample(out[x], hf_own_part(t, size), cover, r < 0, far, near,
+                                  row->behind ? &row->behind[x] : NULL);
     }
 }
 
-static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
+// behind: NULL if there is nothing but what far pixels say.
+static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, const struct hf_behind *behind)
 {
     const struct hf_setup *s = f->s;
     const struct hf_scatter *t = hf_scatter(s);
@@ -91,17 +95,27 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
     for (int c = 0; c < 4; c++)
         out[c] = hf_line(f, 8 + c);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, out, f->counts);
-    for (int c = 0; c < s->channels; c++) {
-        // With alpha 1 all over its sums are those of the weights.
-        const int is_weight = t->opaque && c == 3, group = t->opaque ? 0 : t->group_of[c];
+    struct hf_behind_line line = {.at = (int32_t *)(void *)hf_line(f, 12),
+                                  .quad = hf_line(f, 13),
+                                  .weight = {hf_line(f, 14), hf_line(f, 15)},
+                                  .colour = {hf_line(f, 16), hf_line(f, 17)}};
+    if (behind)
+        hf_behind_begin(behind, &line, x0, y, n, radius);
+    // Alpha that is 1 all over stays so.
+    for (int c = 0; c < (t->opaque ? 3 : s->channels); c++) {
+        const int group = t->opaque ? 0 : t->group_of[c];
         struct hf_scatter_row row = {.setup = s, .x = x0, .y = y, .n = n, .radius = radius};
         if (f->far) {
             row.far_weight = hf_at(&f->buf[HF_BUF_FAR_WEIGHT], group, x0, y);
-            row.far = is_weight ? row.far_weight : hf_at(&f->buf[HF_BUF_FAR_SUM], c, x0, y);
+            row.far = hf_at(&f->buf[HF_BUF_FAR_SUM], c, x0, y);
         }
         if (f->near) {
             row.near_weight = hf_at(&f->buf[HF_BUF_NEAR_WEIGHT], group, x0, y);
-            row.near = is_weight ? row.near_weight : hf_at(&f->buf[HF_BUF_NEAR_SUM], c, x0, y);
+            row.near = hf_at(&f->buf[HF_BUF_NEAR_SUM], c, x0, y);
+        }
+        if (behind) {
+            row.behind = hf_line(f, 18);
+            hf_behind_row(behind, &line, &row, c, out[c], hf_line(f, 18));
         }
         hf_scatter_kernels(f)->blend(&row, out[c]);
     }
@@ -110,6 +124,13 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_scatter_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
-        composite_row(f, y, r);
+    const int levels = f->near ? hf_scatter(f->s)->behind : 0;
+    for (int y = r.y0; y < r.y1; y += HF_BEHIND_BLOCK)
+        for (int x = r.x0; x < r.x1; x += HF_BEHIND_BLOCK) {
+            const struct hf_rect block = {x, y, hf_min(x + HF_BEHIND_BLOCK, r.x1), hf_min(y + HF_BEHIND_BLOCK, r.y1)};
+            struct hf_behind behind;
+            const int is = levels && hf_behind_make(&behind, f, block, levels, f->work);
+            for (int row = 2 * block.y0; row < hf_min(2 * block.y1, f->s->height); row++)
+                composite_row(f, row, block, is ? &behind : NULL);
+        }
 }

@@ -15,7 +15,7 @@ static void scatter_note_simd(const float *radius, float *const colour[4], int c
         for (int c = 0; c < channels; c++)
             most = vf_max(vf_keep(drawn, vf_abs(vf_load(colour[c] + x))), most);
         if (channels == 4)
-            other = vi_count(other, vm_and(drawn, vf_ne(vf_load(colour[3] + x), vf_set1(1))));
+            other = vi_count(other, vf_ne(vf_load(colour[3] + x), vf_set1(1)));
     }
     float lane[VF_N];
     vf_store(lane, most);
@@ -79,7 +79,9 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
             back = vf_select(is_near, vf_select(vf_lt(show, left), vf_div(show, left), one), show);
         }
         const vf reached = vf_mul(vf_set1(16), far);
-        v = vf_select(is_near, scatter_mix(front, v, vf_min(vf_max(reached, zero), one)), v);
+        const vf hidden =
+            row->behind ? vf_load(row->behind + x) : scatter_mix(front, v, vf_min(vf_max(reached, zero), one));
+        v = vf_select(is_near, hidden, v);
         v = scatter_mix(own, v, vf_sub(one, back));
         if (row->near)
             v = vf_select(vf_gt(near, zero), scatter_mix(v, front, cover), v);

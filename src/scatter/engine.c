@@ -2,7 +2,7 @@
 // The scatter: B. Wronski, "Bokeh depth of field - going insane! part 1", 2014. Every blurred pixel becomes the picture
 // of the aperture. Near and far are summed apart, each is divided by its weights, and they are put together back to
 // front: far, the pixels in focus, near. The near one's sum of weights, 1 inside a large object and less across its
-// silhouette, is its coverage: so it melts into what is behind.
+// silhouette, is its coverage: so it melts into what is behind, which is made up from what is seen around it (behind.c).
 //
 // Cost of a blurred pixel of radius r, in additions of four 64-bit lanes (OPTIMISATION.md has the times):
 //     disc         4 (2 r + 1); 2.5 (2 r + 1) where four side by side have rows equally long to a pixel
@@ -18,11 +18,15 @@
 
 #include "frame/plan.h"
 #include "pixel/pass_c.h"
+#include "scatter/behind.h"
 #include "scatter/kernels.h"
 
 #define B(name) (1u << HF_BUF_##name)
 
-enum { HALO_RADIUS = 1 };  // the largest CoC radius
+enum {
+    HALO_RADIUS = 1,  // the largest CoC radius
+    HALO_BEHIND,      // what is seen around near pixels
+};
 
 enum { COC, PREPARE, FAR, NEAR, COMPOSITE, PASSES };
 
@@ -33,7 +37,8 @@ static const struct hf_pass passes[PASSES] = {
      .sweep = 2, .field = HF_FAR, .ns = 75},
     {"Near splats", .around = B(SOURCE) | B(RADIUS), .writes = B(NEAR_SUM) | B(NEAR_WEIGHT), .halo = HALO_RADIUS,
      .sweep = 2, .field = HF_NEAR, .ns = 75},
-    {"Composite", .reads = B(RADIUS) | B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .sweep = 2, .ns = 9},
+    {"Composite", .reads = B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .around = B(SOURCE) | B(RADIUS),
+     .halo = HALO_BEHIND, .sweep = 2, .ns = 9},
 };
 
 static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
@@ -162,6 +167,7 @@ static void measure(void *own, const struct hf_setup *s, const struct hf_counts 
     (void)s;
     t->largest[0] = -found->radius_min;
     t->largest[1] = found->radius_max;
+    t->behind = hf_behind_levels(t->largest[0]);
     t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
         set_reach(t, field);
@@ -200,7 +206,8 @@ static int channels(const struct hf_setup *s, int b)
 static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
     const struct hf_scatter *t = hf_scatter(s);
-    return halo == HALO_RADIUS ? (struct hf_reach){t->around_x, t->around_y} : (struct hf_reach){0, 0};
+    const int behind = hf_behind_halo(t->behind);
+    return halo == HALO_RADIUS ? (struct hf_reach){t->around_x, t->around_y} : (struct hf_reach){behind, behind};
 }
 
 // A far field shows only on pixels that are blurred themselves: far ones, or near ones that it shines through.
@@ -237,7 +244,12 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    return hf_scatter(s)->ready ? hf_splat_work(hf_scatter(s), p->cell_width[2], p->cell_height[2]) : 0;
+    const struct hf_scatter *t = hf_scatter(s);
+    if (!t->ready)
+        return 0;
+    const size_t splats = hf_splat_work(t, p->cell_width[2], p->cell_height[2]);
+    const size_t behind = hf_behind_floats(t->behind, s->channels);
+    return splats > behind ? splats : behind;
 }
 
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)

@@ -37,6 +37,7 @@ struct hf_scatter {
     int exponent;                      // the brightest blurred sample is below 2^exponent
     int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
     int around_x, around_y;            // of the frame, half-resolution pixels, once its depth has been looked at
+    int behind;                        // neighbourhoods that near radii ask for (behind.h)
     float ring, cat_eye;               // radii of the hole, and by which the second circle moves in the corners
     float corner;                      // 1 / the picture's diagonal, pixels
     double scale[4], unscale[4];       // from a sample's share to the integers of the sums, and back
@@ -74,6 +75,7 @@ struct hf_scatter_row {
     const struct hf_setup *setup;
     int x, y, n;
     const float *radius, *far, *far_weight, *near, *near_weight;
+    const float *behind;  // what lies behind near pixels; NULL: what far ones say
 };
 
 // A row of pixels as parts of half-resolution means: n of these from column 0 on, two pixels each.

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lies behind near pixels (behind.c).
+#ifndef HF_BEHIND_H
+#define HF_BEHIND_H
+
+#include "scatter/scatter.h"
+
+enum { HF_BEHIND_LEVELS = 9, HF_BEHIND_BLOCK = 128 };
+
+// Of a block of at most HF_BEHIND_BLOCK half-resolution pixels each way.
+struct hf_behind {
+    int x0, y0, columns, rows, stride, reach, channels;  // of the planes, half-resolution pixels
+    float *level[10], *sum[10];
+    const float *near, *widest;  // the largest near radius of a quad, and around it
+    int near_stride;
+    int seen[2];  // whether anything is, sharp and far
+};
+
+// How many neighbourhoods near radii up to this ask for, and how far around a block these look.
+int hf_behind_levels(float largest);
+int hf_behind_reach(int levels);
+int hf_behind_halo(int levels);  // and how far around it radii are read
+size_t hf_behind_floats(int levels, int channels);
+
+// Returns 0 if there is nothing to do in a block: no near pixels, or nothing else around them.
+int hf_behind_make(struct hf_behind *h, const struct hf_frame *f, struct hf_rect r, int levels, float *memory);
+// The near pixels of a row from (x, y) on: where they are, and how much of what is seen around them is sharp, and far.
+struct hf_behind_line {
+    int x, y, count;
+    int32_t *at;
+    float *quad, *weight[2], *colour[2];  // quad and colour: scratch
+};
+void hf_behind_begin(const struct hf_behind *h, struct hf_behind_line *l, int x, int y, int n, const float *radius);
+// One channel of what lies behind them; the others of the row are left alone.
+void hf_behind_row(const struct hf_behind *h, const struct hf_behind_line *l, const struct hf_scatter_row *row,
+                   int channel, const float *own, float *out);
+
+#endif
