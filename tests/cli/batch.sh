@@ -314,6 +314,29 @@ check "depth of its own" exits 0
 check "depth of its own: the same picture" sh -c '! command -v oiiotool ||
     oiiotool v/d.0002.exr good/shot.0002.exr --fail 0 --hardfail 0 --diff'
 
+# A budget of time acts from frame to frame: nothing is that fast, so cheaper settings are chosen, and named.
+rm -f a/*
+run in/shot.####.exr -o a/shot.####.exr --engine scatter --focus 5 --range 3 --max-radius 6 --budget-ms 0.001
+check "a budget" exits 0
+check "says what it chose" sh -c 'grep -q "for the budget" err && grep -q "frames at step" err'
+
+# Frames as Blender writes them.
+if [ -d "$shared/../blender" ]; then
+    mkdir blender blended
+    for f in m.0002 stereo.0001 bcrop.0001; do
+        cp "$shared/../blender/$f.exr" "blender/${f%%.*}.0001.exr"
+        cp "$shared/../blender/$f.exr" "blender/${f%%.*}.0002.exr"
+        run "blender/${f%%.*}.#.exr" -o "blended/${f%%.*}.#.exr" --engine gather --focus 5 --fstop .8 --focal-length 50
+        check "Blender's $f" exits 0
+        command -v python3 >/dev/null &&
+            check "Blender's $f: header" python3 header.py "blender/${f%%.*}.0002.exr" "blended/${f%%.*}.0002.exr"
+    done
+    command -v oiiotool >/dev/null && check "Blender's depth is kept" kept blender/stereo.0002.exr \
+        blended/stereo.0002.exr ViewLayer.Depth.right.Z
+else
+    skip "Blender's frames: HF_SHARED does not name them"
+fi
+
 # A real stereo shot.
 if [ -d "$shared/beachball" ]; then
     mkdir ball
