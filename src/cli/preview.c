@@ -11,7 +11,7 @@
 #include "cli/resume.h"
 
 // How long encoding takes by how long decoding does, zlib at its usual level: a rough figure, said to be one.
-static const double ENCODE_BY_DECODE = 4;
+static const double ENCODE_BY_DECODE = 2.5;
 
 static void print_jobs(const struct cli_plan *plan, int *left)
 {
