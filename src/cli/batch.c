@@ -216,15 +216,24 @@ static void run_first(struct batch *b)
     b->frame_bytes = fmax(peak_memory() - before, b->frame_bytes);
 }
 
+// How long frames waited for the disk over how long they were computed.
+static double waiting(const struct cli_progress *p)
+{
+    const double computing = (double)(p->us[CLI_DECODE] + p->us[CLI_DEFOCUS] + p->us[CLI_ENCODE]);
+    return computing > 0 ? (double)(p->us[CLI_READ] + p->us[CLI_WRITE]) / computing : 0;
+}
+
 static int run_rest(struct batch *b, struct cli_error *error)
 {
     const int left = b->shot->jobs.count - b->next;
     if (left <= 0)
         return 0;
-    const int workers = cli_plan_workers(b->args, left, peak_memory() - b->frame_bytes, b->frame_bytes);
+    const int threads = cli_plan_threads(b->args);
+    const int workers = cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads,
+                                         peak_memory() - b->frame_bytes, b->frame_bytes);
     struct hf_io_run run = {0};
     if (workers > 1) {
-        const int status = open_sessions(b, workers, cli_plan_threads(b->args) / workers, error);
+        const int status = open_sessions(b, workers, threads > workers ? threads / workers : 1, error);
         if (status)
             return status;
         hf_io_threads_open(&run, workers);

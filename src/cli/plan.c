@@ -7,6 +7,7 @@
 
 #include "cli/track.h"
 
+static const double MOST_WAIT = 3;  // more frames at once than this would not make a disk faster
 static const double GIB = 1024. * 1024 * 1024;
 
 int cli_plan_threads(const struct cli_args *args)
@@ -66,10 +67,11 @@ static double memory_limit(const struct cli_args *args)
     return half < 2 * GIB ? half : 2 * GIB;
 }
 
-int cli_plan_workers(const struct cli_args *args, int frames, double base, double frame_bytes)
+int cli_plan_workers(const struct cli_args *args, int frames, double wait, double base, double frame_bytes)
 {
     const double limit = memory_limit(args), fit = floor((limit - base) / frame_bytes);
-    const int threads = cli_plan_threads(args), most = frames < 1 ? 1 : frames < threads ? frames : threads;
+    const int busy = (int)lround(cli_plan_threads(args) * (1 + fmin(wait, MOST_WAIT)));
+    const int most = frames < 1 ? 1 : frames < busy ? frames : busy;
     if (fit < 1)
         cli_print_line("a frame takes %.2f GiB, more than the limit of %.2f GiB: one at a time",
                        (base + frame_bytes) / GIB, limit / GIB);

@@ -52,7 +52,7 @@ static int expect(const struct cli_plan *plan, int left, struct cli_error *error
     if (!status) {
         hf_get_report(session.context, &report);
         const double bytes = cli_plan_frame_bytes(&frame, (double)report.memory);
-        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, 0, bytes);
+        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, 0, 0, bytes);
         const double io = frame.ms[CLI_READ] + frame.ms[CLI_DECODE] * (1 + ENCODE_BY_DECODE);
         const double ms = io + frame.view_count * report.predicted_ms;
         printf("%d frames, %d at a time; a frame takes about %.0f MiB, all at once %.0f MiB\n", left, workers,
