@@ -121,6 +121,18 @@ static int load(struct cli_frame *frame, struct cli_error *error)
     return status;
 }
 
+// Rows around the pixel in focus: that which is read, and its neighbours, which count where it is no number.
+static int read_focus_rows(const struct cli_frame *frame, const struct cli_view *v, struct hf_io_error *io)
+{
+    const struct cli_args *args = frame->args;
+    const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
+    if (args->depth_file)
+        return hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, io);
+    const int at = args->focus_by == CLI_FOCUS_AT ? args->focus_y : display->y0 + (display->y1 - display->y0) / 2;
+    const int from = at - 1 > data->y0 ? at - 1 : data->y0, to = at + 2 < data->y1 ? at + 2 : data->y1;
+    return from < to ? hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, io) : 0;
+}
+
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *error)
 {
     struct cli_view *v = &frame->views[0];
@@ -128,10 +140,7 @@ int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *err
     int status = 0;
     if (cli_focus_needs_depth(frame->args)) {
         status = new_plane(v, &v->depth, error);
-        if (!status &&
-            (frame->args->depth_file
-                 ? hf_io_read_depth_file(frame->args->depth_file, frame->args->depth_channel, v->view, v->depth, &io)
-                 : hf_io_read_depth(frame->file, v->index, v->depth, &io)))
+        if (!status && read_focus_rows(frame, v, &io))
             status = cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
     }
     if (!status)

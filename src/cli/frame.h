@@ -48,7 +48,7 @@ void cli_session_close(struct cli_session *session);
 // exit code with *error filled; close after any of them.
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
                    struct cli_error *error);
-// The focus of the first view, its depth being all that is decoded. In place of the others.
+// The focus of the first view, only the rows of depth around it being decoded. In place of the others.
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *error);
 int cli_frame_setup(struct cli_frame *frame, struct cli_error *error);
 int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);

@@ -259,6 +259,28 @@ int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_
     return hf_io_decode(file, &want, 1, NULL, err);
 }
 
+int hf_io_read_depth_rows(struct hf_io_file *file, int view, int first, int count, float *depth,
+                          struct hf_io_error *err)
+{
+    const struct hf_io_want want = {.view = view, .depth = depth};
+    int planes;
+    if (!file->exr)
+        return hf_io_read_depth(file, view, depth, err);
+    struct hf_exr_plane *list = all_planes(file, &want, 1, &planes, err);
+    if (!list)
+        return -1;
+    const size_t width = (size_t)file->views.view[view].width;
+    list[0].keep = false;  // or all would be decoded
+    list[0].grid.y0 += first;
+    list[0].grid.y1 = list[0].grid.y0 + count;
+    list[0].to += (size_t)first * width;
+    for (size_t i = 0; i < (size_t)count * width; i++)
+        list[0].to[i] = INFINITY;  // where the depth's own window does not reach
+    const int status = hf_exr_decode(file->exr, list, planes, NULL, err);
+    free(list);
+    return status;
+}
+
 static int exr_depth_only(struct hf_io_file *file, const char *depth_channel, const struct hf_io_view *view,
                           float *depth, struct hf_io_error *err)
 {

@@ -69,6 +69,10 @@ int hf_io_decode(struct hf_io_file *file, const struct hf_io_want *wants, int co
 // The same for one view's colour or depth, in one call on this thread.
 int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struct hf_io_error *err);
 int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err);
+// Some rows of the depth, counted from the top of the data window, into their places in the plane: of an EXR only the
+// chunks in which they lie are decoded.
+int hf_io_read_depth_rows(struct hf_io_file *file, int view, int first, int count, float *depth,
+                          struct hf_io_error *err);
 // Depth from a file of its own, any format OpenImageIO or OpenEXRCore reads: its depth channel as searched above (or
 // its only channel, or R). Must have the same data window size as the view.
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
@@ -81,7 +85,9 @@ struct hf_io_job {
     int result_count;
     const char *compression;  // "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", or NULL:
                               // as it was
-    const struct hf_io_text *texts;  // for the header of an EXR made from an EXR, in place of those of the same names
+    const struct hf_io_text
+        *texts;  // for the header of an EXR, in place of those of the same names; DWA made from what
+                 // is no EXR goes without
     int text_count;
     bool unsynced;                // do not wait until the disk has it: after a power failure the new file may be empty
     const struct hf_io_run *run;  // NULL: on this thread

@@ -40,7 +40,7 @@ static int load_picture(struct hf_io_file *file, const struct hf_io_result *r, s
 }
 
 // Colours alone.
-static int make_exr(struct hf_io_bytes *made, const char *path, const struct hf_io_view *v,
+static int make_exr(struct hf_io_bytes *made, const struct hf_io_job *job, const struct hf_io_view *v,
                     const float *const planes[4], int compression, struct hf_io_error *err)
 {
     static const char *const names[4] = {"R", "G", "B", "A"};
@@ -56,8 +56,10 @@ static int make_exr(struct hf_io_bytes *made, const char *path, const struct hf_
         .names = names,
         .planes = planes,
         .stride = v->width,
+        .texts = job->texts,
+        .text_count = job->text_count,
     };
-    return hf_exr_make_new(made, path, &picture, err);
+    return hf_exr_make_new(made, job->path, &picture, err);
 }
 
 static int make_by_oiio(struct hf_io_bytes *made, const struct hf_io_file *file, const struct hf_io_job *job,
@@ -82,7 +84,7 @@ static int make_view(struct hf_io_bytes *made, struct hf_io_file *file, const st
     const struct hf_io_view *v = &file->views.view[job->results[0].view];
     int status = load_picture(file, &job->results[0], &pic, err);
     if (!status && hf_io_is_exr_name(job->path) && !(compression >= 0 && hf_exr_is_dwa(compression)))
-        status = make_exr(made, job->path, v, pic.planes, compression, err);
+        status = make_exr(made, job, v, pic.planes, compression, err);
     else if (!status)
         status = make_by_oiio(made, file, job, v, &pic, err);
     free_picture(&pic);

@@ -200,6 +200,8 @@ struct hf_exr_new {
     const char *const *names;
     const float *const *planes;
     ptrdiff_t stride;  // floats from row to row
+    const struct hf_io_text *texts;
+    int text_count;
 };
 int hf_exr_make_new(struct hf_io_bytes *made, const char *path, const struct hf_exr_new *picture,
                     struct hf_io_error *err);

@@ -49,6 +49,8 @@ static exr_result_t describe(exr_context_t core, const struct hf_exr_new *pictur
     if (!rv)
         rv = exr_initialize_required_attr(core, 0, &display, &data, picture->pixel_aspect, &center,
                                           picture->screen_width, EXR_LINEORDER_INCREASING_Y, picture->compression);
+    for (int i = 0; i < picture->text_count && !rv; i++)
+        rv = exr_attr_set_string(core, 0, picture->texts[i].name, picture->texts[i].value);
     for (int c = 0; c < picture->channel_count && !rv; c++)
         rv = exr_add_channel(core, 0, picture->names[c], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     return rv ? rv : exr_write_header(core);
