@@ -43,7 +43,9 @@ void cli_print_help(void)
     printf("hyperfocal %s: depth of field for rendered pictures\n\n"
            "    hyperfocal INPUT -o OUTPUT [options]\n\n"
            "INPUT holds linear colour and depth, as EXR does. OUTPUT is a copy of it with\n"
-           "the colours defocused. A value follows its option as the next word or after =.\n",
+           "the colours defocused. A value follows its option as the next word or after =.\n"
+           "A shot: INPUT and OUTPUT with a place for the frame number, shot.####.exr (also\n"
+           "#, @@@, %%04d, $F4; %%V for the view), or several INPUT.\n",
            hf_version());
     for (int group = 0; group < CLI_GROUPS; group++) {
         printf("\n%s\n", cli_group_names[group]);
@@ -60,5 +62,6 @@ void cli_print_help(void)
            "\nExamples\n"
            "  hyperfocal shot.exr -o dof.exr --focus 4.2 --range 3\n"
            "  hyperfocal shot.exr -o dof.exr --focus-at 960,540 --fstop 2 --focal-length 50\n"
+           "  hyperfocal shot.####.exr -o dof.####.exr --focus center --frames 1-9 --resume\n"
            "\nExit codes: 0 done, 1 bad arguments, 2 some frames failed, 3 all failed.\n");
 }

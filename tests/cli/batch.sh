@@ -295,6 +295,12 @@ else
     skip "channels, without oiiotool"
 fi
 
+# Over what was made before: the new record takes the place of the old one.
+rm -f a/*
+run good/shot.####.exr -o a/shot.####.exr $quick --frames 1 --range 2
+check "one record" test "$(grep -ao hyperfocalHash a/shot.0001.exr | wc -l)" = 1
+check "of what was done last" grep -qa -e '--range 3 --max-radius 6 --range 2' a/shot.0001.exr
+
 # Views as files of their own, and depth of its own.
 mkdir left right depth
 for i in 1 2; do
