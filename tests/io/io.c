@@ -356,13 +356,31 @@ static void test_names(void)
         {"B", "G", "R", "depth1", "depth2", 0},
         {"VL.Combined.R", "VL.Combined.G", "VL.Combined.B", "VL.Depth.Z", "VL.Diff.R", "VL.Diff.G", "VL.Diff.B", 0},
         {"beauty.R", "beauty.G", "beauty.B", "beauty.Z", 0},
+        {"r", "g", "b", "a", "z", 0},
+        {"red", "green", "blue", "Pz", 0},
+        {"B", "G", "R", "depth.R", "depth.G", "depth.B", 0},
+        {"B", "G", "R", "VRayZDepth.R", "VRayZDepth.G", "VRayZDepth.B", 0},
+        {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Depth.V", 0},
+        {"Fg.Combined.R", "Fg.Combined.G", "Fg.Combined.B", "Fg.Depth.Z", "Vl.Combined.R", "Vl.Combined.G",
+         "Vl.Combined.B", "Vl.Depth.Z", 0},
+        {"Fg.Combined.R", "Fg.Combined.G", "Fg.Combined.B", "Vl.Combined.R", "Vl.Combined.G", "Vl.Combined.B",
+         "Vl.Depth.Z", 0},
+        {"Ci.r", "Ci.g", "Ci.b", "Ci.a", "zfiltered", 0},
     };
     static const char *const found[][2] = {{"Y", "Z"},
                                            {"R", "depth.Z"},
                                            {"R", "SceneDepth"},
                                            {"R", ""},
                                            {"VL.Combined.R", "VL.Depth.Z"},
-                                           {"beauty.R", "beauty.Z"}};
+                                           {"beauty.R", "beauty.Z"},
+                                           {"r", "z"},
+                                           {"red", "Pz"},
+                                           {"R", "depth.R"},
+                                           {"R", "VRayZDepth.R"},
+                                           {"ViewLayer.Combined.R", "ViewLayer.Depth.V"},
+                                           {"Fg.Combined.R", "Fg.Depth.Z"},
+                                           {"Vl.Combined.R", "Vl.Depth.Z"},
+                                           {"Ci.r", "zfiltered"}};
     for (size_t i = 0; i < sizeof(found) / sizeof(found[0]); i++) {
         struct hf_io_error err = {""};
         struct hf_io_file *f = try_names(tries[i], 1, &err);

@@ -49,10 +49,60 @@ static int find_prefixed(const struct hf_exr_part *part, const char *prefix, con
     return hf_exr_find_channel(part, full);
 }
 
+// How programs call the channels of a colour; the first spelling that a layer has all three of is taken.
+static const char *const spellings[][4] = {
+    {"R", "G", "B", "A"}, {"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"Red", "Green", "Blue", "Alpha"}};
+enum { SPELLINGS = sizeof(spellings) / sizeof(spellings[0]) };
+
+static const char *const *colour_names(const struct hf_exr_part *part, const char *prefix)
+{
+    for (int i = 0; i < SPELLINGS; i++)
+        if (find_prefixed(part, prefix, spellings[i][0]) >= 0 && find_prefixed(part, prefix, spellings[i][1]) >= 0 &&
+            find_prefixed(part, prefix, spellings[i][2]) >= 0)
+            return spellings[i];
+    return NULL;
+}
+
 static bool has_colour(const struct hf_exr_part *part, const char *prefix)
 {
-    return find_prefixed(part, prefix, "R") >= 0 && find_prefixed(part, prefix, "G") >= 0 &&
-           find_prefixed(part, prefix, "B") >= 0;
+    return colour_names(part, prefix) != NULL;
+}
+
+// How they call a depth, behind the name of its layer, whatever the case: Blender (Depth.Z, Depth.V), Arnold and most
+// others (Z), RenderMan (z, zfiltered), V-Ray (VRayZDepth), Karma (Pz).
+static const char *const depth_names[] = {
+    "Z",        "depth.Z",  "depth.V",  "depth",     "depth.R", "depth.Y",    "Pz",           "depth.Pz",    "ZDepth",
+    "ZDepth.Z", "ZDepth.R", "ZDepth.Y", "zfiltered", "Z.R",     "VRayZDepth", "VRayZDepth.R", "VRayZDepth.Z"};
+
+// The depth that lies beside or above a layer of this part: <prefix>Z and the like, then the same for what is left when
+// the prefix loses its last piece. With plain, names without a prefix count too. -1: none.
+static int layer_depth(const struct hf_exr_part *part, const char *prefix, const char *view, bool plain)
+{
+    char base[NAME], full[2 * NAME];
+    snprintf(base, sizeof(base), "%s", prefix);
+    for (;;) {
+        for (size_t i = 0; i < 2 * sizeof(depth_names) / sizeof(depth_names[0]) && (base[0] || plain); i++) {
+            const bool own = i % 2;  // Depth.left.Z, of a view
+            const char *name = depth_names[i / 2], *dot = strchr(name, '.');
+            if (own && (!view[0] || !dot))
+                continue;
+            if (own)
+                snprintf(full, sizeof(full), "%s%.*s.%.*s%s", base, (int)(dot - name), name, NAME / 2, view, dot);
+            else
+                snprintf(full, sizeof(full), "%s%s", base, name);
+            for (int c = 0; c < part->channel_count; c++)
+                if (!strcasecmp(part->channels[c].name, full))
+                    return c;
+        }
+        if (!base[0])
+            return -1;
+        base[strlen(base) - 1] = 0;
+        char *last = strrchr(base, '.');
+        if (last)
+            last[1] = 0;
+        else
+            base[0] = 0;
+    }
 }
 
 // Is one of the dot-separated pieces of a channel name (the last, the channel itself, left out) this word?
@@ -65,31 +115,49 @@ static bool has_component(const char *channel, const char *word)
     return false;
 }
 
-// The layer whose colours are the picture: its name with the dot behind it, or "". In a part with several views the
-// layer's name must end in the view's.
+// The layer that a channel is the red of: its name with the dot behind it. False when it is none.
+static bool layer_of_red(const struct hf_exr_part *part, const char *channel, char layer[NAME])
+{
+    const char *dot = strrchr(channel, '.');
+    if (!dot || dot == channel || dot + 1 - channel >= NAME)
+        return false;
+    snprintf(layer, NAME, "%.*s", (int)(dot + 1 - channel), channel);
+    const char *const *names = colour_names(part, layer);
+    return names && !strcmp(dot + 1, names[0]);
+}
+
+// How likely a layer is the picture: called so, with a depth of its own, in the layer that programs make by default.
+static int score_layer(const struct hf_exr_part *part, const char *layer, const char *view)
+{
+    static const char *const usual[] = {"combined", "rgba", "beauty", "Ci", "C"};
+    static const char *const first[] = {"ViewLayer", "View Layer", "RenderLayer", "rgba", "beauty"};
+    int score = 1;
+    for (size_t i = 0; i < sizeof(usual) / sizeof(usual[0]); i++)
+        score += has_component(layer, usual[i]) && score < 4 ? 4 : 0;
+    score += layer_depth(part, layer, view, false) >= 0 ? 2 : 0;
+    for (size_t i = 0; i < sizeof(first) / sizeof(first[0]); i++)
+        if (has_component(layer, first[i]))
+            return score + 1;
+    return score;
+}
+
+// The layer whose colours are the picture, or "" when it is not clear which. In a part with several views the layer's
+// name must end in the view's.
 static void find_layer(const struct hf_exr_part *part, const char *view, bool multiview, char layer[NAME])
 {
-    static const char *const usual[] = {"combined", "rgba", "beauty"};
     int best = 0, rivals = 0;
     layer[0] = 0;
     for (int c = 0; c < part->channel_count; c++) {
-        const char *name = part->channels[c].name;
-        const size_t n = strlen(name);
         char prefix[NAME];
-        if (n < 3 || n >= NAME || strcmp(name + n - 2, ".R"))
+        if (!layer_of_red(part, part->channels[c].name, prefix))
             continue;
-        snprintf(prefix, sizeof(prefix), "%.*s", (int)(n - 1), name);
-        const size_t v = strlen(view);
-        if (multiview && (n < v + 2 || strncmp(name + n - 2 - v, view, v) || (n > v + 2 && name[n - 3 - v] != '.')))
+        const size_t n = strlen(prefix), v = strlen(view);
+        if (multiview && (n < v + 1 || strncmp(prefix + n - 1 - v, view, v) || (n > v + 1 && prefix[n - 2 - v] != '.')))
             continue;
-        if (!has_colour(part, prefix))
-            continue;
-        int score = 1;
-        for (size_t i = 0; i < sizeof(usual) / sizeof(usual[0]); i++)
-            score = has_component(prefix, usual[i]) ? 2 : score;
+        const int score = score_layer(part, prefix, view);
         if (score > best)
             snprintf(layer, NAME, "%s", prefix);
-        rivals = score > best ? 0 : rivals + (score == best && score == 1);
+        rivals = score > best ? 0 : rivals + (score == best && score < 4);
         best = score > best ? score : best;
     }
     if (rivals)
@@ -143,12 +211,12 @@ static int add_view(const struct hf_exr *e, struct hf_io_views *views, int p, co
     struct hf_io_view *v = hf_io_add_view(views);
     if (!v)
         return hf_io_fail(err, "%s: out of memory", e->path);
-    const bool rgb = has_colour(part, prefix);
+    const char *const *names = colour_names(part, prefix);
     v->part = p;
     v->depth_part = -1;
     snprintf(v->name, sizeof(v->name), "%s", name);
     for (int k = 0; k < 4; k++) {
-        const int c = find_prefixed(part, prefix, k == 3 ? "A" : !rgb ? "Y" : k == 0 ? "R" : k == 1 ? "G" : "B");
+        const int c = find_prefixed(part, prefix, names ? names[k] : k == 3 ? "A" : "Y");
         if (c < 0)
             continue;
         snprintf(v->colour[k], sizeof(v->colour[k]), "%s", part->channels[c].name);
@@ -156,7 +224,7 @@ static int add_view(const struct hf_exr *e, struct hf_io_views *views, int p, co
             return hf_io_fail(err, "%s: channel %s is subsampled (%d, %d), which is not supported", e->path,
                               v->colour[k], part->channels[c].x_sampling, part->channels[c].y_sampling);
     }
-    if (!rgb && find_prefixed(part, prefix, "RY") >= 0)
+    if (!names && find_prefixed(part, prefix, "RY") >= 0)
         return hf_io_fail(err, "%s: luminance and chroma (channels Y, RY, BY) are not supported", e->path);
     return fill_windows(e, v, err);
 }
@@ -237,6 +305,22 @@ static bool names_other_view(const struct depth_search *s, int p, const char *ch
     return other;
 }
 
+// Does a depth belong to another layer's picture: ViewLayer.Depth.Z beside Foreground.Combined.R?
+static bool is_other_layers(const struct depth_search *s, int p, const char *channel)
+{
+    const struct hf_exr_part *part = &s->e->parts[p];
+    const char *dot = strchr(channel, '.'), *own = strchr(s->prefix, '.');
+    const size_t n = dot ? (size_t)(dot + 1 - channel) : 0;
+    if (!n || !own || ((size_t)(own + 1 - s->prefix) == n && !strncmp(s->prefix, channel, n)))
+        return false;
+    for (int c = 0; c < part->channel_count; c++) {
+        char layer[NAME];
+        if (layer_of_red(part, part->channels[c].name, layer) && !strncmp(layer, channel, n))
+            return true;
+    }
+    return false;
+}
+
 // The only channel called something with "depth" in it, or alone in a part called so: -1 when none or several.
 static int find_any_depth(const struct depth_search *s, int *channel)
 {
@@ -249,7 +333,7 @@ static int find_any_depth(const struct depth_search *s, int *channel)
         for (int c = 0; c < part->channel_count; c++) {
             const char *name = part->channels[c].name;
             const bool hit = strcasestr(name, "depth") || (part->channel_count == 1 && strcasestr(part->name, "depth"));
-            if (!hit || names_other_view(s, p, name))
+            if (!hit || names_other_view(s, p, name) || is_other_layers(s, p, name))
                 continue;
             hits++;
             *channel = c;
@@ -284,7 +368,21 @@ static int find_given(const struct depth_search *s, const char *given, int *chan
     return find_name(s, given, channel);
 }
 
-// Depth of a view: the given channel; else Z next to its R; for the view with plain names Z and depth.Z; <view>.Z,
+// The depth of the view's own layer, first in the part of its colour.
+static int find_beside(const struct depth_search *s, int *channel)
+{
+    for (int i = -1; i < s->e->part_count; i++) {
+        const int p = i < 0 ? s->colour_part : i;
+        if (p < 0 || !part_is_ours(s, p))
+            continue;
+        *channel = layer_depth(&s->e->parts[p], s->prefix, s->view, s->unprefixed);
+        if (*channel >= 0)
+            return p;
+    }
+    return -1;
+}
+
+// Depth of a view: the given channel; else that of its layer (Z next to its R, and other names); for the view with plain names Z and depth.Z; <view>.Z,
 // depth.<view>.Z, <view>.depth.Z; any single channel with "depth" in its name. Returns the part, or -1.
 static int find_depth(const struct depth_search *s, const char *given, int *channel)
 {
@@ -292,8 +390,7 @@ static int find_depth(const struct depth_search *s, const char *given, int *chan
     char full[2 * NAME];
     if (given)
         return find_given(s, given, channel);
-    snprintf(full, sizeof(full), "%.*sZ", NAME, s->prefix);
-    int p = find_name(s, full, channel);
+    int p = find_beside(s, channel);
     if (p < 0 && s->unprefixed)
         p = find_name(s, "Z", channel);
     if (p < 0 && s->unprefixed)
@@ -328,7 +425,8 @@ static int set_depth(const struct hf_exr *e, struct hf_io_view *v, bool alone, c
     s.view = full_name(e, v, &s.unprefixed);
     s.prefix = prefix;
     snprintf(prefix, sizeof(prefix), "%s", v->colour[0]);
-    prefix[strlen(prefix) - 1] = 0;
+    char *dot = strrchr(prefix, '.');
+    prefix[dot ? dot + 1 - prefix : 0] = 0;
     v->depth_part = find_depth(&s, given, &c);
     if (v->depth_part < 0)
         return 0;
