@@ -29,7 +29,7 @@ struct option {
 
 _Static_assert(sizeof(enum hf_isa) == sizeof(int), "choices are stored as int");
 
-#define FORMATS "rgba32f|rgb32f|rgba16f|r11g11b10f|planar32f"
+#define FORMATS "rgba32f|rgb32f|rgba16f|r11g11b10f|planar32f|rgba8|bgra8|rgbx8|bgrx8|rgb10a2|rgba16"
 #define AT(field) .offset = offsetof(struct bench_args, field)
 #define GIVEN(field) .given = offsetof(struct bench_args, field)
 

@@ -11,14 +11,26 @@ static const struct {
     int planes;
 } formats[] = {
     [HF_FORMAT_RGBA32F] = {16, 1},   [HF_FORMAT_RGB32F] = {12, 1},   [HF_FORMAT_RGBA16F] = {8, 1},
-    [HF_FORMAT_R11G11B10F] = {4, 1}, [HF_FORMAT_PLANAR32F] = {4, 3},
+    [HF_FORMAT_R11G11B10F] = {4, 1}, [HF_FORMAT_PLANAR32F] = {4, 3}, [HF_FORMAT_RGBA8] = {4, 1},
+    [HF_FORMAT_BGRA8] = {4, 1},      [HF_FORMAT_RGBX8] = {4, 1},     [HF_FORMAT_BGRX8] = {4, 1},
+    [HF_FORMAT_RGB10A2] = {4, 1},    [HF_FORMAT_RGBA16] = {8, 1},
 };
+
+// 8 bits are sRGB, as frame buffers have them; more are linear.
+static int is_srgb(enum hf_format format)
+{
+    return format == HF_FORMAT_RGBA8 || format == HF_FORMAT_BGRA8 || format == HF_FORMAT_RGBX8 ||
+           format == HF_FORMAT_BGRX8;
+}
 
 int bench_image_alloc(struct bench_image *image, int width, int height, enum hf_format format)
 {
     const size_t row = (size_t)width * formats[format].pixel, plane = row * (size_t)height;
     *image = (struct bench_image){
-        .image = {.width = width, .height = height, .format = format},
+        .image = {.width = width,
+                  .height = height,
+                  .format = format,
+                  .transfer = is_srgb(format) ? HF_TRANSFER_SRGB : HF_TRANSFER_LINEAR},
         .bytes = plane * (size_t)formats[format].planes,
     };
     image->memory = aligned_alloc(64, (image->bytes + 63) / 64 * 64);
@@ -66,6 +78,26 @@ unsigned bench_to_half(float x)
     return small_float(fabsf(x), 10) | (signbit(x) ? 0x8000u : 0u);
 }
 
+static uint64_t to_unorm(float v, unsigned max, int srgb)
+{
+    v = v > 0 ? v < 1 ? v : 1 : 0;
+    if (srgb)
+        v = v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
+    return (uint64_t)lrintf(v * (float)max);
+}
+
+// A pixel of whole numbers, opaque.
+static void pack_unorm(const struct bench_image *image, size_t i, const float rgb[3])
+{
+    const enum hf_format format = image->image.format;
+    const int swap = format == HF_FORMAT_BGRA8 || format == HF_FORMAT_BGRX8;
+    const unsigned bits = format == HF_FORMAT_RGBA16 ? 16 : format == HF_FORMAT_RGB10A2 ? 10 : 8;
+    uint64_t word = ~(uint64_t)0 << 3 * bits;
+    for (unsigned c = 0; c < 3; c++)
+        word |= to_unorm(rgb[swap ? 2 - c : c], (1u << bits) - 1, is_srgb(format)) << c * bits;
+    memcpy((char *)image->memory + i * formats[format].pixel, &word, formats[format].pixel);
+}
+
 // Pixel i of a picture, counted in reading order.
 static void pack_pixel(const struct bench_image *image, size_t i, const float rgb[3])
 {
@@ -89,6 +121,9 @@ static void pack_pixel(const struct bench_image *image, size_t i, const float rg
     case HF_FORMAT_PLANAR32F:
         for (int c = 0; c < 3; c++)
             ((float *)image->image.data[c])[i] = rgb[c];
+        break;
+    default:
+        pack_unorm(image, i, rgb);
         break;
     }
 }

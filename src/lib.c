@@ -10,6 +10,7 @@
 #include "frame/buffers.h"
 #include "frame/report.h"
 #include "base/cpu.h"
+#include "pixel/depth_rows.h"
 
 enum { MAX_THREADS = 256 };
 
@@ -168,10 +169,8 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
         y >= height || depth->type == HF_DEPTH_COC)
         return HF_ERR_ARG;
     struct hf_setup s = {0};
-    float d;
     hf_setup_depth(&s, depth, 1);
-    memcpy(&d, (const uint8_t *)depth->data + (ptrdiff_t)y * depth->stride + (size_t)x * 4, 4);
-    *z = hf_depth_decode(&s, d, x, y);
+    *z = hf_depth_decode(&s, hf_depth_sample(depth, x, y), x, y);
     return *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
 }
 

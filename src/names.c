@@ -5,7 +5,10 @@
 #include "hyperfocal/hyperfocal.h"
 
 static const char *const log_levels[] = {"error", "warning", "info", NULL};
-static const char *const formats[] = {"rgba32f", "rgb32f", "rgba16f", "r11g11b10f", "planar32f", NULL};
+static const char *const formats[] = {"rgba32f", "rgb32f", "rgba16f", "r11g11b10f", "planar32f", "rgba8",
+                                      "bgra8",   "rgbx8",  "bgrx8",   "rgb10a2",    "rgba16",    NULL};
+static const char *const transfers[] = {"linear", "srgb", NULL};
+static const char *const depth_formats[] = {"float32", "float16", "unorm16", "unorm32", "d24s8", "x8d24", NULL};
 static const char *const depth_types[] = {"view", "ray", "ndc-d3d", "ndc-gl", "ndc-reversed", "inverse", "coc", NULL};
 static const char *const resolutions[] = {"full", "half", "quarter", NULL};
 static const char *const models[] = {"range", "lens", NULL};
@@ -19,6 +22,8 @@ static const char *const limits[] = {"none", "given", "model", "engine", "pictur
 static const char *const *const lists[HF_NAMES_COUNT] = {
     [HF_NAMES_LOG_LEVEL] = log_levels,
     [HF_NAMES_FORMAT] = formats,
+    [HF_NAMES_TRANSFER] = transfers,
+    [HF_NAMES_DEPTH_FORMAT] = depth_formats,
     [HF_NAMES_DEPTH_TYPE] = depth_types,
     [HF_NAMES_RESOLUTION] = resolutions,
     [HF_NAMES_MODEL] = models,

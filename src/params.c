@@ -8,7 +8,9 @@
 #include <stdlib.h>
 
 #include "frame/engine.h"
+#include "pixel/depth_rows.h"
 #include "pixel/format.h"
+#include "pixel/unorm.h"
 
 const struct hf_params hf_default_params = {
     .engine = HF_ENGINE_GATHER,
@@ -48,6 +50,10 @@ int hf_check_image(const struct hf_image *m, const char *name, char *message)
         return hf_bad(message, "%s is %d x %d pixels; each side must be 1 to %d", name, m->width, m->height, MAX_SIZE);
     if ((unsigned)m->format >= HF_FORMAT_COUNT)
         return hf_bad(message, "%s.format is %d, which is no format", name, (int)m->format);
+    if ((unsigned)m->transfer > HF_TRANSFER_SRGB)
+        return hf_bad(message, "%s.transfer is %d, which is no transfer", name, (int)m->transfer);
+    if (m->transfer != HF_TRANSFER_LINEAR && !hf_unorm(m->format))
+        return hf_bad(message, "%s.transfer is sRGB, which only formats of whole numbers can be", name);
     for (int i = 0; i < hf_plane_count(m); i++) {
         if (!m->data[i])
             return hf_bad(message, "%s.data[%d] is NULL", name, i);
@@ -63,6 +69,8 @@ static int check_depth_type(const struct hf_depth *d, char *message)
 {
     if (!d)
         return hf_bad(message, "depth is NULL");
+    if ((unsigned)d->format >= HF_DEPTH_FORMAT_COUNT)
+        return hf_bad(message, "depth.format is %d, which is no depth format", (int)d->format);
     if ((unsigned)d->type > HF_DEPTH_COC)
         return hf_bad(message, "depth.type is %d, which is no depth type", (int)d->type);
     const int ndc = d->type == HF_DEPTH_NDC_D3D || d->type == HF_DEPTH_NDC_GL || d->type == HF_DEPTH_NDC_REVERSED;
@@ -83,9 +91,9 @@ int hf_check_depth(const struct hf_depth *d, int width, char *message)
         return err;
     if (!d->data)
         return hf_bad(message, "depth.data is NULL");
-    if ((size_t)llabs((long long)d->stride) < (size_t)width * 4)
-        return hf_bad(message, "depth.stride is %lld bytes, less than the %zu of a row", (long long)d->stride,
-                      (size_t)width * 4);
+    const size_t row = (size_t)width * hf_depth_bytes(d->format);
+    if ((size_t)llabs((long long)d->stride) < row)
+        return hf_bad(message, "depth.stride is %lld bytes, less than the %zu of a row", (long long)d->stride, row);
     return HF_OK;
 }
 

@@ -115,6 +115,19 @@ enum hf_format {
     HF_FORMAT_RGBA16F,     // 4 IEEE half floats a pixel
     HF_FORMAT_R11G11B10F,  // one 32-bit word a pixel: R in bits 0-10, G 11-21, B 22-31; 5 exponent bits, no sign
     HF_FORMAT_PLANAR32F,   // three or four planes of floats
+    // Whole numbers, 0 for 0 and the largest for 1; hf_image.transfer says how they follow from light.
+    HF_FORMAT_RGBA8,    // 4 bytes a pixel: R, G, B, A in memory
+    HF_FORMAT_BGRA8,    // B, G, R, A
+    HF_FORMAT_RGBX8,    // R, G, B and a byte without meaning: read as alpha 1, written as 255
+    HF_FORMAT_BGRX8,    // B, G, R and the same
+    HF_FORMAT_RGB10A2,  // one 32-bit word a pixel: R in bits 0-9, G 10-19, B 20-29, A 30-31
+    HF_FORMAT_RGBA16,   // 4 16-bit numbers a pixel
+};
+
+// How the numbers of a format of whole numbers follow from light. Alpha is always linear.
+enum hf_transfer {
+    HF_TRANSFER_LINEAR,
+    HF_TRANSFER_SRGB,  // IEC 61966-2-1: what a display is sent
 };
 
 // A picture in the caller's memory. Any stride of at least one row's bytes, or of at most minus that (bottom-up
@@ -124,6 +137,8 @@ struct hf_image {
     enum hf_format format;
     void *data[4];        // top left pixel. PLANAR32F: R, G, B, A (A may be NULL: no alpha). Others: data[0]
     ptrdiff_t stride[4];  // bytes from one row to the next, one per plane in use
+    // Default (0) HF_TRANSFER_LINEAR. HF_TRANSFER_SRGB for formats of whole numbers alone, else HF_ERR_ARG.
+    enum hf_transfer transfer;
 };
 
 // What the numbers of a depth buffer mean; z is view depth. "No surface" counts as infinitely far.
@@ -137,12 +152,24 @@ enum hf_depth_type {
     HF_DEPTH_COC,           // signed CoC radius in full-resolution pixels, no lens or range is applied
 };
 
+// How a depth sample is stored. Whole numbers are divided by their largest: 0..1, for the NDC types, HF_DEPTH_INVERSE, or
+// whatever hf_depth.type makes of it. They count as the nearest float.
+enum hf_depth_format {
+    HF_DEPTH_FORMAT_FLOAT32,
+    HF_DEPTH_FORMAT_FLOAT16,
+    HF_DEPTH_FORMAT_UNORM16,
+    HF_DEPTH_FORMAT_UNORM32,
+    HF_DEPTH_FORMAT_D24S8,  // a 32-bit word, depth in its upper 24 bits: OpenGL's UNSIGNED_INT_24_8
+    HF_DEPTH_FORMAT_X8D24,  // a 32-bit word, depth in its lower 24 bits: Direct3D, Vulkan
+};
+
 // Depth of a picture, same width and height. It is never written. A NaN counts as the largest finite depth among
 // its 8 neighbours, else as no surface.
 struct hf_depth {
-    const float *data;        // top left pixel
-    ptrdiff_t stride;         // bytes from one row to the next, as for hf_image
-    enum hf_depth_type type;  // default (0): HF_DEPTH_VIEW
+    const void *data;             // top left pixel
+    ptrdiff_t stride;             // bytes from one row to the next, as for hf_image
+    enum hf_depth_type type;      // default (0): HF_DEPTH_VIEW
+    enum hf_depth_format format;  // default (0): HF_DEPTH_FORMAT_FLOAT32
     // Clip planes, scene units, for NDC_*: 0 < near_plane < far_plane. far_plane may be INFINITY. The gaussian engine
     // measures depth by them, whatever the type: 0 (default) means 1 and 100 times that.
     float near_plane, far_plane;
@@ -212,18 +239,21 @@ enum hf_limit {
 
 // The words that command lines and files have for values. NULL for a number that is none.
 enum hf_names {
-    HF_NAMES_ISA,         // auto, scalar, sse4.1, avx2, avx512, neon
-    HF_NAMES_LOG_LEVEL,   // error, warning, info
-    HF_NAMES_FORMAT,      // rgba32f, rgb32f, rgba16f, r11g11b10f, planar32f
-    HF_NAMES_DEPTH_TYPE,  // view, ray, ndc-d3d, ndc-gl, ndc-reversed, inverse, coc
-    HF_NAMES_ENGINE,      // gather, hexagon, scatter, gaussian
-    HF_NAMES_RESOLUTION,  // full, half, quarter
-    HF_NAMES_MODEL,       // range, lens
-    HF_NAMES_STORAGE,     // float, half, packed
-    HF_NAMES_FILL,        // max, mean, none
-    HF_NAMES_BLEND,       // linear, smoothstep
-    HF_NAMES_TILE,        // sharp, near, far, both
-    HF_NAMES_LIMIT,       // none, given, model, engine, picture
+    HF_NAMES_ISA,        // auto, scalar, sse4.1, avx2, avx512, neon
+    HF_NAMES_LOG_LEVEL,  // error, warning, info
+    // rgba32f, rgb32f, rgba16f, r11g11b10f, planar32f, rgba8, bgra8, rgbx8, bgrx8, rgb10a2, rgba16
+    HF_NAMES_FORMAT,
+    HF_NAMES_TRANSFER,      // linear, srgb
+    HF_NAMES_DEPTH_FORMAT,  // float32, float16, unorm16, unorm32, d24s8, x8d24
+    HF_NAMES_DEPTH_TYPE,    // view, ray, ndc-d3d, ndc-gl, ndc-reversed, inverse, coc
+    HF_NAMES_ENGINE,        // gather, hexagon, scatter, gaussian
+    HF_NAMES_RESOLUTION,    // full, half, quarter
+    HF_NAMES_MODEL,         // range, lens
+    HF_NAMES_STORAGE,       // float, half, packed
+    HF_NAMES_FILL,          // max, mean, none
+    HF_NAMES_BLEND,         // linear, smoothstep
+    HF_NAMES_TILE,          // sharp, near, far, both
+    HF_NAMES_LIMIT,         // none, given, model, engine, picture
     HF_NAMES_COUNT
 };
 HF_API const char *hf_name(enum hf_names of, int value);

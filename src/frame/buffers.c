@@ -121,7 +121,8 @@ static size_t work_floats(const struct hf_context *c, const struct hf_setup *s)
 
 static size_t worker_floats(const struct hf_context *c, const struct hf_setup *s)
 {
-    return HF_LINES * c->plan.line_floats + work_floats(c, s) + scratch_floats(c, s, c->plan.engine->sweeps);
+    return (HF_LINES + HF_DEPTH_LINES) * c->plan.line_floats + work_floats(c, s) +
+           scratch_floats(c, s, c->plan.engine->sweeps);
 }
 
 static size_t frame_floats(const struct hf_context *c, const struct hf_setup *s, unsigned fields)
@@ -159,7 +160,8 @@ int hf_buffers_allocate(struct hf_context *c, const struct hf_setup *s, unsigned
         memcpy(f->buf, planes, sizeof planes);
         f->line_floats = c->plan.line_floats;
         f->lines = c->workers[i].scratch.data;
-        f->work = f->lines + HF_LINES * f->line_floats;
+        f->depth_lines = f->lines + HF_LINES * f->line_floats;
+        f->work = f->depth_lines + HF_DEPTH_LINES * f->line_floats;
     }
     return HF_OK;
 }

@@ -3,10 +3,12 @@
 
 #include "pixel/pass_c.h"
 #include "pixel/repair.h"
+#include "pixel/unorm.h"
 
 struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src)
 {
-    const int same = dst->format == src->format && hf_image_channels(dst) == hf_image_channels(src);
+    const int same = dst->format == src->format && dst->transfer == src->transfer &&
+                     hf_image_channels(dst) == hf_image_channels(src);
     return (struct hf_copy){.in_place = dst->data[0] == src->data[0],
                             .raw = same && (s->blend == 0 || s->storage == HF_STORAGE_FLOAT ||
                                             src->format == HF_FORMAT_R11G11B10F ||
@@ -23,7 +25,8 @@ static uint8_t *pixels_at(const struct hf_image *m, int plane, int x, int y)
 static int row_finite(const struct hf_frame *f, int x, int y, int n, const struct hf_image *dst)
 {
     const struct hf_image *m = f->src;
-    hf_finite *finite = m->format == HF_FORMAT_RGBA16F      ? f->k->finite_f16
+    hf_finite *finite = hf_unorm(m->format)                 ? f->k->finite_any
+                        : m->format == HF_FORMAT_RGBA16F    ? f->k->finite_f16
                         : m->format == HF_FORMAT_R11G11B10F ? f->k->finite_r11
                                                             : f->k->finite_f32;
     const size_t words = hf_row_bytes(m->format, n) / (m->format == HF_FORMAT_RGBA16F ? 2 : 4);

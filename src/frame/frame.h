@@ -125,6 +125,7 @@ struct hf_frame {
     int near, far;       // which fields the tile at hand needs
     int looking;         // nobody reads the CoC where there is none: it need not be written
     float *lines;        // scratch rows, see hf_line
+    float *depth_lines;  // and HF_DEPTH_LINES more, see hf_depth_row
     size_t line_floats;  // length of each
     float *work;         // scratch that the engine asked for
     struct hf_counts *counts;
@@ -135,8 +136,9 @@ struct hf_frame {
 // write up to HF_PAD floats past the end of each row of them.
 typedef void hf_kernel(const struct hf_frame *f, struct hf_rect r);
 
-enum { HF_LINES = 20 };  // scratch rows a frame has; the composite uses 17, the most
-enum { HF_PAD = 32 };    // floats that a vector loop may write past the end of a row; of a narrow one as many bytes
+enum { HF_DEPTH_LINES = 4 };  // two rows of depth of full resolution
+enum { HF_LINES = 20 };       // scratch rows a frame has; the composite uses 17, the most
+enum { HF_PAD = 32 };  // floats that a vector loop may write past the end of a row; of a narrow one as many bytes
 
 // Scratch row i, 64-byte aligned.
 static inline float *hf_line(const struct hf_frame *f, int i)

@@ -2,6 +2,7 @@
 // Composite on vectors. Even and odd pixels are lanes of their own, so the four phases of the upsampling are four
 // pieces of plain arithmetic over the same half-resolution loads; both phases in x are made together and share them.
 // So do two rows of the picture that lie between the same two half-resolution rows, where they can be made together.
+#include "pixel/depth_rows.h"
 #include "gather/gather.h"
 #include "pixel/coc_vf.h"
 
@@ -474,7 +475,7 @@ static int composite_rows_packed(const struct hf_frame *f, const struct composit
     for (int i = 0; i < 2; i++) {
         const int at = y[i] < 0 ? y[!i] : y[i];  // what is not there is made from the other row, and thrown away
         p.from[i] = plane_at(f->src, 0, 4, x0, at);
-        p.depth[i] = (const uint8_t *)f->depth->data + (ptrdiff_t)at * f->depth->stride + (size_t)x0 * 8;
+        p.depth[i] = f->far && s->form == HF_FORM_Z ? hf_depth_row(f, 2 * x0, at, 2 * n, i) : NULL;
         p.to[i] = y[i] < 0 ? (uint8_t *)hf_line(f, 0) : plane_at(f->dst, 0, 4, x0, at);
         // In place, a sample that is not finite wants neighbours that have not been overwritten.
         if (p.from[i] == p.to[i] && !f->k->finite_r11(p.from[i], (size_t)pixels, NULL))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows of the gaussian engine on vectors. Nothing is fused that fusing would change: the same bits everywhere, fast or
 // deterministic.
+#include "pixel/depth_rows.h"
 #include "gaussian/kernels.h"
 #include "pixel/coc_vf.h"
 
@@ -150,7 +151,7 @@ HF_INLINE void blend_depth(const struct hf_frame *f, const enum hf_depth_form fo
                            int n, float *const out[4], struct blend_sums *sums)
 {
     const struct hf_setup *s = f->s;
-    const uint8_t *row = (const uint8_t *)f->depth->data + (ptrdiff_t)y * f->depth->stride + (size_t)x * 8;
+    const uint8_t *row = hf_depth_row(f, 2 * x, y, 2 * n, 0);
     static const float steps[16] = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
     const vf py = vf_set1((float)y + 0.5f - s->ray_cy), step = vf_load(steps);
     for (int i = 0; i < n; i += VF_N, row += 8 * VF_N) {

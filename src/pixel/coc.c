@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CoC generation: normalised near and far circle of confusion of every pixel, from depth.
 #include <math.h>
-#include <string.h>
 
+#include "pixel/depth_rows.h"
 #include "pixel/pass_c.h"
 
 // The rounding of a storage's CoC.
@@ -65,11 +65,9 @@ void hf_coc_row_c(const struct hf_frame *f, int x, int y, int n, float *const ou
 
 int hf_sharp_row_c(const struct hf_frame *f, int x, int y, int n)
 {
-    // Strides are the caller's: rows need not be aligned.
-    const char *depth = (const char *)f->depth->data + (ptrdiff_t)y * f->depth->stride;
     for (int i = 2 * x; i < hf_min(2 * (x + n), f->s->width); i++) {
-        float d, near, far;
-        memcpy(&d, depth + (size_t)i * sizeof d, sizeof d);
+        float near, far;
+        const float d = hf_depth_sample(f->depth, i, y);
         if (f->s->form != HF_FORM_Z || !(d > 0 && d < 1e10f))
             return 0;
         hf_coc_pixel(f, i, y, &near, &far, NULL);

@@ -53,7 +53,7 @@ HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, 
     float *const near[2] = {out[0], out[1]}, *const far[2] = {out[2], out[3]};
     struct coc_sums local_sums = *sums;
     const ptrdiff_t stride = f->depth->stride;
-    const uint8_t *row = (const uint8_t *)f->depth->data + (ptrdiff_t)y * stride + (size_t)x * 8;
+    const uint8_t *row = hf_depth_row(f, 2 * x, y, 2 * n, 0);
     static const float steps[16] = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
     const vf py = vf_set1((float)y + 0.5f - s->ray_cy), step = vf_load(steps);
     for (int i = 0; i < n; i += VF_N, row += 8 * VF_N) {
@@ -98,10 +98,10 @@ static int sharp_row_simd(const struct hf_frame *f, int x, int y, int n)
 {
     const struct hf_setup *s = f->s;
     const ptrdiff_t stride = f->depth->stride;
-    const uint8_t *row = (const uint8_t *)f->depth->data + (ptrdiff_t)y * stride + (size_t)x * 8;
     const int whole = hf_min(n, (s->width - 2 * x) / 2) / VF_N * VF_N;
     if (s->form != HF_FORM_Z)
         return 0;
+    const uint8_t *row = hf_depth_row(f, 2 * x, y, 2 * whole, 0);
     if (whole > 0) {
         vf near[2] = {vf_load(row), vf_load(row)}, far[2] = {near[0], near[1]};
         vm number = vf_gt(near[0], vf_zero());

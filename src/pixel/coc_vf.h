@@ -3,6 +3,7 @@
 #ifndef HF_COC_VF_H
 #define HF_COC_VF_H
 
+#include "pixel/depth_rows.h"
 #include "pixel/format_vf.h"
 
 // 0..1; NaN becomes 0.

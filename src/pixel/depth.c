@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "pixel/depth_rows.h"
 #include "pixel/format.h"
 #include "params.h"
 
@@ -70,21 +71,13 @@ float hf_depth_decode(const struct hf_setup *s, float d, int x, int y)
     }
 }
 
-// A depth sample as the caller gave it.
-static float depth_sample(const struct hf_depth *depth, int x, int y)
-{
-    float d;
-    memcpy(&d, (const uint8_t *)depth->data + (ptrdiff_t)y * depth->stride + (size_t)x * 4, 4);
-    return d;
-}
-
 // The largest finite depth among the 8 neighbours, else no surface.
 static float repair_depth(const struct hf_setup *s, const struct hf_depth *depth, int x, int y)
 {
     float best = -INFINITY;
     for (int v = hf_max(y - 1, 0); v <= hf_min(y + 1, s->height - 1); v++)
         for (int u = hf_max(x - 1, 0); u <= hf_min(x + 1, s->width - 1); u++) {
-            const float z = hf_depth_decode(s, depth_sample(depth, u, v), u, v);
+            const float z = hf_depth_decode(s, hf_depth_sample(depth, u, v), u, v);
             if (hf_is_finite(z) && z > best)
                 best = z;
         }
@@ -93,7 +86,7 @@ static float repair_depth(const struct hf_setup *s, const struct hf_depth *depth
 
 float hf_depth_surface(const struct hf_setup *s, const struct hf_depth *depth, int x, int y, int *repaired)
 {
-    const float z = hf_depth_decode(s, depth_sample(depth, x, y), x, y);
+    const float z = hf_depth_decode(s, hf_depth_sample(depth, x, y), x, y);
     *repaired = z != z;
     return z != z ? repair_depth(s, depth, x, y) : z;
 }

@@ -3,6 +3,7 @@
 #include "pixel/format.h"
 
 #include "pixel/kernels.h"
+#include "pixel/unorm.h"
 
 static const uint8_t *row_of(const struct hf_image *m, int plane, int y)
 {
@@ -17,8 +18,11 @@ int hf_image_channels(const struct hf_image *m)
         return 4;
     case HF_FORMAT_PLANAR32F:
         return m->data[3] ? 4 : 3;
-    default:
+    case HF_FORMAT_RGB32F:
+    case HF_FORMAT_R11G11B10F:
         return 3;
+    default:
+        return hf_unorm(m->format)->channels;
     }
 }
 
@@ -29,7 +33,7 @@ int hf_plane_count(const struct hf_image *m)
 
 size_t hf_row_bytes(enum hf_format format, int n)
 {
-    static const uint8_t bytes[HF_FORMAT_COUNT] = {16, 12, 8, 4, 4};
+    static const uint8_t bytes[HF_FORMAT_COUNT] = {16, 12, 8, 4, 4, 4, 4, 4, 4, 4, 8};
     return (size_t)n * bytes[format];
 }
 
@@ -45,6 +49,8 @@ float hf_sample(const struct hf_image *m, int c, int x, int y)
 {
     if (c == 3 && hf_image_channels(m) == 3)
         return 1;
+    if (hf_unorm(m->format))
+        return hf_unorm_sample(m, c, x, y);
     const uint8_t *row = row_of(m, m->format == HF_FORMAT_PLANAR32F ? c : 0, y);
     uint32_t word;
     uint16_t half;
@@ -84,9 +90,13 @@ float hf_round_to_format(enum hf_format format, int c, float v)
 
 void hf_put_sample(const struct hf_image *m, int c, int x, int y, float v)
 {
+    if (hf_unorm(m->format)) {
+        hf_unorm_put(m, c, x, y, v);
+        return;
+    }
     uint8_t *row = (uint8_t *)m->data[m->format == HF_FORMAT_PLANAR32F ? c : 0] +
                    (ptrdiff_t)y * m->stride[m->format == HF_FORMAT_PLANAR32F ? c : 0];
-    switch (m->format) {
+    switch ((int)m->format) {
     case HF_FORMAT_RGBA32F:
         memcpy(row + (size_t)x * 16 + c * 4, &v, 4);
         break;
@@ -167,6 +177,8 @@ static int fits(enum hf_format format, int c, float v)
         return v >= -HF_HALF_MAX && v <= HF_HALF_MAX;
     if (format == HF_FORMAT_R11G11B10F)
         return v >= 0 && v <= (c == 2 ? HF_R10_MAX : HF_R11_MAX);
+    if (hf_unorm(format))
+        return v >= 0 && v <= 1;
     return 1;
 }
 
@@ -210,6 +222,15 @@ static int finite_f16_c(const void *words, size_t n, void *copy)
     return 1;
 }
 
+// Whole numbers are finite, whatever they are.
+static int finite_any_c(const void *words, size_t n, void *copy)
+{
+    (void)words;
+    if (copy)
+        memcpy(copy, words, n * 4);
+    return 1;
+}
+
 static int finite_r11_c(const void *words, size_t n, void *copy)
 {
     const uint8_t *p = words;
@@ -250,6 +271,7 @@ void hf_format_kernels_c(struct hf_pixel_kernels *k)
     k->finite_f32 = finite_f32_c;
     k->finite_f16 = finite_f16_c;
     k->finite_r11 = finite_r11_c;
+    k->finite_any = finite_any_c;
     k->truncate_r11 = truncate_r11_c;
     k->round_half = round_half_c;
 }

@@ -9,7 +9,7 @@
 
 #include "hyperfocal/hyperfocal.h"
 
-enum { HF_FORMAT_COUNT = HF_FORMAT_PLANAR32F + 1 };
+enum { HF_FORMAT_COUNT = HF_FORMAT_RGBA16 + 1, HF_DEPTH_FORMAT_COUNT = HF_DEPTH_FORMAT_X8D24 + 1 };
 
 #define HF_HALF_MAX 65504.0f
 #define HF_R11_MAX 65024.0f  // 6 mantissa bits

@@ -6,6 +6,7 @@
 #define HF_FORMAT_VF_H
 
 #include "pixel/pass_c.h"
+#include "pixel/unorm_simd.h"
 #include "simd/simd.h"
 
 HF_INLINE vf clamp_unsigned(vf v, float max)
@@ -225,8 +226,12 @@ HF_INLINE vm not_finite(vf v)
     return vm_not(vf_lt(vf_abs(v), vf_set1(__builtin_inff())));
 }
 
-HF_INLINE vm load_block(const enum hf_format format, const uint8_t *p, vf even[4], vf odd[4])
+HF_INLINE vm load_block(const int format, const uint8_t *p, vf even[4], vf odd[4])
 {
+    if (format >= HF_FORMAT_RGBA8) {
+        unorm_load_block(format & ~UNORM_SRGB, format & UNORM_SRGB, p, even, odd);
+        return vf_gt(vf_zero(), vf_zero());
+    }
     vf a[4], b[4];
     vm bad = vf_gt(vf_zero(), vf_zero());
     if (format == HF_FORMAT_R11G11B10F) {
@@ -263,8 +268,12 @@ HF_INLINE vm load_block(const enum hf_format format, const uint8_t *p, vf even[4
     return bad;
 }
 
-HF_INLINE void store_block(const enum hf_format format, uint8_t *p, const vf even[4], const vf odd[4], vi *clamped)
+HF_INLINE void store_block(const int format, uint8_t *p, const vf even[4], const vf odd[4], vi *clamped)
 {
+    if (format >= HF_FORMAT_RGBA8) {
+        unorm_store_block(format & ~UNORM_SRGB, format & UNORM_SRGB, p, even, odd, clamped);
+        return;
+    }
     vf a[4], b[4];
     if (format == HF_FORMAT_R11G11B10F) {
         const vf in[2][4] = {{even[0], even[1], even[2]}, {odd[0], odd[1], odd[2]}};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "pixel/depth_rows.h"
 #include "pixel/pass_c.h"
 
 HF_CHOOSE_KERNELS(hf_pixel_kernels)
@@ -11,4 +12,5 @@ void hf_pixel_kernels_c(struct hf_pixel_kernels *k)
                                    .zip = hf_zip_row_c,
                                    .unzip = hf_unzip_row_c};
     hf_format_kernels_c(k);
+    hf_depth_rows_c(k);
 }

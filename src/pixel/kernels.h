@@ -21,6 +21,9 @@ typedef uint64_t hf_store_row(const struct hf_image *image, int x, int y, int n,
 // are not finite, not all of them may be.
 typedef int hf_finite(const void *words, size_t n, void *copy);
 
+// n depth samples to floats; p need not be aligned. out may be written up to HF_PAD floats past its end.
+typedef void hf_widen_depth(const void *p, int n, float *out);
+
 // Near and far CoC of the n lanes from lane x of full-resolution row y, into four rows: near even, near odd, far even,
 // far odd. counts NULL: the near rows need not be written, and nothing is counted; else x is a multiple of 16.
 typedef void hf_coc_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
@@ -47,7 +50,8 @@ struct hf_pixel_kernels {
     hf_unzip_row *unzip;
     hf_load_row *load[HF_FORMAT_COUNT];
     hf_store_row *store[HF_FORMAT_COUNT];
-    hf_finite *finite_f32, *finite_f16, *finite_r11;
+    hf_widen_depth *depth[HF_DEPTH_FORMAT_COUNT];  // none for float32, which is read where it is
+    hf_finite *finite_f32, *finite_f16, *finite_r11, *finite_any;
     hf_round_rgb *truncate_r11;  // R11G11B10F, towards zero
     hf_round_row *round_half;    // to nearest even, clamped to +-65504
 };

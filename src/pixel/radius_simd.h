@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Signed CoC radii on vectors. As in CoC generation nothing is fused, so that what is sharp has one answer everywhere.
+#include "pixel/depth_rows.h"
 #include "pixel/coc_vf.h"
 
 HF_INLINE vf radius_of_vf(const struct hf_setup *s, vf v)
@@ -29,7 +30,7 @@ HF_INLINE void radius_form(const struct hf_frame *f, const enum hf_depth_form fo
                            struct radius_sums *sums)
 {
     const struct hf_setup *s = f->s;
-    const uint8_t *row = (const uint8_t *)f->depth->data + (ptrdiff_t)y * f->depth->stride + (size_t)x * 4;
+    const uint8_t *row = hf_depth_row(f, x, y, n, 0);
     static const float steps[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const vf py = vf_set1((float)y + 0.5f - s->ray_cy), step = vf_load(steps);
     for (int i = 0; i < n; i += VF_N) {

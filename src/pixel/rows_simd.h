@@ -4,8 +4,8 @@
 
 // One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many of the 2 n there are. A tile's rows
 // are too short for hardware prefetchers to catch on, so each fetches the one after next.
-HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int channels, const uint8_t *p,
-                         ptrdiff_t stride, int n, int pixels, float *const even[4], float *const odd[4])
+HF_INLINE int load_plane(const int format, const int bpp, const int channels, const uint8_t *p, ptrdiff_t stride, int n,
+                         int pixels, float *const even[4], float *const odd[4])
 {
     vm bad = vf_gt(vf_zero(), vf_zero());
     for (int i = 0; i < n; i += VF_N) {
@@ -31,9 +31,8 @@ HF_INLINE int load_plane(const enum hf_format format, const int bpp, const int c
     return vm_any(bad);
 }
 
-HF_INLINE uint32_t store_plane(const enum hf_format format, const int bpp, const int channels, uint8_t *p,
-                               ptrdiff_t stride, int n, int pixels, const float *const even[4],
-                               const float *const odd[4])
+HF_INLINE uint32_t store_plane(const int format, const int bpp, const int channels, uint8_t *p, ptrdiff_t stride, int n,
+                               int pixels, const float *const even[4], const float *const odd[4])
 {
     vi clamped = vi_set1(0);
     for (int i = 0; i < n; i += VF_N) {
@@ -84,6 +83,30 @@ HF_FORMAT_ROWS(rgba32f, HF_FORMAT_RGBA32F, 16, 4)
 HF_FORMAT_ROWS(rgb32f, HF_FORMAT_RGB32F, 12, 3)
 HF_FORMAT_ROWS(rgba16f, HF_FORMAT_RGBA16F, 8, 4)
 HF_FORMAT_ROWS(r11, HF_FORMAT_R11G11B10F, 4, 3)
+
+// Whole numbers: each transfer is a loop of its own.
+#define HF_UNORM_ROWS(name, format, bpp, channels)                                                                     \
+    HF_FORMAT_ROWS(name##_linear, format, bpp, channels)                                                               \
+    HF_FORMAT_ROWS(name##_srgb, format | UNORM_SRGB, bpp, channels)                                                    \
+    static int load_##name##_simd(const struct hf_image *m, int x, int y, int n, float *const even[4],                 \
+                                  float *const odd[4])                                                                 \
+    {                                                                                                                  \
+        return m->transfer == HF_TRANSFER_SRGB ? load_##name##_srgb_simd(m, x, y, n, even, odd)                        \
+                                               : load_##name##_linear_simd(m, x, y, n, even, odd);                     \
+    }                                                                                                                  \
+    static uint64_t store_##name##_simd(const struct hf_image *m, int x, int y, int n, const float *const even[4],     \
+                                        const float *const odd[4])                                                     \
+    {                                                                                                                  \
+        return m->transfer == HF_TRANSFER_SRGB ? store_##name##_srgb_simd(m, x, y, n, even, odd)                       \
+                                               : store_##name##_linear_simd(m, x, y, n, even, odd);                    \
+    }
+
+HF_UNORM_ROWS(rgba8, HF_FORMAT_RGBA8, 4, 4)
+HF_UNORM_ROWS(bgra8, HF_FORMAT_BGRA8, 4, 4)
+HF_UNORM_ROWS(rgbx8, HF_FORMAT_RGBX8, 4, 3)
+HF_UNORM_ROWS(bgrx8, HF_FORMAT_BGRX8, 4, 3)
+HF_UNORM_ROWS(rgb10a2, HF_FORMAT_RGB10A2, 4, 4)
+HF_UNORM_ROWS(rgba16, HF_FORMAT_RGBA16, 8, 4)
 
 static int load_planar_simd(const struct hf_image *m, int x, int y, int n, float *const even[4], float *const odd[4])
 {
@@ -161,6 +184,11 @@ static int finite_f16_simd(const void *words, size_t n, void *copy)
     return finite_words(words, 2 * n, masks, 2, copy);
 }
 
+static int finite_any_simd(const void *words, size_t n, void *copy)
+{
+    return finite_words(words, 4 * n, NULL, 0, copy);
+}
+
 static int finite_r11_simd(const void *words, size_t n, void *copy)
 {
     static const uint32_t masks[3] = {0x7c0, 0x3e0000, 0xf8000000};
@@ -189,6 +217,18 @@ static void format_init(struct hf_pixel_kernels *k)
     k->load[HF_FORMAT_RGBA16F] = load_rgba16f_simd;
     k->load[HF_FORMAT_R11G11B10F] = load_r11_simd;
     k->load[HF_FORMAT_PLANAR32F] = load_planar_simd;
+    k->load[HF_FORMAT_RGBA8] = load_rgba8_simd;
+    k->store[HF_FORMAT_RGBA8] = store_rgba8_simd;
+    k->load[HF_FORMAT_BGRA8] = load_bgra8_simd;
+    k->store[HF_FORMAT_BGRA8] = store_bgra8_simd;
+    k->load[HF_FORMAT_RGBX8] = load_rgbx8_simd;
+    k->store[HF_FORMAT_RGBX8] = store_rgbx8_simd;
+    k->load[HF_FORMAT_BGRX8] = load_bgrx8_simd;
+    k->store[HF_FORMAT_BGRX8] = store_bgrx8_simd;
+    k->load[HF_FORMAT_RGB10A2] = load_rgb10a2_simd;
+    k->store[HF_FORMAT_RGB10A2] = store_rgb10a2_simd;
+    k->load[HF_FORMAT_RGBA16] = load_rgba16_simd;
+    k->store[HF_FORMAT_RGBA16] = store_rgba16_simd;
     k->store[HF_FORMAT_RGBA32F] = store_rgba32f_simd;
     k->store[HF_FORMAT_RGB32F] = store_rgb32f_simd;
     k->store[HF_FORMAT_RGBA16F] = store_rgba16f_simd;
@@ -197,6 +237,7 @@ static void format_init(struct hf_pixel_kernels *k)
     k->finite_f32 = finite_f32_simd;
     k->finite_f16 = finite_f16_simd;
     k->finite_r11 = finite_r11_simd;
+    k->finite_any = finite_any_simd;
     k->truncate_r11 = truncate_r11_simd;
     k->round_half = round_half_simd;
 }

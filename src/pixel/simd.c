@@ -2,11 +2,13 @@
 // The shared kernels of an instruction set.
 #include "pixel/rows_simd.h"
 #include "pixel/coc_simd.h"
+#include "pixel/depth_rows_simd.h"
 #include "pixel/radius_simd.h"
 
 void HF_SIMD_NAME(hf_pixel_kernels)(struct hf_pixel_kernels *k)
 {
     format_init(k);
+    depth_rows_init(k);
     k->coc_row = coc_row_simd;
     k->sharp_row = sharp_row_simd;
     k->radius_row = radius_row_simd;

@@ -15,7 +15,9 @@ static void names(void)
     static const int counts[HF_NAMES_COUNT] = {
         [HF_NAMES_ISA] = HF_ISA_NEON + 1,
         [HF_NAMES_LOG_LEVEL] = HF_LOG_INFO + 1,
-        [HF_NAMES_FORMAT] = HF_FORMAT_PLANAR32F + 1,
+        [HF_NAMES_FORMAT] = HF_FORMAT_RGBA16 + 1,
+        [HF_NAMES_TRANSFER] = HF_TRANSFER_SRGB + 1,
+        [HF_NAMES_DEPTH_FORMAT] = HF_DEPTH_FORMAT_X8D24 + 1,
         [HF_NAMES_DEPTH_TYPE] = HF_DEPTH_COC + 1,
         [HF_NAMES_ENGINE] = HF_ENGINE_COUNT,
         [HF_NAMES_RESOLUTION] = HF_RESOLUTION_QUARTER + 1,

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "harness.h"
+#include "pixel/unorm.h"
 
 static float reference_at(const struct world *w, enum hf_buf_id b, int c, int x, int y)
 {
@@ -33,8 +34,16 @@ static double storage_step(const struct world *w, int c, float want, float got)
     return w->setup.storage == HF_STORAGE_PACKED && c < 3 ? r11_step(c, v) : 0;
 }
 
+// The sRGB curve is steepest at its end, 2.4 / 1.055.
+static double unorm_step(const struct hf_image *m, int c)
+{
+    return (m->transfer == HF_TRANSFER_SRGB ? 2.4 / 1.055 : 1) / ((1 << hf_unorm(m->format)->bits[c]) - 1);
+}
+
 static double format_step(const struct world *w, int c, float want, float got)
 {
+    if (hf_unorm(w->dst.format))
+        return unorm_step(&w->dst, c);
     const double v = fmax(fabs((double)want), fabs((double)got));
     if (w->dst.format == HF_FORMAT_RGBA16F)
         return half_step(v);

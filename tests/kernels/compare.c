@@ -122,7 +122,7 @@ static int untouched(const struct world *w, enum arena a, char message[256])
     static size_t room;
     for (int s = 0; s < SLOT_COUNT; s++) {
         const size_t n = w->bytes[s];
-        if (!n || (w->is_pass && (s == SLOT_LINES || s == SLOT_WORK)))
+        if (!n || s == SLOT_DEPTH_LINES || (w->is_pass && (s == SLOT_LINES || s == SLOT_WORK)))
             continue;
         if (room < n) {
             free(expected);

@@ -73,6 +73,7 @@ enum {
     SLOT_DST = SLOT_SRC + 4,
     SLOT_DEPTH = SLOT_DST + 4,
     SLOT_LINES,
+    SLOT_DEPTH_LINES,
     SLOT_WORK,
     SLOT_COUNT
 };
@@ -192,6 +193,8 @@ int pass_check(const struct world *w, const struct level *l, char message[256]);
 int pass_pixels(const struct world *w);
 
 // rows.c
+void widen_make(struct world *w, int format);
+void widen_call(struct world *w, const struct kernels *k, enum arena a, int format);
 void sharp_row_make(struct world *w, int index);
 void sharp_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void coc_row_make(struct world *w, int index);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 #include "harness.h"
+#include "pixel/depth_rows.h"
+#include "pixel/unorm.h"
 
 static float pick(struct rng *r, const float *from, int n)
 {
@@ -48,6 +50,7 @@ static void random_options(struct rng *r, struct hf_params *p)
 static void random_depth_type(struct rng *r, struct hf_depth *d, int width, int height)
 {
     d->type = (enum hf_depth_type)rng_int(r, 0, HF_DEPTH_COC);
+    d->format = (enum hf_depth_format)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, HF_DEPTH_FORMAT_COUNT - 1));
     d->near_plane = rng_float(r, 0.01f, 1);
     d->far_plane = rng_one_in(r, 3) ? INFINITY : rng_float(r, 5, 1000);
     d->focal_px = rng_float(r, 5, 200);
@@ -62,6 +65,7 @@ static void random_format(struct world *w, struct hf_image *m, int width, int he
         .width = width, .height = height, .format = (enum hf_format)rng_int(&w->rng, 0, HF_FORMAT_COUNT - 1)};
     if (w->bench)
         m->format = HF_FORMAT_R11G11B10F;
+    m->transfer = hf_unorm(m->format) && rng_one_in(&w->rng, 2) ? HF_TRANSFER_SRGB : HF_TRANSFER_LINEAR;
     for (int i = 0; i < (m->format != HF_FORMAT_PLANAR32F ? 1 : rng_one_in(&w->rng, 2) ? 4 : 3); i++)
         m->data[i] = &there;  // for now
 }
@@ -181,17 +185,31 @@ static float random_depth(struct world *w)
     }
 }
 
+// v, or what is nearest to it that the format holds.
+static void put_depth(const struct hf_depth *d, uint8_t *row, int x, float v)
+{
+    const double unit = v > 0 ? v < 1 ? (double)v : 1 : 0;
+    const uint32_t whole = (uint32_t)(unit * 4294967295.0);
+    const uint16_t word =
+        d->format == HF_DEPTH_FORMAT_FLOAT16 ? (v == v ? hf_half_pack(v) : 0x7e00) : (uint16_t)(whole >> 16);
+    const size_t bytes = hf_depth_bytes(d->format);
+    if (bytes == 2)
+        memcpy(row + 2 * (size_t)x, &word, 2);
+    else
+        memcpy(row + 4 * (size_t)x, d->format == HF_DEPTH_FORMAT_FLOAT32 ? (const void *)&v : (const void *)&whole, 4);
+}
+
 void make_depth(struct world *w, int bad)
 {
     struct hf_depth *d = &w->depth;
     const int width = w->setup.width, height = w->setup.height;
-    uint8_t *p = random_rows(w, SLOT_DEPTH, (size_t)width * 4, height, &d->stride);
-    d->data = (const float *)(void *)p;
+    uint8_t *p = random_rows(w, SLOT_DEPTH, (size_t)width * hf_depth_bytes(d->format), height, &d->stride);
+    d->data = p;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             float v = w->bench ? 5 + (float)((x + y) % 64) / 4 : random_depth(w);
             if (bad && !w->bench && rng_one_in(&w->rng, 50))
                 v = NAN;
-            memcpy(p + (ptrdiff_t)y * d->stride + (size_t)x * 4, &v, 4);
+            put_depth(d, p + (ptrdiff_t)y * d->stride, x, v);
         }
 }

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "harness.h"
+#include "pixel/depth_rows.h"
+#include "pixel/unorm.h"
 
 enum { LANES = 8 };  // scratch rows: even 0..3, odd 4..7
 
@@ -64,6 +66,7 @@ void sharp_row_make(struct world *w, int index)
     (void)index;
     make_size(w);
     random_row(w);
+    w->depth.format = HF_DEPTH_FORMAT_FLOAT32;
     make_depth(w, rng_one_in(&w->rng, 2));
     const float middle = 0.5f * (w->setup.near_0 + w->setup.far_0), z = w->setup.lens ? -1 / middle : middle;
     const int odd_one = rng_one_in(&w->rng, 2) ? rng_int(&w->rng, 0, w->setup.width - 1) : -1;
@@ -82,6 +85,29 @@ void sharp_row_call(struct world *w, const struct kernels *k, enum arena a, int 
     w->result[a].returned = k->pixel.sharp_row(&f, w->x, w->y, w->n) != 0;
 }
 
+// ---- depth of other formats ----
+
+// Any bits at all.
+void widen_make(struct world *w, int format)
+{
+    make_size(w);
+    random_row(w);
+    w->depth.format = (enum hf_depth_format)format;
+    make_depth(w, 0);
+    for (int y = 0; y < w->setup.height; y++)
+        for (size_t i = 0; i < (size_t)w->setup.width * hf_depth_bytes(w->depth.format); i++)
+            ((uint8_t *)(uintptr_t)w->depth.data)[y * w->depth.stride + (ptrdiff_t)i] = (uint8_t)rng_next(&w->rng);
+    w->n = hf_min(w->n, w->setup.width - w->x);
+    lane_region(w, REGION_FLOATS, 0);
+}
+
+void widen_call(struct world *w, const struct kernels *k, enum arena a, int format)
+{
+    const uint8_t *row = (const uint8_t *)w->depth.data + w->y * w->depth.stride;
+    k->pixel.depth[format](in_arena(a, (uint8_t *)(uintptr_t)row) + (size_t)w->x * hf_depth_bytes(w->depth.format),
+                           w->n, lane(w, a, 0));
+}
+
 // ---- images ----
 
 static void make_row_format(struct world *w, struct hf_image *m, int format)
@@ -89,6 +115,7 @@ static void make_row_format(struct world *w, struct hf_image *m, int format)
     make_size(w);
     const int alpha = rng_one_in(&w->rng, 2);
     m->format = (enum hf_format)format;
+    m->transfer = hf_unorm(m->format) && rng_one_in(&w->rng, 2) ? HF_TRANSFER_SRGB : HF_TRANSFER_LINEAR;
     for (int i = 0; i < 4; i++)
         m->data[i] = i < 3 || alpha ? w : NULL;  // for now
     random_row(w);

@@ -9,6 +9,8 @@
 
 #include "frame/context.h"
 #include "harness.h"
+#include "pixel/depth_rows.h"
+#include "pixel/unorm.h"
 
 struct frame_case {
     const char *name;
@@ -106,16 +108,17 @@ static int is_exact(const struct world *w, const struct level *l)
 // just not 0, of which a quotient makes anything.
 static void smooth_depth(struct world *w)
 {
+    const size_t bytes = hf_depth_bytes(w->depth.format);
     uint8_t *p = slot_start(w, ARENA_MADE, SLOT_DEPTH);
     p += (const uint8_t *)w->depth.data - p;
     const int size = 1 << rng_int(&w->rng, 0, 7);
     for (int y = 0; y < w->setup.height; y++)
         for (int x = 0; x < w->setup.width; x++) {
-            float v;
-            memcpy(&v, p + y / size * size * w->depth.stride + (size_t)(x / size * size) * 4, 4);
-            if (fabsf(v) < 1e-12f)
+            float v = 0;
+            memcpy(&v, p + y / size * size * w->depth.stride + (size_t)(x / size * size) * bytes, bytes);
+            if (w->depth.format == HF_DEPTH_FORMAT_FLOAT32 && fabsf(v) < 1e-12f)
                 v = 0;
-            memcpy(p + y * w->depth.stride + (size_t)x * 4, &v, 4);
+            memcpy(p + y * w->depth.stride + (size_t)x * bytes, &v, bytes);
         }
 }
 
@@ -185,8 +188,16 @@ static int has_bound(const struct world *w)
     return w->params.gather.storage == HF_STORAGE_FLOAT && !w->params.gather.per_pixel_kernel;
 }
 
+// The sRGB curve is steepest at its end, 2.4 / 1.055.
+static double unorm_step(const struct hf_image *m, int c)
+{
+    return (m->transfer == HF_TRANSFER_SRGB ? 2.4 / 1.055 : 1) / ((1 << hf_unorm(m->format)->bits[c]) - 1);
+}
+
 static double format_step(const struct world *w, int c, double v)
 {
+    if (hf_unorm(w->dst.format))
+        return unorm_step(&w->dst, c);
     if (w->dst.format == HF_FORMAT_RGBA16F)
         return fmax(v * 0x1p-10, 0x1p-24);
     if (w->dst.format == HF_FORMAT_R11G11B10F)

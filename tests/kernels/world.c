@@ -145,6 +145,7 @@ void make_lines(struct world *w, int lines, size_t floats)
 {
     w->line_floats = (floats + 15) / 16 * 16;
     slot_use(w, SLOT_LINES, (size_t)lines * w->line_floats * sizeof(float), 0xff);
+    slot_use(w, SLOT_DEPTH_LINES, HF_DEPTH_LINES * w->line_floats * sizeof(float), 0xff);
 }
 
 static struct hf_image *image_in(enum arena a, const struct hf_image *made, struct hf_image *out)
@@ -172,6 +173,7 @@ struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena
                          .far = w->far,
                          .line_floats = w->line_floats,
                          .lines = (float *)(void *)slot_start(w, a, SLOT_LINES),
+                         .depth_lines = (float *)(void *)slot_start(w, a, SLOT_DEPTH_LINES),
                          .work = (float *)(void *)slot_start(w, a, SLOT_WORK),
                          .counts = &w->result[a].counts,
                          .seen = &w->result[a].seen};

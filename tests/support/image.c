@@ -59,7 +59,7 @@ void picture_free(struct picture *p)
 
 struct hf_image picture_image(const struct picture *p)
 {
-    struct hf_image image = {p->width, p->height, HF_FORMAT_PLANAR32F, {NULL}, {0}};
+    struct hf_image image = {p->width, p->height, HF_FORMAT_PLANAR32F, {NULL}, {0}, HF_TRANSFER_LINEAR};
     for (int c = 0; c < p->channels; c++) {
         image.data[c] = p->plane[c];
         image.stride[c] = p->width * (ptrdiff_t)sizeof(float);
@@ -169,8 +169,9 @@ int format_pixel_size(enum hf_format format)
     case HF_FORMAT_R11G11B10F:
     case HF_FORMAT_PLANAR32F:
         return 4;
+    default:
+        return 0;  // tests/api/formats.c has the formats of whole numbers
     }
-    return 0;
 }
 
 struct packed packed_new(int width, int height, enum hf_format format, int with_alpha, ptrdiff_t extra, int negative,
