@@ -42,7 +42,7 @@ static const struct option options[] = {
     {"--frames", "N", "frames to measure (as many as take a few seconds)", COUNT, AT(frames), .min = 1, .max = 1000000},
     {"--threads", "N", "threads, up to 256; 0: one per processor (0)", COUNT, AT(threads), .max = 256},
     {"--isa", "auto|scalar|sse4.1|avx2|avx512|neon", "instruction set (auto)", CHOICE, AT(isa), .names = HF_NAMES_ISA},
-    {"--engine", "gather|hexagon|scatter|gaussian", "engine (gather)", CHOICE, AT(params.engine),
+    {"--engine", "gather|hexagon|scatter|gaussian", "engine (gather; stability: all)", CHOICE, AT(params.engine),
      .names = HF_NAMES_ENGINE, GIVEN(engine_given)},
     {"--resolution", "full|half|quarter", "working buffers of the engines other than gather (full)", CHOICE,
      AT(resolution), .names = HF_NAMES_RESOLUTION},
@@ -69,6 +69,7 @@ static const struct option options[] = {
     {"--karis", NULL, "weights against fireflies", FLAG, AT(params.gather.karis)},
     {"--bicubic", NULL, "near field upsampled with a B-spline", FLAG, AT(params.gather.bicubic)},
     {"--per-pixel-kernel", NULL, "far kernel scaled by each pixel's blur", FLAG, AT(params.gather.per_pixel_kernel)},
+    {"--full", NULL, "stability: every case there is, some minutes", FLAG, AT(full)},
     {"--json", "FILE|-", "write the numbers as JSON; -: to stdout, instead of the table", TEXT, AT(json)},
     {"--help", NULL, "print this (-h)", FLAG, AT(help)},
 };

@@ -22,6 +22,7 @@ struct bench_args {
     enum hf_format in, out;
     struct hf_params params;
     enum hf_resolution resolution;                               // of whichever engine
+    int full;                                                    // stability: the long run
     int faithful;                                                // likewise
     int size_given, focus_given, range_given, max_radius_given;  // on the command line
 };

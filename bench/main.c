@@ -14,6 +14,8 @@ static const struct {
     {"batch", bench_batch, "the command on a shot, beside copying its files and beside oiiotool, which must be there"},
     {"truth", bench_truth, "distance of each engine from ray-traced pictures, and its time"},
     {"scaling", bench_scaling, "time of a frame as its blurred part and its size grow; --size: up to that width"},
+    {"stability", bench_stability,
+     "hard cases: what was tried, the bound, the worst value seen; of all engines or one"},
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

@@ -2,7 +2,7 @@
 #include "base/cpu.h"
 
 #include <sched.h>
-#if HF_SIMD && HF_X86
+#if HF_SIMD && HF_X86 && !HF_NARROW
 #include <cpuid.h>
 #endif
 #include <stdlib.h>
@@ -16,7 +16,7 @@ const char *hf_isa_name(enum hf_isa isa)
     return (unsigned)isa < ISA_COUNT ? isa_names[isa] : NULL;
 }
 
-#if HF_SIMD && HF_X86
+#if HF_SIMD && HF_X86 && !HF_NARROW
 // __builtin_cpu_supports knows f16c only in newer compilers. Bit 29 of leaf 1; that the operating system saves the
 // registers is what asking for avx2 has told.
 static int has_f16c(void)
@@ -36,12 +36,14 @@ int hf_isa_available(enum hf_isa isa)
     // __builtin_cpu_supports also asks the operating system whether it saves the registers.
     case HF_ISA_SSE41:
         return __builtin_cpu_supports("sse4.1") != 0;
+#if !HF_NARROW
     case HF_ISA_AVX2:
         return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && has_f16c();
     case HF_ISA_AVX512:
         return hf_isa_available(HF_ISA_AVX2) && __builtin_cpu_supports("avx512f") &&
                __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
                __builtin_cpu_supports("avx512vl");
+#endif
 #endif
 #if HF_SIMD && HF_ARM
     case HF_ISA_NEON:

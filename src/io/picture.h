@@ -65,7 +65,7 @@ struct hf_io_text {
 
 // What became of a picture that was written.
 struct hf_io_written {
-    uint64_t clamped;         // samples that did not fit a half channel and became +-65504
+    uint64_t clamped;          // samples that did not fit a half channel and became +-65504
     char note[HF_IO_MESSAGE];  // a sentence about what could not be kept as it was, or ""
 };
 

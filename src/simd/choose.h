@@ -19,7 +19,7 @@
     void name##_neon_fused(struct name *k);                                                                            \
     void name##_init(struct name *k, enum hf_isa isa, int fused)
 
-#if HF_SIMD && HF_X86
+#if HF_SIMD && HF_X86 && !HF_NARROW
 #define HF_CHOOSE_KERNELS(name)                                                                                        \
     void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
     {                                                                                                                  \
@@ -30,6 +30,15 @@
             (fused ? name##_avx2_fused : name##_avx2_exact)(k);                                                        \
         if (isa == HF_ISA_AVX512)                                                                                      \
             (fused ? name##_avx512_fused : name##_avx512_exact)(k);                                                    \
+    }
+#elif HF_SIMD && HF_X86
+#define HF_CHOOSE_KERNELS(name)                                                                                        \
+    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    {                                                                                                                  \
+        (void)fused;                                                                                                   \
+        name##_c(k);                                                                                                   \
+        if (isa == HF_ISA_SSE41)                                                                                       \
+            name##_sse41_exact(k);                                                                                     \
     }
 #elif HF_SIMD && HF_ARM
 #define HF_CHOOSE_KERNELS(name)                                                                                        \

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The library's own functions: any parameters, formats, strides, sizes to 256, failing allocations. A call is refused or
+// it works; it touches nothing but what its arguments describe, and gives all memory back.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "fuzz/fuzz.h"
+#include "hyperfocal/hyperfocal.h"
+
+// ---- memory ----
+
+static long live, calls, fails_at;
+
+static void *take(void *cookie, size_t size, size_t align)
+{
+    (void)cookie;
+    void *p = NULL;
+    if (calls++ == fails_at || posix_memalign(&p, align, size))
+        return NULL;
+    live++;
+    return memset(p, 0xff, size);
+}
+
+static void give(void *cookie, void *p)
+{
+    (void)cookie;
+    MUST(p != NULL);
+    live--;
+    free(p);
+}
+
+// ---- arguments ----
+
+static float any_float(struct bytes *b)
+{
+    static const float odd[] = {0,        -0.0f, 1,        -1,        0.5f,  2,       12,    255,
+                                256,      2048,  1e-42f,   1e-20f,    1e20f, -1e-42f, 1e30f, FLT_MAX,
+                                -FLT_MAX, NAN,   INFINITY, -INFINITY, 0.25f, 0.249f,  20,    100};
+    const unsigned kind = take_byte(b);
+    if (kind < 160)
+        return odd[kind % (sizeof odd / sizeof *odd)];
+    if (kind < 220)
+        return (float)take_byte(b) / 16;
+    const uint32_t bits = take_word(b);
+    float v;
+    memcpy(&v, &bits, sizeof v);
+    return v;
+}
+
+// Mostly one of the first `most`, now and then anything.
+static int any_choice(struct bytes *b, unsigned most)
+{
+    const unsigned v = take_byte(b);
+    return v == 255 ? (int)take_word(b) : (int)(v % most);
+}
+
+// A float near a sensible one, so that whole calls work now and then.
+static void maybe(struct bytes *b, float *field)
+{
+    if (take_byte(b) < 40)
+        *field = any_float(b);
+}
+
+static struct hf_params any_params(struct bytes *b)
+{
+    struct hf_params p = hf_default_params;
+    p.engine = (enum hf_engine)any_choice(b, HF_ENGINE_COUNT);
+    p.model = (enum hf_model)any_choice(b, 2);
+    maybe(b, &p.focus);
+    maybe(b, &p.range.distance);
+    maybe(b, &p.range.strength);
+    maybe(b, &p.range.near_begin);
+    maybe(b, &p.range.near_end);
+    maybe(b, &p.range.far_begin);
+    maybe(b, &p.range.far_end);
+    p.range.blend = (enum hf_blend)any_choice(b, 2);
+    maybe(b, &p.lens.f_number);
+    maybe(b, &p.lens.focal_length_mm);
+    maybe(b, &p.lens.sensor_width_mm);
+    maybe(b, &p.lens.world_unit_m);
+    p.max_radius = take_byte(b) < 200 ? (float)take_byte(b) / 8 : any_float(b);
+    if (take_byte(b) < 60) {
+        p.aperture.blades = any_choice(b, 17);
+        maybe(b, &p.aperture.rotation);
+        maybe(b, &p.aperture.roundness);
+        maybe(b, &p.aperture.ring);
+        maybe(b, &p.aperture.cat_eye);
+        maybe(b, &p.aperture.squeeze);
+    }
+    if (take_byte(b) < 40) {
+        p.view.display_width = any_choice(b, 255) * 16 - 16;
+        p.view.display_height = any_choice(b, 255) * 16 - 16;
+        maybe(b, &p.view.pixel_aspect);
+    }
+    p.gather.storage = (enum hf_storage)any_choice(b, 3);
+    p.gather.fill = (enum hf_fill)any_choice(b, 3);
+    const unsigned flags = take_byte(b);
+    p.gather.faithful = flags & 1;
+    p.gather.karis = flags >> 1 & 1;
+    p.gather.per_pixel_kernel = flags >> 2 & 1;
+    p.gather.bicubic = flags >> 3 & 1;
+    p.hexagon.uniform = flags >> 4 & 1;
+    p.run.deterministic = flags >> 5 & 1;
+    p.run.no_skip = flags >> 6 & 1;
+    p.run.colour_stats = flags >> 7;
+    if (take_byte(b) < 30)
+        p.gather.rings = any_choice(b, 70) - 1;
+    p.hexagon.resolution = (enum hf_resolution)any_choice(b, 2);
+    p.scatter.resolution = (enum hf_resolution)any_choice(b, 2);
+    p.gaussian.resolution = (enum hf_resolution)any_choice(b, 3);
+    maybe(b, &p.scatter.chromatic);
+    p.gaussian.iterations = any_choice(b, 70) - 1;
+    maybe(b, &p.gaussian.sigma);
+    maybe(b, &p.run.budget_ms);
+    return p;
+}
+
+static size_t row_bytes(enum hf_format format, int width)
+{
+    static const size_t pixel[] = {16, 12, 8, 4, 4};
+    return (unsigned)format < 5 ? pixel[format] * (size_t)width : 0;
+}
+
+// Memory for what the descriptor says, filled with anything; if it cannot be true, none is needed.
+static void *any_plane(struct bytes *b, enum hf_format format, int w, int h, ptrdiff_t *stride, void **block)
+{
+    const size_t row = row_bytes(format, w);
+    const unsigned kind = take_byte(b);
+    ptrdiff_t step = (ptrdiff_t)row + (kind % 4 == 0 ? kind / 4 : 0);
+    if (kind == 255)
+        step = (ptrdiff_t)take_word(b) - (1 << 20);
+    if (kind % 5 == 4)
+        step = -step;
+    *stride = step;
+    const size_t size = (step < 0 ? (size_t)-step : (size_t)step);
+    if (!row || w < 1 || h < 1 || size < row || size > 1u << 16)
+        return *block = malloc(1);  // to be refused
+    const size_t offset = kind % 7 == 6 ? 1 : 0, bytes = size * (size_t)(h - 1) + row + offset;
+    unsigned char *p = *block = malloc(bytes);
+    MUST(p != NULL);
+    uint32_t state = take_word(b) | 1;
+    const int calm = kind & 1;
+    for (size_t i = 0; i < bytes; i++) {
+        state = state * 1664525u + 1013904223u;
+        p[i] = (unsigned char)(calm ? (i % 4 == 3 ? 0x3e : state >> 25) : state >> 24);
+    }
+    p += offset;
+    return step < 0 ? p + size * (size_t)(h - 1) : p;
+}
+
+static struct hf_image any_image(struct bytes *b, int w, int h, void *blocks[4])
+{
+    struct hf_image m = {.width = w, .height = h, .format = (enum hf_format)any_choice(b, 5)};
+    const int planes = m.format == HF_FORMAT_PLANAR32F ? 3 + (take_byte(b) & 1) : 1;
+    for (int i = 0; i < planes; i++)
+        m.data[i] = any_plane(b, m.format, w, h, &m.stride[i], &blocks[i]);
+    if (take_byte(b) == 255)
+        m.data[0] = NULL;
+    return m;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct bytes b = {data, size};
+    void *blocks[12] = {0};
+    const unsigned how = take_byte(&b);
+    struct hf_config config = {
+        .threads = 1 + (how & 1), .isa = how & 2 ? HF_ISA_SCALAR : HF_ISA_AUTO, .alloc = take, .free = give};
+    if (how & 4) {
+        config.tile_width = 16 * (1 + any_choice(&b, 6));
+        config.tile_height = 16 + any_choice(&b, 40);
+    }
+    live = calls = 0;
+    fails_at = how & 8 ? (long)take_byte(&b) : -1;
+    struct hf_context *c = NULL;
+    const int opened = hf_open(&c, &config);
+    MUST(!opened == (c != NULL));
+    for (int frame = 0; c && frame < 1 + (int)(how >> 4 & 1); frame++) {
+        const int w = any_choice(&b, 256), h = 1 + any_choice(&b, how & 32 ? 256 : 24);
+        const struct hf_image src = any_image(&b, w, h, blocks);
+        struct hf_image dst = how & 64 ? src : any_image(&b, take_byte(&b) == 255 ? w + 1 : w, h, blocks + 4);
+        struct hf_depth depth = {.type = (enum hf_depth_type)any_choice(&b, 7)};
+        depth.data = any_plane(&b, HF_FORMAT_PLANAR32F, w, h, &depth.stride, &blocks[8]);
+        maybe(&b, &depth.near_plane);
+        maybe(&b, &depth.far_plane);
+        maybe(&b, &depth.focal_px);
+        const struct hf_params p = any_params(&b);
+        struct hf_report report;
+        const int planned = hf_plan(c, &dst, &src, &depth, &p, &report);
+        const int err = hf_render(c, &dst, &src, &depth, &p);
+        MUST(err == HF_OK || err == HF_ERR_ARG || err == HF_ERR_MEMORY || err == HF_ERR_FOCUS);
+        MUST(planned != HF_ERR_ARG || err == HF_ERR_ARG);
+        hf_get_report(c, &report);
+        // Ranges that overlap make a pixel near and far at once; a copy looks at no depth.
+        const uint64_t n = (uint64_t)w * (uint64_t)h,
+                       counted = report.near_pixels + report.sharp_pixels + report.far_pixels;
+        MUST(err || counted == 0 ||
+             (counted >= n && report.near_pixels <= n && report.sharp_pixels + report.far_pixels <= n));
+        for (int i = 0; i < 12; i++) {
+            free(blocks[i]);
+            blocks[i] = NULL;
+        }
+    }
+    hf_close(&c);
+    MUST(live == 0);
+    return 0;
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fuzz targets: each is a function of bytes, which libFuzzer makes up or replay.c takes from files. What is wrong is an
+// abort, a sanitizer's report, or time and memory beyond the limits given on the command line.
+#ifndef HF_TESTS_FUZZ_H
+#define HF_TESTS_FUZZ_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+// Bytes as a source of choices; zeros when they are used up.
+struct bytes {
+    const uint8_t *data;
+    size_t size;
+};
+
+static inline unsigned take_byte(struct bytes *b)
+{
+    if (!b->size)
+        return 0;
+    b->size--;
+    return *b->data++;
+}
+
+static inline uint32_t take_word(struct bytes *b)
+{
+    uint32_t v = 0;
+    for (int i = 0; i < 4; i++)
+        v = v << 8 | take_byte(b);
+    return v;
+}
+
+// What must hold whatever the bytes are.
+#define MUST(ok)                                                                                                       \
+    do {                                                                                                               \
+        if (!(ok)) {                                                                                                   \
+            fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #ok);                                           \
+            abort();                                                                                                   \
+        }                                                                                                              \
+    } while (0)
+
+#endif

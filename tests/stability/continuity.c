@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parameters that move in tiny steps move the picture in tiny steps. The worst step is halved until nothing lies between
+// its ends, or twenty times: what is left of the change is a jump.
+#include "stability/stability.h"
+
+#include "support/check.h"
+
+enum { WIDTH = 64, HEIGHT = 44, HALVINGS = 20, TRACKED = 3 };
+
+enum pull { PULL_FOCUS, PULL_RANGE, PULL_STRENGTH, PULL_DOLLY, PULL_RADIUS, PULLS };
+static const struct {
+    const char *name;
+    double from, to;
+} pulls[PULLS] = {
+    {"a focus pull: worst jump, 8-bit codes", 14, 26},    {"a range pull: worst jump, 8-bit codes", 2, 30},
+    {"a strength pull: worst jump, 8-bit codes", 0, 1},   {"a dolly: worst jump, 8-bit codes", 0, 12},
+    {"a radius ramp: worst jump, 8-bit codes", 0.01, 18},
+};
+
+// The pictures of a pull: depths that lie still or move, everything else the subject's.
+static struct picture at(const struct run *r, const struct scene *s, struct picture *moved, enum pull pull, double t)
+{
+    struct hf_params p = r->subject->params;
+    const float v = (float)t;
+    struct hf_depth depth = picture_depth(&s->depth);
+    if (pull == PULL_FOCUS)
+        p.focus = v;
+    if (pull == PULL_RANGE)
+        p.range.distance = v;
+    if (pull == PULL_STRENGTH)
+        p.range.strength = v;
+    if (pull == PULL_RADIUS)
+        p.max_radius = v;
+    if (pull == PULL_DOLLY) {
+        for (size_t i = 0; i < samples_of(moved); i++)
+            moved->plane[0][i] = s->depth.plane[0][i] + v;
+        depth.data = moved->plane[0];
+    }
+    return render(r->c, &s->colour, &depth, &p);
+}
+
+static double settled(const struct run *r, const struct scene *s, struct picture *moved, enum pull pull, double *from,
+                      double *to)
+{
+    struct picture a = at(r, s, moved, pull, *from), b = at(r, s, moved, pull, *to);
+    double left = display_distance(&a, &b);
+    for (int i = 0; i < HALVINGS; i++) {
+        const float middle = (float)((*from + *to) / 2);
+        if (middle == (float)*from || middle == (float)*to)
+            break;
+        struct picture m = at(r, s, moved, pull, middle);
+        const double first = display_distance(&a, &m), second = display_distance(&m, &b);
+        struct picture *gone = first > second ? &b : &a;
+        picture_free(gone);
+        *gone = m;
+        *(first > second ? to : from) = middle;
+        left = fmax(first, second);
+    }
+    picture_free(&a);
+    picture_free(&b);
+    return left;
+}
+
+static void pulled(const struct run *r, enum pull pull, const struct scene *s, const char *scene)
+{
+    const int steps = r->full ? 1000 : 120;
+    struct picture moved = picture_copy(&s->depth);
+    double worst[TRACKED] = {0}, place[TRACKED] = {0}, width = (pulls[pull].to - pulls[pull].from) / steps;
+    struct picture before = at(r, s, &moved, pull, pulls[pull].from);
+    for (int i = 1; i <= steps; i++) {
+        struct picture now = at(r, s, &moved, pull, pulls[pull].from + i * width);
+        double d = display_distance(&before, &now), where = pulls[pull].from + (i - 1) * width;
+        for (int k = 0; k < TRACKED; k++)
+            if (d > worst[k]) {
+                const double old = worst[k], old_place = place[k];
+                worst[k] = d, place[k] = where;
+                d = old, where = old_place;
+            }
+        picture_free(&before);
+        before = now;
+    }
+    picture_free(&before);
+    // A radius of 12 moves by 12 / 10 of what the focus moves, by some units in the last place of 30: 1e-5 pixels. Where
+    // a sample hangs on it the most, at a radius of a pixel, it moves by four times that of a range of 1, and the sRGB
+    // curve makes 12.92 * 255 codes of 1: 0.13. Half a code no one sees.
+    for (int k = 0; k < TRACKED; k++) {
+        if (worst[k] <= 0.5)
+            continue;
+        double from = place[k], to = place[k] + width;
+        const double left = settled(r, s, &moved, pull, &from, &to);
+        see(r, pulls[pull].name, "half a code: what the smallest step of a float can make, see continuity.c", left, 0.5,
+            "%s, at %.9g (step %.3g)", scene, from, worst[k]);
+    }
+    see(r, pulls[pull].name, "half a code: what the smallest step of a float can make, see continuity.c", 0, 0.5, "%s",
+        scene);
+    picture_free(&moved);
+}
+
+// A floor through the focus, a wall behind and a bar in front.
+static struct scene stage(const struct run *r)
+{
+    struct scene s = calm_scene(r->seed, WIDTH, HEIGHT, 3);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const int x = i % WIDTH, y = i / WIDTH;
+        s.depth.plane[0][i] = y < HEIGHT / 2 ? 34 : 12 + 16 * (float)(x + 2 * y) / (WIDTH + 2 * HEIGHT);
+        if (x >= 22 && x < 27)
+            s.depth.plane[0][i] = 15.5f;
+    }
+    return s;
+}
+
+// From the copy that a radius of 0 makes to the least blur that there is.
+static void first_blur(const struct run *r, const struct scene *s)
+{
+    struct picture none = at(r, s, NULL, PULL_RADIUS, 0), least = at(r, s, NULL, PULL_RADIUS, 1e-6);
+    see(r, "radius 0 and the least above it: jump, 8-bit codes",
+        "half a code: what the smallest step of a float can make, see continuity.c", display_distance(&none, &least),
+        0.5, "radius 1e-6");
+    picture_free(&none);
+    picture_free(&least);
+}
+
+// ---- flicker ----
+
+// A square light of 1.4 pixels, by the area that it covers of each pixel.
+static void draw_light(struct picture *p, double left, double top, double side, float value)
+{
+    for (int y = 0; y < p->height; y++)
+        for (int x = 0; x < p->width; x++) {
+            const double w = fmin(x + 1, left + side) - fmax(x, left), h = fmin(y + 1, top + side) - fmax(y, top);
+            for (int c = 0; c < 3; c++)
+                p->plane[c][y * p->width + x] = w > 0 && h > 0 ? (float)(value * w * h) : 0;
+        }
+}
+
+// Energy of a light that moves 0.1 pixel a frame, behind the focus: how much it varies, of its mean.
+static void moving_light(const struct run *r)
+{
+    double least = INFINITY, most = 0;
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    picture_fill(&radii, 0, STABILITY_RADIUS);
+    const struct hf_depth depth = picture_radii(&radii);
+    for (int i = 0; i < 40; i++) {
+        draw_light(&colour, 30.03 + 0.1 * i, 20.55, 1.4, 100);
+        struct picture out = render(r->c, &colour, &depth, &r->subject->params);
+        double sum = 0;
+        for (size_t k = 0; k < samples_of(&out); k++)
+            sum += out.plane[1][k];
+        least = fmin(least, sum);
+        most = fmax(most, sum);
+        picture_free(&out);
+    }
+    if (r->subject->promises & KEEPS_ENERGY)
+        see(r, "flicker of a light moving 0.1 pixel a frame, of its energy",
+            "1e-5 of the energy, as of one light; sampling every second pixel makes 2", (most - least) / most * 2,
+            2e-5 + 12 * r->subject->step, "40 frames");
+    else
+        see(r, "flicker of a light moving 0.1 pixel a frame under the max fill, of its energy",
+            "less than sampling every second pixel, which makes 2", (most - least) / most * 2, 1.99, "40 frames");
+    picture_free(&colour);
+    picture_free(&radii);
+}
+
+void continuity_cases(const struct run *r)
+{
+    // Instruction sets are held to the C elsewhere: here they would cost time only.
+    if (!r->full && !r->widest)
+        return;
+    struct scene s = stage(r);
+    for (int pull = 0; pull < PULLS; pull++)
+        pulled(r, (enum pull)pull, &s, "floor, wall and bar");
+    // The gaussian's blur does not follow from the radius: 0 alone means a copy.
+    if (r->subject->params.engine != HF_ENGINE_GAUSSIAN)
+        first_blur(r, &s);
+    scene_free(&s);
+    moving_light(r);
+}

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a picture keeps when it is blurred, and pairs of pictures of which one tells the other.
+#include "stability/stability.h"
+
+#include <float.h>
+#include <string.h>
+
+#include "support/check.h"
+
+static const double U = FLT_EPSILON / 2;
+
+// Relative error that a sample may have: roundings, and six times the step of the storage (read, down, gathered, filled,
+// merged, written).
+static double relative(const struct subject *s, double roundings)
+{
+    return roundings * U + 6 * s->step;
+}
+
+static const char *const from_roundings = "roundings on the way of a sample, and the storage's steps";
+
+static int samples_other(const struct picture *a, const struct picture *b)
+{
+    int n = 0;
+    for (int c = 0; c < a->channels; c++)
+        for (size_t i = 0; i < samples_of(a); i++)
+            n += memcmp(&a->plane[c][i], &b->plane[c][i], sizeof(float)) != 0;
+    return n;
+}
+
+static void constants(const struct run *r)
+{
+    static const float values[] = {1, 0.1f, 1.0f / 3, 7.77f, 60000, 1e-3f, -3.3f, 1e-30f, 1e30f};
+    const int narrow = !(r->subject->promises & EXACT);
+    for (int v = 0; v < (narrow ? 5 : 9); v++) {
+        struct scene s = calm_scene(r->seed + (unsigned)v, 65, 47, 4);
+        for (int c = 0; c < 4; c++)
+            picture_fill(&s.colour, c, values[v]);
+        struct picture out = render_scene(r->c, &s, &r->subject->params);
+        see(r, "constant in, constant out: relative error", "roundings that do not cancel, and the storage's steps",
+            largest_difference(&out, &s.colour) / fabs(values[v]), relative(r->subject, r->subject->constant), "%g",
+            values[v]);
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
+// ---- one highlight, everything at one radius ----
+
+enum { SPOT = 96 };
+
+static void highlight(const struct run *r, float radius, int x, int y)
+{
+    struct picture colour = picture_new(SPOT, SPOT, 3), radii = picture_new(SPOT, SPOT, 1);
+    picture_fill(&radii, 0, radius);
+    for (int c = 0; c < 3; c++)
+        colour.plane[c][y * SPOT + x] = 1e4f;
+    const struct hf_depth depth = picture_radii(&radii);
+    struct picture out = render(r->c, &colour, &depth, &r->subject->params);
+    double sum = 0, sx = 0, sy = 0;
+    for (int i = 0; i < SPOT * SPOT; i++) {
+        sum += out.plane[1][i];
+        sx += out.plane[1][i] * (i % SPOT);
+        sy += out.plane[1][i] * (double)(i / SPOT);
+    }
+    if (r->subject->promises & KEEPS_ENERGY)
+        see(r, "energy of a highlight: error", "1e-5, as the design says", fabs(sum / 1e4 - 1), 1e-5,
+            "radius %g at (%d, %d)", radius, x, y);
+    else
+        see(r, "energy of a highlight, times", "a maximum over 3 x 3 can take each share nine times", sum / 1e4, 9,
+            "radius %g at (%d, %d)", radius, x, y);
+    const double off = fmax(fabs(sx / sum - x), fabs(sy / sum - y));
+    if (r->subject->promises & KEEPS_CENTRE)
+        see(r, "centre of a highlight: off, pixels", "a thousandth", off, 1e-3, "radius %g at (%d, %d)", radius, x, y);
+    else
+        see(r, "centre of a highlight, half resolution: off, pixels",
+            "the middle of its quad is half a pixel away, and a thousandth; faithful takes the next quad's", off,
+            r->subject->params.gather.faithful ? 1.001 : 0.501, "radius %g at (%d, %d)", radius, x, y);
+    picture_free(&out);
+    picture_free(&colour);
+    picture_free(&radii);
+}
+
+static void highlights(const struct run *r)
+{
+    // In the gather and the gaussian less than the largest radius is a blend with the picture.
+    static const float radii[] = {12, -12, 0.3f, -0.7f, 1, 1.9f, -3, 6.5f, 9};
+    const int blends = r->subject->params.engine == HF_ENGINE_GATHER || r->subject->params.engine == HF_ENGINE_GAUSSIAN;
+    for (int i = 0; i < (blends ? 2 : 9); i++)
+        for (int k = 0; k < 4; k++)
+            highlight(r, radii[i], 47 + k % 2, 46 + k / 2);
+}
+
+// ---- range and opacity ----
+
+static void bounds(const struct run *r)
+{
+    for (unsigned i = 0; i < 4; i++) {
+        struct rng rng = rng_seed(r->seed + i);
+        struct scene s = scene_new(&rng, i % 2 ? SCENE_HIGHLIGHTS : SCENE_BLOCKS, 75, 52, 4);
+        picture_fill(&s.colour, 3, 1);
+        struct picture out = render_scene(r->c, &s, &r->subject->params);
+        double beyond = 0;
+        for (int c = 0; c < 3; c++) {
+            double low = INFINITY, high = -INFINITY;
+            for (size_t k = 0; k < samples_of(&out); k++) {
+                low = fmin(low, s.colour.plane[c][k]);
+                high = fmax(high, s.colour.plane[c][k]);
+            }
+            for (size_t k = 0; k < samples_of(&out); k++)
+                beyond = worse(beyond, fmax(out.plane[c][k] - high, low - out.plane[c][k]) / high);
+        }
+        see(r, "range of the sources: beyond it, of the largest", from_roundings, beyond,
+            relative(r->subject, r->subject->roundings), "scene %u", i);
+        int thin = 0;
+        for (size_t k = 0; k < samples_of(&out); k++)
+            thin += out.plane[3][k] != 1;
+        see(r, "opaque: samples of alpha that are not 1", "none may be", thin, 0, "scene %u", i);
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
+// ---- pairs ----
+
+static void crops(const struct run *r)
+{
+    for (unsigned i = 0; i < 3; i++) {
+        struct scene s = calm_scene(r->seed + i, 210, 170, 3);
+        // Something bright, of which only the whole picture knows.
+        for (int c = 0; c < 3; c++)
+            s.colour.plane[c][2 * 210 + 200] = i ? 300 : 1;
+        const int x0 = 4 * (int)(1 + i), y0 = 4 * (int)(3 + i), w = 150 - (int)i, h = 130 - (int)i,
+                  m = r->subject->margin;
+        struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
+        struct picture whole = render_scene(r->c, &s, &r->subject->params);
+        struct picture a = render_scene(r->c, &part, &r->subject->params);
+        struct picture want = picture_cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m);
+        struct picture got = picture_cut(&a, m, m, w - 2 * m, h - 2 * m);
+        see(r,
+            i ? "crops, a light outside: samples that are not the whole's bits"
+              : "crops: samples that are not the whole's bits",
+            "none may be", samples_other(&want, &got), 0, "from (%d, %d)", x0, y0);
+        picture_free(&whole);
+        picture_free(&a);
+        picture_free(&want);
+        picture_free(&got);
+        scene_free(&part);
+        scene_free(&s);
+    }
+}
+
+static void quads(struct picture *depth)
+{
+    for (int y = 0; y < depth->height; y++)
+        for (int x = 0; x < depth->width; x++)
+            depth->plane[0][y * depth->width + x] = depth->plane[0][(y & ~1) * depth->width + (x & ~1)];
+}
+
+static void flips(const struct run *r)
+{
+    const int only_quads = (r->subject->promises & FLIPS_QUADS) != 0;
+    for (unsigned i = 0; i < 3; i++) {
+        struct scene s = calm_scene(r->seed + i, only_quads ? 64 : 63 + (int)i, only_quads ? 48 : 47, 4);
+        if (only_quads)
+            quads(&s.depth);
+        struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
+        struct picture a = render_scene(r->c, &s, &r->subject->params);
+        struct picture b = render_scene(r->c, &mirror, &r->subject->params), back = picture_flipped(&b);
+        see(r, "flips: samples that are not the mirror's bits", "none may be", samples_other(&a, &back), 0, "scene %u",
+            i);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&back);
+        scene_free(&mirror);
+        scene_free(&s);
+    }
+}
+
+static void transposes(const struct run *r)
+{
+    for (unsigned i = 0; i < 3; i++) {
+        struct scene s = calm_scene(r->seed + i, 70, 52, 3);
+        struct scene turned = {picture_transposed(&s.colour), picture_transposed(&s.depth)};
+        struct hf_params p = r->subject->params;
+        struct picture a = render_scene(r->c, &s, &p), b = render_scene(r->c, &turned, &p),
+                       back = picture_transposed(&b);
+        see(r, "transposes: difference, of the largest", "twice the roundings on the way of a sample",
+            largest_difference(&a, &back) / largest_sample(&s.colour), 2 * relative(r->subject, r->subject->roundings),
+            "scene %u", i);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&back);
+        scene_free(&turned);
+        scene_free(&s);
+    }
+}
+
+static void permutations(const struct run *r)
+{
+    struct scene s = calm_scene(r->seed, 70, 52, 4), other = {picture_copy(&s.colour), picture_copy(&s.depth)};
+    for (int c = 0; c < 3; c++)
+        memcpy(other.colour.plane[c], s.colour.plane[(c + 1) % 3], samples_of(&s.colour) * sizeof(float));
+    struct picture a = render_scene(r->c, &s, &r->subject->params), b = render_scene(r->c, &other, &r->subject->params);
+    int n = 0;
+    for (int c = 0; c < 3; c++)
+        for (size_t i = 0; i < samples_of(&a); i++)
+            n += memcmp(&b.plane[c][i], &a.plane[(c + 1) % 3][i], sizeof(float)) != 0;
+    see(r, "channels permuted: samples that are not the same bits", "none may be", n, 0, "R G B to G B R");
+    picture_free(&a);
+    picture_free(&b);
+    scene_free(&other);
+    scene_free(&s);
+}
+
+static void exposures(const struct run *r)
+{
+    static const int exponents[] = {-20, -3, 1, 12, 30};
+    for (int i = 0; i < 5; i++) {
+        struct scene s = calm_scene(r->seed, 70, 52, 3);
+        struct picture a = render_scene(r->c, &s, &r->subject->params);
+        const float scale = ldexpf(1, exponents[i]);
+        for (int c = 0; c < 3; c++)
+            for (size_t k = 0; k < samples_of(&a); k++) {
+                a.plane[c][k] *= scale;
+                s.colour.plane[c][k] *= scale;
+            }
+        struct picture b = render_scene(r->c, &s, &r->subject->params);
+        see(r, "exposure by 2^k: samples that are not scaled exactly", "none may be", samples_other(&a, &b), 0,
+            "k = %d", exponents[i]);
+        picture_free(&a);
+        picture_free(&b);
+        scene_free(&s);
+    }
+}
+
+static void sums(const struct run *r)
+{
+    for (unsigned i = 0; i < 3; i++) {
+        struct scene s = calm_scene(r->seed + i, 70, 52, 3);
+        struct scene t = {picture_new(70, 52, 3), picture_copy(&s.depth)};
+        struct scene both = {picture_new(70, 52, 3), picture_copy(&s.depth)};
+        struct rng rng = rng_seed(r->seed + 50 + i);
+        for (int c = 0; c < 3; c++)
+            for (size_t k = 0; k < samples_of(&s.colour); k++) {
+                t.colour.plane[c][k] = rng_float(&rng);
+                both.colour.plane[c][k] = s.colour.plane[c][k] + t.colour.plane[c][k];
+            }
+        struct picture a = render_scene(r->c, &s, &r->subject->params), b = render_scene(r->c, &t, &r->subject->params);
+        struct picture want = render_scene(r->c, &both, &r->subject->params);
+        double worst = 0;
+        for (int c = 0; c < 3; c++)
+            for (size_t k = 0; k < samples_of(&a); k++)
+                worst = worse(worst, fabs((double)a.plane[c][k] + b.plane[c][k] - want.plane[c][k]));
+        see(r, "sum of two pictures: difference, of the largest", "twice the roundings on the way of a sample",
+            worst / largest_sample(&both.colour), 2 * relative(r->subject, r->subject->roundings), "scene %u", i);
+        picture_free(&a);
+        picture_free(&b);
+        picture_free(&want);
+        scene_free(&both);
+        scene_free(&t);
+        scene_free(&s);
+    }
+}
+
+void invariance_cases(const struct run *r)
+{
+    const unsigned promises = r->subject->promises;
+    constants(r);
+    if (promises & EXACT)
+        highlights(r);
+    bounds(r);
+    crops(r);
+    if (promises & (FLIPS | FLIPS_QUADS))
+        flips(r);
+    if (promises & TRANSPOSES)
+        transposes(r);
+    if (promises & PERMUTES)
+        permutations(r);
+    if (promises & EXPOSES)
+        exposures(r);
+    if (promises & ADDS)
+        sums(r);
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stability/stability.h"
+
+#include <string.h>
+
+#include "support/check.h"
+
+static const struct {
+    const char *name;
+    void (*run)(const struct run *r);
+} groups[] = {
+    {"samples", samples_cases},       {"sizes", sizes_cases},       {"invariance", invariance_cases},
+    {"continuity", continuity_cases}, {"rounding", rounding_cases},
+};
+
+static void run_subject(const struct subject *s, const struct stability_options *o)
+{
+    for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
+        if (!hf_isa_available((enum hf_isa)isa) || (o->isa != HF_ISA_AUTO && o->isa != (enum hf_isa)isa))
+            continue;
+        const struct run r = {.subject = s,
+                              .isa = (enum hf_isa)isa,
+                              .isa_name = hf_isa_name((enum hf_isa)isa),
+                              .c = context_new((enum hf_isa)isa, 2, 0, 0),
+                              .full = o->full,
+                              .widest = o->isa != HF_ISA_AUTO || !hf_isa_available((enum hf_isa)(isa + 1)),
+                              .seed = o->seed};
+        struct hf_context *c = r.c;
+        for (size_t i = 0; r.c && i < sizeof groups / sizeof *groups; i++)
+            if (!o->only || !strcmp(o->only, groups[i].name))
+                groups[i].run(&r);
+        hf_close(&c);
+    }
+}
+
+int stability_run(const struct stability_options *o)
+{
+    static struct subject subjects[32];  // rows keep their names
+    int any = 0;
+    stability_open_table();
+    for (int i = 0; i < subject_count(); i++) {
+        subjects[i] = subject_make(i);
+        if (o->engine && strncmp(o->engine, subjects[i].name, strlen(o->engine)))
+            continue;
+        any = 1;
+        run_subject(&subjects[i], o);
+    }
+    return any ? 0 : -1;
+}
+
+struct scene calm_scene(unsigned seed, int width, int height, int channels)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, SCENE_BLOCKS, width, height, channels);
+    for (int c = 0; c < channels; c++)
+        for (int i = 0; i < width * height; i++) {
+            const double x = i % width, y = i / width, z = s.depth.plane[0][i];
+            const double phase = isfinite(z) ? z : 7;
+            s.colour.plane[c][i] =
+                c == 3 ? 1 : (float)(0.525 + 0.475 * sin(phase * (3 + c) + 0.31 * x) * cos(phase + 0.23 * y));
+        }
+    return s;
+}
+
+static double code(double v)
+{
+    v = fmax(0, fmin(1, v));
+    return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055);
+}
+
+double display_distance(const struct picture *a, const struct picture *b)
+{
+    double most = 0;
+    for (int c = 0; c < (a->channels < 3 ? a->channels : 3); c++)
+        for (size_t i = 0; i < samples_of(a); i++)
+            if (a->plane[c][i] != b->plane[c][i])
+                most = worse(most, fabs(code(a->plane[c][i]) - code(b->plane[c][i])));
+    return most;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numerical stability of every engine: what was tried, the bound and where it comes from, the worst value seen. The
+// cases are run by a test, which fails where a bound is exceeded, and by `hyperfocal-bench stability`, which prints the
+// table.
+//
+//   subjects.c    what is tried: engines in their variants, and what each of them promises
+//   table.c       rows: findings of many pictures and instruction sets become one line
+//   samples.c     bad samples in colour, alpha and depth
+//   sizes.c       every small size between guard pages, memory filled with junk, copies
+//   invariance.c  constants, energy, centre, range, opacity, shifts, crops, flips, transposes, exposure, sums
+//   continuity.c  pulls and ramps in tiny steps, flicker
+//   rounding.c    against references in double precision; long rows and large radii
+#ifndef HF_TESTS_STABILITY_H
+#define HF_TESTS_STABILITY_H
+
+#include <stdio.h>
+
+#include "support/render.h"
+
+// Focus, range and largest radius of all cases, as scene_params() has them.
+#define STABILITY_FOCUS 20.0f
+#define STABILITY_RANGE 10.0f
+#define STABILITY_RADIUS 12.0f
+
+// What a subject promises beyond what all do.
+enum promise {
+    KEEPS_ENERGY = 1,    // of a highlight where everything has one CoC
+    ADDS = 2,            // the blur of a sum is the sum of the blurs
+    EXPOSES = 4,         // a factor of 2^k passes through exactly
+    FLIPS = 8,           // left to right, bit for bit
+    FLIPS_QUADS = 16,    // the same where depth is constant per quad and the size even
+    TRANSPOSES = 32,     // within rounding
+    PERMUTES = 64,       // channels, bit for bit
+    EXACT = 128,         // float storage: bounds are those of rounding alone
+    KEEPS_CENTRE = 256,  // a highlight's centre of gravity, far and near
+};
+
+struct subject {
+    const char *name;
+    struct hf_params params;
+    unsigned promises;  // of enum promise
+    int margin;         // pixels from which a pixel's result may come, for the largest radius above
+    double constant;    // by how much a constant may move, half ulps: roundings that do not cancel
+    double roundings;   // roundings on the way of a sample, half ulps of the largest
+    double step;        // relative step of the storage
+};
+
+int subject_count(void);
+struct subject subject_make(int index);
+
+// One subject on one instruction set.
+struct run {
+    const struct subject *subject;
+    enum hf_isa isa;
+    const char *isa_name;
+    struct hf_context *c;
+    int full;    // the long run: more of everything
+    int widest;  // of the instruction sets that are tried
+    unsigned seed;
+};
+
+// One finding of a case: its value, its bound and where that comes from; the rest says where, as printf does. A NaN
+// exceeds every bound. Findings with the same subject and case are one row: that nearest to its bound, or farthest
+// beyond it, is kept.
+__attribute__((format(printf, 6, 7))) void see(const struct run *r, const char *what, const char *why, double value,
+                                               double bound, const char *where, ...);
+
+// Before the first finding.
+void stability_open_table(void);
+// All rows so far as a table; returns how many exceed their bound and are not known to.
+int stability_print(FILE *to);
+int stability_passed(void), stability_open(void);
+
+struct stability_options {
+    const char *engine;  // only subjects whose name begins so; NULL: all
+    const char *only;    // only this file's cases, by its name without .c; NULL: all
+    enum hf_isa isa;     // AUTO: all that there are
+    int full;
+    unsigned seed;
+};
+// Run the cases. Returns 0, or -1 when there is nothing to run.
+int stability_run(const struct stability_options *o);
+
+void samples_cases(const struct run *r);
+void sizes_cases(const struct run *r);
+void invariance_cases(const struct run *r);
+void continuity_cases(const struct run *r);
+void rounding_cases(const struct run *r);
+
+// A picture of blocks with a soft pattern in each, 0.05 .. 1, alpha as asked for, and depths on both sides of the focus.
+struct scene calm_scene(unsigned seed, int width, int height, int channels);
+// How far two pictures are apart at the worst sample, in codes of 8 bits after clamping and the sRGB curve.
+double display_distance(const struct picture *a, const struct picture *b);
+
+#endif

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stability/stability.h"
+
+#include <float.h>
+
+// Pixels from which a gather's pixel comes: two reaches of the near CoC, the taps, fill and upsampling, in half pixels.
+static int gather_margin(void)
+{
+    const int h = (int)ceilf(STABILITY_RADIUS / 2);
+    return 2 * (2 * h + h + 4);
+}
+
+// Lattice weights twice (forming and adding), 12 for the blurred CoC, 32 for down and fill, 11 and 102 for the composite:
+// gather.c derives them.
+enum { GATHER_ROUNDINGS = 2 * 129 + 12 + 32 + 11 + 102 };
+
+static struct subject gather(const char *name, enum hf_fill fill, enum hf_storage storage)
+{
+    struct subject s = {name,
+                        scene_params(),
+                        EXPOSES | FLIPS_QUADS | TRANSPOSES | PERMUTES | EXACT,
+                        gather_margin(),
+                        32,
+                        GATHER_ROUNDINGS,
+                        0};
+    s.params.engine = HF_ENGINE_GATHER;
+    s.params.gather.fill = fill;
+    s.params.gather.storage = storage;
+    if (fill != HF_FILL_MAX)
+        s.promises |= KEEPS_ENERGY | ADDS;
+    if (storage == HF_STORAGE_HALF) {
+        s.promises &= ~(unsigned)(EXPOSES | EXACT | TRANSPOSES);
+        s.step = 1.0 / 1024;
+    }
+    if (storage == HF_STORAGE_PACKED) {
+        s.promises &= ~(unsigned)(EXPOSES | EXACT | TRANSPOSES | PERMUTES);
+        s.step = 1.0 / 32;
+    }
+    return s;
+}
+
+static struct subject hexagon(const char *name, enum hf_resolution resolution)
+{
+    // A line of n pixels rounds its weights' sums n times and n more for what they weigh, 30 besides, divided by no less
+    // than a quarter, in each of two passes: hexagon.c derives it.
+    const double taps = 3 * (STABILITY_RADIUS + 4);
+    struct subject s = {name,
+                        scene_params(),
+                        EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS,
+                        2 * (int)STABILITY_RADIUS + 8,
+                        2 * 2 * (taps + 16),
+                        2 * 4 * (3 * taps + 30),
+                        0};
+    s.params.engine = HF_ENGINE_HEXAGON;
+    s.params.hexagon.resolution = resolution;
+    return s;
+}
+
+static struct subject scatter(const char *name, enum hf_resolution resolution)
+{
+    // 40: scatter.c derives it. Half resolution comes down and up again: 8 and 12 more.
+    struct subject s = {name,
+                        scene_params(),
+                        EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS | FLIPS | TRANSPOSES | KEEPS_CENTRE,
+                        (int)STABILITY_RADIUS + 8,
+                        32,
+                        resolution ? 60 : 40,
+                        0};
+    s.params.engine = HF_ENGINE_SCATTER;
+    s.params.scatter.resolution = resolution;
+    if (resolution)
+        s.promises = (s.promises & ~(unsigned)FLIPS) | FLIPS_QUADS;
+    return s;
+}
+
+static struct subject gaussian(const char *name, float sigma, enum hf_resolution resolution)
+{
+    // Four boxes of about 1.73 sigma to either side in all 3.5 sigma; or two pixels an iteration.
+    const int margin = sigma > 0 ? (int)(4 * sigma) + 8 : 2 * 3 * (resolution ? 4 : 1) + 8;
+    struct subject s = {name,
+                        scene_params(),
+                        EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS | TRANSPOSES | KEEPS_CENTRE | FLIPS,
+                        margin,
+                        32,
+                        2 * (3 * 5 * 2 + 16),
+                        0};
+    s.params.engine = HF_ENGINE_GAUSSIAN;
+    s.params.gaussian.sigma = sigma > 0 ? sigma : HF_DERIVE;
+    s.params.gaussian.resolution = resolution;
+    if (resolution)
+        s.promises = (s.promises & ~(unsigned)FLIPS) | FLIPS_QUADS;
+    return s;
+}
+
+static struct subject per_pixel(void)
+{
+    struct subject s = gather("gather per pixel", HF_FILL_MEAN, HF_STORAGE_FLOAT);
+    s.params.gather.per_pixel_kernel = 1;
+    // Taps are added one by one in the order of their angles, 48 of them at this radius and once more for the weights.
+    s.promises &= ~(unsigned)(FLIPS_QUADS | TRANSPOSES);
+    s.constant += 2 * 49;
+    return s;
+}
+
+static struct subject faithful(void)
+{
+    struct subject s = gather("gather faithful", HF_FILL_MAX, HF_STORAGE_FLOAT);
+    s.params.gather.faithful = 1;
+    // Its taps that hold no far colour count as black, and it compares the CoC of one quad with the colour of another.
+    s.promises &= ~(unsigned)(FLIPS_QUADS | TRANSPOSES);
+    return s;
+}
+
+enum { SUBJECTS = 13 };
+
+int subject_count(void)
+{
+    return SUBJECTS;
+}
+
+struct subject subject_make(int index)
+{
+    switch (index) {
+    case 0:
+        return gather("gather", HF_FILL_MAX, HF_STORAGE_FLOAT);
+    case 1:
+        return gather("gather mean", HF_FILL_MEAN, HF_STORAGE_FLOAT);
+    case 2:
+        return gather("gather none", HF_FILL_NONE, HF_STORAGE_FLOAT);
+    case 3:
+        return per_pixel();
+    case 4:
+        return gather("gather half", HF_FILL_MEAN, HF_STORAGE_HALF);
+    case 5:
+        return gather("gather packed", HF_FILL_MAX, HF_STORAGE_PACKED);
+    case 6:
+        return faithful();
+    case 7:
+        return hexagon("hexagon", HF_RESOLUTION_FULL);
+    case 8:
+        return hexagon("hexagon half", HF_RESOLUTION_HALF);
+    case 9:
+        return scatter("scatter", HF_RESOLUTION_FULL);
+    case 10:
+        return scatter("scatter half", HF_RESOLUTION_HALF);
+    case 11:
+        return gaussian("gaussian", 0, HF_RESOLUTION_FULL);
+    default:
+        return gaussian("gaussian sigma", 4, HF_RESOLUTION_FULL);
+    }
+}
