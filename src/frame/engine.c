@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/engine.h"
 
-#include "gather/gather.h"
-#include "gaussian/kernels.h"
-#include "hexagon/kernels.h"
-#include "scatter/kernels.h"
+// Adding an engine adds a line.
+#define ENGINES(DO)                                                                                                    \
+    DO(GATHER, gather)                                                                                                 \
+    DO(HEXAGON, hexagon)                                                                                               \
+    DO(GAUSSIAN, gaussian)                                                                                             \
+    DO(SCATTER, scatter)
+
+#define DECLARE(number, name) extern const struct hf_engine_def hf_##name##_engine;
+#define ENTER(number, name) [HF_ENGINE_##number] = &hf_##name##_engine,
+
+ENGINES(DECLARE)
 
 const struct hf_engine_def *hf_engine_def(enum hf_engine engine)
 {
-    static const struct hf_engine_def *const engines[HF_ENGINE_COUNT] = {
-        [HF_ENGINE_GATHER] = &hf_gather_engine,
-        [HF_ENGINE_HEXAGON] = &hf_hexagon_engine,
-        [HF_ENGINE_GAUSSIAN] = &hf_gaussian_engine,
-        [HF_ENGINE_SCATTER] = &hf_scatter_engine,
-    };
+    static const struct hf_engine_def *const engines[HF_ENGINE_COUNT] = {ENGINES(ENTER)};
     return (unsigned)engine < HF_ENGINE_COUNT ? engines[engine] : NULL;
 }
 
