@@ -25,7 +25,16 @@ struct bench_row {
     int in;  // pass into which this one is fused, so that its own time is 0; -1: none
 };
 
+// How else the library is called: a renderer works in place, and its first frames count too. Measured in turn with frames
+// out of place, so that they can be compared. Zero if the formats of input and output differ: that cannot be in place.
+struct bench_uses {
+    struct bench_row in_place, out_of_place;
+    double first_ms;     // in place, in a new context: median
+    double prepared_ms;  // the same after hf_prepare
+};
+
 struct bench_result {
+    struct bench_uses uses;
     int frames;
     struct bench_row pass[HF_MAX_PASSES];  // of stats.engine
     double overhead_ms;      // all.median_ms - sum of pass[].median_ms: waiting, dispatch, what belongs to no pass
@@ -43,6 +52,9 @@ double bench_measure_copy(const struct bench_subject *subject);
 // counted. The passes stay zero. *stats receives those of the last. Returns 0, or -1 with *error filled.
 int bench_measure_all(const struct bench_subject *subject, double seconds, int least, struct bench_row *all,
                       struct hf_report *stats, struct bench_error *error);
+
+// Returns 0, or -1 with *error filled.
+int bench_measure_uses(const struct bench_subject *subject, struct bench_uses *uses, struct bench_error *error);
 
 // frames 0: as many as take about three seconds. Returns 0, or -1 with *error filled.
 int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,

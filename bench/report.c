@@ -79,6 +79,17 @@ static int has_gtx660(const struct bench_result *r)
     return r->stats.used.params.engine == HF_ENGINE_GATHER;
 }
 
+static void table_uses(FILE *out, const struct bench_uses *u)
+{
+    if (u->in_place.median_ms <= 0)
+        return;
+    fprintf(out,
+            "in turn: in place %.3f ms (least %.3f), out of place %.3f (%.3f); first frame of a context %.3f, after "
+            "hf_prepare %.3f\n",
+            u->in_place.median_ms, u->in_place.min_ms, u->out_of_place.median_ms, u->out_of_place.min_ms, u->first_ms,
+            u->prepared_ms);
+}
+
 void bench_report_table(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
@@ -98,6 +109,7 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     fprintf(out, "   of which planning %.3f\n", r->planning_ms);
     table_row(out, "All", all, all, gather ? gtx660_all_ms : 0);
     fprintf(out, " %9.3f %9.3f\n\n", r->all.min_ms, r->all.max_ms);
+    table_uses(out, &r->uses);
     table_machine(out, run);
 }
 
@@ -194,7 +206,11 @@ void bench_report_json(FILE *out, const struct bench_run *run)
             fprintf(out, ", \"in\": \"%s\"", hf_pass_name(r->stats.used.params.engine, row->in));
         fputc('}', out);
     }
+    const struct bench_uses *u = &r->uses;
     fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n  \"planning_ms\": %.6f,\n", r->overhead_ms, r->planning_ms);
+    fprintf(out,
+            "  \"in_place_ms\": %.6f,\n  \"out_of_place_ms\": %.6f,\n  \"first_ms\": %.6f,\n  \"prepared_ms\": %.6f,\n",
+            u->in_place.median_ms, u->out_of_place.median_ms, u->first_ms, u->prepared_ms);
     fprintf(out, "  \"all\": {\"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", r->all.median_ms, r->all.min_ms,
             r->all.max_ms);
     if (has_gtx660(r))
