@@ -221,6 +221,29 @@ static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_p
     return err ? err : steps;
 }
 
+// What keeps a picture from being the one that the camera would take.
+static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
+{
+    static const char *const why[] = {
+        [HF_LIMIT_NONE] = "",
+        [HF_LIMIT_GIVEN] = ", as max_radius says",
+        [HF_LIMIT_MODEL] = "",
+        [HF_LIMIT_ENGINE] = ": the engine reaches no farther unless max_radius is given",
+        [HF_LIMIT_PICTURE] = ": the aperture's picture is drawn no larger",
+    };
+    const struct hf_report *r = &c->report;
+    const struct hf_params *p = &r->used.params;
+    const enum hf_limit limit = r->used.limit;
+    if (p->model != HF_MODEL_LENS && depth->type != HF_DEPTH_COC)
+        return;
+    if (p->engine == HF_ENGINE_GAUSSIAN)
+        say(&c->config, HF_LOG_WARNING,
+            "the gaussian engine blurs by its iterations or sigma, not by how much the lens or the radii ask for");
+    else if (fmaxf(r->near_radius, r->far_radius) >= p->max_radius)
+        say(&c->config, limit == HF_LIMIT_ENGINE || limit == HF_LIMIT_PICTURE ? HF_LOG_WARNING : HF_LOG_INFO,
+            "blur is cut to %g pixels where it would be larger%s", p->max_radius, why[limit]);
+}
+
 // Check, choose a setting that fits the budget, and go.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params, enum job job)
@@ -251,6 +274,8 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
         return err;
     }
     err = run_resolved(c, dst, src, depth, &r, job);
+    if (!err && !r.sharp)
+        tell_limit(c, depth);
     if (err) {
         c->report = (struct hf_report){0};
         say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));

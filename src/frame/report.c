@@ -82,7 +82,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
         r->predicted_ms += ms[i];
     }
     if (e->measured) {
-        r->near_radius = -found->radius_min;
+        r->near_radius = found->radius_min < 0 ? -found->radius_min : 0;
         r->far_radius = found->radius_max;
     } else {
         r->near_radius = found->near_pixels ? s->max_radius * found->near_max : 0;
