@@ -74,9 +74,9 @@ static void table_machine(FILE *out, const struct bench_run *run)
 }
 
 // The chapter timed the gather alone, at one size.
-static int has_gtx660(const struct bench_result *r)
+static int has_gtx660(const struct bench_run *run)
 {
-    return r->stats.used.params.engine == HF_ENGINE_GATHER;
+    return run->result->stats.used.params.engine == HF_ENGINE_GATHER && run->width == 1920 && run->height == 1080;
 }
 
 static void table_uses(FILE *out, const struct bench_uses *u)
@@ -94,7 +94,7 @@ void bench_report_table(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
     const double all = r->all.median_ms;
-    const int gather = has_gtx660(r);
+    const int gather = has_gtx660(run);
     fprintf(out, "%-16s %9s %7s%s %9s %9s\n", "Pass", "ms", "of All", gather ? "   GTX 660    ratio" : "", "min",
             "max");
     for (int p = 0; p < hf_pass_count(r->stats.used.params.engine); p++) {
@@ -200,7 +200,7 @@ void bench_report_json(FILE *out, const struct bench_run *run)
         const struct bench_row *row = &r->pass[p];
         fprintf(out, "%s\n    {\"name\": \"%s\", \"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", p ? "," : "",
                 hf_pass_name(r->stats.used.params.engine, p), row->median_ms, row->min_ms, row->max_ms);
-        if (has_gtx660(r))
+        if (has_gtx660(run))
             fprintf(out, ", \"gtx660_ms\": %g", gtx660_ms[p]);
         if (row->in >= 0)
             fprintf(out, ", \"in\": \"%s\"", hf_pass_name(r->stats.used.params.engine, row->in));
@@ -213,7 +213,7 @@ void bench_report_json(FILE *out, const struct bench_run *run)
             u->in_place.median_ms, u->out_of_place.median_ms, u->first_ms, u->prepared_ms);
     fprintf(out, "  \"all\": {\"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", r->all.median_ms, r->all.min_ms,
             r->all.max_ms);
-    if (has_gtx660(r))
+    if (has_gtx660(run))
         fprintf(out, ", \"gtx660_ms\": %g", gtx660_all_ms);
     fputs("}\n}\n", out);
 }
