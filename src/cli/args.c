@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/args.h"
 
+#include "cli/nearest.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,11 +16,11 @@ int cli_is_exr(const char *path)
 
 static void set_defaults(struct cli_args *args)
 {
-    *args = (struct cli_args){.params = hf_default_params, .focus_smooth = -1};
-    float *const unset[] = {&args->focus,        &args->range,        &args->strength,   &args->near_begin,
-                            &args->near_end,     &args->far_begin,    &args->far_end,    &args->fstop,
-                            &args->focal_length, &args->sensor_width, &args->world_unit, &args->near_plane,
-                            &args->far_plane,    &args->memory_limit};
+    *args = (struct cli_args){.params = hf_default_params, .focus_smooth = -1, .engine = -1, .quality = -1};
+    float *const unset[] = {&args->focus,        &args->range,        &args->strength,      &args->near_begin,
+                            &args->near_end,     &args->far_begin,    &args->far_end,       &args->fstop,
+                            &args->focal_length, &args->sensor_width, &args->world_unit,    &args->near_plane,
+                            &args->far_plane,    &args->memory_limit, &args->depth_of_field};
     for (size_t i = 0; i < sizeof(unset) / sizeof(unset[0]); i++)
         *unset[i] = NAN;
 }
@@ -69,13 +71,31 @@ static int parse_value(struct cli_args *args, const struct cli_option *o, const 
     return o->parse(args, o, value, error) || note_setting(args, o, value, error) ? -1 : 0;
 }
 
+// A word that is no option: which may have been meant?
+static int unknown_option(const char *word, struct cli_error *error)
+{
+    const struct cli_option *best = NULL;
+    const int length = word[1] == '-' ? (int)strcspn(word + 2, "=") : 0;
+    int least = 0;
+    for (int i = 0; i < cli_option_count && length > 1; i++) {
+        const int n = (int)strlen(cli_options[i].name);
+        const int distance = cli_word_distance(cli_options[i].name, n, word + 2, length);
+        if (cli_is_near(distance, n) && (!best || distance < least)) {
+            best = &cli_options[i];
+            least = distance;
+        }
+    }
+    return cli_fail(error, -1, "unknown option %s,%s%s%s see hyperfocal --help", word, best ? " did you mean --" : "",
+                    best ? best->name : "", best ? "?" : "");
+}
+
 // Parse the option at argv[i]; returns how many words it took, or -1.
 static int parse_option(struct cli_args *args, int argc, char **argv, int i, struct cli_error *error)
 {
     const char *word = argv[i];
     const struct cli_option *o = find_option(word);
     if (!o)
-        return cli_fail(error, -1, "unknown option %s, see hyperfocal --help", word);
+        return unknown_option(word, error);
     const char *value = word[1] == '-' ? strchr(word, '=') : NULL;
     if (!o->placeholder) {
         if (value)
@@ -120,13 +140,14 @@ static int given(float number)
 // Name of an option that selects the range model, or NULL.
 static const char *range_option(const struct cli_args *args)
 {
-    return given(args->range)        ? "range"
-           : given(args->near_begin) ? "near-begin"
-           : given(args->near_end)   ? "near-end"
-           : given(args->far_begin)  ? "far-begin"
-           : given(args->far_end)    ? "far-end"
-           : given(args->strength)   ? "strength"
-                                     : NULL;
+    return given(args->range)            ? "range"
+           : given(args->depth_of_field) ? "depth-of-field"
+           : given(args->near_begin)     ? "near-begin"
+           : given(args->near_end)       ? "near-end"
+           : given(args->far_begin)      ? "far-begin"
+           : given(args->far_end)        ? "far-end"
+           : given(args->strength)       ? "strength"
+                                         : NULL;
 }
 
 static int check_depth(const struct cli_args *args, struct cli_error *error)
@@ -237,6 +258,24 @@ static int check_files(const struct cli_args *args, struct cli_error *error)
     return 0;
 }
 
+// What follows from several options, whatever their order.
+static int combine(struct cli_args *args, struct cli_error *error)
+{
+    struct hf_params *p = &args->params;
+    if (args->engine >= 0 && args->quality >= 0)
+        return cli_fail(error, -1, "--engine and --quality cannot be given together: each chooses an engine");
+    p->engine = args->engine >= 0                    ? (enum hf_engine)args->engine
+                : args->quality == CLI_QUALITY_DRAFT ? HF_ENGINE_GATHER
+                                                     : HF_ENGINE_SCATTER;
+    p->hexagon.resolution = p->scatter.resolution = p->gaussian.resolution = args->resolution;
+    p->gather.faithful = p->gaussian.faithful = args->faithful;
+    for (int i = 0; i < args->metric_count && given(args->world_unit); i++)
+        *(float *)((char *)args + args->metric[i]) /= args->world_unit;
+    if (args->verbose && args->quiet)
+        return cli_fail(error, -1, "--verbose and --quiet cannot be given together");
+    return 0;
+}
+
 int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_error *error)
 {
     const char *json_word = NULL;  // the word after a --json, which may turn out to be INPUT
@@ -262,9 +301,8 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_erro
     }
     if (args->help || args->version)
         return 0;
-    struct hf_params *p = &args->params;
-    p->hexagon.resolution = p->scatter.resolution = p->gaussian.resolution = args->resolution;
-    p->gather.faithful = p->gaussian.faithful = args->faithful;
+    if (combine(args, error))
+        return -1;
     if (!args->input && json_word && args->json_file == json_word) {
         args->json_file = NULL;
         if (parse_input(args, json_word, error))

@@ -3,6 +3,6 @@
 #define HF_CLI_HELP_H
 
 // The text of --help on stdout.
-void cli_print_help(void);
+void cli_print_help(int all);
 
 #endif

@@ -2,6 +2,7 @@
 #include "cli/json.h"
 
 #include "cli/explain.h"
+#include "cli/summary.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -119,6 +120,8 @@ static void put_stats(FILE *out, const struct cli_view *v, const struct cli_fram
     const uint64_t clamped = s->clamped + (frame->view_count == 1 ? frame->written.clamped : 0);
     fprintf(out, ",\n      \"max_radius\": ");
     cli_json_number(out, s->used.params.max_radius);
+    fprintf(out, ",\n      \"limit\": \"%s\",\n      \"limited\": %s", hf_name(HF_NAMES_LIMIT, (int)s->used.limit),
+            cli_is_limited(v) ? "true" : "false");
     fprintf(out,
             ",\n      \"near_share\": %.9g,\n      \"sharp_share\": %.9g,\n      \"far_share\": %.9g"
             ",\n      \"colour_repaired\": %" PRIu64 ",\n      \"depth_repaired\": %" PRIu64

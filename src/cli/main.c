@@ -7,6 +7,7 @@
 #include "cli/help.h"
 #include "cli/json.h"
 #include "cli/preview.h"
+#include "cli/summary.h"
 #include "cli/target.h"
 
 #include <errno.h>
@@ -15,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static void print_plan(const struct cli_frame *frame, const struct hf_context *context)
+static int print_plan(const struct cli_frame *frame, const struct hf_context *context, struct cli_error *error)
 {
     const struct cli_args *args = frame->args;
     char name[CLI_SHOWN], other[CLI_SHOWN];
@@ -50,14 +51,20 @@ static void print_plan(const struct cli_frame *frame, const struct hf_context *c
         if (v->setup.model == CLI_MODEL_RANGE)
             printf(", strength %g", p->range.strength);
         printf("\n");
+        const int status = cli_print_resolved(v, error);
+        if (status)
+            return status;
     }
+    return 0;
 }
 
-// What was wrong with the pictures but did not stop the work.
-static void print_warnings(const struct cli_frame *frame)
+// What was wrong with the pictures but did not stop the work. Returns how many things.
+static int print_warnings(const struct cli_frame *frame)
 {
+    int n = 0;
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
+        n += (v->report.colour_repaired > 0) + (v->report.depth_repaired > 0) + cli_is_limited(v);
         if (v->report.colour_repaired)
             cli_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place", v->label,
                            v->report.colour_repaired);
@@ -70,6 +77,7 @@ static void print_warnings(const struct cli_frame *frame)
     if (frame->written.clamped)
         cli_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
                        frame->written.clamped);
+    return n + (frame->written.note[0] != '\0') + (frame->written.clamped > 0);
 }
 
 static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
@@ -100,14 +108,14 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     if (!status && !args->dry_run) {
         status = cli_frame_save(&frame, error);
         if (!status)
-            print_warnings(&frame);
+            cli_print_summary(&frame, print_warnings(&frame));
     }
     if (!status && args->explain_image)
         status = cli_explain_image(&frame, error);
     if (!status && args->json)
         status = write_json(argc, argv, &frame, session->context, error);
     else if (!status && args->dry_run)
-        print_plan(&frame, session->context);
+        status = print_plan(&frame, session->context, error);
     // JSON on stdout is for programs: then people are told on the other channel.
     if (!status && args->explain)
         cli_explain_print(args->json && !args->json_file ? stderr : stdout, &frame, !args->dry_run);
@@ -188,7 +196,7 @@ static int run(int argc, char **argv, struct cli_error *error)
     struct cli_args args;
     int status = cli_parse_args(&args, argc, argv, error) ? CLI_BAD_ARGUMENTS : CLI_DONE;
     if (!status && args.help)
-        cli_print_help();
+        cli_print_help(args.help > 1);
     else if (!status && args.version)
         printf("hyperfocal %s\n", hf_version());
     else if (!status)

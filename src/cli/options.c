@@ -11,7 +11,7 @@ _Static_assert(sizeof(enum hf_isa) == sizeof(int) && sizeof(enum hf_engine) == s
 // clang-format off
 const char *const cli_group_names[CLI_GROUPS] = {
     [CLI_FILES] = "Files",
-    [CLI_FOCUS] = "Focus and range (scene units are those of the depth)",
+    [CLI_FOCUS] = "Focus and range (in scene units, those of the depth; 1.2m or 80cm will do)",
     [CLI_LENS] = "Lens",
     [CLI_DEPTH] = "Depth",
     [CLI_LOOK] = "Look",
@@ -41,7 +41,7 @@ const struct cli_option cli_options[] = {
 
     {"focus", 0, CLI_FOCUS, "D|center", "Distance in perfect focus, scene units, more than 0; or center: what the "
      "middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,
-     .max = FLT_MAX, .above_min = 1},
+     FIELD(focus), .unit = CLI_UNIT_DISTANCE, .max = FLT_MAX, .above_min = 1},
     {"focus-at", 0, CLI_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates.",
      .parse = cli_parse_focus_at},
     {"focus-smooth", 0, CLI_FOCUS, "N", "A focus that is read from the pictures of a shot follows the mean of N frames "
@@ -56,26 +56,29 @@ const struct cli_option cli_options[] = {
     {"keys-blend", 0, CLI_FOCUS, "linear|smooth", "How values go from key to key. Default linear.",
      CHOICE(keys_blend)},
     {"range", 0, CLI_FOCUS, "D", "Distance from the focus to full blur, scene units, 0 or more, or inf. Default: "
-     "half the focus distance.", NUMBER(range, 0, FLT_MAX), .inf = 1},
+     "half the focus distance.", NUMBER(range, 0, FLT_MAX), .unit = CLI_UNIT_DISTANCE, .inf = 1},
+    {"depth-of-field", 0, CLI_FOCUS, "D", "What lies within half of this before and behind the focus is sharp, scene "
+     "units; blur grows from there on over the range. Default 0.", NUMBER(depth_of_field, 0, FLT_MAX),
+     .unit = CLI_UNIT_DISTANCE},
     {"strength", 0, CLI_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1)},
     {"near-begin", 0, CLI_FOCUS, "D", "Near blur is full up to here, scene units. Default: focus - range.",
-     NUMBER(near_begin, 0, FLT_MAX)},
+     NUMBER(near_begin, 0, FLT_MAX), .unit = CLI_UNIT_DISTANCE},
     {"near-end", 0, CLI_FOCUS, "D", "Near blur ends here, scene units. Default: the focus.",
-     NUMBER(near_end, 0, FLT_MAX)},
+     NUMBER(near_end, 0, FLT_MAX), .unit = CLI_UNIT_DISTANCE},
     {"far-begin", 0, CLI_FOCUS, "D", "Far blur begins here, scene units. Default: the focus.",
-     NUMBER(far_begin, 0, FLT_MAX)},
+     NUMBER(far_begin, 0, FLT_MAX), .unit = CLI_UNIT_DISTANCE},
     {"far-end", 0, CLI_FOCUS, "D", "Far blur is full from here on, scene units. Default: focus + range.",
-     NUMBER(far_end, 0, FLT_MAX)},
-    {"max-radius", 0, CLI_FOCUS, "PX", "Largest blur radius, pixels, 0 (none) to 2048. Default: 12 at 1080 lines, "
-     "in proportion to the height.", NUMBER(params.max_radius, 0, 2048)},
+     NUMBER(far_end, 0, FLT_MAX), .unit = CLI_UNIT_DISTANCE},
+    {"max-radius", 0, CLI_FOCUS, "PX", "Largest blur radius, pixels, 0 (none) to 2048. Default: with a lens that "
+     "of the lens, else 12 at 1080 lines, in proportion to the height.", NUMBER(params.max_radius, 0, 2048)},
 
     {"fstop", 0, CLI_LENS, "N", "f-number, more than 0, or inf (no blur). Default: the header's aperture.",
-     POSITIVE(fstop), .inf = 1},
+     POSITIVE(fstop), .unit = CLI_UNIT_FSTOP, .inf = 1},
     {"focal-length", 0, CLI_LENS, "MM", "Focal length, millimetres. Default: the header's pinholeFocalLength.",
-     POSITIVE(focal_length)},
+     POSITIVE(focal_length), .unit = CLI_UNIT_MM},
     {"sensor-width", 0, CLI_LENS, "MM", "Width of the sensor, millimetres. Default: the header's "
-     "sensorOverallDimensions, else 36.", POSITIVE(sensor_width)},
-    {"world-unit", 0, CLI_LENS, "M", "Metres in one scene unit. Default 1.", POSITIVE(world_unit)},
+     "sensorOverallDimensions, else 36.", POSITIVE(sensor_width), .unit = CLI_UNIT_MM},
+    {"world-unit", 0, CLI_LENS, "M", "Metres in one scene unit. Default 1.", POSITIVE(world_unit), .unit = CLI_UNIT_M},
 
     {"depth-channel", 0, CLI_DEPTH, "NAME", "Full name of the depth channel. Default: the view's Z or depth.Z, else "
      "the only channel with depth in its name.", TEXT(depth_channel)},
@@ -86,15 +89,17 @@ const struct cli_option cli_options[] = {
      "(ndc-gl) or 1 to 0 (ndc-reversed), which need --near and --far; 1/distance; or signed blur radii in pixels, "
      "near ones negative (coc), which need no focus.", NAME(depth_type, DEPTH_TYPE)},
     {"near", 0, CLI_DEPTH, "D", "Near clip plane of an ndc depth, scene units; with gaussian of any.",
-     POSITIVE(near_plane)},
+     POSITIVE(near_plane), .unit = CLI_UNIT_DISTANCE},
     {"far", 0, CLI_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf; with gaussian of any.",
-     POSITIVE(far_plane), .inf = 1},
+     POSITIVE(far_plane), .unit = CLI_UNIT_DISTANCE, .inf = 1},
 
-    {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian", "How to blur. gather (default): half-resolution near "
-     "and far fields, the fastest. hexagon: hexagonal highlights in two passes. scatter: every pixel becomes the "
-     "aperture's picture, the most accurate. gaussian: soft, with autofocus.", NAME(params.engine, ENGINE)},
-    {"aperture", 0, CLI_LOOK, "disc|ngon:N[:ROUNDNESS[:DEGREES]]|ring:R|FILE", "Shape of a highlight: a disc "
-     "(default), or a polygon with 3 to 16 sides turned by some degrees. scatter: rounded by 0 to 1; a "
+    {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian", "How to blur. scatter (default): every pixel becomes "
+     "the aperture's picture, the most accurate. gather: half-resolution near and far fields, the fastest. hexagon: "
+     "hexagonal highlights in two passes. gaussian: soft, with autofocus.", NAME(engine, ENGINE)},
+    {"quality", 0, CLI_LOOK, "draft|standard|high|best", "In place of --engine: draft is the gather, all others are the "
+     "scatter.", CHOICE(quality)},
+    {"aperture", 0, CLI_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
+     "(default), or a polygon with 3 to 16 sides turned by some degrees. scatter: rounded by 0 to 1 (a lone number above 1 is the degrees); a "
      "ring whose hole has R of the radius, 0 to 0.95; or the picture in FILE. hexagon: ngon:6 and the degrees.",
      .parse = cli_parse_aperture},
     {"chromatic", 0, CLI_LOOK, "S", "scatter: red highlights larger by this fraction and blue ones smaller behind the "
@@ -150,7 +155,9 @@ const struct cli_option cli_options[] = {
      "FILE unless there is no other INPUT.", .parse = cli_parse_json},
     {"dump-passes", 0, CLI_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},
     {"dry-run", 0, CLI_RUN, NULL, "Say what would be done, write nothing.", FLAG(dry_run)},
-    {"help", 'h', CLI_RUN, NULL, "Print this.", FLAG(help)},
+    {"verbose", 0, CLI_RUN, NULL, "Say in a line what was done with each frame, as on a terminal.", FLAG(verbose)},
+    {"quiet", 0, CLI_RUN, NULL, "Do not, on a terminal either.", FLAG(quiet)},
+    {"help", 'h', CLI_RUN, "[all]", "Print the usual options; --help=all: all of them.", .parse = cli_parse_help},
     {"version", 0, CLI_RUN, NULL, "Print the version.", FLAG(version)},
 };
 // clang-format on

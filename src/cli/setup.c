@@ -35,8 +35,8 @@ static enum cli_model choose_model(const struct cli_args *args, const struct hf_
 {
     if (args->depth_type == HF_DEPTH_COC)
         return CLI_MODEL_COC;
-    if (given(args->range) || given(args->strength) || given(args->near_begin) || given(args->near_end) ||
-        given(args->far_begin) || given(args->far_end))
+    if (given(args->range) || given(args->depth_of_field) || given(args->strength) || given(args->near_begin) ||
+        given(args->near_end) || given(args->far_begin) || given(args->far_end))
         return CLI_MODEL_RANGE;
     if (given(args->fstop) || given(args->focal_length))
         return CLI_MODEL_LENS;
@@ -160,6 +160,7 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
         p->range.distance = args->range;
     if (given(args->strength))
         p->range.strength = args->strength;
+    const float half = given(args->depth_of_field) ? args->depth_of_field / 2 : 0;
     if (given(args->near_begin))
         p->range.near_begin = args->near_begin;
     if (given(args->near_end))
@@ -175,16 +176,22 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
         return 0;
     const float focus = p->focus;
     const float range = given(args->range) ? args->range : focus / 2;
-    const float near_begin = given(args->near_begin) ? args->near_begin : fmaxf(0, focus - range);
-    const float near_end = given(args->near_end) ? args->near_end : focus;
-    const float far_begin = given(args->far_begin) ? args->far_begin : focus;
-    const float far_end = given(args->far_end) ? args->far_end : focus + range;
+    const float near_end = given(args->near_end) ? args->near_end : fmaxf(0, focus - half);
+    const float near_begin = given(args->near_begin) ? args->near_begin : fmaxf(0, focus - half - range);
+    const float far_begin = given(args->far_begin) ? args->far_begin : focus + half;
+    const float far_end = given(args->far_end) ? args->far_end : focus + half + range;
     if (near_begin > near_end)
         return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --near-begin %g is beyond --near-end %g (focus %g, range %g)",
                         label, near_begin, near_end, focus, range);
     if (far_begin > far_end)
         return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --far-begin %g is beyond --far-end %g (focus %g, range %g)",
                         label, far_begin, far_end, focus, range);
+    if (half > 0) {
+        p->range.near_begin = near_begin;
+        p->range.near_end = near_end;
+        p->range.far_begin = far_begin;
+        p->range.far_end = far_end;
+    }
     return 0;
 }
 

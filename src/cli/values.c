@@ -2,6 +2,8 @@
 // Parsers of option values. Strict: the whole word must be the value, and in range.
 #include "cli/args.h"
 
+#include "cli/nearest.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <float.h>
@@ -42,12 +44,45 @@ static int read_number(const char *text, double *value)
     return isinf(*value) && errno == ERANGE ? -1 : 0;
 }
 
-static int number(const struct cli_option *option, const char *text, float *out, struct cli_error *error)
+// The number before a unit, in the option's own; *metric: it is in metres.
+static int read_measure(const struct cli_option *option, const char *text, double *value, int *metric)
+{
+    static const struct {
+        const char *name;
+        double metres;
+    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
+    const size_t length = strlen(text);
+    char number[64];
+    *metric = 0;
+    if (option->unit == CLI_UNIT_FSTOP && (text[0] == 'f' || text[0] == 'F') && text[1] == '/')
+        return read_number(text + 2, value);
+    const int takes = option->unit == CLI_UNIT_DISTANCE || option->unit == CLI_UNIT_MM || option->unit == CLI_UNIT_M;
+    for (int i = 0; i < 3 && takes; i++) {
+        const size_t n = strlen(units[i].name);
+        if (length <= n || length - n >= sizeof(number) || strcmp(text + length - n, units[i].name) ||
+            !(isdigit((unsigned char)text[length - n - 1]) || text[length - n - 1] == '.'))
+            continue;
+        snprintf(number, sizeof(number), "%.*s", (int)(length - n), text);
+        if (read_number(number, value))
+            return -1;
+        *value *= units[i].metres * (option->unit == CLI_UNIT_MM ? 1000 : 1);
+        *metric = option->unit == CLI_UNIT_DISTANCE;
+        return 0;
+    }
+    return read_number(text, value);
+}
+
+static int number(struct cli_args *args, const struct cli_option *option, const char *text, float *out,
+                  struct cli_error *error)
 {
     char limits[64];
     double value;
+    int metric;
     describe_limits(option, limits, sizeof(limits));
-    if (read_number(text, &value))
+    for (int i = 0; i < args->metric_count; i++)
+        if (args->metric[i] == option->offset)
+            args->metric[i--] = args->metric[--args->metric_count];
+    if (read_measure(option, text, &value, &metric))
         return cli_fail(error, -1, "--%s: '%s' is not a number, it must be %s", option->name, text, limits);
     // The library computes in float, so that is what has to be in range.
     const float f = (float)value + 0.0f;
@@ -55,6 +90,16 @@ static int number(const struct cli_option *option, const char *text, float *out,
     if (!is_inf && (isinf(f) || f < option->min || f > option->max || (option->above_min && f <= option->min)))
         return cli_fail(error, -1, "--%s: '%s' is out of range, it must be %s", option->name, text, limits);
     *out = f;
+    if (metric && args->metric_count < CLI_METRIC)
+        args->metric[args->metric_count++] = option->offset;
+    return 0;
+}
+
+int cli_parse_help(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
+{
+    (void)option;
+    (void)error;
+    args->help = value && !strcmp(value, "all") ? 2 : 1;
     return 0;
 }
 
@@ -68,7 +113,7 @@ int cli_parse_flag(struct cli_args *args, const struct cli_option *option, const
 
 int cli_parse_number(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
 {
-    return number(option, value, field(args, option), error);
+    return number(args, option, value, field(args, option), error);
 }
 
 // A decimal integer; *end is what follows it.
@@ -116,18 +161,40 @@ static int find_choice(const char *list, const char *word)
     return -1;
 }
 
+// Place of the word in "a|b|c" that is nearest to one that is not there; -1 if none is near.
+static int nearest_choice(const char *list, const char *word)
+{
+    const int length = (int)strlen(word);
+    int best = -1, least = 0;
+    for (int i = 0; *list; i++) {
+        const int n = (int)strcspn(list, "|"), distance = cli_word_distance(list, n, word, length);
+        if (cli_is_near(distance, n) && (best < 0 || distance < least)) {
+            best = i;
+            least = distance;
+        }
+        list += n + (list[n] == '|');
+    }
+    return best;
+}
+
 static int choice(const struct cli_option *option, const char *value, struct cli_error *error)
 {
     const int i = find_choice(option->placeholder, value);
-    char list[128] = "";
-    for (const char *c = option->placeholder; i < 0 && *c && strlen(list) < sizeof(list) - 3; c++) {
+    if (i >= 0)
+        return i;
+    char list[128] = "", meant[64] = "";
+    for (const char *c = option->placeholder; *c && strlen(list) < sizeof(list) - 3; c++) {
         const char piece[3] = {*c == '|' ? ',' : *c, *c == '|' ? ' ' : '\0', '\0'};
         strcat(list, piece);
     }
-    if (i < 0)
-        return cli_fail(error, -1, "--%s: '%s' is unknown, there %s %s", option->name, value,
-                        strchr(option->placeholder, '|') ? "are" : "is", list);
-    return i;
+    const char *word = option->placeholder;
+    const int near = nearest_choice(word, value);
+    for (int k = 0; k < near; k++)
+        word = strchr(word, '|') + 1;
+    if (near >= 0)
+        snprintf(meant, sizeof(meant), " (did you mean %.*s?)", (int)strcspn(word, "|"), word);
+    return cli_fail(error, -1, "--%s: '%s' is unknown, there %s %s%s", option->name, value,
+                    strchr(option->placeholder, '|') ? "are" : "is", list, meant);
 }
 
 int cli_parse_name(struct cli_args *args, const struct cli_option *option, const char *value, struct cli_error *error)
@@ -162,7 +229,7 @@ int cli_parse_focus(struct cli_args *args, const struct cli_option *option, cons
     args->focus_by = CLI_FOCUS_DISTANCE;
     if (isalpha((unsigned char)value[0]) && strncasecmp(value, "inf", 3))
         return cli_fail(error, -1, "--focus: '%s' is neither a distance nor center", value);
-    return number(option, value, &args->focus, error);
+    return number(args, option, value, &args->focus, error);
 }
 
 int cli_parse_focus_at(struct cli_args *args, const struct cli_option *option, const char *value,
@@ -182,6 +249,7 @@ static int parse_ngon(struct hf_params *params, const char *value, struct cli_er
     char *end, part[32];
     const char *text = value + strlen("ngon:");
     double number[2] = {0, 0};  // roundness, degrees
+    int count = 0;
     if (read_int(text, &params->aperture.blades, &end) || (*end && *end != ':') || params->aperture.blades < 3 ||
         params->aperture.blades > 16)
         return cli_fail(error, -1, "--aperture: '%s' must have 3 to 16 sides, as in ngon:6", value);
@@ -191,6 +259,12 @@ static int parse_ngon(struct hf_params *params, const char *value, struct cli_er
         if (i > 1 || n >= sizeof(part) || read_number(part, &number[i]) || !isfinite((float)number[i]))
             return cli_fail(error, -1, "--aperture: '%s' is not ngon:N[:ROUNDNESS[:DEGREES]]", value);
         end += 1 + n;
+        count++;
+    }
+    // ngon:6:15 is turned by 15 degrees.
+    if (count == 1 && fabs(number[0]) > 1) {
+        number[1] = number[0];
+        number[0] = 0;
     }
     if (!(number[0] >= 0 && number[0] <= 1))
         return cli_fail(error, -1, "--aperture: '%s' must be rounded by 0 to 1", value);

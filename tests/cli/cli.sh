@@ -156,13 +156,17 @@ PYTHON
 }
 
 # ---- what needs no picture
-run --help
+run --help=all
 [ "$status" -eq 0 ] && [ ! -s "$dir/err" ] && contains "$dir/out" "--near-begin" && contains "$dir/out" "Default"
-result "--help" $?
+result "--help=all" $?
 cp "$dir/out" "$dir/help"
 run -h
-[ "$status" -eq 0 ] && cmp -s "$dir/out" "$dir/help"
+cp "$dir/out" "$dir/short"
+run --help
+[ "$status" -eq 0 ] && cmp -s "$dir/out" "$dir/short"
 result "-h is --help" $?
+[ "$(wc -l <"$dir/short")" -le 50 ]
+result "--help fits a screen" $?
 for option in output focus focus-at range strength near-begin near-end far-begin far-end fstop focal-length \
     sensor-width world-unit max-radius depth-channel depth-file depth-type near far views aperture karis \
     per-pixel-kernel bicubic fill blend threads isa no-skip json dump-passes compression dry-run version engine \
@@ -195,7 +199,7 @@ bad 1 "--frames|####|a.exr" a.exr -o o.exr --frames=1-2
 bad 1 "--bogus|--help" a.exr -o o.exr --bogus
 bad 1 "--bogus=3|--help" a.exr -o o.exr --bogus=3
 bad 1 "-q|--help" -q a.exr -o o.exr
-for option in --quality=high --frame=1-2 --resumed; do
+for option in --qualities=high --frame=1-2 --resumed; do
     bad 1 "$option|--help" a.exr -o o.exr $option
 done
 bad 1 "-o" a.exr -o
@@ -243,26 +247,35 @@ bad 1 "--compression|'lzma'|piz" a.exr -o o.exr --compression lzma
 bad 1 "--compression|zip|o.png" a.exr -o o.png --compression zip
 for value in ngon ngon: ngon:2 ngon:17 ngon:x ngon:6:x ngon:6:0:x ngon:6:0:1:2 ngon:6: ngon:6:0:inf ngon:6:0.5 \
     ring:0.5 star.png; do
-    bad 1 "--aperture|'$value'" a.exr -o o.exr --aperture $value
+    bad 1 "--aperture|'$value'" a.exr -o o.exr --engine gather --aperture $value
 done
-bad 1 "--aperture|ring:0.5|disc or ngon" a.exr -o o.exr --aperture ring:0.5
+bad 1 "--aperture|ring:0.5|disc or ngon" a.exr -o o.exr --engine gather --aperture ring:0.5
 for value in 0 -1 inf nan x; do
     bad 1 "--budget-ms|'$value'" a.exr -o o.exr --budget-ms $value
 done
 bad 1 "--rings|'65'" a.exr -o o.exr --rings 65
 bad 1 "--chromatic|'0.6'" a.exr -o o.exr --engine scatter --chromatic 0.6
-bad 1 "--chromatic|scatter|gather" a.exr -o o.exr --chromatic 0.1
+bad 1 "--chromatic|scatter|gather" a.exr -o o.exr --quality draft --chromatic 0.1
+bad 1 "--engine|--quality" a.exr -o o.exr --engine gather --quality draft
+bad 1 "--quality|'drafty'|draft?" a.exr -o o.exr --quality drafty
+bad 1 "--focsu|--focus?" a.exr -o o.exr --focsu 3
+bad 1 "--engine|'scater'|scatter?" a.exr -o o.exr --engine scater
+bad 1 "--fstop|'f/x'" a.exr -o o.exr --fstop f/x
+bad 1 "--focus|'3km'" a.exr -o o.exr --focus 3km
+bad 1 "--max-radius|'3mm'" a.exr -o o.exr --max-radius 3mm
+bad 1 "--depth-of-field|--fstop" a.exr -o o.exr --depth-of-field 3 --fstop 2
+bad 1 "--verbose|--quiet" a.exr -o o.exr --verbose --quiet
 bad 1 "--cat-eye|scatter|hexagon" a.exr -o o.exr --engine hexagon --cat-eye 0.1
-bad 1 "--squeeze|scatter" a.exr -o o.exr --squeeze 2
+bad 1 "--squeeze|scatter" a.exr -o o.exr --engine gather --squeeze 2
 bad 1 "--uniform|hexagon" a.exr -o o.exr --uniform
 bad 1 "--iterations|gaussian" a.exr -o o.exr --iterations 4
 bad 1 "--sigma|gaussian" a.exr -o o.exr --sigma 4
-bad 1 "--resolution half|hexagon" a.exr -o o.exr --resolution half
+bad 1 "--resolution half|hexagon" a.exr -o o.exr --engine gather --resolution half
 bad 1 "--resolution quarter|gaussian|scatter" a.exr -o o.exr --engine scatter --resolution quarter
 bad 1 "--karis|gather|scatter" a.exr -o o.exr --engine scatter --karis
 bad 1 "--storage|gather|hexagon" a.exr -o o.exr --engine hexagon --storage half
 bad 1 "--explain-image|''" a.exr -o o.exr --explain-image ""
-for value in ngon:2 ngon:17 ngon:6:1.5 ring:1 ring:x; do
+for value in ngon:2 ngon:17 ngon:6:1.5:3 ring:1 ring:x; do
     bad 1 "--aperture|$value" a.exr -o o.exr --engine scatter --aperture $value
 done
 bad 1 "--range|--fstop" a.exr -o o.exr --range 3 --fstop 2
@@ -374,9 +387,19 @@ picture_tests() {
     good plain.exr --output=o.exr --focus=3 --range=inf
     good -o o.exr --focus 3 -- plain.exr
     good plain.exr -o o.exr --focus 3 --fstop inf --focal-length 50
-    good plain.exr -o o.exr --focus 3 --range 2 --karis --per-pixel-kernel --bicubic --fill mean --blend smoothstep
-    good plain.exr -o o.exr --focus 3 --fill none --aperture ngon:6:0:15 --threads 2 --no-skip --storage half
-    good plain.exr -o o.exr --focus 3 --faithful --storage chapter --aperture disc --isa scalar
+    # Units, whatever their order; a depth of field; what the default is.
+    plan "focus 1.2 from --focus|f/2.8|focal length 50 mm" plain.exr --focus 1.2m --fstop f/2.8 --focal-length 5cm
+    plan "engine scatter|focus 12 from --focus|sensor 36 mm" plain.exr --focus 120cm --world-unit 0.1 --fstop 2 \
+        --focal-length 50mm --sensor-width 0.036m
+    plan "focus 3 |none from 2.5; far blur none up to 3.5" plain.exr --focus 3 --depth-of-field 1
+    plan "engine gather|rings of taps" plain.exr --focus 3 --quality draft --max-radius 40
+    run plain.exr -o o.exr --focus 3 --range 2 --verbose
+    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "scatter, focus 3" &&
+        contains "$dir/err" "0 warnings"
+    result "--verbose" $?
+    good plain.exr --engine gather -o o.exr --focus 3 --range 2 --karis --per-pixel-kernel --bicubic --fill mean --blend smoothstep
+    good plain.exr --engine gather -o o.exr --focus 3 --fill none --aperture ngon:6:0:15 --threads 2 --no-skip --storage half
+    good plain.exr --engine gather -o o.exr --focus 3 --faithful --storage chapter --aperture disc --isa scalar
     good plain.exr -o o.exr --focus 3 --max-radius 0 --deterministic
     good plain.exr -o o.exr --focus 3 --engine scatter
     good plain.exr -o o.exr --focus 3 --engine scatter --max-radius 8 --aperture ngon:4:0.5:30 --chromatic 0.1 --resolution half
@@ -479,17 +502,17 @@ picture_tests() {
     result "NaN is repaired, counted and reported" $?
 
     # What the picture called for.
-    good plain.exr -o o.exr --focus 3 --explain
+    good plain.exr --engine gather -o o.exr --focus 3 --explain
     contains "$dir/out" "Computation" && contains "$dir/out" "tiles of" && contains "$dir/out" "memory"
     result "--explain prints a table" $?
-    good plain.exr -o o.exr --focus 3 --range inf --explain
+    good plain.exr --engine gather -o o.exr --focus 3 --range inf --explain
     contains "$dir/out" "no blur at all"
     result "--explain says why" $?
     rm -f o.exr
-    run plain.exr --focus 3 --explain --dry-run
+    run plain.exr --engine gather --focus 3 --explain --dry-run
     [ "$status" -eq 0 ] && contains "$dir/out" "predicted" && ! contains "$dir/out" "measured" && [ ! -e o.exr ]
     result "--explain --dry-run" $?
-    run plain.exr -o o.exr --focus 3 --explain --json
+    run plain.exr --engine gather -o o.exr --focus 3 --explain --json
     [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"predicted_ms"' &&
         contains "$dir/out" '"memory_saved"' && contains "$dir/err" "Computation"
     result "--explain --json" $?
@@ -500,19 +523,19 @@ picture_tests() {
     [ -s tiles.left.exr ] && [ -s tiles.right.exr ]
     result "--explain-image of two views" $?
     rm -f tiles.exr tiles.left.exr tiles.right.exr
-    good plain.exr -o o.exr --focus 3 --budget-ms 100 --rings 2 --json
+    good plain.exr --engine gather -o o.exr --focus 3 --budget-ms 100 --rings 2 --json
     contains "$dir/out" '"budget_step": 0' && contains "$dir/out" '"rings": 2'
     result "--budget-ms and --rings" $?
 
     passes="coc coc4 cocmaxx cocmax cocblurx cocblur color4 colormulcoc4 near far nearfill farfill composite"
-    good plain.exr -o o.exr --focus 3 --dump-passes passes
+    good plain.exr --engine gather -o o.exr --focus 3 --dump-passes passes
     for pass in $passes; do
         [ -s "passes/$pass.exr" ]
         result "--dump-passes writes $pass.exr" $?
     done
     [ "$(find passes -type f | wc -l)" -eq 13 ]
     result "--dump-passes writes nothing else" $?
-    good stereo.exr -o o.exr --focus 3 --dump-passes passes
+    good stereo.exr --engine gather -o o.exr --focus 3 --dump-passes passes
     for pass in $passes; do
         [ -s "passes/left.$pass.exr" ] && [ -s "passes/right.$pass.exr" ]
         result "--dump-passes writes left.$pass.exr and right.$pass.exr" $?
