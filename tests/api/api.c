@@ -168,7 +168,7 @@ static void bad_images(struct hf_context *c)
     SPOIL(dst.height = 70000);
     SPOIL(dst.width = 19);
     SPOIL(src.height = 9);
-    SPOIL(src.format = (enum hf_format)9);
+    SPOIL(src.format = (enum hf_format)99);
     SPOIL(dst.format = (enum hf_format) - 1);
     SPOIL(src.data[0] = NULL);
     SPOIL(src.data[2] = NULL);
