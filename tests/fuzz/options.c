@@ -28,6 +28,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     MUST(err == 0 || err == -1);
     MUST(!err == !error.text[0]);
     MUST(memchr(error.text, 0, sizeof error.text) != NULL);
+    cli_free_args(&args);
     free(text);
     return 0;
 }
