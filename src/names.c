@@ -16,6 +16,7 @@ static const char *const storages[] = {"float", "half", "packed", NULL};
 static const char *const fills[] = {"max", "mean", "none", NULL};
 static const char *const blends[] = {"linear", "smoothstep", NULL};
 static const char *const tiles[] = {"sharp", "near", "far", "both", NULL};
+static const char *const qualities[] = {"draft", "standard", "high", "best", NULL};
 static const char *const limits[] = {"none", "given", "model", "engine", "picture", NULL};
 
 // Instruction sets and engines have their names where they are defined.
@@ -32,6 +33,7 @@ static const char *const *const lists[HF_NAMES_COUNT] = {
     [HF_NAMES_BLEND] = blends,
     [HF_NAMES_TILE] = tiles,
     [HF_NAMES_LIMIT] = limits,
+    [HF_NAMES_QUALITY] = qualities,
 };
 
 const char *hf_name(enum hf_names of, int value)

@@ -254,6 +254,7 @@ enum hf_names {
     HF_NAMES_BLEND,         // linear, smoothstep
     HF_NAMES_TILE,          // sharp, near, far, both
     HF_NAMES_LIMIT,         // none, given, model, engine, picture
+    HF_NAMES_QUALITY,       // draft, standard, high, best
     HF_NAMES_COUNT
 };
 HF_API const char *hf_name(enum hf_names of, int value);
@@ -383,8 +384,8 @@ struct hf_run_params {
     // Look at the colour of what will be blurred, for hf_report. Default 0: that takes time and serves nothing else.
     int colour_stats;
     // Milliseconds that a frame may take, 0 (default): any. What was asked for is then the best that a frame may be;
-    // if earlier frames of this context took longer, cheaper settings are tried in turn: smaller working buffers, the
-    // gather in place of a costlier engine, fewer rings of taps. It goes back only when the better setting would
+    // if earlier frames of this context took longer, cheaper settings are tried in turn, those of the ladder from which
+    // hf_choose_quality chooses. It goes back only when the better setting would
     // leave a fifth of the budget for a dozen frames on end, so that a shot does not flicker between two looks.
     float budget_ms;
 };
@@ -421,6 +422,34 @@ HF_API extern const struct hf_params hf_default_params;
 // be NULL (defaults). On error the pixels of dst are unspecified. Errors: HF_ERR_ARG, HF_ERR_MEMORY.
 HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params);
+
+// How good a picture has to be. Settings that are worth having lie on a ladder, each slower than the one before and on no
+// measured scene farther from what a ray tracer sees; a quality is a step of it.
+enum hf_quality {
+    HF_QUALITY_DRAFT,     // the cheapest
+    HF_QUALITY_STANDARD,  // the cheapest within 1 dB of the best
+    HF_QUALITY_HIGH,      // the cheapest within 0.25 dB of it
+    HF_QUALITY_BEST,      // the most accurate
+};
+
+// What was chosen, and what it is expected to cost and err: as `hyperfocal-bench tradeoff` measured it on ray-traced
+// scenes of 1280 x 720 with CoC radii of up to 57 pixels. Other machines and scenes differ.
+struct hf_choice {
+    int step, steps;       // 0 is the cheapest, of how many
+    const char *options;   // the command's words for it; lives as long as the library
+    float error, worst;    // root mean square distance of the display-encoded picture, 0..1: geometric mean over the
+                           // scenes, and of the worst
+    float ms;              // milliseconds of a megapixel
+    const char *measured;  // when and on what machine
+};
+
+// Set the engine and its knobs to those of a quality and leave all else as it is. Where that engine cannot draw
+// params->aperture, the next better one that can is taken. choice may be NULL. Errors: HF_ERR_ARG for a quality that is
+// none.
+HF_API int hf_choose_quality(struct hf_params *params, enum hf_quality quality, struct hf_choice *choice);
+// The same by the largest error that is acceptable, as in hf_choice: more than 0, at most 1. The cheapest step that is
+// expected to err no more, or the last one, whose error may then be larger.
+HF_API int hf_choose_error(struct hf_params *params, float error, struct hf_choice *choice);
 
 // What parameters come to for a picture: numbers only.
 struct hf_resolved {

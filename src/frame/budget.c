@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/budget.h"
 
-#include "frame/engine.h"
+#include "frame/ladder.h"
 
 // Frames beyond the budget before a cheaper setting; frames with room before the better one again, twice as many each
 // time that it turned out too slow.
@@ -9,37 +9,20 @@ enum { OVER = 2, PATIENCE = 12, MOST_PATIENCE = 192 };
 // Part of the budget that the better setting may be expected to take: what lies between is hysteresis.
 static const float ROOM = 0.8f;
 
-static int add(struct hf_params *ladder, int n, const struct hf_params *p)
+int hf_budget_ladder(const struct hf_params *asked, struct hf_params ladder[HF_BUDGET_STEPS])
 {
-    if (n < HF_BUDGET_STEPS)
-        ladder[n++] = *p;
-    return n;
-}
-
-// The engine's own cheaper settings.
-static int add_cheaper(struct hf_params *ladder, int n, float radius)
-{
-    const struct hf_params best = ladder[n - 1];
-    for (int step = 1;; step++) {
-        struct hf_params p = best;
-        if (!hf_engine_def(p.engine)->cheaper || !hf_engine_def(p.engine)->cheaper(&p, radius, step))
-            return n;
-        n = add(ladder, n, &p);
+    const float ms = hf_ladder_ms(asked);
+    int n = 0;
+    ladder[n++] = *asked;
+    for (int i = hf_ladder_steps - 1; i >= 0 && n < HF_BUDGET_STEPS; i--) {
+        if (hf_ladder[i].ms >= ms)
+            continue;
+        struct hf_params *p = &ladder[n++];
+        *p = *asked;
+        hf_ladder_apply(p, i);
+        hf_ladder_reshape(p);
     }
-}
-
-int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS])
-{
-    struct hf_params p = *asked;
-    int n = add(ladder, 0, &p);
-    n = add_cheaper(ladder, n, radius);
-    if (!hf_engine_def(p.engine)->gives_up)
-        return n;
-    p = ladder[n - 1];
-    p.engine = hf_default_params.engine;
-    hf_engine_def(p.engine)->adopt(&p, radius);
-    n = add(ladder, n, &p);
-    return add_cheaper(ladder, n, radius);
+    return n;
 }
 
 // What the ladder hangs on.

@@ -123,12 +123,6 @@ struct hf_engine_def {
 
     // Options that change what a unit of work costs; returns how many, at most HF_COST_NUMBERS. *reach: of its blur.
     int (*cost)(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach);
-    // Make *p the step-th cheaper setting within the engine, step >= 1, and return 1, or 0 if there are no more. radius:
-    // the largest there may be.
-    int (*cheaper)(struct hf_params *p, float radius, int step);
-    // After these, the default engine's settings. Then that makes the parameters some that it takes.
-    int gives_up;
-    void (*adopt)(struct hf_params *p, float radius);
 };
 
 // NULL for a number that is no engine.

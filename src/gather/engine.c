@@ -191,36 +191,6 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     return 4;
 }
 
-// Storage in floats, as packing costs more here than the memory that it saves; then two thirds and one third of the rings.
-static int cheaper(struct hf_params *p, float radius, int step)
-{
-    struct hf_gather_params *g = &p->gather;
-    const int all = g->rings == HF_DERIVE ? hf_taps_rings(radius / 2) : g->rings;
-    int last = all;
-    if (g->storage != HF_STORAGE_FLOAT && !g->faithful) {
-        g->storage = HF_STORAGE_FLOAT;
-        if (--step == 0)
-            return 1;
-    }
-    for (int thirds = 2; thirds > 0 && g->fill != HF_FILL_NONE; thirds--) {
-        const int some = (all * thirds + 2) / 3;
-        if (some < last && --step == 0) {
-            g->rings = some;
-            return 1;
-        }
-        last = some;
-    }
-    return 0;
-}
-
-static void adopt(struct hf_params *p, float radius)
-{
-    p->aperture = (struct hf_aperture_params){
-        .blades = p->aperture.blades, .rotation = p->aperture.rotation, .squeeze = hf_default_params.aperture.squeeze};
-    if (radius >= 256)
-        p->max_radius = 256;
-}
-
 HF_CHOOSE_KERNELS(hf_gather_kernels)
 
 void hf_gather_kernels_c(struct hf_gather_kernels *k)
@@ -266,6 +236,4 @@ const struct hf_engine_def hf_gather_engine = {
     .cell = cell,
     .work = work,
     .cost = cost,
-    .cheaper = cheaper,
-    .adopt = adopt,
 };

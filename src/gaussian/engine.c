@@ -181,15 +181,6 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     return 3;
 }
 
-static int cheaper(struct hf_params *p, float radius, int step)
-{
-    (void)radius;
-    if ((int)p->gaussian.resolution + step > HF_RESOLUTION_QUARTER)
-        return 0;
-    p->gaussian.resolution = (enum hf_resolution)((int)p->gaussian.resolution + step);
-    return 1;
-}
-
 HF_CHOOSE_KERNELS(hf_gaussian_kernels)
 
 void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
@@ -233,5 +224,4 @@ const struct hf_engine_def hf_gaussian_engine = {
     .runs = runs,
     .cell = cell,
     .cost = cost,
-    .cheaper = cheaper,
 };

@@ -323,15 +323,6 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     return 2;
 }
 
-static int cheaper(struct hf_params *p, float radius, int step)
-{
-    (void)radius;
-    if (step > 1 || p->hexagon.resolution != HF_RESOLUTION_FULL)
-        return 0;
-    p->hexagon.resolution = HF_RESOLUTION_HALF;
-    return 1;
-}
-
 HF_CHOOSE_KERNELS(hf_hexagon_kernels)
 
 void hf_hexagon_kernels_c(struct hf_hexagon_kernels *k)
@@ -373,6 +364,4 @@ const struct hf_engine_def hf_hexagon_engine = {
     .cell = cell,
     .work = work,
     .cost = cost,
-    .cheaper = cheaper,
-    .gives_up = 1,
 };

@@ -260,15 +260,6 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     return 1;
 }
 
-static int cheaper(struct hf_params *p, float radius, int step)
-{
-    (void)radius;
-    if (step > 1 || p->scatter.resolution != HF_RESOLUTION_FULL)
-        return 0;
-    p->scatter.resolution = HF_RESOLUTION_HALF;
-    return 1;
-}
-
 HF_CHOOSE_KERNELS(hf_scatter_kernels)
 
 void hf_scatter_kernels_c(struct hf_scatter_kernels *k)
@@ -324,6 +315,4 @@ const struct hf_engine_def hf_scatter_engine = {
     .cell = cell,
     .work = work,
     .cost = cost,
-    .cheaper = cheaper,
-    .gives_up = 1,
 };

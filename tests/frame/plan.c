@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "frame/budget.h"
+#include "frame/ladder.h"
 #include "support/check.h"
 #include "support/random_scene.h"
 
@@ -172,13 +173,12 @@ static void frames(struct machine *m, int n, float load, float budget)
 
 static void budget(void)
 {
-    static const float ms[HF_BUDGET_STEPS] = {10, 7, 4, 4, 4, 4, 4, 4};
+    static const float ms[HF_BUDGET_STEPS] = {10, 7, 4};
     struct machine m = {.ms = ms};
     struct hf_params p = hf_default_params;
-    p.max_radius = 24;
-    m.steps = hf_budget_ladder(&p, 24, m.ladder);
-    CHECK_INT(m.steps, 3);  // 6 rings, 4, 2
-    CHECK(m.ladder[1].gather.rings == 4 && m.ladder[2].gather.rings == 2);
+    p.engine = HF_ENGINE_SCATTER;
+    CHECK(hf_budget_ladder(&p, m.ladder) >= 3);
+    m.steps = 3;
 
     frames(&m, 50, 1, 12);
     CHECK_INT(m.b.step, 0);  // fits
@@ -206,8 +206,9 @@ static void no_flicker(void)
     static const float cheap[HF_BUDGET_STEPS] = {10, 5, 5};
     struct machine m = {.ms = cheap};
     struct hf_params p = hf_default_params;
-    p.max_radius = 24;
-    m.steps = hf_budget_ladder(&p, 24, m.ladder);
+    p.engine = HF_ENGINE_SCATTER;
+    CHECK(hf_budget_ladder(&p, m.ladder) >= 3);
+    m.steps = 3;
     frames(&m, 20, 1, 9);
     CHECK_INT(m.b.step, 1);
     for (int i = 0; i < 1000; i++)  // light frames while the cheap one runs, heavy ones for the other
@@ -215,22 +216,71 @@ static void no_flicker(void)
     CHECK_MSG(m.changes <= 20, "%d changes in 1000 frames", m.changes);
 }
 
+// What was asked for comes first; then the steps of the ladder that cost less, dearest first.
 static void ladders(void)
 {
     struct hf_params ladder[HF_BUDGET_STEPS], p = hf_default_params;
+    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+        p.engine = (enum hf_engine)e;
+        p.scatter.chromatic = 0.125f;
+        p.focus = 3;
+        const int n = hf_budget_ladder(&p, ladder);
+        CHECK(!memcmp(&ladder[0], &p, sizeof p));
+        for (int i = 1; i < n; i++) {
+            CHECK_MSG(hf_ladder_ms(&ladder[i]) < hf_ladder_ms(&ladder[i - 1]), "%s, step %d", hf_engine_name(p.engine),
+                      i);
+            CHECK(ladder[i].scatter.chromatic == 0.125f && ladder[i].focus == 3);  // no knobs of the ladder
+        }
+        if (n > 1)
+            CHECK(hf_ladder_ms(&ladder[n - 1]) == hf_ladder[0].ms);
+    }
+    // From a step only those below it are left.
+    hf_ladder_apply(&p, 1);
+    CHECK_INT(hf_budget_ladder(&p, ladder), 2);
+    // Shapes that the cheaper engines do not draw become those that they do.
+    p = hf_default_params;
     p.engine = HF_ENGINE_SCATTER;
-    p.max_radius = 20;
-    const int n = hf_budget_ladder(&p, 20, ladder);
-    CHECK(n == 5 && ladder[1].scatter.resolution == HF_RESOLUTION_HALF && ladder[2].engine == HF_ENGINE_GATHER);
-    CHECK(ladder[0].engine == HF_ENGINE_SCATTER && ladder[4].gather.rings == 2);
-    p.engine = HF_ENGINE_GAUSSIAN;
-    CHECK_INT(hf_budget_ladder(&p, 20, ladder), 3);
-    CHECK_INT(ladder[2].gaussian.resolution, HF_RESOLUTION_QUARTER);
-    p.engine = HF_ENGINE_GATHER;
-    p.gather.storage = HF_STORAGE_PACKED;
-    p.gather.fill = HF_FILL_NONE;
-    CHECK_INT(hf_budget_ladder(&p, 20, ladder), 2);
-    CHECK_INT(ladder[1].gather.storage, HF_STORAGE_FLOAT);
+    p.aperture.ring = 0.5f;
+    p.aperture.blades = 7;
+    for (int i = hf_budget_ladder(&p, ladder) - 1; i >= 0; i--)
+        CHECK(hf_ladder_can_draw(&ladder[i]));
+}
+
+// The ladder rises, and qualities choose from it.
+static void choices(void)
+{
+    struct hf_params p = hf_default_params;
+    struct hf_choice last = {.step = -1}, c;
+    for (int i = 1; i < hf_ladder_steps; i++)
+        CHECK_MSG(hf_ladder[i].ms > hf_ladder[i - 1].ms && hf_ladder[i].error < hf_ladder[i - 1].error &&
+                      hf_ladder[i].worst <= hf_ladder[i - 1].worst,
+                  "step %d", i);
+    for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {
+        CHECK_INT(hf_choose_quality(&p, (enum hf_quality)q, &c), HF_OK);
+        CHECK(c.step >= last.step && c.steps == hf_ladder_steps && c.options == hf_ladder[c.step].options);
+        CHECK(c.error == hf_ladder[c.step].error && hf_ladder_ms(&p) == c.ms);
+        last = c;
+    }
+    CHECK_INT(last.step, hf_ladder_steps - 1);
+    CHECK_INT(hf_choose_quality(&p, HF_QUALITY_DRAFT, NULL), HF_OK);
+    CHECK(hf_ladder_ms(&p) == hf_ladder[0].ms);
+    for (int i = 0; i < hf_ladder_steps; i++) {
+        CHECK_INT(hf_choose_error(&p, hf_ladder[i].error, &c), HF_OK);
+        CHECK_INT(c.step, i);
+    }
+    CHECK_INT(hf_choose_error(&p, 1e-6f, &c), HF_OK);  // nothing errs so little: the best there is
+    CHECK_INT(c.step, hf_ladder_steps - 1);
+    CHECK_INT(hf_choose_error(&p, 1, &c), HF_OK);
+    CHECK_INT(c.step, 0);
+    p.aperture.ring = 0.5f;
+    hf_choose_quality(&p, HF_QUALITY_DRAFT, &c);
+    CHECK(hf_ladder_can_draw(&p));
+    CHECK(c.step == 0 || hf_ladder_ms(&p) == hf_ladder[c.step].ms);
+    CHECK_INT(hf_choose_error(&p, 0, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_error(&p, (float)NAN, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_quality(NULL, HF_QUALITY_BEST, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_quality(&p, (enum hf_quality)4, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_quality(&p, (enum hf_quality) - 1, &c), HF_ERR_ARG);
 }
 
 // No frame fits into a microsecond: after a few, the cheapest setting; the report says so.
@@ -241,16 +291,19 @@ static void budget_of_frames(void)
     struct hf_params p = scene_params();
     struct hf_report r = {.budget_step = -1};
     put(&s, 0, 0, 200, 100, 40);
+    p.engine = HF_ENGINE_SCATTER;
     p.max_radius = 24;
     p.run.budget_ms = 1e-3f;
-    for (int i = 0; i < 12; i++)
+    struct hf_params ladder[HF_BUDGET_STEPS];
+    const int steps = hf_budget_ladder(&p, ladder);
+    for (int i = 0; i < 4 * HF_BUDGET_STEPS; i++)
         r = render(c, &s, &p);
-    CHECK_INT(r.budget_step, 2);
-    CHECK_INT(r.used.params.gather.rings, 2);
+    CHECK_INT(r.budget_step, steps - 1);
+    CHECK_INT(r.used.params.engine, ladder[steps - 1].engine);
     p.run.budget_ms = 0;
     r = render(c, &s, &p);
     CHECK_INT(r.budget_step, 0);
-    CHECK_INT(r.used.params.gather.rings, 6);
+    CHECK_INT(r.used.params.engine, HF_ENGINE_SCATTER);
     scene_free(&s);
     hf_close(&c);
 }
@@ -288,6 +341,7 @@ int main(void)
     budget();
     no_flicker();
     ladders();
+    choices();
     budget_of_frames();
     return check_report();
 }

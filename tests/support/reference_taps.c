@@ -27,7 +27,8 @@ static void add_tap(struct reference *r, double radius, double angle)
 
 static void make_rings(struct reference *r)
 {
-    const int rings = (int)fmax(1, ceil(r->reach_y / 2));
+    const int given = r->params.gather.rings;
+    const int rings = given > 0 ? given : (int)fmax(1, ceil(r->reach_y / 2));
     for (int k = 1; k <= rings; k++)
         for (int i = 0; i < 8 * k; i++)
             add_tap(r, r->reach_y * k / rings, 2 * pi * i / (8 * k));

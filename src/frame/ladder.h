@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The settings worth having, cheapest first, as `hyperfocal-bench tradeoff` measured them: what a quality, a largest
+// error and a time budget choose from.
+#ifndef HF_LADDER_H
+#define HF_LADDER_H
+
+#include "hyperfocal/hyperfocal.h"
+
+struct hf_ladder_step {
+    const char *options;  // the command's words for it
+    float error, worst;   // from the truth, display-encoded: geometric mean over the scenes, and of the worst
+    float ms;             // of a megapixel
+};
+
+extern const struct hf_ladder_step hf_ladder[];
+extern const int hf_ladder_steps;
+// Milliseconds of a megapixel of each engine as it is, likewise.
+extern const float hf_ladder_engine_ms[HF_ENGINE_COUNT];
+
+// Make params those of a step, as far as steps differ: the engine and its knobs.
+void hf_ladder_apply(struct hf_params *params, int step);
+// 1 if params->engine draws params->aperture.
+int hf_ladder_can_draw(const struct hf_params *params);
+// Take from params->aperture what params->engine does not draw.
+void hf_ladder_reshape(struct hf_params *params);
+// What a megapixel with params is expected to take: that of the step that they are, else of their engine.
+float hf_ladder_ms(const struct hf_params *params);
+
+#endif
