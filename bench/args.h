@@ -19,6 +19,11 @@ struct bench_args {
     const char *compression;  // batch: one of EXR's, NULL for all
     int engine_given;
     const char *json;  // file, "-" for stdout, NULL for none
+    // tradeoff
+    int quick;
+    const char *setting;                    // the only one to measure: options as one word; NULL: the list
+    const char *csv, *html, *png, *ladder;  // files to write; NULL: none
+    const char *cache;                      // file, "none", or NULL: the user's cache folder
     enum hf_format in, out;
     struct hf_params params;
     enum hf_resolution resolution;                               // of whichever engine

@@ -13,6 +13,7 @@ static const struct {
     {"passes", bench_passes, "time of each pass of a frame, beside table 3.1 of the chapter"},
     {"batch", bench_batch, "the command on a shot, beside copying its files and beside oiiotool, which must be there"},
     {"truth", bench_truth, "distance of each engine from ray-traced pictures, and its time"},
+    {"tradeoff", bench_tradeoff, "what every step of accuracy costs in time, and which settings are worth it"},
     {"scaling", bench_scaling, "time of a frame as its blurred part and its size grow; --size: up to that width"},
     {"stability", bench_stability,
      "hard cases: what was tried, the bound, the worst value seen; of all engines or one"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
+#include "machine.h"
 #include "scene.h"
 
 #include <math.h>
@@ -18,25 +19,6 @@ static const char compiler[] = "gcc " __VERSION__;
 #else
 static const char compiler[] = "unknown";
 #endif
-
-// Name of the CPU as the kernel tells it; ARM kernels tell none.
-static void cpu_name(char *name, size_t size)
-{
-    snprintf(name, size, "unknown CPU");
-    FILE *f = fopen("/proc/cpuinfo", "r");
-    if (!f)
-        return;
-    char line[256];
-    while (fgets(line, sizeof line, f)) {
-        const char *colon = strchr(line, ':');
-        if (colon && !strncmp(line, "model name", 10)) {
-            colon += 1 + strspn(colon + 1, " \t");
-            snprintf(name, size, "%.*s", (int)strcspn(colon, "\n"), colon);
-            break;
-        }
-    }
-    fclose(f);
-}
 
 // What All would be in arithmetic at the machine's peak, MFLOP: compares machines of different speed.
 static double cost_mflop(const struct bench_result *r)
@@ -60,7 +42,7 @@ static void table_machine(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
     char cpu[128];
-    cpu_name(cpu, sizeof cpu);
+    bench_machine_cpu(cpu, sizeof cpu);
     fprintf(out, "%s, %s, %d thread%s, %dx%d, scene %s (near %.0f%%, sharp %.0f%%, far %.0f%%)\n", cpu,
             hf_isa_name(run->isa), run->threads, run->threads == 1 ? "" : "s", run->width, run->height,
             run->args->scene, 100 * share(r->stats.near_pixels, run), 100 * share(r->stats.sharp_pixels, run),
@@ -175,7 +157,7 @@ static void json_machine(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
     char cpu[128];
-    cpu_name(cpu, sizeof cpu);
+    bench_machine_cpu(cpu, sizeof cpu);
     json_named(out, "cpu", cpu);
     json_named(out, "compiler", compiler);
     json_named(out, "version", hf_version());

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `hyperfocal-bench truth`: how far each engine is from what a ray-traced thin lens sees, and what it costs.
 #include "commands.h"
+#include "metrics.h"
+#include "others.h"
 #include "subject.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// The scenes, and what others reach on them when given the exact radius: PSNR in dB, seconds on two threads.
-static const struct {
-    const char *name;
-    double none, blender, blender_s, gegl;
-} scenes[] = {
-    {"lights", 14.21, 25.85, 8.3, 25.37}, {"fence", 19.85, 21.51, 2.7, 24.36}, {"foliage", 22.11, 27.76, 16.9, 29.34}};
-enum { SCENES = sizeof scenes / sizeof *scenes, LEAST = 3 };
+static const struct bench_other *const scenes = bench_others;
+enum { SCENES = BENCH_OTHERS, LEAST = 3 };
 
 struct truth {
     const struct bench_args *args;
@@ -23,18 +20,12 @@ struct truth {
     } at[SCENES][HF_ENGINE_COUNT];
 };
 
-static float display(float v)
-{
-    v = v > 0 ? v < 1 ? v : 1 : 0;
-    return v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
-}
-
 // Of the picture clamped to 0..1 with the sRGB curve: peak signal to noise; and root mean square error of the linear.
 static void distance(const float *a, const float *b, size_t n, double *psnr, double *rmse)
 {
     double shown = 0, linear = 0;
     for (size_t i = 0; i < n; i++) {
-        const double d = (double)display(a[i]) - display(b[i]), l = (double)a[i] - b[i];
+        const double d = (double)bench_display(a[i]) - bench_display(b[i]), l = (double)a[i] - b[i];
         shown += d * d;
         linear += l * l;
     }
@@ -83,9 +74,9 @@ static int measure_scene(struct truth *t, int i, struct bench_error *log, struct
     struct bench_subject subject = {0};
     struct bench_camera camera;
     args.in = args.out = HF_FORMAT_RGB32F;
-    snprintf(path, sizeof path, "%s/%s.exr", args.images, scenes[i].name);
+    snprintf(path, sizeof path, "%s/%s.exr", args.images, scenes[i].scene);
     int err = bench_scene_read(&scene, path, 1, &camera, error);
-    snprintf(path, sizeof path, "%s/%s.truth.exr", args.images, scenes[i].name);
+    snprintf(path, sizeof path, "%s/%s.truth.exr", args.images, scenes[i].scene);
     if (!err)
         err = bench_scene_read(&want, path, 0, NULL, error);
     if (!err && (want.width != scene.width || want.height != scene.height))
@@ -115,7 +106,7 @@ static void table(FILE *out, const void *what)
     const struct truth *t = what;
     fprintf(out, "%-16s", "dB (ms)");
     for (int i = 0; i < SCENES; i++)
-        fprintf(out, " %20s", scenes[i].name);
+        fprintf(out, " %20s", scenes[i].scene);
     fputc('\n', out);
     for (int e = 0; e < HF_ENGINE_COUNT; e++) {
         fprintf(out, "%-16s", hf_engine_name((enum hf_engine)e));
@@ -146,7 +137,7 @@ static void json(FILE *out, const void *what)
                 out,
                 "    {\"scene\": \"%s\", \"engine\": \"%s\", \"psnr_db\": %.4f, \"linear_rmse\": %.6g, \"median_ms\": "
                 "%.4f}%s\n",
-                scenes[i].name, hf_engine_name((enum hf_engine)e), t->at[i][e].psnr, t->at[i][e].rmse, t->at[i][e].ms,
+                scenes[i].scene, hf_engine_name((enum hf_engine)e), t->at[i][e].psnr, t->at[i][e].rmse, t->at[i][e].ms,
                 i + 1 < SCENES || e + 1 < HF_ENGINE_COUNT ? "," : "");
     fputs("  ]\n}\n", out);
 }

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What accuracy costs in time: settings, what was measured of them, and which of them are worth having.
+//
+//   tradeoff.c         the command: scenes, rounds, progress
+//   tradeoff_list.c    the settings
+//   tradeoff_scene.c   pictures with their truth
+//   tradeoff_cache.c   what was measured before, by build, machine and setting
+//   tradeoff_front.c   medians, the Pareto front, the ladder that the library uses
+//   tradeoff_report.c  table, CSV, JSON and the library's own table
+//   page*.c            the HTML page and its charts
+#ifndef HF_BENCH_TRADEOFF_H
+#define HF_BENCH_TRADEOFF_H
+
+#include "args.h"
+#include "metrics.h"
+
+#include <stdio.h>
+
+enum {
+    TRADE_SCENES = 8,
+    TRADE_SETTINGS = 160,
+    TRADE_ROUNDS = 9,
+    TRADE_PASSES = HF_MAX_PASSES,
+};
+
+// A setting is what one types: the same words for both programs.
+struct trade_setting {
+    const char *knob;     // what is turned: "engine", "taps" ...
+    const char *name;     // short, for a chart
+    const char *options;  // "--engine scatter --resolution half"
+    int quick;            // measured with --quick too
+};
+
+extern const struct trade_setting trade_settings[];
+extern const int trade_setting_count;
+
+// Milliseconds of frames, one from each round, and of their passes.
+struct trade_time {
+    int n;
+    double sample[TRADE_ROUNDS];
+    double pass[TRADE_ROUNDS][TRADE_PASSES];
+};
+
+// Median, and the quartiles on both sides of it: where they overlap, an order would be chance.
+struct trade_interval {
+    double low, median, high;
+};
+
+// A setting on a scene.
+struct trade_point {
+    int measured;  // what follows but the time
+    struct bench_distance distance[BENCH_REGIONS];
+    double flicker;  // of a focus pull, display-encoded
+    struct trade_time time;
+};
+
+enum trade_rank { TRADE_BEATEN, TRADE_TIED, TRADE_FRONT };
+
+struct trade_result {
+    const struct trade_setting *setting;
+    enum hf_engine engine;
+    struct trade_point at[TRADE_SCENES];
+    struct trade_time both;  // 1920x1080, scene `both`, radius 12: what `passes` measures
+    int axes_measured;       // the two that follow
+    double rounding;         // linear root mean square distance from the algorithm in double; NAN: there is none
+    double faithfulness;     // display-encoded, from the published demo; NAN: another algorithm
+
+    // Made of the above by trade_rank.
+    struct trade_interval ms;  // mean over the scenes
+    struct trade_interval both_ms;
+    double error;  // geometric mean over the scenes of the whole picture's display error: the mean PSNR
+    double worst;  // largest of them
+    enum trade_rank rank;
+    int step;  // place on the ladder, from 1; 0: not on it
+};
+
+struct trade_scene_name {
+    char text[64];
+};
+
+struct trade {
+    const struct bench_args *args;
+    int threads;
+    enum hf_isa isa;
+    int scenes, results;
+    struct trade_scene_name scene[TRADE_SCENES];
+    int width[TRADE_SCENES], height[TRADE_SCENES];
+    struct trade_result *result;  // of `results`
+    double gflops;
+    char cpu[128], date[32];
+    const char *commit;
+};
+
+// From the median and quartiles of the samples.
+struct trade_interval trade_interval(const double *samples, int n);
+int trade_overlap(struct trade_interval a, struct trade_interval b);
+
+// Fill in what follows from the measurements. A setting is beaten if another errs no more and is surely faster, its
+// interval lying wholly below; tied if another is only faster by the median.
+void trade_rank(struct trade *t);
+// The longest list of settings of which each is slower than the one before and not worse on any scene, from the cheapest
+// such setting to the most accurate: fills in step. Only settings with the machine's own threads and instruction set.
+void trade_ladder(struct trade *t);
+// Results in the order of a table: by time.
+void trade_order(const struct trade *t, int order[]);
+
+// Steps of the ladder that stand for --quality: the cheapest; the cheapest within 1 dB of the last; within 0.25 dB; the
+// last. Fills results' places. Returns 0, or -1 if there is no ladder.
+enum { TRADE_QUALITIES = 4 };
+int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES]);
+
+// The cache: opened for a build and a machine, read whole, appended to line by line.
+struct trade_cache;
+int trade_cache_open(struct trade_cache **cache, const char *path, const char *key, struct bench_error *error);
+// Fill in what is known of the results. Returns how many lines applied.
+int trade_cache_load(struct trade_cache *cache, struct trade *t);
+void trade_cache_point(struct trade_cache *cache, const struct trade *t, const struct trade_result *r, int scene);
+void trade_cache_axes(struct trade_cache *cache, const struct trade_result *r);
+// The newest sample; scene -1: of `both`.
+void trade_cache_time(struct trade_cache *cache, const struct trade *t, const struct trade_result *r, int scene);
+void trade_cache_close(struct trade_cache *cache);
+// A name for this build of program and library on this machine.
+void trade_cache_key(char *key, size_t size, const char *cpu, int threads);
+
+void trade_table(FILE *out, const void *t);
+void trade_csv(FILE *out, const struct trade *t);
+// src/frame/ladder_table.h
+void trade_ladder_table(FILE *out, const struct trade *t);
+void trade_json(FILE *out, const void *t);
+// A string with its quotes.
+void trade_json_text(FILE *out, const char *text);
+
+#endif
