@@ -4,6 +4,7 @@
 #define HF_DEPTH_ROWS_SIMD_H
 
 #include "pixel/depth_rows.h"
+#include "pixel/format_vf.h"
 #include "simd/simd.h"
 
 // VF_N samples of 4 bytes.
