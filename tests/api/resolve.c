@@ -27,6 +27,7 @@ static void names(void)
         [HF_NAMES_BLEND] = HF_BLEND_SMOOTHSTEP + 1,
         [HF_NAMES_TILE] = HF_TILE_BOTH + 1,
         [HF_NAMES_LIMIT] = HF_LIMIT_PICTURE + 1,
+        [HF_NAMES_QUALITY] = HF_QUALITY_BEST + 1,
     };
     for (int of = 0; of < HF_NAMES_COUNT; of++) {
         for (int i = 0; i < counts[of]; i++) {
