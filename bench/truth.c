@@ -33,21 +33,6 @@ static void distance(const float *a, const float *b, size_t n, double *psnr, dou
     *rmse = sqrt(linear / (double)n);
 }
 
-// The gather's reach must be told; the others find it. Whoever rings of taps are too slow for limits it with --max-radius.
-static int set_reach(struct bench_subject *s, const struct bench_args *args, struct bench_error *error)
-{
-    struct hf_params p = s->params;
-    struct hf_report r;
-    p.engine = HF_ENGINE_SCATTER;
-    p.max_radius = HF_DERIVE;
-    const int err = hf_plan(s->context, &s->out.image, &s->in.image, &s->depth, &p, &r);
-    if (err)
-        return bench_fail(error, "planning failed: %s", hf_error_string(err));
-    s->params.max_radius =
-        args->max_radius_given ? args->params.max_radius : fminf(256, ceilf(fmaxf(r.near_radius, r.far_radius)));
-    return 0;
-}
-
 static int measure_engine(struct truth *t, int scene, int engine, struct bench_subject *s, const float *want,
                           struct bench_error *error)
 {
@@ -56,9 +41,6 @@ static int measure_engine(struct truth *t, int scene, int engine, struct bench_s
     const size_t samples = 3 * (size_t)s->in.image.width * (size_t)s->in.image.height;
     s->params.engine = (enum hf_engine)engine;
     s->params.max_radius = t->args->max_radius_given ? t->args->params.max_radius : HF_DERIVE;
-    if (engine == HF_ENGINE_GATHER && set_reach(s, t->args, error))
-        return -1;
-    s->params.engine = (enum hf_engine)engine;
     if (bench_measure_all(s, 0.5, LEAST, &all, &stats, error))
         return -1;
     t->at[scene][engine].ms = all.median_ms;

@@ -380,6 +380,7 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
                            .own = own};
     set_coc(s, r, depth);
     const struct hf_engine_def *e = hf_engine_def(p->engine);
+    s->measured = e->measured;
     if (e->resolve)
         e->resolve(own, s, depth, p);
 }

@@ -400,8 +400,8 @@ struct hf_params {
     struct hf_range_params range;
     struct hf_lens_params lens;
     // Largest CoC radius, full-resolution pixels, 0 (the input, bit for bit) to 2048. HF_DERIVE (default): 12 at 1080
-    // lines and proportional to the display height (always 12 when faithful), the chapter's reach; for the lens model
-    // and HF_DEPTH_COC in hexagon and scatter, 2048.
+    // lines and by display height (12 when faithful), the chapter's reach; for the lens model and HF_DEPTH_COC, 2048 in
+    // hexagon and scatter, and 256 in the gather, whose near and far kernels are then as large as the radii found.
     float max_radius;
     struct hf_aperture_params aperture;
     struct hf_view_params view;

@@ -65,6 +65,6 @@ struct hf_job {
 };
 
 // Run a frame whose arguments have been checked, or only plan it (render.c).
-int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct hf_job *job);
+int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_job *job);
 
 #endif

@@ -80,7 +80,8 @@ struct hf_engine_def {
     int buf_count;
     // Bit i: sweep i takes whole rows or columns, so all of its cells run if any tile needs something.
     unsigned across;
-    // The reach of a frame is known only when its depth has been looked at: nothing but the first pass runs before.
+    // The reach of a frame is known only when its depth has been looked at: nothing but the first pass runs before. An
+    // engine of which that holds with some parameters has resolve set the setup's.
     int measured;
 
     // Its table of kernels, for an instruction set.
@@ -101,8 +102,9 @@ struct hf_engine_def {
     int (*prepare)(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
     void (*release)(void *own, const struct hf_mem *mem);
     size_t (*bytes)(const void *own);  // of that memory
-    // measured: called with what was counted over the frame; sets the reach.
-    void (*measure)(void *own, const struct hf_setup *s, const struct hf_counts *found);
+    // measured: called with what was counted over the frame; sets the reach, and may change how depth becomes CoC.
+    // Returns HF_ERR_MEMORY.
+    int (*measure)(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem);
     // measured: called with what the whole first sweep has counted. NULL: nothing follows from it.
     void (*made)(void *own, const struct hf_setup *s, const struct hf_counts *found);
 

@@ -45,6 +45,7 @@ struct hf_setup {
     enum hf_resolution resolution;
     int colour_stats, no_skip;
     int faithful, smoothstep;
+    int measured;  // see struct hf_engine_def
 
     enum hf_depth_form form;
     int lens;                    // v is -1/z rather than z

@@ -72,25 +72,26 @@ static int lay_out_cells(struct hf_render *r, unsigned fields)
 static int lay_out(struct hf_render *r, int plan_only)
 {
     const int err = lay_out_chunks(r);
-    const int later = r->c->plan.engine->measured || r->s->blend == 0 || plan_only;
+    const int later = r->s->measured || r->s->blend == 0 || plan_only;
     return err ? err : lay_out_cells(r, later ? 0 : HF_FIELDS);
 }
 
 // What the depth shows decides which chunks, tiles and passes there are.
-static int make_plan(struct hf_render *r, int plan_only)
+static int make_plan(struct hf_render *r, struct hf_setup *s, int plan_only)
 {
     struct hf_context *c = r->c;
     struct hf_plan *p = &c->plan;
-    if (p->engine->measured) {
+    if (s->measured) {
         const struct hf_counts found = hf_report_counts(c);
-        p->engine->measure(c->engine[r->s->engine].own, r->s, &found);
-        const int err = lay_out_cells(r, 0);
+        int err = p->engine->measure(c->engine[s->engine].own, s, &found, &c->mem);
+        if (!err)
+            err = lay_out_cells(r, 0);
         if (err)
             return err;
     }
     parallel(r, p->rows[2], hf_sweep_classify);
     hf_plan_settle(p, r->s, r->copy.in_place);
-    return plan_only || !p->engine->measured ? HF_OK : lay_out_cells(r, p->reads);
+    return plan_only || !s->measured ? HF_OK : lay_out_cells(r, p->reads);
 }
 
 static void look_at_colour(struct hf_render *r)
@@ -139,11 +140,11 @@ static int copy(struct hf_render *r, int plan_only)
     return err;
 }
 
-static int blur(struct hf_render *r, int plan_only)
+static int blur(struct hf_render *r, struct hf_setup *s, int plan_only)
 {
     parallel(r, hf_plan_count(&r->c->plan, 1), hf_sweep_look);
     const int64_t looked = hf_now_ns();
-    int err = make_plan(r, plan_only);
+    int err = make_plan(r, s, plan_only);
     if (err)
         return err;
     report_plan(r, hf_now_ns() - looked);
@@ -159,14 +160,14 @@ static int blur(struct hf_render *r, int plan_only)
     return err;
 }
 
-int hf_render_frame(struct hf_context *c, const struct hf_setup *s, const struct hf_job *job)
+int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_job *job)
 {
     const int64_t start = hf_now_ns();
     struct hf_render r = {.c = c, .s = s, .copy = hf_copy_plan(s, job->dst, job->src)};
     start_workers(&r, job);
     int err = lay_out(&r, job->plan_only);
     if (!err)
-        err = s->blend == 0 ? copy(&r, job->plan_only) : blur(&r, job->plan_only);
+        err = s->blend == 0 ? copy(&r, job->plan_only) : blur(&r, s, job->plan_only);
     if (err || job->plan_only)
         return err;
     hf_report_frame(c, s, (double)(hf_now_ns() - start) * 1e-6);

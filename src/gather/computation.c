@@ -39,10 +39,9 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
     }
 }
 
-static void convolve(const struct hf_frame *f, struct hf_rect r, enum hf_buf_id in, int c_in, enum hf_buf_id out,
-                     int c_out)
+static void convolve(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, enum hf_buf_id in, int c_in,
+                     enum hf_buf_id out, int c_out)
 {
-    const struct hf_taps *t = &hf_gather(f->s)->taps;
     const struct hf_buf *a = &f->buf[in], *b = &f->buf[out];
     for (int y = r.y0; y < r.y1; y++)
         convolve_row(t, hf_at(a, c_in, r.x0, y), a->stride, hf_at(b, c_out, r.x0, y), r.x1 - r.x0, hf_line(f, 0));
@@ -78,9 +77,10 @@ static void gather_near(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     for (int c = 0; c < s->channels; c++)
-        convolve(f, r, hf_gather(s)->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
+        convolve(f, r, hf_gather_taps(s, HF_NEAR), hf_gather(s)->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR,
+                 c);
     if (hf_gather(s)->karis)
-        convolve(f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
+        convolve(f, r, hf_gather_taps(s, HF_NEAR), HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
     for (int y = r.y0; y < r.y1; y++) {
         float *near[4];
         const float *sum = hf_gather(s)->karis ? hf_at(&f->buf[HF_BUF_SUM], 0, r.x0, y) : NULL;
@@ -107,7 +107,7 @@ static float bilinear(const float *p, ptrdiff_t stride, float ax, float ay)
 static void sample_taps(const struct hf_frame *f, int x, int y, const struct hf_buf *colour,
                         const struct hf_buf *weight)
 {
-    const struct hf_taps *t = &hf_gather(f->s)->taps;
+    const struct hf_taps *t = hf_gather_taps(f->s, HF_FAR);
     const float scale = *hf_at(&f->buf[HF_BUF_COC4], 1, x, y);
     float total[5] = {0}, sum[5];
     for (int i = 0; i < t->count; i++) {
@@ -137,8 +137,8 @@ static void gather_far(const struct hf_frame *f, struct hf_rect r)
                 sample_taps(f, x, y, &f->buf[colour], &f->buf[weight]);
     } else {
         for (int c = 0; c < s->channels; c++)
-            convolve(f, r, colour, c, HF_BUF_FAR, c);
-        convolve(f, r, weight, 1, HF_BUF_SUM, 1);
+            convolve(f, r, hf_gather_taps(s, HF_FAR), colour, c, HF_BUF_FAR, c);
+        convolve(f, r, hf_gather_taps(s, HF_FAR), weight, 1, HF_BUF_SUM, 1);
     }
     for (int y = r.y0; y < r.y1; y++) {
         float *far[4];

@@ -188,10 +188,9 @@ static void gather_columns(const float *weights, const struct gather_job *j, fix
 
 // Convolves strip by strip, and finishes each while it is in the cache. A first vector lies wherever r begins, all
 // others are aligned; where the two overlap, the second writes everything again.
-static void gather_run(const struct hf_frame *f, struct hf_rect r, struct gather_job *j, const struct hf_buf *need,
-                       int need_channel, hf_kernel *finish)
+static void gather_run(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, struct gather_job *j,
+                       const struct hf_buf *need, int need_channel, hf_kernel *finish)
 {
-    const struct hf_taps *t = &hf_gather(f->s)->taps;
     fixed_column *column = fixed_column_for(t);
     const float *weights = column ? fixed_weights(t, f->work) : NULL;
     const int most = column ? FIXED_STRIP : GATHER_S, width = r.x1 - r.x0, height = r.y1 - r.y0;
@@ -269,7 +268,7 @@ static void gather_near_simd(const struct hf_frame *f, struct hf_rect r)
         gather_plane(&j, f, r, hf_gather(s)->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
     if (hf_gather(s)->karis)
         gather_plane(&j, f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
-    gather_run(f, r, &j, &f->buf[HF_BUF_BLUR], 0, finish_near);
+    gather_run(f, r, hf_gather_taps(s, HF_NEAR), &j, &f->buf[HF_BUF_BLUR], 0, finish_near);
 }
 
 // Four bilinear neighbours of VF_N pixels, wherever they are.
@@ -292,7 +291,7 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
                              const struct hf_buf *weight)
 {
     static const int32_t lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const struct hf_taps *t = &hf_gather(f->s)->taps;
+    const struct hf_taps *t = hf_gather_taps(f->s, HF_FAR);
     const vi lane = vi_load(lanes);
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x += VF_N) {
@@ -359,7 +358,7 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
     for (int c = 0; c < s->channels; c++)
         gather_plane(&j, f, r, colour, c, HF_BUF_FAR, c);
     gather_plane(&j, f, r, weight, 1, HF_BUF_SUM, 1);
-    gather_run(f, r, &j, &f->buf[HF_BUF_COC4], 1, finish_far);
+    gather_run(f, r, hf_gather_taps(s, HF_FAR), &j, &f->buf[HF_BUF_COC4], 1, finish_far);
 }
 
 static void gather_simd(const struct hf_frame *f, struct hf_rect r)

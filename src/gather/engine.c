@@ -75,7 +75,8 @@ struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo)
         return (struct hf_reach){0, g->max_y};
     case HF_HALO_TAPS:
         // One more for the per-pixel kernel, whose bilinear taps read a neighbour even with weight 0.
-        return (struct hf_reach){g->taps.rx + g->per_pixel_kernel, g->taps.ry + g->per_pixel_kernel};
+        return (struct hf_reach){hf_max(g->taps.rx, hf_gather_taps(s, HF_FAR)->rx) + g->per_pixel_kernel,
+                                 hf_max(g->taps.ry, hf_gather_taps(s, HF_FAR)->ry) + g->per_pixel_kernel};
     case HF_HALO_UPSAMPLE:
         return g->bicubic ? (struct hf_reach){2, 2} : (struct hf_reach){1, 1};
     default:
@@ -101,8 +102,9 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 // blur for 16; and three rows for the mean fill.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    const struct hf_taps *t = &hf_gather(s)->taps;
-    const size_t rows = 2 * (size_t)t->ry + 1, columns = 2 * (size_t)t->rx + 1;
+    const struct hf_taps *near_taps = hf_gather_taps(s, HF_NEAR), *far_taps = hf_gather_taps(s, HF_FAR);
+    const size_t rows = 2 * (size_t)hf_max(near_taps->ry, far_taps->ry) + 1;
+    const size_t columns = 2 * (size_t)hf_max(near_taps->rx, far_taps->rx) + 1;
     const size_t gather = 2 * rows * columns + 16 + columns * 80;
     const size_t near = 2 * ((size_t)p->cell_height[2] + 2 * (size_t)p->buf[HF_BUF_BLUR_X].y) * 16;
     const size_t most = gather > near ? gather : near, fill = 3 * p->line_floats;
@@ -118,7 +120,16 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     *height = hf_min(*height, 72);
 }
 
-// With a lens, too, it reaches no farther than the chapter does; and faithfully that is 12 pixels at any size.
+// Where radii are found in the depth (engine.h, measured): the largest, full-resolution pixels, and the most rings, which
+// are at most 2 apart up to a radius of 96. More of either cost more than the other engines.
+enum { MEASURED_RADIUS = 256, MEASURED_RINGS = 24 };
+
+static int is_measured(const struct hf_resolved *r)
+{
+    return r->limit == HF_LIMIT_ENGINE && !r->params.gather.faithful;
+}
+
+// Faithfully it reaches 12 pixels at any size, with a lens, too.
 static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
 {
     struct hf_gather_params *g = &r->params.gather;
@@ -130,10 +141,10 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
         return hf_bad(message, "gather.fill is %d, which is none", (int)g->fill);
     if (r->limit != HF_LIMIT_GIVEN) {
         r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
-        r->params.max_radius = g->faithful ? 12 : hf_model_radius(r);
+        r->params.max_radius = g->faithful ? 12 : r->limit == HF_LIMIT_ENGINE ? MEASURED_RADIUS : hf_model_radius(r);
     }
     if (g->rings == HF_DERIVE)
-        g->rings = hf_taps_rings(r->params.max_radius / 2);
+        g->rings = is_measured(r) ? MEASURED_RINGS : hf_taps_rings(r->params.max_radius / 2);
     if (g->rings < 1 || g->rings > HF_MAX_RINGS)
         return hf_bad(message, "gather.rings is %d; it must be 1 to %d", g->rings, HF_MAX_RINGS);
     return HF_OK;
@@ -155,29 +166,65 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     g->rings = p->gather.rings;
     g->max_x = (int)__builtin_ceilf(h / s->pixel_aspect);
     g->max_y = (int)__builtin_ceilf(h);
+    s->measured = is_measured(s->resolved);
+    if (s->measured) {  // until then the CoC is the radius over the largest there may be, which a byte cannot hold
+        g->smoothstep = s->smoothstep;
+        g->storage = s->storage;
+        s->smoothstep = 0;
+        s->storage = HF_STORAGE_FLOAT;
+        g->max_x = g->max_y = 0;
+    }
+}
+
+// radius: h. Of a measured one rings lie at most 2 apart, if there are so many.
+static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const struct hf_params *p, float radius,
+                      const struct hf_mem *mem)
+{
+    const struct hf_taps_key key = {.radius = radius,
+                                    .scale = s->strength >= 0.25f ? s->strength : 0.25f,
+                                    .pixel_aspect = s->pixel_aspect,
+                                    .blades = p->aperture.blades,
+                                    .rotation = p->aperture.blades ? p->aperture.rotation : 0,
+                                    .dense = p->gather.fill == HF_FILL_NONE,
+                                    .rings =
+                                        s->measured ? hf_min(p->gather.rings, hf_taps_rings(radius)) : p->gather.rings};
+    return hf_taps_build(taps, &key, mem);
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
     struct hf_gather *g = own;
-    const struct hf_taps_key key = {.radius = s->max_radius / 2,
-                                    .scale = s->strength >= 0.25f ? s->strength : 0.25f,
-                                    .pixel_aspect = s->pixel_aspect,
-                                    .blades = p->aperture.blades,
-                                    .rotation = p->aperture.blades ? p->aperture.rotation : 0,
-                                    .dense = g->fill == HF_FILL_NONE,
-                                    .rings = g->rings};
-    return hf_taps_build(&g->taps, &key, mem);
+    return s->measured ? HF_OK : build_taps(&g->taps, s, p, s->max_radius / 2, mem);
+}
+
+// Each field's CoC is relative to the largest radius that there is of its kind, and so are its kernels. That is at least
+// a pixel.
+static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
+{
+    struct hf_gather *g = own;
+    const struct hf_params *p = &s->resolved->params;
+    const float near = __builtin_fmaxf(s->max_radius * found->near_max, 1);
+    const float far = __builtin_fmaxf(s->max_radius * found->far_max, 1);
+    s->near_i *= s->max_radius / near;
+    s->far_i *= s->max_radius / far;
+    s->smoothstep = g->smoothstep;
+    s->storage = g->storage;
+    g->max_x = (int)__builtin_ceilf(near / 2 / s->pixel_aspect);
+    g->max_y = (int)__builtin_ceilf(near / 2);
+    const int err = build_taps(&g->taps, s, p, near / 2, mem);
+    return err ? err : build_taps(&g->far_taps, s, p, far / 2, mem);
 }
 
 static void release(void *own, const struct hf_mem *mem)
 {
     hf_taps_free(&((struct hf_gather *)own)->taps, mem);
+    hf_taps_free(&((struct hf_gather *)own)->far_taps, mem);
 }
 
 static size_t bytes(const void *own)
 {
-    return ((const struct hf_gather *)own)->taps.block.size;
+    const struct hf_gather *g = own;
+    return g->taps.block.size + g->far_taps.block.size;
 }
 
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
@@ -187,7 +234,8 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     numbers[1] = g->per_pixel_kernel;
     numbers[2] = g->bicubic;
     numbers[3] = (int)g->fill;
-    *reach = g->taps.first[g->taps.rows];  // weights
+    const struct hf_taps *far = hf_gather_taps(s, HF_FAR);
+    *reach = hf_max(g->taps.first[g->taps.rows], far->first[far->rows]);  // weights
     return 4;
 }
 
@@ -229,6 +277,7 @@ const struct hf_engine_def hf_gather_engine = {
     .prepare = prepare,
     .release = release,
     .bytes = bytes,
+    .measure = measure,
     .channels = channels,
     .halo = hf_gather_halo,
     .spread = spread,

@@ -57,12 +57,20 @@ struct hf_gather {
     enum hf_fill fill;
     int rings;
     int max_x, max_y;  // near max and blur reach to either side
-    struct hf_taps taps;
+    int smoothstep;    // measured: of the CoC, and how it is stored, once the radii are known
+    enum hf_storage storage;
+    struct hf_taps taps;      // of both fields
+    struct hf_taps far_taps;  // measured: of the far one
 };
 
 static inline const struct hf_gather *hf_gather(const struct hf_setup *s)
 {
     return s->own;
+}
+
+static inline const struct hf_taps *hf_gather_taps(const struct hf_setup *s, unsigned field)
+{
+    return field == HF_FAR && s->measured ? &hf_gather(s)->far_taps : &hf_gather(s)->taps;
 }
 
 struct hf_gather_kernels {

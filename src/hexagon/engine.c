@@ -250,9 +250,10 @@ static int half_resolution(const struct hf_setup *s, int working)
     return s->resolution == HF_RESOLUTION_HALF ? working : (working + 1) / 2;
 }
 
-static void measure(void *own, const struct hf_setup *s, const struct hf_counts *found)
+static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
 {
     struct hf_hexagon *h = own;
+    (void)mem;
     const float radius = fmaxf(-found->radius_min, found->radius_max);
     int x = 0, y = 0;
     for (int i = 0; i < 3; i++) {
@@ -276,6 +277,7 @@ static void measure(void *own, const struct hf_setup *s, const struct hf_counts 
     h->right = half_resolution(s, hf_max(v->x1, w->x1));
     h->above = half_resolution(s, -hf_min(v->y0, w->y0));
     h->below = half_resolution(s, hf_max(v->y1, w->y1));
+    return HF_OK;
 }
 
 static struct hf_reach halo(const struct hf_setup *s, int halo)

@@ -161,10 +161,11 @@ static void set_reach(struct hf_scatter *t, int field)
     }
 }
 
-static void measure(void *own, const struct hf_setup *s, const struct hf_counts *found)
+static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
 {
     struct hf_scatter *t = own;
     (void)s;
+    (void)mem;
     t->largest[0] = -found->radius_min;
     t->largest[1] = found->radius_max;
     t->behind = hf_behind_levels(t->largest[0]);
@@ -175,6 +176,7 @@ static void measure(void *own, const struct hf_setup *s, const struct hf_counts 
         t->around_x = hf_max(t->around_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
         t->around_y = hf_max(t->around_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
     }
+    return HF_OK;
 }
 
 // The sums' fixed point: shares of the brightest sample still leave room for all that may come together in a pixel.

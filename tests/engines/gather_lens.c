@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gather with radii that it finds in the depth: each field's kernel is that field's, light stays as much as it is, and
+// the picture comes nearer to what a lens sees.
+//
+//     gather_lens images      the folder of the ray-traced scenes
+#include <stdio.h>
+
+#include "support/check.h"
+#include "support/image.h"
+
+enum { WIDTH = 320, HEIGHT = 120, MIDDLE = HEIGHT / 2, EDGE = 100, POINT = 230 };
+static const float NEAR = 30, FAR = 6;
+
+static struct hf_params lens_params(void)
+{
+    struct hf_params p = hf_default_params;
+    p.engine = HF_ENGINE_GATHER;
+    p.gather.fill = HF_FILL_MEAN;
+    return p;
+}
+
+// Near on the left, far on the right, with a quad of light at (x, MIDDLE).
+static struct picture light_at(struct hf_context *c, const struct hf_params *p, int x)
+{
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    struct picture out = picture_new(WIDTH, HEIGHT, 3);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        radii.plane[0][i] = i % WIDTH < EDGE ? -NEAR : FAR;
+    for (int k = 0; k < 12; k++)
+        colour.plane[k / 4][(MIDDLE + k / 2 % 2) * WIDTH + x + k % 2] = 1000;
+    const struct hf_image src = picture_image(&colour), dst = picture_image(&out);
+    struct hf_depth depth = picture_depth(&radii);
+    struct hf_report report;
+    depth.type = HF_DEPTH_COC;
+    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
+    CHECK_INT(hf_plan(c, &dst, &src, &depth, p, &report), HF_OK);
+    // The radius over the largest there may be and back: two roundings.
+    CHECK(fabsf(report.near_radius - NEAR) < 1e-5f && fabsf(report.far_radius - FAR) < 1e-5f);
+    picture_free(&colour);
+    picture_free(&radii);
+    return out;
+}
+
+// How far from the light there is some, downwards: one row is free of the other field.
+static int extent(const struct picture *p, int x)
+{
+    int most = 0;
+    for (int y = MIDDLE; y < HEIGHT; y++)
+        if (p->plane[1][y * WIDTH + x] > 0)
+            most = y - MIDDLE;
+    return most;
+}
+
+static void own_radii(struct hf_context *c)
+{
+    const struct hf_params p = lens_params();
+    struct picture far = light_at(c, &p, POINT), near = light_at(c, &p, 40);
+    // The lattice reaches h half-resolution pixels, the fill one more and the upsampling another: at most two pixels
+    // each, and the quad is two pixels itself.
+    const int far_reach = extent(&far, POINT), near_reach = extent(&near, 40);
+    CHECK_MSG(far_reach >= (int)FAR && far_reach <= (int)FAR + 6, "far light reaches %d pixels, not %g", far_reach,
+              (double)FAR);
+    CHECK_MSG(near_reach >= (int)NEAR && near_reach <= (int)NEAR + 6, "near light reaches %d pixels, not %g",
+              near_reach, (double)NEAR);
+    // Every step is a weighted mean with fixed weights on a quad's own grid: the light only moves. A sample is the sum of
+    // some 50 roundings of 6e-8.
+    double sum = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        sum += far.plane[1][i];
+    CHECK_MSG(fabs(sum / 4000 - 1) < 50 * 6e-8, "light of %g became %g", 4000.0, sum);
+    picture_free(&far);
+    picture_free(&near);
+}
+
+// Without blur there is nothing near or far; radii so small that no byte would hold them next to 256 pixels stay what
+// they are in every storage.
+static void small_radii(struct hf_context *c)
+{
+    for (int storage = HF_STORAGE_FLOAT; storage <= HF_STORAGE_PACKED; storage++) {
+        struct hf_params p = lens_params();
+        struct picture colour = picture_new(64, 48, 3), radii = picture_new(64, 48, 1), out = picture_new(64, 48, 3);
+        for (int i = 0; i < 64 * 48; i++) {
+            radii.plane[0][i] = 2;
+            colour.plane[1][i] = i % 64 == 31 ? 16 : 0;
+        }
+        const struct hf_image src = picture_image(&colour), dst = picture_image(&out);
+        struct hf_depth depth = picture_depth(&radii);
+        depth.type = HF_DEPTH_COC;
+        p.gather.storage = (enum hf_storage)storage;
+        CHECK_INT(hf_render(c, &dst, &src, &depth, &p), HF_OK);
+        CHECK_MSG(out.plane[1][24 * 64 + 31] < 8, "storage %d: a radius of 2 leaves %g of 16", storage,
+                  (double)out.plane[1][24 * 64 + 31]);
+        picture_free(&colour);
+        picture_free(&radii);
+        picture_free(&out);
+    }
+}
+
+static void truth(struct hf_context *c, const char *folder, const char *scene, float focus, float f_number)
+{
+    static const char *const rgb[] = {"R", "G", "B"}, *const z[] = {"Z"};
+    struct picture in, depth, want;
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s.exr", folder, scene);
+    if (!CHECK(exr_read(&in, path, 3, rgb) == 0 && exr_read(&depth, path, 1, z) == 0))
+        return;
+    snprintf(path, sizeof path, "%s/%s.truth.exr", folder, scene);
+    if (!CHECK(exr_read(&want, path, 3, rgb) == 0))
+        return;
+    struct picture out = picture_new(in.width, in.height, 3);
+    struct hf_params p = lens_params();
+    p.model = HF_MODEL_LENS;
+    p.focus = focus;
+    p.lens.f_number = f_number;
+    const struct hf_image src = picture_image(&in), dst = picture_image(&out);
+    const struct hf_depth d = picture_depth(&depth);
+    CHECK_INT(hf_render(c, &dst, &src, &d, &p), HF_OK);
+    const double before = display_psnr(&in, &want), after = display_psnr(&out, &want);
+    CHECK_MSG(after > before + 3, "%s: %.2f dB from the truth, and %.2f dB without blur", scene, after, before);
+    picture_free(&in);
+    picture_free(&depth);
+    picture_free(&want);
+    picture_free(&out);
+}
+
+int main(int argc, char **argv)
+{
+    struct hf_context *c = NULL;
+    if (!CHECK_INT(hf_open(&c, NULL), HF_OK))
+        return check_report();
+    own_radii(c);
+    small_radii(c);
+    if (argc > 1) {
+        truth(c, argv[1], "lights", 5, 0.37f);
+        truth(c, argv[1], "fence", 6, 0.46f);
+        truth(c, argv[1], "foliage", 4, 0.7f);
+    }
+    hf_close(&c);
+    return check_report();
+}
