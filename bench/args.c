@@ -42,7 +42,7 @@ static const struct option options[] = {
     {"--frames", "N", "frames to measure (as many as take a few seconds)", COUNT, AT(frames), .min = 1, .max = 1000000},
     {"--threads", "N", "threads, up to 256; 0: one per processor (0)", COUNT, AT(threads), .max = 256},
     {"--isa", "auto|scalar|sse4.1|avx2|avx512|neon", "instruction set (auto)", CHOICE, AT(isa), .names = HF_NAMES_ISA},
-    {"--engine", "gather|hexagon|scatter|gaussian", "engine (gather; stability: all)", CHOICE, AT(params.engine),
+    {"--engine", "gather|hexagon|scatter|gaussian|layers", "engine (gather; stability: all)", CHOICE, AT(params.engine),
      .names = HF_NAMES_ENGINE, GIVEN(engine_given)},
     {"--rings", "N", "gather: rings of taps (as many as lie two half-resolution pixels apart)", COUNT,
      AT(params.gather.rings), .min = 1, .max = 64},

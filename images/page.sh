@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 build=${1:-build}
 hyperfocal=$build/src/cli/hyperfocal
 bench=$build/bench/hyperfocal-bench
-engines="scatter gather hexagon gaussian"
+engines="layers scatter gather hexagon gaussian"
 mkdir -p images/engines
 
 # The gather has to be told how far to reach; these are the largest radii of the scenes.
@@ -49,12 +49,14 @@ done
     for scene in lights fence foliage; do
         printf '\n## %s\n\n<table><tr>\n' "$scene"
         cell "$scene-truth" "$scene, ray-traced"
+        cell "$scene-layers" "layers"
+        printf '</tr><tr>\n'
         cell "$scene-scatter" "scatter"
-        printf '</tr><tr>\n'
         cell "$scene-gather" "gather"
-        cell "$scene-hexagon" "hexagon"
         printf '</tr><tr>\n'
+        cell "$scene-hexagon" "hexagon"
         cell "$scene-gaussian" "gaussian"
+        printf '</tr><tr>\n'
         cell "$scene-input" "the input"
         printf '</tr></table>\n'
     done

@@ -186,8 +186,9 @@ enum hf_engine {
     HF_ENGINE_HEXAGON,   // hexagonal bokeh in two passes of directional blurs (White and Barre-Brisebois, 2011)
     HF_ENGINE_SCATTER,   // every pixel becomes its aperture's picture (Wronski, 2012)
     HF_ENGINE_GAUSSIAN,  // iterated 5-tap blur blended by depth, with autofocus (2010)
+    HF_ENGINE_LAYERS,  // un-mixed edges, hidden surfaces filled in, slices put together in order of depth: most accurate
 };
-enum { HF_ENGINE_COUNT = HF_ENGINE_GAUSSIAN + 1 };
+enum { HF_ENGINE_COUNT = HF_ENGINE_LAYERS + 1 };
 
 // The command line's name for an engine; NULL for a number that is none. As hf_name(HF_NAMES_ENGINE, engine).
 HF_API const char *hf_engine_name(enum hf_engine engine);
@@ -374,6 +375,28 @@ struct hf_gaussian_params {
     int by_depth;
 };
 
+// layers: what its accuracy may cost.
+enum hf_layers_quality {
+    HF_LAYERS_STANDARD,
+    HF_LAYERS_DRAFT,  // few slices, and nothing is filled in behind objects: hard rims where a lens sees past them
+    HF_LAYERS_HIGH,   // finer slices
+    HF_LAYERS_BEST,   // and coarser resolutions from twice the radii on
+};
+
+// HF_DERIVE leaves a number to the quality.
+struct hf_layers_params {
+    enum hf_layers_quality quality;  // default HF_LAYERS_STANDARD
+    // Distance between slices, pixels of radius, 0.25 to 32. Up to radius 2 they lie at most 1 apart, beyond 64 at least
+    // a 32nd of their radius; those of HIGH and BEST closer together by this over 2. Default HF_DERIVE.
+    float spacing;
+    // CoC radii from which slices are blurred at half and a quarter of the resolution (and from four times the latter at
+    // an eighth), 1 to 2048 pixels, half_from <= quarter_from. Default HF_DERIVE.
+    float half_from, quarter_from;
+    int no_unmix;       // edges keep their mixed colours. Default 0
+    int no_hidden;      // nothing is filled in behind objects. Default 0
+    int no_highlights;  // highlights are blurred like all else: the pixels of coarser resolutions show. Default 0
+};
+
 // How a frame is run, apart from what it looks like.
 struct hf_run_params {
     // Same bits on every instruction set and architecture: no fused multiply-add. Default 0. Bits never depend on
@@ -409,6 +432,7 @@ struct hf_params {
     struct hf_hexagon_params hexagon;
     struct hf_scatter_params scatter;
     struct hf_gaussian_params gaussian;
+    struct hf_layers_params layers;
     struct hf_run_params run;
 };
 

@@ -198,6 +198,7 @@ static int check_engine(const struct cli_args *args, struct cli_error *error)
     const struct hf_params *p = &args->params;
     const int gather = p->engine == HF_ENGINE_GATHER, scatter = p->engine == HF_ENGINE_SCATTER;
     const int hexagon = p->engine == HF_ENGINE_HEXAGON, gaussian = p->engine == HF_ENGINE_GAUSSIAN;
+    const int layers = p->engine == HF_ENGINE_LAYERS;
     const struct hf_params *d = &hf_default_params;
     const struct {
         int given, allowed;
@@ -205,11 +206,12 @@ static int check_engine(const struct cli_args *args, struct cli_error *error)
     } rules[] = {
         {p->scatter.chromatic != d->scatter.chromatic, scatter, "chromatic", "scatter"},
         {p->aperture.cat_eye != d->aperture.cat_eye, scatter, "cat-eye", "scatter"},
-        {p->aperture.squeeze != d->aperture.squeeze, scatter, "squeeze", "scatter"},
+        {p->aperture.squeeze != d->aperture.squeeze, scatter || layers, "squeeze", "scatter and layers"},
         {p->hexagon.uniform, hexagon, "uniform", "hexagon"},
         {p->gaussian.iterations != d->gaussian.iterations, gaussian, "iterations", "gaussian"},
         {p->gaussian.sigma != d->gaussian.sigma, gaussian, "sigma", "gaussian"},
-        {args->resolution == HF_RESOLUTION_HALF, !gather, "resolution half", "hexagon, scatter and gaussian"},
+        {args->resolution == HF_RESOLUTION_HALF, !gather && !layers, "resolution half",
+         "hexagon, scatter and gaussian"},
         {args->resolution == HF_RESOLUTION_QUARTER, gaussian, "resolution quarter", "gaussian"},
         {p->gather.karis, gather, "karis", "gather"},
         {p->gather.per_pixel_kernel, gather, "per-pixel-kernel", "gather"},
@@ -232,6 +234,9 @@ static int check_engine(const struct cli_args *args, struct cli_error *error)
         return cli_fail(error, -1,
                         "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
                         "ngon:6[:0[:DEGREES]]",
+                        args->aperture);
+    if (args->aperture && layers && (!plain || p->aperture.blades))
+        return cli_fail(error, -1, "--aperture: '%s' is not an aperture of the layers engine, which takes disc",
                         args->aperture);
     if (args->aperture && gaussian)
         return cli_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon and scatter",

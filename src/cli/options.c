@@ -93,8 +93,8 @@ const struct cli_option cli_options[] = {
     {"far", 0, CLI_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf; with gaussian of any.",
      POSITIVE(far_plane), .unit = CLI_UNIT_DISTANCE, .inf = 1},
 
-    {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian", "How to blur. scatter (default): every pixel becomes "
-     "the aperture's picture, the most accurate. gather: half-resolution near and far fields, the fastest. hexagon: "
+    {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. scatter (default): every pixel "
+     "becomes the aperture's picture. layers: edges un-mixed, what objects hide filled in, the most accurate, discs only. gather: half-resolution near and far fields, the fastest. hexagon: "
      "hexagonal highlights in two passes. gaussian: soft, with autofocus.", NAME(engine, ENGINE)},
     {"quality", 0, CLI_LOOK, "draft|standard|high|best", "In place of --engine: draft is the gather, all others are the "
      "scatter.", CHOICE(quality)},

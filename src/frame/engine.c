@@ -6,7 +6,8 @@
     DO(GATHER, gather)                                                                                                 \
     DO(HEXAGON, hexagon)                                                                                               \
     DO(GAUSSIAN, gaussian)                                                                                             \
-    DO(SCATTER, scatter)
+    DO(SCATTER, scatter)                                                                                               \
+    DO(LAYERS, layers)
 
 #define DECLARE(number, name) extern const struct hf_engine_def hf_##name##_engine;
 #define ENTER(number, name) [HF_ENGINE_##number] = &hf_##name##_engine,

@@ -98,6 +98,10 @@ static struct hf_params random_params(struct rng *rng, enum hf_engine engine)
         p.aperture.cat_eye = rng_below(rng, 4) ? 0 : rng_float(rng);
         p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
     }
+    if (engine == HF_ENGINE_LAYERS) {
+        p.layers.quality = (enum hf_layers_quality)rng_below(rng, 4);
+        p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
+    }
     if (engine == HF_ENGINE_GAUSSIAN) {
         p.gaussian.faithful = rng_below(rng, 4) == 0;
         p.gaussian.iterations = rng_below(rng, 6);

@@ -10,6 +10,7 @@
 #include "gather/gather.h"
 #include "gaussian/kernels.h"
 #include "hexagon/kernels.h"
+#include "layers/kernels.h"
 #include "scatter/kernels.h"
 
 // ---- random numbers: one seed, one sequence, so never two draws where C leaves the order open ----
@@ -45,6 +46,7 @@ struct kernels {
     struct hf_hexagon_kernels hexagon;
     struct hf_scatter_kernels scatter;
     struct hf_gaussian_kernels gaussian;
+    struct hf_layers_kernels layers;
 };
 
 struct level {
@@ -115,6 +117,7 @@ struct world {
     struct hf_gaussian gaussian;
     struct hf_hexagon hexagon;
     struct hf_scatter scatter;
+    struct hf_layers layers;
     enum colours colours;
     struct hf_image src, dst;  // in ARENA_MADE
     struct hf_depth depth;

@@ -27,6 +27,7 @@ static void init(struct kernels *k, enum hf_isa isa, int fused)
     hf_hexagon_kernels_init(&k->hexagon, isa, fused);
     hf_scatter_kernels_init(&k->scatter, isa, fused);
     hf_gaussian_kernels_init(&k->gaussian, isa, fused);
+    hf_layers_kernels_init(&k->layers, isa, fused);
 }
 
 int levels_make(struct level levels[MAX_LEVELS], const char *filter)

@@ -11,6 +11,7 @@ DECLARE(hf_gather_kernels);
 DECLARE(hf_hexagon_kernels);
 DECLARE(hf_scatter_kernels);
 DECLARE(hf_gaussian_kernels);
+DECLARE(hf_layers_kernels);
 
 #define INIT(name, k)                                                                                                  \
     name##_c(k);                                                                                                       \
@@ -24,6 +25,7 @@ int emulated_kernels(struct kernels *k, int fused)
     INIT(hf_hexagon_kernels, &k->hexagon);
     INIT(hf_scatter_kernels, &k->scatter);
     INIT(hf_gaussian_kernels, &k->gaussian);
+    INIT(hf_layers_kernels, &k->layers);
     return 1;
 }
 

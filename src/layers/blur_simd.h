@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A slice's sources and its disc on vectors: in the order of operations of blur.c.
+#include "layers/kernels.h"
+
+HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
+                               const int rows, const int channels, int n, int add, float *const out[5])
+{
+    const vf radius = vf_set1(s->radius), before = vf_set1(s->before), after = vf_set1(s->after);
+    const vf square = vf_set1(s->square), before_square = vf_set1(s->before_square);
+    const vf before_scale = vf_set1(s->before_scale), after_scale = vf_set1(s->after_scale), scale = vf_set1(s->scale);
+    for (int x = 0; x < n; x += VF_N) {
+        vf sum[5];
+        for (int c = 0; c < 5; c++)
+            sum[c] = vf_zero();
+        for (int y = 0; y < rows; y++) {
+            const ptrdiff_t at = y * stride + x;
+            const vf r = vf_load(in[5] + at), r2 = vf_mul(r, r);
+            const vm inside = vm_and(vf_gt(r, before), vf_lt(r, after));
+            if (!vm_any(inside))
+                continue;
+            const vf a = vf_mul(vf_sub(r2, before_square), before_scale);
+            const vf b = vf_fnma(vf_sub(r2, square), after_scale, vf_set1(1));
+            const vf shown = vf_mul(vf_keep(inside, vf_select(vf_lt(r, radius), a, b)), scale);
+            const vf weight = vf_load(in[4] + at), w = vf_mul(shown, weight);
+            const vf v = share ? vf_mul(shown, vf_sub(weight, vf_load(share + at))) : w;
+            for (int c = 0; c < channels; c++)
+                sum[c] = vf_fma(v, vf_load(in[c] + at), sum[c]);
+            sum[4] = vf_add(sum[4], w);
+        }
+        for (int c = 0; c < 5; c++)
+            if (c < channels || c == 4)
+                vf_store(out[c] + x, add ? vf_add(vf_load(out[c] + x), sum[c]) : sum[c]);
+    }
+}
+
+HF_INLINE void layers_weigh_rows(const struct hf_slice *s, const float *const in[6], const float *share,
+                                 ptrdiff_t stride, int rows, const int channels, int n, int add, float *const out[5])
+{
+    if (rows == 1)
+        layers_weigh_of(s, in, share, stride, 1, channels, n, add, out);
+    else if (rows == 2)
+        layers_weigh_of(s, in, share, stride, 2, channels, n, add, out);
+    else
+        layers_weigh_of(s, in, share, stride, rows, channels, n, add, out);
+}
+
+static void layers_weigh_simd(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
+                              int rows, int channels, int n, int add, float *const out[5])
+{
+    if (channels == 3)
+        layers_weigh_rows(s, in, share, stride, rows, 3, n, add, out);
+    else
+        layers_weigh_rows(s, in, share, stride, rows, 4, n, add, out);
+}
+
+// Reads and writes whole vectors only where they are its own: n may be less than one.
+static void layers_fold_simd(const float *in, int n, float *out)
+{
+    int x = 0;
+    for (; x + VF_N <= n; x += VF_N) {
+        vf even, odd;
+        vf_unzip(vf_load(in + 2 * x), vf_load(in + 2 * x + VF_N), &even, &odd);
+        vf_store(out + x, vf_add(even, odd));
+    }
+    hf_layers_fold_c(in + 2 * x, n - x, out + x);
+}
+
+static void layers_disc_simd(const struct hf_slice *s, const float *in, int n, int from, int to, float *out,
+                             ptrdiff_t stride)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        vf sum = vf_zero();
+        int have = -1;
+        const float *left = in + x, *right = in + x;  // one farther than what the sum holds
+        for (int d = s->rows - 1; d >= 0; d--) {
+            const struct hf_disc_row row = s->row[d];
+            while (have < row.n) {
+                have++;
+                sum = vf_add(sum, have ? vf_add(vf_load(left), vf_load(right)) : vf_load(left));
+                left--;
+                right++;
+            }
+            const vf v = vf_fma(vf_set1(row.f), vf_add(vf_load(left), vf_load(right)), sum);
+            if (-d >= from && -d < to) {
+                float *o = out - d * stride + x;
+                vf_store(o, vf_add(vf_load(o), v));
+            }
+            if (d && d >= from && d < to) {
+                float *o = out + d * stride + x;
+                vf_store(o, vf_add(vf_load(o), v));
+            }
+        }
+    }
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Slices put together from front to back.
+#include "layers/kernels.h"
+
+void hf_layers_up_c(const float *a, const float *b, int n, float *out)
+{
+    for (int x = 0; x < n; x++) {
+        const float before = 0.75f * a[x - 1] + 0.25f * b[x - 1], at = 0.75f * a[x] + 0.25f * b[x],
+                    after = 0.75f * a[x + 1] + 0.25f * b[x + 1];
+        out[2 * x] = 0.25f * before + 0.75f * at;
+        out[2 * x + 1] = 0.25f * after + 0.75f * at;
+    }
+}
+
+void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float *const in[5], int hidden, int n,
+                       float *part)
+{
+    for (int x = 0; x < n; x++) {
+        const float v = in[4][x], open = to->open[x];
+        const float least = hidden ? 1 : open > 1e-30f ? open : 1e-30f;
+        const float k = open / (v > least ? v : least);
+        const float left = open - k * v;
+        for (int c = 0; c < channels; c++)
+            to->colour[c][x] = k * in[c][x] + to->colour[c][x];
+        to->weight[x] = k * v + to->weight[x];
+        to->open[x] = left > 0 ? left : 0;
+        if (part)
+            part[x] = k;
+    }
+}
+
+void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
+                        int channels, int n, float *const out[4])
+{
+    for (int x = 0; x < n; x++) {
+        const float w = near->weight[x], left = 1 - w;
+        const float a = far ? far[4][x] : 0;
+        const float g = far ? (left > 0 ? left : 0) / (a > 1e-3f ? a : 1e-3f) : 0;
+        const float sum = w + g * a;
+        for (int c = 0; c < channels; c++) {
+            const float top = far ? near->colour[c][x] + g * far[c][x] : near->colour[c][x];
+            float v = top / (sum > 1e-30f ? sum : 1e-30f);
+            if (c == 3)
+                v = v > HF_LAYERS_OPAQUE ? 1 : v;
+            out[c][x] = v == own[c][x] ? own[c][x] : v;
+        }
+    }
+}

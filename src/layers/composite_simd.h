@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Slices put together on vectors: in the order of operations of composite.c.
+#include "layers/kernels.h"
+
+static void layers_up_simd(const float *a, const float *b, int n, float *out)
+{
+    const vf most = vf_set1(0.75f), least = vf_set1(0.25f);
+    for (int x = 0; x < n; x += VF_N) {
+        const vf before = vf_fma(least, vf_load(b + x - 1), vf_mul(most, vf_load(a + x - 1)));
+        const vf at = vf_fma(least, vf_load(b + x), vf_mul(most, vf_load(a + x)));
+        const vf after = vf_fma(least, vf_load(b + x + 1), vf_mul(most, vf_load(a + x + 1)));
+        const vf own = vf_mul(most, at);
+        vf even, odd;
+        vf_zip(vf_fma(least, before, own), vf_fma(least, after, own), &even, &odd);
+        vf_store(out + 2 * x, even);
+        vf_store(out + 2 * x + VF_N, odd);
+    }
+}
+
+HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5], int hidden,
+                               int n, float *part)
+{
+    const vf tiny = vf_set1(1e-30f), one = vf_set1(1);
+    for (int x = 0; x < n; x += VF_N) {
+        const vf v = vf_load(in[4] + x), open = vf_load(to->open + x);
+        const vf least = hidden ? one : vf_max(open, tiny);
+        const vf k = vf_div(open, vf_max(v, least));
+        for (int c = 0; c < channels; c++)
+            vf_store(to->colour[c] + x, vf_fma(k, vf_load(in[c] + x), vf_load(to->colour[c] + x)));
+        vf_store(to->weight + x, vf_fma(k, v, vf_load(to->weight + x)));
+        vf_store(to->open + x, vf_max(vf_fnma(k, v, open), vf_zero()));
+        if (part)
+            vf_store(part + x, k);
+    }
+}
+
+static void layers_blend_simd(const struct hf_stack_row *to, int channels, const float *const in[5], int hidden, int n,
+                              float *part)
+{
+    if (channels == 3)
+        layers_blend_of(to, 3, in, hidden, n, part);
+    else
+        layers_blend_of(to, 4, in, hidden, n, part);
+}
+
+static void layers_finish_simd(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
+                               int channels, int n, float *const out[4])
+{
+    const vf tiny = vf_set1(1e-30f), small = vf_set1(1e-3f), one = vf_set1(1);
+    for (int x = 0; x < n; x += VF_N) {
+        const vf w = vf_load(near->weight + x);
+        const vf a = far ? vf_load(far[4] + x) : vf_zero();
+        const vf g = far ? vf_div(vf_max(vf_sub(one, w), vf_zero()), vf_max(a, small)) : vf_zero();
+        const vf sum = vf_max(vf_fma(g, a, w), tiny);
+        for (int c = 0; c < channels; c++) {
+            const vf top = vf_load(near->colour[c] + x), was = vf_load(own[c] + x);
+            vf v = vf_div(far ? vf_fma(g, vf_load(far[c] + x), top) : top, sum);
+            if (c == 3)
+                v = vf_select(vf_gt(v, vf_set1(HF_LAYERS_OPAQUE)), one, v);
+            vf_store(out[c] + x, vf_select(vf_eq(v, was), was, v));
+        }
+    }
+}

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Layers: the most accurate of the engines. Edges are un-mixed before they are blurred, what objects hide is filled in
+// before it is needed, and samples are put together in order of depth with coverage that saturates.
+//
+// A pixel of the result costs, apart from un-mixing and hidden samples, which are the same for all radii: twice the rows
+// of the discs of the slices between which its samples lie, a sixteenth of them from a quarter of the resolution on.
+#include <math.h>
+#include <string.h>
+
+#include "frame/plan.h"
+#include "layers/cell.h"
+#include "layers/hidden.h"
+#include "layers/highlights.h"
+#include "layers/slices.h"
+#include "layers/unmix.h"
+#include "params.h"
+#include "pixel/pass_c.h"
+
+#define B(name) (1u << HF_LAYERS_BUF_##name)
+
+enum { HALO_EDGE = 1, HALO_LEVELS, HALO_CELL };
+
+enum { COC, LOAD, PREPARE, HIDDEN, COMPOSITE, PASSES };
+
+static const struct hf_pass passes[PASSES] = {
+    {"CoC generation", .sweep = 1, .ns = 2.5f},
+    {"Load", .writes = B(COLOUR) | B(RADIUS), .sweep = 1, .ns = 4},
+    {"Un-mixing", .around = B(COLOUR) | B(RADIUS), .halo = HALO_EDGE,
+     .writes = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(QUADS) | B(QUADS_AT), .sweep = 2, .ns = 40},
+    {"Hidden", .reads = B(SEEN_AT) | B(MIXED_AT), .around = B(QUADS) | B(QUADS_AT), .halo = HALO_LEVELS,
+     .writes = B(HIDDEN) | B(HIDDEN_AT), .sweep = 3, .ns = 60},
+    {"Composite", .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT), .halo = HALO_CELL,
+     .sweep = 4, .ns = 300},
+};
+
+static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
+    [HF_LAYERS_BUF_COLOUR] = {"colour", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_RADIUS] = {"radius", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_SEEN] = {"seen", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_SEEN_AT] = {"seenat", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_MIXED] = {"mixed", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_MIXED_AT] = {"mixedat", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_QUADS] = {"quads", .frame = 1},
+    [HF_LAYERS_BUF_QUADS_AT] = {"quadsat", .frame = 1},
+    [HF_LAYERS_BUF_HIDDEN] = {"hidden", .frame = 1},
+    [HF_LAYERS_BUF_HIDDEN_AT] = {"hiddenat", .frame = 1},
+};
+
+static const struct hf_layers_settings qualities[] = {
+    [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 8, .quarter = 32},
+    [HF_LAYERS_STANDARD] = {.spacing = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 8, .quarter = 32},
+    [HF_LAYERS_HIGH] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 8, .quarter = 32},
+    [HF_LAYERS_BEST] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 16, .quarter = 64},
+};
+
+static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+{
+    struct hf_layers_params *p = &r->params.layers;
+    (void)asked;
+    (void)depth;
+    if ((unsigned)p->quality > HF_LAYERS_BEST)
+        return hf_bad(message, "layers.quality is %d, which is none", (int)p->quality);
+    const struct hf_layers_settings *set = &qualities[p->quality];
+    p->spacing = p->spacing == HF_DERIVE ? set->spacing : p->spacing;
+    p->half_from = p->half_from == HF_DERIVE ? set->half : p->half_from;
+    p->quarter_from = p->quarter_from == HF_DERIVE ? fmaxf(set->quarter, p->half_from) : p->quarter_from;
+    int err = hf_check_between("layers.spacing", p->spacing, 0.25f, 32, message);
+    if (!err)
+        err = hf_check_between("layers.half_from", p->half_from, 1, 2048, message);
+    return err ? err : hf_check_between("layers.quarter_from", p->quarter_from, p->half_from, 2048, message);
+}
+
+static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
+{
+    struct hf_layers *l = own;
+    const struct hf_layers_params *given = &p->layers;
+    struct hf_layers_settings *set = &l->set;
+    (void)depth;
+    *set = qualities[given->quality];
+    set->spacing = given->spacing;
+    set->half = given->half_from;
+    set->quarter = given->quarter_from;
+    set->unmix &= !given->no_unmix;
+    set->hidden &= !given->no_hidden;
+    set->highlights &= !given->no_highlights;
+    l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
+    l->slices = l->levels = 0;
+    s->sharp_radius = 0;
+}
+
+// The ranges of the tiles, in one block.
+static void place_tiles(struct hf_layers *l)
+{
+    const size_t n = (size_t)l->columns * (size_t)l->rows;
+    l->seen_range = l->tiles.data;
+    l->mixed_range = l->seen_range + n;
+    l->hidden_range = l->mixed_range + n;
+    l->bright = (uint8_t *)(l->hidden_range + n);
+}
+
+static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
+{
+    struct hf_layers *l = own;
+    (void)p;
+    l->width = s->width;
+    l->height = s->height;
+    l->channels = s->channels;
+    l->columns = (s->width + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
+    l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
+    const size_t tiles = (size_t)l->columns * (size_t)l->rows;
+    int err = hf_block_grow(&l->tiles, tiles * (3 * sizeof(struct hf_layers_range) + 1), mem);
+    if (!err)
+        err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
+    if (!err)
+        place_tiles(l);
+    return err;
+}
+
+static void release(void *own, const struct hf_mem *mem)
+{
+    struct hf_layers *l = own;
+    hf_block_free(&l->tables, mem);
+    hf_block_free(&l->tiles, mem);
+}
+
+static size_t bytes(const void *own)
+{
+    const struct hf_layers *l = own;
+    return l->tables.size + l->tiles.size;
+}
+
+static void measure(void *own, const struct hf_setup *s, const struct hf_counts *found)
+{
+    struct hf_layers *l = own;
+    (void)s;
+    l->nearest = fminf(found->radius_min, 0);
+    l->farthest = fmaxf(found->radius_max, 0);
+    hf_layers_make_slices(l);
+    const float range = l->farthest - l->nearest;
+    l->levels = 0;
+    if (l->set.hidden && range >= 1)
+        for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
+            l->levels++;
+    l->around = (hf_layers_most_tiles(l) + 2) * HF_LAYERS_TILE;
+}
+
+static int channels(const struct hf_setup *s, int b)
+{
+    const struct hf_layers *l = hf_layers(s);
+    switch (b) {
+    case HF_LAYERS_BUF_RADIUS:
+        return 1;
+    case HF_LAYERS_BUF_SEEN_AT:
+        return 3;
+    case HF_LAYERS_BUF_MIXED_AT:
+        return 2;
+    case HF_LAYERS_BUF_QUADS_AT:
+    case HF_LAYERS_BUF_HIDDEN_AT:
+        return l->levels ? 2 : 0;
+    case HF_LAYERS_BUF_QUADS:
+    case HF_LAYERS_BUF_HIDDEN:
+        return l->levels ? s->channels : 0;
+    default:
+        return s->channels;
+    }
+}
+
+static struct hf_reach halo(const struct hf_setup *s, int halo)
+{
+    const struct hf_layers *l = hf_layers(s);
+    const int n = halo == HALO_EDGE ? 6 : halo == HALO_LEVELS ? hf_layers_hidden_reach(l) : l->around / 2;
+    return (struct hf_reach){n, n};
+}
+
+static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
+{
+    const struct hf_layers *l = hf_layers(s);
+    (void)p;
+    (void)field;
+    return (struct hf_reach){l->around / 2, l->around / 2};
+}
+
+// All of a sample is made at once, whatever field it is for.
+static unsigned reads(const struct hf_setup *s, unsigned needs)
+{
+    (void)s;
+    return needs ? HF_FIELDS : 0;
+}
+
+static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
+{
+    if (sweep == 2) {
+        *width = 128;
+        *height = 64;
+    } else if (sweep == 3) {
+        *width = (s->half_width + 15) & ~15;
+        *height = 96;
+    }
+}
+
+static size_t work(const struct hf_setup *s, const struct hf_plan *p)
+{
+    const struct hf_layers *l = hf_layers(s);
+    size_t most = 0;
+    if (!l->slices)
+        return 0;
+    const int width = 2 * p->cell_width[2] + 2 * HF_LAYERS_TILE, height = 2 * p->cell_height[2] + 2 * HF_LAYERS_TILE;
+    const size_t need[] = {
+        hf_layers_unmix_floats(2 * p->cell_width[2]), hf_layers_highlight_floats(p->cell_width[2], p->cell_height[2]),
+        hf_layers_hidden_floats(l, p->cell_width[3], p->cell_height[3]), hf_layers_composite_floats(l, width, height)};
+    for (size_t i = 0; i < sizeof need / sizeof *need; i++)
+        most = need[i] > most ? need[i] : most;
+    return most;
+}
+
+static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
+{
+    const struct hf_layers *l = hf_layers(s);
+    numbers[0] = (int)(8 * l->set.spacing) + l->set.fine;
+    numbers[1] = l->set.unmix + 2 * l->set.hidden + 4 * l->set.highlights;
+    numbers[2] = (int)fminf(l->set.half, 4096);
+    *reach = (int)fmaxf(l->farthest, -l->nearest);
+    return 3;
+}
+
+HF_CHOOSE_KERNELS(hf_layers_kernels)
+
+void hf_layers_kernels_c(struct hf_layers_kernels *k)
+{
+    *k = (struct hf_layers_kernels){
+        .passes = {{hf_radius_pass, hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass,
+                    hf_layers_composite_pass}},
+        .sure = hf_layers_sure_c,
+        .unmix = hf_layers_unmix_c,
+        .roots = hf_layers_roots_c,
+        .nine = hf_layers_nine_c,
+        .shares = hf_layers_shares_c,
+        .merge = hf_layers_merge_c,
+        .tap = hf_layers_tap_c,
+        .extremes = hf_layers_extremes_c,
+        .weigh = hf_layers_weigh_c,
+        .fold = hf_layers_fold_c,
+        .disc = hf_layers_disc_c,
+        .up = hf_layers_up_c,
+        .blend = hf_layers_blend_c,
+        .finish = hf_layers_finish_c,
+    };
+}
+
+static void kernels(void *table, enum hf_isa isa, int fused)
+{
+    hf_layers_kernels_init(table, isa, fused);
+}
+
+const struct hf_engine_def hf_layers_engine = {
+    .name = "layers",
+    .aperture = HF_APERTURE_SQUEEZE,
+    .check = check,
+    .passes = passes,
+    .pass_count = PASSES,
+    .sweeps = 4,
+    .bufs = bufs,
+    .buf_count = HF_LAYERS_BUFS,
+    .across = 1u << 2 | 1u << 3,
+    .measured = 1,
+    .kernels_bytes = sizeof(struct hf_layers_kernels),
+    .kernels = kernels,
+    .own_bytes = sizeof(struct hf_layers),
+    .resolve = resolve,
+    .prepare = prepare,
+    .release = release,
+    .bytes = bytes,
+    .measure = measure,
+    .channels = channels,
+    .halo = halo,
+    .spread = spread,
+    .reads = reads,
+    .cell = cell,
+    .work = work,
+    .cost = cost,
+};

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HF_LAYERS_HIDDEN_H
+#define HF_LAYERS_HIDDEN_H
+
+#include "layers/kernels.h"
+
+enum { HF_LAYERS_QUERY = 256 };  // hidden samples that are looked for at once
+
+// The radius of what is not there: before anything.
+#define HF_LAYERS_NOTHING (-1e30f)
+
+static inline float hf_layers_unit(float v)
+{
+    v = v > 0 ? v : 0;
+    return v < 1 ? v : 1;
+}
+
+// The farthest of each quad of a cell: where the levels begin.
+void hf_layers_quads(const struct hf_frame *f, struct hf_rect r);
+// Floats of scratch that the pass needs for a band of half-resolution rows.
+size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height);
+// How far around a pixel hidden samples are looked for, half-resolution pixels.
+int hf_layers_hidden_reach(const struct hf_layers *l);
+
+#endif

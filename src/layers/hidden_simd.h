@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hidden samples on vectors: in the order of operations of hidden.c.
+#include "layers/hidden.h"
+
+HF_INLINE void layers_merge_of(const float *const in[3][6], const int channels, float slope, int n, float *const out[6])
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf a = vf_load(in[0][5] + x), b = vf_load(in[1][5] + x), c = vf_load(in[2][5] + x);
+        const vf farthest = vf_max(vf_max(a, b), c), one = vf_set1(1);
+        vf g[3];
+        for (int i = 0; i < 3; i++) {
+            const vf r = i == 0 ? a : i == 1 ? b : c;
+            const vf near = vf_fnma(vf_sub(farthest, r), vf_set1(slope), one);
+            g[i] = vf_mul(vf_load(in[i][4] + x), vf_max(near, vf_zero()));
+        }
+        const vf sum = vf_add(vf_add(g[0], g[1]), g[2]);
+        const vm some = vf_gt(sum, vf_zero());
+        const vf inverse = vf_keep(some, vf_div(one, sum));
+        for (int k = 0; k < channels; k++) {
+            const vf v = vf_fma(g[1], vf_load(in[1][k] + x), vf_mul(g[0], vf_load(in[0][k] + x)));
+            vf_store(out[k] + x, vf_mul(vf_fma(g[2], vf_load(in[2][k] + x), v), inverse));
+        }
+        const vf r = vf_mul(vf_fma(g[2], c, vf_fma(g[1], b, vf_mul(g[0], a))), inverse);
+        vf_store(out[4] + x, vf_mul(sum, vf_set1(1.0f / 3)));
+        vf_store(out[5] + x, vf_select(some, r, vf_set1(HF_LAYERS_NOTHING)));
+    }
+}
+
+static void layers_merge_simd(const float *const in[3][6], int channels, float slope, int n, float *const out[6])
+{
+    if (channels == 3)
+        layers_merge_of(in, 3, slope, n, out);
+    else
+        layers_merge_of(in, 4, slope, n, out);
+}
+
+HF_INLINE void layers_tap_of(const float *const in[6], const int channels, const float *nearest, float scale, float off,
+                             float part, int n, float *const sum[6])
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf r = vf_load(in[5] + x), behind = vf_sub(r, vf_load(nearest + x));
+        const vf t = vf_max(vf_fma(behind, vf_set1(scale), vf_set1(off)), vf_zero());
+        const vf a = vf_min(t, vf_set1(1));
+        const vf w = vf_keep(vm_not(vf_lt(behind, vf_set1(1))), vf_mul(vf_mul(vf_set1(part), a), vf_load(in[4] + x)));
+        const vm some = vf_gt(w, vf_zero());
+        if (!vm_any(some))
+            continue;
+        for (int c = 0; c < channels; c++)
+            vf_store(sum[c] + x, vf_fma(w, vf_load(in[c] + x), vf_load(sum[c] + x)));
+        const vf s = vf_load(sum[5] + x);
+        vf_store(sum[4] + x, vf_add(vf_load(sum[4] + x), w));
+        vf_store(sum[5] + x, vf_select(some, vf_fma(w, r, s), s));
+    }
+}
+
+static void layers_tap_simd(const float *const in[6], int channels, const float *nearest, float scale, float off,
+                            float part, int n, float *const sum[6])
+{
+    if (channels == 3)
+        layers_tap_of(in, 3, nearest, scale, off, part, n, sum);
+    else
+        layers_tap_of(in, 4, nearest, scale, off, part, n, sum);
+}
+
+static int layers_extremes_simd(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
+                                int rows, struct hf_layers_range *out)
+{
+    const int whole = n / VF_N * VF_N;
+    if (whole) {
+        vf low = vf_set1(out->low), high = vf_set1(out->high), bright = vf_zero();
+        float lows[VF_N];
+        for (int y = 0; y < rows; y++)
+            for (int x = 0; x < whole; x += VF_N) {
+                const ptrdiff_t at = y * stride + x;
+                const vf r = vf_load(radius + at);
+                const vm some = vf_gt(vf_load(weight + at), vf_zero());
+                low = vf_min(vf_select(some, r, low), low);
+                high = vf_max(vf_select(some, r, high), high);
+                if (share)
+                    bright = vf_max(vf_load(share + at), bright);
+            }
+        vf_store(lows, low);
+        for (int i = 0; i < VF_N; i++)
+            out->low = lows[i] < out->low ? lows[i] : out->low;
+        out->high = vf_most(high);
+        const int more = whole < n && hf_layers_extremes_c(radius + whole, weight + whole, share ? share + whole : NULL,
+                                                           stride, n - whole, rows, out);
+        return more || vf_most(bright) > 0;
+    }
+    return hf_layers_extremes_c(radius, weight, share, stride, n, rows, out);
+}

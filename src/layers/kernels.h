@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of layers.
+#ifndef HF_LAYERS_KERNELS_H
+#define HF_LAYERS_KERNELS_H
+
+#include "frame/engine.h"
+#include "layers/layers.h"
+
+// 1 for the pixels whose 3 x 3 radii differ by at most 1, else 0; and the middle of these radii.
+typedef void hf_layers_sure(const float *const radius[3], int n, float *sure, float *middle);
+typedef void hf_layers_unmix(const struct hf_unmix_row *row, int n);
+// Mean roots of brightness of n quads, from two rows of colour.
+typedef void hf_layers_roots(const float *const above[3], const float *const below[3], int n, float *out);
+// Sums of nine numbers: of a line, and of lines.
+typedef void hf_layers_nine(const float *const in[9], int n, float *out);
+// What of n pixels' weight is a highlight: in is colour, weight (4), radius (5); limit the brightness around, one for two.
+typedef void hf_layers_shares(const float *const in[6], const float *limit, int n, float *out);
+// Three samples of each lane become one: those within about 1 / slope of the farthest. out may be none of in.
+typedef void hf_layers_merge(const float *const in[3][6], int channels, float slope, int n, float *const out[6]);
+// Add a tap of a level to the sums: as far behind `nearest` as scale and off say.
+typedef void hf_layers_tap(const float *const in[6], int channels, const float *nearest, float scale, float off,
+                           float part, int n, float *const sum[6]);
+// Least and largest radius of what has weight in rows of n samples, with those that out holds. Returns whether a share is
+// positive; share may be NULL.
+typedef int hf_layers_extremes(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
+                               int rows, struct hf_layers_range *out);
+// Shares of a slice in n samples, and in those of rows - 1 rows below them, summed. add: to what out holds.
+typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
+                             int rows, int channels, int n, int add, float *const out[5]);
+// Sums of pairs of 2n numbers; out may be in.
+typedef void hf_layers_fold(const float *in, int n, float *out);
+// Draw n sources blurred by s into rows from..to around theirs.
+typedef void hf_layers_disc(const struct hf_slice *s, const float *in, int n, int from, int to, float *out,
+                            ptrdiff_t stride);
+// 2n numbers from n of two rows, three quarters of a and one of b; reads one more at either end.
+typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
+// Put sums, the weight at 4, under what a stack holds; part, if not NULL, receives how much of them shows.
+typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, const float *const in[5], int hidden, int n,
+                             float *part);
+// The result of n pixels from what is near and, if not NULL, what is far; where that is the pixel itself, its own bits.
+typedef void hf_layers_finish(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
+                              int channels, int n, float *const out[4]);
+
+struct hf_layers_kernels {
+    struct hf_passes passes;
+    hf_layers_sure *sure;
+    hf_layers_unmix *unmix;
+    hf_layers_roots *roots;
+    hf_layers_nine *nine;
+    hf_layers_shares *shares;
+    hf_layers_merge *merge;
+    hf_layers_tap *tap;
+    hf_layers_extremes *extremes;
+    hf_layers_weigh *weigh;
+    hf_layers_fold *fold;
+    hf_layers_disc *disc;
+    hf_layers_up *up;
+    hf_layers_blend *blend;
+    hf_layers_finish *finish;
+};
+HF_DECLARE_KERNELS(hf_layers_kernels);
+
+static inline const struct hf_layers *hf_layers(const struct hf_setup *s)
+{
+    return s->own;
+}
+
+static inline const struct hf_layers_kernels *hf_layers_kernels(const struct hf_frame *f)
+{
+    return f->kernels;
+}
+
+// The engine's buffers. Those named AT hold weight and radius, and of what is seen the share.
+enum {
+    HF_LAYERS_BUF_COLOUR,
+    HF_LAYERS_BUF_RADIUS,
+    HF_LAYERS_BUF_SEEN,
+    HF_LAYERS_BUF_SEEN_AT,
+    HF_LAYERS_BUF_MIXED,
+    HF_LAYERS_BUF_MIXED_AT,
+    HF_LAYERS_BUF_QUADS,
+    HF_LAYERS_BUF_QUADS_AT,
+    HF_LAYERS_BUF_HIDDEN,
+    HF_LAYERS_BUF_HIDDEN_AT,
+    HF_LAYERS_BUFS
+};
+
+hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_layers_composite_pass;
+hf_layers_sure hf_layers_sure_c;
+hf_layers_unmix hf_layers_unmix_c;
+hf_layers_roots hf_layers_roots_c;
+hf_layers_nine hf_layers_nine_c;
+hf_layers_shares hf_layers_shares_c;
+hf_layers_merge hf_layers_merge_c;
+hf_layers_tap hf_layers_tap_c;
+hf_layers_extremes hf_layers_extremes_c;
+hf_layers_weigh hf_layers_weigh_c;
+hf_layers_fold hf_layers_fold_c;
+hf_layers_disc hf_layers_disc_c;
+hf_layers_up hf_layers_up_c;
+hf_layers_blend hf_layers_blend_c;
+hf_layers_finish hf_layers_finish_c;
+
+extern const struct hf_engine_def hf_layers_engine;
+
+#endif

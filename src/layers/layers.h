@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the layers engine knows of a frame.
+//
+// Every pixel is one sample, or two where an anti-aliased edge mixes two surfaces (unmix.c). What surfaces hide is
+// invented at half resolution (hidden.c). Samples go to slices, fixed radii between which each is shared (slices.c); a
+// slice is blurred as one (blur.c), and slices are put together from front to back, each where what lies before it
+// leaves something open (cell.c, composite.c).
+//
+// Radii are signed, full-resolution pixels, negative in front of the focus. Colours of samples are not weighted.
+#ifndef HF_LAYERS_H
+#define HF_LAYERS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/mem.h"
+
+enum {
+    HF_LAYERS_TILE = 16,    // pixels; the extremes of the radii are kept for each tile
+    HF_LAYERS_LEVELS = 7,   // of the hidden samples, at most
+    HF_LAYERS_COARSEST = 3  // log2 of the largest pixels of a slice
+};
+
+// Sums of weights and of alphas are rounded apart: what is so near to 1 is opaque.
+#define HF_LAYERS_OPAQUE (1 - 2e-6f)
+
+// Planes of samples or sums; each points to pixel (0, 0).
+struct hf_layers_set {
+    float *colour[4], *weight, *radius;
+    ptrdiff_t stride;
+};
+
+// Least and largest radius of the samples of a tile; low > high: there is none.
+struct hf_layers_range {
+    float low, high;
+};
+
+// A row of a disc: weight 1 up to n pixels from its middle and f at n + 1; n may be -1.
+struct hf_disc_row {
+    int n;
+    float f;
+};
+
+struct hf_slice {
+    float radius;
+    int level;                                               // log2 of its pixels
+    float before, after;                                     // radii of its neighbours, or -+ HUGE_VALF
+    float square, before_square, before_scale, after_scale;  // its share of a sample, see weigh
+    // The disc: rows 0..rows-1 on either side; what a pixel at full resolution adds to its sum.
+    int rows, reach;
+    float scale;
+    const struct hf_disc_row *row;
+};
+
+// What a quality stands for.
+struct hf_layers_settings {
+    float spacing;  // of the slices; below 2 it is 1 anyway
+    int fine;       // slices lie closer: see slices.c
+    int unmix, hidden, highlights;
+    float half, quarter;  // radii from which slices are blurred at half and a quarter of the resolution
+};
+
+struct hf_layers {
+    struct hf_layers_settings set;
+    struct hf_block tables, tiles;  // slices and discs; the ranges of the tiles
+    float wide;                     // discs are wider than high by this
+    float nearest, farthest;        // radii of the frame
+    int around;                     // how far samples are read around a cell, pixels
+
+    int width, height;                        // of the frame
+    int channels;                             // of colour, 3 or 4 with alpha
+    int slices, levels;                       // levels of hidden samples; 0: none are looked for
+    struct hf_slice *slice, *behind, *shine;  // of what is seen, of hidden samples, of shares at full resolution
+
+    int columns, rows;  // of tiles
+    struct hf_layers_range *seen_range, *mixed_range, *hidden_range;
+    uint8_t *bright;  // tiles with shares
+};
+
+// The samples of a frame.
+struct hf_samples {
+    struct hf_layers_set seen;   // one of each pixel ...
+    struct hf_layers_set mixed;  // ... and the one behind it at mixed edges
+    float *share;  // of a visible sample's weight whose colour is drawn at full resolution; stride of seen
+    struct hf_layers_set hidden;  // at half resolution
+};
+
+static inline float *hf_layers_at(const struct hf_layers_set *set, float *plane, int x, int y)
+{
+    return plane + (ptrdiff_t)y * set->stride + x;
+}
+
+// A row of pixels and what un-mixing reads around it: row i is that of y - 3 + i.
+struct hf_unmix_row {
+    int channels;
+    const float *radius[7], *colour[7][4], *sure[7], *middle;
+    float *seen[6], *mixed[6];  // colour, weight (4), radius (5)
+};
+
+// Sums of a stack: colour, and weight (the coverage that has been seen); open is what is left of 1.
+struct hf_stack_row {
+    float *colour[4], *weight, *open;
+};
+
+#endif

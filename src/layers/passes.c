@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The passes of layers over a frame's buffers.
+#include <string.h>
+
+#include "layers/cell.h"
+#include "layers/hidden.h"
+#include "layers/highlights.h"
+#include "layers/unmix.h"
+#include "pixel/pass_c.h"
+
+enum { TILE = HF_LAYERS_TILE };
+
+void hf_layers_load_pass(const struct hf_frame *f, struct hf_rect r)
+{
+    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+        float *colour[4] = {NULL};
+        hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], f->s->channels, x0, y, colour);
+        hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
+        f->k->radius_row(f, x0, y, n, hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x0, y), NULL);
+    }
+}
+
+void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    hf_layers_unmix_rows(f, r);
+    if (l->set.highlights)
+        hf_layers_highlights(f, r);
+    if (l->levels)
+        hf_layers_quads(f, r);
+}
+
+static struct hf_layers_set set_of(const struct hf_buf *colour, const struct hf_buf *at)
+{
+    struct hf_layers_set s = {.weight = at->ch[0], .radius = at->ch[1], .stride = at->stride};
+    memcpy(s.colour, colour->ch, sizeof s.colour);
+    return s;
+}
+
+size_t hf_layers_composite_floats(const struct hf_layers *l, int width, int height)
+{
+    return hf_layers_cell_floats(l, width, height) + (size_t)l->channels * (size_t)width * (size_t)height + HF_PAD;
+}
+
+void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    const struct hf_samples samples = {.seen = set_of(&f->buf[HF_LAYERS_BUF_SEEN], &f->buf[HF_LAYERS_BUF_SEEN_AT]),
+                                       .mixed = set_of(&f->buf[HF_LAYERS_BUF_MIXED], &f->buf[HF_LAYERS_BUF_MIXED_AT]),
+                                       .hidden =
+                                           set_of(&f->buf[HF_LAYERS_BUF_HIDDEN], &f->buf[HF_LAYERS_BUF_HIDDEN_AT]),
+                                       .share = f->buf[HF_LAYERS_BUF_SEEN_AT].ch[2]};
+    const int x0 = 2 * r.x0, y0 = 2 * r.y0, x1 = hf_min(2 * r.x1, f->s->width), y1 = hf_min(2 * r.y1, f->s->height);
+    const struct hf_rect tiles = {x0 / TILE * TILE, y0 / TILE * TILE, (x1 + TILE - 1) / TILE * TILE,
+                                  (y1 + TILE - 1) / TILE * TILE};
+    const int width = tiles.x1 - tiles.x0, height = tiles.y1 - tiles.y0;
+    float *memory = f->work, *out[4] = {NULL};
+    for (int c = 0; c < l->channels; c++, memory += (size_t)width * (size_t)height)
+        out[c] = memory;
+    hf_layers_cell(l, &samples, hf_layers_kernels(f), tiles, memory, out, width);
+    for (int y = y0; y < y1; y++) {
+        float *row[4] = {NULL}, *was[4];
+        // Repairs are counted where they show.
+        for (int c = 0; c < 4; c++)
+            was[c] = hf_line(f, 8 + c);
+        hf_read_pixels(f, r.x0, y, r.x1 - r.x0, was, f->counts);
+        for (int c = 0; c < l->channels; c++)
+            row[c] = out[c] + (ptrdiff_t)(y - tiles.y0) * width + x0 - tiles.x0;
+        hf_store_rgb(f, row, x1 - x0);
+        hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)row, l->channels == 4);
+    }
+}

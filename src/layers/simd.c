@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of layers of an instruction set.
+#include "simd/simd.h"
+
+#include "layers/blur_simd.h"
+#include "layers/composite_simd.h"
+#include "layers/hidden_simd.h"
+#include "layers/highlights_simd.h"
+#include "layers/unmix_simd.h"
+
+void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
+{
+    k->sure = layers_sure_simd;
+    k->unmix = layers_unmix_simd;
+    k->roots = layers_roots_simd;
+    k->nine = layers_nine_simd;
+    k->shares = layers_shares_simd;
+    k->merge = layers_merge_simd;
+    k->tap = layers_tap_simd;
+    k->extremes = layers_extremes_simd;
+    k->weigh = layers_weigh_simd;
+    k->fold = layers_fold_simd;
+    k->disc = layers_disc_simd;
+    k->up = layers_up_simd;
+    k->blend = layers_blend_simd;
+    k->finish = layers_finish_simd;
+}

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mixed pixels. The colour of an anti-aliased edge is a mixture of two surfaces while its depth is that of one; each of
+// them becomes a sample of its own, so that none is blurred by the other's radius.
+#include "layers/unmix.h"
+
+#include <math.h>
+
+#include "pixel/pass_c.h"
+
+void hf_layers_sure_c(const float *const radius[3], int n, float *sure, float *middle)
+{
+    for (int x = 0; x < n; x++) {
+        float low = radius[0][x], high = low;
+        for (int y = 0; y < 3; y++)
+            for (int i = -1; i <= 1; i++) {
+                const float r = radius[y][x + i];
+                low = r < low ? r : low;
+                high = r > high ? r : high;
+            }
+        sure[x] = high - low > 1 ? 0 : 1;
+        middle[x] = (low + high) * 0.5f;
+    }
+}
+
+const float hf_unmix_weights[7][7] = {
+#define W(x, y) (x) || (y) ? 1.0f / (((x) * (x) + (y) * (y)) * ((x) * (x) + (y) * (y))) : 0
+#define ROW(y)                                                                                                         \
+    {                                                                                                                  \
+        W(-3, y), W(-2, y), W(-1, y), W(0, y), W(1, y), W(2, y), W(3, y)                                               \
+    }
+    ROW(-3), ROW(-2), ROW(-1), ROW(0),
+    ROW(1),  ROW(2),  ROW(3)
+#undef ROW
+#undef W
+};
+
+// The pixel of 5 x 5 on one side whose colour is farthest from `other`.
+static void farthest(const struct hf_unmix_row *u, int x, int front, const float *other, float *colour, float *radius)
+{
+    float most = -1;
+    for (int y = 1; y < 6; y++)
+        for (int i = x - 2; i <= x + 2; i++) {
+            float d = 0;
+            if ((u->radius[y][i] < u->middle[x]) != front)
+                continue;
+            for (int c = 0; c < u->channels; c++)
+                d += (u->colour[y][c][i] - other[c]) * (u->colour[y][c][i] - other[c]);
+            if (!(d > most) && most >= 0)
+                continue;
+            most = d;
+            *radius = u->radius[y][i];
+            for (int c = 0; c < u->channels; c++)
+                colour[c] = u->colour[y][c][i];
+        }
+}
+
+int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], float mean[2][5])
+{
+    if (weight[0] == 0 && weight[1] == 0)
+        return 0;
+    for (int side = 0; side < 2; side++)
+        if (weight[side] == 0)
+            farthest(u, x, !side, mean[!side], mean[side], &mean[side][4]);
+    return 1;
+}
+
+static void keep(const struct hf_unmix_row *u, int x)
+{
+    for (int c = 0; c < u->channels; c++) {
+        u->seen[c][x] = u->colour[3][c][x];
+        u->mixed[c][x] = 0;
+    }
+    u->seen[4][x] = 1;
+    u->mixed[4][x] = 0;
+    u->seen[5][x] = u->mixed[5][x] = u->radius[3][x];
+}
+
+// How much of the pixel the front is: colours of front and back are given.
+static float share(const struct hf_unmix_row *u, int x, float a0, const float *f, const float *b)
+{
+    float along = 0, apart = 0, size = 0, off = 0;
+    for (int c = 0; c < u->channels; c++) {
+        const float d = f[c] - b[c];
+        along = along + (u->colour[3][c][x] - b[c]) * d;
+        apart = apart + d * d;
+        size = size + (f[c] * f[c] + b[c] * b[c]);
+    }
+    const float es = 1e-3f * size;
+    float a = (along + es * a0) / (apart + es);
+    a = a > 0 ? a < 1 ? a : 1 : a <= 0 ? 0 : a0;
+    for (int c = 0; c < u->channels; c++) {
+        const float rest = u->colour[3][c][x] - a * f[c] - (1 - a) * b[c];
+        off = off + rest * rest;
+    }
+    const float trust = apart / (apart + off);
+    return trust >= 0 ? a0 + (a - a0) * trust : a0;
+}
+
+// Within what there is: a misfit must not make colours that nobody has seen.
+static float between(float v, float a, float b)
+{
+    const float low = a < b ? a : b, high = a > b ? a : b;
+    v = v > low ? v : low;
+    return v < high ? v : high;
+}
+
+static void unmix_pixel(const struct hf_unmix_row *u, int x)
+{
+    float weight[2] = {0}, mean[2][5] = {{0}};
+    const float middle = u->middle[x], a0 = u->radius[3][x] < middle ? 1 : 0;
+    for (int y = 0; y < 7; y++)
+        for (int i = 0; i < 7; i++) {
+            const int at = x + i - 3;
+            if (y == 3 && i == 3)
+                continue;
+            const float w = u->sure[y][at] * hf_unmix_weights[y][i];
+            const int side = u->radius[y][at] < middle ? 0 : 1;
+            weight[side] += w;
+            for (int c = 0; c < u->channels; c++)
+                mean[side][c] = mean[side][c] + w * u->colour[y][c][at];
+            mean[side][4] = mean[side][4] + w * u->radius[y][at];
+        }
+    for (int side = 0; side < 2; side++)
+        for (int c = 0; c < 5; c++)
+            mean[side][c] = weight[side] > 0 ? mean[side][c] / weight[side] : 0;
+    if (!hf_unmix_complete(u, x, weight, mean)) {
+        keep(u, x);
+        return;
+    }
+    const float a = share(u, x, a0, mean[0], mean[1]);
+    for (int c = 0; c < u->channels; c++) {
+        const float rest = u->colour[3][c][x] - a * mean[0][c] - (1 - a) * mean[1][c];
+        u->seen[c][x] = between(mean[0][c] + rest, mean[0][c], u->colour[3][c][x]);
+        u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], u->colour[3][c][x]);
+    }
+    u->seen[4][x] = a;
+    u->mixed[4][x] = 1 - a;
+    u->seen[5][x] = a0 > 0 ? u->radius[3][x] : mean[0][4];
+    u->mixed[5][x] = a0 > 0 ? mean[1][4] : u->radius[3][x];
+}
+
+void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)
+{
+    for (int x = 0; x < n; x++)
+        if (u->sure[3][x] > 0)
+            keep(u, x);
+        else
+            unmix_pixel(u, x);
+}
+
+enum { AROUND = 16 };  // floats on either side of a row of scratch
+
+size_t hf_layers_unmix_floats(int width)
+{
+    return 16 * ((size_t)width + 2 * AROUND);
+}
+
+// Which pixels of a row are not mixed, into its row of the ring.
+static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring, ptrdiff_t stride)
+{
+    const struct hf_buf *b = &f->buf[HF_LAYERS_BUF_RADIUS];
+    const float *radius[3];
+    float *sure = ring + (y & 7) * stride;
+    for (int i = 0; i < 3; i++)
+        radius[i] = hf_at(b, 0, x - 3, y + i - 1);
+    hf_layers_kernels(f)->sure(radius, n + 6, sure - 3, ring + 8 * stride + (y & 7) * stride - 3);
+}
+
+void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
+    const ptrdiff_t stride = n + 2 * AROUND;
+    float *ring = f->work + AROUND;
+    for (int y = y0 - 3; y < y0 + 3; y++)
+        sure_row(f, x, n, y, ring, stride);
+    for (int y = y0; y < y1; y++) {
+        struct hf_unmix_row u = {.channels = l->channels, .middle = ring + (8 + (y & 7)) * stride};
+        sure_row(f, x, n, y + 3, ring, stride);
+        for (int i = 0; i < 7; i++) {
+            u.radius[i] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x, y + i - 3);
+            u.sure[i] = ring + ((y + i - 3) & 7) * stride;
+            for (int c = 0; c < l->channels; c++)
+                u.colour[i][c] = hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], c, x, y + i - 3);
+        }
+        hf_row(&f->buf[HF_LAYERS_BUF_SEEN], l->channels, x, y, u.seen);
+        hf_row(&f->buf[HF_LAYERS_BUF_MIXED], l->channels, x, y, u.mixed);
+        for (int i = 0; i < 2; i++) {
+            u.seen[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, x, y);
+            u.mixed[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], i, x, y);
+        }
+        if (!l->set.unmix)
+            for (int i = 0; i < n; i++)
+                ring[(y & 7) * stride + i] = 1;
+        hf_layers_kernels(f)->unmix(&u, n);
+    }
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Un-mixing: parts that the vector bodies share.
+#ifndef HF_LAYERS_UNMIX_H
+#define HF_LAYERS_UNMIX_H
+
+#include "layers/kernels.h"
+
+// 1 / d^4 of the 7 x 7, 0 in its middle.
+extern const float hf_unmix_weights[7][7];
+// Fill in the means of a side of which there is nothing. 0: there are none. A mean is colour, radius (4).
+int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], float mean[2][5]);
+
+// Floats of scratch that un-mixing a row of n pixels takes.
+size_t hf_layers_unmix_floats(int width);
+void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r);
+
+#endif

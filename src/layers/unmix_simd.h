@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mixed pixels on vectors: in the order of operations of unmix.c.
+#include "layers/unmix.h"
+
+static void layers_sure_simd(const float *const radius[3], int n, float *sure, float *middle)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        vf low = vf_load(radius[0] + x - 1), high = low;
+        for (int y = 0; y < 3; y++)
+            for (int i = -1; i <= 1; i++) {
+                const vf r = vf_load(radius[y] + x + i);
+                low = vf_min(r, low);
+                high = vf_max(r, high);
+            }
+        vf_store(sure + x, vf_keep(vm_not(vf_gt(vf_sub(high, low), vf_set1(1))), vf_set1(1)));
+        vf_store(middle + x, vf_mul(vf_add(low, high), vf_set1(0.5f)));
+    }
+}
+
+HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channels)
+{
+    for (int c = 0; c < channels; c++) {
+        vf_store(u->seen[c] + x, vf_load(u->colour[3][c] + x));
+        vf_store(u->mixed[c] + x, vf_zero());
+    }
+    vf_store(u->seen[4] + x, vf_set1(1));
+    vf_store(u->mixed[4] + x, vf_zero());
+    vf_store(u->seen[5] + x, vf_load(u->radius[3] + x));
+    vf_store(u->mixed[5] + x, vf_load(u->radius[3] + x));
+}
+
+// Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
+HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5])
+{
+    const vf middle = vf_load(u->middle + x);
+    vf weight[2] = {vf_zero(), vf_zero()};
+    for (int i = 0; i < 2; i++)
+        for (int c = 0; c < 5; c++)
+            mean[i][c] = vf_zero();
+    for (int y = 0; y < 7; y++)
+        for (int i = 0; i < 7; i++) {
+            const int at = x + i - 3;
+            if (y == 3 && i == 3)
+                continue;
+            const vf w = vf_mul(vf_load(u->sure[y] + at), vf_set1(hf_unmix_weights[y][i]));
+            const vf r = vf_load(u->radius[y] + at), f = vf_keep(vf_lt(r, middle), w), b = vf_sub(w, f);
+            weight[0] = vf_add(weight[0], f);
+            weight[1] = vf_add(weight[1], b);
+            for (int c = 0; c < channels; c++) {
+                const vf v = vf_load(u->colour[y][c] + at);
+                mean[0][c] = vf_fma(f, v, mean[0][c]);
+                mean[1][c] = vf_fma(b, v, mean[1][c]);
+            }
+            mean[0][4] = vf_fma(f, r, mean[0][4]);
+            mean[1][4] = vf_fma(b, r, mean[1][4]);
+        }
+    for (int i = 0; i < 2; i++)
+        for (int c = 0; c < 5; c++)
+            mean[i][c] = vf_keep(vf_gt(weight[i], vf_zero()), vf_div(mean[i][c], weight[i]));
+    const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], vf_zero()), vf_gt(weight[1], vf_zero()))));
+    if (!vm_any(missing))
+        return mixed;
+    float w[2][VF_N], m[2][5][VF_N], both[VF_N];
+    vf_store(both, vf_keep(mixed, vf_set1(1)));
+    for (int i = 0; i < 2; i++) {
+        vf_store(w[i], weight[i]);
+        for (int c = 0; c < 5; c++)
+            vf_store(m[i][c], mean[i][c]);
+    }
+    for (int lane = 0; lane < VF_N; lane++) {
+        float one[2] = {w[0][lane], w[1][lane]}, of[2][5];
+        if (both[lane] == 0 || (one[0] > 0 && one[1] > 0))
+            continue;
+        for (int i = 0; i < 10; i++)
+            of[i / 5][i % 5] = m[i / 5][i % 5][lane];
+        both[lane] = (float)hf_unmix_complete(u, x + lane, one, of);
+        for (int i = 0; i < 10; i++)
+            m[i / 5][i % 5][lane] = of[i / 5][i % 5];
+    }
+    for (int i = 0; i < 10; i++)
+        mean[i / 5][i % 5] = vf_load(m[i / 5][i % 5]);
+    return vf_gt(vf_load(both), vf_zero());
+}
+
+HF_INLINE vf layers_rest(const struct hf_unmix_row *u, int x, int c, vf a, vf mean[2][5])
+{
+    return vf_fnma(vf_sub(vf_set1(1), a), mean[1][c], vf_fnma(a, mean[0][c], vf_load(u->colour[3][c] + x)));
+}
+
+HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channels, vf a0, vf mean[2][5])
+{
+    vf along = vf_zero(), apart = vf_zero(), size = vf_zero(), off = vf_zero();
+    for (int c = 0; c < channels; c++) {
+        const vf f = mean[0][c], b = mean[1][c], d = vf_sub(f, b);
+        along = vf_fma(vf_sub(vf_load(u->colour[3][c] + x), b), d, along);
+        apart = vf_fma(d, d, apart);
+        size = vf_add(size, vf_fma(f, f, vf_mul(b, b)));
+    }
+    const vf es = vf_mul(vf_set1(1e-3f), size), zero = vf_zero(), one = vf_set1(1);
+    vf a = vf_div(vf_fma(es, a0, along), vf_add(apart, es));
+    a = vf_select(vf_gt(a, zero), vf_select(vf_lt(a, one), a, one), vf_select(vf_le(a, zero), zero, a0));
+    for (int c = 0; c < channels; c++) {
+        const vf rest = layers_rest(u, x, c, a, mean);
+        off = vf_fma(rest, rest, off);
+    }
+    const vf trust = vf_div(apart, vf_add(apart, off));
+    return vf_select(vf_le(zero, trust), vf_fma(vf_sub(a, a0), trust, a0), a0);
+}
+
+HF_INLINE vf layers_between(vf v, vf a, vf b)
+{
+    return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
+}
+
+HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const int channels, vm mixed)
+{
+    vf mean[2][5];
+    mixed = layers_sides(u, x, channels, mixed, mean);
+    const vf r = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
+    const vf a0 = vf_keep(vf_lt(r, vf_load(u->middle + x)), one), a = layers_share(u, x, channels, a0, mean);
+    const vm front = vf_gt(a0, zero);
+    for (int c = 0; c < channels; c++) {
+        const vf rest = layers_rest(u, x, c, a, mean);
+        const vf own = vf_load(u->colour[3][c] + x);
+        vf_store(u->seen[c] + x, vf_select(mixed, layers_between(vf_add(mean[0][c], rest), mean[0][c], own), own));
+        vf_store(u->mixed[c] + x, vf_keep(mixed, layers_between(vf_add(mean[1][c], rest), mean[1][c], own)));
+    }
+    vf_store(u->seen[4] + x, vf_select(mixed, a, one));
+    vf_store(u->mixed[4] + x, vf_keep(mixed, vf_sub(one, a)));
+    vf_store(u->seen[5] + x, vf_select(vm_or(front, vm_not(mixed)), r, mean[0][4]));
+    vf_store(u->mixed[5] + x, vf_select(vm_and(front, mixed), mean[1][4], r));
+}
+
+HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int channels)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vm mixed = vm_not(vf_gt(vf_load(u->sure[3] + x), vf_zero()));
+        if (vm_any(mixed))
+            layers_unmix_vector(u, x, channels, mixed);
+        else
+            layers_keep(u, x, channels);
+    }
+}
+
+static void layers_unmix_simd(const struct hf_unmix_row *u, int n)
+{
+    if (u->channels == 3)
+        layers_unmix_of(u, n, 3);
+    else
+        layers_unmix_of(u, n, 4);
+}

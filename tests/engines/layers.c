@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The layers engine: bits that hang on nothing but the input, constant pictures, alpha, what is not finite, a focus pull.
+//
+//     layers [seed]
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "support/random_scene.h"
+
+static unsigned seed = 1;
+
+static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_SSE41, HF_ISA_AVX2, HF_ISA_AVX512, HF_ISA_NEON};
+enum { ISAS = sizeof isas / sizeof *isas };
+
+static struct hf_context *open_context(enum hf_isa isa, int threads, int tile)
+{
+    struct hf_config config = scene_config(isa, threads);
+    struct hf_context *c = NULL;
+    config.tile_width = tile ? 16 * tile : 0;
+    config.tile_height = tile ? 16 + tile : 0;
+    CHECK_INT(hf_open(&c, &config), HF_OK);
+    return c;
+}
+
+static struct picture render(struct hf_context *c, const struct scene *s, const struct hf_params *p)
+{
+    struct picture out = picture_new(s->colour.width, s->colour.height, s->colour.channels);
+    const struct hf_image dst = picture_image(&out), src = picture_image(&s->colour);
+    const struct hf_depth depth = picture_depth(&s->depth);
+    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
+    return out;
+}
+
+static int same(const struct picture *a, const struct picture *b)
+{
+    for (int c = 0; c < a->channels; c++)
+        if (memcmp(a->plane[c], b->plane[c], sizeof(float) * (size_t)a->width * (size_t)a->height))
+            return 0;
+    return 1;
+}
+
+static struct hf_params random_params(struct rng *rng)
+{
+    struct hf_params p = scene_params();
+    p.engine = HF_ENGINE_LAYERS;
+    p.run.deterministic = 1;
+    p.max_radius = rng_range(rng, 1, 45);
+    p.layers.quality = (enum hf_layers_quality)rng_below(rng, 4);
+    p.layers.no_unmix = rng_below(rng, 5) == 0;
+    p.layers.no_hidden = rng_below(rng, 5) == 0;
+    p.layers.no_highlights = rng_below(rng, 5) == 0;
+    p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
+    return p;
+}
+
+// Every instruction set, any number of threads, tiles of any size: the bits of the plain C on one thread.
+static void bits(void)
+{
+    struct hf_context *plain = open_context(HF_ISA_SCALAR, 1, 0);
+    struct rng rng = rng_seed(seed);
+    for (int n = 0; n < 12; n++) {
+        const int width = 1 + rng_below(&rng, n % 3 ? 90 : 300), height = 1 + rng_below(&rng, n % 3 ? 70 : 150);
+        const enum scene_kind kind = (enum scene_kind)rng_below(&rng, SCENE_KINDS);
+        struct scene s = scene_new(&rng, kind, width, height, 3 + rng_below(&rng, 2));
+        const struct hf_params p = random_params(&rng);
+        struct picture want = render(plain, &s, &p);
+        for (int i = 0; i < ISAS; i++) {
+            if (!hf_isa_available(isas[i]))
+                continue;
+            struct hf_context *c = open_context(isas[i], 1 + rng_below(&rng, 4), rng_below(&rng, 5));
+            struct picture got = render(c, &s, &p);
+            CHECK_MSG(same(&want, &got), "%s, scene %d (%s, %d x %d): not the bits of the C", hf_isa_name(isas[i]), n,
+                      scene_name(kind), width, height);
+            picture_free(&got);
+            hf_close(&c);
+        }
+        picture_free(&want);
+        scene_free(&s);
+    }
+    hf_close(&plain);
+}
+
+// A sum of weights and the sums of colours are rounded apart: each is a blur of at most a few hundred terms of which the
+// errors average out, twice, and a quotient. 2e-6 is 34 half units of the last place.
+static void constants(void)
+{
+    struct rng rng = rng_seed(seed + 1);
+    struct hf_context *c = open_context(HF_ISA_AUTO, 2, 0);
+    for (int n = 0; n < 6; n++) {
+        struct scene s = scene_new(&rng, n % 2 ? SCENE_NOISE : SCENE_BLOCKS, 200, 120, 4);
+        struct hf_params p = random_params(&rng);
+        p.run.deterministic = n % 2;
+        const float value[4] = {0.7f, 0.013f, 91.3f, 1};
+        for (int k = 0; k < 4; k++)
+            for (int i = 0; i < 200 * 120; i++)
+                s.colour.plane[k][i] = value[k];
+        struct picture out = render(c, &s, &p);
+        for (int k = 0; k < 4; k++) {
+            double worst = 0;
+            for (int i = 0; i < 200 * 120; i++)
+                worst = fmax(worst, fabs((double)out.plane[k][i] / value[k] - 1));
+            CHECK_MSG(worst <= (k < 3 ? 2e-6 : 0), "constant %d, channel %d: off by %g", n, k, worst);
+        }
+        picture_free(&out);
+        scene_free(&s);
+    }
+    hf_close(&c);
+}
+
+// Colour and alpha of a picture with holes lie between those of the input; what is not finite spreads nowhere.
+static void ranges(void)
+{
+    struct rng rng = rng_seed(seed + 2);
+    struct hf_context *c = open_context(HF_ISA_AUTO, 2, 0);
+    for (int n = 0; n < 6; n++) {
+        struct scene s = scene_new(&rng, SCENE_BLOCKS, 150, 100, 4);
+        struct hf_params p = random_params(&rng);
+        p.layers.no_highlights = 1;  // theirs are drawn finer than the coverage that they go with
+        for (int i = 0; i < 150 * 100; i++) {
+            const float a = i / 150 / 20 % 2 && i % 150 / 17 % 2 ? 0 : 1;
+            for (int k = 0; k < 4; k++)
+                s.colour.plane[k][i] = k < 3 ? 0.5f * a : a;
+        }
+        for (int k = 0; n % 2 && k < 40; k++)
+            s.colour.plane[rng_below(&rng, 3)][rng_below(&rng, 150 * 100)] = k % 2 ? NAN : INFINITY;
+        struct picture out = render(c, &s, &p);
+        int inside = 1, matched = 1;
+        for (int i = 0; i < 150 * 100; i++) {
+            inside &= out.plane[3][i] >= 0 && out.plane[3][i] <= 1.00001f;
+            for (int k = 0; k < 3; k++) {
+                inside &= out.plane[k][i] >= 0 && out.plane[k][i] <= 0.50001f;
+                matched &= n % 2 || fabsf(out.plane[k][i] - 0.5f * out.plane[3][i]) < 1e-5f;
+            }
+        }
+        CHECK_MSG(inside, "case %d: samples beyond those of the input", n);
+        CHECK_MSG(matched, "case %d: colours that do not go with their alpha", n);
+        picture_free(&out);
+        scene_free(&s);
+    }
+    hf_close(&c);
+}
+
+// A focus pull: no pixel changes by more than 4 times the picture's range for each pixel of radius.
+static void pull(void)
+{
+    struct rng rng = rng_seed(seed + 3);
+    struct hf_context *c = open_context(HF_ISA_AUTO, 2, 0);
+    static const float steps[] = {1e-4f, 1e-3f, 1e-2f, 0.1f};
+    struct scene s = scene_new(&rng, SCENE_BLOCKS, 128, 96, 3);
+    struct hf_params p = hf_default_params;
+    p.engine = HF_ENGINE_LAYERS;
+    const struct hf_image src = picture_image(&s.colour);
+    struct hf_depth depth = picture_depth(&s.depth);
+    struct picture out[2] = {picture_new(128, 96, 3), picture_new(128, 96, 3)};
+    depth.type = HF_DEPTH_COC;
+    for (int i = 0; i < 128 * 96; i++) {
+        // Differences of 1, from which on an edge is one, and radii in the middle of two others come and go with
+        // rounding: there are none.
+        const float step = roundf(fminf(fmaxf(s.depth.plane[0][i] - 20, -15), 15));
+        s.depth.plane[0][i] = 1.37f * step + 0.013f * step * step;
+        for (int k = 0; k < 3; k++)
+            s.colour.plane[k][i] = fminf(fmaxf(s.colour.plane[k][i], 0), 1);
+    }
+    for (int n = 0; n < 4; n++)
+        for (int at = 0; at < 6; at++) {
+            for (int k = 0; k < 2; k++) {
+                const struct hf_image dst = picture_image(&out[k]);
+                CHECK_INT(hf_render(c, &dst, &src, &depth, &p), HF_OK);
+                for (int i = 0; i < 128 * 96; i++)
+                    s.depth.plane[0][i] += k ? 0.37f : steps[n];
+            }
+            double worst = 0;
+            for (int k = 0; k < 3; k++)
+                for (int i = 0; i < 128 * 96; i++)
+                    worst = fmax(worst, fabs((double)out[0].plane[k][i] - out[1].plane[k][i]));
+            // Roundings of two pictures besides.
+            CHECK_MSG(worst <= 4 * steps[n] * 1.01 + 4e-6, "a step of %g changes a pixel by %g", steps[n], worst);
+        }
+    picture_free(&out[0]);
+    picture_free(&out[1]);
+    scene_free(&s);
+    hf_close(&c);
+}
+
+int main(int argc, char **argv)
+{
+    seed = argc > 1 ? (unsigned)atoi(argv[1]) : 1;
+    bits();
+    constants();
+    ranges();
+    pull();
+    return check_report();
+}
