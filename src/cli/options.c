@@ -94,8 +94,9 @@ const struct cli_option cli_options[] = {
      POSITIVE(far_plane), .unit = CLI_UNIT_DISTANCE, .inf = 1},
 
     {"engine", 0, CLI_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. scatter (default): every pixel "
-     "becomes the aperture's picture. layers: edges un-mixed, what objects hide filled in, the most accurate, discs only. gather: half-resolution near and far fields, the fastest. hexagon: "
-     "hexagonal highlights in two passes. gaussian: soft, with autofocus.", NAME(engine, ENGINE)},
+     "becomes the aperture's picture. layers: edges un-mixed, what objects hide filled in: the most accurate, discs "
+     "only. gather: half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. "
+     "gaussian: soft, with autofocus.", NAME(engine, ENGINE)},
     {"quality", 0, CLI_LOOK, "draft|standard|high|best", "In place of --engine: draft is the gather, all others are the "
      "scatter.", CHOICE(quality)},
     {"aperture", 0, CLI_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "

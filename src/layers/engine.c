@@ -129,10 +129,11 @@ static size_t bytes(const void *own)
     return l->tables.size + l->tiles.size;
 }
 
-static void measure(void *own, const struct hf_setup *s, const struct hf_counts *found)
+static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
 {
     struct hf_layers *l = own;
     (void)s;
+    (void)mem;
     l->nearest = fminf(found->radius_min, 0);
     l->farthest = fmaxf(found->radius_max, 0);
     hf_layers_make_slices(l);
@@ -142,6 +143,7 @@ static void measure(void *own, const struct hf_setup *s, const struct hf_counts 
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;
     l->around = (hf_layers_most_tiles(l) + 2) * HF_LAYERS_TILE;
+    return HF_OK;
 }
 
 static int channels(const struct hf_setup *s, int b)

@@ -14,11 +14,26 @@ HF_INLINE int unorm_bits(const int format, const int c)
     return format == HF_FORMAT_RGBA16 ? 16 : format != HF_FORMAT_RGB10A2 ? 8 : c == 3 ? 2 : 10;
 }
 
+// With 8 lanes and fewer, loads are as fast as a gather, and emulators get them right.
+HF_INLINE vf unorm_lookup(vi code)
+{
+#if defined __AVX512F__
+    return vf_gather(hf_srgb8, code);
+#else
+    uint32_t index[VF_N];
+    float value[VF_N];
+    vi_store(index, code);
+    for (int i = 0; i < VF_N; i++)
+        value[i] = hf_srgb8[index[i]];
+    return vf_load(value);
+#endif
+}
+
 HF_INLINE vf unorm_decode(vi code, const int bits, const int srgb)
 {
     static const float p[6] = HF_SRGB_DECODE;
     if (srgb && bits == 8)
-        return vf_gather(hf_srgb8, code);
+        return unorm_lookup(code);
     const vf s = vf_mul(vi_to_vf(code), vf_set1(1 / (float)((1 << bits) - 1)));
     if (!srgb)
         return s;

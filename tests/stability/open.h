@@ -27,6 +27,8 @@ static const struct {
     {"opaque: samples of alpha that are not 1", "hexagon", 600, "the same"},
     {"transposes: difference, of the largest", "scatter", 0.015,
      "a disc's rows end between pixels, its first and last row do not: its outline differs along the axes"},
+    {"flips: samples that are not the mirror's bits", "scatter", 5000,
+     "what lies behind near pixels is made from quads counted from the left: an odd width has others in the mirror"},
     {"a focus pull: worst jump, 8-bit codes", "gather", 10,
      "a tile's pixel at CoC 0 takes no part in the far field, and all of its quad's just beside it"},
     {"a focus pull: worst jump, 8-bit codes", "scatter", 3,
