@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A slice's sources and its disc on vectors: in the order of operations of blur.c.
 #include "layers/kernels.h"
+#include "simd/simd.h"
 
 HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                                const int rows, const int channels, int n, int add, float *const out[5])

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Slices put together on vectors: in the order of operations of composite.c.
 #include "layers/kernels.h"
+#include "simd/simd.h"
 
 static void layers_up_simd(const float *a, const float *b, int n, float *out)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hidden samples on vectors: in the order of operations of hidden.c.
 #include "layers/hidden.h"
+#include "simd/simd.h"
 
 HF_INLINE void layers_merge_of(const float *const in[3][6], const int channels, float slope, int n, float *const out[6])
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Highlights on vectors: in the order of operations of highlights.c.
 #include "layers/highlights.h"
+#include "simd/simd.h"
 
 HF_INLINE vf layers_light(const float *const in[3], int x)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mixed pixels on vectors: in the order of operations of unmix.c.
 #include "layers/unmix.h"
+#include "simd/simd.h"
 
 static void layers_sure_simd(const float *const radius[3], int n, float *sure, float *middle)
 {

@@ -236,7 +236,7 @@ for value in 3 "3," ,3 a,b 3,4,5 3.5,4 "3, 4" 99999999999,1; do
 done
 bad 1 "--focus|'middle'|center" a.exr -o o.exr --focus middle
 bad 1 "--focus|--focus-at" a.exr -o o.exr --focus 3 --focus-at 1,2
-bad 1 "--engine|'layers'|gather" a.exr -o o.exr --engine layers
+bad 1 "--engine|'lager'|gather" a.exr -o o.exr --engine lager
 bad 1 "--storage|'double'|float, half, packed" a.exr -o o.exr --storage double
 bad 1 "--storage|'fl'" a.exr -o o.exr --storage fl
 bad 1 "--fill|'min'|max, mean, none" a.exr -o o.exr --fill min
