@@ -4,7 +4,7 @@
 // front: far, the pixels in focus, near. The near one's sum of weights, 1 inside a large object and less across its
 // silhouette, is its coverage: so it melts into what is behind, which is made up from what is seen around it (behind.c).
 //
-// Cost of a blurred pixel of radius r, in additions of four 64-bit lanes (OPTIMISATION.md has the times):
+// Cost of a blurred pixel of radius r, in additions of four 64-bit lanes (docs/how-it-works.md has the times):
 //     disc         4 (2 r + 1); 2.5 (2 r + 1) where four side by side have rows equally long to a pixel
 //     polygon      4 (2 r + 1), and three products a row for one
 //     ring of R    1 + R times its outline
