@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A slice of a cell: its sources, and their discs.
+#include <string.h>
+
+#include "layers/parts.h"
+
+// Zero what the slice's blur reaches and what is read around that.
+static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
+                          int channels)
+{
+    const int margin = level ? MARGIN : 0, height = c->rows * (TILE >> level), around = level ? 2 : 0;
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, m, level, ty, &s);) {
+            const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT;
+            const int right = (c->columns * (TILE >> level)) + RIGHT, x1 = s.x1 + 16 < right ? s.x1 + 16 : right;
+            int y0, y1;
+            hf_layers_clip_rows(c, level, ty, &y0, &y1);
+            y0 = y0 - around > -margin ? y0 - around : -margin;
+            y1 = y1 + around < height + margin ? y1 + around : height + margin;
+            for (int y = y0; y < y1; y++)
+                for (int i = 0; i < channels; i++)
+                    memset(w->at + y * w->row + i * w->channel + x0, 0, sizeof(float) * (size_t)(x1 - x0));
+        }
+}
+
+void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *set, const float *weight, int x, int y,
+                         const float *in[6])
+{
+    const ptrdiff_t at = (ptrdiff_t)y * set->stride + x;
+    for (int i = 0; i < l->channels; i++)
+        in[i] = set->colour[i] + at;
+    in[4] = weight + at;
+    in[5] = set->radius + at;
+}
+
+// Where a channel's row of sources begins: channel `channels` is the weight.
+static float *source_at(const struct hf_cell *c, int i, int x, int y)
+{
+    return c->source.at + y * c->source.row + i * c->source.channel + x;
+}
+
+// The sources of one row of a run of tiles.
+static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int y)
+{
+    const struct hf_layers *l = c->l;
+    const int level = b->s->level - b->finest, size = TILE >> b->finest, n = (end - tx) * size, rows = 1 << level;
+    const int px = (c->x0 >> b->finest) + tx * size, py = (c->y0 >> b->finest) + ty * size + (y << level);
+    const float *in[6] = {NULL};
+    float *out[5];
+    for (int i = 0; i < 5; i++)
+        out[i] = level ? c->line[i] : source_at(c, i < 4 ? i : l->channels, tx * size, y);
+    hf_layers_planes_at(l, b->set, b->weight, px, py, in);
+    c->k->weigh(b->s, in, b->share ? b->share + (ptrdiff_t)py * b->set->stride + px : NULL, b->set->stride, rows,
+                l->channels, n, 0, out);
+    for (int from = tx, to; b->mixed && (to = hf_layers_next_run(&c->used, &from, ty, end, MIXED)) > from; from = to) {
+        float *more[5];
+        for (int i = 0; i < 5; i++)
+            more[i] = out[i] + (from - tx) * size;
+        hf_layers_planes_at(l, &c->samples->mixed, c->samples->mixed.weight, c->x0 + from * size, py, in);
+        c->k->weigh(b->s, in, NULL, c->samples->mixed.stride, rows, l->channels, (to - from) * size, 1, more);
+    }
+    for (int i = 0; i < b->channels; i++) {
+        float *line = out[i < l->channels ? i : 4], *to = source_at(c, i, tx * (TILE >> b->s->level), y);
+        for (int j = level; j > 0; j--)
+            c->k->fold(line, n >> (level - j + 1), j > 1 ? line : to);
+    }
+}
+
+static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
+{
+    const int n = hf_layers_tiles_around(b->s);
+    for (int tx = -n, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0)) > tx; tx = end)
+        for (int y = 0; y < TILE >> b->s->level; y++)
+            build_run(c, b, tx, end, ty, y);
+}
+
+// Also what vectors have written past the last tile.
+static void clear_row(const struct hf_cell *c, const struct hf_build *b, int ty)
+{
+    const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level;
+    for (int tx = -n, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0)) > tx; tx = end)
+        for (int y = 0; y < size; y++)
+            for (int i = 0; i <= c->l->channels; i++)
+                memset(source_at(c, i, tx * size, y), 0, sizeof(float) * (size_t)((end - tx) * size + 16));
+}
+
+// Draw columns x0 to x1 of a row of tiles' sources.
+static void draw_span(const struct hf_cell *c, const struct hf_build *b, int ty, int x0, int x1,
+                      const struct hf_window *to)
+{
+    const struct hf_slice *s = b->s;
+    const int size = TILE >> s->level, margin = s->level ? MARGIN : 0, height = c->rows * size;
+    for (int y = 0; y < size; y++)
+        for (int i = 0; i < b->channels; i++) {
+            const int at = ty * size + y;
+            c->k->disc(s, source_at(c, i, x0, y), x1 - x0, -margin - at, height + margin - at,
+                       to->at + at * to->row + i * to->channel + x0, to->row);
+        }
+}
+
+// Draw the sources of a row of tiles into the window. Spans lie on vectors, and what is between two is 0 in both.
+static void draw_row(const struct hf_cell *c, const struct hf_build *b, int ty, const struct hf_window *to)
+{
+    const struct hf_slice *s = b->s;
+    const int n = hf_layers_tiles_around(s), size = TILE >> s->level, margin = s->level ? MARGIN : 0;
+    const int last = c->columns * size + margin;
+    int x0 = 0, x1 = 0;
+    for (int tx = -n, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0)) > tx; tx = end) {
+        int a = tx * size - s->reach, z = end * size + s->reach;
+        a = a > -margin ? a : -margin;
+        z = z < last ? z : last;
+        if (a >= z)
+            continue;
+        hf_layers_align_span(&a, &z);
+        if (x1 > x0 && a > x1) {
+            draw_span(c, b, ty, x0, x1, to);
+            x0 = a;
+        } else if (x1 <= x0) {
+            x0 = a;
+        }
+        x1 = z;
+    }
+    if (x1 > x0)
+        draw_span(c, b, ty, x0, x1, to);
+}
+
+void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
+                          const struct hf_window *to)
+{
+    const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
+    clear_touched(c, touched, to, b->s->level, b->channels);
+    for (int ty = -n; ty < c->rows + n; ty++) {
+        int tx = -n;
+        if (hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0) == tx ||
+            (ty + 1) * size + b->s->rows <= -margin || ty * size - b->s->rows >= c->rows * size + margin)
+            continue;
+        build_row(c, b, ty);
+        draw_row(c, b, ty, to);
+        clear_row(c, b, ty);
+    }
+}

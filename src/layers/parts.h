@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the files that make a cell share: its scratch, maps of its tiles, and their spans.
+#ifndef HF_LAYERS_PARTS_H
+#define HF_LAYERS_PARTS_H
+
+#include "layers/cell.h"
+#include "layers/slices.h"
+
+enum { TILE = HF_LAYERS_TILE, MARGIN = HF_LAYERS_MARGIN, LEFT = 16, RIGHT = 32, AROUND = 64 };
+
+// Planes around a cell: at is channel 0 of its first pixel.
+struct hf_window {
+    float *at;
+    ptrdiff_t channel, row;
+};
+
+// A map of tiles: those of the cell from (0, 0) on, and some on every side.
+struct hf_tile_map {
+    uint8_t *at;
+    int stride;
+};
+
+enum { SEEN = 1, MIXED = 2, BRIGHT = 4 };
+
+enum { NEAR, FAR, MIDDLE };
+
+struct hf_cell {
+    const struct hf_layers *l;
+    const struct hf_samples *samples;
+    const struct hf_layers_kernels *k;
+    int x0, y0, columns, rows;   // of tiles
+    struct hf_tile_map used;     // tiles that have samples of the slice
+    struct hf_tile_map touched;  // tiles that its blur reaches, one more around the cell
+    struct hf_tile_map shone;    // the same of its shares at full resolution
+    struct hf_tile_map near, far, middle;
+    struct hf_window source, sum[HF_LAYERS_COARSEST + 1], shine;
+    struct hf_window stack[3], light[2];  // near, far, middle; what shines of near and far
+    float *line[5];                       // sums at full resolution, on their way to the source's
+    float *row[5];                        // upsampled
+    float *part;                          // how much of a slice shows, half resolution
+    ptrdiff_t part_row;
+};
+
+// Pixels of a level.
+struct hf_span {
+    int x0, x1, tx;  // tx: where to look for the next; -1 at first
+};
+
+struct hf_build {
+    const struct hf_slice *s;
+    const struct hf_layers_set *set;
+    const float *weight, *share;
+    int finest;  // log2 of the pixels of its samples
+    int channels;
+    int mixed;  // samples behind mixed edges belong to it
+};
+
+static inline uint8_t *hf_layers_map_at(const struct hf_tile_map *m, int tx, int ty)
+{
+    return m->at + (ptrdiff_t)ty * m->stride + tx;
+}
+
+static inline struct hf_stack_row hf_layers_stack_at(const struct hf_cell *c, int stack, int x, int y)
+{
+    const struct hf_window *w = &c->stack[stack];
+    float *p = w->at + y * w->row + x;
+    struct hf_stack_row r = {.weight = p + c->l->channels * w->channel, .open = p + (c->l->channels + 1) * w->channel};
+    for (int i = 0; i < c->l->channels; i++)
+        r.colour[i] = p + i * w->channel;
+    return r;
+}
+
+// tiles.c
+struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct hf_layers_range *map, int tx, int ty);
+// Mark the tiles around the cell that have samples of the slice. Returns 0 if there are none.
+int hf_layers_mark_used(struct hf_cell *c, const struct hf_slice *s, int hidden, int shares);
+// Tiles of the cell, and one around it, that the blur of what is used reaches.
+int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to);
+// The next run of set tiles from *tx on, up to `end`; returns its end, or *tx if there is none.
+int hf_layers_next_run(const struct hf_tile_map *m, int *tx, int ty, int end, int bits);
+// Rows of a level that belong to a row of tiles, one of those around the cell included.
+void hf_layers_clip_rows(const struct hf_cell *c, int level, int ty, int *y0, int *y1);
+// Grow columns to whole vectors, so that no lane lies in two spans.
+void hf_layers_align_span(int *x0, int *x1);
+// The next columns that runs of tiles cover. 0: there are none.
+int hf_layers_next_span(const struct hf_cell *c, const struct hf_tile_map *m, int level, int ty, struct hf_span *s);
+
+// draw.c
+// Samples and their planes from a pixel on.
+void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *set, const float *weight, int x, int y,
+                         const float *in[6]);
+void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
+                          const struct hf_window *to);
+
+// together.c
+void hf_layers_put_slice(struct hf_cell *c, int i);
+// An empty stack.
+void hf_layers_open_stack(const struct hf_cell *c, int stack);
+// The near stack lies before what is near the focus.
+void hf_layers_begin_middle(const struct hf_cell *c);
+void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride);
+
+#endif

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The slices of a cell put together: what lies before the focus and behind it at half resolution, what is near the focus
+// at full resolution, and these three at the end.
+#include <string.h>
+
+#include "layers/parts.h"
+
+// Bring what a level holds of touched tiles to the next finer one.
+static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int level)
+{
+    const struct hf_window *from = &c->sum[level], *to = &c->sum[level - 1];
+    const int height = c->rows * (TILE >> (level - 1)) + MARGIN;
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, touched, level - 1, ty, &s);) {
+            int y0, y1;
+            hf_layers_clip_rows(c, level - 1, ty, &y0, &y1);
+            y0 = y0 - 1 > -MARGIN ? y0 - 1 : -MARGIN;
+            y1 = y1 + 1 < height ? y1 + 1 : height;
+            for (int y = y0; y < y1; y++)
+                for (int i = 0; i <= c->l->channels; i++) {
+                    const float *a = from->at + (y >> 1) * from->row + i * from->channel + s.x0 / 2;
+                    c->k->up(a, a + (y & 1 ? from->row : -from->row), (s.x1 - s.x0) / 2,
+                             to->at + y * to->row + i * to->channel + s.x0);
+                }
+        }
+}
+
+// Put the sums of a slice under what a stack holds.
+static void put_under(struct hf_cell *c, int stack, int level, int hidden, int keep_part)
+{
+    const int finest = stack == MIDDLE ? 0 : 1, channels = c->l->channels;
+    while (level > finest + 1)
+        refine(c, &c->touched, level--);
+    const struct hf_window *from = &c->sum[level];
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, &c->touched, finest, ty, &s);) {
+            int y0, y1;
+            hf_layers_clip_rows(c, finest, ty, &y0, &y1);
+            for (int y = y0; y < y1; y++) {
+                const struct hf_stack_row to = hf_layers_stack_at(c, stack, s.x0, y);
+                const float *in[5];
+                for (int i = 0; i <= channels; i++) {
+                    const float *a = from->at + (y >> (level - finest)) * from->row + i * from->channel;
+                    const int as = i < channels ? i : 4;
+                    in[as] = level > finest ? c->row[as] : a + s.x0;
+                    if (level > finest)
+                        c->k->up(a + s.x0 / 2, a + s.x0 / 2 + (y & 1 ? from->row : -from->row), (s.x1 - s.x0) / 2,
+                                 c->row[as]);
+                }
+                c->k->blend(&to, channels, in, hidden, s.x1 - s.x0,
+                            keep_part ? c->part + y * c->part_row + s.x0 : NULL);
+            }
+        }
+}
+
+static void mark(const struct hf_cell *c, const struct hf_tile_map *from, struct hf_tile_map *to)
+{
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (int tx = -1; tx <= c->columns; tx++)
+            *hf_layers_map_at(to, tx, ty) |= *hf_layers_map_at(from, tx, ty);
+}
+
+// Shares of highlights, at full resolution, where the slice shows.
+static void put_light(struct hf_cell *c, int stack, const struct hf_slice *wide)
+{
+    const struct hf_layers *l = c->l;
+    const struct hf_build b = {
+        .s = wide, .set = &c->samples->seen, .weight = c->samples->share, .channels = l->channels};
+    if (!hf_layers_mark_used(c, wide, 0, 1) || !hf_layers_mark_touched(c, wide, &c->shone))
+        return;
+    hf_layers_draw_slice(c, &b, &c->shone, &c->shine);
+    const struct hf_window *to = &c->light[stack];
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0, end; (end = hf_layers_next_run(&c->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
+                const int x0 = tx * TILE, n = (end - tx) * TILE;
+                const float *a = c->part + (y >> 1) * c->part_row + (x0 >> 1);
+                c->k->up(a, a + (y & 1 ? c->part_row : -c->part_row), n / 2, c->row[0]);
+                for (int i = 0; i < l->channels; i++) {
+                    const float *in = c->shine.at + y * c->shine.row + i * c->shine.channel + x0;
+                    float *out = to->at + y * to->row + i * to->channel + x0;
+                    for (int x = 0; x < n; x++)
+                        out[x] = c->row[0][x] * in[x] + out[x];
+                }
+            }
+}
+
+void hf_layers_put_slice(struct hf_cell *c, int i)
+{
+    const struct hf_layers *l = c->l;
+    const struct hf_slice *s = &l->slice[i], *behind = &l->behind[i];
+    const int stack = s->level == 0 ? MIDDLE : s->radius < 0 ? NEAR : FAR;
+    struct hf_tile_map *reached = stack == NEAR ? &c->near : stack == FAR ? &c->far : &c->middle;
+    if (hf_layers_mark_used(c, s, 0, 0) && hf_layers_mark_touched(c, s, &c->touched)) {
+        const int shares = l->set.highlights && s->level > 0;
+        const struct hf_build b = {.s = s,
+                                   .set = &c->samples->seen,
+                                   .weight = c->samples->seen.weight,
+                                   .share = shares ? c->samples->share : NULL,
+                                   .channels = l->channels + 1,
+                                   .mixed = 1};
+        hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
+        put_under(c, stack, s->level, 0, shares);
+        if (s->radius != 0)
+            mark(c, &c->touched, reached);
+        if (shares)
+            put_light(c, stack, &l->shine[i]);
+    }
+    if (l->levels && hf_layers_mark_used(c, behind, 1, 0) && hf_layers_mark_touched(c, behind, &c->touched)) {
+        const struct hf_build b = {.s = behind,
+                                   .set = &c->samples->hidden,
+                                   .weight = c->samples->hidden.weight,
+                                   .finest = 1,
+                                   .channels = l->channels + 1};
+        hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
+        put_under(c, stack, behind->level, 1, 0);
+        mark(c, &c->touched, reached);
+    }
+}
+
+void hf_layers_open_stack(const struct hf_cell *c, int stack)
+{
+    const int finest = stack == MIDDLE ? 0 : 1, size = TILE >> finest, margin = finest ? MARGIN : 0;
+    for (int y = -margin; y < c->rows * size + margin; y++) {
+        const struct hf_stack_row r = hf_layers_stack_at(c, stack, -margin, y);
+        const int n = c->columns * size + 2 * margin;
+        for (int i = 0; i < c->l->channels; i++)
+            memset(r.colour[i], 0, sizeof(float) * (size_t)n);
+        memset(r.weight, 0, sizeof(float) * (size_t)n);
+        for (int x = 0; x < n; x++)
+            r.open[x] = 1;
+        for (int i = 0; finest && i < c->l->channels; i++) {
+            const struct hf_window *w = &c->light[stack];
+            for (int j = 0; j < 2 && y >= 0 && y < c->rows * size; j++)
+                memset(w->at + (2 * y + j) * w->row + i * w->channel, 0, sizeof(float) * (size_t)(c->columns * TILE));
+        }
+    }
+}
+
+// Is a tile nothing but sharp pixels that nothing else reaches?
+static int is_sharp(const struct hf_cell *c, int tx, int ty)
+{
+    const struct hf_layers_range r = hf_layers_range_at(c, c->l->seen_range, tx, ty),
+                                 m = hf_layers_range_at(c, c->l->mixed_range, tx, ty);
+    return r.low == 0 && r.high == 0 && m.low > m.high && !*hf_layers_map_at(&c->near, tx, ty) &&
+           !*hf_layers_map_at(&c->far, tx, ty) && !*hf_layers_map_at(&c->middle, tx, ty);
+}
+
+// The pixels themselves.
+static void copy_tile(const struct hf_cell *c, int tx, int ty, float *const out[4], ptrdiff_t stride)
+{
+    const struct hf_layers_set *s = &c->samples->seen;
+    for (int i = 0; i < c->l->channels; i++)
+        for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
+            memcpy(out[i] + y * stride + tx * TILE, s->colour[i] + (c->y0 + y) * s->stride + c->x0 + tx * TILE,
+                   sizeof(float) * TILE);
+}
+
+// A row of a stack at full resolution: its colours and weight.
+static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float *const out[5])
+{
+    const struct hf_window *w = &c->stack[stack], *light = &c->light[stack];
+    for (int i = 0; i <= c->l->channels; i++) {
+        const float *a = w->at + (y >> 1) * w->row + i * w->channel + (x >> 1);
+        float *to = out[i < c->l->channels ? i : 4];
+        c->k->up(a, a + (y & 1 ? w->row : -w->row), n / 2, to);
+        const float *in = light->at + y * light->row + i * light->channel + x;
+        for (int j = 0; i < c->l->channels && j < n; j++)
+            to[j] += in[j];
+    }
+}
+
+void hf_layers_begin_middle(const struct hf_cell *c)
+{
+    hf_layers_open_stack(c, MIDDLE);
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0, end; (end = hf_layers_next_run(&c->near, &tx, ty, c->columns, 1)) > tx; tx = end)
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
+                const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
+                float *const out[5] = {r.colour[0], r.colour[1], r.colour[2], r.colour[3], r.weight};
+                raise(c, NEAR, tx * TILE, (end - tx) * TILE, y, out);
+                for (int x = 0; x < (end - tx) * TILE; x++)
+                    r.open[x] = r.weight[x] < 1 ? 1 - r.weight[x] : 0;
+            }
+}
+
+void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)
+{
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0, end; tx < c->columns; tx = end) {
+            const int far = *hf_layers_map_at(&c->far, tx, ty);
+            for (end = tx + 1; end < c->columns && *hf_layers_map_at(&c->far, end, ty) == far;)
+                end++;
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
+                const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
+                float *to[4] = {NULL};
+                const float *own[6] = {NULL};
+                hf_layers_planes_at(c->l, &c->samples->seen, c->samples->seen.weight, c->x0 + tx * TILE, c->y0 + y,
+                                    own);
+                for (int i = 0; i < c->l->channels; i++)
+                    to[i] = out[i] + y * stride + tx * TILE;
+                if (far)
+                    raise(c, FAR, tx * TILE, (end - tx) * TILE, y, c->row);
+                c->k->finish(&r, far ? (const float *const *)c->row : NULL, own, c->l->channels, (end - tx) * TILE, to);
+            }
+        }
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++)
+            if (is_sharp(c, tx, ty))
+                copy_tile(c, tx, ty, out, stride);
+}
