@@ -7,6 +7,7 @@
 #if defined(__x86_64__)
 #include <cpuid.h>
 #include <immintrin.h>
+#include <stdatomic.h>
 
 #define HALF_TARGET __attribute__((target("avx,f16c,avx2")))
 
@@ -36,10 +37,17 @@ HALF_TARGET static size_t to_halves_x86(uint8_t *to, const float *from, size_t n
     return i;
 }
 
+// Asked once: under a hypervisor cpuid leaves the guest and takes longer than converting a row does.
 static int has_f16c(void)
 {
-    unsigned a, b, c = 0, d;  // clang 14 knows no name for F16C
-    return __builtin_cpu_supports("avx2") && __get_cpuid(1, &a, &b, &c, &d) && (c & bit_F16C);
+    static atomic_int known;  // 0: not asked yet, 1: no, 2: yes
+    int answer = atomic_load_explicit(&known, memory_order_relaxed);
+    if (!answer) {
+        unsigned a, b, c = 0, d;  // clang 14 knows no name for F16C
+        answer = __builtin_cpu_supports("avx2") && __get_cpuid(1, &a, &b, &c, &d) && (c & bit_F16C) ? 2 : 1;
+        atomic_store_explicit(&known, answer, memory_order_relaxed);
+    }
+    return answer == 2;
 }
 #else
 static size_t to_floats_x86(float *to, const uint8_t *from, size_t n)
