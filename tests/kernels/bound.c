@@ -10,7 +10,7 @@
 #include "harness.h"
 #include "pixel/unorm.h"
 
-static float reference_at(const struct world *w, enum hf_buf_id b, int c, int x, int y)
+static float reference_at(const struct world *w, int b, int c, int x, int y)
 {
     return *hf_at(&w->reference.buf[b], c, x, y);
 }
@@ -51,7 +51,7 @@ static double format_step(const struct world *w, int c, float want, float got)
 }
 
 // Largest sample of the picture in a rectangle of pixels, and around it where one has to be repaired.
-static double largest_sample(const struct world *w, int c, int x0, int y0, int x1, int y1)
+double bound_largest_sample(const struct world *w, int c, int x0, int y0, int x1, int y1)
 {
     double most = 0;
     for (int y = hf_max(y0, 0); y <= hf_min(y1, w->src.height - 1); y++)
@@ -67,7 +67,7 @@ static double largest_sample(const struct world *w, int c, int x0, int y0, int x
 // a weight 20, the sum of weighted colours 23, times CoC 24.
 static double bound_down(const struct world *w, int c, int x, int y)
 {
-    const double most = largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
+    const double most = bound_largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
     return 25 * FLT_EPSILON * most * reference_at(w, HF_BUF_COC, 2, x, 2 * y);
 }
 
@@ -117,7 +117,7 @@ static double gather_roundings(const struct world *w)
 }
 
 // A quotient of sums: errors of both, and those of the division or of the inverse and the product with it.
-static double quotient_bound(double error, double divisor_error, double divisor, double value)
+double bound_quotient(double error, double divisor_error, double divisor, double value)
 {
     divisor = fmax(divisor, FLT_MIN);
     if (divisor_error > divisor / 2)
@@ -133,7 +133,7 @@ static double bound_near(const struct world *w, int c, int x, int y, float want)
     if (!w->gather.karis)
         return k * lattice_sum(w, HF_BUF_COLOR4, c, x, y);
     const double divisor = lattice_sum(w, HF_BUF_WEIGHT, 0, x, y);
-    return quotient_bound(k * lattice_sum(w, HF_BUF_COLORW4, c, x, y), k * divisor, divisor, fabs((double)want));
+    return bound_quotient(k * lattice_sum(w, HF_BUF_COLORW4, c, x, y), k * divisor, divisor, fabs((double)want));
 }
 
 static double bound_far(const struct world *w, int c, int x, int y, float want)
@@ -158,11 +158,13 @@ static double bound_far(const struct world *w, int c, int x, int y, float want)
         sum = lattice_sum(w, colour, c, x, y);
         divisor = divisor_sum = lattice_sum(w, weight, 1, x, y);
     }
-    return quotient_bound(k * sum + denormal, k * divisor_sum + denormal, divisor, fabs((double)want));
+    return bound_quotient(k * sum + denormal, k * divisor_sum + denormal, divisor, fabs((double)want));
 }
 
-double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y, float want, float got)
+double bound_buffer(const struct world *w, int b, int c, int x, int y, float want, float got)
 {
+    if (w->engine == &hf_hexagon_engine)
+        return hexagon_bound_buffer(w, b, c, x, y, want);
     double bound = 0;
     // Luminance of colours of both signs can cancel, and then means nothing.
     const int cancels = w->gather.karis && w->colours == COLOURS_MIXED;
@@ -180,8 +182,10 @@ double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y
 // 16. The cubic: 10, 11 twice, 5.
 double bound_pixel(const struct world *w, int c, int x, int y, float want, float got)
 {
+    if (w->engine == &hf_hexagon_engine)
+        return hexagon_bound_pixel(w, c, x, y) + format_step(w, c, want, got);
     const int reach = w->gather.bicubic ? 2 : 1;
-    double most = largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
+    double most = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
     for (int v = y / 2 - reach; v <= y / 2 + reach && c < w->setup.channels; v++)
         for (int u = x / 2 - reach; u <= x / 2 + reach; u++) {
             if (w->near)

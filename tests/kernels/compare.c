@@ -33,7 +33,7 @@ static int compare_floats(const struct world *w, const struct level *l, const st
                 continue;
             double bound = 0;
             if (!l->exact && g->buf >= 0) {
-                bound = bound_buffer(w, (enum hf_buf_id)g->buf, g->channel, g->x0 + (int)x, g->y0 + y, want, got);
+                bound = bound_buffer(w, g->buf, g->channel, g->x0 + (int)x, g->y0 + y, want, got);
                 if (close_enough(want, got, bound))
                     continue;
             }
@@ -47,7 +47,7 @@ static int compare_floats(const struct world *w, const struct level *l, const st
 
 static int compare_narrow(const struct world *w, const struct region *g, char message[256])
 {
-    const int bytes = buf_bytes(w, (enum hf_buf_id)g->buf);
+    const int bytes = buf_bytes(w, g->buf);
     for (int y = 0; y < g->rows; y++)
         for (size_t i = 0; i < g->row_bytes; i += (size_t)bytes) {
             const uint8_t *a = region_row(w, ARENA_REFERENCE, g, y) + i, *b = region_row(w, ARENA_TEST, g, y) + i;

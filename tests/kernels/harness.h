@@ -71,7 +71,7 @@ enum arena { ARENA_MADE, ARENA_REFERENCE, ARENA_TEST, ARENA_COUNT };
 // Blocks of memory. Each ends at a page that cannot be touched, so that reading past the last row is a crash.
 enum {
     SLOT_BUF = 0,  // + 4 * buffer + channel
-    SLOT_SRC = 4 * HF_BUF_COUNT,
+    SLOT_SRC = 4 * HF_MAX_BUFS,
     SLOT_DST = SLOT_SRC + 4,
     SLOT_DEPTH = SLOT_DST + 4,
     SLOT_LINES,
@@ -121,7 +121,8 @@ struct world {
     enum colours colours;
     struct hf_image src, dst;  // in ARENA_MADE
     struct hf_depth depth;
-    struct hf_buf buf[HF_BUF_COUNT];
+    const struct hf_engine_def *engine;  // whose buffers they are
+    struct hf_buf buf[HF_MAX_BUFS];
     struct hf_rect r;
     int near, far;
     int is_pass;  // may use scratch, and with fused arithmetic round otherwise
@@ -163,13 +164,13 @@ void make_depth(struct world *w, int bad);
 // Scratch rows, filled with NaN.
 void make_lines(struct world *w, int lines, size_t floats);
 // Buffer b may be read in r; random means that it holds something there.
-void make_buf(struct world *w, enum hf_buf_id b, struct hf_rect r);
-float *world_at(const struct world *w, enum arena a, enum hf_buf_id b, int c, int x, int y);
+void make_buf(struct world *w, int b, struct hf_rect r);
+float *world_at(const struct world *w, enum arena a, int b, int c, int x, int y);
 // A sample of a buffer: how many bytes it has, and made the nearest to v that they hold.
-int buf_bytes(const struct world *w, enum hf_buf_id b);
-void world_put(struct world *w, enum hf_buf_id b, int c, int x, int y, float v);
+int buf_bytes(const struct world *w, int b);
+void world_put(struct world *w, int b, int c, int x, int y, float v);
 struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena a);
-int buf_channels(const struct world *w, enum hf_buf_id b);
+int buf_channels(const struct world *w, int b);
 
 // ---- tests ----
 
@@ -194,6 +195,19 @@ void pass_make(struct world *w, int pass);
 void pass_call(struct world *w, const struct kernels *k, enum arena a, int pass);
 int pass_check(const struct world *w, const struct level *l, char message[256]);
 int pass_pixels(const struct world *w);
+// A random part of the frame to compute, half-resolution pixels.
+void random_area(struct world *w);
+struct hf_rect rect_grown(struct hf_rect r, struct hf_reach by);
+// A buffer that the pass may write in r; and the target's pixels of w->r.
+void make_output(struct world *w, enum region_kind kind, int b, struct hf_rect r);
+void make_dst(struct world *w);
+
+// hexagon.c
+enum { HEXAGON_LOAD, HEXAGON_FIRST, HEXAGON_SECOND, HEXAGON_COMPOSITE };
+void hexagon_make(struct world *w, int which);
+void hexagon_call(struct world *w, const struct kernels *k, enum arena a, int which);
+double hexagon_bound_buffer(const struct world *w, int b, int c, int x, int y, float want);
+double hexagon_bound_pixel(const struct world *w, int c, int x, int y);
 
 // rows.c
 void widen_make(struct world *w, int format);
@@ -241,7 +255,8 @@ enum {
     SCATTER_RUNS,
     SCATTER_TAPS,
     SCATTER_SPLAT,
-    SCATTER_SETTLE
+    SCATTER_SETTLE,
+    SCATTER_BLEND
 };
 void scatter_make(struct world *w, int which);
 void scatter_call(struct world *w, const struct kernels *k, enum arena a, int which);
@@ -254,7 +269,11 @@ int reference_check(const struct world *w, char message[256]);
 
 // bound.c: by how much a fused kernel may differ at a pixel where the C gives `want` and it gives `got`; 0 where
 // nothing may be fused.
-double bound_buffer(const struct world *w, enum hf_buf_id b, int c, int x, int y, float want, float got);
+double bound_buffer(const struct world *w, int b, int c, int x, int y, float want, float got);
+// The largest sample of the picture in pixels x0..x1, y0..y1, all included.
+double bound_largest_sample(const struct world *w, int c, int x0, int y0, int x1, int y1);
+// Of a quotient's errors; value: its magnitude.
+double bound_quotient(double error, double divisor_error, double divisor, double value);
 double bound_pixel(const struct world *w, int c, int x, int y, float want, float got);
 
 // crash.c. A crash ends the program, as a failed test that names what it was at, ...

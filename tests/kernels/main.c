@@ -14,6 +14,10 @@
     {                                                                                                                  \
         name, index, cases, pass_make, pass_call, pass_check, pass_pixels                                              \
     }
+#define HEXAGON(name, index, cases)                                                                                    \
+    {                                                                                                                  \
+        name, index, cases, hexagon_make, hexagon_call, pass_check, pass_pixels                                        \
+    }
 
 const struct test tests[] = {
     PASS("coc", HF_GATHER_COC, 1200),
@@ -62,6 +66,10 @@ const struct test tests[] = {
     ROW("radius_row", 0, 2000, radius_make, radius_call, row_check),
     ROW("zip", 1, 600, radius_make, radius_call, row_check),
     ROW("unzip", 2, 600, radius_make, radius_call, row_check),
+    HEXAGON("hexagon_load", HEXAGON_LOAD, 1200),
+    HEXAGON("hexagon_1", HEXAGON_FIRST, 900),
+    HEXAGON("hexagon_2", HEXAGON_SECOND, 900),
+    HEXAGON("hexagon_composite", HEXAGON_COMPOSITE, 1600),
     ROW("blend_row", 0, 2000, blend_row_make, blend_row_call, row_check),
     ROW("lerp_row", 0, 600, lerp_row_make, lerp_row_call, row_check),
     ROW("gaussian_line", 0, 600, gaussian_make, gaussian_call, row_check),
@@ -85,6 +93,7 @@ const struct test tests[] = {
     ROW("splat_taps", SCATTER_TAPS, 800, scatter_make, scatter_call, scatter_check),
     ROW("splat", SCATTER_SPLAT, 800, scatter_make, scatter_call, scatter_check),
     ROW("settle", SCATTER_SETTLE, 800, scatter_make, scatter_call, scatter_check),
+    ROW("scatter_blend", SCATTER_BLEND, 1600, scatter_make, scatter_call, scatter_check),
 };
 const int test_count = sizeof tests / sizeof *tests;
 
@@ -248,5 +257,6 @@ int main(int argc, char **argv)
     if (!failed && o.bench)
         bench_run(&world, levels, level_count, o.kernel);
     hf_taps_free(&world.gather.taps, &hf_mem_default);
+    hf_hexagon_engine.release(&world.hexagon, &hf_mem_default);
     return failed != 0;
 }

@@ -6,7 +6,7 @@
 
 #define BIT(buf) (1u << HF_BUF_##buf)
 
-static struct hf_rect grow(struct hf_rect r, struct hf_reach by)
+struct hf_rect rect_grown(struct hf_rect r, struct hf_reach by)
 {
     return (struct hf_rect){r.x0 - by.x, r.y0 - by.y, r.x1 + by.x, r.y1 + by.y};
 }
@@ -80,7 +80,7 @@ static void make_inputs(struct world *w, int pass)
         const int b = i < 0 ? HF_BUF_COC4 : i;  // first: others depend on it
         if (!(all >> b & 1) || (i == HF_BUF_COC4))
             continue;
-        const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? grow(w->r, halo) : w->r);
+        const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? rect_grown(w->r, halo) : w->r);
         make_buf(w, b, r);
         // Karis weights come from the colour, whatever the field.
         if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->gather.karis))
@@ -105,7 +105,14 @@ static void add_region(struct world *w, enum region_kind kind, int b, int c, str
     g->y0 = r.y0;
 }
 
-static void make_output(struct world *w, enum region_kind kind, int b, struct hf_rect r)
+void make_output(struct world *w, enum region_kind kind, int b, struct hf_rect r)
+{
+    make_buf(w, b, r);
+    for (int c = 0; c < buf_channels(w, b); c++)
+        add_region(w, kind, b, c, r);
+}
+
+static void gather_output(struct world *w, enum region_kind kind, int b, struct hf_rect r)
 {
     make_buf(w, b, r);
     if (wanted(w, b))
@@ -114,7 +121,7 @@ static void make_output(struct world *w, enum region_kind kind, int b, struct hf
                 add_region(w, kind, b, c, r);
 }
 
-static void make_dst(struct world *w)
+void make_dst(struct world *w)
 {
     const struct hf_rect r = w->r;
     if (w->src.format == w->dst.format && hf_image_channels(&w->src) == hf_image_channels(&w->dst) &&
@@ -141,12 +148,12 @@ static void make_outputs(struct world *w, int pass)
 {
     for (int b = 0; b < HF_BUF_COUNT; b++)
         if (hf_gather_engine.passes[pass].writes >> b & 1)
-            make_output(w, REGION_FLOATS, b, rows_of(w, b, w->r));
+            gather_output(w, REGION_FLOATS, b, rows_of(w, b, w->r));
     if (pass == HF_GATHER_COMPUTATION) {
-        make_output(w, REGION_SCRATCH, HF_BUF_SUM, w->r);
-        const struct hf_rect weighed = grow(w->r, hf_gather_halo(&w->setup, HF_HALO_TAPS));
+        gather_output(w, REGION_SCRATCH, HF_BUF_SUM, w->r);
+        const struct hf_rect weighed = rect_grown(w->r, hf_gather_halo(&w->setup, HF_HALO_TAPS));
         for (int b = HF_BUF_WEIGHT; b <= HF_BUF_COLORFARW4 && w->gather.karis; b++)
-            make_output(w, REGION_SCRATCH, b, weighed);
+            gather_output(w, REGION_SCRATCH, b, weighed);
     }
     if (pass == HF_GATHER_COMPOSITE)
         make_dst(w);
@@ -164,7 +171,7 @@ static void make_scratch(struct world *w)
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);
 }
 
-static void random_area(struct world *w)
+void random_area(struct world *w)
 {
     struct rng *r = &w->rng;
     const struct hf_setup *s = &w->setup;

@@ -15,7 +15,7 @@ static struct {
     struct hf_scatter scatter;
     struct hf_aperture aperture;  // a disc
     float sign, scale, part[4], inverse[INVERSES];
-    int channels, from, columns, rows, x, y, window_x, window_y, width, height;
+    int channels, fields, from, columns, rows, x, y, window_x, window_y, width, height;
     double unscale[4];
     int64_t share[4];
     struct hf_run run[40];
@@ -252,6 +252,50 @@ static void note_make(struct world *w)
             line(w, ARENA_MADE, 4)[x] = 1;
 }
 
+// ---- putting together ----
+
+static void fill_weights(struct world *w, int i)
+{
+    for (int x = 0; x < w->n; x++)
+        line(w, ARENA_MADE, i)[x] = rng_one_in(&w->rng, 3) ? 0 : rng_float(&w->rng, 0, 1.2f);
+}
+
+static void blend_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    now.x = w->bench ? 0 : rng_int(r, 0, 40);
+    now.y = rng_int(r, 0, 30);
+    now.fields = w->bench ? 7 : rng_int(r, 0, 7);
+    now.width = now.x + w->n + rng_int(r, 0, 20);
+    now.height = now.y + 1 + rng_int(r, 0, 20);
+    now.scatter.aperture.key.scale_x = rng_one_in(r, 2) ? 1 : rng_float(r, 0.4f, 2);
+    fill_radii(w, 0, 0, w->n, 0);
+    for (int x = 0; x < w->n; x++)  // less counts as sharp
+        if (!(fabsf(line(w, ARENA_MADE, 0)[x]) > 0.5f))
+            line(w, ARENA_MADE, 0)[x] = 0;
+    for (int i = 1; i < 6; i++)
+        i == 2 || i == 4 ? fill_weights(w, i) : fill_colours(w, i, 0, w->n);
+    fill_colours(w, LINES_IN, 0, w->n);
+    put_out(w, LINES_IN, w->n);
+}
+
+// Bits of fields: far, near, what is behind near.
+static void blend_call(struct world *w, const struct kernels *k, enum arena a)
+{
+    const struct hf_setup setup = {.width = now.width, .height = now.height, .own = &now.scatter};
+    const struct hf_scatter_row row = {.setup = &setup,
+                                       .x = now.x,
+                                       .y = now.y,
+                                       .n = w->n,
+                                       .radius = line(w, a, 0),
+                                       .far = now.fields & 1 ? line(w, a, 1) : NULL,
+                                       .far_weight = now.fields & 1 ? line(w, a, 2) : NULL,
+                                       .near = now.fields & 2 ? line(w, a, 3) : NULL,
+                                       .near_weight = now.fields & 2 ? line(w, a, 4) : NULL,
+                                       .behind = (now.fields & 6) == 6 ? line(w, a, 5) : NULL};
+    k->scatter.blend(&row, line(w, a, LINES_IN));
+}
+
 // ---- sums ----
 
 // A window of sums, its rows one after the other with their margins.
@@ -385,7 +429,7 @@ void scatter_make(struct world *w, int which)
         [SCATTER_TENT] = tent_make,       [SCATTER_MEAN] = mean_make,
         [SCATTER_NOTE] = note_make,       [SCATTER_RUNS] = window_make,
         [SCATTER_TAPS] = window_make,     [SCATTER_SPLAT] = splat_make,
-        [SCATTER_SETTLE] = settle_make};
+        [SCATTER_SETTLE] = settle_make,   [SCATTER_BLEND] = blend_make};
     start(w);
     now.which = which;
     make[which](w);
@@ -428,6 +472,9 @@ void scatter_call(struct world *w, const struct kernels *k, enum arena a, int wh
     }
     case SCATTER_SETTLE:
         settle_call(w, k, a);
+        return;
+    case SCATTER_BLEND:
+        blend_call(w, k, a);
         return;
     default:
         sums_call(w, k, a, which);

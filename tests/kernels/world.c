@@ -63,12 +63,13 @@ void world_clear(struct world *w)
     w->region_count = 0;
     w->line_floats = 0;
     w->near = w->far = w->is_pass = 0;
+    w->engine = &hf_gather_engine;
     w->x = w->y = w->n = w->with_counts = w->no_alpha = 0;
     w->words = w->copy = NULL;
     w->finite = 0;
     w->word_count = 0;
     // A buffer that a kernel has no business with lies where every access is a crash.
-    for (int b = 0; b < HF_BUF_COUNT; b++) {
+    for (int b = 0; b < HF_MAX_BUFS; b++) {
         w->buf[b].stride = 64;
         for (int c = 0; c < 4; c++)
             w->buf[b].ch[c] = (float *)(nowhere + NOWHERE_BYTES / 2);
@@ -99,9 +100,9 @@ struct region *world_region(struct world *w, enum region_kind kind, int slot, co
     return g;
 }
 
-int buf_channels(const struct world *w, enum hf_buf_id b)
+int buf_channels(const struct world *w, int b)
 {
-    return hf_gather_engine.channels(&w->setup, (int)b);
+    return w->engine->channels(&w->setup, b);
 }
 
 static int round_down(int x, int to)
@@ -109,14 +110,14 @@ static int round_down(int x, int to)
     return x - ((x % to) + to) % to;
 }
 
-int buf_bytes(const struct world *w, enum hf_buf_id b)
+int buf_bytes(const struct world *w, int b)
 {
-    return hf_gather_engine.bufs[b].narrow ? hf_narrow_bytes(w->setup.storage) : (int)sizeof(float);
+    return w->engine->bufs[b].narrow ? hf_narrow_bytes(w->setup.storage) : (int)sizeof(float);
 }
 
 // Laid out as render.c does it: pixels whose x is a multiple of 16, of narrow buffers of more, are aligned to 64 bytes,
 // HF_PAD floats follow the last row.
-void make_buf(struct world *w, enum hf_buf_id b, struct hf_rect r)
+void make_buf(struct world *w, int b, struct hf_rect r)
 {
     enum { FRONT = 64 };  // floats before the first row
     const int bytes = buf_bytes(w, b), per = 64 / bytes, height = r.y1 - r.y0;
@@ -130,14 +131,14 @@ void make_buf(struct world *w, enum hf_buf_id b, struct hf_rect r)
     }
 }
 
-float *world_at(const struct world *w, enum arena a, enum hf_buf_id b, int c, int x, int y)
+float *world_at(const struct world *w, enum arena a, int b, int c, int x, int y)
 {
     return in_arena(a, hf_at(&w->buf[b], c, x, y));
 }
 
-void world_put(struct world *w, enum hf_buf_id b, int c, int x, int y, float v)
+void world_put(struct world *w, int b, int c, int x, int y, float v)
 {
-    const enum hf_storage storage = hf_gather_engine.bufs[b].narrow ? w->setup.storage : HF_STORAGE_FLOAT;
+    const enum hf_storage storage = w->engine->bufs[b].narrow ? w->setup.storage : HF_STORAGE_FLOAT;
     hf_narrow_store(storage, hf_narrow_at(&w->buf[b], c, x, y, buf_bytes(w, b)), v);
 }
 
@@ -156,6 +157,22 @@ static struct hf_image *image_in(enum arena a, const struct hf_image *made, stru
     return out;
 }
 
+static const void *engine_kernels(const struct world *w, const struct kernels *k)
+{
+    switch (w->setup.engine) {
+    case HF_ENGINE_HEXAGON:
+        return &k->hexagon;
+    case HF_ENGINE_SCATTER:
+        return &k->scatter;
+    case HF_ENGINE_GAUSSIAN:
+        return &k->gaussian;
+    case HF_ENGINE_LAYERS:
+        return &k->layers;
+    default:
+        return &k->gather;
+    }
+}
+
 // Images and depth are pointed to: one set per arena.
 struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena a)
 {
@@ -165,7 +182,7 @@ struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena
     depths[a].data = in_arena(a, w->depth.data);
     struct hf_frame f = {.s = &w->setup,
                          .k = &k->pixel,
-                         .kernels = w->setup.engine == HF_ENGINE_GAUSSIAN ? (const void *)&k->gaussian : &k->gather,
+                         .kernels = engine_kernels(w, k),
                          .src = image_in(a, &w->src, &images[a][0]),
                          .dst = image_in(a, &w->dst, &images[a][1]),
                          .depth = &depths[a],
@@ -177,7 +194,7 @@ struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena
                          .work = (float *)(void *)slot_start(w, a, SLOT_WORK),
                          .counts = &w->result[a].counts,
                          .seen = &w->result[a].seen};
-    for (int b = 0; b < HF_BUF_COUNT; b++) {
+    for (int b = 0; b < HF_MAX_BUFS; b++) {
         f.buf[b].stride = w->buf[b].stride;
         for (int c = 0; c < 4; c++) {
             const uint8_t *p = (const uint8_t *)w->buf[b].ch[c];

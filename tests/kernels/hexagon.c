@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon's kernels one by one: loading, the two passes of blurs, putting together. Inputs are such as the kernel
+// before would make them, and only as large as the lines reach.
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "harness.h"
+#include "pixel/pass_c.h"
+
+static int is_half(const struct world *w)
+{
+    return w->setup.resolution == HF_RESOLUTION_HALF;
+}
+
+// Buffer number of what the passes make, at the setup's resolution.
+static int made(const struct world *w, enum hf_hexagon_made b)
+{
+    return HF_HEXAGON_MADE + (is_half(w) ? HF_HEXAGON_MADE_COUNT : 0) + (int)b;
+}
+
+static int colour_buf(const struct world *w, unsigned field)
+{
+    return !is_half(w) ? HF_HEXAGON_COLOUR : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2 : HF_HEXAGON_FAR_COLOUR_2;
+}
+
+static struct hf_rect working_rect(const struct world *w)
+{
+    return hf_hexagon_rect(&w->setup, w->r);
+}
+
+// What two lines reach from there.
+static struct hf_rect reached(const struct world *w, int line_a, int line_b)
+{
+    const struct hf_hexagon_line *a = &w->hexagon.line[line_a], *b = &w->hexagon.line[line_b];
+    const struct hf_rect r = working_rect(w);
+    return (struct hf_rect){r.x0 + hf_min(a->x0, b->x0), r.y0 + hf_min(a->y0, b->y0), r.x1 + hf_max(a->x1, b->x1),
+                            r.y1 + hf_max(a->y1, b->y1)};
+}
+
+// ---- inputs ----
+
+// Radii everywhere alike, so that whole lines count in full; in patches, some of them sharp; anything anywhere.
+enum { RADII_ALIKE, RADII_PATCHES, RADII_ANY };
+
+static struct {
+    int mode, size;
+    uint32_t pattern;
+    float most, alike;
+} radii;
+
+static void choose_radii(struct world *w, float most)
+{
+    struct rng *r = &w->rng;
+    radii.mode = w->bench ? RADII_PATCHES : rng_int(r, RADII_ALIKE, RADII_ANY);
+    radii.size = w->bench ? 64 : 4 << rng_int(r, 0, 4);
+    radii.pattern = rng_next(r);
+    radii.most = most;
+    radii.alike = rng_float(r, 0, most);
+}
+
+// >= 0; at least what counts as not sharp, if it is not 0.
+static float radius_at(struct world *w, int x, int y)
+{
+    static const float tiny[] = {0x1p-40f, 0x1p-20f, 1e-3f, 0.25f};
+    struct rng *r = &w->rng;
+    const int patch = radii.pattern >> ((x + 4096) / radii.size + 3 * ((y + 4096) / 2 / radii.size)) % 32 & 1;
+    if (radii.mode == RADII_ALIKE)
+        return radii.alike * (rng_one_in(r, 2) ? 1 : 0.9f);
+    if (radii.mode == RADII_PATCHES)
+        return patch ? 0 : radii.most * (rng_one_in(r, 40) ? 0.3f : 1);
+    switch (rng_int(r, 0, 7)) {
+    case 0:
+        return 0;
+    case 1:
+        return fminf(tiny[rng_int(r, 0, 3)], radii.most);
+    case 2:
+        return radii.most;
+    default:
+        return rng_float(r, 0, radii.most);
+    }
+}
+
+static void put(struct world *w, int b, int c, int x, int y, float v)
+{
+    *world_at(w, ARENA_MADE, b, c, x, y) = v;
+}
+
+static void put_colour(struct world *w, int b, int x, int y, float weight)
+{
+    for (int c = 0; c < w->setup.channels; c++)
+        put(w, b, c, x, y, random_colour(&w->rng, w->colours) * (weight * HEXAGON_SCALE));
+}
+
+#define EACH(r, x, y)                                                                                                  \
+    for (int y = (r).y0; y < (r).y1; y++)                                                                              \
+        for (int x = (r).x0; x < (r).x1; x++)
+
+// As the load leaves them. A side of the focus for each block of pixels, so that both are there.
+static void make_samples(struct world *w, struct hf_rect r)
+{
+    const int half = is_half(w);
+    for (unsigned field = HF_NEAR; field <= (half ? HF_FAR : HF_NEAR); field++) {
+        const int colour = colour_buf(w, field);
+        make_buf(w, colour, r);
+        make_buf(w, colour + 1, r);
+        EACH(r, x, y)
+        {
+            const int near = radii.pattern >> ((x + 4096) / 16 + (y + 4096) / 8) % 29 & 1;
+            const float q = radius_at(w, x, y), part = q > 0 ? half ? rng_float(&w->rng, 0.01f, 1) : 1 : 0;
+            const float a = (half ? part : 1) / fmaxf(q, 1);
+            put(w, colour + 1, 0, x, y, a);
+            put(w, colour + 1, 1, x, y, half || !near ? q : -q);
+            put(w, colour + 1, 2, x, y, half ? part : near || q == 0 ? 0 : a);
+            put_colour(w, colour, x, y, a);
+        }
+    }
+}
+
+// As pass 1 leaves them: 0 where there is no radius.
+static void make_first(struct world *w, struct hf_rect r)
+{
+    const int weights = made(w, HF_HEXAGON_NEAR_W);
+    make_buf(w, weights, r);
+    for (int b = 0; b < 2; b++) {
+        const int near = made(w, b ? HF_HEXAGON_NEAR_B : HF_HEXAGON_NEAR_U);
+        const int far = made(w, b ? HF_HEXAGON_FAR_B : HF_HEXAGON_FAR_U);
+        make_buf(w, near, r);
+        make_buf(w, far, r);
+        EACH(r, x, y)
+        {
+            const float q = radius_at(w, x, y), a = q > 0 ? rng_float(&w->rng, 0.001f, 1) / fmaxf(q, 1) : 0;
+            put(w, weights, 2 * b, x, y, a);
+            put(w, weights, 2 * b + 1, x, y, q);
+            put_colour(w, near, x, y, a);
+            const int half = is_half(w), weight = colour_buf(w, HF_FAR) + 1;
+            put_colour(w, far, x, y, *world_at(w, ARENA_MADE, weight, half ? 0 : 2, x, y));
+        }
+    }
+}
+
+// As pass 2 leaves them; the radii are the frame's own.
+static void make_second(struct world *w, const struct hf_frame *f)
+{
+    const int half = is_half(w);
+    const struct hf_rect r = half ? rect_grown(w->r, (struct hf_reach){1, 1}) : working_rect(w);
+    const int near = made(w, HF_HEXAGON_NEAR), far = made(w, HF_HEXAGON_FAR), cover = made(w, HF_HEXAGON_COVERAGE);
+    const int weight = colour_buf(w, HF_FAR) + 1;
+    make_buf(w, near, r);
+    make_buf(w, far, r);
+    make_buf(w, cover, r);
+    make_buf(w, weight, r);
+    choose_radii(w, 1.25f);  // coverage
+    EACH(r, x, y)
+    {
+        const float a = radius_at(w, x, y);
+        put(w, cover, 0, x, y, a);
+        put_colour(w, near, x, y, a);
+        put_colour(w, far, x, y, 1);
+    }
+    choose_radii(w, 4);
+    EACH(r, x, y)
+    if (half)
+        put(w, weight, 1, x, y, radius_at(w, x, y));
+    for (int y = r.y0; y < r.y1 && !half; y++)
+        hf_radius_row_c(f, r.x0, y, r.x1 - r.x0, world_at(w, ARENA_MADE, weight, 1, r.x0, y), NULL);
+}
+
+static void make_lines_and_work(struct world *w)
+{
+    const int width = w->r.x1 - w->r.x0;
+    make_lines(w, HF_LINES, (size_t)(2 * width + 2 * HF_PAD));
+    slot_use(w, SLOT_WORK, w->line_floats * sizeof(float), 0xff);
+}
+
+static void start(struct world *w)
+{
+    struct rng *r = &w->rng;
+    world_clear(w);
+    do {
+        make_setup(w, w->bench ? 128 : rng_int(r, 1, 70), w->bench ? 64 : rng_int(r, 1, 10));
+        w->params.engine = HF_ENGINE_HEXAGON;
+        w->params.aperture.blades = 0;
+        w->params.hexagon.resolution = !w->bench && rng_one_in(r, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+        w->params.hexagon.uniform = 0;
+        world_setup(w, &w->hexagon);
+    } while (w->setup.blend == 0);
+    w->engine = &hf_hexagon_engine;
+    const float most = w->setup.max_radius * (w->bench || rng_one_in(r, 4) ? 1 : rng_float(r, 0, 1));
+    const struct hf_counts found = {.radius_min = -most, .radius_max = most / 2};
+    if (w->engine->prepare(&w->hexagon, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK ||
+        w->engine->measure(&w->hexagon, &w->setup, &found, &hf_mem_default) != HF_OK)
+        abort();
+    choose_radii(w, is_half(w) ? most / 2 : most);
+    random_area(w);
+    w->is_pass = 1;
+    w->near = w->far = 1;
+    if (!w->bench && rng_one_in(r, 2))
+        rng_one_in(r, 2) ? (w->near = 0) : (w->far = 0);
+    make_lines_and_work(w);
+}
+
+static void output(struct world *w, int b)
+{
+    make_output(w, REGION_FLOATS, b, working_rect(w));
+}
+
+void hexagon_make(struct world *w, int which)
+{
+    start(w);
+    if (which == HEXAGON_LOAD || which == HEXAGON_COMPOSITE) {
+        make_image(w, &w->src, SLOT_SRC, rng_one_in(&w->rng, 4));
+        make_depth(w, rng_one_in(&w->rng, 4));
+    }
+    const struct kernels *none = &(const struct kernels){0};
+    switch (which) {
+    case HEXAGON_LOAD:
+        w->near = w->far = 1;
+        for (int b = 0; b < HF_HEXAGON_MADE; b++)
+            if (buf_channels(w, b))
+                output(w, b);
+        return;
+    case HEXAGON_FIRST:
+        make_samples(w, reached(w, 0, 1));
+        for (int b = w->near ? HF_HEXAGON_NEAR_U : HF_HEXAGON_FAR_U; b < (w->far ? HF_HEXAGON_NEAR : HF_HEXAGON_FAR_U);
+             b++)
+            output(w, made(w, (enum hf_hexagon_made)b));
+        return;
+    case HEXAGON_SECOND:
+        make_samples(w, reached(w, 1, 2));
+        make_first(w, reached(w, 1, 2));
+        for (int b = w->near ? HF_HEXAGON_NEAR : HF_HEXAGON_FAR; b < (w->far ? HF_HEXAGON_MADE_COUNT : HF_HEXAGON_FAR);
+             b++)
+            output(w, made(w, (enum hf_hexagon_made)b));
+        return;
+    default: {
+        const struct hf_frame f = world_frame(w, none, ARENA_MADE);
+        make_second(w, &f);
+        make_dst(w);
+    }
+    }
+}
+
+void hexagon_call(struct world *w, const struct kernels *k, enum arena a, int which)
+{
+    const struct hf_frame f = world_frame(w, k, a);
+    if (a == ARENA_REFERENCE)
+        w->reference = f;
+    hf_kernel *const kernel[] = {k->hexagon.passes.pass[HF_HEXAGON_LOAD], k->hexagon.first, k->hexagon.second,
+                                 k->hexagon.passes.pass[HF_HEXAGON_COMPOSITE]};
+    kernel[which](&f, w->r);
+}
+
+// ---- how far fused arithmetic may be from the C: see bound.c for what is counted ----
+
+// A line's sums in double precision; magnitudes of what was added up; additions.
+struct line_sums {
+    double colour, colour_size, a, a_size, w, n;
+};
+
+// p: the far pixel's radius; 0: near, nothing is limited.
+static struct line_sums sum_line(const struct world *w, const struct hf_hexagon_field *in, int line, int c, int x,
+                                 int y, float p)
+{
+    const struct hf_hexagon_line *l = &w->hexagon.line[line];
+    struct line_sums s = {.n = l->count};
+    for (const struct hf_hexagon_tap *t = l->taps; t < l->taps + l->count; t++) {
+        const int u = x + t->dx, v = y + t->dy;
+        const double q = in->sign * *hf_at(in->radius, in->q, u, v), colour = *hf_at(in->colour, c, u, v);
+        const double a = *hf_at(in->weight, in->a, u, v);
+        double weight = fmin(q - t->c, t->b);
+        if (!(weight > 0))
+            continue;
+        if (p > 0)
+            weight = fmax(fmin(weight, t->b * (2 * p / fmin(p, 1) + 1 - q / fmin(p, 1))), 0);
+        s.colour += weight * colour;
+        s.colour_size += t->b * fabs(colour);
+        s.a += weight * a;
+        s.a_size += t->b * a;
+        s.w += weight * (in->part < 0 ? 1 : *hf_at(in->weight, in->part, u, v));
+    }
+    return s;
+}
+
+// A line of the far field. Each sum: a product and an addition a tap, and the weight within 2 of its tap's, as the limit,
+// 3 less a product of less, is within 2. The pixel's own part is 1 less the sum of weights, or less: within that and 4.
+// What both are divided by is not less than a quarter. *value: of the result.
+static double far_line(const struct world *w, const struct hf_hexagon_field *in, int line, int c, int x, int y,
+                       double *value)
+{
+    const float p = *hf_at(in->radius, in->q, x, y);
+    *value = 0;
+    if (!(p > 0))
+        return 0;
+    const struct line_sums s = sum_line(w, in, line, c, x, y, p);
+    const double k = (s.n + 3) * FLT_EPSILON, a_error = k * s.a_size;
+    const double own = fmax(fmax((1 - s.a) * fmin(fmax(HEXAGON_ALL - p, 0), 1), HEXAGON_LEAST - s.a), 0);
+    const double mine = *hf_at(in->colour, c, x, y) / (double)*hf_at(in->weight, in->a, x, y);
+    const double sum = s.colour + own * mine, divisor = s.a + own;
+    const double error = k * s.colour_size + (a_error + (4 + 2 * own) * FLT_EPSILON) * fabs(mine);
+    *value = fabs(sum / divisor);
+    return bound_quotient(error, 2 * a_error + 6 * FLT_EPSILON, divisor, *value);
+}
+
+static double bound_far_1(const struct world *w, int b, int c, int x, int y)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_FAR);
+    double u, v = 0, error = far_line(w, &in, 0, c, x, y, &u);
+    if (b == HF_HEXAGON_FAR_B)
+        error += far_line(w, &in, 1, c, x, y, &v);
+    return (error + 2 * FLT_EPSILON * (u + v)) * *hf_at(in.weight, in.a, x, y);
+}
+
+static double bound_far_2(const struct world *w, int c, int x, int y)
+{
+    const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(&w->reference, HF_FAR, 0),
+                                           hf_hexagon_field_2(&w->reference, HF_FAR, 1)};
+    double v, u;
+    const double error = far_line(w, &in[0], 1, c, x, y, &v) + far_line(w, &in[1], 2, c, x, y, &u);
+    return (error + 2 * FLT_EPSILON * (v + u)) / 3;
+}
+
+// Near sums are of numbers that are not negative, but for colours. A quotient of two of them is within twice the
+// additions, its product with a third within three times.
+static double bound_near_1(const struct world *w, int b, int c, int x, int y)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_NEAR);
+    const int colour = b == HF_HEXAGON_NEAR_W ? 0 : c;
+    struct line_sums s = sum_line(w, &in, 0, colour, x, y, 0);
+    if (b == HF_HEXAGON_NEAR_B || (b == HF_HEXAGON_NEAR_W && c >= 2)) {
+        const struct line_sums v = sum_line(w, &in, 1, colour, x, y, 0);
+        s.colour_size += v.colour_size;
+        s.a += v.a;
+        s.w += v.w;
+        s.n += v.n + 1;
+    }
+    if (!(s.a > 0))
+        return 0;
+    const double share = s.a / s.w, k = (3 * s.n + 8) * FLT_EPSILON;
+    if (b == HF_HEXAGON_NEAR_W)
+        return c % 2 ? k * s.w / s.a : k * s.a * share;
+    return k * s.colour_size * share;
+}
+
+static double bound_near_2(const struct world *w, int b, int c, int x, int y)
+{
+    double size = 0, n = 0;
+    for (int i = 0; i < 2; i++) {
+        const struct hf_hexagon_field in = hf_hexagon_field_2(&w->reference, HF_NEAR, i);
+        const struct line_sums s = sum_line(w, &in, 1 + i, b == HF_HEXAGON_COVERAGE ? 0 : c, x, y, 0);
+        size += b == HF_HEXAGON_COVERAGE ? s.a_size : s.colour_size;
+        n = fmax(n, s.n);
+    }
+    return (n + 3) * FLT_EPSILON * size / 3;
+}
+
+// Load: products and two sums of four colours, times a weight.
+static double bound_load(const struct world *w, int b, int c, int x, int y)
+{
+    const int is_colour = b == HF_HEXAGON_NEAR_COLOUR_2 || b == HF_HEXAGON_FAR_COLOUR_2;
+    const double most = bound_largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
+    return is_colour ? 5 * FLT_EPSILON * HEXAGON_SCALE * most : 0;
+}
+
+double hexagon_bound_buffer(const struct world *w, int b, int c, int x, int y, float want)
+{
+    double bound = 0;
+    (void)want;
+    const int m = b < HF_HEXAGON_MADE ? -1 : (b - HF_HEXAGON_MADE) % HF_HEXAGON_MADE_COUNT;
+    switch (m) {
+    case -1:
+        bound = bound_load(w, b, c, x, y);
+        break;
+    case HF_HEXAGON_FAR_U:
+    case HF_HEXAGON_FAR_B:
+        bound = bound_far_1(w, m, c, x, y);
+        break;
+    case HF_HEXAGON_FAR:
+        bound = bound_far_2(w, c, x, y);
+        break;
+    case HF_HEXAGON_NEAR:
+    case HF_HEXAGON_COVERAGE:
+        bound = bound_near_2(w, m, c, x, y);
+        break;
+    default:
+        bound = bound_near_1(w, m, c, x, y);
+    }
+    return bound > 0 ? bound + 0x1p-140 : 0;
+}
+
+// Composite: near + left * v over near's coverage and what it leaves, which add up to a quarter at least. At half
+// resolution each field is a mean of four (4 roundings; the far one's weights and its division 3 more), v a blend of two
+// (5), coverage a mean below 2 (4 each, in what is left and in the sum).
+double hexagon_bound_pixel(const struct world *w, int c, int x, int y)
+{
+    const struct hf_frame *f = &w->reference;
+    double own = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1), near = 0, far = 0;
+    const int half = is_half(w), reach = half ? 1 : 0, u = half ? x / 2 : x, v = half ? y / 2 : y;
+    for (int j = v - reach; j <= v + reach && c < w->setup.channels; j++)
+        for (int i = u - reach; i <= u + reach; i++) {
+            if (w->near)
+                near = fmax(near, fabs((double)*hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR), c, i, j)) / HEXAGON_SCALE);
+            if (w->far)
+                far = fmax(far, fabs((double)*hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, i, j)) / HEXAGON_SCALE);
+        }
+    own = fmax(own, far);
+    const double sum = 4 * (near + own), error = (4 + 2) * near + (7 + 5 + 2 * 4 + 2) * own + (2 * 4 * 2 + 2) * sum;
+    return 4 * error * FLT_EPSILON + 0x1p-130;
+}
