@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "cli/frame.h"
@@ -36,7 +37,9 @@ struct batch {
     atomic_int bad_arguments;      // frames that failed for what the command line says
     atomic_int chosen[MAX_STEPS];  // frames by step of the time budget
     int measuring;                 // one frame at a time, to see what it takes:
-    double frame_bytes;
+    double frame_bytes, frame_pixels;
+    double room;           // bytes that frames in work may take together, and
+    atomic_llong in_work;  // bytes that they take
 };
 
 static volatile sig_atomic_t stop_signal;
@@ -80,10 +83,41 @@ static void warn(const struct cli_frame *frame)
         cli_print_line("%s", frame->written.note);
 }
 
-static int make_frame(struct cli_frame *frame, struct cli_session *session, const struct cli_stamp *stamp,
-                      const struct cli_args *args, struct cli_error *error)
+static double pixels(const struct cli_frame *frame)
 {
+    double sum = 0;
+    for (int i = 0; i < frame->view_count; i++)
+        sum += (double)frame->views[i].view->width * frame->views[i].view->height;
+    return sum;
+}
+
+// How many frames fit was counted by the first: one that is larger waits until the others leave it room, or are none.
+static void wait_for_room(struct batch *b, const struct cli_frame *frame, struct cli_record *record)
+{
+    const double start = cli_now_ms();
+    const struct timespec pause = {.tv_nsec = 2000000};
+    if (b->measuring || !(b->frame_pixels > 0))
+        return;
+    const long long bytes = (long long)(b->frame_bytes * pixels(frame) / b->frame_pixels);
+    for (long long taken = atomic_load(&b->in_work);;) {
+        if (taken && (double)(taken + bytes) > b->room) {
+            nanosleep(&pause, NULL);
+            taken = atomic_load(&b->in_work);
+        } else if (atomic_compare_exchange_weak(&b->in_work, &taken, taken + bytes)) {
+            record->memory = bytes;
+            record->waited_ms = cli_now_ms() - start;
+            return;
+        }
+    }
+}
+
+static int make_frame(struct batch *b, struct cli_frame *frame, struct cli_session *session,
+                      const struct cli_args *args, struct cli_record *record, struct cli_error *error)
+{
+    const struct cli_stamp *stamp = record->stamp;
     int status = cli_frame_open(frame, args, &session->run, error);
+    if (!status)
+        wait_for_room(b, frame, record);
     if (!status)
         status = cli_frame_setup(frame, error);
     if (!status)
@@ -118,8 +152,10 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
         hf_get_report(session->context, &report);
         r->report = &report;
         // The peak of an earlier look at the shot may hide what this frame takes.
-        if (b->measuring)
+        if (b->measuring) {
             b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.memory);
+            b->frame_pixels = pixels(frame);
+        }
         describe(frame, &report, r->ms, text, sizeof(text));
         atomic_fetch_add(&b->chosen[report.budget_step < MAX_STEPS ? report.budget_step : MAX_STEPS - 1], 1);
         for (int s = 0; s < CLI_STAGES; s++)
@@ -163,7 +199,7 @@ static void run_job(void *arg, int i, int worker)
     if (!status && args.resume && cli_stamp_fits(&stamp, args.output)) {
         record.status = CLI_FRAME_SKIPPED;
     } else if (!status) {
-        status = make_frame(&frame, session, &stamp, &args, &error);
+        status = make_frame(b, &frame, session, &args, &record, &error);
         frame.args = &args;
         if (!status)
             warn(&frame);
@@ -175,6 +211,7 @@ static void run_job(void *arg, int i, int worker)
     record.ms = cli_now_ms() - start;
     finish(b, &frame, session, &record, error.text);
     cli_frame_close(&frame);
+    atomic_fetch_sub(&b->in_work, record.memory);
     cli_stamp_free(&stamp);
 }
 
@@ -229,8 +266,9 @@ static int run_rest(struct batch *b, struct cli_error *error)
     if (left <= 0)
         return 0;
     const int threads = cli_plan_threads(b->args);
-    const int workers = cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads,
-                                         peak_memory() - b->frame_bytes, b->frame_bytes);
+    const double base = peak_memory() - b->frame_bytes;
+    const int workers = cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads, base, b->frame_bytes);
+    b->room = cli_plan_memory_limit(b->args) - base;
     struct hf_io_run run = {0};
     if (workers > 1) {
         const int status = open_sessions(b, workers, threads > workers ? threads / workers : 1, error);

@@ -99,7 +99,8 @@ void cli_log_frame(struct cli_log *log, const struct cli_record *r)
     cli_json_text(out, r->job->input);
     fputs(", \"output\": ", out);
     cli_json_text(out, r->job->output);
-    fprintf(out, ", \"ms\": %.3f, \"hash\": \"%s\", \"settings\": ", r->ms, r->stamp->hash);
+    fprintf(out, ", \"ms\": %.3f, \"waited_ms\": %.3f, \"hash\": \"%s\", \"settings\": ", r->ms, r->waited_ms,
+            r->stamp->hash);
     cli_json_text(out, r->stamp->settings);
     if (r->status == CLI_FRAME_DONE) {
         put_stages(out, r->frame);

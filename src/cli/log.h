@@ -22,7 +22,8 @@ struct cli_record {
     const struct cli_stamp *stamp;
     const struct hf_report *report;  // of the last view; NULL unless done
     const char *why;                 // of a failure
-    double ms;
+    long long memory;                // bytes kept free for it
+    double ms, waited_ms;            // from beginning to end; of that until others left it memory
 };
 
 // path NULL: no log. Returns 0, or an exit code with *error filled.

@@ -59,7 +59,7 @@ double cli_plan_frame_bytes(const struct cli_frame *frame, double library)
     return bytes;
 }
 
-static double memory_limit(const struct cli_args *args)
+double cli_plan_memory_limit(const struct cli_args *args)
 {
     if (!isnan(args->memory_limit))
         return args->memory_limit * GIB;
@@ -69,7 +69,7 @@ static double memory_limit(const struct cli_args *args)
 
 int cli_plan_workers(const struct cli_args *args, int frames, double wait, double base, double frame_bytes)
 {
-    const double limit = memory_limit(args), fit = floor((limit - base) / frame_bytes);
+    const double limit = cli_plan_memory_limit(args), fit = floor((limit - base) / frame_bytes);
     const int busy = (int)lround(cli_plan_threads(args) * (1 + fmin(wait, MOST_WAIT)));
     const int most = frames < 1 ? 1 : frames < busy ? frames : busy;
     if (fit < 1)

@@ -77,6 +77,14 @@ check "one at a time where there is little memory" says "one at a time"
 check "backwards" files a "shot.0002.exr shot.0004.exr shot.0006.exr"
 check "the limit changes no bit" cmp a/shot.0004.exr good/shot.0004.exr
 rm -f a/*
+# Frames after a tiny one are many times its size: where memory is short they wait for each other.
+mkdir grow
+cp "$source_root/tests/fuzz/corpus/exr/none.exr" grow/g.0001.exr
+for i in 2 3 4 5 6 7 8 9; do cp in/shot.0001.exr grow/g.000$i.exr; done
+run grow/g.####.exr -o a/g.####.exr $quick --threads 4 --memory-limit 0.1 --log grow/log
+check "frames that grow" exits 0
+check "frames that grow wait for each other" grep -q '"waited_ms": [0-9]*[1-9]\.' grow/log
+rm -rf a/* grow
 run in/shot.####.exr -o a/shot.exr $quick
 check "an output without a place" exits 1
 check "is refused by name" says "no place for the frame number"
