@@ -74,6 +74,17 @@ static void make_scatter(struct world *w)
     p->aperture.squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
 }
 
+// Layers likewise.
+static void make_layers(struct world *w)
+{
+    struct hf_params *p = &w->params;
+    struct rng *r = &w->rng;
+    p->engine = HF_ENGINE_LAYERS;
+    p->layers.quality = (enum hf_layers_quality)rng_int(r, HF_LAYERS_DRAFT, HF_LAYERS_BEST);
+    p->aperture.blades = 0;
+    p->aperture.squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
+}
+
 static void make_case(struct world *w, const struct frame_case *c)
 {
     world_clear(w);
@@ -90,6 +101,8 @@ static void make_case(struct world *w, const struct frame_case *c)
         make_hexagon(w);
     else if (rng_one_in(&w->rng, 3))
         make_scatter(w);
+    else if (rng_one_in(&w->rng, 3))
+        make_layers(w);
     const int in_place = rng_one_in(&w->rng, 4), bad = rng_one_in(&w->rng, 3);
     make_image(w, &w->src, SLOT_SRC, bad);
     if (in_place)
@@ -130,6 +143,7 @@ static void use_kernels(struct hf_context *c, const struct kernels *k)
         memcpy(c->engine[HF_ENGINE_HEXAGON].kernels[fused], &k->hexagon, sizeof k->hexagon);
         memcpy(c->engine[HF_ENGINE_SCATTER].kernels[fused], &k->scatter, sizeof k->scatter);
         memcpy(c->engine[HF_ENGINE_GAUSSIAN].kernels[fused], &k->gaussian, sizeof k->gaussian);
+        memcpy(c->engine[HF_ENGINE_LAYERS].kernels[fused], &k->layers, sizeof k->layers);
     }
 }
 
@@ -182,10 +196,11 @@ static double frame_roundings(const struct world *w)
 }
 
 // Rounding to small formats between passes, and dividing by sums that cancel, leave no bound to speak of: there only
-// equality is tested.
+// equality is tested. Layers put samples in order of depth: what is fused may change which comes first.
 static int has_bound(const struct world *w)
 {
-    return w->params.gather.storage == HF_STORAGE_FLOAT && !w->params.gather.per_pixel_kernel;
+    return w->params.engine != HF_ENGINE_LAYERS && w->params.gather.storage == HF_STORAGE_FLOAT &&
+           !w->params.gather.per_pixel_kernel;
 }
 
 // The sRGB curve is steepest at its end, 2.4 / 1.055.
