@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 static unsigned seed = 1;
 
@@ -74,13 +74,6 @@ static struct hf_config counted(struct counter *n)
     return (struct hf_config){.threads = 2, .alloc = count_alloc, .free = count_free, .alloc_cookie = n};
 }
 
-static int render(struct hf_context *c, const struct scene *s, const struct hf_params *p, struct picture *out)
-{
-    const struct hf_image dst = picture_image(out), src = picture_image(&s->colour);
-    const struct hf_depth depth = picture_depth(&s->depth);
-    return hf_render(c, &dst, &src, &depth, p);
-}
-
 // Every option on, so that every buffer there is gets allocated.
 static struct hf_params rich_params(void)
 {
@@ -100,14 +93,14 @@ static void memory(void)
     struct hf_config config = counted(&n);
     struct hf_context *c;
     CHECK_INT(hf_open(&c, &config), HF_OK);
-    CHECK_INT(render(c, &small, &p, &out), HF_OK);
+    CHECK_INT(try_scene(c, &out, &small, &p), HF_OK);
     long calls = n.calls;
     for (int i = 0; i < 3; i++)
-        CHECK_INT(render(c, &small, &p, &out), HF_OK);
+        CHECK_INT(try_scene(c, &out, &small, &p), HF_OK);
     CHECK_MSG(n.calls == calls, "%ld allocations on frames of a known size", n.calls - calls);
-    CHECK_INT(render(c, &big, &p, &big_out), HF_OK);
+    CHECK_INT(try_scene(c, &big_out, &big, &p), HF_OK);
     calls = n.calls;
-    CHECK_INT(render(c, &big, &p, &big_out), HF_OK);
+    CHECK_INT(try_scene(c, &big_out, &big, &p), HF_OK);
     CHECK_MSG(n.calls == calls, "%ld allocations on a second big frame", n.calls - calls);
     struct hf_report stats;
     hf_get_report(c, &stats);
@@ -136,7 +129,7 @@ static void failing_memory(int dump)
     const struct hf_params p = rich_params();
     struct hf_context *c;
     CHECK_INT(hf_open(&c, NULL), HF_OK);
-    CHECK_INT(render(c, &s, &p, &want), HF_OK);
+    CHECK_INT(try_scene(c, &want, &s, &p), HF_OK);
     hf_close(&c);
     int failures = 0;
     for (long k = 0; k < 1000; k++) {
@@ -150,10 +143,10 @@ static void failing_memory(int dump)
         } else {
             if (dump)
                 hf_set_dump(c, no_dump, &dumped);
-            err = render(c, &s, &p, &out);
+            err = try_scene(c, &out, &s, &p);
             CHECK_MSG(err == HF_OK || err == HF_ERR_MEMORY, "allocation %ld fails: error %d", k, err);
             n.fail_at = -1;
-            CHECK_INT(render(c, &s, &p, &out), HF_OK);
+            CHECK_INT(try_scene(c, &out, &s, &p), HF_OK);
             CHECK_MSG(picture_same_bits(&out, &want), "other bits after allocation %ld failed", k);
             hf_close(&c);
         }
@@ -222,7 +215,7 @@ static void host_threads(void)
     const struct hf_config one = {.threads = 1};
     const struct hf_params p = scene_params();
     CHECK_INT(hf_open(&c, &one), HF_OK);
-    CHECK_INT(render(c, &s, &p, &want), HF_OK);
+    CHECK_INT(try_scene(c, &want, &s, &p), HF_OK);
     hf_close(&c);
     for (int threads = 1; threads <= 8; threads++) {
         for (int kind = 0; kind < 3; kind++) {
@@ -235,7 +228,7 @@ static void host_threads(void)
             CHECK_INT(hf_open(&c, &config), HF_OK);
             CHECK_INT(hf_context_threads(c), threads);
             for (int i = 0; i < 3; i++) {
-                CHECK_INT(render(c, &s, &p, &out), HF_OK);
+                CHECK_INT(try_scene(c, &out, &s, &p), HF_OK);
                 CHECK_MSG(picture_same_bits(&out, &want), "other bits with %d threads, kind %d", threads, kind);
             }
             CHECK(kind == 2 || (h.calls > 0 && h.items >= h.calls));
@@ -266,7 +259,7 @@ static void *use_context(void *arg)
         if (hf_open(&c, &config) != HF_OK)
             u->bad++;
         for (int i = 0; i < 5; i++)
-            if (render(c, u->scene, &p, &out) != HF_OK || !picture_same_bits(&out, u->want))
+            if (try_scene(c, &out, u->scene, &p) != HF_OK || !picture_same_bits(&out, u->want))
                 u->bad++;
         hf_close(&c);
         picture_free(&out);
@@ -290,7 +283,7 @@ static void many_contexts(void)
         want[i] = picture_new(50 + 13 * i, 60 - 5 * i, 3 + i % 2);
         user[i] = (struct user){&scene[i], &want[i], config.isa, 0};
         CHECK_INT(hf_open(&c, &config), HF_OK);
-        CHECK_INT(render(c, &scene[i], &p, &want[i]), HF_OK);
+        CHECK_INT(try_scene(c, &want[i], &scene[i], &p), HF_OK);
         hf_close(&c);
     }
     for (int i = 0; i < USERS; i++)
@@ -333,7 +326,7 @@ static void statistics(void)
     struct picture out = picture_new(64, 48, 3);
     CHECK_INT(hf_open(&c, NULL), HF_OK);
     struct scene sharp = scene_new(&rng, SCENE_SHARP, 64, 48, 3);
-    CHECK_INT(render(c, &sharp, &p, &out), HF_OK);
+    CHECK_INT(try_scene(c, &out, &sharp, &p), HF_OK);
     hf_get_report(c, &stats);
     check_stats(&stats, 64 * 48);
     CHECK_INT(stats.sharp_pixels, 64 * 48);
@@ -351,7 +344,7 @@ static void statistics(void)
     sharp.colour.plane[2][701] = -INFINITY;
     for (int no_skip = 0; no_skip < 2; no_skip++) {
         p.run.no_skip = no_skip;
-        CHECK_INT(render(c, &sharp, &p, &out), HF_OK);
+        CHECK_INT(try_scene(c, &out, &sharp, &p), HF_OK);
         hf_get_report(c, &stats);
         check_stats(&stats, 64 * 48);
         CHECK_INT(stats.near_pixels, 1);
@@ -379,7 +372,7 @@ static void statistics(void)
     p.max_radius = HF_DERIVE;
     p.view.display_height = 2160;
     struct scene blocks = scene_new(&rng, SCENE_BLOCKS, 64, 48, 3);
-    CHECK_INT(render(c, &blocks, &p, &out), HF_OK);
+    CHECK_INT(try_scene(c, &out, &blocks, &p), HF_OK);
     hf_get_report(c, &stats);
     CHECK_MSG(stats.used.params.max_radius == 24, "max_radius %g", stats.used.params.max_radius);
     scene_free(&blocks);

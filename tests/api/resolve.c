@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 // Every value has a name, which is its own alone, and the names lead back.
 static void names(void)
@@ -186,13 +186,6 @@ static void some_free(void *cookie, void *p)
     free(p);
 }
 
-static int render(struct hf_context *c, const struct scene *s, const struct hf_params *p, struct picture *out)
-{
-    const struct hf_image dst = picture_image(out), src = picture_image(&s->colour);
-    const struct hf_depth depth = picture_depth(&s->depth);
-    return hf_render(c, &dst, &src, &depth, p);
-}
-
 // After hf_prepare no frame of the same radii allocates, whatever parts of it are blurred; and the bits are the same.
 static void prepared(enum hf_engine engine)
 {
@@ -204,14 +197,14 @@ static void prepared(enum hf_engine engine)
     struct hf_context *c;
     p.engine = engine;
     CHECK_INT(hf_open(&c, &config), HF_OK);
-    CHECK_INT(render(c, &s, &p, &plain), HF_OK);
+    CHECK_INT(try_scene(c, &plain, &s, &p), HF_OK);
     hf_close(&c);
     CHECK_INT(hf_open(&c, &config), HF_OK);
     const struct hf_image dst = picture_image(&out), src = picture_image(&s.colour);
     const struct hf_depth depth = picture_depth(&s.depth);
     CHECK_INT(hf_prepare(c, &dst, &src, &depth, &p), HF_OK);
     const long before = allocations;
-    CHECK_INT(render(c, &s, &p, &out), HF_OK);
+    CHECK_INT(try_scene(c, &out, &s, &p), HF_OK);
     CHECK_MSG(allocations == before, "%s: %ld allocations in a frame that was prepared", hf_engine_name(engine),
               allocations - before);
     CHECK(picture_same_bits(&plain, &out));
@@ -223,13 +216,13 @@ static void prepared(enum hf_engine engine)
     struct picture much = picture_new(500, 400, 3);
     uint8_t tiles[4] = {9, 9, 9, 9};
     fail_from = allocations;
-    CHECK_INT(render(c, &large, &p, &much), HF_ERR_MEMORY);
+    CHECK_INT(try_scene(c, &much, &large, &p), HF_ERR_MEMORY);
     fail_from = -1;
     hf_get_report(c, &report);
     CHECK(report.columns == 0 && report.total_ms == 0);
     CHECK_INT(hf_get_tiles(c, tiles, sizeof tiles), 0);
     CHECK(tiles[0] == 9);
-    CHECK_INT(render(c, &large, &p, &much), HF_OK);
+    CHECK_INT(try_scene(c, &much, &large, &p), HF_OK);
     CHECK(hf_get_tiles(c, tiles, 1) > 1);
     CHECK(tiles[0] <= HF_TILE_BOTH && tiles[1] == 9);
     hf_close(&c);
@@ -250,20 +243,20 @@ static void forked(void)
     struct hf_params p = scene_params();
     struct hf_context *c;
     CHECK_INT(hf_open(&c, &config), HF_OK);
-    CHECK_INT(render(c, &s, &p, &out), HF_OK);
+    CHECK_INT(try_scene(c, &out, &s, &p), HF_OK);
     const pid_t child = fork();
     if (child == 0) {
         alarm(60);
-        int wrong = render(c, &s, &p, &out) != HF_ERR_THREAD;
+        int wrong = try_scene(c, &out, &s, &p) != HF_ERR_THREAD;
         hf_close(&c);
-        wrong |= c != NULL || hf_open(&c, &config) != HF_OK || render(c, &s, &p, &out) != HF_OK;
+        wrong |= c != NULL || hf_open(&c, &config) != HF_OK || try_scene(c, &out, &s, &p) != HF_OK;
         hf_close(&c);
         _exit(wrong);
     }
     int status = -1;
     CHECK(child > 0 && waitpid(child, &status, 0) == child);
     CHECK_MSG(WIFEXITED(status) && WEXITSTATUS(status) == 0, "the child ended with status %d", status);
-    CHECK_INT(render(c, &s, &p, &out), HF_OK);
+    CHECK_INT(try_scene(c, &out, &s, &p), HF_OK);
     hf_close(&c);
     picture_free(&out);
     scene_free(&s);

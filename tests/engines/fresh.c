@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 enum { HEIGHT = 20, WIDEST = 70, SEEDS = 3 };
 
@@ -100,13 +100,10 @@ static struct picture render_fresh(const struct scene *s, const struct hf_params
     // One cell: the widths decide what lies past the end of a row.
     const struct hf_config config = {
         .isa = isa, .threads = 1, .alloc = alloc_old, .free = free_old, .alloc_cookie = heap};
-    struct picture out = picture_new(s->colour.width, s->colour.height, 4);
-    const struct hf_image src = picture_image(&s->colour), dst = picture_image(&out);
-    struct hf_depth depth = picture_depth(&s->depth);
+    const struct hf_depth depth = picture_radii(&s->depth);
     struct hf_context *c;
-    depth.type = HF_DEPTH_COC;
     CHECK_INT(hf_open(&c, &config), HF_OK);
-    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
+    struct picture out = render(c, &s->colour, &depth, p);
     hf_close(&c);
     return out;
 }

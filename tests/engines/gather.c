@@ -14,7 +14,7 @@
 
 #include "support/check.h"
 #include "support/reference.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 static const double U = FLT_EPSILON / 2;
 
@@ -212,15 +212,6 @@ static void compare(void *cookie, struct reference *r, enum ref_id id)
     CHECK_MSG(wrong == 0, "%s: %s: %d wrong, %s", job->label, b->name, wrong, worst);
 }
 
-static struct picture render(struct hf_context *c, const struct scene *s, const struct hf_depth *depth,
-                             const struct hf_params *p)
-{
-    struct picture out = picture_new(s->colour.width, s->colour.height, s->colour.channels);
-    const struct hf_image dst = picture_image(&out), src = picture_image(&s->colour);
-    CHECK_INT(hf_render(c, &dst, &src, depth, p), HF_OK);
-    return out;
-}
-
 // One scene, one set of parameters, one context: the dump against the reference, and the fused frame against the dump.
 static void check_frame(struct hf_context *c, const struct scene *s, const struct hf_depth *depth,
                         const struct hf_params *p, const char *label)
@@ -228,14 +219,14 @@ static void check_frame(struct hf_context *c, const struct scene *s, const struc
     struct job job = {.depth = depth};
     snprintf(job.label, sizeof job.label, "%s", label);
     hf_set_dump(c, on_buffer, &job.captured);
-    struct picture out = job.captured.buffer[REF_RESULT] = render(c, s, depth, p);
+    struct picture out = job.captured.buffer[REF_RESULT] = render(c, &s->colour, depth, p);
     hf_set_dump(c, NULL, NULL);
     struct reference *r = reference_render(&s->colour, depth, p, compare, &job);
     reference_free(r);
     for (int no_skip = 0; no_skip < 2; no_skip++) {
         struct hf_params q = *p;
         q.run.no_skip = no_skip;
-        struct picture fused = render(c, s, depth, &q);
+        struct picture fused = render(c, &s->colour, depth, &q);
         CHECK_MSG(picture_same_bits(&fused, &out), "%s: fused (no_skip %d) and dumped frames differ", label, no_skip);
         picture_free(&fused);
     }
@@ -390,7 +381,7 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
         struct job job = {.depth = &depth};
         snprintf(job.label, sizeof job.label, "%s", label);
         hf_set_dump(c, on_buffer, &job.captured);
-        struct picture out = render(c, &scene, &depth, &p);
+        struct picture out = render(c, &scene.colour, &depth, &p);
         hf_set_dump(c, NULL, NULL);
         const struct hf_depth view = picture_depth(&scene.depth);
         struct reference *r = reference_render(&scene.colour, &view, &p, NULL, NULL);
@@ -421,7 +412,7 @@ static void deterministic(struct hf_context *scalar, struct hf_context *c, const
         struct hf_params p = merge(&options[o].p);
         p.run.deterministic = 1;
         p.gather.storage = (enum hf_storage)(o % 3);
-        struct picture a = render(scalar, &scene, &depth, &p), b = render(c, &scene, &depth, &p);
+        struct picture a = render(scalar, &scene.colour, &depth, &p), b = render(c, &scene.colour, &depth, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s, deterministic, %s: not the bits of scalar", isa, options[o].name);
         picture_free(&a);
         picture_free(&b);
@@ -433,17 +424,12 @@ int main(int argc, char **argv)
 {
     const unsigned seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
     printf("seed %u\n", seed);
-    struct hf_context *scalar = NULL;
-    const struct hf_config plain = scene_config(HF_ISA_SCALAR, 2);
-    CHECK_INT(hf_open(&scalar, &plain), HF_OK);
+    struct hf_context *scalar = context_new(HF_ISA_SCALAR, 2, 0, 0);
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         if (!hf_isa_available((enum hf_isa)isa))
             continue;
         const char *name = hf_isa_name((enum hf_isa)isa);
-        const struct hf_config config = scene_config((enum hf_isa)isa, 2);
-        struct hf_context *c = NULL;
-        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
-            continue;
+        struct hf_context *c = context_new((enum hf_isa)isa, 2, 0, 0);
         CHECK_INT(hf_context_isa(c), isa);
         all_options(c, name, seed);
         all_scenes_and_storages(c, name, seed);

@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "support/check.h"
-#include "support/image.h"
+#include "support/render.h"
 
 enum { WIDTH = 320, HEIGHT = 120, MIDDLE = HEIGHT / 2, EDGE = 100, POINT = 230 };
 static const float NEAR = 30, FAR = 6;
@@ -23,17 +23,15 @@ static struct hf_params lens_params(void)
 static struct picture light_at(struct hf_context *c, const struct hf_params *p, int x)
 {
     struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
-    struct picture out = picture_new(WIDTH, HEIGHT, 3);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         radii.plane[0][i] = i % WIDTH < EDGE ? -NEAR : FAR;
     for (int k = 0; k < 12; k++)
         colour.plane[k / 4][(MIDDLE + k / 2 % 2) * WIDTH + x + k % 2] = 1000;
-    const struct hf_image src = picture_image(&colour), dst = picture_image(&out);
-    struct hf_depth depth = picture_depth(&radii);
+    const struct hf_image src = picture_image(&colour);
+    const struct hf_depth depth = picture_radii(&radii);
+    const struct picture out = render(c, &colour, &depth, p);
     struct hf_report report;
-    depth.type = HF_DEPTH_COC;
-    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
-    CHECK_INT(hf_plan(c, &dst, &src, &depth, p, &report), HF_OK);
+    CHECK_INT(hf_plan(c, &src, &src, &depth, p, &report), HF_OK);
     // The radius over the largest there may be and back: two roundings.
     CHECK(fabsf(report.near_radius - NEAR) < 1e-5f && fabsf(report.far_radius - FAR) < 1e-5f);
     picture_free(&colour);
@@ -78,16 +76,14 @@ static void small_radii(struct hf_context *c)
 {
     for (int storage = HF_STORAGE_FLOAT; storage <= HF_STORAGE_PACKED; storage++) {
         struct hf_params p = lens_params();
-        struct picture colour = picture_new(64, 48, 3), radii = picture_new(64, 48, 1), out = picture_new(64, 48, 3);
+        struct picture colour = picture_new(64, 48, 3), radii = picture_new(64, 48, 1);
         for (int i = 0; i < 64 * 48; i++) {
             radii.plane[0][i] = 2;
             colour.plane[1][i] = i % 64 == 31 ? 16 : 0;
         }
-        const struct hf_image src = picture_image(&colour), dst = picture_image(&out);
-        struct hf_depth depth = picture_depth(&radii);
-        depth.type = HF_DEPTH_COC;
+        const struct hf_depth depth = picture_radii(&radii);
         p.gather.storage = (enum hf_storage)storage;
-        CHECK_INT(hf_render(c, &dst, &src, &depth, &p), HF_OK);
+        struct picture out = render(c, &colour, &depth, &p);
         CHECK_MSG(out.plane[1][24 * 64 + 31] < 8, "storage %d: a radius of 2 leaves %g of 16", storage,
                   (double)out.plane[1][24 * 64 + 31]);
         picture_free(&colour);
@@ -107,14 +103,12 @@ static void truth(struct hf_context *c, const char *folder, const char *scene, f
     snprintf(path, sizeof path, "%s/%s.truth.exr", folder, scene);
     if (!CHECK(exr_read(&want, path, 3, rgb) == 0))
         return;
-    struct picture out = picture_new(in.width, in.height, 3);
     struct hf_params p = lens_params();
     p.model = HF_MODEL_LENS;
     p.focus = focus;
     p.lens.f_number = f_number;
-    const struct hf_image src = picture_image(&in), dst = picture_image(&out);
     const struct hf_depth d = picture_depth(&depth);
-    CHECK_INT(hf_render(c, &dst, &src, &d, &p), HF_OK);
+    struct picture out = render(c, &in, &d, &p);
     const double before = display_psnr(&in, &want), after = display_psnr(&out, &want);
     CHECK_MSG(after > before + 3, "%s: %.2f dB from the truth, and %.2f dB without blur", scene, after, before);
     picture_free(&in);

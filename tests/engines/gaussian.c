@@ -205,7 +205,7 @@ static void against_double(struct hf_context *c, const char *isa)
             if (i % 2 && depth.type == HF_DEPTH_VIEW)
                 depth.near_plane = depth.far_plane = 0;
         }
-        struct picture want = expected(&s, &depth, &p), got = render(c, &s, &depth, &p);
+        struct picture want = expected(&s, &depth, &p), got = render(c, &s.colour, &depth, &p);
         const double error = largest_difference(&want, &got), bound = bound_of(&p, &depth) * largest_sample(&s.colour);
         worst = worse(worst, error / bound);
         CHECK_MSG(error <= bound,
@@ -246,7 +246,7 @@ static void against_gaussian(struct hf_context *c, const char *isa)
         }
         struct hf_params p = gaussian_params();
         p.gaussian.sigma = sigmas[i];
-        struct picture a = render(c, &s, NULL, &p);
+        struct picture a = render_scene(c, &s, &p);
         double mass = 0, variance = 0;
         for (int x = 0; x < W; x++) {
             mass += a.plane[0][x];
@@ -295,9 +295,9 @@ static void autofocus(struct hf_context *c, const char *isa)
             want = 1e9f;  // seen from the planes and through the lens: as far
             p.range.distance = HF_DERIVE;
         }
-        struct picture a = render(c, &s, NULL, &p);
+        struct picture a = render_scene(c, &s, &p);
         p.focus = want;
-        struct picture b = render(c, &s, NULL, &p);
+        struct picture b = render_scene(c, &s, &p);
         const double bound = i % 4 == 2 ? 1e-6 : 0;
         CHECK_MSG(largest_difference(&a, &b) <= bound, "%s: seed %u: autofocus %u is not focus %g: %g", isa, seed + i,
                   i % 4, want, largest_difference(&a, &b));
@@ -313,7 +313,7 @@ static void effects(struct hf_context *c, const char *isa)
     struct rng rng = rng_seed(seed);
     struct scene s = scene_new(&rng, SCENE_BLOCKS, 90, 64, 3);
     const struct hf_params base = gaussian_params();
-    struct picture plain = render(c, &s, NULL, &base);
+    struct picture plain = render_scene(c, &s, &base);
     for (int i = 0; i < 12; i++) {
         struct hf_params p = base;
         struct hf_depth depth = picture_depth(&s.depth);
@@ -329,7 +329,7 @@ static void effects(struct hf_context *c, const char *isa)
         p.lens.f_number = i == 8 ? 0.05f : p.lens.f_number;
         p.focus = i == 9 ? 25 : p.focus;
         depth.far_plane = i == 10 ? 40 : 0;
-        struct picture a = render(c, &s, &depth, &p);
+        struct picture a = render(c, &s.colour, &depth, &p);
         CHECK_MSG(picture_same_bits(&a, &plain) == (i == 11), "%s: parameter %d has no effect", isa, i);
         picture_free(&a);
     }
@@ -342,7 +342,7 @@ static void effects(struct hf_context *c, const char *isa)
         two = one;
         two.view.pixel_aspect = i == 0 ? 2 : 1;
         two.max_radius = i == 2 ? one.max_radius / 4 : one.max_radius;
-        struct picture a = render(c, &s, NULL, &one), b = render(c, &s, NULL, &two);
+        struct picture a = render_scene(c, &s, &one), b = render_scene(c, &s, &two);
         CHECK_MSG(picture_same_bits(&a, &b) == (i % 2 == 1), "%s: case %d has no effect, or one by itself", isa, i);
         picture_free(&a);
         picture_free(&b);
@@ -352,16 +352,15 @@ static void effects(struct hf_context *c, const char *isa)
     p.gaussian.faithful = 1;
     p.focus = 1;
     struct hf_depth depth = picture_depth(&s.depth);
-    struct picture a = render(c, &s, &depth, &p);
+    struct picture a = render(c, &s.colour, &depth, &p);
     depth.near_plane = 15;
     depth.far_plane = 100;
-    struct picture b = render(c, &s, &depth, &p);
+    struct picture b = render(c, &s.colour, &depth, &p);
     CHECK(!picture_same_bits(&a, &b));
     picture_free(&a);
     picture_free(&b);
     depth.near_plane = 200;
-    const struct hf_image image = picture_image(&s.colour);
-    CHECK_INT(hf_render(c, &image, &image, &depth, &p), HF_ERR_ARG);
+    CHECK_INT(try_render(c, &s.colour, &s.colour, &depth, &p), HF_ERR_ARG);
     picture_free(&plain);
     scene_free(&s);
 }
@@ -373,11 +372,8 @@ int main(int argc, char **argv)
     for (int id = HF_ISA_SCALAR; id <= HF_ISA_NEON; id++) {
         if (!hf_isa_available((enum hf_isa)id))
             continue;
-        const struct hf_config config = scene_config((enum hf_isa)id, 2);
         const char *isa = hf_isa_name((enum hf_isa)id);
-        struct hf_context *c;
-        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
-            continue;
+        struct hf_context *c = context_new((enum hf_isa)id, 2, 0, 0);
         against_double(c, isa);
         against_gaussian(c, isa);
         autofocus(c, isa);

@@ -19,12 +19,7 @@ static void same_bits(struct hf_context *plain, enum hf_isa id, const char *isa)
     static const int setups[][3] = {{1, 0, 0}, {2, 16, 16}, {3, 48, 17}, {2, 32, 33}};
     uint64_t run = 0, all = 0;
     for (int k = 0; k < 4; k++) {
-        struct hf_config config = scene_config(id, setups[k][0]);
-        config.tile_width = setups[k][1];
-        config.tile_height = setups[k][2];
-        struct hf_context *c;
-        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
-            return;
+        struct hf_context *c = context_new(id, setups[k][0], setups[k][1], setups[k][2]);
         for (unsigned i = 0; i < 40; i++) {
             struct rng rng = rng_seed(seed + i);
             const enum scene_kind kind = (enum scene_kind)rng_below(&rng, SCENE_KINDS);
@@ -34,19 +29,17 @@ static void same_bits(struct hf_context *plain, enum hf_isa id, const char *isa)
             p.run.deterministic = rng_below(&rng, 2);
             for (int j = 0; j < w * h / 20; j++)
                 s.colour.plane[rng_below(&rng, 3)][rng_below(&rng, w * h)] = rng_below(&rng, 2) ? -0.0f : -1e-3f;
-            struct picture a = render(c, &s, NULL, &p);
+            struct picture a = render_scene(c, &s, &p);
             struct hf_report stats;
             hf_get_report(c, &stats);
             run += stats.pass[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1].ran;
             all += stats.pass[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1].all;
             p.run.no_skip = 1;
-            struct picture b = render(plain, &s, NULL, &p);
+            struct picture b = render_scene(plain, &s, &p);
             CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u, %s %d x %d, setup %d: skipping gives other bits", isa,
                       seed + i, scene_name(kind), w, h, k);
             p.run.no_skip = 0;
-            const struct hf_image image = picture_image(&s.colour);
-            const struct hf_depth depth = picture_depth(&s.depth);
-            CHECK_INT(hf_render(c, &image, &image, &depth, &p), HF_OK);
+            CHECK_INT(try_scene(c, &s.colour, &s, &p), HF_OK);
             CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: seed %u, %d x %d, setup %d: in place gives other bits",
                       isa, seed + i, w, h, k);
             picture_free(&a);
@@ -69,7 +62,7 @@ static void flips(struct hf_context *c, const char *isa)
         struct scene s =
             scene_new(&rng, SCENE_HIGHLIGHTS, step * (1 + rng_below(&rng, 90 / step)), 1 + rng_below(&rng, 50), 3);
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
-        struct picture a = render(c, &s, NULL, &p), b = render(c, &mirror, NULL, &p), back = picture_flipped(&b);
+        struct picture a = render_scene(c, &s, &p), b = render_scene(c, &mirror, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back), "%s: seed %u, %d x %d, resolution %d: flipping gives other bits", isa,
                   seed + i, s.colour.width, s.colour.height, p.gaussian.resolution);
         picture_free(&a);
@@ -96,7 +89,7 @@ static void crops(struct hf_context *c, const char *isa)
         const int w = 108, h = 104,
                   m = p.gaussian.sigma > 0 ? 20 : (2 * p.gaussian.iterations + 2) << p.gaussian.resolution;
         struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
-        struct picture whole = render(c, &s, NULL, &p), a = render(c, &part, NULL, &p);
+        struct picture whole = render_scene(c, &s, &p), a = render_scene(c, &part, &p);
         struct picture b = picture_cut(&whole, x0 + m, y0 + m, w - 2 * m, h - 2 * m),
                        inner = picture_cut(&a, m, m, w - 2 * m, h - 2 * m);
         CHECK_MSG(picture_same_bits(&b, &inner), "%s: seed %u, crop at (%d, %d), resolution %d: other bits", isa,
@@ -117,14 +110,14 @@ static void exposures(struct hf_context *c, const char *isa)
         struct rng rng = rng_seed(seed + i);
         struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 30 + rng_below(&rng, 60), 20 + rng_below(&rng, 40), 4);
         struct hf_params p = random_params(&rng);
-        struct picture a = render(c, &s, NULL, &p);
+        struct picture a = render_scene(c, &s, &p);
         const float scale = ldexpf(1, exponents[i % 5]);
         for (int k = 0; k < 4; k++)
             for (int j = 0; j < a.width * a.height; j++) {
                 s.colour.plane[k][j] *= scale;
                 a.plane[k][j] *= scale;
             }
-        struct picture b = render(c, &s, NULL, &p);
+        struct picture b = render_scene(c, &s, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: exposure x 2^%d gives other bits", isa, seed + i,
                   exponents[i % 5]);
         picture_free(&a);
@@ -165,13 +158,13 @@ static void bad_samples(struct hf_context *c, const char *isa)
         free(v);
         struct hf_params p = random_params(&rng);
         p.run.no_skip = i % 2;
-        struct picture a = render(c, &s, NULL, &p);
+        struct picture a = render_scene(c, &s, &p);
         struct hf_report stats;
         hf_get_report(c, &stats);
         CHECK_INT(stats.colour_repaired, bad);
         CHECK_INT(stats.depth_repaired, holes);
         CHECK_INT(stats.near_pixels + stats.sharp_pixels + stats.far_pixels, 61 * 45);
-        struct picture b = render(c, &mended, NULL, &p);
+        struct picture b = render_scene(c, &mended, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: mending first gives other bits", isa, seed + i);
         for (int ch = 0; ch < 4; ch++)
             for (int k = 0; k < 61 * 45; k++)
@@ -197,7 +190,7 @@ static void constants(struct hf_context *c, const char *isa)
         for (int ch = 0; ch < 3; ch++)
             for (int k = 0; k < s.colour.width * s.colour.height; k++)
                 s.colour.plane[ch][k] = value;
-        struct picture a = render(c, &s, NULL, &p);
+        struct picture a = render_scene(c, &s, &p);
         const double bound = p.gaussian.faithful ? (20 * p.gaussian.iterations + 20) * U * fabs((double)value) : 0;
         CHECK_MSG(largest_difference(&a, &s.colour) <= bound, "%s: seed %u: constant %g changes by %g, bound %g", isa,
                   seed + i, value, largest_difference(&a, &s.colour), bound);
@@ -221,7 +214,7 @@ static void copies(struct hf_context *c, const char *isa)
             p.model = HF_MODEL_LENS;
             p.lens.f_number = INFINITY;
         }
-        struct picture a = render(c, &s, NULL, &p);
+        struct picture a = render_scene(c, &s, &p);
         CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: copy %d is none", isa, i);
         picture_free(&a);
     }
@@ -236,11 +229,11 @@ static void focus_pull(struct hf_context *c, const char *isa)
     struct scene s = scene_new(&rng, SCENE_RAMP, 80, 60, 3);
     struct hf_params p = gaussian_params();
     const float step = 1.0f / 512;
-    struct picture before = render(c, &s, NULL, &p);
+    struct picture before = render_scene(c, &s, &p);
     double worst = 0;
     for (int i = 1; i <= 30; i++) {
         p.focus = 20 + (float)i * step;
-        struct picture now = render(c, &s, NULL, &p);
+        struct picture now = render_scene(c, &s, &p);
         worst = worse(worst, largest_difference(&now, &before));
         picture_free(&before);
         before = now;
@@ -256,17 +249,12 @@ int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
     printf("seed %u\n", seed);
-    const struct hf_config plain_config = scene_config(HF_ISA_SCALAR, 2);
-    struct hf_context *plain;
-    CHECK_INT(hf_open(&plain, &plain_config), HF_OK);
+    struct hf_context *plain = context_new(HF_ISA_SCALAR, 2, 0, 0);
     for (int id = HF_ISA_SCALAR; id <= HF_ISA_NEON; id++) {
         if (!hf_isa_available((enum hf_isa)id))
             continue;
-        const struct hf_config config = scene_config((enum hf_isa)id, 2);
         const char *isa = hf_isa_name((enum hf_isa)id);
-        struct hf_context *c;
-        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
-            continue;
+        struct hf_context *c = context_new((enum hf_isa)id, 2, 0, 0);
         same_bits(plain, (enum hf_isa)id, isa);
         flips(c, isa);
         crops(c, isa);

@@ -11,17 +11,7 @@
 
 #include "support/check.h"
 #include "support/reference.h"
-
-static struct picture render(struct hf_context *c, const struct picture *colour, const struct picture *z,
-                             const struct hf_params *p)
-{
-    struct picture out = picture_new(colour->width, colour->height, colour->channels);
-    const struct hf_image dst = picture_image(&out), src = picture_image(colour);
-    const struct hf_depth depth = picture_depth(z);
-    const int err = hf_render(c, &dst, &src, &depth, p);
-    CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
-    return out;
-}
+#include "support/render.h"
 
 // The small scene: a floor in 17 exact CoC steps, a near bar, far highlights. All numbers are exact in floats.
 enum { WIDTH = 96, HEIGHT = 64 };
@@ -120,7 +110,7 @@ static void check_own(struct hf_context *c, const char *isa, int o, int print)
         printf("            { %d, %d, { %.10g, %.10g, %.10g } },\n", px->x, px->y, want->data[0][at], want->data[1][at],
                want->data[2][at]);
     }
-    struct picture got = render(c, &colour, &z, &p);
+    struct picture got = render(c, &colour, &depth, &p);
     double worst = 0;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < WIDTH * HEIGHT; i++)
@@ -237,10 +227,11 @@ static void check_shared(struct hf_context *c, struct shared *shared, const stru
     p.focus = 20;
     p.range.distance = 10;
     p.gather.faithful = 1;
+    const struct hf_depth depth = picture_depth(z);
     hf_set_dump(c, on_buffer, shared);
-    struct picture dumped = render(c, colour, z, &p);
+    struct picture dumped = render(c, colour, &depth, &p);
     hf_set_dump(c, NULL, NULL);
-    struct picture out = render(c, colour, z, &p);
+    struct picture out = render(c, colour, &depth, &p);
     CHECK_MSG(picture_same_bits(&dumped, &out), "%s: dumped and fused frames differ", shared->isa);
     fair(shared, "composite", &out, 16, 2e-3);
     picture_free(&dumped);
@@ -249,7 +240,7 @@ static void check_shared(struct hf_context *c, struct shared *shared, const stru
     if (!CHECK(read_golden(&want, shared, "composite_chapter_formats", 3) == 0))
         return;
     p.gather.storage = HF_STORAGE_PACKED;
-    out = render(c, colour, z, &p);
+    out = render(c, colour, &depth, &p);
     const double psnr = display_psnr(&out, &want);
     printf("%s: chapter      %.2f dB\n", shared->isa, psnr);
     CHECK_MSG(psnr > 55, "%s: chapter storage %.2f dB", shared->isa, psnr);

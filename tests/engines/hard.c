@@ -10,7 +10,7 @@
 
 #include "support/check.h"
 #include "support/reference.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 static unsigned seed = 1;
 
@@ -18,30 +18,6 @@ struct run {
     struct hf_context *c;
     const char *isa;
 };
-
-static struct picture render(struct hf_context *c, const struct picture *colour, const struct hf_depth *depth,
-                             const struct hf_params *p)
-{
-    struct picture out = picture_new(colour->width, colour->height, colour->channels);
-    const struct hf_image dst = picture_image(&out), src = picture_image(colour);
-    const int err = hf_render(c, &dst, &src, depth, p);
-    CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
-    return out;
-}
-
-static size_t samples_of(const struct picture *p)
-{
-    return (size_t)p->width * (size_t)p->height;
-}
-
-static int all_finite(const struct picture *p)
-{
-    for (int c = 0; c < p->channels; c++)
-        for (size_t i = 0; i < samples_of(p); i++)
-            if (!isfinite(p->plane[c][i]))
-                return 0;
-    return 1;
-}
 
 // Bad and strange colour samples. Rendering them must give, bit for bit, what rendering the repaired picture gives.
 static void bad_colours(const struct run *run, unsigned variant)
@@ -422,10 +398,7 @@ int main(int argc, char **argv)
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         if (!hf_isa_available((enum hf_isa)isa))
             continue;
-        const struct hf_config config = scene_config((enum hf_isa)isa, 2);
-        struct run run = {NULL, hf_isa_name((enum hf_isa)isa)};
-        if (!CHECK_INT(hf_open(&run.c, &config), HF_OK))
-            continue;
+        struct run run = {context_new((enum hf_isa)isa, 2, 0, 0), hf_isa_name((enum hf_isa)isa)};
         for (unsigned variant = 0; variant < 8; variant++)
             bad_colours(&run, variant);
         all_bad(&run);

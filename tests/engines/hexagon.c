@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 #include "support/reference_hexagon.h"
 
 static const double U = FLT_EPSILON / 2;
@@ -25,68 +25,31 @@ static struct hf_params hexagon_params(void)
     return p;
 }
 
-static int render_with(const struct hf_config *g, struct picture *out, const struct picture *in,
-                       const struct hf_depth *depth, const struct hf_params *p)
-{
-    struct hf_context *c;
-    if (hf_open(&c, g))
-        return -1;
-    *out = picture_new(in->width, in->height, in->channels);
-    const struct hf_image src = picture_image(in), dst = picture_image(out);
-    const int err = hf_render(c, &dst, &src, depth, p);
-    hf_close(&c);
-    return err;
-}
-
-static struct picture rendered(const struct picture *in, const struct hf_depth *depth, const struct hf_params *p)
-{
-    const struct hf_config g = scene_config(HF_ISA_AUTO, 2);
-    struct picture out;
-    CHECK(render_with(&g, &out, in, depth, p) == HF_OK);
-    return out;
-}
-
-static struct picture rendered_isa(enum hf_isa isa, const struct picture *in, const struct hf_depth *depth,
-                                   const struct hf_params *p)
-{
-    const struct hf_config g = scene_config(isa, 1);
-    struct picture out;
-    CHECK(render_with(&g, &out, in, depth, p) == HF_OK);
-    return out;
-}
-
-// A depth buffer of radii.
-static struct hf_depth radii(const struct picture *r)
-{
-    struct hf_depth d = picture_depth(r);
-    d.type = HF_DEPTH_COC;
-    return d;
-}
-
-static double largest(const struct picture *p)
-{
-    double most = 0;
-    for (int c = 0; c < p->channels; c++)
-        for (int i = 0; i < p->width * p->height; i++)
-            most = worse(most, fabs((double)p->plane[c][i]));
-    return most;
-}
-
-static double distance(const struct picture *a, const struct picture *b)
-{
-    double most = 0;
-    for (int c = 0; c < a->channels; c++)
-        for (int i = 0; i < a->width * a->height; i++)
-            most = worse(most, fabs((double)a->plane[c][i] - b->plane[c][i]));
-    return most;
-}
-
 // A line of n pixels rounds its weights' sums n times and n more for what they weigh; radii and colours carry some
 // 30 more through loading, dividing, upsampling. What is divided by is not less than a quarter, in each of two passes.
 static double bound(const struct hf_params *p, double reach)
 {
     const double taps = 3 * (reach + 4) / fmin(p->view.pixel_aspect, 1);
     return 2 * 4 * (3 * taps + 30) * U;
+}
+
+static struct picture rendered_in(struct hf_context *c, const struct picture *in, const struct hf_depth *depth,
+                                  const struct hf_params *p)
+{
+    struct picture out = render(c, in, depth, p);
+    hf_close(&c);
+    return out;
+}
+
+static struct picture rendered(const struct picture *in, const struct hf_depth *depth, const struct hf_params *p)
+{
+    return rendered_in(context_new(HF_ISA_AUTO, 2, 0, 0), in, depth, p);
+}
+
+static struct picture rendered_isa(enum hf_isa isa, const struct picture *in, const struct hf_depth *depth,
+                                   const struct hf_params *p)
+{
+    return rendered_in(context_new(isa, 1, 0, 0), in, depth, p);
 }
 
 static void random_radii(struct rng *rng, const struct scene *s, struct picture *r, double most)
@@ -116,11 +79,11 @@ static void test_reference(struct rng *rng)
         random_options(rng, &p);
         const double reach = rng_range(rng, 0.2f, rng_below(rng, 4) ? 8 : 30);
         random_radii(rng, &s, &r, reach);
-        const struct hf_depth depth = radii(&r);
+        const struct hf_depth depth = picture_radii(&r);
         struct picture want = hexagon_reference(&s.colour, &r, &p);
         for (p.run.deterministic = 0; p.run.deterministic < 2; p.run.deterministic++) {
             struct picture got = rendered(&s.colour, &depth, &p);
-            const double d = distance(&got, &want), most = bound(&p, reach) * largest(&s.colour);
+            const double d = largest_difference(&got, &want), most = bound(&p, reach) * largest_sample(&s.colour);
             CHECK_MSG(d <= most, "frame %d, %s, %d x %d, %s, rotation %g, aspect %g, radius %g: off by %g of %g", i,
                       scene_name((enum scene_kind)(i % SCENE_KINDS)), s.colour.width, s.colour.height,
                       p.hexagon.resolution ? "half" : "full", p.aperture.rotation, p.view.pixel_aspect, reach, d, most);
@@ -151,28 +114,24 @@ static void test_same_bits(struct rng *rng)
         CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: skipping shows", i);
         picture_free(&all);
         p.run.no_skip = 0;
-        struct hf_config g = scene_config(HF_ISA_AUTO, 3);
-        g.tile_width = 16 * (1 + rng_below(rng, 4));
-        g.tile_height = 16 + rng_below(rng, 30);
-        CHECK(render_with(&g, &all, &s.colour, &depth, &p) == HF_OK);
-        CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: tiles of %d x %d show", i, g.tile_width, g.tile_height);
+        const int tile_width = 16 * (1 + rng_below(rng, 4)), tile_height = 16 + rng_below(rng, 30);
+        struct hf_context *c = context_new(HF_ISA_AUTO, 3, tile_width, tile_height);
+        all = render(c, &s.colour, &depth, &p);
+        CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: tiles of %d x %d show", i, tile_width, tile_height);
         picture_free(&all);
         all = picture_copy(&s.colour);
-        struct hf_context *c;
-        CHECK(hf_open(&c, &g) == HF_OK);
-        const struct hf_image image = picture_image(&all);
-        CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK);
+        CHECK_INT(try_render(c, &all, &all, &depth, &p), HF_OK);
         CHECK_MSG(picture_same_bits(&fused, &all), "frame %d: not the same in place", i);
         hf_close(&c);
         picture_free(&all);
         p.run.deterministic = 1;
         struct picture plain = rendered_isa(HF_ISA_SCALAR, &s.colour, &depth, &p);
-        CHECK_MSG(distance(&fused, &plain) <= bound(&p, p.max_radius) * largest(&s.colour),
-                  "frame %d: fused is off by %g", i, distance(&fused, &plain));
+        CHECK_MSG(largest_difference(&fused, &plain) <= bound(&p, p.max_radius) * largest_sample(&s.colour),
+                  "frame %d: fused is off by %g", i, largest_difference(&fused, &plain));
         for (int k = 0; k < 4; k++) {
-            g = scene_config(isas[k], 1);
-            if (render_with(&g, &all, &s.colour, &depth, &p) != HF_OK)
+            if (!hf_isa_available(isas[k]))
                 continue;
+            all = rendered_isa(isas[k], &s.colour, &depth, &p);
             CHECK_MSG(picture_same_bits(&plain, &all), "frame %d: %s is not the C", i, hf_isa_name(isas[k]));
             picture_free(&all);
         }
@@ -217,7 +176,7 @@ static void test_highlight(float radius, float degrees, enum hf_resolution resol
     p.aperture.rotation = degrees;
     p.hexagon.resolution = resolution;
     p.hexagon.uniform = uniform;
-    const struct hf_depth depth = radii(&r);
+    const struct hf_depth depth = picture_radii(&r);
     struct picture out = rendered(&in, &depth, &p);
     double sum = 0, inside = 0, wrong = 0;
     const double s = fabs(radius), soft = resolution == HF_RESOLUTION_HALF ? 7 : 3;
@@ -266,7 +225,7 @@ static void test_constant(struct rng *rng)
         p.max_radius = rng_range(rng, 0.5f, 12);
         const struct hf_depth depth = picture_depth(&s.depth);
         struct picture out = rendered(&in, &depth, &p);
-        const double d = distance(&in, &out), most = bound(&p, p.max_radius) * in.plane[0][0];
+        const double d = largest_difference(&in, &out), most = bound(&p, p.max_radius) * in.plane[0][0];
         CHECK_MSG(d <= most, "frame %d: a constant picture is off by %g of %g", i, d, most);
         picture_free(&out);
         picture_free(&in);
@@ -338,11 +297,11 @@ static void test_no_popping(struct rng *rng)
         struct hf_params p = hexagon_params();
         p.max_radius = HF_DERIVE;
         p.hexagon.resolution = (enum hf_resolution)(i / 2 % 2);
-        struct hf_depth depth = radii(&r);
+        struct hf_depth depth = picture_radii(&r);
         struct picture a = rendered(&s.colour, &depth, &p);
-        depth = radii(&moved);
+        depth = picture_radii(&moved);
         struct picture b = rendered(&s.colour, &depth, &p);
-        const double rate = distance(&a, &b) / e / largest(&s.colour);
+        const double rate = largest_difference(&a, &b) / e / largest_sample(&s.colour);
         CHECK_MSG(rate < 40, "frame %d, %s: the picture changes by %g per pixel of radius", i,
                   p.hexagon.resolution ? "half" : "full", rate);
         picture_free(&a);
@@ -430,7 +389,7 @@ static void test_sharp(void)
     for (int half = 0; half < 2; half++) {
         p.hexagon.resolution = (enum hf_resolution)half;
         p.run.no_skip = 1;
-        const struct hf_depth depth = radii(&r);
+        const struct hf_depth depth = picture_radii(&r);
         struct picture out = rendered(&in, &depth, &p);
         for (int y = 0; y < 48; y++)
             for (int x = 0; x < 64; x++) {
@@ -486,7 +445,7 @@ static void test_sizes(struct rng *rng)
             struct hf_params p = hexagon_params();
             p.max_radius = HF_DERIVE;
             p.hexagon.resolution = (enum hf_resolution)(k % 2);
-            const struct hf_depth depth = radii(&r);
+            const struct hf_depth depth = picture_radii(&r);
             struct picture out = rendered(&s.colour, &depth, &p);
             double low = 0, high = 0;
             for (int c = 0; c < 3; c++)

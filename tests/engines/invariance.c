@@ -9,48 +9,9 @@
 #include <string.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 static unsigned seed = 1;
-
-static struct picture render(struct hf_context *c, const struct scene *s, const struct hf_params *p)
-{
-    struct picture out = picture_new(s->colour.width, s->colour.height, s->colour.channels);
-    const struct hf_image dst = picture_image(&out), src = picture_image(&s->colour);
-    const struct hf_depth depth = picture_depth(&s->depth);
-    const int err = hf_render(c, &dst, &src, &depth, p);
-    CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
-    return out;
-}
-
-static struct picture transposed(const struct picture *p)
-{
-    struct picture out = picture_new(p->height, p->width, p->channels);
-    for (int c = 0; c < p->channels; c++)
-        for (int y = 0; y < p->height; y++)
-            for (int x = 0; x < p->width; x++)
-                out.plane[c][x * p->height + y] = p->plane[c][y * p->width + x];
-    return out;
-}
-
-static double largest_sample(const struct picture *p)
-{
-    double largest = 0;
-    for (int c = 0; c < p->channels; c++)
-        for (int i = 0; i < p->width * p->height; i++)
-            if (fabsf(p->plane[c][i]) > largest)
-                largest = fabsf(p->plane[c][i]);
-    return largest;
-}
-
-static double largest_difference(const struct picture *a, const struct picture *b)
-{
-    double largest = 0;
-    for (int c = 0; c < a->channels; c++)
-        for (int i = 0; i < a->width * a->height; i++)
-            largest = worse(largest, fabs((double)a->plane[c][i] - b->plane[c][i]));
-    return largest;
-}
 
 // Any valid options. Not the lens, whose blur is tied to the picture's width.
 static struct hf_params random_params(struct rng *rng)
@@ -86,7 +47,7 @@ static void crops(struct hf_context *c, const char *isa)
         const int x0 = 2 * rng_below(&rng, 20), y0 = 2 * rng_below(&rng, 20);
         const int w = 140 + rng_below(&rng, 20), h = 110 + rng_below(&rng, 10);
         struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
-        struct picture whole = render(c, &s, &p), a = render(c, &part, &p);
+        struct picture whole = render_scene(c, &s, &p), a = render_scene(c, &part, &p);
         const int mx = 2 * (2 * (int)ceilf(p.max_radius / 2 / p.view.pixel_aspect) + 4);
         const int my = 2 * (2 * (int)ceilf(p.max_radius / 2) + 4);
         struct picture b = picture_cut(&whole, x0 + mx, y0 + my, w - 2 * mx, h - 2 * my);
@@ -120,7 +81,7 @@ static void flips(struct hf_context *c, const char *isa)
         struct hf_params p = random_params(&rng);
         p.gather.faithful = p.gather.per_pixel_kernel = p.aperture.blades = 0;
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
-        struct picture a = render(c, &s, &p), b = render(c, &mirror, &p), back = picture_flipped(&b);
+        struct picture a = render_scene(c, &s, &p), b = render_scene(c, &mirror, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back),
                   "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
                   " bicubic %d)",
@@ -148,8 +109,8 @@ static void transposes(struct hf_context *c, const char *isa)
         p.max_radius = 12;
         p.gather.storage = HF_STORAGE_FLOAT;
         p.gather.per_pixel_kernel = 0;  // its threshold on CoC differences apart, it is in gather.c
-        struct scene turned = {transposed(&s.colour), transposed(&s.depth)};
-        struct picture a = render(c, &s, &p), b = render(c, &turned, &p), back = transposed(&b);
+        struct scene turned = {picture_transposed(&s.colour), picture_transposed(&s.depth)};
+        struct picture a = render_scene(c, &s, &p), b = render_scene(c, &turned, &p), back = picture_transposed(&b);
         worst = worse(worst, largest_difference(&a, &back) / largest_sample(&s.colour));
         picture_free(&a);
         picture_free(&b);
@@ -170,14 +131,14 @@ static void exposures(struct hf_context *c, const char *isa)
         struct hf_params p = random_params(&rng);
         p.gather.karis = 0;
         p.gather.storage = HF_STORAGE_FLOAT;
-        struct picture a = render(c, &s, &p);
+        struct picture a = render_scene(c, &s, &p);
         const float scale = ldexpf(1, exponents[i % 5]);
         for (int k = 0; k < 4; k++)
             for (int j = 0; j < a.width * a.height; j++) {
                 s.colour.plane[k][j] *= scale;
                 a.plane[k][j] *= scale;
             }
-        struct picture b = render(c, &s, &p);
+        struct picture b = render_scene(c, &s, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: exposure x 2^%d gives other bits", isa, seed + i,
                   exponents[i % 5]);
         picture_free(&a);
@@ -194,16 +155,12 @@ static void threads(enum hf_isa isa)
     for (int storage = 0; storage < 3; storage++) {
         struct picture first = {0};
         for (int n = 1; n <= 7; n++) {
-            struct hf_config config = scene_config(isa, n);
-            config.tile_width = 16 * (n - 1);
-            config.tile_height = n > 1 ? 14 + 3 * n : 0;
-            struct hf_context *c;
+            struct hf_context *c = context_new(isa, n, 16 * (n - 1), n > 1 ? 14 + 3 * n : 0);
             struct hf_params p = scene_params();
             p.gather.storage = (enum hf_storage)storage;
             p.gather.karis = storage == 1;
-            CHECK_INT(hf_open(&c, &config), HF_OK);
             for (int i = 0; i < 2; i++) {
-                struct picture out = render(c, &s, &p);
+                struct picture out = render_scene(c, &s, &p);
                 if (!first.width)
                     first = picture_copy(&out);
                 CHECK_MSG(picture_same_bits(&first, &out), "%s: %d threads, frame %d: other bits", hf_isa_name(isa), n,
@@ -226,7 +183,7 @@ static void widths(struct hf_context *c, struct hf_context *plain, const char *i
             struct scene s = scene_new(&rng, SCENE_NOISE, w, h, 3 + w % 2);
             struct hf_params p = random_params(&rng);
             p.run.deterministic = 1;
-            struct picture a = render(c, &s, &p), b = render(plain, &s, &p);
+            struct picture a = render_scene(c, &s, &p), b = render_scene(plain, &s, &p);
             CHECK_MSG(picture_same_bits(&a, &b), "%s: %d x %d: not the bits of plain C", isa, w, h);
             picture_free(&a);
             picture_free(&b);
@@ -245,11 +202,11 @@ static void focus_pull(struct hf_context *c, const char *isa)
         s.depth.plane[0][i] = 10 + 25 * (float)(i % 160 + 2 * (i / 160)) / 340;
     struct hf_params p = scene_params();
     const float step = 1.0f / 512;  // CoC: a tenth of it
-    struct picture before = render(c, &s, &p);
+    struct picture before = render_scene(c, &s, &p);
     double worst = 0;
     for (int i = 1; i <= 60; i++) {
         p.focus = 20 + (float)i * step;
-        struct picture now = render(c, &s, &p);
+        struct picture now = render_scene(c, &s, &p);
         worst = worse(worst, largest_difference(&now, &before));
         picture_free(&before);
         before = now;
@@ -265,17 +222,12 @@ int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
     printf("seed %u\n", seed);
-    const struct hf_config plain_config = scene_config(HF_ISA_SCALAR, 2);
-    struct hf_context *plain;
-    CHECK_INT(hf_open(&plain, &plain_config), HF_OK);
+    struct hf_context *plain = context_new(HF_ISA_SCALAR, 2, 0, 0);
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         if (!hf_isa_available((enum hf_isa)isa))
             continue;
-        const struct hf_config config = scene_config((enum hf_isa)isa, 2);
         const char *name = hf_isa_name((enum hf_isa)isa);
-        struct hf_context *c;
-        if (!CHECK_INT(hf_open(&c, &config), HF_OK))
-            continue;
+        struct hf_context *c = context_new((enum hf_isa)isa, 2, 0, 0);
         crops(c, name);
         flips(c, name);
         transposes(c, name);

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 static const double PI = 3.14159265358979323846;
 enum { SIZE = 120, MIDDLE = SIZE / 2 };
@@ -22,14 +22,12 @@ static struct hf_params lens_params(void)
 static struct picture spot(struct hf_context *c, const struct hf_params *p, float z)
 {
     struct picture colour = picture_new(SIZE, SIZE, 3), depth = picture_new(SIZE, SIZE, 1);
-    struct picture out = picture_new(SIZE, SIZE, 3);
     for (int i = 0; i < SIZE * SIZE; i++)
         depth.plane[0][i] = z;
     for (int k = 0; k < 3; k++)
         colour.plane[k][MIDDLE * SIZE + MIDDLE] = 1e4f;
-    const struct hf_image src = picture_image(&colour), dst = picture_image(&out);
     const struct hf_depth d = picture_depth(&depth);
-    CHECK_INT(hf_render(c, &dst, &src, &d, p), HF_OK);
+    const struct picture out = render(c, &colour, &d, p);
     picture_free(&colour);
     picture_free(&depth);
     return out;

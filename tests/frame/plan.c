@@ -7,17 +7,7 @@
 #include "frame/budget.h"
 #include "frame/ladder.h"
 #include "support/check.h"
-#include "support/random_scene.h"
-
-static struct hf_context *context(void)
-{
-    struct hf_config config = scene_config(HF_ISA_AUTO, 2);
-    struct hf_context *c = NULL;
-    config.tile_width = 32;
-    config.tile_height = 32;
-    CHECK_INT(hf_open(&c, &config), HF_OK);
-    return c;
-}
+#include "support/render.h"
 
 // All in focus but for what `paint` puts into the depth.
 static struct scene sharp(int w, int h)
@@ -42,13 +32,10 @@ static struct hf_report plan(struct hf_context *c, const struct scene *s, const 
     return r;
 }
 
-static struct hf_report render(struct hf_context *c, const struct scene *s, const struct hf_params *p)
+static struct hf_report report_of(struct hf_context *c, const struct scene *s, const struct hf_params *p)
 {
-    struct picture out = picture_new(s->colour.width, s->colour.height, 3);
+    struct picture out = render_scene(c, s, p);
     struct hf_report r;
-    const struct hf_image dst = picture_image(&out), src = picture_image(&s->colour);
-    const struct hf_depth depth = picture_depth(&s->depth);
-    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
     hf_get_report(c, &r);
     picture_free(&out);
     return r;
@@ -81,7 +68,7 @@ static void check_same(const struct hf_report *a, const struct hf_report *b)
 
 static void planned_and_done(void)
 {
-    struct hf_context *c = context();
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
     for (int kind = 0; kind < SCENE_KINDS; kind++) {
         struct rng rng = rng_seed((unsigned)kind + 1);
         struct scene s = scene_new(&rng, (enum scene_kind)kind, 300, 200, 3);
@@ -90,10 +77,10 @@ static void planned_and_done(void)
             if (!hf_engine_name((enum hf_engine)engine))
                 continue;
             p.engine = (enum hf_engine)engine;
-            const struct hf_report before = plan(c, &s, &p), after = render(c, &s, &p);
+            const struct hf_report before = plan(c, &s, &p), after = report_of(c, &s, &p);
             check_same(&before, &after);
             // What has been measured is foretold.
-            render(c, &s, &p);
+            report_of(c, &s, &p);
             const struct hf_report again = plan(c, &s, &p);
             CHECK(again.tile_count[HF_TILE_SHARP] == (uint32_t)(again.columns * again.rows) || again.predicted_ms > 0);
             // Learned: times differ from frame to frame, and so does what is made of them, in some bit.
@@ -108,7 +95,7 @@ static void planned_and_done(void)
 // 10 columns, 7 rows of tiles of 64 pixels.
 static void only_what_is_called_for(void)
 {
-    struct hf_context *c = context();
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
     struct scene s = sharp(640, 448);
     struct hf_params p = scene_params();
     struct hf_report r = plan(c, &s, &p);
@@ -286,7 +273,7 @@ static void choices(void)
 // No frame fits into a microsecond: after a few, the cheapest setting; the report says so.
 static void budget_of_frames(void)
 {
-    struct hf_context *c = context();
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
     struct scene s = sharp(200, 100);
     struct hf_params p = scene_params();
     struct hf_report r = {.budget_step = -1};
@@ -297,11 +284,11 @@ static void budget_of_frames(void)
     struct hf_params ladder[HF_BUDGET_STEPS];
     const int steps = hf_budget_ladder(&p, ladder);
     for (int i = 0; i < 4 * HF_BUDGET_STEPS; i++)
-        r = render(c, &s, &p);
+        r = report_of(c, &s, &p);
     CHECK_INT(r.budget_step, steps - 1);
     CHECK_INT(r.used.params.engine, ladder[steps - 1].engine);
     p.run.budget_ms = 0;
-    r = render(c, &s, &p);
+    r = report_of(c, &s, &p);
     CHECK_INT(r.budget_step, 0);
     CHECK_INT(r.used.params.engine, HF_ENGINE_SCATTER);
     scene_free(&s);
@@ -311,7 +298,7 @@ static void budget_of_frames(void)
 // Looked at where it is blurred, and only there.
 static void colour(void)
 {
-    struct hf_context *c = context();
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
     struct scene s = sharp(640, 448);
     struct hf_params p = scene_params();
     for (int i = 0; i < 3; i++)
@@ -327,7 +314,7 @@ static void colour(void)
     r = plan(c, &s, &p);
     CHECK(r.colour_known && r.brightest == 7 && r.opaque);
     CHECK_INT(r.not_finite, 1);
-    r = render(c, &s, &p);
+    r = report_of(c, &s, &p);
     CHECK(r.colour_known && r.brightest == 7 && r.opaque);
     scene_free(&s);
     hf_close(&c);

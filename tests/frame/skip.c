@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
+#include "support/render.h"
 
 enum { SCENES = 300, CONTEXTS = 4 };
 
@@ -112,15 +112,6 @@ static struct hf_params random_params(struct rng *rng, enum hf_engine engine)
     return p;
 }
 
-// The scene's colour into a picture that holds it already, in place or not.
-static void render(struct hf_context *c, const struct scene *s, struct picture *into, const struct hf_params *p,
-                   int in_place)
-{
-    const struct hf_image dst = picture_image(into), src = in_place ? dst : picture_image(&s->colour);
-    const struct hf_depth depth = picture_depth(&s->depth);
-    CHECK_INT(hf_render(c, &dst, &src, &depth, p), HF_OK);
-}
-
 struct tally {
     uint64_t run, all;  // tiles that were not sharp, of how many
 };
@@ -134,12 +125,13 @@ static void check_scene(struct hf_context *skipping, struct hf_context *whole, e
     struct hf_params p = random_params(&rng, engine);
     struct picture a = picture_copy(&s.colour), b = picture_copy(&s.colour);
     struct hf_report report;
-    render(skipping, &s, &a, &p, n % 3 == 0);
+    const struct hf_depth depth = picture_depth(&s.depth);
+    CHECK_INT(try_render(skipping, &a, n % 3 ? &s.colour : &a, &depth, &p), HF_OK);
     hf_get_report(skipping, &report);
     tally->all += (uint64_t)report.columns * (uint64_t)report.rows;
     tally->run += (uint64_t)report.columns * (uint64_t)report.rows - report.tile_count[HF_TILE_SHARP];
     p.run.no_skip = 1;
-    render(whole, &s, &b, &p, 0);
+    CHECK_INT(try_render(whole, &b, &s.colour, &depth, &p), HF_OK);
     CHECK_MSG(
         picture_same_bits(&a, &b), "%s, %s: seed %u, scene %u (%s, %d x %d, %d channels): skipping gives other bits",
         hf_isa_name(hf_context_isa(skipping)), hf_engine_name(engine), seed, n, name, a.width, a.height, a.channels);
@@ -150,15 +142,10 @@ static void check_scene(struct hf_context *skipping, struct hf_context *whole, e
 
 static void check_engine(enum hf_isa isa, enum hf_engine engine)
 {
-    struct hf_context *skipping[CONTEXTS], *whole;
-    struct hf_config config = scene_config(isa, 2);
+    struct hf_context *skipping[CONTEXTS], *whole = context_new(isa, 2, 0, 0);
     struct tally tally = {0, 0};
-    CHECK_INT(hf_open(&whole, &config), HF_OK);
-    for (int i = 0; i < CONTEXTS; i++) {
-        config.tile_width = tile_sizes[i][0];
-        config.tile_height = tile_sizes[i][1];
-        CHECK_INT(hf_open(&skipping[i], &config), HF_OK);
-    }
+    for (int i = 0; i < CONTEXTS; i++)
+        skipping[i] = context_new(isa, 2, tile_sizes[i][0], tile_sizes[i][1]);
     for (unsigned n = 0; n < SCENES; n++)
         check_scene(skipping[n % CONTEXTS], whole, engine, n, &tally);
     printf("%s, %s: %.0f %% of the tiles were not sharp\n", hf_isa_name(isa), hf_engine_name(engine),

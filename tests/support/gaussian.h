@@ -6,37 +6,7 @@
 #include <math.h>
 
 #include "support/check.h"
-#include "support/random_scene.h"
-
-static inline struct picture render(struct hf_context *c, const struct scene *s, const struct hf_depth *depth,
-                                    const struct hf_params *p)
-{
-    const struct hf_depth view = picture_depth(&s->depth);
-    struct picture out = picture_new(s->colour.width, s->colour.height, s->colour.channels);
-    const struct hf_image dst = picture_image(&out), src = picture_image(&s->colour);
-    const int err = hf_render(c, &dst, &src, depth ? depth : &view, p);
-    CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
-    return out;
-}
-
-static inline double largest_sample(const struct picture *p)
-{
-    double largest = 0;
-    for (int c = 0; c < p->channels; c++)
-        for (int i = 0; i < p->width * p->height; i++)
-            if (isfinite(p->plane[c][i]))
-                largest = fmax(largest, fabs((double)p->plane[c][i]));
-    return largest;
-}
-
-static inline double largest_difference(const struct picture *a, const struct picture *b)
-{
-    double largest = 0;
-    for (int c = 0; c < a->channels; c++)
-        for (int i = 0; i < a->width * a->height; i++)
-            largest = worse(largest, fabs((double)a->plane[c][i] - b->plane[c][i]));
-    return largest;
-}
+#include "support/render.h"
 
 static inline struct hf_params gaussian_params(void)
 {

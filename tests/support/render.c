@@ -13,12 +13,24 @@ struct hf_context *context_new(enum hf_isa isa, int threads, int tile_width, int
     return c;
 }
 
+int try_render(struct hf_context *c, struct picture *out, const struct picture *colour, const struct hf_depth *depth,
+               const struct hf_params *p)
+{
+    const struct hf_image dst = picture_image(out), src = picture_image(colour);
+    return hf_render(c, &dst, &src, depth, p);
+}
+
+int try_scene(struct hf_context *c, struct picture *out, const struct scene *s, const struct hf_params *p)
+{
+    const struct hf_depth depth = picture_depth(&s->depth);
+    return try_render(c, out, &s->colour, &depth, p);
+}
+
 struct picture render(struct hf_context *c, const struct picture *colour, const struct hf_depth *depth,
                       const struct hf_params *p)
 {
     struct picture out = picture_new(colour->width, colour->height, colour->channels);
-    const struct hf_image dst = picture_image(&out), src = picture_image(colour);
-    const int err = hf_render(c, &dst, &src, depth, p);
+    const int err = try_render(c, &out, colour, depth, p);
     CHECK_MSG(err == HF_OK, "render: %s", hf_error_string(err));
     return out;
 }

@@ -8,6 +8,10 @@
 // A context whose memory comes filled with NaN. Tile sizes 0: the library's choice.
 struct hf_context *context_new(enum hf_isa isa, int threads, int tile_width, int tile_height);
 
+// Into a picture of that size; in place if both are one. Returns what hf_render says: no check.
+int try_render(struct hf_context *c, struct picture *out, const struct picture *colour, const struct hf_depth *depth,
+               const struct hf_params *p);
+int try_scene(struct hf_context *c, struct picture *out, const struct scene *s, const struct hf_params *p);
 struct picture render(struct hf_context *c, const struct picture *colour, const struct hf_depth *depth,
                       const struct hf_params *p);
 struct picture render_scene(struct hf_context *c, const struct scene *s, const struct hf_params *p);
