@@ -31,22 +31,29 @@ void hf_layers_fold_c(const float *in, int n, float *out)
         out[x] = in[2 * x] + in[2 * x + 1];
 }
 
-void hf_layers_disc_c(const struct hf_slice *s, const float *in, int n, int from, int to, float *out, ptrdiff_t stride)
+// What a row adds to a row of the disc: sum holds the samples up to `have` pixels away.
+static float disc_row(const float *in, int x, struct hf_disc_row row, int *have, float *sum)
+{
+    for (; *have < row.n; ++*have)
+        *sum = *have < 0 ? in[x] : *sum + (in[x - *have - 1] + in[x + *have + 1]);
+    return row.f * (in[x - *have - 1] + in[x + *have + 1]) + *sum;
+}
+
+void hf_layers_disc_c(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
+                      float *out, ptrdiff_t stride)
 {
     for (int x = 0; x < n; x++) {
-        float sum = 0;
-        int have = -1;
+        float sum[2] = {0}, last[2] = {0};
+        int have[2] = {-1, -1};
         for (int d = s->rows - 1; d >= 0; d--) {
-            const struct hf_disc_row row = s->row[d];
-            while (have < row.n) {
-                have++;
-                sum = sum + (have ? in[x - have] + in[x + have] : in[x]);
-            }
-            const float v = row.f * (in[x - have - 1] + in[x + have + 1]) + sum;
+            const float u = disc_row(upper, x, s->row[d], &have[0], &sum[0]);
+            const float l = disc_row(lower, x, s->row[d], &have[1], &sum[1]);
             if (-d >= from && -d < to)
-                out[-d * stride + x] += v;
-            if (d && d >= from && d < to)
-                out[d * stride + x] += v;
+                out[-d * stride + x] += u + last[1];
+            if (d + 1 >= from && d + 1 < to)
+                out[(d + 1) * stride + x] += l + last[0];
+            last[0] = u;
+            last[1] = l;
         }
     }
 }

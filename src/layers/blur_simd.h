@@ -66,30 +66,35 @@ static void layers_fold_simd(const float *in, int n, float *out)
     hf_layers_fold_c(in + 2 * x, n - x, out + x);
 }
 
-static void layers_disc_simd(const struct hf_slice *s, const float *in, int n, int from, int to, float *out,
-                             ptrdiff_t stride)
+// Two rows at once: what they add to a row of the result is added in registers.
+static void layers_disc_simd(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
+                             float *out, ptrdiff_t stride)
 {
     for (int x = 0; x < n; x += VF_N) {
-        vf sum = vf_zero();
+        const vf middle_u = vf_load(upper + x), middle_l = vf_load(lower + x);
+        vf sum_u = vf_zero(), sum_l = vf_zero(), last_u = vf_zero(), last_l = vf_zero();
+        // The pair that comes next, on either side of what the sums hold.
+        vf pair_u = vf_add(middle_u, middle_u), pair_l = vf_add(middle_l, middle_l);
         int have = -1;
-        const float *left = in + x, *right = in + x;  // one farther than what the sum holds
         for (int d = s->rows - 1; d >= 0; d--) {
             const struct hf_disc_row row = s->row[d];
-            while (have < row.n) {
-                have++;
-                sum = vf_add(sum, have ? vf_add(vf_load(left), vf_load(right)) : vf_load(left));
-                left--;
-                right++;
+            for (; have < row.n; have++) {
+                sum_u = have < 0 ? middle_u : vf_add(sum_u, pair_u);
+                sum_l = have < 0 ? middle_l : vf_add(sum_l, pair_l);
+                pair_u = vf_add(vf_load(upper + x - have - 2), vf_load(upper + x + have + 2));
+                pair_l = vf_add(vf_load(lower + x - have - 2), vf_load(lower + x + have + 2));
             }
-            const vf v = vf_fma(vf_set1(row.f), vf_add(vf_load(left), vf_load(right)), sum);
+            const vf f = vf_set1(row.f), u = vf_fma(f, pair_u, sum_u), l = vf_fma(f, pair_l, sum_l);
             if (-d >= from && -d < to) {
                 float *o = out - d * stride + x;
-                vf_store(o, vf_add(vf_load(o), v));
+                vf_store(o, vf_add(vf_load(o), vf_add(u, last_l)));
             }
-            if (d && d >= from && d < to) {
-                float *o = out + d * stride + x;
-                vf_store(o, vf_add(vf_load(o), v));
+            if (d + 1 >= from && d + 1 < to) {
+                float *o = out + (d + 1) * stride + x;
+                vf_store(o, vf_add(vf_load(o), vf_add(l, last_u)));
             }
+            last_u = u;
+            last_l = l;
         }
     }
 }

@@ -90,11 +90,11 @@ static void draw_span(const struct hf_cell *c, const struct hf_build *b, int ty,
 {
     const struct hf_slice *s = b->s;
     const int size = TILE >> s->level, margin = s->level ? MARGIN : 0, height = c->rows * size;
-    for (int y = 0; y < size; y++)
+    for (int y = 0; y < size; y += 2)
         for (int i = 0; i < b->channels; i++) {
             const int at = ty * size + y;
-            c->k->disc(s, source_at(c, i, x0, y), x1 - x0, -margin - at, height + margin - at,
-                       to->at + at * to->row + i * to->channel + x0, to->row);
+            c->k->disc(s, source_at(c, i, x0, y), source_at(c, i, x0, y + 1), x1 - x0, -margin - at,
+                       height + margin - at, to->at + at * to->row + i * to->channel + x0, to->row);
         }
 }
 

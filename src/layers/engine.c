@@ -137,7 +137,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     l->nearest = fminf(found->radius_min, 0);
     l->farthest = fmaxf(found->radius_max, 0);
     hf_layers_make_slices(l);
-    const float range = l->farthest - l->nearest;
+    const float range = found->radius_max - found->radius_min;
     l->levels = 0;
     if (l->set.hidden && range >= 1)
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
@@ -237,6 +237,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .roots = hf_layers_roots_c,
         .nine = hf_layers_nine_c,
         .shares = hf_layers_shares_c,
+        .quads = hf_layers_quads_c,
         .merge = hf_layers_merge_c,
         .tap = hf_layers_tap_c,
         .extremes = hf_layers_extremes_c,

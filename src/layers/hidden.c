@@ -12,51 +12,70 @@ static float root(float v)
     return v > 0 ? sqrtf(v) : 0;
 }
 
-// What a pixel is to others: the surface behind its edge, if it is mixed.
-struct source {
-    float weight, radius, colour[4];
-};
-
-static struct source source_of(const struct hf_frame *f, int channels, int x, int y)
+// What pixels are to others: the surface behind its edge where one is mixed.
+void hf_layers_quads_c(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
+                       float *const out[6])
 {
-    const int mixed = *hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], 0, x, y) > 0;
-    const struct hf_buf *at = &f->buf[mixed ? HF_LAYERS_BUF_MIXED_AT : HF_LAYERS_BUF_SEEN_AT];
-    const struct hf_buf *colour = &f->buf[mixed ? HF_LAYERS_BUF_MIXED : HF_LAYERS_BUF_SEEN];
-    struct source s = {.weight = *hf_at(at, 0, x, y), .radius = *hf_at(at, 1, x, y)};
-    for (int c = 0; c < channels; c++)
-        s.colour[c] = root(*hf_at(colour, c, x, y));
-    return s;
-}
-
-static void quad(const struct hf_frame *f, int channels, int x, int y)
-{
-    struct source s[4];
-    float farthest = HF_LAYERS_NOTHING, sum = 0, r = 0, colour[4] = {0};
-    for (int i = 0; i < 4; i++) {
-        s[i] = source_of(f, channels, hf_min(2 * x + (i & 1), f->s->width - 1),
-                         hf_min(2 * y + (i >> 1), f->s->height - 1));
-        farthest = s[i].weight > 0 && s[i].radius > farthest ? s[i].radius : farthest;
-    }
-    for (int i = 0; i < 4; i++) {
-        const float near = 1 - (farthest - s[i].radius) * 0.5f;
-        const float g = s[i].weight * (near > 0 ? near : 0);
-        sum += g;
-        r += g * s[i].radius;
+    for (int x = 0; x < n; x++) {
+        const float *const *from[4];
+        float farthest = HF_LAYERS_NOTHING, sum = 0, r = 0, colour[4] = {0};
+        for (int i = 0; i < 4; i++) {
+            const int at = 2 * x + (i & 1);
+            from[i] = mixed[i >> 1][4][at] > 0 ? mixed[i >> 1] : seen[i >> 1];
+            farthest = from[i][4][at] > 0 && from[i][5][at] > farthest ? from[i][5][at] : farthest;
+        }
+        for (int i = 0; i < 4; i++) {
+            const int at = 2 * x + (i & 1);
+            const float near = 1 - (farthest - from[i][5][at]) * 0.5f;
+            const float g = from[i][4][at] * (near > 0 ? near : 0);
+            sum = sum + g;
+            r = r + g * from[i][5][at];
+            for (int c = 0; c < channels; c++)
+                colour[c] = colour[c] + g * root(from[i][c][at]);
+        }
+        const float inverse = sum > 0 ? 1 / sum : 0;
+        out[4][x] = sum * 0.25f;
+        out[5][x] = sum > 0 ? r * inverse : HF_LAYERS_NOTHING;
         for (int c = 0; c < channels; c++)
-            colour[c] += g * s[i].colour[c];
+            out[c][x] = colour[c] * inverse;
     }
-    const float inverse = sum > 0 ? 1 / sum : 0;
-    *hf_at(&f->buf[HF_LAYERS_BUF_QUADS_AT], 0, x, y) = sum * 0.25f;
-    *hf_at(&f->buf[HF_LAYERS_BUF_QUADS_AT], 1, x, y) = sum > 0 ? r * inverse : HF_LAYERS_NOTHING;
-    for (int c = 0; c < channels; c++)
-        *hf_at(&f->buf[HF_LAYERS_BUF_QUADS], c, x, y) = colour[c] * inverse;
 }
 
-void hf_layers_quads(const struct hf_frame *f, struct hf_rect r)
+// A row of samples and their places.
+static void row_of(const struct hf_frame *f, int colour, int at, int x, int y, float *row[6])
 {
-    for (int y = r.y0; y < r.y1; y++)
-        for (int x = r.x0; x < r.x1; x++)
-            quad(f, hf_layers(f->s)->channels, x, y);
+    hf_row(&f->buf[colour], hf_layers(f->s)->channels, x, y, row);
+    row[4] = hf_at(&f->buf[at], 0, x, y);
+    row[5] = hf_at(&f->buf[at], 1, x, y);
+}
+
+void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r)
+{
+    const int channels = hf_layers(f->s)->channels, n = hf_min(r.x1, f->s->width / 2) - r.x0;
+    for (int y = r.y0; y < r.y1; y++) {
+        float *seen[2][6] = {{NULL}}, *mixed[2][6] = {{NULL}}, *out[6] = {NULL};
+        for (int i = 0; i < 2; i++) {
+            const int py = hf_min(2 * y + i, f->s->height - 1);
+            row_of(f, HF_LAYERS_BUF_SEEN, HF_LAYERS_BUF_SEEN_AT, 2 * r.x0, py, seen[i]);
+            row_of(f, HF_LAYERS_BUF_MIXED, HF_LAYERS_BUF_MIXED_AT, 2 * r.x0, py, mixed[i]);
+        }
+        row_of(f, HF_LAYERS_BUF_QUADS, HF_LAYERS_BUF_QUADS_AT, r.x0, y, out);
+        hf_layers_kernels(f)->quads((const float *const(*)[6])seen, (const float *const(*)[6])mixed, channels, n, out);
+        if (r.x0 + n == r.x1)
+            continue;
+        // An odd width: the last pixel is its own neighbour.
+        float pair[2][2][6][2];
+        const float *one[2][2][6];
+        for (int i = 0; i < 24; i++) {
+            const float *in = i < 12 ? seen[i / 6 % 2][i % 6] : mixed[i / 6 % 2][i % 6];
+            float *to = pair[i / 12][i / 6 % 2][i % 6];
+            to[0] = to[1] = in ? in[2 * n] : 0;
+            one[i / 12][i / 6 % 2][i % 6] = to;
+        }
+        for (int c = 0; c < 6; c++)
+            out[c] = out[c] ? out[c] + n : NULL;
+        hf_layers_quads_c(one[0], one[1], channels, 1, out);
+    }
 }
 
 void hf_layers_merge_c(const float *const in[3][6], int channels, float slope, int n, float *const out[6])

@@ -16,7 +16,7 @@ static inline float hf_layers_unit(float v)
 }
 
 // The farthest of each quad of a cell: where the levels begin.
-void hf_layers_quads(const struct hf_frame *f, struct hf_rect r);
+void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r);
 // Floats of scratch that the pass needs for a band of half-resolution rows.
 size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height);
 // How far around a pixel hidden samples are looked for, half-resolution pixels.

@@ -3,6 +3,74 @@
 #include "layers/hidden.h"
 #include "simd/simd.h"
 
+// Channel c of a row of pairs, of what lies behind where a pixel is mixed.
+HF_INLINE void layers_pairs(const float *const seen[6], const float *const mixed[6], int c, int x, const vm behind[2],
+                            vf *even, vf *odd)
+{
+    vf v[2];
+    for (int i = 0; i < 2; i++) {
+        const int at = 2 * x + i * VF_N;
+        v[i] = vf_load(seen[c] + at);
+        if (vm_any(behind[i]))
+            v[i] = vf_select(behind[i], vf_load(mixed[c] + at), v[i]);
+        if (c < 4)
+            v[i] = vf_sqrt(vf_max(v[i], vf_zero()));
+    }
+    vf_unzip(v[0], v[1], even, odd);
+}
+
+HF_INLINE void layers_quads_of(const float *const seen[2][6], const float *const mixed[2][6], const int channels, int n,
+                               float *const out[6])
+{
+    const vf zero = vf_zero(), one = vf_set1(1);
+    for (int x = 0; x < n; x += VF_N) {
+        vm behind[2][2];
+        vf r[4], g[4], farthest = vf_set1(HF_LAYERS_NOTHING), sum = zero, radius = zero;
+        for (int y = 0; y < 2; y++) {
+            for (int i = 0; i < 2; i++)
+                behind[y][i] = vf_gt(vf_load(mixed[y][4] + 2 * x + i * VF_N), zero);
+            layers_pairs(seen[y], mixed[y], 5, x, behind[y], &r[2 * y], &r[2 * y + 1]);
+            vf w[2];
+            for (int i = 0; i < 2; i++) {
+                const int at = 2 * x + i * VF_N;
+                w[i] = vf_select(behind[y][i], vf_load(mixed[y][4] + at), vf_load(seen[y][4] + at));
+            }
+            vf_unzip(w[0], w[1], &g[2 * y], &g[2 * y + 1]);
+        }
+        for (int i = 0; i < 4; i++)
+            farthest = vf_select(vf_gt(g[i], zero), vf_max(r[i], farthest), farthest);
+        for (int i = 0; i < 4; i++) {
+            const vf near = vf_fnma(vf_sub(farthest, r[i]), vf_set1(0.5f), one);
+            g[i] = vf_mul(g[i], vf_max(near, zero));
+            sum = vf_add(sum, g[i]);
+            radius = vf_fma(g[i], r[i], radius);
+        }
+        const vm some = vf_gt(sum, zero);
+        const vf inverse = vf_keep(some, vf_div(one, sum));
+        vf_store(out[4] + x, vf_mul(sum, vf_set1(0.25f)));
+        vf_store(out[5] + x, vf_select(some, vf_mul(radius, inverse), vf_set1(HF_LAYERS_NOTHING)));
+        for (int c = 0; c < channels; c++) {
+            vf colour = zero;
+            for (int y = 0; y < 2; y++) {
+                vf even, odd;
+                layers_pairs(seen[y], mixed[y], c, x, behind[y], &even, &odd);
+                colour = vf_fma(g[2 * y], even, colour);
+                colour = vf_fma(g[2 * y + 1], odd, colour);
+            }
+            vf_store(out[c] + x, vf_mul(colour, inverse));
+        }
+    }
+}
+
+static void layers_quads_simd(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
+                              float *const out[6])
+{
+    if (channels == 3)
+        layers_quads_of(seen, mixed, 3, n, out);
+    else
+        layers_quads_of(seen, mixed, 4, n, out);
+}
+
 HF_INLINE void layers_merge_of(const float *const in[3][6], const int channels, float slope, int n, float *const out[6])
 {
     for (int x = 0; x < n; x += VF_N) {

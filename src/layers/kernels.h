@@ -15,6 +15,9 @@ typedef void hf_layers_roots(const float *const above[3], const float *const bel
 typedef void hf_layers_nine(const float *const in[9], int n, float *out);
 // What of n pixels' weight is a highlight: in is colour, weight (4), radius (5); limit the brightness around, one for two.
 typedef void hf_layers_shares(const float *const in[6], const float *limit, int n, float *out);
+// The farthest of n quads from two rows of samples: colour, weight (4), radius (5).
+typedef void hf_layers_quads(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
+                             float *const out[6]);
 // Three samples of each lane become one: those within about 1 / slope of the farthest. out may be none of in.
 typedef void hf_layers_merge(const float *const in[3][6], int channels, float slope, int n, float *const out[6]);
 // Add a tap of a level to the sums: as far behind `nearest` as scale and off say.
@@ -29,9 +32,9 @@ typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6],
                              int rows, int channels, int n, int add, float *const out[5]);
 // Sums of pairs of 2n numbers; out may be in.
 typedef void hf_layers_fold(const float *in, int n, float *out);
-// Draw n sources blurred by s into rows from..to around theirs.
-typedef void hf_layers_disc(const struct hf_slice *s, const float *in, int n, int from, int to, float *out,
-                            ptrdiff_t stride);
+// Draw n sources of two rows, one below the other, blurred by s into rows from..to; out is the upper one's.
+typedef void hf_layers_disc(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
+                            float *out, ptrdiff_t stride);
 // 2n numbers from n of two rows, three quarters of a and one of b; reads one more at either end.
 typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
 // Put sums, the weight at 4, under what a stack holds; part, if not NULL, receives how much of them shows.
@@ -48,6 +51,7 @@ struct hf_layers_kernels {
     hf_layers_roots *roots;
     hf_layers_nine *nine;
     hf_layers_shares *shares;
+    hf_layers_quads *quads;
     hf_layers_merge *merge;
     hf_layers_tap *tap;
     hf_layers_extremes *extremes;
@@ -91,6 +95,7 @@ hf_layers_unmix hf_layers_unmix_c;
 hf_layers_roots hf_layers_roots_c;
 hf_layers_nine hf_layers_nine_c;
 hf_layers_shares hf_layers_shares_c;
+hf_layers_quads hf_layers_quads_c;
 hf_layers_merge hf_layers_merge_c;
 hf_layers_tap hf_layers_tap_c;
 hf_layers_extremes hf_layers_extremes_c;
