@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Options of hyperfocal-bench, the same for all its commands: one table that parser and help text walk.
+// Options of hyperfocal-bench, the same for all its commands.
 #ifndef HF_BENCH_ARGS_H
 #define HF_BENCH_ARGS_H
 
-#include "error.h"
 #include "hyperfocal/hyperfocal.h"
+#include "tool/options.h"
 
 #include <stdio.h>
 
 struct bench_args {
-    int help;
+    int help;            // see tool_parser
+    char *const *words;  // as given, without the command
+    int word_count;
     int width, height;  // pixels
     int frames;         // 0: as many as take a few seconds
     int threads;        // 0: one per processor
@@ -26,9 +28,7 @@ struct bench_args {
     const char *cache;                      // file, "none", or NULL: the user's cache folder
     enum hf_format in, out;
     struct hf_params params;
-    enum hf_resolution resolution;                               // of whichever engine
     int full;                                                    // stability: the long run
-    int faithful;                                                // likewise
     int size_given, focus_given, range_given, max_radius_given;  // on the command line
 };
 
@@ -36,9 +36,10 @@ struct bench_args {
 void bench_args_default(struct bench_args *args);
 
 // Parse the options that follow a command. Returns 0, or -1 with *error filled. Nothing is looked at after -h.
-int bench_args_parse(struct bench_args *args, int count, char **options, struct bench_error *error);
+int bench_args_parse(struct bench_args *args, int count, char **options, struct tool_error *error);
 
-// The option part of a help text.
-void bench_args_help(FILE *out);
+// All options, and what else is said of the program; the commands are main.c's.
+extern const struct tool_program bench_program;
+extern const char *const bench_command_words[][2];
 
 #endif

@@ -2,6 +2,9 @@
 // What a shot costs: the command itself on a shot made of one of the project's pictures, beside copying its files and
 // beside oiiotool reading and writing them, for each compression, in turns.
 #include "commands.h"
+#include "statistics.h"
+#include "tool/machine.h"
+#include "write.h"
 
 #include <errno.h>
 #include <libgen.h>
@@ -11,7 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 extern char **environ;
@@ -33,15 +35,10 @@ struct bench {
     const struct bench_args *args;
     char program[PATH_MAX], dir[PATH_MAX];
     char threads[16], frames[32], size[32];
-    struct bench_error *error;
+    struct tool_error *error;
+    struct row rows[COMPRESSIONS];
+    int count;
 };
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // Run a program with what follows its name, up to NULL. Returns seconds, or -1 with *error filled. Its output goes away.
 static double run(const struct bench *b, const char *const words[])
@@ -52,16 +49,16 @@ static double run(const struct bench *b, const char *const words[])
     posix_spawn_file_actions_init(&quiet);
     posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", 1, 0);
     posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", 1, 0);
-    const double start = now();
+    const double start = tool_now_ms();
     const int failed = posix_spawnp(&pid, words[0], &quiet, NULL, (char *const *)words, environ);
     if (!failed)
         waitpid(pid, &status, 0);
-    const double seconds = now() - start;
+    const double seconds = 1e-3 * (tool_now_ms() - start);
     posix_spawn_file_actions_destroy(&quiet);
     if (failed)
-        return bench_fail(b->error, "%s cannot be started: %s", words[0], strerror(failed));
+        return tool_fail(b->error, -1, "%s cannot be started: %s", words[0], strerror(failed));
     if (!WIFEXITED(status) || WEXITSTATUS(status))
-        return bench_fail(b->error, "%s failed, status %d, in %s", words[0], status, b->dir);
+        return tool_fail(b->error, -1, "%s failed, status %d, in %s", words[0], status, b->dir);
     return seconds;
 }
 
@@ -152,7 +149,7 @@ static int read_log(const struct bench *b, const char *path, struct row *row)
     char line[1 << 14] = "", key[32];
     FILE *in = fopen(path, "r");
     if (!in)
-        return bench_fail(b->error, "%s cannot be read: %s", path, strerror(errno));
+        return tool_fail(b->error, -1, "%s cannot be read: %s", path, strerror(errno));
     while (fgets(line, sizeof(line), in))
         ;
     fclose(in);
@@ -168,17 +165,6 @@ static int read_log(const struct bench *b, const char *path, struct row *row)
     return 0;
 }
 
-static double median(double *t)
-{
-    for (int i = 1; i < TURNS; i++)
-        for (int k = i; k > 0 && t[k] < t[k - 1]; k--) {
-            const double swap = t[k];
-            t[k] = t[k - 1];
-            t[k - 1] = swap;
-        }
-    return t[TURNS / 2];
-}
-
 static int measure(const struct bench *b, const char *compression, struct row *row)
 {
     char log[PATH_MAX];
@@ -191,9 +177,9 @@ static int measure(const struct bench *b, const char *compression, struct row *r
             (copy[i] = run_copy(b)) < 0)
             return -1;
     }
-    row->batch = median(batch);
-    row->copy = median(copy);
-    row->oiiotool = median(oiiotool);
+    row->batch = bench_median(batch, TURNS);
+    row->copy = bench_median(copy, TURNS);
+    row->oiiotool = bench_median(oiiotool, TURNS);
     return read_log(b, log, row);
 }
 
@@ -207,44 +193,55 @@ static void print_row(const struct bench *b, const struct row *r)
     fflush(stdout);
 }
 
-static int write_json(const struct bench *b, const struct row *rows, int count)
+static void json(FILE *out, const void *what)
 {
-    const int to_stdout = !strcmp(b->args->json, "-");
-    FILE *out = to_stdout ? stdout : fopen(b->args->json, "w");
-    if (!out)
-        return bench_fail(b->error, "--json %s cannot be written: %s", b->args->json, strerror(errno));
-    fprintf(out, "{\"command\": \"batch\", \"width\": %d, \"height\": %d, \"frames\": %d, \"threads\": %s, \"rows\": [",
-            b->args->width, b->args->height, b->args->frames, b->threads);
-    for (int i = 0; i < count; i++) {
-        const struct row *r = &rows[i];
-        fprintf(out, "%s\n  {\"compression\": \"%s\", \"seconds\": %.4f, \"copy_seconds\": %.4f, ", i ? "," : "",
-                r->compression, r->batch, r->copy);
-        fprintf(out, "\"oiiotool_seconds\": %.4f, \"frames_per_second\": %.4f, \"peak_memory\": %.0f", r->oiiotool,
-                b->args->frames / r->batch, r->peak_memory);
-        for (int s = 0; s < STAGES; s++)
-            fprintf(out, ", \"%s_share\": %.5f", stage_names[s], r->stage[s]);
-        fputc('}', out);
+    const struct bench *b = what;
+    struct tool_json j;
+    bench_json_begin(&j, out, "batch", b->args);
+    tool_json_count(&j, "width", b->args->width);
+    tool_json_count(&j, "height", b->args->height);
+    tool_json_count(&j, "frames", b->args->frames);
+    tool_json_count(&j, "threads", atoi(b->threads));
+    tool_json_open(&j, "rows", '[');
+    for (int i = 0; i < b->count; i++) {
+        const struct row *r = &b->rows[i];
+        tool_json_row(&j, NULL, '{');
+        tool_json_text(&j, "compression", r->compression);
+        tool_json_number(&j, "seconds", r->batch);
+        tool_json_number(&j, "copy_seconds", r->copy);
+        tool_json_number(&j, "oiiotool_seconds", r->oiiotool);
+        tool_json_number(&j, "frames_per_second", b->args->frames / r->batch);
+        tool_json_count(&j, "peak_memory", (long long)r->peak_memory);
+        for (int s = 0; s < STAGES; s++) {
+            char name[32];
+            snprintf(name, sizeof(name), "%s_share", stage_names[s]);
+            tool_json_number(&j, name, r->stage[s]);
+        }
+        tool_json_close(&j);
     }
-    fputs("\n]}\n", out);
-    const int failed = ferror(out);
-    return (to_stdout ? fflush(out) : fclose(out)) || failed ? bench_fail(b->error, "the JSON could not be written")
-                                                             : 0;
+    tool_json_end(&j);
+}
+
+// Rows are printed as they come.
+static void no_table(FILE *out, const void *what)
+{
+    (void)out;
+    (void)what;
 }
 
 static void clean(const struct bench *b)
 {
-    struct bench_error ignored;
+    struct tool_error ignored;
     struct bench quiet = *b;
     const char *const words[] = {"rm", "-rf", b->dir, NULL};
     quiet.error = &ignored;
     run(&quiet, words);
 }
 
-int bench_batch(struct bench_args *args, struct bench_error *error)
+int bench_batch(struct bench_args *args, struct tool_error *error)
 {
     struct bench b = {.args = args, .error = error};
-    struct row rows[COMPRESSIONS];
-    int count = 0, status = 0;
+    int status = 0;
     const char *tmp = getenv("TMPDIR");
     args->frames = args->frames ? args->frames : 16;
     const long online = sysconf(_SC_NPROCESSORS_ONLN);
@@ -254,7 +251,7 @@ int bench_batch(struct bench_args *args, struct bench_error *error)
     snprintf(b.dir, sizeof(b.dir), "%.2000s/hyperfocal-bench-XXXXXX", tmp ? tmp : "/tmp");
     find_program(&b);
     if (!mkdtemp(b.dir))
-        return bench_fail(error, "%s cannot be made: %s", b.dir, strerror(errno));
+        return tool_fail(error, -1, "%s cannot be made: %s", b.dir, strerror(errno));
     const int table = !args->json || strcmp(args->json, "-");
     if (table)
         printf("%d frames of %s, half RGBA and Z, %s threads; frames/s, then where the threads' time goes\n"
@@ -265,13 +262,13 @@ int bench_batch(struct bench_args *args, struct bench_error *error)
     for (int i = 0; i < COMPRESSIONS && !status; i++) {
         if (args->compression && strcmp(args->compression, compressions[i]))
             continue;
-        status = measure(&b, compressions[i], &rows[count]);
+        status = measure(&b, compressions[i], &b.rows[b.count]);
         if (!status && table)
-            print_row(&b, &rows[count]);
-        count += !status;
+            print_row(&b, &b.rows[b.count]);
+        b.count += !status;
     }
     clean(&b);
     if (!status && args->json)
-        status = write_json(&b, rows, count);
+        status = bench_write_report(args, no_table, json, &b, error);
     return status;
 }

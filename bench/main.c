@@ -2,60 +2,63 @@
 // hyperfocal-bench: measures whole frames. Single kernels are the business of tests/kernels.
 #include "commands.h"
 
+#include "tool/nearest.h"
+#include "tool/options.h"
+
 #include <stdio.h>
 #include <string.h>
 
-static const struct {
-    const char *name;
-    bench_command *run;
-    const char *help;
-} commands[] = {
-    {"passes", bench_passes, "time of each pass of a frame, beside table 3.1 of the chapter"},
-    {"batch", bench_batch, "the command on a shot, beside copying its files and beside oiiotool, which must be there"},
-    {"truth", bench_truth, "distance of each engine from ray-traced pictures, and its time"},
-    {"tradeoff", bench_tradeoff, "what every step of accuracy costs in time, and which settings are worth it"},
-    {"scaling", bench_scaling, "time of a frame as its blurred part and its size grow; --size: up to that width"},
-    {"stability", bench_stability,
-     "hard cases: what was tried, the bound, the worst value seen; of all engines or one"},
+const char *const bench_command_words[][2] = {
+    {"passes", "time of each pass of a frame, beside table 3.1 of the chapter"},
+    {"batch", "the command on a shot, beside copying its files and beside oiiotool, which must be there"},
+    {"truth", "distance of each engine from ray-traced pictures, and its time"},
+    {"tradeoff", "what every step of accuracy costs in time, and which settings are worth it"},
+    {"scaling", "time of a frame as its blurred part and its size grow; --size: up to that width"},
+    {"stability", "hard cases: what was tried, the bound, the worst value seen; of all engines or one"},
+    {NULL, NULL},
 };
-enum { COMMANDS = sizeof commands / sizeof *commands };
+// In the same order.
+static bench_command *const commands[] = {bench_passes,   bench_batch,   bench_truth,
+                                          bench_tradeoff, bench_scaling, bench_stability};
 
-static int fail(const struct bench_error *error)
+static int run(int argc, char **argv, struct tool_error *error)
 {
-    fprintf(stderr, "hyperfocal-bench: %s\n", error->text);
-    return 1;
-}
-
-static int help(void)
-{
-    fputs("usage: hyperfocal-bench COMMAND [options]\n\nCommands:\n", stdout);
-    for (int i = 0; i < COMMANDS; i++)
-        printf("  %-25s %s\n", commands[i].name, commands[i].help);
-    fputs("\nOptions (defaults in brackets):\n", stdout);
-    bench_args_help(stdout);
-    return fflush(stdout) != 0;
+    struct bench_args args;
+    int c = 0;
+    if (argc < 2)
+        return tool_fail(error, -1, "a command is needed, see hyperfocal-bench --help");
+    while (bench_command_words[c][0] && strcmp(argv[1], bench_command_words[c][0]))
+        c++;
+    bench_args_default(&args);
+    // Without a command there may be --help.
+    const int known = bench_command_words[c][0] != NULL;
+    if (!known && argv[1][0] != '-') {
+        struct tool_nearest nearest = {NULL, 0, 0};
+        for (c = 0; bench_command_words[c][0]; c++)
+            tool_nearest_try(&nearest, bench_command_words[c][0], (int)strlen(bench_command_words[c][0]), argv[1]);
+        return tool_fail(error, -1, "there is no command '%s',%s%s%s see hyperfocal-bench --help", argv[1],
+                         nearest.word ? " did you mean " : "", nearest.word ? nearest.word : "",
+                         nearest.word ? "?" : "");
+    }
+    if (bench_args_parse(&args, argc - 1 - known, argv + 1 + known, error))
+        return -1;
+    if (args.help > 2)
+        tool_print_man(&bench_program);
+    else if (args.help)
+        tool_print_help(&bench_program, 1);
+    if (args.help)
+        return fflush(stdout) ? tool_fail(error, -1, "standard output could not be written") : 0;
+    if (!known)
+        return tool_fail(error, -1, "a command is needed before %s, see hyperfocal-bench --help", argv[1]);
+    return commands[c](&args, error);
 }
 
 int main(int argc, char **argv)
 {
-    struct bench_error error = {""};
-    if (argc < 2) {
-        bench_fail(&error, "a command is needed; see hyperfocal-bench --help");
-        return fail(&error);
-    }
-    if (!strcmp(argv[1], "-h") || !strcmp(argv[1], "--help"))
-        return help();
-    for (int i = 0; i < COMMANDS; i++) {
-        if (strcmp(argv[1], commands[i].name))
-            continue;
-        struct bench_args args;
-        bench_args_default(&args);
-        if (bench_args_parse(&args, argc - 2, argv + 2, &error))
-            return fail(&error);
-        if (args.help)
-            return help();
-        return commands[i].run(&args, &error) ? fail(&error) : 0;
-    }
-    bench_fail(&error, "there is no command '%s'; see hyperfocal-bench --help", argv[1]);
-    return fail(&error);
+    struct tool_error error = {""};
+    tool_program = "hyperfocal-bench";
+    if (!run(argc, argv, &error))
+        return 0;
+    tool_print_line("%s", error.text);
+    return 1;
 }

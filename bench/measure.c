@@ -5,6 +5,8 @@
 #include "measure.h"
 
 #include "peak.h"
+#include "statistics.h"
+#include "tool/machine.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -33,12 +35,6 @@ struct yardsticks {
     long burst;  // iterations of a burst
 };
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static int by_all(const void *a, const void *b)
 {
     const struct frame *x = a, *y = b;
@@ -51,20 +47,35 @@ static double round_ms(double ms)
     return rint(ms * 1e6) * 1e-6;
 }
 
-static int render(const struct bench_subject *s, struct frame *frame, struct bench_error *error)
+static int render_with(const struct bench_subject *s, struct hf_context *c, const struct bench_image *from,
+                       struct frame *frame, struct tool_error *error)
 {
-    const double start = bench_now();
-    const int err = hf_render(s->context, &s->out.image, &s->in.image, &s->depth, &s->params);
-    const double end = bench_now();
+    const double start = tool_now_ms();
+    const int err = hf_render(c, &s->out.image, &from->image, &s->depth, &s->params);
+    const double end = tool_now_ms();
     if (err)
-        return bench_fail(error, "rendering failed: %s", hf_error_string(err));
+        return tool_fail(error, -1, "rendering failed: %s", hf_error_string(err));
     struct hf_report report;
-    hf_get_report(s->context, &report);
+    hf_get_report(c, &report);
     frame->planning_ms = report.plan_ms;
-    frame->all_ms = round_ms((end - start) * 1e3);
+    frame->all_ms = round_ms(end - start);
     for (int p = 0; p < HF_MAX_PASSES; p++)
         frame->pass_ms[p] = round_ms(report.pass[p].ms);
     return 0;
+}
+
+static int render(const struct bench_subject *s, struct frame *frame, struct tool_error *error)
+{
+    return render_with(s, s->context, &s->in, frame, error);
+}
+
+int bench_measure_frame(const struct bench_subject *s, struct hf_context *c, const struct bench_image *from, double *ms,
+                        struct tool_error *error)
+{
+    struct frame frame;
+    const int err = render_with(s, c, from, &frame, error);
+    *ms = err ? 0 : frame.all_ms;
+    return err;
 }
 
 // Part i of n of a block, in whole cache lines.
@@ -119,11 +130,11 @@ static void measure_yardsticks(const struct bench_subject *s, struct yardsticks 
 }
 
 // Run until memory is paged in and clocks are up. *frame_s receives the seconds of a frame.
-static int warm_up(const struct bench_subject *s, double *frame_s, struct bench_error *error)
+static int warm_up(const struct bench_subject *s, double *frame_s, struct tool_error *error)
 {
     *frame_s = INFINITY;
-    const double start = bench_now();
-    for (int i = 0; i < MIN_WARM_UP || bench_now() - start < warm_up_s; i++) {
+    const double start = tool_now_ms();
+    for (int i = 0; i < MIN_WARM_UP || tool_now_ms() - start < 1e3 * warm_up_s; i++) {
         struct frame frame;
         if (render(s, &frame, error))
             return -1;
@@ -146,7 +157,7 @@ static int choose_frames(double frame_s)
 }
 
 static int measure_frames(const struct bench_subject *s, struct frame *frames, int n, struct yardsticks *y,
-                          struct bench_error *error)
+                          struct tool_error *error)
 {
     for (int round = 0; round < ROUNDS; round++) {
         measure_yardsticks(s, y);
@@ -206,12 +217,11 @@ double bench_measure_copy(const struct bench_subject *s)
     bench_workers_run(s->workers, copy, (void *)s);
     for (int i = 0; i < COPIES; i++)
         seconds[i] = bench_workers_run(s->workers, copy, (void *)s);
-    qsort(seconds, COPIES, sizeof *seconds, by_value);
-    return round_ms(seconds[COPIES / 2] * 1e3);
+    return round_ms(bench_median(seconds, COPIES) * 1e3);
 }
 
 int bench_measure_all(const struct bench_subject *s, double seconds, int least, struct bench_row *all,
-                      struct hf_report *stats, struct bench_error *error)
+                      struct hf_report *stats, struct tool_error *error)
 {
     enum { MOST = 401 };
     struct frame frames[MOST];
@@ -219,7 +229,7 @@ int bench_measure_all(const struct bench_subject *s, double seconds, int least, 
         if (render(s, &frames[0], error))
             return -1;
     int n = 0;
-    for (const double start = bench_now(); n < MOST && (n < least || bench_now() - start < seconds); n++)
+    for (const double start = tool_now_ms(); n < MOST && (n < least || tool_now_ms() - start < 1e3 * seconds); n++)
         if (render(s, &frames[n], error))
             return -1;
     qsort(frames, (size_t)n, sizeof *frames, by_all);
@@ -229,7 +239,7 @@ int bench_measure_all(const struct bench_subject *s, double seconds, int least, 
 }
 
 int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,
-                  struct bench_error *error)
+                  struct tool_error *error)
 {
     *result = (struct bench_result){0};
     double frame_s;
@@ -238,7 +248,7 @@ int bench_measure(const struct bench_subject *subject, int frames, struct bench_
     const int n = frames ? frames : choose_frames(frame_s);
     struct frame *list = calloc((size_t)n, sizeof *list);
     if (!list)
-        return bench_fail(error, "there is not enough memory to measure %d frames", n);
+        return tool_fail(error, -1, "there is not enough memory to measure %d frames", n);
     struct yardsticks y = {0};
     const int err = measure_frames(subject, list, n, &y, error);
     if (!err && bench_measure_uses(subject, &result->uses, error)) {
@@ -248,8 +258,7 @@ int bench_measure(const struct bench_subject *subject, int frames, struct bench_
     if (!err) {
         hf_get_report(subject->context, &result->stats);
         summarise(list, n, result);
-        qsort(y.copy_s, (size_t)y.copies, sizeof *y.copy_s, by_value);
-        result->memcpy_ms = round_ms(y.copy_s[y.copies / 2] * 1e3);
+        result->memcpy_ms = round_ms(bench_median(y.copy_s, y.copies) * 1e3);
         result->fma_gflops = y.gflops;
     }
     free(list);

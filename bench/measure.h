@@ -3,7 +3,7 @@
 #ifndef HF_BENCH_MEASURE_H
 #define HF_BENCH_MEASURE_H
 
-#include "error.h"
+#include "tool/error.h"
 #include "hyperfocal/hyperfocal.h"
 #include "pack.h"
 #include "workers.h"
@@ -51,13 +51,17 @@ double bench_measure_copy(const struct bench_subject *subject);
 // Median, least and most of frames, as many as take about so many seconds, at least `least`, after one that is not
 // counted. The passes stay zero. *stats receives those of the last. Returns 0, or -1 with *error filled.
 int bench_measure_all(const struct bench_subject *subject, double seconds, int least, struct bench_row *all,
-                      struct hf_report *stats, struct bench_error *error);
+                      struct hf_report *stats, struct tool_error *error);
+
+// One frame of a context, from a picture to subject->out, in milliseconds. Returns 0, or -1 with *error filled.
+int bench_measure_frame(const struct bench_subject *subject, struct hf_context *context, const struct bench_image *from,
+                        double *ms, struct tool_error *error);
 
 // Returns 0, or -1 with *error filled.
-int bench_measure_uses(const struct bench_subject *subject, struct bench_uses *uses, struct bench_error *error);
+int bench_measure_uses(const struct bench_subject *subject, struct bench_uses *uses, struct tool_error *error);
 
 // frames 0: as many as take about three seconds. Returns 0, or -1 with *error filled.
 int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,
-                  struct bench_error *error);
+                  struct tool_error *error);
 
 #endif

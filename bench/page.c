@@ -166,18 +166,18 @@ static void others(FILE *out, const struct trade *t)
 }
 
 // The same window of every scene, from every setting and from the truth.
-static int crop(FILE *out, const struct trade_scene *s, const float *rgb, struct bench_error *error)
+static int crop(FILE *out, const struct trade_scene *s, const float *rgb, struct tool_error *error)
 {
     const int w = s->picture.width < TRADE_CROP_WIDTH ? s->picture.width : TRADE_CROP_WIDTH;
     const int h = s->picture.height < TRADE_CROP_HEIGHT ? s->picture.height : TRADE_CROP_HEIGHT;
     fputc('"', out);
     if (bench_jpeg_uri(out, rgb, s->picture.width, s->crop_x, s->crop_y, w, h))
-        return bench_fail(error, "--html: there is not enough memory for a picture");
+        return tool_fail(error, -1, "--html: there is not enough memory for a picture");
     fputc('"', out);
     return 0;
 }
 
-static int crops(FILE *out, struct trade_run *run, struct bench_error *error)
+static int crops(FILE *out, struct trade_run *run, struct tool_error *error)
 {
     const struct trade *t = run->t;
     fputs("<script type=\"application/json\" id=\"crops\">{\"settings\":[", out);
@@ -200,7 +200,7 @@ static int crops(FILE *out, struct trade_run *run, struct bench_error *error)
     return 0;
 }
 
-static int write_page(FILE *out, struct trade_run *run, struct bench_error *error)
+static int write_page(FILE *out, struct trade_run *run, struct tool_error *error)
 {
     const struct trade *t = run->t;
     fprintf(out,
@@ -222,14 +222,14 @@ static int write_page(FILE *out, struct trade_run *run, struct bench_error *erro
     return 0;
 }
 
-int bench_page_write(struct trade_run *run, const char *path, struct bench_error *error)
+int bench_page_write(struct trade_run *run, const char *path, struct tool_error *error)
 {
     FILE *f = fopen(path, "w");
     if (!f)
-        return bench_fail(error, "--html: cannot write %s: %s", path, strerror(errno));
+        return tool_fail(error, -1, "--html: cannot write %s: %s", path, strerror(errno));
     const int err = write_page(f, run, error), failed = ferror(f);
     if (fclose(f) || failed)
-        return err ? -1 : bench_fail(error, "--html: cannot write %s: %s", path, strerror(errno));
+        return err ? -1 : tool_fail(error, -1, "--html: cannot write %s: %s", path, strerror(errno));
     return err;
 }
 
@@ -243,19 +243,19 @@ static int run_program(char *const words[])
     return WIFEXITED(status) ? WEXITSTATUS(status) : 126;
 }
 
-int bench_page_png(const struct trade *t, const char *path, struct bench_error *error)
+int bench_page_png(const struct trade *t, const char *path, struct tool_error *error)
 {
     char svg[] = "/tmp/hyperfocal-chart-XXXXXX";
     const int fd = mkstemp(svg);
     FILE *f = fd < 0 ? NULL : fdopen(fd, "w");
     if (!f)
-        return bench_fail(error, "--png: cannot write %s: %s", svg, strerror(errno));
+        return tool_fail(error, -1, "--png: cannot write %s: %s", svg, strerror(errno));
     chart_write(f, t, &trade_charts[0], WIDE, WIDE_HEIGHT, 1);
     const int failed = ferror(f);
     char *const words[] = {"rsvg-convert", "--zoom", "2", "--output", (char *)path, svg, NULL};
     const int status = fclose(f) || failed ? 126 : run_program(words);
     unlink(svg);
     if (status == 127)
-        return bench_fail(error, "--png needs the program rsvg-convert (Debian: librsvg2-bin)");
-    return status ? bench_fail(error, "--png: cannot write %s", path) : 0;
+        return tool_fail(error, -1, "--png needs the program rsvg-convert (Debian: librsvg2-bin)");
+    return status ? tool_fail(error, -1, "--png: cannot write %s", path) : 0;
 }

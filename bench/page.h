@@ -6,8 +6,8 @@
 #include "tradeoff_run.h"
 
 // Renders every setting once more for its crops. Returns 0, or -1 with *error filled.
-int bench_page_write(struct trade_run *run, const char *path, struct bench_error *error);
+int bench_page_write(struct trade_run *run, const char *path, struct tool_error *error);
 // The page's first chart as a picture, drawn by a browser or by rsvg-convert, whichever is installed.
-int bench_page_png(const struct trade *t, const char *path, struct bench_error *error);
+int bench_page_png(const struct trade *t, const char *path, struct tool_error *error);
 
 #endif

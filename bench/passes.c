@@ -3,10 +3,11 @@
 #include "commands.h"
 #include "report.h"
 #include "subject.h"
+#include "write.h"
 
 #include <math.h>
 
-static int make_scene(struct bench_args *args, struct bench_scene *scene, struct bench_error *error)
+static int make_scene(struct bench_args *args, struct bench_scene *scene, struct tool_error *error)
 {
     struct hf_params *p = &args->params;
     if (bench_scene_builtin(args->scene, NULL)) {
@@ -35,19 +36,19 @@ static void json(FILE *out, const void *run)
     bench_report_json(out, run);
 }
 
-int bench_passes(struct bench_args *args, struct bench_error *error)
+int bench_passes(struct bench_args *args, struct tool_error *error)
 {
     struct bench_scene scene = {0};
     struct bench_subject subject = {0};
     struct bench_result result;
-    struct bench_error log = {""};
+    struct tool_error log = {""};
     int err = make_scene(args, &scene, error);
     if (!err)
         err = bench_subject_open(&subject, args, &scene, &log, error);
     if (!err) {
         err = bench_measure(&subject, args->frames, &result, error);
         if (err && *log.text)
-            bench_fail(error, "%s", log.text);
+            tool_fail(error, -1, "%s", log.text);
     }
     if (!err) {
         const struct bench_run run = {"passes",

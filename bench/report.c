@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
-#include "machine.h"
 #include "scene.h"
+#include "tool/machine.h"
+#include "write.h"
 
-#include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 // Milliseconds at 1920x1080 on a GeForce GTX 660: table 3.1 of the chapter, in the order of its passes.
 static const double gtx660_ms[HF_MAX_PASSES] = {0.13, 0.145, 0.08, 0.08, 0.08, 0.08, 0.455, 0.122, 0.334};
@@ -42,7 +41,7 @@ static void table_machine(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
     char cpu[128];
-    bench_machine_cpu(cpu, sizeof cpu);
+    tool_cpu(cpu, sizeof cpu);
     fprintf(out, "%s, %s, %d thread%s, %dx%d, scene %s (near %.0f%%, sharp %.0f%%, far %.0f%%)\n", cpu,
             hf_isa_name(run->isa), run->threads, run->threads == 1 ? "" : "s", run->width, run->height,
             run->args->scene, 100 * share(r->stats.near_pixels, run), 100 * share(r->stats.sharp_pixels, run),
@@ -95,107 +94,83 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     table_machine(out, run);
 }
 
-static void json_text(FILE *out, const char *text)
-{
-    fputc('"', out);
-    for (const char *c = text; *c; c++) {
-        if (*c == '"' || *c == '\\')
-            fputc('\\', out);
-        if ((unsigned char)*c < 32)
-            fprintf(out, "\\u%04x", (unsigned)(unsigned char)*c);
-        else
-            fputc(*c, out);
-    }
-    fputc('"', out);
-}
-
-// JSON has no infinity.
-static void json_number(FILE *out, const char *name, double value)
-{
-    if (isfinite(value))
-        fprintf(out, "  \"%s\": %.9g,\n", name, value);
-    else
-        fprintf(out, "  \"%s\": null,\n", name);
-}
-
-static void json_named(FILE *out, const char *name, const char *text)
-{
-    fprintf(out, "  \"%s\": ", name);
-    json_text(out, text);
-    fputs(",\n", out);
-}
-
-static void json_settings(FILE *out, const struct bench_run *run)
+static void json_settings(struct tool_json *j, const struct bench_run *run)
 {
     const struct bench_args *a = run->args;
-    json_named(out, "command", run->command);
-    json_named(out, "engine", hf_engine_name(run->result->stats.used.params.engine));
-    fprintf(out, "  \"width\": %d,\n  \"height\": %d,\n  \"threads\": %d,\n", run->width, run->height, run->threads);
-    json_named(out, "isa", hf_isa_name(run->isa));
-    json_named(out, "storage", hf_name(HF_NAMES_STORAGE, (int)a->params.gather.storage));
-    json_named(out, "scene", a->scene);
-    json_named(out, "in", hf_name(HF_NAMES_FORMAT, (int)a->in));
-    json_named(out, "out", hf_name(HF_NAMES_FORMAT, (int)a->out));
-    json_number(out, "focus", a->params.focus);
-    json_number(out, "range", a->params.range.distance);
-    json_number(out, "max_radius", run->result->stats.used.params.max_radius);
-    json_named(out, "fill", hf_name(HF_NAMES_FILL, (int)a->params.gather.fill));
-    const struct {
-        const char *name;
-        int value;
-    } flags[] = {{"faithful", a->faithful},
-                 {"deterministic", a->params.run.deterministic},
-                 {"no_skip", a->params.run.no_skip},
-                 {"karis", a->params.gather.karis},
-                 {"bicubic", a->params.gather.bicubic},
-                 {"per_pixel_kernel", a->params.gather.per_pixel_kernel}};
-    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
-        fprintf(out, "  \"%s\": %s,\n", flags[i].name, flags[i].value ? "true" : "false");
+    const struct hf_params *p = &a->params;
+    tool_json_text(j, "engine", hf_engine_name(run->result->stats.used.params.engine));
+    tool_json_count(j, "width", run->width);
+    tool_json_count(j, "height", run->height);
+    tool_json_count(j, "threads", run->threads);
+    tool_json_text(j, "isa", hf_isa_name(run->isa));
+    tool_json_text(j, "storage", hf_name(HF_NAMES_STORAGE, (int)p->gather.storage));
+    tool_json_text(j, "scene", a->scene);
+    tool_json_text(j, "in", hf_name(HF_NAMES_FORMAT, (int)a->in));
+    tool_json_text(j, "out", hf_name(HF_NAMES_FORMAT, (int)a->out));
+    tool_json_number(j, "focus", p->focus);
+    tool_json_number(j, "range", p->range.distance);
+    tool_json_number(j, "max_radius", run->result->stats.used.params.max_radius);
+    tool_json_text(j, "fill", hf_name(HF_NAMES_FILL, (int)p->gather.fill));
+    tool_json_flag(j, "faithful", p->gather.faithful);
+    tool_json_flag(j, "deterministic", p->run.deterministic);
+    tool_json_flag(j, "no_skip", p->run.no_skip);
+    tool_json_flag(j, "karis", p->gather.karis);
+    tool_json_flag(j, "bicubic", p->gather.bicubic);
+    tool_json_flag(j, "per_pixel_kernel", p->gather.per_pixel_kernel);
 }
 
-static void json_machine(FILE *out, const struct bench_run *run)
+static void json_machine(struct tool_json *j, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
-    char cpu[128];
-    bench_machine_cpu(cpu, sizeof cpu);
-    json_named(out, "cpu", cpu);
-    json_named(out, "compiler", compiler);
-    json_named(out, "version", hf_version());
-    json_number(out, "near_share", share(r->stats.near_pixels, run));
-    json_number(out, "sharp_share", share(r->stats.sharp_pixels, run));
-    json_number(out, "far_share", share(r->stats.far_pixels, run));
-    json_number(out, "memory_bytes", (double)r->stats.memory_held);
-    fprintf(out, "  \"frames\": %d,\n", r->frames);
-    json_number(out, "memcpy_ms", r->memcpy_ms);
-    json_number(out, "fma_gflops", r->fma_gflops);
-    json_number(out, "cost_mflop", cost_mflop(r));
+    tool_json_text(j, "compiler", compiler);
+    tool_json_number(j, "near_share", share(r->stats.near_pixels, run));
+    tool_json_number(j, "sharp_share", share(r->stats.sharp_pixels, run));
+    tool_json_number(j, "far_share", share(r->stats.far_pixels, run));
+    tool_json_number(j, "memory_bytes", (double)r->stats.memory_held);
+    tool_json_count(j, "frames", r->frames);
+    tool_json_number(j, "memcpy_ms", r->memcpy_ms);
+    tool_json_number(j, "fma_gflops", r->fma_gflops);
+    tool_json_number(j, "cost_mflop", cost_mflop(r));
+}
+
+static void json_row(struct tool_json *j, const struct bench_row *row)
+{
+    tool_json_ms(j, "median_ms", row->median_ms);
+    tool_json_ms(j, "min_ms", row->min_ms);
+    tool_json_ms(j, "max_ms", row->max_ms);
 }
 
 void bench_report_json(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
-    fputs("{\n", out);
-    json_settings(out, run);
-    json_machine(out, run);
-    fputs("  \"passes\": [", out);
-    for (int p = 0; p < hf_pass_count(r->stats.used.params.engine); p++) {
-        const struct bench_row *row = &r->pass[p];
-        fprintf(out, "%s\n    {\"name\": \"%s\", \"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", p ? "," : "",
-                hf_pass_name(r->stats.used.params.engine, p), row->median_ms, row->min_ms, row->max_ms);
-        if (has_gtx660(run))
-            fprintf(out, ", \"gtx660_ms\": %g", gtx660_ms[p]);
-        if (row->in >= 0)
-            fprintf(out, ", \"in\": \"%s\"", hf_pass_name(r->stats.used.params.engine, row->in));
-        fputc('}', out);
-    }
     const struct bench_uses *u = &r->uses;
-    fprintf(out, "\n  ],\n  \"overhead_ms\": %.6f,\n  \"planning_ms\": %.6f,\n", r->overhead_ms, r->planning_ms);
-    fprintf(out,
-            "  \"in_place_ms\": %.6f,\n  \"out_of_place_ms\": %.6f,\n  \"first_ms\": %.6f,\n  \"prepared_ms\": %.6f,\n",
-            u->in_place.median_ms, u->out_of_place.median_ms, u->first_ms, u->prepared_ms);
-    fprintf(out, "  \"all\": {\"median_ms\": %.6f, \"min_ms\": %.6f, \"max_ms\": %.6f", r->all.median_ms, r->all.min_ms,
-            r->all.max_ms);
+    const enum hf_engine engine = r->stats.used.params.engine;
+    struct tool_json j;
+    bench_json_begin(&j, out, run->command, run->args);
+    json_settings(&j, run);
+    json_machine(&j, run);
+    tool_json_open(&j, "passes", '[');
+    for (int p = 0; p < hf_pass_count(engine); p++) {
+        const struct bench_row *row = &r->pass[p];
+        tool_json_row(&j, NULL, '{');
+        tool_json_text(&j, "name", hf_pass_name(engine, p));
+        json_row(&j, row);
+        if (has_gtx660(run))
+            tool_json_number(&j, "gtx660_ms", gtx660_ms[p]);
+        if (row->in >= 0)
+            tool_json_text(&j, "in", hf_pass_name(engine, row->in));
+        tool_json_close(&j);
+    }
+    tool_json_close(&j);
+    tool_json_ms(&j, "overhead_ms", r->overhead_ms);
+    tool_json_ms(&j, "planning_ms", r->planning_ms);
+    tool_json_ms(&j, "in_place_ms", u->in_place.median_ms);
+    tool_json_ms(&j, "out_of_place_ms", u->out_of_place.median_ms);
+    tool_json_ms(&j, "first_ms", u->first_ms);
+    tool_json_ms(&j, "prepared_ms", u->prepared_ms);
+    tool_json_row(&j, "all", '{');
+    json_row(&j, &r->all);
     if (has_gtx660(run))
-        fprintf(out, ", \"gtx660_ms\": %g", gtx660_all_ms);
-    fputs("}\n}\n", out);
+        tool_json_number(&j, "gtx660_ms", gtx660_all_ms);
+    tool_json_end(&j);
 }

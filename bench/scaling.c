@@ -2,6 +2,7 @@
 // `hyperfocal-bench scaling`: what a frame costs as more of it is blurred, and as it grows.
 #include "commands.h"
 #include "subject.h"
+#include "write.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -89,42 +90,59 @@ static void table(FILE *out, const void *what)
             r->threads, hf_engine_name(r->args->params.engine), r->max_radius, peak_memory() * 1e-6);
 }
 
-static void json_point(FILE *out, const struct scaling *r, int i, int k, int j)
+static void json_point(struct tool_json *j, const struct scaling *r, int i, int k, int n)
 {
     const struct size_result *s = &r->size[i];
-    const struct point *p = &s->point[k][j];
-    fprintf(
-        out,
-        "    {\"width\": %d, \"height\": %d, \"kind\": \"%s\", \"share\": %d, \"median_ms\": %.6f, \"min_ms\": %.6f, "
-        "\"max_ms\": %.6f, \"ms_per_megapixel\": %.6f, \"memcpy_ms\": %.6f, \"memory\": %zu}",
-        s->width, s->height, kinds[k], shares[j], p->all.median_ms, p->all.min_ms, p->all.max_ms,
-        p->all.median_ms / megapixels(s), s->memcpy_ms, p->memory);
+    const struct point *p = &s->point[k][n];
+    tool_json_row(j, NULL, '{');
+    tool_json_count(j, "width", s->width);
+    tool_json_count(j, "height", s->height);
+    tool_json_text(j, "kind", kinds[k]);
+    tool_json_count(j, "share", shares[n]);
+    tool_json_ms(j, "median_ms", p->all.median_ms);
+    tool_json_ms(j, "min_ms", p->all.min_ms);
+    tool_json_ms(j, "max_ms", p->all.max_ms);
+    tool_json_ms(j, "ms_per_megapixel", p->all.median_ms / megapixels(s));
+    tool_json_ms(j, "memcpy_ms", s->memcpy_ms);
+    tool_json_count(j, "memory", (long long)p->memory);
+    tool_json_close(j);
+}
+
+static void json_size(struct tool_json *j, const struct scaling *r, int i)
+{
+    const struct size_result *s = &r->size[i];
+    tool_json_row(j, NULL, '{');
+    tool_json_count(j, "width", s->width);
+    tool_json_count(j, "height", s->height);
+    tool_json_ms(j, "memcpy_ms", s->memcpy_ms);
+    tool_json_open(j, "ten_over_all", '{');
+    for (int k = 0; k < KINDS; k++)
+        tool_json_number(j, kinds[k], tenth(s, k));
+    tool_json_close(j);
+    tool_json_number(j, "per_megapixel_over_1080p", growth(r, i));
+    tool_json_close(j);
 }
 
 static void json(FILE *out, const void *what)
 {
     const struct scaling *r = what;
-    fprintf(out,
-            "{\n  \"command\": \"scaling\",\n  \"engine\": \"%s\",\n  \"threads\": %d,\n  \"isa\": \"%s\",\n"
-            "  \"max_radius\": %g,\n  \"peak_memory\": %.0f,\n  \"points\": [\n",
-            hf_engine_name(r->args->params.engine), r->threads, hf_isa_name(r->isa), r->max_radius, peak_memory());
-    const char *comma = "";
+    struct tool_json j;
+    bench_json_begin(&j, out, "scaling", r->args);
+    tool_json_text(&j, "engine", hf_engine_name(r->args->params.engine));
+    tool_json_count(&j, "threads", r->threads);
+    tool_json_text(&j, "isa", hf_isa_name(r->isa));
+    tool_json_number(&j, "max_radius", r->max_radius);
+    tool_json_count(&j, "peak_memory", (long long)peak_memory());
+    tool_json_open(&j, "points", '[');
     for (int i = 0; i < r->count; i++)
         for (int k = 0; k < KINDS; k++)
-            for (int j = 0; j < SHARES; j++, comma = ",\n") {
-                fputs(comma, out);
-                json_point(out, r, i, k, j);
-            }
-    fputs("\n  ],\n  \"sizes\": [\n", out);
-    for (int i = 0; i < r->count; i++) {
-        const struct size_result *s = &r->size[i];
-        fprintf(out,
-                "    {\"width\": %d, \"height\": %d, \"memcpy_ms\": %.6f, \"ten_over_all\": "
-                "{\"near\": %.4f, \"far\": %.4f, \"both\": %.4f}, \"per_megapixel_over_1080p\": %.4f}%s\n",
-                s->width, s->height, s->memcpy_ms, tenth(s, 0), tenth(s, 1), tenth(s, 2), growth(r, i),
-                i + 1 < r->count ? "," : "");
-    }
-    fputs("  ]\n}\n", out);
+            for (int n = 0; n < SHARES; n++)
+                json_point(&j, r, i, k, n);
+    tool_json_close(&j);
+    tool_json_open(&j, "sizes", '[');
+    for (int i = 0; i < r->count; i++)
+        json_size(&j, r, i);
+    tool_json_end(&j);
 }
 
 static int by_median(const void *a, const void *b)
@@ -149,7 +167,7 @@ static struct bench_row summary(struct bench_row rounds[ROUNDS])
 // All points of a size, once. depth is the subject's, to paint on.
 static int measure_round(struct size_result *s, struct scaling *r, const struct bench_scene *scene,
                          const struct bench_subject *subject, float *depth, int round,
-                         struct bench_row rows[KINDS][SHARES][ROUNDS], struct bench_error *error)
+                         struct bench_row rows[KINDS][SHARES][ROUNDS], struct tool_error *error)
 {
     const struct bench_optics optics = {r->args->params.focus, r->args->params.range.distance,
                                         r->args->params.max_radius};
@@ -167,7 +185,7 @@ static int measure_round(struct size_result *s, struct scaling *r, const struct 
     return 0;
 }
 
-static int measure_size(struct size_result *s, struct scaling *r, struct bench_error *log, struct bench_error *error)
+static int measure_size(struct size_result *s, struct scaling *r, struct tool_error *log, struct tool_error *error)
 {
     const struct bench_args *a = r->args;
     const struct bench_optics optics = {a->params.focus, a->params.range.distance, a->params.max_radius};
@@ -175,7 +193,7 @@ static int measure_size(struct size_result *s, struct scaling *r, struct bench_e
     struct bench_subject subject = {0};
     float *depth = malloc((size_t)s->width * (size_t)s->height * sizeof(float));
     int err = depth ? bench_scene_paint(&scene, "mixed", s->width, s->height, &optics, error)
-                    : bench_fail(error, "there is not enough memory for %dx%d", s->width, s->height);
+                    : tool_fail(error, -1, "there is not enough memory for %dx%d", s->width, s->height);
     if (!err)
         err = bench_subject_open(&subject, a, &scene, log, error);
     if (!err) {
@@ -197,10 +215,10 @@ static int measure_size(struct size_result *s, struct scaling *r, struct bench_e
     return err;
 }
 
-int bench_scaling(struct bench_args *args, struct bench_error *error)
+int bench_scaling(struct bench_args *args, struct tool_error *error)
 {
     struct scaling r = {.args = args};
-    struct bench_error log = {""};
+    struct tool_error log = {""};
     // With --size: only up to there.
     for (int i = 0; i < SIZES && (!args->size_given || sizes[i][0] <= args->width); i++) {
         r.size[i] = (struct size_result){.width = sizes[i][0], .height = sizes[i][1]};
@@ -209,7 +227,7 @@ int bench_scaling(struct bench_args *args, struct bench_error *error)
         r.count++;
     }
     if (!r.count)
-        return bench_fail(error, "--size %dx%d is less than the smallest, %dx%d", args->width, args->height,
-                          sizes[0][0], sizes[0][1]);
+        return tool_fail(error, -1, "--size %dx%d is less than the smallest, %dx%d", args->width, args->height,
+                         sizes[0][0], sizes[0][1]);
     return bench_write_report(args, table, json, &r, error);
 }

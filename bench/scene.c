@@ -142,12 +142,12 @@ static int paint_all(const struct painter *p, const struct bench_scene *scene)
 }
 
 static int make_painter(struct painter *p, const char *name, int width, int height, const struct bench_optics *optics,
-                        struct bench_error *error)
+                        struct tool_error *error)
 {
     float band = 0;
     const int kind = scene_kind(name, &band);
     if (kind == KINDS)
-        return bench_fail(error, "there is no built-in scene '%s'", name);
+        return tool_fail(error, -1, "there is no built-in scene '%s'", name);
     const int rows = (int)(band * (float)height + 0.5f);
     *p = (struct painter){
         .kind = (enum scene_kind)kind,
@@ -163,7 +163,7 @@ static int make_painter(struct painter *p, const char *name, int width, int heig
 }
 
 int bench_scene_paint(struct bench_scene *scene, const char *name, int width, int height,
-                      const struct bench_optics *optics, struct bench_error *error)
+                      const struct bench_optics *optics, struct tool_error *error)
 {
     struct painter p;
     *scene = (struct bench_scene){.width = width, .height = height};
@@ -174,13 +174,13 @@ int bench_scene_paint(struct bench_scene *scene, const char *name, int width, in
     scene->depth = malloc(pixels * sizeof(float));
     if (!scene->rgb || !scene->depth || paint_all(&p, scene)) {
         bench_scene_free(scene);
-        return bench_fail(error, "there is not enough memory for a scene of %dx%d", width, height);
+        return tool_fail(error, -1, "there is not enough memory for a scene of %dx%d", width, height);
     }
     return 0;
 }
 
 int bench_scene_depth(const struct bench_scene *mixed, const char *name, const struct bench_optics *optics,
-                      float *depth, struct bench_error *error)
+                      float *depth, struct tool_error *error)
 {
     struct painter p;
     if (make_painter(&p, name, mixed->width, mixed->height, optics, error))

@@ -7,7 +7,7 @@
 #ifndef HF_BENCH_SCENE_H
 #define HF_BENCH_SCENE_H
 
-#include "error.h"
+#include "tool/error.h"
 
 // A picture: width * height pixels, rows packed tightly.
 struct bench_scene {
@@ -38,11 +38,11 @@ int bench_scene_builtin(const char *name, float *band);
 
 // Paint a built-in scene. Returns 0, or -1 with *error filled and an empty scene.
 int bench_scene_paint(struct bench_scene *scene, const char *name, int width, int height,
-                      const struct bench_optics *optics, struct bench_error *error);
+                      const struct bench_optics *optics, struct tool_error *error);
 
 // The depth of another built-in scene for a picture that was painted as `mixed` with the same optics.
 int bench_scene_depth(const struct bench_scene *mixed, const char *name, const struct bench_optics *optics,
-                      float *depth, struct bench_error *error);
+                      float *depth, struct tool_error *error);
 
 // The camera that a file names; NAN what it does not.
 struct bench_camera {
@@ -53,7 +53,7 @@ struct bench_camera {
 // Read the first view with depth of a picture file, or with_depth 0 the first view, without. Colour only: alpha is not
 // read. camera may be NULL. Fails in builds without the file layer.
 int bench_scene_read(struct bench_scene *scene, const char *path, int with_depth, struct bench_camera *camera,
-                     struct bench_error *error);
+                     struct tool_error *error);
 
 void bench_scene_free(struct bench_scene *scene);
 

@@ -24,7 +24,7 @@ static void interleave(float *rgb, float *const planes[3], size_t pixels)
 }
 
 static int read_view(struct bench_scene *scene, struct hf_io_file *file, int view, int with_depth,
-                     struct bench_error *error)
+                     struct tool_error *error)
 {
     const size_t pixels = (size_t)scene->width * (size_t)scene->height;
     float *memory = malloc(pixels * 3 * sizeof(float));
@@ -40,27 +40,27 @@ static int read_view(struct bench_scene *scene, struct hf_io_file *file, int vie
             interleave(scene->rgb, planes, pixels);
             result = 0;
         } else {
-            bench_fail(error, "%s", io.message);
+            tool_fail(error, -1, "%s", io.message);
         }
     } else {
-        bench_fail(error, "there is not enough memory for a scene of %dx%d", scene->width, scene->height);
+        tool_fail(error, -1, "there is not enough memory for a scene of %dx%d", scene->width, scene->height);
     }
     free(memory);
     return result;
 }
 
 int bench_scene_read(struct bench_scene *scene, const char *path, int with_depth, struct bench_camera *camera,
-                     struct bench_error *error)
+                     struct tool_error *error)
 {
     *scene = (struct bench_scene){0};
     struct hf_io_error io;
     struct hf_io_file *file;
     if (hf_io_open(&file, path, NULL, &io))
-        return bench_fail(error, "%s", io.message);
+        return tool_fail(error, -1, "%s", io.message);
     const int view = with_depth ? view_with_depth(file) : 0;
     int result = -1;
     if (view < 0) {
-        bench_fail(error, "%s has no depth channel", path);
+        tool_fail(error, -1, "%s has no depth channel", path);
     } else {
         const struct hf_io_view *v = hf_io_view(file, view);
         scene->width = v->width;
@@ -79,12 +79,12 @@ int bench_scene_read(struct bench_scene *scene, const char *path, int with_depth
 #else
 
 int bench_scene_read(struct bench_scene *scene, const char *path, int with_depth, struct bench_camera *camera,
-                     struct bench_error *error)
+                     struct tool_error *error)
 {
     (void)with_depth;
     (void)camera;
     *scene = (struct bench_scene){0};
-    return bench_fail(error, "there is no built-in scene '%s', and this build reads no files", path);
+    return tool_fail(error, -1, "there is no built-in scene '%s', and this build reads no files", path);
 }
 
 #endif

@@ -10,11 +10,7 @@
 // Open the library and pack the scene. log keeps the last sentence that the library says. Close it after an error too.
 // Returns 0, or -1 with *error filled.
 int bench_subject_open(struct bench_subject *s, const struct bench_args *args, const struct bench_scene *scene,
-                       struct bench_error *log, struct bench_error *error);
+                       struct tool_error *log, struct tool_error *error);
 void bench_subject_close(struct bench_subject *s);
-
-// Write a report: as a table to stdout, or as JSON to args->json, or both if that is a file. Returns as above.
-int bench_write_report(const struct bench_args *args, void (*table)(FILE *out, const void *what),
-                       void (*json)(FILE *out, const void *what), const void *what, struct bench_error *error);
 
 #endif

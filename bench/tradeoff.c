@@ -7,8 +7,10 @@
 #include "machine.h"
 #include "page.h"
 #include "subject.h"
+#include "tool/machine.h"
 #include "tradeoff.h"
 #include "tradeoff_run.h"
+#include "write.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -43,7 +45,7 @@ static int choose_settings(struct trade *t, struct trade_setting *own)
     return 0;
 }
 
-static int open_cache(struct trade_cache **cache, const struct trade *t, struct bench_error *error)
+static int open_cache(struct trade_cache **cache, const struct trade *t, struct tool_error *error)
 {
     char path[4096], key[256];
     const char *home = getenv("HOME"), *xdg = getenv("XDG_CACHE_HOME");
@@ -61,7 +63,7 @@ static int open_cache(struct trade_cache **cache, const struct trade *t, struct 
     return trade_cache_open(cache, path, key, error);
 }
 
-static int measure_distances(struct trade_run *run, struct trade_cache *cache, struct bench_error *error)
+static int measure_distances(struct trade_run *run, struct trade_cache *cache, struct tool_error *error)
 {
     struct trade *t = run->t;
     for (int i = 0; i < t->results; i++) {
@@ -90,7 +92,7 @@ static int wants_sample(const struct trade_time *time, int round, int rounds)
     return time->n <= round && time->n < rounds;
 }
 
-static int measure_times(struct trade_run *run, struct trade_cache *cache, struct bench_error *error)
+static int measure_times(struct trade_run *run, struct trade_cache *cache, struct tool_error *error)
 {
     struct trade *t = run->t;
     const int rounds = t->args->quick ? QUICK_ROUNDS : ROUNDS;
@@ -111,21 +113,21 @@ static int measure_times(struct trade_run *run, struct trade_cache *cache, struc
 
 // Write a file of one of the other kinds.
 static int write_file(const char *path, const char *option, const struct trade *t,
-                      void (*write)(FILE *out, const struct trade *t), struct bench_error *error)
+                      void (*write)(FILE *out, const struct trade *t), struct tool_error *error)
 {
     if (!path)
         return 0;
     FILE *f = fopen(path, "w");
     if (!f)
-        return bench_fail(error, "%s: cannot write %s", option, path);
+        return tool_fail(error, -1, "%s: cannot write %s", option, path);
     write(f, t);
     const int failed = ferror(f);
     if (fclose(f) || failed)
-        return bench_fail(error, "%s: cannot write %s", option, path);
+        return tool_fail(error, -1, "%s: cannot write %s", option, path);
     return 0;
 }
 
-static int report(struct trade_run *run, struct bench_error *error)
+static int report(struct trade_run *run, struct tool_error *error)
 {
     const struct trade *t = run->t;
     const struct bench_args *a = t->args;
@@ -140,16 +142,16 @@ static int report(struct trade_run *run, struct bench_error *error)
     return bench_write_report(a, trade_table, trade_json, t, error);
 }
 
-int bench_tradeoff(struct bench_args *args, struct bench_error *error)
+int bench_tradeoff(struct bench_args *args, struct tool_error *error)
 {
     struct trade t = {.args = args};
     struct trade_setting own;
     struct trade_run run = {0};
     struct trade_cache *cache = NULL;
-    bench_machine_cpu(t.cpu, sizeof t.cpu);
+    tool_cpu(t.cpu, sizeof t.cpu);
     bench_machine_date(t.date, sizeof t.date);
     t.commit = bench_machine_commit();
-    int err = choose_settings(&t, &own) ? bench_fail(error, "there is not enough memory") : 0;
+    int err = choose_settings(&t, &own) ? tool_fail(error, -1, "there is not enough memory") : 0;
     if (!err)
         err = trade_run_open(&run, &t, error);
     if (!err)

@@ -111,7 +111,7 @@ int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES]);
 
 // The cache: opened for a build and a machine, read whole, appended to line by line.
 struct trade_cache;
-int trade_cache_open(struct trade_cache **cache, const char *path, const char *key, struct bench_error *error);
+int trade_cache_open(struct trade_cache **cache, const char *path, const char *key, struct tool_error *error);
 // Fill in what is known of the results. Returns how many lines applied.
 int trade_cache_load(struct trade_cache *cache, struct trade *t);
 void trade_cache_point(struct trade_cache *cache, const struct trade *t, const struct trade_result *r, int scene);
@@ -127,7 +127,5 @@ void trade_csv(FILE *out, const struct trade *t);
 // src/frame/ladder_table.h
 void trade_ladder_table(FILE *out, const struct trade *t);
 void trade_json(FILE *out, const void *t);
-// A string with its quotes.
-void trade_json_text(FILE *out, const char *text);
 
 #endif

@@ -19,7 +19,7 @@ struct input {
     struct hf_depth depth;
 };
 
-static int make_input(struct input *in, struct bench_error *error)
+static int make_input(struct input *in, struct tool_error *error)
 {
     const struct bench_optics optics = {20, 10, RADIUS};
     struct bench_scene scene;
@@ -85,7 +85,7 @@ static double shown_distance(const struct picture *a, const struct picture *b)
     return sqrt(sum / (3.0 * WIDTH * HEIGHT));
 }
 
-int trade_run_axes(struct trade_run *run, int result, struct bench_error *error)
+int trade_run_axes(struct trade_run *run, int result, struct tool_error *error)
 {
     struct trade_result *r = &run->t->result[result];
     const struct trade_job *job = &run->job[result];
@@ -112,5 +112,5 @@ int trade_run_axes(struct trade_run *run, int result, struct bench_error *error)
     picture_free(&got);
     picture_free(&exact);
     picture_free(&demo);
-    return err ? bench_fail(error, "%s: %s", r->setting->options, hf_error_string(err)) : 0;
+    return err ? tool_fail(error, -1, "%s: %s", r->setting->options, hf_error_string(err)) : 0;
 }

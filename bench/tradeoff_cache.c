@@ -62,17 +62,17 @@ static void make_folders(const char *path)
     free(copy);
 }
 
-int trade_cache_open(struct trade_cache **out, const char *path, const char *key, struct bench_error *error)
+int trade_cache_open(struct trade_cache **out, const char *path, const char *key, struct tool_error *error)
 {
     struct trade_cache *c = calloc(1, sizeof *c);
     *out = c;
     if (!c || !(c->path = strdup(path)))
-        return bench_fail(error, "there is not enough memory");
+        return tool_fail(error, -1, "there is not enough memory");
     snprintf(c->key, sizeof c->key, "%s", key);
     make_folders(path);
     c->file = fopen(path, "a");
     if (!c->file)
-        return bench_fail(error, "--cache: cannot write %s: %s", path, strerror(errno));
+        return tool_fail(error, -1, "--cache: cannot write %s: %s", path, strerror(errno));
     return 0;
 }
 

@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "statistics.h"
 #include "tradeoff.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-// Between the samples beside it, as n - 1 steps.
-static double quantile(const double *sorted, int n, double q)
-{
-    const double at = q * (n - 1);
-    const int i = (int)at;
-    return i + 1 < n ? sorted[i] + (at - i) * (sorted[i + 1] - sorted[i]) : sorted[n - 1];
-}
 
 struct trade_interval trade_interval(const double *samples, int n)
 {
@@ -25,8 +12,9 @@ struct trade_interval trade_interval(const double *samples, int n)
     if (n < 1)
         return (struct trade_interval){NAN, NAN, NAN};
     memcpy(sorted, samples, (size_t)n * sizeof *sorted);
-    qsort(sorted, (size_t)n, sizeof *sorted, by_value);
-    return (struct trade_interval){quantile(sorted, n, 0.25), quantile(sorted, n, 0.5), quantile(sorted, n, 0.75)};
+    bench_median(sorted, n);
+    return (struct trade_interval){bench_quantile(sorted, n, 0.25), bench_quantile(sorted, n, 0.5),
+                                   bench_quantile(sorted, n, 0.75)};
 }
 
 int trade_overlap(struct trade_interval a, struct trade_interval b)

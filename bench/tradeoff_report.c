@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tradeoff.h"
+#include "write.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -151,125 +152,97 @@ void trade_csv(FILE *out, const struct trade *t)
     }
 }
 
-void trade_json_text(FILE *out, const char *text)
+static void json_interval(struct tool_json *j, const char *name, struct trade_interval v)
 {
-    fputc('"', out);
-    for (const char *c = text; *c; c++) {
-        if (*c == '"' || *c == '\\')
-            fputc('\\', out);
-        if ((unsigned char)*c < 32 || *c == '<')  // <: the page has this inside an element
-            fprintf(out, "\\u%04x", (unsigned)(unsigned char)*c);
-        else
-            fputc(*c, out);
-    }
-    fputc('"', out);
+    tool_json_open(j, name, '{');
+    tool_json_number(j, "median", v.median);
+    tool_json_number(j, "low", v.low);
+    tool_json_number(j, "high", v.high);
+    tool_json_close(j);
 }
 
-static void json_field(FILE *out, const char *before, const char *name, double v)
-{
-    if (isfinite(v))
-        fprintf(out, "%s\"%s\": %.7g", before, name, v);
-    else
-        fprintf(out, "%s\"%s\": null", before, name);
-}
-
-static void json_interval(FILE *out, const char *name, struct trade_interval v)
-{
-    fprintf(out, ", \"%s\": {", name);
-    json_field(out, "", "median", v.median);
-    json_field(out, ", ", "low", v.low);
-    json_field(out, ", ", "high", v.high);
-    fputc('}', out);
-}
-
-static void json_passes(FILE *out, const struct trade_result *r, const struct trade_time *time)
+static void json_passes(struct tool_json *j, const struct trade_result *r, const struct trade_time *time)
 {
     double values[TRADE_ROUNDS];
-    fputs(", \"passes\": [", out);
+    tool_json_open(j, "passes", '[');
     for (int p = 0; p < hf_pass_count(r->engine); p++) {
         for (int i = 0; i < time->n; i++)
             values[i] = time->pass[i][p];
-        fprintf(out, "%s{\"name\": ", p ? ", " : "");
-        trade_json_text(out, hf_pass_name(r->engine, p));
-        json_field(out, ", ", "ms", trade_interval(values, time->n).median);
-        fputc('}', out);
+        tool_json_open(j, NULL, '{');
+        tool_json_text(j, "name", hf_pass_name(r->engine, p));
+        tool_json_number(j, "ms", trade_interval(values, time->n).median);
+        tool_json_close(j);
     }
-    fputc(']', out);
+    tool_json_close(j);
 }
 
-static void json_scene(FILE *out, const struct trade *t, const struct trade_result *r, int s)
+static void json_distance(struct tool_json *j, const char *name, const struct bench_distance *d)
+{
+    if (d->share == 0) {
+        tool_json_text(j, name, NULL);
+        return;
+    }
+    tool_json_open(j, name, '{');
+    tool_json_number(j, "share", d->share);
+    tool_json_number(j, "psnr_db", d->psnr);
+    tool_json_number(j, "display_rmse", d->display_rmse);
+    tool_json_number(j, "linear_rmse", d->linear_rmse);
+    tool_json_number(j, "largest", d->largest);
+    tool_json_number(j, "ssim", d->ssim);
+    tool_json_number(j, "flip", d->flip);
+    tool_json_number(j, "energy", d->energy);
+    tool_json_close(j);
+}
+
+static void json_scene(struct tool_json *j, const struct trade *t, const struct trade_result *r, int s)
 {
     const struct trade_point *p = &r->at[s];
-    fputs("{\"scene\": ", out);
-    trade_json_text(out, t->scene[s].text);
-    json_interval(out, "ms", trade_interval(p->time.sample, p->time.n));
-    json_field(out, ", ", "flicker", p->flicker);
-    json_passes(out, r, &p->time);
-    for (int g = 0; g < BENCH_REGIONS; g++) {
-        const struct bench_distance *d = &p->distance[g];
-        fprintf(out, ", \"%s\": ", bench_region_name((enum bench_region)g));
-        if (d->share == 0) {
-            fputs("null", out);
-            continue;
-        }
-        const struct {
-            const char *name;
-            double value;
-        } field[] = {{"psnr_db", d->psnr},
-                     {"display_rmse", d->display_rmse},
-                     {"linear_rmse", d->linear_rmse},
-                     {"largest", d->largest},
-                     {"ssim", d->ssim},
-                     {"flip", d->flip},
-                     {"energy", d->energy}};
-        json_field(out, "{", "share", d->share);
-        for (size_t k = 0; k < sizeof field / sizeof *field; k++)
-            json_field(out, ", ", field[k].name, field[k].value);
-        fputc('}', out);
-    }
-    fputc('}', out);
+    tool_json_row(j, NULL, '{');
+    tool_json_text(j, "scene", t->scene[s].text);
+    json_interval(j, "ms", trade_interval(p->time.sample, p->time.n));
+    tool_json_number(j, "flicker", p->flicker);
+    json_passes(j, r, &p->time);
+    for (int g = 0; g < BENCH_REGIONS; g++)
+        json_distance(j, bench_region_name((enum bench_region)g), &p->distance[g]);
+    tool_json_close(j);
 }
 
-static void json_setting(FILE *out, const struct trade *t, const struct trade_result *r)
+static void json_setting(struct tool_json *j, const struct trade *t, const struct trade_result *r)
 {
     static const char *const ranks[] = {"beaten", "tied", "front"};
-    fputs("    {\"knob\": ", out);
-    trade_json_text(out, r->setting->knob);
-    fputs(", \"name\": ", out);
-    trade_json_text(out, r->setting->name);
-    fputs(", \"options\": ", out);
-    trade_json_text(out, r->setting->options);
-    fprintf(out, ", \"engine\": \"%s\", \"rank\": \"%s\", \"step\": %d", hf_engine_name(r->engine), ranks[r->rank],
-            r->step);
-    json_interval(out, "ms", r->ms);
-    json_interval(out, "both_ms", r->both_ms);
-    json_field(out, ", ", "error", r->error);
-    json_field(out, ", ", "worst", r->worst);
-    json_field(out, ", ", "rounding", r->rounding);
-    json_field(out, ", ", "faithfulness", r->faithfulness);
-    fputs(",\n     \"scenes\": [", out);
-    for (int s = 0; s < t->scenes; s++) {
-        fputs(s ? ",\n      " : "\n      ", out);
-        json_scene(out, t, r, s);
-    }
-    fputs("]}", out);
+    tool_json_open(j, NULL, '{');
+    tool_json_text(j, "knob", r->setting->knob);
+    tool_json_text(j, "name", r->setting->name);
+    tool_json_text(j, "options", r->setting->options);
+    tool_json_text(j, "engine", hf_engine_name(r->engine));
+    tool_json_text(j, "rank", ranks[r->rank]);
+    tool_json_count(j, "step", r->step);
+    json_interval(j, "ms", r->ms);
+    json_interval(j, "both_ms", r->both_ms);
+    tool_json_number(j, "error", r->error);
+    tool_json_number(j, "worst", r->worst);
+    tool_json_number(j, "rounding", r->rounding);
+    tool_json_number(j, "faithfulness", r->faithfulness);
+    tool_json_open(j, "scenes", '[');
+    for (int s = 0; s < t->scenes; s++)
+        json_scene(j, t, r, s);
+    tool_json_close(j);
+    tool_json_close(j);
 }
 
 void trade_json(FILE *out, const void *what)
 {
     const struct trade *t = what;
-    fputs("{\n  \"command\": \"tradeoff\",\n  \"cpu\": ", out);
-    trade_json_text(out, t->cpu);
-    fprintf(out,
-            ",\n  \"isa\": \"%s\",\n  \"threads\": %d,\n  \"date\": \"%s\",\n  \"version\": \"%s\",\n  \"commit\": ",
-            hf_isa_name(t->isa), t->threads, t->date, hf_version());
-    trade_json_text(out, t->commit);
-    fputs(",\n  \"settings\": [\n", out);
-    for (int i = 0; i < t->results; i++) {
-        json_setting(out, t, &t->result[i]);
-        fputs(i + 1 < t->results ? ",\n" : "\n", out);
-    }
-    fputs("  ]\n}\n", out);
+    struct tool_json j;
+    bench_json_begin(&j, out, "tradeoff", t->args);
+    tool_json_text(&j, "isa", hf_isa_name(t->isa));
+    tool_json_count(&j, "threads", t->threads);
+    tool_json_text(&j, "date", t->date);
+    tool_json_text(&j, "commit", t->commit);
+    tool_json_open(&j, "settings", '[');
+    for (int i = 0; i < t->results; i++)
+        json_setting(&j, t, &t->result[i]);
+    tool_json_end(&j);
 }
 
 static double megapixels(const struct trade *t)

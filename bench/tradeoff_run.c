@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tradeoff_run.h"
 
+#include "tool/machine.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,10 +19,10 @@ static const float pull_step = 0.25f;  // pixels of radius between the frames of
 static void keep_message(void *cookie, enum hf_log_level level, const char *message)
 {
     if (level == HF_LOG_ERROR)
-        snprintf(((struct bench_error *)cookie)->text, sizeof((struct bench_error *)cookie)->text, "%s", message);
+        snprintf(((struct tool_error *)cookie)->text, sizeof((struct tool_error *)cookie)->text, "%s", message);
 }
 
-static int get_context(struct trade_run *run, struct trade_job *job, struct bench_error *error)
+static int get_context(struct trade_run *run, struct trade_job *job, struct tool_error *error)
 {
     int i = 0;
     for (; i < TRADE_CONTEXTS && run->context[i].context; i++)
@@ -29,12 +31,12 @@ static int get_context(struct trade_run *run, struct trade_job *job, struct benc
             return 0;
         }
     if (i == TRADE_CONTEXTS)
-        return bench_fail(error, "there are more pairs of --threads and --isa than %d", TRADE_CONTEXTS);
+        return tool_fail(error, -1, "there are more pairs of --threads and --isa than %d", TRADE_CONTEXTS);
     const struct hf_config config = {
         .threads = job->args.threads, .isa = job->args.isa, .log = keep_message, .log_cookie = &run->log};
     const int err = hf_open(&run->context[i].context, &config);
     if (err)
-        return bench_fail(error, "%s", *run->log.text ? run->log.text : hf_error_string(err));
+        return tool_fail(error, -1, "%s", *run->log.text ? run->log.text : hf_error_string(err));
     run->context[i].threads = job->args.threads;
     run->context[i].isa = job->args.isa;
     job->context = run->context[i].context;
@@ -51,7 +53,7 @@ static int split(char *text, char *words[], int most)
     return n;
 }
 
-static int parse_job(struct trade_run *run, struct trade_job *job, const char *options, struct bench_error *error)
+static int parse_job(struct trade_run *run, struct trade_job *job, const char *options, struct tool_error *error)
 {
     enum { WORDS = 64 };
     char text[1024], *words[WORDS];
@@ -65,13 +67,13 @@ static int parse_job(struct trade_run *run, struct trade_job *job, const char *o
     return get_context(run, job, error);
 }
 
-int trade_run_parse(struct trade_run *run, struct bench_error *error)
+int trade_run_parse(struct trade_run *run, struct tool_error *error)
 {
     struct trade *t = run->t;
     int kept = 0;
     run->job = calloc((size_t)t->results, sizeof *run->job);
     if (!run->job)
-        return bench_fail(error, "there is not enough memory");
+        return tool_fail(error, -1, "there is not enough memory");
     for (int i = 0; i < t->results; i++) {
         const char *isa = strstr(t->result[i].setting->options, "--isa ");
         int available = 1;
@@ -92,23 +94,23 @@ int trade_run_parse(struct trade_run *run, struct bench_error *error)
     t->threads = hf_context_threads(run->job[0].context);
     t->isa = hf_context_isa(run->job[0].context);
     if (bench_workers_open(&run->workers, t->threads))
-        return bench_fail(error, "%d threads could not be started", t->threads);
+        return tool_fail(error, -1, "%d threads could not be started", t->threads);
     return 0;
 }
 
-static int open_both(struct trade_run *run, struct bench_error *error)
+static int open_both(struct trade_run *run, struct tool_error *error)
 {
     const struct bench_optics optics = {20, 10, 12};
     if (bench_scene_paint(&run->both, "both", BOTH_WIDTH, BOTH_HEIGHT, &optics, error))
         return -1;
     if (bench_image_alloc(&run->both_in, BOTH_WIDTH, BOTH_HEIGHT, HF_FORMAT_R11G11B10F) ||
         bench_image_alloc(&run->both_out, BOTH_WIDTH, BOTH_HEIGHT, HF_FORMAT_R11G11B10F))
-        return bench_fail(error, "there is not enough memory");
+        return tool_fail(error, -1, "there is not enough memory");
     bench_image_pack(&run->both_in, run->both.rgb);
     return 0;
 }
 
-int trade_run_open(struct trade_run *run, struct trade *t, struct bench_error *error)
+int trade_run_open(struct trade_run *run, struct trade *t, struct tool_error *error)
 {
     *run = (struct trade_run){.t = t};
     const int n = trade_scenes_read(run->scene, t->args->images, error);
@@ -124,12 +126,12 @@ int trade_run_open(struct trade_run *run, struct trade *t, struct bench_error *e
         run->pull_samples = samples > run->pull_samples ? samples : run->pull_samples;
         if (bench_image_alloc(&run->in[s], p->width, p->height, HF_FORMAT_RGB32F) ||
             bench_image_alloc(&run->out[s], p->width, p->height, HF_FORMAT_RGB32F))
-            return bench_fail(error, "there is not enough memory");
+            return tool_fail(error, -1, "there is not enough memory");
         bench_image_pack(&run->in[s], p->rgb);
     }
     for (int i = 0; i < PULL; i++)
         if (!(run->pull[i] = malloc(run->pull_samples * sizeof(float))))
-            return bench_fail(error, "there is not enough memory");
+            return tool_fail(error, -1, "there is not enough memory");
     return open_both(run, error);
 }
 
@@ -175,7 +177,7 @@ struct hf_params trade_run_params(const struct trade_run *run, int result, int s
     return p;
 }
 
-static int render(struct trade_run *run, int result, int scene, const struct hf_params *p, struct bench_error *error)
+static int render(struct trade_run *run, int result, int scene, const struct hf_params *p, struct tool_error *error)
 {
     const struct bench_scene *picture = scene < 0 ? &run->both : &run->scene[scene].picture;
     const struct bench_image *in = scene < 0 ? &run->both_in : &run->in[scene];
@@ -184,12 +186,12 @@ static int render(struct trade_run *run, int result, int scene, const struct hf_
     *run->log.text = '\0';
     const int err = hf_render(run->job[result].context, &out->image, &in->image, &depth, p);
     if (err)
-        return bench_fail(error, "%s: %s", run->t->result[result].setting->options,
-                          *run->log.text ? run->log.text : hf_error_string(err));
+        return tool_fail(error, -1, "%s: %s", run->t->result[result].setting->options,
+                         *run->log.text ? run->log.text : hf_error_string(err));
     return 0;
 }
 
-int trade_run_render(struct trade_run *run, int result, int scene, struct bench_error *error)
+int trade_run_render(struct trade_run *run, int result, int scene, struct tool_error *error)
 {
     const struct hf_params p = trade_run_params(run, result, scene);
     return render(run, result, scene, &p, error);
@@ -211,7 +213,7 @@ static void encode_part(void *arg, int i, int threads)
 }
 
 // A focus pull around the scene's focus, and how unsteadily the picture changes in it.
-static int measure_flicker(struct trade_run *run, int result, int scene, double *flicker, struct bench_error *error)
+static int measure_flicker(struct trade_run *run, int result, int scene, double *flicker, struct tool_error *error)
 {
     const struct trade_scene *s = &run->scene[scene];
     const struct bench_scene *p = &s->picture;
@@ -246,7 +248,7 @@ static void compare_part(void *arg, int i, int threads)
             bench_metrics_compare(c->run->scene[s].metrics, trade_run_picture(c->run, s), c->result->at[s].distance);
 }
 
-int trade_run_distances(struct trade_run *run, int result, int with_flicker, struct bench_error *error)
+int trade_run_distances(struct trade_run *run, int result, int with_flicker, struct tool_error *error)
 {
     struct compare c = {run, &run->t->result[result], {0}};
     for (int s = 0; s < run->t->scenes; s++) {
@@ -264,12 +266,12 @@ int trade_run_distances(struct trade_run *run, int result, int with_flicker, str
 }
 
 static int timed(struct trade_run *run, int result, int scene, double *ms, double pass[TRADE_PASSES],
-                 struct bench_error *error)
+                 struct tool_error *error)
 {
-    const double start = bench_now();
+    const double start = tool_now_ms();
     if (trade_run_render(run, result, scene, error))
         return -1;
-    *ms = (bench_now() - start) * 1e3;
+    *ms = tool_now_ms() - start;
     struct hf_report report;
     hf_get_report(run->job[result].context, &report);
     for (int i = 0; i < TRADE_PASSES; i++)
@@ -277,7 +279,7 @@ static int timed(struct trade_run *run, int result, int scene, double *ms, doubl
     return 0;
 }
 
-int trade_run_time(struct trade_run *run, int result, int scene, struct bench_error *error)
+int trade_run_time(struct trade_run *run, int result, int scene, struct tool_error *error)
 {
     struct trade_result *r = &run->t->result[result];
     struct trade_time *time = scene < 0 ? &r->both : &r->at[scene].time;

@@ -30,29 +30,29 @@ struct trade_run {
         struct hf_context *context;
     } context[TRADE_CONTEXTS];
     struct bench_workers *workers;
-    struct bench_error log;  // the last sentence of the library
-    float *pull[5];          // display-encoded frames of a focus pull
+    struct tool_error log;  // the last sentence of the library
+    float *pull[5];         // display-encoded frames of a focus pull
     size_t pull_samples;
 };
 
 // Read the scenes and make room. Close it after an error too.
-int trade_run_open(struct trade_run *run, struct trade *t, struct bench_error *error);
+int trade_run_open(struct trade_run *run, struct trade *t, struct tool_error *error);
 void trade_run_close(struct trade_run *run);
 
 // Understand the options of all of t->result. Settings that this machine has not are taken out.
-int trade_run_parse(struct trade_run *run, struct bench_error *error);
+int trade_run_parse(struct trade_run *run, struct tool_error *error);
 
 // Parameters of a setting on a scene; scene -1: on `both`.
 struct hf_params trade_run_params(const struct trade_run *run, int result, int scene);
 
 // Render one setting on one scene (-1: `both`). Returns 0, or -1 with *error filled.
-int trade_run_render(struct trade_run *run, int result, int scene, struct bench_error *error);
+int trade_run_render(struct trade_run *run, int result, int scene, struct tool_error *error);
 // The distances of one setting on all scenes that are not measured yet.
-int trade_run_distances(struct trade_run *run, int result, int with_flicker, struct bench_error *error);
+int trade_run_distances(struct trade_run *run, int result, int with_flicker, struct tool_error *error);
 // One more sample of the time on a scene (-1: `both`).
-int trade_run_time(struct trade_run *run, int result, int scene, struct bench_error *error);
+int trade_run_time(struct trade_run *run, int result, int scene, struct tool_error *error);
 // Rounding and faithfulness.
-int trade_run_axes(struct trade_run *run, int result, struct bench_error *error);
+int trade_run_axes(struct trade_run *run, int result, struct tool_error *error);
 
 // What was rendered last on a scene.
 static inline const float *trade_run_picture(const struct trade_run *run, int scene)

@@ -38,7 +38,7 @@ static void choose_crop(struct trade_scene *s)
         }
 }
 
-static int find_regions(struct trade_scene *s, struct bench_error *error)
+static int find_regions(struct trade_scene *s, struct tool_error *error)
 {
     const size_t pixels = (size_t)s->picture.width * (size_t)s->picture.height;
     float *radius = malloc(pixels * sizeof *radius);
@@ -53,10 +53,10 @@ static int find_regions(struct trade_scene *s, struct bench_error *error)
         s->metrics = bench_metrics_open(s->truth.rgb, s->regions, s->picture.width, s->picture.height);
     }
     free(radius);
-    return s->metrics ? 0 : bench_fail(error, "there is not enough memory for %s", s->name);
+    return s->metrics ? 0 : tool_fail(error, -1, "there is not enough memory for %s", s->name);
 }
 
-static int read_scene(struct trade_scene *s, const char *folder, struct bench_error *error)
+static int read_scene(struct trade_scene *s, const char *folder, struct tool_error *error)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s/%s.exr", folder, s->name);
@@ -65,13 +65,13 @@ static int read_scene(struct trade_scene *s, const char *folder, struct bench_er
     if (!(s->camera.sensor_width_mm > 0))
         s->camera.sensor_width_mm = 36;
     if (!(s->camera.focus > 0 && s->camera.f_number > 0 && s->camera.focal_length_mm > 0))
-        return bench_fail(error, "%s has no complete camera in its header", path);
+        return tool_fail(error, -1, "%s has no complete camera in its header", path);
     snprintf(path, sizeof path, "%s/%s%s", folder, s->name, ending);
     if (bench_scene_read(&s->truth, path, 0, NULL, error))
         return -1;
     if (s->truth.width != s->picture.width || s->truth.height != s->picture.height)
-        return bench_fail(error, "%s is %dx%d, its scene %dx%d", path, s->truth.width, s->truth.height,
-                          s->picture.width, s->picture.height);
+        return tool_fail(error, -1, "%s is %dx%d, its scene %dx%d", path, s->truth.width, s->truth.height,
+                         s->picture.width, s->picture.height);
     return find_regions(s, error);
 }
 
@@ -81,13 +81,13 @@ static int has_truth(const struct dirent *entry)
     return n > e && n - e < sizeof((struct trade_scene *)0)->name && !strcmp(entry->d_name + n - e, ending);
 }
 
-int trade_scenes_read(struct trade_scene scenes[TRADE_SCENES], const char *folder, struct bench_error *error)
+int trade_scenes_read(struct trade_scene scenes[TRADE_SCENES], const char *folder, struct tool_error *error)
 {
     struct dirent **entries;
     const int found = scandir(folder, &entries, has_truth, alphasort);
     int n = 0, err = 0;
     if (found < 0)
-        return bench_fail(error, "cannot read the folder %s: %s", folder, strerror(errno));
+        return tool_fail(error, -1, "cannot read the folder %s: %s", folder, strerror(errno));
     for (int i = 0; i < found; i++) {
         if (n < TRADE_SCENES && !err) {
             scenes[n] = (struct trade_scene){.name = ""};
@@ -99,9 +99,9 @@ int trade_scenes_read(struct trade_scene scenes[TRADE_SCENES], const char *folde
     }
     free(entries);
     if (!err && !n)
-        err = bench_fail(error, "there is no NAME%s in the folder %s", ending, folder);
+        err = tool_fail(error, -1, "there is no NAME%s in the folder %s", ending, folder);
     if (!err && found > TRADE_SCENES)
-        err = bench_fail(error, "%s has %d scenes; at most %d are measured at a time", folder, found, TRADE_SCENES);
+        err = tool_fail(error, -1, "%s has %d scenes; at most %d are measured at a time", folder, found, TRADE_SCENES);
     if (!err)
         return n;
     trade_scenes_free(scenes, n);

@@ -21,7 +21,7 @@ struct trade_scene {
 float trade_radius(const struct bench_camera *camera, int width, float z);
 
 // Read all scenes of a folder, by name; at most TRADE_SCENES. Returns how many, or -1 with *error filled.
-int trade_scenes_read(struct trade_scene scenes[TRADE_SCENES], const char *folder, struct bench_error *error);
+int trade_scenes_read(struct trade_scene scenes[TRADE_SCENES], const char *folder, struct tool_error *error);
 void trade_scenes_free(struct trade_scene *scenes, int n);
 
 // Pixels of the crops.

@@ -4,6 +4,7 @@
 #include "metrics.h"
 #include "others.h"
 #include "subject.h"
+#include "write.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,7 +35,7 @@ static void distance(const float *a, const float *b, size_t n, double *psnr, dou
 }
 
 static int measure_engine(struct truth *t, int scene, int engine, struct bench_subject *s, const float *want,
-                          struct bench_error *error)
+                          struct tool_error *error)
 {
     struct bench_row all;
     struct hf_report stats;
@@ -48,7 +49,7 @@ static int measure_engine(struct truth *t, int scene, int engine, struct bench_s
     return 0;
 }
 
-static int measure_scene(struct truth *t, int i, struct bench_error *log, struct bench_error *error)
+static int measure_scene(struct truth *t, int i, struct tool_error *log, struct tool_error *error)
 {
     char path[4096];
     struct bench_args args = *t->args;
@@ -62,8 +63,8 @@ static int measure_scene(struct truth *t, int i, struct bench_error *log, struct
     if (!err)
         err = bench_scene_read(&want, path, 0, NULL, error);
     if (!err && (want.width != scene.width || want.height != scene.height))
-        err =
-            bench_fail(error, "%s is %dx%d, its scene %dx%d", path, want.width, want.height, scene.width, scene.height);
+        err = tool_fail(error, -1, "%s is %dx%d, its scene %dx%d", path, want.width, want.height, scene.width,
+                        scene.height);
     if (!err)
         err = bench_subject_open(&subject, &args, &scene, log, error);
     if (!err) {
@@ -112,24 +113,29 @@ static void table(FILE *out, const void *what)
 static void json(FILE *out, const void *what)
 {
     const struct truth *t = what;
-    fprintf(out, "{\n  \"command\": \"truth\",\n  \"threads\": %d,\n  \"results\": [\n", t->threads);
+    struct tool_json j;
+    bench_json_begin(&j, out, "truth", t->args);
+    tool_json_count(&j, "threads", t->threads);
+    tool_json_open(&j, "results", '[');
     for (int i = 0; i < SCENES; i++)
-        for (int e = 0; e < HF_ENGINE_COUNT; e++)
-            fprintf(
-                out,
-                "    {\"scene\": \"%s\", \"engine\": \"%s\", \"psnr_db\": %.4f, \"linear_rmse\": %.6g, \"median_ms\": "
-                "%.4f}%s\n",
-                scenes[i].scene, hf_engine_name((enum hf_engine)e), t->at[i][e].psnr, t->at[i][e].rmse, t->at[i][e].ms,
-                i + 1 < SCENES || e + 1 < HF_ENGINE_COUNT ? "," : "");
-    fputs("  ]\n}\n", out);
+        for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+            tool_json_row(&j, NULL, '{');
+            tool_json_text(&j, "scene", scenes[i].scene);
+            tool_json_text(&j, "engine", hf_engine_name((enum hf_engine)e));
+            tool_json_number(&j, "psnr_db", t->at[i][e].psnr);
+            tool_json_number(&j, "linear_rmse", t->at[i][e].rmse);
+            tool_json_ms(&j, "median_ms", t->at[i][e].ms);
+            tool_json_close(&j);
+        }
+    tool_json_end(&j);
 }
 
-int bench_truth(struct bench_args *args, struct bench_error *error)
+int bench_truth(struct bench_args *args, struct tool_error *error)
 {
     struct truth t = {.args = args};
-    struct bench_error log = {""};
+    struct tool_error log = {""};
     for (int i = 0; i < SCENES; i++)
         if (measure_scene(&t, i, &log, error))
-            return *log.text ? bench_fail(error, "%s", log.text) : -1;
+            return *log.text ? tool_fail(error, -1, "%s", log.text) : -1;
     return bench_write_report(args, table, json, &t, error);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "workers.h"
 
+#include "tool/machine.h"
+
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
@@ -27,13 +29,6 @@ struct bench_workers {
     atomic_int ready, done;  // workers that wait for go, that have finished
     atomic_int go;
 };
-
-double bench_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // Busy, as a run lasts less than it takes to wake a thread; but with more threads than processors, the one waited for
 // needs this processor.
@@ -77,11 +72,11 @@ double bench_workers_run(struct bench_workers *w, void (*fn)(void *arg, int i, i
     pthread_cond_broadcast(&w->wake);
     pthread_mutex_unlock(&w->mutex);
     wait_for(&w->ready, w->threads - 1);
-    const double start = bench_now();
+    const double start = tool_now_ms();
     atomic_store_explicit(&w->go, 1, memory_order_release);
     fn(arg, 0, w->threads);
     wait_for(&w->done, w->threads - 1);
-    return bench_now() - start;
+    return 1e-3 * (tool_now_ms() - start);
 }
 
 int bench_workers_open(struct bench_workers **out, int threads)

@@ -16,7 +16,4 @@ double bench_workers_run(struct bench_workers *w, void (*fn)(void *arg, int i, i
 int bench_workers_threads(const struct bench_workers *w);
 void bench_workers_close(struct bench_workers **w);
 
-// Seconds of a clock that only goes forward.
-double bench_now(void);
-
 #endif

@@ -11,7 +11,7 @@ struct cli_aperture {
 };
 
 // Read the file, if there is one, and enter it in args->params. Returns 0 or an exit status with *error filled.
-int cli_aperture_load(struct cli_aperture *aperture, struct cli_args *args, struct cli_error *error);
+int cli_aperture_load(struct cli_aperture *aperture, struct cli_args *args, struct tool_error *error);
 void cli_aperture_free(struct cli_aperture *aperture);
 
 #endif

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/args.h"
 
-#include "cli/nearest.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,22 +23,9 @@ static void set_defaults(struct cli_args *args)
         *unset[i] = NAN;
 }
 
-// The option that a word such as --range, --range=5 or -o names.
-static const struct cli_option *find_option(const char *word)
-{
-    for (int i = 0; i < cli_option_count; i++) {
-        const struct cli_option *o = &cli_options[i];
-        const size_t n = strlen(o->name);
-        if (word[1] == '-' ? !strncmp(word + 2, o->name, n) && (word[2 + n] == '\0' || word[2 + n] == '=')
-                           : o->letter && word[1] == o->letter && word[2] == '\0')
-            return o;
-    }
-    return NULL;
-}
-
 // Does an option change the pixels of a frame? Then it is part of what the frame was made with. Names of files and what
 // differs from frame to frame are left to resume.c.
-static int makes_picture(const struct cli_option *o)
+static int makes_picture(const struct tool_option *o)
 {
     static const char *const others[] = {"views", "compression", "deterministic", "budget-ms"};
     static const char *const per_frame[] = {"depth-file", "keys", "keys-blend", "focus-smooth", "print-focus"};
@@ -50,75 +35,31 @@ static int makes_picture(const struct cli_option *o)
     for (size_t i = 0; i < sizeof(per_frame) / sizeof(per_frame[0]); i++)
         if (!strcmp(o->name, per_frame[i]))
             return 0;
-    return o->group == CLI_FOCUS || o->group == CLI_LENS || o->group == CLI_DEPTH || o->group == CLI_LOOK;
+    return o->group == TOOL_FOCUS || o->group == TOOL_LENS || o->group == TOOL_DEPTH || o->group == TOOL_LOOK;
 }
 
-static int note_setting(struct cli_args *args, const struct cli_option *o, const char *value, struct cli_error *error)
+// Keep what was given and changes the picture; and which word after --json may turn out to be INPUT.
+static int on_option(struct tool_parser *p, const struct tool_option *o, const char *value, int apart)
 {
+    struct cli_args *args = p->args;
     char *settings;
+    if (!strcmp(o->name, "json"))
+        args->json_word = apart ? value : NULL;
     if (!makes_picture(o))
         return 0;
     if (asprintf(&settings, "%s%s--%s%s%s", args->settings ? args->settings : "", args->settings ? " " : "", o->name,
                  value ? " " : "", value ? value : "") < 0)
-        return cli_fail(error, -1, "out of memory");
+        return tool_fail(p->error, -1, "out of memory");
     free(args->settings);
     args->settings = settings;
     return 0;
 }
 
-static int parse_value(struct cli_args *args, const struct cli_option *o, const char *value, struct cli_error *error)
+static int on_word(struct tool_parser *p, const char *word)
 {
-    return o->parse(args, o, value, error) || note_setting(args, o, value, error) ? -1 : 0;
-}
-
-// A word that is no option: which may have been meant?
-static int unknown_option(const char *word, struct cli_error *error)
-{
-    const struct cli_option *best = NULL;
-    const int length = word[1] == '-' ? (int)strcspn(word + 2, "=") : 0;
-    int least = 0;
-    for (int i = 0; i < cli_option_count && length > 1; i++) {
-        const int n = (int)strlen(cli_options[i].name);
-        const int distance = cli_word_distance(cli_options[i].name, n, word + 2, length);
-        if (cli_is_near(distance, n) && (!best || distance < least)) {
-            best = &cli_options[i];
-            least = distance;
-        }
-    }
-    return cli_fail(error, -1, "unknown option %s,%s%s%s see hyperfocal --help", word, best ? " did you mean --" : "",
-                    best ? best->name : "", best ? "?" : "");
-}
-
-// Parse the option at argv[i]; returns how many words it took, or -1.
-static int parse_option(struct cli_args *args, int argc, char **argv, int i, struct cli_error *error)
-{
-    const char *word = argv[i];
-    const struct cli_option *o = find_option(word);
-    if (!o)
-        return unknown_option(word, error);
-    const char *value = word[1] == '-' ? strchr(word, '=') : NULL;
-    if (!o->placeholder) {
-        if (value)
-            return cli_fail(error, -1, "--%s takes no value, but '%s' was given", o->name, value + 1);
-        return parse_value(args, o, NULL, error) ? -1 : 1;
-    }
-    if (value)
-        return parse_value(args, o, value + 1, error) ? -1 : 1;
-
-    // A number may be negative, but what looks like a long option is one: its value was forgotten.
-    const int optional = o->placeholder[0] == '[';
-    const char *next = i + 1 < argc ? argv[i + 1] : NULL;
-    if (next && (optional ? next[0] == '-' : !strncmp(next, "--", 2)))
-        next = NULL;
-    if (!next && !optional)
-        return cli_fail(error, -1, "%s needs a value, %s", word, o->placeholder);
-    return parse_value(args, o, next, error) ? -1 : next ? 2 : 1;
-}
-
-static int parse_input(struct cli_args *args, const char *word, struct cli_error *error)
-{
+    struct cli_args *args = p->args;
     if (word[0] == '\0')
-        return cli_fail(error, -1, "INPUT: '' is empty, it must be a file name");
+        return tool_fail(p->error, -1, "INPUT: '' is empty, it must be a file name");
     args->inputs[args->input_count++] = word;
     args->input = args->inputs[0];
     return 0;
@@ -150,50 +91,51 @@ static const char *range_option(const struct cli_args *args)
                                          : NULL;
 }
 
-static int check_depth(const struct cli_args *args, struct cli_error *error)
+static int check_depth(const struct cli_args *args, struct tool_error *error)
 {
     const int ndc = args->depth_type == HF_DEPTH_NDC_D3D || args->depth_type == HF_DEPTH_NDC_GL ||
                     args->depth_type == HF_DEPTH_NDC_REVERSED;
     const char *type = hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type);
     if (ndc && (!given(args->near_plane) || !given(args->far_plane)))
-        return cli_fail(error, -1, "--depth-type %s needs --%s", type, given(args->near_plane) ? "far" : "near");
+        return tool_fail(error, -1, "--depth-type %s needs --%s", type, given(args->near_plane) ? "far" : "near");
     if (args->near_plane >= args->far_plane)
-        return cli_fail(error, -1, "--near %g must be less than --far %g", args->near_plane, args->far_plane);
+        return tool_fail(error, -1, "--near %g must be less than --far %g", args->near_plane, args->far_plane);
     // The gaussian engine measures depth by the planes, whatever its type.
     const int wants_planes = ndc || (args->params.engine == HF_ENGINE_GAUSSIAN && args->depth_type != HF_DEPTH_COC);
     if (!wants_planes && (given(args->near_plane) || given(args->far_plane)))
-        return cli_fail(error, -1, "--%s is of use only with --depth-type ndc-d3d, ndc-gl or ndc-reversed, not %s",
-                        given(args->near_plane) ? "near" : "far", type);
+        return tool_fail(error, -1, "--%s is of use only with --depth-type ndc-d3d, ndc-gl or ndc-reversed, not %s",
+                         given(args->near_plane) ? "near" : "far", type);
     if (args->depth_type == HF_DEPTH_COC && (args->focus_at_given || args->focus_by == CLI_FOCUS_CENTER))
-        return cli_fail(error, -1, "--focus%s cannot be used with --depth-type coc, which has no distances",
-                        args->focus_at_given ? "-at" : " center");
+        return tool_fail(error, -1, "--focus%s cannot be used with --depth-type coc, which has no distances",
+                         args->focus_at_given ? "-at" : " center");
     return 0;
 }
 
-static int check_model(const struct cli_args *args, struct cli_error *error)
+static int check_model(const struct cli_args *args, struct tool_error *error)
 {
     const char *range = range_option(args);
     const char *lens = given(args->fstop) ? "fstop" : given(args->focal_length) ? "focal-length" : NULL;
     if (args->depth_type == HF_DEPTH_COC && (range || lens))
-        return cli_fail(error, -1, "--%s cannot be used with --depth-type coc, which holds the blur already",
-                        range ? range : lens);
+        return tool_fail(error, -1, "--%s cannot be used with --depth-type coc, which holds the blur already",
+                         range ? range : lens);
     if (range && lens)
-        return cli_fail(error, -1,
-                        "--%s and --%s cannot be given together: one chooses the range model, the other "
-                        "the lens",
-                        range, lens);
+        return tool_fail(error, -1,
+                         "--%s and --%s cannot be given together: one chooses the range model, the other "
+                         "the lens",
+                         range, lens);
     if (args->focus_given && args->focus_at_given)
-        return cli_fail(error, -1, "--focus and --focus-at cannot be given together");
+        return tool_fail(error, -1, "--focus and --focus-at cannot be given together");
     if (args->near_begin > args->near_end)
-        return cli_fail(error, -1, "--near-begin %g must not be more than --near-end %g", args->near_begin,
-                        args->near_end);
+        return tool_fail(error, -1, "--near-begin %g must not be more than --near-end %g", args->near_begin,
+                         args->near_end);
     if (args->far_begin > args->far_end)
-        return cli_fail(error, -1, "--far-begin %g must not be more than --far-end %g", args->far_begin, args->far_end);
+        return tool_fail(error, -1, "--far-begin %g must not be more than --far-end %g", args->far_begin,
+                         args->far_end);
     return check_depth(args, error);
 }
 
 // What an engine cannot do is said, not ignored.
-static int check_engine(const struct cli_args *args, struct cli_error *error)
+static int check_engine(const struct cli_args *args, struct tool_error *error)
 {
     const struct hf_params *p = &args->params;
     const int gather = p->engine == HF_ENGINE_GATHER, scatter = p->engine == HF_ENGINE_SCATTER;
@@ -210,107 +152,92 @@ static int check_engine(const struct cli_args *args, struct cli_error *error)
         {p->hexagon.uniform, hexagon, "uniform", "hexagon"},
         {p->gaussian.iterations != d->gaussian.iterations, gaussian, "iterations", "gaussian"},
         {p->gaussian.sigma != d->gaussian.sigma, gaussian, "sigma", "gaussian"},
-        {args->resolution == HF_RESOLUTION_HALF, !gather && !layers, "resolution half",
+        {p->hexagon.resolution == HF_RESOLUTION_HALF, !gather && !layers, "resolution half",
          "hexagon, scatter and gaussian"},
-        {args->resolution == HF_RESOLUTION_QUARTER, gaussian, "resolution quarter", "gaussian"},
+        {p->hexagon.resolution == HF_RESOLUTION_QUARTER, gaussian, "resolution quarter", "gaussian"},
         {p->gather.karis, gather, "karis", "gather"},
         {p->gather.per_pixel_kernel, gather, "per-pixel-kernel", "gather"},
         {p->gather.bicubic, gather, "bicubic", "gather"},
         {p->gather.fill != d->gather.fill, gather, "fill", "gather"},
         {p->gather.storage != d->gather.storage, gather, "storage", "gather"},
-        {args->faithful, gather || gaussian, "faithful", "gather and gaussian"},
+        {p->gather.faithful, gather || gaussian, "faithful", "gather and gaussian"},
     };
     for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++)
         if (rules[i].given && !rules[i].allowed)
-            return cli_fail(error, -1, "--%s is of use only with --engine %s, not %s", rules[i].option,
-                            rules[i].engines, hf_engine_name(p->engine));
+            return tool_fail(error, -1, "--%s is of use only with --engine %s, not %s", rules[i].option,
+                             rules[i].engines, hf_engine_name(p->engine));
     const int plain = !args->aperture_file && p->aperture.ring == 0 && p->aperture.roundness == 0;
     if (args->aperture && gather && !plain)
-        return cli_fail(error, -1,
-                        "--aperture: '%s' is not an aperture of the gather engine, which takes disc or "
-                        "ngon:N[:0[:DEGREES]]",
-                        args->aperture);
+        return tool_fail(error, -1,
+                         "--aperture: '%s' is not an aperture of the gather engine, which takes disc or "
+                         "ngon:N[:0[:DEGREES]]",
+                         args->aperture);
     if (args->aperture && hexagon && (!plain || (p->aperture.blades != 6)))
-        return cli_fail(error, -1,
-                        "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
-                        "ngon:6[:0[:DEGREES]]",
-                        args->aperture);
+        return tool_fail(error, -1,
+                         "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
+                         "ngon:6[:0[:DEGREES]]",
+                         args->aperture);
     if (args->aperture && layers && (!plain || p->aperture.blades))
-        return cli_fail(error, -1, "--aperture: '%s' is not an aperture of the layers engine, which takes disc",
-                        args->aperture);
+        return tool_fail(error, -1, "--aperture: '%s' is not an aperture of the layers engine, which takes disc",
+                         args->aperture);
     if (args->aperture && gaussian)
-        return cli_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon and scatter",
-                        args->aperture);
+        return tool_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon and scatter",
+                         args->aperture);
     return 0;
 }
 
-static int check_files(const struct cli_args *args, struct cli_error *error)
+static int check_files(const struct cli_args *args, struct tool_error *error)
 {
     if (!args->input)
-        return cli_fail(error, -1, "there is no INPUT, see hyperfocal --help");
+        return tool_fail(error, -1, "there is no INPUT, see hyperfocal --help");
     if (!args->output && !args->dry_run && !args->print_focus)
-        return cli_fail(error, -1, "there is no OUTPUT for %s, name it with -o", args->input);
+        return tool_fail(error, -1, "there is no OUTPUT for %s, name it with -o", args->input);
     if (args->output && args->compression && !cli_is_exr(args->output))
-        return cli_fail(error, -1, "--compression %s is for EXR, but OUTPUT is %s", args->compression, args->output);
+        return tool_fail(error, -1, "--compression %s is for EXR, but OUTPUT is %s", args->compression, args->output);
     if (!args->json_file)
         return 0;
     // Forgetting that a word after --json is its FILE must not cost a picture.
     if (cli_is_exr(args->json_file) || !strcmp(args->json_file, args->input) ||
         (args->output && !strcmp(args->json_file, args->output)))
-        return cli_fail(error, -1, "--json would write over the picture %s", args->json_file);
+        return tool_fail(error, -1, "--json would write over the picture %s", args->json_file);
     if (args->dry_run)
-        return cli_fail(error, -1, "--json %s cannot be written in a --dry-run", args->json_file);
+        return tool_fail(error, -1, "--json %s cannot be written in a --dry-run", args->json_file);
     return 0;
 }
 
 // What follows from several options, whatever their order.
-static int combine(struct cli_args *args, struct cli_error *error)
+static int combine(struct cli_args *args, struct tool_error *error)
 {
     struct hf_params *p = &args->params;
     if (args->engine >= 0 && args->quality >= 0)
-        return cli_fail(error, -1, "--engine and --quality cannot be given together: each chooses an engine");
+        return tool_fail(error, -1, "--engine and --quality cannot be given together: each chooses an engine");
     p->engine = args->engine >= 0                    ? (enum hf_engine)args->engine
                 : args->quality == CLI_QUALITY_DRAFT ? HF_ENGINE_GATHER
                                                      : HF_ENGINE_SCATTER;
-    p->hexagon.resolution = p->scatter.resolution = p->gaussian.resolution = args->resolution;
-    p->gather.faithful = p->gaussian.faithful = args->faithful;
-    for (int i = 0; i < args->metric_count && given(args->world_unit); i++)
-        *(float *)((char *)args + args->metric[i]) /= args->world_unit;
     if (args->verbose && args->quiet)
-        return cli_fail(error, -1, "--verbose and --quiet cannot be given together");
+        return tool_fail(error, -1, "--verbose and --quiet cannot be given together");
     return 0;
 }
 
-int cli_parse_args(struct cli_args *args, int argc, char **argv, struct cli_error *error)
+int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_error *error)
 {
-    const char *json_word = NULL;  // the word after a --json, which may turn out to be INPUT
-    int words_only = 0;            // after "--"
+    struct tool_parser p = {.program = &cli_program, .args = args, .error = error, .word = on_word, .seen = on_option};
     set_defaults(args);
     args->inputs = calloc((size_t)argc + 1, sizeof(*args->inputs));
     if (!args->inputs)
-        return cli_fail(error, -1, "out of memory");
-    for (int i = 1; i < argc && !args->help && !args->version;) {
-        const char *word = argv[i];
-        int taken = 1;
-        if (!words_only && !strcmp(word, "--"))
-            words_only = 1;
-        else if (words_only || word[0] != '-' || word[1] == '\0')
-            taken = parse_input(args, word, error) ? -1 : 1;
-        else
-            taken = parse_option(args, argc, argv, i, error);
-        if (taken < 0)
-            return -1;
-        if (taken == 2 && args->json_file == argv[i + 1])
-            json_word = argv[i + 1];
-        i += taken;
-    }
-    if (args->help || args->version)
+        return tool_fail(error, -1, "out of memory");
+    if (tool_parse_line(&p, argc - 1, argv + 1))
+        return -1;
+    args->help = p.help;
+    if (p.help || p.stop)
         return 0;
+    if (given(args->world_unit))
+        tool_scale_metric(&p, args->world_unit);
     if (combine(args, error))
         return -1;
-    if (!args->input && json_word && args->json_file == json_word) {
+    if (!args->input && args->json_word) {
         args->json_file = NULL;
-        if (parse_input(args, json_word, error))
+        if (on_word(&p, args->json_word))
             return -1;
     }
     if (args->views && !strcmp(args->views, "all"))

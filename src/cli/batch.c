@@ -20,6 +20,7 @@
 #include "cli/plan.h"
 #include "cli/progress.h"
 #include "cli/resume.h"
+#include "tool/machine.h"
 
 enum { MAX_STEPS = 16 };
 static const double GIB = 1024. * 1024 * 1024;
@@ -74,13 +75,13 @@ static void warn(const struct cli_frame *frame)
         depth += frame->views[i].report.depth_repaired;
     }
     if (colour || depth)
-        cli_print_line("%s: %llu colour and %llu depth samples were not finite, neighbours took their place",
-                       frame->args->input, colour, depth);
+        tool_print_line("%s: %llu colour and %llu depth samples were not finite, neighbours took their place",
+                        frame->args->input, colour, depth);
     if (frame->written.clamped)
-        cli_print_line("%s: %llu samples did not fit their channels and were clamped", frame->args->output,
-                       (unsigned long long)frame->written.clamped);
+        tool_print_line("%s: %llu samples did not fit their channels and were clamped", frame->args->output,
+                        (unsigned long long)frame->written.clamped);
     if (frame->written.note[0])
-        cli_print_line("%s", frame->written.note);
+        tool_print_line("%s", frame->written.note);
 }
 
 static double pixels(const struct cli_frame *frame)
@@ -94,7 +95,7 @@ static double pixels(const struct cli_frame *frame)
 // How many frames fit was counted by the first: one that is larger waits until the others leave it room, or are none.
 static void wait_for_room(struct batch *b, const struct cli_frame *frame, struct cli_record *record)
 {
-    const double start = cli_now_ms();
+    const double start = tool_now_ms();
     const struct timespec pause = {.tv_nsec = 2000000};
     if (b->measuring || !(b->frame_pixels > 0))
         return;
@@ -105,14 +106,14 @@ static void wait_for_room(struct batch *b, const struct cli_frame *frame, struct
             taken = atomic_load(&b->in_work);
         } else if (atomic_compare_exchange_weak(&b->in_work, &taken, taken + bytes)) {
             record->memory = bytes;
-            record->waited_ms = cli_now_ms() - start;
+            record->waited_ms = tool_now_ms() - start;
             return;
         }
     }
 }
 
 static int make_frame(struct batch *b, struct cli_frame *frame, struct cli_session *session,
-                      const struct cli_args *args, struct cli_record *record, struct cli_error *error)
+                      const struct cli_args *args, struct cli_record *record, struct tool_error *error)
 {
     const struct cli_stamp *stamp = record->stamp;
     int status = cli_frame_open(frame, args, &session->run, error);
@@ -171,7 +172,7 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
         r->why = why;
         shown = "failed";
         atomic_fetch_add(&b->progress.failed, 1);
-        cli_print_line("%s", why);
+        tool_print_line("%s", why);
         if (b->args->stop_on_error)
             atomic_store(&b->stop, 1);
         break;
@@ -186,15 +187,15 @@ static void run_job(void *arg, int i, int worker)
     struct cli_session *session = &b->sessions[worker];
     struct cli_args args;
     struct cli_stamp stamp;
-    struct cli_error error = {""};
+    struct tool_error error = {""};
     i += b->next;
     if (atomic_load(&b->stop) || stop_signal)
         return;
     cli_plan_args(&b->plan, i, &args);
     struct cli_frame frame = {.args = &args};
     struct cli_record record = {.job = &b->shot->jobs.list[i], .frame = &frame};
-    const double start = cli_now_ms();
-    int status = cli_stamp_make(&stamp, &args) ? cli_fail(&error, CLI_ALL_FAILED, "%s: out of memory", args.input) : 0;
+    const double start = tool_now_ms();
+    int status = cli_stamp_make(&stamp, &args) ? tool_fail(&error, CLI_ALL_FAILED, "%s: out of memory", args.input) : 0;
     record.stamp = &stamp;
     if (!status && args.resume && cli_stamp_fits(&stamp, args.output)) {
         record.status = CLI_FRAME_SKIPPED;
@@ -208,7 +209,7 @@ static void run_job(void *arg, int i, int worker)
         record.status = CLI_FRAME_FAILED;
         atomic_fetch_add(&b->bad_arguments, status == CLI_BAD_ARGUMENTS);
     }
-    record.ms = cli_now_ms() - start;
+    record.ms = tool_now_ms() - start;
     finish(b, &frame, session, &record, error.text);
     cli_frame_close(&frame);
     atomic_fetch_sub(&b->in_work, record.memory);
@@ -224,12 +225,12 @@ static void close_sessions(struct batch *b)
     b->workers = 0;
 }
 
-static int open_sessions(struct batch *b, int workers, int threads, struct cli_error *error)
+static int open_sessions(struct batch *b, int workers, int threads, struct tool_error *error)
 {
     close_sessions(b);
     b->sessions = calloc((size_t)workers, sizeof(*b->sessions));
     if (!b->sessions)
-        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", b->args->input);
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", b->args->input);
     for (; b->workers < workers; b->workers++) {
         const int status = cli_session_open(&b->sessions[b->workers], b->args, threads, error);
         if (status)
@@ -260,7 +261,7 @@ static double waiting(const struct cli_progress *p)
     return computing > 0 ? (double)(p->us[CLI_READ] + p->us[CLI_WRITE]) / computing : 0;
 }
 
-static int run_rest(struct batch *b, struct cli_error *error)
+static int run_rest(struct batch *b, struct tool_error *error)
 {
     const int left = b->shot->jobs.count - b->next;
     if (left <= 0)
@@ -285,7 +286,7 @@ static void print_summary(struct batch *b)
 {
     const struct cli_progress *p = &b->progress;
     const int done = p->done, skipped = p->skipped, failed = p->failed;
-    const double seconds = (cli_now_ms() - p->start) / 1000;
+    const double seconds = (tool_now_ms() - p->start) / 1000;
     double all = 0;
     char shares[128] = "";
     for (int s = 0; s < CLI_STAGES; s++)
@@ -293,18 +294,18 @@ static void print_summary(struct batch *b)
     for (int s = 0; s < CLI_STAGES && all > 0; s++)
         snprintf(shares + strlen(shares), sizeof(shares) - strlen(shares), "%s%s %.0f %%", s ? ", " : "",
                  cli_stage_names[s], 100 * (double)p->us[s] / all);
-    cli_print_line("%d done, %d there already, %d failed of %d frames in %.2f s (%.2f frames/s)", done, skipped, failed,
-                   p->total, seconds, seconds > 0 ? done / seconds : 0);
+    tool_print_line("%d done, %d there already, %d failed of %d frames in %.2f s (%.2f frames/s)", done, skipped,
+                    failed, p->total, seconds, seconds > 0 ? done / seconds : 0);
     if (done)
-        cli_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->workers, b->threads,
-                       b->threads > 1 ? "s" : "", peak_memory() / GIB * 1024, shares);
+        tool_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->workers, b->threads,
+                        b->threads > 1 ? "s" : "", peak_memory() / GIB * 1024, shares);
     for (int s = 0; s < MAX_STEPS && b->args->params.run.budget_ms > 0; s++)
         if (b->chosen[s])
-            cli_print_line("--budget-ms %g: %d frames %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
-                           s ? "at step " : "as asked for", s);
+            tool_print_line("--budget-ms %g: %d frames %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
+                            s ? "at step " : "as asked for", s);
     if (done + skipped + failed < p->total)
-        cli_print_line("stopped%s; the same command with --resume makes the other %d frames",
-                       stop_signal ? " by a signal" : "", p->total - done - skipped);
+        tool_print_line("stopped%s; the same command with --resume makes the other %d frames",
+                        stop_signal ? " by a signal" : "", p->total - done - skipped);
 }
 
 static int exit_code(const struct batch *b)
@@ -323,12 +324,12 @@ int cli_batch_wanted(const struct cli_args *args, const struct cli_shot *shot)
     return shot->sequence || args->resume || args->log_file || args->keys || args->chunk;
 }
 
-int cli_batch(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot, struct cli_error *error)
+int cli_batch(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot, struct tool_error *error)
 {
     struct batch b = {.args = args, .shot = shot};
     error->text[0] = '\0';
     if (shot->missing)
-        cli_print_line("%d frames are missing: %s", shot->missing, shot->gaps);
+        tool_print_line("%d frames are missing: %s", shot->missing, shot->gaps);
     int status = cli_plan_open(&b.plan, args, shot, error);
     if (!status)
         status = cli_log_open(&b.log, args->log_file, argc, argv, shot->jobs.count, error);
@@ -337,7 +338,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
     if (!status) {
         const int strays = args->resume ? cli_remove_strays(shot) : 0;
         if (strays)
-            cli_print_line("%d files that killed processes left were removed", strays);
+            tool_print_line("%d files that killed processes left were removed", strays);
         watch_signals();
         cli_progress_begin(&b.progress, shot->jobs.count);
         run_first(&b);

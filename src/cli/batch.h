@@ -11,6 +11,7 @@ int cli_batch_wanted(const struct cli_args *args, const struct cli_shot *shot);
 
 // Make all frames of the shot. Says what happens on stderr. Returns an exit code; with CLI_BAD_ARGUMENTS or when no
 // frame was begun, *error is filled, else its text is empty.
-int cli_batch(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot, struct cli_error *error);
+int cli_batch(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot,
+              struct tool_error *error);
 
 #endif

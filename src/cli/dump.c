@@ -21,14 +21,14 @@ static void write_buffer(void *cookie, const struct hf_buffer *buffer)
         path = NULL;
     // The directory is made only now that there is something to put into it.
     if (!path)
-        dump->failed = cli_fail(&dump->error, 1, "--dump-passes %s: out of memory", dump->dir);
+        dump->failed = tool_fail(&dump->error, 1, "--dump-passes %s: out of memory", dump->dir);
     else if (cli_check_overwrite(dump->args, "--dump-passes", path, &dump->error))
         dump->failed = 1;
     else if (mkdir(dump->dir, 0777) && errno != EEXIST)
-        dump->failed = cli_fail(&dump->error, 1, "--dump-passes %s: %s", dump->dir, strerror(errno));
+        dump->failed = tool_fail(&dump->error, 1, "--dump-passes %s: %s", dump->dir, strerror(errno));
     else if (hf_io_write_planes(path, buffer->width, buffer->height, buffer->channels, names[buffer->channels],
                                 buffer->data, buffer->stride / (ptrdiff_t)sizeof(float), &io))  // there in floats
-        dump->failed = cli_fail(&dump->error, 1, "%s", io.message);
+        dump->failed = tool_fail(&dump->error, 1, "%s", io.message);
     free(path);
 }
 
@@ -48,7 +48,7 @@ void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const str
 }
 
 int cli_dump_end(struct cli_dump *dump, struct hf_context *context, const struct hf_image *image,
-                 struct cli_error *error)
+                 struct tool_error *error)
 {
     const struct hf_buffer composite = {
         .name = "composite",
@@ -60,5 +60,5 @@ int cli_dump_end(struct cli_dump *dump, struct hf_context *context, const struct
     };
     hf_set_dump(context, NULL, NULL);
     write_buffer(dump, &composite);
-    return dump->failed ? cli_fail(error, CLI_ALL_FAILED, "%s", dump->error.text) : 0;
+    return dump->failed ? tool_fail(error, CLI_ALL_FAILED, "%s", dump->error.text) : 0;
 }

@@ -10,7 +10,7 @@ struct cli_dump {
     const char *dir;
     char prefix[80];  // "left." when the frame has several views
     int failed;
-    struct cli_error error;  // the first one
+    struct tool_error error;  // the first one
 };
 
 // From now on the context's buffers go to files.
@@ -18,6 +18,6 @@ void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const str
                     const struct cli_view *view);
 // No longer; and the rendered image becomes composite.exr. Returns 0, or an exit code with *error filled.
 int cli_dump_end(struct cli_dump *dump, struct hf_context *context, const struct hf_image *image,
-                 struct cli_error *error);
+                 struct tool_error *error);
 
 #endif

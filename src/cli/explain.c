@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct cli_error *error)
+int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct tool_error *error)
 {
     const size_t tiles = hf_get_tiles(context, NULL, 0);
     v->tiles = malloc(tiles + 1);
     if (!v->tiles)
-        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
     hf_get_tiles(context, v->tiles, tiles);
     return 0;
 }
@@ -77,8 +77,8 @@ static void print_report(FILE *out, const struct hf_report *r, int ran)
 void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
 {
     for (int i = 0; i < frame->view_count; i++) {
-        char name[CLI_SHOWN];
-        fprintf(out, "%s\n", cli_shown(frame->views[i].label, name));
+        char name[TOOL_SHOWN];
+        fprintf(out, "%s\n", tool_shown(frame->views[i].label, name));
         print_report(out, &frame->views[i].report, ran);
     }
 }
@@ -123,26 +123,26 @@ static char *image_path(const struct cli_frame *frame, const struct cli_view *v)
     return path;
 }
 
-int cli_explain_check(const struct cli_frame *frame, struct cli_error *error)
+int cli_explain_check(const struct cli_frame *frame, struct tool_error *error)
 {
     int status = 0;
     for (int i = 0; i < frame->view_count && !status && frame->args->explain_image; i++) {
         char *path = image_path(frame, &frame->views[i]);
         status = path ? cli_check_overwrite(frame->args, "--explain-image", path, error)
-                      : cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->views[i].label);
+                      : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->views[i].label);
         free(path);
     }
     return status;
 }
 
-static int write_image(const struct cli_frame *frame, const struct cli_view *v, struct cli_error *error)
+static int write_image(const struct cli_frame *frame, const struct cli_view *v, struct tool_error *error)
 {
     const size_t pixels = (size_t)v->view->width * (size_t)v->view->height;
     float *memory = malloc(3 * pixels * sizeof(float));
     char *path = image_path(frame, v);
     int status = 0;
     if (!memory || !path) {
-        status = cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+        status = tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
     } else {
         float *const planes[3] = {memory, memory + pixels, memory + 2 * pixels};
         struct hf_io_error io;
@@ -150,14 +150,14 @@ static int write_image(const struct cli_frame *frame, const struct cli_view *v, 
         const struct hf_io_result result = {.view = v->index, .planes = {planes[0], planes[1], planes[2]}};
         const struct hf_io_job job = {.path = path, .results = &result, .result_count = 1};
         if (hf_io_write(frame->file, &job, NULL, &io))
-            status = cli_fail(error, CLI_ALL_FAILED, "--explain-image: %s", io.message);
+            status = tool_fail(error, CLI_ALL_FAILED, "--explain-image: %s", io.message);
     }
     free(memory);
     free(path);
     return status;
 }
 
-int cli_explain_image(const struct cli_frame *frame, struct cli_error *error)
+int cli_explain_image(const struct cli_frame *frame, struct tool_error *error)
 {
     for (int i = 0; i < frame->view_count; i++) {
         const int status = write_image(frame, &frame->views[i], error);

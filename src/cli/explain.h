@@ -8,7 +8,7 @@
 #include "cli/frame.h"
 
 // Keep a context's report with its view, tiles included, which the context overwrites. 0, or an exit code.
-int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct cli_error *error);
+int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct tool_error *error);
 
 // Of the engine in use; full where it has none to choose.
 enum hf_resolution cli_explain_resolution(const struct hf_params *params);
@@ -18,9 +18,9 @@ void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran);
 
 // The tiles of all views painted over their pictures, in --explain-image's file; with several views each gets a file
 // of its own, its name before the extension. 0, or an exit code.
-int cli_explain_image(const struct cli_frame *frame, struct cli_error *error);
+int cli_explain_image(const struct cli_frame *frame, struct tool_error *error);
 
 // Before any work: does --explain-image write over another file that the arguments name? 0, or an exit code.
-int cli_explain_check(const struct cli_frame *frame, struct cli_error *error);
+int cli_explain_check(const struct cli_frame *frame, struct tool_error *error);
 
 #endif

@@ -3,27 +3,20 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "cli/dump.h"
 #include "cli/explain.h"
 #include "cli/views.h"
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
+#include "tool/machine.h"
 
 // The library says why before it returns an error; that is the sentence to show.
 static void on_log(void *cookie, enum hf_log_level level, const char *message)
 {
     struct cli_session *session = cookie;
     if (level == HF_LOG_ERROR)
-        cli_fail(&session->log, 0, "%s", message);
+        tool_fail(&session->log, 0, "%s", message);
     else if (level == HF_LOG_WARNING)
-        cli_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", message);
+        tool_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", message);
 }
 
 const char *const cli_stage_names[CLI_STAGES] = {"read", "decode", "defocus", "encode", "write"};
@@ -34,12 +27,12 @@ void cli_session_close(struct cli_session *session)
     hf_io_threads_close(&session->run);
 }
 
-int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct cli_error *error)
+int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct tool_error *error)
 {
     *session = (struct cli_session){0};
     if (!hf_isa_available(args->isa))
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
-                        hf_isa_name(args->isa));
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
+                         hf_isa_name(args->isa));
     const struct hf_config config = {.threads = threads, .isa = args->isa, .log = on_log, .log_cookie = session};
     const int status = hf_open(&session->context, &config);
     // Without threads of their own files are read and written on this one.
@@ -51,58 +44,58 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, i
     // AUTO is only unavailable when the environment variable says so.
     const char *variable = getenv("HYPERFOCAL_ISA");
     if (status == HF_ERR_ISA && args->isa == HF_ISA_AUTO && variable)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "HYPERFOCAL_ISA=%s: %s", variable, why);
-    return cli_fail(error, status == HF_ERR_MEMORY || status == HF_ERR_THREAD ? CLI_ALL_FAILED : CLI_BAD_ARGUMENTS,
-                    "--threads %d, --isa %s: %s", args->threads, hf_isa_name(args->isa), why);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "HYPERFOCAL_ISA=%s: %s", variable, why);
+    return tool_fail(error, status == HF_ERR_MEMORY || status == HF_ERR_THREAD ? CLI_ALL_FAILED : CLI_BAD_ARGUMENTS,
+                     "--threads %d, --isa %s: %s", args->threads, hf_isa_name(args->isa), why);
 }
 
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
-                   struct cli_error *error)
+                   struct tool_error *error)
 {
     struct hf_io_error io;
     *frame = (struct cli_frame){.args = args, .run = run};
-    const double start = now_ms();
+    const double start = tool_now_ms();
     // With a depth file the channel's name is meant for that one.
     if (hf_io_open(&frame->file, args->input, args->depth_file ? NULL : args->depth_channel, &io))
-        return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
-    frame->ms[CLI_READ] += now_ms() - start;
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    frame->ms[CLI_READ] += tool_now_ms() - start;
     return cli_select_views(frame, error);
 }
 
-static int new_plane(const struct cli_view *v, float **plane, struct cli_error *error)
+static int new_plane(const struct cli_view *v, float **plane, struct tool_error *error)
 {
     *plane = malloc((size_t)v->view->width * (size_t)v->view->height * sizeof(float));
     return *plane ? 0
-                  : cli_fail(error, CLI_ALL_FAILED, "%s: out of memory for %d x %d pixels", v->label, v->view->width,
-                             v->view->height);
+                  : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory for %d x %d pixels", v->label, v->view->width,
+                              v->view->height);
 }
 
-static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct cli_error *error)
+static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
     struct hf_io_error io;
-    const double start = now_ms();
+    const double start = tool_now_ms();
     if (hf_io_fetch(frame->file, wants, frame->view_count, &io))
-        return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
-    const double fetched = now_ms();
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    const double fetched = tool_now_ms();
     if (hf_io_decode(frame->file, wants, frame->view_count, frame->run, &io))
-        return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     for (int i = 0; i < frame->view_count && args->depth_file; i++)
         if (hf_io_read_depth_file(args->depth_file, args->depth_channel, frame->views[i].view, frame->views[i].depth,
                                   &io))
-            return cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
+            return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     frame->ms[CLI_READ] += fetched - start;
-    frame->ms[CLI_DECODE] += now_ms() - fetched;
+    frame->ms[CLI_DECODE] += tool_now_ms() - fetched;
     return 0;
 }
 
 // The pixels of all views, if they are not there yet.
-static int load(struct cli_frame *frame, struct cli_error *error)
+static int load(struct cli_frame *frame, struct tool_error *error)
 {
     if (frame->loaded)
         return 0;
     struct hf_io_want *wants = calloc((size_t)frame->view_count, sizeof(*wants));
-    int status = wants ? 0 : cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->input);
+    int status = wants ? 0 : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->input);
     for (int i = 0; i < frame->view_count && !status; i++) {
         struct cli_view *v = &frame->views[i];
         wants[i].view = v->index;
@@ -133,7 +126,7 @@ static int read_focus_rows(const struct cli_frame *frame, const struct cli_view 
     return from < to ? hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, io) : 0;
 }
 
-int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *error)
+int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error)
 {
     struct cli_view *v = &frame->views[0];
     struct hf_io_error io;
@@ -141,7 +134,7 @@ int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *err
     if (cli_focus_needs_depth(frame->args)) {
         status = new_plane(v, &v->depth, error);
         if (!status && read_focus_rows(frame, v, &io))
-            status = cli_fail(error, CLI_ALL_FAILED, "%s", io.message);
+            status = tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     }
     if (!status)
         status = cli_setup_view(&v->setup, frame->args, v->view, v->depth, v->label, error);
@@ -162,7 +155,7 @@ static void share_focus(struct cli_frame *frame, struct cli_args *args)
     args->focus_from = first->focus_from;
 }
 
-int cli_frame_setup(struct cli_frame *frame, struct cli_error *error)
+int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
 {
     struct cli_args args = *frame->args;
     int status = cli_focus_needs_depth(&args) ? load(frame, error) : 0;
@@ -177,7 +170,7 @@ int cli_frame_setup(struct cli_frame *frame, struct cli_error *error)
 
 // All that is needed to render a view; *image is its colour.
 static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
-                     struct cli_error *error)
+                     struct tool_error *error)
 {
     const int status = load(frame, error);
     if (status)
@@ -195,12 +188,12 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
 
 // After the library has seen the view: what went wrong, or what to keep.
 static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, int status,
-                       struct cli_error *error)
+                       struct tool_error *error)
 {
     if (status != HF_OK) {
         hf_set_dump(session->context, NULL, NULL);
-        return cli_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
-                        session->log.text[0] ? session->log.text : hf_error_string(status));
+        return tool_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
+                         session->log.text[0] ? session->log.text : hf_error_string(status));
     }
     hf_get_report(session->context, &v->report);
     free(v->depth);
@@ -210,7 +203,7 @@ static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
 }
 
 static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
-                       struct cli_error *error)
+                       struct tool_error *error)
 {
     struct hf_image image;
     struct cli_dump dump;
@@ -220,14 +213,14 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     if (frame->args->dump_dir)
         cli_dump_begin(&dump, session->context, frame, v);
     v->setup.params.run.colour_stats = frame->args->explain;
-    const double start = now_ms();
+    const double start = tool_now_ms();
     status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
-    frame->ms[CLI_DEFOCUS] += now_ms() - start;
+    frame->ms[CLI_DEFOCUS] += tool_now_ms() - start;
     status = finish_view(frame, v, session, status, error);
     return !status && frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : status;
 }
 
-static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct cli_error *error)
+static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct tool_error *error)
 {
     struct hf_image image;
     int status = load_view(frame, v, session, &image, error);
@@ -239,9 +232,9 @@ static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
 }
 
 typedef int view_step(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
-                      struct cli_error *error);
+                      struct tool_error *error);
 
-static int each_view(struct cli_frame *frame, struct cli_session *session, view_step *step, struct cli_error *error)
+static int each_view(struct cli_frame *frame, struct cli_session *session, view_step *step, struct tool_error *error)
 {
     for (int i = 0; i < frame->view_count; i++) {
         const int status = step(frame, &frame->views[i], session, error);
@@ -251,28 +244,28 @@ static int each_view(struct cli_frame *frame, struct cli_session *session, view_
     return 0;
 }
 
-int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct cli_error *error)
+int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct tool_error *error)
 {
     return each_view(frame, session, plan_view, error);
 }
 
-int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct cli_error *error)
+int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct tool_error *error)
 {
     return each_view(frame, session, render_view, error);
 }
 
-int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct cli_error *error)
+int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct tool_error *error)
 {
     struct hf_io_error io;
     struct hf_io_result *results = calloc((size_t)frame->view_count, sizeof(*results));
     if (!results)
-        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->output);
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->output);
     for (int i = 0; i < frame->view_count; i++) {
         results[i].view = frame->views[i].index;
         for (int c = 0; c < 4; c++)
             results[i].planes[c] = frame->views[i].planes[c];
     }
-    const double start = now_ms();
+    const double start = tool_now_ms();
     const struct hf_io_job job = {.path = frame->args->output,
                                   .results = results,
                                   .result_count = frame->view_count,
@@ -281,18 +274,18 @@ int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, in
                                   .text_count = text_count,
                                   .run = frame->run};
     const int status = hf_io_encode(&frame->output, frame->file, &job, &frame->written, &io);
-    frame->ms[CLI_ENCODE] += now_ms() - start;
+    frame->ms[CLI_ENCODE] += tool_now_ms() - start;
     free(results);
-    return status ? cli_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
+    return status ? tool_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
 }
 
-int cli_frame_save(struct cli_frame *frame, struct cli_error *error)
+int cli_frame_save(struct cli_frame *frame, struct tool_error *error)
 {
     struct hf_io_error io;
-    const double start = now_ms();
+    const double start = tool_now_ms();
     const int status = hf_io_save(frame->output, &frame->written, &io);
-    frame->ms[CLI_WRITE] += now_ms() - start;
-    return status ? cli_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
+    frame->ms[CLI_WRITE] += tool_now_ms() - start;
+    return status ? tool_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
 }
 
 void cli_frame_close(struct cli_frame *frame)

@@ -9,7 +9,7 @@
 struct cli_session {
     struct hf_context *context;
     struct hf_io_run run;
-    struct cli_error log;
+    struct tool_error log;
     const char *label;  // what is being rendered, for warnings
 };
 
@@ -41,21 +41,21 @@ struct cli_frame {
 };
 
 // Start the library, on some threads (0: one per processor). Returns 0, or an exit code with *error filled.
-int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct cli_error *error);
+int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct tool_error *error);
 void cli_session_close(struct cli_session *session);
 
 // The steps, in order; plan, which looks at the pictures but renders nothing, in place of render. Each returns 0, or an
 // exit code with *error filled; close after any of them.
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
-                   struct cli_error *error);
+                   struct tool_error *error);
 // The focus of the first view, only the rows of depth around it being decoded. In place of the others.
-int cli_frame_focus(struct cli_frame *frame, float *focus, struct cli_error *error);
-int cli_frame_setup(struct cli_frame *frame, struct cli_error *error);
-int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);
-int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct cli_error *error);
+int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error);
+int cli_frame_setup(struct cli_frame *frame, struct tool_error *error);
+int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct tool_error *error);
+int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct tool_error *error);
 // The new file in memory, with some texts in its header; then to the disk.
-int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct cli_error *error);
-int cli_frame_save(struct cli_frame *frame, struct cli_error *error);
+int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct tool_error *error);
+int cli_frame_save(struct cli_frame *frame, struct tool_error *error);
 void cli_frame_close(struct cli_frame *frame);
 
 #endif

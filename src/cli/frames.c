@@ -132,7 +132,7 @@ static int remove_repeated(struct cli_frames *frames)
     return 0;
 }
 
-int cli_frames_parse(struct cli_frames *frames, const char *text, struct cli_error *error)
+int cli_frames_parse(struct cli_frames *frames, const char *text, struct tool_error *error)
 {
     const char *c = text;
     *frames = (struct cli_frames){0};
@@ -141,14 +141,14 @@ int cli_frames_parse(struct cli_frames *frames, const char *text, struct cli_err
         struct range r;
         if (read_range(&c, &r) || (*c && *c != ',')) {
             cli_frames_free(frames);
-            return cli_fail(error, -1,
-                            "--frames: '%.*s' of '%s' is not a range of frames such as 7, 1-100, 1-100x2, 10-1 or "
-                            "1-100:3",
-                            (int)strcspn(item, ","), item, text);
+            return tool_fail(error, -1,
+                             "--frames: '%.*s' of '%s' is not a range of frames such as 7, 1-100, 1-100x2, 10-1 or "
+                             "1-100:3",
+                             (int)strcspn(item, ","), item, text);
         }
         if (add_range(frames, &r)) {
             cli_frames_free(frames);
-            return cli_fail(error, -1, "--frames: '%s' has more than %d frames", text, CLI_MAX_FRAMES);
+            return tool_fail(error, -1, "--frames: '%s' has more than %d frames", text, CLI_MAX_FRAMES);
         }
         if (!*c)
             break;
@@ -157,7 +157,7 @@ int cli_frames_parse(struct cli_frames *frames, const char *text, struct cli_err
     if (frames->count == 0 || remove_repeated(frames)) {
         const int none = frames->count == 0;
         cli_frames_free(frames);
-        return cli_fail(error, -1, none ? "--frames: '%s' has no frame" : "--frames: '%s': out of memory", text);
+        return tool_fail(error, -1, none ? "--frames: '%s' has no frame" : "--frames: '%s': out of memory", text);
     }
     return 0;
 }

@@ -9,7 +9,7 @@
 #ifndef HF_CLI_FRAMES_H
 #define HF_CLI_FRAMES_H
 
-#include "cli/error.h"
+#include "tool/error.h"
 
 enum { CLI_MAX_FRAME = 99999999, CLI_MAX_FRAMES = 1000000 };
 
@@ -19,7 +19,7 @@ struct cli_frames {
 };
 
 // Returns 0, or -1 with *error filled; then there is nothing to free.
-int cli_frames_parse(struct cli_frames *frames, const char *text, struct cli_error *error);
+int cli_frames_parse(struct cli_frames *frames, const char *text, struct tool_error *error);
 // Returns 0, or -1 without memory.
 int cli_frames_add(struct cli_frames *frames, int frame);
 void cli_frames_free(struct cli_frames *frames);

@@ -36,7 +36,7 @@ struct reader {
     int line;
     int order[MAX_COLUMNS];  // of the file: indices into columns
     int count;
-    struct cli_error *error;
+    struct tool_error *error;
 };
 
 // Cut the next cell off a line, spaces and quotes taken away. NULL after the last.
@@ -63,7 +63,7 @@ static char *next_cell(char **rest)
 
 static int fail(const struct reader *r, const char *cell, const char *what)
 {
-    return cli_fail(r->error, CLI_BAD_ARGUMENTS, "%s, line %d: '%s' %s", r->path, r->line, cell, what);
+    return tool_fail(r->error, CLI_BAD_ARGUMENTS, "%s, line %d: '%s' %s", r->path, r->line, cell, what);
 }
 
 static int read_names(struct reader *r, char *line)
@@ -142,7 +142,7 @@ static int read_row(struct reader *r, char *line)
         if (*end)
             return fail(r, cells[i], "is not a number");
         if (failed)
-            return cli_fail(r->error, CLI_ALL_FAILED, "%s: out of memory", r->path);
+            return tool_fail(r->error, CLI_ALL_FAILED, "%s: out of memory", r->path);
     }
     return 0;
 }
@@ -164,12 +164,12 @@ static int sort_keys(struct reader *r)
             qsort(k, (size_t)n, sizeof(*k), by_frame);
         for (int i = 1; i < n; i++)
             if (k[i].frame == k[i - 1].frame)
-                return cli_fail(r->error, CLI_BAD_ARGUMENTS, "%s: frame %g comes twice", r->path, k[i].frame);
+                return tool_fail(r->error, CLI_BAD_ARGUMENTS, "%s: frame %g comes twice", r->path, k[i].frame);
     }
-    return any ? 0 : cli_fail(r->error, CLI_BAD_ARGUMENTS, "%s: there is no value in it", r->path);
+    return any ? 0 : tool_fail(r->error, CLI_BAD_ARGUMENTS, "%s: there is no value in it", r->path);
 }
 
-int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct cli_error *error)
+int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct tool_error *error)
 {
     struct reader r = {.keys = keys, .path = path, .error = error};
     char *line = NULL;
@@ -177,7 +177,7 @@ int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct cl
     *keys = (struct cli_keys){.smooth = smooth};
     FILE *in = fopen(path, "r");
     if (!in)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "--keys %s: %s", path, strerror(errno));
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "--keys %s: %s", path, strerror(errno));
     int status = 0;
     while (!status && getline(&line, &room, in) >= 0) {
         char *text = line + (r.line++ == 0 && !strncmp(line, "\xef\xbb\xbf", 3) ? 3 : 0);  // a byte order mark
@@ -187,7 +187,7 @@ int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct cl
         status = r.count ? read_row(&r, text) : read_names(&r, text);
     }
     if (!status && ferror(in))
-        status = cli_fail(error, CLI_BAD_ARGUMENTS, "--keys %s cannot be read", path);
+        status = tool_fail(error, CLI_BAD_ARGUMENTS, "--keys %s cannot be read", path);
     if (!status)
         status = sort_keys(&r);
     fclose(in);

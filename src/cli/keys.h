@@ -11,7 +11,7 @@
 #ifndef HF_CLI_KEYS_H
 #define HF_CLI_KEYS_H
 
-#include "cli/error.h"
+#include "tool/error.h"
 
 enum cli_key {
     CLI_KEY_FOCUS,
@@ -38,7 +38,7 @@ struct cli_keys {
 };
 
 // Returns 0, or an exit code with *error filled, which names the line.
-int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct cli_error *error);
+int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct tool_error *error);
 void cli_keys_free(struct cli_keys *keys);
 
 // Value of a column that has keys.

@@ -8,130 +8,139 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cli/json.h"
+#include "tool/json.h"
+#include "tool/machine.h"
 
 // A line is put together first and written in one piece: several threads, and several processes, may share the file.
-static FILE *begin(const struct cli_log *log, char **line, size_t *size)
+struct line {
+    struct tool_json json;
+    char *text;
+    size_t size;
+};
+
+static int begin(const struct cli_log *log, struct line *line, const char *event)
 {
-    *line = NULL;
-    FILE *out = log->out ? open_memstream(line, size) : NULL;
+    *line = (struct line){.text = NULL};
+    FILE *out = log->out ? open_memstream(&line->text, &line->size) : NULL;
     const time_t now = time(NULL);
     struct tm utc;
     char text[32];
     if (!out)
-        return NULL;
+        return -1;
     strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    fprintf(out, "{\"time\": \"%s\"", text);
-    return out;
+    tool_json_begin(&line->json, out, 1);
+    tool_json_text(&line->json, "time", text);
+    tool_json_text(&line->json, "event", event);
+    return 0;
 }
 
-static void end(struct cli_log *log, FILE *out, char **line, const size_t *size)
+static void end(struct cli_log *log, struct line *line)
 {
-    fputs("}\n", out);
-    const int failed = ferror(out);
-    if (!fclose(out) && !failed)
-        fwrite(*line, 1, *size, log->out);
+    tool_json_end(&line->json);
+    const int failed = ferror(line->json.out);
+    if (!fclose(line->json.out) && !failed)
+        fwrite(line->text, 1, line->size, log->out);
     fflush(log->out);
-    free(*line);
+    free(line->text);
 }
 
-int cli_log_open(struct cli_log *log, const char *path, int argc, char **argv, int frames, struct cli_error *error)
+int cli_log_open(struct cli_log *log, const char *path, int argc, char **argv, int frames, struct tool_error *error)
 {
-    char host[64] = "", *line;
-    size_t size;
+    char host[64] = "";
+    struct line line;
     *log = (struct cli_log){NULL};
     if (!path)
         return 0;
     log->out = fopen(path, "ae");
     if (!log->out)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "--log %s cannot be written: %s", path, strerror(errno));
-    FILE *out = begin(log, &line, &size);
-    if (!out)
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "--log %s cannot be written: %s", path, strerror(errno));
+    if (begin(log, &line, "begin"))
         return 0;
     gethostname(host, sizeof(host) - 1);
-    fputs(", \"event\": \"begin\", \"command\": ", out);
-    cli_json_command(out, argc, argv);
-    fprintf(out, ", \"version\": \"%s\", \"host\": ", hf_version());
-    cli_json_text(out, host);
-    fprintf(out, ", \"pid\": %ld, \"frames\": %d", (long)getpid(), frames);
-    end(log, out, &line, &size);
+    tool_json_command(&line.json, "command", argc, argv);
+    tool_json_machine(&line.json, argc - 1, argv + 1);
+    tool_json_text(&line.json, "host", host);
+    tool_json_count(&line.json, "pid", getpid());
+    tool_json_count(&line.json, "frames", frames);
+    end(log, &line);
     return 0;
 }
 
-static void put_stages(FILE *out, const struct cli_frame *frame)
+static void put_stages(struct tool_json *j, const double ms[CLI_STAGES])
 {
-    for (int s = 0; s < CLI_STAGES; s++)
-        fprintf(out, ", \"%s_ms\": %.3f", cli_stage_names[s], frame->ms[s]);
+    char name[32];
+    for (int s = 0; s < CLI_STAGES; s++) {
+        snprintf(name, sizeof(name), "%s_ms", cli_stage_names[s]);
+        tool_json_ms(j, name, ms[s]);
+    }
 }
 
-static void put_views(FILE *out, const struct cli_frame *frame)
+static void put_views(struct tool_json *j, const struct cli_frame *frame)
 {
-    fputs(", \"views\": [", out);
+    tool_json_open(j, "views", '[');
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
         const struct cli_setup *s = &v->setup;
-        fputs(i ? ", {\"name\": " : "{\"name\": ", out);
-        cli_json_text(out, v->view->name);
-        fputs(", \"focus\": ", out);
-        cli_json_number(out, s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
-        fputs(", \"focus_from\": ", out);
-        cli_json_text(out, s->focus_from);
-        fputs(", \"max_radius\": ", out);
-        cli_json_number(out, v->report.used.params.max_radius);
-        fprintf(out, ", \"colour_repaired\": %llu, \"depth_repaired\": %llu}",
-                (unsigned long long)v->report.colour_repaired, (unsigned long long)v->report.depth_repaired);
+        tool_json_open(j, NULL, '{');
+        tool_json_text(j, "name", v->view->name);
+        tool_json_number(j, "focus", s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
+        tool_json_text(j, "focus_from", s->focus_from);
+        tool_json_number(j, "max_radius", v->report.used.params.max_radius);
+        tool_json_count(j, "colour_repaired", (long long)v->report.colour_repaired);
+        tool_json_count(j, "depth_repaired", (long long)v->report.depth_repaired);
+        tool_json_close(j);
     }
-    fputc(']', out);
+    tool_json_close(j);
 }
 
 void cli_log_frame(struct cli_log *log, const struct cli_record *r)
 {
     static const char *const names[] = {"done", "skipped", "failed"};
-    char *line;
-    size_t size;
-    FILE *out = begin(log, &line, &size);
-    if (!out)
+    struct line line;
+    struct tool_json *j = &line.json;
+    if (begin(log, &line, "frame"))
         return;
-    fprintf(out, ", \"event\": \"frame\", \"status\": \"%s\"", names[r->status]);
+    tool_json_text(j, "status", names[r->status]);
     if (r->job->numbered)
-        fprintf(out, ", \"frame\": %d", r->job->frame);
-    fputs(", \"input\": ", out);
-    cli_json_text(out, r->job->input);
-    fputs(", \"output\": ", out);
-    cli_json_text(out, r->job->output);
-    fprintf(out, ", \"ms\": %.3f, \"waited_ms\": %.3f, \"hash\": \"%s\", \"settings\": ", r->ms, r->waited_ms,
-            r->stamp->hash);
-    cli_json_text(out, r->stamp->settings);
+        tool_json_count(j, "frame", r->job->frame);
+    tool_json_text(j, "input", r->job->input);
+    tool_json_text(j, "output", r->job->output);
+    tool_json_ms(j, "ms", r->ms);
+    tool_json_ms(j, "waited_ms", r->waited_ms);
+    tool_json_text(j, "hash", r->stamp->hash);
+    tool_json_text(j, "settings", r->stamp->settings);
     if (r->status == CLI_FRAME_DONE) {
-        put_stages(out, r->frame);
-        put_views(out, r->frame);
-        fprintf(out, ", \"clamped\": %llu, \"engine\": \"%s\", \"budget_step\": %d",
-                (unsigned long long)r->frame->written.clamped, hf_engine_name(r->report->used.params.engine),
-                r->report->budget_step);
+        put_stages(j, r->frame->ms);
+        put_views(j, r->frame);
+        tool_json_count(j, "clamped", (long long)r->frame->written.clamped);
+        tool_json_text(j, "engine", hf_engine_name(r->report->used.params.engine));
+        tool_json_count(j, "budget_step", r->report->budget_step);
     }
-    if (r->why) {
-        fputs(", \"error\": ", out);
-        cli_json_text(out, r->why);
-    }
-    end(log, out, &line, &size);
+    if (r->why)
+        tool_json_text(j, "error", r->why);
+    end(log, &line);
 }
 
 void cli_log_end(struct cli_log *log, const struct cli_progress *p, int at_once, double peak_memory)
 {
-    char *line;
-    size_t size;
-    FILE *out = begin(log, &line, &size);
-    if (!out)
+    struct line line;
+    struct tool_json *j = &line.json;
+    double ms[CLI_STAGES];
+    if (begin(log, &line, "end"))
         return;
-    const double seconds = (cli_now_ms() - p->start) / 1000;
-    fprintf(out, ", \"event\": \"end\", \"frames\": %d, \"done\": %d, \"skipped\": %d, \"failed\": %d", p->total,
-            (int)p->done, (int)p->skipped, (int)p->failed);
-    fprintf(out, ", \"at_once\": %d", at_once);
-    fprintf(out, ", \"seconds\": %.3f, \"frames_per_second\": %.4f, \"peak_memory\": %.0f", seconds,
-            seconds > 0 ? p->done / seconds : 0, peak_memory);
+    const double seconds = (tool_now_ms() - p->start) / 1000;
+    tool_json_count(j, "frames", p->total);
+    tool_json_count(j, "done", p->done);
+    tool_json_count(j, "skipped", p->skipped);
+    tool_json_count(j, "failed", p->failed);
+    tool_json_count(j, "at_once", at_once);
+    tool_json_number(j, "seconds", seconds);
+    tool_json_number(j, "frames_per_second", seconds > 0 ? p->done / seconds : 0);
+    tool_json_count(j, "peak_memory", (long long)peak_memory);
     for (int s = 0; s < CLI_STAGES; s++)
-        fprintf(out, ", \"%s_ms\": %.3f", cli_stage_names[s], (double)p->us[s] / 1000);
-    end(log, out, &line, &size);
+        ms[s] = (double)p->us[s] / 1000;
+    put_stages(j, ms);
+    end(log, &line);
 }
 
 void cli_log_close(struct cli_log *log)

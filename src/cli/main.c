@@ -4,7 +4,6 @@
 #include "cli/batch.h"
 #include "cli/explain.h"
 #include "cli/frame.h"
-#include "cli/help.h"
 #include "cli/json.h"
 #include "cli/preview.h"
 #include "cli/summary.h"
@@ -16,12 +15,12 @@
 #include <stdio.h>
 #include <string.h>
 
-static int print_plan(const struct cli_frame *frame, const struct hf_context *context, struct cli_error *error)
+static int print_plan(const struct cli_frame *frame, const struct hf_context *context, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
-    char name[CLI_SHOWN], other[CLI_SHOWN];
-    printf("%s: would write %s\n", cli_shown(args->input, name),
-           args->output ? cli_shown(args->output, other) : "nothing, as there is no -o");
+    char name[TOOL_SHOWN], other[TOOL_SHOWN];
+    printf("%s: would write %s\n", tool_shown(args->input, name),
+           args->output ? tool_shown(args->output, other) : "nothing, as there is no -o");
     printf("  engine %s, %s storage, %d threads, %s\n", hf_engine_name(args->params.engine),
            hf_name(HF_NAMES_STORAGE, (int)args->params.gather.storage), hf_context_threads(context),
            hf_isa_name(hf_context_isa(context)));
@@ -30,10 +29,10 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
         const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
         const struct hf_params *p = &v->setup.params;
         printf("  view %s: %d x %d, data window %d,%d to %d,%d, display window %d,%d to %d,%d\n",
-               v->view->name[0] ? cli_shown(v->view->name, name) : "(no name)", v->view->width, v->view->height,
+               v->view->name[0] ? tool_shown(v->view->name, name) : "(no name)", v->view->width, v->view->height,
                data->x0, data->y0, data->x1 - 1, data->y1 - 1, display->x0, display->y0, display->x1 - 1,
                display->y1 - 1);
-        printf("    depth %s, type %s\n", cli_shown(args->depth_file ? args->depth_file : v->view->depth, name),
+        printf("    depth %s, type %s\n", tool_shown(args->depth_file ? args->depth_file : v->view->depth, name),
                hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)
@@ -66,22 +65,22 @@ static int print_warnings(const struct cli_frame *frame)
         const struct cli_view *v = &frame->views[i];
         n += (v->report.colour_repaired > 0) + (v->report.depth_repaired > 0) + cli_is_limited(v);
         if (v->report.colour_repaired)
-            cli_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place", v->label,
-                           v->report.colour_repaired);
+            tool_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place",
+                            v->label, v->report.colour_repaired);
         if (v->report.depth_repaired)
-            cli_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
-                           v->report.depth_repaired);
+            tool_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
+                            v->report.depth_repaired);
     }
     if (frame->written.note[0])
-        cli_print_line("%s", frame->written.note);
+        tool_print_line("%s", frame->written.note);
     if (frame->written.clamped)
-        cli_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
-                       frame->written.clamped);
+        tool_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
+                        frame->written.clamped);
     return n + (frame->written.note[0] != '\0') + (frame->written.clamped > 0);
 }
 
 static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
-                      struct cli_error *error)
+                      struct tool_error *error)
 {
     if (frame->args->json_file)
         return cli_write_json_file(argc, argv, frame, context, error);
@@ -90,7 +89,7 @@ static int write_json(int argc, char **argv, const struct cli_frame *frame, cons
 }
 
 static int run_frame(int argc, char **argv, const struct cli_args *args, struct cli_session *session,
-                     struct cli_error *error)
+                     struct tool_error *error)
 {
     struct cli_frame frame;
     const int explain = args->explain || args->explain_image;
@@ -124,7 +123,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
 }
 
 // What is written about one frame only.
-static int check_alone(const struct cli_args *args, struct cli_error *error)
+static int check_alone(const struct cli_args *args, struct tool_error *error)
 {
     const char *option = args->json            ? "--json"
                          : args->explain       ? "--explain"
@@ -132,19 +131,19 @@ static int check_alone(const struct cli_args *args, struct cli_error *error)
                          : args->dump_dir      ? "--dump-passes"
                                                : NULL;
     if (option)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s is for one frame; for a shot there is --log", option);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s is for one frame; for a shot there is --log", option);
     if (args->resume && args->output && !cli_is_exr(args->output))
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "--resume needs an EXR OUTPUT, as %s does not say what made it",
-                        args->output);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "--resume needs an EXR OUTPUT, as %s does not say what made it",
+                         args->output);
     return 0;
 }
 
 static int run_shot(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot,
-                    struct cli_error *error)
+                    struct tool_error *error)
 {
     int status = check_alone(args, error);
     if (!status && shot->jobs.count == 0)
-        cli_print_line("no frame of the shot is this process's part: nothing to do");
+        tool_print_line("no frame of the shot is this process's part: nothing to do");
     else if (!status && args->dry_run)
         status = cli_preview(args, shot, error);
     else if (!status)
@@ -153,7 +152,7 @@ static int run_shot(int argc, char **argv, const struct cli_args *args, const st
 }
 
 // One frame, with all that can be said of it.
-static int run_alone(int argc, char **argv, struct cli_args *args, const struct cli_job *job, struct cli_error *error)
+static int run_alone(int argc, char **argv, struct cli_args *args, const struct cli_job *job, struct tool_error *error)
 {
     struct cli_session session;
     args->output = job->output;
@@ -166,7 +165,7 @@ static int run_alone(int argc, char **argv, struct cli_args *args, const struct 
     return status;
 }
 
-static int run_args(int argc, char **argv, struct cli_args *args, struct cli_error *error)
+static int run_args(int argc, char **argv, struct cli_args *args, struct tool_error *error)
 {
     const struct cli_shot_request request = {args->inputs, args->input_count, args->output, args->depth_file,
                                              args->frames, args->chunk,       args->views};
@@ -191,12 +190,14 @@ static int run_args(int argc, char **argv, struct cli_args *args, struct cli_err
     return status;
 }
 
-static int run(int argc, char **argv, struct cli_error *error)
+static int run(int argc, char **argv, struct tool_error *error)
 {
     struct cli_args args;
     int status = cli_parse_args(&args, argc, argv, error) ? CLI_BAD_ARGUMENTS : CLI_DONE;
-    if (!status && args.help)
-        cli_print_help(args.help > 1);
+    if (!status && args.help > 2)
+        tool_print_man(&cli_program);
+    else if (!status && args.help)
+        tool_print_help(&cli_program, args.help > 1);
     else if (!status && args.version)
         printf("hyperfocal %s\n", hf_version());
     else if (!status)
@@ -210,13 +211,13 @@ int main(int argc, char **argv)
     // A file that grows too large for the system's limit is an error like a full disk, not the end of the process.
     signal(SIGXFSZ, SIG_IGN);
     hf_io_catch_signals();
-    struct cli_error error = {""};
+    struct tool_error error = {""};
     int status = run(argc, argv, &error);
     const int failed = ferror(stdout);
     if ((fflush(stdout) || failed) && !status)
-        status = cli_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
+        status = tool_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
     // Of a shot all has been said.
     if (status && error.text[0])
-        cli_print_line("%s", error.text);
+        tool_print_line("%s", error.text);
     return status;
 }

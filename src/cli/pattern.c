@@ -168,7 +168,7 @@ static int scan(DIR *dir, const char *name, struct cli_frames *found, int *digit
     return 0;
 }
 
-int cli_pattern_scan(const char *pattern, struct cli_frames *found, int *digits, struct cli_error *error)
+int cli_pattern_scan(const char *pattern, struct cli_frames *found, int *digits, struct tool_error *error)
 {
     const char *slash = strrchr(pattern, '/');
     char *folder = slash ? strndup(pattern, (size_t)(slash - pattern) + (slash == pattern)) : strdup(".");
@@ -177,13 +177,13 @@ int cli_pattern_scan(const char *pattern, struct cli_frames *found, int *digits,
     int status = 0;
     DIR *dir = NULL;
     if (folder && slash && cli_pattern_has_frame(folder))
-        status = cli_fail(error, CLI_BAD_ARGUMENTS,
-                          "%s: the directory's name has a place for the number, so --frames must say which there are",
-                          pattern);
+        status = tool_fail(error, CLI_BAD_ARGUMENTS,
+                           "%s: the directory's name has a place for the number, so --frames must say which there are",
+                           pattern);
     else if (folder && !(dir = opendir(folder)))
-        status = cli_fail(error, CLI_ALL_FAILED, "%s: %s: %s", pattern, folder, strerror(errno));
+        status = tool_fail(error, CLI_ALL_FAILED, "%s: %s: %s", pattern, folder, strerror(errno));
     else if (!folder || scan(dir, slash ? slash + 1 : pattern, found, digits))
-        status = cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", pattern);
+        status = tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", pattern);
     if (dir)
         closedir(dir);
     free(folder);

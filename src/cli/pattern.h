@@ -13,7 +13,7 @@
 
 #include <stddef.h>
 
-#include "cli/error.h"
+#include "tool/error.h"
 #include "cli/frames.h"
 
 // 1 if a name has a place for the frame number, or for the view.
@@ -28,7 +28,7 @@ char *cli_pattern_view(const char *pattern, const char *view);
 // The frames that there are, sorted. *digits: how many those of # have at least, 4
 // when there are none. Returns 0, or an exit code with *error filled: an unreadable directory, or a place for the number
 // in a directory's name, which is not searched.
-int cli_pattern_scan(const char *pattern, struct cli_frames *found, int *digits, struct cli_error *error);
+int cli_pattern_scan(const char *pattern, struct cli_frames *found, int *digits, struct tool_error *error);
 
 // The last number in a file's name, "shot.0007.exr": 1 and *frame, *digits; 0 if there is none.
 int cli_name_number(const char *path, int *frame, int *digits);

@@ -17,7 +17,7 @@ int cli_plan_threads(const struct cli_args *args)
 }
 
 int cli_plan_open(struct cli_plan *plan, const struct cli_args *args, const struct cli_shot *shot,
-                  struct cli_error *error)
+                  struct tool_error *error)
 {
     *plan = (struct cli_plan){.args = args, .shot = shot};
     int status = args->keys ? cli_keys_load(&plan->keys, args->keys, args->keys_blend == CLI_KEYS_SMOOTH, error) : 0;
@@ -26,7 +26,7 @@ int cli_plan_open(struct cli_plan *plan, const struct cli_args *args, const stru
     struct hf_io_run run = {0};
     plan->focus = malloc((size_t)shot->jobs.count * sizeof(*plan->focus));
     if (!plan->focus)
-        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
     hf_io_threads_open(&run, cli_plan_threads(args));
     status = cli_track(plan->focus, shot, args, &plan->keys, &run, error);
     hf_io_threads_close(&run);
@@ -73,8 +73,8 @@ int cli_plan_workers(const struct cli_args *args, int frames, double wait, doubl
     const int busy = (int)lround(cli_plan_threads(args) * (1 + fmin(wait, MOST_WAIT)));
     const int most = frames < 1 ? 1 : frames < busy ? frames : busy;
     if (fit < 1)
-        cli_print_line("a frame takes %.2f GiB, more than the limit of %.2f GiB: one at a time",
-                       (base + frame_bytes) / GIB, limit / GIB);
+        tool_print_line("a frame takes %.2f GiB, more than the limit of %.2f GiB: one at a time",
+                        (base + frame_bytes) / GIB, limit / GIB);
     // A time budget learns from frame to frame, in one context.
     return fit < 1 || args->params.run.budget_ms > 0 ? 1 : fit < most ? (int)fit : most;
 }

@@ -18,7 +18,7 @@ struct cli_plan {
 // Reads --keys, and looks at the pictures where the focus follows them. Returns 0, or an exit code with *error filled;
 // close it in either case.
 int cli_plan_open(struct cli_plan *plan, const struct cli_args *args, const struct cli_shot *shot,
-                  struct cli_error *error);
+                  struct tool_error *error);
 void cli_plan_close(struct cli_plan *plan);
 
 // The arguments of job number i: nothing in them to be freed.

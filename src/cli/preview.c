@@ -35,7 +35,7 @@ static void print_jobs(const struct cli_plan *plan, int *left)
 }
 
 // Look at the first frame as if to render it.
-static int expect(const struct cli_plan *plan, int left, struct cli_error *error)
+static int expect(const struct cli_plan *plan, int left, struct tool_error *error)
 {
     struct cli_args args;
     struct cli_session session = {0};
@@ -65,7 +65,7 @@ static int expect(const struct cli_plan *plan, int left, struct cli_error *error
     return status;
 }
 
-int cli_preview(const struct cli_args *args, const struct cli_shot *shot, struct cli_error *error)
+int cli_preview(const struct cli_args *args, const struct cli_shot *shot, struct tool_error *error)
 {
     struct cli_plan plan;
     int left = 0;
@@ -78,7 +78,7 @@ int cli_preview(const struct cli_args *args, const struct cli_shot *shot, struct
     return status;
 }
 
-int cli_print_focus(const struct cli_args *args, const struct cli_shot *shot, struct cli_error *error)
+int cli_print_focus(const struct cli_args *args, const struct cli_shot *shot, struct tool_error *error)
 {
     struct cli_plan plan;
     int failed = 0;
@@ -97,7 +97,7 @@ int cli_print_focus(const struct cli_args *args, const struct cli_shot *shot, st
         if (!bad)
             bad = cli_frame_focus(&frame, &focus, error);
         if (bad)
-            cli_print_line("%s", error->text);
+            tool_print_line("%s", error->text);
         else
             printf("%d,%.6g\n", job->numbered ? job->frame : job->place, focus);
         failed += bad != 0;

@@ -3,21 +3,15 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "tool/machine.h"
 
 enum { BAR = 24 };
 
-double cli_now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
 void cli_progress_begin(struct cli_progress *p, int total)
 {
-    *p = (struct cli_progress){.total = total, .bar = isatty(STDERR_FILENO), .start = cli_now_ms()};
+    *p = (struct cli_progress){.total = total, .bar = isatty(STDERR_FILENO), .start = tool_now_ms()};
 }
 
 const char *cli_progress_limit(const struct cli_progress *p)
@@ -43,7 +37,7 @@ static void draw(const struct cli_progress *p, int finished, const char *name)
 {
     char bar[BAR + 1], left[32] = "?";
     const int rendered = atomic_load(&p->rendered);
-    const double seconds = (cli_now_ms() - p->start) / 1000, rate = seconds > 0 ? rendered / seconds : 0;
+    const double seconds = (tool_now_ms() - p->start) / 1000, rate = seconds > 0 ? rendered / seconds : 0;
     const int filled = p->total ? (int)((long long)BAR * finished / p->total) : BAR;
     const char *slash = strrchr(name, '/');
     memset(bar, '-', BAR);
@@ -54,7 +48,7 @@ static void draw(const struct cli_progress *p, int finished, const char *name)
     fprintf(stderr, "\r\033[K[%s] %d/%d  %.2f frames/s  %s left  %s  (%s)", bar, finished, p->total, rate, left,
             slash ? slash + 1 : name, cli_progress_limit(p));
     fflush(stderr);
-    atomic_store(&cli_bar_shown, 1);
+    atomic_store(&tool_bar_shown, 1);
 }
 
 void cli_progress_frame(struct cli_progress *p, const char *name, const char *text)
@@ -71,6 +65,6 @@ void cli_progress_frame(struct cli_progress *p, const char *name, const char *te
 
 void cli_progress_end(struct cli_progress *p)
 {
-    if (p->bar && atomic_exchange(&cli_bar_shown, 0))
+    if (p->bar && atomic_exchange(&tool_bar_shown, 0))
         fputs("\r\033[K", stderr);
 }

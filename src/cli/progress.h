@@ -16,8 +16,6 @@ struct cli_progress {
     atomic_llong us[CLI_STAGES];  // microseconds in each stage, summed over the frames
 };
 
-double cli_now_ms(void);
-
 void cli_progress_begin(struct cli_progress *p, int total);
 // A frame is finished: its name, and a text about it such as "0.21 s, focus 4.4".
 void cli_progress_frame(struct cli_progress *p, const char *name, const char *text);

@@ -78,26 +78,26 @@ static void describe_depth(struct hf_depth *depth, const struct cli_args *args, 
 
 // Focus on what a pixel shows, EXR coordinates.
 static int focus_at(float *focus, const struct hf_depth *depth, const struct hf_io_view *view, int x, int y,
-                    const char *option, const char *label, struct cli_error *error)
+                    const char *option, const char *label, struct tool_error *error)
 {
     const struct hf_io_box *data = &view->data_window;
     if (x < data->x0 || x >= data->x1 || y < data->y0 || y >= data->y1)
-        return cli_fail(error, CLI_BAD_ARGUMENTS,
-                        "%s: %s is pixel %d,%d, which is outside the data window %d,%d to "
-                        "%d,%d",
-                        label, option, x, y, data->x0, data->y0, data->x1 - 1, data->y1 - 1);
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "%s: %s is pixel %d,%d, which is outside the data window %d,%d to "
+                         "%d,%d",
+                         label, option, x, y, data->x0, data->y0, data->x1 - 1, data->y1 - 1);
     const int status = hf_depth_at(depth, view->width, view->height, x - data->x0, y - data->y0, focus);
     if (status == HF_ERR_FOCUS)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, where there is no surface to focus on", label,
-                        option, x, y);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, where there is no surface to focus on",
+                         label, option, x, y);
     if (status != HF_OK)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s at pixel %d,%d: %s", label, option, x, y,
-                        hf_error_string(status));
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s at pixel %d,%d: %s", label, option, x, y,
+                         hf_error_string(status));
     return 0;
 }
 
 static int find_focus(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
-                      const char *label, struct cli_error *error)
+                      const char *label, struct tool_error *error)
 {
     float *focus = &setup->params.focus;
     char option[64];
@@ -127,34 +127,34 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     }
     const float unit = given(args->world_unit) ? args->world_unit : 1;
     if (!usable(view->camera.focus / unit))
-        return cli_fail(error, CLI_BAD_ARGUMENTS,
-                        "%s: there is no focus distance in the header, give one with "
-                        "--focus or --focus-at",
-                        label);
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "%s: there is no focus distance in the header, give one with "
+                         "--focus or --focus-at",
+                         label);
     setup->focus_from = "header";
     *focus = view->camera.focus / unit;
     return 0;
 }
 
 static int set_lens(struct hf_params *p, const struct cli_args *args, const struct hf_io_camera *camera,
-                    const char *label, struct cli_error *error)
+                    const char *label, struct tool_error *error)
 {
     p->lens.f_number = first_usable(args->fstop, camera->f_number, NAN);
     p->lens.focal_length_mm = first_usable(args->focal_length, camera->focal_length_mm, NAN);
     p->lens.sensor_width_mm = first_usable(args->sensor_width, camera->sensor_width_mm, 36);
     p->lens.world_unit_m = given(args->world_unit) ? args->world_unit : 1;
     if (!given(p->lens.focal_length_mm))
-        return cli_fail(error, CLI_BAD_ARGUMENTS,
-                        "%s: --fstop %g needs --focal-length, the header has no "
-                        "pinholeFocalLength",
-                        label, args->fstop);
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "%s: --fstop %g needs --focal-length, the header has no "
+                         "pinholeFocalLength",
+                         label, args->fstop);
     if (!given(p->lens.f_number))
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --focal-length %g needs --fstop, the header has no aperture",
-                        label, args->focal_length);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --focal-length %g needs --fstop, the header has no aperture",
+                         label, args->focal_length);
     return 0;
 }
 
-static int set_range(struct hf_params *p, const struct cli_args *args, const char *label, struct cli_error *error)
+static int set_range(struct hf_params *p, const struct cli_args *args, const char *label, struct tool_error *error)
 {
     if (given(args->range))
         p->range.distance = args->range;
@@ -181,11 +181,11 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
     const float far_begin = given(args->far_begin) ? args->far_begin : focus + half;
     const float far_end = given(args->far_end) ? args->far_end : focus + half + range;
     if (near_begin > near_end)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --near-begin %g is beyond --near-end %g (focus %g, range %g)",
-                        label, near_begin, near_end, focus, range);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --near-begin %g is beyond --near-end %g (focus %g, range %g)",
+                         label, near_begin, near_end, focus, range);
     if (far_begin > far_end)
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: --far-begin %g is beyond --far-end %g (focus %g, range %g)",
-                        label, far_begin, far_end, focus, range);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --far-begin %g is beyond --far-end %g (focus %g, range %g)",
+                         label, far_begin, far_end, focus, range);
     if (half > 0) {
         p->range.near_begin = near_begin;
         p->range.near_end = near_end;
@@ -196,7 +196,7 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
 }
 
 int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
-                   const float *depth, const char *label, struct cli_error *error)
+                   const float *depth, const char *label, struct tool_error *error)
 {
     *setup = (struct cli_setup){.params = args->params, .model = choose_model(args, &view->camera)};
     struct hf_params *p = &setup->params;

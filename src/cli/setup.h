@@ -6,7 +6,7 @@
 #include "hyperfocal/hyperfocal.h"
 
 #include "cli/args.h"
-#include "cli/error.h"
+#include "tool/error.h"
 #include "io/io.h"
 
 enum cli_model { CLI_MODEL_RANGE, CLI_MODEL_LENS, CLI_MODEL_COC };
@@ -29,6 +29,6 @@ int cli_focus_needs_depth(const struct cli_args *args);
 // Fill *setup for a view. depth: its pixels, width * height, or NULL when they are not needed. label names file and
 // view in messages. Returns 0, or an exit code with *error filled.
 int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
-                   const float *depth, const char *label, struct cli_error *error);
+                   const float *depth, const char *label, struct tool_error *error);
 
 #endif

@@ -14,7 +14,7 @@
 struct maker {
     struct cli_shot *shot;
     const struct cli_shot_request *request;
-    struct cli_error *error;
+    struct tool_error *error;
     int places;  // given out so far
 };
 
@@ -26,7 +26,7 @@ struct names {
 
 static int no_memory(const struct maker *m)
 {
-    return cli_fail(m->error, CLI_ALL_FAILED, "%s: out of memory", m->request->inputs[0]);
+    return tool_fail(m->error, CLI_ALL_FAILED, "%s: out of memory", m->request->inputs[0]);
 }
 
 static void free_jobs(struct cli_jobs *jobs)
@@ -88,8 +88,8 @@ static int add_file(struct maker *m, const char *input)
     job.numbered = cli_name_number(input, &job.frame, &names.digits);
     names.depth_digits = names.digits;
     if (!job.numbered && r->input_count > 1 && r->output && cli_pattern_has_frame(r->output))
-        return cli_fail(m->error, CLI_BAD_ARGUMENTS, "%s has no number in its name for the place in OUTPUT %s", input,
-                        r->output);
+        return tool_fail(m->error, CLI_BAD_ARGUMENTS, "%s has no number in its name for the place in OUTPUT %s", input,
+                         r->output);
     const int status = add_job(m, &m->shot->jobs, &names, job);
     return status ? status : add_job(m, &m->shot->around, &names, job);
 }
@@ -101,24 +101,25 @@ static int check_places(const struct maker *m, const char *input)
     const int in = pattern && cli_pattern_has_view(input), out = r->output && cli_pattern_has_view(r->output);
     const int in_frame = pattern && cli_pattern_has_frame(input);
     if (in && !r->views)
-        return cli_fail(m->error, CLI_BAD_ARGUMENTS,
-                        "INPUT %s has a place for the view's name, so --views must name them: --views left,right",
-                        input);
+        return tool_fail(m->error, CLI_BAD_ARGUMENTS,
+                         "INPUT %s has a place for the view's name, so --views must name them: --views left,right",
+                         input);
     if (in && r->output && !out && strchr(r->views, ','))
-        return cli_fail(m->error, CLI_BAD_ARGUMENTS,
-                        "INPUT %s has a place for the view's name, but OUTPUT %s has none: all views would be one file",
-                        input, r->output);
+        return tool_fail(
+            m->error, CLI_BAD_ARGUMENTS,
+            "INPUT %s has a place for the view's name, but OUTPUT %s has none: all views would be one file", input,
+            r->output);
     if (!in && out && (pattern || r->input_count > 1))
-        return cli_fail(m->error, CLI_BAD_ARGUMENTS, "OUTPUT %s has a place for the view's name, but INPUT %s has none",
-                        r->output, input);
+        return tool_fail(m->error, CLI_BAD_ARGUMENTS,
+                         "OUTPUT %s has a place for the view's name, but INPUT %s has none", r->output, input);
     if ((in_frame || r->input_count > 1) && r->output && !cli_pattern_has_frame(r->output))
-        return cli_fail(m->error, CLI_BAD_ARGUMENTS,
-                        "OUTPUT %s has no place for the frame number, such as ####: all frames would be one file",
-                        r->output);
+        return tool_fail(m->error, CLI_BAD_ARGUMENTS,
+                         "OUTPUT %s has no place for the frame number, such as ####: all frames would be one file",
+                         r->output);
     if (r->frames && !in_frame)
-        return cli_fail(m->error, CLI_BAD_ARGUMENTS,
-                        "--frames %s is of use only with a place for the number, such as ####, in INPUT, not with %s",
-                        r->frames, input);
+        return tool_fail(m->error, CLI_BAD_ARGUMENTS,
+                         "--frames %s is of use only with a place for the number, such as ####, in INPUT, not with %s",
+                         r->frames, input);
     return 0;
 }
 
@@ -126,13 +127,13 @@ static int check_places(const struct maker *m, const char *input)
 static int look(struct maker *m, struct names *names, struct cli_frames *found)
 {
     struct cli_frames depths;
-    struct cli_error ignored;
+    struct tool_error ignored;
     const int status = cli_pattern_scan(names->input, found, &names->digits, m->error);
     names->depth_digits = names->digits;
     if (status && !m->request->frames)
         return status;
     if (!m->request->frames && !found->count)
-        return cli_fail(m->error, CLI_ALL_FAILED, "%s: there is no such file", names->input);
+        return tool_fail(m->error, CLI_ALL_FAILED, "%s: there is no such file", names->input);
     int digits;
     if (!names->depth_file || cli_pattern_scan(names->depth_file, &depths, &digits, &ignored))
         return 0;
@@ -223,13 +224,13 @@ static int check_outputs(const struct maker *m)
     qsort(sorted, (size_t)jobs->count, sizeof(*sorted), by_output);
     for (int i = 1; i < jobs->count && !status; i++)
         if (!strcmp(sorted[i - 1]->output, sorted[i]->output))
-            status = cli_fail(m->error, CLI_BAD_ARGUMENTS, "%s and %s would both be written to %s",
-                              sorted[i - 1]->input, sorted[i]->input, sorted[i]->output);
+            status = tool_fail(m->error, CLI_BAD_ARGUMENTS, "%s and %s would both be written to %s",
+                               sorted[i - 1]->input, sorted[i]->input, sorted[i]->output);
     for (int i = 0; i < jobs->count && !status; i++)
         if (m->shot->sequence && !stat(jobs->list[i].input, &in) && !stat(jobs->list[i].output, &out) &&
             in.st_dev == out.st_dev && in.st_ino == out.st_ino)
-            status = cli_fail(m->error, CLI_BAD_ARGUMENTS,
-                              "%s would be written over INPUT, give a sequence another OUTPUT", jobs->list[i].output);
+            status = tool_fail(m->error, CLI_BAD_ARGUMENTS,
+                               "%s would be written over INPUT, give a sequence another OUTPUT", jobs->list[i].output);
     free(sorted);
     return status;
 }
@@ -260,7 +261,7 @@ static int cut(struct maker *m)
     return 0;
 }
 
-int cli_shot_make(struct cli_shot *shot, const struct cli_shot_request *request, struct cli_error *error)
+int cli_shot_make(struct cli_shot *shot, const struct cli_shot_request *request, struct tool_error *error)
 {
     struct maker m = {.shot = shot, .request = request, .error = error};
     *shot = (struct cli_shot){.sequence = request->input_count > 1};

@@ -3,7 +3,7 @@
 #ifndef HF_CLI_SHOT_H
 #define HF_CLI_SHOT_H
 
-#include "cli/error.h"
+#include "tool/error.h"
 #include "cli/frames.h"
 
 // What was asked for; NULL what was not.
@@ -37,7 +37,7 @@ struct cli_shot {
 };
 
 // Returns 0, or an exit code with *error filled; free it in either case.
-int cli_shot_make(struct cli_shot *shot, const struct cli_shot_request *request, struct cli_error *error);
+int cli_shot_make(struct cli_shot *shot, const struct cli_shot_request *request, struct tool_error *error);
 void cli_shot_free(struct cli_shot *shot);
 
 #endif

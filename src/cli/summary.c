@@ -58,7 +58,7 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
                       r->budget_step);
     snprintf(text + n, sizeof(text) - (size_t)n, ", %.0f ms, %d warning%s", r->total_ms, warnings,
              warnings == 1 ? "" : "s");
-    cli_print_line("%s: %.*s with depth %s, %s", v->label, length, name, depth, text);
+    tool_print_line("%s: %.*s with depth %s, %s", v->label, length, name, depth, text);
 }
 
 void cli_print_summary(const struct cli_frame *frame, int warnings)
@@ -69,7 +69,7 @@ void cli_print_summary(const struct cli_frame *frame, int warnings)
         print_view(frame, &frame->views[i], warnings);
 }
 
-int cli_print_resolved(const struct cli_view *v, struct cli_error *error)
+int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
 {
     struct hf_resolved r;
     char message[512];
@@ -77,7 +77,7 @@ int cli_print_resolved(const struct cli_view *v, struct cli_error *error)
     if (v->setup.params.focus == HF_DERIVE && v->setup.model != CLI_MODEL_COC)
         return 0;
     if (hf_resolve(v->view->width, v->view->height, &v->setup.depth, &v->setup.params, &r, message, sizeof(message)))
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", v->label, message);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", v->label, message);
     const struct hf_range_params *range = &r.params.range;
     if (r.limit == HF_LIMIT_NONE)
         printf("    radius not limited, but by %g pixels\n", r.params.max_radius);

@@ -12,6 +12,6 @@ int cli_is_limited(const struct cli_view *v);
 void cli_print_summary(const struct cli_frame *frame, int warnings);
 
 // What the library makes of a view's settings, to stdout. Returns 0, or an exit code with *error filled.
-int cli_print_resolved(const struct cli_view *v, struct cli_error *error);
+int cli_print_resolved(const struct cli_view *v, struct tool_error *error);
 
 #endif

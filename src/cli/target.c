@@ -25,26 +25,26 @@ static char *directory_of(const char *path)
     return dir;
 }
 
-static int check_directory(const char *dir, const char *option, const char *path, struct cli_error *error)
+static int check_directory(const char *dir, const char *option, const char *path, struct tool_error *error)
 {
     struct stat st;
     if (stat(dir, &st) == 0 && !S_ISDIR(st.st_mode))
         errno = ENOTDIR;
     else if (access(dir, W_OK | X_OK) == 0)
         return 0;
-    return cli_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: %s: %s", option, path, dir, strerror(errno));
+    return tool_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: %s: %s", option, path, dir, strerror(errno));
 }
 
 // A file is written beside its target and renamed, so the directory has to be writable, and what is there replaceable.
-static int check_file(const char *path, const char *option, int replaced, struct cli_error *error)
+static int check_file(const char *path, const char *option, int replaced, struct tool_error *error)
 {
     struct stat st;
     if (stat(path, &st) == 0 && (S_ISDIR(st.st_mode) || (replaced && !S_ISREG(st.st_mode))))
-        return cli_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: it is %s", option, path,
-                        S_ISDIR(st.st_mode) ? "a directory" : "not a regular file");
+        return tool_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: it is %s", option, path,
+                         S_ISDIR(st.st_mode) ? "a directory" : "not a regular file");
     char *dir = directory_of(path);
     if (!dir)
-        return cli_fail(error, CLI_ALL_FAILED, "%s %s: out of memory", option, path);
+        return tool_fail(error, CLI_ALL_FAILED, "%s %s: out of memory", option, path);
     // A device is written where it is.
     const int in_place = !replaced && stat(path, &st) == 0 && !S_ISREG(st.st_mode);
     const int status = in_place ? 0 : check_directory(dir, option, path, error);
@@ -52,7 +52,7 @@ static int check_file(const char *path, const char *option, int replaced, struct
     return status;
 }
 
-static int check_dump_dir(const char *dir, struct cli_error *error)
+static int check_dump_dir(const char *dir, struct tool_error *error)
 {
     struct stat st;
     if (stat(dir, &st) == 0)
@@ -62,7 +62,7 @@ static int check_dump_dir(const char *dir, struct cli_error *error)
         path[n - 1] = '\0';
     char *parent = path ? directory_of(path) : NULL;
     const int status = parent ? check_directory(parent, "--dump-passes", dir, error)
-                              : cli_fail(error, CLI_ALL_FAILED, "--dump-passes %s: out of memory", dir);
+                              : tool_fail(error, CLI_ALL_FAILED, "--dump-passes %s: out of memory", dir);
     free(parent);
     free(path);
     return status;
@@ -85,7 +85,7 @@ static void list_files(const struct cli_args *args, struct named files[NAMED])
     memcpy(files, all, sizeof(all));
 }
 
-int cli_check_overwrite(const struct cli_args *args, const char *option, const char *path, struct cli_error *error)
+int cli_check_overwrite(const struct cli_args *args, const char *option, const char *path, struct tool_error *error)
 {
     struct named files[NAMED];
     list_files(args, files);
@@ -95,13 +95,13 @@ int cli_check_overwrite(const struct cli_args *args, const char *option, const c
         // The one way to change a picture in place.
         if (!strcmp(option, "-o") && !strcmp(files[i].option, "INPUT"))
             continue;
-        return cli_fail(error, CLI_BAD_ARGUMENTS, "%s %s would write over %s %s, the same file", option, path,
-                        files[i].option, files[i].path);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s would write over %s %s, the same file", option, path,
+                         files[i].option, files[i].path);
     }
     return 0;
 }
 
-int cli_check_targets(const struct cli_args *args, struct cli_error *error)
+int cli_check_targets(const struct cli_args *args, struct tool_error *error)
 {
     struct hf_io_error io;
     struct named files[NAMED];
@@ -116,7 +116,7 @@ int cli_check_targets(const struct cli_args *args, struct cli_error *error)
         if (!status)
             status = check_file(f->path, f->option, !json, error);
         if (!status && !json && hf_io_check_format(f->path, &io))
-            status = cli_fail(error, CLI_ALL_FAILED, "%s: %s", f->option, io.message);
+            status = tool_fail(error, CLI_ALL_FAILED, "%s: %s", f->option, io.message);
     }
     if (!status && args->dump_dir)
         status = check_dump_dir(args->dump_dir, error);

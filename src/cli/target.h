@@ -3,13 +3,13 @@
 #define HF_CLI_TARGET_H
 
 #include "cli/args.h"
-#include "cli/error.h"
+#include "tool/error.h"
 
 // See that what is to be written can be: before any work, so that it is not in vain and nothing half done is left.
 // Returns 0, or an exit code with *error filled.
-int cli_check_targets(const struct cli_args *args, struct cli_error *error);
+int cli_check_targets(const struct cli_args *args, struct tool_error *error);
 
 // The same for one file that turns out to be written later: is it another than all that the arguments name?
-int cli_check_overwrite(const struct cli_args *args, const char *option, const char *path, struct cli_error *error);
+int cli_check_overwrite(const struct cli_args *args, const char *option, const char *path, struct tool_error *error);
 
 #endif

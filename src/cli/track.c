@@ -68,7 +68,7 @@ static void look_at(void *arg, int i, int worker)
     struct look *l = &t->looks[i];
     struct cli_args args;
     struct cli_frame frame;
-    struct cli_error error;
+    struct tool_error error;
     (void)worker;
     l->focus = NAN;
     if (!l->wanted)
@@ -119,14 +119,14 @@ static float mean(const struct tracker *t, double place, int reach)
 }
 
 int cli_track(float *focus, const struct cli_shot *shot, const struct cli_args *args, const struct cli_keys *keys,
-              const struct hf_io_run *run, struct cli_error *error)
+              const struct hf_io_run *run, struct tool_error *error)
 {
     const struct cli_jobs *jobs = &shot->jobs, *around = shot->around.count ? &shot->around : jobs;
     const int reach = args->focus_smooth < 0 ? CLI_FOCUS_SMOOTH : args->focus_smooth;
     struct tracker t = {.args = args, .keys = keys};
     t.looks = calloc((size_t)around->count, sizeof(*t.looks));
     if (!t.looks)
-        return cli_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
     // Where views are files of their own, the first is the one that is looked at.
     for (int i = 0; i < around->count; i++)
         if (around->list[i].view <= 0)

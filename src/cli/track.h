@@ -22,6 +22,6 @@ int cli_track_wanted(const struct cli_args *args, const struct cli_keys *keys);
 // It depends on the files of the shot alone, not on which of them this process makes. Returns 0, or an exit code with
 // *error filled.
 int cli_track(float *focus, const struct cli_shot *shot, const struct cli_args *args, const struct cli_keys *keys,
-              const struct hf_io_run *run, struct cli_error *error);
+              const struct hf_io_run *run, struct tool_error *error);
 
 #endif

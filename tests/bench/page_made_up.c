@@ -12,7 +12,7 @@
 enum { WIDTH = 320, HEIGHT = 200, SETTINGS = 60, SCENES = 3, SAMPLES = 5 };
 
 // In place of rendering: a picture that differs from setting to setting.
-int trade_run_render(struct trade_run *run, int result, int scene, struct bench_error *error)
+int trade_run_render(struct trade_run *run, int result, int scene, struct tool_error *error)
 {
     (void)error;
     float *p = run->out[scene].image.data[0];
@@ -62,7 +62,7 @@ int main(int argc, char **argv)
     static struct trade_setting settings[SETTINGS];
     static struct trade_run run;
     static const struct bench_args args = {.quick = 1};
-    struct bench_error error = {""};
+    struct tool_error error = {""};
     struct trade t = {.args = &args,
                       .threads = 2,
                       .isa = HF_ISA_SCALAR,

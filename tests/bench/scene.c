@@ -14,7 +14,7 @@ static const struct bench_optics optics = {.focus = 20, .range = 10, .max_radius
 static struct bench_scene paint(const char *name, int width, int height, const struct bench_optics *o)
 {
     struct bench_scene scene;
-    struct bench_error error = {""};
+    struct tool_error error = {""};
     CHECK_MSG(!bench_scene_paint(&scene, name, width, height, o, &error), "%s %dx%d: %s", name, width, height,
               error.text);
     return scene;
@@ -153,7 +153,7 @@ static void test_names(void)
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         CHECK_MSG(!bench_scene_builtin(bad[i], NULL), "'%s' counts as a scene", bad[i]);
     struct bench_scene s;
-    struct bench_error error = {""};
+    struct tool_error error = {""};
     CHECK(bench_scene_paint(&s, "nowhere", 4, 4, &optics, &error) == -1);
     CHECK(strstr(error.text, "nowhere") != NULL);
     CHECK(!s.rgb && !s.depth);
@@ -223,7 +223,7 @@ static void test_formats(void)
 static void test_depth(const char *name)
 {
     struct bench_scene mixed, painted;
-    struct bench_error error;
+    struct tool_error error;
     float depth[64 * 40];
     CHECK(!bench_scene_paint(&mixed, "mixed", 64, 40, &optics, &error));
     CHECK(!bench_scene_paint(&painted, name, 64, 40, &optics, &error));

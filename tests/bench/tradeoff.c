@@ -114,7 +114,7 @@ static void test_ladder(void)
 static void test_cache(void)
 {
     char path[] = "/tmp/hyperfocal-test-XXXXXX";
-    struct bench_error error;
+    struct tool_error error;
     struct trade_cache *cache;
     const int fd = mkstemp(path);
     CHECK(fd >= 0);

@@ -177,6 +177,15 @@ for option in output focus focus-at range strength near-begin near-end far-begin
 done
 [ "$(awk 'length($0) > 80' "$dir/help" | wc -l)" -eq 0 ]
 result "--help fits 80 columns" $?
+# The man page is made of the same table: an option has an entry each, and it is a page that man can set.
+run --help=man
+grep -q '^\.TH hyperfocal 1' "$dir/out" && grep -q '^\.SH OPTIONS' "$dir/out" &&
+    [ "$(grep -c '^\.B .*\\-\\-[a-z]' "$dir/out")" -eq "$(grep -Ec '^( {6}|  -., )--' "$dir/help")" ]
+result "--help=man" $?
+if command -v groff >/dev/null; then
+    [ -z "$(groff -man -Tascii -ww "$dir/out" 2>&1 >/dev/null)" ]
+    result "groff sets the man page without a warning" $?
+fi
 run --version
 [ "$status" -eq 0 ] && [ ! -s "$dir/err" ] && grep -Eq '^hyperfocal [0-9]+\.[0-9]+\.[0-9]+' "$dir/out"
 result "--version" $?

@@ -45,7 +45,7 @@ static const struct {
 
 static void parse(void)
 {
-    struct cli_error error;
+    struct tool_error error;
     for (size_t i = 0; i < sizeof(lists) / sizeof(lists[0]); i++) {
         struct cli_frames frames;
         char got[256] = "";
@@ -73,7 +73,7 @@ static void gaps(void)
 // The parts are all frames, each once, in order, and their sizes differ by one at most.
 static void chunks(void)
 {
-    struct cli_error error;
+    struct tool_error error;
     for (int parts = 1; parts <= 20; parts++) {
         int next = 1;
         for (int part = 0; part < parts; part++) {

@@ -12,7 +12,7 @@
 
 static char path[] = "/tmp/hyperfocal-keys-XXXXXX";
 
-static int load(struct cli_keys *keys, const char *text, int smooth, struct cli_error *error)
+static int load(struct cli_keys *keys, const char *text, int smooth, struct tool_error *error)
 {
     FILE *out = fopen(path, "w");
     if (!out || fputs(text, out) < 0 || fclose(out))
@@ -23,7 +23,7 @@ static int load(struct cli_keys *keys, const char *text, int smooth, struct cli_
 static void linear(void)
 {
     struct cli_keys keys;
-    struct cli_error error = {""};
+    struct tool_error error = {""};
     const char *text =
         "\xef\xbb\xbf# a comment\r\nframe, Focus ,range,focus-at\r\n40,3,,\"200,50\"\r\n1,4.5,2,960:540\r\n"
         "\n11,,4,\n";
@@ -45,7 +45,7 @@ static void smooth(void)
 {
     static const double at[] = {1, 4, 5, 20, 21, 30}, want[] = {10, 1, 1, 0.5, 8, 7};
     struct cli_keys keys;
-    struct cli_error error = {""};
+    struct tool_error error = {""};
     const char *text = "frame,focus\n1,10\n4,1\n5,1\n20,0.5\n21,8\n30,7\n";
     if (!CHECK_MSG(!load(&keys, text, 1, &error), "%s", error.text))
         return;
@@ -93,7 +93,7 @@ static void refused(void)
         {"frame,focus-at\n1,5\n", "is not a pixel"},
     };
     struct cli_keys keys;
-    struct cli_error error;
+    struct tool_error error;
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         const int status = load(&keys, bad[i].text, 0, &error);
         CHECK_MSG(status == 1 && strstr(error.text, bad[i].says), "%s gives %d: %s", bad[i].text, status, error.text);

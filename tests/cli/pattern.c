@@ -55,7 +55,7 @@ static void with_files(const char *const names[], int create)
 static void scan_as(const char *pattern, const char *want, int want_digits)
 {
     struct cli_frames found;
-    struct cli_error error;
+    struct tool_error error;
     char path[256], got[256] = "";
     int digits;
     snprintf(path, sizeof(path), "%s/%s", dir, pattern);
@@ -83,7 +83,7 @@ static void scan(void)
     scan_as("b.##.exr", "-1 10", 2);
     scan_as("c.#.exr", "", 4);
     struct cli_frames found;
-    struct cli_error error;
+    struct tool_error error;
     int digits;
     CHECK(cli_pattern_scan("/nonexistent-directory/a.#.exr", &found, &digits, &error) == 3 && error.text[0]);
     CHECK(cli_pattern_scan("####/a.#.exr", &found, &digits, &error) == 1 && strstr(error.text, "--frames"));

@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         line = end;
     }
     struct cli_args args;
-    struct cli_error error = {""};
+    struct tool_error error = {""};
     const int err = cli_parse_args(&args, argc, argv, &error);
     // One sentence when it is refused, none when it is not; never a line break or half a terminal's escape in it.
     MUST(err == 0 || err == -1);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/error.h"
+#include "tool/error.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 
-atomic_int cli_bar_shown;
+const char *tool_program = "hyperfocal";
+atomic_int tool_bar_shown;
 
-int cli_fail(struct cli_error *error, int code, const char *format, ...)
+int tool_fail(struct tool_error *error, int code, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
@@ -22,20 +23,20 @@ static void hide_controls(char *text)
             *c = '?';
 }
 
-const char *cli_shown(const char *text, char buf[CLI_SHOWN])
+const char *tool_shown(const char *text, char buf[TOOL_SHOWN])
 {
-    snprintf(buf, CLI_SHOWN, "%s", text);
+    snprintf(buf, TOOL_SHOWN, "%s", text);
     hide_controls(buf);
     return buf;
 }
 
-void cli_print_line(const char *format, ...)
+void tool_print_line(const char *format, ...)
 {
-    char line[sizeof(((struct cli_error *)0)->text)];
+    char line[sizeof(((struct tool_error *)0)->text)];
     va_list list;
     va_start(list, format);
     vsnprintf(line, sizeof(line), format, list);
     va_end(list);
     hide_controls(line);
-    fprintf(stderr, "%shyperfocal: %s\n", atomic_exchange(&cli_bar_shown, 0) ? "\r\033[K" : "", line);
+    fprintf(stderr, "%s%s: %s\n", atomic_exchange(&tool_bar_shown, 0) ? "\r\033[K" : "", tool_program, line);
 }

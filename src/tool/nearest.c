@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/nearest.h"
+#include "tool/nearest.h"
+
+#include <string.h>
 
 enum { LONGEST = 63 };
 
@@ -8,7 +10,7 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-int cli_word_distance(const char *a, int a_length, const char *b, int b_length)
+int tool_word_distance(const char *a, int a_length, const char *b, int b_length)
 {
     // Rows of the table for the letters of a: the one before the last, the last, this one.
     int row[3][LONGEST + 1];
@@ -31,7 +33,14 @@ int cli_word_distance(const char *a, int a_length, const char *b, int b_length)
     return row[a_length % 3][b_length];
 }
 
-int cli_is_near(int distance, int length)
+int tool_is_near(int distance, int length)
 {
     return distance <= (length > 6 ? 3 : length > 3 ? 2 : 1) && distance < length;
+}
+
+void tool_nearest_try(struct tool_nearest *nearest, const char *word, int length, const char *wanted)
+{
+    const int distance = tool_word_distance(word, length, wanted, (int)strlen(wanted));
+    if (tool_is_near(distance, length) && (!nearest->word || distance < nearest->distance))
+        *nearest = (struct tool_nearest){word, length, distance};
 }

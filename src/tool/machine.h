@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The machine that a program runs on.
+#ifndef HF_TOOL_MACHINE_H
+#define HF_TOOL_MACHINE_H
+
+#include <stddef.h>
+
+// Name of the CPU as the kernel tells it; ARM kernels tell none.
+void tool_cpu(char *name, size_t size);
+
+// Milliseconds of a clock that only goes forward.
+double tool_now_ms(void);
+
+#endif

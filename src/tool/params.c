@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Options that set the library's parameters as they are, for both programs. An option of an engine goes here.
+#include "tool/options.h"
+
+#include <stddef.h>
+
+// A choice is stored as an int.
+_Static_assert(sizeof(enum hf_isa) == sizeof(int) && sizeof(enum hf_engine) == sizeof(int), "size of an enum");
+
+// The option's struct.
+static struct hf_params *params_of(const struct tool_parser *p, const struct tool_option *option)
+{
+    return (struct hf_params *)((char *)tool_field(p, option) - option->offset);
+}
+
+// Of whichever engine: before the engine is known.
+static int parse_resolution(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct hf_params *params = params_of(p, option);
+    if (tool_parse_name(p, option, value))
+        return -1;
+    params->scatter.resolution = params->gaussian.resolution = params->hexagon.resolution;
+    return 0;
+}
+
+static int parse_faithful(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct hf_params *params = params_of(p, option);
+    (void)value;
+    params->gather.faithful = params->gaussian.faithful = 1;
+    return 0;
+}
+
+// clang-format off
+#define FIELD(f) .offset = offsetof(struct hf_params, f)
+#define FLAG(f) .parse = tool_parse_flag, FIELD(f)
+#define NAME(f, of) .parse = tool_parse_name, FIELD(f), .names = HF_NAMES_##of
+#define COUNT(f, least, most) .parse = tool_parse_count, FIELD(f), .min = (least), .max = (most)
+#define NUMBER(f, least, most) .parse = tool_parse_number, FIELD(f), .min = (least), .max = (most)
+
+const struct tool_option tool_params_options[] = {
+    {"chromatic", 0, TOOL_LOOK, "S", "scatter: red highlights larger by this fraction and blue ones smaller behind the "
+     "focus, the other way before it, -0.5 to 0.5. Default 0.", NUMBER(scatter.chromatic, -0.5, 0.5)},
+    {"cat-eye", 0, TOOL_LOOK, "S", "scatter: cut highlights towards the corners, 0 (default) to 1.",
+     NUMBER(aperture.cat_eye, 0, 1)},
+    {"squeeze", 0, TOOL_LOOK, "S", "scatter: height over width of a highlight, 0.25 to 4. Default 1.",
+     NUMBER(aperture.squeeze, 0.25, 4)},
+    {"uniform", 0, TOOL_LOOK, NULL, "hexagon: the same blur everywhere, --max-radius.", FLAG(hexagon.uniform)},
+    {"iterations", 0, TOOL_LOOK, "N", "gaussian: passes of the 5-tap blur, 0 to 64. Default 3.",
+     COUNT(gaussian.iterations, 0, 64)},
+    {"sigma", 0, TOOL_LOOK, "PX", "gaussian: one blur of this standard deviation, pixels, in place of --iterations, 0 "
+     "to 256. Default: iterations.", NUMBER(gaussian.sigma, 0, 256)},
+    {"resolution", 0, TOOL_LOOK, "full|half|quarter", "hexagon, scatter, gaussian: size of the working buffers, quarter "
+     "only for gaussian. Default full.", .parse = parse_resolution, FIELD(hexagon.resolution), .names = HF_NAMES_RESOLUTION},
+    {"fill", 0, TOOL_LOOK, "max|mean|none", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, or "
+     "three times as many taps.", NAME(gather.fill, FILL)},
+    {"blend", 0, TOOL_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",
+     NAME(range.blend, BLEND)},
+    {"rings", 0, TOOL_LOOK, "N", "gather: rings of taps, 1 to 64. Default: as many as lie two half-resolution pixels "
+     "apart. Fewer are faster.", COUNT(gather.rings, 1, 64)},
+    {"karis", 0, TOOL_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(gather.karis)},
+    {"per-pixel-kernel", 0, TOOL_LOOK, NULL, "Scale the far kernel by each pixel's own blur.",
+     FLAG(gather.per_pixel_kernel)},
+    {"bicubic", 0, TOOL_LOOK, NULL, "Upsample the near field with a B-spline, not bilinearly.",
+     FLAG(gather.bicubic)},
+    {"faithful", 0, TOOL_LOOK, NULL, "Reproduce the published demo, its flaws included.", .parse = parse_faithful, FIELD(gather.faithful)},
+    {"storage", 0, TOOL_LOOK, "float|half|packed", "Buffers between passes: 32-bit floats (default), 16-bit floats, "
+     "or the packed formats of the book chapter.", NAME(gather.storage, STORAGE)},
+    {"deterministic", 0, TOOL_RUN, NULL, "Same bits on every instruction set.", FLAG(run.deterministic)},
+    {"no-skip", 0, TOOL_RUN, NULL, "Run every pass on every tile: same picture, slower.", FLAG(run.no_skip)},
+    {.name = NULL},
+};
+// clang-format on
