@@ -3,7 +3,7 @@
 #include "layers/kernels.h"
 
 void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
-                       int rows, int channels, int n, int add, float *const out[5])
+                       int rows, int channels, int n, int add, float *const out[5], uint8_t *any)
 {
     for (int x = 0; x < n; x++) {
         float sum[5] = {0};
@@ -19,6 +19,7 @@ void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const
                 sum[c] = sum[c] + v * in[c][at];
             sum[4] = sum[4] + w;
         }
+        any[x / 16] |= sum[4] > 0;
         for (int c = 0; c < 5; c++)
             if (c < channels || c == 4)
                 out[c][x] = add ? out[c][x] + sum[c] : sum[c];

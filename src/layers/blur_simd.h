@@ -4,7 +4,7 @@
 #include "simd/simd.h"
 
 HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
-                               const int rows, const int channels, int n, int add, float *const out[5])
+                               const int rows, const int channels, int n, int add, float *const out[5], uint8_t *any)
 {
     const vf radius = vf_set1(s->radius), before = vf_set1(s->before), after = vf_set1(s->after);
     const vf square = vf_set1(s->square), before_square = vf_set1(s->before_square);
@@ -28,6 +28,7 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
                 sum[c] = vf_fma(v, vf_load(in[c] + at), sum[c]);
             sum[4] = vf_add(sum[4], w);
         }
+        any[x / 16] |= (uint8_t)vm_any(vf_gt(sum[4], vf_zero()));
         for (int c = 0; c < 5; c++)
             if (c < channels || c == 4)
                 vf_store(out[c] + x, add ? vf_add(vf_load(out[c] + x), sum[c]) : sum[c]);
@@ -35,23 +36,24 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
 }
 
 HF_INLINE void layers_weigh_rows(const struct hf_slice *s, const float *const in[6], const float *share,
-                                 ptrdiff_t stride, int rows, const int channels, int n, int add, float *const out[5])
+                                 ptrdiff_t stride, int rows, const int channels, int n, int add, float *const out[5],
+                                 uint8_t *any)
 {
     if (rows == 1)
-        layers_weigh_of(s, in, share, stride, 1, channels, n, add, out);
+        layers_weigh_of(s, in, share, stride, 1, channels, n, add, out, any);
     else if (rows == 2)
-        layers_weigh_of(s, in, share, stride, 2, channels, n, add, out);
+        layers_weigh_of(s, in, share, stride, 2, channels, n, add, out, any);
     else
-        layers_weigh_of(s, in, share, stride, rows, channels, n, add, out);
+        layers_weigh_of(s, in, share, stride, rows, channels, n, add, out, any);
 }
 
 static void layers_weigh_simd(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
-                              int rows, int channels, int n, int add, float *const out[5])
+                              int rows, int channels, int n, int add, float *const out[5], uint8_t *any)
 {
     if (channels == 3)
-        layers_weigh_rows(s, in, share, stride, rows, 3, n, add, out);
+        layers_weigh_rows(s, in, share, stride, rows, 3, n, add, out, any);
     else
-        layers_weigh_rows(s, in, share, stride, rows, 4, n, add, out);
+        layers_weigh_rows(s, in, share, stride, rows, 4, n, add, out, any);
 }
 
 // Reads and writes whole vectors only where they are its own: n may be less than one.

@@ -42,6 +42,7 @@ static size_t place(struct hf_cell *c, float *memory)
               n = hf_layers_most_tiles(c->l);
     const int wide = width + 2 * n * TILE + 2 * AROUND;
     c->used = take_map(&m, c->columns, c->rows, n);
+    c->filled = take_map(&m, c->columns, TILE / 2, n);
     struct hf_tile_map *const maps[] = {&c->touched, &c->shone, &c->near, &c->far, &c->middle};
     for (int i = 0; i < 5; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
@@ -58,6 +59,7 @@ static size_t place(struct hf_cell *c, float *memory)
     const struct hf_window part = take_window(&m, width / 2, height / 2, 1);
     c->part = part.at;
     c->part_row = part.row;
+    c->any = (uint8_t *)take(&m, (size_t)wide / 16 / sizeof(float) + 1, 0);
     for (int i = 0; i < 5; i++) {
         c->line[i] = take(&m, (size_t)wide, 0);
         c->row[i] = take(&m, (size_t)width + AROUND, 0);

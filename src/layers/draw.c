@@ -39,7 +39,7 @@ static float *source_at(const struct hf_cell *c, int i, int x, int y)
     return c->source.at + y * c->source.row + i * c->source.channel + x;
 }
 
-// The sources of one row of a run of tiles.
+// The sources of one row of a run of tiles; notes where there are any.
 static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int y)
 {
     const struct hf_layers *l = c->l;
@@ -47,19 +47,27 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     const int px = (c->x0 >> b->finest) + tx * size, py = (c->y0 >> b->finest) + ty * size + (y << level);
     const float *in[6] = {NULL};
     float *out[5];
+    int some = 0;
+    memset(c->any, 0, (size_t)(n + 15) / 16);
     for (int i = 0; i < 5; i++)
         out[i] = level ? c->line[i] : source_at(c, i < 4 ? i : l->channels, tx * size, y);
     hf_layers_planes_at(l, b->set, b->weight, px, py, in);
     c->k->weigh(b->s, in, b->share ? b->share + (ptrdiff_t)py * b->set->stride + px : NULL, b->set->stride, rows,
-                l->channels, n, 0, out);
+                l->channels, n, 0, out, c->any);
     for (int from = tx, to; b->mixed && (to = hf_layers_next_run(&c->used, &from, ty, end, MIXED)) > from; from = to) {
         float *more[5];
         for (int i = 0; i < 5; i++)
             more[i] = out[i] + (from - tx) * size;
         hf_layers_planes_at(l, &c->samples->mixed, c->samples->mixed.weight, c->x0 + from * size, py, in);
-        c->k->weigh(b->s, in, NULL, c->samples->mixed.stride, rows, l->channels, (to - from) * size, 1, more);
+        c->k->weigh(b->s, in, NULL, c->samples->mixed.stride, rows, l->channels, (to - from) * size, 1, more,
+                    c->any + (from - tx) * size / 16);
     }
-    for (int i = 0; i < b->channels; i++) {
+    for (int i = tx; i < end; i++) {
+        const int any = c->any[(i - tx) * size / 16];
+        *hf_layers_map_at(&c->filled, i, y / 2) |= (uint8_t)any;
+        some |= any;
+    }
+    for (int i = 0; some && i < b->channels; i++) {
         float *line = out[i < l->channels ? i : 4], *to = source_at(c, i, tx * (TILE >> b->s->level), y);
         for (int j = level; j > 0; j--)
             c->k->fold(line, n >> (level - j + 1), j > 1 ? line : to);
@@ -68,44 +76,43 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
 
 static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
 {
-    const int n = hf_layers_tiles_around(b->s);
+    const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level;
+    for (int i = 0; i < size / 2; i++)
+        memset(hf_layers_map_at(&c->filled, -n, i), 0, (size_t)(c->columns + 2 * n));
     for (int tx = -n, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0)) > tx; tx = end)
-        for (int y = 0; y < TILE >> b->s->level; y++)
+        for (int y = 0; y < size; y++)
             build_run(c, b, tx, end, ty, y);
 }
 
 // Also what vectors have written past the last tile.
-static void clear_row(const struct hf_cell *c, const struct hf_build *b, int ty)
+static void clear_row(const struct hf_cell *c, const struct hf_build *b)
 {
     const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level;
-    for (int tx = -n, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0)) > tx; tx = end)
-        for (int y = 0; y < size; y++)
+    for (int y = 0; y < size; y++)
+        for (int tx = -n, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->columns + n, ~0)) > tx; tx = end)
             for (int i = 0; i <= c->l->channels; i++)
                 memset(source_at(c, i, tx * size, y), 0, sizeof(float) * (size_t)((end - tx) * size + 16));
 }
 
-// Draw columns x0 to x1 of a row of tiles' sources.
-static void draw_span(const struct hf_cell *c, const struct hf_build *b, int ty, int x0, int x1,
+// Draw columns x0 to x1 of two rows of a row of tiles' sources.
+static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at, int y, int x0, int x1,
                       const struct hf_window *to)
 {
     const struct hf_slice *s = b->s;
-    const int size = TILE >> s->level, margin = s->level ? MARGIN : 0, height = c->rows * size;
-    for (int y = 0; y < size; y += 2)
-        for (int i = 0; i < b->channels; i++) {
-            const int at = ty * size + y;
-            c->k->disc(s, source_at(c, i, x0, y), source_at(c, i, x0, y + 1), x1 - x0, -margin - at,
-                       height + margin - at, to->at + at * to->row + i * to->channel + x0, to->row);
-        }
+    const int margin = s->level ? MARGIN : 0, height = c->rows * (TILE >> s->level);
+    for (int i = 0; i < b->channels; i++)
+        c->k->disc(s, source_at(c, i, x0, y), source_at(c, i, x0, y + 1), x1 - x0, -margin - at, height + margin - at,
+                   to->at + at * to->row + i * to->channel + x0, to->row);
 }
 
-// Draw the sources of a row of tiles into the window. Spans lie on vectors, and what is between two is 0 in both.
-static void draw_row(const struct hf_cell *c, const struct hf_build *b, int ty, const struct hf_window *to)
+// Draw two rows of a row of tiles' sources into the window. Spans lie on vectors, and what is between two is 0 in both.
+static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty, int y, const struct hf_window *to)
 {
     const struct hf_slice *s = b->s;
     const int n = hf_layers_tiles_around(s), size = TILE >> s->level, margin = s->level ? MARGIN : 0;
-    const int last = c->columns * size + margin;
+    const int last = c->columns * size + margin, at = ty * size + y;
     int x0 = 0, x1 = 0;
-    for (int tx = -n, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0)) > tx; tx = end) {
+    for (int tx = -n, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->columns + n, ~0)) > tx; tx = end) {
         int a = tx * size - s->reach, z = end * size + s->reach;
         a = a > -margin ? a : -margin;
         z = z < last ? z : last;
@@ -113,7 +120,7 @@ static void draw_row(const struct hf_cell *c, const struct hf_build *b, int ty, 
             continue;
         hf_layers_align_span(&a, &z);
         if (x1 > x0 && a > x1) {
-            draw_span(c, b, ty, x0, x1, to);
+            draw_span(c, b, at, y, x0, x1, to);
             x0 = a;
         } else if (x1 <= x0) {
             x0 = a;
@@ -121,7 +128,7 @@ static void draw_row(const struct hf_cell *c, const struct hf_build *b, int ty, 
         x1 = z;
     }
     if (x1 > x0)
-        draw_span(c, b, ty, x0, x1, to);
+        draw_span(c, b, at, y, x0, x1, to);
 }
 
 void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
@@ -135,7 +142,8 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
             (ty + 1) * size + b->s->rows <= -margin || ty * size - b->s->rows >= c->rows * size + margin)
             continue;
         build_row(c, b, ty);
-        draw_row(c, b, ty, to);
-        clear_row(c, b, ty);
+        for (int y = 0; y < size; y += 2)
+            draw_pair(c, b, ty, y, to);
+        clear_row(c, b);
     }
 }

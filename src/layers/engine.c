@@ -95,7 +95,6 @@ static void place_tiles(struct hf_layers *l)
     l->seen_range = l->tiles.data;
     l->mixed_range = l->seen_range + n;
     l->hidden_range = l->mixed_range + n;
-    l->bright = (uint8_t *)(l->hidden_range + n);
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
@@ -108,7 +107,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     l->columns = (s->width + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
-    int err = hf_block_grow(&l->tiles, tiles * (3 * sizeof(struct hf_layers_range) + 1), mem);
+    int err = hf_block_grow(&l->tiles, tiles * 3 * sizeof(struct hf_layers_range), mem);
     if (!err)
         err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
     if (!err)
@@ -121,19 +120,19 @@ static void release(void *own, const struct hf_mem *mem)
     struct hf_layers *l = own;
     hf_block_free(&l->tables, mem);
     hf_block_free(&l->tiles, mem);
+    hf_block_free(&l->marks, mem);
 }
 
 static size_t bytes(const void *own)
 {
     const struct hf_layers *l = own;
-    return l->tables.size + l->tiles.size;
+    return l->tables.size + l->tiles.size + l->marks.size;
 }
 
 static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
 {
     struct hf_layers *l = own;
     (void)s;
-    (void)mem;
     l->nearest = fminf(found->radius_min, 0);
     l->farthest = fmaxf(found->radius_max, 0);
     hf_layers_make_slices(l);
@@ -143,6 +142,14 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;
     l->around = (hf_layers_most_tiles(l) + 2) * HF_LAYERS_TILE;
+    l->words = (l->slices + 63) / 64;
+    const size_t marks = (size_t)l->columns * (size_t)l->rows * (size_t)l->words;
+    if (hf_block_grow(&l->marks, 4 * marks * sizeof(uint64_t), mem))
+        return HF_ERR_MEMORY;
+    l->seen_marks = l->marks.data;
+    l->mixed_marks = l->seen_marks + marks;
+    l->hidden_marks = l->mixed_marks + marks;
+    l->share_marks = l->hidden_marks + marks;
     return HF_OK;
 }
 
@@ -241,6 +248,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .merge = hf_layers_merge_c,
         .tap = hf_layers_tap_c,
         .extremes = hf_layers_extremes_c,
+        .inside = hf_layers_inside_c,
         .weigh = hf_layers_weigh_c,
         .fold = hf_layers_fold_c,
         .disc = hf_layers_disc_c,

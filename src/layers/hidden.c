@@ -128,3 +128,15 @@ int hf_layers_extremes_c(const float *radius, const float *weight, const float *
     *out = range;
     return bright;
 }
+
+int hf_layers_inside_c(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
+                       float after)
+{
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < n; x++) {
+            const ptrdiff_t at = y * stride + x;
+            if (weight[at] > 0 && radius[at] > before && radius[at] < after)
+                return 1;
+        }
+    return 0;
+}

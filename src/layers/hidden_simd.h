@@ -158,3 +158,17 @@ static int layers_extremes_simd(const float *radius, const float *weight, const 
     }
     return hf_layers_extremes_c(radius, weight, share, stride, n, rows, out);
 }
+
+static int layers_inside_simd(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
+                              float after)
+{
+    const int whole = n / VF_N * VF_N;
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < whole; x += VF_N) {
+            const vf r = vf_load(radius + y * stride + x);
+            const vm inside = vm_and(vf_gt(r, vf_set1(before)), vf_lt(r, vf_set1(after)));
+            if (vm_any(vm_and(inside, vf_gt(vf_load(weight + y * stride + x), vf_zero()))))
+                return 1;
+        }
+    return hf_layers_inside_c(radius + whole, weight + whole, stride, n - whole, rows, before, after);
+}

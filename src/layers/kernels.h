@@ -27,9 +27,13 @@ typedef void hf_layers_tap(const float *const in[6], int channels, const float *
 // positive; share may be NULL.
 typedef int hf_layers_extremes(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
                                int rows, struct hf_layers_range *out);
-// Shares of a slice in n samples, and in those of rows - 1 rows below them, summed. add: to what out holds.
+// Is there a sample with weight and a radius between `before` and `after` in rows of n?
+typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
+                             float after);
+// Shares of a slice in n samples, and in those of rows - 1 rows below them, summed. add: to what out holds. any[i]
+// is made 1 where there is any in the 16 samples from 16 i on.
 typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
-                             int rows, int channels, int n, int add, float *const out[5]);
+                             int rows, int channels, int n, int add, float *const out[5], uint8_t *any);
 // Sums of pairs of 2n numbers; out may be in.
 typedef void hf_layers_fold(const float *in, int n, float *out);
 // Draw n sources of two rows, one below the other, blurred by s into rows from..to; out is the upper one's.
@@ -55,6 +59,7 @@ struct hf_layers_kernels {
     hf_layers_merge *merge;
     hf_layers_tap *tap;
     hf_layers_extremes *extremes;
+    hf_layers_inside *inside;
     hf_layers_weigh *weigh;
     hf_layers_fold *fold;
     hf_layers_disc *disc;
@@ -99,6 +104,7 @@ hf_layers_quads hf_layers_quads_c;
 hf_layers_merge hf_layers_merge_c;
 hf_layers_tap hf_layers_tap_c;
 hf_layers_extremes hf_layers_extremes_c;
+hf_layers_inside hf_layers_inside_c;
 hf_layers_weigh hf_layers_weigh_c;
 hf_layers_fold hf_layers_fold_c;
 hf_layers_disc hf_layers_disc_c;

@@ -74,7 +74,10 @@ struct hf_layers {
 
     int columns, rows;  // of tiles
     struct hf_layers_range *seen_range, *mixed_range, *hidden_range;
-    uint8_t *bright;  // tiles with shares
+    // Which slices have samples in a tile, a bit for each: of what is seen, mixed, hidden, and of shares.
+    struct hf_block marks;
+    int words;  // of a tile's bits
+    uint64_t *seen_marks, *mixed_marks, *hidden_marks, *share_marks;
 };
 
 // The samples of a frame.

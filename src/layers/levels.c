@@ -131,8 +131,32 @@ static void find(const struct band *b, int x, int n, int y)
     }
 }
 
-// Which radii there are in the tiles of a band.
-static void range_tiles(const struct hf_frame *f, struct hf_rect r)
+// Samples of a tile.
+struct tile {
+    const float *radius, *weight;
+    ptrdiff_t stride;
+    int n, rows;
+};
+
+static struct tile tile_of(const struct hf_buf *at, int weight, int x, int y, int n, int rows)
+{
+    return (struct tile){hf_at(at, 1, x, y), hf_at(at, weight, x, y), at->stride, n, rows};
+}
+
+// Which slices have samples of a tile whose radii lie in a range.
+static void mark_slices(const struct hf_frame *f, struct tile t, struct hf_layers_range range,
+                        const struct hf_slice *slice, uint64_t *bits)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    memset(bits, 0, sizeof *bits * (size_t)l->words);
+    for (int i = 0; range.low <= range.high && i < l->slices && slice[i].before < range.high; i++)
+        if (slice[i].after > range.low &&
+            hf_layers_kernels(f)->inside(t.radius, t.weight, t.stride, t.n, t.rows, slice[i].before, slice[i].after))
+            bits[i / 64] |= (uint64_t)1 << i % 64;
+}
+
+// Which radii and slices there are in the tiles of a band.
+static void mark_tiles(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
     const struct hf_layers_kernels *k = hf_layers_kernels(f);
@@ -141,18 +165,23 @@ static void range_tiles(const struct hf_frame *f, struct hf_rect r)
     const int size = HF_LAYERS_TILE, half = size / 2;
     for (int ty = r.y0 / half; ty * half < r.y1; ty++)
         for (int tx = r.x0 / half; tx * half < r.x1; tx++) {
-            const int x = tx * size, y = ty * size, at = ty * l->columns + tx;
+            const int x = tx * size, y = ty * size, at = ty * l->columns + tx, mark = at * l->words;
             const int n = hf_min(size, f->s->width - x), rows = hf_min(size, f->s->height - y);
             const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
+            const struct tile s = tile_of(seen, 0, x, y, n, rows), m = tile_of(mixed, 0, x, y, n, rows);
+            const float *share = l->set.highlights ? hf_at(seen, 2, x, y) : NULL;
             l->seen_range[at] = l->mixed_range[at] = l->hidden_range[at] = none;
-            l->bright[at] = (uint8_t)k->extremes(hf_at(seen, 1, x, y), hf_at(seen, 0, x, y),
-                                                 l->set.highlights ? hf_at(seen, 2, x, y) : NULL, seen->stride, n, rows,
-                                                 &l->seen_range[at]);
-            k->extremes(hf_at(mixed, 1, x, y), hf_at(mixed, 0, x, y), NULL, mixed->stride, n, rows,
-                        &l->mixed_range[at]);
-            if (l->levels)
-                k->extremes(hf_at(hidden, 1, x / 2, y / 2), hf_at(hidden, 0, x / 2, y / 2), NULL, hidden->stride,
-                            (n + 1) / 2, (rows + 1) / 2, &l->hidden_range[at]);
+            const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
+            k->extremes(m.radius, m.weight, NULL, m.stride, n, rows, &l->mixed_range[at]);
+            mark_slices(f, s, l->seen_range[at], l->slice, &l->seen_marks[mark]);
+            mark_slices(f, m, l->mixed_range[at], l->slice, &l->mixed_marks[mark]);
+            mark_slices(f, tile_of(seen, share ? 2 : 0, x, y, n, rows), bright ? l->seen_range[at] : none, l->slice,
+                        &l->share_marks[mark]);
+            if (!l->levels)
+                continue;
+            const struct tile h = tile_of(hidden, 0, x / 2, y / 2, (n + 1) / 2, (rows + 1) / 2);
+            k->extremes(h.radius, h.weight, NULL, h.stride, h.n, h.rows, &l->hidden_range[at]);
+            mark_slices(f, h, l->hidden_range[at], l->slice, &l->hidden_marks[mark]);
         }
 }
 
@@ -172,5 +201,5 @@ void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
             for (int x = r.x0; x < r.x1; x += STEP)
                 find(&b, x, hf_min(STEP, r.x1 - x), y);
     }
-    range_tiles(f, r);
+    mark_tiles(f, r);
 }

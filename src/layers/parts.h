@@ -20,7 +20,10 @@ struct hf_tile_map {
     int stride;
 };
 
-enum { SEEN = 1, MIXED = 2, BRIGHT = 4 };
+enum { SEEN = 1, MIXED = 2 };
+
+// What of a slice is drawn: samples that are seen with those behind mixed edges, hidden ones, shares at full resolution.
+enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
 
 enum { NEAR, FAR, MIDDLE };
 
@@ -30,6 +33,7 @@ struct hf_cell {
     const struct hf_layers_kernels *k;
     int x0, y0, columns, rows;   // of tiles
     struct hf_tile_map used;     // tiles that have samples of the slice
+    struct hf_tile_map filled;   // pairs of rows of a row of tiles: where there are any
     struct hf_tile_map touched;  // tiles that its blur reaches, one more around the cell
     struct hf_tile_map shone;    // the same of its shares at full resolution
     struct hf_tile_map near, far, middle;
@@ -37,6 +41,7 @@ struct hf_cell {
     struct hf_window stack[3], light[2];  // near, far, middle; what shines of near and far
     float *line[5];                       // sums at full resolution, on their way to the source's
     float *row[5];                        // upsampled
+    uint8_t *any;                         // where a row of a run has samples of the slice, 16 at once
     float *part;                          // how much of a slice shows, half resolution
     ptrdiff_t part_row;
 };
@@ -70,10 +75,15 @@ static inline struct hf_stack_row hf_layers_stack_at(const struct hf_cell *c, in
     return r;
 }
 
+static inline const struct hf_slice *hf_layers_table(const struct hf_layers *l, enum hf_kind kind)
+{
+    return kind == HF_KIND_SEEN ? l->slice : kind == HF_KIND_HIDDEN ? l->behind : l->shine;
+}
+
 // tiles.c
 struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct hf_layers_range *map, int tx, int ty);
 // Mark the tiles around the cell that have samples of the slice. Returns 0 if there are none.
-int hf_layers_mark_used(struct hf_cell *c, const struct hf_slice *s, int hidden, int shares);
+int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind);
 // Tiles of the cell, and one around it, that the blur of what is used reaches.
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to);
 // The next run of set tiles from *tx on, up to `end`; returns its end, or *tx if there is none.

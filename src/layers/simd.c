@@ -19,6 +19,7 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->merge = layers_merge_simd;
     k->tap = layers_tap_simd;
     k->extremes = layers_extremes_simd;
+    k->inside = layers_inside_simd;
     k->weigh = layers_weigh_simd;
     k->fold = layers_fold_simd;
     k->disc = layers_disc_simd;

@@ -4,44 +4,42 @@
 
 #include "layers/parts.h"
 
+// The number of a tile in the frame's tables; tiles beyond it hold the samples of its border.
+static int tile_number(const struct hf_cell *c, int tx, int ty)
+{
+    const struct hf_layers *l = c->l;
+    int x = c->x0 / TILE + tx, y = c->y0 / TILE + ty;
+    x = x < 0 ? 0 : x < l->columns ? x : l->columns - 1;
+    y = y < 0 ? 0 : y < l->rows ? y : l->rows - 1;
+    return y * l->columns + x;
+}
+
 struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct hf_layers_range *map, int tx, int ty)
 {
-    const struct hf_layers *l = c->l;
-    int x = c->x0 / TILE + tx, y = c->y0 / TILE + ty;
-    x = x < 0 ? 0 : x < l->columns ? x : l->columns - 1;
-    y = y < 0 ? 0 : y < l->rows ? y : l->rows - 1;
-    return map[y * l->columns + x];
+    return map[tile_number(c, tx, ty)];
 }
 
-static int is_bright(const struct hf_cell *c, int tx, int ty)
+static int has(const struct hf_layers *l, const uint64_t *marks, int tile, int slice)
+{
+    return (int)(marks[(ptrdiff_t)tile * l->words + slice / 64] >> slice % 64 & 1);
+}
+
+int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
 {
     const struct hf_layers *l = c->l;
-    int x = c->x0 / TILE + tx, y = c->y0 / TILE + ty;
-    x = x < 0 ? 0 : x < l->columns ? x : l->columns - 1;
-    y = y < 0 ? 0 : y < l->rows ? y : l->rows - 1;
-    return l->bright[y * l->columns + x];
-}
-
-static int meets(struct hf_layers_range r, const struct hf_slice *s)
-{
-    return r.low < s->after && r.high > s->before && r.low <= r.high;
-}
-
-int hf_layers_mark_used(struct hf_cell *c, const struct hf_slice *s, int hidden, int shares)
-{
-    const int n = hf_layers_tiles_around(s);
+    const int n = hf_layers_tiles_around(hf_layers_table(l, kind) + slice);
     int any = 0;
     for (int ty = -n; ty < c->rows + n; ty++)
         for (int tx = -n; tx < c->columns + n; tx++) {
+            const int tile = tile_number(c, tx, ty);
             int bits = 0;
-            if (hidden) {
-                bits = meets(hf_layers_range_at(c, c->l->hidden_range, tx, ty), s) ? SEEN : 0;
-            } else if (shares) {
-                bits = is_bright(c, tx, ty) && meets(hf_layers_range_at(c, c->l->seen_range, tx, ty), s) ? SEEN : 0;
-            } else {
-                bits = (meets(hf_layers_range_at(c, c->l->seen_range, tx, ty), s) ? SEEN : 0) |
-                       (meets(hf_layers_range_at(c, c->l->mixed_range, tx, ty), s) ? MIXED : 0);
-            }
+            if (kind == HF_KIND_HIDDEN)
+                bits = has(l, l->hidden_marks, tile, slice);
+            else if (kind == HF_KIND_SHARES)
+                bits = has(l, l->share_marks, tile, slice);
+            else
+                bits =
+                    (has(l, l->seen_marks, tile, slice) ? SEEN : 0) | (has(l, l->mixed_marks, tile, slice) ? MIXED : 0);
             *hf_layers_map_at(&c->used, tx, ty) = (uint8_t)bits;
             any |= bits;
         }

@@ -61,12 +61,13 @@ static void mark(const struct hf_cell *c, const struct hf_tile_map *from, struct
 }
 
 // Shares of highlights, at full resolution, where the slice shows.
-static void put_light(struct hf_cell *c, int stack, const struct hf_slice *wide)
+static void put_light(struct hf_cell *c, int stack, int slice)
 {
     const struct hf_layers *l = c->l;
+    const struct hf_slice *wide = &l->shine[slice];
     const struct hf_build b = {
         .s = wide, .set = &c->samples->seen, .weight = c->samples->share, .channels = l->channels};
-    if (!hf_layers_mark_used(c, wide, 0, 1) || !hf_layers_mark_touched(c, wide, &c->shone))
+    if (!hf_layers_mark_used(c, slice, HF_KIND_SHARES) || !hf_layers_mark_touched(c, wide, &c->shone))
         return;
     hf_layers_draw_slice(c, &b, &c->shone, &c->shine);
     const struct hf_window *to = &c->light[stack];
@@ -91,7 +92,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
     const struct hf_slice *s = &l->slice[i], *behind = &l->behind[i];
     const int stack = s->level == 0 ? MIDDLE : s->radius < 0 ? NEAR : FAR;
     struct hf_tile_map *reached = stack == NEAR ? &c->near : stack == FAR ? &c->far : &c->middle;
-    if (hf_layers_mark_used(c, s, 0, 0) && hf_layers_mark_touched(c, s, &c->touched)) {
+    if (hf_layers_mark_used(c, i, HF_KIND_SEEN) && hf_layers_mark_touched(c, s, &c->touched)) {
         const int shares = l->set.highlights && s->level > 0;
         const struct hf_build b = {.s = s,
                                    .set = &c->samples->seen,
@@ -104,9 +105,9 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
         if (s->radius != 0)
             mark(c, &c->touched, reached);
         if (shares)
-            put_light(c, stack, &l->shine[i]);
+            put_light(c, stack, i);
     }
-    if (l->levels && hf_layers_mark_used(c, behind, 1, 0) && hf_layers_mark_touched(c, behind, &c->touched)) {
+    if (l->levels && hf_layers_mark_used(c, i, HF_KIND_HIDDEN) && hf_layers_mark_touched(c, behind, &c->touched)) {
         const struct hf_build b = {.s = behind,
                                    .set = &c->samples->hidden,
                                    .weight = c->samples->hidden.weight,
