@@ -60,6 +60,7 @@ struct cli_args {
     char *settings;      // the options that change pixels, as they were given
 
     const char *views;  // NULL: all, else names with commas
+    const char *layer;  // likewise; NULL: the main one
     const char *compression;
     const char *dump_dir;
     int explain;

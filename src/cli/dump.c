@@ -36,8 +36,8 @@ void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const str
                     const struct cli_view *view)
 {
     *dump = (struct cli_dump){.args = frame->args, .dir = frame->args->dump_dir};
-    if (frame->view_count > 1 && view->view->name[0])
-        snprintf(dump->prefix, sizeof(dump->prefix), "%s.", view->view->name);
+    if (frame->view_count > 1 && view->tag[0])
+        snprintf(dump->prefix, sizeof(dump->prefix), "%s.", view->tag);
     else if (frame->view_count > 1)
         snprintf(dump->prefix, sizeof(dump->prefix), "view%d.", view->index);
     // The name is the file's, and must not lead out of the directory.

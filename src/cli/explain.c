@@ -112,8 +112,8 @@ static char *image_path(const struct cli_frame *frame, const struct cli_view *v)
     if (!dot || (slash && dot < slash))
         dot = file + strlen(file);
     const int stem = (int)(dot - file);
-    const int n = v->view->name[0] ? asprintf(&path, "%.*s.%s%s", stem, file, v->view->name, dot)
-                                   : asprintf(&path, "%.*s.view%d%s", stem, file, v->index, dot);
+    const int n = v->tag[0] ? asprintf(&path, "%.*s.%s%s", stem, file, v->tag, dot)
+                            : asprintf(&path, "%.*s.view%d%s", stem, file, v->index, dot);
     if (n < 0)
         return NULL;
     // The name is the file's, and must not lead elsewhere.

@@ -56,7 +56,8 @@ int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const s
     *frame = (struct cli_frame){.args = args, .run = run};
     const double start = tool_now_ms();
     // With a depth file the channel's name is meant for that one.
-    if (hf_io_open(&frame->file, args->input, args->depth_file ? NULL : args->depth_channel, &io))
+    const struct hf_io_choice choice = {args->depth_file ? NULL : args->depth_channel, args->layer};
+    if (hf_io_open(&frame->file, args->input, &choice, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     frame->ms[CLI_READ] += tool_now_ms() - start;
     return cli_select_views(frame, error);
@@ -296,6 +297,7 @@ void cli_frame_close(struct cli_frame *frame)
             free(v->planes[c]);
         free(v->depth);
         free(v->label);
+        free(v->tag);
         free(v->tiles);
     }
     free(frame->views);

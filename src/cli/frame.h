@@ -16,6 +16,7 @@ struct cli_session {
 struct cli_view {
     int index;  // in the file
     const struct hf_io_view *view;
+    char *tag;    // what tells it from others of the frame: "left", "Foreground.Combined"; "" when it is the only one
     char *label;  // "shot.exr", "shot.exr, view left"
     struct cli_setup setup;
     float *depth;  // NULL: not read yet, or not needed any more

@@ -116,6 +116,13 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
 {
     tool_json_open(j, NULL, '{');
     tool_json_text(j, "name", v->view->name);
+    tool_json_text(j, "layer", v->view->layer);
+    tool_json_row(j, "colour", '[');
+    for (int c = 0; c < 4; c++)
+        if (v->view->colour[c][0])
+            tool_json_text(j, NULL, v->view->colour[c]);
+    tool_json_close(j);
+    tool_json_text(j, "depth", frame->args->depth_file ? frame->args->depth_file : v->view->depth);
     tool_json_count(j, "width", v->view->width);
     tool_json_count(j, "height", v->view->height);
     put_window(j, "data_window", &v->view->data_window);

@@ -83,6 +83,7 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         const struct cli_setup *s = &v->setup;
         tool_json_open(j, NULL, '{');
         tool_json_text(j, "name", v->view->name);
+        tool_json_text(j, "layer", v->view->layer);
         tool_json_number(j, "focus", s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
         tool_json_text(j, "focus_from", s->focus_from);
         tool_json_number(j, "max_radius", v->report.used.params.max_radius);

@@ -28,11 +28,15 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
         const struct cli_view *v = &frame->views[i];
         const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
         const struct hf_params *p = &v->setup.params;
-        printf("  view %s: %d x %d, data window %d,%d to %d,%d, display window %d,%d to %d,%d\n",
-               v->view->name[0] ? tool_shown(v->view->name, name) : "(no name)", v->view->width, v->view->height,
-               data->x0, data->y0, data->x1 - 1, data->y1 - 1, display->x0, display->y0, display->x1 - 1,
-               display->y1 - 1);
-        printf("    depth %s, type %s\n", tool_shown(args->depth_file ? args->depth_file : v->view->depth, name),
+        printf("  view %s%s%s: %d x %d, data window %d,%d to %d,%d, display window %d,%d to %d,%d\n",
+               v->view->name[0] ? tool_shown(v->view->name, name) : "(no name)", v->view->layer[0] ? ", layer " : "",
+               tool_shown(v->view->layer, other), v->view->width, v->view->height, data->x0, data->y0, data->x1 - 1,
+               data->y1 - 1, display->x0, display->y0, display->x1 - 1, display->y1 - 1);
+        printf("    colour");
+        for (int c = 0; c < 4; c++)
+            if (v->view->colour[c][0])
+                printf("%s %s", c ? "," : "", tool_shown(v->view->colour[c], name));
+        printf("\n    depth %s, type %s\n", tool_shown(args->depth_file ? args->depth_file : v->view->depth, name),
                hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)

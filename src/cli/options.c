@@ -28,6 +28,8 @@ static const struct tool_option options[] = {
      "array.", TEXT(chunk)},
     {"views", 0, TOOL_FILES, "all|NAME,...", "Views to defocus, each by its own depth; the others are kept as they "
      "are. Default all.", TEXT(views)},
+    {"layer", 0, TOOL_FILES, "all|NAME,...", "Layers to defocus, each by its own depth: ViewLayer.Combined, or just "
+     "ViewLayer. all: every layer of colour, but masks, normals and the like. Default: the main one.", TEXT(layer)},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
      "Default: that of INPUT.", .parse = tool_parse_choice_text, FIELD(compression)},
 

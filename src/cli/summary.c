@@ -29,20 +29,11 @@ static const char *limit_words(enum hf_limit limit)
     }
 }
 
-// The layer that a view's colour is in: its first channel without the last part of its name.
-static int layer(const struct hf_io_view *view, const char **name)
-{
-    const char *dot = strrchr(view->colour[0], '.');
-    *name = dot ? view->colour[0] : "RGB";
-    return dot ? (int)(dot - view->colour[0]) : 3;
-}
-
 static void print_view(const struct cli_frame *frame, const struct cli_view *v, int warnings)
 {
     const struct hf_report *r = &v->report;
     const struct hf_params *p = &r->used.params;
-    const char *name, *depth = frame->args->depth_file ? frame->args->depth_file : v->view->depth;
-    const int length = layer(v->view, &name);
+    const char *depth = frame->args->depth_file ? frame->args->depth_file : v->view->depth;
     char text[512];
     int n = snprintf(text, sizeof(text), "%s", hf_engine_name(p->engine));
     if (v->setup.model == CLI_MODEL_LENS)
@@ -58,7 +49,7 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
                       r->budget_step);
     snprintf(text + n, sizeof(text) - (size_t)n, ", %.0f ms, %d warning%s", r->total_ms, warnings,
              warnings == 1 ? "" : "s");
-    tool_print_line("%s: %.*s with depth %s, %s", v->label, length, name, depth, text);
+    tool_print_line("%s: %s with depth %s, %s", v->label, v->view->layer[0] ? v->view->layer : "RGB", depth, text);
 }
 
 void cli_print_summary(const struct cli_frame *frame, int warnings)

@@ -14,8 +14,11 @@ static void list_views(const struct hf_io_file *file, char *buf, size_t size)
     buf[0] = '\0';
     for (int i = 0; i < hf_io_view_count(file); i++) {
         const char *name = hf_io_view(file, i)->name;
-        const size_t used = strlen(buf);
-        snprintf(buf + used, size - used, "%s%s", i ? ", " : "", name[0] ? name : "one without a name");
+        int again = 0;  // in another layer
+        for (int k = 0; k < i; k++)
+            again |= !strcmp(name, hf_io_view(file, k)->name);
+        if (!again)
+            hf_io_list(buf, size, NULL, name[0] ? name : "one without a name", "");
     }
 }
 
@@ -44,10 +47,13 @@ static int check_names(const struct cli_frame *frame, struct tool_error *error)
             found |= n > 0 && n == strlen(name) && !memcmp(c, name, n);
         }
         if (!found) {
-            char names[1024];
+            char names[1024], wanted[256], nearest[256], meant[300] = "";
             list_views(frame->file, names, sizeof(names));
-            return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --views names '%.*s', but the views are: %s",
-                             frame->args->input, (int)n, c, names);
+            snprintf(wanted, sizeof(wanted), "%.*s", (int)n, c);
+            if (hf_io_nearest(names, wanted, nearest))
+                snprintf(meant, sizeof(meant), " (did you mean %s?)", nearest);
+            return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --views names '%s'%s, but the views are: %s",
+                             frame->args->input, wanted, meant, names);
         }
     }
     return 0;
@@ -68,11 +74,13 @@ static int check_view(const struct cli_view *v, const struct cli_frame *frame, s
 {
     const struct hf_io_view *view = v->view;
     if (view->depth_part < 0 && !frame->args->depth_file) {
-        char channels[2048];
+        char channels[2048], nearest[256], meant[300] = "";
         const char *wanted = frame->args->depth_channel;
         hf_io_channels(frame->file, channels, sizeof(channels));
-        return tool_fail(error, CLI_ALL_FAILED, "%s: there is no depth channel%s%s%s, the channels are: %s", v->label,
-                         wanted ? " '" : "", wanted ? wanted : "", wanted ? "'" : "", channels);
+        if (wanted && hf_io_nearest(channels, wanted, nearest))
+            snprintf(meant, sizeof(meant), " (did you mean %s?)", nearest);
+        return tool_fail(error, CLI_ALL_FAILED, "%s: there is no depth channel%s%s%s%s, the channels are: %s", v->label,
+                         wanted ? " '" : "", wanted ? wanted : "", wanted ? "'" : "", meant, channels);
     }
     if (check_window(&view->data_window, "data window", v->label, error) ||
         check_window(&view->display_window, "display window", v->label, error))
@@ -83,13 +91,28 @@ static int check_view(const struct cli_view *v, const struct cli_frame *frame, s
     return 0;
 }
 
-static char *make_label(const struct cli_frame *frame, const char *view_name)
+// 1 if two views of the file differ in their names, or in their layers.
+static int differ(const struct hf_io_file *file, int by_layer)
 {
-    char *label;
-    const int several = hf_io_view_count(frame->file) > 1 && view_name[0];
-    return asprintf(&label, "%s%s%s", frame->args->input, several ? ", view " : "", several ? view_name : "") < 0
-               ? NULL
-               : label;
+    const struct hf_io_view *first = hf_io_view(file, 0);
+    for (int i = 1; i < hf_io_view_count(file); i++) {
+        const struct hf_io_view *v = hf_io_view(file, i);
+        if (by_layer ? strcmp(v->layer, first->layer) : strcmp(v->name, first->name))
+            return 1;
+    }
+    return 0;
+}
+
+static int name_view(const struct cli_frame *frame, struct cli_view *v)
+{
+    const char *name = differ(frame->file, 0) ? v->view->name : "";
+    const char *layer = !differ(frame->file, 1) ? "" : v->view->layer[0] ? v->view->layer : "RGB";
+    if (asprintf(&v->tag, "%s%s%s", name, name[0] && layer[0] ? "." : "", layer) < 0)
+        v->tag = NULL;
+    if (asprintf(&v->label, "%s%s%s%s%s", frame->args->input, name[0] ? ", view " : "", name,
+                 layer[0] ? ", layer " : "", layer) < 0)
+        v->label = NULL;
+    return v->tag && v->label ? 0 : -1;
 }
 
 int cli_select_views(struct cli_frame *frame, struct tool_error *error)
@@ -103,11 +126,16 @@ int cli_select_views(struct cli_frame *frame, struct tool_error *error)
         const struct hf_io_view *view = hf_io_view(frame->file, i);
         if (args->views && !has_word(args->views, view->name))
             continue;
+        // Where all layers are asked for, one without a depth stays as it is.
+        if (args->layer && !strcmp(args->layer, "all") && view->depth_part < 0 && !args->depth_file && count > 1) {
+            tool_print_line("%s: layer %s has no depth of its own and stays as it is", args->input,
+                            view->layer[0] ? view->layer : "RGB");
+            continue;
+        }
         struct cli_view *v = &frame->views[frame->view_count++];
         v->index = i;
         v->view = view;
-        v->label = make_label(frame, view->name);
-        if (!v->label)
+        if (name_view(frame, v))
             return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
         const int status = check_view(v, frame, error);
         if (status)
@@ -118,10 +146,11 @@ int cli_select_views(struct cli_frame *frame, struct tool_error *error)
     if (frame->view_count == 0)
         return tool_fail(error, CLI_ALL_FAILED, "%s: there are no colour channels", args->input);
     if (frame->view_count > 1 && args->output && !cli_is_exr(args->output)) {
-        char names[1024];
-        list_views(frame->file, names, sizeof(names));
-        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s can hold one view only, choose one of %s's with --views: %s",
-                         args->output, args->input, names);
+        char names[1024] = "";
+        for (int i = 0; i < frame->view_count; i++)
+            hf_io_list(names, sizeof(names), NULL, frame->views[i].tag, "");
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s can hold one picture only, choose one of %s's with %s: %s",
+                         args->output, args->input, differ(frame->file, 1) ? "--layer" : "--views", names);
     }
     return 0;
 }

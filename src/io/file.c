@@ -14,11 +14,41 @@
 
 static const struct hf_exr_codec dwa = {hf_oiio_read_samples, hf_oiio_write_samples};
 
+// What a file that is no EXR is, by its first bytes; NULL: who knows.
+static const char *kind_of(const unsigned char *first, size_t size)
+{
+    static const struct {
+        const char *bytes, *kind;
+        size_t at;
+    } kinds[] = {{"\x89PNG", "a PNG", 0},
+                 {"\xff\xd8\xff", "a JPEG", 0},
+                 {"II*", "a TIFF", 0},
+                 {"MM", "a TIFF", 0},
+                 {"#?RADIANCE", "a Radiance HDR", 0},
+                 {"8BPS", "a Photoshop file", 0},
+                 {"BLENDER", "a Blender scene", 0},
+                 {"ftyp", "a video or HEIF", 4},
+                 {"\x1a\x45\xdf\xa3", "a video", 0},
+                 {"\x28\xb5\x2f\xfd", "compressed by zstd", 0},
+                 {"\x1f\x8b", "compressed by gzip", 0},
+                 {"PK", "a zip archive", 0},
+                 {"%PDF", "a PDF", 0},
+                 {"\x7f"
+                  "ELF",
+                  "a program", 0}};
+    for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
+        const size_t n = strlen(kinds[i].bytes);
+        if (kinds[i].at + n <= size && !memcmp(first + kinds[i].at, kinds[i].bytes, n))
+            return kinds[i].kind;
+    }
+    return NULL;
+}
+
 // EXR files are known by their first bytes, whatever they are called.
 static int open_fd(const char *path, bool *exr, struct hf_io_error *err)
 {
     static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
-    unsigned char first[4] = {0};
+    unsigned char first[16] = {0};
     struct stat st;
     const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0 || fstat(fd, &st)) {
@@ -28,18 +58,24 @@ static int open_fd(const char *path, bool *exr, struct hf_io_error *err)
     } else if (st.st_size == 0) {
         hf_io_fail(err, "%s: the file is empty", path);
     } else {
-        *exr = pread(fd, first, sizeof(first), 0) == sizeof(first) && !memcmp(first, magic, sizeof(magic));
+        const ssize_t n = pread(fd, first, sizeof(first), 0);
+        const char *kind = kind_of(first, n > 0 ? (size_t)n : 0);
+        *exr = n >= (ssize_t)sizeof(magic) && !memcmp(first, magic, sizeof(magic));
         if (*exr || !hf_io_is_exr_name(path))
             return fd;
-        hf_io_fail(err, "%s: truncated or corrupt: not an EXR file", path);
+        hf_io_fail(err, "%s: not an EXR file%s%s", path, kind ? ", whatever its name says, but " : "",
+                   kind ? kind : "");
     }
     if (fd >= 0)
         close(fd);
     return -1;
 }
 
-int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_channel, struct hf_io_error *err)
+int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
+                   struct hf_io_error *err)
 {
+    static const struct hf_io_choice as_searched = {NULL, NULL};
+    choice = choice ? choice : &as_searched;
     bool exr;
     *out = NULL;
     const int fd = open_fd(path, &exr, err);
@@ -57,10 +93,12 @@ int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_
     if (exr) {
         status = hf_exr_open(&file->exr, file->path, fd, &dwa, err);
         if (!status)
-            status = hf_exr_find_views(file->exr, &file->views, depth_channel, err);
+            status = hf_exr_find_views(file->exr, &file->views, choice, err);
     } else {
         close(fd);
-        status = hf_oiio_open(&file->oiio, file->path, depth_channel, &file->views, err);
+        status = hf_oiio_open(&file->oiio, file->path, choice->depth_channel, &file->views, err);
+        if (!status && choice->layer && strcmp(choice->layer, "all"))
+            status = hf_io_fail(err, "%s: there is no layer %s: only EXR has layers", path, choice->layer);
     }
     if (status)
         hf_io_close(&file);
@@ -68,19 +106,28 @@ int hf_io_open_any(struct hf_io_file **out, const char *path, const char *depth_
     return status;
 }
 
-int hf_io_open(struct hf_io_file **out, const char *path, const char *depth_channel, struct hf_io_error *err)
+int hf_io_open(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice, struct hf_io_error *err)
 {
-    char names[300] = "";
-    if (hf_io_open_any(out, path, depth_channel, err))
+    char names[1024] = "";
+    if (hf_io_open_any(out, path, choice, err))
         return -1;
     if ((*out)->views.count)
         return 0;
-    const bool deep = (*out)->exr && hf_exr_is_deep(&(*out)->exr->parts[0]);
-    hf_io_channels(*out, names, sizeof(names));
+    const bool exr = (*out)->exr;
+    bool deep = exr, several = false;
+    for (int p = 0; exr && p < (*out)->exr->part_count; p++)
+        deep &= hf_exr_is_deep(&(*out)->exr->parts[p]);
+    if (exr)
+        hf_exr_layers((*out)->exr, names, sizeof(names));
+    several = names[0] != 0;
+    if (!several)
+        hf_io_channels(*out, names, sizeof(names));
     hf_io_close(out);
     if (deep)
         return hf_io_fail(
             err, "%s: a deep picture (several samples per pixel), which is not supported: flatten it first", path);
+    if (several)
+        return hf_io_fail(err, "%s: it is not clear which layer is the picture, choose with --layer: %s", path, names);
     return hf_io_fail(err, "%s: no colour channels (R, G, B or Y) among: %s", path, names);
 }
 
@@ -135,6 +182,14 @@ void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)
         hf_exr_channels(file->exr, buf, size);
     else
         hf_oiio_channels(file->oiio, buf, size);
+}
+
+void hf_io_layers(const struct hf_io_file *file, char *buf, size_t size)
+{
+    if (size)
+        buf[0] = 0;
+    if (size && file->exr)
+        hf_exr_layers(file->exr, buf, size);
 }
 
 static int check_view(const struct hf_io_file *file, int view, struct hf_io_error *err)

@@ -26,13 +26,15 @@ extern "C" {
 // An open picture file: headers parsed, no pixels read.
 struct hf_io_file;
 
-// Open a file and find its views. depth_channel: full name of the depth channel to use for every view (or NULL: search
-// the view's own Z, depth.Z, then any single channel named *depth*). A view without depth is no error here: it
-// has depth_part -1, and hf_io_channels says which channels there are. A file without colour (R, G, B or Y) is an
-// error that lists its channels. Returns 0, or -1 with *err filled.
+// Open a file and find its views, each with the depth of its own layer, as the choice says (NULL: the main layer, and
+// the depth that programs write beside it). A layer's name may be its whole name (ViewLayer.Combined), its first pieces
+// (ViewLayer), or its last one; a wrong one is an error that suggests the nearest. A view without depth is no error
+// here: it has depth_part -1, and hf_io_channels says which channels there are. A file without colour (R, G, B or Y),
+// or with several layers none of which is clearly the picture, is an error that lists what there is. Returns 0, or -1
+// with *err filled.
 // Header sizes are not trusted: nothing is allocated in proportion to a data window before its pixels are asked for
 // and the file has been seen to be long enough to hold its chunk table.
-int hf_io_open(struct hf_io_file **out, const char *path, const char *depth_channel, struct hf_io_error *err);
+int hf_io_open(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice, struct hf_io_error *err);
 void hf_io_close(struct hf_io_file **file);
 
 int hf_io_view_count(const struct hf_io_file *file);
@@ -40,6 +42,9 @@ const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view);
 // All channel names of the file, "R, G, B, Z" (part names before a colon when there are several parts), truncated to
 // size.
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size);
+
+// Names of all layers of colour of an EXR file, in the same way; RGB is one without a name.
+void hf_io_layers(const struct hf_io_file *file, char *buf, size_t size);
 
 // A text in the header of an EXR file's first part, cut off at size; "" when there is none. Returns buf.
 const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size);

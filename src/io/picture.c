@@ -6,6 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "tool/nearest.h"
+
 const char *hf_io_extension(const char *path)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
@@ -27,11 +29,11 @@ int hf_io_check_window(const char *path, const char *which, struct hf_io_box b, 
                       b.x0, b.y0, (long long)b.x1 - 1, (long long)b.y1 - 1, HF_IO_MAX_SIDE);
 }
 
-void hf_io_list(char *buf, size_t size, const char *part, const char *name)
+void hf_io_list(char *buf, size_t size, const char *part, const char *name, const char *said)
 {
     const size_t n = strlen(buf);
     if (n < size)
-        snprintf(buf + n, size - n, "%s%s%s%s", n ? ", " : "", part ? part : "", part ? ":" : "", name);
+        snprintf(buf + n, size - n, "%s%s%s%s%s", n ? ", " : "", part ? part : "", part ? ":" : "", name, said);
 }
 
 struct hf_io_view *hf_io_add_view(struct hf_io_views *views)
@@ -44,4 +46,23 @@ struct hf_io_view *hf_io_add_view(struct hf_io_views *views)
     views->count++;
     memset(&list[n], 0, sizeof(list[n]));
     return &list[n];
+}
+
+int hf_io_nearest(const char *list, const char *wanted, char nearest[256])
+{
+    struct tool_nearest best = {NULL, 0, 0};
+    for (const char *at = list; *at;) {
+        const char *comma = strstr(at, ", ");
+        const int n = comma ? (int)(comma - at) : (int)strlen(at), first = (int)strcspn(at, ".");
+        struct tool_nearest found = {NULL, 0, 0};
+        tool_nearest_try(&found, at, n, wanted);
+        if (first < n)
+            tool_nearest_try(&found, at, first, wanted);  // Foreground of Foreground.Combined
+        if (found.word && (!best.word || found.distance < best.distance))
+            best = (struct tool_nearest){at, n, found.distance};
+        at += n + (comma ? 2 : 0);
+    }
+    if (best.word)
+        snprintf(nearest, 256, "%.*s", best.length, best.word);
+    return best.word != NULL;
 }

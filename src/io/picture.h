@@ -33,6 +33,7 @@ struct hf_io_box {
 // One picture that can be defocused: a set of colour channels and their depth. A stereo file has one per view.
 struct hf_io_view {
     char name[64];        // view name ("left"), or "" when the file names none
+    char layer[256];      // layer of its colours ("ViewLayer.Combined"), or "" for one without a name
     int part;             // part that holds the colour
     int depth_part;       // part that holds the depth; -1: no depth channel found
     char colour[4][256];  // full channel names of R, G, B, A in the part; "" when there is no such channel
@@ -49,6 +50,12 @@ struct hf_io_view {
 struct hf_io_views {
     int count;
     struct hf_io_view *view;
+};
+
+// What a file's pictures are looked for by. NULL: as searched.
+struct hf_io_choice {
+    const char *depth_channel;  // full name of the depth channel of every view
+    const char *layer;          // names of layers with commas between, or "all"; NULL: the main one
 };
 
 // What to put in the place of a view's colour. planes[c] NULL: channel kept as it was. Greyscale files take the Rec. 709
@@ -79,8 +86,12 @@ bool hf_io_is_exr_name(const char *path);
 // 0, or -1 with *err filled when the window is empty, too large, or too far away.
 int hf_io_check_window(const char *path, const char *which, struct hf_io_box box, struct hf_io_error *err);
 
-// Append name to a list "a, b, c" in buf; what does not fit is cut off.
-void hf_io_list(char *buf, size_t size, const char *part, const char *name);
+// Append name and what is said of it to a list "a, b, c" in buf; what does not fit is cut off.
+void hf_io_list(char *buf, size_t size, const char *part, const char *name, const char *said);
+
+// The name in such a list that somebody may have meant who wrote another, or its first piece, Fg of Fg.Combined; 0 if
+// none is near.
+int hf_io_nearest(const char *list, const char *wanted, char nearest[256]);
 
 // A file in memory; data is to be freed.
 struct hf_io_bytes {

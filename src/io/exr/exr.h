@@ -109,11 +109,12 @@ bool hf_exr_row_has(const struct hf_exr_part *part, int c, int y);
 int hf_exr_check_part(const struct hf_exr *e, int part, struct hf_io_error *err);
 
 // views.c
-int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const char *depth_channel,
+int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const struct hf_io_choice *choice,
                       struct hf_io_error *err);
 // Part and channel of the depth for a view called name, in a file that may have no colour.
 int hf_exr_find_depth_only(const struct hf_exr *e, const char *depth_channel, const char *name, int *channel);
 void hf_exr_channels(const struct hf_exr *e, char *buf, size_t size);
+void hf_exr_layers(const struct hf_exr *e, char *buf, size_t size);
 
 // layout.c
 struct hf_exr_chunk {

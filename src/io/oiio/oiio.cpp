@@ -70,6 +70,8 @@ struct Input {
     int fail(const char *path, hf_io_error *err)
     {
         const std::string message = in && in->has_error() ? in->geterror() : OIIO::geterror();
+        if (message.find("could not find a format reader") != std::string::npos)
+            return hf_io_fail(err, "%s: not a picture of any kind that can be read here", path);
         return hf_io_fail(err, "%s: truncated or corrupt, or no picture: %s", path, why(message).c_str());
     }
 };
@@ -528,7 +530,7 @@ void hf_oiio_close(hf_oiio *oiio)
 void hf_oiio_channels(const hf_oiio *oiio, char *buf, size_t size)
 {
     for (const std::string &name : oiio->spec.channelnames)
-        hf_io_list(buf, size, nullptr, name.c_str());
+        hf_io_list(buf, size, nullptr, name.c_str(), "");
 }
 
 int hf_oiio_read_colour(hf_oiio *o, float *const planes[4], hf_io_error *err)

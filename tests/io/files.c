@@ -1,51 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// For io.c: makes small EXR files with OpenEXRCore alone, and compares files without the code under test.
-#ifndef HF_TESTS_IO_FILES_H
-#define HF_TESTS_IO_FILES_H
+#include "io/files.h"
 
 #include <dirent.h>
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <openexr.h>
-
-#include "support/check.h"
 #include "io/half.h"
-#include "io/io.h"
 
-enum { MAX_PARTS = 6, MAX_CHANNELS = 24 };
+const char *folder;
+uint64_t seed = 20240229;
 
-struct channel {
-    const char *name;
-    exr_pixel_type_t type;
-    int sampling;  // 0 means 1
-};
-
-struct part {
-    const char *name, *view;
-    exr_storage_t storage;
-    exr_compression_t compression;
-    exr_lineorder_t order;
-    int x, y, width, height;
-    exr_tile_level_mode_t levels;
-    struct channel channels[MAX_CHANNELS];
-};
-
-static const char *folder;  // where the test's files are
-static uint64_t seed = 20240229;
-
-static uint32_t rnd(void)
+uint32_t rnd(void)
 {
     seed = seed * 6364136223846793005u + 1442695040888963407u;
     return (uint32_t)(seed >> 33);
 }
 
 // The path of a file there; valid for good.
-static const char *in_folder(const char *name)
+const char *in_folder(const char *name)
 {
     static char paths[64][100];
     char path[100];
@@ -56,7 +30,7 @@ static const char *in_folder(const char *name)
     return strcpy(paths[i], path);
 }
 
-static void *allocate(size_t size)
+void *allocate(size_t size)
 {
     void *p = calloc(1, size ? size : 1);
     if (!p)
@@ -185,7 +159,7 @@ static void add_attributes(exr_context_t f, int p, const struct part *part, cons
     exr_attr_set_user(f, p, "our own", "nobodyKnows", 5, "\0\1\2\3\4");
 }
 
-static exr_result_t make_exr(const char *path, const struct part *parts, const char *views)
+exr_result_t make_exr(const char *path, const struct part *parts, const char *views)
 {
     exr_context_initializer_t init = context();
     const exr_attr_box2i_t display = {.min = {.x = -2, .y = 1}, .max = {.x = 20, .y = 30}};
@@ -225,7 +199,7 @@ static exr_result_t make_exr(const char *path, const struct part *parts, const c
 
 // ---- comparing ----
 
-static uint8_t *slurp(const char *path, size_t *size)
+uint8_t *slurp(const char *path, size_t *size)
 {
     FILE *f = fopen(path, "rb");
     struct stat st;
@@ -239,7 +213,7 @@ static uint8_t *slurp(const char *path, size_t *size)
     return data;
 }
 
-static void spill(const char *path, const void *data, size_t size)
+void spill(const char *path, const void *data, size_t size)
 {
     FILE *f = fopen(path, "wb");
     if (f) {
@@ -269,7 +243,7 @@ static size_t header_size(const uint8_t *d, size_t size)
 }
 
 // Whether the last chunk of the first part stands before the first.
-static bool runs_backwards(const char *path, int chunks)
+bool runs_backwards(const char *path, int chunks)
 {
     size_t size;
     uint8_t *d = slurp(path, &size);
@@ -282,7 +256,7 @@ static bool runs_backwards(const char *path, int chunks)
 }
 
 // Core 3.1 writes chunks from the top whatever the line order; turn a single-part file round.
-static void turn_round(const char *path, int chunks)
+void turn_round(const char *path, int chunks)
 {
     size_t size;
     uint8_t *d = slurp(path, &size), *out = allocate(size);
@@ -344,7 +318,7 @@ static uint8_t *load_channel(exr_context_t f, int p, int c, size_t *size)
     return data;
 }
 
-static bool lossy(exr_compression_t c)
+bool lossy(exr_compression_t c)
 {
     return c >= EXR_COMPRESSION_PXR24;
 }
@@ -360,8 +334,7 @@ static bool replaced(const struct hf_io_file *f, const struct hf_io_result *r, i
 }
 
 // Every channel that was not replaced has the same bits in both files.
-static void compare_channels(const char *a, const char *b, const struct hf_io_file *f, const struct hf_io_result *r,
-                             int n)
+void compare_channels(const char *a, const char *b, const struct hf_io_file *f, const struct hf_io_result *r, int n)
 {
     exr_context_initializer_t init = context();
     exr_context_t fa, fb;
@@ -396,7 +369,7 @@ static void compare_channels(const char *a, const char *b, const struct hf_io_fi
     exr_finish(&fb);
 }
 
-static void compare_headers(const char *a, const char *b)
+void compare_headers(const char *a, const char *b)
 {
     size_t na, nb;
     uint8_t *da = slurp(a, &na), *db = slurp(b, &nb);
@@ -406,7 +379,7 @@ static void compare_headers(const char *a, const char *b)
     free(db);
 }
 
-static int files_in(const char *dir)
+int files_in(const char *dir)
 {
     int n = 0;
     DIR *d = opendir(dir);
@@ -416,5 +389,3 @@ static int files_in(const char *dir)
         closedir(d);
     return n;
 }
-
-#endif

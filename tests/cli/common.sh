@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# For the tests of the command, which source it with PROGRAM SOURCE_ROOT: running, checking, and small pictures.
+# shellcheck shell=sh
+program=$1
+source_root=$2
+if [ ! -x "$program" ] || [ ! -d "$source_root" ]; then
+    echo "usage: $0 PROGRAM SOURCE_ROOT" >&2
+    exit 1
+fi
+case $program in /*) ;; *) program=$PWD/$program ;; esac
+case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
+
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+trap 'exit 1' HUP INT TERM
+work=$dir/work
+mkdir "$work" && cd "$work" || exit 1
+unset HYPERFOCAL_ISA
+
+passed=0 failed=0 skipped=0
+result() {  # NAME CONDITION-STATUS
+    if [ "$2" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $1"
+        echo "  hyperfocal $command -> $status"
+        sed 's/^/  stderr: /' "$dir/err"
+    fi
+}
+skip() {
+    skipped=$((skipped + 1))
+    echo "skipped: $1"
+}
+run() {  # ARGUMENTS...
+    command=$*
+    "$program" "$@" >"$dir/out" 2>"$dir/err" </dev/null
+    status=$?
+}
+contains() {  # FILE WORD
+    grep -qF -e "$2" "$1"
+}
+
+# Bad input: exit CODE, exactly one line on stderr with all of WORDS (separated by '|'), nothing on stdout, and the
+# working directory as it was.
+bad() {  # CODE WORDS ARGUMENTS...
+    code=$1 words=$2
+    shift 2
+    before=$(ls -lR .)
+    run "$@"
+    ok=0
+    [ "$status" -eq "$code" ] || { ok=1; echo "exit code $status, not $code:"; }
+    [ "$(wc -l <"$dir/err")" -eq 1 ] || { ok=1; echo "not one line on stderr:"; }
+    [ ! -s "$dir/out" ] || { ok=1; echo "something on stdout:"; }
+    [ "$(ls -lR .)" = "$before" ] || { ok=1; echo "files were written or changed:"; }
+    old_ifs=$IFS
+    IFS='|'
+    for word in $words; do
+        contains "$dir/err" "$word" || { ok=1; echo "the sentence lacks '$word':"; }
+    done
+    IFS=$old_ifs
+    result "refuse: $*" $ok
+}
+
+# Good input: exit 0 and nothing on stderr.
+good() {  # ARGUMENTS...
+    run "$@"
+    [ "$status" -eq 0 ] && [ ! -s "$dir/err" ]
+    result "accept: $*" $?
+}
+
+# A dry run whose plan has all of WORDS.
+plan() {  # WORDS ARGUMENTS...
+    words=$1
+    shift
+    run "$@" --dry-run
+    ok=$status
+    old_ifs=$IFS
+    IFS='|'
+    for word in $words; do
+        contains "$dir/out" "$word" || { ok=1; echo "the plan lacks '$word':"; }
+    done
+    IFS=$old_ifs
+    result "plan: $*" "$ok"
+}
+
+json_valid() {  # FILE
+    [ -s "$1" ] && { ! command -v python3 >/dev/null || python3 -m json.tool <"$1" >/dev/null; }
+}
+
+# Small uncompressed EXR files, all channels 32-bit floats.
+make_inputs() {
+    command -v python3 >/dev/null || return 1
+    export PYTHONPATH="$dir" PYTHONDONTWRITEBYTECODE=1
+    cat >"$dir/exr.py" <<'PYTHON'
+# Uncompressed EXR files of one part, all channels 32-bit floats: written, and read.
+import struct
+
+def attribute(name, kind, data):
+    return name.encode() + b'\0' + kind.encode() + b'\0' + struct.pack('<i', len(data)) + data
+
+def exr(path, channels, window=(0, 0, 63, 39), display=None, floats={}, views=None, squeeze=1.0):
+    display = display or window
+    width, height = window[2] - window[0] + 1, window[3] - window[1] + 1
+    names = sorted(channels)
+    listed = b''.join(n.encode() + b'\0' + struct.pack('<iB3xii', 2, 0, 1, 1) for n in names) + b'\0'
+    head = struct.pack('<ii', 20000630, 2)
+    head += attribute('channels', 'chlist', listed) + attribute('compression', 'compression', b'\0')
+    head += attribute('dataWindow', 'box2i', struct.pack('<4i', *window))
+    head += attribute('displayWindow', 'box2i', struct.pack('<4i', *display))
+    head += attribute('lineOrder', 'lineOrder', b'\0')
+    head += attribute('pixelAspectRatio', 'float', struct.pack('<f', squeeze))
+    head += attribute('screenWindowCenter', 'v2f', struct.pack('<2f', 0, 0))
+    head += attribute('screenWindowWidth', 'float', struct.pack('<f', 1))
+    for name, value in floats.items():
+        head += attribute(name, 'float', struct.pack('<f', value))
+    if views:
+        head += attribute('multiView', 'stringvector',
+                          b''.join(struct.pack('<i', len(v)) + v.encode() for v in views))
+    head += b'\0'
+    row = 8 + 4 * width * len(names)
+    first = len(head) + 8 * height
+    with open(path, 'wb') as f:
+        f.write(head + b''.join(struct.pack('<Q', first + row * y) for y in range(height)))
+        for y in range(height):
+            f.write(struct.pack('<ii', window[1] + y, row - 8))
+            for n in names:
+                f.write(struct.pack('<%df' % width, *(float(channels[n](x, y)) for x in range(width))))
+
+def read(path):
+    """The bytes of each channel."""
+    data = open(path, 'rb').read()
+    at, head = 8, {}
+    while data[at]:
+        name, kind, rest = data[at:].split(b'\0', 2)
+        at += len(name) + len(kind) + 2
+        size = struct.unpack_from('<i', data, at)[0]
+        head[name.decode()] = data[at + 4:at + 4 + size]
+        at += 4 + size
+    window = struct.unpack('<4i', head['dataWindow'])
+    width, height = window[2] - window[0] + 1, window[3] - window[1] + 1
+    names, rest = [], head['channels']
+    while rest[0]:
+        end = rest.index(b'\0')
+        names.append(rest[:end].decode())
+        rest = rest[end + 17:]
+    assert head['compression'] == b'\0'
+    rows = struct.unpack_from('<%dQ' % height, data, at + 1)
+    return {n: b''.join(data[r + 8 + 4 * width * i:r + 8 + 4 * width * (i + 1)] for r in rows)
+            for i, n in enumerate(names)}
+PYTHON
+    python3 - <<'PYTHON'
+from exr import exr
+
+colour = {'R': lambda x, y: x % 7 / 7, 'G': lambda x, y: y % 5 / 5, 'B': lambda x, y: (x ^ y) % 3}
+depth = lambda x, y: 1 + x // 8 if y < 30 else 1e10
+lens = {'focus': 4, 'aperture': 2, 'pinholeFocalLength': 50}
+exr('plain.exr', dict(colour, Z=depth))
+exr('lens.exr', dict(colour, Z=depth), floats=lens)
+exr('focus.exr', dict(colour, Z=depth), floats={'focus': 4})
+exr('stop.exr', dict(colour, Z=depth), floats={'focus': 4, 'aperture': 2})
+exr('flat.exr', colour)
+exr('aperture.exr', {'Y': lambda x, y: x > y}, window=(0, 0, 20, 20))
+exr('black.exr', {'Y': lambda x, y: 0}, window=(0, 0, 9, 9))
+open('broken.exr', 'wb').write(b'no picture')
+exr('offset.exr', dict(colour, Z=depth, A=lambda x, y: 1), window=(-10, 20, 53, 59), display=(0, 0, 63, 79))
+exr('nan.exr', dict(colour, R=lambda x, y: float('nan') if x == y == 9 else 0.5, Z=depth))
+exr('depth.exr', {'Y': depth})
+exr('grey.exr', {'Y': lambda x, y: x % 7, 'Z': depth})
+exr('small.exr', {'Y': depth}, window=(0, 0, 9, 9))
+exr('deep.exr', dict(colour, **{'my.depth': depth, 'other.depth': depth}))
+stereo = dict(colour, Z=depth)
+stereo.update({'left.' + n: f for n, f in colour.items()})
+exr('half-stereo.exr', stereo, views=['right', 'left'])
+stereo['left.Z'] = lambda x, y: 1 + y // 8
+exr('stereo.exr', stereo, views=['right', 'left'])
+layers = {}
+for layer, z in {'ViewLayer': depth, 'Foreground': lambda x, y: 1 + y // 8}.items():
+    layers.update({layer + '.Combined.' + n: f for n, f in colour.items()})
+    layers[layer + '.Depth.Z'] = z
+layers.update({'CryptoObject00.' + n: lambda x, y: x for n in 'rgba'})
+exr('layers.exr', layers)
+open('png.exr', 'wb').write(b'\x89PNG\r\n\x1a\n' + bytes(40))
+open('blend.exr', 'wb').write(b'BLENDER-v304' + bytes(40))
+open('garbage.exr', 'wb').write(b'this is not a picture\n' * 10)
+whole = open('plain.exr', 'rb').read()
+open('short.exr', 'wb').write(whole[:len(whole) // 2])
+PYTHON
+}
+
+finish() {
+    [ "$skipped" -eq 0 ] || echo "$skipped skipped"
+    echo "$passed passed, $failed failed"
+    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+    exit
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Makes small EXR files with OpenEXRCore alone, and compares files without the code under test.
+#ifndef HF_TESTS_IO_FILES_H
+#define HF_TESTS_IO_FILES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <openexr.h>
+
+#include "io/io.h"
+#include "support/check.h"
+
+enum { MAX_PARTS = 6, MAX_CHANNELS = 24 };
+
+struct channel {
+    const char *name;
+    exr_pixel_type_t type;
+    int sampling;  // 0 means 1
+};
+
+struct part {
+    const char *name, *view;
+    exr_storage_t storage;
+    exr_compression_t compression;
+    exr_lineorder_t order;
+    int x, y, width, height;
+    exr_tile_level_mode_t levels;
+    struct channel channels[MAX_CHANNELS];
+};
+
+extern const char *folder;  // where the test's files are
+extern uint64_t seed;
+
+uint32_t rnd(void);
+// The path of a file there; valid for good.
+const char *in_folder(const char *name);
+void *allocate(size_t size);
+exr_result_t make_exr(const char *path, const struct part *parts, const char *views);
+uint8_t *slurp(const char *path, size_t *size);
+void spill(const char *path, const void *data, size_t size);
+// Whether the last chunk of the first part stands before the first.
+bool runs_backwards(const char *path, int chunks);
+// Core 3.1 writes chunks from the top whatever the line order; turn a single-part file round.
+void turn_round(const char *path, int chunks);
+bool lossy(exr_compression_t c);
+// Every channel that was not replaced has the same bits in both files.
+void compare_channels(const char *a, const char *b, const struct hf_io_file *f, const struct hf_io_result *r, int n);
+void compare_headers(const char *a, const char *b);
+int files_in(const char *dir);
+
+#endif

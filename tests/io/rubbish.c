@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Damaged files, and headers that promise what is not there.
+#include "io/tests.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// Reads and writes all of a file; whatever is in it, nothing may crash. Returns whether all went well.
+bool survive(const char *path, const char *target)
+{
+    struct hf_io_error err = {""};
+    struct hf_io_file *f;
+    bool ok = true;
+    if (hf_io_open(&f, path, NULL, &err)) {
+        CHECK_MSG(err.message[0] && !strchr(err.message, '\n'), "an error without a sentence");
+        return false;
+    }
+    for (int i = 0; i < hf_io_view_count(f); i++) {
+        const struct hf_io_view *v = hf_io_view(f, i);
+        const size_t n = (size_t)v->width * (size_t)v->height;
+        if (n > 10000000)  // a corrupt size that the file could just hold
+            continue;
+        struct planes planes = {{0}};
+        for (int k = 0; k < 4; k++)
+            planes.p[k] = allocate(n * sizeof(float));
+        ok &= !hf_io_read_colour(f, i, planes.p, &err);
+        ok &= v->depth_part >= 0 && !hf_io_read_depth(f, i, planes.p[3], &err);
+        const struct hf_io_result r = {i, {planes.p[0], NULL, NULL, NULL}};
+        const struct hf_io_job job = {.path = target, .results = &r, .result_count = 1};
+        ok &= !hf_io_write(f, &job, NULL, &err);
+        free_planes(&planes);
+    }
+    hf_io_close(&f);
+    return ok;
+}
+
+void test_rubbish(const char *path)
+{
+    const char *bad = in_folder("bad.exr"), *target = in_folder("out.exr");
+    size_t size;
+    uint8_t *data = slurp(path, &size), *copy = allocate(size);
+    int good = 0, left;
+    unlink(target);
+    unlink(bad);
+    left = files_in(folder);
+    CHECK(size > 100);
+    for (size_t n = 0; n < size; n += n < 1500 ? 1 : 7) {
+        spill(bad, data, n);
+        good += survive(bad, target);
+    }
+    CHECK_MSG(!good, "%s: %d truncations went unnoticed", path, good);
+    for (int i = 0; i < 250 && size > 100; i++) {
+        memcpy(copy, data, size);
+        for (uint32_t k = 0, n = 1 + rnd() % 4; k < n; k++)
+            copy[rnd() % (i & 1 ? size : size < 900 ? size : 900)] = (uint8_t)rnd();
+        spill(bad, copy, size);
+        survive(bad, target);
+    }
+    unlink(bad);
+    unlink(target);
+    CHECK_INT(files_in(folder), left);
+    free(data);
+    free(copy);
+}
+
+// A header that promises 65536 x 65536, or 2^30 x 1, pixels in a file of a few hundred bytes.
+void test_huge_header(void)
+{
+    const struct part parts[MAX_PARTS] = {
+        usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};
+    const char *path = in_folder("huge.exr");
+    struct hf_io_error err = {""};
+    size_t size;
+    CHECK(!make_exr(path, parts, NULL));
+    uint8_t *data = slurp(path, &size);
+    uint8_t *window = memmem(data, size, "dataWindow\0box2i", 16);
+    static const int sizes[][2] = {{65535, 65535}, {1 << 30, 0}, {INT32_MAX, INT32_MAX}, {65535, 100}, {0, 65535}};
+    for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]) && CHECK(window != NULL); i++) {
+        int32_t box[4] = {0, 0, sizes[i][0], sizes[i][1]};
+        memcpy(window + 21, box, sizeof(box));
+        spill(path, data, size);
+        expect_error(rewrite(path, in_folder("none.exr"), &err), &err, "huge.exr: ");
+    }
+    free(data);
+}
+
+// Headers that Core believes and other readers do not, and files that are called what they are.
+void test_claims(void)
+{
+    struct part parts[MAX_PARTS] = {usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};
+    const char *path = in_folder("claim.exr"), *target = in_folder("none.exr");
+    static const char *const types[] = {"compression\0compression", "lineOrder\0lineOrder", "dataWindow\0box2i"};
+    static const size_t lengths[] = {23, 19, 16};
+    struct hf_io_error err = {""};
+    size_t size;
+    CHECK(!make_exr(path, parts, NULL));
+    uint8_t *data = slurp(path, &size);
+    for (int i = 0; i < 3; i++) {
+        uint8_t *at = memmem(data, size, types[i], lengths[i]);
+        if (!CHECK(at != NULL))
+            break;
+        at[lengths[i] - 1] ^= 1;
+        spill(path, data, size);
+        expect_error(rewrite(path, target, &err), &err, "claim.exr: truncated or corrupt");
+        at[lengths[i] - 1] ^= 1;
+    }
+    free(data);
+    parts[0] = (struct part){.storage = EXR_STORAGE_DEEP_SCANLINE, .width = 6, .height = 5};
+    parts[0].channels[0] = (struct channel){"A", EXR_PIXEL_HALF, 0};
+    parts[0].channels[1] = (struct channel){"Z", EXR_PIXEL_FLOAT, 0};
+    CHECK(!make_exr(path, parts, NULL));
+    expect_error(rewrite(path, target, &err), &err, "deep picture");
+    CHECK(access(target, F_OK));
+}
