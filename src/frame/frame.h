@@ -85,8 +85,11 @@ struct hf_counts {
     float brightest, alpha_min;        // of the colour, if somebody asks
     uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes of a row
     struct hf_found near, far;         // and of a chunk
-    float largest;                     // absolute sample of a blurred pixel, if the engine's first sweep notes it
-    uint64_t transparent;              // and blurred pixels whose alpha is not 1
+    // Of blurred pixels, if the engine's first sweep notes it: the largest absolute sample, and which exponents there are,
+    // eight to a bit; of colour, and of alpha. And how many have another alpha than 1.
+    float largest[2];
+    uint32_t exponents[2];
+    uint64_t transparent;
 };
 
 // Lanes are looked at in groups of 64; there may be more than bits, then several share one.

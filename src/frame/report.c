@@ -33,7 +33,10 @@ static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
     sum->far_max = c->far_max > sum->far_max ? c->far_max : sum->far_max;
     sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
     sum->radius_max = c->radius_max > sum->radius_max ? c->radius_max : sum->radius_max;
-    sum->largest = c->largest > sum->largest ? c->largest : sum->largest;
+    for (int i = 0; i < 2; i++) {
+        sum->largest[i] = c->largest[i] > sum->largest[i] ? c->largest[i] : sum->largest[i];
+        sum->exponents[i] |= c->exponents[i];
+    }
     sum->transparent += c->transparent;
 }
 

@@ -77,12 +77,12 @@ static int has_near(const struct hf_frame *f, struct hf_rect r)
 }
 
 // Add n pixels of a row, v each times its weight, to the sums of their quads; the first is a quad's first.
-static void add_row(const float *v, const float *weight, int n, float *out)
+static void add_row(const float *v, const float *weight, float scale, int n, float *out)
 {
     for (int i = 0; i < n / 2; i++)
-        out[i] += v[2 * i] * weight[2 * i] + v[2 * i + 1] * weight[2 * i + 1];
+        out[i] += v[2 * i] * (weight[2 * i] * scale) + v[2 * i + 1] * (weight[2 * i + 1] * scale);
     if (n & 1)
-        out[n / 2] += v[n - 1] * weight[n - 1];
+        out[n / 2] += v[n - 1] * (weight[n - 1] * scale);
 }
 
 // The largest near radius of each quad, of the planes and WIDE around; 0 beyond the frame.
@@ -147,9 +147,9 @@ static void load_row(struct hf_behind *h, const struct hf_frame *f, int y, float
         const float *weight = k ? far : sharp;
         h->seen[k] |= some[k] > 0;
         for (int c = 0; c < h->channels && some[k] > 0; c++)
-            add_row(hf_at(&f->buf[HF_BUF_SOURCE], c, x0, y), weight, n, h->level[k * h->channels + c] + at);
+            add_row(hf_at(&f->buf[HF_BUF_SOURCE], c, x0, y), weight, t->dim, n, h->level[k * h->channels + c] + at);
         if (some[k] > 0)
-            add_row(one, weight, n, h->level[2 * h->channels + k] + at);
+            add_row(one, weight, 1, n, h->level[2 * h->channels + k] + at);
     }
 }
 
@@ -289,8 +289,9 @@ void hf_behind_row(const struct hf_behind *h, const struct hf_behind_line *l, co
     for (int k = 0; k < l->count; k++) {
         const int i = l->at[k];
         const float far_weight = row->far ? row->far_weight[i] : 0, near_weight = row->near ? row->near_weight[i] : 0;
-        const float front = near_weight > 0 ? row->near[i] / near_weight : own[i];
-        const float far = far_weight > 0 ? row->far[i] / far_weight : own[i];
+        const float mine = own[i] * hf_scatter(row->setup)->dim;
+        const float front = near_weight > 0 ? row->near[i] / near_weight : mine;
+        const float far = far_weight > 0 ? row->far[i] / far_weight : mine;
         const float reached = hf_saturate(16 * far_weight), sharp = l->weight[0][k], blurred = l->weight[1][k];
         float v = mix(front, far, reached);
         if (sharp + blurred > 0) {

@@ -5,16 +5,26 @@
 
 #include "pixel/pass_c.h"
 
-void hf_scatter_note_c(const float *radius, float *const colour[4], int channels, int n, float *largest,
-                       uint64_t *transparent)
+// Bit of the exponent of v > 0: eight to a bit, the highest sixteen to the last.
+static uint32_t exponent_bit(float v)
+{
+    const union {
+        float f;
+        uint32_t i;
+    } u = {v < 0x1p120f ? v : 0x1p120f};
+    return 1u << (u.i >> 26);
+}
+
+void hf_scatter_note_c(const float *radius, float *const colour[4], int channels, int n, struct hf_counts *counts)
 {
     for (int x = 0; x < n; x++) {
-        *transparent += channels == 4 && colour[3][x] != 1;
-        if (radius[x] == 0)
-            continue;
-        for (int c = 0; c < channels; c++) {
+        counts->transparent += channels == 4 && colour[3][x] != 1;
+        for (int c = 0; c < channels && radius[x] != 0; c++) {
             const float v = __builtin_fabsf(colour[c][x]);
+            float *largest = &counts->largest[c == 3];
             *largest = v > *largest ? v : *largest;
+            if (v > 0)
+                counts->exponents[c == 3] |= exponent_bit(v);
         }
     }
 }
@@ -28,7 +38,7 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
         hf_row(&f->buf[HF_BUF_SOURCE], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
         f->k->radius_row(f, x0, y, n, radius, NULL);
-        hf_scatter_kernels(f)->note(radius, colour, f->s->channels, n, &f->counts->largest, &f->counts->transparent);
+        hf_scatter_kernels(f)->note(radius, colour, f->s->channels, n, f->counts);
     }
 }
 
@@ -79,8 +89,13 @@ void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
         const float near[2] = {row->near ? row->near[x] : 0, row->near ? row->near_weight[x] : 0};
         const float r = row->radius[x], size = __builtin_fabsf(r), reach_x = size * t->aperture.key.scale_x;
         const float cover = r < 0 ? near[1] / inside(row->setup, reach_x, size, row->x + x, row->y) : near[1];
-        out[x] = composite_sample(out[x], hf_own_part(t, size), cover, r < 0, far, near,
-                                  row->behind ? &row->behind[x] : NULL);
+        const float own = out[x] * t->dim;
+        float v =
+            composite_sample(own, hf_own_part(t, size), cover, r < 0, far, near, row->behind ? &row->behind[x] : NULL);
+        v = v < t->most ? v : t->most;
+        v = v > -t->most ? v : -t->most;
+        // What is denormal may have lost bits.
+        out[x] = v == own ? out[x] : v * t->undim;
     }
 }
 

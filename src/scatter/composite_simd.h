@@ -4,27 +4,44 @@
 #include "scatter/kernels.h"
 #include "simd/simd.h"
 
-static void scatter_note_simd(const float *radius, float *const colour[4], int channels, int n, float *largest,
-                              uint64_t *transparent)
+// Bits of the exponents of v >= 0, 0 for 0; see exponent_bit() in composite.c. 1 << k is an integer made of 2^k.
+HF_INLINE vi scatter_exponent_bits(vf v)
+{
+    const vi bits = vf_as_vi(vf_min(v, vf_set1(0x1p120f)));
+    const vi power = vi_add(vi_and(vi_shr(bits, 3), vi_set1(0x0f800000)), vi_set1(0x3f800000));
+    return vf_to_vi(vf_keep(vf_gt(v, vf_zero()), vi_as_vf(power)));
+}
+
+static void scatter_note_simd(const float *radius, float *const colour[4], int channels, int n,
+                              struct hf_counts *counts)
 {
     const int whole = n / VF_N * VF_N;
-    vf most = vf_set1(*largest);
-    vi other = vi_set1(0);
+    vf most[2] = {vf_zero(), vf_zero()};
+    vi other = vi_set1(0), bits[2] = {other, other};
     for (int x = 0; x < whole; x += VF_N) {
         const vm drawn = vf_ne(vf_load(radius + x), vf_zero());
-        for (int c = 0; c < channels; c++)
-            most = vf_max(vf_keep(drawn, vf_abs(vf_load(colour[c] + x))), most);
+        for (int c = 0; c < channels; c++) {
+            const vf v = vf_keep(drawn, vf_abs(vf_load(colour[c] + x)));
+            most[c == 3] = vf_max(v, most[c == 3]);
+            bits[c == 3] = vi_or(bits[c == 3], scatter_exponent_bits(v));
+        }
         if (channels == 4)
             other = vi_count(other, vf_ne(vf_load(colour[3] + x), vf_set1(1)));
     }
     float lane[VF_N];
-    vf_store(lane, most);
-    for (int i = 0; i < VF_N; i++)
-        *largest = lane[i] > *largest ? lane[i] : *largest;
-    *transparent += vi_sum(other);
+    for (int k = 0; k < 2; k++) {
+        vf_store(lane, most[k]);
+        for (int i = 0; i < VF_N; i++)
+            counts->largest[k] = lane[i] > counts->largest[k] ? lane[i] : counts->largest[k];
+        vi_store(lane, bits[k]);
+        const uint32_t *bit = (const uint32_t *)(const void *)lane;
+        for (int i = 0; i < VF_N; i++)
+            counts->exponents[k] |= bit[i];
+    }
+    counts->transparent += vi_sum(other);
     float *const rest[4] = {colour[0] + whole, colour[1] + whole, colour[2] + whole,
                             channels == 4 ? colour[3] + whole : NULL};
-    hf_scatter_note_c(radius + whole, rest, channels, n - whole, largest, transparent);
+    hf_scatter_note_c(radius + whole, rest, channels, n - whole, counts);
 }
 
 HF_INLINE vf scatter_mix(vf a, vf b, vf t)
@@ -57,7 +74,8 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
     const struct hf_scatter *t = hf_scatter(row->setup);
     const vf zero = vf_zero(), one = vf_set1(1), scale_x = vf_set1(t->aperture.key.scale_x);
     for (int x = 0; x < row->n; x += VF_N) {
-        const vf own = vf_load(out + x), r = vf_load(row->radius + x), size = vf_abs(r);
+        const vf bright = vf_load(out + x), own = vf_mul(bright, vf_set1(t->dim));
+        const vf r = vf_load(row->radius + x), size = vf_abs(r);
         const vf fade = vf_mul(vf_sub(vf_set1(t->fade), size), vf_set1(t->fade_slope));
         const vf show = vf_min(vf_max(fade, zero), one);
         vf v = own, far = zero, near = zero, front = own;
@@ -85,6 +103,7 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
         v = scatter_mix(own, v, vf_sub(one, back));
         if (row->near)
             v = vf_select(vf_gt(near, zero), scatter_mix(v, front, cover), v);
-        vf_store(out + x, v);
+        v = vf_max(vf_min(v, vf_set1(t->most)), vf_set1(-t->most));
+        vf_store(out + x, vf_select(vf_eq(v, own), bright, vf_mul(v, vf_set1(t->undim))));
     }
 }

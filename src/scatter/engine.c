@@ -13,6 +13,7 @@
 // From radius 24 to 28 on (8 to 12 for files) at half the resolution, where neighbours have like radii: a quarter of
 // the sources and half the rows of each, an eighth in all (a sixteenth for files). Alpha that is not 1 doubles all of
 // it, chromatic aberration takes it three times. What lies far off a cell is looked at, not drawn.
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -179,18 +180,63 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     return HF_OK;
 }
 
+// Bits from which a bin takes samples down to which their shares are whole numbers: all that its units have but those of
+// a share and of the largest picture's area. Larger pictures than that cut what is darkest in a bin.
+static int bin_bits(const struct hf_scatter *t, int level, int room)
+{
+    enum { LEAST = 10, SHARE = 22 };
+    float area = 1;
+    for (int field = 0; field < 2; field++) {
+        const float r = level ? t->largest[field] / 2 : fminf(t->largest[field], fmaxf(t->half_to, 0));
+        for (int g = 0; g < t->groups && r > 0; g++) {
+            const int number = hf_picture_number(r * t->group[g].factor[field]) / t->aperture.steps;
+            area = fmaxf(area, t->aperture.picture[number].area);
+        }
+    }
+    return hf_max(room - SHARE + 1 - (int)ceil(log2((double)area)), LEAST);
+}
+
+// Bins from the brightest exponent down, each from the highest one that is left. top: samples are below 2^top. Alpha of 1
+// has the units of weights: where it is 1 all over, its sum is theirs.
+static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits, int room, int dim, int alpha)
+{
+    for (bins->count = 0; bins->count < HF_BINS && (exponents || !bins->count); bins->count++) {
+        const int b = bins->count, bottom = alpha && top > 1 ? hf_max(top - bits, 1) : top - bits;
+        for (int c = 0; c < 4; c++) {
+            const int unit = c == 3 ? room - 1 : room - top - dim;
+            bins->scale[b][c] = ldexp(1, unit);
+            bins->unscale[b][c] = ldexp(1, -unit);
+        }
+        bins->least[b] = ldexpf(1, bottom + dim);
+        // Bit k is exponents of 8 k - 127 to 8 k - 120.
+        while (exponents) {
+            const int k = 31 - __builtin_clz(exponents);
+            if (8 * k - 127 < bottom) {
+                top = hf_min(8 * k - 119, bottom);
+                break;
+            }
+            exponents &= ~(1u << k);
+        }
+    }
+    bins->least[bins->count - 1] = 0;
+}
+
 // The sums' fixed point: shares of the brightest sample still leave room for all that may come together in a pixel.
 static void made(void *own, const struct hf_setup *s, const struct hf_counts *found)
 {
     struct hf_scatter *t = own;
-    int exponent;
-    frexpf(found->largest, &exponent);
-    const int room = 62 - t->aperture.headroom - (t->ring > 0 ? 4 : 0) - (t->cat_eye > 0 ? 2 : 0);
-    for (int c = 0; c < 4; c++) {
-        const int bits = c == 3 ? room - 1 : room - exponent;
-        t->scale[c] = ldexp(1, bits);
-        t->unscale[c] = ldexp(1, -bits);
-    }
+    // Sums are at most 2^13 times the largest sample.
+    const int spare = t->aperture.headroom + (t->ring > 0 ? 4 : 0) + (t->cat_eye > 0 ? 2 : 0), room = 62 - spare;
+    const int dim = fmaxf(found->largest[0], found->largest[1]) > 0x1p110f ? -14 : 0;
+    t->dim = ldexpf(1, dim);
+    t->undim = 1 / t->dim;
+    t->most = t->dim * FLT_MAX;
+    for (int level = 0; level < 2; level++)
+        for (int alpha = 0; alpha < 2; alpha++) {
+            int top;
+            frexpf(found->largest[alpha], &top);
+            set_bins(&t->bins[level][alpha], found->exponents[alpha], top, bin_bits(t, level, room), room, dim, alpha);
+        }
     // With alpha 1 everywhere its sum is that of the weights.
     t->opaque = s->channels == 4 && !found->transparent && t->groups == 2;
     if (t->opaque)

@@ -20,15 +20,16 @@ typedef void hf_source_weights(const struct hf_scatter *t, float sign, const flo
                                const float *const colour[3], int channels, int n, float *const out[4]);
 // Numbers of the pictures of n sources, -1 where weight or radius is not positive.
 typedef void hf_source_pictures(const float *radius, const float *weight, float scale, int n, int32_t *out);
-// Sources `from` to `to` of a row go to the list, which has room. inverse: 1 / area of each picture.
-typedef void hf_list_row(struct hf_splats *list, const struct hf_source_row *row, int from, int to,
-                         const float *inverse, const double scale[4]);
-// A finished row of n pixels of sums, and its margins: integrated, scaled, split into planes (lane 3, the weight, to
-// out[3]), and zeroed.
-typedef void hf_settle(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4]);
-// The largest sample of n blurred pixels, and how many have another alpha than 1.
-typedef void hf_scatter_note(const float *radius, float *const colour[4], int channels, int n, float *largest,
-                             uint64_t *transparent);
+// Sources `from` to `to` of a row go to the lists of their bins, which have room. inverse: 1 / area of each picture.
+typedef void hf_list_row(struct hf_splats list[HF_BINS], const struct hf_source_row *row, int from, int to,
+                         const float *inverse, const struct hf_bins *bins);
+// A finished row of n pixels of each bin's sums, and its margins: integrated, scaled, added up, split into planes (lane 3,
+// the weight, to out[3]), and zeroed.
+typedef void hf_settle(int64_t *const lane[HF_BINS], int n, int channels, const struct hf_bins *bins,
+                       float *const out[4]);
+// What is counted of n blurred pixels' samples.
+typedef void hf_scatter_note(const float *radius, float *const colour[4], int channels, int n,
+                             struct hf_counts *counts);
 // Put the fields over and under a row of pixels.
 typedef void hf_scatter_blend(const struct hf_scatter_row *row, float *out);
 // Radii of n half-resolution pixels from two rows of 2n: 0 where none of the four is in the field, -1 where those that

@@ -16,6 +16,17 @@ enum {
     HF_SCATTER_BUFS
 };
 
+// Sums have a fixed point, so samples of very different brightness have sums of their own: those of a bin are below
+// 2^62 of its units in all, and every share of a sample down to its least is a whole number of them. So the sums are
+// exact, whatever else is in the frame. What is darker than the last bin's is cut to its units.
+enum { HF_BINS = 3 };
+
+struct hf_bins {
+    int count;
+    float least[HF_BINS];  // absolute samples from here on, and below the bin before; the last: 0
+    double scale[HF_BINS][4], unscale[HF_BINS][4];  // from a sample's share to the integers of the sums, and back
+};
+
 // Channels that share pictures, and so a sum of weights.
 struct hf_splat_group {
     int channels, channel[3];
@@ -34,14 +45,22 @@ struct hf_scatter {
     // 0: there is nothing but the latter.
     float half_from, half_to, half_slope;
     float fade, fade_slope;            // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
-    int exponent;                      // the brightest blurred sample is below 2^exponent
     int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
     int around_x, around_y;            // of the frame, half-resolution pixels, once its depth has been looked at
     int behind;                        // neighbourhoods that near radii ask for (behind.h)
     float ring, cat_eye;               // radii of the hole, and by which the second circle moves in the corners
     float corner;                      // 1 / the picture's diagonal, pixels
-    double scale[4], unscale[4];       // from a sample's share to the integers of the sums, and back
+    struct hf_bins bins[2][2];         // [level][of colour, of alpha]
+    // Samples are summed up and put together times dim, a power of two: below 1 where there are some that would overflow.
+    float dim, undim, most;  // 1 / dim; dim times the largest float
 };
+
+// A share to 22 bits, by its own size: whole units of its bin.
+static inline float hf_share(float v)
+{
+    const float t = v * 5;
+    return t - (t - v);
+}
 
 static inline const struct hf_scatter *hf_scatter(const struct hf_setup *s)
 {

@@ -11,7 +11,7 @@ void hf_source_weights_c(const struct hf_scatter *t, float sign, const float *ra
         const float weight = hf_field_weight(t, sign * radius[i]) * (1 - hf_half_part(t, sign * radius[i]));
         out[3][i] = weight;
         for (int c = 0; c < channels; c++)
-            out[c][i] = colour[c][i] * weight;
+            out[c][i] = colour[c][i] * (weight * t->dim);
     }
 }
 
@@ -23,21 +23,43 @@ void hf_source_pictures_c(const float *radius, const float *weight, float scale,
     }
 }
 
-void hf_list_row_c(struct hf_splats *list, const struct hf_source_row *row, int from, int to, const float *inverse,
-                   const double scale[4])
+// Bits of the lanes that bin b holds of a source, 0 for none: channels by their own brightness, and with the first of
+// them the weight (bit 3).
+static int lanes_of(const struct hf_bins *bins, int b, const float colour[3])
 {
-    for (int i = from; i < to; i++) {
-        if (row->picture[i] < 0)
-            continue;
-        const int k = list->count++;
-        const float part = inverse[row->picture[i]];
-        list->x[k] = row->x + i;
-        list->y[k] = row->y;
-        list->picture[k] = row->picture[i];
-        for (int c = 0; c < 3; c++)
-            list->share[k][c] = (int64_t)((double)(row->colour[c][i] * part) * scale[c]);
-        list->share[k][3] = (int64_t)((double)(row->weight[i] * part) * scale[3]);
+    int held = 0, before = 0;
+    for (int c = 0; c < 3; c++) {
+        const float v = __builtin_fabsf(colour[c]);
+        held |= (v > 0 && v >= bins->least[b] && (!b || v < bins->least[b - 1])) << c;
+        before |= b && v >= bins->least[b - 1];
     }
+    return held | (!before && (held || b == bins->count - 1)) << 3;
+}
+
+// What each lane of a source adds to bin b for 1 unit of weight.
+static void set_share(const struct hf_bins *bins, int b, int lanes, const float colour[3], float weight, float part,
+                      int64_t share[4])
+{
+    for (int c = 0; c < 3; c++)
+        share[c] = lanes >> c & 1 ? (int64_t)((double)hf_share(colour[c] * part) * bins->scale[b][c]) : 0;
+    share[3] = lanes >> 3 ? (int64_t)((double)hf_share(weight * part) * bins->scale[b][3]) : 0;
+}
+
+void hf_list_row_c(struct hf_splats list[HF_BINS], const struct hf_source_row *row, int from, int to,
+                   const float *inverse, const struct hf_bins *bins)
+{
+    for (int i = from; i < to; i++)
+        for (int b = 0; b < bins->count && row->picture[i] >= 0; b++) {
+            const float v[3] = {row->colour[0][i], row->colour[1][i], row->colour[2][i]};
+            const int lanes = lanes_of(bins, b, v);
+            if (!lanes)
+                continue;
+            const int k = list[b].count++;
+            list[b].x[k] = row->x + i;
+            list[b].y[k] = row->y;
+            list[b].picture[k] = row->picture[i];
+            set_share(bins, b, lanes, v, row->weight[i], inverse[row->picture[i]], list[b].share[k]);
+        }
 }
 
 // The pictures of a group's channel.
@@ -51,38 +73,38 @@ static const struct hf_picture *pictures(const struct walk *w)
 void hf_flush_sources(struct walk *w)
 {
     const struct hf_aperture *a = &w->t->aperture;
-    const struct hf_splats *l = w->list;
-    if (a->symmetric)
-        hf_scatter_kernels(w->f)->splat(&w->sums, a, l);
-    for (int i = 0; !a->symmetric && i < l->count; i++) {
-        const struct hf_picture *p = &pictures(w)[l->picture[i]];
-        if (a->tap)
-            hf_scatter_kernels(w->f)->splat_taps(&w->sums, l->x[i] - p->reach_x, l->y[i] + p->top, a->tap + p->first,
-                                                 p->columns, p->rows, l->share[i]);
-        else
-            hf_scatter_kernels(w->f)->splat_runs(&w->sums, l->x[i], l->y[i] + p->top, a->run + p->first, p->rows,
-                                                 l->share[i]);
+    for (int b = 0; b < w->bins->count; b++) {
+        struct hf_splats *l = &w->list[b];
+        const struct hf_sums sums = hf_bin_sums(w, b);
+        if (a->symmetric && l->count)
+            hf_scatter_kernels(w->f)->splat(&sums, a, l);
+        for (int i = 0; !a->symmetric && i < l->count; i++) {
+            const struct hf_picture *p = &pictures(w)[l->picture[i]];
+            if (a->tap)
+                hf_scatter_kernels(w->f)->splat_taps(&sums, l->x[i] - p->reach_x, l->y[i] + p->top, a->tap + p->first,
+                                                     p->columns, p->rows, l->share[i]);
+            else
+                hf_scatter_kernels(w->f)->splat_runs(&sums, l->x[i], l->y[i] + p->top, a->run + p->first, p->rows,
+                                                     l->share[i]);
+        }
+        l->count = 0;
     }
-    w->list->count = 0;
-}
-
-// What each lane of a source adds for 1 unit of weight.
-static void set_share(const struct walk *w, int64_t share[4], const float colour[3], float weight, float part)
-{
-    for (int c = 0; c < 3; c++)
-        share[c] = c < w->group->channels ? (int64_t)((double)(colour[c] * part) * w->t->scale[c]) : 0;
-    share[3] = (int64_t)((double)(weight * part) * w->t->scale[3]);
 }
 
 static void add_picture(struct walk *w, int x, int y, int number, const float colour[3], float weight, float part)
 {
-    struct hf_splats *l = w->list;
-    l->x[l->count] = x;
-    l->y[l->count] = y;
-    l->picture[l->count] = number;
-    set_share(w, l->share[l->count], colour, weight, part);
-    if (++l->count == HF_SPLATS)
-        hf_flush_sources(w);
+    for (int b = 0; b < w->bins->count; b++) {
+        struct hf_splats *l = &w->list[b];
+        const int lanes = lanes_of(w->bins, b, colour);
+        if (!lanes)
+            continue;
+        l->x[l->count] = x;
+        l->y[l->count] = y;
+        l->picture[l->count] = number;
+        set_share(w->bins, b, lanes, colour, weight, part, l->share[l->count]);
+        if (++l->count == HF_SPLATS)
+            hf_flush_sources(w);
+    }
 }
 
 // A picture cut by the second circle of a cat's eye, of radius r around (cx, cy): its rows go to w->runs. Returns the
@@ -110,9 +132,14 @@ static float cut_picture(struct walk *w, const struct hf_picture *p, float r, fl
 static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, const float colour[3], float weight,
                      float part)
 {
-    int64_t share[4];
-    set_share(w, share, colour, weight, part);
-    hf_scatter_kernels(w->f)->splat_runs(&w->sums, x, y + p->top, w->runs, p->rows, share);
+    for (int b = 0; b < w->bins->count; b++) {
+        const int lanes = lanes_of(w->bins, b, colour);
+        const struct hf_sums sums = hf_bin_sums(w, b);
+        int64_t share[4];
+        set_share(w->bins, b, lanes, colour, weight, part, share);
+        if (lanes)
+            hf_scatter_kernels(w->f)->splat_runs(&sums, x, y + p->top, w->runs, p->rows, share);
+    }
 }
 
 // The second circle moves off the lens's axis, towards the corner that the source is near.
@@ -166,9 +193,10 @@ void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, 
     if (!t->aperture.tap && t->ring <= 0 && t->cat_eye <= 0) {
         for (int at = from; at < to; at += HF_SPLATS) {
             const int end = hf_min(at + HF_SPLATS, to);
-            if (w->list->count + end - at > HF_SPLATS)
-                hf_flush_sources(w);
-            hf_scatter_kernels(w->f)->list_row(w->list, row, at, end, t->aperture.inverse, t->scale);
+            for (int b = 0; b < w->bins->count; b++)
+                if (w->list[b].count + end - at > HF_SPLATS)
+                    hf_flush_sources(w);
+            hf_scatter_kernels(w->f)->list_row(w->list, row, at, end, t->aperture.inverse, w->bins);
         }
         return;
     }

@@ -14,9 +14,10 @@ static void source_weights_simd(const struct hf_scatter *t, float sign, const fl
         const vf own = vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope));
         const vf blurred = vf_sub(one, vf_min(vf_max(own, zero), one));
         const vf weight = vf_mul(vf_keep(vf_gt(r, zero), blurred), vf_sub(one, vf_min(vf_max(half, zero), one)));
+        const vf dim = vf_mul(weight, vf_set1(t->dim));
         vf_store(out[3] + i, weight);
         for (int c = 0; c < channels; c++)
-            vf_store(out[c] + i, vf_mul(vf_load(colour[c] + i), weight));
+            vf_store(out[c] + i, vf_mul(vf_load(colour[c] + i), dim));
     }
 }
 
@@ -31,6 +32,35 @@ static void source_pictures_simd(const float *radius, const float *weight, float
     }
 }
 
+// The bin that holds all lanes of four sources side by side; -1: there is none.
+HF_INLINE int source_bin(const struct hf_source_row *row, int i, const struct hf_bins *bins)
+{
+    float least = __builtin_inff(), most = 0;
+    int black = 0, b = 0;
+    if (bins->count == 1)
+        return 0;
+    for (int k = 0; k < 4; k++) {
+        float own = 0;
+        for (int c = 0; c < 3 && row->picture[i + k] >= 0; c++) {
+            const float v = __builtin_fabsf(row->colour[c][i + k]);
+            least = v > 0 && v < least ? v : least;
+            own = v > own ? v : own;
+        }
+        most = own > most ? own : most;
+        black |= own == 0 && row->picture[i + k] >= 0;
+    }
+    while (b < bins->count - 1 && !(least >= bins->least[b]))
+        b++;
+    // Black takes its weight to the last bin.
+    return (b == 0 || most < bins->least[b - 1]) && (!black || b == bins->count - 1) ? b : -1;
+}
+
+HF_INLINE v4 source_share(v4 v, v4 part)
+{
+    const v4 s = v4_mul(v, part), t = v4_mul(s, v4_set1(5));
+    return v4_sub(t, v4_sub(t, s));
+}
+
 // Four sources side by side: their colours become rows of lanes.
 HF_INLINE void source_shares(const struct hf_source_row *row, int i, const float *inverse, const double scale[4],
                              vl share[4])
@@ -39,25 +69,31 @@ HF_INLINE void source_shares(const struct hf_source_row *row, int i, const float
     for (int k = 0; k < 4; k++)
         part[k] = inverse[hf_max(row->picture[i + k], 0)];
     const v4 parts = v4_load(part);
-    v4 v[4] = {v4_mul(v4_load(row->colour[0] + i), parts), v4_mul(v4_load(row->colour[1] + i), parts),
-               v4_mul(v4_load(row->colour[2] + i), parts), v4_mul(v4_load(row->weight + i), parts)};
+    v4 v[4] = {source_share(v4_load(row->colour[0] + i), parts), source_share(v4_load(row->colour[1] + i), parts),
+               source_share(v4_load(row->colour[2] + i), parts), source_share(v4_load(row->weight + i), parts)};
     v4_transpose(v);
     for (int k = 0; k < 4; k++)
         share[k] = vl_from(v[k], scale);
 }
 
-static void list_row_simd(struct hf_splats *list, const struct hf_source_row *row, int from, int to,
-                          const float *inverse, const double scale[4])
+static void list_row_simd(struct hf_splats lists[HF_BINS], const struct hf_source_row *row, int from, int to,
+                          const float *inverse, const struct hf_bins *bins)
 {
     // Past the row there is whatever memory holds, which is no picture's number.
     const int whole = from + (to - from) / 4 * 4;
-    int n = list->count;
     for (int i = from; i < whole; i += 4) {
         const int32_t *p = row->picture + i;
         vl share[4];
         if ((p[0] & p[1] & p[2] & p[3]) < 0)
             continue;
-        source_shares(row, i, inverse, scale, share);
+        const int b = source_bin(row, i, bins);
+        if (b < 0) {
+            hf_list_row_c(lists, row, i, i + 4, inverse, bins);
+            continue;
+        }
+        struct hf_splats *list = &lists[b];
+        int n = list->count;
+        source_shares(row, i, inverse, bins->scale[b], share);
         for (int k = 0; k < 4; k++) {
             if (p[k] < 0)
                 continue;
@@ -66,7 +102,7 @@ static void list_row_simd(struct hf_splats *list, const struct hf_source_row *ro
             list->picture[n] = p[k];
             vl_store(list->share[n++], share[k]);
         }
+        list->count = n;
     }
-    list->count = n;
-    hf_list_row_c(list, row, whole, to, inverse, scale);
+    hf_list_row_c(lists, row, whole, to, inverse, bins);
 }

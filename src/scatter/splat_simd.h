@@ -209,26 +209,44 @@ static void splat_taps_simd(const struct hf_sums *s, int x, int y, const int16_t
     }
 }
 
-static void settle_simd(int64_t *lane, int n, int channels, const double unscale[4], float *const out[4])
+HF_INLINE void settle_bins(int64_t *const lane[HF_BINS], int n, int channels, const struct hf_bins *bins,
+                           const int count, float *const out[4])
 {
     const vl zero = vl_set1(0);
-    vl sum = zero;
-    for (int x = -HF_SUMS_MARGIN; x < 0; x++) {
-        sum = vl_add(sum, vl_load(lane + 4 * x));
-        vl_store(lane + 4 * x, zero);
+    vl sum[HF_BINS];
+    for (int b = 0; b < count; b++) {
+        sum[b] = zero;
+        for (int x = -HF_SUMS_MARGIN; x < 0; x++) {
+            sum[b] = vl_add(sum[b], vl_load(lane[b] + 4 * x));
+            vl_store(lane[b] + 4 * x, zero);
+        }
     }
     for (int x = 0; x < n; x += 4) {
         v4 pixel[4];
         for (int i = 0; i < 4; i++) {
-            sum = vl_add(sum, vl_load(lane + 4 * (x + i)));
-            pixel[i] = vl_scaled(sum, unscale);
-            vl_store(lane + 4 * (x + i), zero);
+            for (int b = 0; b < count; b++) {
+                sum[b] = vl_add(sum[b], vl_load(lane[b] + 4 * (x + i)));
+                vl_store(lane[b] + 4 * (x + i), zero);
+            }
+            pixel[i] = vl_scaled(sum, count, bins->unscale);
         }
         v4_transpose(pixel);
         for (int c = 0; c < 4; c++)
             if (c < channels || c == 3)
                 v4_store(out[c] + x, pixel[c]);
     }
-    for (int x = n; x < n + HF_SUMS_MARGIN; x++)
-        vl_store(lane + 4 * x, zero);
+    for (int b = 0; b < count; b++)
+        for (int x = n; x < n + HF_SUMS_MARGIN; x++)
+            vl_store(lane[b] + 4 * x, zero);
+}
+
+static void settle_simd(int64_t *const lane[HF_BINS], int n, int channels, const struct hf_bins *bins,
+                        float *const out[4])
+{
+    if (bins->count == 1)
+        settle_bins(lane, n, channels, bins, 1, out);
+    else if (bins->count == 2)
+        settle_bins(lane, n, channels, bins, 2, out);
+    else
+        settle_bins(lane, n, channels, bins, HF_BINS, out);
 }

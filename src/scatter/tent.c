@@ -110,7 +110,7 @@ int hf_tent_weights_c(const struct hf_tent_row *t, int first)
             t->pixel[odd][3][i] = merged ? weight : 0;
             lone |= weight > 0 && !merged;
             for (int c = 0; c < t->channels; c++)
-                t->pixel[odd][c][i] = t->colour[c][2 * i + odd] * t->pixel[odd][3][i];
+                t->pixel[odd][c][i] = t->colour[c][2 * i + odd] * (t->pixel[odd][3][i] * t->scatter->dim);
         }
     return lone;
 }
@@ -179,7 +179,7 @@ static void list_lone(struct walk *w, int y, int q, float part)
             if (column < x0 || column >= x1)
                 continue;
             for (int c = 0; c < w->group->channels; c++)
-                v[c] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * share;
+                v[c] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * (share * w->t->dim);
             hf_add_source(w, column, q, t.sign * t.radius[x - 2 * w->tent_x0] * half, v, share);
         }
     }

@@ -77,7 +77,8 @@ static int tent_weights_simd(const struct hf_tent_row *t, int first)
             lone = vm_or(lone, vm_and(vf_gt(weight, vf_zero()), vm_not(merged)));
             vf_store(t->pixel[odd][3] + i, vf_keep(merged, weight));
         }
-        const vf even = vf_load(t->pixel[0][3] + i), odd = vf_load(t->pixel[1][3] + i);
+        const vf dim = vf_set1(s->dim);
+        const vf even = vf_mul(vf_load(t->pixel[0][3] + i), dim), odd = vf_mul(vf_load(t->pixel[1][3] + i), dim);
         for (int c = 0; c < t->channels; c++) {
             vf a, b;
             vf_unzip(vf_load(t->colour[c] + 2 * i), vf_load(t->colour[c] + 2 * i + VF_N), &a, &b);

@@ -77,7 +77,7 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
         l.stride[level] = stride_of(l.width[level]);
         const int columns = level ? hf_tent_columns(t, field, l.width[1]) : l.width[0] + 2 * t->reach_x[field][0];
         l.line[level] = (int)whole_lines((size_t)columns) + 2 * HF_PAD;
-        const size_t sums = 2 * (size_t)l.stride[level] * (size_t)l.ring[level];
+        const size_t sums = 2 * HF_BINS * (size_t)l.stride[level] * (size_t)l.ring[level];
         const size_t lines = (level ? HF_TENT_LINES : 5 * TOGETHER) * (size_t)l.line[level];
         l.sums = sums > l.sums ? sums : l.sums;
         l.lines = lines > l.lines ? lines : l.lines;
@@ -89,7 +89,7 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
     l.sums = whole_lines(l.sums);
     l.rows = whole_lines(l.rows * sizeof(ptrdiff_t) / sizeof(float));
     l.runs = whole_lines((size_t)(2 * longest + 3) * sizeof(struct hf_run) / sizeof(float));
-    l.list = whole_lines(sizeof(struct hf_splats) / sizeof(float));
+    l.list = whole_lines(HF_BINS * sizeof(struct hf_splats) / sizeof(float));
     l.lines += (size_t)hf_max(l.line[0], l.line[1]);  // and one of zeros
     return l;
 }
@@ -116,8 +116,10 @@ static void settle(struct walk *w, const struct target *to, int y)
     float *out[4];
     for (int c = 0; c < 4; c++)
         out[c] = to->ch[c] ? to->ch[c] + (ptrdiff_t)(y - w->sums.y0) * to->stride : NULL;
-    hf_scatter_kernels(w->f)->settle(w->sums.lane + w->sums.row[y - w->sums.y0], w->sums.x1 - w->sums.x0,
-                                     w->group->channels, w->t->unscale, out);
+    int64_t *lane[HF_BINS];
+    for (int b = 0; b < HF_BINS; b++)
+        lane[b] = w->sums.lane + b * w->bin_lanes + w->sums.row[y - w->sums.y0];
+    hf_scatter_kernels(w->f)->settle(lane, w->sums.x1 - w->sums.x0, w->group->channels, w->bins, out);
 }
 
 // All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
@@ -127,7 +129,9 @@ static void walk_level(struct walk *w, const struct layout *l, const struct targ
     const int reach = w->t->reach_y[w->field][w->level], height = w->level ? s->half_height : s->height;
     for (int y = 0; y < w->sums.y1 - w->sums.y0; y++)
         w->sums.row[y] = (ptrdiff_t)(y % l->ring[w->level]) * l->stride[w->level] + 4 * HF_SUMS_MARGIN;
-    memset(w->sums.lane, 0, sizeof *w->sums.lane * (size_t)l->stride[w->level] * (size_t)l->ring[w->level]);
+    w->bins = &w->t->bins[w->level][w->group->channel[0] == 3];
+    w->bin_lanes = (ptrdiff_t)l->stride[w->level] * l->ring[w->level];
+    memset(w->sums.lane, 0, sizeof *w->sums.lane * (size_t)w->bin_lanes * (size_t)w->bins->count);
     int settled = w->sums.y0;
     const int end = hf_min(w->sums.y1 + reach, height), step = w->level ? 1 : TOGETHER;
     for (int y = hf_max(w->sums.y0 - reach, 0); y < end; y += step) {
@@ -174,7 +178,8 @@ static void splat_group(struct walk *w, struct hf_rect r, int group, const struc
     w->sums.lane = (int64_t *)memory;
     w->sums.row = (ptrdiff_t *)(memory += l.sums);
     w->list = (struct hf_splats *)(memory += l.rows);
-    w->list->count = 0;
+    for (int b = 0; b < HF_BINS; b++)
+        w->list[b].count = 0;
     w->runs = (struct hf_run *)(memory += l.list);
     float *half = memory += l.runs;
     w->nothing = memory += l.half;

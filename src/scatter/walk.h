@@ -14,10 +14,12 @@ struct walk {
     const struct hf_frame *f;
     const struct hf_scatter *t;
     const struct hf_splat_group *group;
-    int field;  // 0 near, 1 far
-    int level;  // 1: half resolution
-    struct hf_sums sums;
-    struct hf_splats *list;
+    int field;                   // 0 near, 1 far
+    int level;                   // 1: half resolution
+    struct hf_sums sums;         // of the first bin
+    const struct hf_bins *bins;  // of the group and level
+    ptrdiff_t bin_lanes;         // from a bin's sums to the next one's
+    struct hf_splats *list;      // of each bin
     struct hf_run *runs;         // of a picture that is its source's own
     float *source[TOGETHER][5];  // level 0: channels, weight, and numbers of pictures
     // level 1: of the last rows, source radii and pixels; see hf_list_half
@@ -33,6 +35,13 @@ static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
     const int reach = w->t->reach_x[w->field][w->level];
     *x0 = hf_max(w->sums.x0 - reach, 0);
     *x1 = hf_min(w->sums.x1 + reach, w->level ? w->f->s->half_width : w->f->s->width);
+}
+
+static inline struct hf_sums hf_bin_sums(const struct walk *w, int b)
+{
+    struct hf_sums s = w->sums;
+    s.lane += b * w->bin_lanes;
+    return s;
 }
 
 // The neighbour of a pixel's half-resolution one that its tent reaches, on one axis.

@@ -63,6 +63,14 @@ static inline v4 v4_mul(v4 a, v4 b)
 {
     return _mm_mul_ps(a, b);
 }
+static inline v4 v4_sub(v4 a, v4 b)
+{
+    return _mm_sub_ps(a, b);
+}
+static inline v4 v4_set1(float a)
+{
+    return _mm_set1_ps(a);
+}
 // Times a scale, cut to integers.
 static inline vl vl_from(v4 a, const double scale[4])
 {
@@ -76,16 +84,23 @@ static inline vl vl_from(v4 a, const double scale[4])
 #endif
 }
 
-// As floats, each times its scale. The integer's upper part, made a double by its exponent's bits, and its lower 48 bits
+// The integer's upper part, made a double by its exponent's bits, and its lower 48 bits
 // are both exact: one rounding, as that of a conversion.
-static inline v4 vl_scaled(vl a, const double scale[4])
+static inline __m256d vl_double(vl a)
 {
     const __m256d magic = _mm256_set1_pd(442721857769029238784.0), all = _mm256_set1_pd(442726361368656609280.0);
     const vl upper = _mm256_blend_epi16(_mm256_srai_epi32(a, 16), _mm256_setzero_si256(), 0x33);
     const vl lower = _mm256_blend_epi16(a, _mm256_castpd_si256(_mm256_set1_pd(0x1p52)), 0x88);
     const __m256d d = _mm256_sub_pd(_mm256_castsi256_pd(_mm256_add_epi64(upper, _mm256_castpd_si256(magic))), all);
-    const __m256d v = _mm256_add_pd(d, _mm256_castsi256_pd(lower));
-    return _mm256_cvtpd_ps(_mm256_mul_pd(v, _mm256_loadu_pd(scale)));
+    return _mm256_add_pd(d, _mm256_castsi256_pd(lower));
+}
+// The sum of n, each times its scale, as floats; from the last on.
+static inline v4 vl_scaled(const vl *a, int n, const double (*scale)[4])
+{
+    __m256d sum = _mm256_setzero_pd();
+    for (int i = n - 1; i >= 0; i--)
+        sum = _mm256_add_pd(sum, _mm256_mul_pd(vl_double(a[i]), _mm256_loadu_pd(scale[i])));
+    return _mm256_cvtpd_ps(sum);
 }
 
 #endif

@@ -217,6 +217,8 @@ static inline vl vl_product(vl a, vl b) { return (vl){vl_product_half(a.a, b.a),
 static inline vl vl_low8(const int32_t *p) { return vl_set1(*p & 255); }
 static inline v4 v4_load(const float *p) { return vld1q_f32(p); }
 static inline v4 v4_mul(v4 a, v4 b) { return vmulq_f32(a, b); }
+static inline v4 v4_sub(v4 a, v4 b) { return vsubq_f32(a, b); }
+static inline v4 v4_set1(float a) { return vdupq_n_f32(a); }
 
 // Times a scale, cut to integers.
 static inline vl vl_from(v4 a, const double scale[4])
@@ -225,12 +227,15 @@ static inline vl vl_from(v4 a, const double scale[4])
                 vcvtq_s64_f64(vmulq_f64(vcvt_high_f64_f32(a), vld1q_f64(scale + 2)))};
 }
 
-// As floats, each times its scale.
-static inline v4 vl_scaled(vl a, const double scale[4])
+// The sum of n, each times its scale, as floats; from the last on.
+static inline v4 vl_scaled(const vl *a, int n, const double (*scale)[4])
 {
-    const float64x2_t x = vmulq_f64(vcvtq_f64_s64(a.a), vld1q_f64(scale));
-    const float64x2_t y = vmulq_f64(vcvtq_f64_s64(a.b), vld1q_f64(scale + 2));
-    return vcombine_f32(vcvt_f32_f64(x), vcvt_f32_f64(y));
+    float64x2_t low = vdupq_n_f64(0), high = low;
+    for (int i = n - 1; i >= 0; i--) {
+        low = vaddq_f64(low, vmulq_f64(vcvtq_f64_s64(a[i].a), vld1q_f64(scale[i])));
+        high = vaddq_f64(high, vmulq_f64(vcvtq_f64_s64(a[i].b), vld1q_f64(scale[i] + 2)));
+    }
+    return vcombine_f32(vcvt_f32_f64(low), vcvt_f32_f64(high));
 }
 
 #endif

@@ -196,6 +196,8 @@ static inline vl vl_product(vl a, vl b) { return (vl){vl_product_half(a.a, b.a),
 static inline vl vl_low8(const int32_t *p) { return vl_set1(*p & 255); }
 static inline v4 v4_load(const float *p) { return _mm_loadu_ps(p); }
 static inline v4 v4_mul(v4 a, v4 b) { return _mm_mul_ps(a, b); }
+static inline v4 v4_sub(v4 a, v4 b) { return _mm_sub_ps(a, b); }
+static inline v4 v4_set1(float a) { return _mm_set1_ps(a); }
 
 static inline __m128i vl_from_half(__m128d d)
 {
@@ -211,19 +213,24 @@ static inline vl vl_from(v4 a, const double scale[4])
 
 // The integer's upper part, made a double by its exponent's bits, and its lower 48 bits are both exact: one rounding, as
 // that of a conversion.
-static inline __m128 vl_scaled_half(__m128i a, __m128d scale)
+static inline __m128d vl_scaled_half(__m128i a, __m128d scale)
 {
     const __m128d magic = _mm_set1_pd(442721857769029238784.0), all = _mm_set1_pd(442726361368656609280.0);
     const __m128i upper = _mm_blend_epi16(_mm_srai_epi32(a, 16), _mm_setzero_si128(), 0x33);
     const __m128i lower = _mm_blend_epi16(a, _mm_castpd_si128(_mm_set1_pd(0x1p52)), 0x88);
     const __m128d d = _mm_sub_pd(_mm_castsi128_pd(_mm_add_epi64(upper, _mm_castpd_si128(magic))), all);
-    return _mm_cvtpd_ps(_mm_mul_pd(_mm_add_pd(d, _mm_castsi128_pd(lower)), scale));
+    return _mm_mul_pd(_mm_add_pd(d, _mm_castsi128_pd(lower)), scale);
 }
 
-// As floats, each times its scale.
-static inline v4 vl_scaled(vl a, const double scale[4])
+// The sum of n, each times its scale, as floats; from the last on.
+static inline v4 vl_scaled(const vl *a, int n, const double (*scale)[4])
 {
-    return _mm_movelh_ps(vl_scaled_half(a.a, _mm_loadu_pd(scale)), vl_scaled_half(a.b, _mm_loadu_pd(scale + 2)));
+    __m128d low = _mm_setzero_pd(), high = low;
+    for (int i = n - 1; i >= 0; i--) {
+        low = _mm_add_pd(low, vl_scaled_half(a[i].a, _mm_loadu_pd(scale[i])));
+        high = _mm_add_pd(high, vl_scaled_half(a[i].b, _mm_loadu_pd(scale[i] + 2)));
+    }
+    return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
 }
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The scatter's kernels one by one: weights and pictures of sources, lists, means, sums. The sums are integers and their
 // shares are truncated, so nothing in here may be fused: the bits are those of the C on every level.
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -16,7 +17,7 @@ static struct {
     struct hf_aperture aperture;  // a disc
     float sign, scale, part[4], inverse[INVERSES];
     int channels, fields, from, columns, rows, x, y, window_x, window_y, width, height;
-    double unscale[4];
+    struct hf_bins bins;
     int64_t share[4];
     struct hf_run run[40];
     int16_t tap[40 * 12];
@@ -85,6 +86,9 @@ static void start(struct world *w)
     now.scatter.half_to = half ? 0 : now.scatter.half_from + 4;
     now.scatter.half_slope = 1 / (now.scatter.half_to - now.scatter.half_from);
     now.scatter.fade_slope = 1 / (now.scatter.fade - 0.5f);
+    now.scatter.dim = rng_one_in(r, 2) ? 1 : 0x1p-14f;
+    now.scatter.undim = 1 / now.scatter.dim;
+    now.scatter.most = FLT_MAX * now.scatter.dim;
     now.sign = rng_one_in(r, 2) ? 1 : -1;
     now.scale = rng_one_in(r, 2) ? 1 : rng_float(r, 0.4f, 1.6f);
     now.channels = rng_int(r, 1, 3);
@@ -133,8 +137,14 @@ static void list_make(struct world *w)
 {
     struct rng *r = &w->rng;
     w->n = w->n < HF_SPLATS ? w->n : HF_SPLATS;
-    slot_use(w, SLOT_WORK, sizeof(struct hf_splats), 0xff);
-    list_of(w, ARENA_MADE)->count = rng_int(r, 0, HF_SPLATS - w->n);
+    slot_use(w, SLOT_WORK, HF_BINS * sizeof(struct hf_splats), 0xff);
+    now.bins = (struct hf_bins){.count = rng_int(r, 1, HF_BINS), .least = {0.5f, 0.01f}};
+    for (int b = 0; b < HF_BINS; b++) {
+        list_of(w, ARENA_MADE)[b].count = rng_int(r, 0, HF_SPLATS - w->n);
+        for (int c = 0; c < 4; c++)
+            now.bins.scale[b][c] = 1 << (c < 3 ? 16 + 6 * b : 20);
+    }
+    now.bins.least[now.bins.count - 1] = 0;
     now.from = rng_int(r, 0, w->n - 1);
     for (int i = 0; i < INVERSES; i++)
         now.inverse[i] = rng_float(r, 1e-6f, 1);
@@ -142,24 +152,24 @@ static void list_make(struct world *w)
         ((int32_t *)(void *)line(w, ARENA_MADE, 4))[x] = rng_one_in(r, 3) ? -1 : rng_int(r, 0, INVERSES - 1);
     for (int i = 0; i < 4; i++)
         for (int x = 0; x < w->n; x++)
-            line(w, ARENA_MADE, i)[x] = rng_float(r, i < 3 ? -4 : 0, 4);
-    world_region(w, REGION_SCRATCH, SLOT_WORK, slot_start(w, ARENA_MADE, SLOT_WORK), sizeof(struct hf_splats), 0, 1, 0);
+            line(w, ARENA_MADE, i)[x] = rng_one_in(r, 6) ? 0 : rng_float(r, i < 3 ? -4 : 0, 4) / (float)(x / 8 + 1);
+    world_region(w, REGION_SCRATCH, SLOT_WORK, slot_start(w, ARENA_MADE, SLOT_WORK), HF_BINS * sizeof(struct hf_splats),
+                 0, 1, 0);
 }
 
 static void list_call(struct world *w, const struct kernels *k, enum arena a)
 {
-    static const double scale[4] = {1 << 30, 1 << 28, 1 << 30, 1 << 20};
     const struct hf_source_row row = {.x = 5,
                                       .y = 3,
                                       .colour = {line(w, a, 0), line(w, a, 1), line(w, a, 2)},
                                       .weight = line(w, a, 3),
                                       .picture = (const int32_t *)(const void *)line(w, a, 4)};
-    k->scatter.list_row(list_of(w, a), &row, now.from, w->n, now.inverse, scale);
+    k->scatter.list_row(list_of(w, a), &row, now.from, w->n, now.inverse, &now.bins);
 }
 
-static int same_lists(const struct world *w, char message[256])
+static int same_lists(const struct world *w, int bin, char message[256])
 {
-    const struct hf_splats *want = list_of(w, ARENA_REFERENCE), *got = list_of(w, ARENA_TEST);
+    const struct hf_splats *want = list_of(w, ARENA_REFERENCE) + bin, *got = list_of(w, ARENA_TEST) + bin;
     if (want->count != got->count) {
         snprintf(message, 256, "lists %d, the C %d", got->count, want->count);
         return 0;
@@ -397,15 +407,17 @@ static void settle_make(struct world *w)
 {
     window_make(w);
     now.height = 1;
-    const size_t bytes = row_lanes() * sizeof(int64_t);
+    now.bins.count = rng_int(&w->rng, 1, HF_BINS);
+    const size_t bytes = HF_BINS * row_lanes() * sizeof(int64_t);
     w->region_count = 0;
     slot_use(w, SLOT_WORK, bytes, 0);
     world_region(w, REGION_BYTES, SLOT_WORK, lane_of(w, ARENA_MADE), bytes, 0, 1, 0);
-    for (size_t i = 0; i < row_lanes(); i++)
+    for (size_t i = 0; i < HF_BINS * row_lanes(); i++)
         lane_of(w, ARENA_MADE)[i] = ((int64_t)rng_int(&w->rng, -1000000, 1000000) << rng_int(&w->rng, 0, 36));
     lines(w, now.width);
     for (int c = 0; c < 4; c++) {
-        now.unscale[c] = ldexp(rng_float(&w->rng, 0.5f, 1), -rng_int(&w->rng, 20, 50));
+        for (int b = 0; b < HF_BINS; b++)
+            now.bins.unscale[b][c] = ldexp(rng_float(&w->rng, 0.5f, 1), -rng_int(&w->rng, 20, 50));
         if (c < now.channels || c == 3)
             put_out(w, LINES_IN + c, now.width);
     }
@@ -415,7 +427,10 @@ static void settle_call(struct world *w, const struct kernels *k, enum arena a)
 {
     float *const out[4] = {line(w, a, LINES_IN), line(w, a, LINES_IN + 1), line(w, a, LINES_IN + 2),
                            line(w, a, LINES_IN + 3)};
-    k->scatter.settle(lane_of(w, a) + 4 * HF_SUMS_MARGIN, now.width, now.channels, now.unscale, out);
+    int64_t *lane[HF_BINS];
+    for (int b = 0; b < HF_BINS; b++)
+        lane[b] = lane_of(w, a) + (size_t)b * row_lanes() + 4 * HF_SUMS_MARGIN;
+    k->scatter.settle(lane, now.width, now.channels, &now.bins, out);
 }
 
 // ---- the rows of the table ----
@@ -467,7 +482,7 @@ void scatter_call(struct world *w, const struct kernels *k, enum arena a, int wh
         return;
     case SCATTER_NOTE: {
         float *const colour[4] = {line(w, a, 1), line(w, a, 2), line(w, a, 3), line(w, a, 4)};
-        s->note(in[0], colour, now.channels, w->n, &w->result[a].counts.largest, &w->result[a].counts.transparent);
+        s->note(in[0], colour, now.channels, w->n, &w->result[a].counts);
         return;
     }
     case SCATTER_SETTLE:
@@ -484,8 +499,9 @@ void scatter_call(struct world *w, const struct kernels *k, enum arena a, int wh
 int scatter_check(const struct world *w, const struct level *l, char message[256])
 {
     const int which = now.which;
-    if (which == SCATTER_LIST && !same_lists(w, message))
-        return 0;
+    for (int b = 0; which == SCATTER_LIST && b < HF_BINS; b++)
+        if (!same_lists(w, b, message))
+            return 0;
     if ((which == SCATTER_RUNS || which == SCATTER_TAPS || which == SCATTER_SPLAT) && !same_sums(w, message))
         return 0;
     return row_check(w, l, message);

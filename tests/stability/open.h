@@ -12,12 +12,7 @@ static const struct {
 } open_rows[] = {
     {"largest floats: not finite in the picture", "gather", 20000,
      "sums of four samples pass the largest float in the downsample, and nothing clamps them"},
-    {"largest floats: not finite in the picture", "scatter", 20000,
-     "a blend of two samples of the largest float passes it"},
     {"largest floats: not finite in a buffer on the way", "gather", 20000, "the same"},
-    {"largest floats: not finite in a buffer on the way", "scatter", 20000, "the same"},
-    {"bad samples: distance of the farthest change, pixels", "scatter", 150,
-     "shares are truncated to the brightest sample's fixed point, wherever in the frame it is"},
     {"constant in, constant out: relative error", "gather", 0.9,
      "the max fill starts from zero where a field is empty: 0 beats a negative constant"},
     {"centre of a highlight, half resolution: off, pixels", "hexagon half", 0.7,

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The scatter engine: samples of very different brightness. None of them changes a bit beyond its own reach, and each of
+// those that come together keeps its own accuracy. On one instruction set: the others have the same bits (scatter.c).
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "support/render.h"
+
+enum { WIDTH = 128, HEIGHT = 90, PIXELS = WIDTH * HEIGHT, X = 100, Y = 30, RADIUS = 9, HALVES = 2 };
+// A picture's last pixel, its mean's neighbours at half resolution, and those of the upsampling.
+enum { REACH = RADIUS + 7 };
+
+static const double U = FLT_EPSILON / 2;
+static const float values[] = {300, 65504, 1e9f, 1e12f, 1e20f, 1e30f, FLT_MAX};
+enum { VALUES = sizeof values / sizeof *values };
+
+static struct hf_params params_new(int half)
+{
+    struct hf_params p = scene_params();
+    p.engine = HF_ENGINE_SCATTER;
+    p.max_radius = HF_DERIVE;
+    p.scatter.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    return p;
+}
+
+static struct picture blurred(struct hf_context *c, const struct picture *colour, const struct picture *radius,
+                              int half)
+{
+    const struct hf_params p = params_new(half);
+    const struct hf_depth depth = picture_radii(radius);
+    return render(c, colour, &depth, &p);
+}
+
+// Colours of six decades, everything blurred, near and far beside each other.
+static struct scene stage(int channels)
+{
+    struct rng rng = rng_seed(5);
+    struct scene s = {picture_new(WIDTH, HEIGHT, channels), picture_new(WIDTH, HEIGHT, 1)};
+    for (int k = 0; k < PIXELS; k++) {
+        for (int c = 0; c < channels; c++)
+            s.colour.plane[c][k] = powf(10, rng_range(&rng, -5, 1));
+        s.depth.plane[0][k] = k % WIDTH < 40 ? -rng_range(&rng, 0.6f, RADIUS) : rng_range(&rng, 0.6f, RADIUS);
+    }
+    return s;
+}
+
+static int is_far_off(int k)
+{
+    const int dx = k % WIDTH - X, dy = k / WIDTH - Y;
+    return dx < -REACH || dx > REACH || dy < -REACH || dy > REACH;
+}
+
+// Samples that differ away from (X, Y), in channels `from` to `to`.
+static int changed(const struct picture *a, const struct picture *b, int from, int to)
+{
+    int n = 0;
+    for (int c = from; c < to; c++)
+        for (int k = 0; k < PIXELS; k++)
+            n += is_far_off(k) && memcmp(&a->plane[c][k], &b->plane[c][k], sizeof(float));
+    return n;
+}
+
+// One bright sample, in front of the focus or behind it.
+static void far_off(struct hf_context *c, int half)
+{
+    struct scene s = stage(4);
+    struct picture calm = blurred(c, &s.colour, &s.depth, half);
+    for (int i = 0; i < VALUES; i++)
+        for (int ch = 0; ch < 4; ch++) {
+            const int at = Y * WIDTH + X;
+            const float old = s.colour.plane[ch][at];
+            s.colour.plane[ch][at] = values[i];
+            struct picture out = blurred(c, &s.colour, &s.depth, half);
+            CHECK_MSG(!changed(&calm, &out, 0, 4), "half %d, %g in channel %d: %d samples beyond its reach changed",
+                      half, (double)values[i], ch, changed(&calm, &out, 0, 4));
+            int bad = 0, other = 0;
+            for (int k = 0; k < 4; k++)
+                for (int j = 0; j < PIXELS; j++) {
+                    bad += !isfinite(out.plane[k][j]);
+                    // Alpha has sums of its own, and other channels those of their brightness.
+                    other += k != ch && memcmp(&out.plane[k][j], &calm.plane[k][j], sizeof(float));
+                }
+            CHECK_MSG(!bad, "half %d, %g: %d samples are not finite", half, (double)values[i], bad);
+            CHECK_MSG(!other, "half %d, %g in channel %d: %d samples of other channels changed", half,
+                      (double)values[i], ch, other);
+            s.colour.plane[ch][at] = old;
+            picture_free(&out);
+        }
+    picture_free(&calm);
+    scene_free(&s);
+}
+
+// Lights of all kinds at once, at a distance from each other: around each there is what there would be without the others.
+static void many(struct hf_context *c, int half)
+{
+    struct scene s = stage(3);
+    struct picture calm = blurred(c, &s.colour, &s.depth, half);
+    for (int i = 0; i < 3; i++)
+        s.colour.plane[0][(Y + 45) * WIDTH + 20 + 30 * i] = values[i + 1];
+    struct picture without = blurred(c, &s.colour, &s.depth, half);
+    s.colour.plane[0][Y * WIDTH + X] = 1e9f;
+    struct picture with = blurred(c, &s.colour, &s.depth, half);
+    CHECK_MSG(!changed(&without, &with, 0, 3), "half %d: %d samples beyond a light's reach changed", half,
+              changed(&without, &with, 0, 3));
+    int other = 0;
+    for (int k = 0; k < PIXELS; k++)
+        other += k / WIDTH < Y + 45 - REACH && memcmp(&without.plane[1][k], &calm.plane[1][k], sizeof(float));
+    CHECK_INT(other, 0);
+    picture_free(&calm);
+    picture_free(&without);
+    picture_free(&with);
+    scene_free(&s);
+}
+
+// A light beside a constant, one radius everywhere: what the light does not reach is the constant within 16 roundings, as
+// in a frame without it, and so is alpha everywhere.
+static void beside_constant(struct hf_context *c, int half)
+{
+    for (int i = 0; i < VALUES; i++) {
+        struct picture colour = picture_new(WIDTH, HEIGHT, 4), radius = picture_new(WIDTH, HEIGHT, 1);
+        for (int ch = 0; ch < 4; ch++)
+            picture_fill(&colour, ch, ch == 3 ? 0.6f : 0.35f);
+        picture_fill(&radius, 0, RADIUS);
+        for (int ch = 0; ch < 3; ch++)
+            colour.plane[ch][Y * WIDTH + X] = values[i];
+        struct picture out = blurred(c, &colour, &radius, half);
+        double worst = 0, alpha = 0;
+        for (int k = 0; k < PIXELS; k++) {
+            for (int ch = 0; ch < 3 && is_far_off(k); ch++)
+                worst = worse(worst, fabs(out.plane[ch][k] / 0.35 - (double)(0.35f / 0.35)));
+            alpha = worse(alpha, fabs(out.plane[3][k] / 0.6 - (double)(0.6f / 0.6)));
+        }
+        CHECK_MSG(worst <= 16 * U, "half %d, %g: a constant beside it is %g off", half, (double)values[i], worst);
+        CHECK_MSG(alpha <= 16 * U, "half %d, %g: alpha is %g off", half, (double)values[i], alpha);
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+}
+
+// A crop knows nothing of a light that it does not hold.
+static void crops(struct hf_context *c, int half)
+{
+    struct scene s = stage(3);
+    s.colour.plane[0][2 * WIDTH + WIDTH - 3] = 1e9f;
+    const int x0 = 4, y0 = 8, w = 90, h = 80;
+    struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
+    struct picture whole = blurred(c, &s.colour, &s.depth, half), cut = blurred(c, &part.colour, &part.depth, half);
+    int other = 0;
+    for (int ch = 0; ch < 3; ch++)
+        for (int y = 2 * REACH; y < h - 2 * REACH; y++)
+            for (int x = 2 * REACH; x < w - 2 * REACH; x++)
+                other += memcmp(&cut.plane[ch][y * w + x], &whole.plane[ch][(y + y0) * WIDTH + x + x0], sizeof(float));
+    CHECK_MSG(!other, "half %d: %d samples of a crop are not the whole's", half, other);
+    picture_free(&whole);
+    picture_free(&cut);
+    scene_free(&part);
+    scene_free(&s);
+}
+
+// Everything as large as a float can be, of either sign.
+static void largest(struct hf_context *c, int half)
+{
+    for (int signs = 0; signs < 2; signs++) {
+        struct scene s = stage(4);
+        for (int ch = 0; ch < 4; ch++)
+            for (int k = 0; k < PIXELS; k++)
+                s.colour.plane[ch][k] = signs && k % 3 ? -FLT_MAX : FLT_MAX;
+        struct picture out = blurred(c, &s.colour, &s.depth, half);
+        int bad = 0, off = 0;
+        for (int ch = 0; ch < 4; ch++)
+            for (int k = 0; k < PIXELS; k++) {
+                bad += !isfinite(out.plane[ch][k]);
+                off += !signs && !(out.plane[ch][k] >= FLT_MAX * (1 - 16 * U));
+            }
+        CHECK_MSG(!bad && !off, "half %d: %d samples are not finite, %d are another constant", half, bad, off);
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
+// Alpha that is 1 all around stays 1, bit for bit, whatever it is elsewhere in the frame.
+static void opaque(struct hf_context *c, int half)
+{
+    static const float elsewhere[] = {1e-42f, 0, 0.3f, 1.7f, 5, 6e4f, 1e12f, FLT_MAX};
+    for (int i = 0; i < 8; i++) {
+        struct scene s = stage(4);
+        picture_fill(&s.colour, 3, 1);
+        s.colour.plane[3][Y * WIDTH + X] = elsewhere[i];
+        struct picture out = blurred(c, &s.colour, &s.depth, half);
+        int thin = 0;
+        for (int k = 0; k < PIXELS; k++)
+            thin += is_far_off(k) && out.plane[3][k] != 1;
+        CHECK_MSG(!thin, "half %d, alpha of %g in one pixel: %d others are not 1", half, (double)elsewhere[i], thin);
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
+int main(void)
+{
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
+    for (int half = 0; half < HALVES; half++) {
+        far_off(c, half);
+        many(c, half);
+        beside_constant(c, half);
+        crops(c, half);
+        largest(c, half);
+        opaque(c, half);
+    }
+    hf_close(&c);
+    return check_report();
+}
