@@ -13,7 +13,10 @@ void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const
             const float before = (r2 - s->before_square) * s->before_scale,
                         after = 1 - (r2 - s->square) * s->after_scale;
             const float part = r < s->radius ? before : after;
-            const float shown = (r > s->before && r < s->after ? part : 0) * s->scale;
+            // What has no weight has no radius and no colour either.
+            if (!(in[4][at] > 0 && r > s->before && r < s->after))
+                continue;
+            const float shown = part * s->scale;
             const float w = shown * in[4][at], v = share ? shown * (in[4][at] - share[at]) : w;
             for (int c = 0; c < channels; c++)
                 sum[c] = sum[c] + v * in[c][at];

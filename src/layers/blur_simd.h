@@ -16,17 +16,18 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
         for (int y = 0; y < rows; y++) {
             const ptrdiff_t at = y * stride + x;
             const vf r = vf_load(in[5] + at), r2 = vf_mul(r, r);
-            const vm inside = vm_and(vf_gt(r, before), vf_lt(r, after));
+            const vf weight = vf_load(in[4] + at);
+            const vm inside = vm_and(vf_gt(weight, vf_zero()), vm_and(vf_gt(r, before), vf_lt(r, after)));
             if (!vm_any(inside))
                 continue;
             const vf a = vf_mul(vf_sub(r2, before_square), before_scale);
             const vf b = vf_fnma(vf_sub(r2, square), after_scale, vf_set1(1));
-            const vf shown = vf_mul(vf_keep(inside, vf_select(vf_lt(r, radius), a, b)), scale);
-            const vf weight = vf_load(in[4] + at), w = vf_mul(shown, weight);
+            const vf shown = vf_mul(vf_select(vf_lt(r, radius), a, b), scale);
+            const vf w = vf_mul(shown, weight);
             const vf v = share ? vf_mul(shown, vf_sub(weight, vf_load(share + at))) : w;
             for (int c = 0; c < channels; c++)
-                sum[c] = vf_fma(v, vf_load(in[c] + at), sum[c]);
-            sum[4] = vf_add(sum[4], w);
+                sum[c] = vf_select(inside, vf_fma(v, vf_load(in[c] + at), sum[c]), sum[c]);
+            sum[4] = vf_add_where(inside, w, sum[4]);
         }
         any[x / 16] |= (uint8_t)vm_any(vf_gt(sum[4], vf_zero()));
         for (int c = 0; c < 5; c++)

@@ -6,7 +6,8 @@
 #include "frame/engine.h"
 #include "layers/layers.h"
 
-// 1 for the pixels whose 3 x 3 radii differ by at most 1, else 0; and the middle of these radii.
+// 1 for the pixels whose 3 x 3 radii differ by at most 1, else 0; and the middle of these radii. Of the first and the
+// last pixel it means nothing.
 typedef void hf_layers_sure(const float *const radius[3], int n, float *sure, float *middle);
 typedef void hf_layers_unmix(const struct hf_unmix_row *row, int n);
 // Mean roots of brightness of n quads, from two rows of colour.

@@ -83,7 +83,7 @@ struct hf_layers {
 // The samples of a frame.
 struct hf_samples {
     struct hf_layers_set seen;   // one of each pixel ...
-    struct hf_layers_set mixed;  // ... and the one behind it at mixed edges
+    struct hf_layers_set mixed;  // ... and the one behind it at mixed edges; without weight the rest means nothing
     float *share;  // of a visible sample's weight whose colour is drawn at full resolution; stride of seen
     struct hf_layers_set hidden;  // at half resolution
 };

@@ -10,9 +10,9 @@
 void hf_layers_sure_c(const float *const radius[3], int n, float *sure, float *middle)
 {
     for (int x = 0; x < n; x++) {
-        float low = radius[0][x], high = low;
+        float low = radius[1][x], high = low;
         for (int y = 0; y < 3; y++)
-            for (int i = -1; i <= 1; i++) {
+            for (int i = x ? -1 : 0; i <= 1; i++) {
                 const float r = radius[y][x + i];
                 low = r < low ? r : low;
                 high = r > high ? r : high;
@@ -66,13 +66,11 @@ int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], floa
 
 static void keep(const struct hf_unmix_row *u, int x)
 {
-    for (int c = 0; c < u->channels; c++) {
+    for (int c = 0; c < u->channels; c++)
         u->seen[c][x] = u->colour[3][c][x];
-        u->mixed[c][x] = 0;
-    }
     u->seen[4][x] = 1;
     u->mixed[4][x] = 0;
-    u->seen[5][x] = u->mixed[5][x] = u->radius[3][x];
+    u->seen[5][x] = u->radius[3][x];
 }
 
 // How much of the pixel the front is: colours of front and back are given.
@@ -152,7 +150,7 @@ enum { AROUND = 16 };  // floats on either side of a row of scratch
 
 size_t hf_layers_unmix_floats(int width)
 {
-    return 16 * ((size_t)width + 2 * AROUND);
+    return 16 * ((size_t)width + 2 * AROUND) + HF_PAD;
 }
 
 // Which pixels of a row are not mixed, into its row of the ring.
@@ -162,8 +160,9 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
     const float *radius[3];
     float *sure = ring + (y & 7) * stride;
     for (int i = 0; i < 3; i++)
-        radius[i] = hf_at(b, 0, x - 3, y + i - 1);
-    hf_layers_kernels(f)->sure(radius, n + 6, sure - 3, ring + 8 * stride + (y & 7) * stride - 3);
+        radius[i] = hf_at(b, 0, x - AROUND, y + i - 1);
+    // Whole vectors, though only three pixels on either side are read.
+    hf_layers_kernels(f)->sure(radius, n + 2 * AROUND, sure - AROUND, ring + (8 + (y & 7)) * stride - AROUND);
 }
 
 void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r)

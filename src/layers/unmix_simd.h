@@ -3,31 +3,40 @@
 #include "layers/unmix.h"
 #include "simd/simd.h"
 
+// Least and largest of a column of three.
+HF_INLINE void layers_column(const float *const radius[3], int x, vf *low, vf *high)
+{
+    const vf a = vf_load(radius[0] + x), b = vf_load(radius[1] + x), c = vf_load(radius[2] + x);
+    *low = vf_min(a, vf_min(b, c));
+    *high = vf_max(a, vf_max(b, c));
+}
+
 static void layers_sure_simd(const float *const radius[3], int n, float *sure, float *middle)
 {
+    vf low[3], high[3];
+    layers_column(radius, 0, &low[1], &high[1]);
+    low[0] = low[1];
+    high[0] = high[1];
     for (int x = 0; x < n; x += VF_N) {
-        vf low = vf_load(radius[0] + x - 1), high = low;
-        for (int y = 0; y < 3; y++)
-            for (int i = -1; i <= 1; i++) {
-                const vf r = vf_load(radius[y] + x + i);
-                low = vf_min(r, low);
-                high = vf_max(r, high);
-            }
-        vf_store(sure + x, vf_keep(vm_not(vf_gt(vf_sub(high, low), vf_set1(1))), vf_set1(1)));
-        vf_store(middle + x, vf_mul(vf_add(low, high), vf_set1(0.5f)));
+        layers_column(radius, x + VF_N, &low[2], &high[2]);
+        const vf least = vf_min(vf_min(vf_back(low[0], low[1]), low[1]), vf_align(low[1], low[2], 1));
+        const vf most = vf_max(vf_max(vf_back(high[0], high[1]), high[1]), vf_align(high[1], high[2], 1));
+        vf_store(sure + x, vf_keep(vm_not(vf_gt(vf_sub(most, least), vf_set1(1))), vf_set1(1)));
+        vf_store(middle + x, vf_mul(vf_add(least, most), vf_set1(0.5f)));
+        for (int i = 0; i < 2; i++) {
+            low[i] = low[i + 1];
+            high[i] = high[i + 1];
+        }
     }
 }
 
 HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channels)
 {
-    for (int c = 0; c < channels; c++) {
+    for (int c = 0; c < channels; c++)
         vf_store(u->seen[c] + x, vf_load(u->colour[3][c] + x));
-        vf_store(u->mixed[c] + x, vf_zero());
-    }
     vf_store(u->seen[4] + x, vf_set1(1));
     vf_store(u->mixed[4] + x, vf_zero());
     vf_store(u->seen[5] + x, vf_load(u->radius[3] + x));
-    vf_store(u->mixed[5] + x, vf_load(u->radius[3] + x));
 }
 
 // Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
