@@ -43,8 +43,9 @@ static size_t place(struct hf_cell *c, float *memory)
     const int wide = width + 2 * n * TILE + 2 * AROUND;
     c->used = take_map(&m, c->columns, c->rows, n);
     c->filled = take_map(&m, c->columns, TILE / 2, n);
-    struct hf_tile_map *const maps[] = {&c->touched, &c->shone, &c->near, &c->far, &c->middle};
-    for (int i = 0; i < 5; i++)
+    struct hf_tile_map *const maps[] = {&c->touched, &c->shone, &c->near,   &c->far,
+                                        &c->middle,  &c->begun, &c->lit[0], &c->lit[1]};
+    for (int i = 0; i < 8; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
     c->source.channel = wide;
     c->source.row = (ptrdiff_t)wide * (channels + 1);
@@ -59,6 +60,7 @@ static size_t place(struct hf_cell *c, float *memory)
     const struct hf_window part = take_window(&m, width / 2, height / 2, 1);
     c->part = part.at;
     c->part_row = part.row;
+    c->none = take(&m, (size_t)width + AROUND, 0);
     c->any = (uint8_t *)take(&m, (size_t)wide / 16 / sizeof(float) + 1, 0);
     for (int i = 0; i < 5; i++) {
         c->line[i] = take(&m, (size_t)wide, 0);
@@ -88,13 +90,12 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     // Where a slice does not reach, its light is 0 whatever part of it shows.
     memset(c.part - MARGIN * c.part_row - LEFT, 0,
            sizeof(float) * (size_t)c.part_row * (size_t)(c.rows * TILE / 2 + 2 * MARGIN));
-    struct hf_tile_map *const maps[] = {&c.near, &c.far, &c.middle};
-    for (int i = 0; i < 3; i++)
+    struct hf_tile_map *const maps[] = {&c.near, &c.far, &c.middle, &c.begun, &c.lit[0], &c.lit[1]};
+    for (int i = 0; i < 6; i++)
         for (int ty = -1; ty <= c.rows; ty++)
             memset(hf_layers_map_at(maps[i], -1, ty), 0, (size_t)c.columns + 2);
     int i = 0;
-    hf_layers_open_stack(&c, NEAR);
-    hf_layers_open_stack(&c, FAR);
+    memset(c.none, 0, sizeof(float) * (size_t)(c.columns * TILE + AROUND));
     while (i < l->slices && l->slice[i].level > 0 && l->slice[i].radius < 0)
         hf_layers_put_slice(&c, i++);
     hf_layers_begin_middle(&c);

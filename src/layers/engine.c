@@ -95,6 +95,7 @@ static void place_tiles(struct hf_layers *l)
     l->seen_range = l->tiles.data;
     l->mixed_range = l->seen_range + n;
     l->hidden_range = l->mixed_range + n;
+    l->repaired = (atomic_uchar *)(l->hidden_range + n);
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
@@ -107,7 +108,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     l->columns = (s->width + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
-    int err = hf_block_grow(&l->tiles, tiles * 3 * sizeof(struct hf_layers_range), mem);
+    int err = hf_block_grow(&l->tiles, tiles * 3 * sizeof(struct hf_layers_range) + 1, mem);
     if (!err)
         err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
     if (!err)
@@ -142,6 +143,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;
     l->around = (hf_layers_most_tiles(l) + 2) * HF_LAYERS_TILE;
+    atomic_init(l->repaired, 0);
     l->words = (l->slices + 63) / 64;
     const size_t marks = (size_t)l->columns * (size_t)l->rows * (size_t)l->words;
     if (hf_block_grow(&l->marks, 4 * marks * sizeof(uint64_t), mem))

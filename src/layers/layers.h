@@ -10,6 +10,7 @@
 #ifndef HF_LAYERS_H
 #define HF_LAYERS_H
 
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -76,7 +77,8 @@ struct hf_layers {
     struct hf_layers_range *seen_range, *mixed_range, *hidden_range;
     // Which slices have samples in a tile, a bit for each: of what is seen, mixed, hidden, and of shares.
     struct hf_block marks;
-    int words;  // of a tile's bits
+    atomic_uchar *repaired;  // whether the colour had samples to repair
+    int words;               // of a tile's bits
     uint64_t *seen_marks, *mixed_marks, *hidden_marks, *share_marks;
 };
 

@@ -31,16 +31,19 @@ struct hf_cell {
     const struct hf_layers *l;
     const struct hf_samples *samples;
     const struct hf_layers_kernels *k;
-    int x0, y0, columns, rows;   // of tiles
-    struct hf_tile_map used;     // tiles that have samples of the slice
-    struct hf_tile_map filled;   // pairs of rows of a row of tiles: where there are any
-    struct hf_tile_map touched;  // tiles that its blur reaches, one more around the cell
-    struct hf_tile_map shone;    // the same of its shares at full resolution
-    struct hf_tile_map near, far, middle;
+    int x0, y0, columns, rows;             // of tiles
+    struct hf_tile_map used;               // tiles that have samples of the slice
+    struct hf_tile_map filled;             // pairs of rows of a row of tiles: where there are any
+    struct hf_tile_map touched;            // tiles that its blur reaches, one more around the cell
+    struct hf_tile_map shone;              // the same of its shares at full resolution
+    struct hf_tile_map near, far, middle;  // where the slices of a stack reach, but for what is in focus
+    struct hf_tile_map begun, lit[2];      // tiles of the middle, and of the lights, that hold something
+    int opened[2];                         // near and far stack hold something
     struct hf_window source, sum[HF_LAYERS_COARSEST + 1], shine;
     struct hf_window stack[3], light[2];  // near, far, middle; what shines of near and far
     float *line[5];                       // sums at full resolution, on their way to the source's
     float *row[5];                        // upsampled
+    float *none;                          // a row of zeros
     uint8_t *any;                         // where a row of a run has samples of the slice, 16 at once
     float *part;                          // how much of a slice shows, half resolution
     ptrdiff_t part_row;
@@ -104,8 +107,6 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
 
 // together.c
 void hf_layers_put_slice(struct hf_cell *c, int i);
-// An empty stack.
-void hf_layers_open_stack(const struct hf_cell *c, int stack);
 // The near stack lies before what is near the focus.
 void hf_layers_begin_middle(const struct hf_cell *c);
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride);

@@ -17,6 +17,8 @@ void hf_layers_load_pass(const struct hf_frame *f, struct hf_rect r)
         float *colour[4] = {NULL};
         hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
+        if (f->seen->colour_repaired)
+            atomic_store_explicit(hf_layers(f->s)->repaired, 1, memory_order_relaxed);
         f->k->radius_row(f, x0, y, n, hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x0, y), NULL);
     }
 }
@@ -58,13 +60,15 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
     float *memory = f->work, *out[4] = {NULL};
     for (int c = 0; c < l->channels; c++, memory += (size_t)width * (size_t)height)
         out[c] = memory;
+    const int repaired = atomic_load_explicit(l->repaired, memory_order_relaxed);
     hf_layers_cell(l, &samples, hf_layers_kernels(f), tiles, memory, out, width);
     for (int y = y0; y < y1; y++) {
         float *row[4] = {NULL}, *was[4];
         // Repairs are counted where they show.
-        for (int c = 0; c < 4; c++)
+        for (int c = 0; repaired && c < 4; c++)
             was[c] = hf_line(f, 8 + c);
-        hf_read_pixels(f, r.x0, y, r.x1 - r.x0, was, f->counts);
+        if (repaired)
+            hf_read_pixels(f, r.x0, y, r.x1 - r.x0, was, f->counts);
         for (int c = 0; c < l->channels; c++)
             row[c] = out[c] + (ptrdiff_t)(y - tiles.y0) * width + x0 - tiles.x0;
         hf_store_rgb(f, row, x1 - x0);

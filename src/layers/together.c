@@ -60,6 +60,70 @@ static void mark(const struct hf_cell *c, const struct hf_tile_map *from, struct
             *hf_layers_map_at(to, tx, ty) |= *hf_layers_map_at(from, tx, ty);
 }
 
+// Fill a row of a tile of a window's channel.
+static void fill_tile(const struct hf_window *w, int channel, int tx, int y, float value)
+{
+    float *p = w->at + y * w->row + channel * w->channel + tx * TILE;
+    for (int x = 0; x < TILE; x++)
+        p[x] = value;
+}
+
+// No light where there is none yet.
+static void begin_light(const struct hf_cell *c, int stack)
+{
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++) {
+            uint8_t *lit = hf_layers_map_at(&c->lit[stack], tx, ty);
+            if (*lit || !*hf_layers_map_at(&c->shone, tx, ty))
+                continue;
+            *lit = 1;
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
+                for (int i = 0; i < c->l->channels; i++)
+                    fill_tile(&c->light[stack], i, tx, y, 0);
+        }
+}
+
+// Nothing in the tiles of the middle that a slice is the first to touch.
+static void begin_tiles(const struct hf_cell *c)
+{
+    const int channels = c->l->channels;
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++) {
+            uint8_t *begun = hf_layers_map_at(&c->begun, tx, ty);
+            if (*begun || !*hf_layers_map_at(&c->touched, tx, ty))
+                continue;
+            *begun = 1;
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
+                for (int i = 0; i <= channels + 1; i++)
+                    fill_tile(&c->stack[MIDDLE], i, tx, y, i > channels);
+        }
+}
+
+// An empty stack at half resolution.
+static void begin_stack(struct hf_cell *c, int stack)
+{
+    const int channels = c->l->channels, n = c->columns * TILE / 2 + 2 * MARGIN;
+    if (c->opened[stack])
+        return;
+    c->opened[stack] = 1;
+    for (int y = -MARGIN; y < c->rows * TILE / 2 + MARGIN; y++) {
+        const struct hf_stack_row r = hf_layers_stack_at(c, stack, -MARGIN, y);
+        for (int i = 0; i < channels; i++)
+            memset(r.colour[i], 0, sizeof(float) * (size_t)n);
+        memset(r.weight, 0, sizeof(float) * (size_t)n);
+        for (int x = 0; x < n; x++)
+            r.open[x] = 1;
+    }
+}
+
+static void begin(struct hf_cell *c, int stack)
+{
+    if (stack == MIDDLE)
+        begin_tiles(c);
+    else
+        begin_stack(c, stack);
+}
+
 // Shares of highlights, at full resolution, where the slice shows.
 static void put_light(struct hf_cell *c, int stack, int slice)
 {
@@ -71,6 +135,7 @@ static void put_light(struct hf_cell *c, int stack, int slice)
         return;
     hf_layers_draw_slice(c, &b, &c->shone, &c->shine);
     const struct hf_window *to = &c->light[stack];
+    begin_light(c, stack);
     for (int ty = 0; ty < c->rows; ty++)
         for (int tx = 0, end; (end = hf_layers_next_run(&c->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
@@ -101,6 +166,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .channels = l->channels + 1,
                                    .mixed = 1};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
+        begin(c, stack);
         put_under(c, stack, s->level, 0, shares);
         if (s->radius != 0)
             mark(c, &c->touched, reached);
@@ -114,27 +180,9 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .finest = 1,
                                    .channels = l->channels + 1};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
+        begin(c, stack);
         put_under(c, stack, behind->level, 1, 0);
         mark(c, &c->touched, reached);
-    }
-}
-
-void hf_layers_open_stack(const struct hf_cell *c, int stack)
-{
-    const int finest = stack == MIDDLE ? 0 : 1, size = TILE >> finest, margin = finest ? MARGIN : 0;
-    for (int y = -margin; y < c->rows * size + margin; y++) {
-        const struct hf_stack_row r = hf_layers_stack_at(c, stack, -margin, y);
-        const int n = c->columns * size + 2 * margin;
-        for (int i = 0; i < c->l->channels; i++)
-            memset(r.colour[i], 0, sizeof(float) * (size_t)n);
-        memset(r.weight, 0, sizeof(float) * (size_t)n);
-        for (int x = 0; x < n; x++)
-            r.open[x] = 1;
-        for (int i = 0; finest && i < c->l->channels; i++) {
-            const struct hf_window *w = &c->light[stack];
-            for (int j = 0; j < 2 && y >= 0 && y < c->rows * size; j++)
-                memset(w->at + (2 * y + j) * w->row + i * w->channel, 0, sizeof(float) * (size_t)(c->columns * TILE));
-        }
     }
 }
 
@@ -165,15 +213,19 @@ static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float
         const float *a = w->at + (y >> 1) * w->row + i * w->channel + (x >> 1);
         float *to = out[i < c->l->channels ? i : 4];
         c->k->up(a, a + (y & 1 ? w->row : -w->row), n / 2, to);
-        const float *in = light->at + y * light->row + i * light->channel + x;
-        for (int j = 0; i < c->l->channels && j < n; j++)
-            to[j] += in[j];
     }
+    for (int tx = x / TILE, end; (end = hf_layers_next_run(&c->lit[stack], &tx, y / TILE, (x + n) / TILE, 1)) > tx;
+         tx = end)
+        for (int i = 0; i < c->l->channels; i++) {
+            const float *in = light->at + y * light->row + i * light->channel + tx * TILE;
+            float *to = out[i] + tx * TILE - x;
+            for (int j = 0; j < (end - tx) * TILE; j++)
+                to[j] += in[j];
+        }
 }
 
 void hf_layers_begin_middle(const struct hf_cell *c)
 {
-    hf_layers_open_stack(c, MIDDLE);
     for (int ty = 0; ty < c->rows; ty++)
         for (int tx = 0, end; (end = hf_layers_next_run(&c->near, &tx, ty, c->columns, 1)) > tx; tx = end)
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
@@ -182,27 +234,45 @@ void hf_layers_begin_middle(const struct hf_cell *c)
                 raise(c, NEAR, tx * TILE, (end - tx) * TILE, y, out);
                 for (int x = 0; x < (end - tx) * TILE; x++)
                     r.open[x] = r.weight[x] < 1 ? 1 - r.weight[x] : 0;
+                memset(hf_layers_map_at(&c->begun, tx, ty), 1, (size_t)(end - tx));
             }
+}
+
+// What tiles that are put together alike have in common.
+static int state_of(const struct hf_cell *c, int tx, int ty)
+{
+    return *hf_layers_map_at(&c->far, tx, ty) | *hf_layers_map_at(&c->begun, tx, ty) << 1;
+}
+
+// A row of a run of tiles.
+static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, float *const out[4])
+{
+    const int far = state & 1, channels = c->l->channels;
+    struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, x, y);
+    const float *own[6] = {NULL};
+    hf_layers_planes_at(c->l, &c->samples->seen, c->samples->seen.weight, c->x0 + x, c->y0 + y, own);
+    if (!(state >> 1)) {
+        for (int i = 0; i < channels; i++)
+            r.colour[i] = c->none;
+        r.weight = c->none;
+    }
+    if (far)
+        raise(c, FAR, x, n, y, c->row);
+    c->k->finish(&r, far ? (const float *const *)c->row : NULL, own, channels, n, out);
 }
 
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)
 {
     for (int ty = 0; ty < c->rows; ty++)
         for (int tx = 0, end; tx < c->columns; tx = end) {
-            const int far = *hf_layers_map_at(&c->far, tx, ty);
-            for (end = tx + 1; end < c->columns && *hf_layers_map_at(&c->far, end, ty) == far;)
+            const int state = state_of(c, tx, ty);
+            for (end = tx + 1; end < c->columns && state_of(c, end, ty) == state;)
                 end++;
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
-                const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
                 float *to[4] = {NULL};
-                const float *own[6] = {NULL};
-                hf_layers_planes_at(c->l, &c->samples->seen, c->samples->seen.weight, c->x0 + tx * TILE, c->y0 + y,
-                                    own);
                 for (int i = 0; i < c->l->channels; i++)
                     to[i] = out[i] + y * stride + tx * TILE;
-                if (far)
-                    raise(c, FAR, tx * TILE, (end - tx) * TILE, y, c->row);
-                c->k->finish(&r, far ? (const float *const *)c->row : NULL, own, c->l->channels, (end - tx) * TILE, to);
+                finish_row(c, state, tx * TILE, y, (end - tx) * TILE, to);
             }
         }
     for (int ty = 0; ty < c->rows; ty++)
