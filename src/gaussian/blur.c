@@ -113,6 +113,50 @@ void hf_gaussian_up_c(const struct hf_buf *b, int c, int quarter, int x, int y, 
         }
 }
 
+void hf_gaussian_shrink_c(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                          float *const sum[4])
+{
+    const struct hf_setup *s = f->s;
+    const int rows = 1 << s->resolution;
+    const float share = 1.0f / (float)(rows * rows);
+    for (int i = 0; i < rows; i++) {
+        hf_read_colour(f, x, hf_min(y * rows + i, s->height - 1), n, even, odd, f->seen);
+        for (int c = 0; c < s->channels; c++)
+            for (int k = 0; k < n; k++)
+                sum[c][k] = (i ? sum[c][k] : 0) + (even[c][k] * share + odd[c][k] * share);
+    }
+    for (int c = 0; c < s->channels && s->resolution == HF_RESOLUTION_QUARTER; c++)
+        for (int k = 0; 2 * k < n; k++)
+            sum[c][k] = sum[c][2 * k] + sum[c][hf_min(2 * k + 1, n - 1)];
+}
+
+void hf_gaussian_merge_c(const struct hf_frame *f, int y, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    const struct hf_buf *blur = &f->buf[HF_GAUSSIAN_BLUR];
+    const int n = r.x1 - r.x0;
+    float *lane[2][4], *blend[4], *even = hf_line(f, 12), *odd = hf_line(f, 13);
+    for (int i = 0; i < 4; i++) {
+        lane[0][i] = hf_line(f, i);
+        lane[1][i] = hf_line(f, 4 + i);
+        blend[i] = hf_line(f, 8 + i);
+    }
+    hf_gaussian_kernels(f)->blend_row(f, r.x0, y, n, blend, NULL);
+    hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
+    for (int c = 0; c < s->channels; c++) {
+        if (s->resolution == HF_RESOLUTION_FULL)
+            f->k->unzip(hf_at(blur, c, 2 * r.x0, y), n, even, odd);
+        else
+            hf_gaussian_kernels(f)->up(blur, c, s->resolution == HF_RESOLUTION_QUARTER, r.x0, y, n, even, odd);
+        hf_gaussian_kernels(f)->lerp_row(lane[0][c], even, blend[0], n);
+        hf_gaussian_kernels(f)->lerp_row(lane[1][c], odd, blend[1], n);
+    }
+    if (s->channels == 3)
+        lane[0][3] = lane[1][3] = NULL;
+    f->counts->clamped +=
+        f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
+}
+
 // ---- passes ----
 
 void hf_gaussian_depth_pass(const struct hf_frame *f, struct hf_rect r)
@@ -143,42 +187,13 @@ static struct lines lines_of(const struct hf_frame *f, size_t floats)
     return l;
 }
 
-// Row y of the working resolution, lanes x0 to x1: at full resolution in l->even and l->odd, else what each lane adds
-// to the mean of four or sixteen pixels, in l->sum.
-static void read_sums(const struct hf_frame *f, struct lines *l, int x0, int x1, int y)
-{
-    const struct hf_setup *s = f->s;
-    const int n = x1 - x0, rows = 1 << s->resolution;
-    const float share = s->resolution == HF_RESOLUTION_HALF ? 0.25f : 0.0625f;
-    for (int i = 0; i < rows; i++) {
-        hf_read_colour(f, x0, hf_min(y * rows + i, s->height - 1), n, l->even, l->odd, f->seen);
-        if (rows == 1)
-            return;
-        for (int c = 0; c < s->channels; c++) {
-            const float *e = l->even[c], *o = l->odd[c];
-            float *sum = l->sum[c];
-            for (int x = 0; x < n; x++)
-                sum[x] = (i ? sum[x] : 0) + (e[x] * share + o[x] * share);
-        }
-    }
-}
-
-// A channel of the row that was read, as a line of n pixels of the working resolution.
+// A channel of a row of the working resolution as a line of n pixels: as it was read, or shrunk.
 static void make_line(const struct hf_frame *f, const struct lines *l, int c, int lanes, int n, float *line)
 {
-    switch (f->s->resolution) {
-    case HF_RESOLUTION_FULL:
+    if (f->s->resolution == HF_RESOLUTION_FULL)
         f->k->zip(l->even[c], l->odd[c], lanes, line);
-        break;
-    case HF_RESOLUTION_HALF:
-        for (int x = 0; x < n; x++)
-            line[x] = l->sum[c][x];
-        break;
-    case HF_RESOLUTION_QUARTER:
-        for (int x = 0; x < n; x++)
-            line[x] = l->sum[c][2 * x] + l->sum[c][hf_min(2 * x + 1, lanes - 1)];
-        break;
-    }
+    else
+        memcpy(line, l->sum[c], (size_t)n * sizeof *line);
 }
 
 // All iterations on the line of n pixels in l->line[0]; the `count` pixels from `first` on to out.
@@ -210,7 +225,10 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
     const int lanes = read.x1 - read.x0, n = in.x1 - in.x0;
     struct lines l = lines_of(f, hf_gaussian_line_floats(s, r.x1 - r.x0));
     for (int y = out.y0; y < out.y1; y++) {
-        read_sums(f, &l, read.x0, read.x1, y);
+        if (s->resolution == HF_RESOLUTION_FULL)
+            hf_read_colour(f, read.x0, y, lanes, l.even, l.odd, f->seen);
+        else
+            hf_gaussian_kernels(f)->shrink(f, read.x0, y, lanes, l.even, l.odd, l.sum);
         for (int c = 0; c < s->channels; c++) {
             make_line(f, &l, c, lanes, n, l.line[0]);
             blur_line(f, &l, n, out.x0 - in.x0, out.x1 - out.x0, hf_at(&f->buf[HF_GAUSSIAN_ROWS], c, out.x0, y));
@@ -251,35 +269,8 @@ void hf_gaussian_columns_pass(const struct hf_frame *f, struct hf_rect r)
             blur_strip(f, c, (struct hf_rect){x, w.y0, hf_min(x + HF_GAUSSIAN_STRIP, w.x1), w.y1});
 }
 
-static void merge_row(const struct hf_frame *f, int y, struct hf_rect r)
-{
-    const struct hf_setup *s = f->s;
-    const struct hf_buf *blur = &f->buf[HF_GAUSSIAN_BLUR];
-    const int n = r.x1 - r.x0;
-    float *lane[2][4], *blend[4], *even = hf_line(f, 12), *odd = hf_line(f, 13);
-    for (int i = 0; i < 4; i++) {
-        lane[0][i] = hf_line(f, i);
-        lane[1][i] = hf_line(f, 4 + i);
-        blend[i] = hf_line(f, 8 + i);
-    }
-    hf_gaussian_kernels(f)->blend_row(f, r.x0, y, n, blend, NULL);
-    hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
-    for (int c = 0; c < s->channels; c++) {
-        if (s->resolution == HF_RESOLUTION_FULL)
-            f->k->unzip(hf_at(blur, c, 2 * r.x0, y), n, even, odd);
-        else
-            hf_gaussian_kernels(f)->up(blur, c, s->resolution == HF_RESOLUTION_QUARTER, r.x0, y, n, even, odd);
-        hf_gaussian_kernels(f)->lerp_row(lane[0][c], even, blend[0], n);
-        hf_gaussian_kernels(f)->lerp_row(lane[1][c], odd, blend[1], n);
-    }
-    if (s->channels == 3)
-        lane[0][3] = lane[1][3] = NULL;
-    f->counts->clamped +=
-        f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
-}
-
 void hf_gaussian_merge_pass(const struct hf_frame *f, struct hf_rect r)
 {
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
-        merge_row(f, y, r);
+        hf_gaussian_kernels(f)->merge(f, y, r);
 }

@@ -193,6 +193,8 @@ void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
         .line = hf_gaussian_line_c,
         .columns = hf_gaussian_columns_c,
         .up = hf_gaussian_up_c,
+        .shrink = hf_gaussian_shrink_c,
+        .merge = hf_gaussian_merge_c,
         .wide_block = hf_wide_block_c,
     };
 }

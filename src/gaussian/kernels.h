@@ -20,6 +20,12 @@ typedef void hf_gaussian_columns(const float *in, ptrdiff_t in_stride, int rows,
                                  ptrdiff_t out_stride, int n, int faithful);
 // n lanes from lane x of row y of the frame, bilinearly from a buffer of half or a quarter of its size.
 typedef void hf_gaussian_up(const struct hf_buf *b, int c, int quarter, int x, int y, int n, float *even, float *odd);
+// Row y of a working resolution of half or a quarter, the means of 4 or 16 pixels, from n lanes of the picture from lane x
+// on, which is a multiple of 16: into sum. even and odd are scratch.
+typedef void hf_gaussian_shrink(const struct hf_frame *f, int x, int y, int n, float *const even[4],
+                                float *const odd[4], float *const sum[4]);
+// Row y of the result, lanes r.x0 to r.x1. Uses scratch rows 0 to 13.
+typedef void hf_gaussian_merge(const struct hf_frame *f, int y, struct hf_rect r);
 typedef void hf_wide_block(float *block, int n, const struct hf_wide *w, float *work);
 
 struct hf_gaussian_kernels {
@@ -29,6 +35,8 @@ struct hf_gaussian_kernels {
     hf_gaussian_line *line;
     hf_gaussian_columns *columns;
     hf_gaussian_up *up;
+    hf_gaussian_shrink *shrink;
+    hf_gaussian_merge *merge;
     hf_wide_block *wide_block;
 };
 HF_DECLARE_KERNELS(hf_gaussian_kernels);
@@ -45,6 +53,8 @@ hf_lerp_row hf_lerp_row_c;
 hf_gaussian_line hf_gaussian_line_c;
 hf_gaussian_columns hf_gaussian_columns_c;
 hf_gaussian_up hf_gaussian_up_c;
+hf_gaussian_shrink hf_gaussian_shrink_c;
+hf_gaussian_merge hf_gaussian_merge_c;
 hf_wide_block hf_wide_block_c;
 
 extern const struct hf_engine_def hf_gaussian_engine;

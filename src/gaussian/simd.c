@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The gaussian engine's kernels of an instruction set.
 #include "gaussian/blur_simd.h"
+#include "gaussian/merge_simd.h"
 #include "gaussian/wide_simd.h"
 
 void HF_SIMD_NAME(hf_gaussian_kernels)(struct hf_gaussian_kernels *k)
@@ -10,5 +11,7 @@ void HF_SIMD_NAME(hf_gaussian_kernels)(struct hf_gaussian_kernels *k)
     k->line = gaussian_line_simd;
     k->columns = gaussian_columns_simd;
     k->up = gaussian_up_simd;
+    k->shrink = shrink_simd;
+    k->merge = merge_simd;
     k->wide_block = wide_block_simd;
 }
