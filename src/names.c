@@ -13,10 +13,13 @@ static const char *const depth_types[] = {"view", "ray", "ndc-d3d", "ndc-gl", "n
 static const char *const resolutions[] = {"full", "half", "quarter", NULL};
 static const char *const models[] = {"range", "lens", NULL};
 static const char *const storages[] = {"float", "half", "packed", NULL};
-static const char *const fills[] = {"max", "mean", "none", NULL};
+static const char *const fills[] = {"max", "mean", "none", "open", NULL};
 static const char *const blends[] = {"linear", "smoothstep", NULL};
 static const char *const tiles[] = {"sharp", "near", "far", "both", NULL};
 static const char *const qualities[] = {"draft", "standard", "high", "best", NULL};
+static const char *const downsamples[] = {"bilateral", "linear", "point", NULL};
+static const char *const divisions[] = {"exact", "estimate", "newton", "newton2", NULL};
+static const char *const layers[] = {"standard", "draft", "high", "best", NULL};
 static const char *const limits[] = {"none", "given", "model", "engine", "picture", NULL};
 
 // Instruction sets and engines have their names where they are defined.
@@ -34,6 +37,9 @@ static const char *const *const lists[HF_NAMES_COUNT] = {
     [HF_NAMES_TILE] = tiles,
     [HF_NAMES_LIMIT] = limits,
     [HF_NAMES_QUALITY] = qualities,
+    [HF_NAMES_DOWNSAMPLE] = downsamples,
+    [HF_NAMES_DIVISION] = divisions,
+    [HF_NAMES_LAYERS] = layers,
 };
 
 const char *hf_name(enum hf_names of, int value)

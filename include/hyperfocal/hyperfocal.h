@@ -219,6 +219,22 @@ enum hf_fill {
     HF_FILL_MAX,   // 3x3 maximum: brighter highlights than energy allows, the chapter's choice
     HF_FILL_MEAN,  // 3x3 mean: keeps energy
     HF_FILL_NONE,  // none; instead 144 taps, a 12x12 grid mapped to the disc (Shirley and Chiu 1997)
+    HF_FILL_OPEN,  // none, and no more taps: gaps stay
+};
+
+// How the gather makes a pixel of half resolution of four (chapter 3.3.2).
+enum hf_downsample {
+    HF_DOWNSAMPLE_BILATERAL,  // near: their mean; far: weighed by how alike their CoCs are to the first one's
+    HF_DOWNSAMPLE_LINEAR,     // their mean: what is in focus beside the far field gets into it
+    HF_DOWNSAMPLE_POINT,      // the first of them: no filter, so that what is small comes and goes
+};
+
+// How the gather divides by sums of weights.
+enum hf_division {
+    HF_DIVISION_EXACT,     // to nearest
+    HF_DIVISION_ESTIMATE,  // by what the processor estimates the reciprocal to be, 8 to 14 bits of it
+    HF_DIVISION_NEWTON,    // and a step of Newton's, which doubles the bits
+    HF_DIVISION_NEWTON2,   // and two
 };
 
 enum hf_blend {
@@ -251,11 +267,14 @@ enum hf_names {
     HF_NAMES_RESOLUTION,    // full, half, quarter
     HF_NAMES_MODEL,         // range, lens
     HF_NAMES_STORAGE,       // float, half, packed
-    HF_NAMES_FILL,          // max, mean, none
+    HF_NAMES_FILL,          // max, mean, none, open
     HF_NAMES_BLEND,         // linear, smoothstep
     HF_NAMES_TILE,          // sharp, near, far, both
     HF_NAMES_LIMIT,         // none, given, model, engine, picture
     HF_NAMES_QUALITY,       // draft, standard, high, best
+    HF_NAMES_DOWNSAMPLE,    // bilateral, linear, point
+    HF_NAMES_DIVISION,      // exact, estimate, newton, newton2
+    HF_NAMES_LAYERS,        // standard, draft, high, best: enum hf_layers_quality
     HF_NAMES_COUNT
 };
 HF_API const char *hf_name(enum hf_names of, int value);
@@ -341,7 +360,11 @@ struct hf_gather_params {
     int per_pixel_kernel;
     // Upsample the near field with a uniform cubic B-spline instead of bilinearly. Default 0. Chapter 3.4.6.
     int bicubic;
-    enum hf_fill fill;  // default HF_FILL_MAX
+    enum hf_fill fill;              // default HF_FILL_MAX
+    enum hf_downsample downsample;  // default HF_DOWNSAMPLE_BILATERAL
+    // Default HF_DIVISION_EXACT, which plain C and run.deterministic always do. Others give other bits on each kind of
+    // processor, and are here to be measured.
+    enum hf_division division;
 };
 
 struct hf_hexagon_params {
@@ -375,7 +398,7 @@ struct hf_gaussian_params {
     int by_depth;
 };
 
-// layers: what its accuracy may cost.
+// layers: what its accuracy may cost. Words: HF_NAMES_LAYERS.
 enum hf_layers_quality {
     HF_LAYERS_STANDARD,
     HF_LAYERS_DRAFT,  // few slices, and nothing is filled in behind objects: hard rims where a lens sees past them

@@ -160,6 +160,15 @@ static int check_engine(const struct cli_args *args, struct tool_error *error)
         {p->gather.bicubic, gather, "bicubic", "gather"},
         {p->gather.fill != d->gather.fill, gather, "fill", "gather"},
         {p->gather.storage != d->gather.storage, gather, "storage", "gather"},
+        {p->gather.downsample != d->gather.downsample, gather, "downsample", "gather"},
+        {p->gather.division != d->gather.division, gather, "division", "gather"},
+        {p->layers.quality != d->layers.quality, layers, "layers-quality", "layers"},
+        {p->layers.spacing != d->layers.spacing, layers, "spacing", "layers"},
+        {p->layers.half_from != d->layers.half_from, layers, "half-from", "layers"},
+        {p->layers.quarter_from != d->layers.quarter_from, layers, "quarter-from", "layers"},
+        {p->layers.no_unmix, layers, "no-unmix", "layers"},
+        {p->layers.no_hidden, layers, "no-hidden", "layers"},
+        {p->layers.no_highlights, layers, "no-highlights", "layers"},
         {p->gather.faithful, gather || gaussian, "faithful", "gather and gaussian"},
     };
     for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++)

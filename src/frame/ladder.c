@@ -33,6 +33,15 @@ static const struct word {
     {"--karis", AT(gather.karis), FLAG, 0},
     {"--bicubic", AT(gather.bicubic), FLAG, 0},
     {"--per-pixel-kernel", AT(gather.per_pixel_kernel), FLAG, 0},
+    {"--downsample", AT(gather.downsample), NAME, HF_NAMES_DOWNSAMPLE},
+    {"--division", AT(gather.division), NAME, HF_NAMES_DIVISION},
+    {"--layers-quality", AT(layers.quality), NAME, HF_NAMES_LAYERS},
+    {"--spacing", AT(layers.spacing), REAL, 0},
+    {"--half-from", AT(layers.half_from), REAL, 0},
+    {"--quarter-from", AT(layers.quarter_from), REAL, 0},
+    {"--no-unmix", AT(layers.no_unmix), FLAG, 0},
+    {"--no-hidden", AT(layers.no_hidden), FLAG, 0},
+    {"--no-highlights", AT(layers.no_highlights), FLAG, 0},
 #undef AT
 };
 enum { WORDS = sizeof words / sizeof *words };

@@ -4,6 +4,7 @@
 // So do two rows of the picture that lie between the same two half-resolution rows, where they can be made together.
 #include "pixel/depth_rows.h"
 #include "gather/gather.h"
+#include "gather/inverse_vf.h"
 #include "pixel/coc_vf.h"
 
 // Two half-resolution rows, at lane 0: the one that the first row of the picture belongs to, and its neighbour, to
@@ -52,7 +53,8 @@ HF_INLINE vf far_distance(vf coc, vf g, float factor)
 
 // Weights in proportion to 9 3 3 1 / d, d being 1 + 1000 |CoC difference|; returns t, or 0 where no neighbour is far:
 // the pixel keeps its colour.
-HF_INLINE vf far_weights_block(vf coc, vf g[2][3], const vm far[2][3], int row, int odd, vf t, vf w[4])
+HF_INLINE vf far_weights_block(const enum hf_division division, vf coc, vf g[2][3], const vm far[2][3], int row,
+                               int odd, vf t, vf w[4])
 {
     static const float factor[4] = {1, 3, 3, 9};
     vf d[4];
@@ -67,7 +69,7 @@ HF_INLINE vf far_weights_block(vf coc, vf g[2][3], const vm far[2][3], int row, 
         w[i] = vf_keep(far[i < 2 ? row : !row][i % 2 == 0 ? 1 : odd ? 2 : 0], w[i]);
     const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
     const vm any = vf_gt(sum, vf_zero());
-    const vf inverse = vf_keep(any, vf_div(vf_set1(1), sum));
+    const vf inverse = vf_keep(any, inverse_vf(division, sum));
     for (int i = 0; i < 4; i++)
         w[i] = vf_mul(w[i], inverse);
     return vf_keep(any, t);
@@ -90,8 +92,8 @@ HF_INLINE int far_differs(const struct field_rows *coc_rows, const int rows, int
 
 // Weights of the neighbours of all pixels, and how much the sums count. Where all CoCs are the same, as inside a far
 // field that is fully blurred, bilinear weights are what would come out.
-HF_INLINE void far_weights(const struct field_rows *coc_rows, const int rows, const int differs, int x, vf blend,
-                           vf coc[2][2], vf w[2][2][4], vf t[2][2])
+HF_INLINE void far_weights(const struct field_rows *coc_rows, const enum hf_division division, const int rows,
+                           const int differs, int x, vf blend, vf coc[2][2], vf w[2][2][4], vf t[2][2])
 {
     vf g[2][3];
     vm far[2][3];
@@ -110,7 +112,8 @@ HF_INLINE void far_weights(const struct field_rows *coc_rows, const int rows, co
         far[i / 3][i % 3] = vf_gt(g[i / 3][i % 3], vf_zero());
 #pragma GCC unroll 4
     for (int i = 0; i < 2 * rows; i++)
-        t[i / 2][i % 2] = far_weights_block(coc[i / 2][i % 2], g, far, i / 2, i % 2, t[i / 2][i % 2], w[i / 2][i % 2]);
+        t[i / 2][i % 2] =
+            far_weights_block(division, coc[i / 2][i % 2], g, far, i / 2, i % 2, t[i / 2][i % 2], w[i / 2][i % 2]);
 }
 
 // v - t rest, rest being v less what it is blended with; v's own bits for t = 0, which it keeps anyway if it is plain:
@@ -136,8 +139,8 @@ HF_INLINE void blend_far_channel(const struct field_rows *field, const int rows,
 }
 
 // The published demo's: CoCs in reading order of the 2x2 block, which for even pixels is the one before.
-HF_INLINE void blend_far_faithful(const struct composite_rows *r, const int channels, int x, vf blend,
-                                  struct composite_block *b)
+HF_INLINE void blend_far_faithful(const struct composite_rows *r, const enum hf_division division, const int channels,
+                                  int x, vf blend, struct composite_block *b)
 {
     const float *coc[2] = {r->far_coc.row[!r->down], r->far_coc.row[r->down]};
     const float *own = r->far.row[0], *below = r->far.row[r->down];
@@ -150,7 +153,7 @@ HF_INLINE void blend_far_faithful(const struct composite_rows *r, const int chan
         w[1] = vf_mul(d[0], p23);
         w[2] = vf_mul(d[3], p01);
         w[3] = vf_mul(d[2], p01);
-        const vf inverse = vf_div(vf_set1(1), vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
+        const vf inverse = inverse_vf(division, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
         for (int i = 0; i < 4; i++)
             w[i] = vf_mul(w[i], inverse);
         for (int c = 0; c < channels; c++) {
@@ -232,16 +235,16 @@ HF_INLINE int blend_kind(const struct composite_rows *r, const int rows, int wit
 
 // Blends a block, of which words are the R11G11B10F words if it is packed: then colours are made here, as late as they
 // are needed, and *most is the bits of the largest sample, see r11_unpack.
-HF_INLINE void blend_block(const struct composite_rows *r, const int rows, const int channels, const int kind,
-                           const int faithful, const int bicubic, const int packed, int x, vf near_coc[2][2],
-                           vi words[2][2], vi *most, struct composite_block *b)
+HF_INLINE void blend_block(const struct composite_rows *r, const enum hf_division division, const int rows,
+                           const int channels, const int kind, const int faithful, const int bicubic, const int packed,
+                           int x, vf near_coc[2][2], vi words[2][2], vi *most, struct composite_block *b)
 {
     const int far = kind & BLEND_FAR, near = kind & BLEND_NEAR;
     vf w[2][2][4] = {{{vf_zero()}}}, t[2][2] = {{vf_zero()}};
     if (far && !faithful)
-        far_weights(&r->far_coc, rows, kind & BLEND_FAR_DIFFERS, x, vf_set1(r->blend), b->coc, w, t);
+        far_weights(&r->far_coc, division, rows, kind & BLEND_FAR_DIFFERS, x, vf_set1(r->blend), b->coc, w, t);
     if (far && faithful)
-        blend_far_faithful(r, channels, x, vf_set1(r->blend), b);
+        blend_far_faithful(r, division, channels, x, vf_set1(r->blend), b);
 #pragma GCC unroll 4
     for (int c = 0; c < channels; c++) {
         vf up[2][2] = {{vf_zero()}};
@@ -271,7 +274,8 @@ struct composite_line {
 };
 
 HF_INLINE void composite_lines(const struct composite_rows *rows, const struct composite_line *lines,
-                               const int channels, const int far, const int near, const int faithful, const int bicubic)
+                               const enum hf_division division, const int channels, const int far, const int near,
+                               const int faithful, const int bicubic)
 {
     const struct composite_rows r = *rows;  // see field_rows
     const struct composite_line l = *lines;
@@ -287,7 +291,7 @@ HF_INLINE void composite_lines(const struct composite_rows *rows, const struct c
             b.colour[0][0][c] = vf_load(l.even + c * l.line + x);
             b.colour[0][1][c] = vf_load(l.odd + c * l.line + x);
         }
-        blend_block(&r, 1, channels, kind, faithful, bicubic, 0, l.first + x, near_coc, NULL, NULL, &b);
+        blend_block(&r, division, 1, channels, kind, faithful, bicubic, 0, l.first + x, near_coc, NULL, NULL, &b);
         for (int c = 0; c < channels; c++) {
             vf_store(l.even + c * l.line + x, b.colour[0][0][c]);
             vf_store(l.odd + c * l.line + x, b.colour[0][1][c]);
@@ -299,14 +303,15 @@ HF_INLINE void composite_lines(const struct composite_rows *rows, const struct c
 HF_INLINE void composite_options(const struct composite_rows *r, const struct composite_line *l,
                                  const struct hf_setup *s, int far, int near, const int channels)
 {
-    if (s->faithful || hf_gather(s)->bicubic)
-        composite_lines(r, l, channels, far, near, s->faithful, hf_gather(s)->bicubic);
+    const enum hf_division division = hf_gather(s)->division;
+    if (s->faithful || hf_gather(s)->bicubic || division != HF_DIVISION_EXACT)
+        composite_lines(r, l, division, channels, far, near, s->faithful, hf_gather(s)->bicubic);
     else if (far && near)
-        composite_lines(r, l, channels, 1, 1, 0, 0);
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, 1, 1, 0, 0);
     else if (far)
-        composite_lines(r, l, channels, 1, 0, 0, 0);
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, 1, 0, 0, 0);
     else
-        composite_lines(r, l, channels, 0, 1, 0, 0);
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, 0, 1, 0, 0);
 }
 
 // Row y of rectangle r, from its lane `first` on.
@@ -369,7 +374,8 @@ HF_INLINE vm far_coc(const struct hf_setup *s, const uint8_t *depth, vf coc[2])
 // VF_N. *next: its kind, or -1 where a sample is not finite. One loop for each kind: in one for all the compiler has
 // more constants and more ways to meet than registers, and what is live goes through memory.
 HF_INLINE int composite_run(const struct composite_rows *rows, const struct packed_rows *packed,
-                            const struct hf_setup *s, const int kind, int x, int n, int *next, vi *clamped)
+                            const struct hf_setup *s, const enum hf_division division, const int kind, int x, int n,
+                            int *next, vi *clamped)
 {
     const struct composite_rows r = *rows;  // see field_rows
     const struct packed_rows p = *packed;
@@ -404,7 +410,7 @@ HF_INLINE int composite_run(const struct composite_rows *rows, const struct pack
             words[i][0] = vf_as_vi(even);
             words[i][1] = vf_as_vi(odd);
         }
-        blend_block(&r, 2, 3, kind, 0, 0, 1, x, near_coc, words, &most, &b);
+        blend_block(&r, division, 2, 3, kind, 0, 0, 1, x, near_coc, words, &most, &b);
         if (vm_any(vm_or(bad, vm_not(vi_le(most, vi_set1((31 << 23) - 1)))))) {
             *next = -1;
             return x;
@@ -431,30 +437,35 @@ HF_INLINE int composite_run(const struct composite_rows *rows, const struct pack
 typedef int composite_run_of_kind(const struct composite_rows *rows, const struct packed_rows *packed,
                                   const struct hf_setup *s, int x, int n, int *next, vi *clamped);
 
-#define COMPOSITE_RUN(kind)                                                                                            \
-    static __attribute__((noinline)) int composite_run_##kind(                                                         \
+#define COMPOSITE_RUN(name, kind, division)                                                                            \
+    static __attribute__((noinline)) int composite_run_##name(                                                         \
         const struct composite_rows *rows, const struct packed_rows *packed, const struct hf_setup *s, int x, int n,   \
         int *next, vi *clamped)                                                                                        \
     {                                                                                                                  \
-        return composite_run(rows, packed, s, kind, x, n, next, clamped);                                              \
+        return composite_run(rows, packed, s, division, kind, x, n, next, clamped);                                    \
     }
-COMPOSITE_RUN(0)
-COMPOSITE_RUN(1)
-COMPOSITE_RUN(2)
-COMPOSITE_RUN(3)
-COMPOSITE_RUN(6)
-COMPOSITE_RUN(7)
+COMPOSITE_RUN(0, 0, HF_DIVISION_EXACT)
+COMPOSITE_RUN(1, 1, HF_DIVISION_EXACT)
+COMPOSITE_RUN(2, 2, HF_DIVISION_EXACT)
+COMPOSITE_RUN(3, 3, HF_DIVISION_EXACT)
+COMPOSITE_RUN(6, 6, HF_DIVISION_EXACT)
+COMPOSITE_RUN(7, 7, HF_DIVISION_EXACT)
+COMPOSITE_RUN(6_any, 6, hf_gather(s)->division)
+COMPOSITE_RUN(7_any, 7, hf_gather(s)->division)
 
 // n lanes. Returns how many of them were done: all, or those before a sample that is not finite.
 static int composite_packed(const struct composite_rows *rows, const struct packed_rows *packed,
                             const struct hf_setup *s, int n, vi *clamped)
 {
-    static composite_run_of_kind *const run[] = {
-        composite_run_0, composite_run_1, composite_run_2, composite_run_3, NULL, NULL,
-        composite_run_6, composite_run_7};
+    static composite_run_of_kind *const run[2][8] = {{composite_run_0, composite_run_1, composite_run_2,
+                                                      composite_run_3, NULL, NULL, composite_run_6, composite_run_7},
+                                                     {composite_run_0, composite_run_1, composite_run_2,
+                                                      composite_run_3, NULL, NULL, composite_run_6_any,
+                                                      composite_run_7_any}};
+    const int any = hf_gather(s)->division != HF_DIVISION_EXACT;
     int x = 0, kind = 0;
     while (x < n && kind >= 0)
-        x = run[kind](rows, packed, s, x, n, &kind, clamped);
+        x = run[any][kind](rows, packed, s, x, n, &kind, clamped);
     return x;
 }
 

@@ -8,6 +8,7 @@
 // independent sums to hide the latency of the multiply-add, one broadcast weight for all of them, and output rows that
 // stay in the first-level cache.
 #include "gather/gather.h"
+#include "gather/inverse_vf.h"
 #include "pixel/coc_vf.h"
 #include "pixel/format_vf.h"
 #include <float.h>
@@ -324,6 +325,7 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
 static void finish_far(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
+    const enum hf_division division = hf_gather(s)->division;
     for (int y = r.y0; y < r.y1; y++) {
         float *far[4];
         const float *sum = hf_at(&f->buf[HF_BUF_SUM], 1, r.x0, y), *coc = hf_at(&f->buf[HF_BUF_COC4], 1, r.x0, y);
@@ -331,7 +333,7 @@ static void finish_far(const struct hf_frame *f, struct hf_rect r)
         for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
             const vf own = vf_load(coc + x), total = vf_load(sum + x);
             const vm is_far = vf_gt(own, vf_zero()), alone = vm_and(is_far, vm_not(vf_gt(total, vf_zero())));
-            const vf inverse = vf_div(vf_set1(1), vf_max(total, vf_set1(FLT_MIN)));
+            const vf inverse = inverse_vf(division, vf_max(total, vf_set1(FLT_MIN)));
             for (int c = 0; c < s->channels; c++)
                 vf_store(far[c] + x,
                          round_stored(s->storage, vf_keep(is_far, vf_mul(vf_load(far[c] + x), inverse)), c));

@@ -5,8 +5,12 @@
 // Weights of a 2x2 quad for the far field: like pixels count, relative to its top left one. The chapter has w00 =
 // 1000 and w = 1 / (|df| + 0.001); a thousandth of that is w00 = 1 and w = 1 / (1000 |df| + 1), exactly 1 for equal
 // CoC. One division: with d = 1 / w, the products of the other d's are in the weights' proportion.
-static void quad_weights(const float f[4], float w[4])
+static void quad_weights(enum hf_downsample how, const float f[4], float w[4])
 {
+    for (int t = 0; t < 4; t++)
+        w[t] = how == HF_DOWNSAMPLE_LINEAR ? 0.25f : t == 0;
+    if (how != HF_DOWNSAMPLE_BILATERAL)
+        return;
     const float d1 = 1 + 1000 * __builtin_fabsf(f[0] - f[1]);
     const float d2 = 1 + 1000 * __builtin_fabsf(f[0] - f[2]);
     const float d3 = 1 + 1000 * __builtin_fabsf(f[0] - f[3]);
@@ -23,6 +27,7 @@ static void quad_weights(const float f[4], float w[4])
 static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
+    const enum hf_downsample how = hf_gather(s)->downsample;
     const int n = r.x1 - r.x0, y1 = hf_min(2 * y + 1, s->height - 1);
     float *lane[2][2][4];  // [row][odd][channel]
     for (int i = 0; i < 16; i++)
@@ -38,12 +43,12 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
         const float quad[4] = {*hf_at(coc, 2, r.x0 + x, 2 * y), *hf_at(coc, 3, r.x0 + x, 2 * y),
                                *hf_at(coc, 2, r.x0 + x, y1), *hf_at(coc, 3, r.x0 + x, y1)};
         float w[4];
-        quad_weights(quad, w);
+        quad_weights(how, quad, w);
         for (int c = 0; c < s->channels; c++) {
             const float c00 = lane[0][0][c][x], c10 = lane[0][1][c][x];
             const float c01 = lane[1][0][c][x], c11 = lane[1][1][c][x];
             if (f->near)
-                colour[c][x] = 0.25f * ((c00 + c10) + (c01 + c11));
+                colour[c][x] = how == HF_DOWNSAMPLE_POINT ? c00 : 0.25f * ((c00 + c10) + (c01 + c11));
             if (f->far)
                 far[c][x] = ((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0];
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Downsample on vectors: rows come split into even and odd pixels, so a quad is four aligned loads.
 #include "gather/gather.h"
+#include "gather/inverse_vf.h"
 #include "pixel/coc_vf.h"
 
 // Where the rows of r begin in the buffers.
@@ -33,14 +34,14 @@ HF_INLINE int down_differ(const vf f[4])
     return vm_any(vm_or(vm_or(vf_ne(f[0], f[1]), vf_ne(f[0], f[2])), vf_ne(f[0], f[3])));
 }
 
-HF_INLINE void down_weights(const vf f[4], vf w[4])
+HF_INLINE void down_weights(enum hf_division division, const vf f[4], vf w[4])
 {
     const vf d1 = down_distance(f[0], f[1]), d2 = down_distance(f[0], f[2]), d3 = down_distance(f[0], f[3]);
     w[0] = vf_mul(d1, vf_mul(d2, d3));
     w[1] = vf_mul(d2, d3);
     w[2] = vf_mul(d1, d3);
     w[3] = vf_mul(d1, d2);
-    const vf i = vf_div(vf_set1(1), vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
+    const vf i = inverse_vf(division, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
     for (int t = 0; t < 4; t++)
         w[t] = vf_mul(w[t], i);
 }
@@ -57,8 +58,8 @@ HF_INLINE vf down_far(const vf w[4], const vf c[4], vf f0)
 }
 
 // A row of any format, by way of lines: the fields that are asked for.
-HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, const int near, const int far, int x0,
-                              int x1, int y)
+HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample how, const enum hf_division division,
+                              const int channels, const int near, const int far, int x0, int x1, int y)
 {
     const int n = x1 - x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
     float *lane[4][4];  // [row and even or odd][channel]
@@ -70,13 +71,18 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, cons
     for (int x = 0; x < n; x += VF_N) {
         const vf g[4] = {vf_load(d.far[0] + x), vf_load(d.far[1] + x), vf_load(d.far[2] + x), vf_load(d.far[3] + x)};
         vf w[4] = {vf_set1(0.25f), vf_set1(0.25f), vf_set1(0.25f), vf_set1(0.25f)};
-        if (far && down_differ(g))
-            down_weights(g, w);
+        if (how == HF_DOWNSAMPLE_POINT) {
+            w[0] = vf_set1(1);
+            w[1] = w[2] = w[3] = vf_zero();
+        } else if (far && how == HF_DOWNSAMPLE_BILATERAL && down_differ(g)) {
+            down_weights(division, g, w);
+        }
         for (int c = 0; c < channels; c++) {
             const vf quad[4] = {vf_load(lane[0][c] + x), vf_load(lane[1][c] + x), vf_load(lane[2][c] + x),
                                 vf_load(lane[3][c] + x)};
             if (near)
-                vf_store(d.colour[c] + x, vf_mul(vf_set1(0.25f), down_sum(quad)));
+                vf_store(d.colour[c] + x,
+                         how == HF_DOWNSAMPLE_POINT ? quad[0] : vf_mul(vf_set1(0.25f), down_sum(quad)));
             if (far)
                 vf_store(d.colour_far[c] + x, down_far(w, quad, g[0]));
         }
@@ -117,7 +123,7 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
     }
     if (far && down_differ(g)) {
         vf w[4];
-        down_weights(g, w);
+        down_weights(HF_DIVISION_EXACT, g, w);
         for (int c = 0; c < 3; c++) {
             for (int i = 0; i < 4; i++)
                 quad[c][i] = vf_mul(quad[c][i], vf_set1(0x1p112f));
@@ -175,19 +181,26 @@ HF_INLINE int down_streams(const struct hf_frame *f, struct hf_rect r)
 
 HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far, struct hf_rect r)
 {
-    const int stream = down_streams(f, r);
+    const int stream = down_streams(f, r), channels = f->s->channels;
+    const enum hf_downsample how = hf_gather(f->s)->downsample;
+    const enum hf_division division = hf_gather(f->s)->division;
+    const int usual = how == HF_DOWNSAMPLE_BILATERAL && division == HF_DIVISION_EXACT;
     for (int y = r.y0; y < r.y1; y++) {
         int x = r.x0;
-        if (f->src->format == HF_FORMAT_R11G11B10F) {
+        if (usual && f->src->format == HF_FORMAT_R11G11B10F) {
             // Up to the last vector that lies in the picture as a whole.
             const int x1 = hf_min(r.x1, x + (f->s->width / 2 - x) / VF_N * VF_N);
             if (x < x1 && down_row_r11(f, near, far, x, x1, y, stream))
                 x = x1;
         }
-        if (x < r.x1 && f->s->channels == 3)
-            down_row_lines(f, 3, near, far, x, r.x1, y);
-        else if (x < r.x1)
-            down_row_lines(f, 4, near, far, x, r.x1, y);
+        if (x >= r.x1)
+            continue;
+        if (!usual)
+            down_row_lines(f, how, division, channels, near, far, x, r.x1, y);
+        else if (channels == 3)
+            down_row_lines(f, HF_DOWNSAMPLE_BILATERAL, HF_DIVISION_EXACT, 3, near, far, x, r.x1, y);
+        else
+            down_row_lines(f, HF_DOWNSAMPLE_BILATERAL, HF_DIVISION_EXACT, 4, near, far, x, r.x1, y);
     }
     if (stream)
         vf_stream_end();

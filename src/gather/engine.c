@@ -137,8 +137,12 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     (void)depth;
     if ((unsigned)g->storage > HF_STORAGE_PACKED)
         return hf_bad(message, "gather.storage is %d, which is none", (int)g->storage);
-    if ((unsigned)g->fill > HF_FILL_NONE)
+    if ((unsigned)g->fill > HF_FILL_OPEN)
         return hf_bad(message, "gather.fill is %d, which is none", (int)g->fill);
+    if ((unsigned)g->downsample > HF_DOWNSAMPLE_POINT)
+        return hf_bad(message, "gather.downsample is %d, which is none", (int)g->downsample);
+    if ((unsigned)g->division > HF_DIVISION_NEWTON2)
+        return hf_bad(message, "gather.division is %d, which is none", (int)g->division);
     if (r->limit != HF_LIMIT_GIVEN) {
         r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
         r->params.max_radius = g->faithful ? 12 : r->limit == HF_LIMIT_ENGINE ? MEASURED_RADIUS : hf_model_radius(r);
@@ -162,7 +166,9 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     g->karis = p->gather.karis;
     g->per_pixel_kernel = p->gather.per_pixel_kernel;
     g->bicubic = p->gather.bicubic;
-    g->fill = p->gather.fill;
+    g->fill = p->gather.fill == HF_FILL_OPEN ? HF_FILL_NONE : p->gather.fill;
+    g->downsample = p->gather.downsample;
+    g->division = p->run.deterministic ? HF_DIVISION_EXACT : p->gather.division;
     g->rings = p->gather.rings;
     g->max_x = (int)__builtin_ceilf(h / s->pixel_aspect);
     g->max_y = (int)__builtin_ceilf(h);
@@ -236,7 +242,8 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     numbers[3] = (int)g->fill;
     const struct hf_taps *far = hf_gather_taps(s, HF_FAR);
     *reach = hf_max(g->taps.first[g->taps.rows], far->first[far->rows]);  // weights
-    return 4;
+    numbers[4] = 4 * (int)g->downsample + (int)g->division;
+    return 5;
 }
 
 HF_CHOOSE_KERNELS(hf_gather_kernels)

@@ -54,7 +54,9 @@ enum hf_gather_halo {
 
 struct hf_gather {
     int karis, per_pixel_kernel, bicubic;
-    enum hf_fill fill;
+    enum hf_fill fill;  // of OPEN as of NONE: they differ in the taps
+    enum hf_downsample downsample;
+    enum hf_division division;
     int rings;
     int max_x, max_y;  // near max and blur reach to either side
     int smoothstep;    // measured: of the CoC, and how it is stored, once the radii are known

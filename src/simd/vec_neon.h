@@ -23,6 +23,7 @@ static inline vf vf_add(vf a, vf b) { return vaddq_f32(a, b); }
 static inline vf vf_sub(vf a, vf b) { return vsubq_f32(a, b); }
 static inline vf vf_mul(vf a, vf b) { return vmulq_f32(a, b); }
 static inline vf vf_div(vf a, vf b) { return vdivq_f32(a, b); }
+static inline vf vf_reciprocal(vf a) { return vrecpeq_f32(a); }  // 8 bits
 static inline vf vf_sqrt(vf a) { return vsqrtq_f32(a); }
 static inline vf vf_floor(vf a) { return vrndmq_f32(a); }
 static inline vf vf_abs(vf a) { return vabsq_f32(a); }

@@ -52,12 +52,27 @@ const struct tool_option tool_params_options[] = {
      "to 256. Default: iterations.", NUMBER(gaussian.sigma, 0, 256)},
     {"resolution", 0, TOOL_LOOK, "full|half|quarter", "hexagon, scatter, gaussian: size of the working buffers, quarter "
      "only for gaussian. Default full.", .parse = parse_resolution, FIELD(hexagon.resolution), .names = HF_NAMES_RESOLUTION},
-    {"fill", 0, TOOL_LOOK, "max|mean|none", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, or "
-     "three times as many taps.", NAME(gather.fill, FILL)},
+    {"fill", 0, TOOL_LOOK, "max|mean|none|open", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, by "
+     "three times as many taps, or not at all.", NAME(gather.fill, FILL)},
     {"blend", 0, TOOL_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",
      NAME(range.blend, BLEND)},
     {"rings", 0, TOOL_LOOK, "N", "gather: rings of taps, 1 to 64. Default: as many as lie two half-resolution pixels "
      "apart. Fewer are faster.", COUNT(gather.rings, 1, 64)},
+    {"downsample", 0, TOOL_LOOK, "bilateral|linear|point", "gather: how four pixels become one of half resolution: "
+     "far ones by how alike their blur is (default), their mean, or the first of them.", NAME(gather.downsample, DOWNSAMPLE)},
+    {"division", 0, TOOL_LOOK, "exact|estimate|newton|newton2", "gather: by sums of weights: exact (default), by the "
+     "processor's estimate of the reciprocal, or with one or two steps of Newton's.", NAME(gather.division, DIVISION)},
+    {"layers-quality", 0, TOOL_LOOK, "standard|draft|high|best", "layers: what its accuracy may cost. Default standard.",
+     NAME(layers.quality, LAYERS)},
+    {"spacing", 0, TOOL_LOOK, "PX", "layers: between slices, pixels of radius, 0.25 to 32. Default by --layers-quality.",
+     NUMBER(layers.spacing, 0.25, 32)},
+    {"half-from", 0, TOOL_LOOK, "PX", "layers: radius from which slices are blurred at half the resolution, 1 to 2048. "
+     "Default by --layers-quality.", NUMBER(layers.half_from, 1, 2048)},
+    {"quarter-from", 0, TOOL_LOOK, "PX", "layers: at a quarter of it. Default by --layers-quality.",
+     NUMBER(layers.quarter_from, 1, 2048)},
+    {"no-unmix", 0, TOOL_LOOK, NULL, "layers: edges keep their mixed colours.", FLAG(layers.no_unmix)},
+    {"no-hidden", 0, TOOL_LOOK, NULL, "layers: nothing is filled in behind objects.", FLAG(layers.no_hidden)},
+    {"no-highlights", 0, TOOL_LOOK, NULL, "layers: highlights are blurred like all else.", FLAG(layers.no_highlights)},
     {"karis", 0, TOOL_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(gather.karis)},
     {"per-pixel-kernel", 0, TOOL_LOOK, NULL, "Scale the far kernel by each pixel's own blur.",
      FLAG(gather.per_pixel_kernel)},

@@ -23,11 +23,14 @@ static void names(void)
         [HF_NAMES_RESOLUTION] = HF_RESOLUTION_QUARTER + 1,
         [HF_NAMES_MODEL] = HF_MODEL_LENS + 1,
         [HF_NAMES_STORAGE] = HF_STORAGE_PACKED + 1,
-        [HF_NAMES_FILL] = HF_FILL_NONE + 1,
+        [HF_NAMES_FILL] = HF_FILL_OPEN + 1,
         [HF_NAMES_BLEND] = HF_BLEND_SMOOTHSTEP + 1,
         [HF_NAMES_TILE] = HF_TILE_BOTH + 1,
         [HF_NAMES_LIMIT] = HF_LIMIT_PICTURE + 1,
         [HF_NAMES_QUALITY] = HF_QUALITY_BEST + 1,
+        [HF_NAMES_DOWNSAMPLE] = HF_DOWNSAMPLE_POINT + 1,
+        [HF_NAMES_DIVISION] = HF_DIVISION_NEWTON2 + 1,
+        [HF_NAMES_LAYERS] = HF_LAYERS_BEST + 1,
     };
     for (int of = 0; of < HF_NAMES_COUNT; of++) {
         for (int i = 0; i < counts[of]; i++) {

@@ -41,7 +41,8 @@ static void random_options(struct rng *r, struct hf_params *p)
     p->gather.karis = rng_one_in(r, 4);
     p->gather.per_pixel_kernel = rng_one_in(r, 4);
     p->gather.bicubic = rng_one_in(r, 3);
-    p->gather.fill = (enum hf_fill)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->gather.fill = (enum hf_fill)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 3));
+    p->gather.downsample = (enum hf_downsample)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
     p->range.blend = rng_one_in(r, 3) ? HF_BLEND_SMOOTHSTEP : HF_BLEND_LINEAR;
     p->aperture.blades = rng_one_in(r, 3) ? rng_int(r, 5, 9) : 0;
     p->aperture.rotation = rng_one_in(r, 2) ? 0 : rng_float(r, -180, 180);
@@ -91,6 +92,11 @@ void make_setup(struct world *w, int half_width, int half_height)
         w->depth = (struct hf_depth){0};
         random_format(w, &w->src, width, height);
         random_format(w, &w->dst, width, height);
+        if (!w->bench && rng_one_in(r, 4)) {  // what goes from picture to picture in registers has code of its own
+            w->dst.format = rng_one_in(r, 2) ? HF_FORMAT_R11G11B10F : HF_FORMAT_RGB32F;
+            w->dst.transfer = HF_TRANSFER_LINEAR;
+            w->src = w->dst;
+        }
         if (!w->bench) {
             random_depth_type(r, &w->depth, width, height);
             random_model(r, &w->params);

@@ -113,6 +113,7 @@ static void coc_generation(struct reference *r, const struct hf_depth *depth)
 // Pass 2. Weights as printed: 1000 for the top left sample, 1 / (|df| + 0.001) for the others.
 static void downsample(struct reference *r)
 {
+    const enum hf_downsample how = r->params.gather.downsample;
     const struct ref_buffer *colour = &r->buffer[REF_COLOUR], *coc = &r->buffer[REF_COC];
     new_buffer(r, REF_COC4);
     new_buffer(r, REF_COLOR4);
@@ -126,12 +127,13 @@ static void downsample(struct reference *r)
                 double sum = 0, weighted = 0, weights = 0;
                 for (int i = 0; i < 4; i++) {
                     const int sx = 2 * x + i % 2, sy = 2 * y + i / 2;
-                    const double w = i == 0 ? 1000 : 1 / (fabs(f00 - at(coc, 1, sx, sy)) + 0.001);
+                    const double alike = i == 0 ? 1000 : 1 / (fabs(f00 - at(coc, 1, sx, sy)) + 0.001);
+                    const double w = how == HF_DOWNSAMPLE_LINEAR ? 1 : how == HF_DOWNSAMPLE_POINT ? i == 0 : alike;
                     sum += at(colour, c, sx, sy);
                     weighted += w * at(colour, c, sx, sy);
                     weights += w;
                 }
-                store(r, REF_COLOR4, c, x, y, sum / 4);
+                store(r, REF_COLOR4, c, x, y, how == HF_DOWNSAMPLE_POINT ? weighted : sum / 4);
                 store(r, REF_COLORMULCOC4, c, x, y, weighted / weights * f00);
             }
         }
@@ -268,7 +270,7 @@ static void fill(struct reference *r)
 {
     const struct ref_buffer *near = &r->buffer[REF_NEAR], *far = &r->buffer[REF_FAR];
     const struct ref_buffer *coc4 = &r->buffer[REF_COC4];
-    const int none = r->params.gather.fill == HF_FILL_NONE;
+    const int none = r->params.gather.fill >= HF_FILL_NONE;
     new_buffer(r, REF_NEARFILL);
     new_buffer(r, REF_FARFILL);
     for (int y = 0; y < r->half_height; y++) {

@@ -36,6 +36,21 @@ static inline __m512 emulated_fmadd(__m512 a, __m512 b, __m512 c)
     return c;
 }
 
+// A reciprocal within 2^-14 of itself, though not the instruction's.
+static inline __m512 emulated_rcp14(__m512 a)
+{
+    float x[16];
+    uint32_t u[16];
+    memcpy(x, &a, sizeof x);
+    for (int i = 0; i < 16; i++) {
+        x[i] = 1 / x[i];
+        memcpy(&u[i], &x[i], sizeof u[i]);
+        u[i] &= ~0x1ffu;
+    }
+    memcpy(&a, u, sizeof u);
+    return a;
+}
+
 // Towards zero; what no int32 holds becomes the smallest one.
 static inline __m512i emulated_cvttps(__m512 a)
 {
@@ -258,6 +273,8 @@ static inline __m256 emulated_to_float(__m512d a)
 #define _mm512_mask3_fmadd_ps(a, b, c, m) _mm512_mask_mov_ps(c, m, emulated_fmadd(a, b, c))
 #undef _mm512_abs_ps
 #define _mm512_abs_ps(a) emulated_abs(a)
+#undef _mm512_rcp14_ps
+#define _mm512_rcp14_ps(a) emulated_rcp14(a)
 #undef _mm512_roundscale_ps
 #define _mm512_roundscale_ps(a, rounding) emulated_floor(a)
 #undef _mm512_cvttps_epi32
