@@ -184,7 +184,8 @@ static int check_aperture(const struct hf_aperture_params *p, const struct hf_en
                 {"roundness", p->roundness, 0, 0, 1, HF_APERTURE_ROUNDNESS},
                 {"ring", p->ring, 0, 0, 0.95f, HF_APERTURE_RING},
                 {"cat_eye", p->cat_eye, 0, 0, 1, HF_APERTURE_CAT_EYE},
-                {"squeeze", p->squeeze, 1, 0.25f, 4, HF_APERTURE_SQUEEZE}};
+                {"squeeze", p->squeeze, 1, 0.25f, 4, HF_APERTURE_SQUEEZE},
+                {"chromatic", p->chromatic, 0, -0.5f, 0.5f, HF_APERTURE_CHROMATIC}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char name[32];
         snprintf(name, sizeof name, "aperture.%s", rows[i].name);

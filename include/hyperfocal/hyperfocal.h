@@ -312,7 +312,7 @@ struct hf_lens_params {
 };
 
 // Shape of the aperture. What an engine cannot draw is HF_ERR_ARG: gather takes blades and rotation, hexagon its own six
-// sides and rotation, scatter all, gaussian none.
+// sides and rotation, layers and scatter all, gaussian none.
 struct hf_aperture_params {
     // 0 (default) a disc, else a regular polygon with 3 to 16 sides, the middle of one on the +x axis turned by rotation
     // degrees (any finite value, default 0).
@@ -328,6 +328,9 @@ struct hf_aperture_params {
     float cat_eye;
     // Anamorphic squeeze: height over width of a highlight, 0.25..4, default 1. Heights are kept.
     float squeeze;
+    // Axial chromatic aberration: red CoCs are larger by this fraction and blue ones smaller (behind the focus; the
+    // other way in front of it), -0.5..0.5, default 0.
+    float chromatic;
     // A picture of the aperture, its centre the lens's axis and its shorter side the diameter; brightness is
     // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during the call. Every
     // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then.
@@ -376,9 +379,6 @@ struct hf_hexagon_params {
 
 struct hf_scatter_params {
     enum hf_resolution resolution;  // full (default) or half
-    // Axial chromatic aberration: red CoCs are larger by this fraction and blue ones smaller (behind the focus; the
-    // other way in front of it), -0.5..0.5, default 0.
-    float chromatic;
 };
 
 struct hf_gaussian_params {

@@ -146,9 +146,9 @@ static int check_engine(const struct cli_args *args, struct tool_error *error)
         int given, allowed;
         const char *option, *engines;
     } rules[] = {
-        {p->scatter.chromatic != d->scatter.chromatic, scatter, "chromatic", "scatter"},
-        {p->aperture.cat_eye != d->aperture.cat_eye, scatter, "cat-eye", "scatter"},
-        {p->aperture.squeeze != d->aperture.squeeze, scatter || layers, "squeeze", "scatter and layers"},
+        {p->aperture.chromatic != d->aperture.chromatic, scatter || layers, "chromatic", "layers and scatter"},
+        {p->aperture.cat_eye != d->aperture.cat_eye, scatter || layers, "cat-eye", "layers and scatter"},
+        {p->aperture.squeeze != d->aperture.squeeze, scatter || layers, "squeeze", "layers and scatter"},
         {p->hexagon.uniform, hexagon, "uniform", "hexagon"},
         {p->gaussian.iterations != d->gaussian.iterations, gaussian, "iterations", "gaussian"},
         {p->gaussian.sigma != d->gaussian.sigma, gaussian, "sigma", "gaussian"},
@@ -186,11 +186,8 @@ static int check_engine(const struct cli_args *args, struct tool_error *error)
                          "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
                          "ngon:6[:0[:DEGREES]]",
                          args->aperture);
-    if (args->aperture && layers && (!plain || p->aperture.blades))
-        return tool_fail(error, -1, "--aperture: '%s' is not an aperture of the layers engine, which takes disc",
-                         args->aperture);
     if (args->aperture && gaussian)
-        return tool_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon and scatter",
+        return tool_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon, scatter and layers",
                          args->aperture);
     return 0;
 }

@@ -67,6 +67,7 @@ enum {
     HF_APERTURE_CAT_EYE = 8,
     HF_APERTURE_SQUEEZE = 16,
     HF_APERTURE_PICTURE = 32,
+    HF_APERTURE_CHROMATIC = 64,
 };
 
 struct hf_engine_def {

@@ -38,8 +38,7 @@ static struct hf_tile_map take_map(struct scratch *m, int columns, int rows, int
 static size_t place(struct hf_cell *c, float *memory)
 {
     struct scratch m = {.memory = memory};
-    const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels,
-              n = hf_layers_most_tiles(c->l);
+    const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels, n = c->l->most_tiles;
     const int wide = width + 2 * n * TILE + 2 * AROUND;
     c->used = take_map(&m, c->columns, c->rows, n);
     c->filled = take_map(&m, c->columns, TILE / 2, n);
@@ -66,6 +65,7 @@ static size_t place(struct hf_cell *c, float *memory)
         c->line[i] = take(&m, (size_t)wide, 0);
         c->row[i] = take(&m, (size_t)width + AROUND, 0);
     }
+    c->shape = take(&m, hf_layers_shape_floats(c->l, c->columns, c->rows), 0);
     return m.used;
 }
 
@@ -86,7 +86,7 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
                         .columns = (r.x1 - r.x0) / TILE,
                         .rows = (r.y1 - r.y0) / TILE};
     place(&c, memory);
-    memset(c.source.at - (hf_layers_most_tiles(l) * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
+    memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
     // Where a slice does not reach, its light is 0 whatever part of it shows.
     memset(c.part - MARGIN * c.part_row - LEFT, 0,
            sizeof(float) * (size_t)c.part_row * (size_t)(c.rows * TILE / 2 + 2 * MARGIN));

@@ -100,7 +100,9 @@ static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at,
 {
     const struct hf_slice *s = b->s;
     const int margin = s->level ? MARGIN : 0, height = c->rows * (TILE >> s->level);
-    for (int i = 0; i < b->channels; i++)
+    for (int i = 0; s->shape && i < 2; i++)
+        hf_layers_draw_shape(c, b, source_at(c, 0, x0, y + i), at + i, x0, x1, to);
+    for (int i = 0; !s->shape && i < b->channels; i++)
         c->k->disc(s, source_at(c, i, x0, y), source_at(c, i, x0, y + 1), x1 - x0, -margin - at, height + margin - at,
                    to->at + at * to->row + i * to->channel + x0, to->row);
 }
@@ -136,6 +138,8 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
 {
     const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
     clear_touched(c, touched, to, b->s->level, b->channels);
+    if (b->s->shape)
+        hf_layers_begin_shape(c, b->s);
     for (int ty = -n; ty < c->rows + n; ty++) {
         int tx = -n;
         if (hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0) == tx ||

@@ -4,6 +4,8 @@
 //
 // A pixel of the result costs, apart from un-mixing and hidden samples, which are the same for all radii: twice the rows
 // of the discs of the slices between which its samples lie, a sixteenth of them from a quarter of the resolution on.
+// Polygons and rings cost two to three times that, a cat's eye four times (shape_draw.c), a picture the square of its
+// radius; channels of their own sizes three times whatever it is.
 #include <math.h>
 #include <string.h>
 
@@ -53,6 +55,8 @@ static const struct hf_layers_settings qualities[] = {
     [HF_LAYERS_BEST] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 16, .quarter = 64},
 };
 
+static const float MAX_PICTURE = 256;  // radius, pixels
+
 static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
 {
     struct hf_layers_params *p = &r->params.layers;
@@ -61,6 +65,12 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     if ((unsigned)p->quality > HF_LAYERS_BEST)
         return hf_bad(message, "layers.quality is %d, which is none", (int)p->quality);
     const struct hf_layers_settings *set = &qualities[p->quality];
+    struct hf_params *all = &r->params;
+    // Every pixel of a picture is drawn: no larger than this.
+    if (all->aperture.picture && all->max_radius > MAX_PICTURE) {
+        all->max_radius = MAX_PICTURE;
+        r->limit = HF_LIMIT_PICTURE;
+    }
     p->spacing = p->spacing == HF_DERIVE ? set->spacing : p->spacing;
     p->half_from = p->half_from == HF_DERIVE ? set->half : p->half_from;
     p->quarter_from = p->quarter_from == HF_DERIVE ? fmaxf(set->quarter, p->half_from) : p->quarter_from;
@@ -80,12 +90,41 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->spacing = given->spacing;
     set->half = given->half_from;
     set->quarter = given->quarter_from;
+    // All pixels of a picture cost the square of its radius: sooner at an eighth of the resolution.
+    set->eighth = set->quarter * (p->aperture.picture ? 2 : 4);
     set->unmix &= !given->no_unmix;
     set->hidden &= !given->no_hidden;
     set->highlights &= !given->no_highlights;
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
+    l->chromatic = p->aperture.chromatic;
     l->slices = l->levels = 0;
     s->sharp_radius = 0;
+}
+
+// The shape, but for its sizes; and how many groups of channels have sizes of their own.
+static void set_shape(struct hf_layers *l, const struct hf_params *p)
+{
+    const struct hf_aperture_params *a = &p->aperture;
+    struct hf_shape_key *k = &l->key;
+    memset(k, 0, sizeof *k);
+    l->shaped = a->picture || a->blades || a->ring > 0 || a->cat_eye > 0;
+    l->groups = l->chromatic != 0 || (a->picture && hf_area_coloured(a->picture)) ? 3 : 1;
+    k->wide = l->wide;
+    k->spacing = l->set.spacing;
+    k->half = l->set.half;
+    k->quarter = l->set.quarter;
+    k->fine = l->set.fine;
+    if (a->picture) {
+        k->width = a->picture->width;
+        k->height = a->picture->height;
+        k->picture = hf_area_hash(a->picture);
+        return;
+    }
+    k->blades = a->blades;
+    k->rotation = a->blades ? a->rotation : 0;
+    k->roundness = a->blades ? a->roundness : 0;
+    k->ring = a->ring;
+    k->cat_eye = a->cat_eye;
 }
 
 // The ranges of the tiles, in one block.
@@ -101,12 +140,12 @@ static void place_tiles(struct hf_layers *l)
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
     struct hf_layers *l = own;
-    (void)p;
     l->width = s->width;
     l->height = s->height;
     l->channels = s->channels;
     l->columns = (s->width + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
+    set_shape(l, p);
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
     int err = hf_block_grow(&l->tiles, tiles * 3 * sizeof(struct hf_layers_range) + 1, mem);
     if (!err)
@@ -122,27 +161,32 @@ static void release(void *own, const struct hf_mem *mem)
     hf_block_free(&l->tables, mem);
     hf_block_free(&l->tiles, mem);
     hf_block_free(&l->marks, mem);
+    for (int i = 0; i < 3; i++)
+        hf_block_free(&l->shapes[i].block, mem);
 }
 
 static size_t bytes(const void *own)
 {
     const struct hf_layers *l = own;
-    return l->tables.size + l->tiles.size + l->marks.size;
+    return l->tables.size + l->tiles.size + l->marks.size + l->shapes[0].block.size + l->shapes[1].block.size +
+           l->shapes[2].block.size;
 }
 
 static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
 {
     struct hf_layers *l = own;
-    (void)s;
     l->nearest = fminf(found->radius_min, 0);
     l->farthest = fmaxf(found->radius_max, 0);
+    const int err = l->shaped ? hf_layers_make_shapes(l, s->resolved->params.aperture.picture, mem) : HF_OK;
+    if (err)
+        return err;
     hf_layers_make_slices(l);
     const float range = found->radius_max - found->radius_min;
     l->levels = 0;
     if (l->set.hidden && range >= 1)
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;
-    l->around = (hf_layers_most_tiles(l) + 2) * HF_LAYERS_TILE;
+    l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);
     l->words = (l->slices + 63) / 64;
     const size_t marks = (size_t)l->columns * (size_t)l->rows * (size_t)l->words;
@@ -230,8 +274,9 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     numbers[0] = (int)(8 * l->set.spacing) + l->set.fine;
     numbers[1] = l->set.unmix + 2 * l->set.hidden + 4 * l->set.highlights;
     numbers[2] = (int)fminf(l->set.half, 4096);
+    numbers[3] = l->groups + 4 * (l->key.picture ? 3 : l->key.cat_eye > 0 ? 2 : l->shaped);
     *reach = (int)fmaxf(l->farthest, -l->nearest);
-    return 3;
+    return 4;
 }
 
 HF_CHOOSE_KERNELS(hf_layers_kernels)
@@ -254,6 +299,10 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .weigh = hf_layers_weigh_c,
         .fold = hf_layers_fold_c,
         .disc = hf_layers_disc_c,
+        .pairs = hf_layers_pairs_c,
+        .runs = hf_layers_runs_c,
+        .weights = hf_layers_weights_c,
+        .stamp = hf_layers_stamp_c,
         .up = hf_layers_up_c,
         .blend = hf_layers_blend_c,
         .finish = hf_layers_finish_c,
@@ -267,7 +316,8 @@ static void kernels(void *table, enum hf_isa isa, int fused)
 
 const struct hf_engine_def hf_layers_engine = {
     .name = "layers",
-    .aperture = HF_APERTURE_SQUEEZE,
+    .aperture = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE |
+                HF_APERTURE_SQUEEZE | HF_APERTURE_CHROMATIC | HF_APERTURE_PICTURE,
     .check = check,
     .passes = passes,
     .pass_count = PASSES,

@@ -40,6 +40,16 @@ typedef void hf_layers_fold(const float *in, int n, float *out);
 // Draw n sources of two rows, one below the other, blurred by s into rows from..to; out is the upper one's.
 typedef void hf_layers_disc(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
                             float *out, ptrdiff_t stride);
+// Sums of n numbers and those `apart` farther on.
+typedef void hf_layers_pairs(const float *in, int apart, int n, float *out);
+// Add runs of a row of sources to n pixels, each times its part if there is one. window: sums of 2^k sources, a plane
+// each.
+typedef void hf_layers_runs(const struct hf_shape_run *run, int count, const float *window, ptrdiff_t plane,
+                            const float *part, int n, float *out);
+// Add weights of a picture's row, the first for in[x] and the others for what comes before it.
+typedef void hf_layers_weights(const float *weight, int count, const float *in, int n, float *out);
+// Add a row of a picture of brightness v.
+typedef void hf_layers_stamp(const float *weight, int n, float v, float *out);
 // 2n numbers from n of two rows, three quarters of a and one of b; reads one more at either end.
 typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
 // Put sums, the weight at 4, under what a stack holds; part, if not NULL, receives how much of them shows.
@@ -64,6 +74,10 @@ struct hf_layers_kernels {
     hf_layers_weigh *weigh;
     hf_layers_fold *fold;
     hf_layers_disc *disc;
+    hf_layers_pairs *pairs;
+    hf_layers_runs *runs;
+    hf_layers_weights *weights;
+    hf_layers_stamp *stamp;
     hf_layers_up *up;
     hf_layers_blend *blend;
     hf_layers_finish *finish;
@@ -109,6 +123,10 @@ hf_layers_inside hf_layers_inside_c;
 hf_layers_weigh hf_layers_weigh_c;
 hf_layers_fold hf_layers_fold_c;
 hf_layers_disc hf_layers_disc_c;
+hf_layers_pairs hf_layers_pairs_c;
+hf_layers_runs hf_layers_runs_c;
+hf_layers_weights hf_layers_weights_c;
+hf_layers_stamp hf_layers_stamp_c;
 hf_layers_up hf_layers_up_c;
 hf_layers_blend hf_layers_blend_c;
 hf_layers_finish hf_layers_finish_c;

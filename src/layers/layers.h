@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "base/mem.h"
+#include "layers/shape.h"
 
 enum {
     HF_LAYERS_TILE = 16,    // pixels; the extremes of the radii are kept for each tile
@@ -51,6 +52,8 @@ struct hf_slice {
     int rows, reach;
     float scale;
     const struct hf_disc_row *row;
+    const struct hf_shape *shape;  // instead of the disc, or NULL
+    int sparse;                    // it has few sources
 };
 
 // What a quality stands for.
@@ -58,20 +61,29 @@ struct hf_layers_settings {
     float spacing;  // of the slices; below 2 it is 1 anyway
     int fine;       // slices lie closer: see slices.c
     int unmix, hidden, highlights;
-    float half, quarter;  // radii from which slices are blurred at half and a quarter of the resolution
+    float half, quarter, eighth;  // radii from which slices are blurred at these parts of the resolution
 };
 
 struct hf_layers {
     struct hf_layers_settings set;
     struct hf_block tables, tiles;  // slices and discs; the ranges of the tiles
     float wide;                     // discs are wider than high by this
+    int shaped;                     // the aperture is no disc
+    struct hf_shape_key key;        // what it is
+    struct hf_shapes shapes[3];     // of radii as they are, and of larger and smaller ones
+    int most_windows, most_rows;    // of a shape
+    float chromatic;                // by this
     float nearest, farthest;        // radii of the frame
+    int most_tiles;                 // around a cell from which a slice reaches it
     int around;                     // how far samples are read around a cell, pixels
 
     int width, height;                        // of the frame
     int channels;                             // of colour, 3 or 4 with alpha
     int slices, levels;                       // levels of hidden samples; 0: none are looked for
     struct hf_slice *slice, *behind, *shine;  // of what is seen, of hidden samples, of shares at full resolution
+    // Channels whose discs are their own: red, green with alpha, blue; or all are the first's.
+    int groups;
+    struct hf_slice *group[3];  // the slices of one
 
     int columns, rows;  // of tiles
     struct hf_layers_range *seen_range, *mixed_range, *hidden_range;

@@ -47,6 +47,7 @@ struct hf_cell {
     uint8_t *any;                         // where a row of a run has samples of the slice, 16 at once
     float *part;                          // how much of a slice shows, half resolution
     ptrdiff_t part_row;
+    float *shape;  // scratch of shapes
 };
 
 // Pixels of a level.
@@ -103,6 +104,14 @@ int hf_layers_next_span(const struct hf_cell *c, const struct hf_tile_map *m, in
 void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *set, const float *weight, int x, int y,
                          const float *in[6]);
 void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
+                          const struct hf_window *to);
+
+// shape_draw.c
+// Scratch for a cell of so many tiles.
+size_t hf_layers_shape_floats(const struct hf_layers *l, int columns, int rows);
+// Before a slice, and for a row of its sources: row y, columns x0 to x1, the first of which is in[0] of its first channel.
+void hf_layers_begin_shape(const struct hf_cell *c, const struct hf_slice *s);
+void hf_layers_draw_shape(const struct hf_cell *c, const struct hf_build *b, const float *in, int y, int x0, int x1,
                           const struct hf_window *to);
 
 // together.c

@@ -5,6 +5,7 @@
 #include "layers/cell.h"
 #include "layers/hidden.h"
 #include "layers/highlights.h"
+#include "layers/slices.h"
 #include "layers/unmix.h"
 #include "pixel/pass_c.h"
 
@@ -42,7 +43,23 @@ static struct hf_layers_set set_of(const struct hf_buf *colour, const struct hf_
 
 size_t hf_layers_composite_floats(const struct hf_layers *l, int width, int height)
 {
-    return hf_layers_cell_floats(l, width, height) + (size_t)l->channels * (size_t)width * (size_t)height + HF_PAD;
+    const size_t planes = (size_t)l->channels + (l->groups == 3 ? 4 : 0);
+    return hf_layers_cell_floats(l, width, height) + planes * (size_t)width * (size_t)height + HF_PAD;
+}
+
+// The channels of a group: all are made, as they share their weight.
+static void make_group(const struct hf_frame *f, const struct hf_layers *l, const struct hf_samples *samples,
+                       struct hf_rect tiles, int group, float *memory, float *const out[4])
+{
+    const size_t pixels = (size_t)(tiles.x1 - tiles.x0) * (size_t)(tiles.y1 - tiles.y0);
+    struct hf_layers of = *l;
+    float *to[4];
+    memcpy(to, out, sizeof to);
+    hf_layers_use_group(&of, group);
+    for (int c = 0; l->groups == 3 && c < l->channels; c++)
+        to[c] = group == (c < 3 ? c : 1) ? out[c] : memory + (size_t)c * pixels;
+    hf_layers_cell(&of, samples, hf_layers_kernels(f), tiles, memory + (l->groups == 3 ? 4 : 0) * pixels, to,
+                   tiles.x1 - tiles.x0);
 }
 
 void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
@@ -61,7 +78,8 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
     for (int c = 0; c < l->channels; c++, memory += (size_t)width * (size_t)height)
         out[c] = memory;
     const int repaired = atomic_load_explicit(l->repaired, memory_order_relaxed);
-    hf_layers_cell(l, &samples, hf_layers_kernels(f), tiles, memory, out, width);
+    for (int g = 0; g < l->groups; g++)
+        make_group(f, l, &samples, tiles, g, memory, out);
     for (int y = y0; y < y1; y++) {
         float *row[4] = {NULL}, *was[4];
         // Repairs are counted where they show.

@@ -6,6 +6,7 @@
 #include "layers/composite_simd.h"
 #include "layers/hidden_simd.h"
 #include "layers/highlights_simd.h"
+#include "layers/runs_simd.h"
 #include "layers/unmix_simd.h"
 
 void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
@@ -23,6 +24,10 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->weigh = layers_weigh_simd;
     k->fold = layers_fold_simd;
     k->disc = layers_disc_simd;
+    k->pairs = layers_pairs_simd;
+    k->runs = layers_runs_simd;
+    k->weights = layers_weights_simd;
+    k->stamp = layers_stamp_simd;
     k->up = layers_up_simd;
     k->blend = layers_blend_simd;
     k->finish = layers_finish_simd;

@@ -17,20 +17,13 @@ static float next_radius(const struct hf_layers_settings *set, float r)
 static int level_of(const struct hf_layers_settings *set, float radius)
 {
     const float r = fabsf(radius);
-    return r < set->half ? 0 : r < set->quarter ? 1 : r < 4 * set->quarter ? 2 : 3;
+    return r < set->half ? 0 : r < set->quarter ? 1 : r < set->eighth ? 2 : 3;
 }
 
 // Rows on one side of a disc, the middle one counted.
 static int disc_rows(double r)
 {
     return r > 0 ? (int)ceil(r - 0.5) + 1 : 1;
-}
-
-// Integral from 0 to t of the half-width of the rows of a disc of radius r.
-static double half_disc(double r, double t)
-{
-    t = t > r ? r : t < -r ? -r : t;
-    return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
 }
 
 // A disc of radius r, wide times as wide. r 0: the pixel itself.
@@ -43,7 +36,7 @@ static void make_disc(struct hf_slice *s, double r, double wide, struct hf_disc_
     s->reach = 0;
     double sum = 0;
     for (int d = 0; d < s->rows; d++) {
-        const double h = r > 0 ? (half_disc(r, d + 0.5) - half_disc(r, d - 0.5)) * wide : 0.5;
+        const double h = r > 0 ? (hf_half_disc(r, d + 0.5) - hf_half_disc(r, d - 0.5)) * wide : 0.5;
         const double whole = floor(h - 0.5);
         row[d].n = h < 0.5 ? -1 : (int)whole;
         row[d].f = (float)(h < 0.5 ? h : h - 0.5 - whole);
@@ -70,12 +63,12 @@ static void set_neighbours(struct hf_slice *slice, int count)
 }
 
 // Slices and rows of discs on one side, the one at 0 not counted.
-static int count_slices(const struct hf_layers_settings *set, float limit, size_t *rows)
+static int count_slices(const struct hf_layers *l, float limit, size_t *rows)
 {
     int n = 0;
     for (float r = 0; r < limit; n++) {
-        r = next_radius(set, r);
-        *rows += 3 * (size_t)disc_rows(r);
+        r = next_radius(&l->set, r);
+        *rows += 3 * (size_t)disc_rows(r * (1 + fabsf(l->chromatic)));
     }
     return n;
 }
@@ -83,61 +76,109 @@ static int count_slices(const struct hf_layers_settings *set, float limit, size_
 size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit)
 {
     size_t rows = 3;
-    const int n = 2 * count_slices(&l->set, limit, &rows) + 1;
-    return 3 * (size_t)n * sizeof(struct hf_slice) + 2 * rows * sizeof(struct hf_disc_row);
+    const size_t side = (size_t)count_slices(l, limit, &rows), n = 2 * side + 1;
+    const size_t group = 3 * n * sizeof(struct hf_slice) + 2 * rows * sizeof(struct hf_disc_row);
+    return (size_t)l->groups * group + side * sizeof(struct hf_shape_size);
 }
 
-// One radius as all three tables hold it.
-static struct hf_disc_row *make_slice(struct hf_layers *l, int i, float radius, struct hf_disc_row *row)
+// By how much a group's discs are larger: red ones are behind the focus, and smaller before it, blue ones the other way.
+static float shift_of(const struct hf_layers *l, int group, float radius)
 {
+    const float shift = group == 0 ? l->chromatic : group == 2 ? -l->chromatic : 0;
+    return radius < 0 ? -shift : shift;
+}
+
+// One radius, the number'th from 0, as all three tables hold it.
+static struct hf_disc_row *make_slice(struct hf_layers *l, int group, int i, float radius, int number,
+                                      struct hf_disc_row *row)
+{
+    const float shift = shift_of(l, group, radius);
     const int level = level_of(&l->set, radius), coarse = level > 1 ? level : 1;
-    struct hf_slice *const tables[3] = {l->slice, l->behind, l->shine};
     const int levels[3] = {level, coarse, 0}, finest[3] = {0, 1, 0};
     for (int t = 0; t < 3; t++) {
-        struct hf_slice *s = &tables[t][i];
-        *s = (struct hf_slice){.radius = radius, .level = levels[t]};
-        make_disc(s, fabs((double)radius) / (1 << levels[t]), l->wide, row);
+        struct hf_slice *s = &l->group[group][t * l->slices + i];
+        *s = (struct hf_slice){.radius = radius, .level = levels[t], .sparse = t == 2};
+        if (l->shaped && number > 0) {
+            const struct hf_shapes *shapes = &l->shapes[shift > 0 ? 1 : shift < 0 ? 2 : 0];
+            const int plane = shapes->planes == 3 ? group : 0;
+            s->shape = &shapes->shape[number - 1][plane][t];
+            s->rows = 1 - s->shape->top;
+            s->reach = hf_max(s->shape->reach + 1, s->rows);
+            s->scale = (float)(1 / s->shape->sum);
+        } else {
+            make_disc(s, fabs((double)radius) * (1 + shift) / (1 << levels[t]), l->wide, row);
+            row += s->rows;
+        }
         s->scale /= (float)(1 << 2 * (levels[t] - finest[t]));
-        row += s->rows;
     }
     return row;
 }
 
-void hf_layers_make_slices(struct hf_layers *l)
+static int slices_of(const struct hf_layers *l, float limit)
 {
     size_t unused = 0;
-    const int near = count_slices(&l->set, -l->nearest, &unused), far = count_slices(&l->set, l->farthest, &unused);
+    return count_slices(l, limit, &unused);
+}
+
+int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem)
+{
+    struct hf_shape_size *size = l->tables.data;
+    struct hf_shape_key key = l->key;
+    float r = 0;
+    key.count = hf_max(slices_of(l, -l->nearest), slices_of(l, l->farthest));
+    for (int i = 0; i < key.count; i++) {
+        size[i].radius = r = next_radius(&l->set, r);
+        size[i].level = level_of(&l->set, r);
+    }
+    l->most_windows = l->most_rows = 0;
+    for (int i = 0; i < (l->chromatic != 0 ? 3 : 1); i++) {
+        struct hf_shapes *s = &l->shapes[i];
+        key.factor = 1 + (i == 1 ? fabsf(l->chromatic) : i == 2 ? -fabsf(l->chromatic) : 0);
+        const int err = hf_shapes_build(s, &key, size, picture, mem);
+        if (err)
+            return err;
+        for (int j = 0; j < key.count; j++)
+            for (int k = 0; k < 3 * s->planes; k++) {
+                l->most_windows = hf_max(l->most_windows, s->shape[j][k / 3][k % 3].windows);
+                l->most_rows = hf_max(l->most_rows, s->shape[j][k / 3][k % 3].rows);
+            }
+    }
+    return HF_OK;
+}
+
+void hf_layers_make_slices(struct hf_layers *l)
+{
+    const int near = slices_of(l, -l->nearest), far = slices_of(l, l->farthest);
     l->slices = near + 1 + far;
-    l->slice = l->tables.data;
+    struct hf_slice *at = l->tables.data;
+    for (int g = 0; g < l->groups; g++, at += 3 * l->slices)
+        l->group[g] = at;
+    struct hf_disc_row *row = (struct hf_disc_row *)at;
+    for (int g = 0; g < l->groups; g++) {
+        float r = 0;
+        row = make_slice(l, g, near, 0, 0, row);
+        for (int i = 1; i <= near; i++)
+            row = make_slice(l, g, near - i, -(r = next_radius(&l->set, r)), i, row);
+        r = 0;
+        for (int i = 1; i <= far; i++)
+            row = make_slice(l, g, near + i, r = next_radius(&l->set, r), i, row);
+        for (int t = 0; t < 3; t++)
+            set_neighbours(l->group[g] + t * l->slices, l->slices);
+    }
+    hf_layers_use_group(l, 0);
+    l->most_tiles = 0;
+    for (int i = 0; i < 3 * l->slices * l->groups; i++)
+        l->most_tiles = hf_max(l->most_tiles, hf_layers_tiles_around((struct hf_slice *)l->tables.data + i));
+}
+
+void hf_layers_use_group(struct hf_layers *l, int group)
+{
+    l->slice = l->group[group];
     l->behind = l->slice + l->slices;
     l->shine = l->behind + l->slices;
-    struct hf_disc_row *row = (struct hf_disc_row *)(l->shine + l->slices);
-    float r = 0;
-    row = make_slice(l, near, 0, row);
-    for (int i = 1; i <= near; i++)
-        row = make_slice(l, near - i, -(r = next_radius(&l->set, r)), row);
-    r = 0;
-    for (int i = 1; i <= far; i++)
-        row = make_slice(l, near + i, r = next_radius(&l->set, r), row);
-    set_neighbours(l->slice, l->slices);
-    set_neighbours(l->behind, l->slices);
-    set_neighbours(l->shine, l->slices);
 }
 
 int hf_layers_tiles_around(const struct hf_slice *s)
 {
     return (((s->reach + 3 + HF_LAYERS_MARGIN) << s->level) + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
-}
-
-int hf_layers_most_tiles(const struct hf_layers *l)
-{
-    int most = 0;
-    for (int i = 0; i < l->slices; i++) {
-        const struct hf_slice *all[3] = {&l->slice[i], &l->behind[i], &l->shine[i]};
-        for (int j = 0; j < 3; j++) {
-            const int n = hf_layers_tiles_around(all[j]);
-            most = n > most ? n : most;
-        }
-    }
-    return most;
 }

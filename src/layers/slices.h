@@ -9,10 +9,12 @@ enum { HF_LAYERS_MARGIN = 2 };  // pixels of a slice's own that are made around 
 
 // Bytes of the slices of radii up to a limit, on both sides.
 size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit);
-// Those that the frame's radii lie between, in l->tables.
+// The shapes of those that the frame's radii lie between, if the aperture is no disc. Returns HF_ERR_MEMORY.
+int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem);
+// These slices, in l->tables. The first group's are in use.
 void hf_layers_make_slices(struct hf_layers *l);
-// Tiles around a cell whose samples a slice's blur may bring into it; and the most of all slices.
+void hf_layers_use_group(struct hf_layers *l, int group);
+// Tiles around a cell whose samples a slice's blur may bring into it.
 int hf_layers_tiles_around(const struct hf_slice *s);
-int hf_layers_most_tiles(const struct hf_layers *l);
 
 #endif

@@ -57,63 +57,71 @@ static void build_disc(struct hf_aperture *a, int number, int first)
     p->area = (float)area;
 }
 
-// A side of a polygon whose corners lie on the unit circle: the line x nx + y ny = d, or bent towards that circle an
-// arc
-// through the same corners, of a circle around (cx, cy).
-struct side {
-    double nx, ny, d, cx, cy, radius;  // radius 0: straight
-};
-
-static int make_sides(struct side side[16], const struct hf_aperture_key *key)
+int hf_aperture_sides(struct hf_side side[HF_SIDES], int blades, double rotation, double roundness)
 {
-    const double pi = 3.14159265358979323846, d = cos(pi / key->blades), h = sin(pi / key->blades);
-    const double sagitta = key->roundness * (1 - d),
+    const double pi = 3.14159265358979323846, d = cos(pi / blades), h = sin(pi / blades);
+    const double sagitta = roundness * (1 - d),
                  radius = sagitta > 1e-6 ? (h * h + sagitta * sagitta) / (2 * sagitta) : 0;
-    for (int i = 0; i < key->blades; i++) {
-        const double angle = 2 * pi * i / key->blades + key->rotation * (pi / 180), back = d + sagitta - radius;
-        side[i] = (struct side){.nx = cos(angle), .ny = sin(angle), .d = d, .radius = radius};
+    for (int i = 0; i < blades; i++) {
+        const double angle = 2 * pi * i / blades + rotation * (pi / 180), back = d + sagitta - radius;
+        side[i] = (struct hf_side){.nx = cos(angle), .ny = sin(angle), .d = d, .radius = radius};
         side[i].cx = side[i].nx * back;
         side[i].cy = side[i].ny * back;
     }
-    return key->blades;
+    return blades;
 }
 
-// The run of row y of the shape that the sides enclose; 0: there is none.
-static int side_run(const struct side *side, int sides, double y, double *a, double *b)
+static void later(double x, int i, double *a, int *of)
 {
-    *a = -1;
-    *b = 1;
+    if (x > *a) {
+        *a = x;
+        *of = i;
+    }
+}
+
+static void sooner(double x, int i, double *b, int *of)
+{
+    if (x < *b) {
+        *b = x;
+        *of = i;
+    }
+}
+
+int hf_aperture_run(const struct hf_side *side, int sides, double y, double *a, double *b, int of[2])
+{
+    *a = -2;
+    *b = 2;
+    of[0] = of[1] = 0;
     for (int i = 0; i < sides; i++) {
-        const struct side *s = &side[i];
+        const struct hf_side *s = &side[i];
         if (s->radius > 0) {
             const double q = s->radius * s->radius - (y - s->cy) * (y - s->cy), w = q > 0 ? sqrt(q) : -1;
             if (w < 0)
                 return 0;
-            *a = fmax(*a, s->cx - w);
-            *b = fmin(*b, s->cx + w);
+            later(s->cx - w, i, a, &of[0]);
+            sooner(s->cx + w, i, b, &of[1]);
         } else if (fabs(s->nx) < 1e-9) {
             if (s->ny * y > s->d)
                 return 0;
+        } else if (s->nx > 0) {
+            sooner((s->d - s->ny * y) / s->nx, i, b, &of[1]);
         } else {
-            const double x = (s->d - s->ny * y) / s->nx;
-            if (s->nx > 0)
-                *b = fmin(*b, x);
-            else
-                *a = fmax(*a, x);
+            later((s->d - s->ny * y) / s->nx, i, a, &of[0]);
         }
     }
     return *b > *a;
 }
 
 // Row dy: the means of what lies within it, and how much of its height that is.
-static struct hf_run polygon_row(const struct side *side, int sides, double r, double scale_x, int dy)
+static struct hf_run polygon_row(const struct hf_side *side, int sides, double r, double scale_x, int dy)
 {
     const int parts = r < 16 ? 16 : r < 64 ? 8 : 4;
     double a = 0, b = 0;
     int hit = 0;
     for (int i = 0; i < parts; i++) {
         double left, right;
-        if (!side_run(side, sides, (dy - 0.5 + (i + 0.5) / parts) / r, &left, &right))
+        int of[2];
+        if (!hf_aperture_run(side, sides, (dy - 0.5 + (i + 0.5) / parts) / r, &left, &right, of))
             continue;
         a += left;
         b += right;
@@ -126,7 +134,7 @@ static struct hf_run polygon_row(const struct side *side, int sides, double r, d
                            (HF_WHOLE_ROW * hit + parts / 2) / parts};
 }
 
-static void build_polygon(struct hf_aperture *a, const struct side *side, int sides, int number, int first)
+static void build_polygon(struct hf_aperture *a, const struct hf_side *side, int sides, int number, int first)
 {
     struct hf_picture *p = &a->picture[number];
     const double r = hf_picture_radius(number);
@@ -194,8 +202,8 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
     a->inverse = (float *)(a->picture + a->count);
     a->half = (int32_t *)(a->inverse + a->count);
     a->run = (struct hf_run *)a->half;
-    struct side side[16];
-    const int sides = key->blades ? make_sides(side, key) : 0;
+    struct hf_side side[HF_SIDES];
+    const int sides = key->blades ? hf_aperture_sides(side, key->blades, key->rotation, key->roundness) : 0;
     for (int i = 0, first = 0; i < a->count; i++) {
         if (a->symmetric)
             build_disc(a, i, first);

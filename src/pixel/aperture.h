@@ -58,6 +58,33 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
 int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_image *image,
                             const struct hf_mem *mem);
 
+// A side of a polygon whose corners lie on the unit circle: the line x nx + y ny = d, or bent towards that circle an
+// arc through the same corners, of a circle around (cx, cy).
+struct hf_side {
+    double nx, ny, d, cx, cy, radius;  // radius 0: straight
+};
+enum { HF_SIDES = 16 };
+
+// Degrees, and 0 to 1. Returns how many sides there are.
+int hf_aperture_sides(struct hf_side side[HF_SIDES], int blades, double rotation, double roundness);
+// The run of row y of the shape that the sides enclose; 0: there is none. of: the sides that it lies between.
+int hf_aperture_run(const struct hf_side *side, int sides, double y, double *a, double *b, int of[2]);
+
+// A picture's transmission as its integral over [0, x) x [0, y).
+struct hf_area {
+    const double *sum;  // (width + 1) x (height + 1)
+    int width, height;
+};
+
+size_t hf_area_bytes(const struct hf_image *image);
+// The integral of a channel, in memory of hf_area_bytes.
+struct hf_area hf_area_make(double *memory, const struct hf_image *image, int channel);
+// Its value at a place that may lie between pixels or outside.
+double hf_area_at(const struct hf_area *t, double x, double y);
+// What tells one image from the next; and is it one of colours?
+uint64_t hf_area_hash(const struct hf_image *image);
+int hf_area_coloured(const struct hf_image *image);
+
 // Number of the picture for a radius; smaller ones than 0.5 count as that. radius is finite.
 static inline int hf_picture_number(float radius)
 {

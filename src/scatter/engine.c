@@ -82,8 +82,7 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
         p->max_radius = MAX_PICTURE;
         r->limit = HF_LIMIT_PICTURE;
     }
-    const int err = hf_check_resolution("scatter", p->scatter.resolution, HF_RESOLUTION_HALF, message);
-    return err ? err : hf_check_between("scatter.chromatic", p->scatter.chromatic, -0.5f, 0.5f, message);
+    return hf_check_resolution("scatter", p->scatter.resolution, HF_RESOLUTION_HALF, message);
 }
 
 static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
@@ -113,7 +112,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     t->fade_slope = 1 / (t->fade - 0.5f);
     struct hf_aperture_key key;
     memset(&key, 0, sizeof key);
-    const float largest = s->max_radius * (1 + fabsf(p->scatter.chromatic));
+    const float largest = s->max_radius * (1 + fabsf(p->aperture.chromatic));
     key.largest = t->half_to > 0 && largest <= t->half_to ? largest : fmaxf(largest / 2, 1.5f * t->half_to);
     key.blades = a->blades;
     key.outline = a->cat_eye > 0;
@@ -128,7 +127,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     const int err =
         a->picture ? hf_aperture_build_image(aperture, &key, a->picture, mem) : hf_aperture_build(aperture, &key, mem);
     t->ready = !err;
-    set_groups(t, s, p->scatter.chromatic);
+    set_groups(t, s, p->aperture.chromatic);
     return err;
 }
 
@@ -339,7 +338,7 @@ static void kernels(void *table, enum hf_isa isa, int fused)
 const struct hf_engine_def hf_scatter_engine = {
     .name = "scatter",
     .aperture = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE |
-                HF_APERTURE_SQUEEZE | HF_APERTURE_PICTURE,
+                HF_APERTURE_SQUEEZE | HF_APERTURE_CHROMATIC | HF_APERTURE_PICTURE,
     .check = check,
     .passes = passes,
     .pass_count = PASSES,

@@ -39,11 +39,11 @@ static int parse_faithful(struct tool_parser *p, const struct tool_option *optio
 #define NUMBER(f, least, most) .parse = tool_parse_number, FIELD(f), .min = (least), .max = (most)
 
 const struct tool_option tool_params_options[] = {
-    {"chromatic", 0, TOOL_LOOK, "S", "scatter: red highlights larger by this fraction and blue ones smaller behind the "
-     "focus, the other way before it, -0.5 to 0.5. Default 0.", NUMBER(scatter.chromatic, -0.5, 0.5)},
-    {"cat-eye", 0, TOOL_LOOK, "S", "scatter: cut highlights towards the corners, 0 (default) to 1.",
+    {"chromatic", 0, TOOL_LOOK, "S", "layers, scatter: red highlights larger by this fraction and blue ones smaller behind the "
+     "focus, the other way before it, -0.5 to 0.5. Default 0.", NUMBER(aperture.chromatic, -0.5, 0.5)},
+    {"cat-eye", 0, TOOL_LOOK, "S", "layers, scatter: cut highlights towards the corners, 0 (default) to 1.",
      NUMBER(aperture.cat_eye, 0, 1)},
-    {"squeeze", 0, TOOL_LOOK, "S", "scatter: height over width of a highlight, 0.25 to 4. Default 1.",
+    {"squeeze", 0, TOOL_LOOK, "S", "layers, scatter: height over width of a highlight, 0.25 to 4. Default 1.",
      NUMBER(aperture.squeeze, 0.25, 4)},
     {"uniform", 0, TOOL_LOOK, NULL, "hexagon: the same blur everywhere, --max-radius.", FLAG(hexagon.uniform)},
     {"iterations", 0, TOOL_LOOK, "N", "gaussian: passes of the 5-tap blur, 0 to 64. Default 3.",

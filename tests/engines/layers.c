@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The layers engine: bits that hang on nothing but the input, constant pictures, alpha, what is not finite, a focus pull.
+// The layers engine: bits that hang on nothing but the input, with any aperture, constant pictures, alpha, what is not finite, a focus pull.
 //
 //     layers [seed]
 #include <float.h>
@@ -15,6 +15,26 @@ static unsigned seed = 1;
 static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_SSE41, HF_ISA_AVX2, HF_ISA_AVX512, HF_ISA_NEON};
 enum { ISAS = sizeof isas / sizeof *isas };
 
+static void random_aperture(struct rng *rng, struct hf_aperture_params *a)
+{
+    static float bright[3][9 * 7];
+    static const struct hf_image picture = {
+        9, 7, HF_FORMAT_PLANAR32F, {bright[0], bright[1], bright[2]}, {36, 36, 36}, HF_TRANSFER_LINEAR};
+    a->chromatic = rng_below(rng, 3) ? 0 : rng_range(rng, -0.5f, 0.5f);
+    if (rng_below(rng, 4) == 0) {
+        for (int i = 0; i < 9 * 7; i++)
+            for (int k = 0; k < 3; k++)
+                bright[k][i] = k == 0 ? rng_float(rng) : bright[0][i];
+        a->picture = &picture;
+        return;
+    }
+    a->blades = rng_below(rng, 3) ? 3 + rng_below(rng, 14) : 0;
+    a->rotation = rng_range(rng, -180, 180);
+    a->roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
+    a->ring = rng_below(rng, 3) ? 0 : rng_range(rng, 0, 0.95f);
+    a->cat_eye = rng_below(rng, 3) ? 0 : rng_float(rng);
+}
+
 static struct hf_params random_params(struct rng *rng)
 {
     struct hf_params p = scene_params();
@@ -26,6 +46,8 @@ static struct hf_params random_params(struct rng *rng)
     p.layers.no_hidden = rng_below(rng, 5) == 0;
     p.layers.no_highlights = rng_below(rng, 5) == 0;
     p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
+    if (rng_below(rng, 2))
+        random_aperture(rng, &p.aperture);
     return p;
 }
 

@@ -149,7 +149,7 @@ static void options(struct hf_context *c, const char *isa)
 #define CASE(title, field, value, a0, a1, a2, hw)                                                                      \
     cases[n].name = title, cases[n].p = p, cases[n].p.field = value, cases[n].area[0] = a0, cases[n].area[1] = a1,     \
     cases[n].area[2] = a2, cases[n++].ratio = hw
-    CASE("chromatic", scatter.chromatic, 0.1f, 1.21, 1, 0.81, 1);
+    CASE("chromatic", aperture.chromatic, 0.1f, 1.21, 1, 0.81, 1);
     CASE("squeeze", aperture.squeeze, 2, 0.5, 0.5, 0.5, 2);
     CASE("pixel_aspect", view.pixel_aspect, 2, 0.5, 0.5, 0.5, 2);
     CASE("blades", aperture.blades, 6, hexagon, hexagon, hexagon, 0);
@@ -227,7 +227,7 @@ static struct hf_params random_params(struct rng *rng, struct hf_image *aperture
     p.aperture.rotation = (float)rng_below(rng, 90);
     p.aperture.roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
     p.aperture.ring = rng_below(rng, 4) ? 0 : rng_range(rng, 0, 0.95f);
-    p.scatter.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.5f, 0.5f);
+    p.aperture.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.5f, 0.5f);
     p.aperture.cat_eye = rng_below(rng, 5) ? 0 : rng_float(rng);
     p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
     p.view.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
@@ -265,7 +265,7 @@ static void same_bits(enum hf_isa isa, struct hf_context *scalar)
                   "%s: seed %u, %s %d x %d, tiles %d: other bits (radius %g, half %d, blades %d, "
                   "ring %g, chromatic %g, cat's eye %g, image %d)",
                   hf_isa_name(isa), seed + 1000 + i, scene_name(kind), w, h, i % 4, p.max_radius, p.scatter.resolution,
-                  p.aperture.blades, p.aperture.ring, p.scatter.chromatic, p.aperture.cat_eye,
+                  p.aperture.blades, p.aperture.ring, p.aperture.chromatic, p.aperture.cat_eye,
                   p.aperture.picture != NULL);
         picture_free(&a);
         picture_free(&b);

@@ -94,7 +94,7 @@ static void neutral(struct hf_context *c)
     cases[0].aperture.rotation = 30;  // of a disc
     cases[1].aperture.roundness = 0.7f;
     cases[2].max_radius = 200;  // beyond what there is
-    cases[3].aperture.ring = cases[3].scatter.chromatic = cases[3].aperture.cat_eye = 0;
+    cases[3].aperture.ring = cases[3].aperture.chromatic = cases[3].aperture.cat_eye = 0;
     cases[4].aperture.squeeze = cases[4].view.pixel_aspect = 1;
     cases[5].scatter.resolution = HF_RESOLUTION_FULL;
     struct picture plain = spot(c, &base, 4);

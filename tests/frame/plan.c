@@ -209,14 +209,14 @@ static void ladders(void)
     struct hf_params ladder[HF_BUDGET_STEPS], p = hf_default_params;
     for (int e = 0; e < HF_ENGINE_COUNT; e++) {
         p.engine = (enum hf_engine)e;
-        p.scatter.chromatic = 0.125f;
+        p.aperture.chromatic = 0.125f;
         p.focus = 3;
         const int n = hf_budget_ladder(&p, ladder);
         CHECK(!memcmp(&ladder[0], &p, sizeof p));
         for (int i = 1; i < n; i++) {
             CHECK_MSG(hf_ladder_ms(&ladder[i]) < hf_ladder_ms(&ladder[i - 1]), "%s, step %d", hf_engine_name(p.engine),
                       i);
-            CHECK(ladder[i].scatter.chromatic == 0.125f && ladder[i].focus == 3);  // no knobs of the ladder
+            CHECK(ladder[i].aperture.chromatic == 0.125f && ladder[i].focus == 3);  // no knobs of the ladder
         }
         if (n > 1)
             CHECK(hf_ladder_ms(&ladder[n - 1]) == hf_ladder[0].ms);

@@ -90,18 +90,16 @@ static struct hf_params random_params(struct rng *rng, enum hf_engine engine)
     p.hexagon.resolution = p.scatter.resolution = p.gaussian.resolution =
         (enum hf_resolution)rng_below(rng, engine == HF_ENGINE_GAUSSIAN ? 3 : 2);
     p.hexagon.uniform = engine == HF_ENGINE_HEXAGON && rng_below(rng, 6) == 0;
-    if (engine == HF_ENGINE_SCATTER) {
+    if (engine == HF_ENGINE_SCATTER || engine == HF_ENGINE_LAYERS) {
         p.aperture.blades = rng_below(rng, 3) ? 0 : 3 + rng_below(rng, 7);
         p.aperture.roundness = rng_below(rng, 2) ? 0 : rng_float(rng);
         p.aperture.ring = rng_below(rng, 4) ? 0 : 0.5f;
-        p.scatter.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.3f, 0.3f);
+        p.aperture.chromatic = rng_below(rng, 4) ? 0 : rng_range(rng, -0.3f, 0.3f);
         p.aperture.cat_eye = rng_below(rng, 4) ? 0 : rng_float(rng);
         p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
     }
-    if (engine == HF_ENGINE_LAYERS) {
+    if (engine == HF_ENGINE_LAYERS)
         p.layers.quality = (enum hf_layers_quality)rng_below(rng, 4);
-        p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
-    }
     if (engine == HF_ENGINE_GAUSSIAN) {
         p.gaussian.faithful = rng_below(rng, 4) == 0;
         p.gaussian.iterations = rng_below(rng, 6);

@@ -109,7 +109,7 @@ static struct hf_params any_params(struct bytes *b)
     p.hexagon.resolution = (enum hf_resolution)any_choice(b, 2);
     p.scatter.resolution = (enum hf_resolution)any_choice(b, 2);
     p.gaussian.resolution = (enum hf_resolution)any_choice(b, 3);
-    maybe(b, &p.scatter.chromatic);
+    maybe(b, &p.aperture.chromatic);
     p.gaussian.iterations = any_choice(b, 70) - 1;
     maybe(b, &p.gaussian.sigma);
     maybe(b, &p.run.budget_ms);

@@ -59,6 +59,16 @@ static void make_hexagon(struct world *w)
     p->hexagon.uniform = rng_one_in(&w->rng, 8);
 }
 
+static void make_aperture(struct rng *r, struct hf_aperture_params *a)
+{
+    a->blades = rng_one_in(r, 3) ? rng_int(r, 3, 16) : 0;
+    a->roundness = rng_one_in(r, 2) ? rng_float(r, 0, 1) : 0;
+    a->ring = rng_one_in(r, 5) ? rng_float(r, 0, 0.95f) : 0;
+    a->chromatic = rng_one_in(r, 5) ? rng_float(r, -0.5f, 0.5f) : 0;
+    a->cat_eye = rng_one_in(r, 5) ? rng_float(r, 0, 1) : 0;
+    a->squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
+}
+
 // The scatter instead of the gather, with some of its options. Its frames have the bits of the C whatever is fused.
 static void make_scatter(struct world *w)
 {
@@ -66,23 +76,16 @@ static void make_scatter(struct world *w)
     struct rng *r = &w->rng;
     p->engine = HF_ENGINE_SCATTER;
     p->scatter.resolution = rng_one_in(r, 4) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
-    p->aperture.blades = rng_one_in(r, 3) ? rng_int(r, 3, 16) : 0;
-    p->aperture.roundness = rng_one_in(r, 2) ? rng_float(r, 0, 1) : 0;
-    p->aperture.ring = rng_one_in(r, 5) ? rng_float(r, 0, 0.95f) : 0;
-    p->scatter.chromatic = rng_one_in(r, 5) ? rng_float(r, -0.5f, 0.5f) : 0;
-    p->aperture.cat_eye = rng_one_in(r, 5) ? rng_float(r, 0, 1) : 0;
-    p->aperture.squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
+    make_aperture(r, &p->aperture);
 }
 
 // Layers likewise.
 static void make_layers(struct world *w)
 {
     struct hf_params *p = &w->params;
-    struct rng *r = &w->rng;
     p->engine = HF_ENGINE_LAYERS;
-    p->layers.quality = (enum hf_layers_quality)rng_int(r, HF_LAYERS_DRAFT, HF_LAYERS_BEST);
-    p->aperture.blades = 0;
-    p->aperture.squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
+    p->layers.quality = (enum hf_layers_quality)rng_int(&w->rng, HF_LAYERS_DRAFT, HF_LAYERS_BEST);
+    make_aperture(&w->rng, &p->aperture);
 }
 
 static void make_case(struct world *w, const struct frame_case *c)
