@@ -294,6 +294,8 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .quads = hf_layers_quads_c,
         .merge = hf_layers_merge_c,
         .tap = hf_layers_tap_c,
+        .nearest = hf_layers_nearest_c,
+        .found = hf_layers_found_c,
         .extremes = hf_layers_extremes_c,
         .inside = hf_layers_inside_c,
         .weigh = hf_layers_weigh_c,

@@ -112,6 +112,32 @@ void hf_layers_tap_c(const float *const in[6], int channels, const float *neares
     }
 }
 
+void hf_layers_nearest_c(const float *above, const float *below, int n, float *out)
+{
+    for (int x = 0; x < n; x++) {
+        const float left = above[2 * x] < below[2 * x] ? above[2 * x] : below[2 * x];
+        const float right = above[2 * x + 1] < below[2 * x + 1] ? above[2 * x + 1] : below[2 * x + 1];
+        out[x] = left < right ? left : right;
+    }
+}
+
+void hf_layers_found_c(const float *const sum[6], const float *const radius[2], const float *const weight[2],
+                       int channels, int n, float *const out[6])
+{
+    for (int x = 0; x < n; x++) {
+        const float inverse = sum[4][x] > 0 ? 1 / sum[4][x] : 0, r = sum[5][x] * inverse;
+        float before[4];
+        for (int i = 0; i < 4; i++) {
+            const int at = 2 * x + (i & 1);
+            before[i] = radius[i >> 1][at] < r - 1 ? weight[i >> 1][at] : 0;
+        }
+        out[4][x] = sum[4][x] > 0 ? ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f : 0;
+        out[5][x] = r;
+        for (int c = 0; c < channels; c++)
+            out[c][x] = (sum[c][x] * inverse) * (sum[c][x] * inverse);
+    }
+}
+
 int hf_layers_extremes_c(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
                          int rows, struct hf_layers_range *out)
 {
@@ -121,8 +147,9 @@ int hf_layers_extremes_c(const float *radius, const float *weight, const float *
         for (int x = 0; x < n; x++) {
             const ptrdiff_t at = y * stride + x;
             const float r = radius[at];
-            range.low = weight[at] > 0 && r < range.low ? r : range.low;
-            range.high = weight[at] > 0 && r > range.high ? r : range.high;
+            const int counts = !weight || weight[at] > 0;
+            range.low = counts && r < range.low ? r : range.low;
+            range.high = counts && r > range.high ? r : range.high;
             bright |= share && share[at] > 0;
         }
     *out = range;

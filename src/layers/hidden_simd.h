@@ -131,6 +131,43 @@ static void layers_tap_simd(const float *const in[6], int channels, const float 
         layers_tap_of(in, 4, nearest, scale, off, part, n, sum);
 }
 
+static void layers_nearest_simd(const float *above, const float *below, int n, float *out)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        vf least[2], even, odd;
+        for (int i = 0; i < 2; i++)
+            least[i] = vf_min(vf_load(above + 2 * x + i * VF_N), vf_load(below + 2 * x + i * VF_N));
+        vf_unzip(least[0], least[1], &even, &odd);
+        vf_store(out + x, vf_min(even, odd));
+    }
+}
+
+static void layers_found_simd(const float *const sum[6], const float *const radius[2], const float *const weight[2],
+                              int channels, int n, float *const out[6])
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf total = vf_load(sum[4] + x);
+        const vm some = vf_gt(total, vf_zero());
+        const vf inverse = vf_keep(some, vf_div(vf_set1(1), total));
+        const vf r = vf_mul(vf_load(sum[5] + x), inverse), limit = vf_sub(r, vf_set1(1));
+        vf before[2], first, second, even, odd;
+        vf_zip(limit, limit, &first, &second);
+        for (int i = 0; i < 2; i++) {
+            const int at = 2 * x + i * VF_N;
+            const vf l = i ? second : first;
+            before[i] = vf_add(vf_keep(vf_lt(vf_load(radius[0] + at), l), vf_load(weight[0] + at)),
+                               vf_keep(vf_lt(vf_load(radius[1] + at), l), vf_load(weight[1] + at)));
+        }
+        vf_unzip(before[0], before[1], &even, &odd);
+        vf_store(out[4] + x, vf_keep(some, vf_mul(vf_add(even, odd), vf_set1(0.25f))));
+        vf_store(out[5] + x, r);
+        for (int c = 0; c < channels; c++) {
+            const vf v = vf_mul(vf_load(sum[c] + x), inverse);
+            vf_store(out[c] + x, vf_mul(v, v));
+        }
+    }
+}
+
 static int layers_extremes_simd(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
                                 int rows, struct hf_layers_range *out)
 {
@@ -142,7 +179,7 @@ static int layers_extremes_simd(const float *radius, const float *weight, const 
             for (int x = 0; x < whole; x += VF_N) {
                 const ptrdiff_t at = y * stride + x;
                 const vf r = vf_load(radius + at);
-                const vm some = vf_gt(vf_load(weight + at), vf_zero());
+                const vm some = vf_gt(weight ? vf_load(weight + at) : vf_set1(1), vf_zero());
                 low = vf_min(vf_select(some, r, low), low);
                 high = vf_max(vf_select(some, r, high), high);
                 if (share)
@@ -152,8 +189,8 @@ static int layers_extremes_simd(const float *radius, const float *weight, const 
         for (int i = 0; i < VF_N; i++)
             out->low = lows[i] < out->low ? lows[i] : out->low;
         out->high = vf_most(high);
-        const int more = whole < n && hf_layers_extremes_c(radius + whole, weight + whole, share ? share + whole : NULL,
-                                                           stride, n - whole, rows, out);
+        const int more = whole < n && hf_layers_extremes_c(radius + whole, weight ? weight + whole : NULL,
+                                                           share ? share + whole : NULL, stride, n - whole, rows, out);
         return more || vf_most(bright) > 0;
     }
     return hf_layers_extremes_c(radius, weight, share, stride, n, rows, out);

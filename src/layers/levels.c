@@ -6,7 +6,8 @@
 #include "layers/hidden.h"
 #include "pixel/pass_c.h"
 
-enum { STEP = 128, PAD = 32 };  // samples that are looked for at once; floats around a row
+// Samples that are looked for at once; floats around a row; blocks of samples of which it is known whether they need any.
+enum { STEP = 128, PAD = 32, BLOCK = 16 };
 
 int hf_layers_hidden_reach(const struct hf_layers *l)
 {
@@ -20,6 +21,13 @@ struct band {
     struct hf_rect r;
     int reach;
     struct hf_layers_set level[HF_LAYERS_LEVELS], across;
+    float *nearest;  // least radius of what is seen in each quad, width in a row
+    int width;
+    // Blocks, those around the band included: (0, 0) is its first. Farthest radius, whether a search is made, and whether
+    // a level is.
+    int columns, rows, around, stride;
+    float *farthest;
+    uint8_t *needed, *made, *passed;
 };
 
 static size_t plane_floats(const struct hf_layers *l, int width, int height)
@@ -28,9 +36,21 @@ static size_t plane_floats(const struct hf_layers *l, int width, int height)
     return (((size_t)width + 2 * reach + 15) / 16 * 16 + 2 * PAD) * ((size_t)height + 2 * reach);
 }
 
+static int blocks_of(int n)
+{
+    return (n + BLOCK - 1) / BLOCK;
+}
+
+static size_t block_count(const struct hf_layers *l, int width, int height)
+{
+    const int around = 2 * blocks_of(hf_layers_hidden_reach(l));
+    return (size_t)(blocks_of(width) + around) * (size_t)(blocks_of(height) + around);
+}
+
 size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height)
 {
-    return (size_t)l->levels * (size_t)(l->channels + 2) * plane_floats(l, width, height);
+    return (size_t)l->levels * (size_t)(l->channels + 2) * plane_floats(l, width, height) +
+           (size_t)blocks_of(width) * BLOCK * (size_t)height + 2 * block_count(l, width, height) + PAD;
 }
 
 static struct hf_layers_set place(const struct band *b, float **memory)
@@ -45,6 +65,25 @@ static struct hf_layers_set place(const struct band *b, float **memory)
     return s;
 }
 
+static void place_blocks(struct band *b, float **memory)
+{
+    const int width = b->r.x1 - b->r.x0, height = b->r.y1 - b->r.y0;
+    const size_t count = block_count(b->l, width, height);
+    b->columns = blocks_of(width);
+    b->rows = blocks_of(height);
+    b->around = blocks_of(b->reach);
+    b->stride = b->columns + 2 * b->around;
+    b->width = b->columns * BLOCK;
+    const ptrdiff_t first = b->around * b->stride + b->around;
+    b->nearest = *memory;
+    b->farthest = b->nearest + (size_t)b->width * (size_t)height + first;
+    uint8_t *bytes = (uint8_t *)(b->farthest - first + count);
+    b->needed = bytes + first;
+    b->made = b->needed + count;
+    b->passed = b->made + count;
+    *memory += (size_t)b->width * (size_t)height + 2 * count;
+}
+
 static void planes_of(const struct hf_layers_set *s, int channels, int x, int y, float *out[6])
 {
     const ptrdiff_t at = y * s->stride + x;
@@ -54,17 +93,77 @@ static void planes_of(const struct hf_layers_set *s, int channels, int x, int y,
     out[5] = s->radius + at;
 }
 
-// Merge samples (dx, dy) apart, in an area `reach` larger than the band.
-static void merge(const struct band *b, const struct hf_layers_set *from, const struct hf_layers_set *to, int dx,
-                  int dy, int reach_x, int reach_y, float slope)
+// Radii of quads in a block; without weights all of them count.
+static struct hf_layers_range range_of(const struct band *b, const float *radius, const float *weight, ptrdiff_t stride,
+                                       int n, int rows)
 {
-    const int x = b->r.x0 - reach_x, n = b->r.x1 + reach_x - x, channels = b->l->channels;
+    struct hf_layers_range range = {HUGE_VALF, -HUGE_VALF};
+    hf_layers_kernels(b->f)->extremes(radius, weight, NULL, stride, n, rows, &range);
+    return range;
+}
+
+// Largest within so many blocks, of rows and then of columns.
+static void spread(const struct band *b, const uint8_t *in, int by, uint8_t *out)
+{
+    for (int y = -b->around; y < b->rows + b->around; y++)
+        for (int x = -b->around; x < b->columns + b->around; x++) {
+            int any = 0;
+            for (int i = hf_max(y - by, 0); i <= hf_min(y + by, b->rows - 1) && !any; i++)
+                for (int j = hf_max(x - by, 0); j <= hf_min(x + by, b->columns - 1) && !any; j++)
+                    any = in[i * b->stride + j];
+            out[y * b->stride + x] = (uint8_t)any;
+        }
+}
+
+// Which blocks may find something: what is a pixel of radius behind their nearest, within the search's reach.
+static void find_needed(struct band *b)
+{
+    const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
+    const struct hf_rect r = {b->r.x0 - b->reach, b->r.y0 - b->reach, b->r.x1 + b->reach, b->r.y1 + b->reach};
+    for (int y = b->r.y0; y < b->r.y1; y++)
+        hf_layers_kernels(b->f)->nearest(hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * b->r.x0, 2 * y),
+                                         hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * b->r.x0, 2 * y + 1),
+                                         b->r.x1 - b->r.x0, b->nearest + (y - b->r.y0) * b->width);
+    for (int y = -b->around; y < b->rows + b->around; y++)
+        for (int x = -b->around; x < b->columns + b->around; x++) {
+            const int x0 = hf_max(b->r.x0 + x * BLOCK, r.x0), x1 = hf_min(b->r.x0 + (x + 1) * BLOCK, r.x1);
+            const int y0 = hf_max(b->r.y0 + y * BLOCK, r.y0), y1 = hf_min(b->r.y0 + (y + 1) * BLOCK, r.y1);
+            b->farthest[y * b->stride + x] =
+                range_of(b, hf_at(at, 1, x0, y0), hf_at(at, 0, x0, y0), at->stride, x1 - x0, y1 - y0).high;
+        }
+    for (int y = 0; y < b->rows; y++)
+        for (int x = 0; x < b->columns; x++) {
+            float high = -HUGE_VALF;
+            for (int i = y - b->around; i <= y + b->around; i++)
+                for (int j = x - b->around; j <= x + b->around; j++)
+                    high = fmaxf(b->farthest[i * b->stride + j], high);
+            const int n = hf_min(b->r.x1 - b->r.x0 - x * BLOCK, BLOCK),
+                      rows = hf_min(b->r.y1 - b->r.y0 - y * BLOCK, BLOCK);
+            const float *nearest = b->nearest + y * BLOCK * b->width + x * BLOCK;
+            // Means of radii are rounded.
+            b->needed[y * b->stride + x] = high - range_of(b, nearest, NULL, b->width, n, rows).low > 0.99f;
+        }
+}
+
+// Merge samples (dx, dy) apart where blocks are marked, in an area `reach` larger than the band.
+static void merge(const struct band *b, const struct hf_layers_set *from, const struct hf_layers_set *to, int dx,
+                  int dy, int reach_x, int reach_y, const uint8_t *marks, float slope)
+{
+    const int x0 = b->r.x0 - reach_x, x1 = b->r.x1 + reach_x, channels = b->l->channels;
     for (int y = b->r.y0 - reach_y; y < b->r.y1 + reach_y; y++) {
-        float *in[3][6] = {{NULL}}, *out[6];
-        for (int i = 0; i < 3; i++)
-            planes_of(from, channels, x + (i - 1) * dx, y + (i - 1) * dy, in[i]);
-        planes_of(to, channels, x, y, out);
-        hf_layers_kernels(b->f)->merge((const float *const(*)[6])in, channels, slope, n, out);
+        const uint8_t *row = marks + ((y - b->r.y0 + b->around * BLOCK) / BLOCK - b->around) * b->stride;
+        for (int start = -b->around, end; start < b->columns + b->around; start = end) {
+            for (end = start + 1; end < b->columns + b->around && !row[end] == !row[start];)
+                end++;
+            const int x = hf_max(b->r.x0 + start * BLOCK, x0), n = hf_min(b->r.x0 + end * BLOCK, x1) - x;
+            float *in[3][6] = {{NULL}}, *out[6];
+            if (!row[start] || n <= 0)
+                continue;
+            for (int i = 0; i < 3; i++)
+                planes_of(from, channels, x + (i - 1) * dx, y + (i - 1) * dy, in[i]);
+            planes_of(to, channels, x, y, out);
+            hf_layers_kernels(b->f)->merge((const float *const(*)[6])in, channels, slope, n, out);
+        }
     }
 }
 
@@ -75,59 +174,57 @@ static void make_levels(struct band *b)
     for (int j = 1; j < levels; j++) {
         const int step = 1 << (j - 1), reach = (1 << levels) - (1 << j);
         const float slope = 1.0f / (float)(2 << j);
-        merge(b, &b->level[j - 1], &b->across, step, 0, reach, reach + step, slope);
-        merge(b, &b->across, &b->level[j], 0, step, reach, reach, slope);
+        spread(b, b->needed, blocks_of(reach + step), b->passed);
+        spread(b, b->needed, blocks_of(reach), b->made);
+        merge(b, &b->level[j - 1], &b->across, step, 0, reach, reach + step, b->passed, slope);
+        merge(b, &b->across, &b->level[j], 0, step, reach, reach, b->made, slope);
     }
-}
-
-// The least radius of what is seen in each quad of a row.
-static void nearest_of(const struct band *b, int x, int n, int y, float *out)
-{
-    const float *above = hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * x, 2 * y);
-    const float *below = hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * x, 2 * y + 1);
-    for (int i = 0; i < n; i++) {
-        const float top = above[2 * i] < above[2 * i + 1] ? above[2 * i] : above[2 * i + 1];
-        const float low = below[2 * i] < below[2 * i + 1] ? below[2 * i] : below[2 * i + 1];
-        out[i] = top < low ? top : low;
-    }
-}
-
-// How much of a quad there is more than a pixel of radius before r.
-static float covered(const struct band *b, int x, int y, float r)
-{
-    const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_SEEN_AT];
-    float sum = 0;
-    for (int i = 0; i < 4; i++) {
-        const int px = 2 * x + (i & 1), py = 2 * y + (i >> 1);
-        sum += *hf_at(at, 1, px, py) < r - 1 ? *hf_at(at, 0, px, py) : 0;
-    }
-    return sum * 0.25f;
 }
 
 static void find(const struct band *b, int x, int n, int y)
 {
     static const float distance[3] = {0, 1, 1.41421356f}, share[3] = {1, 0.5f, 0.25f};
+    const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_SEEN_AT];
+    const struct hf_layers_kernels *k = hf_layers_kernels(b->f);
     const int channels = b->l->channels;
-    _Alignas(64) float memory[7][STEP + PAD];
-    float *sum[6], part = 1;
+    const float *nearest = b->nearest + (y - b->r.y0) * b->width + x - b->r.x0;
+    _Alignas(64) float memory[6][STEP + PAD];
+    float *sum[6], *out[6] = {NULL}, part = 1;
     memset(memory, 0, sizeof memory);
     for (int i = 0; i < 6; i++)
         sum[i] = memory[i];
-    nearest_of(b, x, n, y, memory[6]);
     for (int j = 0; j < b->l->levels; j++, part *= 1.0f / 16)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
             float *in[6] = {NULL};
             planes_of(&b->level[j], channels, x + u * (1 << j), y + v * (1 << j), in);
-            hf_layers_kernels(b->f)->tap((const float *const *)in, channels, memory[6], 1.0f / (float)(2 << j),
-                                         0.5f - distance[away], part * share[away], n, sum);
+            k->tap((const float *const *)in, channels, nearest, 1.0f / (float)(2 << j), 0.5f - distance[away],
+                   part * share[away], n, sum);
         }
-    for (int i = 0; i < n; i++) {
-        const float inverse = sum[4][i] > 0 ? 1 / sum[4][i] : 0, r = sum[5][i] * inverse;
-        *hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, x + i, y) = sum[4][i] > 0 ? covered(b, x + i, y, r) : 0;
-        *hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, x + i, y) = r;
-        for (int c = 0; c < channels; c++)
-            *hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN], c, x + i, y) = (sum[c][i] * inverse) * (sum[c][i] * inverse);
+    const float *radius[2], *weight[2];
+    for (int i = 0; i < 2; i++) {
+        weight[i] = hf_at(at, 0, 2 * x, 2 * y + i);
+        radius[i] = hf_at(at, 1, 2 * x, 2 * y + i);
+    }
+    hf_row(&b->f->buf[HF_LAYERS_BUF_HIDDEN], channels, x, y, out);
+    out[4] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, x, y);
+    out[5] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, x, y);
+    k->found((const float *const *)sum, radius, weight, channels, n, out);
+}
+
+// A row of the band: what lies behind, where anything may.
+static void find_row(const struct band *b, int y)
+{
+    const uint8_t *needed = b->needed + (y - b->r.y0) / BLOCK * b->stride;
+    for (int start = 0, end; start < b->columns; start = end) {
+        const int x = b->r.x0 + start * BLOCK;
+        for (end = start + 1; end < b->columns && !needed[end] == !needed[start] && (end - start) * BLOCK < STEP;)
+            end++;
+        const int n = hf_min(b->r.x0 + end * BLOCK, b->r.x1) - x;
+        if (needed[start])
+            find(b, x, n, y);
+        else
+            memset(hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, x, y), 0, sizeof(float) * (size_t)n);
     }
 }
 
@@ -196,10 +293,11 @@ void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
         b.across = place(&b, &memory);
         for (int j = 1; j < b.l->levels; j++)
             b.level[j] = place(&b, &memory);
+        place_blocks(&b, &memory);
+        find_needed(&b);
         make_levels(&b);
         for (int y = r.y0; y < r.y1; y++)
-            for (int x = r.x0; x < r.x1; x += STEP)
-                find(&b, x, hf_min(STEP, r.x1 - x), y);
+            find_row(&b, y);
     }
     mark_tiles(f, r);
 }

@@ -19,6 +19,8 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->quads = layers_quads_simd;
     k->merge = layers_merge_simd;
     k->tap = layers_tap_simd;
+    k->nearest = layers_nearest_simd;
+    k->found = layers_found_simd;
     k->extremes = layers_extremes_simd;
     k->inside = layers_inside_simd;
     k->weigh = layers_weigh_simd;
