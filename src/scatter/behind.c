@@ -4,13 +4,13 @@
 // neighbourhoods, of which the nearest that holds anything counts most, up to about the near pixel's own radius: farther
 // in its picture hides all.
 //
-// Half resolution, every other quad kept (no decimation): so that a shift by a quad moves the result and no more. All in
-// C, in the same order everywhere.
+// Half resolution, every other quad kept (no decimation): so that a shift by a quad moves the result and no more.
 #include "scatter/behind.h"
 
 #include <string.h>
 
 #include "pixel/pass_c.h"
+#include "scatter/kernels.h"
 
 enum { WIDE = 7 };
 
@@ -26,16 +26,10 @@ static int has(const struct hf_behind *h, int p)
     return h->seen[p < 2 * h->channels ? p >= h->channels : p - 2 * h->channels];
 }
 
-// Half-resolution pixels across neighbourhood j are 2^(j+1) - 1; q: radius of the near pixel, or the largest of a quad.
-static float span(float q)
-{
-    return 0.5f * q + 1;
-}
-
 int hf_behind_levels(float largest)
 {
     int levels = 1;
-    while (levels < HF_BEHIND_LEVELS && (float)(1 << levels) < 2 * span(largest))
+    while (levels < HF_BEHIND_LEVELS && (float)(1 << levels) < 2 * hf_behind_span(largest))
         levels++;
     return largest > 0 ? levels : 0;
 }
@@ -50,9 +44,10 @@ int hf_behind_halo(int levels)
     return levels ? hf_behind_reach(levels) + WIDE : 0;
 }
 
+// And room for a vector that begins within a row.
 static int stride_of(int reach)
 {
-    return (HF_BEHIND_BLOCK + 2 * reach + 15) & ~15;
+    return ((HF_BEHIND_BLOCK + 2 * reach + 15) & ~15) + HF_PAD;
 }
 
 size_t hf_behind_floats(int levels, int channels)
@@ -60,7 +55,7 @@ size_t hf_behind_floats(int levels, int channels)
     const int reach = hf_behind_reach(levels), rows = HF_BEHIND_BLOCK + 2 * reach;
     const size_t plane = (size_t)(stride_of(reach) * rows), line = (size_t)(2 * stride_of(reach));
     const size_t wide = (size_t)((stride_of(reach) + 2 * WIDE) * (rows + 2 * WIDE));
-    return levels ? (size_t)(2 * plane_count(channels) + 2) * plane + 3 * wide + 3 * line : 0;
+    return levels ? (size_t)(2 * plane_count(channels) + 2) * plane + 3 * wide + 4 * line : 0;
 }
 
 // Is some pixel of the block, or of the quads around it, a near one?
@@ -76,15 +71,6 @@ static int has_near(const struct hf_frame *f, struct hf_rect r)
     return near > 0;
 }
 
-// Add n pixels of a row, v each times its weight, to the sums of their quads; the first is a quad's first.
-static void add_row(const float *v, const float *weight, float scale, int n, float *out)
-{
-    for (int i = 0; i < n / 2; i++)
-        out[i] += v[2 * i] * (weight[2 * i] * scale) + v[2 * i + 1] * (weight[2 * i + 1] * scale);
-    if (n & 1)
-        out[n / 2] += v[n - 1] * (weight[n - 1] * scale);
-}
-
 // The largest near radius of each quad, of the planes and WIDE around; 0 beyond the frame.
 static void load_near(const struct hf_behind *h, const struct hf_frame *f, float *near)
 {
@@ -95,15 +81,16 @@ static void load_near(const struct hf_behind *h, const struct hf_frame *f, float
     for (int y = hf_max(2 * y0, 0); y < hf_min(2 * (y0 + rows), s->height); y++) {
         const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
         float *out = near + (ptrdiff_t)((y >> 1) - y0) * h->near_stride - x0;
-        for (int x = from; x < to; x++) {
-            const float r = radius[2 * x], o = radius[hf_min(2 * x + 1, s->width - 1)], least = r < o ? r : o;
-            out[x] = -least > out[x] ? -least : out[x];
-        }
+        const int even = hf_min(to, s->width / 2);
+        hf_scatter_kernels(f)->near_row(radius + 2 * from, even - from, out + from);
+        // The odd width's last pixel is half a quad.
+        if (even < to)
+            out[even] = -radius[2 * even] > out[even] ? -radius[2 * even] : out[even];
     }
 }
 
 // The largest of each quad's neighbours up to WIDE = 1 + 2 + 4 away, each way. work: as large.
-static void spread_near(const struct hf_behind *h, const float *near, float *work, float *out)
+static void spread_near(const struct hf_behind *h, const struct hf_frame *f, const float *near, float *work, float *out)
 {
     const ptrdiff_t stride = h->near_stride, all = stride * (h->rows + 2 * WIDE);
     const ptrdiff_t steps[] = {1, 2, 4, stride, 2 * stride, 4 * stride};
@@ -113,43 +100,36 @@ static void spread_near(const struct hf_behind *h, const float *near, float *wor
         const ptrdiff_t step = steps[k];
         memcpy(to, in, sizeof(float) * (size_t)step);
         memcpy(to + all - step, in + all - step, sizeof(float) * (size_t)step);
-        for (ptrdiff_t i = step; i < all - step; i++) {
-            const float m = in[i - step] > in[i + step] ? in[i - step] : in[i + step];
-            to[i] = m > in[i] ? m : in[i];
-        }
+        hf_scatter_kernels(f)->most_row(in, in + 2 * step, in + step, (int)(all - 2 * step), to + step);
     }
 }
 
-// What of full-resolution row y is seen, added to its quads.
+// Add a row of pixels, times its weights, to the sums of its quads.
+static void add_row(const struct hf_frame *f, const float *v, const float *weight, float scale, int n, float *out)
+{
+    hf_scatter_kernels(f)->seen_row(v, weight, scale, n / 2, out);
+    if (n & 1)
+        out[n / 2] += v[n - 1] * (weight[n - 1] * scale);
+}
+
+// What of full-resolution row y is seen, added to its quads. line: three of two planes' rows, the last all 1.
 static void load_row(struct hf_behind *h, const struct hf_frame *f, int y, float *line)
 {
     const struct hf_scatter *t = hf_scatter(f->s);
     const int x0 = hf_max(2 * h->x0, 0), n = hf_min(2 * (h->x0 + h->columns), f->s->width) - x0;
     const ptrdiff_t at = (ptrdiff_t)((y >> 1) - h->y0) * h->stride + x0 / 2 - h->x0;
-    const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y);
-    float *sharp = line, *far = sharp + 2 * h->stride, *one = far + 2 * h->stride;
-    int some[2] = {0};
-    const float *widest = h->widest + (ptrdiff_t)((y >> 1) - h->y0) * h->near_stride - h->x0;
-    for (int x = 0; x < n; x++) {
-        // What is near itself is seen behind what is nearer, by twice its radius: not a slope behind itself.
-        const float r = radius[x], nearer = hf_saturate(0.5f * widest[(x0 + x) >> 1] + r),
-                    hardly = hf_saturate(1.5f + r);
-        const float own = r > 0 ? hf_own_part(t, r) : nearer > hardly ? nearer : hardly, part = 0.25f;
-        sharp[x] = part * own;
-        far[x] = r > 0 ? part * (1 - own) : 0;
-        one[x] = 1;
-    }
-    for (int x = 0; x < n; x++) {
-        some[0] += sharp[x] > 0;
-        some[1] += far[x] > 0;
-    }
+    const float *widest = h->widest + (ptrdiff_t)((y >> 1) - h->y0) * h->near_stride - h->x0 + x0 / 2;
+    float *const weight[2] = {line, line + 2 * h->stride}, *one = line + 4 * h->stride;
+    const int some =
+        hf_scatter_kernels(f)->seen_weights(t, hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y), widest, 0, n, weight);
     for (int k = 0; k < 2; k++) {
-        const float *weight = k ? far : sharp;
-        h->seen[k] |= some[k] > 0;
-        for (int c = 0; c < h->channels && some[k] > 0; c++)
-            add_row(hf_at(&f->buf[HF_BUF_SOURCE], c, x0, y), weight, t->dim, n, h->level[k * h->channels + c] + at);
-        if (some[k] > 0)
-            add_row(one, weight, 1, n, h->level[2 * h->channels + k] + at);
+        if (!(some >> k & 1))
+            continue;
+        h->seen[k] = 1;
+        for (int c = 0; c < h->channels; c++)
+            add_row(f, hf_at(&f->buf[HF_BUF_SOURCE], c, x0, y), weight[k], t->dim, n,
+                    h->level[k * h->channels + c] + at);
+        add_row(f, one, weight[k], 1, n, h->level[2 * h->channels + k] + at);
     }
 }
 
@@ -157,6 +137,8 @@ static void load_row(struct hf_behind *h, const struct hf_frame *f, int y, float
 static void load(struct hf_behind *h, const struct hf_frame *f, float *line)
 {
     h->seen[0] = h->seen[1] = 0;
+    for (int x = 0; x < 2 * h->stride; x++)
+        line[4 * h->stride + x] = 1;
     for (int p = 0; p < plane_count(h->channels); p++)
         memset(h->level[p], 0, sizeof(float) * (size_t)(h->stride * h->rows));
     for (int y = hf_max(2 * h->y0, 0); y < hf_min(2 * (h->y0 + h->rows), f->s->height); y++)
@@ -164,45 +146,40 @@ static void load(struct hf_behind *h, const struct hf_frame *f, float *line)
 }
 
 // The mean of three by three, `step` apart, of what lies `rim` or more inside the planes.
-static void widen(const struct hf_behind *h, float *level, float *line, int step, int rim)
+static void widen(const struct hf_behind *h, const struct hf_frame *f, float *level, float *line, int step, int rim)
 {
-    const float third = 1 / 3.0f;
     const ptrdiff_t stride = h->stride, down = step * stride;
+    const int n = h->columns - 2 * rim;
     for (int y = rim - step; y < h->rows - rim + step; y++) {
-        const float *in = level + y * stride;
-        float *out = line + y * stride;
-        for (int x = rim; x < h->columns - rim; x++)
-            out[x] = third * ((in[x - step] + in[x + step]) + in[x]);
+        const float *in = level + y * stride + rim;
+        hf_scatter_kernels(f)->third_row(in - step, in + step, in, n, line + y * stride + rim);
     }
     for (int y = rim; y < h->rows - rim; y++) {
-        const float *in = line + y * stride;
-        float *out = level + y * stride;
-        for (int x = rim; x < h->columns - rim; x++)
-            out[x] = third * ((in[x - down] + in[x + down]) + in[x]);
+        const float *in = line + y * stride + rim;
+        hf_scatter_kernels(f)->third_row(in - down, in + down, in, n, level + y * stride + rim);
     }
 }
 
 // Add a level to the result, where a quad's largest near radius asks for it.
-static void add_level(const struct hf_behind *h, int j, const float *part)
+static void add_level(const struct hf_behind *h, const struct hf_frame *f, int j, const float *part)
 {
-    const int rim = h->reach - 1;
+    const int rim = h->reach - 1, n = h->columns - 2 * rim;
     for (int p = 0; p < plane_count(h->channels); p++)
         for (int y = rim; y < h->rows - rim && has(h, p); y++) {
-            const float *in = h->level[p] + (ptrdiff_t)y * h->stride, *k = part + (ptrdiff_t)y * h->stride;
-            float *out = h->sum[p] + (ptrdiff_t)y * h->stride;
-            for (int x = rim; x < h->columns - rim; x++)
-                out[x] = j ? out[x] + k[x] * in[x] : in[x];
+            const ptrdiff_t at = (ptrdiff_t)y * h->stride + rim;
+            if (j)
+                hf_scatter_kernels(f)->add_part(h->level[p] + at, part + at, n, h->sum[p] + at);
+            else
+                memcpy(h->sum[p] + at, h->level[p] + at, sizeof(float) * (size_t)n);
         }
 }
 
-static void set_part(const struct hf_behind *h, int j, float *part)
+static void set_part(const struct hf_behind *h, const struct hf_frame *f, int j, float *part)
 {
     const float share = 1 / (float)(1 << 2 * j), size = (float)(1 << j);
     for (int y = 0; y < h->rows; y++)
-        for (int x = 0; x < h->columns; x++) {
-            const ptrdiff_t i = (ptrdiff_t)y * h->stride + x;
-            part[i] = share * hf_saturate(2 - size / span(h->near[(ptrdiff_t)y * h->near_stride + x]));
-        }
+        hf_scatter_kernels(f)->part_row(h->near + (ptrdiff_t)y * h->near_stride, share, size, h->columns,
+                                        part + (ptrdiff_t)y * h->stride);
 }
 
 int hf_behind_make(struct hf_behind *h, const struct hf_frame *f, struct hf_rect r, int levels, float *memory)
@@ -226,82 +203,48 @@ int hf_behind_make(struct hf_behind *h, const struct hf_frame *f, struct hf_rect
     h->near_stride = h->stride + 2 * WIDE;
     const size_t wide = (size_t)(h->near_stride * (HF_BEHIND_BLOCK + 2 * h->reach + 2 * WIDE));
     load_near(h, f, near);
-    spread_near(h, near, near + wide, near + 2 * wide);
+    spread_near(h, f, near, near + wide, near + 2 * wide);
     h->near = near + WIDE * h->near_stride + WIDE;
     h->widest = h->near + 2 * wide;
     load(h, f, near + 3 * wide);
     if (!h->seen[0] && !h->seen[1])
         return 0;
-    add_level(h, 0, part);
+    add_level(h, f, 0, part);
     for (int j = 1; j < levels; j++) {
         for (int p = 0; p < planes; p++)
             if (has(h, p))
-                widen(h, h->level[p], line, 1 << (j - 1), (1 << j) - 1);
-        set_part(h, j, part);
-        add_level(h, j, part);
+                widen(h, f, h->level[p], line, 1 << (j - 1), (1 << j) - 1);
+        set_part(h, f, j, part);
+        add_level(h, f, j, part);
     }
     return 1;
 }
 
-// Plane p at the near pixels of a row, bilinearly; 0 where there is nothing in it.
+// Plane p at the pixels of a row, bilinearly; 0 where there is nothing in it.
 static void sample(const struct hf_behind *h, const struct hf_behind_line *l, int p, float *out)
 {
-    const float *own = h->sum[p] + (ptrdiff_t)((l->y >> 1) - h->y0) * h->stride - h->x0;
-    const float *over = own + (l->y & 1 ? h->stride : -h->stride);
-    const int first = (l->x >> 1) - 1, n = h->columns - 2 * h->reach + 2;
-    if (!has(h, p)) {
-        memset(out, 0, sizeof *out * (size_t)l->count);
-        return;
-    }
-    for (int i = 0; i < n; i++)
-        l->quad[i] = 0.75f * own[first + i] + 0.25f * over[first + i];
-    for (int k = 0; k < l->count; k++) {
-        const int x = l->x + l->at[k], a = (x >> 1) - first;
-        out[k] = 0.75f * l->quad[a] + 0.25f * l->quad[x & 1 ? a + 1 : a - 1];
-    }
+    const float *own = h->sum[p] + (ptrdiff_t)((l->y >> 1) - h->y0) * h->stride + (l->x >> 1) - h->x0;
+    if (has(h, p))
+        hf_scatter_kernels(l->f)->up_row(own, own + (l->y & 1 ? h->stride : -h->stride), (l->n + 1) / 2, out);
+    else
+        memset(out, 0, sizeof *out * (size_t)l->n);
 }
 
-static float mix(float a, float b, float t)
+int hf_behind_begin(const struct hf_behind *h, struct hf_behind_line *l, const float *radius)
 {
-    return t < 1 ? hf_lerp(a, b, t) : b;
-}
-
-void hf_behind_begin(const struct hf_behind *h, struct hf_behind_line *l, int x, int y, int n, const float *radius)
-{
-    l->x = x;
-    l->y = y;
-    l->count = 0;
-    for (int i = 0; i < n; i++) {
-        l->at[l->count] = i;
-        l->count += radius[i] < 0;
-    }
-    for (int k = 0; k < 2; k++)
+    int near = 0;
+    for (int i = 0; i < l->n; i++)
+        near += radius[i] < 0;
+    for (int k = 0; k < 2 && near; k++)
         sample(h, l, 2 * h->channels + k, l->weight[k]);
+    return near > 0;
 }
 
 void hf_behind_row(const struct hf_behind *h, const struct hf_behind_line *l, const struct hf_scatter_row *row,
                    int channel, const float *own, float *out)
 {
-    // Less than the outermost pixel of the widest neighbourhood weighs: there is no edge to what is seen.
-    const float nothing = 1e-8f;
     for (int k = 0; k < 2; k++)
         sample(h, l, k * h->channels + channel, l->colour[k]);
-    for (int k = 0; k < l->count; k++) {
-        const int i = l->at[k];
-        const float far_weight = row->far ? row->far_weight[i] : 0, near_weight = row->near ? row->near_weight[i] : 0;
-        const float mine = own[i] * hf_scatter(row->setup)->dim;
-        const float front = near_weight > 0 ? row->near[i] / near_weight : mine;
-        const float far = far_weight > 0 ? row->far[i] / far_weight : mine;
-        const float reached = hf_saturate(16 * far_weight), sharp = l->weight[0][k], blurred = l->weight[1][k];
-        float v = mix(front, far, reached);
-        if (sharp + blurred > 0) {
-            float seen = v;
-            if (blurred > 0)
-                seen = mix(l->colour[1][k] / blurred, far, reached);
-            if (sharp > 0)
-                seen = mix(seen, l->colour[0][k] / sharp, sharp / (sharp + blurred));
-            v = mix(seen, v, nothing / (sharp + blurred + nothing));
-        }
-        out[i] = v;
-    }
+    hf_scatter_kernels(l->f)->behind_blend(row, (const float *const *)l->weight, (const float *const *)l->colour, own,
+                                           out);
 }

@@ -110,12 +110,14 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, con
     for (int c = 0; c < 4; c++)
         out[c] = hf_line(f, 8 + c);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, out, f->counts);
-    struct hf_behind_line line = {.at = (int32_t *)(void *)hf_line(f, 12),
-                                  .quad = hf_line(f, 13),
+    struct hf_behind_line line = {.f = f,
+                                  .x = x0,
+                                  .y = y,
+                                  .n = n,
                                   .weight = {hf_line(f, 14), hf_line(f, 15)},
                                   .colour = {hf_line(f, 16), hf_line(f, 17)}};
-    if (behind)
-        hf_behind_begin(behind, &line, x0, y, n, radius);
+    if (behind && !hf_behind_begin(behind, &line, radius))
+        behind = NULL;
     // Alpha that is 1 all over stays so.
     for (int c = 0; c < (t->opaque ? 3 : s->channels); c++) {
         const int group = t->opaque ? 0 : t->group_of[c];

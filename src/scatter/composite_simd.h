@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter's ends on vectors. Nothing is fused: this engine has the same bits everywhere.
+#ifndef HF_SCATTER_COMPOSITE_SIMD_H
+#define HF_SCATTER_COMPOSITE_SIMD_H
+
 #include "pixel/pass_c.h"
 #include "scatter/kernels.h"
 #include "simd/simd.h"
@@ -107,3 +110,5 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
         vf_store(out + x, vf_select(vf_eq(v, own), bright, vf_mul(v, vf_set1(t->undim))));
     }
 }
+
+#endif

@@ -327,6 +327,15 @@ void hf_scatter_kernels_c(struct hf_scatter_kernels *k)
         .mean_row = hf_mean_row_c,
         .note = hf_scatter_note_c,
         .blend = hf_scatter_blend_c,
+        .near_row = hf_near_row_c,
+        .most_row = hf_most_row_c,
+        .seen_weights = hf_seen_weights_c,
+        .seen_row = hf_seen_row_c,
+        .third_row = hf_third_row_c,
+        .part_row = hf_part_row_c,
+        .add_part = hf_add_part_c,
+        .up_row = hf_up_row_c,
+        .behind_blend = hf_behind_blend_c,
     };
 }
 

@@ -256,7 +256,16 @@ enum {
     SCATTER_TAPS,
     SCATTER_SPLAT,
     SCATTER_SETTLE,
-    SCATTER_BLEND
+    SCATTER_BLEND,
+    SCATTER_NEAR,
+    SCATTER_MOST,
+    SCATTER_SEEN_WEIGHTS,
+    SCATTER_SEEN,
+    SCATTER_THIRD,
+    SCATTER_PART,
+    SCATTER_ADD_PART,
+    SCATTER_UP,
+    SCATTER_BEHIND
 };
 void scatter_make(struct world *w, int which);
 void scatter_call(struct world *w, const struct kernels *k, enum arena a, int which);

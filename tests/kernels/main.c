@@ -94,6 +94,15 @@ const struct test tests[] = {
     ROW("splat", SCATTER_SPLAT, 800, scatter_make, scatter_call, scatter_check),
     ROW("settle", SCATTER_SETTLE, 800, scatter_make, scatter_call, scatter_check),
     ROW("scatter_blend", SCATTER_BLEND, 1600, scatter_make, scatter_call, scatter_check),
+    ROW("near_row", SCATTER_NEAR, 800, scatter_make, scatter_call, scatter_check),
+    ROW("most_row", SCATTER_MOST, 800, scatter_make, scatter_call, scatter_check),
+    ROW("seen_weights", SCATTER_SEEN_WEIGHTS, 800, scatter_make, scatter_call, scatter_check),
+    ROW("seen_row", SCATTER_SEEN, 800, scatter_make, scatter_call, scatter_check),
+    ROW("third_row", SCATTER_THIRD, 800, scatter_make, scatter_call, scatter_check),
+    ROW("part_row", SCATTER_PART, 800, scatter_make, scatter_call, scatter_check),
+    ROW("add_part", SCATTER_ADD_PART, 800, scatter_make, scatter_call, scatter_check),
+    ROW("up_row", SCATTER_UP, 800, scatter_make, scatter_call, scatter_check),
+    ROW("behind_blend", SCATTER_BEHIND, 800, scatter_make, scatter_call, scatter_check),
 };
 const int test_count = sizeof tests / sizeof *tests;
 

@@ -306,6 +306,102 @@ static void blend_call(struct world *w, const struct kernels *k, enum arena a)
     k->scatter.blend(&row, line(w, a, LINES_IN));
 }
 
+// ---- what lies behind near pixels ----
+
+// Rows to read, and one to write or to add to.
+static void rows_make(struct world *w)
+{
+    for (int i = 0; i < 3; i++)
+        fill_colours(w, i, -1, 2 * w->n + 1);
+    fill_colours(w, LINES_IN, 0, w->n);
+    put_out(w, LINES_IN, now.which == SCATTER_UP ? 2 * w->n : w->n);
+}
+
+static void near_make(struct world *w)
+{
+    fill_radii(w, 0, 0, 2 * w->n, 0);
+    fill_radii(w, LINES_IN, 0, w->n, 1);
+    put_out(w, LINES_IN, w->n);
+}
+
+static void seen_make(struct world *w)
+{
+    now.from = rng_one_in(&w->rng, 2) ? 0 : rng_int(&w->rng, 0, w->n - 1) & ~1;
+    fill_radii(w, 0, 0, w->n, 0);
+    fill_radii(w, 1, 0, w->n, 1);
+    for (int i = 0; i < 2; i++)
+        world_region(w, REGION_FLOATS, SLOT_LINES, line(w, ARENA_MADE, LINES_IN + i) + now.from,
+                     (size_t)(w->n - now.from) * 4, HF_PAD * 4, 1, 0);
+}
+
+// Radii around, none of them negative.
+static void part_make(struct world *w)
+{
+    for (int x = 0; x < w->n; x++)
+        line(w, ARENA_MADE, 0)[x] = rng_one_in(&w->rng, 4) ? 0 : rng_float(&w->rng, 0, 40);
+    put_out(w, LINES_IN, w->n);
+}
+
+static void behind_make(struct world *w)
+{
+    now.fields = w->bench ? 3 : rng_int(&w->rng, 0, 3);
+    for (int i = 1; i < 10; i++)
+        i == 2 || i == 4 || i == 6 || i == 7 ? fill_weights(w, i) : fill_colours(w, i, 0, w->n);
+    put_out(w, LINES_IN, w->n);
+}
+
+static void behind_call(struct world *w, const struct kernels *k, enum arena a)
+{
+    const struct hf_setup setup = {.own = &now.scatter};
+    const struct hf_scatter_row row = {.setup = &setup,
+                                       .n = w->n,
+                                       .far = now.fields & 1 ? line(w, a, 1) : NULL,
+                                       .far_weight = now.fields & 1 ? line(w, a, 2) : NULL,
+                                       .near = now.fields & 2 ? line(w, a, 3) : NULL,
+                                       .near_weight = now.fields & 2 ? line(w, a, 4) : NULL};
+    const float *const weight[2] = {line(w, a, 6), line(w, a, 7)}, *const colour[2] = {line(w, a, 8), line(w, a, 9)};
+    k->scatter.behind_blend(&row, weight, colour, line(w, a, 5), line(w, a, LINES_IN));
+}
+
+// Returns 0 if it is none of these.
+static int behind_rows_call(struct world *w, const struct kernels *k, enum arena a, int which)
+{
+    const struct hf_scatter_kernels *s = &k->scatter;
+    const float *const in[3] = {line(w, a, 0), line(w, a, 1), line(w, a, 2)};
+    float *const out[2] = {line(w, a, LINES_IN), line(w, a, LINES_IN + 1)};
+    switch (which) {
+    case SCATTER_NEAR:
+        s->near_row(in[0], w->n, out[0]);
+        return 1;
+    case SCATTER_MOST:
+        s->most_row(in[0], in[1], in[2], w->n, out[0]);
+        return 1;
+    case SCATTER_SEEN_WEIGHTS:
+        w->result[a].returned = s->seen_weights(&now.scatter, in[0], in[1], now.from, w->n, out);
+        return 1;
+    case SCATTER_SEEN:
+        s->seen_row(in[0], in[1], now.scale, w->n, out[0]);
+        return 1;
+    case SCATTER_THIRD:
+        s->third_row(in[0], in[1], in[2], w->n, out[0]);
+        return 1;
+    case SCATTER_PART:
+        s->part_row(in[0], 0.25f, 4, w->n, out[0]);
+        return 1;
+    case SCATTER_ADD_PART:
+        s->add_part(in[0], in[1], w->n, out[0]);
+        return 1;
+    case SCATTER_UP:
+        s->up_row(in[0], in[1], w->n, out[0]);
+        return 1;
+    case SCATTER_BEHIND:
+        behind_call(w, k, a);
+        return 1;
+    default:
+        return 0;
+    }
+}
+
 // ---- sums ----
 
 // A window of sums, its rows one after the other with their margins.
@@ -444,7 +540,12 @@ void scatter_make(struct world *w, int which)
         [SCATTER_TENT] = tent_make,       [SCATTER_MEAN] = mean_make,
         [SCATTER_NOTE] = note_make,       [SCATTER_RUNS] = window_make,
         [SCATTER_TAPS] = window_make,     [SCATTER_SPLAT] = splat_make,
-        [SCATTER_SETTLE] = settle_make,   [SCATTER_BLEND] = blend_make};
+        [SCATTER_SETTLE] = settle_make,   [SCATTER_BLEND] = blend_make,
+        [SCATTER_NEAR] = near_make,       [SCATTER_MOST] = rows_make,
+        [SCATTER_SEEN] = rows_make,       [SCATTER_SEEN_WEIGHTS] = seen_make,
+        [SCATTER_THIRD] = rows_make,      [SCATTER_PART] = part_make,
+        [SCATTER_ADD_PART] = rows_make,   [SCATTER_UP] = rows_make,
+        [SCATTER_BEHIND] = behind_make};
     start(w);
     now.which = which;
     make[which](w);
@@ -455,6 +556,8 @@ void scatter_call(struct world *w, const struct kernels *k, enum arena a, int wh
     const struct hf_scatter_kernels *s = &k->scatter;
     const float *const in[4] = {line(w, a, 0), line(w, a, 1), line(w, a, 2), line(w, a, 3)};
     float *const out = line(w, a, LINES_IN);
+    if (behind_rows_call(w, k, a, which))
+        return;
     switch (which) {
     case SCATTER_WEIGHTS:
         weights_call(w, k, a);
