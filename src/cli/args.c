@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/args.h"
 
+#include "cli/depth.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,10 +17,11 @@ int cli_is_exr(const char *path)
 static void set_defaults(struct cli_args *args)
 {
     *args = (struct cli_args){.params = hf_default_params, .focus_smooth = -1, .engine = -1, .quality = -1};
-    float *const unset[] = {&args->focus,        &args->range,        &args->strength,      &args->near_begin,
-                            &args->near_end,     &args->far_begin,    &args->far_end,       &args->fstop,
-                            &args->focal_length, &args->sensor_width, &args->world_unit,    &args->near_plane,
-                            &args->far_plane,    &args->memory_limit, &args->depth_of_field};
+    float *const unset[] = {&args->focus,        &args->range,        &args->strength,       &args->near_begin,
+                            &args->near_end,     &args->far_begin,    &args->far_end,        &args->fstop,
+                            &args->focal_length, &args->sensor_width, &args->world_unit,     &args->near_plane,
+                            &args->far_plane,    &args->memory_limit, &args->depth_of_field, &args->depth_scale,
+                            &args->depth_offset};
     for (size_t i = 0; i < sizeof(unset) / sizeof(unset[0]); i++)
         *unset[i] = NAN;
 }
@@ -95,16 +98,26 @@ static int check_depth(const struct cli_args *args, struct tool_error *error)
 {
     const int ndc = args->depth_type == HF_DEPTH_NDC_D3D || args->depth_type == HF_DEPTH_NDC_GL ||
                     args->depth_type == HF_DEPTH_NDC_REVERSED;
-    const char *type = hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type);
-    if (ndc && (!given(args->near_plane) || !given(args->far_plane)))
+    const int inverse = args->depth_type == HF_DEPTH_INVERSE;
+    const char *type = cli_depth_type_name(args);
+    const int both = given(args->near_plane) && given(args->far_plane);
+    if (((ndc || args->normalized) && !both) || (inverse && given(args->far_plane) && !both))
         return tool_fail(error, -1, "--depth-type %s needs --%s", type, given(args->near_plane) ? "far" : "near");
+    if (args->normalized && isinf(args->far_plane))
+        return tool_fail(error, -1, "--depth-type %s needs a --far that is not inf; inverse may have it", type);
     if (args->near_plane >= args->far_plane)
-        return tool_fail(error, -1, "--near %g must be less than --far %g", args->near_plane, args->far_plane);
+        return tool_fail(error, -1, "--near %g must be less than --far %g%s", args->near_plane, args->far_plane,
+                         args->normalized ? "; for a map that is white where it is near take normalized-inverted" : "");
     // The gaussian engine measures depth by the planes, whatever its type.
-    const int wants_planes = ndc || (args->params.engine == HF_ENGINE_GAUSSIAN && args->depth_type != HF_DEPTH_COC);
+    const int wants_planes = ndc || inverse || args->normalized ||
+                             (args->params.engine == HF_ENGINE_GAUSSIAN && args->depth_type != HF_DEPTH_COC);
     if (!wants_planes && (given(args->near_plane) || given(args->far_plane)))
-        return tool_fail(error, -1, "--%s is of use only with --depth-type ndc-d3d, ndc-gl or ndc-reversed, not %s",
+        return tool_fail(error, -1,
+                         "--%s is of use only with --depth-type ndc-d3d, ndc-gl, ndc-reversed, inverse and "
+                         "normalized, not %s",
                          given(args->near_plane) ? "near" : "far", type);
+    if (args->depth_scale == 0)
+        return tool_fail(error, -1, "--depth-scale: '0' is out of range, it must not be 0");
     if (args->depth_type == HF_DEPTH_COC && (args->focus_at_given || args->focus_by == CLI_FOCUS_CENTER))
         return tool_fail(error, -1, "--focus%s cannot be used with --depth-type coc, which has no distances",
                          args->focus_at_given ? "-at" : " center");

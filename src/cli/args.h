@@ -43,8 +43,10 @@ struct cli_args {
     float fstop, focal_length, sensor_width, world_unit;
 
     const char *depth_channel, *depth_file;
-    enum hf_depth_type depth_type;
-    float near_plane, far_plane;
+    enum hf_depth_type depth_type;    // as the library sees it, once cli_depth_prepare was there
+    int normalized;                   // 1: a map from 0 at near_plane to 1 at far_plane; -1: the other way; else 0
+    float near_plane, far_plane;      // scene units
+    float depth_scale, depth_offset;  // of the numbers as they are stored, before all else
 
     const char *aperture;       // as given
     const char *aperture_file;  // NULL: the shape in params
@@ -64,7 +66,7 @@ struct cli_args {
     const char *compression;
     const char *dump_dir;
     int explain;
-    const char *explain_image;
+    const char *explain_image, *focus_image;
     int json;
     const char *json_file;  // NULL: stdout
     const char *json_word;  // the same if it was a word of its own, which may turn out to be INPUT
@@ -76,7 +78,8 @@ struct cli_args {
 extern const struct tool_program cli_program;
 
 // Parsers of values that only this program has.
-tool_parse cli_parse_focus, cli_parse_focus_at, cli_parse_aperture, cli_parse_json, cli_parse_version;
+tool_parse cli_parse_depth_type, cli_parse_focus, cli_parse_focus_at, cli_parse_aperture, cli_parse_json,
+    cli_parse_version;
 
 // Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
 // --version the rest of the line is not looked at.

@@ -20,6 +20,7 @@
 #include "cli/plan.h"
 #include "cli/progress.h"
 #include "cli/resume.h"
+#include "cli/summary.h"
 #include "tool/machine.h"
 
 enum { MAX_STEPS = 16 };
@@ -64,24 +65,6 @@ static double peak_memory(void)
 {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) ? 0 : 1024. * (double)usage.ru_maxrss;
-}
-
-// What was wrong with the pictures but did not stop the work.
-static void warn(const struct cli_frame *frame)
-{
-    unsigned long long colour = 0, depth = 0;
-    for (int i = 0; i < frame->view_count; i++) {
-        colour += frame->views[i].report.colour_repaired;
-        depth += frame->views[i].report.depth_repaired;
-    }
-    if (colour || depth)
-        tool_print_line("%s: %llu colour and %llu depth samples were not finite, neighbours took their place",
-                        frame->args->input, colour, depth);
-    if (frame->written.clamped)
-        tool_print_line("%s: %llu samples did not fit their channels and were clamped", frame->args->output,
-                        (unsigned long long)frame->written.clamped);
-    if (frame->written.note[0])
-        tool_print_line("%s", frame->written.note);
 }
 
 static double pixels(const struct cli_frame *frame)
@@ -203,7 +186,7 @@ static void run_job(void *arg, int i, int worker)
         status = make_frame(b, &frame, session, &args, &record, &error);
         frame.args = &args;
         if (!status)
-            warn(&frame);
+            cli_print_summary(&frame, cli_print_warnings(&frame));
     }
     if (status) {
         record.status = CLI_FRAME_FAILED;

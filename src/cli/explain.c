@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/explain.h"
 
-#include "cli/target.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,88 +79,4 @@ void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
         fprintf(out, "%s\n", tool_shown(frame->views[i].label, name));
         print_report(out, &frame->views[i].report, ran);
     }
-}
-
-// Near red, far blue, both violet, sharp as it is; a dark line between tiles.
-static void paint(const struct cli_view *v, float *const planes[3])
-{
-    static const float tint[4][3] = {{1, 1, 1}, {1, 0.25f, 0.2f}, {0.2f, 0.4f, 1}, {0.75f, 0.25f, 0.9f}};
-    const struct hf_report *r = &v->report;
-    const int width = v->view->width, height = v->view->height;
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const uint8_t tile = v->tiles[y / r->tile_height * r->columns + x / r->tile_width];
-            const int line = x % r->tile_width == 0 || y % r->tile_height == 0;
-            for (int c = 0; c < 3; c++) {
-                const size_t i = (size_t)y * (size_t)width + (size_t)x;
-                const float colour = v->planes[c][i];
-                // Half the picture, half the tint at the brightness of a mid grey.
-                planes[c][i] = line ? 0 : tile == HF_TILE_SHARP ? colour : 0.5f * colour + 0.1f * tint[tile][c];
-            }
-        }
-}
-
-// FILE, or for one of several views FILE with the view's name before the extension.
-static char *image_path(const struct cli_frame *frame, const struct cli_view *v)
-{
-    const char *file = frame->args->explain_image, *dot = strrchr(file, '.'), *slash = strrchr(file, '/');
-    char *path = NULL;
-    if (frame->view_count == 1)
-        return strdup(file);
-    if (!dot || (slash && dot < slash))
-        dot = file + strlen(file);
-    const int stem = (int)(dot - file);
-    const int n = v->tag[0] ? asprintf(&path, "%.*s.%s%s", stem, file, v->tag, dot)
-                            : asprintf(&path, "%.*s.view%d%s", stem, file, v->index, dot);
-    if (n < 0)
-        return NULL;
-    // The name is the file's, and must not lead elsewhere.
-    for (char *c = path + stem; c < path + n - strlen(dot); c++)
-        if (*c == '/')
-            *c = '_';
-    return path;
-}
-
-int cli_explain_check(const struct cli_frame *frame, struct tool_error *error)
-{
-    int status = 0;
-    for (int i = 0; i < frame->view_count && !status && frame->args->explain_image; i++) {
-        char *path = image_path(frame, &frame->views[i]);
-        status = path ? cli_check_overwrite(frame->args, "--explain-image", path, error)
-                      : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->views[i].label);
-        free(path);
-    }
-    return status;
-}
-
-static int write_image(const struct cli_frame *frame, const struct cli_view *v, struct tool_error *error)
-{
-    const size_t pixels = (size_t)v->view->width * (size_t)v->view->height;
-    float *memory = malloc(3 * pixels * sizeof(float));
-    char *path = image_path(frame, v);
-    int status = 0;
-    if (!memory || !path) {
-        status = tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
-    } else {
-        float *const planes[3] = {memory, memory + pixels, memory + 2 * pixels};
-        struct hf_io_error io;
-        paint(v, planes);
-        const struct hf_io_result result = {.view = v->index, .planes = {planes[0], planes[1], planes[2]}};
-        const struct hf_io_job job = {.path = path, .results = &result, .result_count = 1};
-        if (hf_io_write(frame->file, &job, NULL, &io))
-            status = tool_fail(error, CLI_ALL_FAILED, "--explain-image: %s", io.message);
-    }
-    free(memory);
-    free(path);
-    return status;
-}
-
-int cli_explain_image(const struct cli_frame *frame, struct tool_error *error)
-{
-    for (int i = 0; i < frame->view_count; i++) {
-        const int status = write_image(frame, &frame->views[i], error);
-        if (status)
-            return status;
-    }
-    return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --explain and --explain-image: what a frame called for, as a table and as a picture.
+// --explain: what a frame called for, as a table.
 #ifndef HF_CLI_EXPLAIN_H
 #define HF_CLI_EXPLAIN_H
 
@@ -15,12 +15,5 @@ enum hf_resolution cli_explain_resolution(const struct hf_params *params);
 
 // The table of all views. ran: frames were rendered, not only planned.
 void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran);
-
-// The tiles of all views painted over their pictures, in --explain-image's file; with several views each gets a file
-// of its own, its name before the extension. 0, or an exit code.
-int cli_explain_image(const struct cli_frame *frame, struct tool_error *error);
-
-// Before any work: does --explain-image write over another file that the arguments name? 0, or an exit code.
-int cli_explain_check(const struct cli_frame *frame, struct tool_error *error);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/coc.h"
 #include "cli/dump.h"
 #include "cli/explain.h"
 #include "cli/views.h"
@@ -85,6 +86,10 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
         if (hf_io_read_depth_file(args->depth_file, args->depth_channel, frame->views[i].view, frame->views[i].depth,
                                   &io))
             return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    for (int i = 0; i < frame->view_count; i++) {
+        struct cli_view *v = &frame->views[i];
+        cli_depth_prepare(args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
+    }
     frame->ms[CLI_READ] += fetched - start;
     frame->ms[CLI_DECODE] += tool_now_ms() - fetched;
     return 0;
@@ -116,15 +121,24 @@ static int load(struct cli_frame *frame, struct tool_error *error)
 }
 
 // Rows around the pixel in focus: that which is read, and its neighbours, which count where it is no number.
-static int read_focus_rows(const struct cli_frame *frame, const struct cli_view *v, struct hf_io_error *io)
+static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, struct hf_io_error *io)
 {
     const struct cli_args *args = frame->args;
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
-    if (args->depth_file)
-        return hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, io);
     const int at = args->focus_by == CLI_FOCUS_AT ? args->focus_y : display->y0 + (display->y1 - display->y0) / 2;
-    const int from = at - 1 > data->y0 ? at - 1 : data->y0, to = at + 2 < data->y1 ? at + 2 : data->y1;
-    return from < to ? hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, io) : 0;
+    int from = at - 1 > data->y0 ? at - 1 : data->y0, to = at + 2 < data->y1 ? at + 2 : data->y1;
+    int status = 0;
+    if (args->depth_file) {
+        from = data->y0;
+        to = data->y1;
+        status = hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, io);
+    } else if (from < to) {
+        status = hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, io);
+    }
+    if (!status && from < to)
+        cli_depth_prepare(args, v->depth + (size_t)(from - data->y0) * (size_t)v->view->width,
+                          (size_t)(to - from) * (size_t)v->view->width, &v->found);
+    return status;
 }
 
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error)
@@ -184,7 +198,7 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     v->setup.depth.data = v->depth;
     session->label = v->label;
     session->log.text[0] = '\0';
-    return 0;
+    return cli_coc_look(v, frame->args, error);
 }
 
 // After the library has seen the view: what went wrong, or what to keep.
@@ -298,6 +312,7 @@ void cli_frame_close(struct cli_frame *frame)
         free(v->depth);
         free(v->label);
         free(v->tag);
+        free(v->radii);
         free(v->tiles);
     }
     free(frame->views);

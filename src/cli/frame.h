@@ -3,6 +3,7 @@
 #ifndef HF_CLI_FRAME_H
 #define HF_CLI_FRAME_H
 
+#include "cli/depth.h"
 #include "cli/setup.h"
 
 // The library and threads for files, kept from frame to frame, and what the library said last.
@@ -13,6 +14,9 @@ struct cli_session {
     const char *label;  // what is being rendered, for warnings
 };
 
+// Up to this radius, pixels, one may say that something is in focus: half a pixel to each side.
+static const float CLI_SHARP_RADIUS = 1;
+
 struct cli_view {
     int index;  // in the file
     const struct hf_io_view *view;
@@ -21,6 +25,9 @@ struct cli_view {
     struct cli_setup setup;
     float *depth;  // NULL: not read yet, or not needed any more
     float *planes[4];
+    struct cli_depth_found found;
+    float least_radius;  // pixels: what is least blurred
+    float *radii;        // of all pixels, for --focus-image; NULL
     struct hf_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for
 };

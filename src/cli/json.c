@@ -41,6 +41,9 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
     tool_json_count(j, "no_surface", (long long)s->no_surface);
     // The file layer counts over all views, so with several only the sum is known, which is beside them.
     tool_json_count(j, "clamped", (long long)(s->clamped + (frame->view_count == 1 ? frame->written.clamped : 0)));
+    tool_json_flag(j, "depth_negative", v->found.flipped);
+    tool_json_number(j, "least_radius", v->least_radius);
+    tool_json_count(j, "warnings", cli_warnings_of(v));
     tool_json_ms(j, "total_ms", s->total_ms);
     tool_json_open(j, "passes", '[');
     for (int i = 0; i < hf_pass_count(s->used.params.engine); i++) {
@@ -123,6 +126,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
             tool_json_text(j, NULL, v->view->colour[c]);
     tool_json_close(j);
     tool_json_text(j, "depth", frame->args->depth_file ? frame->args->depth_file : v->view->depth);
+    tool_json_text(j, "depth_type", cli_depth_type_name(frame->args));
     tool_json_count(j, "width", v->view->width);
     tool_json_count(j, "height", v->view->height);
     put_window(j, "data_window", &v->view->data_window);

@@ -5,12 +5,12 @@
 #include "cli/explain.h"
 #include "cli/frame.h"
 #include "cli/json.h"
+#include "cli/overlay.h"
 #include "cli/preview.h"
 #include "cli/summary.h"
 #include "cli/target.h"
 
 #include <errno.h>
-#include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -37,7 +37,7 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
             if (v->view->colour[c][0])
                 printf("%s %s", c ? "," : "", tool_shown(v->view->colour[c], name));
         printf("\n    depth %s, type %s\n", tool_shown(args->depth_file ? args->depth_file : v->view->depth, name),
-               hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type));
+               cli_depth_type_name(args));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)
             printf(", f/%g, focal length %g mm, sensor %g mm, world unit %g m", p->lens.f_number,
@@ -61,28 +61,6 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
     return 0;
 }
 
-// What was wrong with the pictures but did not stop the work. Returns how many things.
-static int print_warnings(const struct cli_frame *frame)
-{
-    int n = 0;
-    for (int i = 0; i < frame->view_count; i++) {
-        const struct cli_view *v = &frame->views[i];
-        n += (v->report.colour_repaired > 0) + (v->report.depth_repaired > 0) + cli_is_limited(v);
-        if (v->report.colour_repaired)
-            tool_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place",
-                            v->label, v->report.colour_repaired);
-        if (v->report.depth_repaired)
-            tool_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
-                            v->report.depth_repaired);
-    }
-    if (frame->written.note[0])
-        tool_print_line("%s", frame->written.note);
-    if (frame->written.clamped)
-        tool_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
-                        frame->written.clamped);
-    return n + (frame->written.note[0] != '\0') + (frame->written.clamped > 0);
-}
-
 static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
                       struct tool_error *error)
 {
@@ -96,12 +74,12 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
                      struct tool_error *error)
 {
     struct cli_frame frame;
-    const int explain = args->explain || args->explain_image;
+    const int explain = args->explain || args->explain_image || args->focus_image;
     int status = cli_frame_open(&frame, args, &session->run, error);
     if (!status)
         status = cli_frame_setup(&frame, error);
     if (!status)
-        status = cli_explain_check(&frame, error);
+        status = cli_overlay_check(&frame, error);
     if (!status && !args->dry_run)
         status = cli_frame_render(&frame, session, error);
     else if (!status && explain)
@@ -111,10 +89,10 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     if (!status && !args->dry_run) {
         status = cli_frame_save(&frame, error);
         if (!status)
-            cli_print_summary(&frame, print_warnings(&frame));
+            cli_print_summary(&frame, cli_print_warnings(&frame));
     }
-    if (!status && args->explain_image)
-        status = cli_explain_image(&frame, error);
+    if (!status)
+        status = cli_overlay_write(&frame, error);
     if (!status && args->json)
         status = write_json(argc, argv, &frame, session->context, error);
     else if (!status && args->dry_run)
@@ -132,6 +110,7 @@ static int check_alone(const struct cli_args *args, struct tool_error *error)
     const char *option = args->json            ? "--json"
                          : args->explain       ? "--explain"
                          : args->explain_image ? "--explain-image"
+                         : args->focus_image   ? "--focus-image"
                          : args->dump_dir      ? "--dump-passes"
                                                : NULL;
     if (option)

@@ -77,14 +77,20 @@ static const struct tool_option options[] = {
      "the only channel with depth in its name.", TEXT(depth_channel)},
     {"depth-file", 0, TOOL_DEPTH, "FILE", "Take depth from this file, with the same data window size as the view.",
      TEXT(depth_file)},
-    {"depth-type", 0, TOOL_DEPTH, "view|ray|ndc-d3d|ndc-gl|ndc-reversed|inverse|coc", "What depth holds: distance "
-     "along the camera's axis (view, the default) or along the ray; a depth buffer from 0 to 1 (ndc-d3d), -1 to 1 "
-     "(ndc-gl) or 1 to 0 (ndc-reversed), which need --near and --far; 1/distance; or signed blur radii in pixels, "
-     "near ones negative (coc), which need no focus.", NAME(depth_type, DEPTH_TYPE)},
-    {"near", 0, TOOL_DEPTH, "D", "Near clip plane of an ndc depth, scene units; with gaussian of any.",
-     POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE},
-    {"far", 0, TOOL_DEPTH, "D", "Far clip plane of an ndc depth, scene units, or inf; with gaussian of any.",
-     POSITIVE(far_plane), .unit = TOOL_UNIT_DISTANCE, .inf = 1},
+    {"depth-type", 0, TOOL_DEPTH, "view|ray|ndc-d3d|ndc-gl|ndc-reversed|inverse|normalized|normalized-inverted|coc",
+     "What depth holds. view (default): distance along the camera's axis; ray: along the ray; ndc-d3d, ndc-gl, "
+     "ndc-reversed: a depth buffer from 0 to 1, -1 to 1, 1 to 0; inverse: 1/distance, as depth estimators give it; "
+     "normalized, normalized-inverted: a map from black at --near to white at --far, or the other way; coc: signed blur "
+     "radii in pixels, near ones negative, which need no focus.", .parse = cli_parse_depth_type, FIELD(depth_type),
+     .names = HF_NAMES_DEPTH_TYPE},
+    {"near", 0, TOOL_DEPTH, "D", "Distance of an ndc or normalized depth's near end, scene units; with inverse that of "
+     "1, in place of a scale; with gaussian of any.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE},
+    {"far", 0, TOOL_DEPTH, "D", "The same of its far end, or inf; with inverse that of 0.", POSITIVE(far_plane),
+     .unit = TOOL_UNIT_DISTANCE, .inf = 1},
+    {"depth-scale", 0, TOOL_DEPTH, "S", "What the numbers of the depth are multiplied with first, not 0. Whole numbers "
+     "of a picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
+    {"depth-offset", 0, TOOL_DEPTH, "D", "What is added to them then. Default 0.",
+     NUMBER(depth_offset, -FLT_MAX, FLT_MAX)},
 
     {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. scatter (default): every pixel "
      "becomes the aperture's picture. layers: edges un-mixed, what objects hide filled in: the most accurate. "
@@ -116,6 +122,8 @@ static const struct tool_option options[] = {
      "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
     {"explain-image", 0, TOOL_RUN, "FILE", "Write the picture with its tiles painted over: near red, far blue, both "
      "violet, sharp as it is.", TEXT(explain_image)},
+    {"focus-image", 0, TOOL_RUN, "FILE", "Write the picture painted by what each pixel is: near red, in focus green, "
+     "far blue.", TEXT(focus_image)},
     {"json", 0, TOOL_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
      "FILE unless there is no other INPUT.", .parse = cli_parse_json},
     {"dump-passes", 0, TOOL_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/summary.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,6 +11,18 @@ int cli_is_limited(const struct cli_view *v)
     const struct hf_report *r = &v->report;
     const float most = r->used.params.max_radius;
     return v->setup.model != CLI_MODEL_RANGE && (r->near_radius >= most || r->far_radius >= most);
+}
+
+// All is infinitely far.
+static int is_empty(const struct cli_view *v)
+{
+    return v->setup.model != CLI_MODEL_COC &&
+           v->report.no_surface == (uint64_t)v->view->width * (uint64_t)v->view->height;
+}
+
+static int is_sharp(const struct cli_view *v)
+{
+    return v->least_radius < CLI_SHARP_RADIUS;
 }
 
 // Why a radius cannot be larger.
@@ -27,6 +40,52 @@ static const char *limit_words(enum hf_limit limit)
     default:
         return "the most that there can be";
     }
+}
+
+int cli_warnings_of(const struct cli_view *v)
+{
+    const struct hf_report *r = &v->report;
+    return (r->colour_repaired > 0) + (r->depth_repaired > 0) + cli_is_limited(v) + v->found.flipped +
+           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v));
+}
+
+static void warn(const struct cli_view *v, const struct cli_args *args)
+{
+    const struct hf_report *r = &v->report;
+    const char *depth = args->depth_file ? args->depth_file : v->view->depth;
+    if (r->colour_repaired)
+        tool_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place", v->label,
+                        r->colour_repaired);
+    if (r->depth_repaired)
+        tool_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
+                        r->depth_repaired);
+    if (v->found.flipped)
+        tool_print_line("%s: depth %s is negative, so the camera looks along -z: taken without its sign", v->label,
+                        depth);
+    if (v->found.negative)
+        tool_print_line("%s: %" PRIu64 " samples of depth %s are negative and count as no surface", v->label,
+                        v->found.negative, depth);
+    if (is_empty(v))
+        tool_print_line("%s: depth %s has no surface anywhere, so everything is infinitely far: is it the right "
+                        "channel, and --depth-type %s?",
+                        v->label, depth, cli_depth_type_name(args));
+    else if (!is_sharp(v))
+        tool_print_line("%s: nothing is in focus: all is blurred by %.3g pixels or more", v->label, v->least_radius);
+}
+
+int cli_print_warnings(const struct cli_frame *frame)
+{
+    int n = 0;
+    for (int i = 0; i < frame->view_count; i++) {
+        warn(&frame->views[i], frame->args);
+        n += cli_warnings_of(&frame->views[i]);
+    }
+    if (frame->written.note[0])
+        tool_print_line("%s", frame->written.note);
+    if (frame->written.clamped)
+        tool_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
+                        frame->written.clamped);
+    return n + (frame->written.note[0] != '\0') + (frame->written.clamped > 0);
 }
 
 static void print_view(const struct cli_frame *frame, const struct cli_view *v, int warnings)

@@ -74,13 +74,18 @@ struct named {
     int output;
 };
 
-enum { NAMED = 6 };
+enum { NAMED = 7 };
 
 static void list_files(const struct cli_args *args, struct named files[NAMED])
 {
     const struct named all[NAMED] = {
-        {"INPUT", args->input, 0}, {"--depth-file", args->depth_file, 0}, {"--aperture", args->aperture_file, 0},
-        {"-o", args->output, 1},   {"--json", args->json_file, 1},        {"--explain-image", args->explain_image, 1},
+        {"INPUT", args->input, 0},
+        {"--depth-file", args->depth_file, 0},
+        {"--aperture", args->aperture_file, 0},
+        {"-o", args->output, 1},
+        {"--json", args->json_file, 1},
+        {"--explain-image", args->explain_image, 1},
+        {"--focus-image", args->focus_image, 1},
     };
     memcpy(files, all, sizeof(all));
 }

@@ -7,6 +7,16 @@
 
 #include "cli/args.h"
 
+int cli_parse_depth_type(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct cli_args *args = p->args;
+    args->normalized = !strcmp(value, "normalized") - !strcmp(value, "normalized-inverted");
+    if (!args->normalized)
+        return tool_parse_name(p, option, value);
+    args->depth_type = HF_DEPTH_VIEW;
+    return 0;
+}
+
 int cli_parse_focus(struct tool_parser *p, const struct tool_option *option, const char *value)
 {
     struct cli_args *args = p->args;

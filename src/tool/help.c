@@ -4,7 +4,7 @@
 
 #include "tool/options.h"
 
-enum { COLUMN = 26, WIDTH = 80 };
+enum { INDENT = 10, COLUMN = 26, WIDTH = 80 };
 
 // Print text, breaking lines between words, indented by column; at: where the cursor is.
 static void print_wrapped(const char *text, int column, int at)
@@ -32,8 +32,16 @@ static void print_option(const struct tool_option *o, int all)
 {
     int at = o->letter ? printf("  -%c, ", o->letter) : printf("      ");
     at += printf("--%s", o->name);
-    if (o->placeholder)
-        at += printf(" %s", o->placeholder);
+    // A long list of words is broken behind a bar.
+    for (const char *word = o->placeholder; word && *word;) {
+        const int n = (int)strcspn(word, "|"), bar = word[n] == '|';
+        if (at + 1 + n + bar > WIDTH) {
+            printf("\n%*s", INDENT, "");
+            at = INDENT;
+        }
+        at += printf("%s%.*s", word == o->placeholder ? " " : "", n + bar, word);
+        word += n + bar;
+    }
     const char *end = strstr(o->help, ". ");
     char first[512];
     snprintf(first, sizeof(first), "%.*s", end ? (int)(end - o->help) + 1 : (int)strlen(o->help), o->help);

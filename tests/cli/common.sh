@@ -150,6 +150,8 @@ def read(path):
             for i, n in enumerate(names)}
 PYTHON
     python3 - <<'PYTHON'
+import struct
+import zlib
 from exr import exr
 
 colour = {'R': lambda x, y: x % 7 / 7, 'G': lambda x, y: y % 5 / 5, 'B': lambda x, y: (x ^ y) % 3}
@@ -180,6 +182,31 @@ for layer, z in {'ViewLayer': depth, 'Foreground': lambda x, y: 1 + y // 8}.item
     layers[layer + '.Depth.Z'] = z
 layers.update({'CryptoObject00.' + n: lambda x, y: x for n in 'rgba'})
 exr('layers.exr', layers)
+# The same depth in other words: negative, from 0 to 1 and from 1 to 0 between 1 and 9, as 1/z, in thirds less 5.
+near = lambda x, y: 2 ** (x // 16)
+exr('near.exr', dict(colour, Z=near))
+exr('negative.exr', dict(colour, Z=lambda x, y: -near(x, y)))
+exr('background.exr', dict(colour, Z=lambda x, y: -near(x, y) if y < 30 else 0))
+exr('mixed.exr', dict(colour, Z=lambda x, y: near(x, y) if y else -1))
+exr('normal.exr', dict(colour, Z=lambda x, y: (near(x, y) - 1) / 8))
+exr('inverted.exr', dict(colour, Z=lambda x, y: 1 - (near(x, y) - 1) / 8))
+exr('inverse.exr', dict(colour, Z=lambda x, y: 1 / near(x, y)))
+exr('scaled.exr', dict(colour, Z=lambda x, y: near(x, y) * 4 - 5))
+exr('void.exr', dict(colour, Z=lambda x, y: 0))
+def png(path, depth, bits, colours=None):
+    rows = b''
+    for y in range(40):
+        rows += b'\0' + b''.join(struct.pack('>H' if bits == 16 else 'B', round(f(x, y) * (2 ** bits - 1)))
+                                 for x in range(64) for f in ([depth] if not colours else colours))
+    chunk = lambda kind, data: (struct.pack('>I', len(data)) + kind + data +
+                                struct.pack('>I', zlib.crc32(kind + data)))
+    open(path, 'wb').write(b'\x89PNG\r\n\x1a\n' +
+        chunk(b'IHDR', struct.pack('>IIBBBBB', 64, 40, bits, 2 if colours else 0, 0, 0, 0)) +
+        chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
+png('map8.png', lambda x, y: x // 13 / 5, 8)
+png('map16.png', lambda x, y: x // 13 / 5, 16)
+png('white.png', lambda x, y: 1 - x // 13 / 5, 8)
+png('photo.png', None, 8, colours=[lambda x, y: x % 7 / 7, lambda x, y: y % 5 / 5, lambda x, y: (x ^ y) % 3 / 3])
 open('png.exr', 'wb').write(b'\x89PNG\r\n\x1a\n' + bytes(40))
 open('blend.exr', 'wb').write(b'BLENDER-v304' + bytes(40))
 open('garbage.exr', 'wb').write(b'this is not a picture\n' * 10)

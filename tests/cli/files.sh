@@ -38,4 +38,100 @@ bad 3 "png.exr|PNG" png.exr -o o.exr --focus 3
 bad 3 "blend.exr|Blender" blend.exr -o o.exr --focus 3
 rm -f one.exr all.exr main.exr
 
+# ---- depth that is not distance: the same picture from every form of the same depth
+look='--engine gather --focus 2 --range 2 --max-radius 6'
+# shellcheck disable=SC2086
+same() {  # OUTPUT-TO-COMPARE ARGUMENTS...
+    want=$1
+    shift
+    run "$@" -o got.exr $look
+    [ "$status" -eq 0 ] && python3 -c '
+from exr import read
+from sys import argv
+a, b = read(argv[1]), read("got.exr")
+raise SystemExit(any(a[c] != b[c] for c in "RGB"))' "$want"
+    result "as $want: $*" $?
+}
+# shellcheck disable=SC2086
+good near.exr -o near-out.exr $look
+same near-out.exr negative.exr
+contains "$dir/err" "negative.exr" && contains "$dir/err" "negative, so the camera looks along -z" &&
+    [ "$(wc -l <"$dir/err")" -eq 1 ]
+result "negative depth is understood, with a note" $?
+same near-out.exr normal.exr --depth-type normalized --near 1 --far 9
+same near-out.exr inverted.exr --depth-type normalized-inverted --near 1 --far 9
+same near-out.exr inverse.exr --depth-type inverse
+same near-out.exr inverse.exr --depth-type inverse --near 1 --far inf
+same near-out.exr scaled.exr --depth-offset 1.25 --depth-scale 0.25
+same near-out.exr negative.exr --depth-scale -1
+[ ! -s "$dir/err" ]
+result "--depth-scale -1 needs no note" $?
+run background.exr -o o.exr --focus 2 --json
+[ "$status" -eq 0 ] && contains "$dir/out" '"depth_negative": true' && contains "$dir/out" '"no_surface": 640'
+result "negative depth with a background of 0" $?
+run mixed.exr -o o.exr --focus 2
+[ "$status" -eq 0 ] && contains "$dir/err" "64 samples of depth Z are negative"
+result "some negative depths are said to be no surface" $?
+plan "type normalized-inverted" inverted.exr --depth-type normalized-inverted --near 1 --far 9 --focus-at 0,0
+run inverted.exr --depth-type normalized-inverted --near 1 --far 9 --focus-at 63,0 --dry-run
+contains "$dir/out" "focus 8 from --focus-at"
+result "the focus is read from the depth that was meant" $?
+run negative.exr --print-focus --focus-at 63,0
+contains "$dir/out" ",8"
+result "--print-focus likewise" $?
+bad 1 "normalized|--far" normal.exr -o o.exr --focus 2 --depth-type normalized --near 1
+bad 1 "normalized|inf" normal.exr -o o.exr --focus 2 --depth-type normalized --near 1 --far inf
+bad 1 "--near 9|--far 1|normalized-inverted" normal.exr -o o.exr --focus 2 --depth-type normalized --near 9 --far 1
+bad 1 "inverse|--near" inverse.exr -o o.exr --focus 2 --depth-type inverse --far 1
+bad 1 "--depth-scale|'0'" near.exr -o o.exr --focus 2 --depth-scale 0
+run void.exr -o o.exr --focus 2
+[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "no surface anywhere"
+result "a frame without any surface is a warning" $?
+run near.exr -o o.exr --focus 100 --fstop 0.05 --focal-length 50
+[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "nothing is in focus"
+result "a frame with nothing in focus is a warning" $?
+run photo.png -o o.png --depth-file map8.png --depth-type normalized --near 1 --far 6 --focus 2 --range 2 --max-radius 6
+if contains "$dir/err" "built without OpenImageIO"; then
+    skip "photographs and maps (no OpenImageIO)"
+else
+    [ "$status" -eq 0 ] && [ ! -s "$dir/err" ] && [ -s o.png ] && ! cmp -s o.png photo.png
+    result "a photograph in sRGB with an 8-bit map" $?
+    # Whole distances at 8 and at 16 bits, black near and white near.
+    for map in 'map8.png normalized' 'map16.png normalized' 'white.png normalized-inverted'; do
+        # shellcheck disable=SC2086
+        set -- $map
+        for x in 0,1 20,2 63,5; do
+            run photo.png --dry-run --depth-file "$1" --depth-type "$2" --near 1 --far 6 --focus-at "${x%,*},9"
+            contains "$dir/out" "focus ${x#*,} from" || contains "$dir/out" "focus ${x#*,}.0"
+            result "$1, $2 at $x" $?
+        done
+    done
+    # The README's one.
+    run "$source_root/images/lights-before.png" --depth-file "$source_root/images/lights-depth.png" --depth-type inverse \
+        --near 1.5 --far 60 --focus 5 --fstop 0.37 --focal-length 50 -o photo-out.png --verbose
+    [ "$status" -eq 0 ] && contains "$dir/err" "radius near 28.0 far 11.0" && contains "$dir/err" "0 warnings"
+    result "the README's photograph" $?
+    run photo.png --dry-run --depth-file map16.png --depth-scale 65.535 --focus-at 20,9
+    contains "$dir/out" "focus 13.107 from"
+    result "millimetres in 16 bits" $?
+fi
+
+# ---- what is in focus, as a picture
+good near.exr -o o.exr --focus 4 --fstop 0.05 --focal-length 50 --focus-image focus.exr
+python3 - <<'PYTHON'
+import struct
+from exr import read
+f = read('focus.exr')
+at = lambda c, x: struct.unpack_from('<f', f[c], 4 * (20 * 64 + x))[0]
+# depths 1 2 4 8: near, near, in focus, far
+ok = all(max('RGB', key=lambda c: at(c, x)) == want for x, want in [(4, 'R'), (20, 'R'), (36, 'G'), (52, 'B')])
+raise SystemExit(not ok)
+PYTHON
+result "--focus-image paints near red, in focus green, far blue" $?
+rm -f focus.exr
+good near.exr --focus 4 --focus-image focus.exr --dry-run
+[ -s focus.exr ]
+result "--focus-image without rendering" $?
+bad 1 "--focus-image|near.exr|INPUT" near.exr -o o.exr --focus 4 --focus-image near.exr
+
 finish
