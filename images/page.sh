@@ -35,7 +35,7 @@ done
     echo 'The camera is that of the EXR header. Made by `images/page.sh`.'
     echo
     echo 'Which one: **layers** where the picture counts; it takes edges apart, fills in what objects hide and is the closest'
-    echo 'to the truth. **scatter** for apertures that are not discs. **gather** for a renderer with a budget in milliseconds:'
+    echo 'to the truth; the command does it by default. **scatter** for the same bits everywhere. **gather** for a renderer with a budget in milliseconds:'
     echo 'its far field has one kernel, blended with the sharp picture where blur is little, and its maximum fill adds light, which is'
     echo 'why it loses on `lights`. **hexagon** for its look. **gaussian** for a soft preview: it does not follow a lens. Look at the'
     echo 'rims of near bars before the sharp box (`fence`), at leaves before leaves (`foliage`), and at discs beside the head (`lights`).'

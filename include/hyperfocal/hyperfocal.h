@@ -554,6 +554,9 @@ struct hf_report {
 
     // CoC radii that there are, full-resolution pixels: the largest in front of the focus and behind it.
     float near_radius, far_radius;
+    // layers: how many slices lie between them, at full, half, a quarter and an eighth of the resolution; and at how many
+    // distances, each twice the one before, hidden samples are looked for.
+    int slices[4], hidden_levels;
     // Colour where it is read for blurring; known only with params.run.colour_stats.
     int colour_known;
     float brightest;      // largest finite sample of R, G and B

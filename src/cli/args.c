@@ -228,11 +228,18 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
 static int combine(struct cli_args *args, struct tool_error *error)
 {
     struct hf_params *p = &args->params;
+    static const enum hf_layers_quality finer[] = {[CLI_QUALITY_STANDARD] = HF_LAYERS_STANDARD,
+                                                   [CLI_QUALITY_HIGH] = HF_LAYERS_HIGH,
+                                                   [CLI_QUALITY_BEST] = HF_LAYERS_BEST};
     if (args->engine >= 0 && args->quality >= 0)
         return tool_fail(error, -1, "--engine and --quality cannot be given together: each chooses an engine");
+    if (args->quality > CLI_QUALITY_DRAFT && p->layers.quality != hf_default_params.layers.quality)
+        return tool_fail(error, -1, "--quality and --layers-quality cannot be given together: each says how fine");
     p->engine = args->engine >= 0                    ? (enum hf_engine)args->engine
                 : args->quality == CLI_QUALITY_DRAFT ? HF_ENGINE_GATHER
-                                                     : HF_ENGINE_SCATTER;
+                                                     : HF_ENGINE_LAYERS;
+    if (args->quality > CLI_QUALITY_DRAFT)
+        p->layers.quality = finer[args->quality];
     if (args->verbose && args->quiet)
         return tool_fail(error, -1, "--verbose and --quiet cannot be given together");
     return 0;

@@ -28,6 +28,20 @@ enum hf_resolution cli_explain_resolution(const struct hf_params *p)
     }
 }
 
+// Of layers: "28 slices (9 full, 19 half resolution), hidden samples at 5 distances".
+static void print_slices(FILE *out, const struct hf_report *r)
+{
+    static const char *const sizes[4] = {"full", "half", "quarter", "eighth"};
+    const int all = r->slices[0] + r->slices[1] + r->slices[2] + r->slices[3];
+    fprintf(out, ", %d slice%s", all, all == 1 ? "" : "s");
+    for (int i = 0, shown = 0; i < 4; i++)
+        if (r->slices[i])
+            fprintf(out, "%s%d %s", shown++ ? ", " : " (", r->slices[i], sizes[i]);
+    fprintf(out, "%s", all ? " resolution)" : "");
+    if (r->hidden_levels)
+        fprintf(out, ", hidden samples at %d distances", r->hidden_levels);
+}
+
 static void print_settings(FILE *out, const struct hf_report *r)
 {
     const struct hf_params *p = &r->used.params;
@@ -35,6 +49,8 @@ static void print_settings(FILE *out, const struct hf_report *r)
     fprintf(out, "  engine %s", hf_engine_name(p->engine));
     if (p->engine == HF_ENGINE_GATHER)
         fprintf(out, ", %d ring%s of taps", rings, rings == 1 ? "" : "s");
+    else if (p->engine == HF_ENGINE_LAYERS)
+        print_slices(out, r);
     else
         fprintf(out, ", %s resolution", hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(p)));
     if (r->budget_step > 0)

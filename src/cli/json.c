@@ -93,6 +93,13 @@ static void put_report(struct tool_json *j, const struct hf_report *r)
     }
     tool_json_number(j, "near_radius", r->near_radius);
     tool_json_number(j, "far_radius", r->far_radius);
+    if (used->engine == HF_ENGINE_LAYERS) {
+        tool_json_row(j, "slices", '[');
+        for (int i = 0; i < 4; i++)
+            tool_json_count(j, NULL, r->slices[i]);
+        tool_json_close(j);
+        tool_json_count(j, "hidden_levels", r->hidden_levels);
+    }
     tool_json_count(j, "memory", (long long)r->memory);
     tool_json_count(j, "memory_saved", (long long)r->memory_saved);
     tool_json_ms(j, "plan_ms", r->plan_ms);

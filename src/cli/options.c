@@ -92,12 +92,12 @@ static const struct tool_option options[] = {
     {"depth-offset", 0, TOOL_DEPTH, "D", "What is added to them then. Default 0.",
      NUMBER(depth_offset, -FLT_MAX, FLT_MAX)},
 
-    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. scatter (default): every pixel "
-     "becomes the aperture's picture. layers: edges un-mixed, what objects hide filled in: the most accurate. "
-     "gather: half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. "
-     "gaussian: soft, with autofocus.", NAME(engine, ENGINE)},
-    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "In place of --engine: draft is the gather, all others are the "
-     "scatter.", CHOICE(quality)},
+    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. layers (default): edges un-mixed, "
+     "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "
+     "half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. gaussian: soft, with "
+     "autofocus.", NAME(engine, ENGINE)},
+    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "In place of --engine: draft is the gather; standard "
+     "(default), high and best are the layers, slower and finer.", CHOICE(quality)},
     {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
      "(default), or a polygon with 3 to 16 sides turned by some degrees. layers, scatter: rounded by 0 to 1 (a lone number above 1 is the degrees); a "
      "ring whose hole has R of the radius, 0 to 0.95; or the picture in FILE. hexagon: ngon:6 and the degrees.",

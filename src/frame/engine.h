@@ -106,6 +106,8 @@ struct hf_engine_def {
     // measured: called with what was counted over the frame; sets the reach, and may change how depth becomes CoC.
     // Returns HF_ERR_MEMORY.
     int (*measure)(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem);
+    // What it tells of itself in a report. NULL: nothing.
+    void (*tell)(const void *own, struct hf_report *report);
     // measured: called with what the whole first sweep has counted. NULL: nothing follows from it.
     void (*made)(void *own, const struct hf_setup *s, const struct hf_counts *found);
 

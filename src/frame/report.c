@@ -91,6 +91,8 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
         r->near_radius = found->near_pixels ? s->max_radius * found->near_max : 0;
         r->far_radius = found->far_pixels ? s->max_radius * found->far_max : 0;
     }
+    if (e->tell)
+        e->tell(s->own, r);
     r->memory = hf_buffers_bytes(c, s, s->blend == 0 ? 0 : p->reads);
     r->memory_saved = hf_buffers_bytes(c, s, HF_FIELDS) - r->memory;
 }

@@ -199,6 +199,14 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     return HF_OK;
 }
 
+static void tell(const void *own, struct hf_report *r)
+{
+    const struct hf_layers *l = own;
+    for (int i = 0; i < l->slices; i++)
+        r->slices[l->slice[i].level]++;
+    r->hidden_levels = l->levels;
+}
+
 static int channels(const struct hf_setup *s, int b)
 {
     const struct hf_layers *l = hf_layers(s);
@@ -336,6 +344,7 @@ const struct hf_engine_def hf_layers_engine = {
     .release = release,
     .bytes = bytes,
     .measure = measure,
+    .tell = tell,
     .channels = channels,
     .halo = halo,
     .spread = spread,

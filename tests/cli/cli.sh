@@ -116,6 +116,8 @@ bad 1 "--rings|'65'" a.exr -o o.exr --rings 65
 bad 1 "--chromatic|'0.6'" a.exr -o o.exr --engine scatter --chromatic 0.6
 bad 1 "--chromatic|scatter|gather" a.exr -o o.exr --quality draft --chromatic 0.1
 bad 1 "--engine|--quality" a.exr -o o.exr --engine gather --quality draft
+bad 1 "--quality|--layers-quality" a.exr -o o.exr --quality high --layers-quality best
+bad 1 "--resolution half|scatter|layers" a.exr -o o.exr --resolution half
 bad 1 "--quality|'drafty'|draft?" a.exr -o o.exr --quality drafty
 bad 1 "--focsu|--focus?" a.exr -o o.exr --focsu 3
 bad 1 "--engine|'scater'|scatter?" a.exr -o o.exr --engine scater
@@ -248,25 +250,28 @@ picture_tests() {
     good plain.exr -o o.exr --focus 3 --fstop inf --focal-length 50
     # Units, whatever their order; a depth of field; what the default is.
     plan "focus 1.2 from --focus|f/2.8|focal length 50 mm" plain.exr --focus 1.2m --fstop f/2.8 --focal-length 5cm
-    plan "engine scatter|focus 12 from --focus|sensor 36 mm" plain.exr --focus 120cm --world-unit 0.1 --fstop 2 \
+    plan "engine layers|focus 12 from --focus|sensor 36 mm" plain.exr --focus 120cm --world-unit 0.1 --fstop 2 \
         --focal-length 50mm --sensor-width 0.036m
     plan "focus 3 |none from 2.5; far blur none up to 3.5" plain.exr --focus 3 --depth-of-field 1
     plan "engine gather|rings of taps" plain.exr --focus 3 --quality draft --max-radius 40
+    plan "engine layers|best quality|slices (" plain.exr --focus 3 --quality best --max-radius 40 --explain
     run plain.exr -o o.exr --focus 3 --range 2 --verbose
-    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "scatter, focus 3" &&
+    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "layers, focus 3" &&
         contains "$dir/err" "0 warnings"
     result "--verbose" $?
     good plain.exr --engine gather -o o.exr --focus 3 --range 2 --karis --per-pixel-kernel --bicubic --fill mean --blend smoothstep
     good plain.exr --engine gather -o o.exr --focus 3 --fill none --aperture ngon:6:0:15 --threads 2 --no-skip --storage half
     good plain.exr --engine gather -o o.exr --focus 3 --faithful --storage chapter --aperture disc --isa scalar
     good plain.exr -o o.exr --focus 3 --max-radius 0 --deterministic
-    good plain.exr -o o.exr --focus 3 --engine scatter
-    good plain.exr -o o.exr --focus 3 --engine scatter --max-radius 8 --aperture ngon:4:0.5:30 --chromatic 0.1 --resolution half
-    good plain.exr -o o.exr --focus 3 --engine scatter --max-radius 8 --aperture ring:0.5 --cat-eye 0.5 --squeeze 2
-    good plain.exr -o o.exr --focus 3 --engine scatter --max-radius 8 --aperture aperture.exr
-    good plain.exr -o whole.exr --focus 3 --engine scatter --max-radius 8
-    cmp -s o.exr whole.exr && fail=1 || fail=0
-    result "the aperture's picture shows" $fail
+    for engine in scatter layers; do
+        good plain.exr -o o.exr --focus 3 --engine $engine
+        good plain.exr -o o.exr --focus 3 --engine $engine --max-radius 8 --aperture ngon:4:0.5:30 --chromatic 0.1
+        good plain.exr -o o.exr --focus 3 --engine $engine --max-radius 8 --aperture ring:0.5 --cat-eye 0.5 --squeeze 2
+        good plain.exr -o o.exr --focus 3 --engine $engine --max-radius 8 --aperture aperture.exr
+        good plain.exr -o whole.exr --focus 3 --engine $engine --max-radius 8
+        cmp -s o.exr whole.exr && fail=1 || fail=0
+        result "the aperture's picture shows, $engine" $fail
+    done
     bad 1 "--aperture|nothing.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture nothing.exr
     bad 1 "--aperture|black.exr|black" plain.exr -o o.exr --focus 3 --engine scatter --aperture black.exr
     bad 1 "--aperture|broken.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture broken.exr
@@ -304,7 +309,7 @@ picture_tests() {
     bad 3 "--explain-image|nothing" keep.exr -o o.exr --focus 3 --explain-image i.nothing
     bad 3 "-o|term" keep.exr -o o.term --focus 3
     mkdir near-dir && cp plain.exr near-dir/near.exr
-    run near-dir/near.exr -o o.exr --focus 3 --dump-passes near-dir
+    run near-dir/near.exr -o o.exr --focus 3 --engine gather --dump-passes near-dir
     [ "$status" -ne 0 ] && cmp -s plain.exr near-dir/near.exr
     result "--dump-passes does not write over INPUT" $?
     [ "$(cksum keep.exr deep-map.exr)" = "$sum" ]
