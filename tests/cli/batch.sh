@@ -384,4 +384,4 @@ fi
 
 echo "$passed passed, $failed failed"
 [ "$skipped" -eq 0 ] || echo "($skipped skipped)" >&2
-[ "$failed" -eq 0 ]
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
