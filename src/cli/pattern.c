@@ -158,7 +158,8 @@ static int scan(DIR *dir, const char *name, struct cli_frames *found, int *digit
             return -1;
     }
     *digits = least ? least : DEFAULT_DIGITS;
-    qsort(found->list, (size_t)found->count, sizeof(*found->list), by_number);
+    if (found->count)
+        qsort(found->list, (size_t)found->count, sizeof(*found->list), by_number);
     // 7 and 0007 are one frame.
     int kept = 0;
     for (int i = 0; i < found->count; i++)

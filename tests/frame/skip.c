@@ -3,7 +3,7 @@
 // for it equals what no_skip renders, bit for bit. The skipping contexts live on from scene to scene, as those of a shot
 // do, so that what they remember of the last frame is wrong as often as right.
 //
-//     skip [seed]
+//     skip [seed [scenes]]
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,9 +11,9 @@
 #include "support/check.h"
 #include "support/render.h"
 
-enum { SCENES = 300, CONTEXTS = 4 };
+enum { CONTEXTS = 4 };
 
-static unsigned seed = 1;
+static unsigned seed = 1, scenes = 300;
 
 // Half-resolution pixels; 0: the library's choice.
 static const int tile_sizes[CONTEXTS][2] = {{0, 0}, {16, 16}, {48, 16}, {32, 40}};
@@ -144,7 +144,7 @@ static void check_engine(enum hf_isa isa, enum hf_engine engine)
     struct tally tally = {0, 0};
     for (int i = 0; i < CONTEXTS; i++)
         skipping[i] = context_new(isa, 2, tile_sizes[i][0], tile_sizes[i][1]);
-    for (unsigned n = 0; n < SCENES; n++)
+    for (unsigned n = 0; n < scenes; n++)
         check_scene(skipping[n % CONTEXTS], whole, engine, n, &tally);
     printf("%s, %s: %.0f %% of the tiles were not sharp\n", hf_isa_name(isa), hf_engine_name(engine),
            100.0 * (double)tally.run / (double)tally.all);
@@ -157,6 +157,7 @@ static void check_engine(enum hf_isa isa, enum hf_engine engine)
 int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
+    scenes = argc > 2 ? (unsigned)strtoul(argv[2], NULL, 10) : scenes;
     printf("seed %u\n", seed);
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++)
         for (int engine = 0; engine < HF_ENGINE_COUNT; engine++)
