@@ -19,7 +19,7 @@ void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const
             const float shown = part * s->scale;
             const float w = shown * in[4][at], v = share ? shown * (in[4][at] - share[at]) : w;
             for (int c = 0; c < channels; c++)
-                sum[c] = sum[c] + v * in[c][at];
+                sum[c] = sum[c] + (c < 3 ? v : w) * in[c][at];
             sum[4] = sum[4] + w;
         }
         any[x / 16] |= sum[4] > 0;

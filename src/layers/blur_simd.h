@@ -26,7 +26,7 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
             const vf w = vf_mul(shown, weight);
             const vf v = share ? vf_mul(shown, vf_sub(weight, vf_load(share + at))) : w;
             for (int c = 0; c < channels; c++)
-                sum[c] = vf_select(inside, vf_fma(v, vf_load(in[c] + at), sum[c]), sum[c]);
+                sum[c] = vf_select(inside, vf_fma(c < 3 ? v : w, vf_load(in[c] + at), sum[c]), sum[c]);
             sum[4] = vf_add_where(inside, w, sum[4]);
         }
         any[x / 16] |= (uint8_t)vm_any(vf_gt(sum[4], vf_zero()));

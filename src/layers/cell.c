@@ -51,11 +51,11 @@ static size_t place(struct hf_cell *c, float *memory)
     c->source.at = take(&m, (size_t)c->source.row * TILE, n * TILE + AROUND);
     for (int i = 0; i <= HF_LAYERS_COARSEST; i++)
         c->sum[i] = take_window(&m, width >> i, height >> i, channels + 1);
-    c->shine = take_window(&m, width, height, channels);
+    c->shine = take_window(&m, width, height, 3);
     for (int i = 0; i < 3; i++)
         c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2, channels + 2);
     for (int i = 0; i < 2; i++)
-        c->light[i] = take_window(&m, width, height, channels);
+        c->light[i] = take_window(&m, width, height, 3);
     const struct hf_window part = take_window(&m, width / 2, height / 2, 1);
     c->part = part.at;
     c->part_row = part.row;

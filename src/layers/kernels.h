@@ -37,7 +37,8 @@ typedef int hf_layers_extremes(const float *radius, const float *weight, const f
 // Is there a sample with weight and a radius between `before` and `after` in rows of n?
 typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
                              float after);
-// Shares of a slice in n samples, and in those of rows - 1 rows below them, summed. add: to what out holds. any[i]
+// Shares of a slice in n samples, and in those of rows - 1 rows below them, summed. add: to what out holds. share: of
+// their weight whose colour, but not its alpha, is left out. any[i]
 // is made 1 where there is any in the 16 samples from 16 i on.
 typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                              int rows, int channels, int n, int add, float *const out[5], uint8_t *any);

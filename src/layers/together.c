@@ -68,6 +68,9 @@ static void fill_tile(const struct hf_window *w, int channel, int tx, int y, flo
         p[x] = value;
 }
 
+// Of light: alpha goes with the coverage, or what is opaque would not be.
+enum { LIT = 3 };
+
 // No light where there is none yet.
 static void begin_light(const struct hf_cell *c, int stack)
 {
@@ -78,7 +81,7 @@ static void begin_light(const struct hf_cell *c, int stack)
                 continue;
             *lit = 1;
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
-                for (int i = 0; i < c->l->channels; i++)
+                for (int i = 0; i < LIT; i++)
                     fill_tile(&c->light[stack], i, tx, y, 0);
         }
 }
@@ -129,8 +132,7 @@ static void put_light(struct hf_cell *c, int stack, int slice)
 {
     const struct hf_layers *l = c->l;
     const struct hf_slice *wide = &l->shine[slice];
-    const struct hf_build b = {
-        .s = wide, .set = &c->samples->seen, .weight = c->samples->share, .channels = l->channels};
+    const struct hf_build b = {.s = wide, .set = &c->samples->seen, .weight = c->samples->share, .channels = LIT};
     if (!hf_layers_mark_used(c, slice, HF_KIND_SHARES) || !hf_layers_mark_touched(c, wide, &c->shone))
         return;
     hf_layers_draw_slice(c, &b, &c->shone, &c->shine);
@@ -142,7 +144,7 @@ static void put_light(struct hf_cell *c, int stack, int slice)
                 const int x0 = tx * TILE, n = (end - tx) * TILE;
                 const float *a = c->part + (y >> 1) * c->part_row + (x0 >> 1);
                 c->k->up(a, a + (y & 1 ? c->part_row : -c->part_row), n / 2, c->row[0]);
-                for (int i = 0; i < l->channels; i++) {
+                for (int i = 0; i < LIT; i++) {
                     const float *in = c->shine.at + y * c->shine.row + i * c->shine.channel + x0;
                     float *out = to->at + y * to->row + i * to->channel + x0;
                     for (int x = 0; x < n; x++)
@@ -216,7 +218,7 @@ static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float
     }
     for (int tx = x / TILE, end; (end = hf_layers_next_run(&c->lit[stack], &tx, y / TILE, (x + n) / TILE, 1)) > tx;
          tx = end)
-        for (int i = 0; i < c->l->channels; i++) {
+        for (int i = 0; i < LIT; i++) {
             const float *in = light->at + y * light->row + i * light->channel + tx * TILE;
             float *to = out[i] + tx * TILE - x;
             for (int j = 0; j < (end - tx) * TILE; j++)
