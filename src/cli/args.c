@@ -30,7 +30,8 @@ static void set_defaults(struct cli_args *args)
 // differs from frame to frame are left to resume.c.
 static int makes_picture(const struct tool_option *o)
 {
-    static const char *const others[] = {"views", "layer", "compression", "deterministic", "budget-ms"};
+    static const char *const others[] = {"views",       "layer",         "grow",     "display",
+                                         "compression", "deterministic", "budget-ms"};
     static const char *const per_frame[] = {"depth-file", "keys", "keys-blend", "focus-smooth", "print-focus"};
     for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
         if (!strcmp(o->name, others[i]))

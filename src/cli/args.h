@@ -3,6 +3,8 @@
 #ifndef HF_CLI_ARGS_H
 #define HF_CLI_ARGS_H
 
+#include <limits.h>
+
 #include "hyperfocal/hyperfocal.h"
 #include "tool/options.h"
 
@@ -17,6 +19,8 @@ enum cli_focus {
 
 // --quality: which engine, and how fine.
 enum cli_quality { CLI_QUALITY_DRAFT, CLI_QUALITY_STANDARD, CLI_QUALITY_HIGH, CLI_QUALITY_BEST };
+
+enum { CLI_CENTRED = INT_MIN };  // a place in args->display
 
 enum cli_keys_blend { CLI_KEYS_LINEAR, CLI_KEYS_SMOOTH };
 
@@ -64,6 +68,8 @@ struct cli_args {
     const char *views;  // NULL: all, else names with commas
     const char *layer;  // likewise; NULL: the main one
     const char *compression;
+    int grow;        // the data window, by the reach of the blur
+    int display[4];  // width, height, and where in it the picture lies; [0] 0: the file's
     const char *dump_dir;
     int explain;
     const char *explain_image, *focus_image;
@@ -78,8 +84,8 @@ struct cli_args {
 extern const struct tool_program cli_program;
 
 // Parsers of values that only this program has.
-tool_parse cli_parse_depth_type, cli_parse_focus, cli_parse_focus_at, cli_parse_aperture, cli_parse_json,
-    cli_parse_version;
+tool_parse cli_parse_depth_type, cli_parse_display, cli_parse_focus, cli_parse_focus_at, cli_parse_aperture,
+    cli_parse_json, cli_parse_version;
 
 // Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
 // --version the rest of the line is not looked at.

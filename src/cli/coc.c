@@ -28,28 +28,32 @@ static float ramp(float v, float begin, float end)
     return v <= begin ? 0 : v >= end ? 1 : (v - begin) / (end - begin);
 }
 
-// Signed, pixels; negative in front of the focus.
-static float radius_at(const struct model *m, int x, int y)
+// Signed, pixels; negative in front of the focus. What the gaussian engine blurs at all it blurs alike, three standard
+// deviations far, and blends.
+static float radius_of(const struct model *m, float z)
 {
     const struct hf_params *p = &m->r->params;
-    float r;
-    if (m->depth->type == HF_DEPTH_COC) {
-        r = ((const float *)m->depth->data)[(size_t)y * (size_t)m->width + (size_t)x];
-        return isfinite(r) ? fminf(fmaxf(r, -p->max_radius), p->max_radius) : 0;
-    }
-    const float z = view_depth(m, x, y);
-    if (p->model == HF_MODEL_LENS) {
-        r = m->r->lens_k * (1 / p->focus - 1 / z);
-        return fminf(fmaxf(r, -p->max_radius), p->max_radius);
-    }
-    if (p->engine == HF_ENGINE_GAUSSIAN && p->gaussian.by_depth) {
-        const float far_plane = m->depth->far_plane > 0 ? m->depth->far_plane : 100;
-        const float t = fminf(1, 3 * fabsf(fminf(1, z / far_plane) - fminf(1, p->focus / far_plane)));
-        return (z < p->focus ? -2 : 2) * p->gaussian.sigma * t;
-    }
     const struct hf_range_params *range = &p->range;
-    const float n = 1 - ramp(z, range->near_begin, range->near_end), f = ramp(z, range->far_begin, range->far_end);
-    return range->strength * p->max_radius * (f - n);
+    float r;
+    if (p->engine == HF_ENGINE_GAUSSIAN && p->gaussian.by_depth) {
+        r = z < p->focus ? -1 : z > p->focus;
+    } else if (p->model == HF_MODEL_LENS) {
+        r = m->r->lens_k * (1 / p->focus - 1 / z);
+        r = fminf(fmaxf(r, -p->max_radius), p->max_radius);
+    } else {
+        const float n = 1 - ramp(z, range->near_begin, range->near_end), f = ramp(z, range->far_begin, range->far_end);
+        r = range->strength * p->max_radius * (f - n);
+    }
+    return p->engine == HF_ENGINE_GAUSSIAN && r != 0 ? copysignf(3 * p->gaussian.sigma, r) : r;
+}
+
+static float radius_at(const struct model *m, int x, int y)
+{
+    if (m->depth->type != HF_DEPTH_COC)
+        return radius_of(m, view_depth(m, x, y));
+    const float most = m->r->params.max_radius;
+    const float r = ((const float *)m->depth->data)[(size_t)y * (size_t)m->width + (size_t)x];
+    return isfinite(r) ? fminf(fmaxf(r, -most), most) : 0;
 }
 
 int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_error *error)
@@ -60,11 +64,17 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
     // What is wrong with the settings is the library's to say.
     if (hf_resolve(width, height, &v->setup.depth, &v->setup.params, &resolved, NULL, 0))
         return 0;
-    if (args->focus_image) {
+    const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
+    const int inside =
+        data->x0 > display->x0 || data->y0 > display->y0 || data->x1 < display->x1 || data->y1 < display->y1;
+    free(v->radii);
+    v->radii = NULL;
+    if (args->focus_image || args->grow || inside) {
         v->radii = malloc((size_t)width * (size_t)height * sizeof(float));
         if (!v->radii)
             return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
     }
+    v->far_away = m.depth->type == HF_DEPTH_COC ? 0 : fabsf(radius_of(&m, INFINITY));
     v->least_radius = resolved.sharp ? 0 : INFINITY;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {

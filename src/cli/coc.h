@@ -5,8 +5,8 @@
 
 #include "cli/frame.h"
 
-// Look whether anything is in focus, and keep the radii if --focus-image wants them: the depth must be there. Returns
-// 0, or an exit code with *error filled.
+// Look whether anything is in focus, and keep the radii for --focus-image, and where blur may reach beyond the data
+// window: the depth must be there. Returns 0, or an exit code with *error filled.
 int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_error *error);
 
 #endif

@@ -8,6 +8,7 @@
 #include "cli/dump.h"
 #include "cli/explain.h"
 #include "cli/views.h"
+#include "cli/window.h"
 #include "tool/machine.h"
 
 // The library says why before it returns an error; that is the sentence to show.
@@ -170,7 +171,7 @@ static void share_focus(struct cli_frame *frame, struct cli_args *args)
     args->focus_from = first->focus_from;
 }
 
-int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
+static int set_up(struct cli_frame *frame, struct tool_error *error)
 {
     struct cli_args args = *frame->args;
     int status = cli_focus_needs_depth(&args) ? load(frame, error) : 0;
@@ -179,6 +180,20 @@ int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
         status = cli_setup_view(&v->setup, &args, v->view, v->depth, v->label, error);
         if (!status && i == 0)
             share_focus(frame, &args);
+    }
+    return status;
+}
+
+int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
+{
+    int status = set_up(frame, error);
+    // How far blur reaches is known when the picture is; places in it are others then.
+    if (!status && frame->args->grow) {
+        status = load(frame, error);
+        if (!status)
+            status = cli_window_grow(frame, error);
+        if (!status)
+            status = set_up(frame, error);
     }
     return status;
 }
@@ -198,7 +213,9 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     v->setup.depth.data = v->depth;
     session->label = v->label;
     session->log.text[0] = '\0';
-    return cli_coc_look(v, frame->args, error);
+    const int looked = cli_coc_look(v, frame->args, error);
+    v->cut = !looked && v->radii ? cli_window_cut(v) : 0;
+    return looked;
 }
 
 // After the library has seen the view: what went wrong, or what to keep.

@@ -27,7 +27,9 @@ struct cli_view {
     float *planes[4];
     struct cli_depth_found found;
     float least_radius;  // pixels: what is least blurred
-    float *radii;        // of all pixels, for --focus-image; NULL
+    float far_away;      // radius of what is infinitely far
+    float *radii;        // of all pixels, see cli_coc_look; NULL
+    int cut;             // pixels by which the blur reaches beyond the data window, and is lost
     struct hf_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for
 };

@@ -43,6 +43,7 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
     tool_json_count(j, "clamped", (long long)(s->clamped + (frame->view_count == 1 ? frame->written.clamped : 0)));
     tool_json_flag(j, "depth_negative", v->found.flipped);
     tool_json_number(j, "least_radius", v->least_radius);
+    tool_json_count(j, "cut", v->cut);
     tool_json_count(j, "warnings", cli_warnings_of(v));
     tool_json_ms(j, "total_ms", s->total_ms);
     tool_json_open(j, "passes", '[');

@@ -30,6 +30,12 @@ static const struct tool_option options[] = {
      "are. Default all.", TEXT(views)},
     {"layer", 0, TOOL_FILES, "all|NAME,...", "Layers to defocus, each by its own depth: ViewLayer.Combined, or just "
      "ViewLayer. all: every layer of colour, but masks, normals and the like. Default: the main one.", TEXT(layer)},
+    {"grow", 0, TOOL_FILES, NULL, "Let the data window grow by the reach of the blur, up to the display window. What is "
+     "new is black and transparent, 0 in other channels, and far away in depth. Default: what reaches beyond is cut, "
+     "with a warning.", FLAG(grow)},
+    {"display", 0, TOOL_FILES, "WxH[+X+Y]", "The picture is a crop of a frame of this size, pixels, at X,Y from its top "
+     "left corner (default: in its middle), whatever the file says: the lens is that of the whole frame.",
+     .parse = cli_parse_display},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
      "Default: that of INPUT.", .parse = tool_parse_choice_text, FIELD(compression)},
 

@@ -46,7 +46,7 @@ int cli_warnings_of(const struct cli_view *v)
 {
     const struct hf_report *r = &v->report;
     return (r->colour_repaired > 0) + (r->depth_repaired > 0) + cli_is_limited(v) + v->found.flipped +
-           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v));
+           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0);
 }
 
 static void warn(const struct cli_view *v, const struct cli_args *args)
@@ -73,11 +73,22 @@ static void warn(const struct cli_view *v, const struct cli_args *args)
         tool_print_line("%s: nothing is in focus: all is blurred by %.3g pixels or more", v->label, v->least_radius);
 }
 
+// Blur beyond the data window.
+static void warn_cut(const struct cli_view *v)
+{
+    if (v->cut)
+        tool_print_line(
+            "%s: blur reaches %d pixels beyond the data window, which is smaller than the display window, and "
+            "is cut there; --grow keeps it",
+            v->label, v->cut);
+}
+
 int cli_print_warnings(const struct cli_frame *frame)
 {
     int n = 0;
     for (int i = 0; i < frame->view_count; i++) {
         warn(&frame->views[i], frame->args);
+        warn_cut(&frame->views[i]);
         n += cli_warnings_of(&frame->views[i]);
     }
     if (frame->written.note[0])

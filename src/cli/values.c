@@ -17,6 +17,23 @@ int cli_parse_depth_type(struct tool_parser *p, const struct tool_option *option
     return 0;
 }
 
+// WxH, or WxH+X+Y.
+int cli_parse_display(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct cli_args *args = p->args;
+    int d[4] = {0, 0, CLI_CENTRED, CLI_CENTRED};
+    char *end;
+    int bad = tool_read_int(value, &d[0], &end) || *end != 'x' || tool_read_int(end + 1, &d[1], &end);
+    if (!bad && *end == '+')
+        bad = tool_read_int(end + 1, &d[2], &end) || *end != '+' || tool_read_int(end + 1, &d[3], &end);
+    if (bad || *end || d[0] < 1 || d[1] < 1 || d[0] > 65536 || d[1] > 65536)
+        return tool_fail(p->error, -1,
+                         "--%s: '%s' must be WxH or WxH+X+Y, whole numbers of pixels, up to 65536 each way",
+                         option->name, value);
+    memcpy(args->display, d, sizeof(d));
+    return 0;
+}
+
 int cli_parse_focus(struct tool_parser *p, const struct tool_option *option, const char *value)
 {
     struct cli_args *args = p->args;

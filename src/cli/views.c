@@ -115,6 +115,25 @@ static int name_view(const struct cli_frame *frame, struct cli_view *v)
     return v->tag && v->label ? 0 : -1;
 }
 
+// --display: a frame around the picture.
+static int set_display(const struct cli_frame *frame, int i, struct tool_error *error)
+{
+    const int *d = frame->args->display;
+    const struct hf_io_view *v = hf_io_view(frame->file, i);
+    const struct hf_io_box *data = &v->data_window;
+    if (!d[0])
+        return 0;
+    const int x = d[2] == CLI_CENTRED ? (d[0] - v->width) / 2 : d[2];
+    const int y = d[3] == CLI_CENTRED ? (d[1] - v->height) / 2 : d[3];
+    if (d[0] < v->width || d[1] < v->height || x < 0 || y < 0 || x > d[0] - v->width || y > d[1] - v->height)
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --display %dx%d does not hold the picture, %d x %d%s",
+                         frame->args->input, d[0], d[1], v->width, v->height,
+                         d[2] == CLI_CENTRED ? "" : ", at the place given");
+    hf_io_set_display(frame->file, i,
+                      (struct hf_io_box){data->x0 - x, data->y0 - y, data->x0 - x + d[0], data->y0 - y + d[1]});
+    return 0;
+}
+
 int cli_select_views(struct cli_frame *frame, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
@@ -138,8 +157,8 @@ int cli_select_views(struct cli_frame *frame, struct tool_error *error)
         if (name_view(frame, v))
             return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
         const int status = check_view(v, frame, error);
-        if (status)
-            return status;
+        if (status || set_display(frame, i, error))
+            return status ? status : CLI_BAD_ARGUMENTS;
     }
     if (!frame->views)
         return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);

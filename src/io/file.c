@@ -336,6 +336,38 @@ int hf_io_read_depth_rows(struct hf_io_file *file, int view, int first, int coun
     return status;
 }
 
+void hf_io_set_display(struct hf_io_file *file, int view, struct hf_io_box box)
+{
+    file->views.view[view].display_window = box;
+}
+
+int hf_io_grow(struct hf_io_file *file, int view, struct hf_io_box box, float no_surface, const struct hf_io_run *run,
+               struct hf_io_error *err)
+{
+    const int part = file->views.view[view].part;
+    if (check_view(file, view, err) || hf_io_check_window(file->path, "the grown data window", box, err))
+        return -1;
+    struct hf_exr_fill *fills = calloc((size_t)file->views.count + 1, sizeof(*fills));
+    int count = 0, status = fills ? 0 : hf_io_fail(err, "%s: out of memory", file->path);
+    for (int i = 0; i < file->views.count && !status && file->exr; i++) {
+        const struct hf_io_view *v = &file->views.view[i];
+        if (v->depth_part == part)
+            fills[count++] = (struct hf_exr_fill){hf_exr_find_channel(&file->exr->parts[part], v->depth), no_surface};
+    }
+    if (!status && file->exr)
+        status = hf_exr_grow(file->exr, part, box, fills, count, run, err);
+    free(fills);
+    for (int i = 0; i < file->views.count && !status; i++) {
+        struct hf_io_view *v = &file->views.view[i];
+        if (v->part != part)
+            continue;
+        v->data_window = box;
+        v->width = box.x1 - box.x0;
+        v->height = box.y1 - box.y0;
+    }
+    return status;
+}
+
 static int exr_depth_only(struct hf_io_file *file, const char *depth_channel, const struct hf_io_view *view,
                           float *depth, struct hf_io_error *err)
 {

@@ -78,6 +78,14 @@ int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_
 // chunks in which they lie are decoded.
 int hf_io_read_depth_rows(struct hf_io_file *file, int view, int first, int count, float *depth,
                           struct hf_io_error *err);
+// Take another display window for a view than the file's, which keeps its own.
+void hf_io_set_display(struct hf_io_file *file, int view, struct hf_io_box box);
+// Give the part of a view a larger data window, which must hold the old one: all its views have it then, and so will the
+// file that hf_io_encode makes. What is new is 0 in all channels but the depths of views, which are no_surface there.
+// After hf_io_decode; planes for hf_io_encode are of the new size.
+int hf_io_grow(struct hf_io_file *file, int view, struct hf_io_box box, float no_surface, const struct hf_io_run *run,
+               struct hf_io_error *err);
+
 // Depth from a file of its own, any format OpenImageIO or OpenEXRCore reads: its depth channel as searched above (or
 // its only channel, or R). Must have the same data window size as the view.
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,

@@ -127,8 +127,7 @@ def exr(path, channels, window=(0, 0, 63, 39), display=None, floats={}, views=No
             for n in names:
                 f.write(struct.pack('<%df' % width, *(float(channels[n](x, y)) for x in range(width))))
 
-def read(path):
-    """The bytes of each channel."""
+def header(path):
     data = open(path, 'rb').read()
     at, head = 8, {}
     while data[at]:
@@ -137,6 +136,14 @@ def read(path):
         size = struct.unpack_from('<i', data, at)[0]
         head[name.decode()] = data[at + 4:at + 4 + size]
         at += 4 + size
+    return head, data, at
+
+def window(path, name='dataWindow'):
+    return struct.unpack('<4i', header(path)[0][name])
+
+def read(path):
+    """The bytes of each channel."""
+    head, data, at = header(path)
     window = struct.unpack('<4i', head['dataWindow'])
     width, height = window[2] - window[0] + 1, window[3] - window[1] + 1
     names, rest = [], head['channels']
@@ -182,6 +189,14 @@ for layer, z in {'ViewLayer': depth, 'Foreground': lambda x, y: 1 + y // 8}.item
     layers[layer + '.Depth.Z'] = z
 layers.update({'CryptoObject00.' + n: lambda x, y: x for n in 'rgba'})
 exr('layers.exr', layers)
+# An object that does not fill the frame, and the same cropped to it.
+inside = lambda x, y: 24 <= x <= 43 and 12 <= y <= 27
+film = {n: (lambda f: lambda x, y: f(x, y) * inside(x, y))(f) for n, f in colour.items()}
+film.update(A=inside, Z=lambda x, y: 1 + x / 40 if inside(x, y) else 1e10, id=lambda x, y: 7)
+exr('film.exr', film)
+cropped = {n: (lambda f: lambda x, y: f(x + 24, y + 12))(f) for n, f in film.items()}
+exr('crop.exr', cropped, window=(24, 12, 43, 27), display=(0, 0, 63, 39))
+exr('bare.exr', cropped, window=(0, 0, 19, 15))
 # The same depth in other words: negative, from 0 to 1 and from 1 to 0 between 1 and 9, as 1/z, in thirds less 5.
 near = lambda x, y: 2 ** (x // 16)
 exr('near.exr', dict(colour, Z=near))

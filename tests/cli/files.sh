@@ -134,4 +134,48 @@ good near.exr --focus 4 --focus-image focus.exr --dry-run
 result "--focus-image without rendering" $?
 bad 1 "--focus-image|near.exr|INPUT" near.exr -o o.exr --focus 4 --focus-image near.exr
 
+# ---- windows
+# The object of film.exr fills a part of the frame; crop.exr has that part alone, in the same display window.
+lens='--focus 2 --fstop 0.1 --focal-length 50 --engine layers'
+# shellcheck disable=SC2086
+good film.exr -o film-out.exr $lens
+# shellcheck disable=SC2086
+run crop.exr -o cut.exr $lens
+[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "beyond the data window" &&
+    contains "$dir/err" "--grow"
+result "blur that is cut is a warning" $?
+# shellcheck disable=SC2086
+good crop.exr -o grown.exr $lens --grow
+python3 - <<'PYTHON'
+import struct
+from exr import read, window
+whole, cut, grown = (read(n) for n in ['film-out.exr', 'cut.exr', 'grown.exr'])
+x0, y0, x1, y1 = w = window('grown.exr')
+ok = window('cut.exr') == (24, 12, 43, 27) and window('grown.exr', 'displayWindow') == (0, 0, 63, 39)
+ok &= x0 < 24 and y0 < 12 and x1 > 43 and y1 > 27 and x0 > 0 and y0 >= 0 and x1 < 63 and y1 <= 39
+at = lambda f, w, c, x, y: struct.unpack_from('<f', f[c], 4 * ((y - w[1]) * (w[2] - w[0] + 1) + x - w[0]))[0]
+# Premultiplied colours of the frame rendered whole: sums of the same samples, in another order.
+worst = max(abs(at(grown, w, c, x, y) - at(whole, (0, 0, 63, 39), c, x, y))
+            for c in 'RGBA' for y in range(y0, y1 + 1) for x in range(x0, x1 + 1))
+outside = max(at(whole, (0, 0, 63, 39), 'A', x, y) for y in range(40) for x in range(64)
+              if not (x0 <= x <= x1 and y0 <= y <= y1))
+spread = at(grown, w, 'A', 23, 20)
+ok &= worst < 1e-5 and outside == 0 and spread > 0
+ok &= at(grown, w, 'Z', x0, y0) == 1e10 and at(grown, w, 'id', x0, y0) == 0 and at(grown, w, 'id', 30, 20) == 7
+if not ok:
+    print(w, worst, outside, spread)
+raise SystemExit(not ok)
+PYTHON
+result "--grow is what the whole frame shows" $?
+# A crop without windows: the lens is that of the frame it is from.
+plan "focal length 88.8889 pixels|display window -20,-10 to 43,29" bare.exr --focus 2 --fstop 2 --focal-length 50 \
+    --display 64x40+20+10
+plan "display window -22,-12 to 41,27" bare.exr --focus 2 --fstop 2 --focal-length 50 --display 64x40
+plan "focal length 27.7778 pixels" bare.exr --focus 2 --fstop 2 --focal-length 50
+for value in 64 64x 0x40 64x40+1 64x40+1+ 64x40x2; do
+    bad 1 "--display|'$value'" bare.exr -o o.exr --focus 2 --display "$value"
+done
+bad 1 "--display 19x40|20 x 16" bare.exr -o o.exr --focus 2 --display 19x40
+bad 1 "--display 64x40|at the place" bare.exr -o o.exr --focus 2 --display 64x40+45+0
+
 finish

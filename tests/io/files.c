@@ -43,7 +43,7 @@ static void quiet(exr_const_context_t core, exr_result_t code, const char *messa
     (void)core, (void)code, (void)message;
 }
 
-static exr_context_initializer_t context(void)
+exr_context_initializer_t context(void)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = quiet;
@@ -277,7 +277,7 @@ void turn_round(const char *path, int chunks)
 }
 
 // All samples of a channel, by Core's own unpacking. NULL for deep and mipmapped parts.
-static uint8_t *load_channel(exr_context_t f, int p, int c, size_t *size)
+uint8_t *load_channel(exr_context_t f, int p, int c, size_t *size)
 {
     exr_attr_box2i_t dw;
     exr_storage_t storage;

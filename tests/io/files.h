@@ -48,5 +48,8 @@ bool lossy(exr_compression_t c);
 void compare_channels(const char *a, const char *b, const struct hf_io_file *f, const struct hf_io_result *r, int n);
 void compare_headers(const char *a, const char *b);
 int files_in(const char *dir);
+exr_context_initializer_t context(void);
+// All samples of a channel, by Core's own unpacking. NULL for deep and mipmapped parts.
+uint8_t *load_channel(exr_context_t f, int p, int c, size_t *size);
 
 #endif

@@ -29,6 +29,7 @@ int main(void)
     test_parts();
     test_names();
     test_layers();
+    test_grow();
     test_unsupported();
     test_errors();
     full_disk(in_folder("views.exr"), in_folder("full.exr"));

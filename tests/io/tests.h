@@ -12,6 +12,7 @@ void test_single_part_views(void);
 void test_parts(void);
 void test_names(void);
 void test_layers(void);
+void test_grow(void);
 void test_compressions(void);
 void test_unsupported(void);
 void test_errors(void);

@@ -41,6 +41,8 @@ struct hf_exr_part {
     uint64_t table;           // file offsets: of the chunk table,
     uint64_t compression_at;  // of the byte that names the compression,
     uint64_t chunk_count_at;  // of the chunkCount attribute's value; 0 when there is none
+    uint64_t window_at;       // of the dataWindow attribute's value
+    bool grown;               // window, width, height, layout and samples are no longer the file's: see grow.c
     int channel_count;
     struct hf_exr_channel *channels;
     const exr_attr_chlist_t *list;
@@ -144,6 +146,14 @@ int hf_exr_decode(struct hf_exr *e, const struct hf_exr_plane *planes, int count
 int hf_exr_load_samples(struct hf_exr *e, int part, const struct hf_io_run *run, struct hf_io_error *err);
 // What hf_exr_decode of these would read, into memory.
 int hf_exr_fetch(struct hf_exr *e, const struct hf_exr_plane *planes, int count, struct hf_io_error *err);
+
+// grow.c: give a part a data window that holds its own. What is new is 0, or in some channels another value.
+struct hf_exr_fill {
+    int channel;
+    float value;
+};
+int hf_exr_grow(struct hf_exr *e, int part, struct hf_io_box box, const struct hf_exr_fill *fills, int fill_count,
+                const struct hf_io_run *run, struct hf_io_error *err);
 
 // codec.c: a part that only the codec can read or write, whole. The samples lie as the layout says.
 int hf_exr_codec_read(struct hf_exr *e, int part, uint8_t *samples, int threads, struct hf_io_error *err);

@@ -191,6 +191,8 @@ static int scan_part(struct cursor *c, struct hf_exr_part *part)
             return -1;
         if (!strcmp(name, "compression") && size == 1)
             part->compression_at = c->at;
+        if (!strcmp(name, "dataWindow") && size == 16)
+            part->window_at = c->at;
         if (!strcmp(name, "chunkCount") && !strcmp(type, "int") && size == 4)
             part->chunk_count_at = c->at;
         c->at += (uint64_t)size;

@@ -96,6 +96,8 @@ int hf_exr_check_part(const struct hf_exr *e, int p, struct hf_io_error *err)
 {
     const struct hf_exr_part *part = &e->parts[p];
     const exr_attr_box2i_t *w = &part->window;
+    if (part->grown)
+        return 0;
     if (!part->window_ok)
         return hf_io_fail(err, "%s: data window (%d %d) - (%d %d) is empty, too far out, or larger than %d a side",
                           e->path, w->min.x, w->min.y, w->max.x, w->max.y, HF_IO_MAX_SIDE);

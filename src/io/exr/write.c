@@ -74,8 +74,9 @@ static int plan_part(struct hf_exr *e, int p, const struct hf_exr_job *job, stru
         return hf_io_fail(err, "%s: part %d is mipmapped; writing new colours into it is not supported", e->path, p);
     if (plan->changed && job->compression >= 0)
         plan->compression = (exr_compression_t)job->compression;
-    if (plan->changed && part->storage == EXR_STORAGE_SCANLINE)
-        plan->chunk_count = (part->height - 1) / hf_exr_compression_lines(plan->compression) + 1;
+    plan->changed |= part->grown;
+    if (plan->changed)
+        plan->chunk_count = hf_exr_count_chunks(part, hf_exr_compression_lines(plan->compression));
     plan->pieces = calloc((size_t)plan->chunk_count, sizeof(*plan->pieces));
     plan->order = calloc((size_t)plan->chunk_count, sizeof(*plan->order));
     return plan->pieces && plan->order ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
@@ -100,6 +101,8 @@ static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, stru
             header[part->compression_at] = (uint8_t)m->plans[p].compression;
         if (count != part->chunk_count && part->chunk_count_at)
             memcpy(header + part->chunk_count_at, &count, sizeof(count));
+        if (part->grown)
+            memcpy(header + part->window_at, &part->window, sizeof(part->window));
     }
     if (!status && job->text_count) {
         uint8_t *stamped = hf_exr_stamp(header, &size, job->texts, job->text_count);
@@ -316,7 +319,8 @@ static int encode_by_codec(struct encoding *en, const struct hf_io_run *run)
     }
     atomic_fetch_add(&en->clamped, clamped);
     // Nothing new: then nothing is lost by compressing again.
-    if (!status && plan->compression == part->compression && !memcmp(whole, part->samples, part->layout.bytes)) {
+    if (!status && !part->grown && plan->compression == part->compression &&
+        !memcmp(whole, part->samples, part->layout.bytes)) {
         free(whole);
         free(w.row);
         return take_chunks(e, en->part, plan, en->err);
@@ -354,7 +358,7 @@ static int order_chunks(const struct encoding *en)
 {
     struct part_plan *plan = en->plan;
     const struct hf_exr_part *part = &en->e->parts[en->part];
-    const bool same = plan->chunk_count == part->chunk_count;
+    const bool same = plan->chunk_count == part->chunk_count && !part->grown;
     struct hf_exr_slot *slots = same ? hf_exr_file_order(en->e, en->part, en->err) : NULL;
     if (same && !slots)
         return -1;
@@ -424,7 +428,7 @@ static int encode_part(struct hf_exr *e, int p, const struct hf_exr_job *job, st
     if (!status && hf_exr_is_dwa(plan->compression)) {
         status = encode_by_codec(&en, run);
     } else if (!status) {
-        if (plan->compression == e->parts[p].compression)
+        if (plan->compression == e->parts[p].compression && !e->parts[p].grown)
             en.table = hf_exr_table(e, p, err);
         status = encode_chunks(&en, run);
         free(en.table);
