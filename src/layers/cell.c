@@ -40,6 +40,7 @@ static size_t place(struct hf_cell *c, float *memory)
     struct scratch m = {.memory = memory};
     const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels, n = c->l->most_tiles;
     const int wide = width + 2 * n * TILE + 2 * AROUND;
+    c->present = (uint64_t *)take(&m, 6 * (size_t)c->l->words, 0);
     c->used = take_map(&m, c->columns, c->rows, n);
     c->filled = take_map(&m, c->columns, TILE / 2, n);
     struct hf_tile_map *const maps[] = {&c->touched, &c->shone, &c->near,   &c->far,
@@ -86,6 +87,7 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
                         .columns = (r.x1 - r.x0) / TILE,
                         .rows = (r.y1 - r.y0) / TILE};
     place(&c, memory);
+    hf_layers_find_present(&c);
     memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
     // Where a slice does not reach, its light is 0 whatever part of it shows.
     memset(c.part - MARGIN * c.part_row - LEFT, 0,

@@ -76,10 +76,10 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
 
 static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
 {
-    const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level;
+    const int size = TILE >> b->s->level;
     for (int i = 0; i < size / 2; i++)
-        memset(hf_layers_map_at(&c->filled, -n, i), 0, (size_t)(c->columns + 2 * n));
-    for (int tx = -n, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0)) > tx; tx = end)
+        memset(hf_layers_map_at(&c->filled, c->box.x0, i), 0, (size_t)(c->box.x1 - c->box.x0));
+    for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0)) > tx; tx = end)
         for (int y = 0; y < size; y++)
             build_run(c, b, tx, end, ty, y);
 }
@@ -87,11 +87,11 @@ static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
 // Also what vectors have written past the last tile.
 static void clear_row(const struct hf_cell *c, const struct hf_build *b)
 {
-    const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level;
-    for (int y = 0; y < size; y++)
-        for (int tx = -n, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->columns + n, ~0)) > tx; tx = end)
-            for (int i = 0; i <= c->l->channels; i++)
-                memset(source_at(c, i, tx * size, y), 0, sizeof(float) * (size_t)((end - tx) * size + 16));
+    const int size = TILE >> b->s->level;
+    for (int y = 0; y < size; y += 2)
+        for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end)
+            for (int i = 0; i <= 2 * c->l->channels + 1; i++)
+                memset(source_at(c, i / 2, tx * size, y + i % 2), 0, sizeof(float) * (size_t)((end - tx) * size + 16));
 }
 
 // Draw columns x0 to x1 of two rows of a row of tiles' sources.
@@ -111,10 +111,10 @@ static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at,
 static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty, int y, const struct hf_window *to)
 {
     const struct hf_slice *s = b->s;
-    const int n = hf_layers_tiles_around(s), size = TILE >> s->level, margin = s->level ? MARGIN : 0;
+    const int size = TILE >> s->level, margin = s->level ? MARGIN : 0;
     const int last = c->columns * size + margin, at = ty * size + y;
     int x0 = 0, x1 = 0;
-    for (int tx = -n, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->columns + n, ~0)) > tx; tx = end) {
+    for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end) {
         int a = tx * size - s->reach, z = end * size + s->reach;
         a = a > -margin ? a : -margin;
         z = z < last ? z : last;
@@ -136,14 +136,14 @@ static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty,
 void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
                           const struct hf_window *to)
 {
-    const int n = hf_layers_tiles_around(b->s), size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
+    const int size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
     clear_touched(c, touched, to, b->s->level, b->channels);
     if (b->s->shape)
         hf_layers_begin_shape(c, b->s);
-    for (int ty = -n; ty < c->rows + n; ty++) {
-        int tx = -n;
-        if (hf_layers_next_run(&c->used, &tx, ty, c->columns + n, ~0) == tx ||
-            (ty + 1) * size + b->s->rows <= -margin || ty * size - b->s->rows >= c->rows * size + margin)
+    for (int ty = c->box.y0; ty < c->box.y1; ty++) {
+        int tx = c->box.x0;
+        if (hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0) == tx || (ty + 1) * size + b->s->rows <= -margin ||
+            ty * size - b->s->rows >= c->rows * size + margin)
             continue;
         build_row(c, b, ty);
         for (int y = 0; y < size; y += 2)

@@ -49,9 +49,9 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
 };
 
 static const struct hf_layers_settings qualities[] = {
-    [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 8, .quarter = 32},
-    [HF_LAYERS_STANDARD] = {.spacing = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 8, .quarter = 32},
-    [HF_LAYERS_HIGH] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 8, .quarter = 32},
+    [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 6, .quarter = 32},
+    [HF_LAYERS_STANDARD] = {.spacing = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
+    [HF_LAYERS_HIGH] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
     [HF_LAYERS_BEST] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 16, .quarter = 64},
 };
 
@@ -253,8 +253,10 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     if (sweep == 2) {
-        *width = 128;
-        *height = 64;
+        // What is around a cell is weighed again for each: the more there is of it, the larger the cell.
+        const int n = hf_layers(s)->around < 256 ? 1 : 2;
+        *width = 160 * n;
+        *height = 96 * n;
     } else if (sweep == 3) {
         *width = (s->half_width + 15) & ~15;
         *height = 96;

@@ -33,6 +33,8 @@ struct hf_cell {
     const struct hf_layers_kernels *k;
     int x0, y0, columns, rows;             // of tiles
     struct hf_tile_map used;               // tiles that have samples of the slice
+    uint64_t *present;                     // slices with samples that may reach the cell, a bit for each, of each kind
+    struct hf_rect box;                    // those around which there are none
     struct hf_tile_map filled;             // pairs of rows of a row of tiles: where there are any
     struct hf_tile_map touched;            // tiles that its blur reaches, one more around the cell
     struct hf_tile_map shone;              // the same of its shares at full resolution
@@ -86,6 +88,8 @@ static inline const struct hf_slice *hf_layers_table(const struct hf_layers *l, 
 
 // tiles.c
 struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct hf_layers_range *map, int tx, int ty);
+// Which slices have samples that may reach the cell at all.
+void hf_layers_find_present(struct hf_cell *c);
 // Mark the tiles around the cell that have samples of the slice. Returns 0 if there are none.
 int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind);
 // Tiles of the cell, and one around it, that the blur of what is used reaches.

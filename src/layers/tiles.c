@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "layers/parts.h"
+#include "pixel/pass_c.h"
 
 // The number of a tile in the frame's tables; tiles beyond it hold the samples of its border.
 static int tile_number(const struct hf_cell *c, int tx, int ty)
@@ -19,41 +20,70 @@ struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct 
     return map[tile_number(c, tx, ty)];
 }
 
-static int has(const struct hf_layers *l, const uint64_t *marks, int tile, int slice)
+// The bits of a slice in a row of tiles from tx on.
+static void mark_row(const struct hf_cell *c, const uint64_t *marks, int slice, int tx, int n, int ty, int bit)
 {
-    return (int)(marks[(ptrdiff_t)tile * l->words + slice / 64] >> slice % 64 & 1);
+    const struct hf_layers *l = c->l;
+    const int first = c->x0 / TILE + tx, words = l->words, last = l->columns - 1;
+    const uint64_t *row = marks + (ptrdiff_t)tile_number(c, -c->x0 / TILE, ty) * words + slice / 64;
+    uint8_t *used = hf_layers_map_at(&c->used, tx, ty);
+    for (int i = 0; i < n; i++) {
+        const int x = hf_min(hf_max(first + i, 0), last);
+        used[i] |= (uint8_t)((row[(ptrdiff_t)x * words] >> slice % 64 & 1) * (unsigned)bit);
+    }
+}
+
+void hf_layers_find_present(struct hf_cell *c)
+{
+    const struct hf_layers *l = c->l;
+    const int n = l->most_tiles, words = l->words, left = hf_max(c->x0 / TILE - n, 0),
+              right = hf_min(c->x0 / TILE + c->columns + n, l->columns);
+    const uint64_t *const marks[] = {l->seen_marks, l->mixed_marks, l->levels ? l->hidden_marks : NULL, l->share_marks};
+    static const enum hf_kind kinds[] = {HF_KIND_SEEN, HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES};
+    memset(c->present, 0, 3 * sizeof *c->present * (size_t)words);
+    for (int i = 0; i < 4; i++)
+        for (int y = hf_max(c->y0 / TILE - n, 0); marks[i] && y < hf_min(c->y0 / TILE + c->rows + n, l->rows); y++)
+            for (int x = left * words; x < right * words; x++)
+                c->present[(int)kinds[i] * words + x % words] |= marks[i][(ptrdiff_t)y * l->columns * words + x];
 }
 
 int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
 {
     const struct hf_layers *l = c->l;
-    const int n = hf_layers_tiles_around(hf_layers_table(l, kind) + slice);
-    int any = 0;
-    for (int ty = -n; ty < c->rows + n; ty++)
-        for (int tx = -n; tx < c->columns + n; tx++) {
-            const int tile = tile_number(c, tx, ty);
-            int bits = 0;
-            if (kind == HF_KIND_HIDDEN)
-                bits = has(l, l->hidden_marks, tile, slice);
-            else if (kind == HF_KIND_SHARES)
-                bits = has(l, l->share_marks, tile, slice);
-            else
-                bits =
-                    (has(l, l->seen_marks, tile, slice) ? SEEN : 0) | (has(l, l->mixed_marks, tile, slice) ? MIXED : 0);
-            *hf_layers_map_at(&c->used, tx, ty) = (uint8_t)bits;
-            any |= bits;
-        }
-    return any;
+    if (!(c->present[(int)kind * l->words + slice / 64] >> slice % 64 & 1))
+        return 0;
+    const int n = hf_layers_tiles_around(hf_layers_table(l, kind) + slice), columns = c->columns + 2 * n;
+    const uint64_t *marks = kind == HF_KIND_HIDDEN   ? l->hidden_marks
+                            : kind == HF_KIND_SHARES ? l->share_marks
+                                                     : l->seen_marks;
+    c->box = (struct hf_rect){c->columns + n, c->rows + n, -n, -n};
+    for (int ty = -n; ty < c->rows + n; ty++) {
+        uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
+        memset(used, 0, (size_t)columns);
+        mark_row(c, marks, slice, -n, columns, ty, SEEN);
+        if (kind == HF_KIND_SEEN)
+            mark_row(c, l->mixed_marks, slice, -n, columns, ty, MIXED);
+        int first = 0, last = columns;
+        while (first < last && !used[first])
+            first++;
+        while (last > first && !used[last - 1])
+            last--;
+        if (first == last)
+            continue;
+        c->box =
+            (struct hf_rect){hf_min(first - n, c->box.x0), hf_min(ty, c->box.y0), hf_max(last - n, c->box.x1), ty + 1};
+    }
+    return c->box.y0 < c->box.y1;
 }
 
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to)
 {
-    const int n = hf_layers_tiles_around(s), reach = ((s->reach + 3) << s->level) + TILE - 1, by = reach / TILE;
+    const int reach = ((s->reach + 3) << s->level) + TILE - 1, by = reach / TILE;
     int any = 0;
     for (int ty = -1; ty <= c->rows; ty++)
         memset(hf_layers_map_at(to, -1, ty), 0, (size_t)c->columns + 2);
-    for (int ty = -n; ty < c->rows + n; ty++)
-        for (int tx = -n; tx < c->columns + n; tx++) {
+    for (int ty = c->box.y0; ty < c->box.y1; ty++)
+        for (int tx = c->box.x0; tx < c->box.x1; tx++) {
             if (!*hf_layers_map_at(&c->used, tx, ty))
                 continue;
             const int a = tx - by > -1 ? tx - by : -1, b = tx + by < c->columns ? tx + by : c->columns;
