@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/args.h"
 
+#include "cli/choose.h"
 #include "cli/depth.h"
 
 #include <math.h>
@@ -16,7 +17,8 @@ int cli_is_exr(const char *path)
 
 static void set_defaults(struct cli_args *args)
 {
-    *args = (struct cli_args){.params = hf_default_params, .focus_smooth = -1, .engine = -1, .quality = -1};
+    *args = (struct cli_args){
+        .params = hf_default_params, .focus_smooth = -1, .engine = -1, .quality = -1, .max_error = NAN};
     float *const unset[] = {&args->focus,        &args->range,        &args->strength,       &args->near_begin,
                             &args->near_end,     &args->far_begin,    &args->far_end,        &args->fstop,
                             &args->focal_length, &args->sensor_width, &args->world_unit,     &args->near_plane,
@@ -226,21 +228,15 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
 }
 
 // What follows from several options, whatever their order.
-static int combine(struct cli_args *args, struct tool_error *error)
+static int combine(struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
     struct hf_params *p = &args->params;
-    static const enum hf_layers_quality finer[] = {[CLI_QUALITY_STANDARD] = HF_LAYERS_STANDARD,
-                                                   [CLI_QUALITY_HIGH] = HF_LAYERS_HIGH,
-                                                   [CLI_QUALITY_BEST] = HF_LAYERS_BEST};
-    if (args->engine >= 0 && args->quality >= 0)
-        return tool_fail(error, -1, "--engine and --quality cannot be given together: each chooses an engine");
-    if (args->quality > CLI_QUALITY_DRAFT && p->layers.quality != hf_default_params.layers.quality)
-        return tool_fail(error, -1, "--quality and --layers-quality cannot be given together: each says how fine");
-    p->engine = args->engine >= 0                    ? (enum hf_engine)args->engine
-                : args->quality == CLI_QUALITY_DRAFT ? HF_ENGINE_GATHER
-                                                     : HF_ENGINE_LAYERS;
-    if (args->quality > CLI_QUALITY_DRAFT)
-        p->layers.quality = finer[args->quality];
+    if (args->engine >= 0)
+        p->engine = (enum hf_engine)args->engine;
+    else
+        p->engine = HF_ENGINE_LAYERS;
+    if (cli_choose(args, parser, error))
+        return -1;
     if (args->verbose && args->quiet)
         return tool_fail(error, -1, "--verbose and --quiet cannot be given together");
     return 0;
@@ -260,7 +256,7 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_err
         return 0;
     if (given(args->world_unit))
         tool_scale_metric(&p, args->world_unit);
-    if (combine(args, error))
+    if (combine(args, &p, error))
         return -1;
     if (!args->input && args->json_word) {
         args->json_file = NULL;

@@ -17,9 +17,6 @@ enum cli_focus {
     CLI_FOCUS_AT,        // --focus-at X,Y
 };
 
-// --quality: which engine, and how fine.
-enum cli_quality { CLI_QUALITY_DRAFT, CLI_QUALITY_STANDARD, CLI_QUALITY_HIGH, CLI_QUALITY_BEST };
-
 enum { CLI_CENTRED = INT_MIN };  // a place in args->display
 
 enum cli_keys_blend { CLI_KEYS_LINEAR, CLI_KEYS_SMOOTH };
@@ -36,7 +33,9 @@ struct cli_args {
     // The model and what belongs to it depend on the file, see setup.h.
     struct hf_params params;
 
-    int engine, quality;  // as given; -1: not given
+    int engine, quality;      // as given; -1: not given
+    float max_error;          // NAN: not given
+    struct hf_choice choice;  // of --quality or --max-error; options is NULL without them
 
     enum cli_focus focus_by;
     int focus_given, focus_at_given;  // --focus in either form, --focus-at

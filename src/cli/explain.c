@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/choose.h"
+
 int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct tool_error *error)
 {
     const size_t tiles = hf_get_tiles(context, NULL, 0);
@@ -91,8 +93,10 @@ static void print_report(FILE *out, const struct hf_report *r, int ran)
 void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
 {
     for (int i = 0; i < frame->view_count; i++) {
+        const struct hf_io_view *view = frame->views[i].view;
         char name[TOOL_SHOWN];
         fprintf(out, "%s\n", tool_shown(frame->views[i].label, name));
+        cli_choose_print(out, frame->args, 1e-6 * view->width * view->height);
         print_report(out, &frame->views[i].report, ran);
     }
 }

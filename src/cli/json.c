@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/json.h"
 
+#include "cli/choose.h"
 #include "cli/explain.h"
 #include "cli/summary.h"
 #include "tool/json.h"
@@ -140,6 +141,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     put_window(j, "data_window", &v->view->data_window);
     put_window(j, "display_window", &v->view->display_window);
     put_model(j, &v->setup);
+    cli_choose_json(j, frame->args, 1e-6 * v->view->width * v->view->height);
     if (!frame->args->dry_run)
         put_stats(j, v, frame);
     if (v->tiles)

@@ -102,8 +102,11 @@ static const struct tool_option options[] = {
      "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "
      "half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. gaussian: soft, with "
      "autofocus.", NAME(engine, ENGINE)},
-    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "In place of --engine: draft is the gather; standard "
-     "(default), high and best are the layers, slower and finer.", CHOICE(quality)},
+    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings from those "
+     "it was measured with: the cheapest; the cheapest within 1 dB of the most accurate; within 0.25 dB; the most "
+     "accurate. --explain says what that costs and errs.", NAME(quality, QUALITY)},
+    {"max-error", 0, TOOL_LOOK, "E", "The same by the error that is acceptable: root mean square distance from what a "
+     "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1},
     {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
      "(default), or a polygon with 3 to 16 sides turned by some degrees. layers, scatter: rounded by 0 to 1 (a lone number above 1 is the degrees); a "
      "ring whose hole has R of the radius, 0 to 0.95; or the picture in FILE. hexagon: ngon:6 and the degrees.",
@@ -122,7 +125,7 @@ static const struct tool_option options[] = {
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
      "this CPU.", NAME(isa, ISA)},
     {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. When the frames before took longer, cheaper "
-     "settings are chosen: smaller buffers, the gather, fewer rings. Default: any time.",
+     "settings are chosen, those from which --quality chooses. Default: any time.",
      POSITIVE(params.run.budget_ms)},
     {"explain", 0, TOOL_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
      "others, memory, time. With --dry-run: what would run.", FLAG(explain)},

@@ -100,6 +100,8 @@ void hf_ladder_reshape(struct hf_params *p)
         a->cat_eye = disc->cat_eye;
     if (!(drawn & HF_APERTURE_SQUEEZE))
         a->squeeze = disc->squeeze;
+    if (!(drawn & HF_APERTURE_CHROMATIC))
+        a->chromatic = disc->chromatic;
     if (!(drawn & HF_APERTURE_PICTURE))
         a->picture = disc->picture;
 }
@@ -110,7 +112,7 @@ int hf_ladder_can_draw(const struct hf_params *p)
     hf_ladder_reshape(&other);
     const struct hf_aperture_params *a = &p->aperture, *b = &other.aperture;
     return a->blades == b->blades && a->roundness == b->roundness && a->ring == b->ring && a->cat_eye == b->cat_eye &&
-           a->squeeze == b->squeeze && a->picture == b->picture;
+           a->squeeze == b->squeeze && a->chromatic == b->chromatic && a->picture == b->picture;
 }
 
 // The step that params are, or -1.

@@ -114,8 +114,13 @@ for value in 0 -1 inf nan x; do
 done
 bad 1 "--rings|'65'" a.exr -o o.exr --rings 65
 bad 1 "--chromatic|'0.6'" a.exr -o o.exr --engine scatter --chromatic 0.6
-bad 1 "--chromatic|scatter|gather" a.exr -o o.exr --quality draft --chromatic 0.1
+bad 1 "--chromatic|scatter|gather" a.exr -o o.exr --engine gather --chromatic 0.1
 bad 1 "--engine|--quality" a.exr -o o.exr --engine gather --quality draft
+bad 1 "--rings|--max-error" a.exr -o o.exr --rings 3 --max-error 0.05
+bad 1 "--quality|--max-error" a.exr -o o.exr --quality draft --max-error 0.05
+bad 1 "--max-error|'0'" a.exr -o o.exr --max-error 0
+bad 1 "--max-error|'1.5'" a.exr -o o.exr --max-error 1.5
+bad 1 "--spacing|layers|scatter" a.exr -o o.exr --spacing 3 --engine scatter
 bad 1 "--quality|--layers-quality" a.exr -o o.exr --quality high --layers-quality best
 bad 1 "--resolution half|scatter|layers" a.exr -o o.exr --resolution half
 bad 1 "--quality|'drafty'|draft?" a.exr -o o.exr --quality drafty
@@ -253,8 +258,12 @@ picture_tests() {
     plan "engine layers|focus 12 from --focus|sensor 36 mm" plain.exr --focus 120cm --world-unit 0.1 --fstop 2 \
         --focal-length 50mm --sensor-width 0.036m
     plan "focus 3 |none from 2.5; far blur none up to 3.5" plain.exr --focus 3 --depth-of-field 1
-    plan "engine gather|rings of taps" plain.exr --focus 3 --quality draft --max-radius 40
-    plan "engine layers|best quality|slices (" plain.exr --focus 3 --quality best --max-radius 40 --explain
+    plan "engine gather|rings of taps" plain.exr --focus 3 --engine gather --max-radius 40
+    plan "--quality draft chose --engine|, step 1 of|expected: |measured 20" plain.exr --focus 3 --quality draft --explain
+    plan "--max-error 0.9 chose --engine|, step 1 of" plain.exr --focus 3 --max-error 0.9 --explain
+    plan "no setting errs as little" plain.exr --focus 3 --max-error 0.0001 --explain
+    plan "--quality draft chose --engine" plain.exr --focus 3 --quality draft --explain --aperture ring:0.5
+    plan "engine layers|best quality|slices (" plain.exr --focus 3 --engine layers --layers-quality best --max-radius 40 --explain
     run plain.exr -o o.exr --focus 3 --range 2 --verbose
     [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "layers, focus 3" &&
         contains "$dir/err" "0 warnings"

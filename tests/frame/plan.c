@@ -209,14 +209,14 @@ static void ladders(void)
     struct hf_params ladder[HF_BUDGET_STEPS], p = hf_default_params;
     for (int e = 0; e < HF_ENGINE_COUNT; e++) {
         p.engine = (enum hf_engine)e;
-        p.aperture.chromatic = 0.125f;
+        p.lens.world_unit_m = 0.125f;
         p.focus = 3;
         const int n = hf_budget_ladder(&p, ladder);
         CHECK(!memcmp(&ladder[0], &p, sizeof p));
         for (int i = 1; i < n; i++) {
             CHECK_MSG(hf_ladder_ms(&ladder[i]) < hf_ladder_ms(&ladder[i - 1]), "%s, step %d", hf_engine_name(p.engine),
                       i);
-            CHECK(ladder[i].aperture.chromatic == 0.125f && ladder[i].focus == 3);  // no knobs of the ladder
+            CHECK(ladder[i].lens.world_unit_m == 0.125f && ladder[i].focus == 3);  // no knobs of the ladder
         }
         if (n > 1)
             CHECK(hf_ladder_ms(&ladder[n - 1]) == hf_ladder[0].ms);
@@ -229,6 +229,7 @@ static void ladders(void)
     p.engine = HF_ENGINE_SCATTER;
     p.aperture.ring = 0.5f;
     p.aperture.blades = 7;
+    p.aperture.chromatic = 0.125f;
     for (int i = hf_budget_ladder(&p, ladder) - 1; i >= 0; i--)
         CHECK(hf_ladder_can_draw(&ladder[i]));
 }
@@ -254,15 +255,19 @@ static void choices(void)
     for (int i = 0; i < hf_ladder_steps; i++) {
         CHECK_INT(hf_choose_error(&p, hf_ladder[i].error, &c), HF_OK);
         CHECK_INT(c.step, i);
+        CHECK(hf_ladder_ms(&p) == hf_ladder[i].ms);
     }
     CHECK_INT(hf_choose_error(&p, 1e-6f, &c), HF_OK);  // nothing errs so little: the best there is
     CHECK_INT(c.step, hf_ladder_steps - 1);
     CHECK_INT(hf_choose_error(&p, 1, &c), HF_OK);
     CHECK_INT(c.step, 0);
-    p.aperture.ring = 0.5f;
+    // The last step draws whatever there is.
+    static const struct hf_image any;
+    p.aperture = (struct hf_aperture_params){
+        .blades = 7, .ring = 0.5f, .squeeze = 2, .cat_eye = 1, .roundness = 0.5f, .chromatic = 0.1f, .picture = &any};
     hf_choose_quality(&p, HF_QUALITY_DRAFT, &c);
     CHECK(hf_ladder_can_draw(&p));
-    CHECK(c.step == 0 || hf_ladder_ms(&p) == hf_ladder[c.step].ms);
+    CHECK(hf_ladder_ms(&p) == hf_ladder[c.step].ms);
     CHECK_INT(hf_choose_error(&p, 0, &c), HF_ERR_ARG);
     CHECK_INT(hf_choose_error(&p, (float)NAN, &c), HF_ERR_ARG);
     CHECK_INT(hf_choose_quality(NULL, HF_QUALITY_BEST, &c), HF_ERR_ARG);

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/choose.h"
+
+#include <math.h>
+
+// Options that say themselves what would be chosen.
+static const char *const knobs[] = {"engine",       "resolution", "iterations",       "sigma",     "rings",
+                                    "fill",         "downsample", "division",         "storage",   "karis",
+                                    "faithful",     "bicubic",    "uniform",          "half-from", "quarter-from",
+                                    "spacing",      "no-unmix",   "per-pixel-kernel", "no-hidden", "layers-quality",
+                                    "no-highlights"};
+
+static int by_error(const struct cli_args *args)
+{
+    return !isnan(args->max_error);
+}
+
+int cli_choose(struct cli_args *args, const struct tool_parser *p, struct tool_error *error)
+{
+    static const struct hf_image any;
+    struct hf_params *params = &args->params;
+    const char *option = by_error(args) ? "max-error" : "quality";
+    if (!by_error(args) && args->quality < 0)
+        return 0;
+    if (by_error(args) && args->quality >= 0)
+        return tool_fail(error, -1, "--quality and --max-error cannot be given together: each chooses the settings");
+    for (size_t i = 0; i < sizeof(knobs) / sizeof(knobs[0]); i++)
+        if (tool_given(p, knobs[i]))
+            return tool_fail(error, -1,
+                             "--%s and --%s cannot be given together: --%s chooses the engine and its settings",
+                             knobs[i], option, option);
+    // The aperture's picture is read later; that there will be one decides who can draw it.
+    if (args->aperture_file)
+        params->aperture.picture = &any;
+    const int status = by_error(args) ? hf_choose_error(params, args->max_error, &args->choice)
+                                      : hf_choose_quality(params, (enum hf_quality)args->quality, &args->choice);
+    params->aperture.picture = NULL;
+    return status ? tool_fail(error, -1, "--%s: %s", option, hf_error_string(status)) : 0;
+}
+
+void cli_choose_print(FILE *out, const struct cli_args *args, double megapixels)
+{
+    const struct hf_choice *c = &args->choice;
+    if (!c->options)
+        return;
+    if (by_error(args))
+        fprintf(out, "  --max-error %g chose %s", args->max_error, c->options);
+    else
+        fprintf(out, "  --quality %s chose %s", hf_name(HF_NAMES_QUALITY, args->quality), c->options);
+    fprintf(out, ", step %d of %d\n", c->step + 1, c->steps);
+    if (by_error(args) && c->error > args->max_error)
+        fprintf(out, "  no setting errs as little as was asked for\n");
+    fprintf(out,
+            "  expected: %.1f ms (%.1f a megapixel); error %.4f of the display's range (%.1f dB), %.4f in the worst "
+            "scene\n  measured %s\n",
+            c->ms * megapixels, c->ms, c->error, -20 * log10(c->error), c->worst, c->measured);
+}
+
+void cli_choose_json(struct tool_json *j, const struct cli_args *args, double megapixels)
+{
+    const struct hf_choice *c = &args->choice;
+    if (!c->options)
+        return;
+    tool_json_open(j, "choice", '{');
+    tool_json_text(j, "options", c->options);
+    tool_json_count(j, "step", c->step + 1);
+    tool_json_count(j, "steps", c->steps);
+    tool_json_ms(j, "expected_ms", c->ms * megapixels);
+    tool_json_number(j, "expected_error", c->error);
+    tool_json_number(j, "worst_error", c->worst);
+    tool_json_text(j, "measured", c->measured);
+    tool_json_close(j);
+}
