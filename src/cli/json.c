@@ -168,6 +168,7 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
         tool_json_ms(&j, "read_ms", frame->ms[CLI_READ] + frame->ms[CLI_DECODE]);
         tool_json_ms(&j, "write_ms", frame->ms[CLI_ENCODE] + frame->ms[CLI_WRITE]);
         tool_json_count(&j, "clamped", (long long)frame->written.clamped);
+        tool_json_text(&j, "note", frame->written.note[0] ? frame->written.note : NULL);
     }
     tool_json_open(&j, "views", '[');
     for (int i = 0; i < frame->view_count; i++)

@@ -134,6 +134,27 @@ good near.exr --focus 4 --focus-image focus.exr --dry-run
 result "--focus-image without rendering" $?
 bad 1 "--focus-image|near.exr|INPUT" near.exr -o o.exr --focus 4 --focus-image near.exr
 
+# ---- lossy compression
+run layers.exr -o dwa.exr --focus 3 --compression dwaa
+if contains "$dir/err" "built without OpenImageIO"; then
+    skip "DWA (no OpenImageIO)"
+else
+    run dwa.exr -o o.exr --focus 3 --max-radius 6 --json
+    [ "$status" -eq 0 ] && contains "$dir/err" "3 channels besides the colours (Foreground.Combined.B, ...)" &&
+        contains "$dir/err" "dwaa a second time" && contains "$dir/err" "--compression zip" && [ "$(wc -l <"$dir/err")" -eq 1 ] &&
+        contains "$dir/out" '"note": "dwa.exr'
+    result "what DWA wears out is counted" $?
+    good dwa.exr -o o.exr --focus 3 --max-radius 6 --compression none
+    run dwa.exr -o o2.exr --focus 3 --max-radius 6
+    good o2.exr -o o3.exr --focus 3 --range inf --compression none
+    python3 -c '
+from exr import read
+a, b, c = (read(n) for n in ["layers.exr", "o.exr", "o3.exr"])
+raise SystemExit(any(f[n] != a[n] for f in (b, c) for n in a if n.startswith("Crypto") or n.endswith(".Z")))'
+    result "masks and depth keep their bits through DWA" $?
+    rm -f o2.exr o3.exr
+fi
+
 # ---- windows
 # The object of film.exr fills a part of the frame; crop.exr has that part alone, in the same display window.
 lens='--focus 2 --fstop 0.1 --focal-length 50 --engine layers'

@@ -5,7 +5,6 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "io/exr/chunks.h"
 #include "io/half.h"
@@ -381,17 +380,28 @@ static bool is_result(const struct hf_exr_job *job, int p, const char *channel)
     return false;
 }
 
-// Does this compression change what it compresses a second time? DWA does so by the last piece of the name alone.
+static bool is_b44(exr_compression_t c)
+{
+    return c == EXR_COMPRESSION_B44 || c == EXR_COMPRESSION_B44A;
+}
+
+// Does this compression change what goes through it? DWA's by the last piece of the name alone, capitals only: masks of
+// r, g and b keep their bits.
 static bool loses(exr_compression_t compression, const struct hf_exr_channel *ch)
 {
     static const char *const lossy[] = {"R", "G", "B", "Y", "RY", "BY"};
     const char *dot = strrchr(ch->name, '.'), *last = dot ? dot + 1 : ch->name;
-    if (compression == EXR_COMPRESSION_B44 || compression == EXR_COMPRESSION_B44A)
+    if (is_b44(compression))
         return ch->type == EXR_PIXEL_HALF;
     for (size_t i = 0; i < sizeof(lossy) / sizeof(lossy[0]); i++)
-        if (hf_exr_is_dwa(compression) && ch->type != EXR_PIXEL_UINT && !strcasecmp(last, lossy[i]))
+        if (hf_exr_is_dwa(compression) && ch->type != EXR_PIXEL_UINT && !strcmp(last, lossy[i]))
             return true;
     return false;
+}
+
+static bool same_loss(exr_compression_t a, exr_compression_t b)
+{
+    return (hf_exr_is_dwa(a) && hf_exr_is_dwa(b)) || (is_b44(a) && is_b44(b));
 }
 
 static void note_losses(const struct hf_exr *e, int p, const struct hf_exr_job *job, const struct part_plan *plan,
@@ -410,10 +420,11 @@ static void note_losses(const struct hf_exr *e, int p, const struct hf_exr_job *
         }
     if (count && !written->note[0])
         snprintf(written->note, sizeof(written->note),
-                 "%s: %d channel%s besides the colours (%s%s) went through %s a second time, which loses a little; "
+                 "%s: %d channel%s besides the colours (%s%s) %s compressed by %s%s, which loses a little; "
                  "--compression zip does not",
-                 e->path, count, count > 1 ? "s" : "", first, count > 1 ? ", ..." : "",
-                 hf_exr_compression_name(plan->compression));
+                 e->path, count, count > 1 ? "s" : "", first, count > 1 ? ", ..." : "", count > 1 ? "were" : "was",
+                 hf_exr_compression_name(plan->compression),
+                 same_loss(part->compression, plan->compression) ? " a second time" : "");
 }
 
 static int encode_part(struct hf_exr *e, int p, const struct hf_exr_job *job, struct part_plan *plan,
