@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Slices put together from front to back.
+#include <math.h>
+
 #include "layers/kernels.h"
 
 void hf_layers_up_c(const float *a, const float *b, int n, float *out)
@@ -41,7 +43,7 @@ void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[
             const float top = far ? near->colour[c][x] + g * far[c][x] : near->colour[c][x];
             float v = top / (sum > 1e-30f ? sum : 1e-30f);
             if (c == 3)
-                v = v > HF_LAYERS_OPAQUE ? 1 : v;
+                v = fabsf(v - 1) < HF_LAYERS_OPAQUE ? 1 : v;
             out[c][x] = v == own[c][x] ? own[c][x] : v;
         }
     }

@@ -57,7 +57,7 @@ static void layers_finish_simd(const struct hf_stack_row *near, const float *con
             const vf top = vf_load(near->colour[c] + x), was = vf_load(own[c] + x);
             vf v = vf_div(far ? vf_fma(g, vf_load(far[c] + x), top) : top, sum);
             if (c == 3)
-                v = vf_select(vf_gt(v, vf_set1(HF_LAYERS_OPAQUE)), one, v);
+                v = vf_select(vf_lt(vf_abs(vf_sub(v, one)), vf_set1(HF_LAYERS_OPAQUE)), one, v);
             vf_store(out[c] + x, vf_select(vf_eq(v, was), was, v));
         }
     }

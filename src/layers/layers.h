@@ -23,8 +23,8 @@ enum {
     HF_LAYERS_COARSEST = 3  // log2 of the largest pixels of a slice
 };
 
-// Sums of weights and of alphas are rounded apart: what is so near to 1 is opaque.
-#define HF_LAYERS_OPAQUE (1 - 2e-6f)
+// Sums of weights and of alphas are rounded apart: what is as near to 1 as this is opaque.
+#define HF_LAYERS_OPAQUE 2e-6f
 
 // Planes of samples or sums; each points to pixel (0, 0).
 struct hf_layers_set {

@@ -37,6 +37,14 @@ static const struct {
     {"a dolly: worst jump, 8-bit codes", "scatter", 3, "as for the focus pull"},
     {"a radius ramp: worst jump, 8-bit codes", "gather", 19, "whole numbers of rings and of the near maximum's reach"},
     {"a radius ramp: worst jump, 8-bit codes", "scatter", 3, "as for the focus pull"},
+    {"largest floats: not finite in the picture", "layers", 20000,
+     "sums of samples with weights around edges pass the largest float, and nothing clamps them"},
+    {"largest floats: not finite in a buffer on the way", "layers", 5000, "the same"},
+    {"a range pull: worst jump, 8-bit codes", "layers", 75,
+     "an edge is un-mixed from a difference of 1 pixel between radii on, a whole floor at once if it is that steep; "
+     "alone, hidden samples, which begin there too, make 6"},
+    {"a strength pull: worst jump, 8-bit codes", "layers", 40, "as for the range pull"},
+    {"a radius ramp: worst jump, 8-bit codes", "layers", 75, "as for the range pull"},
     {"radius 0 and the least above it: jump, 8-bit codes", "gather", 170,
      "the far field comes from half resolution however small the radius is"},
 };

@@ -73,6 +73,20 @@ static struct subject scatter(const char *name, enum hf_resolution resolution)
     return s;
 }
 
+// A constant: layers.c derives 34. Colours of hidden samples are squares of means of roots, and sums of brightness hang on
+// the order of channels, so neither a factor nor a permutation passes through to the bit; un-mixing is no sum.
+// A pixel comes from a radius, the pixels of half resolution at its end (4), hidden samples that look 2^4 half-resolution
+// pixels far (32), un-mixing (4), the mean around a highlight (10).
+// A cat's eye is another shape at every place: that has its own test.
+static struct subject layers(const char *name, const struct hf_aperture_params *aperture)
+{
+    struct subject s = {
+        name, scene_params(), EXACT | KEEPS_ENERGY | KEEPS_CENTRE, (int)STABILITY_RADIUS + 4 + 32 + 4 + 2, 34, 60, 0};
+    s.params.engine = HF_ENGINE_LAYERS;
+    s.params.aperture = *aperture;
+    return s;
+}
+
 static struct subject gaussian(const char *name, float sigma, enum hf_resolution resolution)
 {
     // Four boxes of about 1.73 sigma to either side in all 3.5 sigma; or two pixels an iteration.
@@ -111,7 +125,7 @@ static struct subject faithful(void)
     return s;
 }
 
-enum { SUBJECTS = 13 };
+enum { SUBJECTS = 15 };
 
 int subject_count(void)
 {
@@ -145,6 +159,10 @@ struct subject subject_make(int index)
         return scatter("scatter half", HF_RESOLUTION_HALF);
     case 11:
         return gaussian("gaussian", 0, HF_RESOLUTION_FULL);
+    case 12:
+        return layers("layers", &(struct hf_aperture_params){.squeeze = 1});
+    case 13:
+        return layers("layers ring", &(struct hf_aperture_params){.squeeze = 1, .blades = 6, .ring = 0.4f});
     default:
         return gaussian("gaussian sigma", 4, HF_RESOLUTION_FULL);
     }
