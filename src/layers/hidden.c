@@ -7,9 +7,10 @@
 
 #include "pixel/pass_c.h"
 
+// Negative samples keep their sign.
 static float root(float v)
 {
-    return v > 0 ? sqrtf(v) : 0;
+    return v > 0 ? sqrtf(v) : v < 0 ? -sqrtf(-v) : 0;
 }
 
 // What pixels are to others: the surface behind its edge where one is mixed.
@@ -134,7 +135,7 @@ void hf_layers_found_c(const float *const sum[6], const float *const radius[2], 
         out[4][x] = sum[4][x] > 0 ? ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f : 0;
         out[5][x] = r;
         for (int c = 0; c < channels; c++)
-            out[c][x] = (sum[c][x] * inverse) * (sum[c][x] * inverse);
+            out[c][x] = (sum[c][x] * inverse) * fabsf(sum[c][x] * inverse);
     }
 }
 

@@ -3,6 +3,12 @@
 #include "layers/hidden.h"
 #include "simd/simd.h"
 
+HF_INLINE vf layers_signed_root(vf v)
+{
+    const vf s = vf_sqrt(vf_abs(v));
+    return vf_select(vf_lt(v, vf_zero()), vf_sub(vf_zero(), s), s);
+}
+
 // Channel c of a row of pairs, of what lies behind where a pixel is mixed.
 HF_INLINE void layers_pairs(const float *const seen[6], const float *const mixed[6], int c, int x, const vm behind[2],
                             vf *even, vf *odd)
@@ -14,7 +20,7 @@ HF_INLINE void layers_pairs(const float *const seen[6], const float *const mixed
         if (vm_any(behind[i]))
             v[i] = vf_select(behind[i], vf_load(mixed[c] + at), v[i]);
         if (c < 4)
-            v[i] = vf_sqrt(vf_max(v[i], vf_zero()));
+            v[i] = layers_signed_root(v[i]);
     }
     vf_unzip(v[0], v[1], even, odd);
 }
@@ -163,7 +169,7 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
         vf_store(out[5] + x, r);
         for (int c = 0; c < channels; c++) {
             const vf v = vf_mul(vf_load(sum[c] + x), inverse);
-            vf_store(out[c] + x, vf_mul(v, v));
+            vf_store(out[c] + x, vf_mul(v, vf_abs(v)));
         }
     }
 }

@@ -45,7 +45,7 @@ void hf_layers_shares_c(const float *const in[6], const float *limit, int n, flo
     for (int x = 0; x < n; x++) {
         const float r = in[5][x], m = limit[x / 2], light = in[0][x] + in[1][x] + in[2][x];
         const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));
-        out[x] = fabsf(r) > 6 && light > cap ? in[4][x] * (1 - cap / light) : 0;
+        out[x] = fabsf(r) > HF_LAYERS_FINE && light > cap ? in[4][x] * (1 - cap / light) : 0;
     }
 }
 

@@ -43,7 +43,7 @@ static void layers_shares_simd(const float *const in[6], const float *limit, int
             const int at = x + i * VF_N;
             const vf r = vf_load(in[5] + at), light = layers_light(in, at);
             const vf c = vf_mul(cap[i], vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
-            const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(6)), vf_gt(light, c));
+            const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light, c));
             vf_store(out + at, vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(c, light)))));
         }
     }

@@ -23,6 +23,9 @@ enum {
     HF_LAYERS_COARSEST = 3  // log2 of the largest pixels of a slice
 };
 
+// Radii up to this lie between slices of full resolution, those beyond do not.
+#define HF_LAYERS_FINE 4
+
 // Sums of weights and of alphas are rounded apart: what is as near to 1 as this is opaque.
 #define HF_LAYERS_OPAQUE 2e-6f
 
