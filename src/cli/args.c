@@ -151,46 +151,19 @@ static int check_model(const struct cli_args *args, struct tool_error *error)
 }
 
 // What an engine cannot do is said, not ignored.
-static int check_engine(const struct cli_args *args, struct tool_error *error)
+static int check_engine(const struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
     const struct hf_params *p = &args->params;
-    const int gather = p->engine == HF_ENGINE_GATHER, scatter = p->engine == HF_ENGINE_SCATTER;
-    const int hexagon = p->engine == HF_ENGINE_HEXAGON, gaussian = p->engine == HF_ENGINE_GAUSSIAN;
-    const int layers = p->engine == HF_ENGINE_LAYERS;
-    const struct hf_params *d = &hf_default_params;
-    const struct {
-        int given, allowed;
-        const char *option, *engines;
-    } rules[] = {
-        {p->aperture.chromatic != d->aperture.chromatic, scatter || layers, "chromatic", "layers and scatter"},
-        {p->aperture.cat_eye != d->aperture.cat_eye, scatter || layers, "cat-eye", "layers and scatter"},
-        {p->aperture.squeeze != d->aperture.squeeze, scatter || layers, "squeeze", "layers and scatter"},
-        {p->hexagon.uniform, hexagon, "uniform", "hexagon"},
-        {p->gaussian.iterations != d->gaussian.iterations, gaussian, "iterations", "gaussian"},
-        {p->gaussian.sigma != d->gaussian.sigma, gaussian, "sigma", "gaussian"},
-        {p->hexagon.resolution == HF_RESOLUTION_HALF, !gather && !layers, "resolution half",
-         "hexagon, scatter and gaussian"},
-        {p->hexagon.resolution == HF_RESOLUTION_QUARTER, gaussian, "resolution quarter", "gaussian"},
-        {p->gather.karis, gather, "karis", "gather"},
-        {p->gather.per_pixel_kernel, gather, "per-pixel-kernel", "gather"},
-        {p->gather.bicubic, gather, "bicubic", "gather"},
-        {p->gather.fill != d->gather.fill, gather, "fill", "gather"},
-        {p->gather.storage != d->gather.storage, gather, "storage", "gather"},
-        {p->gather.downsample != d->gather.downsample, gather, "downsample", "gather"},
-        {p->gather.division != d->gather.division, gather, "division", "gather"},
-        {p->layers.quality != d->layers.quality, layers, "layers-quality", "layers"},
-        {p->layers.spacing != d->layers.spacing, layers, "spacing", "layers"},
-        {p->layers.half_from != d->layers.half_from, layers, "half-from", "layers"},
-        {p->layers.quarter_from != d->layers.quarter_from, layers, "quarter-from", "layers"},
-        {p->layers.no_unmix, layers, "no-unmix", "layers"},
-        {p->layers.no_hidden, layers, "no-hidden", "layers"},
-        {p->layers.no_highlights, layers, "no-highlights", "layers"},
-        {p->gather.faithful, gather || gaussian, "faithful", "gather and gaussian"},
-    };
-    for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++)
-        if (rules[i].given && !rules[i].allowed)
-            return tool_fail(error, -1, "--%s is of use only with --engine %s, not %s", rules[i].option,
-                             rules[i].engines, hf_engine_name(p->engine));
+    const int gather = p->engine == HF_ENGINE_GATHER, hexagon = p->engine == HF_ENGINE_HEXAGON;
+    const int gaussian = p->engine == HF_ENGINE_GAUSSIAN;
+    const struct tool_option *misfit = tool_misfit(parser, p->engine);
+    char engines[256];
+    if (misfit)
+        return tool_fail(error, -1, "--%s is of use only with --engine %s, not %s", misfit->name,
+                         tool_and(misfit->engines, engines), hf_engine_name(p->engine));
+    if (p->hexagon.resolution == HF_RESOLUTION_QUARTER && tool_given(parser, "resolution") && !gaussian)
+        return tool_fail(error, -1, "--resolution quarter is of use only with --engine gaussian, not %s",
+                         hf_engine_name(p->engine));
     const int plain = !args->aperture_file && p->aperture.ring == 0 && p->aperture.roundness == 0;
     if (args->aperture && gather && !plain)
         return tool_fail(error, -1,
@@ -265,7 +238,7 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_err
     }
     if (args->views && !strcmp(args->views, "all"))
         args->views = NULL;
-    if (check_files(args, error) || check_engine(args, error) || check_model(args, error))
+    if (check_files(args, error) || check_engine(args, &p, error) || check_model(args, error))
         return -1;
     return 0;
 }

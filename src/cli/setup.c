@@ -205,6 +205,12 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
     p->view.display_width = display_width(view);
     p->view.display_height = view->display_window.y1 - view->display_window.y0;
     p->view.pixel_aspect = view->pixel_aspect;
+    if (args->params.range.blend != hf_default_params.range.blend && setup->model != CLI_MODEL_RANGE)
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "%s: --blend %s is of use only with a range, but here the %s says how "
+                         "much blur there is",
+                         label, hf_name(HF_NAMES_BLEND, (int)args->params.range.blend),
+                         setup->model == CLI_MODEL_LENS ? "lens" : "depth");
     const int status = find_focus(setup, args, view, label, error);
     if (status || setup->model == CLI_MODEL_COC)
         return status;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same table as a help text and as a man page.
+#include <ctype.h>
 #include <string.h>
 
 #include "tool/options.h"
@@ -27,6 +28,23 @@ static void print_wrapped(const char *text, int column, int at)
     putchar('\n');
 }
 
+// The help of an option, or its first sentence, behind the engines that it is for.
+static const char *words_of(const struct tool_option *o, int all, char text[1024])
+{
+    const char *end = all ? NULL : strstr(o->help, ". ");
+    const int length = end ? (int)(end - o->help) + 1 : (int)strlen(o->help);
+    char engines[256];
+    if (!o->engines) {
+        snprintf(text, 1024, "%.*s", length, o->help);
+        return text;
+    }
+    const int n = snprintf(text, 1024, "%s: %.*s", tool_and(o->engines, engines), length, o->help);
+    char *first = text + n - length;
+    if (length > 1 && islower((unsigned char)first[1]))
+        *first = (char)tolower((unsigned char)*first);
+    return text;
+}
+
 // The whole help, or its first sentence.
 static void print_option(const struct tool_option *o, int all)
 {
@@ -42,10 +60,8 @@ static void print_option(const struct tool_option *o, int all)
         at += printf("%s%.*s", word == o->placeholder ? " " : "", n + bar, word);
         word += n + bar;
     }
-    const char *end = strstr(o->help, ". ");
-    char first[512];
-    snprintf(first, sizeof(first), "%.*s", end ? (int)(end - o->help) + 1 : (int)strlen(o->help), o->help);
-    print_wrapped(all ? o->help : first, COLUMN, at);
+    char text[1024];
+    print_wrapped(words_of(o, all, text), COLUMN, at);
 }
 
 static int is_usual(const struct tool_program *program, const struct tool_option *o)
@@ -122,7 +138,8 @@ static void man_option(const struct tool_option *o, int all)
         put_roff(o->placeholder);
     }
     putchar('\n');
-    put_roff(o->help);
+    char text[1024];
+    put_roff(words_of(o, 1, text));
     putchar('\n');
 }
 

@@ -42,6 +42,39 @@ void *tool_field(const struct tool_parser *p, const struct tool_option *option)
     return NULL;
 }
 
+static int has_word(const char *list, const char *word)
+{
+    const size_t length = strlen(word);
+    for (size_t n; *list; list += n + (list[n] == '|')) {
+        n = strcspn(list, "|");
+        if (n == length && !memcmp(list, word, n))
+            return 1;
+    }
+    return 0;
+}
+
+const struct tool_option *tool_misfit(const struct tool_parser *p, enum hf_engine engine)
+{
+    const struct tool_option *o;
+    for (int i = 0; (o = option_at(p->program, i)); i++)
+        if (p->state[i].given && o->engines && !has_word(o->engines, hf_engine_name(engine)))
+            return o;
+    return NULL;
+}
+
+const char *tool_and(const char *list, char buf[256])
+{
+    size_t used = 0;
+    buf[0] = '\0';
+    for (int first = 1; *list && used < 250; first = 0) {
+        const size_t n = strcspn(list, "|");
+        const char *comma = first ? "" : list[n] ? ", " : " and ";
+        used += (size_t)snprintf(buf + used, 256 - used, "%s%.*s", comma, (int)n, list);
+        list += n + (list[n] == '|');
+    }
+    return buf;
+}
+
 void tool_scale_metric(struct tool_parser *p, float unit)
 {
     const struct tool_option *o;

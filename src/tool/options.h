@@ -34,6 +34,7 @@ struct tool_option {
     enum tool_unit unit;  // that may be written behind a number
     int inf;              // inf is accepted
     enum hf_names names;  // of a choice that the library has words for
+    const char *engines;  // that it is of use with, "a|b"; NULL: any
 };
 
 // Options whose values lie in one struct, which lies at base in the arguments.
@@ -82,6 +83,10 @@ int tool_parse_line(struct tool_parser *p, int count, char **words);
 int tool_given(const struct tool_parser *p, const char *name);
 // Divide by it what was given in metres: it is how many metres a scene unit has.
 void tool_scale_metric(struct tool_parser *p, float unit);
+
+// The first option on the line that is of no use with an engine, or NULL; and a list of words "a|b" as "a and b".
+const struct tool_option *tool_misfit(const struct tool_parser *p, enum hf_engine engine);
+const char *tool_and(const char *list, char buf[256]);
 
 // Where an option's value lies.
 void *tool_field(const struct tool_parser *p, const struct tool_option *option);

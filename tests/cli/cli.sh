@@ -122,7 +122,7 @@ bad 1 "--max-error|'0'" a.exr -o o.exr --max-error 0
 bad 1 "--max-error|'1.5'" a.exr -o o.exr --max-error 1.5
 bad 1 "--spacing|layers|scatter" a.exr -o o.exr --spacing 3 --engine scatter
 bad 1 "--quality|--layers-quality" a.exr -o o.exr --quality high --layers-quality best
-bad 1 "--resolution half|scatter|layers" a.exr -o o.exr --resolution half
+bad 1 "--resolution|scatter|layers" a.exr -o o.exr --resolution half
 bad 1 "--quality|'drafty'|draft?" a.exr -o o.exr --quality drafty
 bad 1 "--focsu|--focus?" a.exr -o o.exr --focsu 3
 bad 1 "--engine|'scater'|scatter?" a.exr -o o.exr --engine scater
@@ -136,7 +136,7 @@ bad 1 "--squeeze|scatter" a.exr -o o.exr --engine gather --squeeze 2
 bad 1 "--uniform|hexagon" a.exr -o o.exr --uniform
 bad 1 "--iterations|gaussian" a.exr -o o.exr --iterations 4
 bad 1 "--sigma|gaussian" a.exr -o o.exr --sigma 4
-bad 1 "--resolution half|hexagon" a.exr -o o.exr --engine gather --resolution half
+bad 1 "--resolution|hexagon" a.exr -o o.exr --engine gather --resolution half
 bad 1 "--resolution quarter|gaussian|scatter" a.exr -o o.exr --engine scatter --resolution quarter
 bad 1 "--karis|gather|scatter" a.exr -o o.exr --engine scatter --karis
 bad 1 "--storage|gather|hexagon" a.exr -o o.exr --engine hexagon --storage half
@@ -167,6 +167,46 @@ bad 3 "missing.exr" missing.exr -o o.exr --focus 3
 bad 3 "no/such/o.exr" missing.exr -o no/such/o.exr --focus 3
 bad 3 "-o|.|directory" missing.exr -o . --focus 3
 bad 3 "-o|/dev/null" missing.exr -o /dev/null --focus 3
+# Every option of an engine is refused by the others, in words, and taken by its own: which get as far as the file.
+while read -r engines option; do
+    for engine in layers scatter gather hexagon gaussian; do
+        # shellcheck disable=SC2086
+        case ,$engines, in
+        *,$engine,*)
+            run missing.exr -o o.exr --engine $engine $option
+            [ "$status" -eq 3 ] ;;
+        *)
+            run missing.exr -o o.exr --engine $engine $option
+            [ "$status" -eq 1 ] && contains "$dir/err" "${option%% *} is of use only with --engine ${engines%%,*}" &&
+                contains "$dir/err" "not $engine" ;;
+        esac
+        result "$option with $engine" $?
+    done
+done <<'OPTIONS'
+layers,scatter --chromatic 0.1
+layers,scatter --cat-eye 0.1
+layers,scatter --squeeze 2
+hexagon --uniform
+gaussian --iterations 4
+gaussian --sigma 3
+hexagon,scatter,gaussian --resolution half
+gather --fill mean
+gather --rings 2
+gather --downsample point
+gather --division newton
+gather --karis
+gather --per-pixel-kernel
+gather --bicubic
+gather --storage half
+gather,gaussian --faithful
+layers --layers-quality high
+layers --spacing 2
+layers --half-from 8
+layers --quarter-from 30
+layers --no-unmix
+layers --no-hidden
+layers --no-highlights
+OPTIONS
 for isa in scalar sse4.1 avx2 avx512 neon; do  # one of x86 and ARM is always missing
     run missing.exr -o o.exr --isa $isa
     if [ "$status" -ne 3 ]; then
@@ -203,6 +243,10 @@ picture_tests() {
     bad 1 "plain.exr|'left'" plain.exr -o o.exr --focus 3 --views left
     bad 1 "o.png|stereo.exr|--views|left" stereo.exr -o o.png --focus 3
     bad 3 "half-stereo.exr|left|depth" half-stereo.exr -o o.exr --focus 3
+
+    bad 1 "lens.exr|--blend smoothstep|lens" lens.exr -o o.exr --blend smoothstep
+    good lens.exr -o o.exr --blend smoothstep --range 2
+    rm -f o.exr
 
     # Which model.
     plan "model range|focus 3 from --focus|range 1.5" plain.exr --focus 3

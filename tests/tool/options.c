@@ -47,6 +47,7 @@ static const struct tool_option inner_options[] = {
      .placeholder = "N",
      .help = "A count.",
      .parse = tool_parse_count,
+     .engines = "gather|gaussian",
      .offset = offsetof(struct inner, count),
      .min = 1,
      .max = 9},
@@ -167,6 +168,18 @@ static void help(void)
     CHECK(!parse("--help man") && parser.help == 3);
 }
 
+// What is of no use with an engine.
+static void misfits(void)
+{
+    char text[256];
+    CHECK(!strcmp(tool_and("a", text), "a") && !strcmp(tool_and("a|b", text), "a and b"));
+    CHECK(!strcmp(tool_and("a|b|c", text), "a, b and c"));
+    CHECK(!parse("--flag --count 3") && !tool_misfit(&parser, HF_ENGINE_GATHER));
+    const struct tool_option *misfit = tool_misfit(&parser, HF_ENGINE_LAYERS);
+    CHECK(misfit && !strcmp(misfit->name, "count"));
+    CHECK(!parse("--flag") && !tool_misfit(&parser, HF_ENGINE_LAYERS));
+}
+
 // Both programs' tables: no name twice, and a placeholder for what takes a value.
 static void tables(void)
 {
@@ -184,6 +197,7 @@ int main(void)
     units();
     bad();
     help();
+    misfits();
     tables();
     return check_report();
 }
