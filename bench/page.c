@@ -57,7 +57,9 @@ static void heading(FILE *out, const struct trade *t)
         text(out, t->scene[s].text);
         fprintf(out, " %d x %d", t->width[s], t->height[s]);
     }
-    fputs("), whiskers their quartiles.</p></header>\n", out);
+    fputs("), whiskers their quartiles.</p>\n", out);
+    trade_sentences(out, t, "<p>", "</p>");
+    fputs("</header>\n", out);
 }
 
 static void charts(FILE *out, const struct trade *t)

@@ -75,7 +75,7 @@
       element("p", digits(s.ms.median, 2) + " ms (" + digits(s.ms.low, 2) + " to " + digits(s.ms.high, 2) + "), " +
               digits(-20 * Math.log10(s.error), 2) + " dB. " + ranks[s.rank], "soft"),
       element("pre", "hyperfocal IN.exr -o OUT.exr " + s.options),
-      element("pre", 'hyperfocal-bench tradeoff --setting "' + s.options + '"'),
+      element("pre", 'hyperfocal-bench tradeoff --setting="' + s.options + '"'),
       numbers(s), bars(s));
     if (crops.settings.length) detail.append(pictures(i));
     for (const e of document.querySelectorAll("[data-i]")) e.classList.toggle("now", +e.dataset.i === i);

@@ -485,6 +485,11 @@ void chart_write(FILE *out, const struct trade *t, const struct chart *c, int wi
         fprintf(out, "<style>%s</style><rect class=\"paper\" width=\"%d\" height=\"%d\"/>\n", chart_style, width,
                 height);
     draw(&v);
+    if (alone) {  // on the page the title stands above
+        fprintf(out, "<text class=\"end\" x=\"%d\" y=\"16\">", width - 4);
+        escaped(out, c->title);
+        fputs("</text>\n", out);
+    }
     fputs("</svg>\n", out);
     free(v.mark);
 }

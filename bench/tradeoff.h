@@ -99,7 +99,7 @@ int trade_overlap(struct trade_interval a, struct trade_interval b);
 // interval lying wholly below; tied if another is only faster by the median.
 void trade_rank(struct trade *t);
 // The longest list of settings of which each is slower than the one before and not worse on any scene, from the cheapest
-// such setting to the most accurate: fills in step. Only settings with the machine's own threads and instruction set.
+// such setting to the most accurate: fills in step. Only settings that blur, with the machine's own threads and instruction set.
 void trade_ladder(struct trade *t);
 // Results in the order of a table: by time.
 void trade_order(const struct trade *t, int order[]);
@@ -123,6 +123,8 @@ void trade_cache_close(struct trade_cache *cache);
 void trade_cache_key(char *key, size_t size, const char *cpu, int threads);
 
 void trade_table(FILE *out, const void *t);
+// What a person should take from it, in three sentences, each with something before and after it.
+void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after);
 void trade_csv(FILE *out, const struct trade *t);
 // src/frame/ladder_table.h
 void trade_ladder_table(FILE *out, const struct trade *t);

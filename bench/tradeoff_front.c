@@ -71,10 +71,10 @@ void trade_rank(struct trade *t)
     }
 }
 
-// Options that change how a frame is run and not what it is.
-static int is_own_machine(const struct trade_setting *s)
+// Not for options that change how a frame is run and not what it is; nor for a copy.
+static int may_be_chosen(const struct trade_setting *s)
 {
-    return !strstr(s->options, "--threads") && !strstr(s->options, "--isa");
+    return !strstr(s->options, "--threads") && !strstr(s->options, "--isa") && !strstr(s->options, "--max-radius");
 }
 
 static int is_no_worse(const struct trade *t, const struct trade_result *better, const struct trade_result *than)
@@ -102,7 +102,7 @@ void trade_ladder(struct trade *t)
     trade_order(t, order);
     for (int i = 0; i < t->results; i++) {
         t->result[i].step = 0;
-        if (is_own_machine(t->result[i].setting) && (last < 0 || t->result[i].error < t->result[last].error))
+        if (may_be_chosen(t->result[i].setting) && (last < 0 || t->result[i].error < t->result[last].error))
             last = i;
     }
     if (last < 0)
@@ -111,7 +111,7 @@ void trade_ladder(struct trade *t)
     above[last] = -1;
     for (int k = t->results - 1; k >= 0; k--) {
         const int i = order[k];
-        if (i == last || !is_own_machine(t->result[i].setting) || t->result[i].rank == TRADE_BEATEN)
+        if (i == last || !may_be_chosen(t->result[i].setting) || t->result[i].rank == TRADE_BEATEN)
             continue;
         for (int m = k + 1; m < t->results; m++) {
             const int j = order[m];

@@ -171,9 +171,6 @@ struct hf_params trade_run_params(const struct trade_run *run, int result, int s
     p.lens.f_number = s->camera.f_number;
     p.lens.focal_length_mm = s->camera.focal_length_mm;
     p.lens.sensor_width_mm = s->camera.sensor_width_mm;
-    // The gather has to be told how far to reach.
-    if (p.engine == HF_ENGINE_GATHER && !args->max_radius_given)
-        p.max_radius = ceilf(s->largest);
     return p;
 }
 
