@@ -6,6 +6,7 @@ argument. Skipped without Debian's chromium and chromedriver."""
 import json
 import os
 import shutil
+import struct
 import socket
 import subprocess
 import sys
@@ -168,7 +169,14 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as folder:
         page = os.path.join(folder, "page.html")
-        subprocess.run([sys.argv[1], page], check=True)
+        picture = os.path.join(folder, "chart.png")
+        drawn = [picture] if shutil.which("rsvg-convert") else []
+        subprocess.run([sys.argv[1], page] + drawn, check=True)
+        if drawn:
+            with open(picture, "rb") as f:
+                head = f.read(24)
+            size = struct.unpack(">II", head[16:]) if head[:8] == b"\x89PNG\r\n\x1a\n" else None
+            check(size == (1720, 1120), "the chart as a picture: %s" % (size,))
         for width, height in ((1280, 900), (390, 844)):
             for scheme in ("light", "dark"):
                 look("file://" + page, width, height, scheme)

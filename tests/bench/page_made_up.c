@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the page of made-up measurements, for page.py to look at in a browser: every engine, long names, points on top
-// of each other, values that are missing. Usage: page_made_up FILE.html
+// of each other, values that are missing. Usage: page_made_up FILE.html [FILE.png], the latter being the chart alone.
 #include "metrics.h"
 #include "page.h"
 
@@ -73,7 +73,7 @@ int main(int argc, char **argv)
                       .cpu = "A CPU & its <name>",
                       .date = "2000-01-01",
                       .commit = "none"};
-    if (argc != 2)
+    if (argc < 2)
         return 1;
     run.t = &t;
     for (int c = 0; c < SCENES; c++) {
@@ -88,7 +88,9 @@ int main(int argc, char **argv)
         make_up(&results[i], &settings[i], i);
     trade_rank(&t);
     trade_ladder(&t);
-    const int err = bench_page_write(&run, argv[1], &error);
+    int err = bench_page_write(&run, argv[1], &error);
+    if (!err && argc > 2)
+        err = bench_page_png(&t, argv[2], &error);
     if (err)
         fprintf(stderr, "%s\n", error.text);
     for (int c = 0; c < SCENES; c++) {
