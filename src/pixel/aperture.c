@@ -12,7 +12,7 @@ static double half_disc(double r, double y)
     return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
 }
 
-// What a disc covers of the height of its row dy, 1/16.
+// What a disc covers of the height of its row dy, 1 / HF_WHOLE_ROW.
 static int row_height(double r, int dy)
 {
     const double height = r - (abs(dy) - 0.5);

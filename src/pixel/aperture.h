@@ -6,10 +6,10 @@
 #include "frame/frame.h"
 #include "base/mem.h"
 
-enum { HF_WHOLE_ROW = 16 };
+enum { HF_WHOLE_ROW = 128 };
 
 // A row of a picture: the run from a to b, in 1/256 pixel from the left edge of the pixel it is drawn around, and its
-// weight in 1/16: below that where the picture covers only part of the row's height.
+// weight in 1/128: below that where the picture covers only part of the row's height.
 struct hf_run {
     int32_t a, b, weight;
 };
@@ -20,12 +20,13 @@ struct hf_picture {
     int columns;    // of an image's
     int top, rows;  // symmetric: top 0, rows 0..rows - 1 stand for both +dy and -dy
     int reach_x, reach_y;
-    int cap;     // symmetric: weight of the last row, 1/16
-    float area;  // sum of the weights of its pixels: 256 * 16 each, images up to 1023
+    int cap;     // symmetric: weight of the last row
+    float area;  // sum of the weights of its pixels: 256 * HF_WHOLE_ROW each, images up to 1023
 };
 
-// 256 sizes an octave, from radius 0.5 on, each 0.2 to 0.4 % larger than the last. Nearest one to a radius.
-enum { HF_SIZES_LOG2 = 8, HF_SIZES = 1 << HF_SIZES_LOG2 };
+// 1024 sizes an octave, from radius 0.5 on, each 0.05 to 0.1 % larger than the last: a highlight far brighter than what it
+// falls on shows each step. Nearest one to a radius.
+enum { HF_SIZES_LOG2 = 10, HF_SIZES = 1 << HF_SIZES_LOG2 };
 
 // What the pictures follow from. No padding: keys are compared byte by byte.
 struct hf_aperture_key {

@@ -6,10 +6,10 @@
 #include "pixel/aperture.h"
 #include "pixel/format.h"
 
-// Of the sizes one in 8 is kept: 32 an octave. Weight of the brightest pixel. What is more than twice as long as
+// Of the sizes 32 an octave are kept. Weight of the brightest pixel. What is more than twice as long as
 // wide is
 // cut off.
-enum { STEPS = 8, FULL = 1023, LONGEST = 2 };
+enum { STEPS = HF_SIZES / 32, FULL = 1023, LONGEST = 2 };
 
 static float transmission(const struct hf_image *m, int c, int x, int y)
 {

@@ -183,7 +183,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
 // a share and of the largest picture's area. Larger pictures than that cut what is darkest in a bin.
 static int bin_bits(const struct hf_scatter *t, int level, int room)
 {
-    enum { LEAST = 10, SHARE = 22 };
+    enum { LEAST = 6, SHARE = 22 };
     float area = 1;
     for (int field = 0; field < 2; field++) {
         const float r = level ? t->largest[field] / 2 : fminf(t->largest[field], fmaxf(t->half_to, 0));
@@ -199,23 +199,30 @@ static int bin_bits(const struct hf_scatter *t, int level, int room)
 // has the units of weights: where it is 1 all over, its sum is theirs.
 static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits, int room, int dim, int alpha)
 {
-    for (bins->count = 0; bins->count < HF_BINS && (exponents || !bins->count); bins->count++) {
+    bins->count = 0;
+    // One more than there are samples for, as these fade.
+    for (int more = 1; bins->count < HF_BINS && more; bins->count++) {
+        more = exponents != 0;
         const int b = bins->count, bottom = alpha && top > 1 ? hf_max(top - bits, 1) : top - bits;
         for (int c = 0; c < 4; c++) {
             const int unit = c == 3 ? room - 1 : room - top - dim;
             bins->scale[b][c] = ldexp(1, unit);
             bins->unscale[b][c] = ldexp(1, -unit);
         }
-        bins->least[b] = ldexpf(1, bottom + dim);
-        // Bit k is exponents of 8 k - 127 to 8 k - 120.
+        // Bit k is exponents of 8 k - 127 to 8 k - 120, the last of up to 127: that one is not parted.
         while (exponents) {
             const int k = 31 - __builtin_clz(exponents);
-            if (8 * k - 127 < bottom) {
-                top = hf_min(8 * k - 119, bottom);
+            if (8 * k - 127 < bottom && k < 30) {
+                // Colour leaves out whole bins, so that a factor of 2^k moves all of them alike.
+                const int unused = hf_max(bottom - (8 * k - 119), 0);
+                top = bottom - (alpha ? unused : unused / bits * bits);
                 break;
             }
             exponents &= ~(1u << k);
         }
+        // What lies between two bins, as what has faded may, counts to the upper one.
+        top = exponents ? top : bottom;
+        bins->least[b] = ldexpf(1, top + dim);
     }
     bins->least[bins->count - 1] = 0;
 }

@@ -25,7 +25,7 @@ typedef void hf_list_row(struct hf_splats list[HF_BINS], const struct hf_source_
                          const float *inverse, const struct hf_bins *bins);
 // A finished row of n pixels of each bin's sums, and its margins: integrated, scaled, added up, split into planes (lane 3,
 // the weight, to out[3]), and zeroed.
-typedef void hf_settle(int64_t *const lane[HF_BINS], int n, int channels, const struct hf_bins *bins,
+typedef void hf_settle(int64_t *const lane[HF_BINS], int bins, int n, int channels, const double (*unscale)[4],
                        float *const out[4]);
 // What is counted of n blurred pixels' samples.
 typedef void hf_scatter_note(const float *radius, float *const colour[4], int channels, int n,

@@ -75,8 +75,10 @@ void hf_flush_sources(struct walk *w)
     const struct hf_aperture *a = &w->t->aperture;
     for (int b = 0; b < w->bins->count; b++) {
         struct hf_splats *l = &w->list[b];
-        const struct hf_sums sums = hf_bin_sums(w, b);
-        if (a->symmetric && l->count)
+        if (!l->count)
+            continue;
+        const struct hf_sums sums = hf_draw_bin(w, b);
+        if (a->symmetric)
             hf_scatter_kernels(w->f)->splat(&sums, a, l);
         for (int i = 0; !a->symmetric && i < l->count; i++) {
             const struct hf_picture *p = &pictures(w)[l->picture[i]];
@@ -107,19 +109,42 @@ static void add_picture(struct walk *w, int x, int y, int number, const float co
     }
 }
 
-// A picture cut by the second circle of a cat's eye, of radius r around (cx, cy): its rows go to w->runs. Returns the
-// sum of their weights.
-static float cut_picture(struct walk *w, const struct hf_picture *p, float r, float cx, float cy)
+// A row of the second circle of a cat's eye, dy rows off its centre: half its width in 1/256 pixel, and its weight. Of a
+// disc's that are between two of its rows, so that a circle that has not moved cuts nothing.
+struct circle_row {
+    float half, weight;
+};
+
+static struct circle_row circle_row(const struct hf_aperture *a, const struct hf_picture *disc, float r, float dy)
+{
+    if (a->key.blades) {
+        const float q = r * r - dy * dy;
+        return (struct circle_row){q > 0 ? 256 * a->key.scale_x * sqrtf(q) : 0, HF_WHOLE_ROW};
+    }
+    static const struct hf_run none = {128, 128, 0};
+    const float first = floorf(dy), t = dy - first;
+    const int row = (int)first - disc->top;
+    const struct hf_run *run = a->run + disc->first;
+    const struct hf_run *over = row >= 0 && row < disc->rows ? &run[row] : &none;
+    const struct hf_run *under = row >= -1 && row < disc->rows - 1 ? &run[row + 1] : &none;
+    return (struct circle_row){hf_lerp((float)over->b, (float)under->b, t) - 128,
+                               hf_lerp((float)over->weight, (float)under->weight, t)};
+}
+
+// A picture cut by the second circle of a cat's eye, of radius r around (cx, cy) and of the shape `disc`: its rows go to
+// w->runs. Returns the sum of their weights.
+static float cut_picture(struct walk *w, const struct hf_picture *p, const struct hf_picture *disc, float r, float cx,
+                         float cy)
 {
     const struct hf_aperture *a = &w->t->aperture;
     const float scale = 256 * a->key.scale_x;
     float area = 0;
     for (int i = 0; i < p->rows; i++) {
         const struct hf_run *run = &a->run[p->first + i];
-        const float dy = (float)(p->top + i) - cy, q = r * r - dy * dy, half = q > 0 ? sqrtf(q) : 0;
-        const int32_t from = 128 + (int32_t)lrintf((cx - half) * scale);
-        const int32_t to = 128 + (int32_t)lrintf((cx + half) * scale);
-        struct hf_run cut = {hf_max(run->a, from), hf_min(run->b, to), run->weight};
+        const struct circle_row c = circle_row(a, disc, r, (float)(p->top + i) - cy);
+        const int32_t from = 128 + (int32_t)lrintf(cx * scale - c.half);
+        const int32_t to = 128 + (int32_t)lrintf(cx * scale + c.half);
+        struct hf_run cut = {hf_max(run->a, from), hf_min(run->b, to), hf_min(run->weight, (int)lrintf(c.weight))};
         if (cut.b <= cut.a)
             cut = (struct hf_run){0};
         area += (float)cut.weight * (float)(cut.b - cut.a);
@@ -134,11 +159,12 @@ static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, c
 {
     for (int b = 0; b < w->bins->count; b++) {
         const int lanes = lanes_of(w->bins, b, colour);
-        const struct hf_sums sums = hf_bin_sums(w, b);
+        if (!lanes)
+            continue;
+        const struct hf_sums sums = hf_draw_bin(w, b);
         int64_t share[4];
         set_share(w->bins, b, lanes, colour, weight, part, share);
-        if (lanes)
-            hf_scatter_kernels(w->f)->splat_runs(&sums, x, y + p->top, w->runs, p->rows, share);
+        hf_scatter_kernels(w->f)->splat_runs(&sums, x, y + p->top, w->runs, p->rows, share);
     }
 }
 
@@ -152,15 +178,15 @@ static void add_cat_eye(struct walk *w, int x, int y, float r, const float colou
     const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
     const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
     const struct hf_picture *inside = &picture[hf_picture_number(inner)];
-    const float hidden = hole > 0 ? hole * cut_picture(w, inside, r, cx, cy) : 0;
-    float area = cut_picture(w, p, r, cx, cy) - hidden;
+    const float hidden = hole > 0 ? hole * cut_picture(w, inside, p, r, cx, cy) : 0;
+    float area = cut_picture(w, p, p, r, cx, cy) - hidden;
     if (area <= 0) {
         w->runs[-p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
         area = 2 * HF_WHOLE_ROW;
     }
     draw_cut(w, x, y, p, colour, weight, 1 / area);
     if (hidden > 0) {
-        cut_picture(w, inside, r, cx, cy);
+        cut_picture(w, inside, p, r, cx, cy);
         draw_cut(w, x, y, inside, colour, weight, -hole / area);
     }
 }

@@ -76,19 +76,20 @@ void hf_splat_c(const struct hf_sums *s, const struct hf_aperture *a, const stru
     }
 }
 
-void hf_settle_c(int64_t *const lane[HF_BINS], int n, int channels, const struct hf_bins *bins, float *const out[4])
+void hf_settle_c(int64_t *const lane[HF_BINS], int bins, int n, int channels, const double (*unscale)[4],
+                 float *const out[4])
 {
     uint64_t sum[HF_BINS][4] = {{0}};
     for (int x = -HF_SUMS_MARGIN; x < n; x++)
         for (int c = 0; c < 4; c++) {
             double all = 0;
-            for (int b = bins->count - 1; b >= 0; b--) {
+            for (int b = bins - 1; b >= 0; b--) {
                 sum[b][c] += (uint64_t)lane[b][4 * x + c];
-                all += (double)(int64_t)sum[b][c] * bins->unscale[b][c];
+                all += (double)(int64_t)sum[b][c] * unscale[b][c];
             }
             if (x >= 0 && (c < channels || c == 3))
                 out[c][x] = (float)all;
         }
-    for (int b = 0; b < bins->count; b++)
+    for (int b = 0; b < bins; b++)
         memset(lane[b] - 4 * HF_SUMS_MARGIN, 0, sizeof *lane[b] * 4 * (size_t)(n + 2 * HF_SUMS_MARGIN));
 }

@@ -209,8 +209,8 @@ static void splat_taps_simd(const struct hf_sums *s, int x, int y, const int16_t
     }
 }
 
-HF_INLINE void settle_bins(int64_t *const lane[HF_BINS], int n, int channels, const struct hf_bins *bins,
-                           const int count, float *const out[4])
+HF_INLINE void settle_bins(int64_t *const lane[HF_BINS], const int count, int n, int channels,
+                           const double (*unscale)[4], float *const out[4])
 {
     const vl zero = vl_set1(0);
     vl sum[HF_BINS];
@@ -228,7 +228,7 @@ HF_INLINE void settle_bins(int64_t *const lane[HF_BINS], int n, int channels, co
                 sum[b] = vl_add(sum[b], vl_load(lane[b] + 4 * (x + i)));
                 vl_store(lane[b] + 4 * (x + i), zero);
             }
-            pixel[i] = vl_scaled(sum, count, bins->unscale);
+            pixel[i] = vl_scaled(sum, count, unscale);
         }
         v4_transpose(pixel);
         for (int c = 0; c < 4; c++)
@@ -240,13 +240,15 @@ HF_INLINE void settle_bins(int64_t *const lane[HF_BINS], int n, int channels, co
             vl_store(lane[b] + 4 * x, zero);
 }
 
-static void settle_simd(int64_t *const lane[HF_BINS], int n, int channels, const struct hf_bins *bins,
+static void settle_simd(int64_t *const lane[HF_BINS], int bins, int n, int channels, const double (*unscale)[4],
                         float *const out[4])
 {
-    if (bins->count == 1)
-        settle_bins(lane, n, channels, bins, 1, out);
-    else if (bins->count == 2)
-        settle_bins(lane, n, channels, bins, 2, out);
+    if (bins == 1)
+        settle_bins(lane, 1, n, channels, unscale, out);
+    else if (bins == 2)
+        settle_bins(lane, 2, n, channels, unscale, out);
+    else if (bins == 3)
+        settle_bins(lane, 3, n, channels, unscale, out);
     else
-        settle_bins(lane, n, channels, bins, HF_BINS, out);
+        settle_bins(lane, HF_BINS, n, channels, unscale, out);
 }

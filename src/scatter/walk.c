@@ -116,10 +116,17 @@ static void settle(struct walk *w, const struct target *to, int y)
     float *out[4];
     for (int c = 0; c < 4; c++)
         out[c] = to->ch[c] ? to->ch[c] + (ptrdiff_t)(y - w->sums.y0) * to->stride : NULL;
+    // Those bins of which something has been drawn here; one at least.
     int64_t *lane[HF_BINS];
-    for (int b = 0; b < HF_BINS; b++)
-        lane[b] = w->sums.lane + b * w->bin_lanes + w->sums.row[y - w->sums.y0];
-    hf_scatter_kernels(w->f)->settle(lane, w->sums.x1 - w->sums.x0, w->group->channels, w->bins, out);
+    double unscale[HF_BINS][4];
+    int n = 0;
+    for (int b = 0; b < w->bins->count; b++)
+        if (y <= w->drawn[b] || (n == 0 && b == w->bins->count - 1)) {
+            lane[n] = w->sums.lane + b * w->bin_lanes + w->sums.row[y - w->sums.y0];
+            memcpy(unscale[n++], w->bins->unscale[b], sizeof *unscale);
+        }
+    hf_scatter_kernels(w->f)->settle(lane, n, w->sums.x1 - w->sums.x0, w->group->channels, (const double(*)[4])unscale,
+                                     out);
 }
 
 // All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
@@ -131,12 +138,15 @@ static void walk_level(struct walk *w, const struct layout *l, const struct targ
         w->sums.row[y] = (ptrdiff_t)(y % l->ring[w->level]) * l->stride[w->level] + 4 * HF_SUMS_MARGIN;
     w->bins = &w->t->bins[w->level][w->group->channel[0] == 3];
     w->bin_lanes = (ptrdiff_t)l->stride[w->level] * l->ring[w->level];
+    for (int b = 0; b < HF_BINS; b++)
+        w->drawn[b] = -1;
     memset(w->sums.lane, 0, sizeof *w->sums.lane * (size_t)w->bin_lanes * (size_t)w->bins->count);
     int settled = w->sums.y0;
     const int end = hf_min(w->sums.y1 + reach, height), step = w->level ? 1 : TOGETHER;
     for (int y = hf_max(w->sums.y0 - reach, 0); y < end; y += step) {
         while (settled < hf_min(y - reach, w->sums.y1))
             settle(w, to, settled++);
+        w->reached = y + step - 1 + reach;
         if (w->level)
             hf_list_half(w, y);
         else

@@ -14,14 +14,15 @@ struct walk {
     const struct hf_frame *f;
     const struct hf_scatter *t;
     const struct hf_splat_group *group;
-    int field;                   // 0 near, 1 far
-    int level;                   // 1: half resolution
-    struct hf_sums sums;         // of the first bin
-    const struct hf_bins *bins;  // of the group and level
-    ptrdiff_t bin_lanes;         // from a bin's sums to the next one's
-    struct hf_splats *list;      // of each bin
-    struct hf_run *runs;         // of a picture that is its source's own
-    float *source[TOGETHER][5];  // level 0: channels, weight, and numbers of pictures
+    int field;                    // 0 near, 1 far
+    int level;                    // 1: half resolution
+    struct hf_sums sums;          // of the first bin
+    const struct hf_bins *bins;   // of the group and level
+    ptrdiff_t bin_lanes;          // from a bin's sums to the next one's
+    struct hf_splats *list;       // of each bin
+    int reached, drawn[HF_BINS];  // the last row that sources at hand reach, and on which each bin has been drawn
+    struct hf_run *runs;          // of a picture that is its source's own
+    float *source[TOGETHER][5];   // level 0: channels, weight, and numbers of pictures
     // level 1: of the last rows, source radii and pixels; see hf_list_half
     float *quad[4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *nothing;
     int lone[4];
@@ -37,8 +38,10 @@ static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
     *x1 = hf_min(w->sums.x1 + reach, w->level ? w->f->s->half_width : w->f->s->width);
 }
 
-static inline struct hf_sums hf_bin_sums(const struct walk *w, int b)
+// A bin's sums, to be drawn on.
+static inline struct hf_sums hf_draw_bin(struct walk *w, int b)
 {
+    w->drawn[b] = w->reached;
     struct hf_sums s = w->sums;
     s.lane += b * w->bin_lanes;
     return s;

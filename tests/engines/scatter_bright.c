@@ -140,6 +140,30 @@ static void beside_constant(struct hf_context *c, int half)
     }
 }
 
+// A light that is hardly blurred: what of it is drawn lies anywhere between its own brightness and none, and all of its
+// energy is there.
+static void faded(struct hf_context *c, int half)
+{
+    static const float radii[] = {0.5001f, 0.501f, 0.51f, 0.55f, 0.7f, 1, 1.4f, -0.51f, -0.7f};
+    for (int i = 0; i < 9 * VALUES; i++) {
+        struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1);
+        const float v = fminf(values[i / 9], 1e30f);
+        double sum = 0;
+        for (int ch = 0; ch < 3; ch++)
+            picture_fill(&colour, ch, 0.35f);
+        picture_fill(&radius, 0, radii[i % 9]);
+        colour.plane[0][Y * WIDTH + X] = v;
+        struct picture out = blurred(c, &colour, &radius, half);
+        for (int k = 0; k < PIXELS; k++)
+            sum += (double)out.plane[0][k] - (double)0.35f;
+        CHECK_MSG(fabs(sum / ((double)v - (double)0.35f) - 1) <= 1e-5, "half %d, %g at radius %g: %g of its energy",
+                  half, (double)v, (double)radii[i % 9], sum / (double)v);
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+}
+
 // A crop knows nothing of a light that it does not hold.
 static void crops(struct hf_context *c, int half)
 {
@@ -206,6 +230,7 @@ int main(void)
         far_off(c, half);
         many(c, half);
         beside_constant(c, half);
+        faded(c, half);
         crops(c, half);
         largest(c, half);
         opaque(c, half);

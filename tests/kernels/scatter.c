@@ -138,7 +138,7 @@ static void list_make(struct world *w)
     struct rng *r = &w->rng;
     w->n = w->n < HF_SPLATS ? w->n : HF_SPLATS;
     slot_use(w, SLOT_WORK, HF_BINS * sizeof(struct hf_splats), 0xff);
-    now.bins = (struct hf_bins){.count = rng_int(r, 1, HF_BINS), .least = {0.5f, 0.01f}};
+    now.bins = (struct hf_bins){.count = rng_int(r, 1, HF_BINS), .least = {0.5f, 0.1f, 0.01f}};
     for (int b = 0; b < HF_BINS; b++) {
         list_of(w, ARENA_MADE)[b].count = rng_int(r, 0, HF_SPLATS - w->n);
         for (int c = 0; c < 4; c++)
@@ -526,7 +526,7 @@ static void settle_call(struct world *w, const struct kernels *k, enum arena a)
     int64_t *lane[HF_BINS];
     for (int b = 0; b < HF_BINS; b++)
         lane[b] = lane_of(w, a) + (size_t)b * row_lanes() + 4 * HF_SUMS_MARGIN;
-    k->scatter.settle(lane, now.width, now.channels, &now.bins, out);
+    k->scatter.settle(lane, now.bins.count, now.width, now.channels, (const double(*)[4])now.bins.unscale, out);
 }
 
 // ---- the rows of the table ----

@@ -3,12 +3,12 @@
 
 #include <stdlib.h>
 
-// A radius as the nearest of 256 an octave, and half the width of its row dy in 1/256 pixel.
+// A radius as the nearest of 1024 an octave, and half the width of its row dy in 1/256 pixel.
 static double kept_radius(float r)
 {
     int exponent;
     const double m = frexp(fmax(r, 0.5), &exponent);  // 0.5..1
-    return ldexp(floor(m * 512 + 0.5) / 512, exponent);
+    return ldexp(floor(m * 2048 + 0.5) / 2048, exponent);
 }
 
 static double row_width(double r, int dy)
@@ -22,11 +22,11 @@ static double row_width(double r, int dy)
     return height <= 0 ? 0 : floor(256 * (g[1] - g[0]) / height + 0.5) / 256;
 }
 
-// What the last row of a disc covers of its height, in sixteenths: that is its weight, 1 for the others.
+// What the last row of a disc covers of its height, in 128ths: that is its weight, 1 for the others.
 static double row_weight(double r, int dy)
 {
     const double height = fmin(1, r - (abs(dy) - 0.5));
-    return dy == 0 || height >= 1 ? 1 : height <= 0 ? 0 : floor(16 * height + 0.5) / 16;
+    return dy == 0 || height >= 1 ? 1 : height <= 0 ? 0 : floor(128 * height + 0.5) / 128;
 }
 
 static double overlap(double a0, double a1, double b0, double b1)
