@@ -30,13 +30,7 @@ static uint64_t hash_of(const struct hf_params *ladder, int steps)
 {
     uint64_t hash = (uint64_t)steps;
     for (int i = 0; i < steps; i++) {
-        const struct hf_params *p = &ladder[i];
-        const uint64_t resolution = (uint64_t)p->hexagon.resolution | (uint64_t)p->scatter.resolution << 2 |
-                                    (uint64_t)p->gaussian.resolution << 4;
-        const uint64_t word = (uint64_t)p->engine | (uint64_t)p->gather.storage << 4 | resolution << 8 |
-                              (uint64_t)(p->gather.rings + 1) << 16 | (uint64_t)p->gather.fill << 24 |
-                              (uint64_t)p->gaussian.iterations << 28;
-        hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
+        hash = (hash ^ hf_ladder_hash(&ladder[i])) * UINT64_C(0x9e3779b97f4a7c15);
         hash ^= hash >> 31;
     }
     return hash | 1;

@@ -5,7 +5,7 @@
 
 #include "hyperfocal/hyperfocal.h"
 
-enum { HF_BUDGET_STEPS = 16 };
+enum { HF_BUDGET_STEPS = 32 };  // more than the ladder has
 
 struct hf_budget {
     uint64_t asked;                // hash of what the ladder was made for; 0: nothing yet

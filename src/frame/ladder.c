@@ -4,10 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "frame/budget.h"
 #include "frame/engine.h"
 #include "frame/ladder_table.h"
 
 const struct hf_ladder_step hf_ladder[] = {HF_LADDER_STEPS};
+_Static_assert(sizeof hf_ladder / sizeof *hf_ladder < HF_BUDGET_STEPS, "a budget may step to all of them");
 const int hf_ladder_steps = sizeof hf_ladder / sizeof *hf_ladder;
 const float hf_ladder_engine_ms[HF_ENGINE_COUNT] = {HF_LADDER_ENGINES};
 static const int qualities[] = {HF_LADDER_QUALITIES};
@@ -83,6 +85,18 @@ void hf_ladder_apply(struct hf_params *p, int step)
             }
         text = takes_value ? value + strcspn(value, " ") : text + n;
     }
+}
+
+uint64_t hf_ladder_hash(const struct hf_params *p)
+{
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    for (int i = 0; i < WORDS; i++) {
+        uint32_t field;
+        memcpy(&field, (const char *)p + words[i].offset, sizeof field);
+        hash = (hash ^ field) * UINT64_C(0x100000001b3);
+        hash ^= hash >> 29;
+    }
+    return hash;
 }
 
 void hf_ladder_reshape(struct hf_params *p)

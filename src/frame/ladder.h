@@ -19,6 +19,8 @@ extern const float hf_ladder_engine_ms[HF_ENGINE_COUNT];
 
 // Make params those of a step, as far as steps differ: the engine and its knobs.
 void hf_ladder_apply(struct hf_params *params, int step);
+// Of what steps differ in.
+uint64_t hf_ladder_hash(const struct hf_params *params);
 // 1 if params->engine draws params->aperture.
 int hf_ladder_can_draw(const struct hf_params *params);
 // Take from params->aperture what params->engine does not draw.
