@@ -7,6 +7,7 @@
 #include <float.h>
 #include <stddef.h>
 #include <string.h>
+#include <unistd.h>
 
 #define FORMATS "rgba32f|rgb32f|rgba16f|r11g11b10f|planar32f|rgba8|bgra8|rgbx8|bgrx8|rgb10a2|rgba16"
 
@@ -23,8 +24,10 @@ static const struct tool_option options[] = {
      FIELD(width), .max = 65536},
     {"scene", 0, TOOL_FILES, "NAME|FILE", "mixed (default), near, far, both, focus, band:PERCENT, or an EXR file.",
      TEXT(scene)},
-    {"images", 0, TOOL_FILES, "DIR", "truth, batch, tradeoff: folder of NAME.exr and NAME.truth.exr. Default images.",
-     TEXT(images)},
+    {"images", 0, TOOL_FILES, "DIR", "truth, batch, tradeoff: folder of NAME.exr and NAME.truth.exr. Default: images "
+     "here, in the source, or where it is installed.", TEXT(images)},
+    {"image", 0, TOOL_FILES, "FILE", "truth: compare this picture with --truth, in place of the scenes.", TEXT(image)},
+    {"truth", 0, TOOL_FILES, "FILE", "truth: what --image should be.", TEXT(truth)},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "batch: only this one. Default "
      "all.", .parse = tool_parse_choice_text, FIELD(compression)},
     {"in", 0, TOOL_FILES, FORMATS, "Format of the colour read. Default r11g11b10f.", NAME(in, FORMAT)},
@@ -77,7 +80,8 @@ const struct tool_program bench_program = {
     .groups = groups,
     .sections = (const struct tool_section[]){{options, 0}, {tool_params_options, offsetof(struct bench_args, params)}},
     .section_count = 2,
-    .examples = (const char *const[]){"hyperfocal-bench passes --scene both", "hyperfocal-bench truth --json -", NULL},
+    .examples = (const char *const[]){"hyperfocal-bench passes --scene both", "hyperfocal-bench truth --json -",
+                                      "hyperfocal-bench truth --image dof.exr --truth traced.exr", NULL},
     .outro = "Exit codes: 0 done, 1 not.",
 };
 
@@ -87,7 +91,6 @@ void bench_args_default(struct bench_args *args)
         .width = 1920,
         .height = 1080,
         .scene = "mixed",
-        .images = "images",
         .in = HF_FORMAT_R11G11B10F,
         .out = HF_FORMAT_R11G11B10F,
         .params = hf_default_params,
@@ -95,6 +98,27 @@ void bench_args_default(struct bench_args *args)
     args->params.focus = 20;
     args->params.range.distance = 10;
     args->params.max_radius = 12;
+}
+
+// The truth scenes: beside the one who calls, in the source that this was built in, where they are installed.
+static void find_images(struct bench_args *args)
+{
+    static const char *const places[] = {"../../images", "../share/hyperfocal/images"};
+    char self[2048], probe[sizeof(args->found) + 32];
+    const ssize_t n = readlink("/proc/self/exe", self, sizeof(self) - 1);
+    args->images = "images";
+    if (!access("images/lights.truth.exr", R_OK) || n <= 0)
+        return;
+    self[n] = '\0';
+    *strrchr(self, '/') = '\0';
+    for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
+        snprintf(args->found, sizeof(args->found), "%.2000s/%s", self, places[i]);
+        snprintf(probe, sizeof(probe), "%.4000s/lights.truth.exr", args->found);
+        if (!access(probe, R_OK)) {
+            args->images = args->found;
+            return;
+        }
+    }
 }
 
 int bench_args_parse(struct bench_args *args, int count, char **words, struct tool_error *error)
@@ -105,6 +129,8 @@ int bench_args_parse(struct bench_args *args, int count, char **words, struct to
     args->help = p.help;
     if (p.help)
         return 0;
+    if (!args->images)
+        find_images(args);
     args->words = words;
     args->word_count = count;
     args->engine_given = tool_given(&p, "engine");

@@ -16,9 +16,11 @@ struct bench_args {
     int frames;         // 0: as many as take a few seconds
     int threads;        // 0: one per processor
     enum hf_isa isa;
-    const char *scene;        // name of a built-in scene, or of a file
-    const char *images;       // folder of the truth scenes
-    const char *compression;  // batch: one of EXR's, NULL for all
+    const char *scene;          // name of a built-in scene, or of a file
+    const char *images;         // folder of the truth scenes
+    const char *image, *truth;  // truth: any picture and what it should be; NULL: the scenes
+    char found[4096];           // what images points at if the folder was looked for
+    const char *compression;    // batch: one of EXR's, NULL for all
     int engine_given;
     const char *json;  // file, "-" for stdout, NULL for none
     // tradeoff

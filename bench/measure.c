@@ -21,6 +21,8 @@ enum {
     MAX_FRAMES = 1001,
     MIN_WARM_UP = 3,
 };
+// Of a machine of one's own the median is 2 to 10 % above the least.
+static const double BUSY = 1.3;
 static const double warm_up_s = 0.3, run_s = 3.0, burst_s = 0.003;
 
 struct frame {
@@ -209,6 +211,11 @@ static void summarise(struct frame *frames, int n, struct bench_result *r)
     r->planning_ms = round_ms(frames[(n - 1) / 2].planning_ms);
     for (int p = 0; p < HF_MAX_PASSES; p++)
         r->pass[p].in = fused_into(r, p);
+}
+
+int bench_is_busy(const struct bench_row *all)
+{
+    return all->median_ms > BUSY * all->min_ms;
 }
 
 double bench_measure_copy(const struct bench_subject *s)

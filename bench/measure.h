@@ -45,6 +45,9 @@ struct bench_result {
     struct hf_report stats;  // of the last frame
 };
 
+// Does something else keep the machine busy? Then the middle frame takes far longer than the fastest.
+int bench_is_busy(const struct bench_row *all);
+
 // Milliseconds of copying colour in to colour out and depth to scratch, same threads: median.
 double bench_measure_copy(const struct bench_subject *subject);
 

@@ -90,6 +90,9 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     fprintf(out, "   of which planning %.3f\n", r->planning_ms);
     table_row(out, "All", all, all, gather ? gtx660_all_ms : 0);
     fprintf(out, " %9.3f %9.3f\n\n", r->all.min_ms, r->all.max_ms);
+    if (bench_is_busy(&r->all))
+        fprintf(out, "The machine is busy: the median is %.1f times the least, which is nearer to what it can do.\n",
+                all / r->all.min_ms);
     table_uses(out, &r->uses);
     table_machine(out, run);
 }
@@ -162,6 +165,7 @@ void bench_report_json(FILE *out, const struct bench_run *run)
         tool_json_close(&j);
     }
     tool_json_close(&j);
+    tool_json_flag(&j, "busy", bench_is_busy(&r->all));
     tool_json_ms(&j, "overhead_ms", r->overhead_ms);
     tool_json_ms(&j, "planning_ms", r->planning_ms);
     tool_json_ms(&j, "in_place_ms", u->in_place.median_ms);

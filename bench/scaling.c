@@ -70,6 +70,17 @@ static double peak_memory(void)
     return getrusage(RUSAGE_SELF, &usage) ? 0 : (double)usage.ru_maxrss * 1024;
 }
 
+// Points of which the median is far above the least.
+static int busy_points(const struct scaling *r)
+{
+    int n = 0;
+    for (int i = 0; i < r->count; i++)
+        for (int k = 0; k < KINDS; k++)
+            for (int j = 0; j < SHARES; j++)
+                n += bench_is_busy(&r->size[i].point[k][j].all);
+    return n;
+}
+
 static void table(FILE *out, const void *what)
 {
     const struct scaling *r = what;
@@ -88,6 +99,9 @@ static void table(FILE *out, const void *what)
         }
     fprintf(out, "\n%s, %d threads, engine %s, radius %g; the process had at most %.0f MB\n", hf_isa_name(r->isa),
             r->threads, hf_engine_name(r->args->params.engine), r->max_radius, peak_memory() * 1e-6);
+    if (busy_points(r))
+        fprintf(out, "The machine is busy: %d of %d medians are far above the least.\n", busy_points(r),
+                r->count * KINDS * SHARES);
 }
 
 static void json_point(struct tool_json *j, const struct scaling *r, int i, int k, int n)
@@ -132,6 +146,7 @@ static void json(FILE *out, const void *what)
     tool_json_count(&j, "threads", r->threads);
     tool_json_text(&j, "isa", hf_isa_name(r->isa));
     tool_json_number(&j, "max_radius", r->max_radius);
+    tool_json_count(&j, "busy", busy_points(r));
     tool_json_count(&j, "peak_memory", (long long)peak_memory());
     tool_json_open(&j, "points", '[');
     for (int i = 0; i < r->count; i++)

@@ -138,10 +138,11 @@ static int parse_option(struct tool_parser *p, int count, char **words)
     if (value)
         return set_value(p, i, value + 1, 0) ? -1 : 1;
 
-    // A number may be negative, but what looks like a long option is one: its value was forgotten.
+    // A number may be negative, but what looks like a long option is one: its value was forgotten. Several words in
+    // quotes are a value.
     const int optional = o->placeholder[0] == '[';
     const char *next = count > 1 ? words[1] : NULL;
-    if (next && (optional ? next[0] == '-' : !strncmp(next, "--", 2)))
+    if (next && (optional ? next[0] == '-' : !strncmp(next, "--", 2) && !strchr(next, ' ')))
         next = NULL;
     if (!next && !optional)
         return tool_fail(p->error, -1, "%s needs a value, %s", word, o->placeholder);

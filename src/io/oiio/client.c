@@ -2,6 +2,7 @@
 // The program's side of the helper: starts it when the first file needs it, and asks. What it answers is not trusted
 // further than what a file says: it may have been taken over by one.
 #include <math.h>
+#include <poll.h>
 #include <spawn.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -11,6 +12,8 @@
 #include "io/oiio/wire.h"
 
 #define HELPER "hyperfocal-oiio"
+
+enum { GREETING_MS = 10000 };
 
 struct hf_oiio {
     const char *path;
@@ -47,6 +50,29 @@ int hf_oiio_available(void)
 
 static atomic_flag starting = ATOMIC_FLAG_INIT;
 static int control = -1;
+static char other[HF_WIRE_HELLO];  // what a helper of another build said, under `starting`
+
+// Is the helper of our build? One that says nothing for seconds is of one that did not say it yet, or hangs.
+static int greet(int fd)
+{
+    char own[HF_WIRE_HELLO] = "", hello[HF_WIRE_HELLO] = "";
+    struct pollfd ready = {.fd = fd, .events = POLLIN};
+    int n;
+    do {
+        n = poll(&ready, 1, GREETING_MS);
+    } while (n < 0 && errno == EINTR);
+    const ssize_t size = n > 0 ? recv(fd, hello, sizeof(hello) - 1, 0) : 0;
+    hf_wire_hello(own);
+    if (size > 0 && !strcmp(own, hello))
+        return 0;
+    // It ended: that is no matter of versions.
+    if (n > 0 && size <= 0)
+        return -1;
+    for (char *c = hello; *c; c++)
+        *c = (unsigned char)*c < 0x20 ? '?' : *c;
+    snprintf(other, sizeof(other), "%s", hello[0] ? hello : "unknown");
+    return -1;
+}
 
 static int start_helper(void)
 {
@@ -66,7 +92,7 @@ static int start_helper(void)
         posix_spawn_file_actions_destroy(&actions);
     }
     close(pair[1]);
-    if (failed) {
+    if (failed || greet(pair[0])) {
         close(pair[0]);
         return -1;
     }
@@ -106,11 +132,18 @@ static int new_job(const char *path, struct hf_io_error *err)
         control = start_helper();
         status = send_socket(pair[1]);
     }
+    char own[HF_WIRE_HELLO], version[HF_WIRE_HELLO];
+    memcpy(version, other, sizeof(version));
     atomic_flag_clear(&starting);
     close(pair[1]);
     if (!status)
         return pair[0];
     close(pair[0]);
+    hf_wire_hello(own);
+    if (version[0])
+        return hf_io_fail(err,
+                          "%s: " HELPER " is of version %s, but this program of %s: install both from the same build",
+                          path, version, own);
     return hf_io_fail(err, "%s: cannot start " HELPER, path);
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What program and helper say to each other, over a socket: a request, what belongs to it, a reply, what belongs to it.
-// Both are of one build, so structs travel as they are.
+// Both are of one build, so structs travel as they are; the helper's first words on the control socket say whether it is.
 #ifndef HF_IO_WIRE_H
 #define HF_IO_WIRE_H
 
 #include <errno.h>
+#include <stdio.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "hyperfocal/version.h"
 #include "io/oiio/oiio.h"
 
 enum {
@@ -15,6 +17,8 @@ enum {
     HF_WIRE_PATH = 4096,
     HF_WIRE_CHANNELS = 256,  // most channels of an EXR part
 };
+
+enum { HF_WIRE_HELLO = 64 };
 
 enum hf_wire_op {
     HF_WIRE_OPEN,        // path, name: depth channel
@@ -52,6 +56,13 @@ struct hf_wire_reply {
     struct hf_io_view view;
     char channels[2048];
 };
+
+// What both sides must agree on: the version, and the layout of what travels.
+static inline void hf_wire_hello(char hello[HF_WIRE_HELLO])
+{
+    snprintf(hello, HF_WIRE_HELLO, "%d.%d.%d (%zu, %zu)", HF_VERSION_MAJOR, HF_VERSION_MINOR, HF_VERSION_PATCH,
+             sizeof(struct hf_wire_request), sizeof(struct hf_wire_reply));
+}
 
 // All of it, or -1: the other side is gone.
 static inline int hf_wire_get(int fd, void *data, size_t size)

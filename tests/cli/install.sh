@@ -1,0 +1,66 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# What is installed works wherever it is put: programs find the library, the helper and the scenes from where they are.
+# Usage: install.sh BUILD MESON SOURCE_ROOT. Skipped where not all is built.
+build=$1 meson=$2 source_root=$3
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+trap 'exit 1' HUP INT TERM
+passed=0 failed=0
+check() {  # NAME COMMAND...
+    name=$1
+    shift
+    if "$@" >"$dir/out" 2>"$dir/err"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $name"
+        sed 's/^/  /' "$dir/out" "$dir/err"
+    fi
+}
+"$meson" install -C "$build" --no-rebuild --destdir "$dir/dest" >"$dir/out" 2>&1 || {
+    echo "skipped: not all is built"
+    exit 77
+}
+program=$(find "$dir/dest" -path '*/bin/hyperfocal' -type f)
+# Another prefix than it was made for.
+mv "$(dirname "$(dirname "$program")")" "$dir/elsewhere" || exit 1
+bin=$dir/elsewhere/bin
+cd "$dir" || exit 1
+unset LD_LIBRARY_PATH
+check "starts" "$bin/hyperfocal" --version
+check "the bench starts" "$bin/hyperfocal-bench" --help
+for page in hyperfocal hyperfocal-bench; do
+    check "man page of $page" grep -q "^.TH $page 1" "$dir/elsewhere/share/man/man1/$page.1"
+done
+if command -v readelf >/dev/null; then
+    for file in "$bin/hyperfocal" "$bin/hyperfocal-bench"; do
+        check "no path of this machine in $(basename "$file")" sh -c \
+            'readelf -d "$1" | grep -E "R(UN)?PATH" | grep -q "\[\$ORIGIN/[^:]*\]$"' - "$file"
+    done
+fi
+check "defocuses" "$bin/hyperfocal" "$source_root/images/lights.exr" -o dof.exr --max-radius 2 --engine gaussian
+if [ -x "$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio" ]; then
+    check "finds its helper" "$bin/hyperfocal" "$source_root/images/lights.exr" -o dof.png --max-radius 2 --engine gaussian
+    # A helper of another build says so, and so do we, in one sentence.
+    helper=$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio
+    printf '#!/bin/sh\nprintf "9.8.7 (1, 2)" >&3\nsleep 5\n' >"$helper.new"
+    chmod +x "$helper.new"
+    mv "$helper.new" "$helper"
+    "$bin/hyperfocal" "$source_root/images/lights.exr" -o other.png --max-radius 2 2>other
+    status=$?
+    check "a helper of another version is refused" test $status -eq 3 -a ! -e other.png
+    check "in one sentence" grep -q "hyperfocal-oiio is of version 9.8.7 (1, 2), but this program of [0-9]" other
+    check "and no more" test "$(wc -l <other)" -eq 1
+fi
+# Not in the source, and not beside one: the scenes are those that were installed.
+check "the bench finds its scenes" "$bin/hyperfocal-bench" tradeoff --quick --cache none \
+    --setting "--engine gaussian --resolution quarter --iterations 1 --threads 1"
+check "the bench scores a picture" "$bin/hyperfocal-bench" truth --image dof.exr \
+    --truth "$dir/elsewhere/share/hyperfocal/images/lights.truth.exr"
+mv out score
+check "by a number of dB" grep -Eq "^ +[0-9]+\.[0-9]{2} " score
+check "the same is the same" sh -c '"$1" truth --image dof.exr --truth dof.exr --json - | grep -q "\"linear_rmse\": 0,"' - \
+    "$bin/hyperfocal-bench"
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
