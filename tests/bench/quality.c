@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ladder on the ray-traced scenes: a better step is never worse, each errs as its table says, and the best comes
+// nearer to the truth than other programs do.
+//
+//     quality images      the folder of the scenes
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "others.h"
+#include "support/check.h"
+#include "support/render.h"
+
+// What tells one quality from the next is 0.25 dB and more. A step may come out worse by a fifth of that where an engine
+// has changed a little since it was measured; the error of its table may be off by all of it.
+static const double SLACK = 0.05, TOLD_APART = 0.25;
+
+enum { SCENES = 3, MOST = 32 };
+static const struct {
+    const char *name;
+    float focus, f_number;  // as in the header
+} scenes[SCENES] = {{"lights", 5, 0.37f}, {"fence", 6, 0.46f}, {"foliage", 4, 0.7f}};
+
+struct truth {
+    struct picture in, depth, want;
+};
+
+static int read_scene(struct truth *t, const char *folder, const char *name)
+{
+    static const char *const rgb[] = {"R", "G", "B"}, *const z[] = {"Z"};
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s.exr", folder, name);
+    if (exr_read(&t->in, path, 3, rgb) || exr_read(&t->depth, path, 1, z))
+        return -1;
+    snprintf(path, sizeof path, "%s/%s.truth.exr", folder, name);
+    return exr_read(&t->want, path, 3, rgb);
+}
+
+static double psnr_of(struct hf_context *c, const struct truth *t, int scene, struct hf_params p)
+{
+    const struct hf_depth depth = picture_depth(&t->depth);
+    p.model = HF_MODEL_LENS;
+    p.focus = scenes[scene].focus;
+    p.lens.f_number = scenes[scene].f_number;
+    struct picture out = render(c, &t->in, &depth, &p);
+    const double psnr = display_psnr(&out, &t->want);
+    picture_free(&out);
+    return psnr;
+}
+
+// The step after the one in *choice; the first if there is none. Returns 0 when there are no more.
+static int next_step(struct hf_params *p, struct hf_choice *choice)
+{
+    const int before = choice->options ? choice->step : -1;
+    if (choice->options && choice->step + 1 == choice->steps)
+        return 0;
+    *p = hf_default_params;
+    CHECK_INT(hf_choose_error(p, choice->options ? choice->error * 0.99999f : 1, choice), HF_OK);
+    return CHECK_INT(choice->step, before + 1);
+}
+
+static double in_others(int scene)
+{
+    for (int i = 0; i < BENCH_OTHERS; i++)
+        if (!strcmp(bench_others[i].scene, scenes[scene].name))
+            return fmax(bench_others[i].blender, bench_others[i].gegl);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct hf_context *c = NULL;
+    struct hf_choice choice[MOST] = {{0}};
+    struct hf_params step[MOST];
+    double mean[MOST] = {0};
+    int steps = 0;
+    if (argc != 2 || !CHECK_INT(hf_open(&c, NULL), HF_OK))
+        return 1;
+    while (steps < MOST && next_step(&step[steps], &choice[steps])) {
+        if (steps + 1 < MOST)
+            choice[steps + 1] = choice[steps];
+        steps++;
+    }
+    CHECK(steps > 0 && choice[steps - 1].steps == steps);
+    for (int s = 0; s < SCENES; s++) {
+        struct truth t;
+        double last = 0;
+        if (!CHECK_MSG(read_scene(&t, argv[1], scenes[s].name) == 0, "cannot read %s", scenes[s].name))
+            break;
+        for (int i = 0; i < steps; i++) {
+            const double psnr = psnr_of(c, &t, s, step[i]);
+            CHECK_MSG(psnr >= last - SLACK, "%s: %s has %.2f dB, the step before it %.2f", scenes[s].name,
+                      choice[i].options, psnr, last);
+            mean[i] += psnr / SCENES;
+            last = psnr;
+        }
+        CHECK_MSG(last > in_others(s), "%s: the best has %.2f dB, another program %.2f", scenes[s].name, last,
+                  in_others(s));
+        picture_free(&t.in);
+        picture_free(&t.depth);
+        picture_free(&t.want);
+    }
+    for (int i = 0; i < steps; i++)
+        CHECK_MSG(fabs(mean[i] + 20 * log10(choice[i].error)) <= TOLD_APART,
+                  "%s errs by %.2f dB, its table says %.2f: make the table anew", choice[i].options, mean[i],
+                  -20 * log10(choice[i].error));
+    hf_close(&c);
+    return check_report();
+}
