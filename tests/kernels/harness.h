@@ -271,6 +271,35 @@ void scatter_make(struct world *w, int which);
 void scatter_call(struct world *w, const struct kernels *k, enum arena a, int which);
 int scatter_check(const struct world *w, const struct level *l, char message[256]);
 
+// layers.c
+enum {
+    LAYERS_SURE,
+    LAYERS_UNMIX,
+    LAYERS_ROOTS,
+    LAYERS_NINE,
+    LAYERS_SHARES,
+    LAYERS_QUADS,
+    LAYERS_MERGE,
+    LAYERS_TAP,
+    LAYERS_NEAREST,
+    LAYERS_FOUND,
+    LAYERS_EXTREMES,
+    LAYERS_INSIDE,
+    LAYERS_WEIGH,
+    LAYERS_FOLD,
+    LAYERS_DISC,
+    LAYERS_PAIRS,
+    LAYERS_RUNS,
+    LAYERS_WEIGHTS,
+    LAYERS_STAMP,
+    LAYERS_UP,
+    LAYERS_BLEND,
+    LAYERS_FINISH
+};
+void layers_make(struct world *w, int which);
+void layers_call(struct world *w, const struct kernels *k, enum arena a, int which);
+int layers_check(const struct world *w, const struct level *l, char message[256]);
+
 // compare.c: all regions, and everything outside them.
 int world_compare(const struct world *w, const struct level *l, char message[256]);
 // Did the reference itself keep to its area, and make only finite numbers?

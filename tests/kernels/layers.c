@@ -1,0 +1,511 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of layers one by one. Lines of samples: colour, weight, radius, with room around for what a kernel reads
+// beside them. Exact levels give the bits of the C. Fused ones keep to their lines too; where all terms of a sum are
+// positive, it is as exact as the number of its roundings, half a unit each.
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "harness.h"
+#include "layers/kernels.h"
+
+enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13 };
+
+static struct {
+    int which, channels, rows, add, with, taps;
+    int roundings;  // of a fused sum whose terms are all positive; 0: no bound is known
+    float scale, off, part;
+    struct hf_slice slice;
+    struct hf_disc_row disc[DISC_ROWS];
+    struct hf_shape_run run[3];
+    int from, to;
+} now;
+
+// Line i: sample 0, with ROOM floats before it and after the last of the longest line.
+static float *line(const struct world *w, enum arena a, int i)
+{
+    return (float *)(void *)slot_start(w, a, SLOT_LINES) + (size_t)i * w->line_floats + ROOM;
+}
+
+static ptrdiff_t stride(const struct world *w)
+{
+    return (ptrdiff_t)w->line_floats;
+}
+
+enum kind { COLOUR, WEIGHT, RADIUS, FLAG };
+
+static float sample(struct world *w, enum kind kind)
+{
+    struct rng *r = &w->rng;
+    switch (kind) {
+    case WEIGHT:
+        return rng_one_in(r, 4) ? 0 : rng_one_in(r, 2) ? 1 : rng_float(r, 0, 1);
+    case RADIUS:
+        return rng_one_in(r, 8) ? 0 : rng_one_in(r, 2) ? rng_float(r, -30, 30) : (float)rng_int(r, -30, 30);
+    case FLAG:
+        return (float)rng_int(r, 0, 1);
+    default:
+        return random_colour(r, w->colours);
+    }
+}
+
+static void fill(struct world *w, int i, int from, int to, enum kind kind)
+{
+    for (int x = from; x < to; x++)
+        line(w, ARENA_MADE, i)[x] = sample(w, kind);
+}
+
+// Radii that change seldom, as surfaces have them.
+static void fill_surfaces(struct world *w, int i, int from, int to)
+{
+    for (int x = from; x < to; x++)
+        line(w, ARENA_MADE, i)[x] =
+            x > from && !rng_one_in(&w->rng, 5) ? line(w, ARENA_MADE, i)[x - 1] : sample(w, RADIUS);
+}
+
+// Colour (4), weight, radius from line i on.
+static void fill_set(struct world *w, int i, int from, int to)
+{
+    for (int c = 0; c < 4; c++)
+        fill(w, i + c, from, to, COLOUR);
+    fill(w, i + 4, from, to, WEIGHT);
+    fill_surfaces(w, i + 5, from, to);
+}
+
+// spare: samples beyond the last that may be written.
+static void put(struct world *w, int i, int n, int spare)
+{
+    world_region(w, REGION_FLOATS, SLOT_LINES, line(w, ARENA_MADE, i), (size_t)n * 4, (size_t)spare * 4, 1, 0);
+}
+
+static void put_set(struct world *w, int i, int count, int n)
+{
+    for (int k = 0; k < count; k++)
+        if (k < now.channels || k >= 4)
+            put(w, i + k, n, 32);
+}
+
+static void set_of(const struct world *w, enum arena a, int i, float *set[6])
+{
+    for (int k = 0; k < 6; k++)
+        set[k] = line(w, a, i + k);
+}
+
+// ---- samples ----
+
+static void unmix_make(struct world *w)
+{
+    for (int y = 0; y < 7; y++) {
+        fill_surfaces(w, y, -3, w->n + 3);
+        fill(w, 7 + y, -3, w->n + 3, FLAG);
+        for (int c = 0; c < 4; c++)
+            fill(w, 14 + 4 * y + c, -3, w->n + 3, COLOUR);
+    }
+    fill_surfaces(w, 42, 0, w->n);
+    put_set(w, IN, 6, w->n);
+    put_set(w, IN + 6, 6, w->n);
+}
+
+static void unmix_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    struct hf_unmix_row u = {.channels = now.channels, .middle = line(w, a, 42)};
+    for (int y = 0; y < 7; y++) {
+        u.radius[y] = line(w, a, y);
+        u.sure[y] = line(w, a, 7 + y);
+        for (int c = 0; c < 4; c++)
+            u.colour[y][c] = line(w, a, 14 + 4 * y + c);
+    }
+    set_of(w, a, IN, u.seen);
+    set_of(w, a, IN + 6, u.mixed);
+    k->layers.unmix(&u, w->n);
+    // What has no weight means nothing.
+    for (int x = 0; x < w->n; x++)
+        for (int c = 0; c < 6; c++)
+            if (u.mixed[4][x] == 0 && (c < now.channels || c == 5))
+                u.mixed[c][x] = 0;
+}
+
+static void quads_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *set[4][6], *out[6];
+    for (int i = 0; i < 4; i++)
+        set_of(w, a, 6 * i, set[i]);
+    set_of(w, a, IN, out);
+    k->layers.quads((const float *const(*)[6])set, (const float *const(*)[6])(set + 2), now.channels, w->n, out);
+}
+
+static void merge_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *set[3][6], *out[6];
+    for (int i = 0; i < 3; i++)
+        set_of(w, a, 6 * i, set[i]);
+    set_of(w, a, IN, out);
+    k->layers.merge((const float *const(*)[6])set, now.channels, now.scale, w->n, out);
+}
+
+static void tap_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *in[6], *sum[6];
+    set_of(w, a, 0, in);
+    set_of(w, a, IN, sum);
+    k->layers.tap((const float *const *)in, now.channels, line(w, a, 6), now.scale, now.off, now.part, w->n, sum);
+}
+
+static void found_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *sum[6], *out[6];
+    const float *const radius[2] = {line(w, a, 6), line(w, a, 7)}, *const weight[2] = {line(w, a, 8), line(w, a, 9)};
+    set_of(w, a, 0, sum);
+    set_of(w, a, IN, out);
+    k->layers.found((const float *const *)sum, radius, weight, now.channels, w->n, out);
+}
+
+// ---- slices ----
+
+static void weigh_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    const float before = rng_float(r, -20, 10), own = before + rng_float(r, 0.5f, 8),
+                after = own + rng_float(r, 0.5f, 8);
+    now.rows = 1 << rng_int(r, 0, 3);
+    now.slice = (struct hf_slice){.radius = own, .before = before, .after = after, .scale = rng_float(r, 0.01f, 1)};
+    now.slice.square = own * own;
+    now.slice.before_square = before * before;
+    now.slice.before_scale = 1 / (own * own - before * before);
+    now.slice.after_scale = 1 / (after * after - own * own);
+    for (int y = 0; y < now.rows; y++)
+        for (int c = 0; c < 7; c++)  // share last, a part of the weight
+            if (c == 5)
+                fill_surfaces(w, 8 * c + y, 0, w->n);
+            else
+                fill(w, 8 * c + y, 0, w->n, c < 4 ? COLOUR : WEIGHT);
+    for (int c = 0; c < 5; c++)
+        fill(w, IN + c, 0, w->n, COLOUR);
+    put_set(w, IN, 5, w->n);
+    const size_t any = (size_t)(w->n + 15) / 16;
+    slot_use(w, SLOT_WORK, any, 0);
+    world_region(w, REGION_BYTES, SLOT_WORK, slot_start(w, ARENA_MADE, SLOT_WORK), any, 0, 1, 0);
+}
+
+static void weigh_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    const float *in[6];
+    float *out[6];
+    for (int c = 0; c < 6; c++)
+        in[c] = line(w, a, 8 * c);
+    set_of(w, a, IN, out);
+    k->layers.weigh(&now.slice, in, now.with ? line(w, a, 48) : NULL, stride(w), now.rows, now.channels, w->n, now.add,
+                    out, slot_start(w, a, SLOT_WORK));
+}
+
+// Rows of any lengths that grow inwards.
+static void disc_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    now.slice = (struct hf_slice){.rows = rng_int(r, 1, DISC_ROWS), .row = now.disc};
+    int n = rng_int(r, -1, 2);
+    for (int d = now.slice.rows - 1; d >= 0; d--) {
+        now.disc[d] = (struct hf_disc_row){n, rng_float(r, 0, 1)};
+        n = hf_min(n + rng_int(r, 0, 3), MOST);
+    }
+    now.from = rng_int(r, -DISC_ROWS, 0);
+    now.to = rng_int(r, now.from, DISC_ROWS + 1);
+    for (int i = 0; i < 2; i++)
+        fill(w, i, -MOST - 2, w->n + MOST + 2, COLOUR);
+    for (int i = 0; i < 2 * DISC_ROWS + 2; i++) {
+        fill(w, IN + i, 0, w->n, COLOUR);
+        put(w, IN + i, w->n, 32);
+    }
+    now.roundings = 4 * MOST + 8;
+}
+
+static void runs_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    fill(w, 0, -ROOM, w->n + ROOM, COLOUR);
+    for (int k = 1; k < 6; k++)
+        for (int x = -ROOM; x + (1 << k) <= w->n + ROOM; x++)
+            line(w, ARENA_MADE, k)[x] = line(w, ARENA_MADE, k - 1)[x] + line(w, ARENA_MADE, k - 1)[x + (1 << (k - 1))];
+    now.taps = rng_int(r, 1, 3);
+    for (int i = 0; i < now.taps; i++) {
+        const int start = rng_int(r, -MOST, 20);
+        now.run[i] = (struct hf_shape_run){start, rng_int(r, 0, MOST - hf_max(start, 0)), rng_float(r, 0, 1),
+                                           rng_float(r, 0, 1), rng_one_in(r, 2) ? 1 : rng_float(r, 0, 1)};
+    }
+    for (int x = 0; x < w->n + 32; x++)  // nothing where a node does not reach
+        line(w, ARENA_MADE, 6)[x] = x >= w->n || rng_one_in(r, 4) ? 0 : rng_float(r, 0, 1);
+    now.roundings = 3 * (6 + 4) + 4;
+}
+
+// ---- stacks ----
+
+static void blend_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    struct hf_stack_row to = {.weight = line(w, a, IN + 4), .open = line(w, a, IN + 5)};
+    float *in[6];
+    set_of(w, a, 0, in);
+    for (int c = 0; c < 4; c++)
+        to.colour[c] = line(w, a, IN + c);
+    k->layers.blend(&to, now.channels, (const float *const *)in, now.with, w->n, now.add ? line(w, a, IN + 6) : NULL);
+}
+
+static void finish_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    struct hf_stack_row near = {.weight = line(w, a, 4)};
+    float *far[6], *own[6], *out[6];
+    set_of(w, a, 6, far);
+    set_of(w, a, 12, own);
+    set_of(w, a, IN, out);
+    for (int c = 0; c < 4; c++)
+        near.colour[c] = line(w, a, c);
+    k->layers.finish(&near, now.with ? (const float *const *)far : NULL, (const float *const *)own, now.channels, w->n,
+                     out);
+}
+
+// ---- all ----
+
+static void start(struct world *w, int which)
+{
+    struct rng *r = &w->rng;
+    world_clear(w);
+    now.which = which;
+    now.roundings = 0;
+    w->colours = w->bench ? COLOURS_PLAIN : rng_one_in(r, 2) ? COLOURS_MIXED : COLOURS_PLAIN;
+    w->n = w->bench ? 256 : rng_int(r, 1, 130);
+    now.channels = rng_int(r, 3, 4);
+    now.add = rng_int(r, 0, 1);
+    now.with = rng_int(r, 0, 1);
+    now.rows = rng_int(r, 1, 8);
+    now.scale = rng_float(r, 0.01f, 0.5f);
+    now.off = rng_float(r, -1, 0.5f);
+    now.part = rng_float(r, 0.001f, 1);
+    make_lines(w, LINES, (size_t)(2 * w->n) + 2 * ROOM);
+}
+
+void layers_make(struct world *w, int which)
+{
+    start(w, which);
+    switch (which) {
+    case LAYERS_SURE:
+        for (int i = 0; i < 3; i++)
+            fill_surfaces(w, i, -1, w->n + 1);
+        for (int i = IN; i < IN + 2; i++) {  // the first and the last mean nothing
+            put(w, i, w->n, 32);
+            w->regions[w->region_count - 1].kind = REGION_SCRATCH;
+            if (w->n > 2)
+                world_region(w, REGION_FLOATS, SLOT_LINES, line(w, ARENA_MADE, i) + 1, (size_t)(w->n - 2) * 4, 0, 1, 0);
+        }
+        return;
+    case LAYERS_UNMIX:
+        unmix_make(w);
+        return;
+    case LAYERS_ROOTS:
+    case LAYERS_NINE:
+        for (int i = 0; i < 9; i++)
+            fill(w, i, 0, 2 * w->n, COLOUR);
+        put(w, IN, w->n, 32);
+        return;
+    case LAYERS_SHARES:
+        fill_set(w, 0, 0, w->n);
+        for (int x = 0; x < w->n; x++)
+            line(w, ARENA_MADE, 6)[x] = rng_float(&w->rng, 0, 0.5f);
+        put(w, IN, w->n, 32);
+        return;
+    case LAYERS_QUADS:
+        for (int i = 0; i < 4; i++)
+            fill_set(w, 6 * i, 0, 2 * w->n);
+        put_set(w, IN, 6, w->n);
+        return;
+    case LAYERS_MERGE:
+        for (int i = 0; i < 3; i++)
+            fill_set(w, 6 * i, 0, w->n);
+        put_set(w, IN, 6, w->n);
+        return;
+    case LAYERS_TAP:
+        fill_set(w, 0, 0, w->n);
+        fill_surfaces(w, 6, 0, w->n);
+        fill_set(w, IN, 0, w->n);
+        for (int i = IN; i < IN + 6; i++)  // sums begin with 0, which has no sign
+            for (int x = 0; x < w->n; x++)
+                line(w, ARENA_MADE, i)[x] += 0.0f;
+        put_set(w, IN, 6, w->n);
+        return;
+    case LAYERS_FOUND:
+        fill_set(w, 0, 0, w->n);
+        for (int i = 6; i < 10; i++)
+            fill(w, i, 0, 2 * w->n, i < 8 ? RADIUS : WEIGHT);
+        put_set(w, IN, 6, w->n);
+        return;
+    case LAYERS_NEAREST:
+        fill_surfaces(w, 0, 0, 2 * w->n);
+        fill_surfaces(w, 1, 0, 2 * w->n);
+        put(w, IN, w->n, 32);
+        return;
+    case LAYERS_EXTREMES:
+    case LAYERS_INSIDE:
+        for (int y = 0; y < now.rows; y++) {
+            fill_surfaces(w, y, 0, w->n);
+            fill(w, 8 + y, 0, w->n, WEIGHT);
+            for (int x = 0; x < w->n; x++)
+                line(w, ARENA_MADE, 16 + y)[x] = rng_one_in(&w->rng, 300) ? 0.5f : 0;
+        }
+        line(w, ARENA_MADE, IN)[0] = now.add ? HUGE_VALF : -1;
+        line(w, ARENA_MADE, IN)[1] = now.add ? -HUGE_VALF : 1;
+        put(w, IN, 2, 0);
+        return;
+    case LAYERS_WEIGH:
+        weigh_make(w);
+        return;
+    case LAYERS_DISC:
+        disc_make(w);
+        return;
+    case LAYERS_RUNS:
+        runs_make(w);
+        break;
+    case LAYERS_FOLD:
+    case LAYERS_PAIRS:
+        fill(w, 0, 0, 2 * w->n, COLOUR);
+        now.rows = rng_int(&w->rng, 1, w->n);
+        put(w, IN, w->n, 0);
+        return;
+    case LAYERS_WEIGHTS:
+    case LAYERS_STAMP:
+        now.taps = rng_int(&w->rng, 1, MOST);
+        fill(w, 0, -MOST, w->n + MOST, COLOUR);
+        for (int x = 0; x < hf_max(w->n, MOST); x++)
+            line(w, ARENA_MADE, 1)[x] = rng_float(&w->rng, 0, 1);
+        now.roundings = 2 * MOST + 4;
+        break;
+    case LAYERS_UP:
+        fill(w, 0, -1, w->n + 1, COLOUR);
+        fill(w, 1, -1, w->n + 1, COLOUR);
+        put(w, IN, 2 * w->n, 32);
+        now.roundings = 8;
+        return;
+    default:  // stacks
+        for (int i = 0; i < 3; i++)
+            fill_set(w, 6 * i, 0, w->n);
+        for (int i = 0; i < 7; i++)
+            fill(w, IN + i, 0, w->n, i < 4 ? COLOUR : WEIGHT);
+        put_set(w, IN, which == LAYERS_BLEND ? 6 : 4, w->n);
+        if (which == LAYERS_BLEND && now.add)
+            put(w, IN + 6, w->n, 32);
+        return;
+    }
+    fill(w, IN, 0, w->n, COLOUR);
+    put(w, IN, w->n, which == LAYERS_STAMP ? 0 : 32);
+}
+
+static void drawing_call(struct world *w, const struct kernels *k, enum arena a, int which)
+{
+    const struct hf_layers_kernels *s = &k->layers;
+    float *const out = line(w, a, IN);
+    if (which == LAYERS_DISC)
+        s->disc(&now.slice, line(w, a, 0), line(w, a, 1), w->n, now.from, now.to, line(w, a, IN + DISC_ROWS),
+                stride(w));
+    else if (which == LAYERS_RUNS)
+        s->runs(now.run, now.taps, line(w, a, 0), stride(w), now.with ? line(w, a, 6) : NULL, w->n, out);
+    else if (which == LAYERS_WEIGHTS)
+        s->weights(line(w, a, 1), now.taps, line(w, a, 0), w->n, out);
+    else if (which == LAYERS_STAMP)
+        s->stamp(line(w, a, 1), w->n, now.part, out);
+    else if (which == LAYERS_PAIRS)
+        s->pairs(line(w, a, 0), now.rows, w->n, out);
+    else if (which == LAYERS_FOLD)
+        s->fold(line(w, a, 0), w->n, out);
+    else
+        s->up(line(w, a, 0), line(w, a, 1), w->n, out);
+}
+
+void layers_call(struct world *w, const struct kernels *k, enum arena a, int which)
+{
+    const struct hf_layers_kernels *s = &k->layers;
+    const float *in[9];
+    float *const out = line(w, a, IN);
+    for (int i = 0; i < 9; i++)
+        in[i] = line(w, a, i);
+    switch (which) {
+    case LAYERS_SURE:
+        s->sure(in, w->n, out, line(w, a, IN + 1));
+        return;
+    case LAYERS_UNMIX:
+        unmix_call(w, k, a);
+        return;
+    case LAYERS_ROOTS:
+        s->roots(in, in + 3, w->n, out);
+        return;
+    case LAYERS_NINE:
+        s->nine(in, w->n, out);
+        return;
+    case LAYERS_SHARES:
+        s->shares(in, in[6], w->n, out);
+        return;
+    case LAYERS_QUADS:
+        quads_call(w, k, a);
+        return;
+    case LAYERS_MERGE:
+        merge_call(w, k, a);
+        return;
+    case LAYERS_TAP:
+        tap_call(w, k, a);
+        return;
+    case LAYERS_FOUND:
+        found_call(w, k, a);
+        return;
+    case LAYERS_NEAREST:
+        s->nearest(in[0], in[1], w->n, out);
+        return;
+    case LAYERS_EXTREMES:
+        w->result[a].returned = s->extremes(in[0], now.with ? in[8] : NULL, now.with ? line(w, a, 16) : NULL, stride(w),
+                                            w->n, now.rows, (struct hf_layers_range *)(void *)out) != 0;
+        return;
+    case LAYERS_INSIDE:
+        w->result[a].returned =
+            s->inside(in[0], in[8], stride(w), w->n, now.rows, 20 * now.off, 20 * now.off + now.part) != 0;
+        return;
+    case LAYERS_WEIGH:
+        weigh_call(w, k, a);
+        return;
+    case LAYERS_BLEND:
+        blend_call(w, k, a);
+        return;
+    case LAYERS_FINISH:
+        finish_call(w, k, a);
+        return;
+    default:
+        drawing_call(w, k, a, which);
+    }
+}
+
+// Fused sums of positive terms; of others nothing but where they were written.
+static int fused_check(const struct world *w, const struct level *l, char message[256])
+{
+    static struct world other;
+    other = *w;
+    for (int i = 0; i < w->region_count; i++) {
+        const struct region *g = &w->regions[i];
+        if (g->kind != REGION_FLOATS)
+            continue;
+        other.regions[i].kind = REGION_SCRATCH;
+        const float *want = (const float *)(const void *)(slot_start(w, ARENA_REFERENCE, g->slot) + g->offset);
+        const float *got = (const float *)(const void *)(slot_start(w, ARENA_TEST, g->slot) + g->offset);
+        for (size_t x = 0; x < g->row_bytes / 4 && now.roundings && w->colours == COLOURS_PLAIN; x++)
+            if (!(fabs((double)want[x] - got[x]) <= now.roundings * FLT_EPSILON * fabs((double)want[x]) + 0x1p-140)) {
+                snprintf(message, 256, "sample %zu of region %d: %a, the C %a", x, i, got[x], want[x]);
+                return 0;
+            }
+    }
+    return world_compare(&other, l, message);
+}
+
+int layers_check(const struct world *w, const struct level *l, char message[256])
+{
+    if (!l->exact)
+        return fused_check(w, l, message);
+    if (w->result[ARENA_TEST].returned != w->result[ARENA_REFERENCE].returned) {
+        snprintf(message, 256, "returned %d, the C %d", w->result[ARENA_TEST].returned,
+                 w->result[ARENA_REFERENCE].returned);
+        return 0;
+    }
+    return world_compare(w, l, message);
+}
