@@ -185,6 +185,9 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
 {
     if (!args->input)
         return tool_fail(error, -1, "there is no INPUT, see hyperfocal --help");
+    if (!args->output && !args->dry_run && !args->print_focus && args->input_count == 2)
+        return tool_fail(error, -1, "there is no OUTPUT for %s; if it is %s, write -o before it", args->input,
+                         args->inputs[1]);
     if (!args->output && !args->dry_run && !args->print_focus)
         return tool_fail(error, -1, "there is no OUTPUT for %s, name it with -o", args->input);
     if (args->output && args->compression && !cli_is_exr(args->output))

@@ -28,15 +28,16 @@ static float ramp(float v, float begin, float end)
     return v <= begin ? 0 : v >= end ? 1 : (v - begin) / (end - begin);
 }
 
-// Signed, pixels; negative in front of the focus. What the gaussian engine blurs at all it blurs alike, three standard
-// deviations far, and blends.
+// Signed, pixels; negative in front of the focus.
 static float radius_of(const struct model *m, float z)
 {
     const struct hf_params *p = &m->r->params;
     const struct hf_range_params *range = &p->range;
     float r;
     if (p->engine == HF_ENGINE_GAUSSIAN && p->gaussian.by_depth) {
-        r = z < p->focus ? -1 : z > p->focus;
+        const float far_plane = m->depth->far_plane > 0 ? m->depth->far_plane : 100;
+        const float d = fminf(1, z / far_plane) - fminf(1, p->focus / far_plane);
+        r = copysignf(fminf(1, 3 * fabsf(d)) * 2 * p->gaussian.sigma, d);
     } else if (p->model == HF_MODEL_LENS) {
         r = m->r->lens_k * (1 / p->focus - 1 / z);
         r = fminf(fmaxf(r, -p->max_radius), p->max_radius);
@@ -44,7 +45,7 @@ static float radius_of(const struct model *m, float z)
         const float n = 1 - ramp(z, range->near_begin, range->near_end), f = ramp(z, range->far_begin, range->far_end);
         r = range->strength * p->max_radius * (f - n);
     }
-    return p->engine == HF_ENGINE_GAUSSIAN && r != 0 ? copysignf(3 * p->gaussian.sigma, r) : r;
+    return r;
 }
 
 static float radius_at(const struct model *m, int x, int y)
@@ -75,6 +76,8 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
             return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
     }
     v->far_away = m.depth->type == HF_DEPTH_COC ? 0 : fabsf(radius_of(&m, INFINITY));
+    // What the gaussian engine blurs at all it blurs alike, and blends: three standard deviations far.
+    v->least_reach = resolved.params.engine == HF_ENGINE_GAUSSIAN ? 3 * resolved.params.gaussian.sigma : 0;
     v->least_radius = resolved.sharp ? 0 : INFINITY;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {

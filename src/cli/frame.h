@@ -27,6 +27,7 @@ struct cli_view {
     float *planes[4];
     struct cli_depth_found found;
     float least_radius;  // pixels: what is least blurred
+    float least_reach;   // of all that is blurred at all
     float far_away;      // radius of what is infinitely far
     float *radii;        // of all pixels, see cli_coc_look; NULL
     int cut;             // pixels by which the blur reaches beyond the data window, and is lost

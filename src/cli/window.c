@@ -29,7 +29,7 @@ int cli_window_cut(const struct cli_view *v)
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const size_t i = (size_t)y * (size_t)width + (size_t)x;
-            const float r = fabsf(v->radii[i]);
+            const float r = v->radii[i] == 0 ? 0 : fmaxf(fabsf(v->radii[i]), v->least_reach);
             float beyond = 0;
             if (left)
                 beyond = fmaxf(beyond, r - (float)x);
@@ -107,7 +107,7 @@ static float largest(const struct cli_frame *frame, int part)
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
         const size_t n = v->view->part == part ? (size_t)v->view->width * (size_t)v->view->height : 0;
-        r = n ? fmaxf(r, v->far_away) : r;
+        r = n ? fmaxf(r, fmaxf(v->far_away, v->least_reach)) : r;
         for (size_t k = 0; k < n; k++)
             if (fabsf(v->radii[k]) > r && visible(v, k))
                 r = fabsf(v->radii[k]);

@@ -386,8 +386,8 @@ static int exr_depth_only(struct hf_io_file *file, const char *depth_channel, co
         return hf_io_fail(err, "%s: channel %s is subsampled, which is not supported", file->path,
                           part->channels[c].name);
     if (part->width != view->width || part->height != view->height)
-        return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d", file->path, part->width,
-                          part->height, view->width, view->height);
+        return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d; it has to be resized first",
+                          file->path, part->width, part->height, view->width, view->height);
     const struct hf_io_box own = {part->window.min.x, part->window.min.y, part->window.max.x + 1,
                                   part->window.max.y + 1};
     const struct hf_exr_plane plane = {p, c, false, own, depth};

@@ -53,11 +53,15 @@ int hf_io_nearest(const char *list, const char *wanted, char nearest[256])
     struct tool_nearest best = {NULL, 0, 0};
     for (const char *at = list; *at;) {
         const char *comma = strstr(at, ", ");
-        const int n = comma ? (int)(comma - at) : (int)strlen(at), first = (int)strcspn(at, ".");
+        const int n = comma ? (int)(comma - at) : (int)strlen(at);
         struct tool_nearest found = {NULL, 0, 0};
         tool_nearest_try(&found, at, n, wanted);
-        if (first < n)
-            tool_nearest_try(&found, at, first, wanted);  // Foreground of Foreground.Combined
+        // Its pieces: Fg of Fg.Combined.
+        for (int from = 0, to = 0; to <= n; to++)
+            if (to == n || at[to] == '.') {
+                tool_nearest_try(&found, at + from, to - from, wanted);
+                from = to + 1;
+            }
         if (found.word && (!best.word || found.distance < best.distance))
             best = (struct tool_nearest){at, n, found.distance};
         at += n + (comma ? 2 : 0);

@@ -89,7 +89,7 @@ int hf_io_check_window(const char *path, const char *which, struct hf_io_box box
 // Append name and what is said of it to a list "a, b, c" in buf; what does not fit is cut off.
 void hf_io_list(char *buf, size_t size, const char *part, const char *name, const char *said);
 
-// The name in such a list that somebody may have meant who wrote another, or its first piece, Fg of Fg.Combined; 0 if
+// The name in such a list that somebody may have meant who wrote another, or one of its pieces, Fg of Fg.Combined; 0 if
 // none is near.
 int hf_io_nearest(const char *list, const char *wanted, char nearest[256]);
 

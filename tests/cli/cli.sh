@@ -53,6 +53,7 @@ fi
 bad 1 "INPUT|--help"
 bad 1 "INPUT" -o o.exr
 bad 1 "a.exr|-o" a.exr
+bad 1 "a.exr|b.png|write -o before it" a.exr b.png --focus 3
 bad 1 "o.exr|####" a.exr b.exr -o o.exr
 bad 1 "--frames|####|a.exr" a.exr -o o.exr --frames=1-2
 bad 1 "--bogus|--help" a.exr -o o.exr --bogus

@@ -12,6 +12,8 @@ plan "layer Foreground.Combined|colour Foreground.Combined.R|depth Foreground.De
 plan "depth ViewLayer.Depth.Z|depth Foreground.Depth.Z" layers.exr --focus 3 --layer all
 bad 3 "layers.exr|Forground|did you mean Foreground.Combined?" layers.exr -o o.exr --focus 3 --layer Forground
 bad 3 "layers.exr|did you mean ViewLayer.Depth.Z?" layers.exr -o o.exr --focus 3 --depth-channel ViewLayer.Dept.Z
+bad 3 "layers.exr|'Dept'|did you mean" layers.exr -o o.exr --focus 3 --depth-channel Dept
+bad 3 "flat.exr|--depth-file" flat.exr -o o.exr --focus 3
 bad 1 "o.png|--layer|ViewLayer.Combined, Foreground.Combined" layers.exr -o o.png --focus 3 --layer all
 bad 1 "stereo.exr|'lefft'|did you mean left?" stereo.exr -o o.exr --focus 3 --views lefft
 run layers.exr -o one.exr --focus 3 --max-radius 6 --layer Foreground --verbose

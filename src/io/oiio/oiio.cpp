@@ -355,6 +355,8 @@ int check_format(ImageOutput *out, const char *path, hf_io_error *err)
     static const char *const trusted[] = {"bmp",     "dpx", "fits", "gif", "hdr", "heif",  "iff",  "jpeg", "jpeg2000",
                                           "openexr", "png", "pnm",  "rla", "sgi", "targa", "tiff", "webp"};
     OIIO::geterror();
+    if (!out && !hf_io_extension(path)[0])
+        return hf_io_fail(err, "%s: cannot write: nothing in the name says the format, such as .exr or .png", path);
     if (!out)
         return hf_io_fail(err, "%s: cannot write: OpenImageIO does not know the format \"%s\"", path,
                           hf_io_extension(path));
@@ -557,8 +559,8 @@ int hf_oiio_read_depth_only(hf_oiio *o, const char *depth_channel, const struct 
         if (c < 0)
             return hf_io_fail(err, "%s: no depth channel %s", o->path, depth_channel ? depth_channel : "Z, *depth*, R");
         if (spec.width != view->width || spec.height != view->height)
-            return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d", o->path, spec.width,
-                              spec.height, view->width, view->height);
+            return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d; it has to be resized first",
+                              o->path, spec.width, spec.height, view->width, view->height);
         Input input;
         return open_input(input, o->path, err) ? -1 : read_channel(input, o, c, depth, err);
     });
