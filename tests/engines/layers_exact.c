@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The layers engine against itself in double precision.
+//
+//     layers_exact [seed]
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "support/check.h"
+#include "support/layers_reference.h"
+#include "support/render.h"
+
+enum { MOST = 4 };
+
+// Surfaces of radii of which no two differ by about 1 and no one is the middle of two others, and far enough apart not to
+// be merged where hidden samples are looked for: what the engine decides by comparing radii does not hang on a rounding.
+// Colours of two surfaces are as far apart as they can be, with a pattern on each: how much of a mixed pixel is whose is
+// then known to a few roundings, and is seldom all or nothing.
+static const struct {
+    int count;
+    float radius[MOST];
+} stages[] = {
+    {2, {-9.3f, 0}}, {2, {0, 11.7f}},          {2, {-21.3f, 20.4f}}, {3, {-22.9f, 0, 21.6f}}, {1, {13.1f}},
+    {1, {-5.2f}},    {3, {-2.3f, 0.4f, 7.9f}}, {2, {3.4f, 38.2f}},   {3, {-17, 2.2f, 26}},    {4, {-23, 0, 22, 45.5f}}};
+enum { STAGES = sizeof stages / sizeof *stages };
+
+static struct scene stage_new(struct rng *rng, int n, int width, int height, int channels, int lamps)
+{
+    struct scene s = {picture_new(width, height, channels), picture_new(width, height, 1)};
+    float base[MOST][4];
+    for (int k = 0; k < MOST; k++)
+        for (int c = 0; c < 4; c++)
+            base[k][c] = (k + c) % 2 ? 0.75f : 0.15f;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const int i = y * width + x, count = stages[n].count;
+            // Blocks of 7 x 6, each of one surface.
+            const int k = (int)((unsigned)(x / 7 * 5 + y / 6 * 3 + x / 21) % (unsigned)count);
+            s.depth.plane[0][i] = stages[n].radius[k];
+            for (int c = 0; c < channels; c++)
+                s.colour.plane[c][i] = c < 3 ? base[k][c] + rng_range(rng, -0.12f, 0.12f) : 1;
+        }
+    for (int k = 0; k < lamps; k++) {
+        const int i = rng_below(rng, width * height);
+        for (int c = 0; c < 3; c++)
+            s.colour.plane[c][i] = rng_range(rng, 20, 50);
+    }
+    return s;
+}
+
+// Roundings, half a unit each, in units of the largest sample around. Un-mixing: 48 products and sums of each mean (96),
+// and a share of which numerator and denominator are such means' products, 6 times as large as what they leave where
+// colours differ by 0.3 or more, of 0.3 to 0.9: 6 * (96 + 20). Highlights: 18 + 18 sums of roots and squares of them, 60.
+// Hidden: three products and sums a level, twice (8 * 2 * 5), nine taps of each (9 * 5 * 3), and squares: 240. A slice's
+// share, its sums over 4 x 4 pixels: 24. Rows of runs: 10 a row and the sum of rows, 2 * 46 + 2; of a disc, twice as many
+// columns as rows: 140 at the most. Upsampling: 6 a level, 3 levels. A stack: 6 a slice, of which a sample is in two, and
+// all that lies before weighs on what is open: 6 * 40. The result: 12. Single floats for the table's weights: 4 more.
+static const double ROUNDINGS = 6 * (96 + 20) + 60 + 240 + 24 + 140 + 18 + 6 * 40 + 12 + 4;
+
+static void against_double(struct hf_context *c, struct rng *rng, int n)
+{
+    const int width = 40 + rng_below(rng, 20), height = 30 + rng_below(rng, 16), lamps = n % 3 == 2 ? 3 : 0;
+    struct scene s = stage_new(rng, n % STAGES, width, height, 3 + rng_below(rng, 2), lamps);
+    struct hf_params p = scene_params();
+    p.engine = HF_ENGINE_LAYERS;
+    p.max_radius = HF_DERIVE;
+    p.layers.quality = (enum hf_layers_quality)rng_below(rng, 4);
+    p.layers.no_unmix = n % 5 == 1;
+    p.layers.no_hidden = n % 7 == 3;
+    p.layers.no_highlights = !lamps;
+    p.aperture.blades = n % 4 == 1 ? 3 + rng_below(rng, 6) : 0;
+    p.aperture.rotation = p.aperture.blades ? rng_range(rng, -90, 90) : 0;
+    p.aperture.ring = n % 4 >= 2 ? 0 : rng_range(rng, 0, 0.8f);
+    p.aperture.squeeze = n % 6 == 5 ? 1.5f : 1;
+    const struct hf_depth depth = picture_radii(&s.depth);
+    struct hf_resolved resolved;
+    char message[200];
+    CHECK_INT(hf_resolve(width, height, &depth, &p, &resolved, message, sizeof message), HF_OK);
+    struct picture got = render(c, &s.colour, &depth, &p);
+    struct picture want = layers_reference(&s.colour, s.depth.plane[0], &resolved.params);
+    const double largest = largest_sample(&s.colour), bound = ROUNDINGS * FLT_EPSILON / 2 * largest;
+    const double off = largest_difference(&got, &want);
+    printf("case %d, stage %d, %d x %d, quality %d, blades %d, ring %.2f: %.3g of %.3g\n", n, n % STAGES, width, height,
+           (int)p.layers.quality, p.aperture.blades, p.aperture.ring, off, bound);
+    CHECK_MSG(off <= bound, "case %d, stage %d: %g off, bound %g", n, n % STAGES, off, bound);
+    picture_free(&got);
+    picture_free(&want);
+    scene_free(&s);
+}
+
+int main(int argc, char **argv)
+{
+    struct rng rng = rng_seed(argc > 1 ? (unsigned)atoi(argv[1]) : 1);
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
+    for (int n = 0; n < 20; n++)
+        against_double(c, &rng, n);
+    hf_close(&c);
+    return check_report();
+}

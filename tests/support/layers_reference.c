@@ -1,0 +1,651 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/layers_reference.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+// Numbers at places from (x0, y0) up to (x1, y1): n of each.
+struct grid {
+    int x0, y0, x1, y1, n;
+    double *v;
+};
+
+static struct grid grid_new(int x0, int y0, int x1, int y1, int n)
+{
+    struct grid g = {x0, y0, x1, y1, n, NULL};
+    g.v = calloc((size_t)(x1 - x0) * (size_t)(y1 - y0) * (size_t)n + 1, sizeof *g.v);
+    if (!g.v)
+        abort();
+    return g;
+}
+
+static double *at(const struct grid *g, int x, int y)
+{
+    return g->v + ((size_t)(y - g->y0) * (size_t)(g->x1 - g->x0) + (size_t)(x - g->x0)) * (size_t)g->n;
+}
+
+static int clamp(int v, int low, int high)
+{
+    return v < low ? low : v > high ? high : v;
+}
+
+// Beyond a grid of the frame its edges go on.
+static double *edge(const struct grid *g, int x, int y)
+{
+    return at(g, clamp(x, g->x0, g->x1 - 1), clamp(y, g->y0, g->y1 - 1));
+}
+
+// A sample: colour, weight, radius; of what is seen the share of its weight that is a highlight.
+enum { WEIGHT = 4, RADIUS, SHARE, SAMPLE };
+// Around levels' grids, so that what is upsampled has neighbours.
+enum { MARGIN = 8 };
+
+struct frame {
+    const struct picture *colour;
+    const float *radius;
+    int width, height, channels;
+    struct hf_layers_params set;
+    struct hf_aperture_params aperture;
+    int fine, unmix, hidden, highlights;
+    double wide, half, quarter, low, high;
+    struct grid seen, mixed, behind;  // samples
+};
+
+static double colour_at(const struct frame *f, int c, int x, int y)
+{
+    return f->colour->plane[c][clamp(y, 0, f->height - 1) * f->width + clamp(x, 0, f->width - 1)];
+}
+
+static double radius_at(const struct frame *f, int x, int y)
+{
+    return f->radius[clamp(y, 0, f->height - 1) * f->width + clamp(x, 0, f->width - 1)];
+}
+
+// ---- mixed pixels ----
+
+// Returns whether the 3 x 3 are one surface.
+static int sure(const struct frame *f, int x, int y, double *middle)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < 9; i++) {
+        const double r = radius_at(f, x + i % 3 - 1, y + i / 3 - 1);
+        low = fmin(low, r);
+        high = fmax(high, r);
+    }
+    *middle = (low + high) / 2;
+    return high - low <= 1;
+}
+
+// Mean colour and radius of a side around a mixed pixel; 0: there are no sure ones.
+static int side_mean(const struct frame *f, int x, int y, double middle, int front, double mean[5])
+{
+    double sum = 0, unused;
+    memset(mean, 0, 5 * sizeof *mean);
+    for (int v = -3; v <= 3; v++)
+        for (int u = -3; u <= 3; u++) {
+            // Samples beyond the frame are its edge's, and as sure as these are.
+            if ((!u && !v) || !sure(f, x + u, y + v, &unused) || (radius_at(f, x + u, y + v) < middle) != front)
+                continue;
+            const double w = 1.0 / ((u * u + v * v) * (u * u + v * v));
+            sum += w;
+            for (int c = 0; c < f->channels; c++)
+                mean[c] += w * colour_at(f, c, x + u, y + v);
+            mean[4] += w * radius_at(f, x + u, y + v);
+        }
+    for (int c = 0; c < 5; c++)
+        mean[c] = sum > 0 ? mean[c] / sum : 0;
+    return sum > 0;
+}
+
+static void side_farthest(const struct frame *f, int x, int y, double middle, int front, const double other[5],
+                          double mean[5])
+{
+    double most = -1;
+    for (int v = -2; v <= 2; v++)
+        for (int u = -2; u <= 2; u++) {
+            double d = 0;
+            if ((radius_at(f, x + u, y + v) < middle) != front)
+                continue;
+            for (int c = 0; c < f->channels; c++)
+                d += pow(colour_at(f, c, x + u, y + v) - other[c], 2);
+            if (d <= most)
+                continue;
+            most = d;
+            for (int c = 0; c < f->channels; c++)
+                mean[c] = colour_at(f, c, x + u, y + v);
+            mean[4] = radius_at(f, x + u, y + v);
+        }
+}
+
+static double share_of(const struct frame *f, int x, int y, double a0, const double *front, const double *back)
+{
+    double along = 0, apart = 0, size = 0, off = 0;
+    for (int c = 0; c < f->channels; c++) {
+        along += (colour_at(f, c, x, y) - back[c]) * (front[c] - back[c]);
+        apart += pow(front[c] - back[c], 2);
+        size += front[c] * front[c] + back[c] * back[c];
+    }
+    const double a = fmin(fmax((along + 1e-3 * size * a0) / (apart + 1e-3 * size), 0), 1);
+    for (int c = 0; c < f->channels; c++)
+        off += pow(colour_at(f, c, x, y) - a * front[c] - (1 - a) * back[c], 2);
+    return a0 + (a - a0) * (apart + off > 0 ? apart / (apart + off) : 0);
+}
+
+static void unmix(struct frame *f, int x, int y)
+{
+    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, mean[2][5];
+    for (int c = 0; c < f->channels; c++)
+        seen[c] = colour_at(f, c, x, y);
+    seen[WEIGHT] = 1;
+    seen[RADIUS] = radius_at(f, x, y);
+    if (!f->unmix || sure(f, x, y, &middle))
+        return;
+    const double own = radius_at(f, x, y), a0 = own < middle;
+    const int front = side_mean(f, x, y, middle, 1, mean[0]), back = side_mean(f, x, y, middle, 0, mean[1]);
+    if (!front && !back)
+        return;
+    if (!front || !back)
+        side_farthest(f, x, y, middle, !front, mean[front ? 0 : 1], mean[front ? 1 : 0]);
+    const double a = share_of(f, x, y, a0, mean[0], mean[1]);
+    for (int c = 0; c < f->channels; c++) {
+        const double v = colour_at(f, c, x, y), rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
+        seen[c] = fmin(fmax(mean[0][c] + rest, fmin(mean[0][c], v)), fmax(mean[0][c], v));
+        mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
+    }
+    seen[WEIGHT] = a;
+    mixed[WEIGHT] = 1 - a;
+    seen[RADIUS] = a0 > 0 ? own : mean[0][4];
+    mixed[RADIUS] = a0 > 0 ? mean[1][4] : own;
+}
+
+// ---- highlights ----
+
+static double root(double v)
+{
+    return v > 0 ? sqrt(v) : v < 0 ? -sqrt(-v) : 0;
+}
+
+static void highlight(struct frame *f, int x, int y)
+{
+    double *s = at(&f->seen, x, y), mean = 0, light = s[0] + s[1] + s[2];
+    const int left = x & ~1, top = y & ~1;
+    for (int v = -8; v < 10; v++)
+        for (int u = -8; u < 10; u++) {
+            double sum = 0;
+            for (int c = 0; c < 3; c++)
+                sum += colour_at(f, c, left + u, top + v);
+            mean += root(fmax(sum, 0)) / (18 * 18);
+        }
+    const double cap = mean * mean * (2 + 0.001 * PI * s[RADIUS] * s[RADIUS]);
+    s[SHARE] = fabs(s[RADIUS]) > 4 && light > cap ? s[WEIGHT] * (1 - cap / light) : 0;
+}
+
+// ---- hidden samples ----
+
+static void merge(const double *const *from, int count, double within, double part, int channels, double *out)
+{
+    double farthest = -INFINITY, sum = 0;
+    for (int i = 0; i < count; i++)
+        farthest = from[i][WEIGHT] > 0 ? fmax(farthest, from[i][RADIUS]) : farthest;
+    memset(out, 0, SAMPLE * sizeof *out);
+    for (int i = 0; i < count; i++) {
+        const double g = from[i][WEIGHT] > 0 ? from[i][WEIGHT] * fmax(0, 1 - (farthest - from[i][RADIUS]) / within) : 0;
+        sum += g;
+        for (int c = 0; c < channels && g > 0; c++)
+            out[c] += g * from[i][c];
+        out[RADIUS] += g > 0 ? g * from[i][RADIUS] : 0;
+    }
+    for (int c = 0; c < channels; c++)
+        out[c] = sum > 0 ? out[c] / sum : 0;
+    out[RADIUS] = sum > 0 ? out[RADIUS] / sum : 0;
+    out[WEIGHT] = sum * part;
+}
+
+// The surface behind an edge where a pixel is mixed, as roots.
+static void quad(const struct frame *f, int x, int y, double *out)
+{
+    double s[4][SAMPLE];
+    const double *from[4] = {s[0], s[1], s[2], s[3]};
+    for (int i = 0; i < 4; i++) {
+        const int px = clamp(2 * x + i % 2, 0, f->width - 1), py = clamp(2 * y + i / 2, 0, f->height - 1);
+        const double *mixed = at(&f->mixed, px, py);
+        memcpy(s[i], mixed[WEIGHT] > 0 ? mixed : at(&f->seen, px, py), sizeof s[i]);
+        for (int c = 0; c < f->channels; c++)
+            s[i][c] = root(s[i][c]);
+    }
+    merge(from, 4, 2, 0.25, f->channels, out);
+}
+
+static int level_count(const struct frame *f)
+{
+    int n = 0;
+    if (f->hidden && f->high - f->low >= 1)
+        for (n = 1; n < 7 && 3 * (1 << n) < f->high - f->low;)
+            n++;
+    return n;
+}
+
+static void step(const struct frame *f, const struct grid *from, struct grid *to, int dx, int dy, double within)
+{
+    for (int y = to->y0; y < to->y1; y++)
+        for (int x = to->x0; x < to->x1; x++) {
+            const double *in[3];
+            for (int i = 0; i < 3; i++)
+                in[i] = edge(from, x + (i - 1) * dx, y + (i - 1) * dy);  // beyond what is read the edge is never
+            merge(in, 3, within, 1.0 / 3, f->channels, at(to, x, y));
+        }
+}
+
+static void find(struct frame *f, const struct grid *level, int levels, int x, int y)
+{
+    double sum[SAMPLE] = {0}, nearest = INFINITY, *out = at(&f->behind, x, y);
+    for (int i = 0; i < 4; i++)
+        nearest = fmin(nearest, edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2)[RADIUS]);
+    for (int j = 0; j < levels; j++)
+        for (int i = 0; i < 9; i++) {
+            const int u = i % 3 - 1, v = i / 3 - 1;
+            const double *q = at(&level[j], x + u * (1 << j), y + v * (1 << j)), behind = q[RADIUS] - nearest;
+            const double a = fmin(fmax(behind / (2 << j) - hypot(u, v) + 0.5, 0), 1);
+            const double w =
+                q[WEIGHT] > 0 && behind >= 1 ? pow(16, -j) * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * q[WEIGHT] : 0;
+            for (int c = 0; c < f->channels; c++)
+                sum[c] += w * q[c];
+            sum[WEIGHT] += w;
+            sum[RADIUS] += w * q[RADIUS];
+        }
+    if (sum[WEIGHT] <= 0)
+        return;
+    out[RADIUS] = sum[RADIUS] / sum[WEIGHT];
+    for (int c = 0; c < f->channels; c++)
+        out[c] = sum[c] / sum[WEIGHT] * fabs(sum[c] / sum[WEIGHT]);
+    for (int i = 0; i < 4; i++) {
+        const double *s = edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2);
+        out[WEIGHT] += s[RADIUS] < out[RADIUS] - 1 ? s[WEIGHT] / 4 : 0;
+    }
+}
+
+static void find_hidden(struct frame *f)
+{
+    const int width = (f->width + 1) / 2, height = (f->height + 1) / 2, levels = level_count(f), m = 2 << levels;
+    struct grid level[7], quads = grid_new(0, 0, width, height, SAMPLE);
+    f->behind = grid_new(0, 0, width, height, SAMPLE);
+    for (int y = 0; y < height && levels; y++)
+        for (int x = 0; x < width; x++)
+            quad(f, x, y, at(&quads, x, y));
+    for (int j = 0; j < levels; j++) {
+        struct grid across = grid_new(-m, -m, width + m, height + m, SAMPLE);
+        level[j] = grid_new(-m, -m, width + m, height + m, SAMPLE);
+        for (int y = -m; y < height + m && !j; y++)
+            for (int x = -m; x < width + m; x++)
+                memcpy(at(&level[0], x, y), edge(&quads, x, y), SAMPLE * sizeof(double));
+        if (j) {
+            step(f, &level[j - 1], &across, 1 << (j - 1), 0, 2 << j);
+            step(f, &across, &level[j], 0, 1 << (j - 1), 2 << j);
+        }
+        free(across.v);
+    }
+    for (int y = 0; y < height && levels; y++)
+        for (int x = 0; x < width; x++)
+            find(f, level, levels, x, y);
+    for (int j = 0; j < levels; j++)
+        free(level[j].v);
+    free(quads.v);
+}
+
+// ---- shapes ----
+
+// The run of height y of a polygon with corners on the unit circle; 0: there is none.
+static int chord(const struct hf_aperture_params *a, double y, double *left, double *right)
+{
+    *left = -INFINITY;
+    *right = INFINITY;
+    for (int i = 0; i < a->blades; i++) {
+        const double angle = 2 * PI * i / a->blades + a->rotation * PI / 180, nx = cos(angle), ny = sin(angle);
+        const double room = cos(PI / a->blades) - ny * y;
+        if (fabs(nx) < 1e-9 && room < 0)
+            return 0;
+        if (nx > 1e-9)
+            *right = fmin(*right, room / nx);
+        if (nx < -1e-9)
+            *left = fmax(*left, room / nx);
+    }
+    return *right > *left;
+}
+
+struct run {
+    double a, b, weight;
+};
+
+// Row dy of the outline of radius r. Between its corners a polygon's ends are straight: their middles are their means.
+static struct run outline(const struct frame *f, double r, int dy)
+{
+    const struct hf_aperture_params *a = &f->aperture;
+    double cut[20], hit = 0, left = 0, right = 0;
+    int cuts = 0;
+    if (!a->blades) {
+        const double u = fmax(dy - 0.5, -r), v = fmin(dy + 0.5, r);
+        const double h =
+            v > u ? (v * sqrt(r * r - v * v) + r * r * asin(v / r) - u * sqrt(r * r - u * u) - r * r * asin(u / r)) / 2
+                  : 0;
+        return (struct run){-h * f->wide, h * f->wide, h > 0};
+    }
+    cut[cuts++] = (dy - 0.5) / r;
+    cut[cuts++] = (dy + 0.5) / r;
+    for (int i = 0; i < a->blades; i++) {
+        const double y = sin(2 * PI * (i + 0.5) / a->blades + a->rotation * PI / 180);
+        if (y > cut[0] && y < cut[1])
+            cut[cuts++] = y;
+    }
+    for (int i = 0; i < cuts; i++)
+        for (int j = i + 1; j < cuts; j++)
+            if (cut[j] < cut[i]) {
+                const double swap = cut[i];
+                cut[i] = cut[j];
+                cut[j] = swap;
+            }
+    for (int i = 0; i + 1 < cuts; i++) {
+        double from, to;
+        if (!chord(a, (cut[i] + cut[i + 1]) / 2, &from, &to))
+            continue;
+        left += from * (cut[i + 1] - cut[i]);
+        right += to * (cut[i + 1] - cut[i]);
+        hit += cut[i + 1] - cut[i];
+    }
+    return hit * r > 1e-6 ? (struct run){left / hit * r * f->wide, right / hit * r * f->wide, hit * r}
+                          : (struct run){0, 0, 0};
+}
+
+// Add what a run covers of the pixels of a row, their middles at whole numbers.
+static double cover(double *row, int reach, double a, double b, double weight)
+{
+    for (int x = -reach; x <= reach && b > a; x++)
+        row[x + reach] += weight * fmax(0, fmin(b, x + 0.5) - fmax(a, x - 0.5));
+    return b > a ? weight * (b - a) : 0;
+}
+
+// Weights of a shape of radius r, (2 reach + 1)^2 of them, that sum to 1.
+static double *shape_new(const struct frame *f, double r, int *reach)
+{
+    *reach = (int)ceil(r * fmax(f->wide, 1)) + 1;
+    const int side = 2 * *reach + 1;
+    double *w = calloc((size_t)side * (size_t)side, sizeof *w), sum = 0;
+    if (!w)
+        abort();
+    for (int dy = -*reach; dy <= *reach && r > 0; dy++) {
+        double *row = w + (dy + *reach) * side;
+        const struct run o = outline(f, r, dy);
+        struct run hole = {0, 0, 0};
+        if (f->aperture.ring > 0)
+            hole = outline(f, r * f->aperture.ring, dy);
+        hole.a = fmax(hole.a, o.a);
+        hole.b = fmin(hole.b, o.b);
+        if (hole.weight > 0 && hole.b > hole.a) {
+            sum += cover(row, *reach, o.a, hole.a, o.weight) + cover(row, *reach, hole.b, o.b, o.weight);
+            sum += cover(row, *reach, hole.a, hole.b, o.weight - hole.weight);
+        } else {
+            sum += cover(row, *reach, o.a, o.b, o.weight);
+        }
+    }
+    if (r <= 0)
+        sum = w[*reach * side + *reach] = 1;
+    for (int i = 0; i < side * side; i++)
+        w[i] /= sum;
+    return w;
+}
+
+// ---- slices ----
+
+static double next_radius(const struct frame *f, double r)
+{
+    const double spacing = f->set.spacing;
+    if (f->fine)
+        return r + fmin(fmax(0.5, r / 4), fmax(1, r / 16)) * spacing / 2;
+    return r < 2 ? r + fmin(1, spacing) : r == 2 && spacing > 2 ? spacing : r + fmax(spacing, r / 32);
+}
+
+static int level_of(const struct frame *f, double r)
+{
+    return fabs(r) < f->half ? 0 : fabs(r) < f->quarter ? 1 : fabs(r) < 4 * f->quarter ? 2 : 3;
+}
+
+struct slice {
+    double before, own, after;
+};
+
+static double part_of(const struct slice *s, double r)
+{
+    if (r <= s->before || r >= s->after)
+        return 0;
+    if (r < s->own)
+        return isinf(s->before) ? 1 : (r * r - s->before * s->before) / (s->own * s->own - s->before * s->before);
+    return isinf(s->after) ? 1 : 1 - (r * r - s->own * s->own) / (s->after * s->after - s->own * s->own);
+}
+
+enum kind { SEEN, BEHIND, SHINE };
+
+// Add samples of a set that belong to a slice to the sources of a level.
+static void add_sources(const struct frame *f, const struct slice *s, const struct grid *set, int apart, enum kind kind,
+                        int light, struct grid *to)
+{
+    for (int y = to->y0 * (1 << apart); y < to->y1 * (1 << apart); y++)
+        for (int x = to->x0 * (1 << apart); x < to->x1 * (1 << apart); x++) {
+            const double *v = edge(set, x, y);
+            double *out =
+                at(to, x >= 0 ? x >> apart : -((-x - 1) >> apart) - 1, y >= 0 ? y >> apart : -((-y - 1) >> apart) - 1);
+            const double part = v[WEIGHT] > 0 ? part_of(s, v[RADIUS]) / pow(4, apart) : 0;
+            const double w = part * (kind == SHINE ? v[SHARE] : v[WEIGHT]);
+            const double dim = kind == SEEN && light ? part * v[SHARE] : 0;
+            for (int c = 0; c < f->channels; c++)
+                out[c] += (c < 3 ? w - dim : w) * v[c];
+            out[4] += w;
+        }
+}
+
+// A slice's sums of a kind at its level.
+static struct grid draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light)
+{
+    int reach;
+    double *w = shape_new(f, fabs(s->own) / (1 << level), &reach);
+    const int width = (f->width - 1) / (1 << level) + 1, height = (f->height - 1) / (1 << level) + 1,
+              m = MARGIN + reach;
+    struct grid source = grid_new(-m, -m, width + m, height + m, 5);
+    struct grid out = grid_new(-MARGIN, -MARGIN, width + MARGIN, height + MARGIN, 5);
+    if (kind == BEHIND) {
+        add_sources(f, s, &f->behind, level - 1, kind, 0, &source);
+    } else {
+        add_sources(f, s, &f->seen, level, kind, light, &source);
+        if (kind == SEEN)
+            add_sources(f, s, &f->mixed, level, BEHIND, 0, &source);
+    }
+    for (int y = source.y0; y < source.y1; y++)
+        for (int x = source.x0; x < source.x1; x++) {
+            const double *v = at(&source, x, y);
+            if (v[4] == 0)
+                continue;
+            for (int j = clamp(y - reach, out.y0, out.y1); j < clamp(y + reach + 1, out.y0, out.y1); j++)
+                for (int i = clamp(x - reach, out.x0, out.x1); i < clamp(x + reach + 1, out.x0, out.x1); i++) {
+                    const double k = w[(j - y + reach) * (2 * reach + 1) + i - x + reach];
+                    for (int c = 0; c < 5; c++)
+                        at(&out, i, j)[c] += k * v[c];
+                }
+        }
+    free(source.v);
+    free(w);
+    return out;
+}
+
+// A number of a grid at a place of the next finer level.
+static double up(const struct grid *g, int c, int x, int y)
+{
+    const int xa = x >= 0 ? x / 2 : -((1 - x) / 2), ya = y >= 0 ? y / 2 : -((1 - y) / 2);
+    const int xb = x - 2 * xa ? xa + 1 : xa - 1, yb = y - 2 * ya ? ya + 1 : ya - 1;
+    return 0.75 * (0.75 * edge(g, xa, ya)[c] + 0.25 * edge(g, xb, ya)[c]) +
+           0.25 * (0.75 * edge(g, xa, yb)[c] + 0.25 * edge(g, xb, yb)[c]);
+}
+
+// To half the pixels, until they are those of level `to`.
+static void refine(struct grid *g, const struct frame *f, int level, int to)
+{
+    for (; level > to; level--) {
+        const int width = (f->width - 1) / (1 << (level - 1)) + 1, height = (f->height - 1) / (1 << (level - 1)) + 1;
+        struct grid fine = grid_new(-MARGIN, -MARGIN, width + MARGIN, height + MARGIN, g->n);
+        for (int y = fine.y0; y < fine.y1; y++)
+            for (int x = fine.x0; x < fine.x1; x++)
+                for (int c = 0; c < g->n; c++)
+                    at(&fine, x, y)[c] = up(g, c, x, y);
+        free(g->v);
+        *g = fine;
+    }
+}
+
+// ---- stacks: colour, weight (4), what is open (5) ----
+
+enum { OPEN = 5, STACK };
+
+static struct grid stack_new(const struct frame *f, int level)
+{
+    const int width = (f->width - 1) / (1 << level) + 1, height = (f->height - 1) / (1 << level) + 1;
+    struct grid g = grid_new(-MARGIN, -MARGIN, width + MARGIN, height + MARGIN, STACK);
+    for (int y = g.y0; y < g.y1; y++)
+        for (int x = g.x0; x < g.x1; x++)
+            at(&g, x, y)[OPEN] = 1;
+    return g;
+}
+
+// Put sums under a stack; part receives how much of them shows.
+static void put_under(struct grid *stack, const struct grid *sums, int hidden, struct grid *part)
+{
+    for (int y = stack->y0; y < stack->y1; y++)
+        for (int x = stack->x0; x < stack->x1; x++) {
+            double *s = at(stack, x, y), *v = edge(sums, x, y);
+            const double k = s[OPEN] / fmax(v[4], hidden ? 1 : fmax(s[OPEN], 1e-30));
+            for (int c = 0; c < 5; c++)
+                s[c] += k * v[c];
+            s[OPEN] = fmax(0, s[OPEN] - k * v[4]);
+            if (part)
+                at(part, x, y)[0] = k;
+        }
+}
+
+// One slice into its stack; light: what shines of the stack, at full resolution.
+static void put_slice(const struct frame *f, const struct slice *s, struct grid *stack, struct grid *light)
+{
+    const int level = level_of(f, s->own), finest = level ? 1 : 0, lit = f->highlights && level;
+    struct grid sums = draw(f, s, level, SEEN, lit);
+    struct grid part = grid_new(stack->x0, stack->y0, stack->x1, stack->y1, 1);
+    refine(&sums, f, level, finest);
+    put_under(stack, &sums, 0, &part);
+    free(sums.v);
+    if (lit) {
+        struct grid shine = draw(f, s, 0, SHINE, 0);
+        for (int y = 0; y < f->height; y++)
+            for (int x = 0; x < f->width; x++)
+                for (int c = 0; c < 3; c++)
+                    at(light, x, y)[c] += up(&part, 0, x, y) * at(&shine, x, y)[c];
+        free(shine.v);
+    }
+    free(part.v);
+    if (level_count(f)) {
+        const int coarse = level > 1 ? level : 1;
+        struct grid hidden = draw(f, s, coarse, BEHIND, 0);
+        refine(&hidden, f, coarse, finest);
+        put_under(stack, &hidden, 1, NULL);
+        free(hidden.v);
+    }
+}
+
+static int slices_new(const struct frame *f, struct slice **out)
+{
+    int near = 0, far = 0;
+    double r;
+    for (r = 0; r < -f->low; near++)
+        r = next_radius(f, r);
+    for (r = 0; r < f->high; far++)
+        r = next_radius(f, r);
+    struct slice *s = calloc((size_t)(near + far) + 1, sizeof *s);
+    if (!s)
+        abort();
+    r = 0;
+    for (int i = near - 1; i >= 0; i--)
+        s[i].own = -(r = next_radius(f, r));
+    r = 0;
+    for (int i = near + 1; i <= near + far; i++)
+        s[i].own = r = next_radius(f, r);
+    for (int i = 0; i <= near + far; i++) {
+        s[i].before = i ? s[i - 1].own : -INFINITY;
+        s[i].after = i < near + far ? s[i + 1].own : INFINITY;
+    }
+    *out = s;
+    return near + far + 1;
+}
+
+static void put_together(const struct frame *f, struct picture *out)
+{
+    struct slice *s;
+    const int count = slices_new(f, &s);
+    struct grid near = stack_new(f, 1), far = stack_new(f, 1), middle = stack_new(f, 0);
+    struct grid light[2] = {grid_new(0, 0, f->width, f->height, 3), grid_new(0, 0, f->width, f->height, 3)};
+    int i = 0;
+    for (; i < count && s[i].own < 0 && level_of(f, s[i].own); i++)
+        put_slice(f, &s[i], &near, &light[0]);
+    for (int y = 0; y < f->height; y++)
+        for (int x = 0; x < f->width; x++) {
+            double *m = at(&middle, x, y);
+            for (int c = 0; c < 5; c++)
+                m[c] = up(&near, c, x, y) + (c < 3 ? at(&light[0], x, y)[c] : 0);
+            m[OPEN] = fmax(0, 1 - m[4]);
+        }
+    for (; i < count; i++)
+        put_slice(f, &s[i], level_of(f, s[i].own) ? &far : &middle, &light[1]);
+    for (int y = 0; y < f->height; y++)
+        for (int x = 0; x < f->width; x++) {
+            const double *m = at(&middle, x, y), a = up(&far, 4, x, y), g = fmax(0, 1 - m[4]) / fmax(a, 1e-3);
+            for (int c = 0; c < f->channels; c++) {
+                const double back = up(&far, c, x, y) + (c < 3 ? at(&light[1], x, y)[c] : 0);
+                out->plane[c][y * f->width + x] = (float)((m[c] + g * back) / fmax(m[4] + g * a, 1e-30));
+            }
+        }
+    free(near.v);
+    free(far.v);
+    free(middle.v);
+    free(light[0].v);
+    free(light[1].v);
+    free(s);
+}
+
+struct picture layers_reference(const struct picture *colour, const float *radius, const struct hf_params *params)
+{
+    const struct hf_layers_params *p = &params->layers;
+    struct frame f = {.colour = colour,
+                      .radius = radius,
+                      .width = colour->width,
+                      .height = colour->height,
+                      .channels = colour->channels,
+                      .set = *p,
+                      .aperture = params->aperture,
+                      .fine = p->quality == HF_LAYERS_HIGH || p->quality == HF_LAYERS_BEST,
+                      .unmix = !p->no_unmix,
+                      .hidden = !p->no_hidden && p->quality != HF_LAYERS_DRAFT,
+                      .highlights = !p->no_highlights,
+                      .wide = 1 / ((double)params->view.pixel_aspect * params->aperture.squeeze),
+                      .half = p->half_from,
+                      .quarter = p->quarter_from};
+    struct picture out = picture_new(f.width, f.height, f.channels);
+    f.seen = grid_new(0, 0, f.width, f.height, SAMPLE);
+    f.mixed = grid_new(0, 0, f.width, f.height, SAMPLE);
+    for (int i = 0; i < f.width * f.height; i++) {
+        f.low = fmin(f.low, radius[i]);
+        f.high = fmax(f.high, radius[i]);
+        unmix(&f, i % f.width, i / f.width);
+    }
+    for (int i = 0; i < f.width * f.height && f.highlights; i++)
+        highlight(&f, i % f.width, i / f.width);
+    find_hidden(&f);
+    put_together(&f, &out);
+    free(f.seen.v);
+    free(f.mixed.v);
+    free(f.behind.v);
+    return out;
+}
