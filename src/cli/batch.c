@@ -323,11 +323,12 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         if (strays)
             tool_print_line("%d files that killed processes left were removed", strays);
         watch_signals();
-        cli_progress_begin(&b.progress, shot->jobs.count);
+        cli_progress_begin(&b.progress, shot->jobs.count, args->quiet);
         run_first(&b);
         status = run_rest(&b, error);
         cli_progress_end(&b.progress);
-        print_summary(&b);
+        if (!args->quiet)
+            print_summary(&b);
         cli_log_end(&b.log, &b.progress, b.workers, peak_memory());
         if (!status)
             status = exit_code(&b);

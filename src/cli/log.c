@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/summary.h"
 #include "tool/json.h"
 #include "tool/machine.h"
 
@@ -87,6 +88,10 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         tool_json_number(j, "focus", s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
         tool_json_text(j, "focus_from", s->focus_from);
         tool_json_number(j, "max_radius", v->report.used.params.max_radius);
+        tool_json_number(j, "near_radius", v->report.near_radius);
+        tool_json_number(j, "far_radius", v->report.far_radius);
+        tool_json_flag(j, "limited", cli_is_limited(v));
+        tool_json_count(j, "warnings", cli_warnings_of(v));
         tool_json_count(j, "colour_repaired", (long long)v->report.colour_repaired);
         tool_json_count(j, "depth_repaired", (long long)v->report.depth_repaired);
         tool_json_close(j);

@@ -138,7 +138,7 @@ static const struct tool_option options[] = {
     {"dump-passes", 0, TOOL_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},
     {"dry-run", 0, TOOL_RUN, NULL, "Say what would be done, write nothing.", FLAG(dry_run)},
     {"verbose", 0, TOOL_RUN, NULL, "Say in a line what was done with each frame, as on a terminal.", FLAG(verbose)},
-    {"quiet", 0, TOOL_RUN, NULL, "Do not, on a terminal either.", FLAG(quiet)},
+    {"quiet", 0, TOOL_RUN, NULL, "Do not, on a terminal either, nor how far a shot is: warnings and errors alone.", FLAG(quiet)},
     {"help", 'h', TOOL_RUN, "[all|man]", "Print the usual options; --help=all: all of them; --help=man: the man page.",
      .parse = tool_parse_help},
     {"version", 0, TOOL_RUN, NULL, "Print the version.", .parse = cli_parse_version},

@@ -9,9 +9,10 @@
 
 enum { BAR = 24 };
 
-void cli_progress_begin(struct cli_progress *p, int total)
+void cli_progress_begin(struct cli_progress *p, int total, int quiet)
 {
-    *p = (struct cli_progress){.total = total, .bar = isatty(STDERR_FILENO), .start = tool_now_ms()};
+    *p = (struct cli_progress){
+        .total = total, .quiet = quiet, .bar = !quiet && isatty(STDERR_FILENO), .start = tool_now_ms()};
 }
 
 const char *cli_progress_limit(const struct cli_progress *p)
@@ -58,7 +59,7 @@ void cli_progress_frame(struct cli_progress *p, const char *name, const char *te
     flockfile(stderr);
     if (p->bar)
         draw(p, finished, name);
-    else
+    else if (!p->quiet)
         fprintf(stderr, "hyperfocal: %d/%d %s: %s\n", finished, p->total, name, text);
     funlockfile(stderr);
 }

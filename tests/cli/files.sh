@@ -157,6 +157,23 @@ raise SystemExit(any(f[n] != a[n] for f in (b, c) for n in a if n.startswith("Cr
     rm -f o2.exr o3.exr
 fi
 
+# ---- what is said of a frame
+for i in 1 2; do cp near.exr shot.$i.exr; done
+good shot.#.exr -o done.#.exr --focus 4 --quiet
+run shot.#.exr -o done.#.exr --focus 4 --verbose
+[ "$status" -eq 0 ] && [ "$(grep -c 'RGB with depth Z, layers, focus 4 (--focus)' "$dir/err")" -eq 2 ]
+result "--verbose of a shot: a line for each frame" $?
+cp void.exr shot.2.exr
+run shot.#.exr -o done.#.exr --focus 4 --quiet
+[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "shot.2.exr: depth Z has no surface"
+result "--quiet leaves warnings" $?
+if command -v script >/dev/null; then
+    script -qec "'$program' near.exr -o o.exr --focus 4" /dev/null >"$dir/out" 2>&1 </dev/null
+    contains "$dir/out" "RGB with depth Z, layers, focus 4"
+    result "a line on a terminal" $?
+fi
+rm -f shot.?.exr done.?.exr
+
 # ---- windows
 # The object of film.exr fills a part of the frame; crop.exr has that part alone, in the same display window.
 lens='--focus 2 --fstop 0.1 --focal-length 50 --engine layers'
