@@ -174,39 +174,15 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
     return *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
 }
 
-enum job { RENDER, PLAN, PREPARE };
-
-// Memory for whatever the frame may turn out to need, each page written to so that it is there.
-static int allocate_all(struct hf_context *c, const struct hf_setup *s)
-{
-    if (s->blend == 0)
-        return HF_OK;
-    const int err = hf_buffers_allocate(c, s, HF_FIELDS);
-    if (err)
-        return err;
-    if (c->planes.data)
-        memset(c->planes.data, 0, c->planes.size);
-    for (int i = 0; i < c->threads; i++)
-        memset(c->workers[i].scratch.data, 0, c->workers[i].scratch.size);
-    return HF_OK;
-}
-
 // A frame whose settings are known.
 static int run_resolved(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-                        const struct hf_depth *depth, const struct hf_resolved *r, enum job job)
+                        const struct hf_depth *depth, const struct hf_resolved *r, enum hf_task task)
 {
     struct hf_setup s;
-    int err = HF_OK;
-    void *own = c->engine[r->params.engine].own;
-    hf_setup_make(&s, src, dst, depth, r, own);
+    hf_setup_make(&s, src, dst, depth, r, c->engine[r->params.engine].own);
     if (c->dump)
         s.no_skip = 1;
-    const struct hf_engine_def *engine = hf_engine_def(r->params.engine);
-    if (engine->prepare && s.blend != 0)
-        err = engine->prepare(own, &s, &r->params, &c->mem);
-    if (!err)
-        err = hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, job != RENDER});
-    return err || job != PREPARE ? err : allocate_all(c, &s);
+    return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, task});
 }
 
 // The cheapest settings that the budget asks for, and what they come to. Returns how many there are to choose from, or
@@ -246,7 +222,7 @@ static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
 
 // Check, choose a setting that fits the budget, and go.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-               const struct hf_depth *depth, const struct hf_params *params, enum job job)
+               const struct hf_depth *depth, const struct hf_params *params, enum hf_task task)
 {
     if (!c)
         return HF_ERR_ARG;
@@ -273,13 +249,13 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
         say(&c->config, HF_LOG_ERROR, "%s", message);
         return err;
     }
-    err = run_resolved(c, dst, src, depth, &r, job);
+    err = run_resolved(c, dst, src, depth, &r, task);
     if (!err && !r.sharp)
         tell_limit(c, depth);
     if (err) {
         c->report = (struct hf_report){0};
         say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
-    } else if (steps && job == RENDER) {
+    } else if (steps && task == HF_TASK_RENDER) {
         hf_budget_note(&c->budget, p->run.budget_ms, steps, (float)c->report.total_ms);
     }
     return err;
@@ -288,19 +264,19 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
 int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
               const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, RENDER);
+    return run(c, dst, src, depth, params, HF_TASK_RENDER);
 }
 
 int hf_prepare(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, PREPARE);
+    return run(c, dst, src, depth, params, HF_TASK_PREPARE);
 }
 
 int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
             const struct hf_params *params, struct hf_report *report)
 {
-    const int err = run(c, dst, src, depth, params, PLAN);
+    const int err = run(c, dst, src, depth, params, HF_TASK_PLAN);
     hf_get_report(c, report);
     return err;
 }

@@ -377,7 +377,6 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
                            .no_skip = p->run.no_skip,
                            .smoothstep = p->range.blend == HF_BLEND_SMOOTHSTEP,
                            .pixel_aspect = p->view.pixel_aspect,
-                           .blend = !r->sharp,
                            .resolved = r,
                            .own = own};
     set_coc(s, r, depth);

@@ -57,14 +57,18 @@ int hf_engines_open(struct hf_context *c);
 void hf_engines_close(struct hf_context *c);
 // Bytes of all that.
 size_t hf_engines_bytes(const struct hf_context *c);
+// What is done of a frame: all of it; its plan; or its plan, and its memory taken.
+enum hf_task { HF_TASK_RENDER, HF_TASK_PLAN, HF_TASK_PREPARE };
+
 // What a frame is rendered from and to.
 struct hf_job {
     const struct hf_image *dst, *src;
     const struct hf_depth *depth;
-    int fused, plan_only;
+    int fused;
+    enum hf_task task;
 };
 
-// Run a frame whose arguments have been checked, or only plan it (render.c).
+// Run a frame whose arguments have been checked (render.c).
 int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_job *job);
 
 #endif

@@ -7,12 +7,12 @@
 
 struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src)
 {
-    const int same = dst->format == src->format && dst->transfer == src->transfer &&
-                     hf_image_channels(dst) == hf_image_channels(src);
+    const int alike = dst->format == src->format && dst->transfer == src->transfer &&
+                      hf_image_channels(dst) == hf_image_channels(src);
     return (struct hf_copy){.in_place = dst->data[0] == src->data[0],
-                            .raw = same && (s->blend == 0 || s->storage == HF_STORAGE_FLOAT ||
-                                            src->format == HF_FORMAT_R11G11B10F ||
-                                            (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F))};
+                            .alike = alike,
+                            .raw = alike && (s->storage == HF_STORAGE_FLOAT || src->format == HF_FORMAT_R11G11B10F ||
+                                             (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F))};
 }
 
 // First byte of the pixels of a rectangle's row in one plane.

@@ -5,9 +5,9 @@
 
 #include "frame/context.h"
 
-// How a frame may be copied: in place, and whether bits may be copied as they are.
+// How a frame may be copied: in place, whether both images have one format, and whether bits may be copied as they are.
 struct hf_copy {
-    int in_place, raw;
+    int in_place, alike, raw;
 };
 
 struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst, const struct hf_image *src);

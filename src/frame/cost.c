@@ -58,7 +58,7 @@ void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_se
     for (int i = 0; i < p->engine->pass_count; i++) {
         const struct hf_pass *pass = &p->engine->passes[i];
         w->all[i] = (uint32_t)hf_plan_count(p, pass->sweep);
-        if (s->blend == 0 || !hf_plan_pass_runs(p, s, i))
+        if (!hf_plan_pass_runs(p, s, i))
             continue;
         for (int cell = 0; cell < (int)w->all[i]; cell++) {
             const int fields = i == 0 ? 1 : fields_of(fields_in(p, pass, cell));
@@ -99,7 +99,7 @@ void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa is
                      double ms[HF_MAX_PASSES])
 {
     const struct hf_engine_def *e = hf_engine_def(s->engine);
-    const struct hf_cost_entry *known = s->blend == 0 ? NULL : find(c, key_of(s, isa));
+    const struct hf_cost_entry *known = find(c, key_of(s, isa));
     for (int i = 0; i < HF_MAX_PASSES; i++) {
         ms[i] = 0;
         if (i >= e->pass_count)
@@ -112,8 +112,6 @@ void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa is
 void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,
                    const double ms[HF_MAX_PASSES])
 {
-    if (s->blend == 0)
-        return;
     const uint64_t key = key_of(s, isa);
     struct hf_cost_entry *e = find(c, key);
     if (!e) {

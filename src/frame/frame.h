@@ -57,7 +57,6 @@ struct hf_setup {
 
     float max_radius;  // rho, full-resolution pixels
     float strength;    // 1 outside the range model
-    float blend;       // of the fields with the picture; 0: the picture is copied
     float pixel_aspect;
 
     // Signed CoC radius in full-resolution pixels, see hf_radius_row.

@@ -69,15 +69,14 @@ static int lay_out_cells(struct hf_render *r, unsigned fields)
 }
 
 // Chunks, cells and buffers, as far as they are known before the depth is.
-static int lay_out(struct hf_render *r, int plan_only)
+static int lay_out(struct hf_render *r, unsigned fields)
 {
     const int err = lay_out_chunks(r);
-    const int later = r->s->measured || r->s->blend == 0 || plan_only;
-    return err ? err : lay_out_cells(r, later ? 0 : HF_FIELDS);
+    return err ? err : lay_out_cells(r, fields);
 }
 
 // What the depth shows decides which chunks, tiles and passes there are.
-static int make_plan(struct hf_render *r, struct hf_setup *s, int plan_only)
+static int make_plan(struct hf_render *r, struct hf_setup *s, enum hf_task task)
 {
     struct hf_context *c = r->c;
     struct hf_plan *p = &c->plan;
@@ -91,7 +90,7 @@ static int make_plan(struct hf_render *r, struct hf_setup *s, int plan_only)
     }
     parallel(r, p->rows[2], hf_sweep_classify);
     hf_plan_settle(p, r->s, r->copy.in_place);
-    return plan_only || !s->measured ? HF_OK : lay_out_cells(r, p->reads);
+    return task != HF_TASK_RENDER || !s->measured ? HF_OK : lay_out_cells(r, p->reads);
 }
 
 static void look_at_colour(struct hf_render *r)
@@ -125,51 +124,84 @@ static void report_plan(struct hf_render *r, int64_t planning)
     r->c->report.plan_ms = (double)planning * 1e-6;
 }
 
-// A frame without blur.
-static int copy(struct hf_render *r, int plan_only)
+// Memory for whatever the frame may turn out to need, each page written to so that it is there.
+static int take_memory(struct hf_render *r)
 {
-    const int tiles = hf_plan_count(&r->c->plan, 2);
-    report_plan(r, 0);
-    if (plan_only)
-        return HF_OK;
-    if (r->copy.in_place)
-        parallel(r, tiles, hf_sweep_check);
-    const int err = r->copy.in_place ? hf_copy_repair(r->c) : HF_OK;
-    if (!err)
-        parallel(r, tiles, hf_sweep_copy);
-    return err;
+    struct hf_context *c = r->c;
+    const int err = hf_buffers_allocate(c, r->s, HF_FIELDS);
+    if (err)
+        return err;
+    if (c->planes.data)
+        memset(c->planes.data, 0, c->planes.size);
+    for (int i = 0; i < c->threads; i++)
+        memset(c->workers[i].scratch.data, 0, c->workers[i].scratch.size);
+    return HF_OK;
 }
 
-static int blur(struct hf_render *r, struct hf_setup *s, int plan_only)
+static double ms_since(int64_t start)
 {
-    parallel(r, hf_plan_count(&r->c->plan, 1), hf_sweep_look);
+    return (double)(hf_now_ns() - start) * 1e-6;
+}
+
+// A frame without blur: nothing looks at its depth.
+static int copy(struct hf_render *r, enum hf_task task)
+{
+    struct hf_context *c = r->c;
+    const int64_t start = hf_now_ns();
+    int err = lay_out(r, 0);
+    if (err)
+        return err;
+    hf_report_copy(c, r->s);
+    if (task != HF_TASK_RENDER)
+        return HF_OK;
+    const int tiles = hf_plan_count(&c->plan, 2);
+    r->copy.raw = r->copy.alike;
+    if (r->copy.in_place) {
+        parallel(r, tiles, hf_sweep_check);
+        err = hf_copy_repair(c);
+    }
+    if (err)
+        return err;
+    parallel(r, tiles, hf_sweep_copy);
+    c->workers[0].counts.sharp_pixels = (uint64_t)r->s->width * (uint64_t)r->s->height;
+    hf_report_frame(c, ms_since(start));
+    return HF_OK;
+}
+
+static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
+{
+    struct hf_context *c = r->c;
+    const struct hf_engine_def *engine = hf_engine_def(s->engine);
+    int err = engine->prepare ? engine->prepare(c->engine[s->engine].own, s, &s->resolved->params, &c->mem) : HF_OK;
+    const int64_t start = hf_now_ns();
+    if (!err)
+        err = lay_out(r, s->measured || task != HF_TASK_RENDER ? 0 : HF_FIELDS);
+    if (err)
+        return err;
+    parallel(r, hf_plan_count(&c->plan, 1), hf_sweep_look);
     const int64_t looked = hf_now_ns();
-    int err = make_plan(r, s, plan_only);
+    err = make_plan(r, s, task);
     if (err)
         return err;
     report_plan(r, hf_now_ns() - looked);
-    if (r->s->colour_stats)
+    if (s->colour_stats)
         look_at_colour(r);
-    if (plan_only)
-        return HF_OK;
+    if (task != HF_TASK_RENDER)
+        return task == HF_TASK_PREPARE ? take_memory(r) : HF_OK;
     finish_chunks(r);
     // A tile overwrites what its neighbours' repairs are made from.
-    err = r->copy.in_place ? hf_copy_repair(r->c) : HF_OK;
-    if (!err)
-        make_tiles(r);
-    return err;
+    err = r->copy.in_place ? hf_copy_repair(c) : HF_OK;
+    if (err)
+        return err;
+    make_tiles(r);
+    hf_report_frame(c, ms_since(start));
+    hf_report_learn(c, s);
+    return c->dump ? hf_dump_buffers(c, s) : HF_OK;
 }
 
 int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_job *job)
 {
-    const int64_t start = hf_now_ns();
     struct hf_render r = {.c = c, .s = s, .copy = hf_copy_plan(s, job->dst, job->src)};
     start_workers(&r, job);
-    int err = lay_out(&r, job->plan_only);
-    if (!err)
-        err = s->blend == 0 ? copy(&r, job->plan_only) : blur(&r, s, job->plan_only);
-    if (err || job->plan_only)
-        return err;
-    hf_report_frame(c, s, (double)(hf_now_ns() - start) * 1e-6);
-    return c->dump && s->blend != 0 ? hf_dump_buffers(c, s) : HF_OK;
+    return s->resolved->sharp ? copy(&r, job->task) : blur(&r, s, job->task);
 }

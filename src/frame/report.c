@@ -6,11 +6,9 @@
 #include "frame/buffers.h"
 
 // Why a pass does not run everywhere.
-static const char *reason(const struct hf_plan *p, const struct hf_setup *s, int pass)
+static const char *reason(const struct hf_plan *p, int pass)
 {
     const struct hf_pass *def = &p->engine->passes[pass];
-    if (s->blend == 0)
-        return "no blur at all: the picture is copied";
     if (def->sweep == 1)
         return pass == 0 ? "the depth is not looked at" : "no blurred tile reads there";
     if (def->field == HF_NEAR)
@@ -57,12 +55,11 @@ static size_t memory_held(const struct hf_context *c)
     return bytes;
 }
 
-void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct hf_counts *found)
+// What holds for all frames.
+static void start_report(struct hf_context *c, const struct hf_setup *s)
 {
     const struct hf_plan *p = &c->plan;
-    const struct hf_engine_def *e = p->engine;
     struct hf_report *r = &c->report;
-    double ms[HF_MAX_PASSES];
     *r = (struct hf_report){.used = *s->resolved,
                             .picture = s->resolved->params.aperture.picture != NULL,
                             .budget_step = c->budget.step,
@@ -70,18 +67,42 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
                             .tile_height = 2 * p->cell_height[2],
                             .columns = p->columns[2],
                             .rows = p->rows[2],
-                            .passes = e->pass_count};
+                            .passes = p->engine->pass_count};
     r->used.params.aperture.picture = NULL;  // the caller's, and he may free it
+    for (int i = 0; i < r->passes; i++)
+        r->pass[i] = (struct hf_pass_report){.name = p->engine->passes[i].name,
+                                             .all = (uint32_t)hf_plan_count(p, p->engine->passes[i].sweep)};
+}
+
+void hf_report_copy(struct hf_context *c, const struct hf_setup *s)
+{
+    struct hf_report *r = &c->report;
+    start_report(c, s);
+    r->tile_count[HF_TILE_SHARP] = (uint32_t)hf_plan_count(&c->plan, 2);
+    for (int i = 0; i < r->passes; i++)
+        r->pass[i].skipped = "no blur at all: the picture is copied";
+    memset(c->plan.tile_needs, 0, r->tile_count[HF_TILE_SHARP]);
+    r->memory = hf_buffers_bytes(c, s, 0);
+    r->memory_saved = hf_buffers_bytes(c, s, HF_FIELDS) - r->memory;
+}
+
+void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct hf_counts *found)
+{
+    const struct hf_plan *p = &c->plan;
+    const struct hf_engine_def *e = p->engine;
+    struct hf_report *r = &c->report;
+    double ms[HF_MAX_PASSES];
+    start_report(c, s);
     for (int i = 0; i < hf_plan_count(p, 2); i++)
-        r->tile_count[s->blend == 0 ? 0 : p->tile_needs[i]]++;
+        r->tile_count[p->tile_needs[i]]++;
     hf_cost_work(&c->work, p, s);
     hf_cost_predict(&c->cost, s, c->isa, c->threads, &c->work, ms);
     for (int i = 0; i < e->pass_count; i++) {
         struct hf_pass_report *row = &r->pass[i];
-        *row = (struct hf_pass_report){
-            .name = e->passes[i].name, .run = c->work.run[i], .all = c->work.all[i], .predicted_ms = ms[i]};
+        row->run = c->work.run[i];
+        row->predicted_ms = ms[i];
         if (row->run < row->all)
-            row->skipped = reason(p, s, i);
+            row->skipped = reason(p, i);
         r->predicted_ms += ms[i];
     }
     if (e->measured) {
@@ -93,7 +114,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     }
     if (e->tell)
         e->tell(s->own, r);
-    r->memory = hf_buffers_bytes(c, s, s->blend == 0 ? 0 : p->reads);
+    r->memory = hf_buffers_bytes(c, s, p->reads);
     r->memory_saved = hf_buffers_bytes(c, s, HF_FIELDS) - r->memory;
 }
 
@@ -109,27 +130,32 @@ void hf_report_colour(struct hf_context *c)
     }
 }
 
-void hf_report_frame(struct hf_context *c, const struct hf_setup *s, double total_ms)
+void hf_report_frame(struct hf_context *c, double total_ms)
 {
     struct hf_report *r = &c->report;
     const struct hf_counts n = hf_report_counts(c);
-    double ms[HF_MAX_PASSES] = {0};
     r->total_ms = total_ms;
     r->memory_held = memory_held(c);
     r->near_pixels = n.near_pixels;
     r->far_pixels = n.far_pixels;
-    r->sharp_pixels = s->blend == 0 ? (uint64_t)s->width * (uint64_t)s->height : n.sharp_pixels;
+    r->sharp_pixels = n.sharp_pixels;
     r->colour_repaired = n.colour_repaired;
     r->depth_repaired = n.depth_repaired;
     r->no_surface = n.no_surface;
     r->clamped = n.clamped;
     for (int i = 0; i < r->passes; i++) {
         for (int k = 0; k < c->threads; k++) {
-            ms[i] += (double)c->workers[k].ns[i] * 1e-6 / c->threads;
+            r->pass[i].ms += (double)c->workers[k].ns[i] * 1e-6 / c->threads;
             r->pass[i].ran += c->workers[k].tiles[i];
         }
-        r->pass[i].ms = ms[i];
     }
+}
+
+void hf_report_learn(struct hf_context *c, const struct hf_setup *s)
+{
+    double ms[HF_MAX_PASSES] = {0};
+    for (int i = 0; i < c->report.passes; i++)
+        ms[i] = c->report.pass[i].ms;
     hf_cost_learn(&c->cost, s, c->isa, c->threads, &c->work, ms);
 }
 

@@ -5,12 +5,15 @@
 
 #include "frame/context.h"
 
-// Fill the context's report from its plan. fields: whose buffers the frame needs.
+// Fill the context's report: of a frame that is only copied; from its plan, and what the first sweep has counted.
+void hf_report_copy(struct hf_context *c, const struct hf_setup *s);
 void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct hf_counts *found);
 // Add what its workers saw of the colour.
 void hf_report_colour(struct hf_context *c);
-// Add what the frame's workers did, and learn from it.
-void hf_report_frame(struct hf_context *c, const struct hf_setup *s, double total_ms);
+// Add what the frame's workers did.
+void hf_report_frame(struct hf_context *c, double total_ms);
+// Learn from it what passes cost.
+void hf_report_learn(struct hf_context *c, const struct hf_setup *s);
 // What all workers have counted so far.
 struct hf_counts hf_report_counts(const struct hf_context *c);
 // hf_get_tiles of the report as it stands.

@@ -57,7 +57,7 @@ static void far_weights_faithful(const struct hf_buf *coc, struct phase p, float
 static void blend_far(const struct hf_frame *f, struct phase p, float coc, float *const colour[4], int i)
 {
     const struct hf_buf *far = &f->buf[HF_BUF_FAR_FILL];
-    const float t = f->s->blend * coc;
+    const float t = hf_gather(f->s)->blend * coc;
     float w[4];
     if (f->s->faithful) {
         far_weights_faithful(&f->buf[HF_BUF_COC4], p, coc, w);
@@ -105,7 +105,7 @@ static void blend_near(const struct hf_frame *f, struct phase p, float *const co
 {
     float (*up)(const struct hf_buf *, int, struct phase) = hf_gather(f->s)->bicubic ? upsample_cubic : upsample;
     const float scale = hf_gather(f->s)->bicubic ? 1 : 1 / 16.0f;
-    const float t = f->s->blend * scale * up(&f->buf[HF_BUF_BLUR], 0, p);
+    const float t = hf_gather(f->s)->blend * scale * up(&f->buf[HF_BUF_BLUR], 0, p);
     for (int c = 0; c < f->s->channels; c++)
         colour[c][i] = hf_lerp(colour[c][i], scale * up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);
 }

@@ -516,7 +516,7 @@ static struct field_rows field_at(const struct hf_buf *b, int c, int x, int y, i
 static struct composite_rows composite_rows_at(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const int down = y & 1, hy = (y - down) / 2, ny = down ? hy + 1 : hy - 1;
-    struct composite_rows rows = {.blend = f->s->blend, .down = down};
+    struct composite_rows rows = {.blend = hf_gather(f->s)->blend, .down = down};
     if (f->far) {
         rows.far = field_at(&f->buf[HF_BUF_FAR_FILL], 0, r.x0, hy, ny);
         rows.far_coc = field_at(&f->buf[HF_BUF_COC4], 1, r.x0, hy, ny);

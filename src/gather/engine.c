@@ -161,8 +161,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     (void)depth;
     s->storage = p->gather.storage;
     s->faithful = p->gather.faithful;
-    if (s->blend > 0 && s->strength < 0.25f)
-        s->blend = 4 * s->strength;
+    g->blend = s->strength < 0.25f ? 4 * s->strength : 1;
     g->karis = p->gather.karis;
     g->per_pixel_kernel = p->gather.per_pixel_kernel;
     g->bicubic = p->gather.bicubic;

@@ -53,6 +53,7 @@ enum hf_gather_halo {
 };
 
 struct hf_gather {
+    float blend;  // of the fields with the picture: less than 1 below a strength of a quarter
     int karis, per_pixel_kernel, bicubic;
     enum hf_fill fill;  // of OPEN as of NONE: they differ in the taps
     enum hf_downsample downsample;

@@ -184,7 +184,7 @@ static void start(struct world *w)
         w->params.hexagon.resolution = !w->bench && rng_one_in(r, 2) ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
         w->params.hexagon.uniform = 0;
         world_setup(w, &w->hexagon);
-    } while (w->setup.blend == 0);
+    } while (w->resolved.sharp);
     w->engine = &hf_hexagon_engine;
     const float most = w->setup.max_radius * (w->bench || rng_one_in(r, 4) ? 1 : rng_float(r, 0, 1));
     const struct hf_counts found = {.radius_min = -most, .radius_max = most / 2};
