@@ -347,11 +347,20 @@ static void effects(struct hf_context *c, const char *isa)
         picture_free(&a);
         picture_free(&b);
     }
-    // The near plane counts when faithful, for what lies before it.
+    // The near plane counts when faithful, for what lies before it; otherwise it does not.
     struct hf_params p = base;
-    p.gaussian.faithful = 1;
-    p.focus = 1;
     struct hf_depth depth = picture_depth(&s.depth);
+    p.focus = 1;
+    depth.near_plane = 1;
+    depth.far_plane = 100;
+    struct picture one = render(c, &s.colour, &depth, &p);
+    depth.near_plane = 15;
+    struct picture other = render(c, &s.colour, &depth, &p);
+    CHECK(picture_same_bits(&one, &other));
+    picture_free(&one);
+    picture_free(&other);
+    depth = picture_depth(&s.depth);
+    p.gaussian.faithful = 1;
     struct picture a = render(c, &s.colour, &depth, &p);
     depth.near_plane = 15;
     depth.far_plane = 100;

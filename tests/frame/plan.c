@@ -140,6 +140,31 @@ static void only_what_is_called_for(void)
     hf_close(&c);
 }
 
+// The largest radii of either side are those of the depth, whichever engine has to find them.
+static void radii_found(void)
+{
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
+    struct scene s = sharp(200, 120);
+    struct hf_params p = hf_default_params;
+    struct hf_depth depth = picture_radii(&s.depth);
+    const struct hf_image image = picture_image(&s.colour);
+    picture_fill(&s.depth, 0, 0);
+    put(&s, 20, 20, 60, 60, -5);
+    put(&s, 110, 30, 150, 90, 11);
+    p.max_radius = 16;  // a power of two: what is divided by it and multiplied again is as it was
+    for (int engine = 0; engine < HF_ENGINE_COUNT; engine++) {
+        struct hf_report r;
+        if (!hf_engine_name((enum hf_engine)engine))
+            continue;
+        p.engine = (enum hf_engine)engine;
+        CHECK_INT(hf_plan(c, &image, &image, &depth, &p, &r), HF_OK);
+        CHECK_MSG(r.near_radius == 5 && r.far_radius == 11, "%s: radii %g and %g", hf_engine_name(p.engine),
+                  r.near_radius, r.far_radius);
+    }
+    scene_free(&s);
+    hf_close(&c);
+}
+
 // A machine on which step i takes ms[i], times a load.
 struct machine {
     const float *ms;
@@ -185,6 +210,13 @@ static void budget(void)
     frames(&m, 3, 3, 1);  // nothing fits: the cheapest
     frames(&m, 20, 3, 1);
     CHECK_INT(m.b.step, 2);
+
+    // The first frame pays for memory that no later one needs: with it two would be late.
+    m.b = (struct hf_budget){0};
+    frames(&m, 2, 100, 12);
+    CHECK_INT(m.b.step, 0);
+    frames(&m, 50, 1, 12);
+    CHECK_INT(m.b.step, 0);
 }
 
 // A scene whose better setting looks affordable from below and is not: tries get rarer, and rarer.
@@ -330,6 +362,7 @@ int main(void)
     colour();
     planned_and_done();
     only_what_is_called_for();
+    radii_found();
     budget();
     no_flicker();
     ladders();

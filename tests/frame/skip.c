@@ -130,6 +130,13 @@ static void check_scene(struct hf_context *skipping, struct hf_context *whole, e
     tally->run += (uint64_t)report.columns * (uint64_t)report.rows - report.tile_count[HF_TILE_SHARP];
     p.run.no_skip = 1;
     CHECK_INT(try_render(whole, &b, &s.colour, &depth, &p), HF_OK);
+    struct hf_report all;
+    hf_get_report(whole, &all);
+    CHECK_MSG(report.near_pixels == all.near_pixels && report.far_pixels == all.far_pixels &&
+                  report.sharp_pixels == all.sharp_pixels && report.depth_repaired == all.depth_repaired &&
+                  report.no_surface == all.no_surface && report.colour_repaired == all.colour_repaired,
+              "%s: seed %u, scene %u (%s, %d x %d): skipping counts otherwise", hf_engine_name(engine), seed, n, name,
+              a.width, a.height);
     CHECK_MSG(
         picture_same_bits(&a, &b), "%s, %s: seed %u, scene %u (%s, %d x %d, %d channels): skipping gives other bits",
         hf_isa_name(hf_context_isa(skipping)), hf_engine_name(engine), seed, n, name, a.width, a.height, a.channels);

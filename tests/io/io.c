@@ -35,6 +35,7 @@ int main(void)
     full_disk(in_folder("views.exr"), in_folder("full.exr"));
     test_huge_header();
     test_claims();
+    test_swapped_chunks();
     test_planes();
     test_formats();
     test_rubbish(in_folder("views.exr"));

@@ -87,6 +87,32 @@ void test_huge_header(void)
     free(data);
 }
 
+// The table of chunks lies where a number leads to the end of a table that begins there. Its first two entries change
+// places: each then leads to another row's chunk, which is whole.
+void test_swapped_chunks(void)
+{
+    const struct part parts[MAX_PARTS] = {
+        usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIPS, EXR_LINEORDER_INCREASING_Y)};
+    const char *path = in_folder("swapped.exr");
+    struct hf_io_error err = {""};
+    size_t size, at = 0;
+    CHECK(!make_exr(path, parts, NULL));
+    uint8_t *data = slurp(path, &size);
+    uint64_t entry[2] = {0, 0};
+    for (; at + 16 < size; at++) {
+        memcpy(entry, data + at, sizeof(entry));
+        if (entry[0] > at + 8 && entry[0] < size && (entry[0] - at) % 8 == 0 && entry[1] > entry[0] && entry[1] < size)
+            break;
+    }
+    if (CHECK(at + 16 < size)) {
+        memcpy(data + at, &entry[1], 8);
+        memcpy(data + at + 8, &entry[0], 8);
+        spill(path, data, size);
+        expect_error(rewrite(path, in_folder("none.exr"), &err), &err, "swapped.exr: ");
+    }
+    free(data);
+}
+
 // Headers that Core believes and other readers do not, and files that are called what they are.
 void test_claims(void)
 {

@@ -20,6 +20,7 @@ void full_disk(const char *source, const char *target);
 void test_rubbish(const char *path);
 void test_huge_header(void);
 void test_claims(void);
+void test_swapped_chunks(void);
 void test_planes(void);
 void test_formats(void);
 void test_half(void);
