@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows of the gaussian engine on vectors. Nothing is fused that fusing would change: the same bits everywhere, fast or
 // deterministic.
+#ifndef HF_GAUSSIAN_BLUR_SIMD_H
+#define HF_GAUSSIAN_BLUR_SIMD_H
+
 #include "pixel/depth_rows.h"
 #include "gaussian/kernels.h"
 #include "pixel/coc_vf.h"
@@ -264,3 +267,5 @@ static void gaussian_up_simd(const struct hf_buf *b, int c, int quarter, int x, 
         vf_store(odd + i + VF_N, q);
     }
 }
+
+#endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the gaussian engine meets the picture: shrinking it, and merging the blur into it, a block of 2 VF_N pixels at a
 // time from the picture to the picture. Nothing is fused, as in blur_simd.h.
+#include "gaussian/blur_simd.h"
 #include "gaussian/kernels.h"
 #include "pixel/coc_vf.h"
 #include "pixel/depth_rows.h"

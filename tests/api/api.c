@@ -257,7 +257,7 @@ static void bad_params(struct hf_context *c)
     ALLOW(params.view.pixel_aspect = 10);
     ALLOW(params.view.pixel_aspect = 0.1f);
     SPOIL(params.gather.storage = (enum hf_storage)3);
-    SPOIL(params.gather.fill = (enum hf_fill)3);
+    SPOIL(params.gather.fill = (enum hf_fill)(HF_FILL_OPEN + 1));
     SPOIL(params.range.blend = (enum hf_blend) - 1);
     for (int blades = -1; blades <= 18; blades++) {
         if (blades == 0 || (blades >= 3 && blades <= 16))
