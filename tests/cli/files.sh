@@ -108,6 +108,9 @@ else
             result "$1, $2 at $x" $?
         done
     done
+    run photo.png -o photo-out.png --depth-file map8.png --focus 5 --fstop 0.1 --focal-length 50
+    [ "$status" -eq 0 ] && contains "$dir/err" "nothing is in focus" && contains "$dir/err" "--depth-type normalized"
+    result "a map taken for distances is a warning" $?
     # The README's one.
     run "$source_root/images/lights-before.png" --depth-file "$source_root/images/lights-depth.png" --depth-type inverse \
         --near 1.5 --far 60 --focus 5 --fstop 0.37 --focal-length 50 -o photo-out.png --verbose
