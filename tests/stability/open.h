@@ -19,7 +19,6 @@ static const struct {
      "half-resolution taps around small radii lie to one side"},
     {"opaque: samples of alpha that are not 1", "gather", 4000,
      "alpha is summed like colour; its weights add up to 1 only within rounding"},
-    {"opaque: samples of alpha that are not 1", "hexagon", 600, "the same"},
     {"transposes: difference, of the largest", "scatter", 0.015,
      "a disc's rows end between pixels, its first and last row do not: its outline differs along the axes"},
     {"flips: samples that are not the mirror's bits", "scatter", 5000,
