@@ -325,6 +325,7 @@ picture_tests() {
         cmp -s o.exr whole.exr && fail=1 || fail=0
         result "the aperture's picture shows, $engine" $fail
     done
+    bad 1 "--cat-eye|aperture.exr|whole shape" plain.exr -o o.exr --focus 3 --aperture aperture.exr --cat-eye 0.5
     bad 1 "--aperture|nothing.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture nothing.exr
     bad 1 "--aperture|black.exr|black" plain.exr -o o.exr --focus 3 --engine scatter --aperture black.exr
     bad 1 "--aperture|broken.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture broken.exr

@@ -238,7 +238,8 @@ static struct hf_params random_params(struct rng *rng, struct hf_image *aperture
     p.view.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
     if (aperture && rng_below(rng, 6) == 0) {
         *aperture = picture_image(&shape_image);
-        p.aperture.picture = aperture;
+        p.aperture = (struct hf_aperture_params){
+            .squeeze = p.aperture.squeeze, .chromatic = p.aperture.chromatic, .picture = aperture};
         p.max_radius = fminf(p.max_radius, 17);
     }
     return p;
