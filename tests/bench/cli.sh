@@ -3,6 +3,8 @@
 # hyperfocal-bench from outside: what it refuses and how, and what the JSON of its commands carries. No time decides here.
 # Usage: cli.sh BENCH SOURCE_ROOT
 bench=$1 source_root=$2
+case $bench in /*) ;; *) bench=$PWD/$bench ;; esac
+case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
 dir=$(mktemp -d) || exit 1
 trap 'rm -rf "$dir"' EXIT
 cd "$dir" || exit 1
