@@ -34,7 +34,8 @@ static const struct {
      "sums of samples with weights around edges pass the largest float, and nothing clamps them"},
     {"largest floats: not finite in a buffer on the way", "layers", 5000, "the same"},
     {"a range pull: worst jump, 8-bit codes", "layers", 75,
-     "an edge is un-mixed from a difference of 1 pixel between radii on, a whole floor at once if it is that steep, and "
+     "an edge is un-mixed from a difference of 1 pixel between radii on, a whole floor at once if it is that steep, "
+     "and "
      "whether its pixels are the front or the back is then a matter of rounding; hidden samples alone make 6"},
     {"a strength pull: worst jump, 8-bit codes", "layers", 40, "as for the range pull"},
     {"a radius ramp: worst jump, 8-bit codes", "layers", 75, "as for the range pull"},
