@@ -333,8 +333,7 @@ struct hf_aperture_params {
     float chromatic;
     // A picture of the aperture, its centre the lens's axis and its shorter side the diameter; brightness is
     // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during the call. Every
-    // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then. It is the whole
-    // shape: blades, roundness, ring and cat_eye with it are HF_ERR_ARG.
+    // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then.
     const struct hf_image *picture;
 };
 
@@ -404,7 +403,7 @@ enum hf_layers_quality {
     HF_LAYERS_STANDARD,
     HF_LAYERS_DRAFT,  // few slices, and nothing is filled in behind objects: hard rims where a lens sees past them
     HF_LAYERS_HIGH,   // finer slices
-    HF_LAYERS_BEST,   // and coarser resolutions from twice the radii on
+    HF_LAYERS_BEST,   // finer still
 };
 
 // HF_DERIVE leaves a number to the quality.

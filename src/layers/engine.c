@@ -4,8 +4,8 @@
 //
 // A pixel of the result costs, apart from un-mixing and hidden samples, which are the same for all radii: twice the rows
 // of the discs of the slices between which its samples lie, a sixteenth of them from a quarter of the resolution on.
-// Of a whole frame (lights.exr, CPU time of one thread, AVX-512) a polygon costs 1.1 times what a disc does, a ring 1.3, a
-// picture of radius 22 1.4, channels of their own sizes 1.5 and a cat's eye 1.8 times.
+// Polygons and rings cost two to three times that, a cat's eye four times (shape_draw.c), a picture the square of its
+// radius; channels of their own sizes three times whatever it is.
 #include <math.h>
 #include <string.h>
 
@@ -51,8 +51,8 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
 static const struct hf_layers_settings qualities[] = {
     [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 6, .quarter = 32},
     [HF_LAYERS_STANDARD] = {.spacing = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
-    [HF_LAYERS_HIGH] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
-    [HF_LAYERS_BEST] = {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 16, .quarter = 64},
+    [HF_LAYERS_HIGH] = {.spacing = 2.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 5, .quarter = 32},
+    [HF_LAYERS_BEST] = {.spacing = 1.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 5, .quarter = 32},
 };
 
 static const float MAX_PICTURE = 256;  // radius, pixels
@@ -306,6 +306,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .tap = hf_layers_tap_c,
         .nearest = hf_layers_nearest_c,
         .found = hf_layers_found_c,
+        .smooth = hf_layers_smooth_c,
         .extremes = hf_layers_extremes_c,
         .inside = hf_layers_inside_c,
         .weigh = hf_layers_weigh_c,

@@ -105,7 +105,7 @@ void hf_layers_tap_c(const float *const in[6], int channels, const float *neares
     for (int x = 0; x < n; x++) {
         const float behind = in[5][x] - nearest[x];
         const float a = hf_layers_unit(behind * scale + off);
-        const float w = behind < 1 ? 0 : part * a * in[4][x];
+        const float w = behind < 1 ? 0 : part * a * hf_layers_unit(9 * in[4][x]);
         for (int c = 0; c < channels; c++)
             sum[c][x] = sum[c][x] + w * in[c][x];
         sum[4][x] = sum[4][x] + w;
@@ -135,7 +135,32 @@ void hf_layers_found_c(const float *const sum[6], const float *const radius[2], 
         out[4][x] = sum[4][x] > 0 ? ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f : 0;
         out[5][x] = r;
         for (int c = 0; c < channels; c++)
-            out[c][x] = (sum[c][x] * inverse) * fabsf(sum[c][x] * inverse);
+            out[c][x] = sum[c][x] * inverse;
+    }
+}
+
+void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, int n, float *const out[6])
+{
+    for (int x = 0; x < n; x++) {
+        const float r = in[HF_LAYERS_SMOOTH][5][x], weight = in[HF_LAYERS_SMOOTH][4][x];
+        float sum = 0, radius = 0, colour[4] = {0};
+        for (int i = 0; i < HF_LAYERS_TAPS; i++) {
+            if (!(in[i][4][x] > 0))
+                continue;
+            const float alike = 1 - fabsf(in[i][5][x] - r) * (1.0f / HF_LAYERS_ALIKE);
+            const float g = hf_layers_line(i) * (alike > 0 ? alike : 0);
+            sum = sum + g;
+            radius = radius + g * in[i][5][x];
+            for (int c = 0; c < channels; c++)
+                colour[c] = colour[c] + g * in[i][c][x];
+        }
+        const float inverse = sum > 0 ? 1 / sum : 0;
+        out[4][x] = weight;
+        out[5][x] = radius * inverse;
+        for (int c = 0; c < channels; c++) {
+            const float v = colour[c] * inverse;
+            out[c][x] = square ? v * fabsf(v) : v;
+        }
     }
 }
 

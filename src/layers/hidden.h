@@ -4,7 +4,18 @@
 
 #include "layers/kernels.h"
 
-enum { HF_LAYERS_QUERY = 256 };  // hidden samples that are looked for at once
+enum {
+    HF_LAYERS_SMOOTH = 6,
+    HF_LAYERS_TAPS = 2 * HF_LAYERS_SMOOTH + 1
+};  // hidden samples on either side that are one mean
+
+// How much the samples of a line count in the mean of that in the middle, if they are as far; nothing beyond this
+// difference of radius.
+#define HF_LAYERS_ALIKE 4
+static inline float hf_layers_line(int i)
+{
+    return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));
+}
 
 // The radius of what is not there: before anything.
 #define HF_LAYERS_NOTHING (-1e30f)

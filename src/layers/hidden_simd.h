@@ -115,8 +115,8 @@ HF_INLINE void layers_tap_of(const float *const in[6], const int channels, const
     for (int x = 0; x < n; x += VF_N) {
         const vf r = vf_load(in[5] + x), behind = vf_sub(r, vf_load(nearest + x));
         const vf t = vf_max(vf_fma(behind, vf_set1(scale), vf_set1(off)), vf_zero());
-        const vf a = vf_min(t, vf_set1(1));
-        const vf w = vf_keep(vm_not(vf_lt(behind, vf_set1(1))), vf_mul(vf_mul(vf_set1(part), a), vf_load(in[4] + x)));
+        const vf a = vf_min(t, vf_set1(1)), full = vf_min(vf_mul(vf_set1(9), vf_load(in[4] + x)), vf_set1(1));
+        const vf w = vf_keep(vm_not(vf_lt(behind, vf_set1(1))), vf_mul(vf_mul(vf_set1(part), a), full));
         const vm some = vf_gt(w, vf_zero());
         if (!vm_any(some))
             continue;
@@ -167,11 +167,47 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
         vf_unzip(before[0], before[1], &even, &odd);
         vf_store(out[4] + x, vf_keep(some, vf_mul(vf_add(even, odd), vf_set1(0.25f))));
         vf_store(out[5] + x, r);
+        for (int c = 0; c < channels; c++)
+            vf_store(out[c] + x, vf_mul(vf_load(sum[c] + x), inverse));
+    }
+}
+
+HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels, int square, int n,
+                                float *const out[6])
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf r = vf_load(in[HF_LAYERS_SMOOTH][5] + x), weight = vf_load(in[HF_LAYERS_SMOOTH][4] + x);
+        vf sum = vf_zero(), radius = vf_zero(), colour[4];
+        for (int c = 0; c < channels; c++)
+            colour[c] = vf_zero();
+        for (int i = 0; i < HF_LAYERS_TAPS; i++) {
+            const vm some = vf_gt(vf_load(in[i][4] + x), vf_zero());
+            if (!vm_any(some))
+                continue;
+            const vf far = vf_keep(some, vf_load(in[i][5] + x));
+            const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
+            const vf g = vf_keep(some, vf_mul(vf_set1(hf_layers_line(i)), vf_max(alike, vf_zero())));
+            sum = vf_add(sum, g);
+            radius = vf_fma(g, far, radius);
+            for (int c = 0; c < channels; c++)
+                colour[c] = vf_fma(g, vf_keep(some, vf_load(in[i][c] + x)), colour[c]);
+        }
+        const vf inverse = vf_keep(vf_gt(sum, vf_zero()), vf_div(vf_set1(1), sum));
+        vf_store(out[4] + x, weight);
+        vf_store(out[5] + x, vf_mul(radius, inverse));
         for (int c = 0; c < channels; c++) {
-            const vf v = vf_mul(vf_load(sum[c] + x), inverse);
-            vf_store(out[c] + x, vf_mul(v, vf_abs(v)));
+            const vf v = vf_mul(colour[c], inverse);
+            vf_store(out[c] + x, square ? vf_mul(v, vf_abs(v)) : v);
         }
     }
+}
+
+static void layers_smooth_simd(const float *const in[13][6], int channels, int square, int n, float *const out[6])
+{
+    if (channels == 3)
+        layers_smooth_of(in, 3, square, n, out);
+    else
+        layers_smooth_of(in, 4, square, n, out);
 }
 
 static int layers_extremes_simd(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,

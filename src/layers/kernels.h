@@ -26,10 +26,13 @@ typedef void hf_layers_tap(const float *const in[6], int channels, const float *
                            float part, int n, float *const sum[6]);
 // Least of the radii of n quads, from two rows.
 typedef void hf_layers_nearest(const float *above, const float *below, int n, float *out);
-// Hidden samples from the sums of taps: their weight is how much of a quad, of which two rows are given, lies more than a
+// Hidden samples, of which the colours are roots, from the sums of taps: their weight is how much of a quad, of which two rows are given, lies more than a
 // pixel of radius before them.
 typedef void hf_layers_found(const float *const sum[6], const float *const radius[2], const float *const weight[2],
                              int channels, int n, float *const out[6]);
+// The mean of lines of thirteen hidden samples, of those with weight that are about as far as the middle one; its weight is
+// kept. square: colours are no longer roots.
+typedef void hf_layers_smooth(const float *const in[13][6], int channels, int square, int n, float *const out[6]);
 // Least and largest radius of what has weight in rows of n samples, with those that out holds; without weights all have.
 // Returns whether a share is positive; share may be NULL.
 typedef int hf_layers_extremes(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
@@ -78,6 +81,7 @@ struct hf_layers_kernels {
     hf_layers_tap *tap;
     hf_layers_nearest *nearest;
     hf_layers_found *found;
+    hf_layers_smooth *smooth;
     hf_layers_extremes *extremes;
     hf_layers_inside *inside;
     hf_layers_weigh *weigh;
@@ -129,6 +133,7 @@ hf_layers_merge hf_layers_merge_c;
 hf_layers_tap hf_layers_tap_c;
 hf_layers_nearest hf_layers_nearest_c;
 hf_layers_found hf_layers_found_c;
+hf_layers_smooth hf_layers_smooth_c;
 hf_layers_extremes hf_layers_extremes_c;
 hf_layers_inside hf_layers_inside_c;
 hf_layers_weigh hf_layers_weigh_c;

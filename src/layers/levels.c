@@ -11,7 +11,7 @@ enum { STEP = 128, PAD = 32, BLOCK = 16 };
 
 int hf_layers_hidden_reach(const struct hf_layers *l)
 {
-    return l->levels ? 1 << l->levels : 0;
+    return l->levels ? (1 << l->levels) + HF_LAYERS_SMOOTH : 0;
 }
 
 // A band's levels: rows from above it to below.
@@ -20,7 +20,7 @@ struct band {
     const struct hf_layers *l;
     struct hf_rect r;
     int reach;
-    struct hf_layers_set level[HF_LAYERS_LEVELS], across;
+    struct hf_layers_set level[HF_LAYERS_LEVELS], across, found;
     float *nearest;  // least radius of what is seen in each quad, width in a row
     int width;
     // Blocks, those around the band included: (0, 0) is its first. Farthest radius, whether a search is made, and whether
@@ -49,7 +49,8 @@ static size_t block_count(const struct hf_layers *l, int width, int height)
 
 size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height)
 {
-    return (size_t)l->levels * (size_t)(l->channels + 2) * plane_floats(l, width, height) +
+    height += 2 * HF_LAYERS_SMOOTH;
+    return (size_t)(l->levels + 1) * (size_t)(l->channels + 2) * plane_floats(l, width, height) +
            (size_t)blocks_of(width) * BLOCK * (size_t)height + 2 * block_count(l, width, height) + PAD;
 }
 
@@ -193,7 +194,7 @@ static void find(const struct band *b, int x, int n, int y)
     memset(memory, 0, sizeof memory);
     for (int i = 0; i < 6; i++)
         sum[i] = memory[i];
-    for (int j = 0; j < b->l->levels; j++, part *= 1.0f / 16)
+    for (int j = 0; j < b->l->levels; j++, part *= 1.0f / 256)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
             float *in[6] = {NULL};
@@ -206,25 +207,77 @@ static void find(const struct band *b, int x, int n, int y)
         weight[i] = hf_at(at, 0, 2 * x, 2 * y + i);
         radius[i] = hf_at(at, 1, 2 * x, 2 * y + i);
     }
-    hf_row(&b->f->buf[HF_LAYERS_BUF_HIDDEN], channels, x, y, out);
-    out[4] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, x, y);
-    out[5] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, x, y);
+    planes_of(&b->found, channels, x, y, out);
     k->found((const float *const *)sum, radius, weight, channels, n, out);
 }
 
-// A row of the band: what lies behind, where anything may.
-static void find_row(const struct band *b, int y)
+// The next run of blocks of a row that need a search, or do not, at most STEP samples.
+struct run {
+    int x, n, needed, end;
+};
+
+static int next_run(const struct band *b, int y, struct run *run)
 {
     const uint8_t *needed = b->needed + (y - b->r.y0) / BLOCK * b->stride;
-    for (int start = 0, end; start < b->columns; start = end) {
-        const int x = b->r.x0 + start * BLOCK;
-        for (end = start + 1; end < b->columns && !needed[end] == !needed[start] && (end - start) * BLOCK < STEP;)
-            end++;
-        const int n = hf_min(b->r.x0 + end * BLOCK, b->r.x1) - x;
-        if (needed[start])
-            find(b, x, n, y);
+    const int start = run->end;
+    if (start >= b->columns)
+        return 0;
+    for (run->end++; run->end < b->columns && !needed[run->end] == !needed[start] && (run->end - start) * BLOCK < STEP;)
+        run->end++;
+    run->x = b->r.x0 + start * BLOCK;
+    run->n = hf_min(b->r.x0 + run->end * BLOCK, b->r.x1) - run->x;
+    run->needed = needed[start];
+    return 1;
+}
+
+// A row of the band: what lies behind, where anything may. Beyond the frame nothing does.
+static void find_row(const struct band *b, int y)
+{
+    float *weight = b->found.weight + y * b->found.stride;
+    for (struct run run = {0}; next_run(b, y, &run);)
+        if (run.needed)
+            find(b, run.x, run.n, y);
         else
-            memset(hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, x, y), 0, sizeof(float) * (size_t)n);
+            memset(weight + run.x, 0, sizeof(float) * (size_t)run.n);
+    memset(weight + b->r.x0 - HF_LAYERS_SMOOTH, 0, sizeof(float) * HF_LAYERS_SMOOTH);
+    memset(weight + b->r.x1, 0, sizeof(float) * HF_LAYERS_SMOOTH);
+}
+
+// What was found in places next to each other comes from levels that begin and end there: means along rows, then along
+// columns, hide that.
+static void smooth_along(const struct band *b, int y)
+{
+    const int channels = b->l->channels;
+    for (struct run run = {0}; next_run(b, y, &run);) {
+        float *in[HF_LAYERS_TAPS][6] = {{NULL}}, *out[6] = {NULL};
+        planes_of(&b->across, channels, run.x, y, out);
+        for (int i = 0; i < HF_LAYERS_TAPS; i++)
+            planes_of(&b->found, channels, run.x + i - HF_LAYERS_SMOOTH, y, in[i]);
+        if (run.needed)
+            hf_layers_kernels(b->f)->smooth((const float *const(*)[6])in, channels, 0, run.n, out);
+        else
+            memset(out[4], 0, sizeof(float) * (size_t)run.n);
+    }
+}
+
+static void smooth_down(const struct band *b, int y)
+{
+    static const float none[STEP + PAD];
+    const int channels = b->l->channels;
+    for (struct run run = {0}; next_run(b, y, &run);) {
+        float *in[HF_LAYERS_TAPS][6] = {{NULL}}, *out[6] = {NULL};
+        hf_row(&b->f->buf[HF_LAYERS_BUF_HIDDEN], channels, run.x, y, out);
+        out[4] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, run.x, y);
+        out[5] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, run.x, y);
+        for (int i = 0; i < HF_LAYERS_TAPS; i++) {
+            const int from = y + i - HF_LAYERS_SMOOTH, inside = from >= b->r.y0 && from < b->r.y1;
+            planes_of(&b->across, channels, run.x, inside ? from : y, in[i]);
+            in[i][4] = inside ? in[i][4] : (float *)none;
+        }
+        if (run.needed)
+            hf_layers_kernels(b->f)->smooth((const float *const(*)[6])in, channels, 1, run.n, out);
+        else
+            memset(out[4], 0, sizeof(float) * (size_t)run.n);
     }
 }
 
@@ -282,22 +335,35 @@ static void mark_tiles(const struct hf_frame *f, struct hf_rect r)
         }
 }
 
+// The hidden samples of a band.
+static void find_hidden(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    struct band b = {.f = f, .l = l, .r = r, .reach = hf_layers_hidden_reach(l)};
+    const struct hf_buf *colour = &f->buf[HF_LAYERS_BUF_QUADS], *at = &f->buf[HF_LAYERS_BUF_QUADS_AT];
+    float *memory = f->work;
+    b.r.y0 = hf_max(r.y0 - HF_LAYERS_SMOOTH, 0);
+    b.r.y1 = hf_min(r.y1 + HF_LAYERS_SMOOTH, f->s->half_height);
+    b.level[0] = (struct hf_layers_set){.weight = at->ch[0], .radius = at->ch[1], .stride = colour->stride};
+    memcpy(b.level[0].colour, colour->ch, sizeof colour->ch);
+    b.across = place(&b, &memory);
+    b.found = place(&b, &memory);
+    for (int j = 1; j < l->levels; j++)
+        b.level[j] = place(&b, &memory);
+    place_blocks(&b, &memory);
+    find_needed(&b);
+    make_levels(&b);
+    for (int y = b.r.y0; y < b.r.y1; y++) {
+        find_row(&b, y);
+        smooth_along(&b, y);
+    }
+    for (int y = r.y0; y < r.y1; y++)
+        smooth_down(&b, y);
+}
+
 void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    struct band b = {.f = f, .l = hf_layers(f->s), .r = r, .reach = hf_layers_hidden_reach(hf_layers(f->s))};
-    float *memory = f->work;
-    if (b.l->levels) {
-        const struct hf_buf *colour = &f->buf[HF_LAYERS_BUF_QUADS], *at = &f->buf[HF_LAYERS_BUF_QUADS_AT];
-        b.level[0] = (struct hf_layers_set){.weight = at->ch[0], .radius = at->ch[1], .stride = colour->stride};
-        memcpy(b.level[0].colour, colour->ch, sizeof colour->ch);
-        b.across = place(&b, &memory);
-        for (int j = 1; j < b.l->levels; j++)
-            b.level[j] = place(&b, &memory);
-        place_blocks(&b, &memory);
-        find_needed(&b);
-        make_levels(&b);
-        for (int y = r.y0; y < r.y1; y++)
-            find_row(&b, y);
-    }
+    if (hf_layers(f->s)->levels)
+        find_hidden(f, r);
     mark_tiles(f, r);
 }

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #include "harness.h"
-#include "layers/kernels.h"
+#include "layers/hidden.h"
 
 enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13 };
 
@@ -158,6 +158,16 @@ static void found_call(const struct world *w, const struct kernels *k, enum aren
     set_of(w, a, 0, sum);
     set_of(w, a, IN, out);
     k->layers.found((const float *const *)sum, radius, weight, now.channels, w->n, out);
+}
+
+// Nine lines, some of which are read more than once.
+static void smooth_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *set[HF_LAYERS_TAPS][6], *out[6];
+    for (int i = 0; i < HF_LAYERS_TAPS; i++)
+        set_of(w, a, 6 * (i % 9), set[i]);
+    set_of(w, a, IN, out);
+    k->layers.smooth((const float *const(*)[6])set, now.channels, now.with, w->n, out);
 }
 
 // ---- slices ----
@@ -336,6 +346,11 @@ void layers_make(struct world *w, int which)
             fill(w, i, 0, 2 * w->n, i < 8 ? RADIUS : WEIGHT);
         put_set(w, IN, 6, w->n);
         return;
+    case LAYERS_SMOOTH:
+        for (int i = 0; i < 9; i++)
+            fill_set(w, 6 * i, 0, w->n);
+        put_set(w, IN, 6, w->n);
+        return;
     case LAYERS_NEAREST:
         fill_surfaces(w, 0, 0, 2 * w->n);
         fill_surfaces(w, 1, 0, 2 * w->n);
@@ -451,6 +466,9 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         return;
     case LAYERS_FOUND:
         found_call(w, k, a);
+        return;
+    case LAYERS_SMOOTH:
+        smooth_call(w, k, a);
         return;
     case LAYERS_NEAREST:
         s->nearest(in[0], in[1], w->n, out);

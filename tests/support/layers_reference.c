@@ -248,8 +248,8 @@ static void find(struct frame *f, const struct grid *level, int levels, int x, i
             const int u = i % 3 - 1, v = i / 3 - 1;
             const double *q = at(&level[j], x + u * (1 << j), y + v * (1 << j)), behind = q[RADIUS] - nearest;
             const double a = fmin(fmax(behind / (2 << j) - hypot(u, v) + 0.5, 0), 1);
-            const double w =
-                q[WEIGHT] > 0 && behind >= 1 ? pow(16, -j) * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * q[WEIGHT] : 0;
+            const double some = fmin(9 * q[WEIGHT], 1);
+            const double w = behind >= 1 ? pow(256, -j) * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * some : 0;
             for (int c = 0; c < f->channels; c++)
                 sum[c] += w * q[c];
             sum[WEIGHT] += w;
@@ -259,11 +259,38 @@ static void find(struct frame *f, const struct grid *level, int levels, int x, i
         return;
     out[RADIUS] = sum[RADIUS] / sum[WEIGHT];
     for (int c = 0; c < f->channels; c++)
-        out[c] = sum[c] / sum[WEIGHT] * fabs(sum[c] / sum[WEIGHT]);
+        out[c] = sum[c] / sum[WEIGHT];
     for (int i = 0; i < 4; i++) {
         const double *s = edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2);
         out[WEIGHT] += s[RADIUS] < out[RADIUS] - 1 ? s[WEIGHT] / 4 : 0;
     }
+}
+
+// Means of 13 in a row or column, of those that are about as far.
+static struct grid smooth(const struct frame *f, const struct grid *from, int dx, int dy)
+{
+    struct grid to = grid_new(from->x0, from->y0, from->x1, from->y1, SAMPLE);
+    for (int y = to.y0; y < to.y1; y++)
+        for (int x = to.x0; x < to.x1; x++) {
+            const double *middle = at(from, x, y);
+            double *out = at(&to, x, y), sum = 0;
+            for (int i = -6; i <= 6; i++) {
+                const int px = x + i * dx, py = y + i * dy;
+                if (px < from->x0 || px >= from->x1 || py < from->y0 || py >= from->y1 || !middle[WEIGHT])
+                    continue;
+                const double *s = at(from, px, py);
+                const double g = s[WEIGHT] > 0 ? (7 - abs(i)) * fmax(1 - fabs(s[RADIUS] - middle[RADIUS]) / 4, 0) : 0;
+                sum += g;
+                for (int c = 0; c < f->channels; c++)
+                    out[c] += g * s[c];
+                out[RADIUS] += g * s[RADIUS];
+            }
+            for (int c = 0; c < f->channels; c++)
+                out[c] = sum > 0 ? out[c] / sum : 0;
+            out[RADIUS] = sum > 0 ? out[RADIUS] / sum : 0;
+            out[WEIGHT] = middle[WEIGHT];
+        }
+    return to;
 }
 
 static void find_hidden(struct frame *f)
@@ -289,6 +316,14 @@ static void find_hidden(struct frame *f)
     for (int y = 0; y < height && levels; y++)
         for (int x = 0; x < width; x++)
             find(f, level, levels, x, y);
+    struct grid along = smooth(f, &f->behind, 1, 0), down = smooth(f, &along, 0, 1);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            for (int c = 0; c < f->channels; c++)
+                at(&down, x, y)[c] *= fabs(at(&down, x, y)[c]);
+    free(along.v);
+    free(f->behind.v);
+    f->behind = down;
     for (int j = 0; j < levels; j++)
         free(level[j].v);
     free(quads.v);

@@ -59,7 +59,7 @@ static void make_line(struct line *l, double degrees, double aspect, double reac
 
 struct field {
     int width, height, channels;
-    double *colour[4], *a, *q;
+    double *colour[4], *a, *q, *part;
 };
 
 static struct field field_new(int width, int height, int channels)
@@ -68,6 +68,7 @@ static struct field field_new(int width, int height, int channels)
     const size_t n = (size_t)width * (size_t)height;
     f.a = calloc(n, sizeof *f.a);
     f.q = calloc(n, sizeof *f.q);
+    f.part = calloc(n, sizeof *f.part);
     for (int c = 0; c < channels; c++)
         f.colour[c] = calloc(n, sizeof *f.a);
     return f;
@@ -79,6 +80,7 @@ static void field_free(struct field *f)
         free(f->colour[c]);
     free(f->a);
     free(f->q);
+    free(f->part);
 }
 
 struct sum {
@@ -102,8 +104,7 @@ static struct sum sum_of(const struct field *f, const struct line *l, int x, int
         for (int c = 0; c < f->channels; c++)
             s.colour[c] += w * f->colour[c][at];
         s.a += w * f->a[at];
-        if (w > 0)
-            s.w += p > 0 ? w * f->a[at] / q : w * f->a[at] * sqrt(fmax(q, 1));
+        s.w += w * f->part[at];
     }
     return s;
 }
@@ -117,7 +118,7 @@ static void put_near(struct field *out, const struct sum *s, int at)
 {
     if (!(s->a > 0))
         return;
-    out->q[at] = pow(s->w / s->a, 2);
+    out->q[at] = s->w / s->a;
     out->a[at] = s->a / out->q[at];
     for (int c = 0; c < out->channels; c++)
         out->colour[c][at] = s->colour[c] / out->q[at];
@@ -147,49 +148,43 @@ static void near_field(const struct field *in, const struct line l[3], struct fi
     field_free(&b);
 }
 
-// Blur of premultiplied colours at a far pixel of radius p, to plain ones, with all that was found and its radii.
-static struct sum far_blur(const struct field *in, const struct line *l, int at, double p)
+// Blur of premultiplied colours at a far pixel, to plain ones.
+static void far_blur(const struct field *in, const struct line *l, int at, double out[4])
 {
-    struct sum s = sum_of(in, l, at % in->width, at / in->width, p);
+    const double p = in->q[at];
+    const struct sum s = sum_of(in, l, at % in->width, at / in->width, p);
     const double o = own_of(s.a, p);
     for (int c = 0; c < in->channels; c++)
-        s.colour[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
-    s.a += o;
-    s.w += o / p;
-    return s;
-}
-
-static void put_far(struct field *out, const struct sum *s, int at)
-{
-    out->q[at] = s->a / s->w;
-    out->a[at] = 1 / fmax(out->q[at], 1);
-    for (int c = 0; c < out->channels; c++)
-        out->colour[c][at] = s->colour[c] * out->a[at];
+        out[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
 }
 
 static void far_field(const struct field *in, const struct line l[3], struct field *out)
 {
     struct field u = field_new(in->width, in->height, in->channels), b = field_new(in->width, in->height, in->channels);
+    const size_t bytes = (size_t)in->width * (size_t)in->height * sizeof(double);
+    memcpy(u.a, in->a, bytes);
+    memcpy(u.q, in->q, bytes);
+    memcpy(b.a, in->a, bytes);
+    memcpy(b.q, in->q, bytes);
     for (int at = 0; at < in->width * in->height; at++) {
-        const double p = in->q[at];
-        if (!(p > 0))
+        double up[4], left[4];
+        if (!(in->q[at] > 0))
             continue;
-        struct sum up = far_blur(in, &l[0], at, p);
-        const struct sum left = far_blur(in, &l[1], at, p);
-        put_far(&u, &up, at);
-        for (int c = 0; c < in->channels; c++)
-            up.colour[c] += left.colour[c];
-        up.a += left.a;
-        up.w += left.w;
-        put_far(&b, &up, at);
+        far_blur(in, &l[0], at, up);
+        far_blur(in, &l[1], at, left);
+        for (int c = 0; c < in->channels; c++) {
+            u.colour[c][at] = up[c] * in->a[at];
+            b.colour[c][at] = (up[c] + left[c]) * in->a[at];
+        }
     }
     for (int at = 0; at < in->width * in->height; at++) {
-        const double p = in->q[at];
-        if (!(p > 0))
+        double left[4], right[4];
+        if (!(in->q[at] > 0))
             continue;
-        const struct sum left = far_blur(&u, &l[1], at, p), right = far_blur(&b, &l[2], at, p);
+        far_blur(&u, &l[1], at, left);
+        far_blur(&b, &l[2], at, right);
         for (int c = 0; c < in->channels; c++)
-            out->colour[c][at] = (left.colour[c] + right.colour[c]) / 3;
+            out->colour[c][at] = (left[c] + right[c]) / 3;
     }
     field_free(&u);
     field_free(&b);
@@ -199,6 +194,7 @@ static void load_full(const struct picture *colour, const float *r, struct field
 {
     for (int at = 0; at < f->width * f->height; at++) {
         f->q[at] = sign * (double)r[at];
+        f->part[at] = 1;
         f->a[at] = 1 / fmax(fabs(f->q[at]), 1);
         for (int c = 0; c < f->channels; c++)
             f->colour[c][at] = colour->plane[c][at] * f->a[at];
@@ -219,6 +215,7 @@ static void load_half(const struct picture *colour, const float *r, struct field
                 mean[c] += w * colour->plane[c][from];
         }
         f->q[at] = sum > 0 ? q / sum / 2 : 0;
+        f->part[at] = sum / 4;
         f->a[at] = sum / 4 / fmax(f->q[at], 1);
         for (int c = 0; c < f->channels; c++)
             f->colour[c][at] = mean[c] / 4 / fmax(f->q[at], 1);
