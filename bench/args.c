@@ -21,22 +21,22 @@
 
 static const struct tool_option options[] = {
     {"size", 0, TOOL_FILES, "WxH", "Size of a built-in scene, pixels. Default 1920x1080.", .parse = tool_parse_size,
-     FIELD(width), .max = 65536},
+     FIELD(width), .max = 65536, .commands = "passes|scaling|batch"},
     {"scene", 0, TOOL_FILES, "NAME|FILE", "mixed (default), near, far, both, focus, band:PERCENT, or an EXR file.",
-     TEXT(scene)},
-    {"images", 0, TOOL_FILES, "DIR", "truth, batch, tradeoff: folder of NAME.exr and NAME.truth.exr. Default: images "
-     "here, in the source, or where it is installed.", TEXT(images)},
-    {"image", 0, TOOL_FILES, "FILE", "truth: compare this picture with --truth, in place of the scenes.", TEXT(image)},
-    {"truth", 0, TOOL_FILES, "FILE", "truth: what --image should be.", TEXT(truth)},
-    {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "batch: only this one. Default "
-     "all.", .parse = tool_parse_choice_text, FIELD(compression)},
-    {"in", 0, TOOL_FILES, FORMATS, "Format of the colour read. Default r11g11b10f.", NAME(in, FORMAT)},
-    {"out", 0, TOOL_FILES, FORMATS, "Format of the colour written. Default r11g11b10f.", NAME(out, FORMAT)},
+     TEXT(scene), .commands = "passes"},
+    {"images", 0, TOOL_FILES, "DIR", "Folder of NAME.exr and NAME.truth.exr. Default: images "
+     "here, in the source, or where it is installed.", TEXT(images), .commands = "truth|batch|tradeoff"},
+    {"image", 0, TOOL_FILES, "FILE", "Compare this picture with --truth, in place of the scenes.", TEXT(image), .commands = "truth"},
+    {"truth", 0, TOOL_FILES, "FILE", "What --image should be.", TEXT(truth), .commands = "truth"},
+    {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Only this one. Default "
+     "all.", .parse = tool_parse_choice_text, FIELD(compression), .commands = "batch"},
+    {"in", 0, TOOL_FILES, FORMATS, "Format of the colour read. Default r11g11b10f.", NAME(in, FORMAT), .commands = "passes|scaling"},
+    {"out", 0, TOOL_FILES, FORMATS, "Format of the colour written. Default r11g11b10f.", NAME(out, FORMAT), .commands = "passes|scaling"},
 
     {"focus", 0, TOOL_FOCUS, "D", "Focus distance, scene units. Default 20, or the file's.",
-     NUMBER(params.focus, 0, FLT_MAX), .above_min = 1},
+     NUMBER(params.focus, 0, FLT_MAX), .above_min = 1, .commands = "passes|scaling"},
     {"range", 0, TOOL_FOCUS, "D", "Distance from focus to full blur, scene units, or inf. Default 10; for a file half "
-     "its focus.", NUMBER(params.range.distance, 0, FLT_MAX), .inf = 1},
+     "its focus.", NUMBER(params.range.distance, 0, FLT_MAX), .inf = 1, .commands = "passes|scaling"},
     {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 to 2048. Default 12; truth: as the lens has "
      "it.", NUMBER(params.max_radius, 0, 2048)},
 
@@ -45,20 +45,20 @@ static const struct tool_option options[] = {
     {"blades", 0, TOOL_LOOK, "N", "Sides of the aperture; 0 (default): a disc.", COUNT(params.aperture.blades, 0, 16)},
 
     {"frames", 0, TOOL_RUN, "N", "Frames to measure. Default: as many as take a few seconds.",
-     COUNT(frames, 1, 1000000)},
+     COUNT(frames, 1, 1000000), .commands = "passes|batch"},
     {"threads", 0, TOOL_RUN, "N", "Threads, up to 256; 0 (default): one per processor.", COUNT(threads, 0, 256)},
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set. Default auto.", NAME(isa, ISA)},
-    {"full", 0, TOOL_RUN, NULL, "stability: every case there is, some minutes.", FLAG(full)},
+    {"full", 0, TOOL_RUN, NULL, "Every case there is, some minutes.", FLAG(full), .commands = "stability"},
     {"json", 0, TOOL_RUN, "FILE|-", "Write the numbers as JSON; -: to stdout, instead of the table.", TEXT(json)},
-    {"quick", 0, TOOL_RUN, NULL, "tradeoff: fewer settings and rounds, within a minute.", FLAG(quick)},
-    {"setting", 0, TOOL_RUN, "OPTIONS", "tradeoff: only the setting that these options make, in quotes.",
-     TEXT(setting)},
-    {"html", 0, TOOL_RUN, "FILE", "tradeoff: write a page with charts.", TEXT(html)},
-    {"png", 0, TOOL_RUN, "FILE", "tradeoff: write the first chart as a picture.", TEXT(png)},
-    {"csv", 0, TOOL_RUN, "FILE", "tradeoff: write the numbers as CSV.", TEXT(csv)},
-    {"ladder", 0, TOOL_RUN, "FILE", "tradeoff: write the library's table of settings.", TEXT(ladder)},
-    {"cache", 0, TOOL_RUN, "FILE|none", "tradeoff: where measurements are kept. Default tradeoff.txt in the user's "
-     "cache folder.", TEXT(cache)},
+    {"quick", 0, TOOL_RUN, NULL, "Fewer settings and rounds, within a minute.", FLAG(quick), .commands = "tradeoff"},
+    {"setting", 0, TOOL_RUN, "OPTIONS", "Only the setting that these options make, in quotes.",
+     TEXT(setting), .commands = "tradeoff"},
+    {"html", 0, TOOL_RUN, "FILE", "Write a page with charts.", TEXT(html), .commands = "tradeoff"},
+    {"png", 0, TOOL_RUN, "FILE", "Write the first chart as a picture.", TEXT(png), .commands = "tradeoff"},
+    {"csv", 0, TOOL_RUN, "FILE", "Write the numbers as CSV.", TEXT(csv), .commands = "tradeoff"},
+    {"ladder", 0, TOOL_RUN, "FILE", "Write the library's table of settings.", TEXT(ladder), .commands = "tradeoff"},
+    {"cache", 0, TOOL_RUN, "FILE|none", "Where measurements are kept. Default tradeoff.txt in the user's "
+     "cache folder.", TEXT(cache), .commands = "tradeoff"},
     {"help", 'h', TOOL_RUN, "[man]", "Print this; --help=man: the man page.", .parse = tool_parse_help},
     {.name = NULL},
 };
@@ -121,14 +121,21 @@ static void find_images(struct bench_args *args)
     }
 }
 
-int bench_args_parse(struct bench_args *args, int count, char **words, struct tool_error *error)
+int bench_args_parse(struct bench_args *args, const char *command, int count, char **words, struct tool_error *error)
 {
-    struct tool_parser p = {.program = &bench_program, .args = args, .error = error};
+    struct tool_parser p = {.program = &bench_program, .command = command, .args = args, .error = error};
     if (tool_parse_line(&p, count, words))
         return -1;
     args->help = p.help;
     if (p.help)
         return 0;
+    // Commands that measure one engine say what it does not do; the others have all of them.
+    const int one = !command || !strcmp(command, "passes") || !strcmp(command, "scaling");
+    const struct tool_option *misfit = one ? tool_misfit(&p, args->params.engine) : NULL;
+    char engines[256];
+    if (misfit)
+        return tool_fail(error, -1, "--%s is of use only with --engine %s, not %s", misfit->name,
+                         tool_and(misfit->engines, engines), hf_engine_name(args->params.engine));
     if (!args->images)
         find_images(args);
     args->words = words;

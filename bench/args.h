@@ -38,7 +38,8 @@ struct bench_args {
 void bench_args_default(struct bench_args *args);
 
 // Parse the options that follow a command. Returns 0, or -1 with *error filled. Nothing is looked at after -h.
-int bench_args_parse(struct bench_args *args, int count, char **options, struct tool_error *error);
+// command: which it is, NULL for a setting of any.
+int bench_args_parse(struct bench_args *args, const char *command, int count, char **options, struct tool_error *error);
 
 // All options, and what else is said of the program; the commands are main.c's.
 extern const struct tool_program bench_program;

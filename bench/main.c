@@ -40,7 +40,7 @@ static int run(int argc, char **argv, struct tool_error *error)
                          nearest.word ? " did you mean " : "", nearest.word ? nearest.word : "",
                          nearest.word ? "?" : "");
     }
-    if (bench_args_parse(&args, argc - 1 - known, argv + 1 + known, error))
+    if (bench_args_parse(&args, bench_command_words[c][0], argc - 1 - known, argv + 1 + known, error))
         return -1;
     if (args.help > 2)
         tool_print_man(&bench_program);

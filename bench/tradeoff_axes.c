@@ -4,6 +4,7 @@
 #include "tradeoff_run.h"
 
 #include "support/image.h"
+#include "support/layers_reference.h"
 #include "support/reference.h"
 #include "support/reference_hexagon.h"
 #include "support/scatter_reference.h"
@@ -59,6 +60,10 @@ static struct picture in_double(const struct input *in, struct hf_params p)
         out = hexagon_reference(&in->colour, &in->radius, &p);
     } else if (p.engine == HF_ENGINE_SCATTER && p.scatter.resolution == HF_RESOLUTION_FULL) {
         out = scatter_reference(&in->colour, in->radius.plane[0]);
+    } else if (p.engine == HF_ENGINE_LAYERS) {
+        struct hf_resolved r;
+        if (hf_resolve(WIDTH, HEIGHT, &in->depth, &p, &r, NULL, 0) == HF_OK)
+            out = layers_reference(&in->colour, in->radius.plane[0], &r.params);
     }
     return out;
 }

@@ -62,7 +62,7 @@ static int parse_job(struct trade_run *run, struct trade_job *job, const char *o
     job->args.threads = run->t->args->threads;
     job->args.isa = run->t->args->isa;
     snprintf(text, sizeof text, "%s", options);
-    if (bench_args_parse(&job->args, split(text, words, WORDS), words, error))
+    if (bench_args_parse(&job->args, NULL, split(text, words, WORDS), words, error))
         return -1;
     return get_context(run, job, error);
 }

@@ -169,6 +169,9 @@ static int check_lens(const struct hf_lens_params *p, char *message)
     return HF_OK;
 }
 
+// What a picture leaves nothing of.
+enum { SHAPES = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE };
+
 // In range, and something that the engine can draw.
 static int check_aperture(const struct hf_aperture_params *p, const struct hf_engine_def *e, char *message)
 {
@@ -193,6 +196,8 @@ static int check_aperture(const struct hf_aperture_params *p, const struct hf_en
             return HF_ERR_ARG;
         if (rows[i].value != rows[i].neutral && !(e->aperture & rows[i].bit))
             return hf_bad(message, "%s is %g; the %s engine cannot draw that", name, rows[i].value, e->name);
+        if (rows[i].value != rows[i].neutral && p->picture && (rows[i].bit & SHAPES))
+            return hf_bad(message, "%s is %g with aperture.picture, which is the whole shape", name, rows[i].value);
     }
     if (!p->picture)
         return HF_OK;

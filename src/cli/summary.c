@@ -2,6 +2,7 @@
 #include "cli/summary.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -49,6 +50,13 @@ int cli_warnings_of(const struct cli_view *v)
            (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0);
 }
 
+// A picture of whole numbers that is taken for distances.
+static int is_unscaled_map(const struct cli_args *args)
+{
+    return args->depth_file && !cli_is_exr(args->depth_file) && args->depth_type == HF_DEPTH_VIEW &&
+           !args->normalized && isnan(args->depth_scale);
+}
+
 static void warn(const struct cli_view *v, const struct cli_args *args)
 {
     const struct hf_report *r = &v->report;
@@ -70,7 +78,10 @@ static void warn(const struct cli_view *v, const struct cli_args *args)
                         "channel, and --depth-type %s?",
                         v->label, depth, cli_depth_type_name(args));
     else if (!is_sharp(v))
-        tool_print_line("%s: nothing is in focus: all is blurred by %.3g pixels or more", v->label, v->least_radius);
+        tool_print_line("%s: nothing is in focus: all is blurred by %.3g pixels or more%s", v->label, v->least_radius,
+                        is_unscaled_map(args) ? "; the numbers of a map are 0 to 1, is it --depth-type normalized or "
+                                                "inverse?"
+                                              : "");
 }
 
 // Blur beyond the data window.

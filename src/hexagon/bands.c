@@ -37,12 +37,12 @@ size_t hf_hexagon_band_floats(const struct hf_setup *s, int width)
 static void place(struct hf_frame *f, struct band *b, int x, int y)
 {
     static const enum hf_hexagon_made made[2][3] = {{HF_HEXAGON_NEAR_U, HF_HEXAGON_NEAR_B, HF_HEXAGON_NEAR_W},
-                                                    {HF_HEXAGON_FAR_U, HF_HEXAGON_FAR_B}};
+                                                    {HF_HEXAGON_FAR_U, HF_HEXAGON_FAR_B, HF_HEXAGON_FAR_W}};
     const struct hf_hexagon *h = hf_hexagon(f->s);
     const int scale = scale_of(f->s);
     float *memory = b->memory + b->left - (x * scale & ~15) - (y - h->above) * scale * b->stride;
     b->planes = 0;
-    for (int i = 0; i < (f->near ? 3 : 2); i++) {
+    for (int i = 0; i < 3; i++) {
         struct hf_buf *buf = &f->buf[hf_hexagon_made(f, made[f->far][i]) - f->buf];
         buf->stride = b->stride;
         for (int c = 0; c < (i == 2 ? 4 : f->s->channels); c++)

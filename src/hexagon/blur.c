@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels of the hexagon engine in plain C; what they compute is said in hexagon.h.
+#include <math.h>
+
 #include "hexagon/kernels.h"
 
 // ---- Load ----
@@ -8,14 +10,14 @@ static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
     const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
-    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *far = hf_at(weight, 2, x0, y);
+    float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *over = hf_at(weight, 2, x0, y);
     hf_row(&f->buf[HF_HEXAGON_COLOUR], f->s->channels, x0, y, colour);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
     f->k->radius_row(f, x0, y, n, q, NULL);
     for (int x = 0; x < n; x++) {
         const float m = __builtin_fabsf(q[x]);
         a[x] = 1 / (m > 1 ? m : 1);
-        far[x] = q[x] > 0 ? a[x] : 0;
+        over[x] = q[x] > 0 ? a[x] / q[x] : sqrtf(a[x]);
         for (int c = 0; c < f->s->channels; c++)
             colour[c][x] *= a[x] * HEXAGON_SCALE;
     }
@@ -30,14 +32,16 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
     for (int t = 0; t < 4; t++) {
         const float m = radius[t] > 0 ? radius[t] : 0;
         w[t] = 2 * m < 1 ? 2 * m : 1;
-        sum = sum + w[t];
         q = q + w[t] * m;
     }
+    sum = (w[0] + w[1]) + (w[2] + w[3]);  // as colours are: alpha of 1 is what weights are
     q = sum > 0 ? 0.5f * (q / sum) : 0;
-    const float scale = 0.25f / (q > 1 ? q : 1);
+    const float spread = q > 1 ? q : 1, scale = 0.25f / spread;
     *hf_at(&f->buf[colour + 1], 0, x, y) = sum * scale;
     *hf_at(&f->buf[colour + 1], 1, x, y) = q;
-    *hf_at(&f->buf[colour + 1], 2, x, y) = 0.25f * sum;
+    *hf_at(&f->buf[colour + 1], 2, x, y) = colour == HF_HEXAGON_NEAR_COLOUR_2 ? (sum * scale) * sqrtf(spread)
+                                           : q > 0                            ? (sum * scale) / q
+                                                                              : 0;
     for (int t = 0; t < 4; t++)
         w[t] = w[t] * HEXAGON_SCALE;
     for (int c = 0; c < f->s->channels; c++)
@@ -75,7 +79,7 @@ void hf_hexagon_load_c(const struct hf_frame *f, struct hf_rect r)
 
 // ---- the passes ----
 
-// Sums along a line: of colour x weight, of the weights a, and of the line's own.
+// Sums along a line: of colour x weight, of the weights a, and of what their mean radius is made of.
 struct sums {
     float colour[4], a, w;
 };
@@ -110,21 +114,22 @@ static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_fi
         for (int c = 0; c < f->s->channels; c++)
             sum.colour[c] = sum.colour[c] + w * *hf_at(in->colour, c, u, v);
         sum.a = sum.a + w * *hf_at(in->weight, in->a, u, v);
-        sum.w = sum.w + (in->part < 0 ? w : w * *hf_at(in->weight, in->part, u, v));
+        if (in->mean >= 0)
+            sum.w = sum.w + w * *hf_at(in->weight, in->mean, u, v);
     }
     return sum;
 }
 
-// Near: coverage a, and as all that covers it spreads w / a far, each line pixel gets a / w of it.
+// Near: coverage a, and as all that covers it spreads a / w far, each line pixel gets w / a of it.
 static void store_near(const struct hf_frame *f, const struct sums *s, enum hf_hexagon_made colour, int weight, int x,
                        int y)
 {
     const int any = s->a > 0;
-    const float share = any ? s->a / s->w : 0;
+    const float root = any ? s->a / s->w : 0, share = root * root, mean = any ? s->w / s->a : 0;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(hf_hexagon_made(f, colour), c, x, y) = s->colour[c] * share;
     *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), weight, x, y) = s->a * share;
-    *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), weight + 1, x, y) = any ? s->w / s->a : 0;
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), weight + 1, x, y) = mean * mean;
 }
 
 static void near_1(const struct hf_frame *f, int x, int y)
@@ -157,43 +162,69 @@ static float own(float found, float p)
     return o > 0 ? o : 0;
 }
 
-// A blur of the far field at a far pixel: colours of the samples that count, in proportion.
-static void far_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y, float p,
-                     float out[4])
+// A blur of the far field at a far pixel: colours of the samples that count, in proportion, and all that is found, and
+// that over its radii.
+struct found {
+    float colour[4], a, w;
+};
+
+static struct found far_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y,
+                             float p)
 {
     const struct limit limit = limit_of(p);
     const struct sums s = sum_line(f, in, line, x, y, &limit);
-    const float o = own(s.a, p), mine = o / *hf_at(in->weight, in->a, x, y), i = 1 / (s.a + o);
+    const float o = own(s.a, p), mine = o / *hf_at(in->weight, in->a, x, y);
+    struct found all = {.a = s.a + o, .w = s.w + o / p};
+    const float i = 1 / all.a;
+    for (int c = 0; c < 3; c++)
+        all.colour[c] = (s.colour[c] + mine * *hf_at(in->colour, c, x, y)) * i;
+    // Divided by what they were multiplied with, sums of 1 are 1.
+    if (f->s->channels == 4)
+        all.colour[3] = (s.colour[3] + o * (*hf_at(in->colour, 3, x, y) / *hf_at(in->weight, in->a, x, y))) / all.a;
+    return all;
+}
+
+// Colours that were found, with a weight and the mean radius.
+static void store_far(const struct hf_frame *f, const struct found *all, enum hf_hexagon_made colour, int weight, int x,
+                      int y)
+{
+    const int any = all->a > 0;
+    const float q = any ? all->a / all->w : 0, a = any ? 1 / (q > 1 ? q : 1) : 0;
     for (int c = 0; c < f->s->channels; c++)
-        out[c] = (s.colour[c] + mine * *hf_at(in->colour, c, x, y)) * i;
+        *hf_at(hf_hexagon_made(f, colour), c, x, y) = all->colour[c] * a;
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight, x, y) = a;
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight + 1, x, y) = q;
 }
 
 static void far_1(const struct hf_frame *f, int x, int y)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
-    const float p = *hf_at(in.radius, in.q, x, y), a = *hf_at(in.weight, in.a, x, y);
-    float u[4] = {0}, v[4] = {0};
+    const float p = *hf_at(in.radius, in.q, x, y);
+    struct found u = {{0}, 0, 0}, v = u;
     if (p > 0) {
-        far_line(f, &in, 0, x, y, p, u);
-        far_line(f, &in, 1, x, y, p, v);
+        u = far_line(f, &in, 0, x, y, p);
+        v = far_line(f, &in, 1, x, y, p);
     }
-    for (int c = 0; c < f->s->channels; c++) {
-        *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_U), c, x, y) = u[c] * a;
-        *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_B), c, x, y) = (u[c] + v[c]) * a;
-    }
+    store_far(f, &u, HF_HEXAGON_FAR_U, 0, x, y);
+    for (int c = 0; c < f->s->channels; c++)
+        u.colour[c] = u.colour[c] + v.colour[c];
+    u.a = u.a + v.a;
+    u.w = u.w + v.w;
+    store_far(f, &u, HF_HEXAGON_FAR_B, 2, x, y);
 }
 
 static void far_2(const struct hf_frame *f, int x, int y)
 {
     const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(f, HF_FAR, 0), hf_hexagon_field_2(f, HF_FAR, 1)};
-    const float p = *hf_at(in[0].radius, in[0].q, x, y);
-    float v[4] = {0}, w[4] = {0};
+    const struct hf_hexagon_field pixel = hf_hexagon_field(f, HF_FAR);
+    const float p = *hf_at(pixel.radius, pixel.q, x, y);
+    struct found v = {{0}, 0, 0}, w = v;
     if (p > 0) {
-        far_line(f, &in[0], 1, x, y, p, v);
-        far_line(f, &in[1], 2, x, y, p, w);
+        v = far_line(f, &in[0], 1, x, y, p);
+        w = far_line(f, &in[1], 2, x, y, p);
     }
     for (int c = 0; c < f->s->channels; c++)
-        *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, x, y) = (v[c] + w[c]) * (1 / 3.0f);
+        *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, x, y) = (v.colour[c] + w.colour[c]) * (1 / 3.0f);
 }
 
 static void each_pixel(const struct hf_frame *f, struct hf_rect r, void (*fn)(const struct hf_frame *f, int x, int y))
@@ -267,14 +298,14 @@ static void composite_pixel(const struct hf_frame *f, int x, int y, float p, flo
     const int half = f->s->resolution == HF_RESOLUTION_HALF;
     float near[5], far[5];
     (half ? fields_half : fields_full)(f, x, y, near, far);
-    const float left = left_over(near[4], p), scale = 1 / (near[4] + left);
+    const float left = left_over(near[4], p), all = near[4] + left;
     const int has_far = f->far && p > 0 && far[4] > 0;
     for (int c = 0; c < f->s->channels && (has_far || near[4] != 0); c++) {
         float v = colour[c][i] * HEXAGON_SCALE;
         if (has_far)
             v = half ? hf_lerp(v, far[c] / far[4], hf_saturate(0.5f * p)) : far[c];
         if (near[4] != 0)
-            v = (near[c] + left * v) * scale;
+            v = (near[c] + left * v) / all;
         v = v < HEXAGON_MOST ? v : HEXAGON_MOST;
         v = v > -HEXAGON_MOST ? v : -HEXAGON_MOST;
         colour[c][i] = v * (1 / HEXAGON_SCALE);

@@ -72,7 +72,6 @@ HF_INLINE float hex_least_far(const struct hf_hexagon_field *in, struct hf_rect 
 // A line's steps that some sample in a block reaches, the first of them up to `full` by all samples in full.
 struct hex_run {
     const struct hf_hexagon_step *step, *full, *end;
-    float full_weight[HEX_ROWS];
 };
 
 // Are a step's taps reached in full from this radius on?
@@ -87,12 +86,11 @@ HF_INLINE int hex_is_full(const struct hf_hexagon_step *p, float least)
 HF_INLINE struct hex_run hex_run(const struct hf_hexagon_line *l, const int rows, struct hex_range r)
 {
     const struct hf_hexagon_steps *s = rows == 1 ? &l->one : rows == 2 ? &l->two : &l->four;
-    struct hex_run run = {s->step, s->step, s->step + s->count, {0}};
+    struct hex_run run = {s->step, s->step, s->step + s->count};
     while (run.end > run.step && !(r.most > run.end[-1].least))
         run.end--;
-    for (; run.full < run.end && hex_is_full(run.full, r.least); run.full++)
-        for (int i = 0; i < HEX_ROWS; i++)
-            run.full_weight[i] += run.full->b[i];
+    while (run.full < run.end && hex_is_full(run.full, r.least))
+        run.full++;
     return run;
 }
 
@@ -104,17 +102,15 @@ struct hex_limit {
     vf limit, slope;  // the slope is negative
 };
 
-// The sum of a line's own weights: not wanted, or with samples that are there in full, or in part.
-enum hex_weights { HEX_NONE, HEX_WHOLE, HEX_PART };
-
-// Sums along a line for a vector of pixels from (x, y) in each of some rows; limit NULL: none.
+// Sums along a line for a vector of pixels from (x, y) in each of some rows; first: pass 1, radii are asked for; limit
+// NULL: none.
 HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run *run, const int channels,
-                        const enum hex_weights weights, const int rows, int x, int y, const struct hex_limit *limit,
+                        const int first, const int rows, int x, int y, const struct hex_limit *limit,
                         struct hex_sums s[HEX_ROWS])
 {
     const ptrdiff_t stride = in->colour->stride, weight_stride = in->weight->stride;
     const float *colour[4], *a = hf_at(in->weight, in->a, x, y), *radius = hf_at(in->radius, in->q, x, y);
-    const float *part = weights == HEX_PART ? hf_at(in->weight, in->part, x, y) : NULL;
+    const float *mean = first ? hf_at(in->weight, in->mean, x, y) : NULL;
     for (int c = 0; c < channels; c++)
         colour[c] = hf_at(in->colour, c, x, y);
 #pragma GCC unroll 4
@@ -122,17 +118,17 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
         for (int c = 0; c < channels; c++)
             s[i].colour[c] = vf_zero();
         s[i].a = vf_zero();
-        s[i].w = vf_set1(weights == HEX_WHOLE && !limit ? run->full_weight[i] : 0);
+        s[i].w = vf_zero();
     }
     const struct hf_hexagon_step *p = run->step;
     for (; p < run->full && !limit; p++) {
         const ptrdiff_t at = p->dy * stride + p->dx, weight_at = p->dy * weight_stride + p->dx;
-        vf v[4], whole = vf_zero();
+        vf v[4], over = vf_zero();
         for (int c = 0; c < channels; c++)
             v[c] = vf_once(vf_load(colour[c] + at));
         const vf weight = vf_once(vf_load(a + weight_at));
-        if (weights == HEX_PART)
-            whole = vf_once(vf_load(part + weight_at));
+        if (first)
+            over = vf_once(vf_load(mean + weight_at));
 #pragma GCC unroll 4
         for (int i = 0; i < rows; i++)
             if (p->rows >> i & 1) {
@@ -140,22 +136,22 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
                 for (int c = 0; c < channels; c++)
                     s[i].colour[c] = vf_fma(b, v[c], s[i].colour[c]);
                 s[i].a = vf_fma(b, weight, s[i].a);
-                if (weights == HEX_PART)
-                    s[i].w = vf_fma(b, whole, s[i].w);
+                if (first)
+                    s[i].w = vf_fma(b, over, s[i].w);
             }
     }
     const vf sign = vf_set1(in->sign);
     for (; p < run->end; p++) {
         const ptrdiff_t at = p->dy * stride + p->dx, weight_at = p->dy * weight_stride + p->dx;
-        vf v[4], whole = vf_zero();
+        vf v[4], over = vf_zero();
         const vf q = vf_once(vf_mul(sign, vf_load(radius + weight_at)));
         if (!vm_any(vf_gt(q, vf_set1(p->least))))
             continue;
         for (int c = 0; c < channels; c++)
             v[c] = vf_once(vf_load(colour[c] + at));
         const vf weight = vf_once(vf_load(a + weight_at));
-        if (weights == HEX_PART)
-            whole = vf_once(vf_load(part + weight_at));
+        if (first)
+            over = vf_once(vf_load(mean + weight_at));
 #pragma GCC unroll 4
         for (int i = 0; i < rows; i++)
             if (p->rows >> i & 1) {
@@ -166,10 +162,8 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
                 for (int c = 0; c < channels; c++)
                     s[i].colour[c] = vf_fma(w, v[c], s[i].colour[c]);
                 s[i].a = vf_fma(w, weight, s[i].a);
-                if (weights == HEX_WHOLE)
-                    s[i].w = vf_add(s[i].w, w);
-                if (weights == HEX_PART)
-                    s[i].w = vf_fma(w, whole, s[i].w);
+                if (first)
+                    s[i].w = vf_fma(w, over, s[i].w);
             }
     }
 }
@@ -199,11 +193,12 @@ HF_INLINE void hex_store_near(const struct hf_frame *f, const struct hex_sums *s
 {
     const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
     const vm any = vf_gt(s->a, vf_zero());
-    const vf share = vf_keep(any, vf_div(s->a, s->w));
+    const vf root = vf_keep(any, vf_div(s->a, s->w)), share = vf_mul(root, root);
+    const vf mean = vf_keep(any, vf_div(s->w, s->a));
     for (int c = 0; c < channels; c++)
         vf_store(hf_at(out, c, x, y), vf_mul(s->colour[c], share));
     vf_store(hf_at(weights, weight, x, y), vf_mul(s->a, share));
-    vf_store(hf_at(weights, weight + 1, x, y), vf_keep(any, vf_div(s->w, s->a)));
+    vf_store(hf_at(weights, weight + 1, x, y), vf_mul(mean, mean));
 }
 
 HF_INLINE void hex_add(struct hex_sums *u, const struct hex_sums *v, const int channels)
@@ -223,8 +218,7 @@ HF_INLINE void hex_clear(const struct hf_buf *out, struct hf_rect b, const int c
                 vf_store(hf_at(out, c, x, y), vf_zero());
 }
 
-HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int channels,
-                          const enum hex_weights weights, const int rows)
+HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
     const struct hf_hexagon *h = hf_hexagon(f->s);
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_NEAR);
@@ -241,10 +235,10 @@ HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int 
     {
         struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
         hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
-        hex_line(&in, &up, channels, weights, rows, x, y, NULL, u);
+        hex_line(&in, &up, channels, 1, rows, x, y, NULL, u);
         for (int i = 0; i < rows; i++)
             hex_store_near(f, &u[i], channels, HF_HEXAGON_NEAR_U, 0, x, y + i);
-        hex_line(&in, &left, channels, weights, rows, x, y, NULL, v);
+        hex_line(&in, &left, channels, 1, rows, x, y, NULL, v);
         for (int i = 0; i < rows; i++) {
             hex_add(&u[i], &v[i], channels);
             hex_store_near(f, &u[i], channels, HF_HEXAGON_NEAR_B, 2, x, y + i);
@@ -268,8 +262,8 @@ HF_INLINE void hex_near_2(const struct hf_frame *f, struct hf_rect b, const int 
     HEX_EACH(b, rows, x, y)
     {
         struct hex_sums v[HEX_ROWS], w[HEX_ROWS];
-        hex_line(&in[0], &left, channels, HEX_NONE, rows, x, y, NULL, v);
-        hex_line(&in[1], &right, channels, HEX_NONE, rows, x, y, NULL, w);
+        hex_line(&in[0], &left, channels, 0, rows, x, y, NULL, v);
+        hex_line(&in[1], &right, channels, 0, rows, x, y, NULL, w);
         for (int i = 0; i < rows; i++) {
             for (int c = 0; c < channels; c++)
                 vf_store(hf_at(out, c, x, y + i), vf_mul(vf_add(v[i].colour[c], w[i].colour[c]), third));
@@ -310,70 +304,92 @@ HF_INLINE struct hex_limit hex_limit(vf p)
     return (struct hex_limit){vf_add(vf_mul(vf_mul(vf_set1(2), p), slope), vf_set1(1)), vf_sub(vf_zero(), slope)};
 }
 
-// The sums of a line at pixels of radius p to colours, with the pixel's own where they are too little.
-HF_INLINE void hex_far_colours(const struct hf_hexagon_field *in, const struct hex_sums *s, const int channels, int x,
-                               int y, vf p, vf out[4])
+// The sums of a line at pixels of radius p as colours, all that was found, and that over its radii; with the pixel's
+// own where it is too little.
+HF_INLINE struct hex_sums hex_found(const struct hf_hexagon_field *in, const struct hex_sums *s, const int channels,
+                                    int x, int y, vf p)
 {
-    const vf o = hex_own(s->a, p), scale = vf_div(vf_set1(1), vf_add(s->a, o));
+    const vf o = hex_own(s->a, p), all = vf_add(s->a, o), scale = vf_div(vf_set1(1), all);
     const vf mine = vf_div(o, vf_load(hf_at(in->weight, in->a, x, y)));
-    for (int c = 0; c < channels; c++) {
+    const vm is = vf_gt(p, vf_zero());
+    struct hex_sums found = {.a = vf_keep(is, all), .w = vf_keep(is, vf_add(s->w, vf_div(o, p)))};
+    for (int c = 0; c < 3; c++) {
         const vf own = vf_load(hf_at(in->colour, c, x, y));
-        out[c] = vf_keep(vf_gt(p, vf_zero()), vf_mul(vf_fma(mine, own, s->colour[c]), scale));
+        found.colour[c] = vf_keep(is, vf_mul(vf_fma(mine, own, s->colour[c]), scale));
     }
+    if (channels == 4) {
+        const vf own = vf_div(vf_load(hf_at(in->colour, 3, x, y)), vf_load(hf_at(in->weight, in->a, x, y)));
+        found.colour[3] = vf_keep(is, vf_div(vf_fma(o, own, s->colour[3]), all));
+    }
+    return found;
 }
 
-HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const int rows, int x, int y,
-                            const vf p[HEX_ROWS], vf out[HEX_ROWS][4])
+HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const int first, const int rows, int x, int y,
+                            const vf p[HEX_ROWS], struct hex_sums out[HEX_ROWS])
 {
     struct hex_sums s[HEX_ROWS];
     if (l->limited) {
         struct hex_limit limit[HEX_ROWS];
         for (int i = 0; i < rows; i++)
             limit[i] = hex_limit(p[i]);
-        hex_line(&l->in, &l->run, channels, HEX_NONE, rows, x, y, limit, s);
+        hex_line(&l->in, &l->run, channels, first, rows, x, y, limit, s);
     } else {
-        hex_line(&l->in, &l->run, channels, HEX_NONE, rows, x, y, NULL, s);
+        hex_line(&l->in, &l->run, channels, first, rows, x, y, NULL, s);
     }
     for (int i = 0; i < rows; i++)
-        hex_far_colours(&l->in, &s[i], channels, x, y + i, p[i], out[i]);
+        out[i] = hex_found(&l->in, &s[i], channels, x, y + i, p[i]);
+}
+
+HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels,
+                             enum hf_hexagon_made colour, int weight, int x, int y)
+{
+    const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_FAR_W);
+    const vf one = vf_set1(1);
+    const vm any = vf_gt(s->a, vf_zero());
+    const vf q = vf_keep(any, vf_div(s->a, s->w)), a = vf_keep(any, vf_div(one, vf_max(q, one)));
+    for (int c = 0; c < channels; c++)
+        vf_store(hf_at(out, c, x, y), vf_mul(s->colour[c], a));
+    vf_store(hf_at(weights, weight, x, y), a);
+    vf_store(hf_at(weights, weight + 1, x, y), q);
 }
 
 HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
-    const struct hf_buf *up_out = hf_hexagon_made(f, HF_HEXAGON_FAR_U), *both = hf_hexagon_made(f, HF_HEXAGON_FAR_B);
     const struct hf_hexagon *h = hf_hexagon(f->s);
     const int below = hf_max(h->line[0].y1, h->line[1].y1);
     const float least = hex_least_far(&in, b);
     if (least == FLT_MAX) {
-        hex_clear(up_out, b, channels);
-        hex_clear(both, b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_U), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_B), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_W), b, 4);
         return;
     }
     const struct hex_far up = hex_far(f, &in, 0, least, b, rows), left = hex_far(f, &in, 1, least, b, rows);
     HEX_EACH(b, rows, x, y)
     {
-        vf p[HEX_ROWS], u[HEX_ROWS][4], v[HEX_ROWS][4];
+        vf p[HEX_ROWS];
+        struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
         hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
         for (int i = 0; i < rows; i++)
             p[i] = vf_load(hf_at(in.radius, in.q, x, y + i));
-        hex_far_line(&up, channels, rows, x, y, p, u);
-        hex_far_line(&left, channels, rows, x, y, p, v);
+        hex_far_line(&up, channels, 1, rows, x, y, p, u);
+        for (int i = 0; i < rows; i++)
+            hex_store_far(f, &u[i], channels, HF_HEXAGON_FAR_U, 0, x, y + i);
+        hex_far_line(&left, channels, 1, rows, x, y, p, v);
         for (int i = 0; i < rows; i++) {
-            const vf a = vf_load(hf_at(in.weight, in.a, x, y + i));
-            for (int c = 0; c < channels; c++) {
-                vf_store(hf_at(up_out, c, x, y + i), vf_mul(u[i][c], a));
-                vf_store(hf_at(both, c, x, y + i), vf_mul(vf_add(u[i][c], v[i][c]), a));
-            }
+            hex_add(&u[i], &v[i], channels);
+            hex_store_far(f, &u[i], channels, HF_HEXAGON_FAR_B, 2, x, y + i);
         }
     }
 }
 
 HF_INLINE void hex_far_2(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
+    const struct hf_hexagon_field pixel = hf_hexagon_field(f, HF_FAR);
     const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(f, HF_FAR, 0), hf_hexagon_field_2(f, HF_FAR, 1)};
     const struct hf_buf *out = hf_hexagon_made(f, HF_HEXAGON_FAR);
-    const float least = hex_least_far(&in[0], b);
+    const float least = hex_least_far(&pixel, b);
     if (least == FLT_MAX) {
         hex_clear(out, b, channels);
         return;
@@ -381,14 +397,15 @@ HF_INLINE void hex_far_2(const struct hf_frame *f, struct hf_rect b, const int c
     const struct hex_far left = hex_far(f, &in[0], 1, least, b, rows), right = hex_far(f, &in[1], 2, least, b, rows);
     HEX_EACH(b, rows, x, y)
     {
-        vf p[HEX_ROWS], v[HEX_ROWS][4], w[HEX_ROWS][4];
+        vf p[HEX_ROWS];
+        struct hex_sums v[HEX_ROWS], w[HEX_ROWS];
         for (int i = 0; i < rows; i++)
-            p[i] = vf_load(hf_at(in[0].radius, in[0].q, x, y + i));
-        hex_far_line(&left, channels, rows, x, y, p, v);
-        hex_far_line(&right, channels, rows, x, y, p, w);
+            p[i] = vf_load(hf_at(pixel.radius, pixel.q, x, y + i));
+        hex_far_line(&left, channels, 0, rows, x, y, p, v);
+        hex_far_line(&right, channels, 0, rows, x, y, p, w);
         for (int i = 0; i < rows; i++)
             for (int c = 0; c < channels; c++)
-                vf_store(hf_at(out, c, x, y + i), vf_mul(vf_add(v[i][c], w[i][c]), vf_set1(1 / 3.0f)));
+                vf_store(hf_at(out, c, x, y + i), vf_mul(vf_add(v[i].colour[c], w[i].colour[c]), vf_set1(1 / 3.0f)));
     }
 }
 
@@ -399,10 +416,8 @@ HF_INLINE void hex_block(const struct hf_frame *f, struct hf_rect b, const int s
 {
     if (f->near && second)
         hex_near_2(f, b, channels, rows);
-    else if (f->near && f->s->resolution == HF_RESOLUTION_HALF)
-        hex_near_1(f, b, channels, HEX_PART, rows);
     else if (f->near)
-        hex_near_1(f, b, channels, HEX_WHOLE, rows);
+        hex_near_1(f, b, channels, rows);
     if (f->far && second)
         hex_far_2(f, b, channels, rows);
     else if (f->far)

@@ -20,7 +20,7 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
     const struct hf_setup *s = f->s;
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, s->width) - x0;
     const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
-    float *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *far = hf_at(weight, 2, x0, y), *out[4];
+    float *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *over = hf_at(weight, 2, x0, y), *out[4];
     float *const colour[4] = {hf_line(f, 8), hf_line(f, 9), hf_line(f, 10), hf_line(f, 11)}, *radius = hf_line(f, 12);
     hf_row(&f->buf[HF_HEXAGON_COLOUR], s->channels, x0, y, out);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
@@ -29,10 +29,10 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
     const int inner = y > 0 && y < s->height - 1 && hex_streams(f, a);
     for (int x = 0; x < n; x += VF_N) {
         const int stream = inner && x0 + x > 0 && x0 + x + VF_N < s->width;
-        const vf own = vf_load(radius + x), w = vf_div(vf_set1(1), vf_max(vf_abs(own), vf_set1(1)));
+        const vf own = vf_load(radius + x), spread = vf_max(vf_abs(own), vf_set1(1)), w = vf_div(vf_set1(1), spread);
         vf_put(a + x, w, stream);
         vf_put(q + x, own, stream);
-        vf_put(far + x, vf_keep(vf_gt(own, vf_zero()), w), stream);
+        vf_put(over + x, vf_select(vf_gt(own, vf_zero()), vf_div(w, own), vf_sqrt(w)), stream);
         const vf darker = vf_mul(w, vf_set1(HEXAGON_SCALE));
         for (int c = 0; c < s->channels; c++)
             vf_put(out[c] + x, vf_mul(vf_load(colour[c] + x), darker), stream);
@@ -42,18 +42,20 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
 HF_INLINE void hex_load_quads(const struct hf_frame *f, int colour, int x, int y, const vf radius[4],
                               float *const lane[2][2][4], int i)
 {
-    vf w[4], q = vf_zero(), sum = vf_zero();
+    vf w[4], q = vf_zero();
     for (int t = 0; t < 4; t++) {
         const vf m = vf_max(radius[t], vf_zero());
         w[t] = vf_min(vf_mul(vf_set1(2), m), vf_set1(1));
-        sum = vf_add(sum, w[t]);
         q = vf_add(q, vf_mul(w[t], m));
     }
+    const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
     q = vf_keep(vf_gt(sum, vf_zero()), vf_mul(vf_set1(0.5f), vf_div(q, sum)));
-    const vf scale = vf_div(vf_set1(0.25f), vf_max(q, vf_set1(1)));
-    vf_store(hf_at(&f->buf[colour + 1], 0, x, y), vf_mul(sum, scale));
+    const vf spread = vf_max(q, vf_set1(1)), scale = vf_div(vf_set1(0.25f), spread), weight = vf_mul(sum, scale);
+    const vf over = colour == HF_HEXAGON_NEAR_COLOUR_2 ? vf_mul(weight, vf_sqrt(spread))
+                                                       : vf_keep(vf_gt(q, vf_zero()), vf_div(weight, q));
+    vf_store(hf_at(&f->buf[colour + 1], 0, x, y), weight);
     vf_store(hf_at(&f->buf[colour + 1], 1, x, y), q);
-    vf_store(hf_at(&f->buf[colour + 1], 2, x, y), vf_mul(vf_set1(0.25f), sum));
+    vf_store(hf_at(&f->buf[colour + 1], 2, x, y), over);
     for (int t = 0; t < 4; t++)
         w[t] = vf_mul(w[t], vf_set1(HEXAGON_SCALE));
     for (int c = 0; c < f->s->channels; c++) {
@@ -111,9 +113,9 @@ static void hexagon_load_simd(const struct hf_frame *f, struct hf_rect r)
 // ---- Composite ----
 
 // The near field over a background.
-HF_INLINE vf hex_over(vf near, vf coverage, vf left, vf scale, vf b)
+HF_INLINE vf hex_over(vf near, vf coverage, vf left, vf all, vf b)
 {
-    return vf_select(vf_eq(coverage, vf_zero()), b, vf_mul(vf_fma(left, b, near), scale));
+    return vf_select(vf_eq(coverage, vf_zero()), b, vf_div(vf_fma(left, b, near), all));
 }
 
 // Where a field shows, the blend in full brightness.
@@ -140,14 +142,14 @@ HF_INLINE void hex_composite_full(const struct hf_frame *f, int x0, int y, int n
     hf_row(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 1, x0, y, coverage);
     for (int x = 0; x < n; x += VF_N) {
         const vf p = vf_load(radius + x), a = has_near ? vf_load(coverage[0] + x) : vf_zero();
-        const vf left = hex_left_over(a, p), scale = vf_div(vf_set1(1), vf_add(a, left));
+        const vf left = hex_left_over(a, p), all = vf_add(a, left);
         const vm is_far = vf_gt(p, vf_zero()), is_near = vf_ne(a, vf_zero());
         for (int c = 0; c < f->s->channels; c++) {
             vf b = vf_mul(vf_load(colour[c] + x), vf_set1(HEXAGON_SCALE));
             if (has_far)
                 b = vf_select(is_far, vf_load(far[c] + x), b);
             if (has_near)
-                b = hex_over(vf_load(near[c] + x), a, left, scale, b);
+                b = hex_over(vf_load(near[c] + x), a, left, all, b);
             hex_store_blend(!has_far ? is_near : has_near ? vm_or(is_near, is_far) : is_far, b, colour[c] + x);
         }
     }
@@ -201,7 +203,7 @@ HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const
             far_w[i] = vf_mul(w[i], coc_saturate(q));
             far_sum = vf_add(far_sum, far_w[i]);
         }
-        const vf left = hex_left_over(a, p), scale = vf_div(vf_set1(1), vf_add(a, left));
+        const vf left = hex_left_over(a, p), all = vf_add(a, left);
         const vf blend = coc_saturate(vf_mul(vf_set1(0.5f), p));
         const vm is_near = vf_ne(a, vf_zero()), is_far = vm_and(vf_gt(p, vf_zero()), vf_gt(far_sum, vf_zero()));
         for (int c = 0; c < f->s->channels; c++) {
@@ -210,7 +212,7 @@ HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const
                 b = vf_select(is_far, vf_lerp(b, vf_div(hex_bilinear(far, c, x0 + x, corner, far_w), far_sum), blend),
                               b);
             if (f->near)
-                b = hex_over(hex_bilinear(near, c, x0 + x, corner, w), a, left, scale, b);
+                b = hex_over(hex_bilinear(near, c, x0 + x, corner, w), a, left, all, b);
             hex_store_blend(f->far ? vm_or(is_near, is_far) : is_near, b, colour[c] + x);
         }
     }

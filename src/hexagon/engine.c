@@ -52,6 +52,7 @@ static int channels(const struct hf_setup *s, int b)
         return b % 2 ? 3 : s->channels;
     switch ((b - HF_HEXAGON_MADE) % HF_HEXAGON_MADE_COUNT) {
     case HF_HEXAGON_NEAR_W:
+    case HF_HEXAGON_FAR_W:
         return 4;
     case HF_HEXAGON_COVERAGE:
         return 1;

@@ -12,7 +12,10 @@
 // they reach; far ones only into far pixels, and only if q <= 2p, p being the radius there, with a soft edge of one
 // pixel (of p where p is smaller). The near field is therefore kept premultiplied by its coverage, with the mean
 // radius of what covers a pixel, so that pass 2 carries it as far as pass 1 did over pixels that are sharp
-// themselves; the far field is divided by what was found, and stays behind the edges of sharper things.
+// themselves; the far field is divided by what was found, and stays behind the edges of sharper things. It too keeps the
+// mean radius of what was found: light that pass 1 has spread over something else is spread as far by pass 2.
+// The mean radius is the near field's by its square root and the far field's by 1 / radius, each sample by its share of
+// what is found: what covers little changes it little, however large its radius.
 //
 // What is left over is the pixel's own: what near coverage leaves of a sharp or far pixel shows that pixel, and a far
 // pixel that finds less than a quarter of its samples makes up a quarter with its own colour. All weights are
@@ -31,9 +34,9 @@ enum hf_hexagon_pass { HF_HEXAGON_COC, HF_HEXAGON_LOAD, HF_HEXAGON_BLUR, HF_HEXA
 // both, and each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
 enum hf_hexagon_buf {
     HF_HEXAGON_COLOUR,         // full resolution: colour x a
-    HF_HEXAGON_WEIGHT,         // a, the signed radius, and a of far pixels alone
+    HF_HEXAGON_WEIGHT,         // a, the signed radius, and what its mean is made of: near a sqrt(1 / a), far a / q
     HF_HEXAGON_NEAR_COLOUR_2,  // half resolution: radii are not negative, and in half-resolution pixels
-    HF_HEXAGON_NEAR_WEIGHT_2,  // a, radius, and how much of the quad is near
+    HF_HEXAGON_NEAR_WEIGHT_2,  // a times how much of the quad is near, radius, and the same for its mean
     HF_HEXAGON_FAR_COLOUR_2,
     HF_HEXAGON_FAR_WEIGHT_2,
     HF_HEXAGON_MADE,  // what the two passes make: full resolution, then the same again at half
@@ -45,7 +48,8 @@ enum hf_hexagon_made {
     HF_HEXAGON_NEAR_W,  // coverage x weight and mean radius, of U and of B
     HF_HEXAGON_FAR_U,   // colour x weight
     HF_HEXAGON_FAR_B,
-    HF_HEXAGON_NEAR,  // coverage x colour
+    HF_HEXAGON_FAR_W,  // weight and mean radius, of U and of B
+    HF_HEXAGON_NEAR,   // coverage x colour
     HF_HEXAGON_COVERAGE,
     HF_HEXAGON_FAR,
     HF_HEXAGON_MADE_COUNT
@@ -112,7 +116,7 @@ struct hf_hexagon_field {
     const struct hf_buf *radius;
     int q;  // channel of radius
     float sign;
-    int part;   // channel of weight, -1: all are there in full
+    int mean;   // channel of weight: what mean radii are made of, -1: not wanted
     int alone;  // colour and weight are 0 where the radius is not above 0
 };
 
@@ -129,29 +133,24 @@ static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f,
                        : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2
                                           : HF_HEXAGON_FAR_COLOUR_2;
     const struct hf_buf *weight = &f->buf[colour + 1];
-    return (struct hf_hexagon_field){&f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f,
-                                     half ? 2 : -1,   half};
+    return (struct hf_hexagon_field){
+        &f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f, 2, half};
 }
 
 // The samples that pass 2 reads: what pass 1 made along line v (0) or w (1).
 static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *f, unsigned field, int second)
 {
-    if (field == HF_NEAR) {
-        const struct hf_buf *weight = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
-        return (struct hf_hexagon_field){hf_hexagon_made(f, second ? HF_HEXAGON_NEAR_B : HF_HEXAGON_NEAR_U),
-                                         weight,
-                                         2 * second,
-                                         weight,
-                                         2 * second + 1,
-                                         1,
-                                         -1,
-                                         1};
-    }
-    struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
-    in.colour = hf_hexagon_made(f, second ? HF_HEXAGON_FAR_B : HF_HEXAGON_FAR_U);
-    in.a = f->s->resolution == HF_RESOLUTION_HALF ? 0 : 2;
-    in.alone = 1;
-    return in;
+    const int near = field == HF_NEAR;
+    const struct hf_buf *weight = hf_hexagon_made(f, near ? HF_HEXAGON_NEAR_W : HF_HEXAGON_FAR_W);
+    const int colour = near ? HF_HEXAGON_NEAR_U : HF_HEXAGON_FAR_U;
+    return (struct hf_hexagon_field){hf_hexagon_made(f, (enum hf_hexagon_made)(colour + second)),
+                                     weight,
+                                     2 * second,
+                                     weight,
+                                     2 * second + 1,
+                                     1,
+                                     -1,
+                                     1};
 }
 
 // r in pixels of the working resolution.

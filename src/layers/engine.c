@@ -4,8 +4,8 @@
 //
 // A pixel of the result costs, apart from un-mixing and hidden samples, which are the same for all radii: twice the rows
 // of the discs of the slices between which its samples lie, a sixteenth of them from a quarter of the resolution on.
-// Polygons and rings cost two to three times that, a cat's eye four times (shape_draw.c), a picture the square of its
-// radius; channels of their own sizes three times whatever it is.
+// Of a whole frame (lights.exr, CPU time of one thread, AVX-512) a polygon costs 1.1 times what a disc does, a ring 1.3, a
+// picture of radius 22 1.4, channels of their own sizes 1.5 and a cat's eye 1.8 times.
 #include <math.h>
 #include <string.h>
 

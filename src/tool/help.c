@@ -28,17 +28,18 @@ static void print_wrapped(const char *text, int column, int at)
     putchar('\n');
 }
 
-// The help of an option, or its first sentence, behind the engines that it is for.
+// The help of an option, or its first sentence, behind the engines or commands that it is for.
 static const char *words_of(const struct tool_option *o, int all, char text[1024])
 {
     const char *end = all ? NULL : strstr(o->help, ". ");
     const int length = end ? (int)(end - o->help) + 1 : (int)strlen(o->help);
     char engines[256];
-    if (!o->engines) {
+    const char *only = o->engines ? o->engines : o->commands;
+    if (!only) {
         snprintf(text, 1024, "%.*s", length, o->help);
         return text;
     }
-    const int n = snprintf(text, 1024, "%s: %.*s", tool_and(o->engines, engines), length, o->help);
+    const int n = snprintf(text, 1024, "%s: %.*s", tool_and(only, engines), length, o->help);
     char *first = text + n - length;
     if (length > 1 && islower((unsigned char)first[1]))
         *first = (char)tolower((unsigned char)*first);

@@ -2,6 +2,7 @@
 #include "tool/json.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "hyperfocal/hyperfocal.h"
@@ -122,10 +123,14 @@ void tool_json_text(struct tool_json *j, const char *name, const char *text)
 void tool_json_number(struct tool_json *j, const char *name, double number)
 {
     begin_member(j, name);
-    if (isfinite(number))
-        fprintf(j->out, "%.9g", number);
-    else
-        fputs("null", j->out);
+    // What was a float has no more digits than it takes to read it back: 0.8, not 0.800000012.
+    int digits = (double)(float)number == number ? 6 : 9;
+    char text[40] = "null";
+    do {
+        if (isfinite(number))
+            snprintf(text, sizeof(text), "%.*g", digits, number);
+    } while (isfinite(number) && digits++ < 9 && (float)strtod(text, NULL) != (float)number);
+    fputs(text, j->out);
 }
 
 void tool_json_ms(struct tool_json *j, const char *name, double ms)

@@ -6,6 +6,17 @@
 
 #include "tool/nearest.h"
 
+static int has_word(const char *list, const char *word)
+{
+    const size_t length = strlen(word);
+    for (size_t n; *list; list += n + (list[n] == '|')) {
+        n = strcspn(list, "|");
+        if (n == length && !memcmp(list, word, n))
+            return 1;
+    }
+    return 0;
+}
+
 // Option number i, counted over the sections; NULL behind the last.
 static const struct tool_option *option_at(const struct tool_program *program, int i)
 {
@@ -40,17 +51,6 @@ void *tool_field(const struct tool_parser *p, const struct tool_option *option)
                 return (char *)p->args + section->base + option->offset;
     }
     return NULL;
-}
-
-static int has_word(const char *list, const char *word)
-{
-    const size_t length = strlen(word);
-    for (size_t n; *list; list += n + (list[n] == '|')) {
-        n = strcspn(list, "|");
-        if (n == length && !memcmp(list, word, n))
-            return 1;
-    }
-    return 0;
 }
 
 const struct tool_option *tool_misfit(const struct tool_parser *p, enum hf_engine engine)
@@ -113,6 +113,10 @@ static int unknown_option(const struct tool_parser *p, const char *word)
 static int set_value(struct tool_parser *p, int i, const char *value, int apart)
 {
     const struct tool_option *o = option_at(p->program, i);
+    char commands[256];
+    if (o->commands && p->command && !has_word(o->commands, p->command))
+        return tool_fail(p->error, -1, "--%s is of use only with %s, not %s", o->name, tool_and(o->commands, commands),
+                         p->command);
     p->metric = 0;
     if (o->parse(p, o, value))
         return -1;

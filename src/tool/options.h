@@ -28,13 +28,14 @@ struct tool_option {
                               // of words that are accepted, "a|b"
     const char *help;
     tool_parse *parse;
-    size_t offset;        // of what parse sets, in the section's struct
-    float min, max;       // of a number, inclusive
-    int above_min;        // ... but min itself is excluded
-    enum tool_unit unit;  // that may be written behind a number
-    int inf;              // inf is accepted
-    enum hf_names names;  // of a choice that the library has words for
-    const char *engines;  // that it is of use with, "a|b"; NULL: any
+    size_t offset;         // of what parse sets, in the section's struct
+    float min, max;        // of a number, inclusive
+    int above_min;         // ... but min itself is excluded
+    enum tool_unit unit;   // that may be written behind a number
+    int inf;               // inf is accepted
+    enum hf_names names;   // of a choice that the library has words for
+    const char *engines;   // that it is of use with, "a|b"; NULL: any
+    const char *commands;  // likewise, of a program that has some
 };
 
 // Options whose values lie in one struct, which lies at base in the arguments.
@@ -61,7 +62,8 @@ enum { TOOL_MOST_OPTIONS = 128 };
 
 struct tool_parser {
     const struct tool_program *program;
-    void *args;  // in which the sections lie
+    const char *command;  // of the program, if it has some; NULL: not known yet
+    void *args;           // in which the sections lie
     struct tool_error *error;
     // What to do with a word that is no option, and after an option was set; NULL: refuse, nothing. apart: the value
     // was a word of its own.

@@ -120,7 +120,7 @@ int tool_parse_count(struct tool_parser *p, const struct tool_option *option, co
     char *end;
     int count;
     if (tool_read_int(value, &count, &end) || *end || count < option->min || count > option->max)
-        return tool_fail(p->error, -1, "--%s: '%s' must be a whole number from %g to %g", option->name, value,
+        return tool_fail(p->error, -1, "--%s: '%s' must be a whole number from %.0f to %.0f", option->name, value,
                          option->min, option->max);
     *(int *)tool_field(p, option) = count;
     return 0;

@@ -272,6 +272,17 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.gather.rings = 0);
     SPOIL(params.gather.rings = 65);
     SPOIL(params.run.budget_ms = NAN);
+    // A picture is the whole shape.
+    const struct hf_image aperture = good.src;
+    good.params.engine = HF_ENGINE_LAYERS;
+    good.params.aperture.picture = &aperture;
+    ALLOW(params.aperture.squeeze = 2);
+    SPOIL(params.aperture.blades = 5);
+    SPOIL(params.aperture.ring = 0.5f);
+    SPOIL(params.aperture.cat_eye = 0.5f);
+    good.params.aperture.picture = NULL;
+    ALLOW(params.aperture.cat_eye = 0.5f);
+    good.params.engine = HF_ENGINE_GATHER;
     good.params.model = HF_MODEL_LENS;
     ALLOW(params.lens.f_number = INFINITY);
     for (int i = 0; i < 6; i++) {

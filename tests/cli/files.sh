@@ -14,7 +14,6 @@ bad 3 "layers.exr|Forground|did you mean Foreground.Combined?" layers.exr -o o.e
 bad 3 "layers.exr|did you mean ViewLayer.Depth.Z?" layers.exr -o o.exr --focus 3 --depth-channel ViewLayer.Dept.Z
 bad 3 "layers.exr|'Dept'|did you mean" layers.exr -o o.exr --focus 3 --depth-channel Dept
 bad 3 "flat.exr|--depth-file" flat.exr -o o.exr --focus 3
-bad 1 "o.png|--layer|ViewLayer.Combined, Foreground.Combined" layers.exr -o o.png --focus 3 --layer all
 bad 1 "stereo.exr|'lefft'|did you mean left?" stereo.exr -o o.exr --focus 3 --views lefft
 run layers.exr -o one.exr --focus 3 --max-radius 6 --layer Foreground --verbose
 [ "$status" -eq 0 ] && contains "$dir/err" "Foreground.Combined with depth Foreground.Depth.Z"
@@ -98,6 +97,8 @@ if contains "$dir/err" "built without OpenImageIO"; then
 else
     [ "$status" -eq 0 ] && [ ! -s "$dir/err" ] && [ -s o.png ] && ! cmp -s o.png photo.png
     result "a photograph in sRGB with an 8-bit map" $?
+    rm -f o.png
+    bad 1 "o.png|--layer|ViewLayer.Combined, Foreground.Combined" layers.exr -o o.png --focus 3 --layer all
     # Whole distances at 8 and at 16 bits, black near and white near.
     for map in 'map8.png normalized' 'map16.png normalized' 'white.png normalized-inverted'; do
         # shellcheck disable=SC2086
@@ -108,6 +109,9 @@ else
             result "$1, $2 at $x" $?
         done
     done
+    run photo.png -o photo-out.png --depth-file map8.png --focus 5 --fstop 0.1 --focal-length 50
+    [ "$status" -eq 0 ] && contains "$dir/err" "nothing is in focus" && contains "$dir/err" "--depth-type normalized"
+    result "a map taken for distances is a warning" $?
     # The README's one.
     run "$source_root/images/lights-before.png" --depth-file "$source_root/images/lights-depth.png" --depth-type inverse \
         --near 1.5 --far 60 --focus 5 --fstop 0.37 --focal-length 50 -o photo-out.png --verbose

@@ -3,6 +3,7 @@
 # What is installed works wherever it is put: programs find the library, the helper and the scenes from where they are.
 # Usage: install.sh BUILD MESON SOURCE_ROOT. Skipped where not all is built.
 build=$1 meson=$2 source_root=$3
+case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
 dir=$(mktemp -d) || exit 1
 trap 'rm -rf "$dir"' EXIT
 trap 'exit 1' HUP INT TERM

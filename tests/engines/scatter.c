@@ -123,6 +123,25 @@ static void highlights(struct hf_context *c, const char *isa)
 
 // ---- options
 
+// A triangle, the middle of one of its sides turned by 20 degrees from +x towards +y: 80 degrees lead to a corner, 0.8 of the
+// radius off still inside, and -80 degrees to 20 beside the middle of another, where it ends at 0.53.
+static void rotation(struct hf_context *c, const char *isa)
+{
+    struct hf_params p = params_new();
+    const float r = 20;
+    const double a = 80 * PI / 180;
+    p.max_radius = HF_DERIVE;
+    p.aperture.blades = 3;
+    p.aperture.rotation = 20;
+    struct spot s = spot(c, r, &p);
+    const int size = s.out.width, x = size / 2 + (int)lround(0.8 * r * cos(a)), y = (int)lround(0.8 * r * sin(a));
+    const float middle = s.out.plane[1][size / 2 * size + size / 2];
+    const float there = s.out.plane[1][(size / 2 + y) * size + x], not = s.out.plane[1][(size / 2 - y) * size + x];
+    CHECK_MSG(there > middle / 2 && not < middle / 2, "%s: a triangle turned by 20 degrees: %g and %g of %g", isa,
+              there, not, middle);
+    picture_free(&s.out);
+}
+
 static struct picture aperture_picture(int size, int coloured)
 {
     struct picture a = picture_new(size, size, 3);
@@ -238,7 +257,8 @@ static struct hf_params random_params(struct rng *rng, struct hf_image *aperture
     p.view.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
     if (aperture && rng_below(rng, 6) == 0) {
         *aperture = picture_image(&shape_image);
-        p.aperture.picture = aperture;
+        p.aperture = (struct hf_aperture_params){
+            .squeeze = p.aperture.squeeze, .chromatic = p.aperture.chromatic, .picture = aperture};
         p.max_radius = fminf(p.max_radius, 17);
     }
     return p;
@@ -495,6 +515,7 @@ int main(int argc, char **argv)
         against_reference(c, name);
         highlights(c, name);
         options(c, name);
+        rotation(c, name);
         moved(c, name);
         constants(c, name);
         extremes(c, name);

@@ -111,7 +111,8 @@ static void make_samples(struct world *w, struct hf_rect r)
             const float a = (half ? part : 1) / fmaxf(q, 1);
             put(w, colour + 1, 0, x, y, a);
             put(w, colour + 1, 1, x, y, half || !near ? q : -q);
-            put(w, colour + 1, 2, x, y, half ? part : near || q == 0 ? 0 : a);
+            const int is_near = half ? field == HF_NEAR : near;
+            put(w, colour + 1, 2, x, y, is_near || q == 0 ? a * sqrtf(fmaxf(q, 1)) : a / q);
             put_colour(w, colour, x, y, a);
         }
     }
@@ -120,8 +121,9 @@ static void make_samples(struct world *w, struct hf_rect r)
 // As pass 1 leaves them: 0 where there is no radius.
 static void make_first(struct world *w, struct hf_rect r)
 {
-    const int weights = made(w, HF_HEXAGON_NEAR_W);
+    const int weights = made(w, HF_HEXAGON_NEAR_W), far_weights = made(w, HF_HEXAGON_FAR_W);
     make_buf(w, weights, r);
+    make_buf(w, far_weights, r);
     for (int b = 0; b < 2; b++) {
         const int near = made(w, b ? HF_HEXAGON_NEAR_B : HF_HEXAGON_NEAR_U);
         const int far = made(w, b ? HF_HEXAGON_FAR_B : HF_HEXAGON_FAR_U);
@@ -133,8 +135,14 @@ static void make_first(struct world *w, struct hf_rect r)
             put(w, weights, 2 * b, x, y, a);
             put(w, weights, 2 * b + 1, x, y, q);
             put_colour(w, near, x, y, a);
-            const int half = is_half(w), weight = colour_buf(w, HF_FAR) + 1;
-            put_colour(w, far, x, y, *world_at(w, ARENA_MADE, weight, half ? 0 : 2, x, y));
+            // Where the pixel itself is far, something has been found.
+            const int weight = colour_buf(w, HF_FAR) + 1;
+            const float own = *world_at(w, ARENA_MADE, weight, 1, x, y);
+            const float found = own > 0 ? fmaxf(radius_at(w, x, y), 0.01f) : 0,
+                        far_a = own > 0 ? 1 / fmaxf(found, 1) : 0;
+            put(w, far_weights, 2 * b, x, y, far_a);
+            put(w, far_weights, 2 * b + 1, x, y, found);
+            put_colour(w, far, x, y, far_a);
         }
     }
 }
@@ -255,7 +263,7 @@ void hexagon_call(struct world *w, const struct kernels *k, enum arena a, int wh
 
 // A line's sums in double precision; magnitudes of what was added up; additions.
 struct line_sums {
-    double colour, colour_size, a, a_size, w, n;
+    double colour, colour_size, a, a_size, w, w_size, n;
 };
 
 // p: the far pixel's radius; 0: near, nothing is limited.
@@ -277,51 +285,77 @@ static struct line_sums sum_line(const struct world *w, const struct hf_hexagon_
         s.colour_size += t->b * fabs(colour);
         s.a += weight * a;
         s.a_size += t->b * a;
-        s.w += weight * (in->part < 0 ? 1 : *hf_at(in->weight, in->part, u, v));
+        s.w += in->mean < 0 ? 0 : weight * *hf_at(in->weight, in->mean, u, v);
+        s.w_size += in->mean < 0 ? 0 : t->b * *hf_at(in->weight, in->mean, u, v);
     }
     return s;
 }
 
 // A line of the far field. Each sum: a product and an addition a tap, and the weight within 2 of its tap's, as the limit,
 // 3 less a product of less, is within 2. The pixel's own part is 1 less the sum of weights, or less: within that and 4.
-// What both are divided by is not less than a quarter. *value: of the result.
-static double far_line(const struct world *w, const struct hf_hexagon_field *in, int line, int c, int x, int y,
-                       double *value)
+// What both are divided by is not less than a quarter.
+struct far_sums {
+    double value, error, a, a_error, w, w_error;  // the colour; all that is found, and its sum for the mean radius
+};
+
+static struct far_sums far_line(const struct world *w, const struct hf_hexagon_field *in, int line, int c, int x, int y,
+                                float p)
 {
-    const float p = *hf_at(in->radius, in->q, x, y);
-    *value = 0;
+    struct far_sums f = {0};
     if (!(p > 0))
-        return 0;
+        return f;
     const struct line_sums s = sum_line(w, in, line, c, x, y, p);
     const double k = (s.n + 3) * FLT_EPSILON, a_error = k * s.a_size;
     const double own = fmax(fmax((1 - s.a) * fmin(fmax(HEXAGON_ALL - p, 0), 1), HEXAGON_LEAST - s.a), 0);
     const double mine = *hf_at(in->colour, c, x, y) / (double)*hf_at(in->weight, in->a, x, y);
     const double sum = s.colour + own * mine, divisor = s.a + own;
     const double error = k * s.colour_size + (a_error + (4 + 2 * own) * FLT_EPSILON) * fabs(mine);
-    *value = fabs(sum / divisor);
-    return bound_quotient(error, 2 * a_error + 6 * FLT_EPSILON, divisor, *value);
+    f.value = fabs(sum / divisor);
+    f.error = bound_quotient(error, 2 * a_error + 6 * FLT_EPSILON, divisor, f.value);
+    f.a = divisor;
+    f.a_error = 2 * a_error + 6 * FLT_EPSILON;
+    f.w = s.w + own / p;
+    f.w_error = k * s.w_size + (a_error + (6 + 2 * own) * FLT_EPSILON) / p + f.w * FLT_EPSILON;
+    return f;
 }
 
 static double bound_far_1(const struct world *w, int b, int c, int x, int y)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_FAR);
-    double u, v = 0, error = far_line(w, &in, 0, c, x, y, &u);
-    if (b == HF_HEXAGON_FAR_B)
-        error += far_line(w, &in, 1, c, x, y, &v);
-    return (error + 2 * FLT_EPSILON * (u + v)) * *hf_at(in.weight, in.a, x, y);
+    const float p = *hf_at(in.radius, in.q, x, y);
+    const int is_weight = b == HF_HEXAGON_FAR_W;
+    struct far_sums u = far_line(w, &in, 0, is_weight ? 0 : c, x, y, p);
+    if (!(p > 0))
+        return 0;
+    if (b == HF_HEXAGON_FAR_B || (is_weight && c >= 2)) {
+        const struct far_sums v = far_line(w, &in, 1, is_weight ? 0 : c, x, y, p);
+        u.value += v.value;
+        u.error += v.error;
+        u.a += v.a;
+        u.a_error += v.a_error + 2 * FLT_EPSILON * u.a;
+        u.w += v.w;
+        u.w_error += v.w_error + 2 * FLT_EPSILON * u.w;
+    }
+    // The mean radius, and the weight: 1 over it, where it is not below 1.
+    const double q = u.a / u.w, q_error = bound_quotient(u.a_error, u.w_error, u.w, q), a = 1 / fmax(q, 1);
+    const double a_error = a * (q_error / fmax(q, 1e-30) * 2 + 2 * FLT_EPSILON);
+    if (is_weight)
+        return c % 2 ? q_error : a_error;
+    return (u.error + 2 * FLT_EPSILON * u.value) * a + u.value * a_error;
 }
 
 static double bound_far_2(const struct world *w, int c, int x, int y)
 {
     const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(&w->reference, HF_FAR, 0),
                                            hf_hexagon_field_2(&w->reference, HF_FAR, 1)};
-    double v, u;
-    const double error = far_line(w, &in[0], 1, c, x, y, &v) + far_line(w, &in[1], 2, c, x, y, &u);
-    return (error + 2 * FLT_EPSILON * (v + u)) / 3;
+    const struct hf_hexagon_field pixel = hf_hexagon_field(&w->reference, HF_FAR);
+    const float p = *hf_at(pixel.radius, pixel.q, x, y);
+    const struct far_sums v = far_line(w, &in[0], 1, c, x, y, p), u = far_line(w, &in[1], 2, c, x, y, p);
+    return (v.error + u.error + 2 * FLT_EPSILON * (v.value + u.value)) / 3;
 }
 
 // Near sums are of numbers that are not negative, but for colours. A quotient of two of them is within twice the
-// additions, its product with a third within three times.
+// additions, its square four times, and the product of that with a third five times.
 static double bound_near_1(const struct world *w, int b, int c, int x, int y)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_NEAR);
@@ -336,9 +370,9 @@ static double bound_near_1(const struct world *w, int b, int c, int x, int y)
     }
     if (!(s.a > 0))
         return 0;
-    const double share = s.a / s.w, k = (3 * s.n + 8) * FLT_EPSILON;
+    const double root = s.a / s.w, share = root * root, k = (5 * s.n + 16) * FLT_EPSILON;
     if (b == HF_HEXAGON_NEAR_W)
-        return c % 2 ? k * s.w / s.a : k * s.a * share;
+        return c % 2 ? k / share : k * s.a * share;
     return k * s.colour_size * share;
 }
 
@@ -373,6 +407,7 @@ double hexagon_bound_buffer(const struct world *w, int b, int c, int x, int y, f
         break;
     case HF_HEXAGON_FAR_U:
     case HF_HEXAGON_FAR_B:
+    case HF_HEXAGON_FAR_W:
         bound = bound_far_1(w, m, c, x, y);
         break;
     case HF_HEXAGON_FAR:

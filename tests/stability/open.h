@@ -19,7 +19,6 @@ static const struct {
      "half-resolution taps around small radii lie to one side"},
     {"opaque: samples of alpha that are not 1", "gather", 4000,
      "alpha is summed like colour; its weights add up to 1 only within rounding"},
-    {"opaque: samples of alpha that are not 1", "hexagon", 600, "the same"},
     {"transposes: difference, of the largest", "scatter", 0.015,
      "a disc's rows end between pixels, its first and last row do not: its outline differs along the axes"},
     {"flips: samples that are not the mirror's bits", "scatter", 5000,
@@ -35,8 +34,9 @@ static const struct {
      "sums of samples with weights around edges pass the largest float, and nothing clamps them"},
     {"largest floats: not finite in a buffer on the way", "layers", 5000, "the same"},
     {"a range pull: worst jump, 8-bit codes", "layers", 75,
-     "an edge is un-mixed from a difference of 1 pixel between radii on, a whole floor at once if it is that steep; "
-     "alone, hidden samples, which begin there too, make 6"},
+     "an edge is un-mixed from a difference of 1 pixel between radii on, a whole floor at once if it is that steep, "
+     "and "
+     "whether its pixels are the front or the back is then a matter of rounding; hidden samples alone make 6"},
     {"a strength pull: worst jump, 8-bit codes", "layers", 40, "as for the range pull"},
     {"a radius ramp: worst jump, 8-bit codes", "layers", 75, "as for the range pull"},
     {"radius 0 and the least above it: jump, 8-bit codes", "gather", 170,

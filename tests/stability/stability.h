@@ -70,6 +70,13 @@ void stability_open_table(void);
 // All rows so far as a table; returns how many exceed their bound and are not known to.
 int stability_print(FILE *to);
 int stability_passed(void), stability_open(void);
+// Each row: reason is why it exceeds its bound where that is known, else NULL.
+struct stability_row {
+    const char *subject, *what, *why, *where, *reason;
+    double value, bound;
+    int within;
+};
+void stability_each(void (*fn)(void *cookie, const struct stability_row *row), void *cookie);
 
 struct stability_options {
     const char *engine;  // only subjects whose name begins so; NULL: all

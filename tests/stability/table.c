@@ -103,6 +103,16 @@ int stability_open(void)
     return count(1, 1);
 }
 
+void stability_each(void (*fn)(void *cookie, const struct stability_row *row), void *cookie)
+{
+    for (int i = 0; i < row_count; i++) {
+        const struct row *r = &rows[i];
+        const struct stability_row row = {r->subject,     r->what,  r->why,   r->where,
+                                          open_reason(r), r->value, r->bound, within(r->value, r->bound)};
+        fn(cookie, &row);
+    }
+}
+
 int stability_print(FILE *to)
 {
     int failed = 0;

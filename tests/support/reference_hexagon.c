@@ -59,7 +59,7 @@ static void make_line(struct line *l, double degrees, double aspect, double reac
 
 struct field {
     int width, height, channels;
-    double *colour[4], *a, *q, *part;
+    double *colour[4], *a, *q;
 };
 
 static struct field field_new(int width, int height, int channels)
@@ -68,7 +68,6 @@ static struct field field_new(int width, int height, int channels)
     const size_t n = (size_t)width * (size_t)height;
     f.a = calloc(n, sizeof *f.a);
     f.q = calloc(n, sizeof *f.q);
-    f.part = calloc(n, sizeof *f.part);
     for (int c = 0; c < channels; c++)
         f.colour[c] = calloc(n, sizeof *f.a);
     return f;
@@ -80,7 +79,6 @@ static void field_free(struct field *f)
         free(f->colour[c]);
     free(f->a);
     free(f->q);
-    free(f->part);
 }
 
 struct sum {
@@ -104,7 +102,8 @@ static struct sum sum_of(const struct field *f, const struct line *l, int x, int
         for (int c = 0; c < f->channels; c++)
             s.colour[c] += w * f->colour[c][at];
         s.a += w * f->a[at];
-        s.w += w * f->part[at];
+        if (w > 0)
+            s.w += p > 0 ? w * f->a[at] / q : w * f->a[at] * sqrt(fmax(q, 1));
     }
     return s;
 }
@@ -118,7 +117,7 @@ static void put_near(struct field *out, const struct sum *s, int at)
 {
     if (!(s->a > 0))
         return;
-    out->q[at] = s->w / s->a;
+    out->q[at] = pow(s->w / s->a, 2);
     out->a[at] = s->a / out->q[at];
     for (int c = 0; c < out->channels; c++)
         out->colour[c][at] = s->colour[c] / out->q[at];
@@ -148,43 +147,49 @@ static void near_field(const struct field *in, const struct line l[3], struct fi
     field_free(&b);
 }
 
-// Blur of premultiplied colours at a far pixel, to plain ones.
-static void far_blur(const struct field *in, const struct line *l, int at, double out[4])
+// Blur of premultiplied colours at a far pixel of radius p, to plain ones, with all that was found and its radii.
+static struct sum far_blur(const struct field *in, const struct line *l, int at, double p)
 {
-    const double p = in->q[at];
-    const struct sum s = sum_of(in, l, at % in->width, at / in->width, p);
+    struct sum s = sum_of(in, l, at % in->width, at / in->width, p);
     const double o = own_of(s.a, p);
     for (int c = 0; c < in->channels; c++)
-        out[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
+        s.colour[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
+    s.a += o;
+    s.w += o / p;
+    return s;
+}
+
+static void put_far(struct field *out, const struct sum *s, int at)
+{
+    out->q[at] = s->a / s->w;
+    out->a[at] = 1 / fmax(out->q[at], 1);
+    for (int c = 0; c < out->channels; c++)
+        out->colour[c][at] = s->colour[c] * out->a[at];
 }
 
 static void far_field(const struct field *in, const struct line l[3], struct field *out)
 {
     struct field u = field_new(in->width, in->height, in->channels), b = field_new(in->width, in->height, in->channels);
-    const size_t bytes = (size_t)in->width * (size_t)in->height * sizeof(double);
-    memcpy(u.a, in->a, bytes);
-    memcpy(u.q, in->q, bytes);
-    memcpy(b.a, in->a, bytes);
-    memcpy(b.q, in->q, bytes);
     for (int at = 0; at < in->width * in->height; at++) {
-        double up[4], left[4];
-        if (!(in->q[at] > 0))
+        const double p = in->q[at];
+        if (!(p > 0))
             continue;
-        far_blur(in, &l[0], at, up);
-        far_blur(in, &l[1], at, left);
-        for (int c = 0; c < in->channels; c++) {
-            u.colour[c][at] = up[c] * in->a[at];
-            b.colour[c][at] = (up[c] + left[c]) * in->a[at];
-        }
+        struct sum up = far_blur(in, &l[0], at, p);
+        const struct sum left = far_blur(in, &l[1], at, p);
+        put_far(&u, &up, at);
+        for (int c = 0; c < in->channels; c++)
+            up.colour[c] += left.colour[c];
+        up.a += left.a;
+        up.w += left.w;
+        put_far(&b, &up, at);
     }
     for (int at = 0; at < in->width * in->height; at++) {
-        double left[4], right[4];
-        if (!(in->q[at] > 0))
+        const double p = in->q[at];
+        if (!(p > 0))
             continue;
-        far_blur(&u, &l[1], at, left);
-        far_blur(&b, &l[2], at, right);
+        const struct sum left = far_blur(&u, &l[1], at, p), right = far_blur(&b, &l[2], at, p);
         for (int c = 0; c < in->channels; c++)
-            out->colour[c][at] = (left[c] + right[c]) / 3;
+            out->colour[c][at] = (left.colour[c] + right.colour[c]) / 3;
     }
     field_free(&u);
     field_free(&b);
@@ -194,7 +199,6 @@ static void load_full(const struct picture *colour, const float *r, struct field
 {
     for (int at = 0; at < f->width * f->height; at++) {
         f->q[at] = sign * (double)r[at];
-        f->part[at] = 1;
         f->a[at] = 1 / fmax(fabs(f->q[at]), 1);
         for (int c = 0; c < f->channels; c++)
             f->colour[c][at] = colour->plane[c][at] * f->a[at];
@@ -215,7 +219,6 @@ static void load_half(const struct picture *colour, const float *r, struct field
                 mean[c] += w * colour->plane[c][from];
         }
         f->q[at] = sum > 0 ? q / sum / 2 : 0;
-        f->part[at] = sum / 4;
         f->a[at] = sum / 4 / fmax(f->q[at], 1);
         for (int c = 0; c < f->channels; c++)
             f->colour[c][at] = mean[c] / 4 / fmax(f->q[at], 1);

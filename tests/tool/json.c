@@ -59,6 +59,15 @@ int main(void)
     tool_json_open(&j, "a", '[');
     tool_json_open(&j, NULL, '{');
     expect(&j, "{\"a\": [{}]}\n");
+    // A float's shortest digits, a double's nine.
+    j = begin(1);
+    tool_json_number(&j, "f", 0.8f);
+    tool_json_number(&j, "t", 1.0f / 3);
+    tool_json_number(&j, "d", 0.123456789012);
+    tool_json_number(&j, "i", 1732123);
+    tool_json_number(&j, "l", 123456789);
+    tool_json_number(&j, "z", -0.0);
+    expect(&j, "{\"f\": 0.8, \"t\": 0.33333334, \"d\": 0.123456789, \"i\": 1732123, \"l\": 123456789, \"z\": -0}\n");
     // What JSON has no word for, and what would end a string or a page's element.
     j = begin(1);
     tool_json_number(&j, "n", NAN);

@@ -13,7 +13,7 @@
 
 #define HELPER "hyperfocal-oiio"
 
-enum { GREETING_MS = 10000 };
+enum { GREETING_MS = 120000 };
 
 struct hf_oiio {
     const char *path;
@@ -52,7 +52,8 @@ static atomic_flag starting = ATOMIC_FLAG_INIT;
 static int control = -1;
 static char other[HF_WIRE_HELLO];  // what a helper of another build said, under `starting`
 
-// Is the helper of our build? One that says nothing for seconds is of one that did not say it yet, or hangs.
+// Is the helper of our build? Loading its libraries may take long on a busy machine or from a slow disk; one that says
+// nothing for minutes is of a build that did not say it yet.
 static int greet(int fd)
 {
     char own[HF_WIRE_HELLO] = "", hello[HF_WIRE_HELLO] = "";

@@ -1,0 +1,81 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# hyperfocal-bench from outside: what it refuses and how, and what the JSON of its commands carries. No time decides here.
+# Usage: cli.sh BENCH SOURCE_ROOT
+bench=$1 source_root=$2
+case $bench in /*) ;; *) bench=$PWD/$bench ;; esac
+case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+cd "$dir" || exit 1
+passed=0 failed=0
+result() {  # NAME STATUS
+    if [ "$2" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $1"
+        sed 's/^/  /' err
+    fi
+}
+# Exit 1, one line that holds the words, nothing on stdout.
+bad() {  # WORDS ARGUMENTS...
+    words=$1
+    shift
+    "$bench" "$@" >out 2>err
+    ok=$?
+    [ "$ok" -eq 1 ] && [ ! -s out ] && [ "$(wc -l <err)" -eq 1 ]
+    ok=$?
+    old_ifs=$IFS
+    IFS='|'
+    for word in $words; do
+        grep -qF -e "$word" err || ok=1
+    done
+    IFS=$old_ifs
+    result "refuse: $*" $ok
+}
+bad "a command is needed"
+bad "'pases'|did you mean passes?" pases
+bad "--engin|did you mean --engine?" passes --engin gather
+bad "'scater'|did you mean scatter?" passes --engine scater
+bad "a command is needed before" --json -
+bad "'3x'|WIDTHxHEIGHT" passes --size 3x
+bad "'0'|1 to 1000000" passes --frames 0
+bad "--html|tradeoff|passes" passes --html x
+bad "--karis|gather|scatter" passes --engine scatter --karis
+bad "--image|--truth" truth --image a.exr
+bad "missing.exr" truth --image missing.exr --truth missing.exr
+bad "lights.exr|1280 x 720|640 x 360" truth --image "$source_root/images/lights-before.png" \
+    --truth "$source_root/images/lights.exr"
+for command in passes truth tradeoff scaling batch stability; do
+    "$bench" --help >out 2>err && grep -q "^  $command " out
+    result "--help tells of $command" $?
+done
+[ "$(awk 'length($0) > 80' out | wc -l)" -eq 0 ]
+result "--help fits 80 columns" $?
+"$bench" --help=man >out 2>err && grep -q '^.TH hyperfocal-bench 1' out && grep -q '^.SH COMMANDS' out
+result "--help=man" $?
+
+command -v python3 >/dev/null || { echo "skipped: no python3 for the JSON"; echo "$passed passed, $failed failed"; exit $((failed > 0)); }
+json() {  # KEYS ARGUMENTS...
+    keys=$1
+    shift
+    "$bench" "$@" --json - >out 2>err && python3 - "$keys" "$@" <<'PYTHON' 2>>err
+import json, sys
+j = json.load(open('out'))
+missing = [k for k in ['command', 'cpu', 'version', 'options'] + sys.argv[1].split() if k not in j]
+assert not missing, missing
+assert j['command'] == sys.argv[2] and j['options'] == sys.argv[3:] + ['--json', '-'], j['options']
+if 'passes' in j:
+    # Rows and overhead are all of the frame, to the nanosecond.
+    rows = sum(p['median_ms'] for p in j['passes'])
+    assert abs(rows + j['overhead_ms'] - j['all']['median_ms']) < 1e-5, rows
+    assert ('gtx660_ms' in j['all']) == (j['width'] == 1920)
+PYTHON
+    result "JSON of $*" $?
+}
+json "engine width busy passes overhead_ms all" passes --size 64x64 --frames 3
+json "psnr_db linear_rmse ssim flip energy" truth --image "$source_root/images/lights.exr" \
+    --truth "$source_root/images/lights.truth.exr"
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]

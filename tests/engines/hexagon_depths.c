@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon engine where radii differ: what lies before something else keeps its shape, and what covers next to nothing
+// changes next to nothing. On one instruction set, and in C.
+#include <math.h>
+#include <stdlib.h>
+
+#include "support/check.h"
+#include "support/render.h"
+
+enum { SIZE = 120, PIXELS = SIZE * SIZE, MIDDLE = SIZE / 2 };
+
+static struct hf_params params_new(int half)
+{
+    struct hf_params p = scene_params();
+    p.engine = HF_ENGINE_HEXAGON;
+    p.max_radius = HF_DERIVE;
+    p.hexagon.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    return p;
+}
+
+static struct picture blurred(struct hf_context *c, const struct picture *colour, const struct picture *radius,
+                              int half)
+{
+    const struct hf_params p = params_new(half);
+    const struct hf_depth depth = picture_radii(radius);
+    return render(c, colour, &depth, &p);
+}
+
+// Pixels that do not shine between two of their line that do; lines are `down` apart.
+static int gaps(const float *plane, int step, int down, float shine)
+{
+    int dark = 0;
+    for (int y = 0; y < SIZE; y++) {
+        int first = SIZE, last = -1;
+        for (int x = 0; x < SIZE; x++)
+            if (plane[y * down + x * step] >= shine) {
+                first = x < first ? x : first;
+                last = x;
+            }
+        for (int x = first; x <= last; x++)
+            dark += plane[y * down + x * step] < shine;
+    }
+    return dark;
+}
+
+// A bright light of seven pixels in front of a wall farther off: its hexagon has no notches, which were as large as
+// itself. Along rows and columns all that lies between what shines by a tenth of what it would as a disc shines as well, but
+// for a row of its own seven pixels: what lies behind it has another radius.
+static void lights(struct hf_context *c, int half)
+{
+    static const float radii[][2] = {{15.6f, 22}, {12, 20}, {18, 21}, {10, 19}};
+    for (int i = 0; i < 4; i++) {
+        struct picture colour = picture_new(SIZE, SIZE, 3), radius = picture_new(SIZE, SIZE, 1);
+        const float r = radii[i][0];
+        for (int k = 0; k < PIXELS; k++) {
+            const double d = hypot(k % SIZE - MIDDLE, k / SIZE - MIDDLE);
+            radius.plane[0][k] = d <= 3.5 ? r : radii[i][1];
+            for (int ch = 0; ch < 3; ch++)
+                colour.plane[ch][k] = d <= 3.5 ? 200 : 0.02f;
+        }
+        struct picture out = blurred(c, &colour, &radius, half);
+        const float shine = 0.1f * (200 * 3.5f * 3.5f / (r * r));
+        const int dark = gaps(out.plane[1], 1, SIZE, shine) + gaps(out.plane[1], SIZE, 1, shine);
+        CHECK_MSG(dark <= 7, "half %d, a light of radius %g before %g: %d dark pixels", half, (double)r,
+                  (double)radii[i][1], dark);
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+}
+
+// Pixels before a wall that is sharp, at one radius; and one of them at a radius that goes across the picture. It covers
+// 1 / R of a line, so the root of the mean radius r moves by no more than (sqrt(R) - sqrt(r)) / R, and the radius by twice
+// that share of itself, and a line's mean by as much of what its end differs by, 0.8: in two of three rhombi.
+static void one_far_reaching(struct hf_context *c, int half)
+{
+    static const float reach[] = {1000, 2000};
+    for (int i = 0; i < 2; i++) {
+        struct picture colour = picture_new(SIZE, SIZE, 3), radius = picture_new(SIZE, SIZE, 1);
+        const float r = 4;
+        for (int k = 0; k < PIXELS; k++) {
+            radius.plane[0][k] = abs(k % SIZE - MIDDLE) < 30 ? -r : 0;
+            for (int ch = 0; ch < 3; ch++)
+                colour.plane[ch][k] =
+                    abs(k % SIZE - MIDDLE) < 30 ? 0.2f + 0.6f * ((k % SIZE / 6 + k / SIZE / 6) & 1) : 1;
+        }
+        struct picture before = blurred(c, &colour, &radius, half);
+        radius.plane[0][(SIZE - 20) * SIZE + MIDDLE] = -reach[i];
+        struct picture after = blurred(c, &colour, &radius, half);
+        const double R = half ? reach[i] / 2 : reach[i], q = half ? r / 2 : r, share = (half ? 0.25 : 1) / R;
+        const double most = 0.8 * 2 / 3 * (2 * share * (sqrt(R / q) - 1) + share);
+        double worst = 0;
+        for (int k = 0; k < PIXELS; k++)
+            if (abs(k / SIZE - (SIZE - 20)) > 12)
+                worst = worse(worst, fabs((double)before.plane[0][k] - after.plane[0][k]));
+        printf("half %d: one pixel of radius %g changes others by %.3g, bound %.3g\n", half, (double)reach[i], worst,
+               most);
+        CHECK_MSG(worst <= most, "half %d: one pixel of radius %g changes others by %g, bound %g", half,
+                  (double)reach[i], worst, most);
+        picture_free(&before);
+        picture_free(&after);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+}
+
+// Opaque in, opaque out, bit for bit, whatever the radii.
+static void opaque(struct hf_context *c, int half)
+{
+    for (unsigned i = 0; i < 12; i++) {
+        struct rng rng = rng_seed(40 + i);
+        const int w = 40 + rng_below(&rng, 50), h = 30 + rng_below(&rng, 40);
+        struct picture colour = picture_new(w, h, 4), radius = picture_new(w, h, 1);
+        for (int k = 0; k < w * h; k++) {
+            for (int ch = 0; ch < 4; ch++)
+                colour.plane[ch][k] = ch < 3 ? rng_float(&rng) : 1;
+            radius.plane[0][k] = rng_below(&rng, 3) && k ? radius.plane[0][k - 1] : rng_range(&rng, -14, 14);
+        }
+        struct picture out = blurred(c, &colour, &radius, half);
+        int thin = 0;
+        for (int k = 0; k < w * h; k++)
+            thin += out.plane[3][k] != 1;
+        CHECK_MSG(!thin, "half %d, scene %u: %d pixels are not opaque", half, i, thin);
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+}
+
+int main(void)
+{
+    static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_AUTO};
+    for (int i = 0; i < 2; i++) {
+        struct hf_context *c = context_new(isas[i], 2, 0, 0);
+        for (int half = 0; half < 2; half++) {
+            lights(c, half);
+            one_far_reaching(c, half);
+            opaque(c, half);
+        }
+        hf_close(&c);
+    }
+    return check_report();
+}
