@@ -18,6 +18,8 @@ static void on_log(void *cookie, enum hf_log_level level, const char *message)
     if (level == HF_LOG_ERROR)
         tool_fail(&session->log, 0, "%s", message);
     else if (level == HF_LOG_WARNING)
+        session->warnings++;
+    if (level == HF_LOG_WARNING)
         tool_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", message);
 }
 
@@ -213,6 +215,7 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     v->setup.depth.data = v->depth;
     session->label = v->label;
     session->log.text[0] = '\0';
+    session->warnings = 0;
     const int looked = cli_coc_look(v, frame->args, error);
     v->cut = !looked && v->radii ? cli_window_cut(v) : 0;
     return looked;
@@ -228,6 +231,7 @@ static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
                          session->log.text[0] ? session->log.text : hf_error_string(status));
     }
     hf_get_report(session->context, &v->report);
+    v->warned = session->warnings;
     free(v->depth);
     v->depth = NULL;
     const struct cli_args *args = frame->args;

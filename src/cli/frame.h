@@ -12,6 +12,7 @@ struct cli_session {
     struct hf_io_run run;
     struct tool_error log;
     const char *label;  // what is being rendered, for warnings
+    int warnings;       // that the library gave of it
 };
 
 // Up to this radius, pixels, one may say that something is in focus: half a pixel to each side.
@@ -30,6 +31,7 @@ struct cli_view {
     float least_reach;   // of all that is blurred at all
     float far_away;      // radius of what is infinitely far
     float *radii;        // of all pixels, see cli_coc_look; NULL
+    int warned;          // times by the library
     int cut;             // pixels by which the blur reaches beyond the data window, and is lost
     struct hf_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for

@@ -46,7 +46,7 @@ static const char *limit_words(enum hf_limit limit)
 int cli_warnings_of(const struct cli_view *v)
 {
     const struct hf_report *r = &v->report;
-    return (r->colour_repaired > 0) + (r->depth_repaired > 0) + cli_is_limited(v) + v->found.flipped +
+    return v->warned + (r->colour_repaired > 0) + (r->depth_repaired > 0) + cli_is_limited(v) + v->found.flipped +
            (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0);
 }
 

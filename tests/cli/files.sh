@@ -171,6 +171,9 @@ cp void.exr shot.2.exr
 run shot.#.exr -o done.#.exr --focus 4 --quiet
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "shot.2.exr: depth Z has no surface"
 result "--quiet leaves warnings" $?
+run near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --engine gaussian --verbose
+[ "$status" -eq 0 ] && contains "$dir/err" "not by how much the lens" && ! contains "$dir/err" " 0 warnings"
+result "what the library warns of is counted" $?
 if command -v script >/dev/null; then
     script -qec "'$program' near.exr -o o.exr --focus 4" /dev/null >"$dir/out" 2>&1 </dev/null
     contains "$dir/out" "RGB with depth Z, layers, focus 4"
