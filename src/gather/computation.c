@@ -39,8 +39,8 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
     }
 }
 
-static void convolve(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, enum hf_buf_id in, int c_in,
-                     enum hf_buf_id out, int c_out)
+static void convolve(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, enum hf_gather_buf in,
+                     int c_in, enum hf_gather_buf out, int c_out)
 {
     const struct hf_buf *a = &f->buf[in], *b = &f->buf[out];
     for (int y = r.y0; y < r.y1; y++)
@@ -129,8 +129,8 @@ static void sample_taps(const struct hf_frame *f, int x, int y, const struct hf_
 static void gather_far(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const enum hf_buf_id colour = hf_gather(s)->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_buf_id weight = hf_gather(s)->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    const enum hf_gather_buf colour = hf_gather(s)->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_gather_buf weight = hf_gather(s)->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
     if (hf_gather(s)->per_pixel_kernel) {
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++)

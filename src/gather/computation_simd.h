@@ -113,8 +113,8 @@ struct gather_job {
     ptrdiff_t need_stride;
 };
 
-static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_buf_id in, int c_in,
-                         enum hf_buf_id out, int c_out)
+static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_gather_buf in,
+                         int c_in, enum hf_gather_buf out, int c_out)
 {
     const int i = j->planes++;
     j->in[i] = hf_at(&f->buf[in], c_in, r.x0, r.y0);
@@ -349,8 +349,8 @@ static void finish_far(const struct hf_frame *f, struct hf_rect r)
 static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const enum hf_buf_id colour = hf_gather(s)->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_buf_id weight = hf_gather(s)->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    const enum hf_gather_buf colour = hf_gather(s)->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_gather_buf weight = hf_gather(s)->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
     if (hf_gather(s)->per_pixel_kernel) {
         sample_taps_simd(f, r, &f->buf[colour], &f->buf[weight]);
         finish_far(f, r);

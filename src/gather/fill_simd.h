@@ -107,7 +107,7 @@ HF_INLINE void fill_far_picked(const struct hf_setup *s, const float *in, ptrdif
     }
 }
 
-static void fill_row(const struct hf_frame *f, enum hf_buf_id in, enum hf_buf_id out, const struct hf_buf *want,
+static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_gather_buf out, const struct hf_buf *want,
                      int want_channel, int y, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;

@@ -22,7 +22,7 @@ enum hf_gather_pass {
 };
 
 // The buffers of the chapter's figure 3.6.
-enum hf_buf_id {
+enum hf_gather_buf {
     HF_BUF_COC,        // full resolution: near even, near odd, far even, far odd lanes of each row
     HF_BUF_COLOR4,     // half-resolution colour, R G B (A)
     HF_BUF_COLORFAR4,  // half-resolution colour x far CoC

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of the aperture at every size, as runs of pixels row by row: what the scatter engine draws.
+// Pictures of the aperture at every size, as runs of pixels row by row: what a source draws.
 #ifndef HF_APERTURE_H
 #define HF_APERTURE_H
 

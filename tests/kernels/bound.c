@@ -72,7 +72,7 @@ static double bound_down(const struct world *w, int c, int x, int y)
 }
 
 // The values at (x +- dx, y +- dy), each of them once.
-static double mirrored(const struct world *w, enum hf_buf_id b, int c, int x, int y, int dx, int dy)
+static double mirrored(const struct world *w, enum hf_gather_buf b, int c, int x, int y, int dx, int dy)
 {
     double sum = 0;
     for (int v = y - dy; v <= y + dy; v += 2 * dy + !dy)
@@ -82,7 +82,7 @@ static double mirrored(const struct world *w, enum hf_buf_id b, int c, int x, in
 }
 
 // Sum of |weight x value| over the lattice.
-static double lattice_sum(const struct world *w, enum hf_buf_id b, int c, int x, int y)
+static double lattice_sum(const struct world *w, enum hf_gather_buf b, int c, int x, int y)
 {
     const struct hf_taps *t = &w->gather.taps;
     double sum = 0;
@@ -95,7 +95,7 @@ static double lattice_sum(const struct world *w, enum hf_buf_id b, int c, int x,
 }
 
 // Sum of the magnitudes of all four neighbours of all taps of the per-pixel kernel.
-static double taps_sum(const struct world *w, enum hf_buf_id b, int c, int x, int y)
+static double taps_sum(const struct world *w, enum hf_gather_buf b, int c, int x, int y)
 {
     const struct hf_taps *t = &w->gather.taps;
     const float scale = reference_at(w, HF_BUF_COC4, 1, x, y);
@@ -138,8 +138,8 @@ static double bound_near(const struct world *w, int c, int x, int y, float want)
 
 static double bound_far(const struct world *w, int c, int x, int y, float want)
 {
-    const enum hf_buf_id colour = w->gather.karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_buf_id weight = w->gather.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    const enum hf_gather_buf colour = w->gather.karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const enum hf_gather_buf weight = w->gather.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
     if (!(reference_at(w, HF_BUF_COC4, 1, x, y) > 0))
         return 0;
     // Products of denormals are off by their own step.
