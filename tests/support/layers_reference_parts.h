@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the two files of layers_reference.h share.
+#ifndef HF_TESTS_LAYERS_REFERENCE_PARTS_H
+#define HF_TESTS_LAYERS_REFERENCE_PARTS_H
+
+#include <stdlib.h>
+
+#include "support/layers_reference.h"
+
+// Numbers at places from (x0, y0) up to (x1, y1): n of each.
+struct grid {
+    int x0, y0, x1, y1, n;
+    double *v;
+};
+
+static inline struct grid grid_new(int x0, int y0, int x1, int y1, int n)
+{
+    struct grid g = {x0, y0, x1, y1, n, NULL};
+    g.v = calloc((size_t)(x1 - x0) * (size_t)(y1 - y0) * (size_t)n + 1, sizeof *g.v);
+    if (!g.v)
+        abort();
+    return g;
+}
+
+static inline double *at(const struct grid *g, int x, int y)
+{
+    return g->v + ((size_t)(y - g->y0) * (size_t)(g->x1 - g->x0) + (size_t)(x - g->x0)) * (size_t)g->n;
+}
+
+static inline int clamp(int v, int low, int high)
+{
+    return v < low ? low : v > high ? high : v;
+}
+
+// Beyond a grid of the frame its edges go on.
+static inline double *edge(const struct grid *g, int x, int y)
+{
+    return at(g, clamp(x, g->x0, g->x1 - 1), clamp(y, g->y0, g->y1 - 1));
+}
+
+// A sample: colour, weight, radius; of what is seen the share of its weight that is a highlight.
+enum { WEIGHT = 4, RADIUS, SHARE, SAMPLE };
+// Around levels' grids, so that what is upsampled has neighbours.
+enum { MARGIN = 8 };
+
+struct frame {
+    const struct picture *colour;
+    const float *radius;
+    int width, height, channels;
+    struct hf_layers_params set;
+    struct hf_aperture_params aperture;
+    int fine, unmix, hidden, highlights;
+    double wide, half, quarter, low, high;
+    struct grid seen, mixed, behind;  // samples
+};
+
+static inline double colour_at(const struct frame *f, int c, int x, int y)
+{
+    return f->colour->plane[c][clamp(y, 0, f->height - 1) * f->width + clamp(x, 0, f->width - 1)];
+}
+
+static inline double radius_at(const struct frame *f, int x, int y)
+{
+    return f->radius[clamp(y, 0, f->height - 1) * f->width + clamp(x, 0, f->width - 1)];
+}
+
+// Fill f's samples: seen, mixed and behind (layers_reference_samples.c).
+void layers_reference_samples(struct frame *f);
+// At how many distances hidden samples are looked for.
+int layers_reference_levels(const struct frame *f);
+
+#endif

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Samples: mixed pixels, highlights, what is hidden.
+#include <string.h>
+
+#include "support/layers_reference_parts.h"
+
+static const double PI = 3.14159265358979323846;
+
+// ---- mixed pixels ----
+
+// Returns whether the 3 x 3 are one surface.
+static int sure(const struct frame *f, int x, int y, double *middle)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < 9; i++) {
+        const double r = radius_at(f, x + i % 3 - 1, y + i / 3 - 1);
+        low = fmin(low, r);
+        high = fmax(high, r);
+    }
+    *middle = (low + high) / 2;
+    return high - low <= 1;
+}
+
+// Mean colour and radius of a side around a mixed pixel; 0: there are no sure ones.
+static int side_mean(const struct frame *f, int x, int y, double middle, int front, double mean[5])
+{
+    double sum = 0, unused;
+    memset(mean, 0, 5 * sizeof *mean);
+    for (int v = -3; v <= 3; v++)
+        for (int u = -3; u <= 3; u++) {
+            // Samples beyond the frame are its edge's, and as sure as these are.
+            if ((!u && !v) || !sure(f, x + u, y + v, &unused) || (radius_at(f, x + u, y + v) < middle) != front)
+                continue;
+            const double w = 1.0 / ((u * u + v * v) * (u * u + v * v));
+            sum += w;
+            for (int c = 0; c < f->channels; c++)
+                mean[c] += w * colour_at(f, c, x + u, y + v);
+            mean[4] += w * radius_at(f, x + u, y + v);
+        }
+    for (int c = 0; c < 5; c++)
+        mean[c] = sum > 0 ? mean[c] / sum : 0;
+    return sum > 0;
+}
+
+static void side_farthest(const struct frame *f, int x, int y, double middle, int front, const double other[5],
+                          double mean[5])
+{
+    double most = -1;
+    for (int v = -2; v <= 2; v++)
+        for (int u = -2; u <= 2; u++) {
+            double d = 0;
+            if ((radius_at(f, x + u, y + v) < middle) != front)
+                continue;
+            for (int c = 0; c < f->channels; c++)
+                d += pow(colour_at(f, c, x + u, y + v) - other[c], 2);
+            if (d <= most)
+                continue;
+            most = d;
+            for (int c = 0; c < f->channels; c++)
+                mean[c] = colour_at(f, c, x + u, y + v);
+            mean[4] = radius_at(f, x + u, y + v);
+        }
+}
+
+static double share_of(const struct frame *f, int x, int y, double a0, const double *front, const double *back)
+{
+    double along = 0, apart = 0, size = 0, off = 0;
+    for (int c = 0; c < f->channels; c++) {
+        along += (colour_at(f, c, x, y) - back[c]) * (front[c] - back[c]);
+        apart += pow(front[c] - back[c], 2);
+        size += front[c] * front[c] + back[c] * back[c];
+    }
+    const double a = fmin(fmax((along + 1e-3 * size * a0) / (apart + 1e-3 * size), 0), 1);
+    for (int c = 0; c < f->channels; c++)
+        off += pow(colour_at(f, c, x, y) - a * front[c] - (1 - a) * back[c], 2);
+    return a0 + (a - a0) * (apart + off > 0 ? apart / (apart + off) : 0);
+}
+
+static void unmix(struct frame *f, int x, int y)
+{
+    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, mean[2][5];
+    for (int c = 0; c < f->channels; c++)
+        seen[c] = colour_at(f, c, x, y);
+    seen[WEIGHT] = 1;
+    seen[RADIUS] = radius_at(f, x, y);
+    if (!f->unmix || sure(f, x, y, &middle))
+        return;
+    const double own = radius_at(f, x, y), a0 = own < middle;
+    const int front = side_mean(f, x, y, middle, 1, mean[0]), back = side_mean(f, x, y, middle, 0, mean[1]);
+    if (!front && !back)
+        return;
+    if (!front || !back)
+        side_farthest(f, x, y, middle, !front, mean[front ? 0 : 1], mean[front ? 1 : 0]);
+    const double a = share_of(f, x, y, a0, mean[0], mean[1]);
+    for (int c = 0; c < f->channels; c++) {
+        const double v = colour_at(f, c, x, y), rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
+        seen[c] = fmin(fmax(mean[0][c] + rest, fmin(mean[0][c], v)), fmax(mean[0][c], v));
+        mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
+    }
+    seen[WEIGHT] = a;
+    mixed[WEIGHT] = 1 - a;
+    seen[RADIUS] = a0 > 0 ? own : mean[0][4];
+    mixed[RADIUS] = a0 > 0 ? mean[1][4] : own;
+}
+
+// ---- highlights ----
+
+static double root(double v)
+{
+    return v > 0 ? sqrt(v) : v < 0 ? -sqrt(-v) : 0;
+}
+
+static void highlight(struct frame *f, int x, int y)
+{
+    double *s = at(&f->seen, x, y), mean = 0, light = s[0] + s[1] + s[2];
+    const int left = x & ~1, top = y & ~1;
+    for (int v = -8; v < 10; v++)
+        for (int u = -8; u < 10; u++) {
+            double sum = 0;
+            for (int c = 0; c < 3; c++)
+                sum += colour_at(f, c, left + u, top + v);
+            mean += root(fmax(sum, 0)) / (18 * 18);
+        }
+    const double cap = mean * mean * (2 + 0.001 * PI * s[RADIUS] * s[RADIUS]);
+    s[SHARE] = fabs(s[RADIUS]) > 4 && light > cap ? s[WEIGHT] * (1 - cap / light) : 0;
+}
+
+// ---- hidden samples ----
+
+static void merge(const double *const *from, int count, double within, double part, int channels, double *out)
+{
+    double farthest = -INFINITY, sum = 0;
+    for (int i = 0; i < count; i++)
+        farthest = from[i][WEIGHT] > 0 ? fmax(farthest, from[i][RADIUS]) : farthest;
+    memset(out, 0, SAMPLE * sizeof *out);
+    for (int i = 0; i < count; i++) {
+        const double g = from[i][WEIGHT] > 0 ? from[i][WEIGHT] * fmax(0, 1 - (farthest - from[i][RADIUS]) / within) : 0;
+        sum += g;
+        for (int c = 0; c < channels && g > 0; c++)
+            out[c] += g * from[i][c];
+        out[RADIUS] += g > 0 ? g * from[i][RADIUS] : 0;
+    }
+    for (int c = 0; c < channels; c++)
+        out[c] = sum > 0 ? out[c] / sum : 0;
+    out[RADIUS] = sum > 0 ? out[RADIUS] / sum : 0;
+    out[WEIGHT] = sum * part;
+}
+
+// The surface behind an edge where a pixel is mixed, as roots.
+static void quad(const struct frame *f, int x, int y, double *out)
+{
+    double s[4][SAMPLE];
+    const double *from[4] = {s[0], s[1], s[2], s[3]};
+    for (int i = 0; i < 4; i++) {
+        const int px = clamp(2 * x + i % 2, 0, f->width - 1), py = clamp(2 * y + i / 2, 0, f->height - 1);
+        const double *mixed = at(&f->mixed, px, py);
+        memcpy(s[i], mixed[WEIGHT] > 0 ? mixed : at(&f->seen, px, py), sizeof s[i]);
+        for (int c = 0; c < f->channels; c++)
+            s[i][c] = root(s[i][c]);
+    }
+    merge(from, 4, 2, 0.25, f->channels, out);
+}
+
+int layers_reference_levels(const struct frame *f)
+{
+    int n = 0;
+    if (f->hidden && f->high - f->low >= 1)
+        for (n = 1; n < 7 && 3 * (1 << n) < f->high - f->low;)
+            n++;
+    return n;
+}
+
+static void step(const struct frame *f, const struct grid *from, struct grid *to, int dx, int dy, double within)
+{
+    for (int y = to->y0; y < to->y1; y++)
+        for (int x = to->x0; x < to->x1; x++) {
+            const double *in[3];
+            for (int i = 0; i < 3; i++)
+                in[i] = edge(from, x + (i - 1) * dx, y + (i - 1) * dy);  // beyond what is read the edge is never
+            merge(in, 3, within, 1.0 / 3, f->channels, at(to, x, y));
+        }
+}
+
+static void find(struct frame *f, const struct grid *level, int levels, int x, int y)
+{
+    double sum[SAMPLE] = {0}, nearest = INFINITY, *out = at(&f->behind, x, y);
+    for (int i = 0; i < 4; i++)
+        nearest = fmin(nearest, edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2)[RADIUS]);
+    for (int j = 0; j < levels; j++)
+        for (int i = 0; i < 9; i++) {
+            const int u = i % 3 - 1, v = i / 3 - 1;
+            const double *q = at(&level[j], x + u * (1 << j), y + v * (1 << j)), behind = q[RADIUS] - nearest;
+            const double a = fmin(fmax(behind / (2 << j) - hypot(u, v) + 0.5, 0), 1);
+            const double some = fmin(9 * q[WEIGHT], 1);
+            const double w = behind >= 1 ? pow(256, -j) * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * some : 0;
+            for (int c = 0; c < f->channels; c++)
+                sum[c] += w * q[c];
+            sum[WEIGHT] += w;
+            sum[RADIUS] += w * q[RADIUS];
+        }
+    if (sum[WEIGHT] <= 0)
+        return;
+    out[RADIUS] = sum[RADIUS] / sum[WEIGHT];
+    for (int c = 0; c < f->channels; c++)
+        out[c] = sum[c] / sum[WEIGHT];
+    for (int i = 0; i < 4; i++) {
+        const double *s = edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2);
+        out[WEIGHT] += s[RADIUS] < out[RADIUS] - 1 ? s[WEIGHT] / 4 : 0;
+    }
+}
+
+// Means of 13 in a row or column, of those that are about as far.
+static struct grid smooth(const struct frame *f, const struct grid *from, int dx, int dy)
+{
+    struct grid to = grid_new(from->x0, from->y0, from->x1, from->y1, SAMPLE);
+    for (int y = to.y0; y < to.y1; y++)
+        for (int x = to.x0; x < to.x1; x++) {
+            const double *middle = at(from, x, y);
+            double *out = at(&to, x, y), sum = 0;
+            for (int i = -6; i <= 6; i++) {
+                const int px = x + i * dx, py = y + i * dy;
+                if (px < from->x0 || px >= from->x1 || py < from->y0 || py >= from->y1 || !middle[WEIGHT])
+                    continue;
+                const double *s = at(from, px, py);
+                const double g = s[WEIGHT] > 0 ? (7 - abs(i)) * fmax(1 - fabs(s[RADIUS] - middle[RADIUS]) / 4, 0) : 0;
+                sum += g;
+                for (int c = 0; c < f->channels; c++)
+                    out[c] += g * s[c];
+                out[RADIUS] += g * s[RADIUS];
+            }
+            for (int c = 0; c < f->channels; c++)
+                out[c] = sum > 0 ? out[c] / sum : 0;
+            out[RADIUS] = sum > 0 ? out[RADIUS] / sum : 0;
+            out[WEIGHT] = middle[WEIGHT];
+        }
+    return to;
+}
+
+static void find_hidden(struct frame *f)
+{
+    const int width = (f->width + 1) / 2, height = (f->height + 1) / 2, levels = layers_reference_levels(f),
+              m = 2 << levels;
+    struct grid level[7], quads = grid_new(0, 0, width, height, SAMPLE);
+    f->behind = grid_new(0, 0, width, height, SAMPLE);
+    for (int y = 0; y < height && levels; y++)
+        for (int x = 0; x < width; x++)
+            quad(f, x, y, at(&quads, x, y));
+    for (int j = 0; j < levels; j++) {
+        struct grid across = grid_new(-m, -m, width + m, height + m, SAMPLE);
+        level[j] = grid_new(-m, -m, width + m, height + m, SAMPLE);
+        for (int y = -m; y < height + m && !j; y++)
+            for (int x = -m; x < width + m; x++)
+                memcpy(at(&level[0], x, y), edge(&quads, x, y), SAMPLE * sizeof(double));
+        if (j) {
+            step(f, &level[j - 1], &across, 1 << (j - 1), 0, 2 << j);
+            step(f, &across, &level[j], 0, 1 << (j - 1), 2 << j);
+        }
+        free(across.v);
+    }
+    for (int y = 0; y < height && levels; y++)
+        for (int x = 0; x < width; x++)
+            find(f, level, levels, x, y);
+    struct grid along = smooth(f, &f->behind, 1, 0), down = smooth(f, &along, 0, 1);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            for (int c = 0; c < f->channels; c++)
+                at(&down, x, y)[c] *= fabs(at(&down, x, y)[c]);
+    free(along.v);
+    free(f->behind.v);
+    f->behind = down;
+    for (int j = 0; j < levels; j++)
+        free(level[j].v);
+    free(quads.v);
+}
+
+void layers_reference_samples(struct frame *f)
+{
+    f->seen = grid_new(0, 0, f->width, f->height, SAMPLE);
+    f->mixed = grid_new(0, 0, f->width, f->height, SAMPLE);
+    for (int i = 0; i < f->width * f->height; i++)
+        unmix(f, i % f->width, i / f->width);
+    for (int i = 0; i < f->width * f->height && f->highlights; i++)
+        highlight(f, i % f->width, i / f->width);
+    find_hidden(f);
+}
