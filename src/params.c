@@ -26,7 +26,7 @@ const struct hf_params hf_default_params = {
     .max_radius = HF_DERIVE,
     .aperture = {.squeeze = 1},
     .view = {.display_width = HF_DERIVE, .display_height = HF_DERIVE, .pixel_aspect = 1},
-    .gather = {.rings = HF_DERIVE},
+    .gather = {.rings = HF_DERIVE, .fill = (enum hf_fill)HF_DERIVE},
     .layers = {.spacing = HF_DERIVE, .half_from = HF_DERIVE, .quarter_from = HF_DERIVE},
     .gaussian = {.iterations = 3, .sigma = HF_DERIVE, .by_depth = HF_DERIVE},
 };

@@ -364,7 +364,8 @@ struct hf_gather_params {
     int per_pixel_kernel;
     // Upsample the near field with a uniform cubic B-spline instead of bilinearly. Default 0. Chapter 3.4.6.
     int bicubic;
-    enum hf_fill fill;              // default HF_FILL_MAX
+    // HF_DERIVE (default): HF_FILL_MEAN, and HF_FILL_MAX with .faithful or where downsample or division are not the default.
+    enum hf_fill fill;
     enum hf_downsample downsample;  // default HF_DOWNSAMPLE_BILATERAL
     // Default HF_DIVISION_EXACT, which plain C and run.deterministic always do. Others give other bits on each kind of
     // processor, and are here to be measured.

@@ -188,6 +188,18 @@ struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def
                             hf_min(scaled(r.y1, ly), height)};
 }
 
+// Zeros where `want` reaches beyond `have`.
+static void clear_beyond(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want)
+{
+    for (int c = 0; c < channels; c++)
+        for (int y = want.y0; y < want.y1; y++) {
+            const int beyond = y < have.y0 || y >= have.y1;
+            const int left = beyond ? want.x1 : have.x0, right = beyond ? want.x1 : have.x1;
+            memset(hf_narrow_at(b, c, want.x0, y, bytes), 0, (size_t)(left - want.x0) * (size_t)bytes);
+            memset(hf_narrow_at(b, c, right, y, bytes), 0, (size_t)(want.x1 - right) * (size_t)bytes);
+        }
+}
+
 // Samples of a row from x0 to x1 like the one at x.
 static void repeat(char *row, int bytes, int x, int x0, int x1)
 {
@@ -236,5 +248,8 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
         want.x1 = x1 + reach.x;
     if (!def->frame || r.y1 == s->half_height)
         want.y1 = y1 + reach.y;
-    extend(&f->buf[b], e->channels(s, b), bytes_of(s, def), have, want);
+    if (def->frame && s->zero_beyond)
+        clear_beyond(&f->buf[b], e->channels(s, b), bytes_of(s, def), have, want);
+    else
+        extend(&f->buf[b], e->channels(s, b), bytes_of(s, def), have, want);
 }

@@ -18,7 +18,7 @@ struct hf_rect {
 };
 
 // No engine has more; each numbers its own.
-enum { HF_MAX_BUFS = 24 };
+enum { HF_MAX_BUFS = 32 };
 
 // Up to four planes of floats, all the same distance apart. ch[c] is where pixel (0, 0) of the frame would be; what is
 // allocated is a window of the frame, perhaps with a border around it. A narrow buffer (engine.h) holds numbers of
@@ -45,7 +45,8 @@ struct hf_setup {
     enum hf_resolution resolution;
     int colour_stats, no_skip;
     int faithful, smoothstep;
-    int measured;  // see struct hf_engine_def
+    int measured;     // see struct hf_engine_def
+    int zero_beyond;  // the frame's buffers are 0 beyond it, not like its edge
 
     enum hf_depth_form form;
     int lens;                    // v is -1/z rather than z

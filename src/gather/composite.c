@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Composite: the far field, upsampled where its CoC is like the pixel's, then the near field, over the picture.
 #include "gather/gather.h"
-
-// The half-resolution neighbourhood of a full-resolution pixel: its own half-resolution pixel (x, y) and the
-// neighbours on the side where the pixel lies.
-struct phase {
-    int x, y;    // own
-    int nx, ny;  // neighbour's column and row
-};
+#include "gather/phase.h"
 
 // Joint bilateral upsampling: bilinear weights 9 3 3 1 (sixteenths), each over 1 + 1000 |CoC difference|; what has
 // no far CoC has no far colour. Weights are kept in proportion by products instead of quotients, so that one division
 // serves all four; the factors 9 3 3 1 are those of the other three distances: 81 27 27 9. Returns 0 if no neighbour is
 // far.
-static int far_weights(const struct hf_buf *coc, struct phase p, float f, float w[4])
+static int far_weights(const struct hf_buf *coc, struct hf_phase p, float f, float w[4])
 {
     const float g[4] = {*hf_at(coc, 1, p.x, p.y), *hf_at(coc, 1, p.nx, p.y), *hf_at(coc, 1, p.x, p.ny),
                         *hf_at(coc, 1, p.nx, p.ny)};
@@ -37,7 +31,7 @@ static int far_weights(const struct hf_buf *coc, struct phase p, float f, float 
 
 // The published demo: the colours are those of (k, k) for an even pixel, but the CoCs compared are those of
 // (k - 1, k); all four bilinear weights are equal; what is not far counts as black.
-static void far_weights_faithful(const struct hf_buf *coc, struct phase p, float f, float w[4])
+static void far_weights_faithful(const struct hf_buf *coc, struct hf_phase p, float f, float w[4])
 {
     const int x0 = hf_min(p.x, p.nx), x1 = hf_max(p.x, p.nx), y0 = hf_min(p.y, p.ny), y1 = hf_max(p.y, p.ny);
     const float g[4] = {*hf_at(coc, 1, x0, y0), *hf_at(coc, 1, x1, y0), *hf_at(coc, 1, x0, y1), *hf_at(coc, 1, x1, y1)};
@@ -54,7 +48,7 @@ static void far_weights_faithful(const struct hf_buf *coc, struct phase p, float
         w[t] *= i;
 }
 
-static void blend_far(const struct hf_frame *f, struct phase p, float coc, float *const colour[4], int i)
+static void blend_far(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i)
 {
     const struct hf_buf *far = &f->buf[HF_BUF_FAR_FILL];
     const float t = hf_gather(f->s)->blend * coc;
@@ -62,7 +56,7 @@ static void blend_far(const struct hf_frame *f, struct phase p, float coc, float
     if (f->s->faithful) {
         far_weights_faithful(&f->buf[HF_BUF_COC4], p, coc, w);
         // Colour taps (k, k) for an even pixel, (k, k + 1) for an odd one.
-        p = (struct phase){p.x, p.y, hf_max(p.x, p.nx), hf_max(p.y, p.ny)};
+        p = (struct hf_phase){p.x, p.y, hf_max(p.x, p.nx), hf_max(p.y, p.ny)};
     } else if (!far_weights(&f->buf[HF_BUF_COC4], p, coc, w)) {
         return;
     }
@@ -75,22 +69,19 @@ static void blend_far(const struct hf_frame *f, struct phase p, float coc, float
     }
 }
 
-// Sixteen times the bilinear value at a quarter of the way to the neighbour, in x first. Thrice a number and itself are
-// four times it, rounded or not: constants stay exact.
-static float upsample(const struct hf_buf *b, int c, struct phase p)
+float hf_upsample(const struct hf_buf *b, int c, struct hf_phase p)
 {
     const float v = 3 * *hf_at(b, c, p.x, p.y) + *hf_at(b, c, p.nx, p.y);
     const float w = 3 * *hf_at(b, c, p.x, p.ny) + *hf_at(b, c, p.nx, p.ny);
     return 3 * v + w;
 }
 
-// Uniform cubic B-spline there.
 static float cubic(float own, float neighbour, float other, float behind)
 {
     return own + ((CUBIC_NEIGHBOUR * (neighbour - own) + CUBIC_OTHER * (other - own)) + CUBIC_BEHIND * (behind - own));
 }
 
-static float upsample_cubic(const struct hf_buf *b, int c, struct phase p)
+float hf_upsample_cubic(const struct hf_buf *b, int c, struct hf_phase p)
 {
     const int dx = p.nx - p.x, dy = p.ny - p.y;
     const int columns[4] = {p.x, p.nx, p.x - dx, p.nx + dx};
@@ -101,9 +92,9 @@ static float upsample_cubic(const struct hf_buf *b, int c, struct phase p)
     return cubic(v[0], v[1], v[2], v[3]);
 }
 
-static void blend_near(const struct hf_frame *f, struct phase p, float *const colour[4], int i)
+static void blend_near(const struct hf_frame *f, struct hf_phase p, float *const colour[4], int i)
 {
-    float (*up)(const struct hf_buf *, int, struct phase) = hf_gather(f->s)->bicubic ? upsample_cubic : upsample;
+    hf_upsampling *up = hf_gather(f->s)->bicubic ? hf_upsample_cubic : hf_upsample;
     const float scale = hf_gather(f->s)->bicubic ? 1 : 1 / 16.0f;
     const float t = hf_gather(f->s)->blend * scale * up(&f->buf[HF_BUF_BLUR], 0, p);
     for (int c = 0; c < f->s->channels; c++)
@@ -125,7 +116,7 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
     for (int odd = 0; odd < 2; odd++) {
         for (int i = 0; i < n; i++) {
             const int x = r.x0 + i;
-            const struct phase p = {x, y / 2, odd ? x + 1 : x - 1, ny};
+            const struct hf_phase p = {x, y / 2, odd ? x + 1 : x - 1, ny};
             if (f->far)
                 blend_far(f, p, coc[2 + odd][i], lane[odd], i);
             if (f->near)
@@ -141,6 +132,10 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
+    if (hf_gather(f->s)->area) {
+        hf_area_composite_c(f, r);
+        return;
+    }
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
         composite_row(f, y, r);
 }

@@ -209,7 +209,7 @@ HF_INLINE void near_up(const struct field_rows *f, const int rows, const int bic
 }
 
 // What there is to blend; of the near field there is the CoC too.
-enum { BLEND_NEAR = 1, BLEND_FAR = 2, BLEND_FAR_DIFFERS = 4 };
+enum { BLEND_NEAR = 1, BLEND_FAR = 2, BLEND_FAR_DIFFERS = 4, BLEND_AREA = 8 };
 
 HF_INLINE int blend_kind(const struct composite_rows *r, const int rows, int with_far, int with_near, const int bicubic,
                          int x, vf coc[2][2], vf near_coc[2][2])
@@ -262,6 +262,8 @@ HF_INLINE void blend_block(const struct composite_rows *r, const enum hf_divisio
     }
 }
 
+#include "gather/area_composite_simd.h"
+
 // ---- through lines: everything there is, row by row ----
 
 // Lanes of a row that have been read: the picture, even and odd, channel by channel, `line` floats apart; overwritten.
@@ -275,7 +277,7 @@ struct composite_line {
 
 HF_INLINE void composite_lines(const struct composite_rows *rows, const struct composite_line *lines,
                                const enum hf_division division, const int channels, const int far, const int near,
-                               const int faithful, const int bicubic)
+                               const int faithful, const int bicubic, const int area)
 {
     const struct composite_rows r = *rows;  // see field_rows
     const struct composite_line l = *lines;
@@ -284,14 +286,18 @@ HF_INLINE void composite_lines(const struct composite_rows *rows, const struct c
         vf near_coc[2][2] = {{vf_zero()}};
         for (int o = 0; o < 2; o++)
             b.coc[0][o] = vf_load(l.coc + o * l.line + x);
-        const int kind = blend_kind(&r, 1, far, near, bicubic, l.first + x, b.coc, near_coc);
-        if (!kind)
+        const int kind = area ? area_blend_kind(&r, 1, far, near, bicubic, l.first + x, b.coc, near_coc)
+                              : blend_kind(&r, 1, far, near, bicubic, l.first + x, b.coc, near_coc);
+        if (!(kind & (BLEND_FAR | BLEND_NEAR)))
             continue;
         for (int c = 0; c < channels; c++) {
             b.colour[0][0][c] = vf_load(l.even + c * l.line + x);
             b.colour[0][1][c] = vf_load(l.odd + c * l.line + x);
         }
-        blend_block(&r, division, 1, channels, kind, faithful, bicubic, 0, l.first + x, near_coc, NULL, NULL, &b);
+        if (area)
+            area_blend_block(&r, 1, channels, kind, bicubic, 0, l.first + x, near_coc, NULL, NULL, &b);
+        else
+            blend_block(&r, division, 1, channels, kind, faithful, bicubic, 0, l.first + x, near_coc, NULL, NULL, &b);
         for (int c = 0; c < channels; c++) {
             vf_store(l.even + c * l.line + x, b.colour[0][0][c]);
             vf_store(l.odd + c * l.line + x, b.colour[0][1][c]);
@@ -304,14 +310,18 @@ HF_INLINE void composite_options(const struct composite_rows *r, const struct co
                                  const struct hf_setup *s, int far, int near, const int channels)
 {
     const enum hf_division division = hf_gather(s)->division;
-    if (s->faithful || hf_gather(s)->bicubic || division != HF_DIVISION_EXACT)
-        composite_lines(r, l, division, channels, far, near, s->faithful, hf_gather(s)->bicubic);
+    if (hf_gather(s)->area && hf_gather(s)->bicubic)
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, far, near, 0, 1, 1);
+    else if (hf_gather(s)->area)
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, far, near, 0, 0, 1);
+    else if (s->faithful || hf_gather(s)->bicubic || division != HF_DIVISION_EXACT)
+        composite_lines(r, l, division, channels, far, near, s->faithful, hf_gather(s)->bicubic, 0);
     else if (far && near)
-        composite_lines(r, l, HF_DIVISION_EXACT, channels, 1, 1, 0, 0);
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, 1, 1, 0, 0, 0);
     else if (far)
-        composite_lines(r, l, HF_DIVISION_EXACT, channels, 1, 0, 0, 0);
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, 1, 0, 0, 0, 0);
     else
-        composite_lines(r, l, HF_DIVISION_EXACT, channels, 0, 1, 0, 0);
+        composite_lines(r, l, HF_DIVISION_EXACT, channels, 0, 1, 0, 0, 0);
 }
 
 // Row y of rectangle r, from its lane `first` on.
@@ -395,7 +405,8 @@ HF_INLINE int composite_run(const struct composite_rows *rows, const struct pack
                 bad = vm_or(bad, far_coc(s, p.depth[i] + at, b.coc[i]));
             }
         }
-        const int is = blend_kind(&r, 2, with_far, with_near, 0, x, b.coc, near_coc);
+        const int is = kind & BLEND_AREA ? area_blend_kind(&r, 2, with_far, with_near, 0, x, b.coc, near_coc)
+                                         : blend_kind(&r, 2, with_far, with_near, 0, x, b.coc, near_coc);
         if (is != kind) {
             *next = is;
             return x;
@@ -410,13 +421,16 @@ HF_INLINE int composite_run(const struct composite_rows *rows, const struct pack
             words[i][0] = vf_as_vi(even);
             words[i][1] = vf_as_vi(odd);
         }
-        blend_block(&r, division, 2, 3, kind, 0, 0, 1, x, near_coc, words, &most, &b);
+        if (kind & BLEND_AREA)
+            area_blend_block(&r, 2, 3, kind, 0, 1, x, near_coc, words, &most, &b);
+        else
+            blend_block(&r, division, 2, 3, kind, 0, 0, 1, x, near_coc, words, &most, &b);
         if (vm_any(vm_or(bad, vm_not(vi_le(most, vi_set1((31 << 23) - 1)))))) {
             *next = -1;
             return x;
         }
         for (int i = 0; i < 2; i++) {
-            if (!kind) {
+            if (!(kind & ~BLEND_AREA)) {
                 vf_store(p.to[i] + at, in[i][0]);
                 vf_store(p.to[i] + at + 4 * VF_N, in[i][1]);
                 continue;
@@ -452,18 +466,22 @@ COMPOSITE_RUN(6, 6, HF_DIVISION_EXACT)
 COMPOSITE_RUN(7, 7, HF_DIVISION_EXACT)
 COMPOSITE_RUN(6_any, 6, hf_gather(s)->division)
 COMPOSITE_RUN(7_any, 7, hf_gather(s)->division)
+COMPOSITE_RUN(8, 8, HF_DIVISION_EXACT)
+COMPOSITE_RUN(9, 9, HF_DIVISION_EXACT)
+COMPOSITE_RUN(10, 10, HF_DIVISION_EXACT)
+COMPOSITE_RUN(11, 11, HF_DIVISION_EXACT)
 
 // n lanes. Returns how many of them were done: all, or those before a sample that is not finite.
 static int composite_packed(const struct composite_rows *rows, const struct packed_rows *packed,
                             const struct hf_setup *s, int n, vi *clamped)
 {
-    static composite_run_of_kind *const run[2][8] = {{composite_run_0, composite_run_1, composite_run_2,
-                                                      composite_run_3, NULL, NULL, composite_run_6, composite_run_7},
-                                                     {composite_run_0, composite_run_1, composite_run_2,
-                                                      composite_run_3, NULL, NULL, composite_run_6_any,
-                                                      composite_run_7_any}};
-    const int any = hf_gather(s)->division != HF_DIVISION_EXACT;
-    int x = 0, kind = 0;
+    static composite_run_of_kind *const run[2][12] = {
+        {composite_run_0, composite_run_1, composite_run_2, composite_run_3, NULL, NULL, composite_run_6,
+         composite_run_7, composite_run_8, composite_run_9, composite_run_10, composite_run_11},
+        {composite_run_0, composite_run_1, composite_run_2, composite_run_3, NULL, NULL, composite_run_6_any,
+         composite_run_7_any}};
+    const int any = !hf_gather(s)->area && hf_gather(s)->division != HF_DIVISION_EXACT;
+    int x = 0, kind = hf_gather(s)->area ? BLEND_AREA : 0;
     while (x < n && kind >= 0)
         x = run[any][kind](rows, packed, s, x, n, &kind, clamped);
     return x;
@@ -517,6 +535,14 @@ static struct composite_rows composite_rows_at(const struct hf_frame *f, int y, 
 {
     const int down = y & 1, hy = (y - down) / 2, ny = down ? hy + 1 : hy - 1;
     struct composite_rows rows = {.blend = hf_gather(f->s)->blend, .down = down};
+    if (hf_gather(f->s)->area) {
+        rows.blend = hf_gather_levels(f->s, HF_FAR)->gain;
+        rows.far = field_at(&f->buf[HF_BUF_FAR], 0, r.x0, hy, ny);
+        rows.far_coc = field_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, r.x0, hy, ny);
+        rows.near = field_at(&f->buf[HF_BUF_NEAR], 0, r.x0, hy, ny);
+        rows.near_coc = field_at(&f->buf[HF_BUF_COVER], 0, r.x0, hy, ny);
+        return rows;
+    }
     if (f->far) {
         rows.far = field_at(&f->buf[HF_BUF_FAR_FILL], 0, r.x0, hy, ny);
         rows.far_coc = field_at(&f->buf[HF_BUF_COC4], 1, r.x0, hy, ny);
@@ -533,9 +559,10 @@ static void composite_row_rest(const struct hf_frame *f, int y, struct hf_rect r
     const struct hf_setup *s = f->s;
     struct composite_rows rows = composite_rows_at(f, y, r);
     if (f->near && hf_gather(s)->bicubic) {
+        const int area = hf_gather(s)->area;
         for (int c = 0; c < s->channels; c++)
-            near_line(&f->buf[HF_BUF_NEAR_FILL], c, y, r, hf_line(f, 12 + c));
-        near_line(&f->buf[HF_BUF_BLUR], 0, y, r, hf_line(f, 16));
+            near_line(&f->buf[area ? HF_BUF_NEAR : HF_BUF_NEAR_FILL], c, y, r, hf_line(f, 12 + c));
+        near_line(&f->buf[area ? HF_BUF_COVER : HF_BUF_BLUR], 0, y, r, hf_line(f, 16));
         rows.near = (struct field_rows){{hf_line(f, 12) + 16}, (ptrdiff_t)f->line_floats};
         rows.near_coc = (struct field_rows){{hf_line(f, 16) + 16}, 0};
     }

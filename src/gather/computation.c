@@ -12,6 +12,15 @@
 
 // One output row of a convolution. With mirrored weights, pairs of columns are added first. Each row of weights is
 // summed, and the rows are added from top to bottom.
+// A run of columns, of areas, is summed from the middle outwards.
+static float run_sum(const float *p, int reach)
+{
+    float sum = *p;
+    for (int j = 1; j <= reach; j++)
+        sum += p[-j] + p[j];
+    return sum;
+}
+
 static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t stride, float *out, int n, float *sum)
 {
     for (int x = 0; x < n; x++)
@@ -27,6 +36,9 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
             if (!t->symmetric)
                 for (int x = 0; x < n; x++)
                     sum[x] += w * p[x + j - t->rx];
+            else if (j > t->rx)
+                for (int x = 0; x < n; x++)
+                    sum[x] += w * run_sum(p + x, j - t->rx - 1);
             else if (j == 0)
                 for (int x = 0; x < n; x++)
                     sum[x] += w * p[x];
@@ -39,12 +51,17 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
     }
 }
 
+void hf_convolve_c(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, const struct hf_buf *in,
+                   int c_in, const struct hf_buf *out, int c_out)
+{
+    for (int y = r.y0; y < r.y1; y++)
+        convolve_row(t, hf_at(in, c_in, r.x0, y), in->stride, hf_at(out, c_out, r.x0, y), r.x1 - r.x0, hf_line(f, 0));
+}
+
 static void convolve(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, enum hf_gather_buf in,
                      int c_in, enum hf_gather_buf out, int c_out)
 {
-    const struct hf_buf *a = &f->buf[in], *b = &f->buf[out];
-    for (int y = r.y0; y < r.y1; y++)
-        convolve_row(t, hf_at(a, c_in, r.x0, y), a->stride, hf_at(b, c_out, r.x0, y), r.x1 - r.x0, hf_line(f, 0));
+    hf_convolve_c(f, r, t, &f->buf[in], c_in, &f->buf[out], c_out);
 }
 
 // Karis average: planes of w = 1 / (1 + luminance) times what is to be averaged, wherever taps of r reach.
@@ -61,8 +78,7 @@ static void weigh(const struct hf_frame *f, struct hf_rect r)
         hf_row(&f->buf[HF_BUF_COLORW4], f->s->channels, r.x0 - rx, y, colour_w);
         hf_row(&f->buf[HF_BUF_COLORFARW4], f->s->channels, r.x0 - rx, y, far_w);
         for (int x = 0; x < n; x++) {
-            const float luma = (0.2126f * colour[0][x] + 0.7152f * colour[1][x]) + 0.0722f * colour[2][x];
-            const float w = 1 / (1 + (luma > 0 ? luma : 0));
+            const float w = hf_karis_weight(colour[0][x], colour[1][x], colour[2][x]);
             weight[0][x] = w;
             weight[1][x] = coc[1][x] * w;
             for (int c = 0; c < f->s->channels; c++) {
@@ -160,6 +176,10 @@ static void gather_far(const struct hf_frame *f, struct hf_rect r)
 
 void hf_gather_c(const struct hf_frame *f, struct hf_rect r)
 {
+    if (hf_gather(f->s)->area) {
+        hf_area_gather_c(f, r);
+        return;
+    }
     if (hf_gather(f->s)->karis)
         weigh(f, r);
     if (f->near)

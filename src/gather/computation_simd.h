@@ -58,9 +58,10 @@ HF_INLINE void prefetch_row(const float *p, int floats)
         __builtin_prefetch(p + i);
 }
 
-// Pairs h[j] of an input row (or, without symmetry, its shifted values).
-HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, const int s, float *h)
+// Pairs h[j] of an input row (or, without symmetry, its shifted values); of areas their sums from the middle on, too.
+HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, const int s, float *h)
 {
+    const float *pairs = h;
     if (!symmetric) {
         for (int j = -rx; j <= rx; j++, h += s * VF_N)
 #pragma GCC unroll 16
@@ -77,6 +78,20 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, const int 
         for (int v = 0; v < s; v++)
             vf_store(h + v * VF_N, vf_add(vf_load(p + v * VF_N - j), vf_load(p + v * VF_N + j)));
     }
+    if (!runs)
+        return;
+    vf sum[GATHER_S];
+    h += s * VF_N;
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        vf_store(h + v * VF_N, sum[v] = vf_load(pairs + v * VF_N));
+    for (int j = 1; j <= rx; j++) {
+        h += s * VF_N;
+        pairs += s * VF_N;
+#pragma GCC unroll 16
+        for (int v = 0; v < s; v++)
+            vf_store(h + v * VF_N, sum[v] = vf_add(sum[v], vf_load(pairs + v * VF_N)));
+    }
 }
 
 // s vectors of columns. Each input row is spread over the output rows it reaches: those are sums that grow from top to
@@ -88,7 +103,7 @@ HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_
     const int ry = t->ry, step = s * VF_N;
     for (int y = -ry; y < height + ry; y++) {
         prefetch_row(in + (y + GATHER_AHEAD) * in_stride - t->rx, step + 2 * t->rx);
-        row_pairs(in + y * in_stride, t->rx, symmetric, s, h);
+        row_pairs(in + y * in_stride, t->rx, symmetric, t->runs, s, h);
         if (y + ry < height)  // reached for the first time
 #pragma GCC unroll 16
             for (int v = 0; v < s; v++)
@@ -103,14 +118,16 @@ HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_
     }
 }
 
-// Planes to convolve together, and where: only rows with need > 0 are wanted.
+// Planes to convolve together, and where: only rows with need > 0 are wanted, those within reach of some, or all.
 struct gather_job {
-    const float *in[5];
-    float *out[5];
-    ptrdiff_t in_stride[5], out_stride[5];
+    const float *in[6];
+    float *out[6];
+    ptrdiff_t in_stride[6], out_stride[6];
     int planes;
-    const float *need;
+    const float *need;  // NULL: all
     ptrdiff_t need_stride;
+    struct hf_reach reach;
+    int clears;  // the other rows become 0
 };
 
 static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_gather_buf in,
@@ -133,15 +150,48 @@ HF_INLINE int row_needed(const float *need, const int s)
     return vm_any(any);
 }
 
+// Is there any need in a row from reach before a strip to reach after it?
+HF_INLINE int row_needed_around(const float *need, int reach, const int s)
+{
+    vm any = vf_gt(vf_load(need - reach), vf_zero());
+    for (int x = VF_N - reach; x < s * VF_N + reach; x += VF_N)  // the last may reach a little further
+        any = vm_or(any, vf_gt(vf_load(need + hf_min(x, (s - 1) * VF_N + reach)), vf_zero()));
+    return vm_any(any);
+}
+
 // The rows from the first to the last that a strip of s vectors from column x needs.
 HF_INLINE void rows_needed(const struct gather_job *j, int x, int height, const int s, int *y0, int *y1)
 {
+    const int ry = j->reach.y;
     *y0 = 0;
     *y1 = height;
-    while (*y0 < *y1 && !row_needed(j->need + *y0 * j->need_stride + x, s))
-        (*y0)++;
-    while (*y1 > *y0 && !row_needed(j->need + (*y1 - 1) * j->need_stride + x, s))
-        (*y1)--;
+    if (!j->need)
+        return;
+    const float *p = j->need + x;
+    if (!j->reach.x && !ry) {
+        while (*y0 < *y1 && !row_needed(p + *y0 * j->need_stride, s))
+            (*y0)++;
+        while (*y1 > *y0 && !row_needed(p + (*y1 - 1) * j->need_stride, s))
+            (*y1)--;
+        return;
+    }
+    int first = -ry, last = height + ry;
+    while (first < last && !row_needed_around(p + first * j->need_stride, j->reach.x, s))
+        first++;
+    while (last > first && !row_needed_around(p + (last - 1) * j->need_stride, j->reach.x, s))
+        last--;
+    *y0 = hf_max(first - ry, 0);
+    *y1 = hf_max(hf_min(last + ry, height), *y0);
+    if (first == last)
+        *y1 = *y0;
+}
+
+// Zeros in the rows of a plane that are not needed.
+HF_INLINE void clear_rest(const struct gather_job *j, int i, int x, int height, const int s, int y0, int y1)
+{
+    for (int y = 0; j->clears && y < height; y++)
+        for (int v = 0; v < s && (y < y0 || y >= y1); v++)
+            vf_store(j->out[i] + y * j->out_stride[i] + x + v * VF_N, vf_zero());
 }
 
 // A strip of s vectors from column x of all planes.
@@ -155,6 +205,8 @@ HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j,
         terms[i] = (struct gather_term){t->weight[i], t->column[i] * s * (int)sizeof(vf)};
     int y0, y1;
     rows_needed(j, x, height, s, &y0, &y1);
+    for (int i = 0; i < j->planes; i++)
+        clear_rest(j, i, x, height, s, y0, y1);
     for (int i = 0; i < j->planes && y0 < y1; i++)
         convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i], j->out[i] + y0 * j->out_stride[i] + x,
                        j->out_stride[i], y1 - y0, symmetric, s, terms, h);
@@ -180,6 +232,9 @@ static void gather_columns(const float *weights, const struct gather_job *j, fix
     int y0[FIXED_STRIP], y1[FIXED_STRIP];
     for (int v = 0; v < s; v++)
         rows_needed(j, x + v * VF_N, height, 1, &y0[v], &y1[v]);
+    for (int i = 0; i < j->planes && j->clears; i++)
+        for (int v = 0; v < s; v++)
+            clear_rest(j, i, x + v * VF_N, height, 1, y0[v], y1[v]);
     for (int i = 0; i < j->planes; i++)
         for (int v = 0; v < s; v++)
             if (y0[v] < y1[v])
@@ -195,8 +250,10 @@ static void gather_run(const struct hf_frame *f, struct hf_rect r, const struct 
     fixed_column *column = fixed_column_for(t);
     const float *weights = column ? fixed_weights(t, f->work) : NULL;
     const int most = column ? FIXED_STRIP : GATHER_S, width = r.x1 - r.x0, height = r.y1 - r.y0;
-    j->need = hf_at(need, need_channel, r.x0, r.y0);
-    j->need_stride = need->stride;
+    if (need) {
+        j->need = hf_at(need, need_channel, r.x0, r.y0);
+        j->need_stride = need->stride;
+    }
     for (int x = 0, next; x < width; x = next) {
         const int odd = (r.x0 + x) & (VF_N - 1), left = (width - x + VF_N - 1) / VF_N;
         const int strips = (left + most - 1) / most;
@@ -208,7 +265,8 @@ static void gather_run(const struct hf_frame *f, struct hf_rect r, const struct 
             gather_any(t, j, x, height, 1, s, f->work);
         else
             gather_any(t, j, x, height, 0, s, f->work);
-        finish(f, (struct hf_rect){r.x0 + x, r.y0, r.x0 + hf_min(next, width), r.y1});
+        if (finish)
+            finish(f, (struct hf_rect){r.x0 + x, r.y0, r.x0 + hf_min(next, width), r.y1});
     }
 }
 
@@ -363,8 +421,14 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
     gather_run(f, r, hf_gather_taps(s, HF_FAR), &j, &f->buf[HF_BUF_COC4], 1, finish_far);
 }
 
+#include "gather/area_computation_simd.h"
+
 static void gather_simd(const struct hf_frame *f, struct hf_rect r)
 {
+    if (hf_gather(f->s)->area) {
+        area_gather_simd(f, r);
+        return;
+    }
     if (hf_gather(f->s)->karis)
         weigh_simd(f, r);
     if (f->near)

@@ -47,10 +47,12 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
         for (int c = 0; c < s->channels; c++) {
             const float c00 = lane[0][0][c][x], c10 = lane[0][1][c][x];
             const float c01 = lane[1][0][c][x], c11 = lane[1][1][c][x];
+            const float sum = 0.25f * ((c00 + c10) + (c01 + c11));
+            f->counts->clamped += !(__builtin_fabsf(sum) <= HF_LARGEST);
             if (f->near)
-                colour[c][x] = how == HF_DOWNSAMPLE_POINT ? c00 : 0.25f * ((c00 + c10) + (c01 + c11));
+                colour[c][x] = hf_limited(how == HF_DOWNSAMPLE_POINT ? c00 : sum);
             if (f->far)
-                far[c][x] = ((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0];
+                far[c][x] = hf_limited(((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0]);
         }
         if (f->near)
             *hf_at(&f->buf[HF_BUF_COC4], 0, r.x0 + x, y) = *hf_at(coc, 0, r.x0 + x, 2 * y);
@@ -65,6 +67,10 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_down_c(const struct hf_frame *f, struct hf_rect r)
 {
+    if (hf_gather(f->s)->area) {
+        hf_area_down_c(f, r);
+        return;
+    }
     for (int y = r.y0; y < r.y1; y++)
         down_row(f, y, r);
 }

@@ -57,6 +57,22 @@ HF_INLINE vf down_far(const vf w[4], const vf c[4], vf f0)
     return vf_mul(vf_add(top, bottom), f0);
 }
 
+HF_INLINE vf down_limited(vf v)
+{
+    return vf_min(vf_max(v, vf_set1(-HF_LARGEST)), vf_set1(HF_LARGEST));
+}
+
+// Lanes of a row that are too large; only those that there are.
+static uint64_t down_count(vf sum, int lanes)
+{
+    float v[VF_N];
+    uint64_t n = 0;
+    vf_store(v, sum);
+    for (int i = 0; i < hf_min(lanes, VF_N); i++)
+        n += !(__builtin_fabsf(v[i]) <= HF_LARGEST);
+    return n;
+}
+
 // A row of any format, by way of lines: the fields that are asked for.
 HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample how, const enum hf_division division,
                               const int channels, const int near, const int far, int x0, int x1, int y)
@@ -80,11 +96,13 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample
         for (int c = 0; c < channels; c++) {
             const vf quad[4] = {vf_load(lane[0][c] + x), vf_load(lane[1][c] + x), vf_load(lane[2][c] + x),
                                 vf_load(lane[3][c] + x)};
+            const vf sum = vf_mul(vf_set1(0.25f), down_sum(quad));
+            if (vm_any(vm_not(vf_le(vf_abs(sum), vf_set1(HF_LARGEST)))))
+                f->counts->clamped += down_count(sum, n - x);
             if (near)
-                vf_store(d.colour[c] + x,
-                         how == HF_DOWNSAMPLE_POINT ? quad[0] : vf_mul(vf_set1(0.25f), down_sum(quad)));
+                vf_store(d.colour[c] + x, down_limited(how == HF_DOWNSAMPLE_POINT ? quad[0] : sum));
             if (far)
-                vf_store(d.colour_far[c] + x, down_far(w, quad, g[0]));
+                vf_store(d.colour_far[c] + x, down_limited(down_far(w, quad, g[0])));
         }
         if (near)
             vf_store(d.coc[0] + x, vf_load(d.near + x));
@@ -206,8 +224,14 @@ HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far
         vf_stream_end();
 }
 
+#include "gather/area_down_simd.h"
+
 static void down_simd(const struct hf_frame *f, struct hf_rect r)
 {
+    if (hf_gather(f->s)->area) {
+        area_down_simd(f, r);
+        return;
+    }
     if (f->near && f->far)
         down_rows(f, 1, 1, r);
     else if (f->near)

@@ -7,21 +7,25 @@
 
 static const struct hf_pass passes[] = {
     {"CoC generation", .writes = B(COC), .sweep = 1, .ns = 1.7f},
-    {"Downsample", .reads = B(COC), .writes = B(COLOR4) | B(COLORFAR4) | B(COC4), .sweep = 1, .ns = 1.1f},
+    {"Downsample", .reads = B(COC), .writes = B(COLOR4) | B(COLORNEAR4) | B(COLORFAR4) | B(COC4), .sweep = 1,
+     .ns = 1.1f},
     {"Near CoC Max X", .around = B(COC4), .writes = B(MAX_X), .halo = HF_HALO_MAX_X, .sweep = 2, .field = HF_NEAR,
      .ns = 0.7f},
     {"Near CoC Max Y", .around = B(MAX_X), .writes = B(MAX), .halo = HF_HALO_MAX_Y, .sweep = 2, .field = HF_NEAR,
      .ns = 0.25f},
-    {"Near CoC Blur X", .around = B(MAX), .writes = B(BLUR_X), .halo = HF_HALO_MAX_X, .sweep = 2, .field = HF_NEAR,
+    {"Near CoC Blur X", .around = B(MAX), .writes = B(BLUR_X), .halo = HF_HALO_BLUR_X, .sweep = 2, .field = HF_NEAR,
      .ns = 0.25f},
-    {"Near CoC Blur Y", .around = B(BLUR_X), .writes = B(BLUR), .halo = HF_HALO_MAX_Y, .sweep = 2, .field = HF_NEAR,
+    {"Near CoC Blur Y", .around = B(BLUR_X), .writes = B(BLUR), .halo = HF_HALO_BLUR_Y, .sweep = 2, .field = HF_NEAR,
      .ns = 0.27f},
-    {"Computation", .reads = B(BLUR), .around = B(COLOR4) | B(COLORFAR4) | B(COC4), .writes = B(NEAR) | B(FAR),
-     .inside = B(SUM), .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4), .halo = HF_HALO_TAPS, .sweep = 2, .ns = 4},
+    {"Computation", .reads = B(BLUR), .around = B(COLOR4) | B(COLORNEAR4) | B(COLORFAR4) | B(COC4),
+     .writes = B(NEAR) | B(FAR) | B(COVER),
+     .inside = B(SUM) | B(LEVEL_SUM) | B(LEVEL_WEIGHT_SUM) | B(BEHIND) | B(BEHIND_WEIGHT),
+     .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4) | B(LEVEL) | B(LEVEL_WEIGHT), .halo = HF_HALO_TAPS, .sweep = 2,
+     .ns = 4},
     {"Fill", .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4), .writes = B(NEAR_FILL) | B(FAR_FILL),
      .halo = HF_HALO_3X3, .sweep = 2, .ns = 0.75f},
-    {"Composite", .around = B(NEAR_FILL) | B(FAR_FILL) | B(BLUR) | B(COC4), .halo = HF_HALO_UPSAMPLE, .sweep = 2,
-     .ns = 3.2f},
+    {"Composite", .around = B(NEAR) | B(FAR) | B(NEAR_FILL) | B(FAR_FILL) | B(COVER) | B(BLUR) | B(COC4),
+     .halo = HF_HALO_UPSAMPLE, .sweep = 2, .ns = 3.2f},
 };
 _Static_assert(sizeof passes / sizeof *passes == HF_GATHER_PASSES, "one row per pass");
 
@@ -38,14 +42,19 @@ static const struct hf_buf_def bufs[HF_BUF_COUNT] = {
     [HF_BUF_FAR] = {"far", .field = HF_FAR},
     [HF_BUF_NEAR_FILL] = {"nearfill", .field = HF_NEAR},
     [HF_BUF_FAR_FILL] = {"farfill", .field = HF_FAR},
+    [HF_BUF_COLORNEAR4] = {"colormulnear4", .frame = 1, .field = HF_NEAR},
+    [HF_BUF_COVER] = {"cover", .field = HF_NEAR},
 };
 
 static int channels(const struct hf_setup *s, int b)
 {
+    const struct hf_gather *g = hf_gather(s);
+    const int levels = g->area && !(hf_gather_is_simple(s, HF_NEAR) && hf_gather_is_simple(s, HF_FAR));
     switch (b) {
     case HF_BUF_COC:
         return 4;
     case HF_BUF_COC4:
+        return g->area ? 4 : 2;
     case HF_BUF_SUM:
         return 2;
     case HF_BUF_MAX_X:
@@ -54,13 +63,38 @@ static int channels(const struct hf_setup *s, int b)
     case HF_BUF_BLUR:
         return 1;
     case HF_BUF_WEIGHT:
-        return hf_gather(s)->karis ? 2 : 0;
+        return g->karis ? (g->area ? 1 : 2) : 0;
     case HF_BUF_COLORW4:
     case HF_BUF_COLORFARW4:
-        return hf_gather(s)->karis ? s->channels : 0;
+        return g->karis && !g->area ? s->channels : 0;
+    case HF_BUF_NEAR_FILL:
+    case HF_BUF_FAR_FILL:
+        return g->area ? 0 : s->channels;
+    case HF_BUF_COLORNEAR4:
+        return g->area ? s->channels : 0;
+    case HF_BUF_COVER:
+        return g->area;
+    case HF_BUF_LEVEL:
+    case HF_BUF_LEVEL_SUM:
+        return levels ? s->channels : 0;
+    case HF_BUF_BEHIND:
+        return g->area ? s->channels : 0;
+    case HF_BUF_LEVEL_WEIGHT:
+    case HF_BUF_LEVEL_WEIGHT_SUM:
+    case HF_BUF_BEHIND_WEIGHT:
+        return levels ? 2 : 0;
     default:
         return s->channels;
     }
+}
+
+// The largest kernel of both fields.
+static struct hf_reach taps_reach(const struct hf_setup *s)
+{
+    const struct hf_gather *g = hf_gather(s);
+    const struct hf_taps *near = g->area ? &g->levels[0].level[0].taps : hf_gather_taps(s, HF_NEAR);
+    const struct hf_taps *far = g->area ? &g->levels[1].level[0].taps : hf_gather_taps(s, HF_FAR);
+    return (struct hf_reach){hf_max(near->rx, far->rx), hf_max(near->ry, far->ry)};
 }
 
 struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo)
@@ -68,15 +102,18 @@ struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo)
     const struct hf_gather *g = hf_gather(s);
     switch (halo) {
     case HF_HALO_3X3:
-        return (struct hf_reach){1, 1};
+        return (struct hf_reach){!g->area, !g->area};
     case HF_HALO_MAX_X:
         return (struct hf_reach){g->max_x, 0};
     case HF_HALO_MAX_Y:
         return (struct hf_reach){0, g->max_y};
+    case HF_HALO_BLUR_X:
+        return (struct hf_reach){g->blur_x, 0};
+    case HF_HALO_BLUR_Y:
+        return (struct hf_reach){0, g->blur_y};
     case HF_HALO_TAPS:
         // One more for the per-pixel kernel, whose bilinear taps read a neighbour even with weight 0.
-        return (struct hf_reach){hf_max(g->taps.rx, hf_gather_taps(s, HF_FAR)->rx) + g->per_pixel_kernel,
-                                 hf_max(g->taps.ry, hf_gather_taps(s, HF_FAR)->ry) + g->per_pixel_kernel};
+        return (struct hf_reach){taps_reach(s).x + g->per_pixel_kernel, taps_reach(s).y + g->per_pixel_kernel};
     case HF_HALO_UPSAMPLE:
         return g->bicubic ? (struct hf_reach){2, 2} : (struct hf_reach){1, 1};
     default:
@@ -87,9 +124,16 @@ struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo)
 // Blurred near CoC is 0 unless there is some within the reach of the four passes; the far field stays where it is.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
 {
+    const struct hf_gather *g = hf_gather(s);
     if (field == HF_FAR)
         return (struct hf_reach){0, 0};
-    return (struct hf_reach){p->pass[HF_GATHER_MAX_X].x + hf_gather(s)->max_x, p->pass[HF_GATHER_MAX_X].y};
+    if (g->area) {
+        const struct hf_taps *t = &g->levels[0].level[0].taps;
+        const struct hf_reach up = hf_gather_halo(s, HF_HALO_UPSAMPLE);
+        return (struct hf_reach){hf_max(t->rx, g->max_x + g->blur_x) + up.x,
+                                 hf_max(t->ry, g->max_y + g->blur_y) + up.y};
+    }
+    return (struct hf_reach){p->pass[HF_GATHER_MAX_X].x + g->max_x, p->pass[HF_GATHER_MAX_X].y};
 }
 
 // Karis weights are made from the colour, whatever they weigh.
@@ -98,13 +142,17 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return hf_gather(s)->karis && needs ? HF_FIELDS : needs;
 }
 
-// What the kernels need: terms and pairs of the gather for strips of up to 80 columns; values and partial sums of the near
-// blur for 16; and three rows for the mean fill.
+// The passes that fill in between taps are for taps.
+static int runs(const struct hf_setup *s, int pass)
+{
+    return !(hf_gather(s)->area && pass == HF_GATHER_FILL);
+}
+
+// What the kernels need: terms, pairs and their sums of the gather for strips of up to 80 columns; values and partial sums
+// of the near blur for 16; and three rows for the mean fill.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
-    const struct hf_taps *near_taps = hf_gather_taps(s, HF_NEAR), *far_taps = hf_gather_taps(s, HF_FAR);
-    const size_t rows = 2 * (size_t)hf_max(near_taps->ry, far_taps->ry) + 1;
-    const size_t columns = 2 * (size_t)hf_max(near_taps->rx, far_taps->rx) + 1;
+    const size_t rows = 2 * (size_t)taps_reach(s).y + 1, columns = 2 * (size_t)taps_reach(s).x + 2;
     const size_t gather = 2 * rows * columns + 16 + columns * 80;
     const size_t near = 2 * ((size_t)p->cell_height[2] + 2 * (size_t)p->buf[HF_BUF_BLUR_X].y) * 16;
     const size_t most = gather > near ? gather : near, fill = 3 * p->line_floats;
@@ -137,6 +185,9 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     (void)depth;
     if ((unsigned)g->storage > HF_STORAGE_PACKED)
         return hf_bad(message, "gather.storage is %d, which is none", (int)g->storage);
+    if ((int)g->fill == HF_DERIVE)
+        g->fill =
+            g->faithful || g->downsample || (g->division && !r->params.run.deterministic) ? HF_FILL_MAX : HF_FILL_MEAN;
     if ((unsigned)g->fill > HF_FILL_OPEN)
         return hf_bad(message, "gather.fill is %d, which is none", (int)g->fill);
     if ((unsigned)g->downsample > HF_DOWNSAMPLE_POINT)
@@ -154,6 +205,18 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     return HF_OK;
 }
 
+// By area the near maximum and blur are not the near field's edge: they are where near pixels hide what is behind them,
+// and what full-resolution pixels of a quad and its neighbours see of that.
+enum { AREA_MAX = 2, AREA_BLUR = 1 };
+
+static void set_reach(struct hf_gather *g, const struct hf_setup *s, float h)
+{
+    g->max_x = g->area ? AREA_MAX : (int)__builtin_ceilf(h / s->pixel_aspect);
+    g->max_y = g->area ? AREA_MAX : (int)__builtin_ceilf(h);
+    g->blur_x = g->area ? AREA_BLUR : g->max_x;
+    g->blur_y = g->area ? AREA_BLUR : g->max_y;
+}
+
 static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
 {
     struct hf_gather *g = own;
@@ -169,17 +232,21 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     g->downsample = p->gather.downsample;
     g->division = p->run.deterministic ? HF_DIVISION_EXACT : p->gather.division;
     g->rings = p->gather.rings;
-    g->max_x = (int)__builtin_ceilf(h / s->pixel_aspect);
-    g->max_y = (int)__builtin_ceilf(h);
+    g->area = !s->faithful && g->fill == HF_FILL_MEAN && !g->downsample && !g->division;
+    s->zero_beyond = g->area;
+    set_reach(g, s, h);
     s->measured = is_measured(s->resolved);
     if (s->measured) {  // until then the CoC is the radius over the largest there may be, which a byte cannot hold
         g->smoothstep = s->smoothstep;
         g->storage = s->storage;
         s->smoothstep = 0;
         s->storage = HF_STORAGE_FLOAT;
-        g->max_x = g->max_y = 0;
+        g->max_x = g->max_y = g->blur_x = g->blur_y = 0;
     }
 }
+
+// Levels' radii: of one, from the one before.
+static const float LEVEL_STEP = 0.5f;
 
 // radius: h. Of a measured one rings lie at most 2 apart, if there are so many.
 static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const struct hf_params *p, float radius,
@@ -196,10 +263,51 @@ static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const stru
     return hf_taps_build(taps, &key, mem);
 }
 
+// radius: h. With levels from it down to 1, each half of the one before; the last is 1, so that a radius that grows adds a
+// level where there is one already.
+static int build_levels(struct hf_levels *l, const struct hf_setup *s, const struct hf_params *p, float radius,
+                        const struct hf_mem *mem)
+{
+    const float scale = s->strength >= 0.25f ? s->strength : 0.25f, largest = __builtin_fmaxf(radius * scale, 1);
+    const int many = s->measured || p->gather.per_pixel_kernel;
+    l->count = 0;
+    for (float r = largest, next; l->count < HF_MAX_LEVELS; r = next) {
+        struct hf_level *level = &l->level[l->count++];
+        const struct hf_taps_key key = {.radius = r,
+                                        .scale = 1,
+                                        .pixel_aspect = s->pixel_aspect,
+                                        .blades = p->aperture.blades,
+                                        .rotation = p->aperture.blades ? p->aperture.rotation : 0,
+                                        .area = 1};
+        level->coc = r / (radius * scale);
+        level->inverse = 1 / level->coc;
+        next = __builtin_fmaxf(LEVEL_STEP * r, 1);
+        level->to_next = r > next ? 1 / (level->coc - next / (radius * scale)) : 0;
+        l->gain = (s->strength < 0.25f ? 4 * s->strength : 1) / level->coc;
+        const int err = hf_taps_build(&level->taps, &key, mem);
+        if (err)
+            return err;
+        if (!many || r <= 1)
+            break;
+    }
+    return HF_OK;
+}
+
+static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_params *p, float near, float far,
+                 const struct hf_mem *mem)
+{
+    if (g->area) {
+        const int err = build_levels(&g->levels[0], s, p, near, mem);
+        return err ? err : build_levels(&g->levels[1], s, p, far, mem);
+    }
+    const int err = build_taps(&g->taps, s, p, near, mem);
+    return err || !s->measured ? err : build_taps(&g->far_taps, s, p, far, mem);
+}
+
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
     struct hf_gather *g = own;
-    return s->measured ? HF_OK : build_taps(&g->taps, s, p, s->max_radius / 2, mem);
+    return s->measured ? HF_OK : build(g, s, p, s->max_radius / 2, s->max_radius / 2, mem);
 }
 
 // Each field's CoC is relative to the largest radius that there is of its kind, and so are its kernels. That is at least
@@ -214,14 +322,15 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     s->far_i *= s->max_radius / far;
     s->smoothstep = g->smoothstep;
     s->storage = g->storage;
-    g->max_x = (int)__builtin_ceilf(near / 2 / s->pixel_aspect);
-    g->max_y = (int)__builtin_ceilf(near / 2);
-    const int err = build_taps(&g->taps, s, p, near / 2, mem);
-    return err ? err : build_taps(&g->far_taps, s, p, far / 2, mem);
+    set_reach(g, s, near / 2);
+    return build(g, s, p, near / 2, far / 2, mem);
 }
 
 static void release(void *own, const struct hf_mem *mem)
 {
+    struct hf_gather *g = own;
+    for (int i = 0; i < 2 * HF_MAX_LEVELS; i++)
+        hf_taps_free(&g->levels[i / HF_MAX_LEVELS].level[i % HF_MAX_LEVELS].taps, mem);
     hf_taps_free(&((struct hf_gather *)own)->taps, mem);
     hf_taps_free(&((struct hf_gather *)own)->far_taps, mem);
 }
@@ -229,7 +338,10 @@ static void release(void *own, const struct hf_mem *mem)
 static size_t bytes(const void *own)
 {
     const struct hf_gather *g = own;
-    return g->taps.block.size + g->far_taps.block.size;
+    size_t sum = g->taps.block.size + g->far_taps.block.size;
+    for (int i = 0; i < 2 * HF_MAX_LEVELS; i++)
+        sum += g->levels[i / HF_MAX_LEVELS].level[i % HF_MAX_LEVELS].taps.block.size;
+    return sum;
 }
 
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
@@ -239,6 +351,10 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     numbers[1] = g->per_pixel_kernel;
     numbers[2] = g->bicubic;
     numbers[3] = (int)g->fill;
+    if (g->area) {
+        *reach = taps_reach(s).y;
+        return 4;
+    }
     const struct hf_taps *far = hf_gather_taps(s, HF_FAR);
     *reach = hf_max(g->taps.first[g->taps.rows], far->first[far->rows]);  // weights
     numbers[4] = 4 * (int)g->downsample + (int)g->division;
@@ -288,6 +404,7 @@ const struct hf_engine_def hf_gather_engine = {
     .halo = hf_gather_halo,
     .spread = spread,
     .reads = reads,
+    .runs = runs,
     .cell = cell,
     .work = work,
     .cost = cost,

@@ -27,12 +27,13 @@ static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
     return ((row[0] + row[2]) + row[1]) * (1 / 9.0f);
 }
 
-// Does a far neighbour of CoC g count for a pixel of CoC f? For the mean it has to hold far colour at all.
+// Does a far neighbour of CoC g count for a pixel of CoC f? It has to hold far colour at all, except for the published
+// demo's maximum.
 static int counts(const struct hf_setup *s, float f, float g)
 {
     if (hf_gather(s)->per_pixel_kernel && !(__builtin_fabsf(f - g) <= SIMILAR))
         return 0;
-    return hf_gather(s)->fill == HF_FILL_MAX || g > 0;
+    return (s->faithful && hf_gather(s)->fill == HF_FILL_MAX) || g > 0;
 }
 
 static float far_max(const struct hf_frame *f, int c, int x, int y)

@@ -90,7 +90,7 @@ HF_INLINE void fill_far_picked(const struct hf_setup *s, const float *in, ptrdif
             vf t[3], w[3];
             for (int i = -1; i <= 1; i++) {
                 const vf g = vf_load(coc + j * coc_stride + x + i), v = vf_load(in + j * stride + x + i);
-                vm counts = hf_gather(s)->fill == HF_FILL_MAX ? vf_eq(own, own) : vf_gt(g, vf_zero());
+                vm counts = s->faithful && hf_gather(s)->fill == HF_FILL_MAX ? vf_eq(own, own) : vf_gt(g, vf_zero());
                 if (hf_gather(s)->per_pixel_kernel)
                     counts = vm_and(counts, vf_le(vf_abs(vf_sub(own, g)), vf_set1(0.25f)));
                 best = vf_select(counts, vf_max(v, best), best);
@@ -117,7 +117,8 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
     float *to[4], *from[4];
     hf_row(&f->buf[out], s->channels, r.x0, y, to);
     hf_row(&f->buf[in], s->channels, r.x0, y, from);
-    const int picked = in == HF_BUF_FAR && (hf_gather(s)->per_pixel_kernel || hf_gather(s)->fill == HF_FILL_MEAN);
+    const int picked = in == HF_BUF_FAR && hf_gather(s)->fill != HF_FILL_NONE &&
+                       (hf_gather(s)->per_pixel_kernel || hf_gather(s)->fill == HF_FILL_MEAN || !s->faithful);
     if (hf_gather(s)->fill == HF_FILL_MAX && !picked) {
         if (s->channels == 3)
             fill_max_row(from, stride, w, to, n, r.x0, 3);

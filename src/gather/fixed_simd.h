@@ -18,9 +18,33 @@ enum { FIXED_R = 8, FIXED_STRIP = 64 / VF_N };
 // Four lanes have no load that repeats a number: the weights are laid out four times each.
 enum { WEIGHT_N = VF_N == 4 ? 4 : 1 };
 
+// Discs by area, radius 4, 6 and 8: bits 0 to 8 as above, from bit 12 on the run of equal weights around the middle, 0 if
+// there is none, else one more than how far it reaches.
+#define RUN(reach) (((reach) + 1) << 12)
+static const uint16_t disc_4[] = {RUN(3) | 0x10, RUN(3) | 0x10, RUN(2) | 0x18, RUN(1) | 0x0c, 0x07};
+static const uint16_t disc_6[] = {RUN(5) | 0x40, RUN(5) | 0x40, RUN(4) | 0x60, RUN(4) | 0x20,
+                                  RUN(3) | 0x30, RUN(1) | 0x1c, 0x07};
+static const uint16_t disc_8[] = {RUN(7) | 0x100, RUN(7) | 0x100, RUN(7) | 0x100,
+                                  RUN(6) | 0x180, RUN(6) | 0x080, RUN(5) | 0x0c0,
+                                  RUN(4) | 0x060, RUN(2) | 0x038, 0x0f};
+
+static int discs_are(const struct hf_taps *t, const uint16_t *rows, int r)
+{
+    if (!t->runs || t->rx != r || t->ry != r)
+        return 0;
+    for (int k = 0; k <= r; k++) {
+        unsigned columns = 0;
+        for (int i = t->first[k]; i < t->first[k + 1]; i++)
+            columns |= 1u * (t->column[i] > r ? RUN(t->column[i] - r - 1) : 1 << t->column[i]);
+        if (columns != rows[k])
+            return 0;
+    }
+    return 1;
+}
+
 static int taps_are(const struct hf_taps *t, const uint16_t *rows, int r)
 {
-    if (!t->symmetric || t->rx != r || t->ry != r)
+    if (t->runs || !t->symmetric || t->rx != r || t->ry != r)
         return 0;
     for (int k = 0; k <= r; k++) {
         unsigned columns = 0;
@@ -34,6 +58,16 @@ static int taps_are(const struct hf_taps *t, const uint16_t *rows, int r)
         if (t->weight[t->first[i]] != t->weight[1] || t->weight[i / 2] != t->weight[1])
             return 0;
     return 1;
+}
+
+// Sums of pairs from the middle on, behind the pairs.
+HF_INLINE void fixed_runs(const int r, vf *h)
+{
+    vf *sum = h + FIXED_R + 1;
+    sum[0] = h[0];
+#pragma GCC unroll 8
+    for (int j = 1; j < r; j++)
+        sum[j] = vf_add(sum[j - 1], h[j]);
 }
 
 HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
@@ -70,14 +104,24 @@ HF_INLINE vf fixed_weight(const float *weight, int i)
 // Row k's sum. The weights lie one after the other; where each one is, is known when this is compiled. Fused, the
 // weight of the taps on the axes is used once for all of row 0, and its product with h[0], axis, starts the other even
 // rows: 32 multiply-adds for radius 6 instead of 36, at the price of two additions, which have units of their own.
-HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf *h, const float *weight, vf axis)
+HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf *h, const float *weight, vf axis,
+                       const int disc)
 {
     int n = 0;
 #pragma GCC unroll 8
     for (int i = 0; i < k; i++)
-        n += __builtin_popcount(rows[i]);
+        n += __builtin_popcount(rows[i] & 0xfff) + (rows[i] >> 12 != 0);
     vf sum = vf_zero();
     int j = 0;
+    if (disc) {
+        if (rows[k] >> 12)
+            sum = vf_fma(fixed_weight(weight, n++), h[FIXED_R + (rows[k] >> 12)], sum);
+#pragma GCC unroll 9
+        for (; j <= r; j++)
+            if (rows[k] >> j & 1)
+                sum = vf_fma(fixed_weight(weight, n++), h[j], sum);
+        return sum;
+    }
     if (HF_FUSED && k == 0) {
         vf even = h[2];
 #pragma GCC unroll 4
@@ -98,24 +142,26 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
 }
 
 // An input row d rows outside of the strip: it reaches the first r - d + 1 output rows from that edge on.
-HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const float *weight, const float *in, int d, int top,
-                          float *out, ptrdiff_t stride, int height)
+HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, const float *weight, const float *in,
+                          int d, int top, float *out, ptrdiff_t stride, int height)
 {
-    vf h[FIXED_R + 1];
+    vf h[2 * FIXED_R + 2];
     fixed_pairs(in, r, h);
+    if (disc)
+        fixed_runs(r, h);
     __builtin_prefetch(in + 2 * VF_N);
-    const vf axis = vf_mul(fixed_weight(weight, 1), h[0]);
+    const vf axis = disc ? vf_zero() : vf_mul(fixed_weight(weight, 1), h[0]);
 #pragma GCC unroll 8
     for (int k = r; k >= 1; k--)
         if (k >= d && k - d < height) {
             float *p = out + (k - d) * stride;
-            const vf sum = fixed_sum(rows, k, r, h, weight, axis);
+            const vf sum = fixed_sum(rows, k, r, h, weight, axis, disc);
             vf_store(p, k == r && top ? sum : vf_add(vf_load(p), sum));
         }
 }
 
 // The rows of the strip itself; sums[i] is that of the output row r - i above the one at hand.
-HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const float *weight, const float *in,
+HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, const float *weight, const float *in,
                             ptrdiff_t in_stride, float *out, ptrdiff_t out_stride, int height)
 {
     vf sums[2 * FIXED_R + 1];
@@ -124,13 +170,15 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const float *weig
         sums[i] = i > r && i - r - 1 < height ? vf_load(out + (i - r - 1) * out_stride) : vf_zero();
     for (int y = 0; y < height; y++) {
         const float *p = in + y * in_stride;
-        vf h[FIXED_R + 1], row[FIXED_R + 1];
+        vf h[2 * FIXED_R + 2], row[FIXED_R + 1];
         fixed_pairs(p, r, h);
+        if (disc)
+            fixed_runs(r, h);
         __builtin_prefetch(p + 2 * VF_N);
-        const vf axis = vf_mul(fixed_weight(weight, 1), h[0]);
+        const vf axis = disc ? vf_zero() : vf_mul(fixed_weight(weight, 1), h[0]);
 #pragma GCC unroll 9
         for (int k = r; k >= 0; k--) {
-            row[k] = fixed_sum(rows, k, r, h, weight, axis);
+            row[k] = fixed_sum(rows, k, r, h, weight, axis, disc);
             sums[r - k] = vf_add(sums[r - k + 1], row[k]);
             if (k == r && y >= r)
                 vf_store(out + (y - r) * out_stride, sums[0]);
@@ -151,16 +199,16 @@ typedef void fixed_column(const float *weight, const float *in, ptrdiff_t in_str
                           int height);
 
 // Two functions: inlined into one, the compiler keeps the weights of all rows as vectors, and spills them.
-#define FIXED_COLUMN(rows, r)                                                                                          \
+#define FIXED_COLUMN(rows, r, disc)                                                                                    \
     static __attribute__((noinline)) void rows##_edge(const float *weight, const float *in, int d, int top,            \
                                                       float *out, ptrdiff_t stride, int height)                        \
     {                                                                                                                  \
-        fixed_edge(rows, r, weight, in, d, top, out, stride, height);                                                  \
+        fixed_edge(rows, r, disc, weight, in, d, top, out, stride, height);                                            \
     }                                                                                                                  \
     static __attribute__((noinline)) void rows##_inside(const float *weight, const float *in, ptrdiff_t in_stride,     \
                                                         float *out, ptrdiff_t out_stride, int height)                  \
     {                                                                                                                  \
-        fixed_inside(rows, r, weight, in, in_stride, out, out_stride, height);                                         \
+        fixed_inside(rows, r, disc, weight, in, in_stride, out, out_stride, height);                                   \
     }                                                                                                                  \
     static void rows##_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out,                   \
                               ptrdiff_t out_stride, int height)                                                        \
@@ -173,9 +221,12 @@ typedef void fixed_column(const float *weight, const float *in, ptrdiff_t in_str
                         height);                                                                                       \
     }
 
-FIXED_COLUMN(rings_4, 4)
-FIXED_COLUMN(rings_6, 6)
-FIXED_COLUMN(rings_8, 8)
+FIXED_COLUMN(rings_4, 4, 0)
+FIXED_COLUMN(rings_6, 6, 0)
+FIXED_COLUMN(rings_8, 8, 0)
+FIXED_COLUMN(disc_4, 4, 1)
+FIXED_COLUMN(disc_6, 6, 1)
+FIXED_COLUMN(disc_8, 8, 1)
 
 // The weights as columns take them.
 static const float *fixed_weights(const struct hf_taps *t, float *work)
@@ -190,7 +241,10 @@ static const float *fixed_weights(const struct hf_taps *t, float *work)
 // NULL: none fits.
 static fixed_column *fixed_column_for(const struct hf_taps *t)
 {
-    return taps_are(t, rings_6, 6)   ? rings_6_column
+    return discs_are(t, disc_6, 6)   ? disc_6_column
+           : discs_are(t, disc_4, 4) ? disc_4_column
+           : discs_are(t, disc_8, 8) ? disc_8_column
+           : taps_are(t, rings_6, 6) ? rings_6_column
            : taps_are(t, rings_4, 4) ? rings_4_column
            : taps_are(t, rings_8, 8) ? rings_8_column
                                      : NULL;

@@ -39,6 +39,15 @@ enum hf_gather_buf {
     HF_BUF_WEIGHT,      // with Karis average: w and far CoC x w
     HF_BUF_COLORW4,     // colour x w
     HF_BUF_COLORFARW4,  // colour x far CoC x w
+    // By area (see struct hf_gather):
+    HF_BUF_COLORNEAR4,    // colour x near CoC
+    HF_BUF_COVER,         // how much of a pixel the near field covers
+    HF_BUF_LEVEL,         // one level's part of a field: colour ...
+    HF_BUF_LEVEL_WEIGHT,  // ... and its weights
+    HF_BUF_LEVEL_SUM,     // and their means
+    HF_BUF_LEVEL_WEIGHT_SUM,
+    HF_BUF_BEHIND,  // what near pixels hide: colour, and its weights
+    HF_BUF_BEHIND_WEIGHT,
     HF_BUF_COUNT
 };
 
@@ -46,21 +55,51 @@ enum hf_gather_buf {
 enum hf_gather_halo {
     HF_HALO_NONE,
     HF_HALO_3X3,    // one pixel
-    HF_HALO_MAX_X,  // reach of the near max and blur, along one axis
+    HF_HALO_MAX_X,  // reach of the near max, along one axis
     HF_HALO_MAX_Y,
+    HF_HALO_BLUR_X,  // and of the near blur
+    HF_HALO_BLUR_Y,
     HF_HALO_TAPS,
     HF_HALO_UPSAMPLE,  // one pixel, two for the cubic
 };
 
+// The channels of half-resolution CoC by area: the mean near and far CoC of a quad, as weights of its colour; and the
+// largest near and far CoC of it.
+enum { HF_AREA_NEAR, HF_AREA_FAR, HF_AREA_NEAR_MOST, HF_AREA_FAR_MOST };
+
+// A kernel as large as some pixels' blur. CoC is relative to the largest radius.
+struct hf_level {
+    float coc;      // the CoC of pixels as blurred as this
+    float inverse;  // 1 / coc
+    float to_next;  // 1 / (coc - that of the next one)
+    struct hf_taps taps;
+};
+
+enum { HF_MAX_LEVELS = 12 };
+
+// One field's kernels, the largest first. A pixel between two of them is a blend of both; one that is blurred less than the
+// smallest is a blend of that and the picture.
+struct hf_levels {
+    int count;
+    float gain;  // 1 / coc of the smallest: min(1, gain x CoC) is a pixel's part in the field
+    struct hf_level level[HF_MAX_LEVELS];
+};
+
+// area: the default look. Apertures are areas instead of taps, so that nothing is left to fill and highlights are round;
+// every sample of a quad counts by its own CoC; the near field is what is near, by how much of a pixel it covers; and
+// what lies beyond the frame counts for nothing. Without it the passes are the chapter's.
 struct hf_gather {
     float blend;  // of the fields with the picture: less than 1 below a strength of a quarter
+    int area;
+    struct hf_levels levels[2];  // near, far
     int karis, per_pixel_kernel, bicubic;
     enum hf_fill fill;  // of OPEN as of NONE: they differ in the taps
     enum hf_downsample downsample;
     enum hf_division division;
     int rings;
-    int max_x, max_y;  // near max and blur reach to either side
-    int smoothstep;    // measured: of the CoC, and how it is stored, once the radii are known
+    int max_x, max_y;  // near max reach to either side
+    int blur_x, blur_y;
+    int smoothstep;  // measured: of the CoC, and how it is stored, once the radii are known
     enum hf_storage storage;
     struct hf_taps taps;      // of both fields
     struct hf_taps far_taps;  // measured: of the far one
@@ -76,6 +115,42 @@ static inline const struct hf_taps *hf_gather_taps(const struct hf_setup *s, uns
     return field == HF_FAR && s->measured ? &hf_gather(s)->far_taps : &hf_gather(s)->taps;
 }
 
+// How much a pixel of this CoC takes from a level. All levels' shares sum to 1 exactly: each is one of u, 1 - u and 0.
+static inline float hf_level_reached(const struct hf_levels *l, int i, float coc)
+{
+    return i < 0 ? 0 : i == l->count - 1 ? 1 : hf_saturate((coc - l->level[i + 1].coc) * l->level[i].to_next);
+}
+
+static inline float hf_level_share(const struct hf_levels *l, int i, float coc)
+{
+    return hf_level_reached(l, i, coc) * (1 - hf_level_reached(l, i - 1, coc));
+}
+
+// By how much less a far sample counts for a level that it is not blurred enough for.
+static inline float hf_level_reach(const struct hf_levels *l, int i, float coc)
+{
+    const float least = l->level[l->count - 1].coc, ratio = (coc > least ? coc : least) * l->level[i].inverse;
+    return ratio < 1 ? ratio : 1;
+}
+
+// A row's Karis weight.
+static inline float hf_karis_weight(float red, float green, float blue)
+{
+    const float luma = (0.2126f * red + 0.7152f * green) + 0.0722f * blue;
+    return 1 / (1 + (luma > 0 ? luma : 0));
+}
+
+static inline const struct hf_levels *hf_gather_levels(const struct hf_setup *s, unsigned field)
+{
+    return &hf_gather(s)->levels[field == HF_FAR];
+}
+
+// Is a field one convolution of what there is?
+static inline int hf_gather_is_simple(const struct hf_setup *s, unsigned field)
+{
+    return hf_gather_levels(s, field)->count == 1 && !hf_gather(s)->karis;
+}
+
 struct hf_gather_kernels {
     struct hf_passes passes;
 };
@@ -84,9 +159,27 @@ HF_DECLARE_KERNELS(hf_gather_kernels);
 hf_kernel hf_gather_coc, hf_down_c, hf_max_x_c, hf_max_y_c, hf_blur_x_c, hf_blur_y_c, hf_gather_c, hf_fill_c,
     hf_composite_c;
 
+void hf_convolve_c(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, const struct hf_buf *in,
+                   int c_in, const struct hf_buf *out, int c_out);
+
+hf_kernel hf_area_down_c, hf_area_gather_c, hf_area_composite_c;
+
+// Row y of the part of a level's taps that lies in the frame, n pixels from x on. Returns 0 if it is all of them.
+int hf_area_inside(const struct hf_setup *s, const struct hf_taps *t, int x, int y, int n, float *inside);
+
 struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo);
 
 extern const struct hf_engine_def hf_gather_engine;
+
+// Half-resolution colour stays below this, so that no sum of thousands passes the largest float.
+#define HF_LARGEST 0x1p115f
+
+// So limited; NaN, as of a sum of two infinities, becomes the least.
+static inline float hf_limited(float v)
+{
+    v = v > -HF_LARGEST ? v : -HF_LARGEST;
+    return v < HF_LARGEST ? v : HF_LARGEST;
+}
 
 // Uniform cubic B-spline a quarter of a pixel off the centre: weights of the neighbour on that side, of the one on
 // the other side, and of the one behind the neighbour. The rest, 235/384, is the pixel's own.

@@ -46,7 +46,7 @@ void hf_blur_x_c(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++)
             hf_narrow_store(storage, hf_narrow_at(out, 0, x, y, bytes),
-                            blurred(storage, hf_narrow_at(in, 0, x, y, bytes), bytes, hf_gather(f->s)->max_x));
+                            blurred(storage, hf_narrow_at(in, 0, x, y, bytes), bytes, hf_gather(f->s)->blur_x));
 }
 
 void hf_blur_y_c(const struct hf_frame *f, struct hf_rect r)
@@ -57,5 +57,5 @@ void hf_blur_y_c(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++)
             *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y) =
-                blurred(f->s->storage, hf_narrow_at(in, 0, x, y, bytes), step, hf_gather(f->s)->max_y);
+                blurred(f->s->storage, hf_narrow_at(in, 0, x, y, bytes), step, hf_gather(f->s)->blur_y);
 }

@@ -225,7 +225,7 @@ HF_INLINE void blur_row_wide(const struct hf_frame *f, const int bytes, char *in
 
 HF_INLINE void blur_rows(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
-    const int m = hf_gather(f->s)->max_x, n = r.x1 - r.x0;
+    const int m = hf_gather(f->s)->blur_x, n = r.x1 - r.x0;
     for (int y = r.y0; y < r.y1; y++) {
         char *in = hf_narrow_at(&f->buf[HF_BUF_MAX], 0, r.x0 - m, y, bytes);
         char *out = hf_narrow_at(&f->buf[HF_BUF_BLUR_X], 0, r.x0, y, bytes);
@@ -306,7 +306,7 @@ HF_INLINE void blur_column_wide(const struct hf_frame *f, const int bytes, char 
 HF_INLINE void blur_columns(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_BLUR_X], *to = &f->buf[HF_BUF_BLUR];
-    const int m = hf_gather(f->s)->max_y, n = r.y1 - r.y0, is_sum = bytes == 1 && m <= BLUR_BYTES,
+    const int m = hf_gather(f->s)->blur_y, n = r.y1 - r.y0, is_sum = bytes == 1 && m <= BLUR_BYTES,
               width = is_sum ? VECTOR : VF_N;
     const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float);
     for (int x = r.x0; x < r.x1; x += width) {

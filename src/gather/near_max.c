@@ -6,7 +6,7 @@ void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 {
     const int m = hf_gather(f->s)->max_x, bytes = hf_narrow_bytes(f->s->storage);
     for (int y = r.y0; y < r.y1; y++) {
-        const float *in = hf_at(&f->buf[HF_BUF_COC4], 0, 0, y);
+        const float *in = hf_at(&f->buf[HF_BUF_COC4], hf_gather(f->s)->area ? HF_AREA_NEAR_MOST : 0, 0, y);
         for (int x = r.x0; x < r.x1; x++) {
             float v = in[x - m];
             for (int i = x - m + 1; i <= x + m; i++)

@@ -115,7 +115,7 @@ HF_INLINE void max_rows(const struct hf_frame *f, struct hf_rect r, const int by
     const int m = hf_gather(f->s)->max_x, n = r.x1 - r.x0;
     const struct hf_buf *b = &f->buf[HF_BUF_COC4];
     for (int y = r.y0; y < r.y1; y++) {
-        const float *coc = hf_at(b, 0, r.x0 - m, y);
+        const float *coc = hf_at(b, hf_gather(f->s)->area ? HF_AREA_NEAR_MOST : 0, r.x0 - m, y);
         char *out = hf_narrow_at(&f->buf[HF_BUF_MAX_X], 0, r.x0, y, bytes);
         for (int x = 0; x < n + 2 * m + 15; x += 16)  // comes from memory, in rows too short for hardware prefetchers
             __builtin_prefetch(coc + 4 * b->stride + x);

@@ -15,6 +15,7 @@ struct hf_taps_key {
     float rotation;      // degrees
     int dense;           // the 144-tap grid instead of rings
     int rings;           // 0: as many as lie at most 2 apart
+    int area;            // instead of taps, all pixels by the area that the aperture covers of each
 };
 
 // All bilinear taps have fixed offsets, so together they are one convolution with fixed weights on whole pixels. The
@@ -27,10 +28,14 @@ struct hf_taps {
     int symmetric;  // weights mirror in x and in y
     // The weights, each tap 1/count, summing to 1: only those that are not 0, row by row. Row k has entries first[k] to
     // first[k + 1]. symmetric: ry + 1 rows, for |dy| = k, with column |dx|. Else 2 ry + 1 rows, for dy = k - ry, with
-    // column dx + rx.
+    // column dx + rx. Of areas, a column beyond rx (symmetric) stands for the sum of all from -j to j, j = column - rx - 1.
     int rows;
     const int *first, *column;
     const float *weight;
+
+    int runs;  // there are such columns
+    // area: sums[y * (2 rx + 2) + x] of the weights above and left of lattice point (x - rx, y - ry), in 2^-24; else NULL.
+    const int *sums;
 
     struct hf_block block;   // owns all of the above
     struct hf_taps_key key;  // what it was built from; radius 0: nothing yet
@@ -42,6 +47,8 @@ int hf_taps_rings(float radius);
 
 // (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
 int hf_taps_build(struct hf_taps *taps, const struct hf_taps_key *key, const struct hf_mem *mem);
+// area: the sum of the weights of offsets x0..x1 - 1, y0..y1 - 1, cut to what there is: exact.
+float hf_taps_part(const struct hf_taps *taps, int x0, int x1, int y0, int y1);
 void hf_taps_free(struct hf_taps *taps, const struct hf_mem *mem);
 
 #endif

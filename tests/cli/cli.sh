@@ -449,7 +449,7 @@ picture_tests() {
     contains "$dir/out" '"budget_step": 0' && contains "$dir/out" '"rings": 2'
     result "--budget-ms and --rings" $?
 
-    passes="coc coc4 cocmaxx cocmax cocblurx cocblur color4 colormulcoc4 near far nearfill farfill composite"
+    passes="coc coc4 cocmaxx cocmax cocblurx cocblur color4 colormulcoc4 colormulnear4 near far cover composite"
     good plain.exr --engine gather -o o.exr --focus 3 --dump-passes passes
     for pass in $passes; do
         [ -s "passes/$pass.exr" ]

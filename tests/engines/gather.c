@@ -250,13 +250,15 @@ static const struct option options[] = {
     {"strength 0.6 faithful", {.range.strength = 0.6f, .gather.faithful = ON}, 0},
     {"karis", {.gather.karis = ON}, 1},
     {"per-pixel", {.gather.per_pixel_kernel = ON}, 1},
-    {"per-pixel karis mean", {.gather.per_pixel_kernel = ON, .gather.karis = ON, .gather.fill = HF_FILL_MEAN}, 0},
+    {"per-pixel karis mean",
+     {.gather.per_pixel_kernel = ON, .gather.karis = ON, .gather.fill = HF_FILL_MEAN, .gather.faithful = ON},
+     0},
     {"per-pixel none aspect 2",
      {.gather.per_pixel_kernel = ON, .gather.fill = HF_FILL_NONE, .view.pixel_aspect = 2},
      0},
     {"bicubic", {.gather.bicubic = ON}, 1},
     {"bicubic faithful strength 0.2", {.gather.bicubic = ON, .gather.faithful = ON, .range.strength = 0.2f}, 0},
-    {"mean", {.gather.fill = HF_FILL_MEAN}, 0},
+    {"mean", {.gather.fill = HF_FILL_MEAN, .gather.faithful = ON}, 0},
     {"none", {.gather.fill = HF_FILL_NONE}, 0},
     {"open, 2 rings", {.gather.fill = HF_FILL_OPEN, .gather.rings = 2}, 0},
     {"linear downsample", {.gather.downsample = HF_DOWNSAMPLE_LINEAR}, 0},
@@ -306,6 +308,7 @@ static struct hf_params merge(const struct hf_params *set)
 {
     struct hf_params p = scene_params();
     static const struct hf_params zero;
+    p.gather.fill = HF_FILL_MAX;  // the default has no taps: gather_area.c
     // All fields are 4 bytes wide: enum, int or float.
     for (size_t i = 0; i < sizeof p / 4; i++)
         if (memcmp((const char *)set + 4 * i, (const char *)&zero + 4 * i, 4) != 0)
@@ -349,7 +352,7 @@ static void all_scenes_and_storages(struct hf_context *c, const char *isa, unsig
                 const struct hf_depth depth = picture_depth(&scene.depth);
                 struct hf_params p = scene_params();
                 p.gather.storage = (enum hf_storage)storage;
-                p.gather.faithful = variant == 1;
+                p.gather.faithful = variant == 1 || variant == 3;
                 p.gather.karis = variant == 2;
                 p.gather.bicubic = p.gather.per_pixel_kernel = variant == 3;
                 p.gather.fill = variant == 3 ? HF_FILL_MEAN : HF_FILL_MAX;
@@ -372,7 +375,7 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
     for (int type = HF_DEPTH_VIEW; type <= HF_DEPTH_COC; type++) {
         struct rng rng = rng_seed(seed + 2000);
         struct scene scene = scene_new(&rng, SCENE_NOISE, 45, 38, 3);
-        const struct hf_params p = scene_params();
+        const struct hf_params p = merge(&options[0].p);
         struct picture samples;
         const struct hf_depth depth = scene_depth_as(&scene, (enum hf_depth_type)type, p.max_radius, &samples);
         char label[120];
@@ -415,6 +418,7 @@ static void divisions(struct hf_context *c, const char *isa, unsigned seed)
     struct scene scene = scene_new(&rng, SCENE_NOISE, 77, 41, 3);
     const struct hf_depth depth = picture_depth(&scene.depth);
     struct hf_params p = scene_params();
+    p.gather.fill = HF_FILL_MAX;
     struct picture exact = render(c, &scene.colour, &depth, &p);
     double most = 0, e = hf_context_isa(c) == HF_ISA_NEON ? 1 / 256.0 : 1.5 / 4096;
     for (int k = 0; k < 3; k++)

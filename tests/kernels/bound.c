@@ -161,6 +161,76 @@ static double bound_far(const struct world *w, int c, int x, int y, float want)
     return bound_quotient(k * sum + denormal, k * divisor_sum + denormal, divisor, fabs((double)want));
 }
 
+// ---- by area: every kernel's weights are positive and sum to 1, so that what is added up is no larger than the largest ----
+
+static double largest_near(const struct world *w, int b, int c, int x, int y)
+{
+    const struct hf_taps *t = world_taps(w);
+    double most = 0;
+    for (int v = y - t->ry; v <= y + t->ry; v++)
+        for (int u = x - t->rx; u <= x + t->rx; u++)
+            most = fmax(most, fabs((double)reference_at(w, b, c, u, v)));
+    return most;
+}
+
+// Of a level: its planes 8 (12 with Karis), the pairs and their sums 2 rx, products and sums along a row 2 rx, rows 2 ry;
+// a level is added by 3. Then quotients and blends: 12.
+static double area_roundings(const struct world *w)
+{
+    const struct hf_taps *t = world_taps(w);
+    return (w->gather.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 12;
+}
+
+// What is hidden is divided by the part of the kernel that lies in the frame, or by all that counts: the weight of a
+// pixel of its own smallest kernel at least, a hundredth and less of 1 with one large level.
+static double area_near_bound(const struct world *w, int c, int x, int y)
+{
+    const struct hf_taps *t = world_taps(w);
+    const struct hf_setup *s = &w->setup;
+    double most = 1, part = hf_taps_part(t, -x, s->half_width - x, -y, s->half_height - y);
+    if (c >= 0)
+        most = fmax(largest_near(w, HF_BUF_COLOR4, c, x, y), largest_near(w, HF_BUF_COLORNEAR4, c, x, y));
+    if (!hf_gather_is_simple(s, HF_NEAR))
+        part = fmin(part, t->weight[0]) / (w->gather.karis ? 100 : 1);
+    return area_roundings(w) * FLT_EPSILON * most * 2 / part;
+}
+
+// A quotient: of the sum's magnitudes over the weight, twice. Denormal products are off by their own step.
+static double area_far_bound(const struct world *w, int c, int x, int y)
+{
+    const struct hf_levels *l = &w->gather.levels[1];
+    const struct hf_taps *t = world_taps(w);
+    double worst = 0;
+    for (int i = 0; i < l->count; i++) {
+        const struct hf_taps *k = &l->level[i].taps;
+        double sum = 0, weight = 0;
+        for (int v = y - k->ry; v <= y + k->ry; v++)
+            for (int u = x - k->rx; u <= x + k->rx; u++) {
+                const double part = hf_taps_part(k, u - x, u - x + 1, v - y, v - y + 1);
+                const double reach = hf_level_reach(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_MOST, u, v));
+                const double karis = w->gather.karis ? reference_at(w, HF_BUF_WEIGHT, 0, u, v) : 1;
+                sum += part * reach * karis * fabs((double)reference_at(w, HF_BUF_COLORFAR4, c, u, v));
+                weight += part * reach * karis * reference_at(w, HF_BUF_COC4, HF_AREA_FAR, u, v);
+            }
+        const double denormal = 4 * (2 * t->rx + 1) * (2 * t->ry + 1) * 0x1p-149;
+        const double divisor = fmax(weight, FLT_MIN);
+        worst = fmax(worst, (2 * area_roundings(w) * FLT_EPSILON * sum + denormal * (1 + sum / divisor)) / divisor);
+    }
+    return worst;
+}
+
+static double area_bound(const struct world *w, int b, int c, int x, int y)
+{
+    const int cancels = w->gather.karis && w->colours == COLOURS_MIXED;
+    if (b == HF_BUF_COLORNEAR4 || b == HF_BUF_COLORFAR4)  // two products, three sums
+        return 5 * FLT_EPSILON * bound_largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
+    if (b == HF_BUF_COVER)
+        return cancels ? INFINITY : area_near_bound(w, -1, x, y);
+    if (b == HF_BUF_NEAR)
+        return cancels ? INFINITY : area_near_bound(w, c, x, y);
+    return b != HF_BUF_FAR ? 0 : cancels ? INFINITY : area_far_bound(w, c, x, y);
+}
+
 double bound_buffer(const struct world *w, int b, int c, int x, int y, float want, float got)
 {
     if (w->engine == &hf_hexagon_engine)
@@ -168,13 +238,15 @@ double bound_buffer(const struct world *w, int b, int c, int x, int y, float wan
     double bound = 0;
     // Luminance of colours of both signs can cancel, and then means nothing.
     const int cancels = w->gather.karis && w->colours == COLOURS_MIXED;
-    if (b == HF_BUF_COLORFAR4)
+    if (w->gather.area)
+        bound = area_bound(w, b, c, x, y);
+    else if (b == HF_BUF_COLORFAR4)
         bound = bound_down(w, c, x, y);
     else if (b == HF_BUF_NEAR)
         bound = cancels ? INFINITY : bound_near(w, c, x, y, want);
     else if (b == HF_BUF_FAR)
         bound = cancels ? INFINITY : bound_far(w, c, x, y, want);
-    return bound > 0 ? bound + 0x1p-140 + storage_step(w, c, want, got) : 0;
+    return bound > 0 ? bound + 0x1p-140 + storage_step(w, b == HF_BUF_COVER ? 3 : c, want, got) : 0;
 }
 
 // Composite. A far weight: d 2, products 8, their sum 10, inverse 11, together 20; what is left of the colour 25, the
@@ -188,10 +260,11 @@ double bound_pixel(const struct world *w, int c, int x, int y, float want, float
     double most = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
     for (int v = y / 2 - reach; v <= y / 2 + reach && c < w->setup.channels; v++)
         for (int u = x / 2 - reach; u <= x / 2 + reach; u++) {
+            const int area = w->gather.area;
             if (w->near)
-                most = fmax(most, fabs((double)reference_at(w, HF_BUF_NEAR_FILL, c, u, v)));
+                most = fmax(most, fabs((double)reference_at(w, area ? HF_BUF_NEAR : HF_BUF_NEAR_FILL, c, u, v)));
             if (w->far && abs(u - x / 2) < 2 && abs(v - y / 2) < 2)
-                most = fmax(most, fabs((double)reference_at(w, HF_BUF_FAR_FILL, c, u, v)));
+                most = fmax(most, fabs((double)reference_at(w, area ? HF_BUF_FAR : HF_BUF_FAR_FILL, c, u, v)));
         }
     const int roundings = (w->far ? 30 : 0) + (w->near ? (w->gather.bicubic ? 37 : 16) : 0);
     return (roundings + 1) * FLT_EPSILON * most + 0x1p-140 + storage_step(w, c, want, got) +

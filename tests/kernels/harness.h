@@ -99,7 +99,7 @@ struct region {
     int buf, channel, x0, y0;
 };
 
-enum { MAX_REGIONS = 48 };
+enum { MAX_REGIONS = 80 };
 
 struct result {
     int returned;
@@ -191,6 +191,8 @@ extern const struct test tests[];
 extern const int test_count;
 
 // passes.c
+// The gather's largest kernel, of both fields.
+const struct hf_taps *world_taps(const struct world *w);
 void pass_make(struct world *w, int pass);
 void pass_call(struct world *w, const struct kernels *k, enum arena a, int pass);
 int pass_check(const struct world *w, const struct level *l, char message[256]);

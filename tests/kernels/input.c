@@ -41,7 +41,7 @@ static void random_options(struct rng *r, struct hf_params *p)
     p->gather.karis = rng_one_in(r, 4);
     p->gather.per_pixel_kernel = rng_one_in(r, 4);
     p->gather.bicubic = rng_one_in(r, 3);
-    p->gather.fill = (enum hf_fill)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 3));
+    p->gather.fill = rng_one_in(r, 2) ? HF_FILL_MEAN : (enum hf_fill)rng_int(r, 0, 3);
     p->gather.downsample = (enum hf_downsample)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
     p->range.blend = rng_one_in(r, 3) ? HF_BLEND_SMOOTHSTEP : HF_BLEND_LINEAR;
     p->aperture.blades = rng_one_in(r, 3) ? rng_int(r, 5, 9) : 0;

@@ -19,12 +19,16 @@ static struct hf_rect rows_of(const struct world *w, int b, struct hf_rect r)
     return (struct hf_rect){r.x0, 2 * r.y0, r.x1, hf_min(2 * r.y1, w->setup.height)};
 }
 
-// Colour x far CoC and far fields are consistent with the CoC, as the passes before make them: a quotient of the two
-// then is a colour.
+// Fields and what they come from are consistent with the CoC, as the passes before make them: a quotient of the two then is
+// a colour, and what covers nothing is nothing.
 static float buffer_value(struct world *w, int b, int x, int y)
 {
     const int is_far = b == HF_BUF_COLORFAR4 || b == HF_BUF_FAR || b == HF_BUF_FAR_FILL;
     const float colour = random_colour(&w->rng, w->colours);
+    if (b == HF_BUF_COLORNEAR4)
+        return colour * *world_at(w, ARENA_MADE, HF_BUF_COC4, HF_AREA_NEAR, x, y);
+    if (b == HF_BUF_NEAR && w->gather.area)
+        return colour * *world_at(w, ARENA_MADE, HF_BUF_COVER, 0, x, y);
     if (!is_far)
         return colour;
     const float f = *world_at(w, ARENA_MADE, HF_BUF_COC4, 1, x, y);
@@ -33,7 +37,7 @@ static float buffer_value(struct world *w, int b, int x, int y)
 
 static int is_coc(int b)
 {
-    return b == HF_BUF_COC || b == HF_BUF_COC4 || (b >= HF_BUF_MAX_X && b <= HF_BUF_BLUR);
+    return b == HF_BUF_COC || b == HF_BUF_COC4 || b == HF_BUF_COVER || (b >= HF_BUF_MAX_X && b <= HF_BUF_BLUR);
 }
 
 // CoC anywhere; in patches with none between them, some wider than any vector; everywhere; so small that sums of
@@ -66,7 +70,7 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
 // A buffer that the flags leave out is there, but nobody has written it.
 static int wanted(const struct world *w, int b)
 {
-    const unsigned near = BIT(NEAR) | BIT(NEAR_FILL) | BIT(BLUR) | BIT(COLOR4);
+    const unsigned near = BIT(NEAR) | BIT(NEAR_FILL) | BIT(BLUR) | BIT(COLOR4) | BIT(COLORNEAR4) | BIT(COVER);
     const unsigned far = BIT(FAR) | BIT(FAR_FILL) | BIT(COLORFAR4);
     return !(!w->near && (near >> b & 1)) && !(!w->far && (far >> b & 1));
 }
@@ -76,9 +80,9 @@ static void make_inputs(struct world *w, int pass)
     const struct hf_pass *p = &hf_gather_engine.passes[pass];
     const struct hf_reach halo = hf_gather_halo(&w->setup, p->halo);
     const unsigned all = p->reads | p->around;
-    for (int i = -1; i < HF_BUF_COUNT; i++) {
-        const int b = i < 0 ? HF_BUF_COC4 : i;  // first: others depend on it
-        if (!(all >> b & 1) || (i == HF_BUF_COC4))
+    for (int i = -2; i < HF_BUF_COUNT; i++) {
+        const int b = i == -2 ? HF_BUF_COVER : i < 0 ? HF_BUF_COC4 : i;  // first: others depend on them
+        if (!(all >> b & 1) || i == HF_BUF_COC4 || i == HF_BUF_COVER || !buf_channels(w, b))
             continue;
         const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? rect_grown(w->r, halo) : w->r);
         make_buf(w, b, r);
@@ -117,7 +121,7 @@ static void gather_output(struct world *w, enum region_kind kind, int b, struct 
     make_buf(w, b, r);
     if (wanted(w, b))
         for (int c = 0; c < buf_channels(w, b); c++)
-            if (b != HF_BUF_COC4 || (c == 0 ? w->near : w->far))
+            if (b != HF_BUF_COC4 || (c % 2 == 0 ? w->near : w->far))
                 add_region(w, kind, b, c, r);
 }
 
@@ -150,22 +154,28 @@ static void make_outputs(struct world *w, int pass)
         if (hf_gather_engine.passes[pass].writes >> b & 1)
             gather_output(w, REGION_FLOATS, b, rows_of(w, b, w->r));
     if (pass == HF_GATHER_COMPUTATION) {
-        gather_output(w, REGION_SCRATCH, HF_BUF_SUM, w->r);
+        const struct hf_pass *p = &hf_gather_engine.passes[pass];
         const struct hf_rect weighed = rect_grown(w->r, hf_gather_halo(&w->setup, HF_HALO_TAPS));
-        for (int b = HF_BUF_WEIGHT; b <= HF_BUF_COLORFARW4 && w->gather.karis; b++)
-            gather_output(w, REGION_SCRATCH, b, weighed);
+        for (int b = 0; b < HF_BUF_COUNT; b++)
+            if ((p->inside | p->weighed) >> b & 1 && buf_channels(w, b))
+                gather_output(w, REGION_SCRATCH, b, p->inside >> b & 1 ? w->r : weighed);
     }
     if (pass == HF_GATHER_COMPOSITE)
         make_dst(w);
 }
 
+const struct hf_taps *world_taps(const struct world *w)
+{
+    return w->gather.area ? &w->gather.levels[0].level[0].taps : &w->gather.taps;
+}
+
 // Longer than render.c makes them: whether those are long enough is for whole_frame.c to say.
 static void make_scratch(struct world *w)
 {
-    const struct hf_taps *t = &w->gather.taps;
+    const struct hf_taps *t = world_taps(w);
     const int width = w->r.x1 - w->r.x0, height = w->r.y1 - w->r.y0;
     make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(w->gather.max_x, t->rx) + 8 + 2 * HF_PAD));
-    const size_t rows = 2 * (size_t)t->ry + 1, gather = (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 2) * 128;
+    const size_t rows = 2 * (size_t)t->ry + 1, gather = (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 128;
     const size_t near = 64 * (size_t)(height + 2 * w->gather.max_y), fill = 3 * w->line_floats;
     const size_t floats = gather > near ? gather : near;
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);
@@ -188,12 +198,14 @@ void pass_make(struct world *w, int pass)
 {
     world_clear(w);
     const int half_width = rng_int(&w->rng, 1, 70), half_height = rng_int(&w->rng, 1, 10);
-    make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
+    do
+        make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
+    while (pass == HF_GATHER_FILL && w->gather.area && !w->bench);
     random_area(w);
     // Any width and height; of the gather such a reach would be too much.
     if (!w->bench && pass >= HF_GATHER_MAX_X && pass <= HF_GATHER_BLUR_Y && rng_one_in(&w->rng, 4)) {
-        w->gather.max_x = rng_int(&w->rng, 1, 140);
-        w->gather.max_y = rng_int(&w->rng, 1, 140);
+        w->gather.max_x = w->gather.blur_x = rng_int(&w->rng, 1, 140);
+        w->gather.max_y = w->gather.blur_y = rng_int(&w->rng, 1, 140);
     }
     if (pass == HF_GATHER_COC)
         w->r.x0 &= ~15;  // as cells are

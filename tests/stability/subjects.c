@@ -110,9 +110,6 @@ static struct subject per_pixel(void)
 {
     struct subject s = gather("gather per pixel", HF_FILL_MEAN, HF_STORAGE_FLOAT);
     s.params.gather.per_pixel_kernel = 1;
-    // Taps are added one by one in the order of their angles, 48 of them at this radius and once more for the weights.
-    s.promises &= ~(unsigned)(FLIPS_QUADS | TRANSPOSES);
-    s.constant += 2 * 49;
     return s;
 }
 
@@ -125,7 +122,7 @@ static struct subject faithful(void)
     return s;
 }
 
-enum { SUBJECTS = 15 };
+enum { SUBJECTS = 16 };
 
 int subject_count(void)
 {
@@ -136,9 +133,9 @@ struct subject subject_make(int index)
 {
     switch (index) {
     case 0:
-        return gather("gather", HF_FILL_MAX, HF_STORAGE_FLOAT);
+        return gather("gather", HF_FILL_MEAN, HF_STORAGE_FLOAT);
     case 1:
-        return gather("gather mean", HF_FILL_MEAN, HF_STORAGE_FLOAT);
+        return gather("gather max", HF_FILL_MAX, HF_STORAGE_FLOAT);
     case 2:
         return gather("gather none", HF_FILL_NONE, HF_STORAGE_FLOAT);
     case 3:
@@ -146,7 +143,9 @@ struct subject subject_make(int index)
     case 4:
         return gather("gather half", HF_FILL_MEAN, HF_STORAGE_HALF);
     case 5:
-        return gather("gather packed", HF_FILL_MAX, HF_STORAGE_PACKED);
+        return gather("gather packed", HF_FILL_MEAN, HF_STORAGE_PACKED);
+    case 14:
+        return gather("gather packed max", HF_FILL_MAX, HF_STORAGE_PACKED);
     case 6:
         return faithful();
     case 7:

@@ -255,8 +255,10 @@ static double fill_one(const struct reference *r, const struct ref_buffer *b, co
             const double df = coc4 ? fabs(at(coc4, 1, i, j) - at(coc4, 1, x, y)) : 0;
             if (r->params.gather.per_pixel_kernel && df > 0.25)
                 continue;
-            largest = fmax(largest, at(b, c, i, j));
-            if (coc4 && !(at(coc4, 1, i, j) > 0))
+            const int holds = !coc4 || at(coc4, 1, i, j) > 0;
+            if (holds || r->params.gather.faithful)
+                largest = fmax(largest, at(b, c, i, j));
+            if (!holds)
                 continue;
             sum += at(b, c, i, j);
             count++;
@@ -366,6 +368,11 @@ static int read_colour(struct reference *r, const struct picture *colour)
 static void run_passes(struct reference *r, const struct hf_depth *depth, reference_hook *hook, void *cookie)
 {
     coc_generation(r, depth);
+    if (!r->params.gather.faithful && r->params.gather.fill == HF_FILL_MEAN) {
+        new_buffer(r, REF_RESULT);
+        ref_area(r);
+        return;
+    }
     hook(cookie, r, REF_COC);
     downsample(r);
     hook(cookie, r, REF_COC4);

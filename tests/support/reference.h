@@ -5,6 +5,7 @@
 //   reference_coc.c    depth types, repair of depth and colour, models, CoC generation
 //   reference_taps.c   sample positions: rings, polygons, the dense grid
 //   reference.c        storage, and passes 2 to 9
+//   reference_area.c   all after pass 1 of the default look
 #ifndef HF_TESTS_REFERENCE_H
 #define HF_TESTS_REFERENCE_H
 
@@ -77,6 +78,9 @@ int ref_repair(double *out, const float *in, int width, int height);
 void ref_coc(const struct reference *r, const struct hf_depth *depth, double z, double *n, double *f);
 // Fill taps, tap_x, tap_y, centre.
 void ref_make_taps(struct reference *r);
+
+// From CoC to the result, by area.
+void ref_area(struct reference *r);
 
 // What a value becomes by being stored. channel: 0..3 for colour, -1 for CoC.
 double ref_store(enum hf_storage storage, int channel, double v);

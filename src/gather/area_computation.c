@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Computation by area.
+//
+// Far: the mean of what is far, by how far out of focus it is. Near: what is near, spread over the area that it covers, is
+// drawn over the picture; where a near pixel itself becomes see-through, what it hides is the mean of what is not near around
+// it. With several levels (gather.h) near samples are spread by the level that is theirs, and a far pixel is the mean of the
+// level that is its own. What lies beyond the frame has no weight.
+#include <float.h>
+
+#include "gather/gather.h"
+
+int hf_area_inside(const struct hf_setup *s, const struct hf_taps *t, int x, int y, int n, float *inside)
+{
+    if (x >= t->rx && x + n + t->rx <= s->half_width && y >= t->ry && y + t->ry < s->half_height)
+        return 0;
+    for (int i = 0; i < n; i++)
+        inside[i] = hf_taps_part(t, -(x + i), s->half_width - (x + i), -y, s->half_height - y);
+    return 1;
+}
+
+// How far the near field hides at a pixel what is behind it: 1 where near pixels are fully so.
+static float hidden(const struct hf_frame *f, int x, int y)
+{
+    const float m = hf_gather_levels(f->s, HF_NEAR)->gain * *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
+    return m < 1 ? m : 1;
+}
+
+static void store_near(const struct hf_frame *f, int y, struct hf_rect r)
+{
+    float *near[4];
+    hf_row(&f->buf[HF_BUF_NEAR], f->s->channels, r.x0, y, near);
+    hf_store_rgb(f, near, r.x1 - r.x0);
+    if (f->s->storage == HF_STORAGE_HALF)
+        f->k->round_half(hf_at(&f->buf[HF_BUF_COVER], 0, r.x0, y), r.x1 - r.x0);
+}
+
+static void near_simple(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    const struct hf_taps *t = &hf_gather_levels(s, HF_NEAR)->level[0].taps;
+    const struct hf_buf *near = &f->buf[HF_BUF_NEAR], *behind = &f->buf[HF_BUF_BEHIND], *cover = &f->buf[HF_BUF_COVER];
+    float *inside = hf_line(f, 1);
+    for (int c = 0; c < s->channels; c++) {
+        hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLORNEAR4], c, near, c);
+        hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLOR4], c, behind, c);
+    }
+    hf_convolve_c(f, r, t, &f->buf[HF_BUF_COC4], HF_AREA_NEAR, cover, 0);
+    for (int y = r.y0; y < r.y1; y++) {
+        const int cut = hf_area_inside(s, t, r.x0, y, r.x1 - r.x0, inside);
+        for (int x = r.x0; x < r.x1; x++) {
+            const float m = hidden(f, x, y), part = cut ? inside[x - r.x0] : 1;
+            for (int c = 0; c < s->channels && m > 0; c++) {
+                float *v = hf_at(near, c, x, y);
+                *v += m * (*hf_at(behind, c, x, y) / part - *v);
+            }
+            float *v = hf_at(cover, 0, x, y);
+            if (m > 0)
+                *v += m * (1 - *v);
+        }
+        store_near(f, y, r);
+    }
+}
+
+// ---- levels ----
+
+static struct hf_rect grown(const struct hf_taps *t, struct hf_rect r)
+{
+    return (struct hf_rect){r.x0 - t->rx, r.y0 - t->ry, r.x1 + t->rx, r.y1 + t->ry};
+}
+
+static int in_frame(const struct hf_setup *s, int x, int y)
+{
+    return x >= 0 && y >= 0 && x < s->half_width && y < s->half_height;
+}
+
+// Karis weights, wherever something reaches.
+static void weigh(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_reach reach = hf_gather_halo(f->s, HF_HALO_TAPS);
+    const struct hf_buf *b = &f->buf[HF_BUF_COLOR4];
+    for (int y = r.y0 - reach.y; y < r.y1 + reach.y; y++)
+        for (int x = r.x0 - reach.x; x < r.x1 + reach.x; x++)
+            *hf_at(&f->buf[HF_BUF_WEIGHT], 0, x, y) =
+                hf_gather(f->s)->karis ? hf_karis_weight(*hf_at(b, 0, x, y), *hf_at(b, 1, x, y), *hf_at(b, 2, x, y))
+                                       : 1;
+}
+
+static float karis(const struct hf_frame *f, int x, int y)
+{
+    return hf_gather(f->s)->karis ? *hf_at(&f->buf[HF_BUF_WEIGHT], 0, x, y) : 1;
+}
+
+enum part { PART_NEAR, PART_BEHIND, PART_FAR };
+
+// What a level's taps are laid over: colour times weight, the weight, and the weight without Karis'.
+static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part part, int i)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, part == PART_FAR ? HF_FAR : HF_NEAR);
+    const struct hf_rect area = grown(&l->level[i].taps, r);
+    const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4];
+    for (int y = area.y0; y < area.y1; y++)
+        for (int x = area.x0; x < area.x1; x++) {
+            const float near = *hf_at(coc4, HF_AREA_NEAR, x, y), w = karis(f, x, y);
+            float share, weight;
+            if (part == PART_NEAR) {
+                share = hf_level_share(l, i, *hf_at(coc4, HF_AREA_NEAR_MOST, x, y));
+                weight = near;
+            } else if (part == PART_FAR) {
+                share = hf_level_reach(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y));
+                weight = *hf_at(coc4, HF_AREA_FAR, x, y);
+            } else {
+                share = 1;
+                weight = in_frame(f->s, x, y) ? 1 - near : 0;
+            }
+            for (int c = 0; c < f->s->channels; c++) {
+                const float colour = part == PART_FAR    ? *hf_at(&f->buf[HF_BUF_COLORFAR4], c, x, y)
+                                     : part == PART_NEAR ? *hf_at(&f->buf[HF_BUF_COLORNEAR4], c, x, y)
+                                                         : *hf_at(&f->buf[HF_BUF_COLOR4], c, x, y) -
+                                                               *hf_at(&f->buf[HF_BUF_COLORNEAR4], c, x, y);
+                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = colour * (share * w);
+            }
+            *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT], 0, x, y) = weight * (share * w);
+            *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT], 1, x, y) = weight * share;
+        }
+}
+
+static void convolve_level(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t)
+{
+    for (int c = 0; c < f->s->channels; c++)
+        hf_convolve_c(f, r, t, &f->buf[HF_BUF_LEVEL], c, &f->buf[HF_BUF_LEVEL_SUM], c);
+    for (int c = 0; c < 2; c++)
+        hf_convolve_c(f, r, t, &f->buf[HF_BUF_LEVEL_WEIGHT], c, &f->buf[HF_BUF_LEVEL_WEIGHT_SUM], c);
+}
+
+// Buffers of sums: colour, its weight, and the weight without Karis'.
+struct sums {
+    const struct hf_buf *colour, *weight[2];
+    int channel[2];
+};
+
+static void clear(const struct hf_frame *f, struct hf_rect r, const struct sums *to)
+{
+    for (int y = r.y0; y < r.y1; y++)
+        for (int x = r.x0; x < r.x1; x++) {
+            for (int c = 0; c < f->s->channels; c++)
+                *hf_at(to->colour, c, x, y) = 0;
+            for (int i = 0; i < 2; i++)
+                *hf_at(to->weight[i], to->channel[i], x, y) = 0;
+        }
+}
+
+static void add(const struct hf_frame *f, const struct sums *to, int x, int y, float share)
+{
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(to->colour, c, x, y) += share * *hf_at(&f->buf[HF_BUF_LEVEL_SUM], c, x, y);
+    for (int i = 0; i < 2; i++)
+        *hf_at(to->weight[i], to->channel[i], x, y) += share * *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], i, x, y);
+}
+
+// Over the weight, which with Karis average is another one than what the colour counts.
+static float weighed(float colour, float weight, float counts, int karis)
+{
+    return !karis ? colour : weight > 0 ? colour / weight * counts : 0;
+}
+
+static void finish_levels(const struct hf_frame *f, int x, int y, const struct sums *near, const struct sums *behind)
+{
+    const int karis = hf_gather(f->s)->karis;
+    const float m = hidden(f, x, y), cover = *hf_at(near->weight[1], near->channel[1], x, y);
+    const float see = *hf_at(behind->weight[1], behind->channel[1], x, y), most = cover > 1 ? cover : 1;
+    for (int c = 0; c < f->s->channels; c++) {
+        float *v = hf_at(near->colour, c, x, y);
+        const float own = weighed(*v, *hf_at(near->weight[0], near->channel[0], x, y), cover, karis);
+        const float back =
+            weighed(*hf_at(behind->colour, c, x, y), *hf_at(behind->weight[0], behind->channel[0], x, y), see, karis);
+        const float outside = own / most;
+        *v = m > 0 ? outside + m * ((own + back) / (cover + see) - outside) : outside;
+    }
+    const float outside = cover / most;
+    *hf_at(near->weight[1], near->channel[1], x, y) = m > 0 ? outside + m * (1 - outside) : outside;
+}
+
+static void near_levels(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
+    const struct sums near = {&f->buf[HF_BUF_NEAR], {&f->buf[HF_BUF_SUM], &f->buf[HF_BUF_COVER]}, {0, 0}};
+    const struct sums behind = {
+        &f->buf[HF_BUF_BEHIND], {&f->buf[HF_BUF_BEHIND_WEIGHT], &f->buf[HF_BUF_BEHIND_WEIGHT]}, {0, 1}};
+    clear(f, r, &near);
+    clear(f, r, &behind);
+    for (int i = 0; i < l->count; i++) {
+        level_planes(f, r, PART_NEAR, i);
+        convolve_level(f, r, &l->level[i].taps);
+        for (int y = r.y0; y < r.y1; y++)
+            for (int x = r.x0; x < r.x1; x++)
+                add(f, &near, x, y, 1);
+        level_planes(f, r, PART_BEHIND, i);
+        convolve_level(f, r, &l->level[i].taps);
+        for (int y = r.y0; y < r.y1; y++)
+            for (int x = r.x0; x < r.x1; x++) {
+                const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y), share = hf_level_share(l, i, coc);
+                if (coc > 0 && share > 0)
+                    add(f, &behind, x, y, share);
+            }
+    }
+    for (int y = r.y0; y < r.y1; y++) {
+        for (int x = r.x0; x < r.x1; x++)
+            finish_levels(f, x, y, &near, &behind);
+        store_near(f, y, r);
+    }
+}
+
+// ---- far ----
+
+// A sum over its weight; alpha as a true quotient, so that what is opaque stays so.
+static float far_mean(int c, int x, int y, const struct hf_buf *sum, float weight)
+{
+    const float divisor = weight > FLT_MIN ? weight : FLT_MIN, v = *hf_at(sum, c, x, y);
+    return c == 3 ? v / divisor : v * (1 / divisor);
+}
+
+// Is a pixel far, or beside one that is, and upsampled with it?
+static int is_wanted(const struct hf_frame *f, int x, int y)
+{
+    int wanted = 0;
+    for (int i = 0; i < 9; i++)
+        wanted |= *hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, x - 1 + i % 3, y - 1 + i / 3) > 0;
+    return wanted;
+}
+
+static void far_simple(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    const struct hf_taps *t = &hf_gather_levels(s, HF_FAR)->level[0].taps;
+    const struct hf_buf *far = &f->buf[HF_BUF_FAR];
+    for (int c = 0; c < s->channels; c++)
+        hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLORFAR4], c, far, c);
+    hf_convolve_c(f, r, t, &f->buf[HF_BUF_COC4], HF_AREA_FAR, &f->buf[HF_BUF_SUM], 1);
+    for (int y = r.y0; y < r.y1; y++)
+        for (int x = r.x0; x < r.x1; x++)
+            for (int c = 0; c < s->channels; c++)
+                *hf_at(far, c, x, y) =
+                    is_wanted(f, x, y) ? far_mean(c, x, y, far, *hf_at(&f->buf[HF_BUF_SUM], 1, x, y)) : 0;
+}
+
+static void far_levels(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
+    for (int i = 0; i < l->count; i++) {
+        level_planes(f, r, PART_FAR, i);
+        convolve_level(f, r, &l->level[i].taps);
+        for (int y = r.y0; y < r.y1; y++)
+            for (int x = r.x0; x < r.x1; x++) {
+                const float share = hf_level_share(l, i, *hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR_MOST, x, y));
+                for (int c = 0; c < f->s->channels; c++) {
+                    float *v = hf_at(&f->buf[HF_BUF_FAR], c, x, y);
+                    *v = i ? *v : 0;
+                    if (i == l->count - 1 && !is_wanted(f, x, y))
+                        *v = 0;
+                    else if (share > 0)
+                        *v += share * far_mean(c, x, y, &f->buf[HF_BUF_LEVEL_SUM],
+                                               *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 0, x, y));
+                }
+            }
+    }
+}
+
+void hf_area_gather_c(const struct hf_frame *f, struct hf_rect r)
+{
+    if (hf_gather(f->s)->karis)
+        weigh(f, r);
+    if (f->near && hf_gather_is_simple(f->s, HF_NEAR))
+        near_simple(f, r);
+    else if (f->near)
+        near_levels(f, r);
+    if (f->far && hf_gather_is_simple(f->s, HF_FAR))
+        far_simple(f, r);
+    else if (f->far)
+        far_levels(f, r);
+    for (int y = r.y0; y < r.y1 && f->far; y++) {
+        float *far[4];
+        hf_row(&f->buf[HF_BUF_FAR], f->s->channels, r.x0, y, far);
+        hf_store_rgb(f, far, r.x1 - r.x0);
+    }
+}

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reference: the gather's default look, where apertures are areas: from CoC in full resolution to the result. Discs only,
+// no Karis average, bilinear upsampling, float storage.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/reference.h"
+
+// Half-resolution planes of one pixel after the other: colour, its near and its far part, near and far parts, and the
+// largest near and far CoC.
+enum { COLOUR, NEAR = 4, FAR = 8, NEAR_PART = 12, FAR_PART, NEAR_MOST, FAR_MOST, PLANES };
+
+enum { MAX_LEVELS = 12 };
+struct levels {
+    int count;
+    double coc[MAX_LEVELS];
+    int rx[MAX_LEVELS], ry[MAX_LEVELS];
+    double *weight[MAX_LEVELS];
+};
+
+struct area {
+    const struct reference *r;
+    int width, height;
+    double *plane[PLANES];
+    struct levels levels;  // both fields' radius is the same here
+};
+
+// Area of the unit disc in x0..x1, y0..y1, slice by slice.
+static double disc_area(double x0, double x1, double y0, double y1)
+{
+    enum { SLICES = 2000 };
+    double sum = 0;
+    for (int i = 0; i < SLICES; i++) {
+        const double y = y0 + (y1 - y0) * (i + 0.5) / SLICES, half = y * y < 1 ? sqrt(1 - y * y) : 0;
+        sum += fmax(fmin(x1, half) - fmax(x0, -half), 0);
+    }
+    return sum * (y1 - y0) / SLICES;
+}
+
+static void add_level(struct area *a, double radius, double full)
+{
+    struct levels *l = &a->levels;
+    const double rx = fmax(radius / a->r->params.view.pixel_aspect, 1), ry = radius;
+    const int i = l->count++;
+    l->coc[i] = radius / full;
+    l->rx[i] = (int)fmax(ceil(rx - 0.5), 1);
+    l->ry[i] = (int)fmax(ceil(ry - 0.5), 1);
+    const int row = 2 * l->rx[i] + 1;
+    l->weight[i] = malloc(sizeof(double) * (size_t)row * (size_t)(2 * l->ry[i] + 1));
+    for (int y = -l->ry[i]; y <= l->ry[i]; y++)
+        for (int x = -l->rx[i]; x <= l->rx[i]; x++)
+            l->weight[i][(y + l->ry[i]) * row + x + l->rx[i]] =
+                disc_area((x - 0.5) / rx, (x + 0.5) / rx, (y - 0.5) / ry, (y + 0.5) / ry) * rx * ry / (M_PI * rx * ry);
+}
+
+static void make_levels(struct area *a)
+{
+    const double full = a->r->reach_y * a->r->kernel_scale;
+    double radius = fmax(full, 1);
+    add_level(a, radius, full);
+    while (a->r->params.gather.per_pixel_kernel && radius > 1)
+        add_level(a, radius = fmax(radius / 2, 1), full);
+}
+
+static double share(const struct levels *l, int i, double coc)
+{
+    const double last = l->coc[l->count - 1], v = fmin(fmax(coc, last), l->coc[0]);
+    if (i > 0 && v >= l->coc[i - 1])
+        return 0;
+    if (v >= l->coc[i])
+        return i == 0 ? 1 : (l->coc[i - 1] - v) / (l->coc[i - 1] - l->coc[i]);
+    return i + 1 < l->count && v > l->coc[i + 1] ? (v - l->coc[i + 1]) / (l->coc[i] - l->coc[i + 1]) : 0;
+}
+
+static double smallest_part(const struct area *a, double coc)
+{
+    return fmin(1, a->r->blend / a->levels.coc[a->levels.count - 1] * coc);
+}
+
+static void down(struct area *a)
+{
+    const struct ref_buffer *colour = &a->r->buffer[REF_COLOUR], *coc = &a->r->buffer[REF_COC];
+    for (int i = 0; i < a->width * a->height; i++)
+        for (int k = 0; k < 4; k++) {
+            const int x = (int)fmin(i % a->width * 2 + k % 2, a->r->width - 1);
+            const int y = (int)fmin(i / a->width * 2 + k / 2, a->r->height - 1), at = y * a->r->width + x;
+            const double near = smallest_part(a, coc->data[0][at]), far = smallest_part(a, coc->data[1][at]);
+            for (int c = 0; c < a->r->channels; c++) {
+                a->plane[COLOUR + c][i] += colour->data[c][at] / 4;
+                a->plane[NEAR + c][i] += colour->data[c][at] * near / 4;
+                a->plane[FAR + c][i] += colour->data[c][at] * far / 4;
+            }
+            a->plane[NEAR_PART][i] += near / 4;
+            a->plane[FAR_PART][i] += far / 4;
+            a->plane[NEAR_MOST][i] = fmax(a->plane[NEAR_MOST][i], coc->data[0][at]);
+            a->plane[FAR_MOST][i] = fmax(a->plane[FAR_MOST][i], coc->data[1][at]);
+        }
+}
+
+struct sums {
+    double colour[4], part;
+};
+
+enum kind { KIND_NEAR, KIND_BEHIND, KIND_FAR };
+
+// One level's mean around a pixel; nothing beyond the frame.
+static struct sums mean(const struct area *a, int x, int y, int i, enum kind kind)
+{
+    const struct levels *l = &a->levels;
+    struct sums s = {{0}, 0};
+    for (int v = -l->ry[i]; v <= l->ry[i]; v++)
+        for (int u = -l->rx[i]; u <= l->rx[i]; u++) {
+            if (x + u < 0 || y + v < 0 || x + u >= a->width || y + v >= a->height)
+                continue;
+            const int at = (y + v) * a->width + x + u;
+            double w = l->weight[i][(v + l->ry[i]) * (2 * l->rx[i] + 1) + u + l->rx[i]];
+            if (kind == KIND_NEAR)
+                w *= share(l, i, a->plane[NEAR_MOST][at]);
+            if (kind == KIND_FAR)
+                w *= fmin(1, fmax(a->plane[FAR_MOST][at], l->coc[l->count - 1]) / l->coc[i]);
+            for (int c = 0; c < a->r->channels; c++)
+                s.colour[c] += w * (kind == KIND_NEAR  ? a->plane[NEAR + c][at]
+                                    : kind == KIND_FAR ? a->plane[FAR + c][at]
+                                                       : a->plane[COLOUR + c][at] - a->plane[NEAR + c][at]);
+            s.part += w * (kind == KIND_NEAR  ? a->plane[NEAR_PART][at]
+                           : kind == KIND_FAR ? a->plane[FAR_PART][at]
+                                              : 1 - a->plane[NEAR_PART][at]);
+        }
+    return s;
+}
+
+// The largest near CoC within two pixels, and the mean of that over three by three.
+static double hidden(const struct area *a, int x, int y)
+{
+    double sum = 0;
+    for (int k = 0; k < 9; k++) {
+        const int cx = (int)fmin(fmax(x - 1 + k % 3, 0), a->width - 1);
+        const int cy = (int)fmin(fmax(y - 1 + k / 3, 0), a->height - 1);
+        double most = 0;
+        for (int v = cy - 2; v <= cy + 2; v++)
+            for (int u = cx - 2; u <= cx + 2; u++)
+                if (u >= 0 && v >= 0 && u < a->width && v < a->height)
+                    most = fmax(most, a->plane[NEAR_MOST][v * a->width + u]);
+        sum += most / 9;
+    }
+    return sum;
+}
+
+static void fields(const struct area *a, double *near[5], double *far[4])
+{
+    const struct levels *l = &a->levels;
+    for (int i = 0; i < a->width * a->height; i++) {
+        const int x = i % a->width, y = i / a->width;
+        const double hides = hidden(a, x, y), m = smallest_part(a, hides);
+        struct sums own = {{0}, 0}, back = {{0}, 0};
+        for (int k = 0; k < l->count; k++) {
+            const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
+            const struct sums f = mean(a, x, y, k, KIND_FAR);
+            const double w = share(l, k, hides), w_far = share(l, k, a->plane[FAR_MOST][i]);
+            for (int c = 0; c < a->r->channels; c++) {
+                own.colour[c] += n.colour[c];
+                back.colour[c] += w * b.colour[c];
+                far[c][i] += f.part > 0 ? w_far * f.colour[c] / f.part : 0;
+            }
+            own.part += n.part;
+            back.part += w * b.part;
+        }
+        for (int c = 0; c < a->r->channels; c++) {
+            const double outside = own.colour[c] / fmax(own.part, 1);
+            near[c][i] =
+                m > 0 ? outside + m * ((own.colour[c] + back.colour[c]) / (own.part + back.part) - outside) : outside;
+        }
+        near[4][i] = fmin(own.part, 1) + m * (1 - fmin(own.part, 1));
+    }
+}
+
+static double up(const struct area *a, const double *plane, int x, int y, int zero)
+{
+    const int hx = x / 2, hy = y / 2, nx = x % 2 ? hx + 1 : hx - 1, ny = y % 2 ? hy + 1 : hy - 1;
+    double sum = 0;
+    for (int k = 0; k < 4; k++) {
+        const int u = k % 2 ? nx : hx, v = k / 2 ? ny : hy;
+        const int in = u >= 0 && v >= 0 && u < a->width && v < a->height;
+        const int cu = (int)fmin(fmax(u, 0), a->width - 1), cv = (int)fmin(fmax(v, 0), a->height - 1);
+        sum += in || !zero ? (k % 2 ? 0.25 : 0.75) * (k / 2 ? 0.25 : 0.75) * plane[cv * a->width + cu] : 0;
+    }
+    return sum;
+}
+
+static void composite(const struct area *a, double *const near[5], double *const far[4])
+{
+    const struct reference *r = a->r;
+    for (int y = 0; y < r->height; y++)
+        for (int x = 0; x < r->width; x++) {
+            const int at = y * r->width + x;
+            const double own = smallest_part(a, r->buffer[REF_COC].data[1][at]);
+            const double t = fmax(fmin(own, 2 * up(a, a->plane[FAR_PART], x, y, 1) - own), 0);
+            const double cover = up(a, near[4], x, y, 0);
+            for (int c = 0; c < r->channels; c++) {
+                double v = r->buffer[REF_COLOUR].data[c][at];
+                v = t > 0 ? (1 - t) * v + t * up(a, far[c], x, y, 0) : v;
+                r->buffer[REF_RESULT].data[c][at] = (1 - cover) * v + up(a, near[c], x, y, 0);
+            }
+        }
+}
+
+void ref_area(struct reference *r)
+{
+    struct area a = {.r = r, .width = r->half_width, .height = r->half_height};
+    const size_t n = (size_t)a.width * (size_t)a.height;
+    double *near[5], *far[4];
+    for (int i = 0; i < PLANES; i++)
+        a.plane[i] = calloc(n, sizeof(double));
+    for (int i = 0; i < 5; i++)
+        near[i] = calloc(n, sizeof(double));
+    for (int i = 0; i < 4; i++)
+        far[i] = calloc(n, sizeof(double));
+    make_levels(&a);
+    down(&a);
+    fields(&a, near, far);
+    composite(&a, near, far);
+    for (int i = 0; i < PLANES; i++)
+        free(a.plane[i]);
+    for (int i = 0; i < 5; i++)
+        free(near[i]);
+    for (int i = 0; i < 4; i++)
+        free(far[i]);
+    for (int i = 0; i < a.levels.count; i++)
+        free(a.levels.weight[i]);
+}
