@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What layers are made of, each alone: how densely slices lie, and which colour stands for a side of an edge of which
+// nothing is sure.
+#include <float.h>
+#include <math.h>
+
+#include "layers/kernels.h"
+#include "layers/unmix.h"
+#include "params.h"
+#include "support/check.h"
+#include "support/render.h"
+
+// Slices cover the radii, in their order, and no two are farther apart than the spacing or a 32nd of their radius, of the
+// finer qualities half of 1 or a 16th spacings; and a rounding.
+static void slices(enum hf_layers_quality quality)
+{
+    struct picture colour = picture_new(64, 48, 3), radii = picture_new(64, 48, 1);
+    struct hf_image image = picture_image(&colour);
+    const struct hf_depth depth = picture_radii(&radii);
+    const struct hf_counts found = {.radius_min = -150, .radius_max = 333};
+    struct hf_params p = hf_default_params;
+    struct hf_layers l = {.slices = 0};
+    struct hf_resolved r;
+    struct hf_setup s;
+    char message[HF_MESSAGE];
+    p.engine = HF_ENGINE_LAYERS;
+    p.layers.quality = quality;
+    CHECK_INT(hf_params_resolve(&r, 64, 48, &depth, &p, message), HF_OK);
+    hf_setup_make(&s, &image, &image, &depth, &r, &l);
+    CHECK_INT(hf_layers_engine.prepare(&l, &s, &r.params, &hf_mem_default), HF_OK);
+    CHECK_INT(hf_layers_engine.measure(&l, &s, &found, &hf_mem_default), HF_OK);
+    CHECK(l.slices > 20 && l.slice[0].radius <= -150 && l.slice[l.slices - 1].radius >= 333);
+    for (int i = 1; i < l.slices; i++) {
+        const float a = l.slice[i - 1].radius, b = l.slice[i].radius, inner = fminf(fabsf(a), fabsf(b));
+        const float widest = quality < HF_LAYERS_HIGH ? fmaxf(r.params.layers.spacing, inner / 32)
+                                                      : fmaxf(1, inner / 16) * r.params.layers.spacing / 2;
+        CHECK_MSG(b > a && b - a <= widest + FLT_EPSILON * fmaxf(fabsf(a), fabsf(b)), "quality %d: slices at %g and %g",
+                  (int)quality, a, b);
+    }
+    hf_layers_engine.release(&l, &hf_mem_default);
+    picture_free(&colour);
+    picture_free(&radii);
+}
+
+// In front of a grey wall of which all is sure lies an edge of which nothing is: of its pixels, mixed with the wall more
+// and less, the one least like the wall stands for it.
+static void farthest(void)
+{
+    enum { N = 7, AT = 3 };
+    float radius[N][N], colour[N][N], sure[N][N] = {{0}}, middle[N];
+    struct hf_unmix_row row = {.channels = 1, .middle = middle};
+    for (int y = 0; y < N; y++) {
+        middle[y] = 0;
+        row.radius[y] = radius[y];
+        row.colour[y][0] = colour[y];
+        row.sure[y] = sure[y];
+        for (int x = 0; x < N; x++) {
+            const int front = x == AT && y >= 2 && y <= 4;
+            radius[y][x] = front ? -4.0f - (float)y : 5;
+            colour[y][x] = front ? 0.5f + 0.1f * (float)(y == 3 ? 4 : y) : 0.5f;
+        }
+    }
+    float weight[2] = {0, 1}, mean[2][5] = {{0}, {0.5f, 0, 0, 0, 5}};
+    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 1);
+    CHECK_MSG(mean[0][0] == colour[3][AT] && mean[0][4] == radius[3][AT], "colour %g of radius %g, not %g of %g",
+              mean[0][0], mean[0][4], colour[3][AT], radius[3][AT]);
+    CHECK(mean[1][0] == 0.5f && mean[1][4] == 5);
+    weight[1] = 0;
+    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 0);
+}
+
+int main(void)
+{
+    for (int quality = HF_LAYERS_DRAFT; quality <= HF_LAYERS_BEST; quality++)
+        slices((enum hf_layers_quality)quality);
+    farthest();
+    return check_report();
+}
