@@ -50,8 +50,8 @@ static void place(struct hf_frame *f, struct band *b, int x, int y)
     }
 }
 
-// Beyond the frame what was made repeats: rows of `have`, all of it in `want`, are continued to its width, and rows
-// above and below the frame are copies of its first and last. Working pixels.
+// Beyond the frame nothing was made: rows of `have`, all of it in `want`, are continued to its width by zeros, and so are
+// rows above and below the frame. Working pixels.
 static void extend(const struct hf_frame *f, const struct band *b, struct hf_rect have, struct hf_rect want, int height)
 {
     const struct hf_buf *first = hf_hexagon_made(f, f->near ? HF_HEXAGON_NEAR_U : HF_HEXAGON_FAR_U);
@@ -61,14 +61,14 @@ static void extend(const struct hf_frame *f, const struct band *b, struct hf_rec
         for (int y = have.y0; y < have.y1; y++) {
             float *row = plane + y * b->stride;
             for (int x = want.x0; x < have.x0; x++)
-                row[x] = row[have.x0];
+                row[x] = 0;
             for (int x = have.x1; x < want.x1; x++)
-                row[x] = row[have.x1 - 1];
+                row[x] = 0;
         }
         for (int y = want.y0; y < 0 && have.y0 == 0; y++)
-            memcpy(plane + y * b->stride + want.x0, plane + want.x0, bytes);
+            memset(plane + y * b->stride + want.x0, 0, bytes);
         for (int y = height; y < want.y1; y++)
-            memcpy(plane + y * b->stride + want.x0, plane + (height - 1) * b->stride + want.x0, bytes);
+            memset(plane + y * b->stride + want.x0, 0, bytes);
     }
 }
 

@@ -99,6 +99,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     h->rotation = p->aperture.rotation;
     s->resolution = p->hexagon.resolution;
     s->uniform = p->hexagon.uniform;
+    s->zero_beyond = 1;
     // Below this, weights and colours times radii would be denormal, and a pixel's soft edge has no slope.
     s->sharp_radius = 0x1p-40f;
 }
@@ -229,10 +230,10 @@ static void make_steps(const struct hf_hexagon_line *l, const struct direction *
     }
 }
 
-// From anywhere in the picture, that far and farther is its edge. Returns whether there is such a tap.
+// From anywhere in the picture, that far and farther there is nothing. Returns whether there is such a tap.
 static int keep_inside(const struct hf_setup *s, struct hf_hexagon_line *l)
 {
-    const int x = s->width - 1, y = s->height - 1, outside = l->x0 < -x || l->x1 > x || l->y0 < -y || l->y1 > y;
+    const int x = s->width, y = s->height, outside = l->x0 < -x || l->x1 > x || l->y0 < -y || l->y1 > y;
     for (int i = 0; i < l->count; i++) {
         l->taps[i].dx = hf_max(hf_min(l->taps[i].dx, x), -x);
         l->taps[i].dy = hf_max(hf_min(l->taps[i].dy, y), -y);

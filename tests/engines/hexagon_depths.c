@@ -104,6 +104,31 @@ static void one_far_reaching(struct hf_context *c, int half)
     }
 }
 
+// A light that leaves the picture takes its light with it: none of its places makes more than the one in the middle, but
+// for what pixels that find nothing beyond the edge make up, in each of two passes: less than half as much again.
+static void leaving(struct hf_context *c, int half, float r, int corner)
+{
+    double middle = 0, most = 0;
+    for (int x = MIDDLE; x < SIZE; x++) {
+        struct picture colour = picture_new(SIZE, SIZE, 3), radius = picture_new(SIZE, SIZE, 1);
+        picture_fill(&radius, 0, r);
+        colour.plane[1][(corner ? x : MIDDLE) * SIZE + x] = 100;
+        struct picture out = blurred(c, &colour, &radius, half);
+        double sum = 0;
+        for (int k = 0; k < PIXELS; k++)
+            sum += out.plane[1][k];
+        middle = x == MIDDLE ? sum : middle;
+        most = fmax(most, sum);
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+    printf("half %d, radius %g, corner %d: a light leaving the picture shines by up to %.3g of what it does in the "
+           "middle\n",
+           half, (double)r, corner, most / middle);
+    CHECK_MSG(most <= 1.5 * middle, "half %d: a light that leaves shines by %g of its own", half, most / middle);
+}
+
 // Opaque in, opaque out, bit for bit, whatever the radii.
 static void opaque(struct hf_context *c, int half)
 {
@@ -135,6 +160,8 @@ int main(void)
         for (int half = 0; half < 2; half++) {
             lights(c, half);
             one_far_reaching(c, half);
+            for (int k = 0; k < 4; k++)
+                leaving(c, half, k & 1 ? 12 : -12, k >> 1);
             opaque(c, half);
         }
         hf_close(&c);

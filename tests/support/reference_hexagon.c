@@ -92,8 +92,10 @@ static struct sum sum_of(const struct field *f, const struct line *l, int x, int
     double before = 0;
     for (int i = 0; i < l->count; i++) {
         const struct tap *t = &l->tap[i];
+        // Beyond the picture there is nothing.
         const int at = clampi(y + t->dy, f->height) * f->width + clampi(x + t->dx, f->width);
-        const double q = f->q[at];
+        const int is = at == (y + t->dy) * f->width + x + t->dx && x + t->dx == clampi(x + t->dx, f->width);
+        const double q = is ? f->q[at] : 0;
         double w = fmin(t->b, q - before);
         if (p > 0)
             w = fmin(w, t->b * (1 + (2 * p - q) / fmin(p, 1)));
@@ -233,11 +235,11 @@ static double fields_at(const struct field *near, const struct field *far, const
     memset(near_out, 0, 4 * sizeof *near_out);
     memset(far_out, 0, 4 * sizeof *far_out);
     for (int i = 0; i < (half ? 4 : 1); i++) {
-        const int u = half ? clampi(i % 2 ? x / 2 + (x % 2 ? 1 : -1) : x / 2, near->width) : x;
-        const int v = half ? clampi(i / 2 ? y / 2 + (y % 2 ? 1 : -1) : y / 2, near->height) : y;
+        const int u0 = i % 2 ? x / 2 + (x % 2 ? 1 : -1) : x / 2, v0 = i / 2 ? y / 2 + (y % 2 ? 1 : -1) : y / 2;
+        const int u = half ? clampi(u0, near->width) : x, v = half ? clampi(v0, near->height) : y;
         const double w = half ? (i % 2 ? 0.25 : 0.75) * (i / 2 ? 0.25 : 0.75) : 1;
         const int at = v * near->width + u;
-        const double wf = half ? w * clamp01(far_in->q[at]) : 1;
+        const double wf = !half ? 1 : u == u0 && v == v0 ? w * clamp01(far_in->q[at]) : 0;
         coverage += w * near->a[at];
         sum += wf;
         for (int c = 0; c < near->channels; c++) {
