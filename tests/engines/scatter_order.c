@@ -75,7 +75,7 @@ static double jump(struct hf_context *c, const struct picture *colour, struct pi
     return worst;
 }
 
-// Noise of 0 to 1 beside noise far away. A picture's last rows weigh sixteenths: at radius 1.25, the smallest in use here
+// Noise of 0 to 1 beside noise far away. A picture's last rows weigh 128ths: at radius 1.25, the smallest in use here
 // where its size steps, a row is 0.3 of it. Nothing pops beyond that.
 static void thresholds(struct hf_context *c)
 {
