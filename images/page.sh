@@ -36,8 +36,8 @@ done
     echo
     echo 'Which one: **layers** where the picture counts; it takes edges apart, fills in what objects hide and is the closest'
     echo 'to the truth; the command does it by default. **scatter** for the same bits everywhere. **gather** for a renderer with a budget in milliseconds:'
-    echo 'its far field has one kernel, blended with the sharp picture where blur is little, and its maximum fill adds light, which is'
-    echo 'why it loses on `lights`. **hexagon** for its look. **gaussian** for a soft preview: it does not follow a lens. Look at the'
+    echo 'half resolution and a few kernels, each pixel between the two that are its own, cost it some sharpness on `lights`.'
+    echo '**hexagon** for its look. **gaussian** for a soft preview: it does not follow a lens. Look at the'
     echo 'rims of near bars before the sharp box (`fence`), at leaves before leaves (`foliage`), and at discs beside the head (`lights`).'
     echo
     echo 'Distance from the truth, PSNR in dB of the displayed picture, and milliseconds of a frame of 1280 x 720'

@@ -216,8 +216,9 @@ enum hf_storage {
 
 // How the gaps between the gather's taps are closed (chapter 3.3.5).
 enum hf_fill {
-    HF_FILL_MAX,   // 3x3 maximum: brighter highlights than energy allows, the chapter's choice
-    HF_FILL_MEAN,  // 3x3 mean: keeps energy
+    HF_FILL_MAX,  // 3x3 maximum: brighter highlights than energy allows, the chapter's choice
+    HF_FILL_MEAN,  // no gaps: each tap is the mean over its part of the aperture's area, which keeps energy; 3x3 mean with
+                   // .faithful or where downsample or division are not the default
     HF_FILL_NONE,  // none; instead 144 taps, a 12x12 grid mapped to the disc (Shirley and Chiu 1997)
     HF_FILL_OPEN,  // none, and no more taps: gaps stay
 };
@@ -354,7 +355,7 @@ struct hf_gather_params {
     // Reproduce the published demo, the flaws of its composite included. Default 0: those are mended.
     int faithful;
     // Rings of taps, 1..64. HF_DERIVE (default): as many as keep them two half-resolution pixels apart, up to 64. Fewer
-    // are faster and leave gaps. Ignored with HF_FILL_NONE.
+    // are faster and leave gaps. Ignored with HF_FILL_NONE, and with HF_FILL_MEAN where that has no taps.
     int rings;
     // Weight samples by 1 / (1 + luminance) in the gather, against fireflies: darker highlights. Default 0.
     // B. Karis, "Tone mapping", 2013; chapter 3.4.4.
@@ -592,7 +593,7 @@ HF_API size_t hf_get_tiles(const struct hf_context *c, uint8_t *tiles, size_t si
 // One intermediate buffer, for looking at and for tests: planes of floats.
 struct hf_buffer {
     const char *name;   // gather: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far,
-                        // nearfill, farfill
+                        // nearfill, farfill; by area colormulnear4 and cover instead of the last two
     int width, height;  // full, half or quarter resolution
     int channels;       // 1..4: near and far CoC, one CoC, or R, G, B and perhaps A
     const float *data[4];

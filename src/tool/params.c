@@ -59,8 +59,8 @@ const struct tool_option tool_params_options[] = {
     {"resolution", 0, TOOL_LOOK, "full|half|quarter", "Size of the working buffers, quarter "
      "only for gaussian. Default full.", .parse = parse_resolution, FIELD(hexagon.resolution), .names = HF_NAMES_RESOLUTION,
      .engines = "hexagon|scatter|gaussian"},
-    {"fill", 0, TOOL_LOOK, "max|mean|none|open", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, by "
-     "three times as many taps, or not at all.", NAME(gather.fill, FILL),
+    {"fill", 0, TOOL_LOOK, "max|mean|none|open", "How gaps between taps are closed: mean over the aperture's area "
+     "(default), 3x3 maximum (with --faithful), by three times as many taps, or not at all.", NAME(gather.fill, FILL),
      .engines = "gather"},
     {"blend", 0, TOOL_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",
      NAME(range.blend, BLEND)},
