@@ -99,7 +99,7 @@ static const struct trade_result *by_options(const struct trade *t, const char *
 void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after)
 {
     int place[TRADE_QUALITIES];
-    const struct trade_result *few = by_options(t, "--engine gather --rings 3");
+    const struct trade_result *few = by_options(t, "--engine gather --fill max --rings 3");
     const struct trade_result *many = by_options(t, "--engine gather --fill none");
     if (t->results < 2 || trade_qualities(t, place) || place[0] == place[1])
         return;
