@@ -262,7 +262,7 @@ HF_INLINE void blend_block(const struct composite_rows *r, const enum hf_divisio
     }
 }
 
-#include "gather/area_composite_simd.h"
+#include "gather/area_composite_simd.inc"
 
 // ---- through lines: everything there is, row by row ----
 

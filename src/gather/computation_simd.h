@@ -421,7 +421,7 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
     gather_run(f, r, hf_gather_taps(s, HF_FAR), &j, &f->buf[HF_BUF_COC4], 1, finish_far);
 }
 
-#include "gather/area_computation_simd.h"
+#include "gather/area_computation_simd.inc"
 
 static void gather_simd(const struct hf_frame *f, struct hf_rect r)
 {

@@ -224,7 +224,7 @@ HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far
         vf_stream_end();
 }
 
-#include "gather/area_down_simd.h"
+#include "gather/area_down_simd.inc"
 
 static void down_simd(const struct hf_frame *f, struct hf_rect r)
 {
