@@ -233,7 +233,8 @@ int pass_check(const struct world *w, const struct level *l, char message[256])
         want.clamped = got.clamped = 0;  // a colour just beside the end of its range
     if (memcmp(&want, &got, sizeof want) ||
         memcmp(&w->result[ARENA_REFERENCE].seen, &w->result[ARENA_TEST].seen, sizeof want)) {
-        snprintf(message, 256, "other counts than the C");
+        snprintf(message, 256, "other counts than the C: clamped %llu, not %llu", (unsigned long long)got.clamped,
+                 (unsigned long long)want.clamped);
         return 0;
     }
     return world_compare(w, l, message);

@@ -53,7 +53,7 @@ static const struct {
      "radius 0 is a copy, and otherwise colours are truncated when they are read"},
     {"largest floats: not finite in the picture", "layers", 20000,
      "sums of samples with weights around edges pass the largest float, and nothing clamps them"},
-    {"largest floats: not finite in a buffer on the way", "layers", 5000, "the same"},
+    {"largest floats: not finite in a buffer on the way", "layers", 6000, "the same"},
     {"a range pull: worst jump, 8-bit codes", "layers", 75,
      "an edge is un-mixed from a difference of 1 pixel between radii on, a whole floor at once if it is that steep, "
      "and "
