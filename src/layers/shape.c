@@ -169,9 +169,10 @@ static size_t build_one(struct hf_shape *s, const struct maker *m, const struct 
         return rows + ((size_t)s->reach * 2 + 1 + 15) / 16 * 16 * (size_t)s->rows * sizeof(float);
     }
     const size_t runs = (size_t)s->rows * HF_SHAPE_RUNS;
-    struct hf_shape_end *end = (struct hf_shape_end *)(memory + rows);
-    if (memory)
+    if (memory) {
+        struct hf_shape_end *end = (struct hf_shape_end *)(memory + rows);
         make_shape(s, m, (struct hf_shape_row *)memory, end, (struct hf_shape_run *)(end + runs));
+    }
     return rows + runs * (sizeof(struct hf_shape_end) + sizeof(struct hf_shape_run));
 }
 
