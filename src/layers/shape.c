@@ -225,7 +225,8 @@ int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const s
     const int err = hf_block_grow(&s->block, bytes, mem);
     if (!err) {
         s->shape = s->block.data;
-        build(s, size, picture ? area : NULL, (uint8_t *)s->block.data + table);
+        if (bytes)
+            build(s, size, picture ? area : NULL, (uint8_t *)s->block.data + table);
     } else {
         s->key.count = -1;
     }

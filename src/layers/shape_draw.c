@@ -53,18 +53,20 @@ static size_t nodes_of(const struct hf_layers *l, const struct hf_slice *s, int 
 static size_t place(const struct hf_layers *l, int columns, float *memory, struct places *p)
 {
     const int around = HF_LAYERS_TILE * l->most_tiles, width = columns * TILE;
-    size_t used = 0;
     *p = (struct places){.plane = (ptrdiff_t)whole((size_t)(width + 2 * around) + 2 * AROUND)};
-    p->window = memory + around + AROUND;
-    used += (size_t)p->plane * (size_t)l->most_windows * (l->key.cat_eye > 0 ? (size_t)l->channels + 1 : 1);
-    p->part = memory + used;
-    used += whole((size_t)width + 2 * AROUND);
-    p->row = (struct hf_shape_row *)(void *)(memory + used);
-    used += whole((size_t)l->most_rows * sizeof(struct hf_shape_row) / sizeof(float));
-    p->run = (struct hf_shape_run *)(void *)(memory + used);
-    used += whole((size_t)l->most_rows * HF_SHAPE_RUNS * sizeof(struct hf_shape_run) / sizeof(float));
-    p->sum = memory + used;
-    return used;
+    const size_t windows = (size_t)l->most_windows * (l->key.cat_eye > 0 ? (size_t)l->channels + 1 : 1);
+    const size_t part = (size_t)p->plane * windows;
+    const size_t row = part + whole((size_t)width + 2 * AROUND);
+    const size_t run = row + whole((size_t)l->most_rows * sizeof(struct hf_shape_row) / sizeof(float));
+    const size_t sum = run + whole((size_t)l->most_rows * HF_SHAPE_RUNS * sizeof(struct hf_shape_run) / sizeof(float));
+    if (memory) {
+        p->window = memory + around + AROUND;
+        p->part = memory + part;
+        p->row = (struct hf_shape_row *)(void *)(memory + row);
+        p->run = (struct hf_shape_run *)(void *)(memory + run);
+        p->sum = memory + sum;
+    }
+    return sum;
 }
 
 size_t hf_layers_shape_floats(const struct hf_layers *l, int columns, int rows)
