@@ -103,7 +103,7 @@ static void blend_near(const struct hf_frame *f, struct hf_phase p, float *const
 
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
-    const int n = r.x1 - r.x0, ny = y & 1 ? y / 2 + 1 : y / 2 - 1;
+    const int area = hf_gather(f->s)->area, n = r.x1 - r.x0, ny = y & 1 ? y / 2 + 1 : y / 2 - 1;
     float *lane[2][4], *coc[4];
     for (int i = 0; i < 4; i++) {
         lane[0][i] = hf_line(f, i);
@@ -118,9 +118,9 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
             const int x = r.x0 + i;
             const struct hf_phase p = {x, y / 2, odd ? x + 1 : x - 1, ny};
             if (f->far)
-                blend_far(f, p, coc[2 + odd][i], lane[odd], i);
+                (area ? hf_area_blend_far : blend_far)(f, p, coc[2 + odd][i], lane[odd], i);
             if (f->near)
-                blend_near(f, p, lane[odd], i);
+                (area ? hf_area_blend_near : blend_near)(f, p, lane[odd], i);
         }
         hf_store_rgb(f, lane[odd], n);
     }
@@ -132,10 +132,6 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
-    if (hf_gather(f->s)->area) {
-        hf_area_composite_c(f, r);
-        return;
-    }
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
         composite_row(f, y, r);
 }

@@ -378,11 +378,6 @@ void hf_gather_kernels_c(struct hf_gather_kernels *k)
     }}};
 }
 
-static void kernels(void *table, enum hf_isa isa, int fused)
-{
-    hf_gather_kernels_init(table, isa, fused);
-}
-
 const struct hf_engine_def hf_gather_engine = {
     .name = "gather",
     .aperture = HF_APERTURE_BLADES,
@@ -393,7 +388,7 @@ const struct hf_engine_def hf_gather_engine = {
     .bufs = bufs,
     .buf_count = HF_BUF_COUNT,
     .kernels_bytes = sizeof(struct hf_gather_kernels),
-    .kernels = kernels,
+    .kernels = hf_gather_kernels_init,
     .own_bytes = sizeof(struct hf_gather),
     .resolve = resolve,
     .prepare = prepare,

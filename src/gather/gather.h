@@ -162,7 +162,7 @@ hf_kernel hf_gather_coc, hf_down_c, hf_max_x_c, hf_max_y_c, hf_blur_x_c, hf_blur
 void hf_convolve_c(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, const struct hf_buf *in,
                    int c_in, const struct hf_buf *out, int c_out);
 
-hf_kernel hf_area_down_c, hf_area_gather_c, hf_area_composite_c;
+hf_kernel hf_area_down_c, hf_area_gather_c;
 
 // Row y of the part of a level's taps that lies in the frame, n pixels from x on. Returns 0 if it is all of them.
 int hf_area_inside(const struct hf_setup *s, const struct hf_taps *t, int x, int y, int n, float *inside);

@@ -19,4 +19,8 @@ hf_upsampling hf_upsample;
 // Uniform cubic B-spline there.
 hf_upsampling hf_upsample_cubic;
 
+// Put a field over lane i of the colour of the pixel p: of Composite by area.
+void hf_area_blend_far(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i);
+void hf_area_blend_near(const struct hf_frame *f, struct hf_phase p, float *const colour[4], int i);
+
 #endif
