@@ -199,11 +199,6 @@ void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
     };
 }
 
-static void kernels(void *table, enum hf_isa isa, int fused)
-{
-    hf_gaussian_kernels_init(table, isa, fused);
-}
-
 const struct hf_engine_def hf_gaussian_engine = {
     .name = "gaussian",
     .focus_anywhere = 1,
@@ -215,7 +210,7 @@ const struct hf_engine_def hf_gaussian_engine = {
     .bufs = bufs,
     .buf_count = HF_GAUSSIAN_BUFS,
     .kernels_bytes = sizeof(struct hf_gaussian_kernels),
-    .kernels = kernels,
+    .kernels = hf_gaussian_kernels_init,
     .own_bytes = sizeof(struct hf_gaussian),
     .resolve = resolve,
     .channels = channels,

@@ -338,11 +338,6 @@ void hf_hexagon_kernels_c(struct hf_hexagon_kernels *k)
     };
 }
 
-static void kernels(void *table, enum hf_isa isa, int fused)
-{
-    hf_hexagon_kernels_init(table, isa, fused);
-}
-
 const struct hf_engine_def hf_hexagon_engine = {
     .name = "hexagon",
     .aperture = HF_APERTURE_BLADES,
@@ -354,7 +349,7 @@ const struct hf_engine_def hf_hexagon_engine = {
     .buf_count = HF_HEXAGON_BUF_COUNT,
     .measured = 1,
     .kernels_bytes = sizeof(struct hf_hexagon_kernels),
-    .kernels = kernels,
+    .kernels = hf_hexagon_kernels_init,
     .own_bytes = sizeof(struct hf_hexagon),
     .resolve = resolve,
     .prepare = prepare,

@@ -322,11 +322,6 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
     };
 }
 
-static void kernels(void *table, enum hf_isa isa, int fused)
-{
-    hf_layers_kernels_init(table, isa, fused);
-}
-
 const struct hf_engine_def hf_layers_engine = {
     .name = "layers",
     .aperture = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE |
@@ -340,7 +335,7 @@ const struct hf_engine_def hf_layers_engine = {
     .across = 1u << 2 | 1u << 3,
     .measured = 1,
     .kernels_bytes = sizeof(struct hf_layers_kernels),
-    .kernels = kernels,
+    .kernels = hf_layers_kernels_init,
     .own_bytes = sizeof(struct hf_layers),
     .resolve = resolve,
     .prepare = prepare,

@@ -346,11 +346,6 @@ void hf_scatter_kernels_c(struct hf_scatter_kernels *k)
     };
 }
 
-static void kernels(void *table, enum hf_isa isa, int fused)
-{
-    hf_scatter_kernels_init(table, isa, fused);
-}
-
 const struct hf_engine_def hf_scatter_engine = {
     .name = "scatter",
     .aperture = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE |
@@ -363,7 +358,7 @@ const struct hf_engine_def hf_scatter_engine = {
     .buf_count = HF_SCATTER_BUFS,
     .measured = 1,
     .kernels_bytes = sizeof(struct hf_scatter_kernels),
-    .kernels = kernels,
+    .kernels = hf_scatter_kernels_init,
     .own_bytes = sizeof(struct hf_scatter),
     .resolve = resolve,
     .prepare = prepare,

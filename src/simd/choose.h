@@ -17,12 +17,13 @@
     void name##_avx512_fused(struct name *k);                                                                          \
     void name##_neon_exact(struct name *k);                                                                            \
     void name##_neon_fused(struct name *k);                                                                            \
-    void name##_init(struct name *k, enum hf_isa isa, int fused)
+    void name##_init(void *table, enum hf_isa isa, int fused)
 
 #if HF_SIMD && HF_X86 && !HF_NARROW
 #define HF_CHOOSE_KERNELS(name)                                                                                        \
-    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    void name##_init(void *table, enum hf_isa isa, int fused)                                                          \
     {                                                                                                                  \
+        struct name *k = table;                                                                                        \
         name##_c(k);                                                                                                   \
         if (isa == HF_ISA_SSE41)                                                                                       \
             name##_sse41_exact(k);                                                                                     \
@@ -33,8 +34,9 @@
     }
 #elif HF_SIMD && HF_X86
 #define HF_CHOOSE_KERNELS(name)                                                                                        \
-    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    void name##_init(void *table, enum hf_isa isa, int fused)                                                          \
     {                                                                                                                  \
+        struct name *k = table;                                                                                        \
         (void)fused;                                                                                                   \
         name##_c(k);                                                                                                   \
         if (isa == HF_ISA_SSE41)                                                                                       \
@@ -42,16 +44,18 @@
     }
 #elif HF_SIMD && HF_ARM
 #define HF_CHOOSE_KERNELS(name)                                                                                        \
-    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    void name##_init(void *table, enum hf_isa isa, int fused)                                                          \
     {                                                                                                                  \
+        struct name *k = table;                                                                                        \
         name##_c(k);                                                                                                   \
         if (isa == HF_ISA_NEON)                                                                                        \
             (fused ? name##_neon_fused : name##_neon_exact)(k);                                                        \
     }
 #else
 #define HF_CHOOSE_KERNELS(name)                                                                                        \
-    void name##_init(struct name *k, enum hf_isa isa, int fused)                                                       \
+    void name##_init(void *table, enum hf_isa isa, int fused)                                                          \
     {                                                                                                                  \
+        struct name *k = table;                                                                                        \
         (void)isa;                                                                                                     \
         (void)fused;                                                                                                   \
         name##_c(k);                                                                                                   \
