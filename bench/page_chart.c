@@ -52,94 +52,69 @@ static double region_error(const struct trade *t, const struct trade_result *r, 
     return n ? exp(logs / n) : NAN;
 }
 
-static double whole(const struct trade *t, const struct trade_result *r)
-{
-    return region_error(t, r, BENCH_WHOLE);
-}
-
-static double silhouettes(const struct trade *t, const struct trade_result *r)
-{
-    return region_error(t, r, BENCH_SILHOUETTES);
-}
-
-static double near_field(const struct trade *t, const struct trade_result *r)
-{
-    return region_error(t, r, BENCH_NEAR);
-}
-
-static double far_field(const struct trade *t, const struct trade_result *r)
-{
-    return region_error(t, r, BENCH_FAR);
-}
-
-static double in_focus(const struct trade *t, const struct trade_result *r)
-{
-    return region_error(t, r, BENCH_FOCUS);
-}
-
-static double highlights(const struct trade *t, const struct trade_result *r)
-{
-    return region_error(t, r, BENCH_HIGHLIGHTS);
-}
-
-static double flip(const struct trade *t, const struct trade_result *r)
+static double flip(const struct trade *t, const struct trade_result *r, enum bench_region region)
 {
     double sum = 0;
     for (int s = 0; s < t->scenes; s++)
-        sum += r->at[s].distance[BENCH_WHOLE].flip / t->scenes;
+        sum += r->at[s].distance[region].flip / t->scenes;
     return sum;
 }
 
-static double dissimilarity(const struct trade *t, const struct trade_result *r)
+static double dissimilarity(const struct trade *t, const struct trade_result *r, enum bench_region region)
 {
     double sum = 0;
     for (int s = 0; s < t->scenes; s++)
-        sum += (1 - r->at[s].distance[BENCH_WHOLE].ssim) / t->scenes;
+        sum += (1 - r->at[s].distance[region].ssim) / t->scenes;
     return sum;
 }
 
-static double linear(const struct trade *t, const struct trade_result *r)
+static double linear(const struct trade *t, const struct trade_result *r, enum bench_region region)
 {
     double logs = 0;
     for (int s = 0; s < t->scenes; s++)
-        logs += log(r->at[s].distance[BENCH_WHOLE].linear_rmse) / t->scenes;
+        logs += log(r->at[s].distance[region].linear_rmse) / t->scenes;
     return exp(logs);
 }
 
-static double flicker(const struct trade *t, const struct trade_result *r)
+static double flicker(const struct trade *t, const struct trade_result *r, enum bench_region region)
 {
     double sum = 0;
+    (void)region;
     for (int s = 0; s < t->scenes; s++)
         sum += r->at[s].flicker / t->scenes;
     return sum;
 }
 
-static double rounding(const struct trade *t, const struct trade_result *r)
+static double rounding(const struct trade *t, const struct trade_result *r, enum bench_region region)
 {
     (void)t;
+    (void)region;
     return r->rounding;
 }
 
-static double faithfulness(const struct trade *t, const struct trade_result *r)
+static double faithfulness(const struct trade *t, const struct trade_result *r, enum bench_region region)
 {
     (void)t;
+    (void)region;
     return r->faithfulness;
 }
 
 const struct chart trade_charts[] = {
-    {"truth", "truth", "RMSE from the ray-traced truth, display-encoded", 0, whole, NULL, 1},
-    {"both", "truth, 1080p", "the same, over the time of 1920x1080 blurred everywhere by 12 pixels", 1, whole, NULL, 1},
-    {"edges", "silhouettes", "RMSE from the truth within reach of a depth edge", 0, silhouettes, NULL, 1},
-    {"near", "near", "RMSE from the truth in front of the focus, no silhouettes", 0, near_field, NULL, 1},
-    {"far", "far", "RMSE from the truth behind the focus, no silhouettes", 0, far_field, NULL, 1},
-    {"focus", "in focus", "RMSE from the truth in focus, no silhouettes", 0, in_focus, NULL, 1},
-    {"lights", "highlights", "RMSE from the truth within reach of a highlight", 0, highlights, NULL, 1},
-    {"flip", "FLIP", "FLIP, mean: what a person sees of the difference from the truth", 0, flip, NULL, 0},
-    {"ssim", "SSIM", "1 - SSIM, to the truth", 0, dissimilarity, NULL, 0},
-    {"linear", "linear", "RMSE from the truth, linear light", 0, linear, NULL, 0},
-    {"rounding", "rounding", "RMSE from the same algorithm in double precision, linear", 0, rounding, NULL, 0},
-    {"demo", "faithfulness", "RMSE of the gather from the published demo, display-encoded", 0, faithfulness, NULL, 0},
-    {"flicker", "flicker", "second difference of a focus pull, display-encoded", 0, flicker, NULL, 0},
+    {"truth", "truth", "RMSE from the ray-traced truth, display-encoded", 0, region_error, BENCH_WHOLE, 1},
+    {"both", "truth, 1080p", "the same, over the time of 1920x1080 blurred everywhere by 12 pixels", 1, region_error,
+     BENCH_WHOLE, 1},
+    {"edges", "silhouettes", "RMSE from the truth within reach of a depth edge", 0, region_error, BENCH_SILHOUETTES, 1},
+    {"near", "near", "RMSE from the truth in front of the focus, no silhouettes", 0, region_error, BENCH_NEAR, 1},
+    {"far", "far", "RMSE from the truth behind the focus, no silhouettes", 0, region_error, BENCH_FAR, 1},
+    {"focus", "in focus", "RMSE from the truth in focus, no silhouettes", 0, region_error, BENCH_FOCUS, 1},
+    {"lights", "highlights", "RMSE from the truth within reach of a highlight", 0, region_error, BENCH_HIGHLIGHTS, 1},
+    {"flip", "FLIP", "FLIP, mean: what a person sees of the difference from the truth", 0, flip, BENCH_WHOLE, 0},
+    {"ssim", "SSIM", "1 - SSIM, to the truth", 0, dissimilarity, BENCH_WHOLE, 0},
+    {"linear", "linear", "RMSE from the truth, linear light", 0, linear, BENCH_WHOLE, 0},
+    {"rounding", "rounding", "RMSE from the same algorithm in double precision, linear", 0, rounding, BENCH_WHOLE, 0},
+    {"demo", "faithfulness", "RMSE of the gather from the published demo, display-encoded", 0, faithfulness,
+     BENCH_WHOLE, 0},
+    {"flicker", "flicker", "second difference of a focus pull, display-encoded", 0, flicker, BENCH_WHOLE, 0},
 };
 const int trade_chart_count = sizeof trade_charts / sizeof *trade_charts;
 
@@ -152,7 +127,7 @@ int chart_points(const struct trade *t, const struct chart *c)
 {
     int n = 0;
     for (int i = 0; i < t->results; i++) {
-        const double e = c->error(t, &t->result[i]);
+        const double e = c->error(t, &t->result[i], c->region);
         n += isfinite(e) && e > 0 && time_of(c, &t->result[i]).median > 0;
     }
     return n;
@@ -172,7 +147,8 @@ static void add_others(struct view *v)
                 gegl_ms += 1e3 * bench_others[i].gegl_s / BENCH_OTHERS;
                 n++;
             }
-    if (n != BENCH_OTHERS || v->t->scenes != BENCH_OTHERS || v->chart->error != whole || v->chart->both)
+    if (n != BENCH_OTHERS || v->t->scenes != BENCH_OTHERS || v->chart->error != region_error ||
+        v->chart->region != BENCH_WHOLE || v->chart->both)
         return;
     v->mark[v->marks++] = (struct mark){-1,         "Blender Defocus (elsewhere)", 0, blender_ms, blender_ms,
                                         blender_ms, pow(10, -blender / 20),        0};
@@ -205,7 +181,7 @@ static int collect(struct view *v)
     for (int i = 0; i < v->t->results; i++) {
         const struct trade_result *r = &v->t->result[i];
         const struct trade_interval ms = time_of(v->chart, r);
-        const double e = v->chart->error(v->t, r);
+        const double e = v->chart->error(v->t, r, v->chart->region);
         if (isfinite(e) && e > 0 && ms.median > 0)
             v->mark[v->marks++] = (struct mark){i, r->setting->name, r->engine, ms.median, ms.low, ms.high, e, 0};
     }

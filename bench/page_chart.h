@@ -10,9 +10,10 @@ struct chart {
     const char *name;   // short, for a switch
     const char *title;  // what the error is
     int both;           // time of 1080p `both` instead of the scenes' mean
-    double (*error)(const struct trade *t, const struct trade_result *r);  // NAN: has none
-    double (*front)(const struct trade *t, const struct trade_result *r);  // unused when NULL
-    int decibel;                                                           // a second scale
+    // What is drawn upwards, of a region where it is a distance; NAN: has none.
+    double (*error)(const struct trade *t, const struct trade_result *r, enum bench_region region);
+    enum bench_region region;
+    int decibel;  // a second scale
 };
 
 extern const struct chart trade_charts[];

@@ -154,7 +154,8 @@ void trade_run_close(struct trade_run *run)
     free(run->job);
 }
 
-struct hf_params trade_run_params(const struct trade_run *run, int result, int scene)
+// Parameters of a setting on a scene; scene -1: on `both`.
+static struct hf_params params_of(const struct trade_run *run, int result, int scene)
 {
     const struct bench_args *args = &run->job[result].args;
     struct hf_params p = args->params;
@@ -190,7 +191,7 @@ static int render(struct trade_run *run, int result, int scene, const struct hf_
 
 int trade_run_render(struct trade_run *run, int result, int scene, struct tool_error *error)
 {
-    const struct hf_params p = trade_run_params(run, result, scene);
+    const struct hf_params p = params_of(run, result, scene);
     return render(run, result, scene, &p, error);
 }
 
@@ -218,7 +219,7 @@ static int measure_flicker(struct trade_run *run, int result, int scene, double 
     // Radius of the infinitely far per 1 / focus.
     const float k = trade_radius(&s->camera, p->width, 0) * s->camera.focus;
     for (int i = 0; i < PULL; i++) {
-        struct hf_params params = trade_run_params(run, result, scene);
+        struct hf_params params = params_of(run, result, scene);
         params.focus = 1 / (1 / s->camera.focus + (float)(i - PULL / 2) * pull_step / k);
         if (render(run, result, scene, &params, error))
             return -1;

@@ -42,9 +42,6 @@ void trade_run_close(struct trade_run *run);
 // Understand the options of all of t->result. Settings that this machine has not are taken out.
 int trade_run_parse(struct trade_run *run, struct tool_error *error);
 
-// Parameters of a setting on a scene; scene -1: on `both`.
-struct hf_params trade_run_params(const struct trade_run *run, int result, int scene);
-
 // Render one setting on one scene (-1: `both`). Returns 0, or -1 with *error filled.
 int trade_run_render(struct trade_run *run, int result, int scene, struct tool_error *error);
 // The distances of one setting on all scenes that are not measured yet.

@@ -40,6 +40,15 @@ run() {  # ARGUMENTS...
 contains() {  # FILE WORD
     grep -qF -e "$2" "$1"
 }
+# Sets ok to 1 for each of $words, separated by '|', that the file has not.
+lacks() {  # FILE WHAT-IT-IS
+    old_ifs=$IFS
+    IFS='|'
+    for word in $words; do
+        contains "$1" "$word" || { ok=1; echo "the $2 lacks '$word':"; }
+    done
+    IFS=$old_ifs
+}
 
 # Bad input: exit CODE, exactly one line on stderr with all of WORDS (separated by '|'), nothing on stdout, and the
 # working directory as it was.
@@ -53,12 +62,7 @@ bad() {  # CODE WORDS ARGUMENTS...
     [ "$(wc -l <"$dir/err")" -eq 1 ] || { ok=1; echo "not one line on stderr:"; }
     [ ! -s "$dir/out" ] || { ok=1; echo "something on stdout:"; }
     [ "$(ls -lR .)" = "$before" ] || { ok=1; echo "files were written or changed:"; }
-    old_ifs=$IFS
-    IFS='|'
-    for word in $words; do
-        contains "$dir/err" "$word" || { ok=1; echo "the sentence lacks '$word':"; }
-    done
-    IFS=$old_ifs
+    lacks "$dir/err" sentence
     result "refuse: $*" $ok
 }
 
@@ -75,12 +79,7 @@ plan() {  # WORDS ARGUMENTS...
     shift
     run "$@" --dry-run
     ok=$status
-    old_ifs=$IFS
-    IFS='|'
-    for word in $words; do
-        contains "$dir/out" "$word" || { ok=1; echo "the plan lacks '$word':"; }
-    done
-    IFS=$old_ifs
+    lacks "$dir/out" plan
     result "plan: $*" "$ok"
 }
 

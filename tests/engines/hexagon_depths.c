@@ -9,23 +9,6 @@
 
 enum { SIZE = 120, PIXELS = SIZE * SIZE, MIDDLE = SIZE / 2 };
 
-static struct hf_params params_new(int half)
-{
-    struct hf_params p = scene_params();
-    p.engine = HF_ENGINE_HEXAGON;
-    p.max_radius = HF_DERIVE;
-    p.hexagon.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
-    return p;
-}
-
-static struct picture blurred(struct hf_context *c, const struct picture *colour, const struct picture *radius,
-                              int half)
-{
-    const struct hf_params p = params_new(half);
-    const struct hf_depth depth = picture_radii(radius);
-    return render(c, colour, &depth, &p);
-}
-
 // Pixels that do not shine between two of their line that do; lines are `down` apart.
 static int gaps(const float *plane, int step, int down, float shine)
 {
@@ -58,7 +41,7 @@ static void lights(struct hf_context *c, int half)
             for (int ch = 0; ch < 3; ch++)
                 colour.plane[ch][k] = d <= 3.5 ? 200 : 0.02f;
         }
-        struct picture out = blurred(c, &colour, &radius, half);
+        struct picture out = render_radii(c, HF_ENGINE_HEXAGON, &colour, &radius, half);
         const float shine = 0.1f * (200 * 3.5f * 3.5f / (r * r));
         const int dark = gaps(out.plane[1], 1, SIZE, shine) + gaps(out.plane[1], SIZE, 1, shine);
         CHECK_MSG(dark <= 7, "half %d, a light of radius %g before %g: %d dark pixels", half, (double)r,
@@ -84,9 +67,9 @@ static void one_far_reaching(struct hf_context *c, int half)
                 colour.plane[ch][k] =
                     abs(k % SIZE - MIDDLE) < 30 ? 0.2f + 0.6f * ((k % SIZE / 6 + k / SIZE / 6) & 1) : 1;
         }
-        struct picture before = blurred(c, &colour, &radius, half);
+        struct picture before = render_radii(c, HF_ENGINE_HEXAGON, &colour, &radius, half);
         radius.plane[0][(SIZE - 20) * SIZE + MIDDLE] = -reach[i];
-        struct picture after = blurred(c, &colour, &radius, half);
+        struct picture after = render_radii(c, HF_ENGINE_HEXAGON, &colour, &radius, half);
         const double R = half ? reach[i] / 2 : reach[i], q = half ? r / 2 : r, share = (half ? 0.25 : 1) / R;
         const double most = 0.8 * 2 / 3 * (2 * share * (sqrt(R / q) - 1) + share);
         double worst = 0;
@@ -113,7 +96,7 @@ static void leaving(struct hf_context *c, int half, float r, int corner)
         struct picture colour = picture_new(SIZE, SIZE, 3), radius = picture_new(SIZE, SIZE, 1);
         picture_fill(&radius, 0, r);
         colour.plane[1][(corner ? x : MIDDLE) * SIZE + x] = 100;
-        struct picture out = blurred(c, &colour, &radius, half);
+        struct picture out = render_radii(c, HF_ENGINE_HEXAGON, &colour, &radius, half);
         double sum = 0;
         for (int k = 0; k < PIXELS; k++)
             sum += out.plane[1][k];
@@ -141,7 +124,7 @@ static void opaque(struct hf_context *c, int half)
                 colour.plane[ch][k] = ch < 3 ? rng_float(&rng) : 1;
             radius.plane[0][k] = rng_below(&rng, 3) && k ? radius.plane[0][k - 1] : rng_range(&rng, -14, 14);
         }
-        struct picture out = blurred(c, &colour, &radius, half);
+        struct picture out = render_radii(c, HF_ENGINE_HEXAGON, &colour, &radius, half);
         int thin = 0;
         for (int k = 0; k < w * h; k++)
             thin += out.plane[3][k] != 1;

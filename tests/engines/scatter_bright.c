@@ -16,23 +16,6 @@ static const double U = FLT_EPSILON / 2;
 static const float values[] = {300, 65504, 1e9f, 1e12f, 1e20f, 1e30f, FLT_MAX};
 enum { VALUES = sizeof values / sizeof *values };
 
-static struct hf_params params_new(int half)
-{
-    struct hf_params p = scene_params();
-    p.engine = HF_ENGINE_SCATTER;
-    p.max_radius = HF_DERIVE;
-    p.scatter.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
-    return p;
-}
-
-static struct picture blurred(struct hf_context *c, const struct picture *colour, const struct picture *radius,
-                              int half)
-{
-    const struct hf_params p = params_new(half);
-    const struct hf_depth depth = picture_radii(radius);
-    return render(c, colour, &depth, &p);
-}
-
 // Colours of six decades, everything blurred, near and far beside each other.
 static struct scene stage(int channels)
 {
@@ -66,13 +49,13 @@ static int changed(const struct picture *a, const struct picture *b, int from, i
 static void far_off(struct hf_context *c, int half)
 {
     struct scene s = stage(4);
-    struct picture calm = blurred(c, &s.colour, &s.depth, half);
+    struct picture calm = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half);
     for (int i = 0; i < VALUES; i++)
         for (int ch = 0; ch < 4; ch++) {
             const int at = Y * WIDTH + X;
             const float old = s.colour.plane[ch][at];
             s.colour.plane[ch][at] = values[i];
-            struct picture out = blurred(c, &s.colour, &s.depth, half);
+            struct picture out = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half);
             CHECK_MSG(!changed(&calm, &out, 0, 4), "half %d, %g in channel %d: %d samples beyond its reach changed",
                       half, (double)values[i], ch, changed(&calm, &out, 0, 4));
             int bad = 0, other = 0;
@@ -96,12 +79,12 @@ static void far_off(struct hf_context *c, int half)
 static void many(struct hf_context *c, int half)
 {
     struct scene s = stage(3);
-    struct picture calm = blurred(c, &s.colour, &s.depth, half);
+    struct picture calm = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half);
     for (int i = 0; i < 3; i++)
         s.colour.plane[0][(Y + 45) * WIDTH + 20 + 30 * i] = values[i + 1];
-    struct picture without = blurred(c, &s.colour, &s.depth, half);
+    struct picture without = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half);
     s.colour.plane[0][Y * WIDTH + X] = 1e9f;
-    struct picture with = blurred(c, &s.colour, &s.depth, half);
+    struct picture with = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half);
     CHECK_MSG(!changed(&without, &with, 0, 3), "half %d: %d samples beyond a light's reach changed", half,
               changed(&without, &with, 0, 3));
     int other = 0;
@@ -125,7 +108,7 @@ static void beside_constant(struct hf_context *c, int half)
         picture_fill(&radius, 0, RADIUS);
         for (int ch = 0; ch < 3; ch++)
             colour.plane[ch][Y * WIDTH + X] = values[i];
-        struct picture out = blurred(c, &colour, &radius, half);
+        struct picture out = render_radii(c, HF_ENGINE_SCATTER, &colour, &radius, half);
         double worst = 0, alpha = 0;
         for (int k = 0; k < PIXELS; k++) {
             for (int ch = 0; ch < 3 && is_far_off(k); ch++)
@@ -153,7 +136,7 @@ static void faded(struct hf_context *c, int half)
             picture_fill(&colour, ch, 0.35f);
         picture_fill(&radius, 0, radii[i % 9]);
         colour.plane[0][Y * WIDTH + X] = v;
-        struct picture out = blurred(c, &colour, &radius, half);
+        struct picture out = render_radii(c, HF_ENGINE_SCATTER, &colour, &radius, half);
         for (int k = 0; k < PIXELS; k++)
             sum += (double)out.plane[0][k] - (double)0.35f;
         CHECK_MSG(fabs(sum / ((double)v - (double)0.35f) - 1) <= 1e-5, "half %d, %g at radius %g: %g of its energy",
@@ -171,7 +154,8 @@ static void crops(struct hf_context *c, int half)
     s.colour.plane[0][2 * WIDTH + WIDTH - 3] = 1e9f;
     const int x0 = 4, y0 = 8, w = 90, h = 80;
     struct scene part = {picture_cut(&s.colour, x0, y0, w, h), picture_cut(&s.depth, x0, y0, w, h)};
-    struct picture whole = blurred(c, &s.colour, &s.depth, half), cut = blurred(c, &part.colour, &part.depth, half);
+    struct picture whole = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half),
+                   cut = render_radii(c, HF_ENGINE_SCATTER, &part.colour, &part.depth, half);
     int other = 0;
     for (int ch = 0; ch < 3; ch++)
         for (int y = 2 * REACH; y < h - 2 * REACH; y++)
@@ -192,7 +176,7 @@ static void largest(struct hf_context *c, int half)
         for (int ch = 0; ch < 4; ch++)
             for (int k = 0; k < PIXELS; k++)
                 s.colour.plane[ch][k] = signs && k % 3 ? -FLT_MAX : FLT_MAX;
-        struct picture out = blurred(c, &s.colour, &s.depth, half);
+        struct picture out = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half);
         int bad = 0, off = 0;
         for (int ch = 0; ch < 4; ch++)
             for (int k = 0; k < PIXELS; k++) {
@@ -213,7 +197,7 @@ static void opaque(struct hf_context *c, int half)
         struct scene s = stage(4);
         picture_fill(&s.colour, 3, 1);
         s.colour.plane[3][Y * WIDTH + X] = elsewhere[i];
-        struct picture out = blurred(c, &s.colour, &s.depth, half);
+        struct picture out = render_radii(c, HF_ENGINE_SCATTER, &s.colour, &s.depth, half);
         int thin = 0;
         for (int k = 0; k < PIXELS; k++)
             thin += is_far_off(k) && out.plane[3][k] != 1;

@@ -12,24 +12,6 @@ enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 
 static const double U = FLT_EPSILON / 2;
 
-static struct hf_params params_new(int half)
-{
-    struct hf_params p = scene_params();
-    p.engine = HF_ENGINE_SCATTER;
-    p.max_radius = HF_DERIVE;
-    p.scatter.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
-    return p;
-}
-
-// Blur with the signed radii that plane 0 of `radius` holds.
-static struct picture blurred(struct hf_context *c, const struct picture *colour, const struct picture *radius,
-                              int half)
-{
-    const struct hf_params p = params_new(half);
-    const struct hf_depth depth = picture_radii(radius);
-    return render(c, colour, &depth, &p);
-}
-
 // A bright surface that is hardly in front of the focus, before black far away: inside it nothing is darker. What is
 // further in than a picture reaches is covered in full, but at the frame's edge, where what lies outside is estimated; 16
 // roundings.
@@ -44,7 +26,7 @@ static void opaque_inside(struct hf_context *c)
             for (int ch = 0; ch < 3; ch++)
                 colour.plane[ch][k] = in ? 1 : 0;
         }
-        struct picture out = blurred(c, &colour, &radius, 0);
+        struct picture out = render_radii(c, HF_ENGINE_SCATTER, &colour, &radius, 0);
         float least = 1;
         for (int k = 0; k < PIXELS; k++)
             if (k % WIDTH > 3 && k % WIDTH < WIDTH / 2 - 4 && k / WIDTH > 3 && k / WIDTH < HEIGHT - 4)
@@ -65,7 +47,7 @@ static double jump(struct hf_context *c, const struct picture *colour, struct pi
         for (int k = 0; k < PIXELS; k++)
             if (radius->plane[0][k] != 24)
                 radius->plane[0][k] = r + (i ? 1e-5f : -1e-5f);
-        out[i] = blurred(c, colour, radius, half);
+        out[i] = render_radii(c, HF_ENGINE_SCATTER, colour, radius, half);
     }
     for (int ch = 0; ch < 3; ch++)
         for (int k = 0; k < PIXELS; k++)
@@ -113,7 +95,7 @@ static void drawn_once(struct hf_context *c)
                 colour.plane[0][y * WIDTH + x] = 1;
                 in++;
             }
-        struct picture out = blurred(c, &colour, &radius, half);
+        struct picture out = render_radii(c, HF_ENGINE_SCATTER, &colour, &radius, half);
         for (int k = 0; k < PIXELS; k++)
             sum += out.plane[0][k];
         CHECK_MSG(fabs(sum / in - 1) <= 1e-4, "radius %g, a bar %d wide, %s resolution: %g of its light",
@@ -135,7 +117,7 @@ static void crossing_bars(struct hf_context *c)
             radius.plane[0][k] = bar ? -12 : sharp ? 0 : 4;
             colour.plane[0][k] = bar ? 0 : 1;
         }
-        struct picture out = blurred(c, &colour, &radius, 0);
+        struct picture out = render_radii(c, HF_ENGINE_SCATTER, &colour, &radius, 0);
         // Two bars 9 wide cover 18 x 24 - 81 of a disc of 452 where they cross: 0.78 at most. The old star was all black.
         const float middle = out.plane[0][HEIGHT / 2 * WIDTH + WIDTH / 2];
         CHECK_MSG(middle > 0.2f && middle < 0.5f, "%s wall: %g of it where bars cross", sharp ? "sharp" : "blurred",

@@ -64,37 +64,23 @@ static void cat_eye(struct picture *radius, struct hf_params *p, float t)
     p->aperture.cat_eye = t;
 }
 
-static struct picture at(struct hf_context *c, const struct pull *pull, const struct picture *colour, double t)
+// A pull at work.
+struct pulling {
+    struct hf_context *c;
+    const struct pull *pull;
+    const struct picture *colour;
+};
+
+static struct picture at(void *cookie, double t)
 {
+    const struct pulling *w = cookie;
     struct picture radius = picture_new(WIDTH, HEIGHT, 1);
-    struct hf_params p = pull->params;
-    pull->move(&radius, &p, (float)t);
+    struct hf_params p = w->pull->params;
+    w->pull->move(&radius, &p, (float)t);
     const struct hf_depth depth = picture_radii(&radius);
-    struct picture out = render(c, colour, &depth, &p);
+    struct picture out = render(w->c, w->colour, &depth, &p);
     picture_free(&radius);
     return out;
-}
-
-// What is left of the step from `from` to `to`.
-static double settled(struct hf_context *c, const struct pull *pull, const struct picture *colour, double from,
-                      double to)
-{
-    struct picture a = at(c, pull, colour, from), b = at(c, pull, colour, to);
-    double left = display_distance(&a, &b);
-    for (int i = 0; i < HALVINGS && (float)((from + to) / 2) != (float)from && (float)((from + to) / 2) != (float)to;
-         i++) {
-        const double middle = (from + to) / 2;
-        struct picture m = at(c, pull, colour, middle);
-        const double first = display_distance(&a, &m), second = display_distance(&m, &b);
-        struct picture *gone = first > second ? &b : &a;
-        picture_free(gone);
-        *gone = m;
-        *(first > second ? &to : &from) = middle;
-        left = fmax(first, second);
-    }
-    picture_free(&a);
-    picture_free(&b);
-    return left;
 }
 
 static void pulled(struct hf_context *c, const struct pull *pull)
@@ -109,11 +95,12 @@ static void pulled(struct hf_context *c, const struct pull *pull)
         for (int ch = 0; ch < 3; ch++)
             colour.plane[ch][k] = fmaxf(pull->light, colour.plane[ch][k]);
     }
-    double worst = 0, place = 0, jump = 0;
+    struct pulling w = {c, pull, &colour};
+    double worst = 0, place = 0;
     const double step = (pull->to - pull->from) / STEPS;
-    struct picture before = at(c, pull, &colour, pull->from);
+    struct picture before = at(&w, pull->from);
     for (int i = 1; i <= STEPS; i++) {
-        struct picture now = at(c, pull, &colour, pull->from + i * step);
+        struct picture now = at(&w, pull->from + i * step);
         const double d = display_distance(&before, &now);
         if (d > worst)
             worst = d, place = pull->from + (i - 1) * step;
@@ -121,7 +108,8 @@ static void pulled(struct hf_context *c, const struct pull *pull)
         before = now;
     }
     picture_free(&before);
-    jump = settled(c, pull, &colour, place, place + step);
+    double from = place, to = place + step;
+    const double jump = step_left(at, &w, HALVINGS, &from, &to);
     printf("%s: the worst step of %.3g changes by %.3g codes and jumps by %.3g near %g\n", pull->name, step, worst,
            jump, place);
     CHECK_MSG(jump <= pull->most, "%s: jumps by %.3g codes near %g, bound %g", pull->name, jump, place, pull->most);

@@ -17,58 +17,45 @@ static const struct {
     {"a radius ramp: worst jump, 8-bit codes", 0.01, 18},
 };
 
-// The pictures of a pull: depths that lie still or move, everything else the subject's.
-static struct picture at(const struct run *r, const struct scene *s, struct picture *moved, enum pull pull, double t)
-{
-    struct hf_params p = r->subject->params;
-    const float v = (float)t;
-    struct hf_depth depth = picture_depth(&s->depth);
-    if (pull == PULL_FOCUS)
-        p.focus = v;
-    if (pull == PULL_RANGE)
-        p.range.distance = v;
-    if (pull == PULL_STRENGTH)
-        p.range.strength = v;
-    if (pull == PULL_RADIUS)
-        p.max_radius = v;
-    if (pull == PULL_DOLLY) {
-        for (size_t i = 0; i < samples_of(moved); i++)
-            moved->plane[0][i] = s->depth.plane[0][i] + v;
-        depth.data = moved->plane[0];
-    }
-    return render(r->c, &s->colour, &depth, &p);
-}
+// A pull of a subject: depths that lie still or move, everything else the subject's.
+struct pulling {
+    const struct run *r;
+    const struct scene *s;
+    struct picture *moved;
+    enum pull pull;
+};
 
-static double settled(const struct run *r, const struct scene *s, struct picture *moved, enum pull pull, double *from,
-                      double *to)
+static struct picture at(void *cookie, double t)
 {
-    struct picture a = at(r, s, moved, pull, *from), b = at(r, s, moved, pull, *to);
-    double left = display_distance(&a, &b);
-    for (int i = 0; i < HALVINGS; i++) {
-        const float middle = (float)((*from + *to) / 2);
-        if (middle == (float)*from || middle == (float)*to)
-            break;
-        struct picture m = at(r, s, moved, pull, middle);
-        const double first = display_distance(&a, &m), second = display_distance(&m, &b);
-        struct picture *gone = first > second ? &b : &a;
-        picture_free(gone);
-        *gone = m;
-        *(first > second ? to : from) = middle;
-        left = fmax(first, second);
+    const struct pulling *w = cookie;
+    struct hf_params p = w->r->subject->params;
+    const float v = (float)t;
+    struct hf_depth depth = picture_depth(&w->s->depth);
+    if (w->pull == PULL_FOCUS)
+        p.focus = v;
+    if (w->pull == PULL_RANGE)
+        p.range.distance = v;
+    if (w->pull == PULL_STRENGTH)
+        p.range.strength = v;
+    if (w->pull == PULL_RADIUS)
+        p.max_radius = v;
+    if (w->pull == PULL_DOLLY) {
+        for (size_t i = 0; i < samples_of(w->moved); i++)
+            w->moved->plane[0][i] = w->s->depth.plane[0][i] + v;
+        depth.data = w->moved->plane[0];
     }
-    picture_free(&a);
-    picture_free(&b);
-    return left;
+    return render(w->r->c, &w->s->colour, &depth, &p);
 }
 
 static void pulled(const struct run *r, enum pull pull, const struct scene *s, const char *scene)
 {
     const int steps = r->full ? 1000 : 120;
     struct picture moved = picture_copy(&s->depth);
+    struct pulling w = {r, s, &moved, pull};
     double worst[TRACKED] = {0}, place[TRACKED] = {0}, width = (pulls[pull].to - pulls[pull].from) / steps;
-    struct picture before = at(r, s, &moved, pull, pulls[pull].from);
+    struct picture before = at(&w, pulls[pull].from);
     for (int i = 1; i <= steps; i++) {
-        struct picture now = at(r, s, &moved, pull, pulls[pull].from + i * width);
+        struct picture now = at(&w, pulls[pull].from + i * width);
         double d = display_distance(&before, &now), where = pulls[pull].from + (i - 1) * width;
         for (int k = 0; k < TRACKED; k++)
             if (d > worst[k]) {
@@ -87,7 +74,7 @@ static void pulled(const struct run *r, enum pull pull, const struct scene *s, c
         if (worst[k] <= 0.5)
             continue;
         double from = place[k], to = place[k] + width;
-        const double left = settled(r, s, &moved, pull, &from, &to);
+        const double left = step_left(at, &w, HALVINGS, &from, &to);
         see(r, pulls[pull].name, "half a code: what the smallest step of a float can make, see continuity.c", left, 0.5,
             "%s, at %.9g (step %.3g)", scene, from, worst[k]);
     }
@@ -112,7 +99,8 @@ static struct scene stage(const struct run *r)
 // From the copy that a radius of 0 makes to the least blur that there is.
 static void first_blur(const struct run *r, const struct scene *s)
 {
-    struct picture none = at(r, s, NULL, PULL_RADIUS, 0), least = at(r, s, NULL, PULL_RADIUS, 1e-6);
+    struct pulling w = {r, s, NULL, PULL_RADIUS};
+    struct picture none = at(&w, 0), least = at(&w, 1e-6);
     see(r, "radius 0 and the least above it: jump, 8-bit codes",
         "half a code: what the smallest step of a float can make, see continuity.c", display_distance(&none, &least),
         0.5, "radius 1e-6");

@@ -77,3 +77,24 @@ double display_distance(const struct picture *a, const struct picture *b)
                 most = worse(most, fabs(code(a->plane[c][i]) - code(b->plane[c][i])));
     return most;
 }
+
+double step_left(struct picture (*at)(void *cookie, double t), void *cookie, int halvings, double *from, double *to)
+{
+    struct picture a = at(cookie, *from), b = at(cookie, *to);
+    double left = display_distance(&a, &b);
+    for (int i = 0; i < halvings; i++) {
+        const float middle = (float)((*from + *to) / 2);
+        if (middle == (float)*from || middle == (float)*to)
+            break;
+        struct picture m = at(cookie, middle);
+        const double first = display_distance(&a, &m), second = display_distance(&m, &b);
+        struct picture *gone = first > second ? &b : &a;
+        picture_free(gone);
+        *gone = m;
+        *(first > second ? to : from) = middle;
+        left = fmax(first, second);
+    }
+    picture_free(&a);
+    picture_free(&b);
+    return left;
+}

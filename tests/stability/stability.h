@@ -99,4 +99,8 @@ struct scene calm_scene(unsigned seed, int width, int height, int channels);
 // How far two pictures are apart at the worst sample, in codes of 8 bits after clamping and the sRGB curve.
 double display_distance(const struct picture *a, const struct picture *b);
 
+// What is left of the step of a parameter from *from to *to, as display_distance tells, when it has been halved towards the
+// greater change until no float lies between its ends, or `halvings` times. at: the picture for a value of it.
+double step_left(struct picture (*at)(void *cookie, double t), void *cookie, int halvings, double *from, double *to);
+
 #endif

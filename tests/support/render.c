@@ -96,3 +96,14 @@ void picture_fill(struct picture *p, int channel, float value)
     for (size_t i = 0; i < samples_of(p); i++)
         p->plane[channel][i] = value;
 }
+
+struct picture render_radii(struct hf_context *c, enum hf_engine engine, const struct picture *colour,
+                            const struct picture *radii, int half)
+{
+    struct hf_params p = scene_params();
+    p.engine = engine;
+    p.max_radius = HF_DERIVE;
+    p.scatter.resolution = p.hexagon.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+    const struct hf_depth depth = picture_radii(radii);
+    return render(c, colour, &depth, &p);
+}

@@ -15,8 +15,11 @@ int try_scene(struct hf_context *c, struct picture *out, const struct scene *s, 
 struct picture render(struct hf_context *c, const struct picture *colour, const struct hf_depth *depth,
                       const struct hf_params *p);
 struct picture render_scene(struct hf_context *c, const struct scene *s, const struct hf_params *p);
-// Every pixel's radius is that of the plane, in pixels.
+// Every pixel's radius is that of the plane, in pixels, near negative.
 struct hf_depth picture_radii(const struct picture *radii);
+// By such radii, whatever they are, with an engine that has working buffers of half resolution.
+struct picture render_radii(struct hf_context *c, enum hf_engine engine, const struct picture *colour,
+                            const struct picture *radii, int half);
 
 size_t samples_of(const struct picture *p);  // of a plane
 int all_finite(const struct picture *p);
