@@ -43,7 +43,7 @@ int hf_bad(char *message, const char *format, ...)
     return HF_ERR_ARG;
 }
 
-int hf_check_image(const struct hf_image *m, const char *name, char *message)
+static int check_image(const struct hf_image *m, const char *name, char *message)
 {
     if (!m)
         return hf_bad(message, "%s is NULL", name);
@@ -100,7 +100,7 @@ int hf_check_depth(const struct hf_depth *d, int width, char *message)
 
 int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message)
 {
-    if (hf_check_image(src, "src", message) || hf_check_image(dst, "dst", message))
+    if (check_image(src, "src", message) || check_image(dst, "dst", message))
         return HF_ERR_ARG;
     if (src->width != dst->width || src->height != dst->height)
         return hf_bad(message, "dst is %d x %d pixels and src %d x %d; they must be the same", dst->width, dst->height,
@@ -203,7 +203,7 @@ static int check_aperture(const struct hf_aperture_params *p, const struct hf_en
         return HF_OK;
     if (!(e->aperture & HF_APERTURE_PICTURE))
         return hf_bad(message, "aperture.picture is given; the %s engine cannot draw it", e->name);
-    return hf_check_image(p->picture, "aperture.picture", message);
+    return check_image(p->picture, "aperture.picture", message);
 }
 
 static int check_view(struct hf_resolved *r, char *message)

@@ -11,7 +11,6 @@ enum { HF_MESSAGE = 256 };
 int hf_bad(char *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // Checks of one argument each. Return HF_OK, or HF_ERR_ARG with one sentence that names argument and value.
-int hf_check_image(const struct hf_image *image, const char *name, char *message);
 int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message);
 int hf_check_depth(const struct hf_depth *d, int width, char *message);
 int hf_check_between(const char *name, float value, float least, float most, char *message);

@@ -15,7 +15,8 @@ void cli_progress_begin(struct cli_progress *p, int total, int quiet)
         .total = total, .quiet = quiet, .bar = !quiet && isatty(STDERR_FILENO), .start = tool_now_ms()};
 }
 
-const char *cli_progress_limit(const struct cli_progress *p)
+// What holds the work up, by the time that the frames so far spent in each stage: "reading", "writing" or "computing".
+static const char *limit(const struct cli_progress *p)
 {
     const long long reading = atomic_load(&p->us[CLI_READ]), writing = atomic_load(&p->us[CLI_WRITE]);
     const long long computing =
@@ -47,7 +48,7 @@ static void draw(const struct cli_progress *p, int finished, const char *name)
     if (rate > 0)
         clock_text((p->total - finished) / rate, left, sizeof(left));
     fprintf(stderr, "\r\033[K[%s] %d/%d  %.2f frames/s  %s left  %s  (%s)", bar, finished, p->total, rate, left,
-            slash ? slash + 1 : name, cli_progress_limit(p));
+            slash ? slash + 1 : name, limit(p));
     fflush(stderr);
     atomic_store(&tool_bar_shown, 1);
 }

@@ -21,7 +21,4 @@ void cli_progress_begin(struct cli_progress *p, int total, int quiet);
 void cli_progress_frame(struct cli_progress *p, const char *name, const char *text);
 void cli_progress_end(struct cli_progress *p);
 
-// What holds the work up, by the time that the frames so far spent in each stage: "reading", "writing" or "computing".
-const char *cli_progress_limit(const struct cli_progress *p);
-
 #endif

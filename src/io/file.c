@@ -71,8 +71,9 @@ static int open_fd(const char *path, bool *exr, struct hf_io_error *err)
     return -1;
 }
 
-int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
-                   struct hf_io_error *err)
+// As hf_io_open, but a file without colour (a depth map) is fine and has no views.
+static int open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
+                    struct hf_io_error *err)
 {
     static const struct hf_io_choice as_searched = {NULL, NULL};
     choice = choice ? choice : &as_searched;
@@ -109,7 +110,7 @@ int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io
 int hf_io_open(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice, struct hf_io_error *err)
 {
     char names[1024] = "";
-    if (hf_io_open_any(out, path, choice, err))
+    if (open_any(out, path, choice, err))
         return -1;
     if ((*out)->views.count)
         return 0;
@@ -182,14 +183,6 @@ void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)
         hf_exr_channels(file->exr, buf, size);
     else
         hf_oiio_channels(file->oiio, buf, size);
-}
-
-void hf_io_layers(const struct hf_io_file *file, char *buf, size_t size)
-{
-    if (size)
-        buf[0] = 0;
-    if (size && file->exr)
-        hf_exr_layers(file->exr, buf, size);
 }
 
 static int check_view(const struct hf_io_file *file, int view, struct hf_io_error *err)
@@ -398,7 +391,7 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, const str
                           struct hf_io_error *err)
 {
     struct hf_io_file *file;
-    if (hf_io_open_any(&file, path, NULL, err))
+    if (open_any(&file, path, NULL, err))
         return -1;
     const int status = file->exr ? exr_depth_only(file, depth_channel, view, depth, err)
                                  : hf_oiio_read_depth_only(file->oiio, depth_channel, view, depth, err);
@@ -424,11 +417,6 @@ int hf_io_same_file(const char *a, const char *b)
     free(p);
     free(q);
     return same;
-}
-
-void hf_io_remove_temporaries(void)
-{
-    hf_out_remove_all();
 }
 
 void hf_io_catch_signals(void)

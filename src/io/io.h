@@ -43,9 +43,6 @@ const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view);
 // size.
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size);
 
-// Names of all layers of colour of an EXR file, in the same way; RGB is one without a name.
-void hf_io_layers(const struct hf_io_file *file, char *buf, size_t size);
-
 // A text in the header of an EXR file's first part, cut off at size; "" when there is none. Returns buf.
 const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size);
 // Are all chunks of an EXR file there, as long as they say and none after the file's end? Looks at no pixels. 0, or -1
@@ -137,9 +134,7 @@ int hf_io_check_format(const char *path, struct hf_io_error *err);
 // 1 if both names are of one file, or would be if something were written: other spellings and links are looked through.
 int hf_io_same_file(const char *a, const char *b);
 
-// SIGTERM, SIGINT and SIGHUP remove the temporary files of this process, then do what they do. A program with handlers
-// of its own calls the first in them, which is safe there.
-void hf_io_remove_temporaries(void);
+// SIGTERM, SIGINT and SIGHUP remove the temporary files of this process, then do what they do.
 void hf_io_catch_signals(void);
 
 // 1 if this build can read and write anything but EXR.

@@ -44,7 +44,7 @@ static void leave(char *name)
     }
 }
 
-void hf_out_remove_all(void)
+static void remove_all(void)
 {
     for (int i = 0; i < LIVE; i++) {
         const char *name = atomic_load(&live[i]);
@@ -55,7 +55,7 @@ void hf_out_remove_all(void)
 
 static void on_signal(int number)
 {
-    hf_out_remove_all();
+    remove_all();
     signal(number, SIG_DFL);
     raise(number);
 }
@@ -245,13 +245,6 @@ int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
 int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_error *err)
 {
     if (size && fwrite(data, 1, size, o->f) != size)
-        return write_error(o, err);
-    return 0;
-}
-
-int hf_out_seek(struct hf_out *o, uint64_t offset, struct hf_io_error *err)
-{
-    if (fseeko(o->f, (off_t)offset, SEEK_SET))
         return write_error(o, err);
     return 0;
 }

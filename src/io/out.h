@@ -34,7 +34,6 @@ int hf_out_check(const char *path, struct hf_io_error *err);
 // All return 0, or -1 with *err filled; then hf_out_abort must be called (it may always be called).
 int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err);
 int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_error *err);
-int hf_out_seek(struct hf_out *o, uint64_t offset, struct hf_io_error *err);
 // Flush to the disk and take the target's place.
 int hf_out_commit(struct hf_out *o, struct hf_io_error *err);
 // Close and remove what was not committed.
@@ -44,8 +43,6 @@ void hf_out_abort(struct hf_out *o);
 // NULL when there is no memory, or links go round.
 char *hf_out_resolve(const char *path);
 
-// Remove all temporary files of this process that are being written. Safe in a signal handler.
-void hf_out_remove_all(void);
 // SIGTERM, SIGINT and SIGHUP remove the temporary files, then do what they do.
 void hf_out_catch_signals(void);
 

@@ -26,7 +26,7 @@ float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *
 }
 
 // Near and far CoC of one pixel.
-void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts)
+static void coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts)
 {
     const struct hf_setup *s = f->s;
     const float v = hf_coc_variable(f, x, y, counts);
@@ -49,11 +49,11 @@ void hf_coc_row_c(const struct hf_frame *f, int x, int y, int n, float *const ou
 {
     for (int i = 0; i < n; i++) {
         const int px = 2 * (x + i);
-        hf_coc_pixel(f, px, y, &out[0][i], &out[2][i], counts);
+        coc_pixel(f, px, y, &out[0][i], &out[2][i], counts);
         if (counts)
             count(counts, x + i, out[0][i], out[2][i]);
         if (px + 1 < f->s->width) {
-            hf_coc_pixel(f, px + 1, y, &out[1][i], &out[3][i], counts);
+            coc_pixel(f, px + 1, y, &out[1][i], &out[3][i], counts);
             if (counts)
                 count(counts, x + i, out[1][i], out[3][i]);
         } else {
@@ -70,7 +70,7 @@ int hf_sharp_row_c(const struct hf_frame *f, int x, int y, int n)
         const float d = hf_depth_sample(f->depth, i, y);
         if (f->s->form != HF_FORM_Z || !(d > 0 && d < 1e10f))
             return 0;
-        hf_coc_pixel(f, i, y, &near, &far, NULL);
+        coc_pixel(f, i, y, &near, &far, NULL);
         if (near > 0 || far > 0)
             return 0;
     }

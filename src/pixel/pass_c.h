@@ -18,8 +18,6 @@ hf_unzip_row hf_unzip_row_c;
 // The variable that CoC is linear in at a pixel: z, -1/z with a lens, or the radius itself.
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);
 
-void hf_coc_pixel(const struct hf_frame *f, int x, int y, float *n, float *far, struct hf_counts *counts);
-
 // CoC from 0 to 1, of the shape that was asked for; NaN becomes 0.
 static inline float hf_ramp(const struct hf_setup *s, float t)
 {

@@ -18,7 +18,8 @@ static float repaired(const struct hf_image *m, int c, int x, int y)
     return hf_round_to_format(m->format, c, n ? (float)(sum / n) : 0);
 }
 
-uint64_t hf_repair_row(const struct hf_image *m, int x, int y, int n, float *const even[4], float *const odd[4])
+// Repair n lanes that were loaded from lane x of row y. Returns how many samples there were.
+static uint64_t repair_row(const struct hf_image *m, int x, int y, int n, float *const even[4], float *const odd[4])
 {
     uint64_t count = 0;
     for (int c = 0; c < hf_image_channels(m); c++)
@@ -55,7 +56,7 @@ void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const 
                     struct hf_counts *counts)
 {
     if (f->k->load[f->src->format](f->src, x, y, n, even, odd)) {
-        const uint64_t repairs = hf_repair_row(f->src, x, y, n, even, odd);
+        const uint64_t repairs = repair_row(f->src, x, y, n, even, odd);
         if (counts)
             counts->colour_repaired += repairs;
     }

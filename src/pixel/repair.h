@@ -6,9 +6,6 @@
 
 #include "frame/frame.h"
 
-// Repair n lanes that were loaded from lane x of row y. Returns how many samples there were.
-uint64_t hf_repair_row(const struct hf_image *image, int x, int y, int n, float *const even[4], float *const odd[4]);
-
 struct hf_repair {
     int x, y, channel;
     float value;

@@ -34,14 +34,14 @@ int hf_behind_levels(float largest)
     return largest > 0 ? levels : 0;
 }
 
-int hf_behind_reach(int levels)
+static int reach_of(int levels)
 {
     return levels ? 1 << (levels - 1) : 0;  // and one more, for the upsampling
 }
 
 int hf_behind_halo(int levels)
 {
-    return levels ? hf_behind_reach(levels) + WIDE : 0;
+    return levels ? reach_of(levels) + WIDE : 0;
 }
 
 // And room for a vector that begins within a row.
@@ -52,7 +52,7 @@ static int stride_of(int reach)
 
 size_t hf_behind_floats(int levels, int channels)
 {
-    const int reach = hf_behind_reach(levels), rows = HF_BEHIND_BLOCK + 2 * reach;
+    const int reach = reach_of(levels), rows = HF_BEHIND_BLOCK + 2 * reach;
     const size_t plane = (size_t)(stride_of(reach) * rows), line = (size_t)(2 * stride_of(reach));
     const size_t wide = (size_t)((stride_of(reach) + 2 * WIDE) * (rows + 2 * WIDE));
     return levels ? (size_t)(2 * plane_count(channels) + 2) * plane + 3 * wide + 4 * line : 0;
@@ -187,7 +187,7 @@ int hf_behind_make(struct hf_behind *h, const struct hf_frame *f, struct hf_rect
     if (!has_near(f, r))
         return 0;
     h->channels = hf_scatter(f->s)->opaque ? 3 : f->s->channels;
-    h->reach = hf_behind_reach(levels);
+    h->reach = reach_of(levels);
     h->stride = stride_of(h->reach);
     h->x0 = r.x0 - h->reach;
     h->y0 = r.y0 - h->reach;

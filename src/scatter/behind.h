@@ -27,8 +27,7 @@ struct hf_behind {
 
 // How many neighbourhoods near radii up to this ask for, and how far around a block these look.
 int hf_behind_levels(float largest);
-int hf_behind_reach(int levels);
-int hf_behind_halo(int levels);  // and how far around it radii are read
+int hf_behind_halo(int levels);  // how far around a block radii are read
 size_t hf_behind_floats(int levels, int channels);
 
 // Returns 0 if there is nothing to do in a block: no near pixels, or nothing else around them.

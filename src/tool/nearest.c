@@ -10,7 +10,8 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-int tool_word_distance(const char *a, int a_length, const char *b, int b_length)
+// Letters to add, leave out, change or swap with the next to make one word of the other; words of up to LONGEST.
+static int word_distance(const char *a, int a_length, const char *b, int b_length)
 {
     // Rows of the table for the letters of a: the one before the last, the last, this one.
     int row[3][LONGEST + 1];
@@ -33,14 +34,15 @@ int tool_word_distance(const char *a, int a_length, const char *b, int b_length)
     return row[a_length % 3][b_length];
 }
 
-int tool_is_near(int distance, int length)
+// Is a word at this distance from one of some length near enough to be suggested?
+static int is_near(int distance, int length)
 {
     return distance <= (length > 6 ? 3 : length > 3 ? 2 : 1) && distance < length;
 }
 
 void tool_nearest_try(struct tool_nearest *nearest, const char *word, int length, const char *wanted)
 {
-    const int distance = tool_word_distance(word, length, wanted, (int)strlen(wanted));
-    if (tool_is_near(distance, length) && (!nearest->word || distance < nearest->distance))
+    const int distance = word_distance(word, length, wanted, (int)strlen(wanted));
+    if (is_near(distance, length) && (!nearest->word || distance < nearest->distance))
         *nearest = (struct tool_nearest){word, length, distance};
 }

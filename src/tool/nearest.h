@@ -3,12 +3,6 @@
 #ifndef HF_TOOL_NEAREST_H
 #define HF_TOOL_NEAREST_H
 
-// Letters to add, leave out, change or swap with the next to make one word of the other; words of up to 63.
-int tool_word_distance(const char *a, int a_length, const char *b, int b_length);
-
-// Is a word at this distance from one of some length near enough to be suggested?
-int tool_is_near(int distance, int length);
-
 // The nearest of some words so far: start from zeros.
 struct tool_nearest {
     const char *word;  // NULL: none is near
