@@ -4,8 +4,7 @@
 // the frames.
 #include "cli/batch.h"
 
-#include "cli/explain.h"
-
+#include <errno.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -15,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/explain.h"
 #include "cli/frame.h"
 #include "cli/log.h"
 #include "cli/plan.h"
@@ -45,20 +45,54 @@ struct batch {
 };
 
 static volatile sig_atomic_t stop_signal;
+static struct timespec stop_time;
+static volatile sig_atomic_t told_nothing;  // --quiet
 
-// The frames in work are finished; a second signal ends the process as usual.
-static void on_signal(int number)
+// From a signal's handler.
+static void tell(const char *text)
 {
-    stop_signal = number;
+    static const char clear[] = "\r\033[K";
+    ssize_t ignored = 0;
+    if (told_nothing)
+        return;
+    if (atomic_load(&tool_bar_shown))
+        ignored = write(STDERR_FILENO, clear, sizeof(clear) - 1);
+    ignored = write(STDERR_FILENO, text, strlen(text));
+    (void)ignored;
 }
 
-static void watch_signals(void)
+// The frames in work are finished; a second signal removes what is half-written and ends the process. Programs that end
+// others tell process and group (timeout does): what follows within 0.3 s belongs to the first.
+static void on_signal(int number)
 {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)(SA_RESTART | SA_RESETHAND)};
-    sigemptyset(&action.sa_mask);
+    struct timespec now;
+    const int code = errno;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (!stop_signal) {
+        stop_time = now;
+        stop_signal = number;
+        tell("hyperfocal: finishing the frames in work; a second signal stops at once\n");
+    } else if ((double)(now.tv_sec - stop_time.tv_sec) + 1e-9 * (double)(now.tv_nsec - stop_time.tv_nsec) > 0.3) {
+        tell("hyperfocal: stopped; the same command with --resume makes the other frames\n");
+        hf_io_end_by_signal(number);
+    }
+    errno = code;
+}
+
+static void watch_signals(int quiet)
+{
+    static const int numbers[] = {SIGINT, SIGTERM};
+    struct sigaction was, ours = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+    sigemptyset(&ours.sa_mask);
+    // One signal's handler is not interrupted by the other's.
+    for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++)
+        sigaddset(&ours.sa_mask, numbers[i]);
     stop_signal = 0;
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    told_nothing = quiet;
+    for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++)
+        // Who starts us with a signal ignored means it.
+        if (!sigaction(numbers[i], NULL, &was) && was.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &ours, NULL);
 }
 
 static double peak_memory(void)
@@ -322,7 +356,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         const int strays = args->resume ? cli_remove_strays(shot) : 0;
         if (strays)
             tool_print_line("%d files that killed processes left were removed", strays);
-        watch_signals();
+        watch_signals(args->quiet);
         cli_progress_begin(&b.progress, shot->jobs.count, args->quiet);
         run_first(&b);
         status = run_rest(&b, error);

@@ -424,6 +424,11 @@ void hf_io_catch_signals(void)
     hf_out_catch_signals();
 }
 
+void hf_io_end_by_signal(int number)
+{
+    hf_out_end_by_signal(number);
+}
+
 int hf_io_has_oiio(void)
 {
     return hf_oiio_available();

@@ -136,6 +136,8 @@ int hf_io_same_file(const char *a, const char *b);
 
 // SIGTERM, SIGINT and SIGHUP remove the temporary files of this process, then do what they do.
 void hf_io_catch_signals(void);
+// The same at once, from a signal's handler.
+void hf_io_end_by_signal(int number);
 
 // 1 if this build can read and write anything but EXR.
 int hf_io_has_oiio(void);

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "io/picture.h"
@@ -24,8 +25,9 @@ static int write_error(const struct hf_out *o, struct hf_io_error *err)
 enum { LIVE = 64 };  // more than are ever written at a time; those beyond are not known to the handler
 
 static _Atomic(char *) live[LIVE];
+static atomic_int creating;  // files that are known, and may or may not be there yet
+static atomic_int ending;  // a signal has come: no more are made, and no name is freed that its handler may be reading
 
-// Known before it is made, so that there is no moment in which a signal would leave it.
 static void enter(char *name)
 {
     for (int i = 0; i < LIVE; i++) {
@@ -40,22 +42,44 @@ static void leave(char *name)
     for (int i = 0; i < LIVE; i++) {
         char *own = name;
         if (name && atomic_compare_exchange_strong(&live[i], &own, NULL))
-            return;
+            break;
     }
+    if (!atomic_load(&ending))
+        free(name);
 }
 
-static void remove_all(void)
+// A new file that a signal finds from its first moment on: none comes to this thread in between, and one that comes to
+// another thread waits. Fails like open().
+static int open_known(char *name, mode_t mode)
 {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    atomic_fetch_add(&creating, 1);
+    int fd = -1, code = EINTR;
+    if (!atomic_load(&ending)) {
+        enter(name);
+        // O_EXCL: never follows or overwrites what somebody else put there.
+        fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        code = errno;
+    }
+    atomic_fetch_sub(&creating, 1);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    errno = code;
+    return fd;
+}
+
+void hf_out_end_by_signal(int number)
+{
+    const struct timespec pause = {.tv_nsec = 1000000};
+    atomic_store(&ending, 1);
+    for (int i = 0; i < 1000 && atomic_load(&creating); i++)  // a second at most, should a disk hang
+        nanosleep(&pause, NULL);
     for (int i = 0; i < LIVE; i++) {
         const char *name = atomic_load(&live[i]);
         if (name)
             unlink(name);
     }
-}
-
-static void on_signal(int number)
-{
-    remove_all();
     signal(number, SIG_DFL);
     raise(number);
 }
@@ -64,7 +88,7 @@ void hf_out_catch_signals(void)
 {
     static const int numbers[] = {SIGTERM, SIGINT, SIGHUP};
     for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++) {
-        struct sigaction was, ours = {.sa_handler = on_signal};
+        struct sigaction was, ours = {.sa_handler = hf_out_end_by_signal};
         // Who starts us with a signal ignored (nohup) means it.
         if (!sigaction(numbers[i], NULL, &was) && was.sa_handler == SIG_DFL)
             sigaction(numbers[i], &ours, NULL);
@@ -124,19 +148,16 @@ enum hf_out_owner hf_out_owner_of(const char *name, long *pid)
 static void forget_temp(struct hf_out *o)
 {
     leave(o->temp);
-    free(o->temp);
     o->temp = NULL;
 }
 
-// O_EXCL: never follows or overwrites what somebody else put there.
 static int create_temp(struct hf_out *o, mode_t mode)
 {
     for (int i = 0; i < 1000; i++) {
         o->temp = temp_name(o->target);
         if (!o->temp)
             return -1;
-        enter(o->temp);
-        const int fd = open(o->temp, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        const int fd = open_known(o->temp, mode);
         if (fd >= 0)
             return fd;
         const int code = errno;

@@ -45,6 +45,8 @@ char *hf_out_resolve(const char *path);
 
 // SIGTERM, SIGINT and SIGHUP remove the temporary files, then do what they do.
 void hf_out_catch_signals(void);
+// The same at once, from a signal's handler: remove them, then do what the signal does.
+void hf_out_end_by_signal(int number);
 
 #ifdef __cplusplus
 }

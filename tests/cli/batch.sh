@@ -194,6 +194,30 @@ fi
 run in/shot.####.exr -o a/shot.####.exr $quick --resume
 check "after SIGTERM: all there" same good a
 
+# The second signal does not wait for the frames in work, which are made slow here.
+slow="--quality best --focus 5 --range .1 --max-radius 400 --threads 2 --compression none"
+rm -f a/*
+for strike in 1 2 3; do
+    "$program" in/shot.####.exr -o a/shot.####.exr $slow >out 2>err &
+    pid=$!
+    i=0
+    while ! ls -A a | grep -q "$([ $strike = 3 ] && echo hyper || echo shot)" && kill -0 $pid 2>/dev/null &&
+        [ $i -lt 500 ]; do sleep 0.02; i=$((i + 1)); done
+    kill -TERM $pid 2>/dev/null
+    sleep 0.4
+    kill -TERM $pid 2>/dev/null
+    wait $pid
+    status=$? command="terminated twice, strike $strike"
+    if [ $status -eq 143 ]; then
+        check "a second SIGTERM: said" says "stopped; the same command with --resume"
+    else
+        check "SIGTERM: as the first says" says "finishing the frames in work"
+    fi
+    check "a second SIGTERM: nothing half-written" sh -c '! ls a/.hyper* 2>/dev/null'
+    rm -f a/*
+done
+run in/shot.####.exr -o a/shot.####.exr $quick
+
 kills=${HF_KILLS:-8}
 i=0
 rm -f a/*

@@ -38,6 +38,7 @@ int main(void)
     test_swapped_chunks();
     test_planes();
     test_formats();
+    test_signals();
     test_rubbish(in_folder("views.exr"));
     test_rubbish(in_folder("parts.exr"));
     test_rubbish(in_folder("odd.exr"));

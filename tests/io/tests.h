@@ -27,6 +27,7 @@ void test_half(void);
 void test_half_rows(void);
 void test_zip(void);
 void test_stages(void);
+void test_signals(void);
 void test_shared(void);
 
 #endif
