@@ -133,6 +133,8 @@ static int report(struct trade_run *run, struct tool_error *error)
     const struct bench_args *a = t->args;
     if (write_file(a->csv, "--csv", t, trade_csv, error))
         return -1;
+    if (a->ladder && !trade_has_engines(t))
+        return tool_fail(error, -1, "--ladder %s: one setting is no ladder, leave --setting away", a->ladder);
     if (write_file(a->ladder, "--ladder", t, trade_ladder_table, error))
         return -1;
     if (a->html && bench_page_write(run, a->html, error))

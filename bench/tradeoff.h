@@ -59,6 +59,7 @@ enum trade_rank { TRADE_BEATEN, TRADE_TIED, TRADE_FRONT };
 struct trade_result {
     const struct trade_setting *setting;
     enum hf_engine engine;
+    float farthest;  // the largest radius that it blurs by, pixels; INFINITY: any
     struct trade_point at[TRADE_SCENES];
     struct trade_time both;  // 1920x1080, scene `both`, radius 12: what `passes` measures
     int axes_measured;       // the two that follow
@@ -85,6 +86,7 @@ struct trade {
     int scenes, results;
     struct trade_scene_name scene[TRADE_SCENES];
     int width[TRADE_SCENES], height[TRADE_SCENES];
+    float largest[TRADE_SCENES];  // CoC radius that there is, pixels
     struct trade_result *result;  // of `results`
     double gflops;
     char cpu[128], date[32];
@@ -98,8 +100,11 @@ int trade_overlap(struct trade_interval a, struct trade_interval b);
 // Fill in what follows from the measurements. A setting is beaten if another errs no more and is surely faster, its
 // interval lying wholly below; tied if another is only faster by the median.
 void trade_rank(struct trade *t);
-// The longest list of settings of which each is slower than the one before and not worse on any scene, from the cheapest
-// such setting to the most accurate: fills in step. Only settings that blur, with the machine's own threads and instruction set.
+// The longest list of settings of which each is slower than the one before, errs less, and is not worse on any scene, from
+// the cheapest such setting to the most accurate: fills in step. On a scene with radii that a setting does not reach it is
+// never chosen (hf_choose_quality), so there it need not be worse than one that does reach; but the list of those that reach
+// any radius begins with the cheapest engine as it is. Only settings that blur, with the machine's own threads and instruction
+// set, and of several that differ in nothing but their words the one with the fewest.
 void trade_ladder(struct trade *t);
 // Results in the order of a table: by time.
 void trade_order(const struct trade *t, int order[]);
@@ -126,7 +131,8 @@ void trade_table(FILE *out, const void *t);
 // What a person should take from it, in three sentences, each with something before and after it.
 void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after);
 void trade_csv(FILE *out, const struct trade *t);
-// src/frame/ladder_table.h
+// src/frame/ladder_table.h, from which the library takes what each engine costs: 1 if all of them were measured.
+int trade_has_engines(const struct trade *t);
 void trade_ladder_table(FILE *out, const struct trade *t);
 void trade_json(FILE *out, const void *t);
 

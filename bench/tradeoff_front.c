@@ -71,18 +71,46 @@ void trade_rank(struct trade *t)
     }
 }
 
-// Not for options that change how a frame is run and not what it is; nor for a copy.
+// Not for options that change how a frame is run and not what it is; nor for a copy, nor for what is printed in books.
 static int may_be_chosen(const struct trade_setting *s)
 {
-    return !strstr(s->options, "--threads") && !strstr(s->options, "--isa") && !strstr(s->options, "--max-radius");
+    static const char *const not [] = {"--threads",       "--isa",     "--max-radius",
+                                       "--deterministic", "--no-skip", "--faithful"};
+    for (size_t i = 0; i < sizeof not / sizeof *not ; i++)
+        if (strstr(s->options, not [i]))
+            return 0;
+    return 1;
+}
+
+static double error_on(const struct trade_result *r, int scene)
+{
+    return r->at[scene].distance[BENCH_WHOLE].display_rmse;
 }
 
 static int is_no_worse(const struct trade *t, const struct trade_result *better, const struct trade_result *than)
 {
-    for (int s = 0; s < t->scenes; s++)
-        if (better->at[s].distance[BENCH_WHOLE].display_rmse > than->at[s].distance[BENCH_WHOLE].display_rmse)
+    for (int s = 0; s < t->scenes; s++) {
+        const int choosable = than->farthest >= t->largest[s] || better->farthest < t->largest[s];
+        if (choosable && error_on(better, s) > error_on(than, s))
             return 0;
+    }
     return better->error < than->error && better->ms.median > than->ms.median;
+}
+
+// Is there a setting with fewer words that errs as this one does and takes as long, for all that can be told?
+static int is_wordy(const struct trade *t, const struct trade_result *r)
+{
+    static const double same = 1.002;  // 0.02 dB
+    for (int i = 0; i < t->results; i++) {
+        const struct trade_result *o = &t->result[i];
+        int differs = o->farthest != r->farthest || !trade_overlap(o->ms, r->ms) || !may_be_chosen(o->setting) ||
+                      strlen(o->setting->options) >= strlen(r->setting->options);
+        for (int s = 0; s < t->scenes && !differs; s++)
+            differs = error_on(o, s) > same * error_on(r, s);
+        if (!differs)
+            return 1;
+    }
+    return 0;
 }
 
 void trade_order(const struct trade *t, int order[])
@@ -95,37 +123,88 @@ void trade_order(const struct trade *t, int order[])
     }
 }
 
-void trade_ladder(struct trade *t)
+static int is_limited(const struct trade_result *r)
 {
-    // Backwards from the most accurate: the longest way from there down to each setting.
-    int order[TRADE_SETTINGS], length[TRADE_SETTINGS] = {0}, above[TRADE_SETTINGS], last = -1, first = -1;
-    trade_order(t, order);
-    for (int i = 0; i < t->results; i++) {
-        t->result[i].step = 0;
-        if (may_be_chosen(t->result[i].setting) && (last < 0 || t->result[i].error < t->result[last].error))
+    return isfinite(r->farthest);
+}
+
+// Ways up the ladder: of each setting the length of the longest to the most accurate, 0 for none, and the next one on it.
+struct ways {
+    const struct trade *t;
+    int order[TRADE_SETTINGS];  // by time
+    int candidate[TRADE_SETTINGS];
+    int length[TRADE_SETTINGS], above[TRADE_SETTINGS];
+};
+
+// An engine as it is, no knob turned.
+static int is_plain(const struct trade_result *r)
+{
+    return !strstr(r->setting->options + 1, " --");
+}
+
+// What may be chosen, and which of it is the most accurate that reaches any radius; -1: none does.
+static int find_candidates(struct ways *w)
+{
+    int last = -1;
+    for (int i = 0; i < w->t->results; i++) {
+        const struct trade_result *r = &w->t->result[i];
+        w->candidate[i] = may_be_chosen(r->setting) && !is_wordy(w->t, r) && (r->rank != TRADE_BEATEN || is_plain(r));
+        if (w->candidate[i] && !is_limited(r) && (last < 0 || r->error < w->t->result[last].error))
             last = i;
     }
-    if (last < 0)
-        return;
-    length[last] = 1;
-    above[last] = -1;
+    return last;
+}
+
+// The longest ways of all that are limited, or not, to those that have one.
+static void find_ways(struct ways *w, int limited)
+{
+    const struct trade *t = w->t;
     for (int k = t->results - 1; k >= 0; k--) {
-        const int i = order[k];
-        if (i == last || !may_be_chosen(t->result[i].setting) || t->result[i].rank == TRADE_BEATEN)
+        const int i = w->order[k];
+        if (!w->candidate[i] || is_limited(&t->result[i]) != limited)
             continue;
         for (int m = k + 1; m < t->results; m++) {
-            const int j = order[m];
-            if (length[j] > 0 && length[j] >= length[i] && is_no_worse(t, &t->result[j], &t->result[i])) {
-                length[i] = length[j] + 1;
-                above[i] = j;
+            const int j = w->order[m];
+            if (w->length[j] > 0 && w->length[j] >= w->length[i] && is_no_worse(t, &t->result[j], &t->result[i])) {
+                w->length[i] = w->length[j] + 1;
+                w->above[i] = j;
             }
         }
     }
-    // The cheapest setting from which there is a way; what lies between is as fine as can be.
-    for (int k = t->results - 1; k >= 0; k--)
-        if (length[order[k]] > 0)
-            first = order[k];
-    for (int i = first, step = 1; i >= 0; i = above[i])
+}
+
+// The cheapest setting that has a way; what lies between is as fine as can be. plain: of the engines as they are.
+static int cheapest(const struct ways *w, int plain)
+{
+    for (int k = 0; k < w->t->results; k++) {
+        const int i = w->order[k];
+        if (w->length[i] > 0 && (!plain || is_plain(&w->t->result[i])))
+            return i;
+    }
+    return -1;
+}
+
+void trade_ladder(struct trade *t)
+{
+    struct ways w = {.t = t};
+    trade_order(t, w.order);
+    for (int i = 0; i < t->results; i++)
+        t->result[i].step = 0;
+    const int last = find_candidates(&w);
+    if (last < 0)
+        return;
+    w.length[last] = 1;
+    w.above[last] = -1;
+    find_ways(&w, 0);
+    // The first that a lens gets is an engine as it is: that look was made with care. All others that reach have no way
+    // from what does not.
+    int first = cheapest(&w, 1);
+    if (first < 0)
+        first = cheapest(&w, 0);
+    for (int i = 0; i < t->results; i++)
+        w.length[i] = i == first ? w.length[i] : 0;
+    find_ways(&w, 1);
+    for (int i = cheapest(&w, 0), step = 1; i >= 0; i = w.above[i])
         t->result[i].step = step++;
 }
 

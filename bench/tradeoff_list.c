@@ -8,9 +8,9 @@ const struct trade_setting trade_settings[] = {
     // The picture as it is, copied; and the engines as they are.
     {"engine", "no blur", "--engine gaussian --max-radius 0", 1},
     {"engine", "gather", "--engine gather", 1},
-    {"engine", "hexagon", "--engine hexagon", 0},
+    {"engine", "hexagon", "--engine hexagon", 1},
     {"engine", "scatter", "--engine scatter", 1},
-    {"engine", "gaussian", "--engine gaussian", 0},
+    {"engine", "gaussian", "--engine gaussian", 1},
     {"engine", "layers", "--engine layers", 1},
 
     {"resolution", "hexagon half", "--engine hexagon --resolution half", 1},
@@ -30,7 +30,7 @@ const struct trade_setting trade_settings[] = {
     {"taps", "144 taps, no fill", "--engine gather --fill none", 1},
 
     {"fill", "fill max", "--engine gather --fill max", 0},
-    {"fill", "fill mean", "--engine gather --fill mean", 1},
+    {"fill", "144 taps, no fill, packed", "--engine gather --fill none --storage packed", 0},
     {"fill", "fill open", "--engine gather --fill open", 0},
     {"downsample", "linear downsample", "--engine gather --fill max --downsample linear", 0},
     {"downsample", "point downsample", "--engine gather --fill max --downsample point", 0},
@@ -81,30 +81,38 @@ const struct trade_setting trade_settings[] = {
     {"gaussian", "gaussian 12 iterations", "--engine gaussian --iterations 12", 0},
     {"gaussian", "gaussian sigma 6", "--engine gaussian --sigma 6", 0},
 
-    // The grid.
+    // The grid. What is cheapest:
     {"grid", "quarter, 1 iteration", "--engine gaussian --resolution quarter --iterations 1", 1},
     {"grid", "quarter, 2 iterations", "--engine gaussian --resolution quarter --iterations 2", 1},
     {"grid", "quarter, 4 iterations", "--engine gaussian --resolution quarter --iterations 4", 1},
     {"grid", "quarter, 5 iterations", "--engine gaussian --resolution quarter --iterations 5", 0},
     {"grid", "quarter, sigma 6", "--engine gaussian --resolution quarter --sigma 6", 0},
     {"grid", "half, 8 iterations", "--engine gaussian --resolution half --iterations 8", 0},
-    {"grid", "9 taps, mean", "--engine gather --rings 1 --fill mean", 1},
-    {"grid", "49 taps, mean", "--engine gather --rings 3 --fill mean", 0},
-    {"grid", "25 taps, mean, half storage", "--engine gather --rings 2 --fill mean --storage half", 0},
-    {"grid", "9 taps, mean, per pixel", "--engine gather --rings 1 --fill mean --per-pixel-kernel", 0},
-    {"grid", "49 taps, mean, per pixel", "--engine gather --rings 3 --fill mean --per-pixel-kernel", 0},
+    // The gather's default look, whose apertures are areas: taps and fill are no knobs of it.
+    {"grid", "gather, half, bicubic", "--engine gather --storage half --bicubic", 0},
+    {"grid", "gather, Karis, bicubic", "--engine gather --karis --bicubic", 0},
+    {"grid", "gather, linear downsample", "--engine gather --downsample linear", 0},
     {"grid", "144 taps, per pixel", "--engine gather --fill none --per-pixel-kernel", 0},
-    {"grid", "mean, Karis", "--engine gather --fill mean --karis", 0},
-    {"grid", "mean, bicubic", "--engine gather --fill mean --bicubic", 0},
-    {"grid", "coarse, bare", "--engine layers --layers-quality draft --spacing 8 --no-unmix --no-highlights", 0},
+    // Layers, from coarse to fine:
+    {"grid", "coarse, bare", "--engine layers --layers-quality draft --spacing 8 --no-unmix --no-highlights", 1},
     {"grid", "coarse, un-mixed", "--engine layers --layers-quality draft --spacing 8 --no-highlights", 0},
     {"grid", "coarse, hidden", "--engine layers --spacing 8 --no-unmix --no-highlights", 1},
+    {"grid", "coarse, hidden, un-mixed", "--engine layers --spacing 8 --no-highlights", 0},
+    {"grid", "hidden, no highlights", "--engine layers --spacing 4 --no-unmix --quarter-from 16", 0},
+    {"grid", "every 8, quarter from 16", "--engine layers --spacing 8 --quarter-from 16", 0},
     {"grid", "every 8, half from 4", "--engine layers --spacing 8 --half-from 4", 0},
     {"grid", "every 4, half from 4", "--engine layers --spacing 4 --half-from 4", 0},
     {"grid", "every 1, half from 4", "--engine layers --spacing 1 --half-from 4", 1},
     {"grid", "every 0.5, half from 3", "--engine layers --spacing 0.5 --half-from 3", 0},
     {"grid", "high, half from 4", "--engine layers --layers-quality high --half-from 4", 0},
     {"grid", "high, every 1, half from 4", "--engine layers --layers-quality high --spacing 1 --half-from 4", 0},
+    // What is most accurate:
+    {"grid", "best, every 0.5", "--engine layers --layers-quality best --spacing 0.5", 0},
+    {"grid", "best, every 0.25", "--engine layers --layers-quality best --spacing 0.25", 0},
+    {"grid", "best, half from 4", "--engine layers --layers-quality best --half-from 4", 0},
+    {"grid", "best, half from 16", "--engine layers --layers-quality best --half-from 16", 0},
+    {"grid", "best, quarter from 128", "--engine layers --layers-quality best --quarter-from 128", 0},
+    {"grid", "best, fine, quarter from 128", "--engine layers --layers-quality best --spacing 0.5 --quarter-from 128", 0},
     {"grid", "best, all at full", "--engine layers --layers-quality best --half-from 2048", 0},
 };
 // clang-format on

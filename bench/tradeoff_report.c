@@ -300,15 +300,38 @@ static const struct trade_result *at_step(const struct trade *t, int step)
     return NULL;
 }
 
+static double of_engine(const struct trade *t, int engine)
+{
+    char options[64];
+    snprintf(options, sizeof options, "--engine %s", hf_engine_name((enum hf_engine)engine));
+    const struct trade_result *r = by_options(t, options);
+    return r ? r->ms.median : 0;
+}
+
+int trade_has_engines(const struct trade *t)
+{
+    for (int e = 0; e < HF_ENGINE_COUNT; e++)
+        if (!(of_engine(t, e) > 0))
+            return 0;
+    return 1;
+}
+
 void trade_ladder_table(FILE *out, const struct trade *t)
 {
     const double size = megapixels(t);
     int place[TRADE_QUALITIES];
-    fprintf(out,
-            "// SPDX-License-Identifier: BSD-3-Clause\n// Made by `hyperfocal-bench tradeoff --ladder "
-            "src/frame/ladder_table.h`. Do not edit.\n// clang-format off\n#define HF_LADDER_MEASURED \"%s, %s, %s, %d "
-            "thread%s\"\n// options, mean and worst error, milliseconds of a megapixel\n#define HF_LADDER_STEPS",
-            t->date, t->cpu, hf_isa_name(t->isa), t->threads, t->threads == 1 ? "" : "s");
+    fprintf(
+        out,
+        "// SPDX-License-Identifier: BSD-3-Clause\n// Made by `hyperfocal-bench tradeoff --ladder "
+        "src/frame/ladder_table.h`. Do not edit.\n//\n// Settings worth having, cheapest first. Each takes longer than "
+        "the "
+        "one before and errs less, on the mean and on every\n// scene where either may be chosen. Those of the "
+        "gaussian "
+        "engine are for blur that is no wider than theirs; for a lens the\n// list begins below them.\n// clang-format "
+        "off\n"
+        "#define HF_LADDER_MEASURED \"%s, %s, %s, %d thread%s\"\n// options; display-encoded root mean square error, "
+        "geometric mean of the scenes and of the worst; milliseconds of a\n// megapixel\n#define HF_LADDER_STEPS",
+        t->date, t->cpu, hf_isa_name(t->isa), t->threads, t->threads == 1 ? "" : "s");
     const struct trade_result *r;
     for (int step = 1; (r = at_step(t, step)); step++)
         fprintf(out, "%s \\\n    {\"%s\", %.6ff, %.6ff, %#.4gf}", step > 1 ? "," : "", r->setting->options, r->error,
@@ -317,14 +340,7 @@ void trade_ladder_table(FILE *out, const struct trade *t)
     for (int q = 0; q < TRADE_QUALITIES && !trade_qualities(t, place); q++)
         fprintf(out, "%s %d", q ? "," : "", t->result[place[q]].step - 1);
     fputs("\n// milliseconds of a megapixel of each engine as it is\n#define HF_LADDER_ENGINES", out);
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
-        char options[64];
-        double ms = 0;
-        snprintf(options, sizeof options, "--engine %s", hf_engine_name((enum hf_engine)e));
-        for (int i = 0; i < t->results; i++)
-            if (!strcmp(t->result[i].setting->options, options))
-                ms = t->result[i].ms.median / size;
-        fprintf(out, "%s %#.4gf", e ? "," : "", ms);
-    }
+    for (int e = 0; e < HF_ENGINE_COUNT; e++)
+        fprintf(out, "%s %#.4gf", e ? "," : "", of_engine(t, e) / size);
     fputs("\n// clang-format on\n", out);
 }

@@ -67,6 +67,16 @@ static int parse_job(struct trade_run *run, struct trade_job *job, const char *o
     return get_context(run, job, error);
 }
 
+// A gaussian spreads light as far as a disc of twice its standard deviation, whatever the depth says.
+static float farthest(const struct hf_params *p)
+{
+    static const struct hf_depth depth = {.type = HF_DEPTH_VIEW};
+    struct hf_resolved r;
+    if (p->engine != HF_ENGINE_GAUSSIAN || hf_resolve(BOTH_WIDTH, BOTH_HEIGHT, &depth, p, &r, NULL, 0))
+        return INFINITY;
+    return 2 * r.params.gaussian.sigma;
+}
+
 int trade_run_parse(struct trade_run *run, struct tool_error *error)
 {
     struct trade *t = run->t;
@@ -88,6 +98,7 @@ int trade_run_parse(struct trade_run *run, struct tool_error *error)
             return -1;
         t->result[kept] = t->result[i];
         t->result[kept].engine = run->job[kept].args.params.engine;
+        t->result[kept].farthest = farthest(&run->job[kept].args.params);
         kept++;
     }
     t->results = kept;
@@ -123,6 +134,7 @@ int trade_run_open(struct trade_run *run, struct trade *t, struct tool_error *er
         snprintf(t->scene[s].text, sizeof t->scene[s].text, "%s", run->scene[s].name);
         t->width[s] = p->width;
         t->height[s] = p->height;
+        t->largest[s] = run->scene[s].largest;
         run->pull_samples = samples > run->pull_samples ? samples : run->pull_samples;
         if (bench_image_alloc(&run->in[s], p->width, p->height, HF_FORMAT_RGB32F) ||
             bench_image_alloc(&run->out[s], p->width, p->height, HF_FORMAT_RGB32F))

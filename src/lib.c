@@ -191,7 +191,7 @@ static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_p
                   char *message)
 {
     struct hf_params ladder[HF_BUDGET_STEPS];
-    const int steps = hf_budget_ladder(p, ladder);
+    const int steps = hf_budget_ladder(p, hf_asked_radius(p, depth->type, r->params.view.display_height), ladder);
     const int step = hf_budget_choose(&c->budget, ladder, steps);
     const int err = hf_params_resolve(r, r->width, r->height, depth, &ladder[step], message);
     return err ? err : steps;

@@ -251,15 +251,21 @@ static int check_radius(struct hf_resolved *r, const struct hf_depth *depth, cha
         r->limit = HF_LIMIT_GIVEN;
         return hf_check_between("max_radius", p->max_radius, 0, MAX_RADIUS, message);
     }
-    const int any = depth->type == HF_DEPTH_COC || p->model == HF_MODEL_LENS;
-    r->limit = any ? HF_LIMIT_NONE : HF_LIMIT_MODEL;
-    p->max_radius = any ? MAX_RADIUS : hf_model_radius(r);
+    r->limit = depth->type == HF_DEPTH_COC || p->model == HF_MODEL_LENS ? HF_LIMIT_NONE : HF_LIMIT_MODEL;
+    p->max_radius = hf_asked_radius(p, depth->type, p->view.display_height);
     return HF_OK;
 }
 
-float hf_model_radius(const struct hf_resolved *r)
+float hf_model_radius(int display_height)
 {
-    return fminf(12 * (float)r->params.view.display_height / 1080, MAX_RADIUS);
+    return fminf(12 * (float)display_height / 1080, MAX_RADIUS);
+}
+
+float hf_asked_radius(const struct hf_params *p, enum hf_depth_type type, int display_height)
+{
+    if (p->max_radius != HF_DERIVE)
+        return p->max_radius;
+    return type == HF_DEPTH_COC || p->model == HF_MODEL_LENS ? MAX_RADIUS : hf_model_radius(display_height);
 }
 
 // Focal length in pixels, and K.

@@ -21,7 +21,11 @@ int hf_check_resolution(const char *engine, enum hf_resolution resolution, enum 
 int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct hf_depth *depth,
                       const struct hf_params *params, char *message);
 // The radius that the range model has unless told otherwise, the chapter's reach: 12 pixels at 1080 lines.
-float hf_model_radius(const struct hf_resolved *r);
+float hf_model_radius(int display_height);
+
+// The radius that parameters ask for, whatever engine makes it: max_radius if it is given, else that of the range model at
+// this height of the display, or for a lens and radii of one's own the largest that there can be.
+float hf_asked_radius(const struct hf_params *p, enum hf_depth_type type, int display_height);
 
 // Fill *s from resolved parameters, to which it will point, and the engine's own numbers, whose memory own is; its tables
 // are its prepare's.

@@ -474,9 +474,9 @@ HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const str
                      const struct hf_depth *depth, const struct hf_params *params);
 
 // How good a picture has to be. Settings that are worth having lie on a ladder, each slower than the one before and on no
-// measured scene farther from what a ray tracer sees; a quality is a step of it.
+// measured scene where either can be chosen farther from what a ray tracer sees; a quality is a step of it.
 enum hf_quality {
-    HF_QUALITY_DRAFT,     // the cheapest
+    HF_QUALITY_DRAFT,     // the cheapest that blurs as far as is asked for
     HF_QUALITY_STANDARD,  // the cheapest within 1 dB of the best
     HF_QUALITY_HIGH,      // the cheapest within 0.25 dB of it
     HF_QUALITY_BEST,      // the most accurate
@@ -490,16 +490,23 @@ struct hf_choice {
     float error, worst;    // root mean square distance of the display-encoded picture, 0..1: geometric mean over the
                            // scenes, and of the worst
     float ms;              // milliseconds of a megapixel
+    int passed;            // steps that were passed over
+    const char *why;       // why the first of them was, for "it ..."; NULL if none. Lives as long as the library
     const char *measured;  // when and on what machine
 };
 
-// Set the engine and its knobs to those of a quality and leave all else as it is. Where that engine cannot draw
-// params->aperture, the next better one that can is taken. choice may be NULL. Errors: HF_ERR_ARG for a quality that is
-// none.
-HF_API int hf_choose_quality(struct hf_params *params, enum hf_quality quality, struct hf_choice *choice);
+// Set the engine and its knobs to those of a quality and leave all else as it is, for pictures of this height and such a
+// depth, of which only the type counts (NULL: distances). A step that does not reach as far as the blur that is asked for
+// is passed over for the next better one that does, and so is one that does not draw params->aperture. Asked for is
+// max_radius; without it 12 pixels at 1080 lines with the range model, and with a lens or HF_DEPTH_COC any radius: then no
+// step of the gaussian engine will do, whose one blur is as wide everywhere (twice its standard deviation). choice may be
+// NULL. Errors: HF_ERR_ARG for a quality or a height that is none.
+HF_API int hf_choose_quality(int height, const struct hf_depth *depth, struct hf_params *params, enum hf_quality quality,
+                             struct hf_choice *choice);
 // The same by the largest error that is acceptable, as in hf_choice: more than 0, at most 1. The cheapest step that is
 // expected to err no more, or the last one, whose error may then be larger.
-HF_API int hf_choose_error(struct hf_params *params, float error, struct hf_choice *choice);
+HF_API int hf_choose_error(int height, const struct hf_depth *depth, struct hf_params *params, float error,
+                           struct hf_choice *choice);
 
 // What parameters come to for a picture: numbers only.
 struct hf_resolved {

@@ -214,7 +214,7 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
         p->engine = (enum hf_engine)args->engine;
     else
         p->engine = HF_ENGINE_LAYERS;
-    if (cli_choose(args, parser, error))
+    if (cli_choose_check(args, parser, error))
         return -1;
     if (args->verbose && args->quiet)
         return tool_fail(error, -1, "--verbose and --quiet cannot be given together");

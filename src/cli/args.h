@@ -33,9 +33,8 @@ struct cli_args {
     // The model and what belongs to it depend on the file, see setup.h.
     struct hf_params params;
 
-    int engine, quality;      // as given; -1: not given
-    float max_error;          // NAN: not given
-    struct hf_choice choice;  // of --quality or --max-error; options is NULL without them
+    int engine, quality;  // as given; -1: not given
+    float max_error;      // NAN: not given
 
     enum cli_focus focus_by;
     int focus_given, focus_at_given;  // --focus in either form, --focus-at

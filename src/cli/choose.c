@@ -15,10 +15,8 @@ static int by_error(const struct cli_args *args)
     return !isnan(args->max_error);
 }
 
-int cli_choose(struct cli_args *args, const struct tool_parser *p, struct tool_error *error)
+int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, struct tool_error *error)
 {
-    static const struct hf_image any;
-    struct hf_params *params = &args->params;
     const char *option = by_error(args) ? "max-error" : "quality";
     if (!by_error(args) && args->quality < 0)
         return 0;
@@ -29,18 +27,27 @@ int cli_choose(struct cli_args *args, const struct tool_parser *p, struct tool_e
             return tool_fail(error, -1,
                              "--%s and --%s cannot be given together: --%s chooses the engine and its settings",
                              knobs[i], option, option);
-    // The aperture's picture is read later; that there will be one decides who can draw it.
-    if (args->aperture_file)
-        params->aperture.picture = &any;
-    const int status = by_error(args) ? hf_choose_error(params, args->max_error, &args->choice)
-                                      : hf_choose_quality(params, (enum hf_quality)args->quality, &args->choice);
-    params->aperture.picture = NULL;
-    return status ? tool_fail(error, -1, "--%s: %s", option, hf_error_string(status)) : 0;
+    return 0;
 }
 
-void cli_choose_print(FILE *out, const struct cli_args *args, double megapixels)
+void cli_choose(struct cli_setup *setup, const struct cli_args *args)
 {
-    const struct hf_choice *c = &args->choice;
+    static const struct hf_image any;
+    struct hf_params *p = &setup->params;
+    const struct hf_image *picture = p->aperture.picture;
+    // The aperture's picture may be read later; that there will be one decides who can draw it.
+    if (args->aperture_file)
+        p->aperture.picture = &any;
+    if (by_error(args))
+        hf_choose_error(p->view.display_height, &setup->depth, p, args->max_error, &setup->choice);
+    else if (args->quality >= 0)
+        hf_choose_quality(p->view.display_height, &setup->depth, p, (enum hf_quality)args->quality, &setup->choice);
+    p->aperture.picture = picture;
+}
+
+void cli_choose_print(FILE *out, const struct cli_args *args, const struct cli_setup *setup, double megapixels)
+{
+    const struct hf_choice *c = &setup->choice;
     if (!c->options)
         return;
     if (by_error(args))
@@ -48,6 +55,9 @@ void cli_choose_print(FILE *out, const struct cli_args *args, double megapixels)
     else
         fprintf(out, "  --quality %s chose %s", hf_name(HF_NAMES_QUALITY, args->quality), c->options);
     fprintf(out, ", step %d of %d\n", c->step + 1, c->steps);
+    if (c->passed)
+        fprintf(out, "  %d cheaper step%s passed over, the first because it %s\n", c->passed,
+                c->passed == 1 ? " was" : "s were", c->why);
     if (by_error(args) && c->error > args->max_error)
         fprintf(out, "  no setting errs as little as was asked for\n");
     fprintf(out,
@@ -56,15 +66,17 @@ void cli_choose_print(FILE *out, const struct cli_args *args, double megapixels)
             c->ms * megapixels, c->ms, c->error, -20 * log10(c->error), c->worst, c->measured);
 }
 
-void cli_choose_json(struct tool_json *j, const struct cli_args *args, double megapixels)
+void cli_choose_json(struct tool_json *j, const struct cli_setup *setup, double megapixels)
 {
-    const struct hf_choice *c = &args->choice;
+    const struct hf_choice *c = &setup->choice;
     if (!c->options)
         return;
     tool_json_open(j, "choice", '{');
     tool_json_text(j, "options", c->options);
     tool_json_count(j, "step", c->step + 1);
     tool_json_count(j, "steps", c->steps);
+    tool_json_count(j, "passed_over", c->passed);
+    tool_json_text(j, "passed_over_because_it", c->why);
     tool_json_ms(j, "expected_ms", c->ms * megapixels);
     tool_json_number(j, "expected_error", c->error);
     tool_json_number(j, "worst_error", c->worst);

@@ -5,13 +5,15 @@
 
 #include <stdio.h>
 
-#include "cli/args.h"
+#include "cli/setup.h"
 #include "tool/json.h"
 
-// Choose, once all options are known; does nothing if neither was given. Returns 0, or -1 with *error filled.
-int cli_choose(struct cli_args *args, const struct tool_parser *p, struct tool_error *error);
-// What was chosen, what it is expected to cost and err, and whence that is known. Nothing if nothing was asked for.
-void cli_choose_print(FILE *out, const struct cli_args *args, double megapixels);
-void cli_choose_json(struct tool_json *j, const struct cli_args *args, double megapixels);
+// What cannot be given together with them. Returns 0, or -1 with *error filled.
+int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, struct tool_error *error);
+// Choose for a view whose model, depth and size are known; does nothing if neither was given.
+void cli_choose(struct cli_setup *setup, const struct cli_args *args);
+// What was chosen and why, what it is expected to cost and err, and whence that is known. Nothing if nothing was chosen.
+void cli_choose_print(FILE *out, const struct cli_args *args, const struct cli_setup *setup, double megapixels);
+void cli_choose_json(struct tool_json *j, const struct cli_setup *setup, double megapixels);
 
 #endif

@@ -96,7 +96,7 @@ void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
         const struct hf_io_view *view = frame->views[i].view;
         char name[TOOL_SHOWN];
         fprintf(out, "%s\n", tool_shown(frame->views[i].label, name));
-        cli_choose_print(out, frame->args, 1e-6 * view->width * view->height);
+        cli_choose_print(out, frame->args, &frame->views[i].setup, 1e-6 * view->width * view->height);
         print_report(out, &frame->views[i].report, ran);
     }
 }

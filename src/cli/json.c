@@ -141,7 +141,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     put_window(j, "data_window", &v->view->data_window);
     put_window(j, "display_window", &v->view->display_window);
     put_model(j, &v->setup);
-    cli_choose_json(j, frame->args, 1e-6 * v->view->width * v->view->height);
+    cli_choose_json(j, &v->setup, 1e-6 * v->view->width * v->view->height);
     if (!frame->args->dry_run)
         put_stats(j, v, frame);
     if (v->tiles)
@@ -158,10 +158,10 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     tool_json_machine(&j, argc - 1, argv + 1);
     tool_json_text(&j, "input", args->input);
     tool_json_text(&j, "output", args->output);
-    tool_json_text(&j, "engine", hf_engine_name(args->params.engine));
+    tool_json_text(&j, "engine", hf_engine_name(frame->views[0].setup.params.engine));
     tool_json_text(&j, "isa", hf_isa_name(hf_context_isa(context)));
     tool_json_count(&j, "threads", hf_context_threads(context));
-    tool_json_text(&j, "storage", hf_name(HF_NAMES_STORAGE, (int)args->params.gather.storage));
+    tool_json_text(&j, "storage", hf_name(HF_NAMES_STORAGE, (int)frame->views[0].setup.params.gather.storage));
     if (args->dry_run) {
         tool_json_flag(&j, "dry_run", 1);
     } else {

@@ -21,11 +21,12 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
     char name[TOOL_SHOWN], other[TOOL_SHOWN];
     printf("%s: would write %s\n", tool_shown(args->input, name),
            args->output ? tool_shown(args->output, other) : "nothing, as there is no -o");
-    printf("  engine %s, ", hf_engine_name(args->params.engine));
-    if (args->params.engine == HF_ENGINE_GATHER)
-        printf("%s storage, ", hf_name(HF_NAMES_STORAGE, (int)args->params.gather.storage));
-    if (args->params.engine == HF_ENGINE_LAYERS)
-        printf("%s quality, ", hf_name(HF_NAMES_LAYERS, (int)args->params.layers.quality));
+    const struct hf_params *first = &frame->views[0].setup.params;
+    printf("  engine %s, ", hf_engine_name(first->engine));
+    if (first->engine == HF_ENGINE_GATHER)
+        printf("%s storage, ", hf_name(HF_NAMES_STORAGE, (int)first->gather.storage));
+    if (first->engine == HF_ENGINE_LAYERS)
+        printf("%s quality, ", hf_name(HF_NAMES_LAYERS, (int)first->layers.quality));
     printf("%d threads, %s\n", hf_context_threads(context), hf_isa_name(hf_context_isa(context)));
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/setup.h"
 
+#include "cli/choose.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -120,7 +122,7 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     }
     if (setup->model == CLI_MODEL_COC)
         return 0;
-    if (args->params.engine == HF_ENGINE_GAUSSIAN && setup->model == CLI_MODEL_RANGE) {
+    if (setup->params.engine == HF_ENGINE_GAUSSIAN && setup->model == CLI_MODEL_RANGE) {
         setup->focus_from = "the picture's centre";
         *focus = HF_DERIVE;
         return 0;
@@ -205,6 +207,7 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
     p->view.display_width = display_width(view);
     p->view.display_height = view->display_window.y1 - view->display_window.y0;
     p->view.pixel_aspect = view->pixel_aspect;
+    cli_choose(setup, args);
     if (args->params.range.blend != hf_default_params.range.blend && setup->model != CLI_MODEL_RANGE)
         return tool_fail(error, CLI_BAD_ARGUMENTS,
                          "%s: --blend %s is of use only with a range, but here the %s says how "

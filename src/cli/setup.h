@@ -20,7 +20,8 @@ struct cli_setup {
     // "--focus", "--focus-at", "--focus center", "header", "the picture's centre"; NULL: none needed (coc).
     const char *focus_from;
     struct hf_params params;
-    struct hf_depth depth;  // data is the caller's to set
+    struct hf_choice choice;  // of --quality or --max-error; options is NULL without them
+    struct hf_depth depth;    // data is the caller's to set
 };
 
 // 1 if the focus is to be read from the depth, so that cli_setup_view needs its pixels.

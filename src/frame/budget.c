@@ -3,24 +3,25 @@
 
 #include "frame/ladder.h"
 
+#include <math.h>
+
 // Frames beyond the budget before a cheaper setting; frames with room before the better one again, twice as many each
 // time that it turned out too slow.
 enum { OVER = 2, PATIENCE = 12, MOST_PATIENCE = 192 };
 // Part of the budget that the better setting may be expected to take: what lies between is hysteresis.
 static const float ROOM = 0.8f;
 
-int hf_budget_ladder(const struct hf_params *asked, struct hf_params ladder[HF_BUDGET_STEPS])
+int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS])
 {
-    const float ms = hf_ladder_ms(asked);
+    const float ms = hf_ladder_ms(asked), far = fminf(radius, hf_ladder_farthest(asked));
     int n = 0;
     ladder[n++] = *asked;
     for (int i = hf_ladder_steps - 1; i >= 0 && n < HF_BUDGET_STEPS; i--) {
-        if (hf_ladder[i].ms >= ms)
-            continue;
-        struct hf_params *p = &ladder[n++];
+        struct hf_params *p = &ladder[n];
         *p = *asked;
         hf_ladder_apply(p, i);
         hf_ladder_reshape(p);
+        n += hf_ladder[i].ms < ms && hf_ladder_farthest(p) >= far;
     }
     return n;
 }

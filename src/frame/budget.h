@@ -19,9 +19,9 @@ struct hf_budget {
     float ratio[HF_BUDGET_STEPS];  // cost of the step above over this one's, seen then
 };
 
-// Fill ladder with settings to choose from, best first: *asked, and the steps of ladder.h that cost less. Returns how
-// many.
-int hf_budget_ladder(const struct hf_params *asked, struct hf_params ladder[HF_BUDGET_STEPS]);
+// Fill ladder with settings to choose from, best first: *asked, and the steps of ladder.h that cost less and reach as far
+// as radius, pixels, or as *asked does itself. Returns how many.
+int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS]);
 
 // The setting for the next frame.
 int hf_budget_choose(struct hf_budget *b, const struct hf_params *ladder, int steps);

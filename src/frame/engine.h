@@ -94,6 +94,9 @@ struct hf_engine_def {
     // message (params.h). NULL: it has no parameters.
     int (*check)(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message);
 
+    // The largest radius that it blurs by with parameters that it has not checked yet, pixels. NULL: any.
+    float (*farthest)(const struct hf_params *p);
+
     // What setups call own: zero at first, then as prepare left it for the frame before. It owns memory until release.
     size_t own_bytes;
     // Numbers that follow from the parameters, which are resolved; s holds what is common to all engines, and may be

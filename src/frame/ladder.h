@@ -23,6 +23,8 @@ void hf_ladder_apply(struct hf_params *params, int step);
 uint64_t hf_ladder_hash(const struct hf_params *params);
 // 1 if params->engine draws params->aperture.
 int hf_ladder_can_draw(const struct hf_params *params);
+// The largest radius by which params->engine blurs, pixels; INFINITY: any.
+float hf_ladder_farthest(const struct hf_params *params);
 // Take from params->aperture what params->engine does not draw.
 void hf_ladder_reshape(struct hf_params *params);
 // What a megapixel with params is expected to take: that of the step that they are, else of their engine.

@@ -196,7 +196,9 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
         return hf_bad(message, "gather.division is %d, which is none", (int)g->division);
     if (r->limit != HF_LIMIT_GIVEN) {
         r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
-        r->params.max_radius = g->faithful ? 12 : r->limit == HF_LIMIT_ENGINE ? MEASURED_RADIUS : hf_model_radius(r);
+        r->params.max_radius = g->faithful                   ? 12
+                               : r->limit == HF_LIMIT_ENGINE ? MEASURED_RADIUS
+                                                             : hf_model_radius(r->params.view.display_height);
     }
     if (g->rings == HF_DERIVE)
         g->rings = is_measured(r) ? MEASURED_RINGS : hf_taps_rings(r->params.max_radius / 2);

@@ -121,6 +121,17 @@ static int only_focus(const struct hf_params *asked)
            g->near_end == HF_DERIVE && g->far_begin == HF_DERIVE && g->far_end == HF_DERIVE;
 }
 
+static float sigma(const struct hf_gaussian_params *g)
+{
+    return g->sigma == HF_DERIVE ? sqrtf((float)g->iterations) * (float)(1 << g->resolution) : g->sigma;
+}
+
+// A disc of radius r spreads light as far as a gaussian of standard deviation r / 2 does.
+static float farthest(const struct hf_params *p)
+{
+    return 2 * sigma(&p->gaussian);
+}
+
 static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
 {
     struct hf_gaussian_params *g = &r->params.gaussian;
@@ -130,14 +141,14 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     if (g->iterations < 0 || g->iterations > MAX_ITERATIONS)
         return hf_bad(message, "gaussian.iterations is %d; it must be 0 to %d", g->iterations, MAX_ITERATIONS);
     if (g->sigma == HF_DERIVE) {
-        g->sigma = sqrtf((float)g->iterations) * (float)(1 << g->resolution);
+        g->sigma = sigma(g);
     } else {
         g->iterations = 0;
         err = hf_check_between("gaussian.sigma", g->sigma, 0, MAX_SIGMA, message);
     }
     if (r->limit != HF_LIMIT_GIVEN) {
         r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
-        r->params.max_radius = g->faithful ? 12 : hf_model_radius(r);
+        r->params.max_radius = g->faithful ? 12 : hf_model_radius(r->params.view.display_height);
     }
     if (g->by_depth == HF_DERIVE)
         g->by_depth = g->faithful || only_focus(asked);
@@ -203,6 +214,7 @@ const struct hf_engine_def hf_gaussian_engine = {
     .name = "gaussian",
     .focus_anywhere = 1,
     .check = check,
+    .farthest = farthest,
     .passes = passes,
     .pass_count = sizeof passes / sizeof *passes,
     .sweeps = TILES,

@@ -30,6 +30,7 @@ static void make_up(struct trade_result *r, struct trade_setting *s, int i)
     *s = (struct trade_setting){"knob", names[i], options[i], 1};
     r->setting = s;
     r->engine = (enum hf_engine)(i % HF_ENGINE_COUNT);
+    r->farthest = INFINITY;
     const double ms = 0.8 * pow(1000, (double)(i - i % 3) / SETTINGS);
     for (int c = 0; c < SCENES; c++) {
         struct trade_point *p = &r->at[c];

@@ -16,7 +16,7 @@ static struct trade_result results[MOST];
 static struct trade empty(int n)
 {
     memset(results, 0, sizeof results);
-    struct trade t = {.scenes = SCENES, .results = n, .result = results};
+    struct trade t = {.scenes = SCENES, .results = n, .result = results, .largest = {10, 20}};
     strcpy(t.scene[0].text, "one");
     strcpy(t.scene[1].text, "two");
     return t;
@@ -27,6 +27,7 @@ static void put(int i, const char *options, double ms, double spread, double a, 
 {
     settings[i] = (struct trade_setting){"knob", options, options, 1};
     results[i].setting = &settings[i];
+    results[i].farthest = INFINITY;
     const double error[SCENES] = {a, b};
     for (int s = 0; s < SCENES; s++) {
         struct trade_point *p = &results[i].at[s];
@@ -111,6 +112,46 @@ static void test_ladder(void)
     CHECK_INT(results[4].step, 3);
 }
 
+// What does not reach the radii of a scene is never chosen there.
+static void test_reach(void)
+{
+    struct trade t = empty(6);
+    put(0, "soft", 1, 0.01, 0.1, 0.05);
+    put(1, "softer", 2, 0.01, 0.08, 0.05);
+    put(2, "first", 4, 0.01, 0.05, 0.06);  // worse than those before on scene two, whose radii they do not reach
+    put(3, "way", 5, 0.01, 0.045, 0.06);
+    put(4, "first -x", 4.01, 0.01, 0.05, 0.06);  // the same in more words
+    put(5, "last", 8, 0.01, 0.03, 0.03);
+    results[0].farthest = results[1].farthest = 15;
+    trade_rank(&t);
+    trade_ladder(&t);
+    const int want[] = {1, 2, 3, 4, 0, 5};
+    for (int i = 0; i < 6; i++)
+        CHECK_MSG(results[i].step == want[i], "%s: step %d, expected %d", settings[i].options, results[i].step,
+                  want[i]);
+    // On scene one they do reach: there the first must not be worse than what comes before it.
+    put(2, "first", 4, 0.01, 0.09, 0.03);
+    trade_rank(&t);
+    trade_ladder(&t);
+    CHECK_INT(results[1].step, 0);
+    CHECK_INT(results[2].step, 2);
+    CHECK_INT(results[5].step, 3);
+    // Of two ways up for those that reach, the one that begins cheapest, not the longest.
+    t = empty(5);
+    put(0, "cheap", 1, 0.01, 0.1, 0.1);
+    put(1, "other", 2, 0.01, 0.11, 0.08);
+    put(2, "another", 3, 0.01, 0.105, 0.07);
+    put(3, "last", 8, 0.01, 0.03, 0.03);
+    put(4, "soft", 0.5, 0.01, 0.12, 0.12);
+    results[4].farthest = 15;
+    trade_rank(&t);
+    trade_ladder(&t);
+    const int ways[] = {2, 0, 0, 3, 1};
+    for (int i = 0; i < 5; i++)
+        CHECK_MSG(results[i].step == ways[i], "%s: step %d, expected %d", settings[i].options, results[i].step,
+                  ways[i]);
+}
+
 static void test_cache(void)
 {
     char path[] = "/tmp/hyperfocal-test-XXXXXX";
@@ -168,6 +209,7 @@ int main(void)
     test_interval();
     test_rank();
     test_ladder();
+    test_reach();
     test_cache();
     return check_report();
 }

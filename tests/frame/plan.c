@@ -189,7 +189,7 @@ static void budget(void)
     struct machine m = {.ms = ms};
     struct hf_params p = hf_default_params;
     p.engine = HF_ENGINE_SCATTER;
-    CHECK(hf_budget_ladder(&p, m.ladder) >= 3);
+    CHECK(hf_budget_ladder(&p, 0, m.ladder) >= 3);
     m.steps = 3;
 
     frames(&m, 50, 1, 12);
@@ -226,7 +226,7 @@ static void no_flicker(void)
     struct machine m = {.ms = cheap};
     struct hf_params p = hf_default_params;
     p.engine = HF_ENGINE_SCATTER;
-    CHECK(hf_budget_ladder(&p, m.ladder) >= 3);
+    CHECK(hf_budget_ladder(&p, 0, m.ladder) >= 3);
     m.steps = 3;
     frames(&m, 20, 1, 9);
     CHECK_INT(m.b.step, 1);
@@ -243,7 +243,7 @@ static void ladders(void)
         p.engine = (enum hf_engine)e;
         p.lens.world_unit_m = 0.125f;
         p.focus = 3;
-        const int n = hf_budget_ladder(&p, ladder);
+        const int n = hf_budget_ladder(&p, 0, ladder);
         CHECK(!memcmp(&ladder[0], &p, sizeof p));
         for (int i = 1; i < n; i++) {
             CHECK_MSG(hf_ladder_ms(&ladder[i]) < hf_ladder_ms(&ladder[i - 1]), "%s, step %d", hf_engine_name(p.engine),
@@ -253,17 +253,35 @@ static void ladders(void)
         if (n > 1)
             CHECK(hf_ladder_ms(&ladder[n - 1]) == hf_ladder[0].ms);
     }
-    // From a step only those below it are left.
-    hf_ladder_apply(&p, 1);
-    CHECK_INT(hf_budget_ladder(&p, ladder), 2);
+    // From a step only those below it are left, and of them those that reach as far, or as it does itself.
+    for (int k = 1; k < hf_ladder_steps; k++)
+        for (int far = 0; far <= 2048; far += 2048) {
+            hf_ladder_apply(&p, k);
+            int want = 1;
+            for (int i = 0; i < k; i++) {
+                struct hf_params step = p;
+                hf_ladder_apply(&step, i);
+                want += hf_ladder_farthest(&step) >= fminf((float)far, hf_ladder_farthest(&p));
+            }
+            CHECK_INT(hf_budget_ladder(&p, (float)far, ladder), want);
+        }
     // Shapes that the cheaper engines do not draw become those that they do.
     p = hf_default_params;
     p.engine = HF_ENGINE_SCATTER;
     p.aperture.ring = 0.5f;
     p.aperture.blades = 7;
     p.aperture.chromatic = 0.125f;
-    for (int i = hf_budget_ladder(&p, ladder) - 1; i >= 0; i--)
+    for (int i = hf_budget_ladder(&p, 0, ladder) - 1; i >= 0; i--)
         CHECK(hf_ladder_can_draw(&ladder[i]));
+}
+
+// Is a step the first that reaches any radius? On scenes that those before do not reach it follows nothing.
+static int starts_to_reach(int i)
+{
+    struct hf_params before = hf_default_params, p = before;
+    hf_ladder_apply(&before, i - 1);
+    hf_ladder_apply(&p, i);
+    return hf_ladder_farthest(&before) < INFINITY && hf_ladder_farthest(&p) == INFINITY;
 }
 
 // The ladder rises, and qualities choose from it.
@@ -271,40 +289,98 @@ static void choices(void)
 {
     struct hf_params p = hf_default_params;
     struct hf_choice last = {.step = -1}, c;
+    p.max_radius = 0;  // every step reaches as far
     for (int i = 1; i < hf_ladder_steps; i++)
         CHECK_MSG(hf_ladder[i].ms > hf_ladder[i - 1].ms && hf_ladder[i].error < hf_ladder[i - 1].error &&
-                      hf_ladder[i].worst <= hf_ladder[i - 1].worst,
+                      (starts_to_reach(i) || hf_ladder[i].worst <= hf_ladder[i - 1].worst),
                   "step %d", i);
     for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {
-        CHECK_INT(hf_choose_quality(&p, (enum hf_quality)q, &c), HF_OK);
+        CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)q, &c), HF_OK);
         CHECK(c.step >= last.step && c.steps == hf_ladder_steps && c.options == hf_ladder[c.step].options);
         CHECK(c.error == hf_ladder[c.step].error && hf_ladder_ms(&p) == c.ms);
         last = c;
     }
     CHECK_INT(last.step, hf_ladder_steps - 1);
-    CHECK_INT(hf_choose_quality(&p, HF_QUALITY_DRAFT, NULL), HF_OK);
+    CHECK_INT(hf_choose_quality(720, NULL, &p, HF_QUALITY_DRAFT, NULL), HF_OK);
     CHECK(hf_ladder_ms(&p) == hf_ladder[0].ms);
     for (int i = 0; i < hf_ladder_steps; i++) {
-        CHECK_INT(hf_choose_error(&p, hf_ladder[i].error, &c), HF_OK);
+        CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &c), HF_OK);
         CHECK_INT(c.step, i);
         CHECK(hf_ladder_ms(&p) == hf_ladder[i].ms);
     }
-    CHECK_INT(hf_choose_error(&p, 1e-6f, &c), HF_OK);  // nothing errs so little: the best there is
+    CHECK_INT(hf_choose_error(720, NULL, &p, 1e-6f, &c), HF_OK);  // nothing errs so little: the best there is
     CHECK_INT(c.step, hf_ladder_steps - 1);
-    CHECK_INT(hf_choose_error(&p, 1, &c), HF_OK);
+    CHECK_INT(hf_choose_error(720, NULL, &p, 1, &c), HF_OK);
     CHECK_INT(c.step, 0);
     // The last step draws whatever there is.
     static const struct hf_image any;
     p.aperture = (struct hf_aperture_params){
         .blades = 7, .ring = 0.5f, .squeeze = 2, .cat_eye = 1, .roundness = 0.5f, .chromatic = 0.1f, .picture = &any};
-    hf_choose_quality(&p, HF_QUALITY_DRAFT, &c);
+    hf_choose_quality(720, NULL, &p, HF_QUALITY_DRAFT, &c);
     CHECK(hf_ladder_can_draw(&p));
     CHECK(hf_ladder_ms(&p) == hf_ladder[c.step].ms);
-    CHECK_INT(hf_choose_error(&p, 0, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_error(&p, (float)NAN, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_quality(NULL, HF_QUALITY_BEST, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_quality(&p, (enum hf_quality)4, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_quality(&p, (enum hf_quality) - 1, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_error(720, NULL, &p, 0, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_error(720, NULL, &p, (float)NAN, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_quality(720, NULL, NULL, HF_QUALITY_BEST, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)4, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality) - 1, &c), HF_ERR_ARG);
+}
+
+// The radius of a step that must do for a picture of this height.
+static float farthest_of(struct hf_params p, int height, const struct hf_depth *depth, enum hf_quality q, int *passed)
+{
+    struct hf_choice c;
+    CHECK_INT(hf_choose_quality(height, depth, &p, q, &c), HF_OK);
+    CHECK_INT(!c.why, !c.passed);
+    *passed = c.passed;
+    return hf_ladder_farthest(&p);
+}
+
+// A step that does not reach the blur asked for is passed over; more is never less.
+static void reaches(void)
+{
+    static const struct hf_depth radii = {.type = HF_DEPTH_COC};
+    struct hf_params p = hf_default_params, lens = p, cut = p;
+    lens.model = cut.model = HF_MODEL_LENS;
+    cut.max_radius = 4;
+    int passed, draft;
+    struct hf_choice c, all;
+    // The cheapest step is a blur of one width, which is enough for the chapter's radii but not for a lens.
+    CHECK(farthest_of(p, 540, NULL, HF_QUALITY_DRAFT, &passed) < INFINITY);
+    CHECK(farthest_of(p, 1080, NULL, HF_QUALITY_DRAFT, &passed) >= 12);
+    CHECK(farthest_of(p, 16384, NULL, HF_QUALITY_DRAFT, &passed) >= 12.f * 16384 / 1080);
+    CHECK(passed > 0);
+    CHECK(farthest_of(lens, 540, NULL, HF_QUALITY_DRAFT, &passed) == INFINITY);
+    CHECK(passed > 0);
+    CHECK(farthest_of(p, 540, &radii, HF_QUALITY_DRAFT, &draft) == INFINITY);
+    CHECK_INT(draft, passed);
+    CHECK(farthest_of(cut, 540, NULL, HF_QUALITY_DRAFT, &passed) >= 4);
+    CHECK_INT(passed, 0);
+    // The height that counts is the display's.
+    p.view.display_height = 16384;
+    CHECK(farthest_of(p, 540, NULL, HF_QUALITY_DRAFT, &passed) >= 12.f * 16384 / 1080);
+    for (float r = 0; r <= 2048; r = r < 64 ? r + 0.5f : 2 * r) {
+        int last = -1;
+        for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {
+            p = lens;
+            p.max_radius = r;
+            CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)q, &c), HF_OK);
+            CHECK(hf_ladder_farthest(&p) >= r);
+            CHECK(c.step >= last);
+            last = c.step;
+        }
+    }
+    // By error likewise: the first step that reaches and errs no more.
+    for (int i = 0; i < hf_ladder_steps; i++) {
+        p = lens;
+        CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &c), HF_OK);
+        CHECK(c.step >= i && c.error <= hf_ladder[i].error && hf_ladder_farthest(&p) == INFINITY);
+        p = cut;
+        CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &all), HF_OK);
+        CHECK(all.step == i && all.step + c.passed == c.step);
+    }
+    CHECK_INT(hf_choose_quality(0, NULL, &p, HF_QUALITY_DRAFT, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_error(0, NULL, &p, 0.1f, &c), HF_ERR_ARG);
 }
 
 // No frame fits into a microsecond: after a few, the cheapest setting; the report says so.
@@ -319,7 +395,7 @@ static void budget_of_frames(void)
     p.max_radius = 24;
     p.run.budget_ms = 1e-3f;
     struct hf_params ladder[HF_BUDGET_STEPS];
-    const int steps = hf_budget_ladder(&p, ladder);
+    const int steps = hf_budget_ladder(&p, p.max_radius, ladder);
     for (int i = 0; i < 4 * HF_BUDGET_STEPS; i++)
         r = report_of(c, &s, &p);
     CHECK_INT(r.budget_step, steps - 1);
@@ -367,6 +443,7 @@ int main(void)
     no_flicker();
     ladders();
     choices();
+    reaches();
     budget_of_frames();
     return check_report();
 }
