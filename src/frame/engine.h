@@ -81,6 +81,8 @@ struct hf_engine_def {
     int buf_count;
     // Bit i: sweep i takes whole rows or columns, so all of its cells run if any tile needs something.
     unsigned across;
+    // Rows of a tile's cell are a multiple of this, half-resolution ones. 0: any number.
+    int grain;
     // The reach of a frame is known only when its depth has been looked at: nothing but the first pass runs before. An
     // engine of which that holds with some parameters has resolve set the setup's.
     int measured;

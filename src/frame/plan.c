@@ -117,8 +117,9 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
         }
         if (e->cell)
             e->cell(s, sweep, &width, &height);
-        set_cells(p, sweep, tile_width && sweep == 2 ? tile_width : width,
-                  tile_height && sweep == 2 ? tile_height : height, whole);
+        if (tile_height && sweep == 2)
+            height = e->grain ? ceil_div(tile_height, e->grain) * e->grain : tile_height;
+        set_cells(p, sweep, tile_width && sweep == 2 ? tile_width : width, height, whole);
     }
     find_reaches(p, s);
     int longest = 0;
@@ -306,12 +307,21 @@ static unsigned reads_of(const struct hf_plan *p, const struct hf_setup *s, int 
     return p->engine->reads(s, p->tile_needs[tile]);
 }
 
+int hf_plan_makes_chunks(const struct hf_plan *p)
+{
+    return p->engine->pass_count > 1 && p->engine->passes[1].sweep == 1;
+}
+
 static void list_rest(struct hf_plan *p, int scan)
 {
+    const int makes = hf_plan_makes_chunks(p);
     p->rest_count = 0;
-    for (int i = 0; i < hf_plan_count(p, 1); i++)
-        if ((p->chunk_reads[i] & ~p->chunk_made[i]) || (scan && !p->chunk_reads[i] && !p->chunk_made[i]))
+    for (int i = 0; i < hf_plan_count(p, 1); i++) {
+        const int missing = makes && (p->chunk_reads[i] & ~p->chunk_made[i]);
+        const int unread = !makes || (!p->chunk_reads[i] && !p->chunk_made[i]);
+        if (missing || (scan && unread))
             p->rest[p->rest_count++] = i;
+    }
 }
 
 void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan)

@@ -53,6 +53,8 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int tile);
 // whose colour nobody reads.
 void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan);
 
+// Does the first sweep make anything of chunks? Or does it only look at depth.
+int hf_plan_makes_chunks(const struct hf_plan *p);
 // Are a sweep's cells the tiles, which run as far as they need?
 int hf_plan_is_tiled(const struct hf_plan *p, int sweep);
 // Does a pass, or any of a sweep, run with these options?

@@ -86,7 +86,7 @@ void hf_sweep_rest(void *arg, int i, int worker)
     const struct hf_rect cell = hf_plan_cell(p, 1, chunk);
     const unsigned missing = p->chunk_reads[chunk] & ~p->chunk_made[chunk];
     int64_t clock = hf_now_ns();
-    if (!missing) {
+    if (!missing || !hf_plan_makes_chunks(p)) {
         hf_copy_scan(w, cell);
         return;
     }

@@ -26,7 +26,7 @@ enum { COC, LOAD, PREPARE, HIDDEN, COMPOSITE, PASSES };
 
 static const struct hf_pass passes[PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 2.5f},
-    {"Load", .writes = B(COLOUR) | B(RADIUS), .sweep = 1, .ns = 4},
+    {"Load", .writes = B(COLOUR) | B(RADIUS), .sweep = 2, .ns = 4},
     {"Un-mixing", .around = B(COLOUR) | B(RADIUS), .halo = HALO_EDGE,
      .writes = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(QUADS) | B(QUADS_AT), .sweep = 2, .ns = 40},
     {"Hidden", .reads = B(SEEN_AT) | B(MIXED_AT), .around = B(QUADS) | B(QUADS_AT), .halo = HALO_LEVELS,
@@ -36,8 +36,8 @@ static const struct hf_pass passes[PASSES] = {
 };
 
 static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
-    [HF_LAYERS_BUF_COLOUR] = {"colour", .frame = 1, .x = 1, .y = 1},
-    [HF_LAYERS_BUF_RADIUS] = {"radius", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_COLOUR] = {"colour", .x = 1, .y = 1},
+    [HF_LAYERS_BUF_RADIUS] = {"radius", .x = 1, .y = 1},
     [HF_LAYERS_BUF_SEEN] = {"seen", .frame = 1, .x = 1, .y = 1},
     [HF_LAYERS_BUF_SEEN_AT] = {"seenat", .frame = 1, .x = 1, .y = 1},
     [HF_LAYERS_BUF_MIXED] = {"mixed", .frame = 1, .x = 1, .y = 1},
@@ -333,6 +333,7 @@ const struct hf_engine_def hf_layers_engine = {
     .bufs = bufs,
     .buf_count = HF_LAYERS_BUFS,
     .across = 1u << 2 | 1u << 3,
+    .grain = HF_LAYERS_TILE / 2,
     .measured = 1,
     .kernels_bytes = sizeof(struct hf_layers_kernels),
     .kernels = hf_layers_kernels_init,

@@ -123,6 +123,10 @@ enum {
 };
 
 hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_layers_composite_pass;
+// Note the radii and slices of the samples that a cell has made.
+void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r);
+void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r);
+
 hf_layers_sure hf_layers_sure_c;
 hf_layers_unmix hf_layers_unmix_c;
 hf_layers_roots hf_layers_roots_c;

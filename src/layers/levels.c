@@ -281,60 +281,6 @@ static void smooth_down(const struct band *b, int y)
     }
 }
 
-// Samples of a tile.
-struct tile {
-    const float *radius, *weight;
-    ptrdiff_t stride;
-    int n, rows;
-};
-
-static struct tile tile_of(const struct hf_buf *at, int weight, int x, int y, int n, int rows)
-{
-    return (struct tile){hf_at(at, 1, x, y), hf_at(at, weight, x, y), at->stride, n, rows};
-}
-
-// Which slices have samples of a tile whose radii lie in a range.
-static void mark_slices(const struct hf_frame *f, struct tile t, struct hf_layers_range range,
-                        const struct hf_slice *slice, uint64_t *bits)
-{
-    const struct hf_layers *l = hf_layers(f->s);
-    memset(bits, 0, sizeof *bits * (size_t)l->words);
-    for (int i = 0; range.low <= range.high && i < l->slices && slice[i].before < range.high; i++)
-        if (slice[i].after > range.low &&
-            hf_layers_kernels(f)->inside(t.radius, t.weight, t.stride, t.n, t.rows, slice[i].before, slice[i].after))
-            bits[i / 64] |= (uint64_t)1 << i % 64;
-}
-
-// Which radii and slices there are in the tiles of a band.
-static void mark_tiles(const struct hf_frame *f, struct hf_rect r)
-{
-    const struct hf_layers *l = hf_layers(f->s);
-    const struct hf_layers_kernels *k = hf_layers_kernels(f);
-    const struct hf_buf *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT], *mixed = &f->buf[HF_LAYERS_BUF_MIXED_AT];
-    const struct hf_buf *hidden = &f->buf[HF_LAYERS_BUF_HIDDEN_AT];
-    const int size = HF_LAYERS_TILE, half = size / 2;
-    for (int ty = r.y0 / half; ty * half < r.y1; ty++)
-        for (int tx = r.x0 / half; tx * half < r.x1; tx++) {
-            const int x = tx * size, y = ty * size, at = ty * l->columns + tx, mark = at * l->words;
-            const int n = hf_min(size, f->s->width - x), rows = hf_min(size, f->s->height - y);
-            const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
-            const struct tile s = tile_of(seen, 0, x, y, n, rows), m = tile_of(mixed, 0, x, y, n, rows);
-            const float *share = l->set.highlights ? hf_at(seen, 2, x, y) : NULL;
-            l->seen_range[at] = l->mixed_range[at] = l->hidden_range[at] = none;
-            const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
-            k->extremes(m.radius, m.weight, NULL, m.stride, n, rows, &l->mixed_range[at]);
-            mark_slices(f, s, l->seen_range[at], l->slice, &l->seen_marks[mark]);
-            mark_slices(f, m, l->mixed_range[at], l->slice, &l->mixed_marks[mark]);
-            mark_slices(f, tile_of(seen, share ? 2 : 0, x, y, n, rows), bright ? l->seen_range[at] : none, l->slice,
-                        &l->share_marks[mark]);
-            if (!l->levels)
-                continue;
-            const struct tile h = tile_of(hidden, 0, x / 2, y / 2, (n + 1) / 2, (rows + 1) / 2);
-            k->extremes(h.radius, h.weight, NULL, h.stride, h.n, h.rows, &l->hidden_range[at]);
-            mark_slices(f, h, l->hidden_range[at], l->slice, &l->hidden_marks[mark]);
-        }
-}
-
 // The hidden samples of a band.
 static void find_hidden(const struct hf_frame *f, struct hf_rect r)
 {
@@ -363,7 +309,8 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
 
 void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    if (hf_layers(f->s)->levels)
-        find_hidden(f, r);
-    mark_tiles(f, r);
+    if (!hf_layers(f->s)->levels)
+        return;
+    find_hidden(f, r);
+    hf_layers_mark_hidden(f, r);
 }

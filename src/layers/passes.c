@@ -32,6 +32,7 @@ void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
         hf_layers_highlights(f, r);
     if (l->levels)
         hf_layers_quads_pass(f, r);
+    hf_layers_mark_seen(f, r);
 }
 
 static struct hf_layers_set set_of(const struct hf_buf *colour, const struct hf_buf *at)
