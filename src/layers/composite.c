@@ -32,12 +32,12 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
 }
 
 void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
-                        int channels, int n, float *const out[4])
+                        int channels, float faint, int n, float *const out[4])
 {
     for (int x = 0; x < n; x++) {
         const float w = near->weight[x], left = 1 - w;
         const float a = far ? far[4][x] : 0;
-        const float g = far ? (left > 0 ? left : 0) / (a > HF_LAYERS_FAINT ? a : HF_LAYERS_FAINT) : 0;
+        const float g = far ? (left > 0 ? left : 0) / (a > faint ? a : faint) : 0;
         const float sum = w + g * a;
         for (int c = 0; c < channels; c++) {
             const float top = far ? near->colour[c][x] + g * far[c][x] : near->colour[c][x];

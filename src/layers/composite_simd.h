@@ -45,13 +45,13 @@ static void layers_blend_simd(const struct hf_stack_row *to, int channels, const
 }
 
 static void layers_finish_simd(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
-                               int channels, int n, float *const out[4])
+                               int channels, float faint, int n, float *const out[4])
 {
-    const vf tiny = vf_set1(1e-30f), faint = vf_set1(HF_LAYERS_FAINT), one = vf_set1(1);
+    const vf tiny = vf_set1(1e-30f), one = vf_set1(1);
     for (int x = 0; x < n; x += VF_N) {
         const vf w = vf_load(near->weight + x);
         const vf a = far ? vf_load(far[4] + x) : vf_zero();
-        const vf g = far ? vf_div(vf_max(vf_sub(one, w), vf_zero()), vf_max(a, faint)) : vf_zero();
+        const vf g = far ? vf_div(vf_max(vf_sub(one, w), vf_zero()), vf_max(a, vf_set1(faint))) : vf_zero();
         const vf sum = vf_max(vf_fma(g, a, w), tiny);
         for (int c = 0; c < channels; c++) {
             const vf top = vf_load(near->colour[c] + x), was = vf_load(own[c] + x);

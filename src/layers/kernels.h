@@ -65,9 +65,10 @@ typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
 // Put sums, the weight at 4, under what a stack holds; part, if not NULL, receives how much of them shows.
 typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, const float *const in[5], int hidden, int n,
                              float *part);
-// The result of n pixels from what is near and, if not NULL, what is far; where that is the pixel itself, its own bits.
+// The result of n pixels from what is near and, if not NULL, what is far, a gap before coverage below `faint` being
+// shared by both; where the result is the pixel itself, its own bits.
 typedef void hf_layers_finish(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
-                              int channels, int n, float *const out[4]);
+                              int channels, float faint, int n, float *const out[4]);
 
 struct hf_layers_kernels {
     struct hf_passes passes;

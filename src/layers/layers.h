@@ -30,8 +30,9 @@ enum {
 #define HF_LAYERS_OPAQUE 2e-6f
 // Coverage of the far stack from which on it fills whatever the nearer slices leave open. The tail of a far disc that
 // just reaches behind an object is less: what is open there is shared with the nearer slices, or thin objects before
-// a sharp one would be filled with the sky far beside it.
+// a sharp one would be filled with the sky far beside it. Without hidden samples nothing but that tail is behind them.
 #define HF_LAYERS_FAINT 0.5f
+#define HF_LAYERS_FAINT_ALONE 1e-3f
 
 // Planes of samples or sums; each points to pixel (0, 0).
 struct hf_layers_set {

@@ -260,7 +260,8 @@ static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, 
     }
     if (far)
         raise(c, FAR, x, n, y, c->row);
-    c->k->finish(&r, far ? (const float *const *)c->row : NULL, own, channels, n, out);
+    c->k->finish(&r, far ? (const float *const *)c->row : NULL, own, channels,
+                 c->l->set.hidden ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, n, out);
 }
 
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)

@@ -268,8 +268,8 @@ static void finish_call(const struct world *w, const struct kernels *k, enum are
     set_of(w, a, IN, out);
     for (int c = 0; c < 4; c++)
         near.colour[c] = line(w, a, c);
-    k->layers.finish(&near, now.with ? (const float *const *)far : NULL, (const float *const *)own, now.channels, w->n,
-                     out);
+    k->layers.finish(&near, now.with ? (const float *const *)far : NULL, (const float *const *)own, now.channels,
+                     now.add ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, w->n, out);
 }
 
 // ---- all ----

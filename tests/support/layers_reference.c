@@ -311,7 +311,8 @@ static void put_together(const struct frame *f, struct picture *out)
         put_slice(f, &s[i], level_of(f, s[i].own) ? &far : &middle, &light[1]);
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++) {
-            const double *m = at(&middle, x, y), a = up(&far, 4, x, y), g = fmax(0, 1 - m[4]) / fmax(a, 0.5);
+            const double *m = at(&middle, x, y), a = up(&far, 4, x, y),
+                         g = fmax(0, 1 - m[4]) / fmax(a, f->hidden ? 0.5 : 1e-3);
             for (int c = 0; c < f->channels; c++) {
                 const double back = up(&far, c, x, y) + (c < 3 ? at(&light[1], x, y)[c] : 0);
                 out->plane[c][y * f->width + x] = (float)((m[c] + g * back) / fmax(m[4] + g * a, 1e-30));
