@@ -14,6 +14,12 @@ static void write_buffer(void *cookie, const struct hf_buffer *buffer)
     static const char *const names[5][4] = {{0}, {"Y"}, {"R", "G"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     struct cli_dump *dump = cookie;
     struct hf_io_error io;
+    const struct hf_io_planes planes = {.width = buffer->width,
+                                        .height = buffer->height,
+                                        .channels = buffer->channels,
+                                        .names = names[buffer->channels],
+                                        .data = buffer->data,
+                                        .stride = buffer->stride / (ptrdiff_t)sizeof(float)};  // there in floats
     char *path;
     if (dump->failed)
         return;
@@ -26,8 +32,7 @@ static void write_buffer(void *cookie, const struct hf_buffer *buffer)
         dump->failed = 1;
     else if (mkdir(dump->dir, 0777) && errno != EEXIST)
         dump->failed = tool_fail(&dump->error, 1, "--dump-passes %s: %s", dump->dir, strerror(errno));
-    else if (hf_io_write_planes(path, buffer->width, buffer->height, buffer->channels, names[buffer->channels],
-                                buffer->data, buffer->stride / (ptrdiff_t)sizeof(float), &io))  // there in floats
+    else if (hf_io_write_planes(path, &planes, &io))
         dump->failed = tool_fail(&dump->error, 1, "%s", io.message);
     free(path);
 }

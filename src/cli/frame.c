@@ -75,6 +75,16 @@ static int new_plane(const struct cli_view *v, float **plane, struct tool_error 
                               v->view->height);
 }
 
+static int read_depth_file(const struct cli_args *args, struct cli_view *v, struct hf_io_error *io)
+{
+    int size[2];
+    const int status = hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, size, io);
+    const int scaled = size[0] != v->view->width || size[1] != v->view->height;
+    for (int i = 0; i < 2; i++)
+        v->map_size[i] = scaled ? size[i] : 0;
+    return status;
+}
+
 static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
@@ -86,8 +96,7 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
     if (hf_io_decode(frame->file, wants, frame->view_count, frame->run, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     for (int i = 0; i < frame->view_count && args->depth_file; i++)
-        if (hf_io_read_depth_file(args->depth_file, args->depth_channel, frame->views[i].view, frame->views[i].depth,
-                                  &io))
+        if (read_depth_file(args, &frame->views[i], &io))
             return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     for (int i = 0; i < frame->view_count; i++) {
         struct cli_view *v = &frame->views[i];
@@ -134,7 +143,7 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, st
     if (args->depth_file) {
         from = data->y0;
         to = data->y1;
-        status = hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, io);
+        status = read_depth_file(args, v, io);
     } else if (from < to) {
         status = hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, io);
     }

@@ -26,6 +26,7 @@ struct cli_view {
     struct cli_setup setup;
     float *depth;  // NULL: not read yet, or not needed any more
     float *planes[4];
+    int map_size[2];  // width and height of the depth file, which was scaled to the view's; 0: not so
     struct cli_depth_found found;
     float least_radius;  // pixels: what is least blurred
     float least_reach;   // of all that is blurred at all

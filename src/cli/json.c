@@ -124,6 +124,16 @@ static void put_window(struct tool_json *j, const char *name, const struct hf_io
     tool_json_close(j);
 }
 
+void cli_json_map_size(struct tool_json *j, const struct cli_view *v)
+{
+    if (!v->map_size[0])
+        return;
+    tool_json_row(j, "depth_scaled_from", '[');
+    tool_json_count(j, NULL, v->map_size[0]);
+    tool_json_count(j, NULL, v->map_size[1]);
+    tool_json_close(j);
+}
+
 static void put_view(struct tool_json *j, const struct cli_view *v, const struct cli_frame *frame)
 {
     tool_json_open(j, NULL, '{');
@@ -136,6 +146,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     tool_json_close(j);
     tool_json_text(j, "depth", frame->args->depth_file ? frame->args->depth_file : v->view->depth);
     tool_json_text(j, "depth_type", cli_depth_type_name(frame->args));
+    cli_json_map_size(j, v);
     tool_json_count(j, "width", v->view->width);
     tool_json_count(j, "height", v->view->height);
     put_window(j, "data_window", &v->view->data_window);

@@ -6,6 +6,11 @@
 
 #include <stdio.h>
 
+#include "tool/json.h"
+
+// Of a view whose depth file was scaled to it: "depth_scaled_from", its width and height. Else nothing.
+void cli_json_map_size(struct tool_json *j, const struct cli_view *v);
+
 // One JSON object about a frame: what was asked for, what was done, how long it took. Of a --dry-run the first only.
 void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context);
 

@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/json.h"
 #include "cli/summary.h"
 #include "tool/json.h"
 #include "tool/machine.h"
@@ -85,6 +86,7 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         tool_json_open(j, NULL, '{');
         tool_json_text(j, "name", v->view->name);
         tool_json_text(j, "layer", v->view->layer);
+        cli_json_map_size(j, v);
         tool_json_number(j, "focus", s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
         tool_json_text(j, "focus_from", s->focus_from);
         tool_json_number(j, "max_radius", v->report.used.params.max_radius);

@@ -81,8 +81,8 @@ static const struct tool_option options[] = {
 
     {"depth-channel", 0, TOOL_DEPTH, "NAME", "Full name of the depth channel. Default: the view's Z or depth.Z, else "
      "the only channel with depth in its name.", TEXT(depth_channel)},
-    {"depth-file", 0, TOOL_DEPTH, "FILE", "Take depth from this file, with the same data window size as the view.",
-     TEXT(depth_file)},
+    {"depth-file", 0, TOOL_DEPTH, "FILE", "Take depth from this file. One of another size than the view is scaled to it by the "
+     "nearest sample, if its width / height is the same within 1 %.", TEXT(depth_file)},
     {"depth-type", 0, TOOL_DEPTH, "view|ray|ndc-d3d|ndc-gl|ndc-reversed|inverse|normalized|normalized-inverted|coc",
      "What depth holds. view (default): distance along the camera's axis; ray: along the ray; ndc-d3d, ndc-gl, "
      "ndc-reversed: a depth buffer from 0 to 1, -1 to 1, 1 to 0; inverse: 1/distance, as depth estimators give it; "

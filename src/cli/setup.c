@@ -79,8 +79,8 @@ static void describe_depth(struct hf_depth *depth, const struct cli_args *args, 
 }
 
 // Focus on what a pixel shows, EXR coordinates.
-static int focus_at(float *focus, const struct hf_depth *depth, const struct hf_io_view *view, int x, int y,
-                    const char *option, const char *label, struct tool_error *error)
+static int focus_at(struct cli_setup *setup, const struct hf_io_view *view, int x, int y, const char *option,
+                    const char *label, struct tool_error *error)
 {
     const struct hf_io_box *data = &view->data_window;
     if (x < data->x0 || x >= data->x1 || y < data->y0 || y >= data->y1)
@@ -88,7 +88,8 @@ static int focus_at(float *focus, const struct hf_depth *depth, const struct hf_
                          "%s: %s is pixel %d,%d, which is outside the data window %d,%d to "
                          "%d,%d",
                          label, option, x, y, data->x0, data->y0, data->x1 - 1, data->y1 - 1);
-    const int status = hf_depth_at(depth, view->width, view->height, x - data->x0, y - data->y0, focus);
+    const int status =
+        hf_depth_at(&setup->depth, view->width, view->height, x - data->x0, y - data->y0, &setup->params.focus);
     if (status == HF_ERR_FOCUS)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, where there is no surface to focus on",
                          label, option, x, y);
@@ -111,12 +112,12 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
         return 0;
     case CLI_FOCUS_CENTER:
         setup->focus_from = "--focus center";
-        return focus_at(focus, &setup->depth, view, display->x0 + (display->x1 - display->x0) / 2,
+        return focus_at(setup, view, display->x0 + (display->x1 - display->x0) / 2,
                         display->y0 + (display->y1 - display->y0) / 2, setup->focus_from, label, error);
     case CLI_FOCUS_AT:
         setup->focus_from = "--focus-at";
         snprintf(option, sizeof(option), "--focus-at %d,%d", args->focus_x, args->focus_y);
-        return focus_at(focus, &setup->depth, view, args->focus_x, args->focus_y, option, label, error);
+        return focus_at(setup, view, args->focus_x, args->focus_y, option, label, error);
     case CLI_FOCUS_HEADER:
         break;
     }

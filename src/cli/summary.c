@@ -116,7 +116,11 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     const struct hf_params *p = &r->used.params;
     const char *depth = frame->args->depth_file ? frame->args->depth_file : v->view->depth;
     char text[512];
-    int n = snprintf(text, sizeof(text), "%s", hf_engine_name(p->engine));
+    int n = 0;
+    if (v->map_size[0])
+        n += snprintf(text, sizeof(text), "%d x %d scaled to %d x %d, ", v->map_size[0], v->map_size[1], v->view->width,
+                      v->view->height);
+    n += snprintf(text + n, sizeof(text) - (size_t)n, "%s", hf_engine_name(p->engine));
     if (v->setup.model == CLI_MODEL_LENS)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", f/%g %g mm", p->lens.f_number, p->lens.focal_length_mm);
     if (v->setup.focus_from)

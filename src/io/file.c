@@ -71,9 +71,8 @@ static int open_fd(const char *path, bool *exr, struct hf_io_error *err)
     return -1;
 }
 
-// As hf_io_open, but a file without colour (a depth map) is fine and has no views.
-static int open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
-                    struct hf_io_error *err)
+int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
+                   struct hf_io_error *err)
 {
     static const struct hf_io_choice as_searched = {NULL, NULL};
     choice = choice ? choice : &as_searched;
@@ -110,7 +109,7 @@ static int open_any(struct hf_io_file **out, const char *path, const struct hf_i
 int hf_io_open(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice, struct hf_io_error *err)
 {
     char names[1024] = "";
-    if (open_any(out, path, choice, err))
+    if (hf_io_open_any(out, path, choice, err))
         return -1;
     if ((*out)->views.count)
         return 0;
@@ -358,44 +357,6 @@ int hf_io_grow(struct hf_io_file *file, int view, struct hf_io_box box, float no
         v->width = box.x1 - box.x0;
         v->height = box.y1 - box.y0;
     }
-    return status;
-}
-
-static int exr_depth_only(struct hf_io_file *file, const char *depth_channel, const struct hf_io_view *view,
-                          float *depth, struct hf_io_error *err)
-{
-    char names[300];
-    int c;
-    const int p = hf_exr_find_depth_only(file->exr, depth_channel, view->name, &c);
-    if (p < 0) {
-        hf_io_channels(file, names, sizeof(names));
-        return hf_io_fail(err, "%s: no depth channel%s%s among: %s", file->path, depth_channel ? " " : "",
-                          depth_channel ? depth_channel : "", names);
-    }
-    const struct hf_exr_part *part = &file->exr->parts[p];
-    if (hf_exr_check_part(file->exr, p, err))
-        return -1;
-    if (part->channels[c].x_sampling != 1 || part->channels[c].y_sampling != 1)
-        return hf_io_fail(err, "%s: channel %s is subsampled, which is not supported", file->path,
-                          part->channels[c].name);
-    if (part->width != view->width || part->height != view->height)
-        return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d; it has to be resized first",
-                          file->path, part->width, part->height, view->width, view->height);
-    const struct hf_io_box own = {part->window.min.x, part->window.min.y, part->window.max.x + 1,
-                                  part->window.max.y + 1};
-    const struct hf_exr_plane plane = {p, c, false, own, depth};
-    return hf_exr_decode(file->exr, &plane, 1, NULL, err);
-}
-
-int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
-                          struct hf_io_error *err)
-{
-    struct hf_io_file *file;
-    if (open_any(&file, path, NULL, err))
-        return -1;
-    const int status = file->exr ? exr_depth_only(file, depth_channel, view, depth, err)
-                                 : hf_oiio_read_depth_only(file->oiio, depth_channel, view, depth, err);
-    hf_io_close(&file);
     return status;
 }
 

@@ -15,4 +15,8 @@ struct hf_io_file {
     struct hf_io_views views;
 };
 
+// As hf_io_open, but a file without colour (a depth map) is fine and has no views.
+int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
+                   struct hf_io_error *err);
+
 #endif

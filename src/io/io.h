@@ -84,9 +84,10 @@ int hf_io_grow(struct hf_io_file *file, int view, struct hf_io_box box, float no
                struct hf_io_error *err);
 
 // Depth from a file of its own, any format OpenImageIO or OpenEXRCore reads: its depth channel as searched above (or
-// its only channel, or R). Must have the same data window size as the view.
+// its only channel, or R). size becomes width and height of it: when they are not the view's, the nearest samples are
+// taken; width / height may differ by 1 %, and the width be less than 5 times the view's.
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
-                          struct hf_io_error *err);
+                          int size[2], struct hf_io_error *err);
 
 // What to write, and how. All that is zero is the default.
 struct hf_io_job {
@@ -124,9 +125,14 @@ void hf_io_output_free(struct hf_io_output **out);
 int hf_io_write(struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_written *written,
                 struct hf_io_error *err);
 
-// Write planes of floats as a new single-part EXR of float channels (names[c], any order): intermediate buffers, tests.
-int hf_io_write_planes(const char *path, int width, int height, int channels, const char *const names[],
-                       const float *const planes[], ptrdiff_t stride, struct hf_io_error *err);
+// Planes of floats, for a new single-part EXR of float channels: intermediate buffers, tests.
+struct hf_io_planes {
+    int width, height, channels;
+    const char *const *names;  // of the channels, in any order
+    const float *const *data;  // a plane for each
+    ptrdiff_t stride;          // floats from row to row
+};
+int hf_io_write_planes(const char *path, const struct hf_io_planes *planes, struct hf_io_error *err);
 
 // Can a picture be written under this name, as far as its format goes? Before any work, so that it is not in vain.
 int hf_io_check_format(const char *path, struct hf_io_error *err);

@@ -184,19 +184,18 @@ int hf_io_write(struct hf_io_file *file, const struct hf_io_job *job, struct hf_
     return status;
 }
 
-int hf_io_write_planes(const char *path, int width, int height, int channels, const char *const names[],
-                       const float *const planes[], ptrdiff_t stride, struct hf_io_error *err)
+int hf_io_write_planes(const char *path, const struct hf_io_planes *planes, struct hf_io_error *err)
 {
     const struct hf_exr_new picture = {
-        .data_window = {0, 0, width, height},
-        .display_window = {0, 0, width, height},
+        .data_window = {0, 0, planes->width, planes->height},
+        .display_window = {0, 0, planes->width, planes->height},
         .pixel_aspect = 1,
         .screen_width = 1,
         .compression = EXR_COMPRESSION_ZIP,
-        .channel_count = channels,
-        .names = names,
-        .planes = planes,
-        .stride = stride,
+        .channel_count = planes->channels,
+        .names = planes->names,
+        .planes = planes->data,
+        .stride = planes->stride,
     };
     struct hf_io_bytes made;
     int status = hf_exr_make_new(&made, path, &picture, err);

@@ -175,6 +175,8 @@ exr('offset.exr', dict(colour, Z=depth, A=lambda x, y: 1), window=(-10, 20, 53, 
 exr('nan.exr', dict(colour, R=lambda x, y: float('nan') if x == y == 9 else 0.5, Z=depth))
 exr('depth.exr', {'Y': depth})
 exr('grey.exr', {'Y': lambda x, y: x % 7, 'Z': depth})
+exr('steps.exr', {'Y': lambda x, y: 2 ** (x // 16)})
+exr('half-steps.exr', {'Y': lambda x, y: 2 ** (x // 8)}, window=(0, 0, 31, 19))
 exr('small.exr', {'Y': depth}, window=(0, 0, 9, 9))
 exr('deep.exr', dict(colour, **{'my.depth': depth, 'other.depth': depth}))
 stereo = dict(colour, Z=depth)
@@ -207,17 +209,18 @@ exr('inverted.exr', dict(colour, Z=lambda x, y: 1 - (near(x, y) - 1) / 8))
 exr('inverse.exr', dict(colour, Z=lambda x, y: 1 / near(x, y)))
 exr('scaled.exr', dict(colour, Z=lambda x, y: near(x, y) * 4 - 5))
 exr('void.exr', dict(colour, Z=lambda x, y: 0))
-def png(path, depth, bits, colours=None):
+def png(path, depth, bits, colours=None, width=64, height=40):
     rows = b''
-    for y in range(40):
+    for y in range(height):
         rows += b'\0' + b''.join(struct.pack('>H' if bits == 16 else 'B', round(f(x, y) * (2 ** bits - 1)))
-                                 for x in range(64) for f in ([depth] if not colours else colours))
+                                 for x in range(width) for f in ([depth] if not colours else colours))
     chunk = lambda kind, data: (struct.pack('>I', len(data)) + kind + data +
                                 struct.pack('>I', zlib.crc32(kind + data)))
     open(path, 'wb').write(b'\x89PNG\r\n\x1a\n' +
-        chunk(b'IHDR', struct.pack('>IIBBBBB', 64, 40, bits, 2 if colours else 0, 0, 0, 0)) +
+        chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, bits, 2 if colours else 0, 0, 0, 0)) +
         chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
 png('map8.png', lambda x, y: x // 13 / 5, 8)
+png('half8.png', lambda x, y: 2 * x // 13 / 5, 8, width=32, height=20)
 png('map16.png', lambda x, y: x // 13 / 5, 16)
 png('white.png', lambda x, y: 1 - x // 13 / 5, 8)
 png('photo.png', None, 8, colours=[lambda x, y: x % 7 / 7, lambda x, y: y % 5 / 5, lambda x, y: (x ^ y) % 3 / 3])

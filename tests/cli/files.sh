@@ -91,6 +91,17 @@ result "a frame without any surface is a warning" $?
 run near.exr -o o.exr --focus 100 --fstop 0.05 --focal-length 50
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "nothing is in focus"
 result "a frame with nothing in focus is a warning" $?
+# A map of another size is scaled to the picture, and that is said.
+good flat.exr -o steps-full.exr --focus 2 --max-radius 6 --depth-file steps.exr --json
+! contains "$dir/out" depth_scaled_from
+result "a depth file of the picture's size is not scaled" $?
+run flat.exr -o steps-half.exr --focus 2 --max-radius 6 --depth-file half-steps.exr --json --verbose
+[ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"depth_scaled_from": [32, 20]' &&
+    contains "$dir/err" "half-steps.exr, 32 x 20 scaled to 64 x 40"
+result "a depth file of half the size is scaled" $?
+cmp -s steps-full.exr steps-half.exr
+result "to the same picture" $?
+bad 3 "small.exr|10 x 10 pixels of depth for a picture of 64 x 40|width / height" flat.exr -o o.exr --focus 2 --depth-file small.exr
 run photo.png -o o.png --depth-file map8.png --depth-type normalized --near 1 --far 6 --focus 2 --range 2 --max-radius 6
 if contains "$dir/err" "built without OpenImageIO"; then
     skip "photographs and maps (no OpenImageIO)"
@@ -112,6 +123,12 @@ else
     run photo.png -o photo-out.png --depth-file map8.png --focus 5 --fstop 0.1 --focal-length 50
     [ "$status" -eq 0 ] && contains "$dir/err" "nothing is in focus" && contains "$dir/err" "--depth-type normalized"
     result "a map taken for distances is a warning" $?
+    for map in map8.png half8.png; do
+        run photo.png -o "from-$map" --depth-file $map --depth-type normalized --near 1 --far 6 --focus 2 --range 2 \
+            --max-radius 6 --verbose
+        [ "$status" -eq 0 ] && [ $map = map8.png ] || contains "$dir/err" "32 x 20 scaled to 64 x 40"
+        result "$map" $?
+    done
     # The README's one.
     run "$source_root/images/lights-before.png" --depth-file "$source_root/images/lights-depth.png" --depth-type inverse \
         --near 1.5 --far 60 --focus 5 --fstop 0.37 --focal-length 50 -o photo-out.png --verbose

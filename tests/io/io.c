@@ -37,6 +37,7 @@ int main(void)
     test_claims();
     test_swapped_chunks();
     test_planes();
+    test_depth_file_sizes();
     test_formats();
     test_signals();
     test_rubbish(in_folder("views.exr"));

@@ -65,8 +65,21 @@ static const float *plane_of(const struct hf_exr_new *picture, const char *name)
     return NULL;
 }
 
+typedef exr_result_t compressor(exr_encode_pipeline_t *pipe);
+
+// Core's own, but for a chunk that becomes exactly as long as it was: readers take that for one that is not compressed.
+static exr_result_t compress(exr_encode_pipeline_t *pipe)
+{
+    compressor *const *own = pipe->encoding_user_data;
+    const exr_result_t rv = (*own)(pipe);
+    if (!rv && pipe->compressed_bytes == pipe->packed_bytes)
+        memcpy(pipe->compressed_buffer, pipe->packed_buffer, (size_t)pipe->packed_bytes);
+    return rv;
+}
+
+// own: Core's compressor, kept from the first chunk on.
 static exr_result_t write_chunk(exr_context_t core, const struct hf_exr_new *picture, int y,
-                                exr_encode_pipeline_t *pipe)
+                                exr_encode_pipeline_t *pipe, compressor **own)
 {
     exr_chunk_info_t info = {0};
     const bool first = !pipe->context;
@@ -84,17 +97,23 @@ static exr_result_t write_chunk(exr_context_t core, const struct hf_exr_new *pic
     }
     if (!rv && first)
         rv = exr_encoding_choose_default_routines(core, 0, pipe);
+    if (!rv && first && pipe->compress_fn) {
+        *own = pipe->compress_fn;
+        pipe->encoding_user_data = own;
+        pipe->compress_fn = compress;
+    }
     return rv ? rv : exr_encoding_run(core, 0, pipe);
 }
 
 static exr_result_t write_chunks(exr_context_t core, const struct hf_exr_new *picture)
 {
     exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+    compressor *own = NULL;
     const int height = picture->data_window.y1 - picture->data_window.y0;
     const int lines = hf_exr_compression_lines(picture->compression);
     exr_result_t rv = EXR_ERR_SUCCESS;
     for (int y = 0; y < height && !rv; y += lines)
-        rv = write_chunk(core, picture, y, &pipe);
+        rv = write_chunk(core, picture, y, &pipe, &own);
     if (pipe.context)
         exr_encoding_destroy(core, &pipe);
     return rv;

@@ -18,7 +18,7 @@ enum { GREETING_MS = 120000 };
 struct hf_oiio {
     const char *path;
     int fd;
-    int bits;
+    int bits, width, height;
     struct hf_io_view view;
     char channels[2048];
 };
@@ -196,6 +196,11 @@ static int check_reply(struct hf_oiio *o, struct hf_wire_reply *r, struct hf_io_
         end_text(v->colour[k], sizeof(v->colour[k]));
     snprintf(o->channels, sizeof(o->channels), "%s", r->channels);
     o->bits = r->bits;
+    o->width = r->width;
+    o->height = r->height;
+    const struct hf_io_box whole = {0, 0, r->width, r->height};
+    if (hf_io_check_window(o->path, "picture", whole, err))
+        return -1;
     if (!r->has_view)
         return 0;
     v->part = 0;
@@ -262,6 +267,12 @@ void hf_oiio_channels(const struct hf_oiio *o, char *buf, size_t size)
 int hf_oiio_bits(const struct hf_oiio *o)
 {
     return o->bits;
+}
+
+void hf_oiio_size(const struct hf_oiio *o, int *width, int *height)
+{
+    *width = o->width;
+    *height = o->height;
 }
 
 // Ask for planes of the size of a view; those that are not NULL are filled.

@@ -504,6 +504,12 @@ int hf_oiio_bits(const hf_oiio *o)
     return is_integer(type) ? (int)type.basesize() * 8 : 0;
 }
 
+void hf_oiio_size(const hf_oiio *o, int *width, int *height)
+{
+    *width = o->spec.width;
+    *height = o->spec.height;
+}
+
 int hf_oiio_open(hf_oiio **out, const char *path, const char *depth_channel, hf_io_views *views, hf_io_error *err)
 {
     return guarded(path, err, [&] {
@@ -559,8 +565,8 @@ int hf_oiio_read_depth_only(hf_oiio *o, const char *depth_channel, const struct 
         if (c < 0)
             return hf_io_fail(err, "%s: no depth channel %s", o->path, depth_channel ? depth_channel : "Z, *depth*, R");
         if (spec.width != view->width || spec.height != view->height)
-            return hf_io_fail(err, "%s: %d x %d pixels of depth for a picture of %d x %d; it has to be resized first",
-                              o->path, spec.width, spec.height, view->width, view->height);
+            return hf_io_fail(err, "%s: %d x %d pixels, and %d x %d were asked for", o->path, spec.width, spec.height,
+                              view->width, view->height);
         Input input;
         return open_input(input, o->path, err) ? -1 : read_channel(input, o, c, depth, err);
     });

@@ -25,9 +25,10 @@ void hf_oiio_close(struct hf_oiio *oiio);
 void hf_oiio_channels(const struct hf_oiio *oiio, char *buf, size_t size);
 // Bits of the file's samples when they are integers, else 0.
 int hf_oiio_bits(const struct hf_oiio *oiio);
+void hf_oiio_size(const struct hf_oiio *oiio, int *width, int *height);
 int hf_oiio_read_colour(struct hf_oiio *oiio, float *const planes[4], struct hf_io_error *err);
 int hf_oiio_read_depth(struct hf_oiio *oiio, float *depth, struct hf_io_error *err);
-// Depth of a file that may have nothing else: see hf_io_read_depth_file.
+// Depth of a file that may have nothing else, of whose size the view must be: see hf_io_read_depth_file.
 int hf_oiio_read_depth_only(struct hf_oiio *oiio, const char *depth_channel, const struct hf_io_view *view,
                             float *depth, struct hf_io_error *err);
 

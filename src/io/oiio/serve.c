@@ -80,6 +80,7 @@ static int serve_open(struct job *job, const struct hf_wire_request *q)
     if (!r.status) {
         hf_oiio_channels(job->oiio, r.channels, sizeof(r.channels));
         r.bits = hf_oiio_bits(job->oiio);
+        hf_oiio_size(job->oiio, &r.width, &r.height);
         r.has_view = job->views.count > 0;
         if (r.has_view)
             r.view = job->views.view[0];

@@ -52,7 +52,7 @@ struct hf_wire_reply {
     struct hf_io_error err;
     uint64_t size;  // bytes that follow
     // of HF_WIRE_OPEN
-    int32_t has_view, bits;
+    int32_t has_view, bits, width, height;
     struct hf_io_view view;
     char channels[2048];
 };

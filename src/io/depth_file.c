@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Depth from a file of its own. What a depth estimator makes of a photo is often smaller than the photo.
+#include <math.h>
+#include <stdlib.h>
+
+#include "io/exr/chunks.h"
+#include "io/file.h"
+#include "io/oiio/oiio.h"
+
+enum { LARGEST = 5 };  // times as wide as the picture: what a few bytes claim to hold takes no more memory than this
+
+// Where the depth is, and of what size.
+struct source {
+    struct hf_io_file *file;
+    int part, channel;  // of an EXR
+    int width, height;
+};
+
+static int find_exr(struct source *s, const char *depth_channel, const struct hf_io_view *view, struct hf_io_error *err)
+{
+    char names[300];
+    const struct hf_exr *exr = s->file->exr;
+    s->part = hf_exr_find_depth_only(exr, depth_channel, view->name, &s->channel);
+    if (s->part < 0) {
+        hf_io_channels(s->file, names, sizeof(names));
+        return hf_io_fail(err, "%s: no depth channel%s%s among: %s", s->file->path, depth_channel ? " " : "",
+                          depth_channel ? depth_channel : "", names);
+    }
+    const struct hf_exr_part *part = &exr->parts[s->part];
+    const struct hf_exr_channel *c = &part->channels[s->channel];
+    if (hf_exr_check_part(exr, s->part, err))
+        return -1;
+    if (c->x_sampling != 1 || c->y_sampling != 1)
+        return hf_io_fail(err, "%s: channel %s is subsampled, which is not supported", s->file->path, c->name);
+    s->width = part->width;
+    s->height = part->height;
+    return 0;
+}
+
+static int read_own_size(const struct source *s, const char *depth_channel, const struct hf_io_view *view, float *depth,
+                         struct hf_io_error *err)
+{
+    struct hf_io_view own = *view;
+    own.width = s->width;
+    own.height = s->height;
+    if (!s->file->exr)
+        return hf_oiio_read_depth_only(s->file->oiio, depth_channel, &own, depth, err);
+    const exr_attr_box2i_t *b = &s->file->exr->parts[s->part].window;
+    const struct hf_io_box window = {b->min.x, b->min.y, b->max.x + 1, b->max.y + 1};
+    const struct hf_exr_plane plane = {s->part, s->channel, false, window, depth};
+    return hf_exr_decode(s->file->exr, &plane, 1, NULL, err);
+}
+
+// The nearest sample: a mean of two surfaces would be a distance at which there is nothing.
+static void resample(const float *from, const struct source *s, float *to, int width, int height)
+{
+    for (int y = 0; y < height; y++) {
+        const float *row = from + (size_t)((2LL * y + 1) * s->height / (2LL * height)) * (size_t)s->width;
+        for (int x = 0; x < width; x++)
+            *to++ = row[(2LL * x + 1) * s->width / (2LL * width)];
+    }
+}
+
+static int read_other_size(const struct source *s, const char *depth_channel, const struct hf_io_view *view,
+                           float *depth, struct hf_io_error *err)
+{
+    const double shape = (double)s->width * view->height / ((double)s->height * view->width);
+    if (!(fabs(shape - 1) <= 0.01) || s->width / view->width >= LARGEST)
+        return hf_io_fail(err,
+                          "%s: %d x %d pixels of depth for a picture of %d x %d: a map is scaled to the picture when "
+                          "its width / height is the same within 1 %%, and it is less than %d times as wide",
+                          s->file->path, s->width, s->height, view->width, view->height, LARGEST);
+    float *own = malloc((size_t)s->width * (size_t)s->height * sizeof(float));
+    if (!own)
+        return hf_io_fail(err, "%s: out of memory", s->file->path);
+    const int status = read_own_size(s, depth_channel, view, own, err);
+    if (!status)
+        resample(own, s, depth, view->width, view->height);
+    free(own);
+    return status;
+}
+
+int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
+                          int size[2], struct hf_io_error *err)
+{
+    struct source s = {0};
+    int status = hf_io_open_any(&s.file, path, NULL, err);
+    if (!status && s.file->exr)
+        status = find_exr(&s, depth_channel, view, err);
+    else if (!status)
+        hf_oiio_size(s.file->oiio, &s.width, &s.height);
+    if (!status && s.width == view->width && s.height == view->height)
+        status = read_own_size(&s, depth_channel, view, depth, err);
+    else if (!status)
+        status = read_other_size(&s, depth_channel, view, depth, err);
+    size[0] = s.width;
+    size[1] = s.height;
+    hf_io_close(&s.file);
+    return status;
+}
