@@ -54,7 +54,7 @@ static size_t place(struct hf_cell *c, float *memory)
         c->sum[i] = take_window(&m, width >> i, height >> i, channels + 1);
     c->shine = take_window(&m, width, height, 3);
     for (int i = 0; i < 3; i++)
-        c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2, channels + 2);
+        c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2, channels + 3);
     for (int i = 0; i < 2; i++)
         c->light[i] = take_window(&m, width, height, 3);
     const struct hf_window part = take_window(&m, width / 2, height / 2, 1);

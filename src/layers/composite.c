@@ -18,14 +18,16 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
                        float *part)
 {
     for (int x = 0; x < n; x++) {
-        const float v = in[4][x], open = to->open[x];
-        const float least = hidden ? 1 : open > 1e-30f ? open : 1e-30f;
+        const float v = in[4][x], open = to->open[x], behind = hidden ? to->behind[x] : open;
+        const float least = behind > 1e-30f ? behind : 1e-30f;
         const float k = open / (v > least ? v : least);
         const float left = open - k * v;
         for (int c = 0; c < channels; c++)
             to->colour[c][x] = k * in[c][x] + to->colour[c][x];
         to->weight[x] = k * v + to->weight[x];
         to->open[x] = left > 0 ? left : 0;
+        if (hidden)
+            to->behind[x] = behind - v > 0 ? behind - v : 0;
         if (part)
             part[x] = k;
     }

@@ -21,15 +21,16 @@ static void layers_up_simd(const float *a, const float *b, int n, float *out)
 HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5], int hidden,
                                int n, float *part)
 {
-    const vf tiny = vf_set1(1e-30f), one = vf_set1(1);
+    const vf tiny = vf_set1(1e-30f);
     for (int x = 0; x < n; x += VF_N) {
-        const vf v = vf_load(in[4] + x), open = vf_load(to->open + x);
-        const vf least = hidden ? one : vf_max(open, tiny);
-        const vf k = vf_div(open, vf_max(v, least));
+        const vf v = vf_load(in[4] + x), open = vf_load(to->open + x), behind = hidden ? vf_load(to->behind + x) : open;
+        const vf k = vf_div(open, vf_max(v, vf_max(behind, tiny)));
         for (int c = 0; c < channels; c++)
             vf_store(to->colour[c] + x, vf_fma(k, vf_load(in[c] + x), vf_load(to->colour[c] + x)));
         vf_store(to->weight + x, vf_fma(k, v, vf_load(to->weight + x)));
         vf_store(to->open + x, vf_max(vf_fnma(k, v, open), vf_zero()));
+        if (hidden)
+            vf_store(to->behind + x, vf_max(vf_sub(behind, v), vf_zero()));
         if (part)
             vf_store(part + x, k);
     }

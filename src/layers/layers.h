@@ -122,9 +122,10 @@ struct hf_unmix_row {
     float *seen[6], *mixed[6];  // colour, weight (4), radius (5)
 };
 
-// Sums of a stack: colour, and weight (the coverage that has been seen); open is what is left of 1.
+// Sums of a stack: colour, and weight (the coverage that has been seen); open is what is left of 1. behind is what is
+// left of 1 for hidden samples alone: a pixel has one at most, so those of all slices cover it once.
 struct hf_stack_row {
-    float *colour[4], *weight, *open;
+    float *colour[4], *weight, *open, *behind;
 };
 
 #endif

@@ -97,7 +97,7 @@ static void begin_tiles(const struct hf_cell *c)
                 continue;
             *begun = 1;
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
-                for (int i = 0; i <= channels + 1; i++)
+                for (int i = 0; i <= channels + 2; i++)
                     fill_tile(&c->stack[MIDDLE], i, tx, y, i > channels);
         }
 }
@@ -115,7 +115,7 @@ static void begin_stack(struct hf_cell *c, int stack)
             memset(r.colour[i], 0, sizeof(float) * (size_t)n);
         memset(r.weight, 0, sizeof(float) * (size_t)n);
         for (int x = 0; x < n; x++)
-            r.open[x] = 1;
+            r.open[x] = r.behind[x] = 1;
     }
 }
 
@@ -234,8 +234,10 @@ void hf_layers_begin_middle(const struct hf_cell *c)
                 const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
                 float *const out[5] = {r.colour[0], r.colour[1], r.colour[2], r.colour[3], r.weight};
                 raise(c, NEAR, tx * TILE, (end - tx) * TILE, y, out);
-                for (int x = 0; x < (end - tx) * TILE; x++)
+                for (int x = 0; x < (end - tx) * TILE; x++) {
                     r.open[x] = r.weight[x] < 1 ? 1 - r.weight[x] : 0;
+                    r.behind[x] = 1;
+                }
                 memset(hf_layers_map_at(&c->begun, tx, ty), 1, (size_t)(end - tx));
             }
 }

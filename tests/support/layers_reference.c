@@ -210,9 +210,9 @@ static void refine(struct grid *g, const struct frame *f, int level, int to)
     }
 }
 
-// ---- stacks: colour, weight (4), what is open (5) ----
+// ---- stacks: colour, weight (4), what is open (5), and what hidden samples have left to cover (6) ----
 
-enum { OPEN = 5, STACK };
+enum { OPEN = 5, BEHIND_OPEN, STACK };
 
 static struct grid stack_new(const struct frame *f, int level)
 {
@@ -220,7 +220,7 @@ static struct grid stack_new(const struct frame *f, int level)
     struct grid g = grid_new(-MARGIN, -MARGIN, width + MARGIN, height + MARGIN, STACK);
     for (int y = g.y0; y < g.y1; y++)
         for (int x = g.x0; x < g.x1; x++)
-            at(&g, x, y)[OPEN] = 1;
+            at(&g, x, y)[OPEN] = at(&g, x, y)[BEHIND_OPEN] = 1;
     return g;
 }
 
@@ -230,10 +230,11 @@ static void put_under(struct grid *stack, const struct grid *sums, int hidden, s
     for (int y = stack->y0; y < stack->y1; y++)
         for (int x = stack->x0; x < stack->x1; x++) {
             double *s = at(stack, x, y), *v = edge(sums, x, y);
-            const double k = s[OPEN] / fmax(v[4], hidden ? 1 : fmax(s[OPEN], 1e-30));
+            const double k = s[OPEN] / fmax(v[4], fmax(s[hidden ? BEHIND_OPEN : OPEN], 1e-30));
             for (int c = 0; c < 5; c++)
                 s[c] += k * v[c];
             s[OPEN] = fmax(0, s[OPEN] - k * v[4]);
+            s[BEHIND_OPEN] -= hidden ? fmin(v[4], s[BEHIND_OPEN]) : 0;
             if (part)
                 at(part, x, y)[0] = k;
         }
