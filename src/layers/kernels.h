@@ -6,9 +6,9 @@
 #include "frame/engine.h"
 #include "layers/layers.h"
 
-// 1 for the pixels whose 3 x 3 radii differ by at most 1, else 0; and the middle of these radii. Of the first and the
-// last pixel it means nothing.
-typedef void hf_layers_sure(const float *const radius[3], int n, float *sure, float *middle);
+// How little the 3 x 3 radii of a pixel differ, 1 for one surface to 0 for two; the middle of these radii; and how fast
+// front becomes back around it. Of the first and the last pixel it means nothing.
+typedef void hf_layers_sure(const float *const radius[3], int n, float *sure, float *middle, float *slope);
 typedef void hf_layers_unmix(const struct hf_unmix_row *row, int n);
 // Mean roots of brightness of n quads, from two rows of colour.
 typedef void hf_layers_roots(const float *const above[3], const float *const below[3], int n, float *out);

@@ -118,7 +118,7 @@ static inline float *hf_layers_at(const struct hf_layers_set *set, float *plane,
 // A row of pixels and what un-mixing reads around it: row i is that of y - 3 + i.
 struct hf_unmix_row {
     int channels;
-    const float *radius[7], *colour[7][4], *sure[7], *middle;
+    const float *radius[7], *colour[7][4], *sure[7], *middle, *slope;
     float *seen[6], *mixed[6];  // colour, weight (4), radius (5)
 };
 

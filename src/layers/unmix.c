@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mixed pixels. The colour of an anti-aliased edge is a mixture of two surfaces while its depth is that of one; each of
 // them becomes a sample of its own, so that none is blurred by the other's radius.
+//
+// Nothing of this begins at once: how mixed a pixel is grows with how far the radii around it differ, and a radius midway
+// between front and back is of both, so that a focus or a lens that moves a little changes little.
 #include "layers/unmix.h"
 
 #include <math.h>
 
 #include "pixel/pass_c.h"
 
-void hf_layers_sure_c(const float *const radius[3], int n, float *sure, float *middle)
+void hf_layers_sure_c(const float *const radius[3], int n, float *sure, float *middle, float *slope)
 {
     for (int x = 0; x < n; x++) {
         float low = radius[1][x], high = low;
@@ -17,8 +20,10 @@ void hf_layers_sure_c(const float *const radius[3], int n, float *sure, float *m
                 low = r < low ? r : low;
                 high = r > high ? r : high;
             }
-        sure[x] = high - low > 1 ? 0 : 1;
+        const float apart = high - low, least = apart > HF_UNMIX_FROM ? apart : HF_UNMIX_FROM;
+        sure[x] = 1 - hf_saturate((apart - HF_UNMIX_FROM) * HF_UNMIX_GROWS);
         middle[x] = (low + high) * 0.5f;
+        slope[x] = HF_UNMIX_SIDES / least;
     }
 }
 
@@ -58,9 +63,15 @@ int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], floa
 {
     if (weight[0] == 0 && weight[1] == 0)
         return 0;
-    for (int side = 0; side < 2; side++)
-        if (weight[side] == 0)
-            farthest(u, x, !side, mean[!side], mean[side], &mean[side][4]);
+    const int side = weight[0] < weight[1] ? 0 : 1;
+    const float known = weight[side] * (1 / HF_UNMIX_FAINT);
+    float colour[4], radius = 0;
+    if (!(known < 1))
+        return 1;
+    farthest(u, x, !side, mean[!side], colour, &radius);
+    for (int c = 0; c < u->channels; c++)
+        mean[side][c] = known > 0 ? colour[c] + known * (mean[side][c] - colour[c]) : colour[c];
+    mean[side][4] = known > 0 ? radius + known * (mean[side][4] - radius) : radius;
     return 1;
 }
 
@@ -105,18 +116,21 @@ static float between(float v, float a, float b)
 static void unmix_pixel(const struct hf_unmix_row *u, int x)
 {
     float weight[2] = {0}, mean[2][5] = {{0}};
-    const float middle = u->middle[x], a0 = u->radius[3][x] < middle ? 1 : 0;
+    const float middle = u->middle[x], slope = u->slope[x], own = u->radius[3][x];
+    const float a0 = hf_saturate((middle - own) * slope + 0.5f);
     for (int y = 0; y < 7; y++)
         for (int i = 0; i < 7; i++) {
             const int at = x + i - 3;
             if (y == 3 && i == 3)
                 continue;
             const float w = u->sure[y][at] * hf_unmix_weights[y][i];
-            const int side = u->radius[y][at] < middle ? 0 : 1;
-            weight[side] += w;
-            for (int c = 0; c < u->channels; c++)
-                mean[side][c] = mean[side][c] + w * u->colour[y][c][at];
-            mean[side][4] = mean[side][4] + w * u->radius[y][at];
+            const float front = w * hf_saturate((middle - u->radius[y][at]) * slope + 0.5f), of[2] = {front, w - front};
+            for (int side = 0; side < 2; side++) {
+                weight[side] += of[side];
+                for (int c = 0; c < u->channels; c++)
+                    mean[side][c] = mean[side][c] + of[side] * u->colour[y][c][at];
+                mean[side][4] = mean[side][4] + of[side] * u->radius[y][at];
+            }
         }
     for (int side = 0; side < 2; side++)
         for (int c = 0; c < 5; c++)
@@ -125,22 +139,27 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
         keep(u, x);
         return;
     }
-    const float a = share(u, x, a0, mean[0], mean[1]);
+    const float known = hf_saturate((weight[0] + weight[1]) * (1 / HF_UNMIX_FAINT));
+    const float a = share(u, x, a0, mean[0], mean[1]), by = (1 - u->sure[3][x]) * known;
+    // What is not taken apart goes with the front.
+    const float seen = by * (a - 1) + 1, whole = seen > 0 ? (1 - by) / seen : 0;
     for (int c = 0; c < u->channels; c++) {
-        const float rest = u->colour[3][c][x] - a * mean[0][c] - (1 - a) * mean[1][c];
-        u->seen[c][x] = between(mean[0][c] + rest, mean[0][c], u->colour[3][c][x]);
-        u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], u->colour[3][c][x]);
+        const float v = u->colour[3][c][x], rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
+        const float front = between(mean[0][c] + rest, mean[0][c], v);
+        u->seen[c][x] = whole * (v - front) + front;
+        u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], v);
     }
-    u->seen[4][x] = a;
-    u->mixed[4][x] = 1 - a;
-    u->seen[5][x] = a0 > 0 ? u->radius[3][x] : mean[0][4];
-    u->mixed[5][x] = a0 > 0 ? mean[1][4] : u->radius[3][x];
+    const float front = (1 - a0) * (mean[0][4] - own) + own;
+    u->seen[4][x] = seen;
+    u->mixed[4][x] = 1 - seen;
+    u->seen[5][x] = whole * (own - front) + front;
+    u->mixed[5][x] = a0 * (mean[1][4] - own) + own;
 }
 
 void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)
 {
     for (int x = 0; x < n; x++)
-        if (u->sure[3][x] > 0)
+        if (!(u->sure[3][x] < 1))
             keep(u, x);
         else
             unmix_pixel(u, x);
@@ -150,7 +169,7 @@ enum { AROUND = 16 };  // floats on either side of a row of scratch
 
 size_t hf_layers_unmix_floats(int width)
 {
-    return 16 * ((size_t)width + 2 * AROUND) + HF_PAD;
+    return 24 * ((size_t)width + 2 * AROUND) + HF_PAD;
 }
 
 // Which pixels of a row are not mixed, into its row of the ring.
@@ -162,7 +181,8 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
     for (int i = 0; i < 3; i++)
         radius[i] = hf_at(b, 0, x - AROUND, y + i - 1);
     // Whole vectors, though only three pixels on either side are read.
-    hf_layers_kernels(f)->sure(radius, n + 2 * AROUND, sure - AROUND, ring + (8 + (y & 7)) * stride - AROUND);
+    hf_layers_kernels(f)->sure(radius, n + 2 * AROUND, sure - AROUND, sure + 8 * stride - AROUND,
+                               sure + 16 * stride - AROUND);
 }
 
 void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r)
@@ -174,7 +194,8 @@ void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r)
     for (int y = y0 - 3; y < y0 + 3; y++)
         sure_row(f, x, n, y, ring, stride);
     for (int y = y0; y < y1; y++) {
-        struct hf_unmix_row u = {.channels = l->channels, .middle = ring + (8 + (y & 7)) * stride};
+        struct hf_unmix_row u = {
+            .channels = l->channels, .middle = ring + (8 + (y & 7)) * stride, .slope = ring + (16 + (y & 7)) * stride};
         sure_row(f, x, n, y + 3, ring, stride);
         for (int i = 0; i < 7; i++) {
             u.radius[i] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x, y + i - 3);

@@ -5,9 +5,17 @@
 
 #include "layers/kernels.h"
 
+// Radii of 3 x 3 pixels that differ by more than FROM are mixed, by 1 / GROWS more wholly so: where they differ by about 1 a
+// surface folds under the lens. SIDES: 1 over which part of what they differ by is of both sides. FAINT: means of less
+// weight than this lean on others.
+#define HF_UNMIX_FROM 0.75f
+#define HF_UNMIX_GROWS 2
+#define HF_UNMIX_SIDES 2
+#define HF_UNMIX_FAINT 0.001f
+
 // 1 / d^4 of the 7 x 7, 0 in its middle.
 extern const float hf_unmix_weights[7][7];
-// Fill in the means of a side of which there is nothing. 0: there are none. A mean is colour, radius (4).
+// Fill in the mean of a side of which there is nothing or little. 0: there are none. A mean is colour, radius (4).
 int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], float mean[2][5]);
 
 // Floats of scratch that un-mixing a row of n pixels takes.

@@ -11,7 +11,7 @@ HF_INLINE void layers_column(const float *const radius[3], int x, vf *low, vf *h
     *high = vf_max(a, vf_max(b, c));
 }
 
-static void layers_sure_simd(const float *const radius[3], int n, float *sure, float *middle)
+static void layers_sure_simd(const float *const radius[3], int n, float *sure, float *middle, float *slope)
 {
     vf low[3], high[3];
     layers_column(radius, 0, &low[1], &high[1]);
@@ -21,7 +21,10 @@ static void layers_sure_simd(const float *const radius[3], int n, float *sure, f
         layers_column(radius, x + VF_N, &low[2], &high[2]);
         const vf least = vf_min(vf_min(vf_back(low[0], low[1]), low[1]), vf_align(low[1], low[2], 1));
         const vf most = vf_max(vf_max(vf_back(high[0], high[1]), high[1]), vf_align(high[1], high[2], 1));
-        vf_store(sure + x, vf_keep(vm_not(vf_gt(vf_sub(most, least), vf_set1(1))), vf_set1(1)));
+        const vf apart = vf_sub(most, least), from = vf_set1(HF_UNMIX_FROM), one = vf_set1(1);
+        const vf mixed = vf_mul(vf_sub(apart, from), vf_set1(HF_UNMIX_GROWS));
+        vf_store(sure + x, vf_sub(one, vf_min(vf_max(mixed, vf_zero()), one)));
+        vf_store(slope + x, vf_div(vf_set1(HF_UNMIX_SIDES), vf_max(apart, from)));
         vf_store(middle + x, vf_mul(vf_add(least, most), vf_set1(0.5f)));
         for (int i = 0; i < 2; i++) {
             low[i] = low[i + 1];
@@ -39,10 +42,17 @@ HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channe
     vf_store(u->seen[5] + x, vf_load(u->radius[3] + x));
 }
 
-// Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
-HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5])
+// How far a radius is of the front.
+HF_INLINE vf layers_front(vf middle, vf slope, vf r)
 {
-    const vf middle = vf_load(u->middle + x);
+    const vf s = vf_fma(vf_sub(middle, r), slope, vf_set1(0.5f));
+    return vf_min(vf_max(s, vf_zero()), vf_set1(1));
+}
+
+// Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
+HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5], vf *known)
+{
+    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x), faint = vf_set1(HF_UNMIX_FAINT);
     vf weight[2] = {vf_zero(), vf_zero()};
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 5; c++)
@@ -53,7 +63,7 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
             if (y == 3 && i == 3)
                 continue;
             const vf w = vf_mul(vf_load(u->sure[y] + at), vf_set1(hf_unmix_weights[y][i]));
-            const vf r = vf_load(u->radius[y] + at), f = vf_keep(vf_lt(r, middle), w), b = vf_sub(w, f);
+            const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
             weight[0] = vf_add(weight[0], f);
             weight[1] = vf_add(weight[1], b);
             for (int c = 0; c < channels; c++) {
@@ -67,7 +77,8 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 5; c++)
             mean[i][c] = vf_keep(vf_gt(weight[i], vf_zero()), vf_div(mean[i][c], weight[i]));
-    const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], vf_zero()), vf_gt(weight[1], vf_zero()))));
+    *known = vf_min(vf_mul(vf_add(weight[0], weight[1]), vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
+    const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], faint), vf_gt(weight[1], faint))));
     if (!vm_any(missing))
         return mixed;
     float w[2][VF_N], m[2][5][VF_N], both[VF_N];
@@ -79,7 +90,7 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
     }
     for (int lane = 0; lane < VF_N; lane++) {
         float one[2] = {w[0][lane], w[1][lane]}, of[2][5];
-        if (both[lane] == 0 || (one[0] > 0 && one[1] > 0))
+        if (both[lane] == 0)
             continue;
         for (int i = 0; i < 10; i++)
             of[i / 5][i % 5] = m[i / 5][i % 5][lane];
@@ -124,27 +135,31 @@ HF_INLINE vf layers_between(vf v, vf a, vf b)
 
 HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const int channels, vm mixed)
 {
-    vf mean[2][5];
-    mixed = layers_sides(u, x, channels, mixed, mean);
-    const vf r = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
-    const vf a0 = vf_keep(vf_lt(r, vf_load(u->middle + x)), one), a = layers_share(u, x, channels, a0, mean);
-    const vm front = vf_gt(a0, zero);
+    vf mean[2][5], known;
+    mixed = layers_sides(u, x, channels, mixed, mean, &known);
+    const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
+    const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
+    const vf a = layers_share(u, x, channels, a0, mean), by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known);
+    const vf seen = vf_fma(by, vf_sub(a, one), one);
+    const vf whole = vf_keep(vf_gt(seen, zero), vf_div(vf_sub(one, by), seen));
     for (int c = 0; c < channels; c++) {
         const vf rest = layers_rest(u, x, c, a, mean);
-        const vf own = vf_load(u->colour[3][c] + x);
-        vf_store(u->seen[c] + x, vf_select(mixed, layers_between(vf_add(mean[0][c], rest), mean[0][c], own), own));
-        vf_store(u->mixed[c] + x, vf_keep(mixed, layers_between(vf_add(mean[1][c], rest), mean[1][c], own)));
+        const vf v = vf_load(u->colour[3][c] + x);
+        const vf front = layers_between(vf_add(mean[0][c], rest), mean[0][c], v);
+        vf_store(u->seen[c] + x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
+        vf_store(u->mixed[c] + x, vf_keep(mixed, layers_between(vf_add(mean[1][c], rest), mean[1][c], v)));
     }
-    vf_store(u->seen[4] + x, vf_select(mixed, a, one));
-    vf_store(u->mixed[4] + x, vf_keep(mixed, vf_sub(one, a)));
-    vf_store(u->seen[5] + x, vf_select(vm_or(front, vm_not(mixed)), r, mean[0][4]));
-    vf_store(u->mixed[5] + x, vf_select(vm_and(front, mixed), mean[1][4], r));
+    const vf front = vf_fma(vf_sub(one, a0), vf_sub(mean[0][4], own), own);
+    vf_store(u->seen[4] + x, vf_select(mixed, seen, one));
+    vf_store(u->mixed[4] + x, vf_keep(mixed, vf_sub(one, seen)));
+    vf_store(u->seen[5] + x, vf_select(mixed, vf_fma(whole, vf_sub(own, front), front), own));
+    vf_store(u->mixed[5] + x, vf_select(mixed, vf_fma(a0, vf_sub(mean[1][4], own), own), own));
 }
 
 HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int channels)
 {
     for (int x = 0; x < n; x += VF_N) {
-        const vm mixed = vm_not(vf_gt(vf_load(u->sure[3] + x), vf_zero()));
+        const vm mixed = vf_lt(vf_load(u->sure[3] + x), vf_set1(1));
         if (vm_any(mixed))
             layers_unmix_vector(u, x, channels, mixed);
         else

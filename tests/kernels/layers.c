@@ -32,7 +32,7 @@ static ptrdiff_t stride(const struct world *w)
     return (ptrdiff_t)w->line_floats;
 }
 
-enum kind { COLOUR, WEIGHT, RADIUS, FLAG };
+enum kind { COLOUR, WEIGHT, RADIUS };
 
 static float sample(struct world *w, enum kind kind)
 {
@@ -42,8 +42,6 @@ static float sample(struct world *w, enum kind kind)
         return rng_one_in(r, 4) ? 0 : rng_one_in(r, 2) ? 1 : rng_float(r, 0, 1);
     case RADIUS:
         return rng_one_in(r, 8) ? 0 : rng_one_in(r, 2) ? rng_float(r, -30, 30) : (float)rng_int(r, -30, 30);
-    case FLAG:
-        return (float)rng_int(r, 0, 1);
     default:
         return random_colour(r, w->colours);
     }
@@ -97,18 +95,20 @@ static void unmix_make(struct world *w)
 {
     for (int y = 0; y < 7; y++) {
         fill_surfaces(w, y, -3, w->n + 3);
-        fill(w, 7 + y, -3, w->n + 3, FLAG);
+        fill(w, 7 + y, -3, w->n + 3, WEIGHT);
         for (int c = 0; c < 4; c++)
             fill(w, 14 + 4 * y + c, -3, w->n + 3, COLOUR);
     }
     fill_surfaces(w, 42, 0, w->n);
+    for (int x = 0; x < w->n; x++)
+        line(w, ARENA_MADE, 43)[x] = rng_float(&w->rng, 0.1f, 2);
     put_set(w, IN, 6, w->n);
     put_set(w, IN + 6, 6, w->n);
 }
 
 static void unmix_call(const struct world *w, const struct kernels *k, enum arena a)
 {
-    struct hf_unmix_row u = {.channels = now.channels, .middle = line(w, a, 42)};
+    struct hf_unmix_row u = {.channels = now.channels, .middle = line(w, a, 42), .slope = line(w, a, 43)};
     for (int y = 0; y < 7; y++) {
         u.radius[y] = line(w, a, y);
         u.sure[y] = line(w, a, 7 + y);
@@ -299,7 +299,7 @@ void layers_make(struct world *w, int which)
     case LAYERS_SURE:
         for (int i = 0; i < 3; i++)
             fill_surfaces(w, i, -1, w->n + 1);
-        for (int i = IN; i < IN + 2; i++) {  // the first and the last mean nothing
+        for (int i = IN; i < IN + 3; i++) {  // the first and the last mean nothing
             put(w, i, w->n, 32);
             w->regions[w->region_count - 1].kind = REGION_SCRATCH;
             if (w->n > 2)
@@ -443,7 +443,7 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         in[i] = line(w, a, i);
     switch (which) {
     case LAYERS_SURE:
-        s->sure(in, w->n, out, line(w, a, IN + 1));
+        s->sure(in, w->n, out, line(w, a, IN + 1), line(w, a, IN + 2));
         return;
     case LAYERS_UNMIX:
         unmix_call(w, k, a);

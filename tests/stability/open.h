@@ -54,12 +54,12 @@ static const struct {
     {"largest floats: not finite in the picture", "layers", 20000,
      "sums of samples with weights around edges pass the largest float, and nothing clamps them"},
     {"largest floats: not finite in a buffer on the way", "layers", 6000, "the same"},
-    {"a range pull: worst jump, 8-bit codes", "layers", 75,
-     "an edge is un-mixed from a difference of 1 pixel between radii on, a whole floor at once if it is that steep, "
-     "and "
-     "whether its pixels are the front or the back is then a matter of rounding; hidden samples alone make 6"},
-    {"a strength pull: worst jump, 8-bit codes", "layers", 40, "as for the range pull"},
-    {"a radius ramp: worst jump, 8-bit codes", "layers", 75, "as for the range pull"},
+    {"a range pull: worst jump, 8-bit codes", "layers", 16,
+     "what lies a pixel of radius behind a silhouette is hidden by it, what lies less far behind is not; and a pixel "
+     "is "
+     "a source of hidden samples by what is behind its edge as soon as it has one"},
+    {"a strength pull: worst jump, 8-bit codes", "layers", 9, "as for the range pull"},
+    {"a radius ramp: worst jump, 8-bit codes", "layers", 2, "as for the range pull"},
 };
 
 #endif

@@ -8,8 +8,8 @@ static const double PI = 3.14159265358979323846;
 
 // ---- mixed pixels ----
 
-// Returns whether the 3 x 3 are one surface.
-static int sure(const struct frame *f, int x, int y, double *middle)
+// Returns how far the 3 x 3 are one surface; and the middle of their radii and how fast front becomes back around it.
+static double sure(const struct frame *f, int x, int y, double *middle, double *slope)
 {
     double low = INFINITY, high = -INFINITY;
     for (int i = 0; i < 9; i++) {
@@ -18,20 +18,27 @@ static int sure(const struct frame *f, int x, int y, double *middle)
         high = fmax(high, r);
     }
     *middle = (low + high) / 2;
-    return high - low <= 1;
+    *slope = 2 / fmax(high - low, 0.75);
+    return 1 - fmin(fmax((high - low - 0.75) * 2, 0), 1);
 }
 
-// Mean colour and radius of a side around a mixed pixel; 0: there are no sure ones.
-static int side_mean(const struct frame *f, int x, int y, double middle, int front, double mean[5])
+static double front_of(double r, double middle, double slope)
+{
+    return fmin(fmax((middle - r) * slope + 0.5, 0), 1);
+}
+
+// Mean colour and radius of a side around a mixed pixel; returns its weight.
+static double side_mean(const struct frame *f, int x, int y, double middle, double slope, int front, double mean[5])
 {
     double sum = 0, unused;
     memset(mean, 0, 5 * sizeof *mean);
     for (int v = -3; v <= 3; v++)
         for (int u = -3; u <= 3; u++) {
             // Samples beyond the frame are its edge's, and as sure as these are.
-            if ((!u && !v) || !sure(f, x + u, y + v, &unused) || (radius_at(f, x + u, y + v) < middle) != front)
+            const double s = front_of(radius_at(f, x + u, y + v), middle, slope), part = front ? s : 1 - s;
+            if ((!u && !v) || part == 0)
                 continue;
-            const double w = 1.0 / ((u * u + v * v) * (u * u + v * v));
+            const double w = part * sure(f, x + u, y + v, &unused, &unused) / ((u * u + v * v) * (u * u + v * v));
             sum += w;
             for (int c = 0; c < f->channels; c++)
                 mean[c] += w * colour_at(f, c, x + u, y + v);
@@ -39,7 +46,7 @@ static int side_mean(const struct frame *f, int x, int y, double middle, int fro
         }
     for (int c = 0; c < 5; c++)
         mean[c] = sum > 0 ? mean[c] / sum : 0;
-    return sum > 0;
+    return sum;
 }
 
 static void side_farthest(const struct frame *f, int x, int y, double middle, int front, const double other[5],
@@ -78,29 +85,36 @@ static double share_of(const struct frame *f, int x, int y, double a0, const dou
 
 static void unmix(struct frame *f, int x, int y)
 {
-    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, mean[2][5];
+    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, slope, mean[2][5], weight[2], far[5];
     for (int c = 0; c < f->channels; c++)
         seen[c] = colour_at(f, c, x, y);
     seen[WEIGHT] = 1;
     seen[RADIUS] = radius_at(f, x, y);
-    if (!f->unmix || sure(f, x, y, &middle))
+    const double apart = 1 - sure(f, x, y, &middle, &slope), own = radius_at(f, x, y);
+    if (!f->unmix || apart == 0)
         return;
-    const double own = radius_at(f, x, y), a0 = own < middle;
-    const int front = side_mean(f, x, y, middle, 1, mean[0]), back = side_mean(f, x, y, middle, 0, mean[1]);
-    if (!front && !back)
+    for (int i = 0; i < 2; i++)
+        weight[i] = side_mean(f, x, y, middle, slope, !i, mean[i]);
+    if (weight[0] == 0 && weight[1] == 0)
         return;
-    if (!front || !back)
-        side_farthest(f, x, y, middle, !front, mean[front ? 0 : 1], mean[front ? 1 : 0]);
-    const double a = share_of(f, x, y, a0, mean[0], mean[1]);
+    const int less = weight[0] < weight[1] ? 0 : 1;
+    const double known = fmin(weight[less] / 0.001, 1);
+    side_farthest(f, x, y, middle, !less, mean[!less], far);
+    for (int c = 0; c < 5 && known < 1; c++)
+        mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
+    const double a0 = front_of(own, middle, slope), a = share_of(f, x, y, a0, mean[0], mean[1]);
+    const double by = apart * fmin((weight[0] + weight[1]) / 0.001, 1);
+    seen[WEIGHT] = 1 - by * (1 - a);
+    mixed[WEIGHT] = by * (1 - a);
+    const double whole = seen[WEIGHT] > 0 ? (1 - by) / seen[WEIGHT] : 0;
     for (int c = 0; c < f->channels; c++) {
         const double v = colour_at(f, c, x, y), rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
-        seen[c] = fmin(fmax(mean[0][c] + rest, fmin(mean[0][c], v)), fmax(mean[0][c], v));
+        const double front = fmin(fmax(mean[0][c] + rest, fmin(mean[0][c], v)), fmax(mean[0][c], v));
+        seen[c] = whole * v + (1 - whole) * front;
         mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
     }
-    seen[WEIGHT] = a;
-    mixed[WEIGHT] = 1 - a;
-    seen[RADIUS] = a0 > 0 ? own : mean[0][4];
-    mixed[RADIUS] = a0 > 0 ? mean[1][4] : own;
+    seen[RADIUS] = whole * own + (1 - whole) * (a0 * own + (1 - a0) * mean[0][4]);
+    mixed[RADIUS] = a0 * mean[1][4] + (1 - a0) * own;
 }
 
 // ---- highlights ----
