@@ -65,7 +65,7 @@ int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], floa
         return 0;
     const int side = weight[0] < weight[1] ? 0 : 1;
     const float known = weight[side] * (1 / HF_UNMIX_FAINT);
-    float colour[4], radius = 0;
+    float colour[4] = {0}, radius = 0;
     if (!(known < 1))
         return 1;
     farthest(u, x, !side, mean[!side], colour, &radius);

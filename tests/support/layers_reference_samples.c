@@ -85,7 +85,7 @@ static double share_of(const struct frame *f, int x, int y, double a0, const dou
 
 static void unmix(struct frame *f, int x, int y)
 {
-    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, slope, mean[2][5], weight[2], far[5];
+    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, slope, mean[2][5], weight[2], far[5] = {0};
     for (int c = 0; c < f->channels; c++)
         seen[c] = colour_at(f, c, x, y);
     seen[WEIGHT] = 1;
