@@ -50,6 +50,21 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
                                            scale;
 }
 
+// What of a quad is seen behind what is near around it: all that is not near itself, or hardly.
+static void load_seen(const struct hf_frame *f, int x, int y, const float radius[4], float *const lane[2][2][4], int i)
+{
+    float w[4];
+    for (int t = 0; t < 4; t++)
+        w[t] = hf_saturate(1.5f + radius[t]);
+    *hf_at(&f->buf[HF_HEXAGON_SEEN_WEIGHT_2], 0, x, y) = ((w[0] + w[1]) + (w[2] + w[3])) * 0.25f;
+    for (int t = 0; t < 4; t++)
+        w[t] = w[t] * HEXAGON_SCALE;
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(&f->buf[HF_HEXAGON_SEEN_COLOUR_2], c, x, y) = ((w[0] * lane[0][0][c][i] + w[1] * lane[0][1][c][i]) +
+                                                              (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) *
+                                                             0.25f;
+}
+
 static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const int n = r.x1 - r.x0, y1 = hf_min(2 * y + 1, f->s->height - 1), last = f->s->width - 1 - 2 * r.x0;
@@ -67,6 +82,7 @@ static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
         const float near[4] = {-far[0], -far[1], -far[2], -far[3]};
         load_quad(f, HF_HEXAGON_NEAR_COLOUR_2, r.x0 + i, y, near, lane, i);
         load_quad(f, HF_HEXAGON_FAR_COLOUR_2, r.x0 + i, y, far, lane, i);
+        load_seen(f, r.x0 + i, y, far, lane, i);
     }
 }
 
@@ -249,80 +265,4 @@ void hf_hexagon_2_c(const struct hf_frame *f, struct hf_rect r)
         each_pixel(f, r, near_2);
     if (f->far)
         each_pixel(f, r, far_2);
-}
-
-// ---- Composite ----
-
-// What near coverage leaves of the background; of a near pixel's own colour nothing, unless its radius is below 2.
-static float left_over(float coverage, float p)
-{
-    float o = p < 0 ? own(coverage, -p) : 1 - coverage;
-    return o > 0 ? o : 0;
-}
-
-// The fields at full-resolution pixel (x, y), colour as in [0..3], near coverage in near[4], far weight in far[4].
-static void fields_full(const struct hf_frame *f, int x, int y, float near[5], float far[5])
-{
-    for (int c = 0; c < f->s->channels; c++) {
-        near[c] = f->near ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR), c, x, y) : 0;
-        far[c] = f->far ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, x, y) : 0;
-    }
-    near[4] = f->near ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, x, y) : 0;
-    far[4] = 1;
-}
-
-// Bilinear between half-resolution pixels; far ones count as far as they are far.
-static void fields_half(const struct hf_frame *f, int x, int y, float near[5], float far[5])
-{
-    static const float weights[4] = {0.5625f, 0.1875f, 0.1875f, 0.0625f};
-    for (int c = 0; c < 5; c++)
-        near[c] = far[c] = 0;
-    for (int i = 0; i < 4; i++) {
-        const int u = x / 2 + (i & 1 ? (x & 1 ? 1 : -1) : 0), v = y / 2 + (i & 2 ? (y & 1 ? 1 : -1) : 0);
-        float w = weights[i];
-        for (int c = 0; c < f->s->channels && f->near; c++)
-            near[c] = near[c] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR), c, u, v);
-        if (f->near)
-            near[4] = near[4] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, u, v);
-        if (!f->far)
-            continue;
-        w = w * hf_saturate(*hf_at(&f->buf[HF_HEXAGON_FAR_WEIGHT_2], 1, u, v));
-        for (int c = 0; c < f->s->channels; c++)
-            far[c] = far[c] + w * *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, u, v);
-        far[4] = far[4] + w;
-    }
-}
-
-static void composite_pixel(const struct hf_frame *f, int x, int y, float p, float *const colour[4], int i)
-{
-    const int half = f->s->resolution == HF_RESOLUTION_HALF;
-    float near[5], far[5];
-    (half ? fields_half : fields_full)(f, x, y, near, far);
-    const float left = left_over(near[4], p), all = near[4] + left;
-    const int has_far = f->far && p > 0 && far[4] > 0;
-    for (int c = 0; c < f->s->channels && (has_far || near[4] != 0); c++) {
-        float v = colour[c][i] * HEXAGON_SCALE;
-        if (has_far)
-            v = half ? hf_lerp(v, far[c] / far[4], hf_saturate(0.5f * p)) : far[c];
-        if (near[4] != 0)
-            v = (near[c] + left * v) / all;
-        v = v < HEXAGON_MOST ? v : HEXAGON_MOST;
-        v = v > -HEXAGON_MOST ? v : -HEXAGON_MOST;
-        colour[c][i] = v * (1 / HEXAGON_SCALE);
-    }
-}
-
-void hf_hexagon_composite_c(const struct hf_frame *f, struct hf_rect r)
-{
-    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
-    float *colour[4], *radius = hf_line(f, 12);
-    for (int c = 0; c < 4; c++)
-        colour[c] = hf_line(f, 8 + c);
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
-        hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->counts);
-        f->k->radius_row(f, x0, y, n, radius, NULL);
-        for (int i = 0; i < n; i++)
-            composite_pixel(f, x0 + i, y, radius[i], colour, i);
-        hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)colour, f->s->channels == 4);
-    }
 }

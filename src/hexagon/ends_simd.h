@@ -2,6 +2,7 @@
 // The hexagon engine on vectors: what comes before its two passes, and after.
 #include "hexagon/blur_simd.h"
 #include "hexagon/kernels.h"
+#include "pixel/behind.h"
 #include "pixel/coc_vf.h"
 
 // ---- Load ----
@@ -65,6 +66,23 @@ HF_INLINE void hex_load_quads(const struct hf_frame *f, int colour, int x, int y
     }
 }
 
+HF_INLINE void hex_load_seen(const struct hf_frame *f, int x, int y, const vf radius[4], float *const lane[2][2][4],
+                             int i)
+{
+    vf w[4];
+    for (int t = 0; t < 4; t++)
+        w[t] = coc_saturate(vf_add(vf_set1(1.5f), radius[t]));
+    const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])), quarter = vf_set1(0.25f);
+    vf_store(hf_at(&f->buf[HF_HEXAGON_SEEN_WEIGHT_2], 0, x, y), vf_mul(sum, quarter));
+    for (int t = 0; t < 4; t++)
+        w[t] = vf_mul(w[t], vf_set1(HEXAGON_SCALE));
+    for (int c = 0; c < f->s->channels; c++) {
+        const vf top = vf_fma(w[1], vf_load(lane[0][1][c] + i), vf_mul(w[0], vf_load(lane[0][0][c] + i)));
+        const vf bottom = vf_fma(w[3], vf_load(lane[1][1][c] + i), vf_mul(w[2], vf_load(lane[1][0][c] + i)));
+        vf_store(hf_at(&f->buf[HF_HEXAGON_SEEN_COLOUR_2], c, x, y), vf_mul(vf_add(top, bottom), quarter));
+    }
+}
+
 // Radii of n pairs of pixels of row y, even and odd ones.
 static void hex_radius_lanes(const struct hf_frame *f, int x, int y, int n, float *line, float *even, float *odd)
 {
@@ -96,6 +114,7 @@ static void hex_load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
         }
         hex_load_quads(f, HF_HEXAGON_NEAR_COLOUR_2, r.x0 + i, y, near, lane, i);
         hex_load_quads(f, HF_HEXAGON_FAR_COLOUR_2, r.x0 + i, y, far, lane, i);
+        hex_load_seen(f, r.x0 + i, y, far, lane, i);
     }
 }
 
@@ -126,28 +145,88 @@ HF_INLINE void hex_store_blend(vm shows, vf blend, float *colour)
     vf_store(colour, vf_select(shows, v, vf_load(colour)));
 }
 
-HF_INLINE vf hex_left_over(vf coverage, vf p)
+// See composite.c.
+HF_INLINE vf hex_along(const struct hf_setup *s, const float side[2], vf x, vf y, vf i)
 {
-    const vf own = hex_own(coverage, vf_sub(vf_zero(), p));
-    return vf_max(vf_select(vf_lt(p, vf_zero()), own, vf_sub(vf_set1(1), coverage)), vf_zero());
+    const vf least = vf_set1(0x1p-10f);
+    const vf right = vf_max(side[0] > 0 ? vf_sub(vf_set1((float)s->width), x) : x, least);
+    const vf down = vf_max(side[1] > 0 ? vf_sub(vf_set1((float)s->height), y) : y, least);
+    const vf d = vf_min(vf_mul(vf_mul(right, vf_set1(__builtin_fabsf(side[0]))), i),
+                        vf_mul(vf_mul(down, vf_set1(__builtin_fabsf(side[1]))), i));
+    return vf_min(d, vf_set1(1));
+}
+
+HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, vf x, vf y, vf p)
+{
+    const struct hf_hexagon *h = hf_hexagon(s);
+    const vf i = vf_div(vf_set1(1), p), d = hex_along(s, h->side[c], x, y, i);
+    vf sum = vf_zero();
+    for (int k = 0; k < 3; k++) {
+        const vf t = vf_mul(vf_mul(d, p), vf_set1(0.5f * (float)k));
+        const vf u = vf_add(x, vf_div(t, vf_set1(h->side[c][0]))), v = vf_add(y, vf_div(t, vf_set1(h->side[c][1])));
+        vf first = hex_along(s, h->side[a], u, v, i);
+        if (b >= 0)
+            first = vf_add(first, hex_along(s, h->side[b], u, v, i));
+        sum = vf_add(sum, k == 1 ? vf_mul(vf_set1(4), first) : first);
+    }
+    return vf_mul(d, sum);
+}
+
+// Pixels from column x of row y on, `step` apart; p: their radii.
+HF_INLINE vf hex_left_over(const struct hf_setup *s, vf coverage, vf p, int x, int step, int y)
+{
+    static const float steps[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const vm near = vf_lt(p, vf_zero());
+    vf most = vf_set1(1);
+    if (vm_any(near)) {
+        const vf q = vf_select(near, vf_sub(vf_zero(), p), most), v = vf_set1((float)y + 0.5f);
+        const vf u = vf_add(vf_set1((float)x + 0.5f), vf_mul(vf_set1((float)step), vf_load(steps)));
+        const vf sum = vf_add(hex_two_sides(s, 0, -1, 1, u, v, q), hex_two_sides(s, 0, 1, 2, u, v, q));
+        most = vf_select(near, vf_mul(sum, vf_set1(1 / 18.0f)), most);
+    }
+    return vf_max(vf_sub(most, coverage), vf_zero());
+}
+
+// What lies behind near pixels: channels that are sampled, and their weight.
+struct hex_behind {
+    vf colour[4], weight;
+};
+
+HF_INLINE vf hex_background(const struct hex_behind *v, int c, vf near, vf coverage, vf own, vf p)
+{
+    const vf zero = vf_zero(), nothing = vf_set1(HF_BEHIND_NOTHING);
+    const vf front = vf_select(vf_gt(coverage, zero), vf_div(near, coverage), own);
+    const vf some = vf_lerp(vf_div(v->colour[c], v->weight), front, vf_div(nothing, vf_add(v->weight, nothing)));
+    const vf seen = vf_select(vf_gt(v->weight, zero), some, front);
+    return vf_lerp(seen, own, coc_saturate(vf_add(vf_set1(HEXAGON_ALL), p)));
 }
 
 HF_INLINE void hex_composite_full(const struct hf_frame *f, int x0, int y, int n, float *const colour[4],
                                   const int has_near, const int has_far)
 {
     const float *radius = hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, x0, y);
-    float *near[4], *far[4], *coverage[4];
+    float *near[4], *far[4], *coverage[4], *behind[4], *weight[4];
+    hf_row(hf_hexagon_made(f, HF_HEXAGON_BEHIND), f->s->channels, x0, y, behind);
+    hf_row(hf_hexagon_made(f, HF_HEXAGON_BEHIND_W), 1, x0, y, weight);
     hf_row(hf_hexagon_made(f, HF_HEXAGON_NEAR), f->s->channels, x0, y, near);
     hf_row(hf_hexagon_made(f, HF_HEXAGON_FAR), f->s->channels, x0, y, far);
     hf_row(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 1, x0, y, coverage);
     for (int x = 0; x < n; x += VF_N) {
         const vf p = vf_load(radius + x), a = has_near ? vf_load(coverage[0] + x) : vf_zero();
-        const vf left = hex_left_over(a, p), all = vf_add(a, left);
-        const vm is_far = vf_gt(p, vf_zero()), is_near = vf_ne(a, vf_zero());
+        const vf left = has_near ? hex_left_over(f->s, a, p, x0 + x, 1, y) : vf_zero(), all = vf_add(a, left);
+        const vm is_far = vf_gt(p, vf_zero()), is_near = vf_ne(a, vf_zero()), covers = vf_lt(p, vf_zero());
+        const int any = has_near && vm_any(covers);
+        struct hex_behind back = {.weight = vf_zero()};
+        for (int c = 0; c < f->s->channels && any; c++)
+            back.colour[c] = vf_load(behind[c] + x);
+        if (any)
+            back.weight = vf_load(weight[0] + x);
         for (int c = 0; c < f->s->channels; c++) {
             vf b = vf_mul(vf_load(colour[c] + x), vf_set1(HEXAGON_SCALE));
             if (has_far)
                 b = vf_select(is_far, vf_load(far[c] + x), b);
+            if (any)
+                b = vf_select(covers, hex_background(&back, c, vf_load(near[c] + x), a, b, p), b);
             if (has_near)
                 b = hex_over(vf_load(near[c] + x), a, left, all, b);
             hex_store_blend(!has_far ? is_near : has_near ? vm_or(is_near, is_far) : is_far, b, colour[c] + x);
@@ -186,11 +265,17 @@ HF_INLINE vf hex_bilinear(const struct hf_buf *b, int channel, int x, const stru
     return sum;
 }
 
-HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const float *radius, float *const colour[4],
-                                  const struct hex_corner corner[4])
+// The even or odd pixels of row y.
+HF_INLINE void hex_composite_half(const struct hf_frame *f, struct hf_rect r, int y, int odd, const float *radius,
+                                  float *const colour[4])
 {
+    const int x0 = r.x0, n = r.x1 - r.x0, side = odd ? 1 : -1, other = y / 2 + (y & 1 ? 1 : -1);
+    const struct hex_corner corner[4] = {
+        {0, y / 2, 0.5625f}, {side, y / 2, 0.1875f}, {0, other, 0.1875f}, {side, other, 0.0625f}};
     const struct hf_buf *near = hf_hexagon_made(f, HF_HEXAGON_NEAR), *far = hf_hexagon_made(f, HF_HEXAGON_FAR);
     const struct hf_buf *coverage = hf_hexagon_made(f, HF_HEXAGON_COVERAGE);
+    const struct hf_buf *behind = hf_hexagon_made(f, HF_HEXAGON_BEHIND);
+    const struct hf_buf *weight = hf_hexagon_made(f, HF_HEXAGON_BEHIND_W);
     for (int x = 0; x < n; x += VF_N) {
         const vf p = vf_load(radius + x);
         vf w[4], far_w[4], far_sum = vf_zero(), a = vf_zero();
@@ -203,16 +288,26 @@ HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const
             far_w[i] = vf_mul(w[i], coc_saturate(q));
             far_sum = vf_add(far_sum, far_w[i]);
         }
-        const vf left = hex_left_over(a, p), all = vf_add(a, left);
-        const vf blend = coc_saturate(vf_mul(vf_set1(0.5f), p));
+        const vf left = f->near ? hex_left_over(f->s, a, p, 2 * (x0 + x) + odd, 2, y) : vf_zero();
+        const vf all = vf_add(a, left), blend = coc_saturate(vf_mul(vf_set1(0.5f), p));
         const vm is_near = vf_ne(a, vf_zero()), is_far = vm_and(vf_gt(p, vf_zero()), vf_gt(far_sum, vf_zero()));
+        const vm covers = vf_lt(p, vf_zero());
+        const int any = f->near && vm_any(covers);
+        struct hex_behind back = {.weight = vf_zero()};
+        for (int c = 0; c < f->s->channels && any; c++)
+            back.colour[c] = hex_bilinear(behind, c, x0 + x, corner, w);
+        if (any)
+            back.weight = hex_bilinear(weight, 0, x0 + x, corner, w);
         for (int c = 0; c < f->s->channels; c++) {
             vf b = vf_mul(vf_load(colour[c] + x), vf_set1(HEXAGON_SCALE));
             if (f->far)
                 b = vf_select(is_far, vf_lerp(b, vf_div(hex_bilinear(far, c, x0 + x, corner, far_w), far_sum), blend),
                               b);
+            const vf front = f->near ? hex_bilinear(near, c, x0 + x, corner, w) : vf_zero();
+            if (any)
+                b = vf_select(covers, hex_background(&back, c, front, a, b, p), b);
             if (f->near)
-                b = hex_over(hex_bilinear(near, c, x0 + x, corner, w), a, left, all, b);
+                b = hex_over(front, a, left, all, b);
             hex_store_blend(f->far ? vm_or(is_near, is_far) : is_near, b, colour[c] + x);
         }
     }
@@ -220,7 +315,7 @@ HF_INLINE void hex_composite_half(const struct hf_frame *f, int x0, int n, const
 
 static void hex_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
-    const int n = r.x1 - r.x0, other = y / 2 + (y & 1 ? 1 : -1);
+    const int n = r.x1 - r.x0;
     float *lane[2][4], *radius[2] = {hf_line(f, 9), hf_line(f, 10)};
     const float *stored[2][4] = {{NULL}};
     for (int i = 0; i < 8; i++)
@@ -228,10 +323,7 @@ static void hex_half_row(const struct hf_frame *f, int y, struct hf_rect r)
     hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
     hex_radius_lanes(f, r.x0, y, n, f->work, radius[0], radius[1]);
     for (int odd = 0; odd < 2; odd++) {
-        const int side = odd ? 1 : -1;
-        const struct hex_corner corner[4] = {
-            {0, y / 2, 0.5625f}, {side, y / 2, 0.1875f}, {0, other, 0.1875f}, {side, other, 0.0625f}};
-        hex_composite_half(f, r.x0, n, radius[odd], lane[odd], corner);
+        hex_composite_half(f, r, y, odd, radius[odd], lane[odd]);
         for (int c = 0; c < f->s->channels; c++)
             stored[odd][c] = lane[odd][c];
     }

@@ -6,23 +6,27 @@
 
 #include "frame/plan.h"
 #include "hexagon/kernels.h"
+#include "pixel/behind.h"
 
 #define FRAME(name) (1u << HF_HEXAGON_##name)
 #define MADE(name)                                                                                                     \
     (1u << (HF_HEXAGON_MADE + HF_HEXAGON_##name) | 1u << (HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT + HF_HEXAGON_##name))
+#define FIELDS (MADE(NEAR) | MADE(COVERAGE) | MADE(FAR))
 #define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
 #define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
+#define SEEN (FRAME(SEEN_COLOUR_2) | FRAME(SEEN_WEIGHT_2))
+#define BEHIND (MADE(BEHIND) | MADE(BEHIND_W))
 
-// The largest CoC radius, twice; and a pixel.
-enum { HALO_RADIUS = 1, HALO_UPSAMPLE };
+// The largest CoC radius, twice; what is seen around near pixels; and a pixel.
+enum { HALO_RADIUS = 1, HALO_BEHIND, HALO_UPSAMPLE };
 
 static const struct hf_pass passes[HF_HEXAGON_PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 3},
-    {"Load", .writes = INPUT, .sweep = 1, .ns = 8},
-    {"Passes 1 and 2", .around = INPUT, .writes = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR), .halo = HALO_RADIUS,
-     .sweep = 2, .ns = 40},
-    {"Composite", .reads = FRAME(WEIGHT), .around = MADE(NEAR) | MADE(COVERAGE) | MADE(FAR) | FRAME(FAR_WEIGHT_2),
-     .halo = HALO_UPSAMPLE, .sweep = 2, .ns = 9},
+    {"Load", .writes = INPUT | SEEN, .sweep = 1, .ns = 8},
+    {"Passes 1 and 2", .around = INPUT, .writes = FIELDS, .halo = HALO_RADIUS, .sweep = 2, .ns = 40},
+    {"Behind", .around = INPUT | SEEN, .writes = BEHIND, .halo = HALO_BEHIND, .sweep = 2, .field = HF_NEAR, .ns = 8},
+    {"Composite", .reads = FRAME(WEIGHT), .around = FIELDS | BEHIND | FRAME(FAR_WEIGHT_2), .halo = HALO_UPSAMPLE,
+     .sweep = 2, .ns = 9},
 };
 
 #define FULL .x = 1, .y = 1
@@ -37,9 +41,13 @@ static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
     [HF_HEXAGON_NEAR_WEIGHT_2] = {"nearweight", .frame = 1},
     [HF_HEXAGON_FAR_COLOUR_2] = {"farcolour", .frame = 1},
     [HF_HEXAGON_FAR_WEIGHT_2] = {"farweight", .frame = 1},
+    [HF_HEXAGON_SEEN_COLOUR_2] = {"seencolour", .frame = 1},
+    [HF_HEXAGON_SEEN_WEIGHT_2] = {"seenweight", .frame = 1},
     NAMED(NEAR, "near", .field = HF_NEAR),
     NAMED(COVERAGE, "nearcoverage", .field = HF_NEAR),
     NAMED(FAR, "far", .field = HF_FAR),
+    NAMED(BEHIND, "behind", .field = HF_NEAR),
+    NAMED(BEHIND_W, "behindweight", .field = HF_NEAR),
 };
 
 static int channels(const struct hf_setup *s, int b)
@@ -49,12 +57,13 @@ static int channels(const struct hf_setup *s, int b)
         (b >= HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT || (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
         return 0;
     if (b < HF_HEXAGON_MADE)
-        return b % 2 ? 3 : s->channels;
+        return b == HF_HEXAGON_SEEN_WEIGHT_2 ? 1 : b % 2 ? 3 : s->channels;
     switch ((b - HF_HEXAGON_MADE) % HF_HEXAGON_MADE_COUNT) {
     case HF_HEXAGON_NEAR_W:
     case HF_HEXAGON_FAR_W:
         return 4;
     case HF_HEXAGON_COVERAGE:
+    case HF_HEXAGON_BEHIND_W:
         return 1;
     default:
         return s->channels;
@@ -95,7 +104,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 {
     struct hf_hexagon *h = own;
     (void)depth;
-    h->ready = h->reach_x = h->reach_y = 0;
+    h->ready = h->reach_x = h->reach_y = h->behind = 0;
     h->rotation = p->aperture.rotation;
     s->resolution = p->hexagon.resolution;
     s->uniform = p->hexagon.uniform;
@@ -258,11 +267,14 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     (void)mem;
     const float radius = fmaxf(-found->radius_min, found->radius_max);
     int x = 0, y = 0;
+    h->behind = hf_behind_levels(-found->radius_min);
     for (int i = 0; i < 3; i++) {
         struct hf_hexagon_line *l = &h->line[i];
         const double angle = (h->rotation + (i == 0 ? 0 : i == 1 ? 240 : 120)) * (M_PI / 180);
         const double ux = sin(angle), uy = -cos(angle);
         const struct direction d = {llround(ux * s->pixel_aspect * 0x1p40), llround(uy * 0x1p40)};
+        h->side[i][0] = (float)copysign(fmin(s->pixel_aspect / fabs(ux), 0x1p40), ux);
+        h->side[i][1] = (float)copysign(fmin(1 / fabs(uy), 0x1p40), uy);
         make_line(s, l, &d, ux, uy, radius);
         make_steps(l, &d, 1, &l->one);
         make_steps(l, &d, 2, &l->two);
@@ -284,10 +296,10 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
 
 static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
-    const int upsample = s->resolution == HF_RESOLUTION_HALF;
+    const int behind = hf_behind_halo(hf_hexagon(s)->behind), upsample = s->resolution == HF_RESOLUTION_HALF;
     if (halo == HALO_RADIUS)
         return (struct hf_reach){2 * hf_hexagon(s)->reach_x, 2 * hf_hexagon(s)->reach_y};
-    return halo == HALO_UPSAMPLE ? (struct hf_reach){upsample, upsample} : (struct hf_reach){0, 0};
+    return halo == HALO_BEHIND ? (struct hf_reach){behind, behind} : (struct hf_reach){upsample, upsample};
 }
 
 // A far pixel changes itself alone.
@@ -308,7 +320,9 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
     const size_t band = hf_hexagon(s)->ready ? hf_hexagon_band_floats(s, p->cell_width[2] + 2) : 0;
-    return band > p->line_floats ? band : p->line_floats;
+    const size_t behind = hf_behind_floats(hf_hexagon(s)->behind, s->channels + 1);
+    const size_t most = band > behind ? band : behind;
+    return most > p->line_floats ? most : p->line_floats;
 }
 
 // Narrow enough that a band stays in the second-level cache, but wider than the rim that is made of it twice.
@@ -332,7 +346,8 @@ HF_CHOOSE_KERNELS(hf_hexagon_kernels)
 void hf_hexagon_kernels_c(struct hf_hexagon_kernels *k)
 {
     *k = (struct hf_hexagon_kernels){
-        .passes = {{hf_radius_pass, hf_hexagon_load_c, hf_hexagon_blur_pass, hf_hexagon_composite_c}},
+        .passes = {{hf_radius_pass, hf_hexagon_load_c, hf_hexagon_blur_pass, hf_hexagon_behind_pass,
+                    hf_hexagon_composite_c}},
         .first = hf_hexagon_1_c,
         .second = hf_hexagon_2_c,
     };

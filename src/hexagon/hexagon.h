@@ -17,9 +17,10 @@
 // The mean radius is the near field's by its square root and the far field's by 1 / radius, each sample by its share of
 // what is found: what covers little changes it little, however large its radius.
 //
-// What is left over is the pixel's own: what near coverage leaves of a sharp or far pixel shows that pixel, and a far
-// pixel that finds less than a quarter of its samples makes up a quarter with its own colour. All weights are
-// continuous in every radius and vanish with it, so nothing pops.
+// What near coverage leaves of a sharp or far pixel shows that pixel; of a near one, which is what covers, it shows what
+// is seen around it (behind.c), and the pixel itself only up to a radius of 2. A far pixel that finds less than a quarter
+// of its samples makes up a quarter with its own colour. All weights are continuous in every radius and vanish with it,
+// so nothing pops.
 #ifndef HF_PASS_HEXAGON_H
 #define HF_PASS_HEXAGON_H
 
@@ -28,7 +29,14 @@
 #include "frame/engine.h"
 #include "pixel/pass_c.h"
 
-enum hf_hexagon_pass { HF_HEXAGON_COC, HF_HEXAGON_LOAD, HF_HEXAGON_BLUR, HF_HEXAGON_COMPOSITE, HF_HEXAGON_PASSES };
+enum hf_hexagon_pass {
+    HF_HEXAGON_COC,
+    HF_HEXAGON_LOAD,
+    HF_HEXAGON_BLUR,
+    HF_HEXAGON_LOOK_BEHIND,
+    HF_HEXAGON_COMPOSITE,
+    HF_HEXAGON_PASSES
+};
 
 // At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to
 // both, and each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
@@ -39,7 +47,9 @@ enum hf_hexagon_buf {
     HF_HEXAGON_NEAR_WEIGHT_2,  // a times how much of the quad is near, radius, and the same for its mean
     HF_HEXAGON_FAR_COLOUR_2,
     HF_HEXAGON_FAR_WEIGHT_2,
-    HF_HEXAGON_MADE,  // what the two passes make: full resolution, then the same again at half
+    HF_HEXAGON_SEEN_COLOUR_2,  // what of a quad is not near: colour x how much that is
+    HF_HEXAGON_SEEN_WEIGHT_2,  // and how much
+    HF_HEXAGON_MADE,           // what the two passes make: full resolution, then the same again at half
 };
 
 enum hf_hexagon_made {
@@ -52,6 +62,8 @@ enum hf_hexagon_made {
     HF_HEXAGON_NEAR,   // coverage x colour
     HF_HEXAGON_COVERAGE,
     HF_HEXAGON_FAR,
+    HF_HEXAGON_BEHIND,  // what lies behind near pixels: colour x weight
+    HF_HEXAGON_BEHIND_W,
     HF_HEXAGON_MADE_COUNT
 };
 enum { HF_HEXAGON_BUF_COUNT = HF_HEXAGON_MADE + 2 * HF_HEXAGON_MADE_COUNT };
@@ -94,6 +106,8 @@ struct hf_hexagon {
     float rotation;  // degrees
     struct hf_hexagon_line line[3];
     int left, right, above, below;
+    float side[3][2];      // 1 / what the sides' directions go along x and y, in pixels for 1 pixel of radius
+    int behind;            // neighbourhoods that near radii ask for (pixel/behind.h)
     int reach_x, reach_y;  // of one blur in this frame, half-resolution pixels, once its depth has been looked at
     struct hf_block block;
 };

@@ -17,7 +17,8 @@ static inline const struct hf_hexagon_kernels *hf_hexagon_kernels(const struct h
     return f->kernels;
 }
 
-hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_composite_c;
+hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_behind_pass,
+    hf_hexagon_composite_c;
 
 extern const struct hf_engine_def hf_hexagon_engine;
 

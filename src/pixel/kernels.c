@@ -13,4 +13,5 @@ void hf_pixel_kernels_c(struct hf_pixel_kernels *k)
                                    .unzip = hf_unzip_row_c};
     hf_format_kernels_c(k);
     hf_depth_rows_c(k);
+    hf_behind_rows_c(k);
 }

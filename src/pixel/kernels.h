@@ -42,6 +42,32 @@ typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
 typedef void hf_round_row(float *v, int n);
 typedef void hf_round_rgb(float *r, float *g, float *b, int n);
 
+// What lies behind near pixels (behind.c), rows of n.
+// The largest of out and of what near radii two pixels each have.
+typedef void hf_near_row(const float *radius, int n, float *out);
+// The largest of three.
+typedef void hf_most_row(const float *a, const float *b, const float *c, int n, float *out);
+// Pairs of pixels, v times weight times scale, added to out.
+typedef void hf_seen_row(const float *v, const float *weight, float scale, int n, float *out);
+// The mean of three.
+typedef void hf_third_row(const float *a, const float *b, const float *c, int n, float *out);
+// How much a neighbourhood of that size counts behind near radii, of a share.
+typedef void hf_part_row(const float *near, float share, float size, int n, float *out);
+// out + part * in.
+typedef void hf_add_part(const float *in, const float *part, int n, float *out);
+// 2 n pixels from n quads of their own row and of the one beside it, bilinearly; reads quads -1 to n.
+typedef void hf_up_row(const float *own, const float *over, int n, float *out);
+
+struct hf_behind_kernels {
+    hf_near_row *near_row;
+    hf_most_row *most_row;
+    hf_seen_row *seen_row;
+    hf_third_row *third_row;
+    hf_part_row *part_row;
+    hf_add_part *add_part;
+    hf_up_row *up_row;
+};
+
 struct hf_pixel_kernels {
     hf_coc_row *coc_row;
     hf_sharp_row *sharp_row;
@@ -54,9 +80,19 @@ struct hf_pixel_kernels {
     hf_finite *finite_f32, *finite_f16, *finite_r11, *finite_any;
     hf_round_rgb *truncate_r11;  // R11G11B10F, towards zero
     hf_round_row *round_half;    // to nearest even, clamped to +-65504
+    struct hf_behind_kernels behind;
 };
 HF_DECLARE_KERNELS(hf_pixel_kernels);
 
 void hf_format_kernels_c(struct hf_pixel_kernels *k);  // the rows of images among them (format.c)
+void hf_behind_rows_c(struct hf_pixel_kernels *k);     // and of what lies behind near pixels (behind_rows.c)
+
+hf_near_row hf_near_row_c;
+hf_most_row hf_most_row_c;
+hf_seen_row hf_seen_row_c;
+hf_third_row hf_third_row_c;
+hf_part_row hf_part_row_c;
+hf_add_part hf_add_part_c;
+hf_up_row hf_up_row_c;
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The shared kernels of an instruction set.
 #include "pixel/rows_simd.h"
+#include "pixel/behind_simd.h"
 #include "pixel/coc_simd.h"
 #include "pixel/depth_rows_simd.h"
 #include "pixel/radius_simd.h"
@@ -14,4 +15,11 @@ void HF_SIMD_NAME(hf_pixel_kernels)(struct hf_pixel_kernels *k)
     k->radius_row = radius_row_simd;
     k->zip = zip_row_simd;
     k->unzip = unzip_row_simd;
+    k->behind = (struct hf_behind_kernels){.near_row = near_row_simd,
+                                           .most_row = most_row_simd,
+                                           .seen_row = seen_row_simd,
+                                           .third_row = third_row_simd,
+                                           .part_row = part_row_simd,
+                                           .add_part = add_part_simd,
+                                           .up_row = up_row_simd};
 }

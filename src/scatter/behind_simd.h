@@ -1,27 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: rows of what lies behind near pixels, on vectors. Nothing is fused: this engine has the same bits everywhere.
-// What adds to a row, or ends at the frame's edge, leaves the rest of it alone: behind_rows.c finishes it.
+// Scatter: what lies behind near pixels, on vectors. Nothing is fused: this engine has the same bits everywhere.
 #include "scatter/behind.h"
 #include "scatter/composite_simd.h"
-
-static void near_row_simd(const float *radius, int n, float *out)
-{
-    const int whole = n / VF_N * VF_N;
-    for (int i = 0; i < whole; i += VF_N) {
-        vf a, b;
-        vf_unzip(vf_load(radius + 2 * i), vf_load(radius + 2 * i + VF_N), &a, &b);
-        vf_store(out + i, vf_max(vf_sub(vf_zero(), vf_min(a, b)), vf_load(out + i)));
-    }
-    hf_near_row_c(radius + 2 * whole, n - whole, out + whole);
-}
-
-static void most_row_simd(const float *a, const float *b, const float *c, int n, float *out)
-{
-    const int whole = n / VF_N * VF_N;
-    for (int i = 0; i < whole; i += VF_N)
-        vf_store(out + i, vf_max(vf_max(vf_load(a + i), vf_load(b + i)), vf_load(c + i)));
-    hf_most_row_c(a + whole, b + whole, c + whole, n - whole, out + whole);
-}
 
 HF_INLINE vf behind_saturate(vf v)
 {
@@ -52,61 +32,6 @@ static int seen_weights_simd(const struct hf_scatter *t, const float *radius, co
         }
     }
     return hf_seen_weights_c(t, radius, widest, whole, n, out) | vm_any(some[0]) | vm_any(some[1]) << 1;
-}
-
-static void seen_row_simd(const float *v, const float *weight, float scale, int n, float *out)
-{
-    const int whole = n / VF_N * VF_N;
-    const vf s = vf_set1(scale);
-    for (int i = 0; i < whole; i += VF_N) {
-        const vf a = vf_mul(vf_load(v + 2 * i), vf_mul(vf_load(weight + 2 * i), s));
-        const vf b = vf_mul(vf_load(v + 2 * i + VF_N), vf_mul(vf_load(weight + 2 * i + VF_N), s));
-        vf even, odd;
-        vf_unzip(a, b, &even, &odd);
-        vf_store(out + i, vf_add(vf_load(out + i), vf_add(even, odd)));
-    }
-    hf_seen_row_c(v + 2 * whole, weight + 2 * whole, scale, n - whole, out + whole);
-}
-
-static void third_row_simd(const float *a, const float *b, const float *c, int n, float *out)
-{
-    const vf third = vf_set1(1 / 3.0f);
-    for (int i = 0; i < n; i += VF_N)
-        vf_store(out + i, vf_mul(third, vf_add(vf_add(vf_load(a + i), vf_load(b + i)), vf_load(c + i))));
-}
-
-static void part_row_simd(const float *near, float share, float size, int n, float *out)
-{
-    for (int i = 0; i < n; i += VF_N) {
-        const vf span = vf_add(vf_mul(vf_set1(0.5f), vf_load(near + i)), vf_set1(1));
-        const vf part = behind_saturate(vf_sub(vf_set1(2), vf_div(vf_set1(size), span)));
-        vf_store(out + i, vf_mul(vf_set1(share), part));
-    }
-}
-
-static void add_part_simd(const float *in, const float *part, int n, float *out)
-{
-    const int whole = n / VF_N * VF_N;
-    for (int i = 0; i < whole; i += VF_N)
-        vf_store(out + i, vf_add(vf_load(out + i), vf_mul(vf_load(part + i), vf_load(in + i))));
-    hf_add_part_c(in + whole, part + whole, n - whole, out + whole);
-}
-
-HF_INLINE vf up_quad(const float *own, const float *over)
-{
-    return vf_add(vf_mul(vf_set1(0.75f), vf_load(own)), vf_mul(vf_set1(0.25f), vf_load(over)));
-}
-
-static void up_row_simd(const float *own, const float *over, int n, float *out)
-{
-    for (int i = 0; i < n; i += VF_N) {
-        const vf most = vf_mul(vf_set1(0.75f), up_quad(own + i, over + i)), rest = vf_set1(0.25f);
-        vf a, b;
-        vf_zip(vf_add(most, vf_mul(rest, up_quad(own + i - 1, over + i - 1))),
-               vf_add(most, vf_mul(rest, up_quad(own + i + 1, over + i + 1))), &a, &b);
-        vf_store(out + 2 * i, a);
-        vf_store(out + 2 * i + VF_N, b);
-    }
 }
 
 static void behind_blend_simd(const struct hf_scatter_row *row, const float *const weight[2],

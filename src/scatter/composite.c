@@ -110,18 +110,17 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, con
     for (int c = 0; c < 4; c++)
         out[c] = hf_line(f, 8 + c);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, out, f->counts);
-    struct hf_behind_line line = {.f = f,
-                                  .x = x0,
-                                  .y = y,
-                                  .n = n,
-                                  .weight = {hf_line(f, 14), hf_line(f, 15)},
-                                  .colour = {hf_line(f, 16), hf_line(f, 17)}};
-    if (behind && !hf_behind_begin(behind, &line, radius))
+    const struct hf_scatter_row pixels = {.setup = s, .x = x0, .y = y, .n = n, .radius = radius};
+    const struct hf_scatter_behind line = {.f = f,
+                                           .behind = behind,
+                                           .weight = {hf_line(f, 14), hf_line(f, 15)},
+                                           .colour = {hf_line(f, 16), hf_line(f, 17)}};
+    if (behind && !hf_scatter_behind_begin(&line, &pixels))
         behind = NULL;
     // Alpha that is 1 all over stays so.
     for (int c = 0; c < (t->opaque ? 3 : s->channels); c++) {
         const int group = t->opaque ? 0 : t->group_of[c];
-        struct hf_scatter_row row = {.setup = s, .x = x0, .y = y, .n = n, .radius = radius};
+        struct hf_scatter_row row = pixels;
         if (f->far) {
             row.far_weight = hf_at(&f->buf[HF_BUF_FAR_WEIGHT], group, x0, y);
             row.far = hf_at(&f->buf[HF_BUF_FAR_SUM], c, x0, y);
@@ -132,7 +131,7 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, con
         }
         if (behind) {
             row.behind = hf_line(f, 18);
-            hf_behind_row(behind, &line, &row, c, out[c], hf_line(f, 18));
+            hf_scatter_behind_row(&line, &row, c, out[c], hf_line(f, 18));
         }
         hf_scatter_kernels(f)->blend(&row, out[c]);
     }
@@ -145,8 +144,9 @@ void hf_scatter_composite_c(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0; y < r.y1; y += HF_BEHIND_BLOCK)
         for (int x = r.x0; x < r.x1; x += HF_BEHIND_BLOCK) {
             const struct hf_rect block = {x, y, hf_min(x + HF_BEHIND_BLOCK, r.x1), hf_min(y + HF_BEHIND_BLOCK, r.y1)};
-            struct hf_behind behind;
-            const int is = levels && hf_behind_make(&behind, f, block, levels, f->work);
+            struct hf_behind behind = {.planes =
+                                           hf_scatter_behind_planes(hf_scatter(f->s)->opaque ? 3 : f->s->channels)};
+            const int is = levels && hf_behind_make(&behind, &hf_scatter_behind_source, f, block, levels, f->work);
             for (int row = 2 * block.y0; row < hf_min(2 * block.y1, f->s->height); row++)
                 composite_row(f, row, block, is ? &behind : NULL);
         }

@@ -302,7 +302,7 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
     if (!t->ready)
         return 0;
     const size_t splats = hf_splat_work(t, p->cell_width[2], p->cell_height[2]);
-    const size_t behind = hf_behind_floats(t->behind, s->channels);
+    const size_t behind = hf_behind_floats(t->behind, hf_scatter_behind_planes(s->channels));
     return splats > behind ? splats : behind;
 }
 
@@ -334,14 +334,7 @@ void hf_scatter_kernels_c(struct hf_scatter_kernels *k)
         .mean_row = hf_mean_row_c,
         .note = hf_scatter_note_c,
         .blend = hf_scatter_blend_c,
-        .near_row = hf_near_row_c,
-        .most_row = hf_most_row_c,
         .seen_weights = hf_seen_weights_c,
-        .seen_row = hf_seen_row_c,
-        .third_row = hf_third_row_c,
-        .part_row = hf_part_row_c,
-        .add_part = hf_add_part_c,
-        .up_row = hf_up_row_c,
         .behind_blend = hf_behind_blend_c,
     };
 }

@@ -44,25 +44,10 @@ typedef void hf_tent(const float *even, const float *odd, int n, float *out);
 // Half the weighted sum of four rows.
 typedef void hf_mean_row(const float *const tent[4], const float part[4], int n, float *out);
 
-// What lies behind near pixels (behind.c), rows of n.
-// The largest of out and of what near radii two pixels each have.
-typedef void hf_near_row(const float *radius, int n, float *out);
-// The largest of three.
-typedef void hf_most_row(const float *a, const float *b, const float *c, int n, float *out);
 // What of pixels `first` (even) to n is seen, sharp and far, in quarters of a quad; widest: the largest near radius around
 // each quad. Returns bit 0 if some is sharp, bit 1 if some is far.
 typedef int hf_seen_weights(const struct hf_scatter *t, const float *radius, const float *widest, int first, int n,
                             float *const out[2]);
-// Pairs of pixels, v times weight times scale, added to out.
-typedef void hf_seen_row(const float *v, const float *weight, float scale, int n, float *out);
-// The mean of three.
-typedef void hf_third_row(const float *a, const float *b, const float *c, int n, float *out);
-// How much a neighbourhood of that size counts behind near radii, of a share.
-typedef void hf_part_row(const float *near, float share, float size, int n, float *out);
-// out + part * in.
-typedef void hf_add_part(const float *in, const float *part, int n, float *out);
-// 2 n pixels from n quads of their own row and of the one beside it, bilinearly; reads quads -1 to n.
-typedef void hf_up_row(const float *own, const float *over, int n, float *out);
 // Put together what is seen around pixels, sharp and far, and what the fields hold there.
 typedef void hf_behind_blend(const struct hf_scatter_row *row, const float *const weight[2],
                              const float *const colour[2], const float *own, float *out);
@@ -83,14 +68,7 @@ struct hf_scatter_kernels {
     hf_mean_row *mean_row;
     hf_scatter_note *note;
     hf_scatter_blend *blend;
-    hf_near_row *near_row;
-    hf_most_row *most_row;
     hf_seen_weights *seen_weights;
-    hf_seen_row *seen_row;
-    hf_third_row *third_row;
-    hf_part_row *part_row;
-    hf_add_part *add_part;
-    hf_up_row *up_row;
     hf_behind_blend *behind_blend;
 };
 HF_DECLARE_KERNELS(hf_scatter_kernels);
@@ -115,14 +93,7 @@ hf_tent hf_tent_c;
 hf_mean_row hf_mean_row_c;
 hf_scatter_note hf_scatter_note_c;
 hf_scatter_blend hf_scatter_blend_c;
-hf_near_row hf_near_row_c;
-hf_most_row hf_most_row_c;
 hf_seen_weights hf_seen_weights_c;
-hf_seen_row hf_seen_row_c;
-hf_third_row hf_third_row_c;
-hf_part_row hf_part_row_c;
-hf_add_part hf_add_part_c;
-hf_up_row hf_up_row_c;
 hf_behind_blend hf_behind_blend_c;
 
 extern const struct hf_engine_def hf_scatter_engine;

@@ -21,13 +21,6 @@ void HF_SIMD_NAME(hf_scatter_kernels)(struct hf_scatter_kernels *k)
     k->mean_row = mean_row_simd;
     k->note = scatter_note_simd;
     k->blend = scatter_blend_simd;
-    k->near_row = near_row_simd;
-    k->most_row = most_row_simd;
     k->seen_weights = seen_weights_simd;
-    k->seen_row = seen_row_simd;
-    k->third_row = third_row_simd;
-    k->part_row = part_row_simd;
-    k->add_part = add_part_simd;
-    k->up_row = up_row_simd;
     k->behind_blend = behind_blend_simd;
 }

@@ -156,8 +156,11 @@ static void make_second(struct world *w, const struct hf_frame *f)
     const int weight = colour_buf(w, HF_FAR) + 1;
     make_buf(w, near, r);
     make_buf(w, far, r);
+    const int behind = made(w, HF_HEXAGON_BEHIND), behind_weight = made(w, HF_HEXAGON_BEHIND_W);
     make_buf(w, cover, r);
     make_buf(w, weight, r);
+    make_buf(w, behind, r);
+    make_buf(w, behind_weight, r);
     choose_radii(w, 1.25f);  // coverage
     EACH(r, x, y)
     {
@@ -165,6 +168,10 @@ static void make_second(struct world *w, const struct hf_frame *f)
         put(w, cover, 0, x, y, a);
         put_colour(w, near, x, y, a);
         put_colour(w, far, x, y, 1);
+        // Nothing, or more than there is no edge to.
+        const float seen = rng_one_in(&w->rng, 3) ? 0 : rng_float(&w->rng, 0.01f, 2);
+        put(w, behind_weight, 0, x, y, seen);
+        put_colour(w, behind, x, y, seen);
     }
     choose_radii(w, 4);
     EACH(r, x, y)
@@ -237,8 +244,7 @@ void hexagon_make(struct world *w, int which)
     case HEXAGON_SECOND:
         make_samples(w, reached(w, 1, 2));
         make_first(w, reached(w, 1, 2));
-        for (int b = w->near ? HF_HEXAGON_NEAR : HF_HEXAGON_FAR; b < (w->far ? HF_HEXAGON_MADE_COUNT : HF_HEXAGON_FAR);
-             b++)
+        for (int b = w->near ? HF_HEXAGON_NEAR : HF_HEXAGON_FAR; b < (w->far ? HF_HEXAGON_BEHIND : HF_HEXAGON_FAR); b++)
             output(w, made(w, (enum hf_hexagon_made)b));
         return;
     default: {
@@ -391,7 +397,8 @@ static double bound_near_2(const struct world *w, int b, int c, int x, int y)
 // Load: products and two sums of four colours, times a weight.
 static double bound_load(const struct world *w, int b, int c, int x, int y)
 {
-    const int is_colour = b == HF_HEXAGON_NEAR_COLOUR_2 || b == HF_HEXAGON_FAR_COLOUR_2;
+    const int is_colour =
+        b == HF_HEXAGON_NEAR_COLOUR_2 || b == HF_HEXAGON_FAR_COLOUR_2 || b == HF_HEXAGON_SEEN_COLOUR_2;
     const double most = bound_largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
     return is_colour ? 5 * FLT_EPSILON * HEXAGON_SCALE * most : 0;
 }
@@ -423,22 +430,35 @@ double hexagon_bound_buffer(const struct world *w, int b, int c, int x, int y, f
     return bound > 0 ? bound + 0x1p-140 : 0;
 }
 
-// Composite: near + left * v over near's coverage and what it leaves, which add up to a quarter at least. At half
-// resolution each field is a mean of four (4 roundings; the far one's weights and its division 3 more), v a blend of two
-// (5), coverage a mean below 2 (4 each, in what is left and in the sum).
+// The largest of a premultiplied buffer's channel over its weight, between two corners.
+static double largest_colour(const struct hf_frame *f, enum hf_hexagon_made colour, enum hf_hexagon_made weight, int c,
+                             struct hf_rect r)
+{
+    double most = 0;
+    EACH(r, x, y)
+    {
+        const double a = weight == colour ? 1 : *hf_at(hf_hexagon_made(f, weight), 0, x, y);
+        if (a > 0)
+            most = fmax(most, fabs((double)*hf_at(hf_hexagon_made(f, colour), c, x, y)) / a / HEXAGON_SCALE);
+    }
+    return most;
+}
+
+// Composite: a mean of a near colour and a background, by coverage and what that leaves. In roundings of the largest
+// colour: at half resolution coverage and what lies behind are quotients of means of four (4 and 4, 1), blended twice
+// (3 each); the far one is no worse; what is left is a difference from coverage (4 and 1), and both weights tell by how
+// much two colours count that are up to twice the largest apart; product, two sums and a quotient (4).
 double hexagon_bound_pixel(const struct world *w, int c, int x, int y)
 {
     const struct hf_frame *f = &w->reference;
-    double own = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1), near = 0, far = 0;
+    double most = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
     const int half = is_half(w), reach = half ? 1 : 0, u = half ? x / 2 : x, v = half ? y / 2 : y;
-    for (int j = v - reach; j <= v + reach && c < w->setup.channels; j++)
-        for (int i = u - reach; i <= u + reach; i++) {
-            if (w->near)
-                near = fmax(near, fabs((double)*hf_at(hf_hexagon_made(f, HF_HEXAGON_NEAR), c, i, j)) / HEXAGON_SCALE);
-            if (w->far)
-                far = fmax(far, fabs((double)*hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, i, j)) / HEXAGON_SCALE);
-        }
-    own = fmax(own, far);
-    const double sum = 4 * (near + own), error = (4 + 2) * near + (7 + 5 + 2 * 4 + 2) * own + (2 * 4 * 2 + 2) * sum;
-    return 4 * error * FLT_EPSILON + 0x1p-130;
+    const struct hf_rect r = {u - reach, v - reach, u + reach + 1, v + reach + 1};
+    if (w->near && c < w->setup.channels) {
+        most = fmax(most, largest_colour(f, HF_HEXAGON_NEAR, HF_HEXAGON_COVERAGE, c, r));
+        most = fmax(most, largest_colour(f, HF_HEXAGON_BEHIND, HF_HEXAGON_BEHIND_W, c, r));
+    }
+    if (w->far && c < w->setup.channels)
+        most = fmax(most, largest_colour(f, HF_HEXAGON_FAR, HF_HEXAGON_FAR, c, r));
+    return (4 + 4 + 1 + 3 + 3 + 2 * (4 + 4 + 1) + 4) * most * FLT_EPSILON + 0x1p-130;
 }

@@ -366,7 +366,7 @@ static void behind_call(struct world *w, const struct kernels *k, enum arena a)
 // Returns 0 if it is none of these.
 static int behind_rows_call(struct world *w, const struct kernels *k, enum arena a, int which)
 {
-    const struct hf_scatter_kernels *s = &k->scatter;
+    const struct hf_behind_kernels *s = &k->pixel.behind;
     const float *const in[3] = {line(w, a, 0), line(w, a, 1), line(w, a, 2)};
     float *const out[2] = {line(w, a, LINES_IN), line(w, a, LINES_IN + 1)};
     switch (which) {
@@ -377,7 +377,7 @@ static int behind_rows_call(struct world *w, const struct kernels *k, enum arena
         s->most_row(in[0], in[1], in[2], w->n, out[0]);
         return 1;
     case SCATTER_SEEN_WEIGHTS:
-        w->result[a].returned = s->seen_weights(&now.scatter, in[0], in[1], now.from, w->n, out);
+        w->result[a].returned = k->scatter.seen_weights(&now.scatter, in[0], in[1], now.from, w->n, out);
         return 1;
     case SCATTER_SEEN:
         s->seen_row(in[0], in[1], now.scale, w->n, out[0]);

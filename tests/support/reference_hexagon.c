@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/seen.h"
+
 static double clamp01(double v)
 {
     return v < 0 ? 0 : v > 1 ? 1 : v;
@@ -252,6 +254,72 @@ static double fields_at(const struct field *near, const struct field *far, const
     return coverage;
 }
 
+// What is seen around near pixels: colours times weight, and the weight.
+static struct seen seen_of(const struct picture *c, const float *r, const struct field *near, int half)
+{
+    const int n = c->channels, width = (c->width + 1) / 2, height = (c->height + 1) / 2;
+    struct seen s = seen_new(width, height, n + 1);
+    for (int i = 0; i < (half ? width * height : c->width * c->height); i++) {
+        double *most = seen_at(&s, n + 1, half ? i % width : i % c->width / 2, half ? i / width : i / c->width / 2);
+        *most = fmax(*most, half ? 2 * near->q[i] : fmax(0, -r[i]));
+    }
+    for (int i = 0; i < 4 * width * height; i++) {
+        const int px = i % (2 * width), py = i / (2 * width), x = px / 2, y = py / 2;
+        const int at = clampi(py, c->height) * c->width + clampi(px, c->width);
+        double part = clamp01(1.5 + r[at]);
+        if (!half)
+            part = at != py * c->width + px || px >= c->width ? 0
+                   : r[at] < 0                                ? seen_part(r[at], seen_widest(&s, x, y))
+                                                              : 1;
+        for (int k = 0; k < n; k++)
+            *seen_at(&s, k, x, y) += part * c->plane[k][at] / 4;
+        *seen_at(&s, n, x, y) += part / 4;
+    }
+    for (int i = 0; half && i < width * height; i++) {
+        const double q = near->q[i], p = -2 * q;
+        const double more = (seen_part(p, seen_widest(&s, i % width, i / width)) - clamp01(1.5 + p)) * fmax(q, 1);
+        for (int k = 0; k < n; k++)
+            *seen_at(&s, k, i % width, i / width) += more * near->colour[k][i];
+        *seen_at(&s, n, i % width, i / width) += more * near->a[i];
+    }
+    return seen_around(s);
+}
+
+// Beyond the frame quads are like those at its edge where all is of half resolution.
+static double behind_sample(const struct seen *s, int p, int x, int y, int half)
+{
+    double v = 0;
+    for (int k = 0; k < 4 && half; k++)
+        v += (k & 1 ? 0.25 : 0.75) * (k & 2 ? 0.25 : 0.75) *
+             *seen_at(s, p, clampi(x / 2 + (k & 1 ? (x & 1 ? 1 : -1) : 0), s->width),
+                      clampi(y / 2 + (k & 2 ? (y & 1 ? 1 : -1) : 0), s->height));
+    return half ? v : seen_sample(s, p, x, y);
+}
+
+static double along(double degrees, double aspect, const struct picture *c, double x, double y, double p)
+{
+    const double dx = p * sin(degrees * M_PI / 180) / aspect, dy = p * -cos(degrees * M_PI / 180);
+    const double right = fmax(dx > 0 ? c->width - x : x, 1 / 1024.0),
+                 down = fmax(dy > 0 ? c->height - y : y, 1 / 1024.0);
+    return fmin(1, fmin(right / fabs(dx), down / fabs(dy)));
+}
+
+// What two blurs find of a near field that covers the whole frame, by Simpson's rule along the second.
+static double most_coverage(const struct picture *c, const struct hf_params *par, int x, int y, double p)
+{
+    const double turn = par->aperture.rotation, aspect = par->view.pixel_aspect,
+                 side[3] = {turn, turn + 240, turn + 120};
+    double sum = 0;
+    for (int k = 0; k < 9; k++) {
+        // Upwards and down left; upwards and down right; down left and down right.
+        const double second = side[k / 3 == 0 ? 1 : 2], first = side[k / 3 == 2];
+        const double d = along(second, aspect, c, x + 0.5, y + 0.5, p), t = d * p * (k % 3) / 2;
+        const double u = x + 0.5 + t * sin(second * M_PI / 180) / aspect, v = y + 0.5 - t * cos(second * M_PI / 180);
+        sum += d * (k % 3 == 1 ? 4 : 1) / 6 * along(first, aspect, c, u, v, p);
+    }
+    return sum / 3;
+}
+
 struct picture hexagon_reference(const struct picture *colour, const struct picture *r, const struct hf_params *p)
 {
     static struct line l[3];
@@ -269,18 +337,27 @@ struct picture hexagon_reference(const struct picture *colour, const struct pict
     near_field(&near_in, l, &near);
     far_field(&far_in, l, &far);
     struct picture out = picture_new(colour->width, colour->height, n);
+    struct seen seen = seen_of(colour, r->plane[0], &near_in, half);
     for (int i = 0; i < out.width * out.height; i++) {
         double nc[4], fc[4];
-        const double q = r->plane[0][i];
-        const double cover = fields_at(&near, &far, &far_in, half, i % out.width, i / out.width, nc, fc);
-        const double left = q < 0 ? own_of(cover, -q) : fmax(0, 1 - cover);
+        const int x = i % out.width, y = i / out.width;
+        const double q = r->plane[0][i], some = behind_sample(&seen, n, x, y, half);
+        const double cover = fields_at(&near, &far, &far_in, half, x, y, nc, fc);
+        const double part = q < 0 ? most_coverage(&out, p, x, y, -q) : 1;
+        const double left = fmax(0, part - cover);
         for (int c = 0; c < n; c++) {
             double b = colour->plane[c][i];
             if (q > 0)
                 b += (half ? clamp01(q / 2) : 1) * (fc[c] - b);
+            if (q < 0 && cover > 0) {
+                const double front = nc[c] / cover;
+                const double other = (behind_sample(&seen, c, x, y, half) + 1e-8 * front) / (some + 1e-8);
+                b = other + clamp01(2 + q) * (b - other);
+            }
             out.plane[c][i] = (float)(cover == 0 ? b : (nc[c] + left * b) / (cover + left));
         }
     }
+    seen_free(&seen);
     field_free(&near_in);
     field_free(&far_in);
     field_free(&near);

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "support/seen.h"
+
 // A radius as the nearest of 1024 an octave, and half the width of its row dy in 1/256 pixel.
 static double kept_radius(float r)
 {
@@ -72,114 +74,42 @@ static double clamp01(double v)
     return fmin(fmax(v, 0), 1);
 }
 
-// What is seen around near pixels, half resolution: planes of sharp and far colours times weight, then both weights, then
-// the largest near radius of each quad.
-enum { RIM = 20 };  // beyond the frame, what neighbourhoods of radii up to 23 pass on
-
-struct seen {
-    int width, height, channels;
-    double *plane[11];
-};
-
-static double *seen_at(const struct seen *s, int p, int x, int y)
-{
-    return &s->plane[p][(size_t)(y + RIM) * (size_t)(s->width + 2 * RIM) + (size_t)(x + RIM)];
-}
-
 static double own_part(double r)
 {
     return clamp01(1.5 - fabs(r));
 }
 
-// The largest near radius of a pixel's quad and those up to `reach` around it.
-static double widest_near(const struct picture *c, const float *radius, int i, int reach)
+// What is seen around near pixels: planes of sharp and far colours times weight, then both weights.
+static struct seen seen_of(const struct picture *c, const float *radius)
 {
-    double most = 0;
-    const int qx = i % c->width / 2, qy = i / c->width / 2;
-    for (int y = 2 * (qy - reach); y < 2 * (qy + reach) + 2; y++)
-        for (int x = 2 * (qx - reach); x < 2 * (qx + reach) + 2; x++)
-            if (x >= 0 && y >= 0 && x < c->width && y < c->height && radius[y * c->width + x] < -0.5f)
-                most = fmax(most, -radius[y * c->width + x]);
-    return most;
-}
-
-static struct seen seen_new(const struct picture *c, const float *radius)
-{
-    struct seen s = {(c->width + 1) / 2, (c->height + 1) / 2, c->channels, {0}};
-    const int n = c->channels;
-    for (int p = 0; p < 2 * n + 3; p++)
-        s.plane[p] = calloc((size_t)(s.width + 2 * RIM) * (size_t)(s.height + 2 * RIM), sizeof(double));
-    for (int i = 0; i < c->width * c->height; i++) {
+    const int n = c->channels, pixels = c->width * c->height;
+    struct seen s = seen_new((c->width + 1) / 2, (c->height + 1) / 2, 2 * n + 2);
+    for (int i = 0; i < pixels; i++)
+        if (radius[i] < -0.5f) {
+            double *near = seen_at(&s, 2 * n + 2, i % c->width / 2, i / c->width / 2);
+            *near = fmax(*near, -radius[i]);
+        }
+    for (int i = 0; i < pixels; i++) {
         const int x = i % c->width / 2, y = i / c->width / 2;
         const double r = fabs((double)radius[i]) > 0.5 ? radius[i] : 0;
-        const double nearer = clamp01(widest_near(c, radius, i, 7) / 2 + r);
-        const double own = r > 0 ? own_part(r) : fmax(clamp01(1.5 + r), nearer), far = r > 0 ? 1 - own : 0;
+        const double own = r > 0 ? own_part(r) : seen_part(r, seen_widest(&s, x, y)), far = r > 0 ? 1 - own : 0;
         for (int k = 0; k < n; k++) {
             *seen_at(&s, k, x, y) += own * c->plane[k][i] / 4;
             *seen_at(&s, n + k, x, y) += far * c->plane[k][i] / 4;
         }
         *seen_at(&s, 2 * n, x, y) += own / 4;
         *seen_at(&s, 2 * n + 1, x, y) += far / 4;
-        *seen_at(&s, 2 * n + 2, x, y) = widest_near(c, radius, i, 0);
     }
-    return s;
-}
-
-static void seen_free(struct seen *s)
-{
-    for (int p = 0; p < 11; p++)
-        free(s->plane[p]);
-}
-
-static double inside(const struct seen *s, int p, int x, int y)
-{
-    return x < -RIM || y < -RIM || x >= s->width + RIM || y >= s->height + RIM ? 0 : *seen_at(s, p, x, y);
-}
-
-// Neighbourhood j is j - 1's mean over three by three, 2^(j-1) apart; it weighs 4^-j, and less where 2^j is more than
-// half a quad's radius and 1.
-static struct seen seen_around(const struct picture *c, const float *radius)
-{
-    struct seen level = seen_new(c, radius), sum = seen_new(c, radius);
-    for (int j = 1; j < 5; j++) {
-        struct seen next = seen_new(c, radius);
-        for (int y = -RIM; y < level.height + RIM; y++)
-            for (int x = -RIM; x < level.width + RIM; x++) {
-                const double q = *seen_at(&level, 2 * c->channels + 2, x, y);
-                const double part = pow(0.25, j) * clamp01(2 - pow(2, j) / (q / 2 + 1));
-                for (int p = 0; p < 2 * c->channels + 2; p++) {
-                    double mean = 0;
-                    for (int k = 0; k < 9; k++)
-                        mean +=
-                            inside(&level, p, x + (k % 3 - 1) * (1 << (j - 1)), y + (k / 3 - 1) * (1 << (j - 1))) / 9;
-                    *seen_at(&next, p, x, y) = mean;
-                    *seen_at(&sum, p, x, y) += part * mean;
-                }
-            }
-        seen_free(&level);
-        level = next;
-    }
-    seen_free(&level);
-    return sum;
-}
-
-// A plane at a full-resolution pixel.
-static double seen_sample(const struct seen *s, int p, int x, int y)
-{
-    double v = 0;
-    for (int k = 0; k < 4; k++)
-        v += (k & 1 ? 0.25 : 0.75) * (k & 2 ? 0.25 : 0.75) *
-             inside(s, p, x / 2 + (k & 1 ? (x & 1 ? 1 : -1) : 0), y / 2 + (k & 2 ? (y & 1 ? 1 : -1) : 0));
-    return v;
+    return seen_around(s);
 }
 
 // What lies behind a near pixel, from what is seen around it, the far field there and the near one.
-static double behind(const struct seen *s, int k, int x, int y, const double *far, double front)
+static double behind(const struct seen *s, int n, int k, int x, int y, const double *far, double front)
 {
-    const double sharp = seen_sample(s, 2 * s->channels, x, y), blurred = seen_sample(s, 2 * s->channels + 1, x, y);
+    const double sharp = seen_sample(s, 2 * n, x, y), blurred = seen_sample(s, 2 * n + 1, x, y);
     const double reached = clamp01(16 * far[4]), v = far[4] > 0 ? far[k] / far[4] : 0;
     const double other = front + reached * (v - front);
-    const double unblurred = blurred > 0 ? seen_sample(s, s->channels + k, x, y) / blurred : 0;
+    const double unblurred = blurred > 0 ? seen_sample(s, n + k, x, y) / blurred : 0;
     const double shown = unblurred + reached * (v - unblurred), nothing = 1e-8;
     return (seen_sample(s, k, x, y) + blurred * shown + nothing * other) / (sharp + blurred + nothing);
 }
@@ -189,7 +119,7 @@ struct picture scatter_reference(const struct picture *c, const float *radius)
     const int n = c->width * c->height;
     double *sum[2] = {calloc((size_t)n * 5, sizeof(double)), calloc((size_t)n * 5, sizeof(double))};
     struct picture out = picture_copy(c);
-    struct seen seen = seen_around(c, radius);
+    struct seen seen = seen_of(c, radius);
     for (int i = 0; i < n; i++)
         if (fabsf(radius[i]) > 0.5f) {
             const double own = clamp01(1.5 - fabs((double)radius[i]));
@@ -203,7 +133,7 @@ struct picture scatter_reference(const struct picture *c, const float *radius)
             double back = far[4] > 0 ? far[k] / far[4] : v;
             double cover = near[4];
             if (radius[i] < -0.5f)
-                back = behind(&seen, k, i % c->width, i / c->width, far, front);
+                back = behind(&seen, c->channels, k, i % c->width, i / c->width, far, front);
             if (radius[i] < -0.5f)
                 cover /= visible_part(c, size, i % c->width, i / c->width);
             // What shows of a near pixel itself covers what is behind as its picture does.

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lies behind near pixels. Nobody has seen it; the best that a flat picture tells is what is seen around them:
+// averages over ever wider neighbourhoods, of which the nearest that holds anything counts most, up to about the near
+// pixel's own radius: farther in its picture hides all.
+//
+// Half resolution, every other quad kept (no decimation): so that a shift by a quad moves the result and no more.
+#include "pixel/behind.h"
+
+#include <string.h>
+
+#include "pixel/kernels.h"
+
+enum { WIDE = 7 };
+
+int hf_behind_levels(float largest)
+{
+    int levels = 1;
+    while (levels < HF_BEHIND_LEVELS && (float)(1 << levels) < 2 * hf_behind_span(largest))
+        levels++;
+    return largest > 0 ? levels : 0;
+}
+
+static int reach_of(int levels)
+{
+    return levels ? 1 << (levels - 1) : 0;  // and one more, for the upsampling
+}
+
+int hf_behind_halo(int levels)
+{
+    return levels ? reach_of(levels) + WIDE : 0;
+}
+
+// And room for a vector that begins within a row.
+static int stride_of(int reach)
+{
+    return ((HF_BEHIND_BLOCK + 2 * reach + 15) & ~15) + HF_PAD;
+}
+
+size_t hf_behind_floats(int levels, int planes)
+{
+    const int reach = reach_of(levels), rows = HF_BEHIND_BLOCK + 2 * reach;
+    const size_t plane = (size_t)(stride_of(reach) * rows), line = (size_t)(2 * stride_of(reach));
+    const size_t wide = (size_t)((stride_of(reach) + 2 * WIDE) * (rows + 2 * WIDE));
+    return levels ? (size_t)(2 * planes + 2) * plane + 3 * wide + 3 * line : 0;
+}
+
+// The largest near radius of each quad, of the planes and WIDE around; 0 beyond the frame. Returns whether some quad of
+// the block, or one of those around it, has any.
+static int load_near(const struct hf_behind *h, const struct hf_behind_source *source, const struct hf_frame *f,
+                     float *near)
+{
+    const struct hf_setup *s = f->s;
+    const int rows = h->rows + 2 * WIDE, x0 = h->x0 - WIDE, y0 = h->y0 - WIDE, inner = h->reach + WIDE - 1;
+    const int from = hf_max(x0, 0), to = hf_min(x0 + h->columns + 2 * WIDE, s->half_width);
+    float most = 0;
+    memset(near, 0, sizeof(float) * (size_t)(h->near_stride * rows));
+    for (int y = hf_max(y0, 0); y < hf_min(y0 + rows, s->half_height); y++)
+        source->near(f, y, from, to, near + (ptrdiff_t)(y - y0) * h->near_stride + from - x0);
+    for (int y = inner; y < rows - inner; y++)
+        for (int x = inner; x < h->columns + 2 * WIDE - inner; x++) {
+            const float q = near[(ptrdiff_t)y * h->near_stride + x];
+            most = q > most ? q : most;
+        }
+    return most > 0;
+}
+
+// The largest of each quad's neighbours up to WIDE = 1 + 2 + 4 away, each way. work: as large.
+static void spread_near(const struct hf_behind *h, const struct hf_frame *f, const float *near, float *work, float *out)
+{
+    const ptrdiff_t stride = h->near_stride, all = stride * (h->rows + 2 * WIDE);
+    const ptrdiff_t steps[] = {1, 2, 4, stride, 2 * stride, 4 * stride};
+    for (int k = 0; k < 6; k++) {
+        const float *in = k == 0 ? near : k & 1 ? work : out;
+        float *to = k & 1 ? out : work;
+        const ptrdiff_t step = steps[k];
+        memcpy(to, in, sizeof(float) * (size_t)step);
+        memcpy(to + all - step, in + all - step, sizeof(float) * (size_t)step);
+        f->k->behind.most_row(in, in + 2 * step, in + step, (int)(all - 2 * step), to + step);
+    }
+}
+
+void hf_behind_add(const struct hf_frame *f, const float *v, const float *weight, float scale, int n, float *out)
+{
+    f->k->behind.seen_row(v, weight, scale, n / 2, out);
+    if (n & 1)
+        out[n / 2] += v[n - 1] * (weight[n - 1] * scale);
+}
+
+// Quads of the block and all around it that is read; 0 beyond the frame.
+static void load(struct hf_behind *h, const struct hf_behind_source *source, const struct hf_frame *f, float *line)
+{
+    const int from = hf_max(h->x0, 0), to = hf_min(h->x0 + h->columns, f->s->half_width);
+    h->seen = 0;
+    for (int p = 0; p < h->planes; p++)
+        memset(h->level[p], 0, sizeof(float) * (size_t)(h->stride * h->rows));
+    for (int y = hf_max(h->y0, 0); y < hf_min(h->y0 + h->rows, f->s->half_height); y++) {
+        float *plane[HF_BEHIND_PLANES];
+        for (int p = 0; p < h->planes; p++)
+            plane[p] = h->level[p] + (ptrdiff_t)(y - h->y0) * h->stride + from - h->x0;
+        const float *widest = h->widest + (ptrdiff_t)(y - h->y0) * h->near_stride + from - h->x0;
+        h->seen |= source->seen(f, y, from, to, widest, line, plane);
+    }
+}
+
+// The mean of three by three, `step` apart, of what lies `rim` or more inside the planes.
+static void widen(const struct hf_behind *h, const struct hf_frame *f, float *level, float *line, int step, int rim)
+{
+    const ptrdiff_t stride = h->stride, down = step * stride;
+    const int n = h->columns - 2 * rim;
+    for (int y = rim - step; y < h->rows - rim + step; y++) {
+        const float *in = level + y * stride + rim;
+        f->k->behind.third_row(in - step, in + step, in, n, line + y * stride + rim);
+    }
+    for (int y = rim; y < h->rows - rim; y++) {
+        const float *in = line + y * stride + rim;
+        f->k->behind.third_row(in - down, in + down, in, n, level + y * stride + rim);
+    }
+}
+
+// Add a level to the result, where a quad's largest near radius asks for it.
+static void add_level(const struct hf_behind *h, const struct hf_frame *f, int j, const float *part)
+{
+    const int rim = h->reach - 1, n = h->columns - 2 * rim;
+    for (int p = 0; p < h->planes; p++)
+        for (int y = rim; y < h->rows - rim && (h->seen >> p & 1); y++) {
+            const ptrdiff_t at = (ptrdiff_t)y * h->stride + rim;
+            if (j)
+                f->k->behind.add_part(h->level[p] + at, part + at, n, h->sum[p] + at);
+            else
+                memcpy(h->sum[p] + at, h->level[p] + at, sizeof(float) * (size_t)n);
+        }
+}
+
+static void set_part(const struct hf_behind *h, const struct hf_frame *f, int j, float *part)
+{
+    const float share = 1 / (float)(1 << 2 * j), size = (float)(1 << j);
+    for (int y = 0; y < h->rows; y++)
+        f->k->behind.part_row(h->near + (ptrdiff_t)y * h->near_stride, share, size, h->columns,
+                              part + (ptrdiff_t)y * h->stride);
+}
+
+int hf_behind_make(struct hf_behind *h, const struct hf_behind_source *source, const struct hf_frame *f,
+                   struct hf_rect r, int levels, float *memory)
+{
+    h->reach = reach_of(levels);
+    h->stride = stride_of(h->reach);
+    h->x0 = r.x0 - h->reach;
+    h->y0 = r.y0 - h->reach;
+    h->columns = r.x1 - r.x0 + 2 * h->reach;
+    h->rows = r.y1 - r.y0 + 2 * h->reach;
+    const size_t plane = (size_t)(h->stride * (HF_BEHIND_BLOCK + 2 * h->reach));
+    const int planes = h->planes;
+    for (int p = 0; p < planes; p++) {
+        h->level[p] = memory + plane * (size_t)p;
+        h->sum[p] = memory + plane * (size_t)(planes + p);
+    }
+    float *line = memory + plane * (size_t)(2 * planes), *part = line + plane, *near = part + plane;
+    h->near_stride = h->stride + 2 * WIDE;
+    const size_t wide = (size_t)(h->near_stride * (HF_BEHIND_BLOCK + 2 * h->reach + 2 * WIDE));
+    if (!load_near(h, source, f, near))
+        return 0;
+    spread_near(h, f, near, near + wide, near + 2 * wide);
+    h->near = near + WIDE * h->near_stride + WIDE;
+    h->widest = h->near + 2 * wide;
+    load(h, source, f, near + 3 * wide);
+    if (!h->seen)
+        return 0;
+    add_level(h, f, 0, part);
+    for (int j = 1; j < levels; j++) {
+        for (int p = 0; p < planes; p++)
+            if (h->seen >> p & 1)
+                widen(h, f, h->level[p], line, 1 << (j - 1), (1 << j) - 1);
+        set_part(h, f, j, part);
+        add_level(h, f, j, part);
+    }
+    return 1;
+}
+
+void hf_behind_sample(const struct hf_behind *h, const struct hf_frame *f, int p, int x, int y, int n, float *out)
+{
+    const float *own = h->sum[p] + (ptrdiff_t)((y >> 1) - h->y0) * h->stride + (x >> 1) - h->x0;
+    if (h->seen >> p & 1)
+        f->k->behind.up_row(own, own + (y & 1 ? h->stride : -h->stride), (n + 1) / 2, out);
+    else
+        memset(out, 0, sizeof *out * (size_t)n);
+}
