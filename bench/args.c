@@ -57,6 +57,8 @@ static const struct tool_option options[] = {
     {"png", 0, TOOL_RUN, "FILE", "Write the first chart as a picture.", TEXT(png), .commands = "tradeoff"},
     {"csv", 0, TOOL_RUN, "FILE", "Write the numbers as CSV.", TEXT(csv), .commands = "tradeoff"},
     {"ladder", 0, TOOL_RUN, "FILE", "Write the library's table of settings.", TEXT(ladder), .commands = "tradeoff"},
+    {"readme", 0, TOOL_RUN, "FILE", "Write what a person should take from it between two marks of this file.",
+     TEXT(readme), .commands = "tradeoff"},
     {"cache", 0, TOOL_RUN, "FILE|none", "Where measurements are kept. Default tradeoff.txt in the user's "
      "cache folder.", TEXT(cache), .commands = "tradeoff"},
     {"help", 'h', TOOL_RUN, "[man]", "Print this; --help=man: the man page.", .parse = tool_parse_help},

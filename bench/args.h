@@ -25,9 +25,9 @@ struct bench_args {
     const char *json;  // file, "-" for stdout, NULL for none
     // tradeoff
     int quick;
-    const char *setting;                    // the only one to measure: options as one word; NULL: the list
-    const char *csv, *html, *png, *ladder;  // files to write; NULL: none
-    const char *cache;                      // file, "none", or NULL: the user's cache folder
+    const char *setting;                             // the only one to measure: options as one word; NULL: the list
+    const char *csv, *html, *png, *ladder, *readme;  // files to write; NULL: none
+    const char *cache;                               // file, "none", or NULL: the user's cache folder
     enum hf_format in, out;
     struct hf_params params;
     int full;                                                    // stability: the long run

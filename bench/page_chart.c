@@ -19,7 +19,7 @@ struct mark {
     const char *name;
     enum hf_engine engine;
     double x, low, high, y;
-    int on_front;
+    int on_front, tied;  // tied: not on it, but all that err no more overlap its time
 };
 
 struct box {
@@ -151,9 +151,9 @@ static void add_others(struct view *v)
         v->chart->region != BENCH_WHOLE || v->chart->both)
         return;
     v->mark[v->marks++] = (struct mark){-1,         "Blender Defocus (elsewhere)", 0, blender_ms, blender_ms,
-                                        blender_ms, pow(10, -blender / 20),        0};
+                                        blender_ms, pow(10, -blender / 20),        0, 0};
     v->mark[v->marks++] =
-        (struct mark){-1, "GEGL lens-blur (elsewhere)", 0, gegl_ms, gegl_ms, gegl_ms, pow(10, -gegl / 20), 0};
+        (struct mark){-1, "GEGL lens-blur (elsewhere)", 0, gegl_ms, gegl_ms, gegl_ms, pow(10, -gegl / 20), 0, 0};
 }
 
 static int by_time(const void *a, const void *b)
@@ -171,6 +171,12 @@ static void find_front(struct view *v)
             v->mark[i].on_front = 1;
             least = v->mark[i].y;
         }
+    for (int i = 0; i < v->marks; i++) {
+        struct mark *m = &v->mark[i];
+        m->tied = m->result >= 0 && !m->on_front;
+        for (int k = 0; k < v->marks && m->tied; k++)
+            m->tied = !(v->mark[k].result >= 0 && v->mark[k].y <= m->y && v->mark[k].high < m->low);
+    }
 }
 
 static int collect(struct view *v)
@@ -183,7 +189,7 @@ static int collect(struct view *v)
         const struct trade_interval ms = time_of(v->chart, r);
         const double e = v->chart->error(v->t, r, v->chart->region);
         if (isfinite(e) && e > 0 && ms.median > 0)
-            v->mark[v->marks++] = (struct mark){i, r->setting->name, r->engine, ms.median, ms.low, ms.high, e, 0};
+            v->mark[v->marks++] = (struct mark){i, r->setting->name, r->engine, ms.median, ms.low, ms.high, e, 0, 0};
     }
     add_others(v);
     qsort(v->mark, (size_t)v->marks, sizeof *v->mark, by_time);
@@ -361,7 +367,10 @@ static void draw_mark(struct view *v, const struct mark *m)
 {
     const double x = at_x(v, m->x), y = at_y(v, m->y);
     const struct trade_result *r = m->result >= 0 ? &v->t->result[m->result] : NULL;
-    fprintf(v->out, "<g class=\"pt %s%s\"", r ? hf_engine_name(m->engine) : "other", m->on_front ? " on" : "");
+    fprintf(v->out, "<g class=\"pt %s%s\"", r ? hf_engine_name(m->engine) : "other",
+            m->on_front ? " on"
+            : m->tied   ? " on tied"
+                        : "");
     if (r)
         fprintf(v->out, " data-i=\"%d\" tabindex=\"%d\" role=\"button\" aria-label=\"", m->result,
                 m->on_front ? 0 : -1);

@@ -127,15 +127,32 @@ static int write_file(const char *path, const char *option, const struct trade *
     return 0;
 }
 
+// The words that were typed stand in the README, but for those of this run alone.
+static int readme(const struct trade *t, struct tool_error *error)
+{
+    char command[512] = "hyperfocal-bench tradeoff";
+    const struct bench_args *a = t->args;
+    for (int i = 0; i < a->word_count; i++) {
+        const size_t n = strlen(command);
+        const char *word = a->words[i];
+        if (!strncmp(word, "--html", 6) || !strncmp(word, "--cache", 7) || !strncmp(word, "--csv", 5) ||
+            !strncmp(word, "--json", 6))
+            i += !strchr(word, '=');
+        else
+            snprintf(command + n, sizeof command - n, strchr(word, ' ') ? " \"%s\"" : " %s", word);
+    }
+    return trade_readme(a->readme, t, command, error);
+}
+
 static int report(struct trade_run *run, struct tool_error *error)
 {
     const struct trade *t = run->t;
     const struct bench_args *a = t->args;
     if (write_file(a->csv, "--csv", t, trade_csv, error))
         return -1;
-    if (a->ladder && !trade_has_engines(t))
-        return tool_fail(error, -1, "--ladder %s: one setting is no ladder, leave --setting away", a->ladder);
     if (write_file(a->ladder, "--ladder", t, trade_ladder_table, error))
+        return -1;
+    if (a->readme && readme(t, error))
         return -1;
     if (a->html && bench_page_write(run, a->html, error))
         return -1;
@@ -154,6 +171,10 @@ int bench_tradeoff(struct bench_args *args, struct tool_error *error)
     bench_machine_date(t.date, sizeof t.date);
     t.commit = bench_machine_commit();
     int err = choose_settings(&t, &own) ? tool_fail(error, -1, "there is not enough memory") : 0;
+    if (!err && args->ladder && args->setting)
+        err = tool_fail(error, -1, "--ladder %s needs all settings, leave --setting away", args->ladder);
+    if (!err && args->readme)
+        err = trade_readme_check(args->readme, error);
     if (!err)
         err = trade_run_open(&run, &t, error);
     if (!err)

@@ -6,6 +6,7 @@
 //   tradeoff_scene.c   pictures with their truth
 //   tradeoff_cache.c   what was measured before, by build, machine and setting
 //   tradeoff_front.c   medians, the Pareto front, the ladder that the library uses
+//   tradeoff_readme.c  its part of the README
 //   tradeoff_report.c  table, CSV, JSON and the library's own table
 //   page*.c            the HTML page and its charts
 #ifndef HF_BENCH_TRADEOFF_H
@@ -21,6 +22,7 @@ enum {
     TRADE_SETTINGS = 160,
     TRADE_ROUNDS = 9,
     TRADE_PASSES = HF_MAX_PASSES,
+    TRADE_RADIUS = 12,  // of `both`, pixels
 };
 
 // A setting is what one types: the same words for both programs.
@@ -130,9 +132,19 @@ void trade_cache_key(char *key, size_t size, const char *cpu, int threads);
 void trade_table(FILE *out, const void *t);
 // What a person should take from it, in three sentences, each with something before and after it.
 void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after);
+// Qualities, what they choose, cost and err, as rows of Markdown.
+void trade_qualities_table(FILE *out, const struct trade *t);
+// The same two between the marks of a file, with the command that measured. Returns 0, or -1 with *error filled.
+int trade_readme_check(const char *path, struct tool_error *error);  // before anything is measured
+int trade_readme(const char *path, const struct trade *t, const char *command, struct tool_error *error);
+// Taps of the same reach, on `both`: milliseconds of two passes and of the frame. Returns 0 for a setting of another kind.
+struct trade_taps {
+    const char *name;
+    double computation, fill, frame, db;
+};
+int trade_taps(const struct trade *t, int result, struct trade_taps *taps);
 void trade_csv(FILE *out, const struct trade *t);
-// src/frame/ladder_table.h, from which the library takes what each engine costs: 1 if all of them were measured.
-int trade_has_engines(const struct trade *t);
+// src/frame/ladder_table.h
 void trade_ladder_table(FILE *out, const struct trade *t);
 void trade_json(FILE *out, const void *t);
 

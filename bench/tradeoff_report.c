@@ -76,16 +76,89 @@ static void row(FILE *out, const struct trade *t, const struct trade_result *r, 
     fprintf(out, "  %s\n", r->setting->options);
 }
 
-static void qualities(FILE *out, const struct trade *t)
+static const char *const quality_names[TRADE_QUALITIES] = {"draft", "standard", "high", "best"};
+
+static const struct trade_result *at_step(const struct trade *t, int step)
 {
-    static const char *const names[TRADE_QUALITIES] = {"draft", "standard", "high", "best"};
+    for (int i = 0; i < t->results; i++)
+        if (step > 0 && t->result[i].step == step)
+            return &t->result[i];
+    return NULL;
+}
+
+// What stands for a quality where blur reaches that far: the library's rule.
+static const struct trade_result *of_quality(const struct trade *t, int quality, double radius)
+{
     int place[TRADE_QUALITIES];
     if (t->results < 2 || trade_qualities(t, place))
+        return NULL;
+    const struct trade_result *r = &t->result[place[quality]];
+    for (const struct trade_result *next; r->farthest < radius && (next = at_step(t, r->step + 1));)
+        r = next;
+    return r;
+}
+
+static void qualities(FILE *out, const struct trade *t)
+{
+    if (!of_quality(t, 0, 0))
         return;
     fputc('\n', out);
-    for (int q = 0; q < TRADE_QUALITIES; q++)
-        fprintf(out, "--quality %-9s %8.2f ms  %6.2f dB  %s\n", names[q], t->result[place[q]].ms.median,
-                db(t->result[place[q]].error), t->result[place[q]].setting->options);
+    for (int q = -1; q < TRADE_QUALITIES; q++) {
+        const struct trade_result *r = of_quality(t, q < 0 ? 0 : q, q < 0 ? TRADE_RADIUS : INFINITY);
+        fprintf(out, "--quality %-9s %-18s %8.2f ms  %6.2f dB  %s\n", quality_names[q < 0 ? 0 : q],
+                q < 0 ? "radius 12 or less" : "any radius", r->ms.median, db(r->error), r->setting->options);
+    }
+}
+
+void trade_qualities_table(FILE *out, const struct trade *t)
+{
+    if (!of_quality(t, 0, 0))
+        return;
+    fputs("| `--quality` | chooses | ms | dB |\n|---|---|---|---|\n", out);
+    for (int q = -1; q < TRADE_QUALITIES; q++) {
+        const struct trade_result *r = of_quality(t, q < 0 ? 0 : q, q < 0 ? TRADE_RADIUS : INFINITY);
+        fprintf(out, "| %s%s | `%s` | %.1f | %.1f |\n", quality_names[q < 0 ? 0 : q],
+                q < 0   ? ", radius up to 12"
+                : q > 0 ? ""
+                        : ", with a lens",
+                r->setting->options, r->ms.median, db(r->error));
+    }
+}
+
+static double pass_of_both(const struct trade_result *r, const char *name)
+{
+    double values[TRADE_ROUNDS];
+    for (int p = 0; p < hf_pass_count(r->engine); p++)
+        if (!strcmp(hf_pass_name(r->engine, p), name)) {
+            for (int i = 0; i < r->both.n; i++)
+                values[i] = r->both.pass[i][p];
+            return trade_interval(values, r->both.n).median;
+        }
+    return NAN;
+}
+
+int trade_taps(const struct trade *t, int i, struct trade_taps *taps)
+{
+    const struct trade_result *r = &t->result[i];
+    if (strcmp(r->setting->knob, "taps"))
+        return 0;
+    *taps = (struct trade_taps){r->setting->name, pass_of_both(r, "Computation"), pass_of_both(r, "Fill"),
+                                r->both_ms.median, db(r->error)};
+    return 1;
+}
+
+static void taps_table(FILE *out, const struct trade *t)
+{
+    struct trade_taps taps;
+    int n = 0;
+    for (int i = 0; i < t->results; i++)
+        if (trade_taps(t, i, &taps)) {
+            if (!n++)
+                fprintf(out, "\n1920 x 1080, scene `both`, the same reach, ms:\n%-22s %11s %7s %7s %7s\n", "",
+                        "Computation", "Fill", "frame", "dB");
+            fprintf(out, "%-22s %11.2f %7.2f %7.2f %7.2f\n", taps.name, taps.computation, taps.fill, taps.frame,
+                    taps.db);
+        }
 }
 
 static const struct trade_result *by_options(const struct trade *t, const char *options)
@@ -96,33 +169,45 @@ static const struct trade_result *by_options(const struct trade *t, const char *
     return NULL;
 }
 
-void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after)
+static void say_taps(FILE *out, const struct trade *t, const char *before, const char *after)
 {
-    int place[TRADE_QUALITIES];
     const struct trade_result *few = by_options(t, "--engine gather --fill max --rings 3");
     const struct trade_result *many = by_options(t, "--engine gather --fill none");
-    if (t->results < 2 || trade_qualities(t, place) || place[0] == place[1])
+    if (!few || !many)
         return;
-    const struct trade_result *draft = &t->result[place[0]], *standard = &t->result[place[1]];
-    const struct trade_result *best = &t->result[place[TRADE_QUALITIES - 1]];
+    const double few_ms = pass_of_both(few, "Computation"), many_ms = pass_of_both(many, "Computation");
     fprintf(
         out,
-        "%sA draft takes %.1f ms for a frame of %d x %d (%.1f for 1920 x 1080, blurred everywhere) and reaches %.1f dB "
-        "against what a ray-traced lens sees.%s\n",
-        before, draft->ms.median, t->width[0], t->height[0], draft->both_ms.median, db(draft->error), after);
+        "%sThe chapter's 49 taps with fill reach as far as 144 without, a third of the taps. On this CPU that is %.1f "
+        "against %.1f ms in the pass Computation, %.2f times, and %.1f against %.1f ms for a whole frame of 1920 x "
+        "1080, %.2f times, at %.1f dB and %.1f.%s\n",
+        before, few_ms, many_ms, many_ms / few_ms, few->both_ms.median, many->both_ms.median,
+        many->both_ms.median / few->both_ms.median, db(few->error), db(many->error), after);
+}
+
+void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after)
+{
+    const struct trade_result *soft = of_quality(t, 0, TRADE_RADIUS), *draft = of_quality(t, 0, INFINITY);
+    const struct trade_result *standard = of_quality(t, 1, INFINITY), *best = of_quality(t, 3, INFINITY);
+    if (!soft || draft == standard)
+        return;
     fprintf(
         out,
-        "%sThe standard quality takes %.0f times as long, %.0f ms, and comes %.1f dB closer; the best there is takes "
-        "%.1f times that for another %.2f dB.%s\n",
-        before, standard->ms.median / draft->ms.median, standard->ms.median, db(standard->error) - db(draft->error),
-        best->ms.median / standard->ms.median, db(best->error) - db(standard->error), after);
-    if (few && many)
-        fprintf(
-            out,
-            "%sAt 1920 x 1080 the gather's 49 taps with fill take %.1f ms and its 144 without %.1f: on this CPU the "
-            "taps that are saved are %.2f times the time, and the error is %.2f dB to %.2f.%s\n",
-            before, few->both_ms.median, many->both_ms.median, many->both_ms.median / few->both_ms.median,
-            db(few->error), db(many->error), after);
+        "%sA draft with a lens takes %.1f ms for a frame of %d x %d and reaches %.1f dB against what a ray-traced lens "
+        "sees%s",
+        before, draft->ms.median, t->width[0], t->height[0], db(draft->error), soft == draft ? "." : "; where");
+    if (soft != draft)
+        fprintf(out, " blur of one width up to 12 pixels will do, a draft takes %.1f ms (%.1f at 1920 x 1080).",
+                soft->ms.median, soft->both_ms.median);
+    fprintf(out, "%s\n%sThe standard quality takes %.1f times as long, %.0f ms, and comes %.1f dB closer", after,
+            before, standard->ms.median / draft->ms.median, standard->ms.median,
+            db(standard->error) - db(draft->error));
+    if (best != standard)
+        fprintf(out, "; the best there is takes %.1f times that for another %.2f dB.%s\n",
+                best->ms.median / standard->ms.median, db(best->error) - db(standard->error), after);
+    else
+        fprintf(out, ", which is the best there is.%s\n", after);
+    say_taps(out, t, before, after);
 }
 
 void trade_table(FILE *out, const void *what)
@@ -144,6 +229,7 @@ void trade_table(FILE *out, const void *what)
         "the number is the step of the ladder.\nDistances from the truth: PSNR in dB, display-encoded, by region; "
         "FLIP; SSIM; linear RMSE; energy over the truth's.\nrounding: linear RMSE from double precision; demo: "
         "display RMSE from the published demo; flicker: of a focus pull.\n");
+    taps_table(out, t);
     qualities(out, t);
     fputc('\n', out);
     trade_sentences(out, t, "", "");
@@ -292,28 +378,12 @@ static double megapixels(const struct trade *t)
     return sum;
 }
 
-static const struct trade_result *at_step(const struct trade *t, int step)
-{
-    for (int i = 0; i < t->results; i++)
-        if (t->result[i].step == step)
-            return &t->result[i];
-    return NULL;
-}
-
 static double of_engine(const struct trade *t, int engine)
 {
     char options[64];
     snprintf(options, sizeof options, "--engine %s", hf_engine_name((enum hf_engine)engine));
     const struct trade_result *r = by_options(t, options);
     return r ? r->ms.median : 0;
-}
-
-int trade_has_engines(const struct trade *t)
-{
-    for (int e = 0; e < HF_ENGINE_COUNT; e++)
-        if (!(of_engine(t, e) > 0))
-            return 0;
-    return 1;
 }
 
 void trade_ladder_table(FILE *out, const struct trade *t)

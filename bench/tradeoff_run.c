@@ -11,9 +11,10 @@ enum {
     BOTH_WIDTH = 1920,
     BOTH_HEIGHT = 1080,
     PULL = 5,
-    FEW = 3,  // frames whose median is a sample, where they are fast
+    FEW = 3,
+    MOST = 15,  // frames whose median is a sample, where they are fast
 };
-static const double fast_ms = 40;
+static const double fast_ms = 40, sample_ms = 60;
 static const float pull_step = 0.25f;  // pixels of radius between the frames of a focus pull
 
 static void keep_message(void *cookie, enum hf_log_level level, const char *message)
@@ -111,7 +112,7 @@ int trade_run_parse(struct trade_run *run, struct tool_error *error)
 
 static int open_both(struct trade_run *run, struct tool_error *error)
 {
-    const struct bench_optics optics = {20, 10, 12};
+    const struct bench_optics optics = {20, 10, TRADE_RADIUS};
     if (bench_scene_paint(&run->both, "both", BOTH_WIDTH, BOTH_HEIGHT, &optics, error))
         return -1;
     if (bench_image_alloc(&run->both_in, BOTH_WIDTH, BOTH_HEIGHT, HF_FORMAT_R11G11B10F) ||
@@ -175,7 +176,7 @@ static struct hf_params params_of(const struct trade_run *run, int result, int s
         p.focus = 20;
         p.range.distance = 10;
         if (!args->max_radius_given)
-            p.max_radius = 12;
+            p.max_radius = TRADE_RADIUS;
         return p;
     }
     const struct trade_scene *s = &run->scene[scene];
@@ -293,18 +294,22 @@ int trade_run_time(struct trade_run *run, int result, int scene, struct tool_err
 {
     struct trade_result *r = &run->t->result[result];
     struct trade_time *time = scene < 0 ? &r->both : &r->at[scene].time;
-    double ms[FEW], pass[FEW][TRADE_PASSES];
+    double ms[MOST], pass[MOST][TRADE_PASSES];
     // The first frame after another setting's arranges its memory anew.
     if (timed(run, result, scene, &ms[0], pass[0], error) || timed(run, result, scene, &ms[0], pass[0], error))
         return -1;
-    int middle = 0;
-    if (ms[0] < fast_ms) {
-        for (int i = 1; i < FEW; i++)
-            if (timed(run, result, scene, &ms[i], pass[i], error))
-                return -1;
-        for (int i = 0; i < FEW; i++)
-            if ((ms[i] > ms[(i + 1) % FEW]) != (ms[i] > ms[(i + 2) % FEW]))
-                middle = i;
+    int n = 1, middle = 0;
+    if (ms[0] < fast_ms)
+        n = (int)fmin(fmax(sample_ms / ms[0], FEW), MOST) | 1;
+    for (int i = 1; i < n; i++)
+        if (timed(run, result, scene, &ms[i], pass[i], error))
+            return -1;
+    for (int i = 0; i < n; i++) {
+        int less = 0;
+        for (int k = 0; k < n; k++)
+            less += ms[k] < ms[i] || (ms[k] == ms[i] && k < i);
+        if (less == n / 2)
+            middle = i;
     }
     time->sample[time->n] = ms[middle];
     memcpy(time->pass[time->n++], pass[middle], sizeof pass[middle]);

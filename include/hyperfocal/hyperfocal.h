@@ -501,8 +501,8 @@ struct hf_choice {
 // max_radius; without it 12 pixels at 1080 lines with the range model, and with a lens or HF_DEPTH_COC any radius: then no
 // step of the gaussian engine will do, whose one blur is as wide everywhere (twice its standard deviation). choice may be
 // NULL. Errors: HF_ERR_ARG for a quality or a height that is none.
-HF_API int hf_choose_quality(int height, const struct hf_depth *depth, struct hf_params *params, enum hf_quality quality,
-                             struct hf_choice *choice);
+HF_API int hf_choose_quality(int height, const struct hf_depth *depth, struct hf_params *params,
+                             enum hf_quality quality, struct hf_choice *choice);
 // The same by the largest error that is acceptable, as in hf_choice: more than 0, at most 1. The cheapest step that is
 // expected to err no more, or the last one, whose error may then be larger.
 HF_API int hf_choose_error(int height, const struct hf_depth *depth, struct hf_params *params, float error,

@@ -47,12 +47,22 @@ bad "--image|--truth" truth --image a.exr
 bad "missing.exr" truth --image missing.exr --truth missing.exr
 bad "lights.exr|1280 x 720|640 x 360" truth --image "$source_root/images/lights-before.png" \
     --truth "$source_root/images/lights.exr"
+bad "--ladder|--setting" tradeoff --ladder x.h --setting "--engine gaussian"
+bad "--readme|missing.md" tradeoff --readme missing.md
+echo 'no marks' >plain.md
+bad "--readme|plain.md|<!-- /tradeoff -->" tradeoff --readme plain.md
 for command in passes truth tradeoff scaling batch stability; do
     "$bench" --help >out 2>err && grep -q "^  $command " out
     result "--help tells of $command" $?
 done
 [ "$(awk 'length($0) > 80' out | wc -l)" -eq 0 ]
 result "--help fits 80 columns" $?
+# What stands between the marks of a file is made anew, what stands around them stays.
+printf '%s\n' before '<!-- tradeoff: made by hyperfocal-bench, do not edit -->' old '<!-- /tradeoff -->' after >marked.md
+"$bench" tradeoff --quick --cache none --setting "--engine gaussian --max-radius 0" --readme marked.md >out 2>err &&
+    [ "$(head -n 1 marked.md)$(tail -n 1 marked.md)" = beforeafter ] && ! grep -q old marked.md &&
+    grep -q 'hyperfocal-bench tradeoff --quick --setting' marked.md && [ "$(grep -c tradeoff: marked.md)" -eq 1 ]
+result "--readme" $?
 "$bench" --help=man >out 2>err && grep -q '^.TH hyperfocal-bench 1' out && grep -q '^.SH COMMANDS' out
 result "--help=man" $?
 
