@@ -5,6 +5,9 @@
 #include "cli/batch.h"
 
 #include <errno.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -336,6 +339,17 @@ static int exit_code(const struct batch *b)
     return p->failed && b->bad_arguments == p->failed ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED;
 }
 
+// The next frame takes the memory that the last one gave back, in place of pages that the system has to clear first: a
+// quarter of the time of a shot that is not compressed.
+static void keep_memory(void)
+{
+#ifdef __GLIBC__
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, -1);
+#endif
+}
+
 int cli_batch_wanted(const struct cli_args *args, const struct cli_shot *shot)
 {
     return shot->sequence || args->resume || args->log_file || args->keys || args->chunk;
@@ -345,6 +359,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
 {
     struct batch b = {.args = args, .shot = shot};
     error->text[0] = '\0';
+    keep_memory();
     if (shot->missing)
         tool_print_line("%d frames are missing: %s", shot->missing, shot->gaps);
     int status = cli_plan_open(&b.plan, args, shot, error);
