@@ -1,22 +1,70 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library's own functions: any parameters, formats, strides, sizes to 256, failing allocations. A call is refused or
-// it works; it touches nothing but what its arguments describe, and gives all memory back.
+// The library's own functions: any parameters, formats, strides, sizes to 256, failing allocations, instruction sets. A
+// call is refused or it works; it touches nothing but what its arguments describe, and gives all memory back. Without
+// AddressSanitizer every block ends where a page begins that nobody may touch.
 #include <float.h>
 #include <math.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "fuzz/fuzz.h"
 #include "hyperfocal/hyperfocal.h"
 
 // ---- memory ----
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ADDRESS_SANITIZER
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define ADDRESS_SANITIZER
+#endif
+
+#ifdef ADDRESS_SANITIZER
+static void *block_of(size_t size, size_t align)
+{
+    void *p = NULL;
+    return posix_memalign(&p, align < sizeof(void *) ? sizeof(void *) : align, size ? size : 1) ? NULL : p;
+}
+
+static void free_block(void *p)
+{
+    free(p);
+}
+#else
+enum { PAGE = 4096 };
+
+// A page that says how long it is, the block at the end of its pages, a page that nobody may touch.
+static void *block_of(size_t size, size_t align)
+{
+    const size_t whole = ((size ? size : 1) + align - 1) / align * align;
+    const size_t room = (whole + PAGE - 1) / PAGE * PAGE, all = room + 2 * PAGE;
+    char *start = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (start == MAP_FAILED)
+        return NULL;
+    memcpy(start, &all, sizeof(all));
+    MUST(!mprotect(start + PAGE + room, PAGE, PROT_NONE));
+    return start + PAGE + room - whole;
+}
+
+static void free_block(void *p)
+{
+    if (!p)
+        return;
+    char *start = (char *)((uintptr_t)p / PAGE * PAGE) - PAGE;  // it begins in the second page
+    size_t all;
+    memcpy(&all, start, sizeof(all));
+    MUST(!munmap(start, all));
+}
+#endif
+
 static long live, calls, fails_at;
 
 static void *take(void *cookie, size_t size, size_t align)
 {
     (void)cookie;
-    void *p = NULL;
-    if (calls++ == fails_at || posix_memalign(&p, align, size))
+    void *p = calls++ == fails_at ? NULL : block_of(size, align);
+    if (!p)
         return NULL;
     live++;
     return memset(p, 0xff, size);
@@ -27,7 +75,7 @@ static void give(void *cookie, void *p)
     (void)cookie;
     MUST(p != NULL);
     live--;
-    free(p);
+    free_block(p);
 }
 
 // ---- arguments ----
@@ -116,28 +164,32 @@ static struct hf_params any_params(struct bytes *b)
     return p;
 }
 
-static size_t row_bytes(enum hf_format format, int width)
+// Mostly 1 to `most`; now and then what is refused. Nothing that is accepted and takes gigabytes.
+static int any_size(struct bytes *b, unsigned most)
 {
-    static const size_t pixel[] = {16, 12, 8, 4, 4};
-    return (unsigned)format < 5 ? pixel[format] * (size_t)width : 0;
+    const unsigned v = take_byte(b);
+    if (v < 255)
+        return 1 + (int)(v % most);
+    const int odd = (int)take_word(b);
+    return odd >= 1 && odd <= 65536 ? -odd : odd;
 }
 
 // Memory for what the descriptor says, filled with anything; if it cannot be true, none is needed.
-static void *any_plane(struct bytes *b, enum hf_format format, int w, int h, ptrdiff_t *stride, void **block)
+static void *any_plane(struct bytes *b, size_t pixel, int w, int h, ptrdiff_t *stride, void **block)
 {
-    const size_t row = row_bytes(format, w);
+    const size_t row = w > 0 ? pixel * (size_t)w : 0;
     const unsigned kind = take_byte(b);
     ptrdiff_t step = (ptrdiff_t)row + (kind % 4 == 0 ? kind / 4 : 0);
     if (kind == 255)
-        step = (ptrdiff_t)take_word(b) - (1 << 20);
+        step = h > 1 ? (ptrdiff_t)(take_word(b) & 0x1ffff) - (1 << 16) : (ptrdiff_t)take_word(b) - (1 << 20);
     if (kind % 5 == 4)
         step = -step;
     *stride = step;
     const size_t size = (step < 0 ? (size_t)-step : (size_t)step);
-    if (!row || w < 1 || h < 1 || size < row || size > 1u << 16)
-        return *block = malloc(1);  // to be refused
+    if (!row || h < 1 || w > 65536 || h > 65536 || size < row)
+        return *block = block_of(1, 1);  // to be refused
     const size_t offset = kind % 7 == 6 ? 1 : 0, bytes = size * (size_t)(h - 1) + row + offset;
-    unsigned char *p = *block = malloc(bytes);
+    unsigned char *p = *block = block_of(bytes, 4);
     MUST(p != NULL);
     uint32_t state = take_word(b) | 1;
     const int calm = kind & 1;
@@ -151,13 +203,43 @@ static void *any_plane(struct bytes *b, enum hf_format format, int w, int h, ptr
 
 static struct hf_image any_image(struct bytes *b, int w, int h, void *blocks[4])
 {
-    struct hf_image m = {.width = w, .height = h, .format = (enum hf_format)any_choice(b, 5)};
+    static const size_t pixel[] = {16, 12, 8, 4, 4, 4, 4, 4, 4, 4, 8};
+    enum { FORMATS = sizeof pixel / sizeof *pixel };
+    struct hf_image m = {.width = w, .height = h, .format = (enum hf_format)any_choice(b, FORMATS)};
     const int planes = m.format == HF_FORMAT_PLANAR32F ? 3 + (take_byte(b) & 1) : 1;
+    const size_t bytes = (unsigned)m.format < FORMATS ? pixel[m.format] : 0;
+    if (m.format >= HF_FORMAT_RGBA8 || take_byte(b) == 255)
+        m.transfer = (enum hf_transfer)any_choice(b, 2);
     for (int i = 0; i < planes; i++)
-        m.data[i] = any_plane(b, m.format, w, h, &m.stride[i], &blocks[i]);
+        m.data[i] = any_plane(b, bytes, w, h, &m.stride[i], &blocks[i]);
     if (take_byte(b) == 255)
         m.data[0] = NULL;
     return m;
+}
+
+static struct hf_depth any_depth(struct bytes *b, int w, int h, void **block)
+{
+    static const size_t sample[] = {4, 2, 2, 4, 4, 4};
+    enum { FORMATS = sizeof sample / sizeof *sample };
+    struct hf_depth d = {.type = (enum hf_depth_type)any_choice(b, 7),
+                         .format = (enum hf_depth_format)any_choice(b, FORMATS)};
+    d.data = any_plane(b, (unsigned)d.format < FORMATS ? sample[d.format] : 0, w, h, &d.stride, block);
+    maybe(b, &d.near_plane);
+    maybe(b, &d.far_plane);
+    maybe(b, &d.focal_px);
+    return d;
+}
+
+// One of those that this processor has.
+static enum hf_isa any_isa(struct bytes *b)
+{
+    const unsigned first = take_byte(b);
+    for (unsigned i = 0; i <= HF_ISA_NEON; i++) {
+        const enum hf_isa isa = (enum hf_isa)((first + i) % (HF_ISA_NEON + 1));
+        if (hf_isa_available(isa))
+            return isa;
+    }
+    return HF_ISA_AUTO;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -165,8 +247,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct bytes b = {data, size};
     void *blocks[12] = {0};
     const unsigned how = take_byte(&b);
-    struct hf_config config = {
-        .threads = 1 + (how & 1), .isa = how & 2 ? HF_ISA_SCALAR : HF_ISA_AUTO, .alloc = take, .free = give};
+    struct hf_config config = {.threads = 1 + (how & 1), .isa = any_isa(&b), .alloc = take, .free = give};
     if (how & 4) {
         config.tile_width = 16 * (1 + any_choice(&b, 6));
         config.tile_height = 16 + any_choice(&b, 40);
@@ -177,14 +258,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int opened = hf_open(&c, &config);
     MUST(!opened == (c != NULL));
     for (int frame = 0; c && frame < 1 + (int)(how >> 4 & 1); frame++) {
-        const int w = any_choice(&b, 256), h = 1 + any_choice(&b, how & 32 ? 256 : 24);
+        const int w = any_size(&b, how & 32 ? 24 : 256), h = any_size(&b, how & 32 ? 256 : 24);
         const struct hf_image src = any_image(&b, w, h, blocks);
         struct hf_image dst = how & 64 ? src : any_image(&b, take_byte(&b) == 255 ? w + 1 : w, h, blocks + 4);
-        struct hf_depth depth = {.type = (enum hf_depth_type)any_choice(&b, 7)};
-        depth.data = any_plane(&b, HF_FORMAT_PLANAR32F, w, h, &depth.stride, &blocks[8]);
-        maybe(&b, &depth.near_plane);
-        maybe(&b, &depth.far_plane);
-        maybe(&b, &depth.focal_px);
+        const struct hf_depth depth = any_depth(&b, w, h, &blocks[8]);
         const struct hf_params p = any_params(&b);
         struct hf_report report;
         const int planned = hf_plan(c, &dst, &src, &depth, &p, &report);
@@ -198,7 +275,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         MUST(err || counted == 0 ||
              (counted >= n && report.near_pixels <= n && report.sharp_pixels + report.far_pixels <= n));
         for (int i = 0; i < 12; i++) {
-            free(blocks[i]);
+            free_block(blocks[i]);
             blocks[i] = NULL;
         }
     }
