@@ -54,12 +54,12 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     hf_layers_planes_at(l, b->set, b->weight, px, py, in);
     c->k->weigh(b->s, in, b->share ? b->share + (ptrdiff_t)py * b->set->stride + px : NULL, b->set->stride, rows,
                 l->channels, n, 0, out, c->any);
-    for (int from = tx, to; b->mixed && (to = hf_layers_next_run(&c->used, &from, ty, end, MIXED)) > from; from = to) {
+    for (int from = tx, to; b->more && (to = hf_layers_next_run(&c->used, &from, ty, end, MORE)) > from; from = to) {
         float *more[5];
         for (int i = 0; i < 5; i++)
             more[i] = out[i] + (from - tx) * size;
-        hf_layers_planes_at(l, &c->samples->mixed, c->samples->mixed.weight, c->x0 + from * size, py, in);
-        c->k->weigh(b->s, in, NULL, c->samples->mixed.stride, rows, l->channels, (to - from) * size, 1, more,
+        hf_layers_planes_at(l, b->more, b->more->weight, (c->x0 >> b->finest) + from * size, py, in);
+        c->k->weigh(b->s, in, NULL, b->more->stride, rows, l->channels, (to - from) * size, 1, more,
                     c->any + (from - tx) * size / 16);
     }
     for (int i = tx; i < end; i++) {

@@ -30,9 +30,10 @@ static const struct hf_pass passes[PASSES] = {
     {"Un-mixing", .around = B(COLOUR) | B(RADIUS), .halo = HALO_EDGE,
      .writes = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(QUADS) | B(QUADS_AT), .sweep = 2, .ns = 40},
     {"Hidden", .reads = B(SEEN_AT) | B(MIXED_AT), .around = B(QUADS) | B(QUADS_AT), .halo = HALO_LEVELS,
-     .writes = B(HIDDEN) | B(HIDDEN_AT), .sweep = 3, .ns = 60},
-    {"Composite", .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT), .halo = HALO_CELL,
-     .sweep = 4, .ns = 300},
+     .writes = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT), .sweep = 3, .ns = 60},
+    {"Composite",
+     .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT),
+     .halo = HALO_CELL, .sweep = 4, .ns = 300},
 };
 
 static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
@@ -46,6 +47,8 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
     [HF_LAYERS_BUF_QUADS_AT] = {"quadsat", .frame = 1},
     [HF_LAYERS_BUF_HIDDEN] = {"hidden", .frame = 1},
     [HF_LAYERS_BUF_HIDDEN_AT] = {"hiddenat", .frame = 1},
+    [HF_LAYERS_BUF_BEYOND] = {"beyond", .frame = 1},
+    [HF_LAYERS_BUF_BEYOND_AT] = {"beyondat", .frame = 1},
 };
 
 static const struct hf_layers_settings qualities[] = {
@@ -190,12 +193,13 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     atomic_init(l->repaired, 0);
     l->words = (l->slices + 63) / 64;
     const size_t marks = (size_t)l->columns * (size_t)l->rows * (size_t)l->words;
-    if (hf_block_grow(&l->marks, 4 * marks * sizeof(uint64_t), mem))
+    if (hf_block_grow(&l->marks, 5 * marks * sizeof(uint64_t), mem))
         return HF_ERR_MEMORY;
     l->seen_marks = l->marks.data;
     l->mixed_marks = l->seen_marks + marks;
     l->hidden_marks = l->mixed_marks + marks;
-    l->share_marks = l->hidden_marks + marks;
+    l->beyond_marks = l->hidden_marks + marks;
+    l->share_marks = l->beyond_marks + marks;
     return HF_OK;
 }
 
@@ -219,9 +223,11 @@ static int channels(const struct hf_setup *s, int b)
         return 2;
     case HF_LAYERS_BUF_QUADS_AT:
     case HF_LAYERS_BUF_HIDDEN_AT:
+    case HF_LAYERS_BUF_BEYOND_AT:
         return l->levels ? 2 : 0;
     case HF_LAYERS_BUF_QUADS:
     case HF_LAYERS_BUF_HIDDEN:
+    case HF_LAYERS_BUF_BEYOND:
         return l->levels ? s->channels : 0;
     default:
         return s->channels;

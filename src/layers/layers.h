@@ -95,11 +95,12 @@ struct hf_layers {
 
     int columns, rows;  // of tiles
     struct hf_layers_range *seen_range, *mixed_range, *hidden_range;
-    // Which slices have samples in a tile, a bit for each: of what is seen, mixed, hidden, and of shares.
+    // Which slices have samples in a tile, a bit for each: of what is seen, mixed, hidden, hidden behind
+    // that, and of shares.
     struct hf_block marks;
     atomic_uchar *repaired;  // whether the colour had samples to repair
     int words;               // of a tile's bits
-    uint64_t *seen_marks, *mixed_marks, *hidden_marks, *share_marks;
+    uint64_t *seen_marks, *mixed_marks, *hidden_marks, *beyond_marks, *share_marks;
 };
 
 // The samples of a frame.
@@ -107,7 +108,7 @@ struct hf_samples {
     struct hf_layers_set seen;   // one of each pixel ...
     struct hf_layers_set mixed;  // ... and the one behind it at mixed edges; without weight the rest means nothing
     float *share;  // of a visible sample's weight whose colour is drawn at full resolution; stride of seen
-    struct hf_layers_set hidden;  // at half resolution
+    struct hf_layers_set hidden, beyond;  // at half resolution: behind what is seen, and behind that
 };
 
 static inline float *hf_layers_at(const struct hf_layers_set *set, float *plane, int x, int y)

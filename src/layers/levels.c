@@ -23,10 +23,10 @@ struct band {
     struct hf_layers_set level[HF_LAYERS_LEVELS], across, found;
     float *nearest;  // least radius of what is seen in each quad, width in a row
     int width;
-    // Blocks, those around the band included: (0, 0) is its first. Farthest radius, whether a search is made, and whether
-    // a level is.
+    // Blocks, those around the band included: (0, 0) is its first. Farthest radius in one, and within the search's reach;
+    // whether a search is made, and whether a level is.
     int columns, rows, around, stride;
-    float *farthest;
+    float *farthest, *within;
     uint8_t *needed, *made, *passed;
 };
 
@@ -51,7 +51,7 @@ size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height)
 {
     height += 2 * HF_LAYERS_SMOOTH;
     return (size_t)(l->levels + 1) * (size_t)(l->channels + 2) * plane_floats(l, width, height) +
-           (size_t)blocks_of(width) * BLOCK * (size_t)height + 2 * block_count(l, width, height) + PAD;
+           (size_t)blocks_of(width) * BLOCK * (size_t)height + 3 * block_count(l, width, height) + PAD;
 }
 
 static struct hf_layers_set place(const struct band *b, float **memory)
@@ -78,11 +78,12 @@ static void place_blocks(struct band *b, float **memory)
     const ptrdiff_t first = b->around * b->stride + b->around;
     b->nearest = *memory;
     b->farthest = b->nearest + (size_t)b->width * (size_t)height + first;
-    uint8_t *bytes = (uint8_t *)(b->farthest - first + count);
+    b->within = b->farthest + count;
+    uint8_t *bytes = (uint8_t *)(b->within - first + count);
     b->needed = bytes + first;
     b->made = b->needed + count;
     b->passed = b->made + count;
-    *memory += (size_t)b->width * (size_t)height + 2 * count;
+    *memory += (size_t)b->width * (size_t)height + 3 * count;
 }
 
 static void planes_of(const struct hf_layers_set *s, int channels, int x, int y, float *out[6])
@@ -116,8 +117,8 @@ static void spread(const struct band *b, const uint8_t *in, int by, uint8_t *out
         }
 }
 
-// Which blocks may find something: what is a pixel of radius behind their nearest, within the search's reach.
-static void find_needed(struct band *b)
+// The nearest of what is seen, and the farthest that is within a block's reach.
+static void find_farthest(struct band *b)
 {
     const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
     const struct hf_rect r = {b->r.x0 - b->reach, b->r.y0 - b->reach, b->r.x1 + b->reach, b->r.y1 + b->reach};
@@ -138,12 +139,25 @@ static void find_needed(struct band *b)
             for (int i = y - b->around; i <= y + b->around; i++)
                 for (int j = x - b->around; j <= x + b->around; j++)
                     high = fmaxf(b->farthest[i * b->stride + j], high);
+            b->within[y * b->stride + x] = high;
+        }
+}
+
+// Which blocks may find something: what is a pixel of radius behind their nearest. Returns whether any may.
+static int find_needed(struct band *b)
+{
+    int any = 0;
+    for (int y = 0; y < b->rows; y++)
+        for (int x = 0; x < b->columns; x++) {
             const int n = hf_min(b->r.x1 - b->r.x0 - x * BLOCK, BLOCK),
                       rows = hf_min(b->r.y1 - b->r.y0 - y * BLOCK, BLOCK);
             const float *nearest = b->nearest + y * BLOCK * b->width + x * BLOCK;
             // Means of radii are rounded.
-            b->needed[y * b->stride + x] = high - range_of(b, nearest, NULL, b->width, n, rows).low > 0.99f;
+            const float low = range_of(b, nearest, NULL, b->width, n, rows).low;
+            b->needed[y * b->stride + x] = b->within[y * b->stride + x] - low > 0.99f;
+            any |= b->needed[y * b->stride + x];
         }
+    return any;
 }
 
 // Merge samples (dx, dy) apart where blocks are marked, in an area `reach` larger than the band.
@@ -260,15 +274,15 @@ static void smooth_along(const struct band *b, int y)
     }
 }
 
-static void smooth_down(const struct band *b, int y)
+static void smooth_down(const struct band *b, int colour, int at, int y)
 {
     static const float none[STEP + PAD];
     const int channels = b->l->channels;
     for (struct run run = {0}; next_run(b, y, &run);) {
         float *in[HF_LAYERS_TAPS][6] = {{NULL}}, *out[6] = {NULL};
-        hf_row(&b->f->buf[HF_LAYERS_BUF_HIDDEN], channels, run.x, y, out);
-        out[4] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, run.x, y);
-        out[5] = hf_at(&b->f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, run.x, y);
+        hf_row(&b->f->buf[colour], channels, run.x, y, out);
+        out[4] = hf_at(&b->f->buf[at], 0, run.x, y);
+        out[5] = hf_at(&b->f->buf[at], 1, run.x, y);
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
             const int from = y + i - HF_LAYERS_SMOOTH, inside = from >= b->r.y0 && from < b->r.y1;
             planes_of(&b->across, channels, run.x, inside ? from : y, in[i]);
@@ -279,6 +293,29 @@ static void smooth_down(const struct band *b, int y)
         else
             memset(out[4], 0, sizeof(float) * (size_t)run.n);
     }
+}
+
+// What was found and is near takes the place of what is seen: the next search looks behind it. What is in focus or far
+// need not be seen past, as its blur is that of a far field, which fills what is open.
+static void look_behind(const struct band *b, int y)
+{
+    const float *weight = b->found.weight + y * b->found.stride, *radius = b->found.radius + y * b->found.stride;
+    float *nearest = b->nearest + (y - b->r.y0) * b->width - b->r.x0;
+    for (int x = b->r.x0; x < b->r.x1; x++)
+        nearest[x] = weight[x] > 0 && radius[x] < -1 ? radius[x] : HUGE_VALF;
+}
+
+// Samples of rows r, smoothed, into two buffers; again: another search looks behind them.
+static void search(const struct band *b, struct hf_rect r, int colour, int at, int again)
+{
+    for (int y = b->r.y0; y < b->r.y1; y++) {
+        find_row(b, y);
+        if (again)
+            look_behind(b, y);
+        smooth_along(b, y);
+    }
+    for (int y = r.y0; y < r.y1; y++)
+        smooth_down(b, colour, at, y);
 }
 
 // The hidden samples of a band.
@@ -297,14 +334,12 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
     for (int j = 1; j < l->levels; j++)
         b.level[j] = place(&b, &memory);
     place_blocks(&b, &memory);
+    find_farthest(&b);
     find_needed(&b);
     make_levels(&b);
-    for (int y = b.r.y0; y < b.r.y1; y++) {
-        find_row(&b, y);
-        smooth_along(&b, y);
-    }
-    for (int y = r.y0; y < r.y1; y++)
-        smooth_down(&b, y);
+    search(&b, r, HF_LAYERS_BUF_HIDDEN, HF_LAYERS_BUF_HIDDEN_AT, 1);
+    find_needed(&b);
+    search(&b, r, HF_LAYERS_BUF_BEYOND, HF_LAYERS_BUF_BEYOND_AT, 0);
 }
 
 void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)

@@ -58,15 +58,19 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
-    const struct hf_buf *hidden = &f->buf[HF_LAYERS_BUF_HIDDEN_AT];
+    const struct hf_buf *hidden = &f->buf[HF_LAYERS_BUF_HIDDEN_AT], *beyond = &f->buf[HF_LAYERS_BUF_BEYOND_AT];
+    const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const int size = TILE / 2;
     for (int ty = r.y0 / size; ty * size < r.y1; ty++)
         for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
             const int x = tx * size, y = ty * size, at = ty * l->columns + tx;
-            const struct tile h =
-                tile_of(hidden, 0, x, y, hf_min(size, f->s->half_width - x), hf_min(size, f->s->half_height - y));
+            const int n = hf_min(size, f->s->half_width - x), rows = hf_min(size, f->s->half_height - y);
+            const struct tile h = tile_of(hidden, 0, x, y, n, rows), b = tile_of(beyond, 0, x, y, n, rows);
+            struct hf_layers_range range = none;
             l->hidden_range[at] = none;
-            hf_layers_kernels(f)->extremes(h.radius, h.weight, NULL, h.stride, h.n, h.rows, &l->hidden_range[at]);
+            k->extremes(h.radius, h.weight, NULL, h.stride, n, rows, &l->hidden_range[at]);
             mark_slices(f, h, l->hidden_range[at], &l->hidden_marks[at * l->words]);
+            k->extremes(b.radius, b.weight, NULL, b.stride, n, rows, &range);
+            mark_slices(f, b, range, &l->beyond_marks[at * l->words]);
         }
 }

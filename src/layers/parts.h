@@ -20,7 +20,8 @@ struct hf_tile_map {
     int stride;
 };
 
-enum { SEEN = 1, MIXED = 2 };
+// Tiles that have samples of a set, and of the set behind it.
+enum { SEEN = 1, MORE = 2 };
 
 // What of a slice is drawn: samples that are seen with those behind mixed edges, hidden ones, shares at full resolution.
 enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
@@ -63,7 +64,7 @@ struct hf_build {
     const float *weight, *share;
     int finest;  // log2 of the pixels of its samples
     int channels;
-    int mixed;  // samples behind mixed edges belong to it
+    const struct hf_layers_set *more;  // samples behind those that belong to it, or NULL
 };
 
 static inline uint8_t *hf_layers_map_at(const struct hf_tile_map *m, int tx, int ty)

@@ -38,10 +38,11 @@ void hf_layers_find_present(struct hf_cell *c)
     const struct hf_layers *l = c->l;
     const int n = l->most_tiles, words = l->words, left = hf_max(c->x0 / TILE - n, 0),
               right = hf_min(c->x0 / TILE + c->columns + n, l->columns);
-    const uint64_t *const marks[] = {l->seen_marks, l->mixed_marks, l->levels ? l->hidden_marks : NULL, l->share_marks};
-    static const enum hf_kind kinds[] = {HF_KIND_SEEN, HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES};
+    const uint64_t *const marks[] = {l->seen_marks, l->mixed_marks, l->levels ? l->hidden_marks : NULL,
+                                     l->levels ? l->beyond_marks : NULL, l->share_marks};
+    static const enum hf_kind kinds[] = {HF_KIND_SEEN, HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_HIDDEN, HF_KIND_SHARES};
     memset(c->present, 0, 3 * sizeof *c->present * (size_t)words);
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 5; i++)
         for (int y = hf_max(c->y0 / TILE - n, 0); marks[i] && y < hf_min(c->y0 / TILE + c->rows + n, l->rows); y++)
             for (int x = left * words; x < right * words; x++)
                 c->present[(int)kinds[i] * words + x % words] |= marks[i][(ptrdiff_t)y * l->columns * words + x];
@@ -61,8 +62,8 @@ int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
         uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
         memset(used, 0, (size_t)columns);
         mark_row(c, marks, slice, -n, columns, ty, SEEN);
-        if (kind == HF_KIND_SEEN)
-            mark_row(c, l->mixed_marks, slice, -n, columns, ty, MIXED);
+        if (kind != HF_KIND_SHARES)
+            mark_row(c, kind == HF_KIND_SEEN ? l->mixed_marks : l->beyond_marks, slice, -n, columns, ty, MORE);
         int first = 0, last = columns;
         while (first < last && !used[first])
             first++;

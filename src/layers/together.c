@@ -166,7 +166,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .weight = c->samples->seen.weight,
                                    .share = shares ? c->samples->share : NULL,
                                    .channels = l->channels + 1,
-                                   .mixed = 1};
+                                   .more = &c->samples->mixed};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
         begin(c, stack);
         put_under(c, stack, s->level, 0, shares);
@@ -180,7 +180,8 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .set = &c->samples->hidden,
                                    .weight = c->samples->hidden.weight,
                                    .finest = 1,
-                                   .channels = l->channels + 1};
+                                   .channels = l->channels + 1,
+                                   .more = &c->samples->beyond};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
         begin(c, stack);
         put_under(c, stack, behind->level, 1, 0);

@@ -164,6 +164,7 @@ static struct grid draw(const struct frame *f, const struct slice *s, int level,
     struct grid out = grid_new(-MARGIN, -MARGIN, width + MARGIN, height + MARGIN, 5);
     if (kind == BEHIND) {
         add_sources(f, s, &f->behind, level - 1, kind, 0, &source);
+        add_sources(f, s, &f->beyond, level - 1, kind, 0, &source);
     } else {
         add_sources(f, s, &f->seen, level, kind, light, &source);
         if (kind == SEEN)
@@ -354,5 +355,6 @@ struct picture layers_reference(const struct picture *colour, const float *radiu
     free(f.seen.v);
     free(f.mixed.v);
     free(f.behind.v);
+    free(f.beyond.v);
     return out;
 }

@@ -51,7 +51,7 @@ struct frame {
     struct hf_aperture_params aperture;
     int fine, unmix, hidden, highlights;
     double wide, half, quarter, low, high;
-    struct grid seen, mixed, behind;  // samples
+    struct grid seen, mixed, behind, beyond;  // samples
 };
 
 static inline double colour_at(const struct frame *f, int c, int x, int y)

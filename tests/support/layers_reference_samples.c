@@ -195,11 +195,20 @@ static void step(const struct frame *f, const struct grid *from, struct grid *to
         }
 }
 
-static void find(struct frame *f, const struct grid *level, int levels, int x, int y)
+// The radius that a search looks behind: the nearest that is seen, or what was found behind that and is near itself.
+static double look_from(const struct frame *f, const struct grid *found, int x, int y)
 {
-    double sum[SAMPLE] = {0}, nearest = INFINITY, *out = at(&f->behind, x, y);
+    double nearest = INFINITY;
+    if (found)
+        return at(found, x, y)[WEIGHT] > 0 && at(found, x, y)[RADIUS] < -1 ? at(found, x, y)[RADIUS] : INFINITY;
     for (int i = 0; i < 4; i++)
         nearest = fmin(nearest, edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2)[RADIUS]);
+    return nearest;
+}
+
+static void find(const struct frame *f, const struct grid *level, int levels, double nearest, int x, int y, double *out)
+{
+    double sum[SAMPLE] = {0};
     for (int j = 0; j < levels; j++)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1;
@@ -250,12 +259,32 @@ static struct grid smooth(const struct frame *f, const struct grid *from, int dx
     return to;
 }
 
+// A sample of each quad, of those behind `found` or, if that is NULL, behind what is seen: roots, not smoothed.
+static struct grid search(const struct frame *f, const struct grid *level, int levels, const struct grid *found)
+{
+    struct grid to = grid_new(0, 0, (f->width + 1) / 2, (f->height + 1) / 2, SAMPLE);
+    for (int y = to.y0; y < to.y1 && levels; y++)
+        for (int x = to.x0; x < to.x1; x++)
+            find(f, level, levels, look_from(f, found, x, y), x, y, at(&to, x, y));
+    return to;
+}
+
+static struct grid smooth_found(const struct frame *f, const struct grid *found)
+{
+    struct grid along = smooth(f, found, 1, 0), down = smooth(f, &along, 0, 1);
+    for (int y = down.y0; y < down.y1; y++)
+        for (int x = down.x0; x < down.x1; x++)
+            for (int c = 0; c < f->channels; c++)
+                at(&down, x, y)[c] *= fabs(at(&down, x, y)[c]);
+    free(along.v);
+    return down;
+}
+
 static void find_hidden(struct frame *f)
 {
     const int width = (f->width + 1) / 2, height = (f->height + 1) / 2, levels = layers_reference_levels(f),
               m = 2 << levels;
-    struct grid level[7], quads = grid_new(0, 0, width, height, SAMPLE);
-    f->behind = grid_new(0, 0, width, height, SAMPLE);
+    struct grid level[7] = {{0}}, quads = grid_new(0, 0, width, height, SAMPLE);
     for (int y = 0; y < height && levels; y++)
         for (int x = 0; x < width; x++)
             quad(f, x, y, at(&quads, x, y));
@@ -271,17 +300,11 @@ static void find_hidden(struct frame *f)
         }
         free(across.v);
     }
-    for (int y = 0; y < height && levels; y++)
-        for (int x = 0; x < width; x++)
-            find(f, level, levels, x, y);
-    struct grid along = smooth(f, &f->behind, 1, 0), down = smooth(f, &along, 0, 1);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++)
-            for (int c = 0; c < f->channels; c++)
-                at(&down, x, y)[c] *= fabs(at(&down, x, y)[c]);
-    free(along.v);
-    free(f->behind.v);
-    f->behind = down;
+    const struct grid behind = search(f, level, levels, NULL), beyond = search(f, level, levels, &behind);
+    f->behind = smooth_found(f, &behind);
+    f->beyond = smooth_found(f, &beyond);
+    free(behind.v);
+    free(beyond.v);
     for (int j = 0; j < levels; j++)
         free(level[j].v);
     free(quads.v);
