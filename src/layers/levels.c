@@ -305,6 +305,15 @@ static void look_behind(const struct band *b, int y)
         nearest[x] = weight[x] > 0 && radius[x] < -1 ? radius[x] : HUGE_VALF;
 }
 
+// What lies behind something that is hardly near counts less, so that nothing appears at once when that comes nearer.
+static void begin_softly(const struct band *b, int y)
+{
+    float *weight = b->found.weight + y * b->found.stride;
+    const float *nearest = b->nearest + (y - b->r.y0) * b->width - b->r.x0;
+    for (int x = b->r.x0; x < b->r.x1; x++)
+        weight[x] = weight[x] * hf_layers_unit(-1 - nearest[x]);
+}
+
 // Samples of rows r, smoothed, into two buffers; again: another search looks behind them.
 static void search(const struct band *b, struct hf_rect r, int colour, int at, int again)
 {
@@ -312,6 +321,8 @@ static void search(const struct band *b, struct hf_rect r, int colour, int at, i
         find_row(b, y);
         if (again)
             look_behind(b, y);
+        else
+            begin_softly(b, y);
         smooth_along(b, y);
     }
     for (int y = r.y0; y < r.y1; y++)

@@ -264,8 +264,11 @@ static struct grid search(const struct frame *f, const struct grid *level, int l
 {
     struct grid to = grid_new(0, 0, (f->width + 1) / 2, (f->height + 1) / 2, SAMPLE);
     for (int y = to.y0; y < to.y1 && levels; y++)
-        for (int x = to.x0; x < to.x1; x++)
-            find(f, level, levels, look_from(f, found, x, y), x, y, at(&to, x, y));
+        for (int x = to.x0; x < to.x1; x++) {
+            const double from = look_from(f, found, x, y);
+            find(f, level, levels, from, x, y, at(&to, x, y));
+            at(&to, x, y)[WEIGHT] *= found ? fmin(fmax(-1 - from, 0), 1) : 1;
+        }
     return to;
 }
 
