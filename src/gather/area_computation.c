@@ -11,10 +11,14 @@
 
 int hf_area_inside(const struct hf_setup *s, const struct hf_taps *t, int x, int y, int n, float *inside)
 {
-    if (x >= t->rx && x + n + t->rx <= s->half_width && y >= t->ry && y + t->ry < s->half_height)
+    const int whole = hf_area_is_whole(s, t, y), width = s->half_width;
+    if (whole && x >= t->rx && x + n + t->rx <= width)
         return 0;
+    const int left = hf_min(hf_max(t->rx - x, 0), n), right = hf_min(hf_max(width - t->rx - x, left), n);
+    const float middle = whole ? 1 : hf_taps_part(t, -t->rx, t->rx + 1, -y, s->half_height - y);
     for (int i = 0; i < n; i++)
-        inside[i] = hf_taps_part(t, -(x + i), s->half_width - (x + i), -y, s->half_height - y);
+        inside[i] =
+            i >= left && i < right ? middle : hf_taps_part(t, -(x + i), width - (x + i), -y, s->half_height - y);
     return 1;
 }
 

@@ -164,6 +164,12 @@ void hf_convolve_c(const struct hf_frame *f, struct hf_rect r, const struct hf_t
 
 hf_kernel hf_area_down_c, hf_area_gather_c;
 
+// Do a level's taps at row y end within the frame, above and below? Then what lies in it is as in all such rows.
+static inline int hf_area_is_whole(const struct hf_setup *s, const struct hf_taps *t, int y)
+{
+    return y >= t->ry && y + t->ry < s->half_height;
+}
+
 // Row y of the part of a level's taps that lies in the frame, n pixels from x on. Returns 0 if it is all of them.
 int hf_area_inside(const struct hf_setup *s, const struct hf_taps *t, int x, int y, int n, float *inside);
 
