@@ -38,28 +38,43 @@ static void store_near(const struct hf_frame *f, int y, struct hf_rect r)
         f->k->round_half(hf_at(&f->buf[HF_BUF_COVER], 0, r.x0, y), r.x1 - r.x0);
 }
 
+// A row of a buffer that is used up at once, whatever its y: scratch rows from the third on.
+static struct hf_buf lines_from(const struct hf_frame *f, int x0)
+{
+    struct hf_buf b = {.stride = 0};
+    for (int c = 0; c < 4; c++)
+        b.ch[c] = hf_line(f, 2 + c) - x0;
+    return b;
+}
+
+// Near colour, or how much it covers, where it hides m of what is behind.
+static void hide(float *v, float m, float behind)
+{
+    if (m == 1)
+        *v = behind;
+    else if (m > 0)
+        *v += m * (behind - *v);
+}
+
 static void near_simple(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     const struct hf_taps *t = &hf_gather_levels(s, HF_NEAR)->level[0].taps;
-    const struct hf_buf *near = &f->buf[HF_BUF_NEAR], *behind = &f->buf[HF_BUF_BEHIND], *cover = &f->buf[HF_BUF_COVER];
+    const struct hf_buf *near = &f->buf[HF_BUF_NEAR], *cover = &f->buf[HF_BUF_COVER];
+    const struct hf_buf behind = lines_from(f, r.x0);
     float *inside = hf_line(f, 1);
-    for (int c = 0; c < s->channels; c++) {
+    for (int c = 0; c < s->channels; c++)
         hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLORNEAR4], c, near, c);
-        hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLOR4], c, behind, c);
-    }
     hf_convolve_c(f, r, t, &f->buf[HF_BUF_COC4], HF_AREA_NEAR, cover, 0);
     for (int y = r.y0; y < r.y1; y++) {
         const int cut = hf_area_inside(s, t, r.x0, y, r.x1 - r.x0, inside);
+        for (int c = 0; c < s->channels; c++)
+            hf_convolve_c(f, (struct hf_rect){r.x0, y, r.x1, y + 1}, t, &f->buf[HF_BUF_COLOR4], c, &behind, c);
         for (int x = r.x0; x < r.x1; x++) {
             const float m = hidden(f, x, y), part = cut ? inside[x - r.x0] : 1;
-            for (int c = 0; c < s->channels && m > 0; c++) {
-                float *v = hf_at(near, c, x, y);
-                *v += m * (*hf_at(behind, c, x, y) / part - *v);
-            }
-            float *v = hf_at(cover, 0, x, y);
-            if (m > 0)
-                *v += m * (1 - *v);
+            for (int c = 0; c < s->channels; c++)
+                hide(hf_at(near, c, x, y), m, *hf_at(&behind, c, x, y) / part);
+            hide(hf_at(cover, 0, x, y), m, 1);
         }
         store_near(f, y, r);
     }
@@ -236,15 +251,15 @@ static void far_simple(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     const struct hf_taps *t = &hf_gather_levels(s, HF_FAR)->level[0].taps;
-    const struct hf_buf *far = &f->buf[HF_BUF_FAR];
+    const struct hf_buf *far = &f->buf[HF_BUF_FAR], sum = lines_from(f, r.x0);
     for (int c = 0; c < s->channels; c++)
         hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLORFAR4], c, far, c);
-    hf_convolve_c(f, r, t, &f->buf[HF_BUF_COC4], HF_AREA_FAR, &f->buf[HF_BUF_SUM], 1);
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1; y++) {
+        hf_convolve_c(f, (struct hf_rect){r.x0, y, r.x1, y + 1}, t, &f->buf[HF_BUF_COC4], HF_AREA_FAR, &sum, 0);
         for (int x = r.x0; x < r.x1; x++)
             for (int c = 0; c < s->channels; c++)
-                *hf_at(far, c, x, y) =
-                    is_wanted(f, x, y) ? far_mean(c, x, y, far, *hf_at(&f->buf[HF_BUF_SUM], 1, x, y)) : 0;
+                *hf_at(far, c, x, y) = is_wanted(f, x, y) ? far_mean(c, x, y, far, *hf_at(&sum, 0, x, y)) : 0;
+    }
 }
 
 static void far_levels(const struct hf_frame *f, struct hf_rect r)

@@ -123,11 +123,15 @@ struct gather_job {
     const float *in[6];
     float *out[6];
     ptrdiff_t in_stride[6], out_stride[6];
+    int of_strip[6];  // out is a strip's own, see strip_plane
     int planes;
     const float *need;  // NULL: all
     ptrdiff_t need_stride;
     struct hf_reach reach;
-    int clears;  // the other rows become 0
+    int clears;         // the other rows become 0
+    const float *full;  // rows where gain times this is 1 throughout are not wanted after all; NULL: there are none
+    ptrdiff_t full_stride;
+    float gain;
 };
 
 static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_gather_buf in,
@@ -138,6 +142,30 @@ static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct 
     j->in_stride[i] = f->buf[in].stride;
     j->out[i] = hf_at(&f->buf[out], c_out, r.x0, r.y0);
     j->out_stride[i] = f->buf[out].stride;
+}
+
+// Sums that are used up strip by strip: a strip's rows, on lines that lie an odd number of cache lines apart, at the
+// beginning of f->work.
+static float *strip_plane(const struct hf_frame *f, int i, int height)
+{
+    return f->work + (ptrdiff_t)i * height * HF_STRIP;
+}
+
+static void gather_strip_plane(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_gather_buf in,
+                               int c_in, int plane)
+{
+    const int i = j->planes++;
+    j->in[i] = hf_at(&f->buf[in], c_in, r.x0, r.y0);
+    j->in_stride[i] = f->buf[in].stride;
+    j->out[i] = strip_plane(f, plane, r.y1 - r.y0);
+    j->out_stride[i] = HF_STRIP;
+    j->of_strip[i] = 1;
+}
+
+// Where column x of a strip that begins at column `from` goes.
+HF_INLINE float *job_out(const struct gather_job *j, int i, int from, int x)
+{
+    return j->out[i] + (j->of_strip[i] ? x - from : x);
 }
 
 // Does a row of a strip have any need? Lanes past the row's end may hold anything, and NaN is no need.
@@ -159,8 +187,17 @@ HF_INLINE int row_needed_around(const float *need, int reach, const int s)
     return vm_any(any);
 }
 
+HF_INLINE int row_full(const float *full, float gain, const int s)
+{
+    vf least = vf_load(full);
+#pragma GCC unroll 16
+    for (int v = 1; v < s; v++)
+        least = vf_min(vf_load(full + v * VF_N), least);  // of NaN the other
+    return !vm_any(vf_lt(vf_mul(vf_set1(gain), least), vf_set1(1)));
+}
+
 // The rows from the first to the last that a strip of s vectors from column x needs.
-HF_INLINE void rows_needed(const struct gather_job *j, int x, int height, const int s, int *y0, int *y1)
+HF_INLINE void rows_reached(const struct gather_job *j, int x, int height, const int s, int *y0, int *y1)
 {
     const int ry = j->reach.y;
     *y0 = 0;
@@ -186,12 +223,25 @@ HF_INLINE void rows_needed(const struct gather_job *j, int x, int height, const 
         *y1 = *y0;
 }
 
-// Zeros in the rows of a plane that are not needed.
-HF_INLINE void clear_rest(const struct gather_job *j, int i, int x, int height, const int s, int y0, int y1)
+HF_INLINE void rows_needed(const struct gather_job *j, int x, int height, const int s, int *y0, int *y1)
 {
+    rows_reached(j, x, height, s, y0, y1);
+    if (!j->full)
+        return;
+    const float *p = j->full + x;
+    while (*y0 < *y1 && row_full(p + *y0 * j->full_stride, j->gain, s))
+        (*y0)++;
+    while (*y1 > *y0 && row_full(p + (*y1 - 1) * j->full_stride, j->gain, s))
+        (*y1)--;
+}
+
+// Zeros in the rows of a plane that are not needed.
+HF_INLINE void clear_rest(const struct gather_job *j, int i, int from, int x, int height, const int s, int y0, int y1)
+{
+    float *out = job_out(j, i, from, x);
     for (int y = 0; j->clears && y < height; y++)
         for (int v = 0; v < s && (y < y0 || y >= y1); v++)
-            vf_store(j->out[i] + y * j->out_stride[i] + x + v * VF_N, vf_zero());
+            vf_store(out + y * j->out_stride[i] + v * VF_N, vf_zero());
 }
 
 // A strip of s vectors from column x of all planes.
@@ -206,10 +256,10 @@ HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j,
     int y0, y1;
     rows_needed(j, x, height, s, &y0, &y1);
     for (int i = 0; i < j->planes; i++)
-        clear_rest(j, i, x, height, s, y0, y1);
+        clear_rest(j, i, x, x, height, s, y0, y1);
     for (int i = 0; i < j->planes && y0 < y1; i++)
-        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i], j->out[i] + y0 * j->out_stride[i] + x,
-                       j->out_stride[i], y1 - y0, symmetric, s, terms, h);
+        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
+                       job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, symmetric, s, terms, h);
 }
 
 HF_INLINE void gather_any(const struct hf_taps *t, const struct gather_job *j, int x, int height, const int symmetric,
@@ -234,40 +284,54 @@ static void gather_columns(const float *weights, const struct gather_job *j, fix
         rows_needed(j, x + v * VF_N, height, 1, &y0[v], &y1[v]);
     for (int i = 0; i < j->planes && j->clears; i++)
         for (int v = 0; v < s; v++)
-            clear_rest(j, i, x + v * VF_N, height, 1, y0[v], y1[v]);
+            clear_rest(j, i, x, x + v * VF_N, height, 1, y0[v], y1[v]);
     for (int i = 0; i < j->planes; i++)
         for (int v = 0; v < s; v++)
             if (y0[v] < y1[v])
                 column(weights, j->in[i] + y0[v] * j->in_stride[i] + x + v * VF_N, j->in_stride[i],
-                       j->out[i] + y0[v] * j->out_stride[i] + x + v * VF_N, j->out_stride[i], y1[v] - y0[v]);
+                       job_out(j, i, x, x + v * VF_N) + y0[v] * j->out_stride[i], j->out_stride[i], y1[v] - y0[v]);
 }
 
 // Convolves strip by strip, and finishes each while it is in the cache. A first vector lies wherever r begins, all
 // others are aligned; where the two overlap, the second writes everything again.
-static void gather_run(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, struct gather_job *j,
-                       const struct hf_buf *need, int need_channel, hf_kernel *finish)
+static void gather_jobs(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t,
+                        const struct gather_job *jobs, int count, hf_kernel *finish)
 {
+    const int width = r.x1 - r.x0, height = r.y1 - r.y0;
+    float *work = hf_gather(f->s)->area ? strip_plane(f, HF_STRIP_PLANES, height) : f->work;
     fixed_column *column = fixed_column_for(t);
-    const float *weights = column ? fixed_weights(t, f->work) : NULL;
-    const int most = column ? FIXED_STRIP : GATHER_S, width = r.x1 - r.x0, height = r.y1 - r.y0;
-    if (need) {
-        j->need = hf_at(need, need_channel, r.x0, r.y0);
-        j->need_stride = need->stride;
-    }
+    const float *weights = column ? fixed_weights(t, work) : NULL;
+    const int most = column ? FIXED_STRIP : GATHER_S;
     for (int x = 0, next; x < width; x = next) {
         const int odd = (r.x0 + x) & (VF_N - 1), left = (width - x + VF_N - 1) / VF_N;
         const int strips = (left + most - 1) / most;
         const int s = odd ? 1 : (left + strips - 1) / strips;
         next = x + s * VF_N - odd;
-        if (column)
-            gather_columns(weights, j, column, x, height, s);
-        else if (t->symmetric)
-            gather_any(t, j, x, height, 1, s, f->work);
-        else
-            gather_any(t, j, x, height, 0, s, f->work);
+        for (int i = 0; i < count; i++) {
+            if (column)
+                gather_columns(weights, &jobs[i], column, x, height, s);
+            else if (t->symmetric)
+                gather_any(t, &jobs[i], x, height, 1, s, work);
+            else
+                gather_any(t, &jobs[i], x, height, 0, s, work);
+        }
         if (finish)
             finish(f, (struct hf_rect){r.x0 + x, r.y0, r.x0 + hf_min(next, width), r.y1});
     }
+}
+
+static void job_needs(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_gather_buf need,
+                      int channel)
+{
+    j->need = hf_at(&f->buf[need], channel, r.x0, r.y0);
+    j->need_stride = f->buf[need].stride;
+}
+
+static void gather_run(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, struct gather_job *j,
+                       enum hf_gather_buf need, int channel, hf_kernel *finish)
+{
+    job_needs(j, f, r, need, channel);
+    gather_jobs(f, r, t, j, 1, finish);
 }
 
 static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
@@ -327,7 +391,7 @@ static void gather_near_simd(const struct hf_frame *f, struct hf_rect r)
         gather_plane(&j, f, r, hf_gather(s)->karis ? HF_BUF_COLORW4 : HF_BUF_COLOR4, c, HF_BUF_NEAR, c);
     if (hf_gather(s)->karis)
         gather_plane(&j, f, r, HF_BUF_WEIGHT, 0, HF_BUF_SUM, 0);
-    gather_run(f, r, hf_gather_taps(s, HF_NEAR), &j, &f->buf[HF_BUF_BLUR], 0, finish_near);
+    gather_run(f, r, hf_gather_taps(s, HF_NEAR), &j, HF_BUF_BLUR, 0, finish_near);
 }
 
 // Four bilinear neighbours of VF_N pixels, wherever they are.
@@ -418,7 +482,7 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
     for (int c = 0; c < s->channels; c++)
         gather_plane(&j, f, r, colour, c, HF_BUF_FAR, c);
     gather_plane(&j, f, r, weight, 1, HF_BUF_SUM, 1);
-    gather_run(f, r, hf_gather_taps(s, HF_FAR), &j, &f->buf[HF_BUF_COC4], 1, finish_far);
+    gather_run(f, r, hf_gather_taps(s, HF_FAR), &j, HF_BUF_COC4, 1, finish_far);
 }
 
 #include "gather/area_computation_simd.inc"

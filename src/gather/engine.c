@@ -56,7 +56,7 @@ static int channels(const struct hf_setup *s, int b)
     case HF_BUF_COC4:
         return g->area ? 4 : 2;
     case HF_BUF_SUM:
-        return 2;
+        return !g->area || levels ? 2 : 0;
     case HF_BUF_MAX_X:
     case HF_BUF_MAX:
     case HF_BUF_BLUR_X:
@@ -76,9 +76,8 @@ static int channels(const struct hf_setup *s, int b)
         return g->area;
     case HF_BUF_LEVEL:
     case HF_BUF_LEVEL_SUM:
-        return levels ? s->channels : 0;
     case HF_BUF_BEHIND:
-        return g->area ? s->channels : 0;
+        return levels ? s->channels : 0;
     case HF_BUF_LEVEL_WEIGHT:
     case HF_BUF_LEVEL_WEIGHT_SUM:
     case HF_BUF_BEHIND_WEIGHT:
@@ -148,12 +147,14 @@ static int runs(const struct hf_setup *s, int pass)
     return !(hf_gather(s)->area && pass == HF_GATHER_FILL);
 }
 
-// What the kernels need: terms, pairs and their sums of the gather for strips of up to 80 columns; values and partial sums
-// of the near blur for 16; and three rows for the mean fill.
+// What the kernels need: terms, pairs and their sums of the gather for strips of up to 80 columns, and by area a strip's
+// sums; values and partial sums of the near blur for 16; and three rows for the mean fill.
 static size_t work(const struct hf_setup *s, const struct hf_plan *p)
 {
+    const size_t height = (size_t)p->cell_height[2] + 2 * (size_t)p->pass[HF_GATHER_COMPUTATION].y;
+    const size_t strip = hf_gather(s)->area ? height * HF_STRIP * HF_STRIP_PLANES : 0;
     const size_t rows = 2 * (size_t)taps_reach(s).y + 1, columns = 2 * (size_t)taps_reach(s).x + 2;
-    const size_t gather = 2 * rows * columns + 16 + columns * 80;
+    const size_t gather = strip + 2 * rows * columns + 16 + columns * 80;
     const size_t near = 2 * ((size_t)p->cell_height[2] + 2 * (size_t)p->buf[HF_BUF_BLUR_X].y) * 16;
     const size_t most = gather > near ? gather : near, fill = 3 * p->line_floats;
     return most > fill ? most : fill;

@@ -173,6 +173,9 @@ static inline int hf_area_is_whole(const struct hf_setup *s, const struct hf_tap
 // Row y of the part of a level's taps that lies in the frame, n pixels from x on. Returns 0 if it is all of them.
 int hf_area_inside(const struct hf_setup *s, const struct hf_taps *t, int x, int y, int n, float *inside);
 
+// Sums that Computation by area uses up strip by strip (computation_simd.h): planes, and floats from row to row.
+enum { HF_STRIP_PLANES = 5, HF_STRIP = 112 };
+
 struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo);
 
 extern const struct hf_engine_def hf_gather_engine;

@@ -303,12 +303,33 @@ HF_INLINE void blur_column_wide(const struct hf_frame *f, const int bytes, char 
     blur_line(bytes, 1, from, sum, (char *)out, out_stride * (ptrdiff_t)sizeof(float), m, n, 1);
 }
 
+// 3 high, row by row: nothing is shared that would be worth keeping.
+HF_INLINE void blur_rows_3(const struct hf_frame *f, struct hf_rect r, const int bytes)
+{
+    const struct hf_buf *b = &f->buf[HF_BUF_BLUR_X];
+    const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float);
+    const vf scale = vf_set1(1 / 3.0f);
+    for (int y = r.y0; y < r.y1; y++) {
+        const char *in = hf_narrow_at(b, 0, r.x0, y, bytes);
+        float *out = hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y);
+        for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
+            const char *p = in + x * bytes;
+            const vf above = narrow_load(bytes, p - stride), below = narrow_load(bytes, p + stride);
+            blur_put(bytes, 1, (char *)(out + x), vf_mul(blur_sum(narrow_load(bytes, p), above, below), scale));
+        }
+    }
+}
+
 HF_INLINE void blur_columns(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_BLUR_X], *to = &f->buf[HF_BUF_BLUR];
     const int m = hf_gather(f->s)->blur_y, n = r.y1 - r.y0, is_sum = bytes == 1 && m <= BLUR_BYTES,
               width = is_sum ? VECTOR : VF_N;
     const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float);
+    if (m == 1 && bytes > 1) {
+        blur_rows_3(f, r, bytes);
+        return;
+    }
     for (int x = r.x0; x < r.x1; x += width) {
         char *in = hf_narrow_at(b, 0, x, r.y0 - m, bytes);
         float *out = hf_at(to, 0, x, r.y0);

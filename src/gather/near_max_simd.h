@@ -53,6 +53,26 @@ HF_INLINE void max_row(const int bytes, const char *in, char *out, int n, const 
     }
 }
 
+// Maxima of 5 values, in registers.
+HF_INLINE void max_row_5(const int bytes, const char *in, char *out, int n)
+{
+    const int size = n * bytes, inputs = (n + 4) * bytes;
+    const vi zero = vi_set1(0);
+    vi a[3] = {vi_load(in), zero, zero};  // the third for vectors of 4 values
+    if (VECTOR == 4 * bytes && VECTOR < inputs)
+        a[1] = vi_load(in + VECTOR);
+    for (int i = 0; i < size; i += VECTOR) {
+        const int last = VECTOR == 4 * bytes ? 2 : 1;
+        if (i + last * VECTOR < inputs)
+            a[last] = vi_load(in + i + last * VECTOR);
+        const vi m2 = narrow_max(bytes, narrow_shift(bytes, a, 1), narrow_shift(bytes, a, 2));
+        const vi m4 = narrow_max(bytes, narrow_shift(bytes, a, 3), narrow_shift(bytes, a, 4));
+        vi_store(out + i, narrow_max(bytes, a[0], narrow_max(bytes, m2, m4)));
+        a[0] = a[1];
+        a[1] = a[2];
+    }
+}
+
 // A row of any width, from its first value; work: room for a row.
 HF_INLINE void max_row_wide(const int bytes, const char *in, char *work, char *out, int n, int m)
 {
@@ -122,6 +142,8 @@ HF_INLINE void max_rows(const struct hf_frame *f, struct hf_rect r, const int by
         const char *in = narrow_row(bytes, coc, n + 2 * m, (char *)hf_line(f, 0));
         if (m == 6)
             max_row(bytes, in, out, n, 13);
+        else if (m == 2)
+            max_row_5(bytes, in, out, n);
         else
             max_row_wide(bytes, in, (char *)hf_line(f, 1), out, n, m);
     }
@@ -179,6 +201,8 @@ HF_INLINE void max_columns(const struct hf_frame *f, struct hf_rect r, const int
             vi up[MAX_MANY];
             if (rows == MAX_ROWS)
                 max_column(bytes, in, stride, out, out_stride, m, MAX_ROWS, up);
+            else if (rows == 5 && m == 2)
+                max_column(bytes, in, stride, out, out_stride, 2, 5, up);
             else
                 max_column(bytes, in, stride, out, out_stride, m, rows, up);
         }

@@ -175,7 +175,8 @@ static void make_scratch(struct world *w)
     const struct hf_taps *t = world_taps(w);
     const int width = w->r.x1 - w->r.x0, height = w->r.y1 - w->r.y0;
     make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(w->gather.max_x, t->rx) + 8 + 2 * HF_PAD));
-    const size_t rows = 2 * (size_t)t->ry + 1, gather = (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 128;
+    const size_t rows = 2 * (size_t)t->ry + 1, strips = HF_STRIP_PLANES * HF_STRIP * (size_t)height;
+    const size_t gather = strips + (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 128;
     const size_t near = 64 * (size_t)(height + 2 * w->gather.max_y), fill = 3 * w->line_floats;
     const size_t floats = gather > near ? gather : near;
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);
