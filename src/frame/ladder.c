@@ -46,6 +46,7 @@ static const struct word {
     {"--no-unmix", AT(layers.no_unmix), FLAG, 0},
     {"--no-hidden", AT(layers.no_hidden), FLAG, 0},
     {"--no-highlights", AT(layers.no_highlights), FLAG, 0},
+    {"--no-patterns", AT(layers.no_patterns), FLAG, 0},
 #undef AT
 };
 enum { WORDS = sizeof words / sizeof *words };

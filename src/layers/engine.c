@@ -13,6 +13,7 @@
 #include "layers/cell.h"
 #include "layers/hidden.h"
 #include "layers/highlights.h"
+#include "layers/patterns.h"
 #include "layers/slices.h"
 #include "layers/unmix.h"
 #include "params.h"
@@ -22,7 +23,7 @@
 
 enum { HALO_EDGE = 1, HALO_LEVELS, HALO_CELL };
 
-enum { COC, LOAD, PREPARE, HIDDEN, COMPOSITE, PASSES };
+enum { COC, LOAD, PREPARE, HIDDEN, PATTERNS, COMPOSITE, PASSES };
 
 static const struct hf_pass passes[PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 2.5f},
@@ -31,9 +32,12 @@ static const struct hf_pass passes[PASSES] = {
      .writes = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(QUADS) | B(QUADS_AT), .sweep = 2, .ns = 40},
     {"Hidden", .reads = B(SEEN_AT) | B(MIXED_AT), .around = B(QUADS) | B(QUADS_AT), .halo = HALO_LEVELS,
      .writes = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT), .sweep = 3, .ns = 60},
+    {"Patterns", .reads = B(HIDDEN), .around = B(SEEN_AT) | B(QUADS) | B(QUADS_AT) | B(HIDDEN_AT), .halo = HALO_CELL,
+     .writes = B(FILL), .sweep = 4, .ns = 400},
     {"Composite",
-     .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT),
-     .halo = HALO_CELL, .sweep = 4, .ns = 300},
+     .around =
+         B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(FILL) | B(BEYOND) | B(BEYOND_AT),
+     .halo = HALO_CELL, .sweep = 5, .ns = 300},
 };
 
 static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
@@ -49,13 +53,15 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
     [HF_LAYERS_BUF_HIDDEN_AT] = {"hiddenat", .frame = 1},
     [HF_LAYERS_BUF_BEYOND] = {"beyond", .frame = 1},
     [HF_LAYERS_BUF_BEYOND_AT] = {"beyondat", .frame = 1},
+    [HF_LAYERS_BUF_FILL] = {"fill", .frame = 1},
 };
 
 static const struct hf_layers_settings qualities[] = {
     [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 6, .quarter = 32},
     [HF_LAYERS_STANDARD] = {.spacing = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
     [HF_LAYERS_HIGH] = {.spacing = 2.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 5, .quarter = 32},
-    [HF_LAYERS_BEST] = {.spacing = 1.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 5, .quarter = 32},
+    [HF_LAYERS_BEST] =
+        {.spacing = 1.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .patterns = 1, .half = 5, .quarter = 32},
 };
 
 static const float MAX_PICTURE = 256;  // radius, pixels
@@ -98,6 +104,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->unmix &= !given->no_unmix;
     set->hidden &= !given->no_hidden;
     set->highlights &= !given->no_highlights;
+    set->patterns &= !given->no_patterns;
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;
     l->slices = l->levels = 0;
@@ -229,6 +236,8 @@ static int channels(const struct hf_setup *s, int b)
     case HF_LAYERS_BUF_HIDDEN:
     case HF_LAYERS_BUF_BEYOND:
         return l->levels ? s->channels : 0;
+    case HF_LAYERS_BUF_FILL:
+        return l->levels && l->set.patterns ? s->channels : 0;
     default:
         return s->channels;
     }
@@ -237,7 +246,10 @@ static int channels(const struct hf_setup *s, int b)
 static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
     const struct hf_layers *l = hf_layers(s);
-    const int n = halo == HALO_EDGE ? 6 : halo == HALO_LEVELS ? hf_layers_hidden_reach(l) : l->around / 2;
+    // Planes of one set of samples have one stride: whoever reads some of them reads as far around as the others do.
+    const int n = halo == HALO_EDGE     ? 6
+                  : halo == HALO_LEVELS ? hf_layers_hidden_reach(l)
+                                        : hf_max(l->around / 2, hf_layers_patterns_reach(l));
     return (struct hf_reach){n, n};
 }
 
@@ -263,9 +275,9 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
         const int n = hf_layers(s)->around < 256 ? 1 : 2;
         *width = 160 * n;
         *height = 96 * n;
-    } else if (sweep == 3) {
+    } else if (sweep == 3 || sweep == 4) {
         *width = (s->half_width + 15) & ~15;
-        *height = 96;
+        *height = sweep == 3 ? 96 : 48;
     }
 }
 
@@ -276,9 +288,11 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
     if (!l->slices)
         return 0;
     const int width = 2 * p->cell_width[2] + 2 * HF_LAYERS_TILE, height = 2 * p->cell_height[2] + 2 * HF_LAYERS_TILE;
-    const size_t need[] = {
-        hf_layers_unmix_floats(2 * p->cell_width[2]), hf_layers_highlight_floats(p->cell_width[2], p->cell_height[2]),
-        hf_layers_hidden_floats(l, p->cell_width[3], p->cell_height[3]), hf_layers_composite_floats(l, width, height)};
+    const size_t need[] = {hf_layers_unmix_floats(2 * p->cell_width[2]),
+                           hf_layers_highlight_floats(p->cell_width[2], p->cell_height[2]),
+                           hf_layers_hidden_floats(l, p->cell_width[3], p->cell_height[3]),
+                           hf_layers_patterns_floats(l, p->cell_width[4], p->cell_height[4]),
+                           hf_layers_composite_floats(l, width, height)};
     for (size_t i = 0; i < sizeof need / sizeof *need; i++)
         most = need[i] > most ? need[i] : most;
     return most;
@@ -288,7 +302,7 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
 {
     const struct hf_layers *l = hf_layers(s);
     numbers[0] = (int)(8 * l->set.spacing) + l->set.fine;
-    numbers[1] = l->set.unmix + 2 * l->set.hidden + 4 * l->set.highlights;
+    numbers[1] = l->set.unmix + 2 * l->set.hidden + 4 * l->set.highlights + 8 * l->set.patterns;
     numbers[2] = (int)fminf(l->set.half, 4096);
     numbers[3] = l->groups + 4 * (l->key.picture ? 3 : l->key.cat_eye > 0 ? 2 : l->shaped);
     *reach = (int)fmaxf(l->farthest, -l->nearest);
@@ -301,7 +315,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
 {
     *k = (struct hf_layers_kernels){
         .passes = {{hf_radius_pass, hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass,
-                    hf_layers_composite_pass}},
+                    hf_layers_patterns_pass, hf_layers_composite_pass}},
         .sure = hf_layers_sure_c,
         .unmix = hf_layers_unmix_c,
         .roots = hf_layers_roots_c,
@@ -313,6 +327,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .nearest = hf_layers_nearest_c,
         .found = hf_layers_found_c,
         .smooth = hf_layers_smooth_c,
+        .alike = hf_layers_alike_c,
         .extremes = hf_layers_extremes_c,
         .inside = hf_layers_inside_c,
         .weigh = hf_layers_weigh_c,
@@ -335,10 +350,10 @@ const struct hf_engine_def hf_layers_engine = {
     .check = check,
     .passes = passes,
     .pass_count = PASSES,
-    .sweeps = 4,
+    .sweeps = 5,
     .bufs = bufs,
     .buf_count = HF_LAYERS_BUFS,
-    .across = 1u << 2 | 1u << 3,
+    .across = 1u << 2 | 1u << 3 | 1u << 4,
     .grain = HF_LAYERS_TILE / 2,
     .measured = 1,
     .kernels_bytes = sizeof(struct hf_layers_kernels),

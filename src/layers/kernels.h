@@ -33,6 +33,12 @@ typedef void hf_layers_found(const float *const sum[6], const float *const radiu
 // The mean of lines of thirteen hidden samples, of those with weight that are about as far as the middle one; its weight is
 // kept. square: colours are no longer roots.
 typedef void hf_layers_smooth(const float *const in[13][6], int channels, int square, int n, float *const out[6]);
+// How alike what lies around n places side by side is to what is known around another: sums of the weights of its taps that
+// are known there too, and of these times the square of how far colours are off.
+struct hf_pattern_place;
+struct hf_pattern_tap;
+typedef void hf_layers_alike(const struct hf_pattern_place *place, const struct hf_pattern_tap *tap, int count,
+                             const float *const in[6], int channels, int n, float *sum, float *off);
 // Least and largest radius of what has weight in rows of n samples, with those that out holds; without weights all have.
 // Returns whether a share is positive; share may be NULL.
 typedef int hf_layers_extremes(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
@@ -83,6 +89,7 @@ struct hf_layers_kernels {
     hf_layers_nearest *nearest;
     hf_layers_found *found;
     hf_layers_smooth *smooth;
+    hf_layers_alike *alike;
     hf_layers_extremes *extremes;
     hf_layers_inside *inside;
     hf_layers_weigh *weigh;
@@ -122,10 +129,12 @@ enum {
     HF_LAYERS_BUF_HIDDEN_AT,
     HF_LAYERS_BUF_BEYOND,
     HF_LAYERS_BUF_BEYOND_AT,
+    HF_LAYERS_BUF_FILL,  // colours of hidden samples, by patterns
     HF_LAYERS_BUFS
 };
 
-hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_layers_composite_pass;
+hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_layers_patterns_pass,
+    hf_layers_composite_pass;
 // Note the radii and slices of the samples that a cell has made.
 void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r);
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r);
@@ -141,6 +150,7 @@ hf_layers_tap hf_layers_tap_c;
 hf_layers_nearest hf_layers_nearest_c;
 hf_layers_found hf_layers_found_c;
 hf_layers_smooth hf_layers_smooth_c;
+hf_layers_alike hf_layers_alike_c;
 hf_layers_extremes hf_layers_extremes_c;
 hf_layers_inside hf_layers_inside_c;
 hf_layers_weigh hf_layers_weigh_c;

@@ -69,6 +69,7 @@ struct hf_layers_settings {
     float spacing;  // of the slices; below 2 it is 1 anyway
     int fine;       // slices lie closer: see slices.c
     int unmix, hidden, highlights;
+    int patterns;                 // hidden samples take theirs from what looks alike
     float half, quarter, eighth;  // radii from which slices are blurred at these parts of the resolution
 };
 

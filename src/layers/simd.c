@@ -6,6 +6,7 @@
 #include "layers/composite_simd.h"
 #include "layers/hidden_simd.h"
 #include "layers/highlights_simd.h"
+#include "layers/patterns_simd.h"
 #include "layers/runs_simd.h"
 #include "layers/unmix_simd.h"
 
@@ -22,6 +23,7 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->nearest = layers_nearest_simd;
     k->found = layers_found_simd;
     k->smooth = layers_smooth_simd;
+    k->alike = layers_alike_simd;
     k->extremes = layers_extremes_simd;
     k->inside = layers_inside_simd;
     k->weigh = layers_weigh_simd;

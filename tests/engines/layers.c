@@ -45,6 +45,7 @@ static struct hf_params random_params(struct rng *rng)
     p.layers.no_unmix = rng_below(rng, 5) == 0;
     p.layers.no_hidden = rng_below(rng, 5) == 0;
     p.layers.no_highlights = rng_below(rng, 5) == 0;
+    p.layers.no_patterns = rng_below(rng, 5) == 0;
     p.aperture.squeeze = rng_below(rng, 4) ? 1 : rng_range(rng, 0.5f, 2);
     if (rng_below(rng, 2))
         random_aperture(rng, &p.aperture);

@@ -52,11 +52,12 @@ static struct scene stage_new(struct rng *rng, int n, int width, int height, int
 // and a share of which numerator and denominator are such means' products, 6 times as large as what they leave where
 // colours differ by 0.3 or more, of 0.3 to 0.9: 6 * (96 + 20). Highlights: 18 + 18 sums of roots and squares of them, 60.
 // Hidden: three products and sums a level, twice (8 * 2 * 5), nine taps of each (9 * 5 * 3), means of 13, twice
-// (2 * (13 + 3)), and squares: 272. A slice's
+// (2 * (13 + 3)), and squares: 272. Patterns: how far a choice is off and the variance by which that is measured, 61 products
+// and sums each (4 * 61), to the fourth power, and twice as much for the trust in the best: (4 + 2) * 4 * 61. A slice's
 // share, its sums over 4 x 4 pixels: 24. Rows of runs: 10 a row and the sum of rows, 2 * 46 + 2; of a disc, twice as many
 // columns as rows: 140 at the most. Upsampling: 6 a level, 3 levels. A stack: 7 a slice, of which a sample is in two, and
 // all that lies before weighs on what is open: 7 * 40. The result: 12. Single floats for the table's weights: 4 more.
-static const double ROUNDINGS = 6 * (96 + 20) + 60 + 272 + 24 + 140 + 18 + 7 * 40 + 12 + 4;
+static const double ROUNDINGS = 6 * (96 + 20) + 60 + 272 + 6 * 4 * 61 + 24 + 140 + 18 + 7 * 40 + 12 + 4;
 
 static void against_double(struct hf_context *c, struct rng *rng, int n)
 {
@@ -69,6 +70,7 @@ static void against_double(struct hf_context *c, struct rng *rng, int n)
     p.layers.no_unmix = n % 5 == 1;
     p.layers.no_hidden = n % 7 == 3;
     p.layers.no_highlights = !lamps;
+    p.layers.no_patterns = n % 8 == 7;
     p.aperture.blades = n % 4 == 1 ? 3 + rng_below(rng, 6) : 0;
     p.aperture.rotation = p.aperture.blades ? rng_range(rng, -90, 90) : 0;
     p.aperture.ring = n % 4 >= 2 ? 0 : rng_range(rng, 0, 0.8f);

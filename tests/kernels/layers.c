@@ -8,6 +8,7 @@
 
 #include "harness.h"
 #include "layers/hidden.h"
+#include "layers/patterns.h"
 
 enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13 };
 
@@ -19,6 +20,8 @@ static struct {
     struct hf_disc_row disc[DISC_ROWS];
     struct hf_shape_run run[3];
     int from, to;
+    struct hf_pattern_place place;
+    struct hf_pattern_tap around[MOST];
 } now;
 
 // Line i: sample 0, with ROOM floats before it and after the last of the longest line.
@@ -247,6 +250,29 @@ static void runs_make(struct world *w)
     now.roundings = 3 * (6 + 4) + 4;
 }
 
+// Samples of up to two surfaces, and taps on either side of a place.
+static void alike_make(struct world *w)
+{
+    fill_set(w, 0, -16, w->n + 16);
+    put(w, IN, w->n, 32);
+    put(w, IN + 1, w->n, 32);
+    now.taps = rng_int(&w->rng, 0, MOST);
+    now.place = (struct hf_pattern_place){rng_float(&w->rng, -30, 30), rng_float(&w->rng, 0.05f, 4)};
+    for (int i = 0; i < now.taps; i++) {
+        now.around[i] = (struct hf_pattern_tap){.at = rng_int(&w->rng, -16, 16), .weight = sample(w, WEIGHT)};
+        for (int c = 0; c < 4; c++)
+            now.around[i].colour[c] = sample(w, COLOUR);
+    }
+}
+
+static void alike_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *in[6];
+    set_of(w, a, 0, in);
+    k->layers.alike(&now.place, now.around, now.taps, (const float *const *)in, now.channels, w->n, line(w, a, IN),
+                    line(w, a, IN + 1));
+}
+
 // ---- stacks ----
 
 static void blend_call(const struct world *w, const struct kernels *k, enum arena a)
@@ -339,6 +365,9 @@ void layers_make(struct world *w, int which)
             for (int x = 0; x < w->n; x++)
                 line(w, ARENA_MADE, i)[x] += 0.0f;
         put_set(w, IN, 6, w->n);
+        return;
+    case LAYERS_ALIKE:
+        alike_make(w);
         return;
     case LAYERS_FOUND:
         fill_set(w, 0, 0, w->n);
@@ -471,6 +500,9 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         return;
     case LAYERS_SMOOTH:
         smooth_call(w, k, a);
+        return;
+    case LAYERS_ALIKE:
+        alike_call(w, k, a);
         return;
     case LAYERS_NEAREST:
         s->nearest(in[0], in[1], w->n, out);

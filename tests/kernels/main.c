@@ -114,6 +114,7 @@ const struct test tests[] = {
     ROW("layers_nearest", LAYERS_NEAREST, 600, layers_make, layers_call, layers_check),
     ROW("layers_found", LAYERS_FOUND, 600, layers_make, layers_call, layers_check),
     ROW("layers_smooth", LAYERS_SMOOTH, 600, layers_make, layers_call, layers_check),
+    ROW("layers_alike", LAYERS_ALIKE, 600, layers_make, layers_call, layers_check),
     ROW("layers_extremes", LAYERS_EXTREMES, 600, layers_make, layers_call, layers_check),
     ROW("layers_inside", LAYERS_INSIDE, 600, layers_make, layers_call, layers_check),
     ROW("layers_weigh", LAYERS_WEIGH, 600, layers_make, layers_call, layers_check),

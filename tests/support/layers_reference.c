@@ -342,6 +342,7 @@ struct picture layers_reference(const struct picture *colour, const float *radiu
                       .unmix = !p->no_unmix,
                       .hidden = !p->no_hidden && p->quality != HF_LAYERS_DRAFT,
                       .highlights = !p->no_highlights,
+                      .patterns = !p->no_patterns && p->quality == HF_LAYERS_BEST,
                       .wide = 1 / ((double)params->view.pixel_aspect * params->aperture.squeeze),
                       .half = p->half_from,
                       .quarter = p->quarter_from};

@@ -49,7 +49,7 @@ struct frame {
     int width, height, channels;
     struct hf_layers_params set;
     struct hf_aperture_params aperture;
-    int fine, unmix, hidden, highlights;
+    int fine, unmix, hidden, highlights, patterns;
     double wide, half, quarter, low, high;
     struct grid seen, mixed, behind, beyond;  // samples
 };
@@ -66,6 +66,11 @@ static inline double radius_at(const struct frame *f, int x, int y)
 
 // Fill f's samples: seen, mixed and behind (layers_reference_samples.c).
 void layers_reference_samples(struct frame *f);
+// Samples that are about as far as the farthest of them, as one.
+void layers_reference_merge(const double *const *from, int count, double within, double part, int channels,
+                            double *out);
+// Roots of colour of hidden samples, from those of quads (layers_reference_patterns.c).
+void layers_reference_patterns(const struct frame *f, const struct grid *quads, struct grid *hidden);
 // At how many distances hidden samples are looked for.
 int layers_reference_levels(const struct frame *f);
 

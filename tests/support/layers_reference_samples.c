@@ -141,7 +141,7 @@ static void highlight(struct frame *f, int x, int y)
 
 // ---- hidden samples ----
 
-static void merge(const double *const *from, int count, double within, double part, int channels, double *out)
+void layers_reference_merge(const double *const *from, int count, double within, double part, int channels, double *out)
 {
     double farthest = -INFINITY, sum = 0;
     for (int i = 0; i < count; i++)
@@ -172,7 +172,7 @@ static void quad(const struct frame *f, int x, int y, double *out)
         for (int c = 0; c < f->channels; c++)
             s[i][c] = root(s[i][c]);
     }
-    merge(from, 4, 2, 0.25, f->channels, out);
+    layers_reference_merge(from, 4, 2, 0.25, f->channels, out);
 }
 
 int layers_reference_levels(const struct frame *f)
@@ -191,7 +191,7 @@ static void step(const struct frame *f, const struct grid *from, struct grid *to
             const double *in[3];
             for (int i = 0; i < 3; i++)
                 in[i] = edge(from, x + (i - 1) * dx, y + (i - 1) * dy);  // beyond what is read the edge is never
-            merge(in, 3, within, 1.0 / 3, f->channels, at(to, x, y));
+            layers_reference_merge(in, 3, within, 1.0 / 3, f->channels, at(to, x, y));
         }
 }
 
@@ -272,9 +272,12 @@ static struct grid search(const struct frame *f, const struct grid *level, int l
     return to;
 }
 
-static struct grid smooth_found(const struct frame *f, const struct grid *found)
+// Their colours, by patterns of quads unless these are NULL.
+static struct grid smooth_found(const struct frame *f, const struct grid *found, const struct grid *quads)
 {
     struct grid along = smooth(f, found, 1, 0), down = smooth(f, &along, 0, 1);
+    if (quads)
+        layers_reference_patterns(f, quads, &down);
     for (int y = down.y0; y < down.y1; y++)
         for (int x = down.x0; x < down.x1; x++)
             for (int c = 0; c < f->channels; c++)
@@ -304,8 +307,8 @@ static void find_hidden(struct frame *f)
         free(across.v);
     }
     const struct grid behind = search(f, level, levels, NULL), beyond = search(f, level, levels, &behind);
-    f->behind = smooth_found(f, &behind);
-    f->beyond = smooth_found(f, &beyond);
+    f->behind = smooth_found(f, &behind, levels && f->patterns ? &quads : NULL);
+    f->beyond = smooth_found(f, &beyond, NULL);
     free(behind.v);
     free(beyond.v);
     for (int j = 0; j < levels; j++)

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is hidden by what looks alike around it.
+#include <string.h>
+
+#include "support/layers_reference_parts.h"
+
+enum { WINDOW = 4, CHOICES = 6, MOST = 81, SHIFT = 7 };
+
+// What is seen at a level, a sample each, and places: radius (0) of what is hidden, and what is before it (1), INFINITY
+// where nothing is.
+struct level {
+    struct grid seen, place;
+};
+
+struct choices {
+    int count, x[CHOICES], y[CHOICES];
+    double off[CHOICES], variance, trust;
+};
+
+struct patch {
+    double radius, slope, sum, variance, weight[MOST], colour[MOST][4];
+    int count, x[MOST], y[MOST];
+};
+
+static double unit(double v)
+{
+    return fmin(fmax(v, 0), 1);
+}
+
+static double known(const struct level *v, double radius, double slope, int x, int y)
+{
+    if (x < v->seen.x0 || y < v->seen.y0 || x >= v->seen.x1 || y >= v->seen.y1)
+        return 0;
+    const double *s = at(&v->seen, x, y);
+    return s[WEIGHT] > 0 ? unit(2 - fabs(s[RADIUS] - radius) * slope) * unit(9 * s[WEIGHT]) : 0;
+}
+
+static struct level halve(const struct level *from, int channels)
+{
+    const int width = (from->seen.x1 + 1) / 2, height = (from->seen.y1 + 1) / 2;
+    struct level to = {grid_new(0, 0, width, height, SAMPLE), grid_new(0, 0, width, height, 2)};
+    for (int i = 0; i < width * height; i++) {
+        const int x = i % width, y = i / width;
+        const double *in[4];
+        double *place = at(&to.place, x, y), count = 0;
+        static const double none[SAMPLE];
+        place[1] = INFINITY;
+        for (int k = 0; k < 4; k++) {
+            const int px = 2 * x + k % 2, py = 2 * y + k / 2;
+            in[k] = none;
+            if (px >= from->seen.x1 || py >= from->seen.y1)
+                continue;
+            in[k] = at(&from->seen, px, py);
+            const double *p = at(&from->place, px, py);
+            count += p[1] < INFINITY;
+            place[0] += p[1] < INFINITY ? p[0] : 0;
+            place[1] = fmin(place[1], p[1]);
+        }
+        place[0] /= fmax(count, 1);
+        layers_reference_merge(in, 4, 4, 0.25, channels, at(&to.seen, x, y));
+    }
+    return to;
+}
+
+static void look_around(const struct level *v, int channels, int x, int y, struct patch *p)
+{
+    double mean[4] = {0}, square = 0, all = 0;
+    p->count = 0;
+    p->sum = 0;
+    for (int i = 0; i < MOST; i++) {
+        const int dx = i % 9 - WINDOW, dy = i / 9 - WINDOW, away = dx * dx + dy * dy;
+        const double w = known(v, p->radius, p->slope, x + dx, y + dy) / (1 + away / 4.0);
+        all += away <= 19 ? 1 / (1 + away / 4.0) : 0;
+        if (away > 19 || !(w > 0))
+            continue;
+        p->x[p->count] = dx;
+        p->y[p->count] = dy;
+        p->weight[p->count] = w;
+        p->sum += w;
+        for (int c = 0; c < channels; c++) {
+            const double colour = p->colour[p->count][c] = at(&v->seen, x + dx, y + dy)[c];
+            mean[c] += w * colour;
+            square += w * colour * colour;
+        }
+        p->count++;
+    }
+    for (int c = 0; c < channels && p->sum > 0; c++)
+        square -= mean[c] * mean[c] / p->sum;
+    p->variance = p->sum > 0 ? fmax(square, 0) / p->sum : 0;
+    p->count = p->sum < all / 10 ? 0 : p->count;
+}
+
+static void choose(struct choices *c, int x, int y, double off)
+{
+    int i = 0;
+    while (i < c->count && (abs(c->x[i] - x) > 1 || abs(c->y[i] - y) > 1))
+        i++;
+    if ((i < c->count && off >= c->off[i]) || (i == CHOICES && off >= c->off[CHOICES - 1]))
+        return;
+    if (i == c->count)
+        i = i < CHOICES ? c->count++ : CHOICES - 1;
+    for (; i > 0 && c->off[i - 1] > off; i--) {
+        c->x[i] = c->x[i - 1];
+        c->y[i] = c->y[i - 1];
+        c->off[i] = c->off[i - 1];
+    }
+    c->x[i] = x;
+    c->y[i] = y;
+    c->off[i] = off;
+}
+
+// Compare with what is around (x + sx, y + sy).
+static void compare(const struct level *v, int channels, const struct patch *p, int x, int y, int sx, int sy,
+                    struct choices *c)
+{
+    const double middle = known(v, p->radius, p->slope, x + sx, y + sy);
+    double sum = 0, off = 0;
+    for (int i = 0; i < p->count && middle > 0; i++) {
+        const int px = x + sx + p->x[i], py = y + sy + p->y[i];
+        const double k = known(v, p->radius, p->slope, px, py) * p->weight[i];
+        sum += k;
+        for (int j = 0; j < channels && k > 0; j++)
+            off += k * pow(at(&v->seen, px, py)[j] - p->colour[i][j], 2);
+    }
+    if (middle > 0)
+        choose(c, sx, sy, (off + fmax(p->sum - sum, 0) * p->variance) / p->sum + (1 - middle) * p->variance);
+}
+
+static void end_choices(struct choices *c, const struct patch *p)
+{
+    c->variance = p->variance;
+    c->trust = c->count ? fmax(1 - c->off[0] / (0.5 * p->variance + 0.0005), 0) : 0;
+}
+
+static void refine(const struct level *v, int channels, const struct patch *p, int x, int y, const struct choices *from,
+                   int count, struct choices *to)
+{
+    for (int i = 0; i < from->count && i < count; i++)
+        for (int k = 0; k < 9; k++)
+            compare(v, channels, p, x, y, 2 * from->x[i] + k % 3 - 1, 2 * from->y[i] + k / 3 - 1, to);
+}
+
+// The surface behind a place; 0: nothing is hidden there.
+static int surface(const struct level *v, int x, int y, struct patch *p)
+{
+    const double *place = at(&v->place, x, y);
+    p->radius = place[0];
+    p->slope = 4 / fmax(place[0] - place[1], 1);
+    return place[1] < INFINITY;
+}
+
+static struct choices doubled(struct choices c)
+{
+    for (int i = 0; i < c.count; i++) {
+        c.x[i] *= 2;
+        c.y[i] *= 2;
+    }
+    return c;
+}
+
+static struct choices search(const struct level *v, int channels, int x, int y)
+{
+    struct choices c = {0};
+    struct patch p;
+    if (!surface(v, x, y, &p))
+        return c;
+    look_around(v, channels, x, y, &p);
+    for (int sy = -SHIFT; sy <= SHIFT && p.count; sy++)
+        for (int sx = -SHIFT; sx <= SHIFT; sx++)
+            if (sx || sy)
+                compare(v, channels, &p, x, y, sx, sy, &c);
+    end_choices(&c, &p);
+    return c;
+}
+
+// From the choices of the coarser samples: its own, and the two next to it.
+static struct choices search_fine(const struct level *v, int channels, int x, int y,
+                                  const struct choices *const from[3])
+{
+    struct choices c = {0}, exact = {0};
+    struct patch p;
+    if (!surface(&v[1], x, y, &p))
+        return c;
+    look_around(&v[1], channels, x, y, &p);
+    for (int i = 0; i < 3 && p.count; i++)
+        if (from[i])
+            refine(&v[1], channels, &p, x, y, from[i], i ? 2 : CHOICES, &c);
+    if (p.count)
+        end_choices(&c, &p);
+    else
+        c = doubled(*from[0]);
+    look_around(&v[0], channels, 2 * x, 2 * y, &p);
+    if (!p.count)
+        return doubled(c);
+    refine(&v[0], channels, &p, 2 * x, 2 * y, &c, CHOICES, &exact);
+    end_choices(&exact, &p);
+    return exact;
+}
+
+// The root of colour of place (x, y): that of four samples' choices.
+static void fill(const struct level *v, const struct choices *fine, int channels, int x, int y, const double *was,
+                 double *out)
+{
+    const int width = v[1].seen.x1, height = v[1].seen.y1;
+    double total[4] = {0}, weight = 0, smooth = 0;
+    struct patch p;
+    surface(v, x, y, &p);
+    for (int i = 0; i < 4; i++) {
+        const int px = x / 2 + (i & 1 ? (x & 1 ? 1 : -1) : 0), py = y / 2 + (i & 2 ? (y & 1 ? 1 : -1) : 0);
+        const double part = (i & 1 ? 0.25 : 0.75) * (i & 2 ? 0.25 : 0.75);
+        if (px < 0 || py < 0 || px >= width || py >= height)
+            continue;
+        const struct choices *c = &fine[py * width + px];
+        double sum = 0, colour[4] = {0};
+        for (int k = 0; k < c->count; k++) {
+            const double near = fmax(1 - (c->off[k] - c->off[0]) / (0.4 * c->variance + 0.002), 0);
+            const double g = known(v, p.radius, p.slope, x + c->x[k], y + c->y[k]) * pow(near, 4);
+            sum += g;
+            for (int j = 0; j < channels && g > 0; j++)
+                colour[j] += g * at(&v->seen, x + c->x[k], y + c->y[k])[j];
+        }
+        const double use = part * c->trust * fmin(sum, 1);
+        smooth += c->count ? part - use : 0;
+        weight += use;
+        for (int j = 0; j < channels && use > 0; j++)
+            total[j] += use * colour[j] / sum;
+    }
+    for (int c = 0; c < channels; c++)
+        out[c] = weight > 0 ? (total[c] + smooth * was[c]) / (weight + smooth) : was[c];
+}
+
+void layers_reference_patterns(const struct frame *f, const struct grid *quads, struct grid *hidden)
+{
+    const int channels = f->channels;
+    struct level v[3] = {{*quads, grid_new(0, 0, quads->x1, quads->y1, 2)}};
+    for (int i = 0; i < quads->x1 * quads->y1; i++) {
+        const int x = i % quads->x1, y = i / quads->x1;
+        double *place = at(&v[0].place, x, y);
+        place[0] = at(hidden, x, y)[RADIUS];
+        place[1] = INFINITY;
+        for (int k = 0; k < 4 && at(hidden, x, y)[WEIGHT] > 0; k++)
+            place[1] = fmin(edge(&f->seen, 2 * x + k % 2, 2 * y + k / 2)[RADIUS], place[1]);
+    }
+    v[1] = halve(&v[0], channels);
+    v[2] = halve(&v[1], channels);
+    const int wide = v[2].seen.x1, high = v[2].seen.y1, width = v[1].seen.x1, height = v[1].seen.y1;
+    struct choices *coarse = calloc((size_t)(wide * high), sizeof *coarse);
+    struct choices *fine = calloc((size_t)(width * height), sizeof *fine);
+    for (int i = 0; i < wide * high; i++)
+        coarse[i] = search(&v[2], channels, i % wide, i / wide);
+    for (int i = 0; i < width * height; i++) {
+        const int x = i % width, y = i / width, px = x / 2 + (x & 1 ? 1 : -1), py = y / 2 + (y & 1 ? 1 : -1);
+        const struct choices *const from[3] = {&coarse[y / 2 * wide + x / 2],
+                                               px >= 0 && px < wide ? &coarse[y / 2 * wide + px] : NULL,
+                                               py >= 0 && py < high ? &coarse[py * wide + x / 2] : NULL};
+        fine[i] = search_fine(v, channels, x, y, from);
+    }
+    struct grid out = grid_new(0, 0, quads->x1, quads->y1, SAMPLE);
+    for (int y = 0; y < quads->y1; y++)
+        for (int x = 0; x < quads->x1; x++)
+            if (at(hidden, x, y)[WEIGHT] > 0) {
+                fill(v, fine, channels, x, y, at(hidden, x, y), at(&out, x, y));
+                memcpy(at(hidden, x, y), at(&out, x, y), sizeof(double) * 4);
+            }
+    free(out.v);
+    free(coarse);
+    free(fine);
+    for (int j = 0; j < 3; j++) {
+        free(v[j].place.v);
+        if (j)
+            free(v[j].seen.v);
+    }
+}
