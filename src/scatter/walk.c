@@ -156,12 +156,18 @@ static void walk_level(struct walk *w, const struct layout *l, const struct targ
         settle(w, to, settled++);
 }
 
-// Add half-resolution sums, bilinearly, to row y from pixel x0 on. from: of its pixel (first, top).
-static void add_half(const struct hf_setup *s, const float *from, ptrdiff_t stride, int first, int top, int x0, int x1,
-                     int y, float *out)
+// Half-resolution sums of a window, one plane of them.
+struct half_sums {
+    const float *plane;
+    ptrdiff_t stride;
+    struct hf_rect r;
+};
+
+// Add them, bilinearly, to pixels x0 to x1 of row y.
+static void add_half(const struct hf_setup *s, const struct half_sums *h, int x0, int x1, int y, float *out)
 {
-    const int ya = y >> 1, yb = hf_beside(y, s->half_height);
-    const float *a = from + (ptrdiff_t)(ya - top) * stride - first, *b = from + (ptrdiff_t)(yb - top) * stride - first;
+    const float *a = h->plane + (ptrdiff_t)((y >> 1) - h->r.y0) * h->stride - h->r.x0;
+    const float *b = h->plane + (ptrdiff_t)(hf_beside(y, s->half_height) - h->r.y0) * h->stride - h->r.x0;
     for (int x = x0; x < x1; x++) {
         const int xa = x >> 1, xb = hf_beside(x, s->half_width);
         out[x - x0] += 0.75f * (0.75f * a[xa] + 0.25f * b[xa]) + 0.25f * (0.75f * a[xb] + 0.25f * b[xb]);
@@ -222,7 +228,7 @@ static void splat_group(struct walk *w, struct hf_rect r, int group, const struc
             if (w->t->reach_x[w->field][0] < 0)
                 memset(row, 0, sizeof *row * (size_t)(x1 - x0));
             if (w->t->reach_x[w->field][1] >= 0)
-                add_half(s, half + c * half_plane, half_stride, h.x0, h.y0, x0, x1, y, row);
+                add_half(s, &(struct half_sums){half + c * half_plane, half_stride, h}, x0, x1, y, row);
         }
 }
 
