@@ -7,7 +7,10 @@
 
 #include "cli/coc.h"
 
-enum { MARGIN = 2 };  // pixels beyond a radius that half resolution and soft edges reach
+enum {
+    MARGIN = 2,  // pixels beyond a radius that half resolution and soft edges reach
+    STEP = 8     // the coarsest resolution, an eighth
+};
 
 static int visible(const struct cli_view *v, size_t i)
 {
@@ -55,12 +58,19 @@ static int most(int a, int b)
     return a > b ? a : b;
 }
 
+// Where a window begins that shall hold `from`, whole multiples of STEP from `first`: engines that go to half the
+// resolution and less then take the same pixels together as in the whole frame.
+static int begin(int first, int from)
+{
+    return from <= first ? first : first + (from - first) / STEP * STEP;
+}
+
 // As far as the blur reaches, but not beyond the display window where the data window does not already.
 static struct hf_io_box grown(const struct hf_io_view *v, int reach)
 {
     const struct hf_io_box *data = &v->data_window, *display = &v->display_window;
     return (struct hf_io_box){
-        least(data->x0, most(display->x0, data->x0 - reach)), least(data->y0, most(display->y0, data->y0 - reach)),
+        least(data->x0, begin(display->x0, data->x0 - reach)), least(data->y0, begin(display->y0, data->y0 - reach)),
         most(data->x1, least(display->x1, data->x1 + reach)), most(data->y1, least(display->y1, data->y1 + reach))};
 }
 
@@ -99,18 +109,26 @@ static float no_surface(const struct cli_args *args, int in_file)
     }
 }
 
-// The largest radius of what may be seen, over the views of a part. What is new around it is infinitely far, and mixes
-// with it at the edges.
+// From how far around a near pixel of radius q scatter and hexagon make up what lies behind it, as nothing is seen beyond a
+// window: neighbourhoods of 2 q + 4 pixels, 14 where others are nearer, and 2 for a bilinear sample.
+static float behind(enum hf_engine engine, float q)
+{
+    return engine == HF_ENGINE_SCATTER || engine == HF_ENGINE_HEXAGON ? 2 * q + 4 + 14 + 2 : 0;
+}
+
+// How far what may be seen reaches, over the views of a part. What is new around it is infinitely far, and mixes with it
+// at the edges.
 static float largest(const struct cli_frame *frame, int part)
 {
+    const enum hf_engine engine = frame->args->params.engine;
     float r = 0;
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
         const size_t n = v->view->part == part ? (size_t)v->view->width * (size_t)v->view->height : 0;
         r = n ? fmaxf(r, fmaxf(v->far_away, v->least_reach)) : r;
         for (size_t k = 0; k < n; k++)
-            if (fabsf(v->radii[k]) > r && visible(v, k))
-                r = fabsf(v->radii[k]);
+            if (visible(v, k))
+                r = fmaxf(r, fmaxf(fabsf(v->radii[k]), v->radii[k] < 0 ? behind(engine, -v->radii[k]) : 0));
     }
     return r;
 }

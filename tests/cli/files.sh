@@ -231,6 +231,25 @@ if not ok:
 raise SystemExit(not ok)
 PYTHON
 result "--grow is what the whole frame shows" $?
+# Half resolution takes the same pixels together, and what lies behind near ones is looked for as far.
+for engine in scatter "scatter --resolution half" hexagon "hexagon --resolution half"; do
+    # shellcheck disable=SC2086
+    good film.exr -o film-out.exr $lens --engine $engine
+    # shellcheck disable=SC2086
+    good crop.exr -o grown.exr $lens --grow --engine $engine
+    python3 - <<'PYTHON'
+import struct
+from exr import read, window
+whole, grown, (x0, y0, x1, y1) = read('film-out.exr'), read('grown.exr'), window('grown.exr')
+at = lambda f, left, top, width, c, x, y: struct.unpack_from('<f', f[c], 4 * ((y - top) * width + x - left))[0]
+worst = max(abs(at(grown, x0, y0, x1 - x0 + 1, c, x, y) - at(whole, 0, 0, 64, c, x, y))
+            for c in 'RGBA' for y in range(y0, y1 + 1) for x in range(x0, x1 + 1))
+if worst >= 1e-5:
+    print((x0, y0, x1, y1), worst)
+raise SystemExit(worst >= 1e-5)
+PYTHON
+    result "--grow is what the whole frame shows: $engine" $?
+done
 # A crop without windows: the lens is that of the frame it is from.
 plan "focal length 88.8889 pixels|display window -20,-10 to 43,29" bare.exr --focus 2 --fstop 2 --focal-length 50 \
     --display 64x40+20+10
