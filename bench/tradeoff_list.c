@@ -108,11 +108,8 @@ const struct trade_setting trade_settings[] = {
     {"grid", "high, every 1, half from 4", "--engine layers --layers-quality high --spacing 1 --half-from 4", 0},
     // What is most accurate:
     {"grid", "best, every 0.5", "--engine layers --layers-quality best --spacing 0.5", 0},
-    {"grid", "best, every 0.25", "--engine layers --layers-quality best --spacing 0.25", 0},
     {"grid", "best, half from 4", "--engine layers --layers-quality best --half-from 4", 0},
-    {"grid", "best, half from 16", "--engine layers --layers-quality best --half-from 16", 0},
     {"grid", "best, quarter from 128", "--engine layers --layers-quality best --quarter-from 128", 0},
-    {"grid", "best, fine, quarter from 128", "--engine layers --layers-quality best --spacing 0.5 --quarter-from 128", 0},
     {"grid", "best, all at full", "--engine layers --layers-quality best --half-from 2048", 0},
 };
 // clang-format on

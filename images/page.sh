@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Make ENGINES.md: three scenes through all engines beside the ray-traced truth, as pictures, as crops and as figures.
+# Make ENGINES.md and its pictures: three scenes through all engines beside the ray-traced truth, as pictures, as crops and as figures.
 # Needs oiiotool (Debian: openimageio-tools).
 #     images/page.sh [BUILD-FOLDER]
 set -eu
@@ -56,6 +56,10 @@ before() {  # NAME SCENE X Y OPTIONS 'WORDS'
     printf '**%s** (`%s`, %s, %s; `%s`): before, after, %s.\n\n![%s](images/crops/before-%s.jpg)\n\n' "$1" "$scene" "$x" \
         "$y" "${options# }" "$third" "$1" "$name"
 }
+
+# The README's second picture is the demo's.
+# shellcheck disable=SC2046
+"$hyperfocal" images/lights.exr -o images/lights-after.png $(sed -n "s/^look='\(.*\)'/\1/p" .ci/demo)
 
 for scene in lights fence foliage; do
     # A copy, as there is no blur: the truth has no depth of its own.

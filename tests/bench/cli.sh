@@ -67,6 +67,11 @@ result "--readme" $?
 result "--help=man" $?
 
 command -v python3 >/dev/null || { echo "skipped: no python3 for the JSON"; echo "$passed passed, $failed failed"; exit $((failed > 0)); }
+# A table of the documents is what its command prints; what has no command stays.
+printf '%s\n' '`hyperfocal-bench passes --size 64x64 --frames 1`: small' '' '    old' '' '    old' '' Text '' '    kept' >tables.md
+python3 "$source_root/docs/tables.py" --build "$(dirname "$(dirname "$bench")")" "$dir/tables.md" >out 2>err &&
+    ! grep -q old tables.md && grep -q '^    All ' tables.md && [ "$(tail -n 1 tables.md)" = "    kept" ]
+result "docs/tables.py" $?
 json() {  # KEYS ARGUMENTS...
     keys=$1
     shift
