@@ -53,6 +53,12 @@ if [ -x "$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio" ]; then
     check "a helper of another version is refused" test $status -eq 3 -a ! -e other.png
     check "in one sentence" grep -q "hyperfocal-oiio is of version 9.8.7 (1, 2), but this program of [0-9]" other
     check "and no more" test "$(wc -l <other)" -eq 1
+    # One that knows no such question, and ends when it hears what is no job.
+    printf '#!/bin/sh\nhead -c 1 <&3 >/dev/null\n' >"$helper.new"
+    chmod +x "$helper.new"
+    mv "$helper.new" "$helper"
+    "$bin/hyperfocal" "$source_root/images/lights.exr" -o other.png --max-radius 2 2>other
+    check "a helper that does not answer is refused" grep -q "cannot start hyperfocal-oiio, or it is of another build" other
 fi
 # Not in the source, and not beside one: the scenes are those that were installed.
 check "the bench finds its scenes" "$bin/hyperfocal-bench" tradeoff --quick --cache none \

@@ -52,13 +52,15 @@ static atomic_flag starting = ATOMIC_FLAG_INIT;
 static int control = -1;
 static char other[HF_WIRE_HELLO];  // what a helper of another build said, under `starting`
 
-// Is the helper of our build? Loading its libraries may take long on a busy machine or from a slow disk; one that says
-// nothing for minutes is of a build that did not say it yet.
+// Is the helper of our build? Loading its libraries may take long on a busy machine or from a slow disk, so it is asked:
+// one of a build that does not answer yet takes the question for a job without a socket, and ends at once.
 static int greet(int fd)
 {
     char own[HF_WIRE_HELLO] = "", hello[HF_WIRE_HELLO] = "";
     struct pollfd ready = {.fd = fd, .events = POLLIN};
     int n;
+    if (send(fd, "?", 1, MSG_NOSIGNAL) != 1)
+        return -1;
     do {
         n = poll(&ready, 1, GREETING_MS);
     } while (n < 0 && errno == EINTR);
@@ -145,7 +147,7 @@ static int new_job(const char *path, struct hf_io_error *err)
         return hf_io_fail(err,
                           "%s: " HELPER " is of version %s, but this program of %s: install both from the same build",
                           path, version, own);
-    return hf_io_fail(err, "%s: cannot start " HELPER, path);
+    return hf_io_fail(err, "%s: cannot start " HELPER ", or it is of another build", path);
 }
 
 // ---- asking

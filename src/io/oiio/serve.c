@@ -258,9 +258,10 @@ int main(void)
     signal(SIGPIPE, SIG_IGN);
     signal(SIGCHLD, SIG_IGN);
     signal(SIGXFSZ, SIG_DFL);
-    char hello[HF_WIRE_HELLO] = "";
+    char hello[HF_WIRE_HELLO] = "", question;
     hf_wire_hello(hello);
-    if (send(HF_WIRE_CONTROL, hello, sizeof(hello), MSG_NOSIGNAL) != (ssize_t)sizeof(hello))
+    if (recv(HF_WIRE_CONTROL, &question, 1, 0) != 1 ||
+        send(HF_WIRE_CONTROL, hello, sizeof(hello), MSG_NOSIGNAL) != (ssize_t)sizeof(hello))
         return 1;
     for (int fd; (fd = next_job()) >= 0;) {
         if (fork() == 0) {
