@@ -74,10 +74,10 @@ void trade_rank(struct trade *t)
 // Not for options that change how a frame is run and not what it is; nor for a copy, nor for what is printed in books.
 static int may_be_chosen(const struct trade_setting *s)
 {
-    static const char *const not [] = {"--threads",       "--isa",     "--max-radius",
-                                       "--deterministic", "--no-skip", "--faithful"};
-    for (size_t i = 0; i < sizeof not / sizeof *not ; i++)
-        if (strstr(s->options, not [i]))
+    static const char *const never[] = {"--threads", "--isa",      "--max-radius", "--deterministic",
+                                        "--no-skip", "--faithful", "--blend"};
+    for (size_t i = 0; i < sizeof never / sizeof *never; i++)
+        if (strstr(s->options, never[i]))
             return 0;
     return 1;
 }

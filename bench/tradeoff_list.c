@@ -46,8 +46,8 @@ const struct trade_setting trade_settings[] = {
     {"blend", "smoothstep", "--engine gather --blend smoothstep", 0},
 
     {"layers", "layers draft", "--engine layers --layers-quality draft", 1},
-    {"layers", "layers high", "--engine layers --layers-quality high", 1},
-    {"layers", "layers best", "--engine layers --layers-quality best", 0},
+    {"layers", "layers high", "--engine layers --layers-quality high", 0},
+    {"layers", "layers best", "--engine layers --layers-quality best", 1},
     {"layers", "layers, no un-mixing", "--engine layers --no-unmix", 0},
     {"layers", "layers, nothing hidden", "--engine layers --no-hidden", 0},
     {"layers", "layers, no highlights", "--engine layers --no-highlights", 0},
@@ -106,9 +106,11 @@ const struct trade_setting trade_settings[] = {
     {"grid", "every 0.5, half from 3", "--engine layers --spacing 0.5 --half-from 3", 0},
     {"grid", "high, half from 4", "--engine layers --layers-quality high --half-from 4", 0},
     {"grid", "high, every 1, half from 4", "--engine layers --layers-quality high --spacing 1 --half-from 4", 0},
-    // What is most accurate:
+    // What is most accurate: best looks for patterns, whatever the slices are.
+    {"grid", "best, no patterns", "--engine layers --layers-quality best --no-patterns", 0},
+    {"grid", "best, every 4", "--engine layers --layers-quality best --spacing 4", 0},
+    {"grid", "best, every 1, half from 4", "--engine layers --layers-quality best --spacing 1 --half-from 4", 0},
     {"grid", "best, every 0.5", "--engine layers --layers-quality best --spacing 0.5", 0},
-    {"grid", "best, half from 4", "--engine layers --layers-quality best --half-from 4", 0},
     {"grid", "best, quarter from 128", "--engine layers --layers-quality best --quarter-from 128", 0},
     {"grid", "best, all at full", "--engine layers --layers-quality best --half-from 2048", 0},
 };

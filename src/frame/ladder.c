@@ -73,21 +73,37 @@ static void set(struct hf_params *p, const struct word *w, const char *value)
     }
 }
 
-void hf_ladder_apply(struct hf_params *p, int step)
+// Set what options say. Returns how many words of them are not understood.
+static int apply(struct hf_params *p, const char *options)
 {
-    for (int i = 0; i < WORDS; i++)
-        memcpy((char *)p + words[i].offset, (const char *)&hf_default_params + words[i].offset, sizeof(int));
-    for (const char *text = hf_ladder[step].options; *text; text += strspn(text, " ")) {
+    int unknown = 0;
+    for (const char *text = options; *text; text += strspn(text, " ")) {
         const size_t n = strcspn(text, " ");
         const char *value = text + n + strspn(text + n, " ");
-        int takes_value = 0;
+        int takes_value = 0, known = 0;
         for (int i = 0; i < WORDS; i++)
             if (strlen(words[i].name) == n && !memcmp(words[i].name, text, n)) {
                 set(p, &words[i], value);
                 takes_value = words[i].kind != FLAG;
+                known = 1;
             }
+        unknown += !known;
         text = takes_value ? value + strcspn(value, " ") : text + n;
     }
+    return unknown;
+}
+
+void hf_ladder_apply(struct hf_params *p, int step)
+{
+    for (int i = 0; i < WORDS; i++)
+        memcpy((char *)p + words[i].offset, (const char *)&hf_default_params + words[i].offset, sizeof(int));
+    apply(p, hf_ladder[step].options);
+}
+
+int hf_ladder_understands(int step)
+{
+    struct hf_params p = hf_default_params;
+    return !apply(&p, hf_ladder[step].options);
 }
 
 uint64_t hf_ladder_hash(const struct hf_params *p)

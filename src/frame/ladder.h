@@ -19,6 +19,8 @@ extern const float hf_ladder_engine_ms[HF_ENGINE_COUNT];
 
 // Make params those of a step, as far as steps differ: the engine and its knobs.
 void hf_ladder_apply(struct hf_params *params, int step);
+// 1 if all words of a step's options are understood.
+int hf_ladder_understands(int step);
 // Of what steps differ in.
 uint64_t hf_ladder_hash(const struct hf_params *params);
 // 1 if params->engine draws params->aperture.

@@ -294,6 +294,8 @@ static void choices(void)
         CHECK_MSG(hf_ladder[i].ms > hf_ladder[i - 1].ms && hf_ladder[i].error < hf_ladder[i - 1].error &&
                       (starts_to_reach(i) || hf_ladder[i].worst <= hf_ladder[i - 1].worst),
                   "step %d", i);
+    for (int i = 0; i < hf_ladder_steps; i++)
+        CHECK_MSG(hf_ladder_understands(i), "%s: add the option to ladder.c", hf_ladder[i].options);
     for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {
         CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)q, &c), HF_OK);
         CHECK(c.step >= last.step && c.steps == hf_ladder_steps && c.options == hf_ladder[c.step].options);
