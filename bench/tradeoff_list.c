@@ -110,8 +110,6 @@ const struct trade_setting trade_settings[] = {
     {"grid", "best, no patterns", "--engine layers --layers-quality best --no-patterns", 0},
     {"grid", "best, every 4", "--engine layers --layers-quality best --spacing 4", 0},
     {"grid", "best, every 1, half from 4", "--engine layers --layers-quality best --spacing 1 --half-from 4", 0},
-    {"grid", "best, every 0.5", "--engine layers --layers-quality best --spacing 0.5", 0},
-    {"grid", "best, quarter from 128", "--engine layers --layers-quality best --quarter-from 128", 0},
     {"grid", "best, all at full", "--engine layers --layers-quality best --half-from 2048", 0},
 };
 // clang-format on
