@@ -99,7 +99,7 @@ struct hf_layers {
     // Which slices have samples in a tile, a bit for each: of what is seen, mixed, hidden, hidden behind
     // that, and of shares.
     struct hf_block marks;
-    atomic_uchar *repaired;  // whether the colour had samples to repair
+    atomic_uchar *repaired;  // whether the colour had samples to repair or to limit
     int words;               // of a tile's bits
     uint64_t *seen_marks, *mixed_marks, *hidden_marks, *beyond_marks, *share_marks;
 };

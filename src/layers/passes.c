@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The passes of layers over a frame's buffers.
+#include <math.h>
 #include <string.h>
 
 #include "layers/cell.h"
@@ -11,17 +12,59 @@
 
 enum { TILE = HF_LAYERS_TILE };
 
+// Larger samples count as this: then no sum of them, the weights of some being up to 7 together, passes the largest float.
+static const float LARGEST = 4.2535296e37f;  // 2^125
+
+// Is any of n beyond it? By their exponents, a comparison of integers, which costs next to nothing.
+static int has_larger(const float *v, int n)
+{
+    const uint32_t exponent = 0x7e000000;
+    uint32_t any = 0;
+    for (int i = 0; i < n; i++) {
+        uint32_t bits;
+        memcpy(&bits, v + i, sizeof bits);
+        any |= (uint32_t)((bits & exponent) == exponent);
+    }
+    return any != 0;
+}
+
+// Returns how many there were.
+static int limit(float *v, int n)
+{
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        const float was = v[i];
+        v[i] = was > LARGEST ? LARGEST : was < -LARGEST ? -LARGEST : was;
+        count += v[i] != was;
+    }
+    return count;
+}
+
 void hf_layers_load_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    int large = 0;
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         float *colour[4] = {NULL};
         hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
-        if (f->seen->colour_repaired)
-            atomic_store_explicit(hf_layers(f->s)->repaired, 1, memory_order_relaxed);
+        for (int c = 0; c < f->s->channels; c++)
+            large += has_larger(colour[c], n) ? limit(colour[c], n) : 0;
         f->k->radius_row(f, x0, y, n, hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x0, y), NULL);
     }
+    if (large || f->seen->colour_repaired)
+        atomic_store_explicit(hf_layers(f->s)->repaired, 1, memory_order_relaxed);
+}
+
+// Samples are counted where they show: a cell loads some of its neighbours' too.
+static void count_row(const struct hf_frame *f, struct hf_rect r, int y)
+{
+    float *was[4];
+    for (int c = 0; c < 4; c++)
+        was[c] = hf_line(f, 8 + c);
+    hf_read_pixels(f, r.x0, y, r.x1 - r.x0, was, f->counts);
+    for (int c = 0; c < f->s->channels; c++)
+        f->counts->clamped += (uint64_t)limit(was[c], hf_min(2 * r.x1, f->s->width) - 2 * r.x0);
 }
 
 void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
@@ -84,12 +127,9 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
     for (int g = 0; g < l->groups; g++)
         make_group(f, l, &samples, tiles, g, memory, out);
     for (int y = y0; y < y1; y++) {
-        float *row[4] = {NULL}, *was[4];
-        // Repairs are counted where they show.
-        for (int c = 0; repaired && c < 4; c++)
-            was[c] = hf_line(f, 8 + c);
+        float *row[4] = {NULL};
         if (repaired)
-            hf_read_pixels(f, r.x0, y, r.x1 - r.x0, was, f->counts);
+            count_row(f, r, y);
         for (int c = 0; c < l->channels; c++)
             row[c] = out[c] + (ptrdiff_t)(y - tiles.y0) * width + x0 - tiles.x0;
         hf_store_rgb(f, row, x1 - x0);

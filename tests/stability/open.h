@@ -51,9 +51,6 @@ static const struct {
     {"radius 0 and the least above it: jump, 8-bit codes", "gather packed max", 170, "the same"},
     {"radius 0 and the least above it: jump, 8-bit codes", "gather packed", 6,
      "radius 0 is a copy, and otherwise colours are truncated when they are read"},
-    {"largest floats: not finite in the picture", "layers", 20000,
-     "sums of samples with weights around edges pass the largest float, and nothing clamps them"},
-    {"largest floats: not finite in a buffer on the way", "layers", 6500, "the same"},
     {"a range pull: worst jump, 8-bit codes", "layers", 16,
      "what lies a pixel of radius behind a silhouette is hidden by it, what lies less far behind is not; and a pixel "
      "is "
