@@ -24,10 +24,10 @@ struct band {
     float *nearest;  // least radius of what is seen in each quad, width in a row
     int width;
     // Blocks, those around the band included: (0, 0) is its first. Farthest radius in one, and within the search's reach;
-    // whether a search is made, and whether a level is.
+    // whether a search is made, and whether each level is.
     int columns, rows, around, stride;
     float *farthest, *within;
-    uint8_t *needed, *made, *passed;
+    uint8_t *needed, *wide, *made[HF_LAYERS_LEVELS];  // wide: scratch
 };
 
 static size_t plane_floats(const struct hf_layers *l, int width, int height)
@@ -51,7 +51,7 @@ size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height)
 {
     height += 2 * HF_LAYERS_SMOOTH;
     return (size_t)(l->levels + 1) * (size_t)(l->channels + 2) * plane_floats(l, width, height) +
-           (size_t)blocks_of(width) * BLOCK * (size_t)height + 3 * block_count(l, width, height) + PAD;
+           (size_t)blocks_of(width) * BLOCK * (size_t)height + 5 * block_count(l, width, height) + PAD;
 }
 
 static struct hf_layers_set place(const struct band *b, float **memory)
@@ -81,9 +81,10 @@ static void place_blocks(struct band *b, float **memory)
     b->within = b->farthest + count;
     uint8_t *bytes = (uint8_t *)(b->within - first + count);
     b->needed = bytes + first;
-    b->made = b->needed + count;
-    b->passed = b->made + count;
-    *memory += (size_t)b->width * (size_t)height + 3 * count;
+    b->wide = b->needed + count;
+    for (int j = 0; j < HF_LAYERS_LEVELS; j++)
+        b->made[j] = b->wide + (size_t)(j + 1) * count;
+    *memory += (size_t)b->width * (size_t)height + 5 * count;
 }
 
 static void planes_of(const struct hf_layers_set *s, int channels, int x, int y, float *out[6])
@@ -104,16 +105,22 @@ static struct hf_layers_range range_of(const struct band *b, const float *radius
     return range;
 }
 
-// Largest within so many blocks, of rows and then of columns.
+// Whether a block within so many is marked: along rows, then along columns.
 static void spread(const struct band *b, const uint8_t *in, int by, uint8_t *out)
 {
+    for (int y = 0; y < b->rows; y++)
+        for (int x = -b->around; x < b->columns + b->around; x++) {
+            uint8_t any = 0;
+            for (int i = hf_max(x - by, 0); i <= hf_min(x + by, b->columns - 1); i++)
+                any |= in[y * b->stride + i];
+            b->wide[y * b->stride + x] = any;
+        }
     for (int y = -b->around; y < b->rows + b->around; y++)
         for (int x = -b->around; x < b->columns + b->around; x++) {
-            int any = 0;
-            for (int i = hf_max(y - by, 0); i <= hf_min(y + by, b->rows - 1) && !any; i++)
-                for (int j = hf_max(x - by, 0); j <= hf_min(x + by, b->columns - 1) && !any; j++)
-                    any = in[i * b->stride + j];
-            out[y * b->stride + x] = (uint8_t)any;
+            uint8_t any = 0;
+            for (int i = hf_max(y - by, 0); i <= hf_min(y + by, b->rows - 1); i++)
+                any |= b->wide[i * b->stride + x];
+            out[y * b->stride + x] = any;
         }
 }
 
@@ -160,40 +167,68 @@ static int find_needed(struct band *b)
     return any;
 }
 
-// Merge samples (dx, dy) apart where blocks are marked, in an area `reach` larger than the band.
-static void merge(const struct band *b, const struct hf_layers_set *from, const struct hf_layers_set *to, int dx,
-                  int dy, int reach_x, int reach_y, const uint8_t *marks, float slope)
+// How a level's samples are merged: of three along a row, and of what these have become in three rows.
+struct merge {
+    const struct hf_layers_set *from, *to;
+    int row[3], dx;  // of the former: rows, and columns apart
+    int reach;       // columns beyond the band
+    float slope;
+};
+
+// Merge what becomes row y of a level, into row `to`, where its blocks are marked.
+static void merge_row(const struct band *b, const struct merge *m, const uint8_t *marks, int y, int to)
 {
-    const int x0 = b->r.x0 - reach_x, x1 = b->r.x1 + reach_x, channels = b->l->channels;
-    for (int y = b->r.y0 - reach_y; y < b->r.y1 + reach_y; y++) {
-        const uint8_t *row = marks + ((y - b->r.y0 + b->around * BLOCK) / BLOCK - b->around) * b->stride;
-        for (int start = -b->around, end; start < b->columns + b->around; start = end) {
-            for (end = start + 1; end < b->columns + b->around && !row[end] == !row[start];)
-                end++;
-            const int x = hf_max(b->r.x0 + start * BLOCK, x0), n = hf_min(b->r.x0 + end * BLOCK, x1) - x;
-            float *in[3][6] = {{NULL}}, *out[6];
-            if (!row[start] || n <= 0)
-                continue;
-            for (int i = 0; i < 3; i++)
-                planes_of(from, channels, x + (i - 1) * dx, y + (i - 1) * dy, in[i]);
-            planes_of(to, channels, x, y, out);
-            hf_layers_kernels(b->f)->merge((const float *const(*)[6])in, channels, slope, n, out);
-        }
+    const int x0 = b->r.x0 - m->reach, x1 = b->r.x1 + m->reach, channels = b->l->channels;
+    const uint8_t *row = marks + ((y - b->r.y0 + b->around * BLOCK) / BLOCK - b->around) * b->stride;
+    for (int start = -b->around, end; start < b->columns + b->around; start = end) {
+        for (end = start + 1; end < b->columns + b->around && !row[end] == !row[start];)
+            end++;
+        const int x = hf_max(b->r.x0 + start * BLOCK, x0), n = hf_min(b->r.x0 + end * BLOCK, x1) - x;
+        float *in[3][6] = {{NULL}}, *out[6];
+        if (!row[start] || n <= 0)
+            continue;
+        for (int i = 0; i < 3; i++)
+            planes_of(m->from, channels, x + (i - 1) * m->dx, m->row[i], in[i]);
+        planes_of(m->to, channels, x, to, out);
+        hf_layers_kernels(b->f)->merge((const float *const(*)[6])in, channels, m->slope, n, out);
     }
 }
 
-// Level j is made where the later ones and the search read it.
+// Where level j keeps what rows have become: as many as it merges, and those between.
+static int ring_row(const struct band *b, int j, int y)
+{
+    const int first = b->r.y0 - b->reach, before = (1 << j) - 2 + j - 1;
+    return first + before + (y - first) % ((1 << j) + 1);
+}
+
+// Level j is made where the later ones and the search read it. Row by row all levels at once: what the one before has just
+// made is still in the cache.
 static void make_levels(struct band *b)
 {
-    const int levels = b->l->levels;
-    for (int j = 1; j < levels; j++) {
-        const int step = 1 << (j - 1), reach = (1 << levels) - (1 << j);
-        const float slope = 1.0f / (float)(2 << j);
-        spread(b, b->needed, blocks_of(reach + step), b->passed);
-        spread(b, b->needed, blocks_of(reach), b->made);
-        merge(b, &b->level[j - 1], &b->across, step, 0, reach, reach + step, b->passed, slope);
-        merge(b, &b->across, &b->level[j], 0, step, reach, reach, b->made, slope);
-    }
+    const int levels = b->l->levels, top = b->r.y0, low = b->r.y1, most = (1 << levels) - 1;
+    for (int j = 0; j < levels; j++)
+        spread(b, b->needed, blocks_of((1 << levels) - (1 << j)), b->made[j]);
+    for (int newest = top - most; newest < low + most; newest++)
+        for (int j = 1, y = newest; j < levels; j++) {
+            const int step = 1 << (j - 1), reach = (1 << levels) - (1 << j);
+            struct merge m = {.from = &b->level[j - 1],
+                              .to = &b->across,
+                              .row = {y, y, y},
+                              .dx = step,
+                              .reach = reach,
+                              .slope = 1.0f / (float)(2 << j)};
+            if (y >= top - reach - step && y < low + reach + step)
+                merge_row(b, &m, b->made[j - 1], y, ring_row(b, j, y));
+            y -= step;
+            if (y < top - reach || y >= low + reach)
+                continue;
+            m.from = &b->across;
+            m.to = &b->level[j];
+            m.dx = 0;
+            for (int i = 0; i < 3; i++)
+                m.row[i] = ring_row(b, j, y + (i - 1) * step);
+            merge_row(b, &m, b->made[j], y, y);
+        }
 }
 
 static void find(const struct band *b, int x, int n, int y)
