@@ -40,7 +40,7 @@ static const struct tool_option options[] = {
     {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 to 2048. Default 12; truth: as the lens has "
      "it.", NUMBER(params.max_radius, 0, 2048)},
 
-    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default gather; stability: all.",
+    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default gather; truth and stability: all.",
      NAME(params.engine, ENGINE)},
     {"blades", 0, TOOL_LOOK, "N", "Sides of the aperture; 0 (default): a disc.", COUNT(params.aperture.blades, 0, 16)},
 

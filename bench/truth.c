@@ -21,6 +21,12 @@ struct truth {
     } at[SCENES][HF_ENGINE_COUNT];
 };
 
+// --engine: that one alone.
+static int wanted(const struct truth *t, int engine)
+{
+    return !t->args->engine_given || (int)t->args->params.engine == engine;
+}
+
 // Of the picture clamped to 0..1 with the sRGB curve: peak signal to noise; and root mean square error of the linear.
 static void distance(const float *a, const float *b, size_t n, double *psnr, double *rmse)
 {
@@ -78,7 +84,8 @@ static int measure_scene(struct truth *t, int i, struct tool_error *log, struct 
         t->threads = hf_context_threads(subject.context);
     }
     for (int e = 0; e < HF_ENGINE_COUNT && !err; e++)
-        err = measure_engine(t, i, e, &subject, want.rgb, error);
+        if (wanted(t, e))
+            err = measure_engine(t, i, e, &subject, want.rgb, error);
     bench_subject_close(&subject);
     bench_scene_free(&scene);
     bench_scene_free(&want);
@@ -93,6 +100,8 @@ static void table(FILE *out, const void *what)
         fprintf(out, " %20s", scenes[i].scene);
     fputc('\n', out);
     for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+        if (!wanted(t, e))
+            continue;
         fprintf(out, "%-16s", hf_engine_name((enum hf_engine)e));
         for (int i = 0; i < SCENES; i++)
             fprintf(out, " %9.2f %10.1f", t->at[i][e].psnr, t->at[i][e].ms);
@@ -111,7 +120,7 @@ static void table(FILE *out, const void *what)
             t->threads);
     if (t->busy)
         fprintf(out, "The machine is busy: %d of %d medians are far above the least.\n", t->busy,
-                SCENES * HF_ENGINE_COUNT);
+                SCENES * (t->args->engine_given ? 1 : HF_ENGINE_COUNT));
 }
 
 static void json(FILE *out, const void *what)
@@ -124,6 +133,8 @@ static void json(FILE *out, const void *what)
     tool_json_open(&j, "results", '[');
     for (int i = 0; i < SCENES; i++)
         for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+            if (!wanted(t, e))
+                continue;
             tool_json_row(&j, NULL, '{');
             tool_json_text(&j, "scene", scenes[i].scene);
             tool_json_text(&j, "engine", hf_engine_name((enum hf_engine)e));
