@@ -421,8 +421,8 @@ struct hf_layers_params {
     int no_unmix;       // edges keep their mixed colours. Default 0
     int no_hidden;      // nothing is filled in behind objects. Default 0
     int no_highlights;  // highlights are blurred like all else: the pixels of coarser resolutions show. Default 0
-    // BEST fills in behind objects by what looks alike around them, so that edges and patterns go on; 1: by means, as the
-    // others do. Default 0
+    // BEST fills in behind objects by what looks alike around them, so that edges and patterns go on, but may jump from
+    // frame to frame; 1: by means, as the others do. Default 0
     int no_patterns;
 };
 

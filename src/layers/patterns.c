@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Patterns: what is hidden goes on like what is around it. For each place places elsewhere are looked for around which the
 // same surface looks alike, and the hidden sample takes the colour that is found there: edges go on behind a rod, and so do
-// checks. Only what is known of the surface is compared, and no choice hangs on more than the order of radii, so what is
-// chosen stays as it is when the focus moves. Coarse shifts are searched at an eighth of the frame's resolution, then made
-// exact at a quarter and at half of it.
+// checks. Only what is known of the surface is compared. What is chosen may jump where two choices are as good. Coarse
+// shifts are searched at an eighth of the frame's resolution, then made exact at a quarter and at half of it.
 #include "layers/patterns.h"
 
 #include <math.h>
@@ -29,6 +28,9 @@ enum {
 // less than the best by so much counts.
 #define ALIKE 0.5f
 #define EQUAL 0.4f
+// By how much of it shifts are apart that are alike: of many that fit, a pattern that repeats has them, always the same are
+// taken, and not what a rounding or a focus pull prefers.
+#define ORDER 0.01f
 
 struct level {
     struct hf_layers_set set;
@@ -282,6 +284,13 @@ static void choose(struct choices *c, int x, int y, float off)
     c->off[i] = off;
 }
 
+// What a shift by pixels of level j has before others: up to 1.
+static float order_of(int j, int sx, int sy)
+{
+    const float scale = 1 / (float)(1 << (2 - j)), y = (float)sy * scale, x = (float)sx * scale;
+    return (y + x * 0.0625f + 10) * 0.05f;
+}
+
 // Compare what is around sample (x, y) with what is around those shifted by (sx, sy) and n - 1 more to the right.
 static void compare(const struct band *b, const struct level *v, const struct patch *p, int x, int y, int sx, int sy,
                     int n, int coarsest, struct choices *c)
@@ -299,7 +308,8 @@ static void compare(const struct band *b, const struct level *v, const struct pa
         // What is not known there is as far off as anything.
         if (known > 0 && !(coarsest && sx + i == 0 && sy == 0))
             choose(c, sx + i, sy,
-                   (off[i] + (missing > 0 ? missing : 0) * p->variance) / p->sum + (1 - known) * p->variance);
+                   (off[i] + (missing > 0 ? missing : 0) * p->variance) / p->sum +
+                       (1 - known + ORDER * order_of((int)(v - b->level), sx + i, sy)) * p->variance);
     }
 }
 

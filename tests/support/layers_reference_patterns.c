@@ -10,6 +10,7 @@ enum { WINDOW = 4, CHOICES = 6, MOST = 81, SHIFT = 7 };
 // where nothing is.
 struct level {
     struct grid seen, place;
+    double scale;  // of its pixels, in eighths of the resolution
 };
 
 struct choices {
@@ -38,7 +39,7 @@ static double known(const struct level *v, double radius, double slope, int x, i
 static struct level halve(const struct level *from, int channels)
 {
     const int width = (from->seen.x1 + 1) / 2, height = (from->seen.y1 + 1) / 2;
-    struct level to = {grid_new(0, 0, width, height, SAMPLE), grid_new(0, 0, width, height, 2)};
+    struct level to = {grid_new(0, 0, width, height, SAMPLE), grid_new(0, 0, width, height, 2), 2 * from->scale};
     for (int i = 0; i < width * height; i++) {
         const int x = i % width, y = i / width;
         const double *in[4];
@@ -123,7 +124,9 @@ static void compare(const struct level *v, int channels, const struct patch *p, 
             off += k * pow(at(&v->seen, px, py)[j] - p->colour[i][j], 2);
     }
     if (middle > 0)
-        choose(c, sx, sy, (off + fmax(p->sum - sum, 0) * p->variance) / p->sum + (1 - middle) * p->variance);
+        choose(c, sx, sy,
+               (off + fmax(p->sum - sum, 0) * p->variance) / p->sum +
+                   (1 - middle + 0.01 * ((sy + sx / 16.0) * v->scale + 10) / 20) * p->variance);
 }
 
 static void end_choices(struct choices *c, const struct patch *p)
@@ -232,7 +235,7 @@ static void fill(const struct level *v, const struct choices *fine, int channels
 void layers_reference_patterns(const struct frame *f, const struct grid *quads, struct grid *hidden)
 {
     const int channels = f->channels;
-    struct level v[3] = {{*quads, grid_new(0, 0, quads->x1, quads->y1, 2)}};
+    struct level v[3] = {{*quads, grid_new(0, 0, quads->x1, quads->y1, 2), 0.25}};
     for (int i = 0; i < quads->x1 * quads->y1; i++) {
         const int x = i % quads->x1, y = i / quads->x1;
         double *place = at(&v[0].place, x, y);
