@@ -10,7 +10,7 @@
 #include "support/layers_reference.h"
 #include "support/render.h"
 
-enum { MOST = 4 };
+enum { MOST = 4, PLAIN = 20, PICTURES = 24, CASES = 30, PICTURE_WIDTH = 7, PICTURE_HEIGHT = 5 };
 
 // Surfaces of radii of which no two differ by about 1 and no one is the middle of two others, and far enough apart not to
 // be merged where hidden samples are looked for: what the engine decides by comparing radii does not hang on a rounding.
@@ -71,10 +71,22 @@ static void against_double(struct hf_context *c, struct rng *rng, int n)
     p.layers.no_hidden = n % 7 == 3;
     p.layers.no_highlights = !lamps;
     p.layers.no_patterns = n % 8 == 7;
-    p.aperture.blades = n % 4 == 1 ? 3 + rng_below(rng, 6) : 0;
+    p.aperture.blades = n % 4 == 1 && n < PICTURES ? 3 + rng_below(rng, 6) : 0;
     p.aperture.rotation = p.aperture.blades ? rng_range(rng, -90, 90) : 0;
-    p.aperture.ring = n % 4 >= 2 ? 0 : rng_range(rng, 0, 0.8f);
+    p.aperture.ring = n % 4 >= 2 || n >= PICTURES ? 0 : rng_range(rng, 0, 0.8f);
     p.aperture.squeeze = n % 6 == 5 ? 1.5f : 1;
+    p.aperture.chromatic = n >= PLAIN ? rng_range(rng, -0.3f, 0.3f) : 0;
+    float texel[3 * PICTURE_WIDTH * PICTURE_HEIGHT];
+    for (int i = 0; i < PICTURE_HEIGHT * PICTURE_WIDTH; i++) {
+        const float grey = 0.25f * (float)(rng_below(rng, 4) + (i == PICTURE_WIDTH));
+        texel[3 * i] = texel[3 * i + 1] = texel[3 * i + 2] = grey;
+    }
+    const struct hf_image picture = {.width = PICTURE_WIDTH,
+                                     .height = PICTURE_HEIGHT,
+                                     .format = HF_FORMAT_RGB32F,
+                                     .data = {texel},
+                                     .stride = {3 * PICTURE_WIDTH * sizeof(float)}};
+    p.aperture.picture = n >= PICTURES ? &picture : NULL;
     const struct hf_depth depth = picture_radii(&s.depth);
     struct hf_resolved resolved;
     char message[200];
@@ -95,7 +107,7 @@ int main(int argc, char **argv)
 {
     struct rng rng = rng_seed(argc > 1 ? (unsigned)atoi(argv[1]) : 1);
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
-    for (int n = 0; n < 20; n++)
+    for (int n = 0; n < CASES; n++)
         against_double(c, &rng, n);
     hf_close(&c);
     return check_report();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shapes, slices, and how these are put together.
+#include <string.h>
+
 #include "support/layers_reference_parts.h"
 
 static const double PI = 3.14159265358979323846;
@@ -75,15 +77,47 @@ static double cover(double *row, int reach, double a, double b, double weight)
     return b > a ? weight * (b - a) : 0;
 }
 
+// What of texels from `from` to `to` a pixel covers, times their brightness: of a picture of floats, red.
+static double texels(const struct hf_image *m, double x0, double x1, double y0, double y1)
+{
+    double sum = 0;
+    for (int y = 0; y < m->height; y++)
+        for (int x = 0; x < m->width; x++) {
+            const double w = fmin(x + 1, x1) - fmax(x, x0), h = fmin(y + 1, y1) - fmax(y, y0);
+            const float *row = (const float *)(const void *)((const char *)m->data[0] + y * m->stride[0]);
+            sum += w > 0 && h > 0 ? w * h * row[3 * x] : 0;
+        }
+    return sum;
+}
+
+// The picture's shorter side is 2 r; what lies beyond twice of that is cut off.
+static double picture_shape(const struct frame *f, double r, int reach, double *w)
+{
+    const struct hf_image *m = f->aperture.picture;
+    const double shorter = fmin(m->width, m->height), unit = shorter / 2 / r, step = unit / f->wide;
+    const int high = (int)ceil(r * fmin(m->height / shorter, 2) - 0.5),
+              across = (int)ceil(r * f->wide * fmin(m->width / shorter, 2) - 0.5), side = 2 * reach + 1;
+    double sum = 0;
+    for (int dy = -high; dy <= high; dy++)
+        for (int dx = -across; dx <= across; dx++) {
+            const double x0 = m->width / 2.0 + (dx - 0.5) * step, y0 = m->height / 2.0 + (dy - 0.5) * unit;
+            sum += w[(dy + reach) * side + dx + reach] = texels(m, x0, x0 + step, y0, y0 + unit) / (unit * step);
+        }
+    return sum;
+}
+
 // Weights of a shape of radius r, (2 reach + 1)^2 of them, that sum to 1.
 static double *shape_new(const struct frame *f, double r, int *reach)
 {
-    *reach = (int)ceil(r * fmax(f->wide, 1)) + 1;
+    const int longer = f->aperture.picture ? 2 : 1;
+    *reach = (int)ceil(longer * r * fmax(f->wide, 1)) + 1;
     const int side = 2 * *reach + 1;
     double *w = calloc((size_t)side * (size_t)side, sizeof *w), sum = 0;
     if (!w)
         abort();
-    for (int dy = -*reach; dy <= *reach && r > 0; dy++) {
+    if (f->aperture.picture && r > 0)
+        sum = picture_shape(f, r, *reach, w);
+    for (int dy = -*reach; dy <= *reach && r > 0 && !f->aperture.picture; dy++) {
         double *row = w + (dy + *reach) * side;
         const struct run o = outline(f, r, dy);
         struct run hole = {0, 0, 0};
@@ -117,7 +151,10 @@ static double next_radius(const struct frame *f, double r)
 
 static int level_of(const struct frame *f, double r)
 {
-    return fabs(r) < f->half ? 0 : fabs(r) < f->quarter ? 1 : fabs(r) < 4 * f->quarter ? 2 : 3;
+    return fabs(r) < f->half                                      ? 0
+           : fabs(r) < f->quarter                                 ? 1
+           : fabs(r) < (f->aperture.picture ? 2 : 4) * f->quarter ? 2
+                                                                  : 3;
 }
 
 struct slice {
@@ -157,7 +194,7 @@ static void add_sources(const struct frame *f, const struct slice *s, const stru
 static struct grid draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light)
 {
     int reach;
-    double *w = shape_new(f, fabs(s->own) / (1 << level), &reach);
+    double *w = shape_new(f, fabs(s->own) * (1 + (s->own < 0 ? -f->shift : f->shift)) / (1 << level), &reach);
     const int width = (f->width - 1) / (1 << level) + 1, height = (f->height - 1) / (1 << level) + 1,
               m = MARGIN + reach;
     struct grid source = grid_new(-m, -m, width + m, height + m, 5);
@@ -352,7 +389,16 @@ struct picture layers_reference(const struct picture *colour, const float *radiu
         f.high = fmax(f.high, radius[i]);
     }
     layers_reference_samples(&f);
-    put_together(&f, &out);
+    // Red discs are larger behind the focus and smaller before it, blue ones the other way; alpha goes with green.
+    for (int i = 0; i < (f.aperture.chromatic != 0 ? 3 : 1); i++) {
+        struct picture group = picture_new(f.width, f.height, f.channels);
+        f.shift = f.aperture.chromatic == 0 ? 0 : (1 - i) * (double)f.aperture.chromatic;
+        put_together(&f, &group);
+        for (int c = 0; c < f.channels; c++)
+            if (f.aperture.chromatic == 0 || i == (c < 3 ? c : 1))
+                memcpy(out.plane[c], group.plane[c], (size_t)f.width * (size_t)f.height * sizeof(float));
+        picture_free(&group);
+    }
     free(f.seen.v);
     free(f.mixed.v);
     free(f.behind.v);

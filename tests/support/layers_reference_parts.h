@@ -51,6 +51,7 @@ struct frame {
     struct hf_aperture_params aperture;
     int fine, unmix, hidden, highlights, patterns;
     double wide, half, quarter, low, high;
+    double shift;                             // by this discs are larger behind the focus
     struct grid seen, mixed, behind, beyond;  // samples
 };
 
