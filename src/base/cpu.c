@@ -2,11 +2,13 @@
 #include "base/cpu.h"
 
 #include <sched.h>
+#include <stdatomic.h>
 #if HF_SIMD && HF_X86 && !HF_NARROW
 #include <cpuid.h>
 #endif
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const isa_names[] = {"auto", "scalar", "sse4.1", "avx2", "avx512", "neon"};
 enum { ISA_COUNT = sizeof isa_names / sizeof *isa_names };
@@ -71,6 +73,20 @@ enum hf_isa hf_cpu_choose(enum hf_isa wanted)
         if (hf_isa_available((enum hf_isa)i))
             best = (enum hf_isa)i;
     return best;
+}
+
+size_t hf_cpu_cache(void)
+{
+    static atomic_size_t known;  // and 1
+    size_t bytes = atomic_load_explicit(&known, memory_order_relaxed);
+    if (bytes)
+        return bytes - 1;
+#ifdef _SC_LEVEL3_CACHE_SIZE
+    const long told = sysconf(_SC_LEVEL3_CACHE_SIZE);  // slow: asks the processor, which a virtual machine intercepts
+    bytes = told > 0 ? (size_t)told : 0;
+#endif
+    atomic_store_explicit(&known, bytes + 1, memory_order_relaxed);
+    return bytes;
 }
 
 int hf_cpu_count(void)

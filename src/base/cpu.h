@@ -9,5 +9,7 @@
 enum hf_isa hf_cpu_choose(enum hf_isa wanted);
 // Processors this process may run on, at least 1.
 int hf_cpu_count(void);
+// Bytes of the third-level cache, 0 where the system does not tell. It is asked once.
+size_t hf_cpu_cache(void);
 
 #endif

@@ -84,57 +84,54 @@ void hf_area_cover(double *cover, const struct hf_area *a)
         }
 }
 
-// Weights are whole numbers of 2^-24, and all together are 1: a picture of ones stays one of ones whatever the order in
-// which they are added, since no sum needs more than 24 bits. Covered pixels share one weight, so that a run of them is
-// one product. What rounding leaves over goes to the pixels at the rim, in mirrored pairs.
-static const double UNITS = 0x1p24;
-
-// Pixels that are mirrored into one another.
-static int copies(int x, int y)
+// Weights are whole numbers of a unit, and no sum of them needs more than 24 bits: a picture of ones stays one of ones
+// whatever the order in which they are added. Covered pixels weigh 1, so that a run of them is a sum alone. One over the
+// sum of all is rounded; pixels at the rim, in mirrored copies, get a unit more until the product of both rounds to 1.
+double hf_area_unit(const struct hf_area *a)
 {
-    return (x ? 2 : 1) * (y ? 2 : 1);
+    int bits = 24;
+    for (double all = 4 * (a->radius_x + 1) * (a->radius_y + 1); all >= 1; all /= 2)  // more than a disc has
+        bits--;
+    return ldexp(1, -bits);
 }
 
-void hf_area_weights(double *weight, const struct hf_area *a)
+// The pixel whose weight its mirrored copies have, roundings included: the last quarter's.
+static int original(const struct hf_area *a, int x, int y)
+{
+    const int row = 2 * a->rx + 1;
+    return a->symmetric ? (abs(y) + a->ry) * row + abs(x) + a->rx : (y + a->ry) * row + x + a->rx;
+}
+
+// Give a unit to a pixel at the rim and to its copies. from: where to look for it, and where it was found. Returns how many.
+static int give(double *weight, const struct hf_area *a, double unit, int *from)
 {
     const int row = 2 * a->rx + 1, n = row * (2 * a->ry + 1);
-    double all = 0, inside = 0, rim = 0;
-    for (int i = 0; i < n; i++) {
-        // Mirrored pixels have one weight, roundings included: the last quarter's.
-        const int x = abs(i % row - a->rx), y = abs(i / row - a->ry);
-        const double own = a->symmetric ? weight[(y + a->ry) * row + x + a->rx] : weight[i];
-        weight[i] = own < 1e-6 ? 0 : own > 1 - 1e-9 ? 1 : own;
+    int given = 0;
+    for (int i = 0; i < n && !given; i++, *from = (*from + 1) % n) {
+        const int x = *from % row - a->rx, y = *from / row - a->ry, at = *from;
+        if (at != original(a, x, y) || weight[at] == 0 || weight[at] >= 1 - unit)
+            continue;
+        for (int v = -abs(y); v <= abs(y); v++)
+            for (int u = -abs(x); u <= abs(x); u++)
+                if (original(a, u, v) == at) {
+                    weight[(v + a->ry) * row + u + a->rx] += unit;
+                    given++;
+                }
+    }
+    return given;
+}
+
+float hf_area_weights(double *weight, const struct hf_area *a)
+{
+    const int row = 2 * a->rx + 1, n = row * (2 * a->ry + 1);
+    const double unit = hf_area_unit(a);
+    double all = 0;
+    for (int i = n - 1; i >= 0; i--) {
+        const double own = weight[original(a, i % row - a->rx, i / row - a->ry)];
+        weight[i] = own < 1e-6 ? 0 : own > 1 - 1e-9 ? 1 : floor(own / unit + 0.5) * unit;
         all += weight[i];
-        inside += weight[i] == 1;
-        rim += weight[i] < 1 ? weight[i] : 0;
     }
-    // A multiple of 4 for all that is covered: then what is left can be given away in fours.
-    double share = floor(UNITS / all / 4 + 0.5) * 4;
-    if (share < 4096)
-        share = floor(UNITS / all);
-    const double scale = rim > 0 ? (UNITS - inside * share) / rim : 0;
-    double left = UNITS;
-    for (int i = 0; i < n; i++) {
-        weight[i] = weight[i] == 1 ? share : floor(weight[i] * scale);
-        left -= weight[i];
-    }
-    if (!a->symmetric) {
-        weight[n / 2] += left;
-        left = 0;
-    }
-    // Mirrored fours first, then pairs on the axes, then the middle.
-    for (int size = 4; size >= 1 && left > 0; size /= 2)
-        for (int y = 0; y <= a->ry && left >= size; y++)
-            for (int x = 0; x <= a->rx && left >= size; x++) {
-                const int at = (y + a->ry) * row + x + a->rx;
-                if (copies(x, y) != size || (size > 1 && (weight[at] == share || weight[at] == 0)))
-                    continue;
-                const double give = size > 1 ? 1 : left;
-                for (int v = -y; v <= y; v += 2 * y + !y)
-                    for (int u = -x; u <= x; u += 2 * x + !x)
-                        weight[(v + a->ry) * row + u + a->rx] += give;
-                left -= size * give;
-            }
-    for (int i = 0; i < n; i++)
-        weight[i] /= UNITS;
+    for (int i = 0, from = 0; i < 1024 && (float)(all * (double)(float)(1 / all)) != 1; i++)
+        all += give(weight, a, unit, &from) * unit;
+    return (float)(1 / all);
 }

@@ -13,7 +13,10 @@ struct hf_area {
 
 // Part of each pixel of the lattice that is covered, 0..1: rows of 2 rx + 1.
 void hf_area_cover(double *cover, const struct hf_area *a);
-// Weights from that, in its place: they sum to 1 exactly, and those of pixels that are covered are equal.
-void hf_area_weights(double *weight, const struct hf_area *a);
+// Weights from that, in its place: whole numbers of hf_area_unit, 1 where a pixel is covered. Returns by what sums are
+// to be multiplied: that of the weights alone then is 1, exactly.
+float hf_area_weights(double *weight, const struct hf_area *a);
+// Such that no sum of weights needs more than 24 bits.
+double hf_area_unit(const struct hf_area *a);
 
 #endif

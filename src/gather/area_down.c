@@ -6,7 +6,6 @@
 // A quad's CoC of one kind, as what it adds to that field: gain x CoC, at most 1.
 struct quad {
     float part[4], mean, most;  // most: of the CoC itself
-    int equal;
 };
 
 static struct quad quad_of(const struct hf_frame *f, int even, int odd, int x, int y, int y1, float gain)
@@ -20,16 +19,13 @@ static struct quad quad_of(const struct hf_frame *f, int even, int odd, int x, i
     }
     const float top = coc[0] > coc[1] ? coc[0] : coc[1], bottom = coc[2] > coc[3] ? coc[2] : coc[3];
     q.most = top > bottom ? top : bottom;
-    q.equal = q.part[0] == q.part[1] && q.part[0] == q.part[2] && q.part[0] == q.part[3];
-    q.mean = q.equal ? q.part[0] : 0.25f * ((q.part[0] + q.part[1]) + (q.part[2] + q.part[3]));
+    q.mean = 0.25f * ((q.part[0] + q.part[1]) + (q.part[2] + q.part[3]));
     return q;
 }
 
-// What of four samples belongs to a field.
-static float part_of(const struct quad *q, const float c[4], float mean)
+// What of four samples belongs to a field. Where all of them do it is their mean.
+static float part_of(const struct quad *q, const float c[4])
 {
-    if (q->equal)
-        return mean * q->part[0];
     return 0.25f * ((q->part[0] * c[0] + q->part[1] * c[1]) + (q->part[2] * c[2] + q->part[3] * c[3]));
 }
 
@@ -53,14 +49,15 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
         const struct quad fq = quad_of(f, 2, 3, r.x0 + x, 2 * y, y1, hf_gather_levels(s, HF_FAR)->gain);
         for (int c = 0; c < s->channels; c++) {
             const float quad[4] = {lane[0][0][c][x], lane[0][1][c][x], lane[1][0][c][x], lane[1][1][c][x]};
-            const float sum = 0.25f * ((quad[0] + quad[1]) + (quad[2] + quad[3])), mean = hf_limited(sum);
-            f->counts->clamped += !(__builtin_fabsf(sum) <= HF_LARGEST);
+            const float sum = 0.25f * ((quad[0] + quad[1]) + (quad[2] + quad[3])),
+                        mean = hf_limited(sum, HF_AREA_LARGEST);
+            f->counts->clamped += !(__builtin_fabsf(sum) <= HF_AREA_LARGEST);
             if (f->near) {
                 colour[c][x] = mean;
-                near[c][x] = hf_limited(part_of(&nq, quad, mean));
+                near[c][x] = hf_limited(part_of(&nq, quad), HF_AREA_LARGEST);
             }
             if (f->far)
-                far[c][x] = hf_limited(part_of(&fq, quad, mean));
+                far[c][x] = hf_limited(part_of(&fq, quad), HF_AREA_LARGEST);
         }
         if (f->near) {
             *hf_at(coc4, HF_AREA_NEAR, r.x0 + x, y) = nq.mean;
@@ -68,7 +65,8 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
         }
         if (f->far) {
             *hf_at(coc4, HF_AREA_FAR, r.x0 + x, y) = fq.mean;
-            *hf_at(coc4, HF_AREA_FAR_MOST, r.x0 + x, y) = fq.most;
+            if (!hf_gather_is_simple(s, HF_FAR))
+                *hf_at(coc4, HF_AREA_FAR_MOST, r.x0 + x, y) = fq.most;
         }
     }
     if (f->near) {

@@ -49,6 +49,8 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
         for (int x = 0; x < n; x++)
             out[x] += sum[x];
     }
+    for (int x = 0; x < n; x++)
+        out[x] *= t->scale;
 }
 
 void hf_convolve_c(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, const struct hf_buf *in,

@@ -23,9 +23,10 @@ struct gather_term {
     int32_t offset;
 };
 
-// One row sum from the pairs h (rows of s vectors), added to the output rows above and below.
+// One row sum from the pairs h (rows of s vectors), added to the output rows above and below. scale: NULL, or that of the
+// one above, which is then complete.
 HF_INLINE void row_sum(const struct gather_term *term, const struct gather_term *end, const int s, const float *h,
-                       float *above, float *below)
+                       float *above, float *below, const float *scale)
 {
     vf acc[GATHER_S];
 #pragma GCC unroll 16
@@ -38,7 +39,11 @@ HF_INLINE void row_sum(const struct gather_term *term, const struct gather_term 
         for (int v = 0; v < s; v++)
             acc[v] = vf_fma(w, vf_load(p + v * (int)sizeof(vf)), acc[v]);
     }
-    if (above)
+    if (above && scale)
+#pragma GCC unroll 16
+        for (int v = 0; v < s; v++)
+            vf_store(above + v * VF_N, vf_mul(vf_add(vf_load(above + v * VF_N), acc[v]), vf_set1(*scale)));
+    else if (above)
 #pragma GCC unroll 16
         for (int v = 0; v < s; v++)
             vf_store(above + v * VF_N, vf_add(vf_load(above + v * VF_N), acc[v]));
@@ -113,7 +118,8 @@ HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_
             float *above = up >= 0 && up < height ? out + up * out_stride : NULL;
             float *below = symmetric && k && down >= 0 && down < height ? out + down * out_stride : NULL;
             if (above || below)
-                row_sum(terms + t->first[k], terms + t->first[k + 1], s, h, above, below);
+                row_sum(terms + t->first[k], terms + t->first[k + 1], s, h, above, below,
+                        k == t->rows - 1 && t->scale != 1 ? &t->scale : NULL);
         }
     }
 }
@@ -276,8 +282,8 @@ HF_INLINE void gather_any(const struct hf_taps *t, const struct gather_job *j, i
 }
 
 // s vectors for a tap set that has a column of its own: each looks for its rows.
-static void gather_columns(const float *weights, const struct gather_job *j, fixed_column *column, int x, int height,
-                           int s)
+static void gather_columns(const struct hf_taps *t, const float *weights, const struct gather_job *j,
+                           fixed_column *column, int x, int height, int s)
 {
     int y0[FIXED_STRIP], y1[FIXED_STRIP];
     for (int v = 0; v < s; v++)
@@ -288,7 +294,7 @@ static void gather_columns(const float *weights, const struct gather_job *j, fix
     for (int i = 0; i < j->planes; i++)
         for (int v = 0; v < s; v++)
             if (y0[v] < y1[v])
-                column(weights, j->in[i] + y0[v] * j->in_stride[i] + x + v * VF_N, j->in_stride[i],
+                column(weights, t->scale, j->in[i] + y0[v] * j->in_stride[i] + x + v * VF_N, j->in_stride[i],
                        job_out(j, i, x, x + v * VF_N) + y0[v] * j->out_stride[i], j->out_stride[i], y1[v] - y0[v]);
 }
 
@@ -309,7 +315,7 @@ static void gather_jobs(const struct hf_frame *f, struct hf_rect r, const struct
         next = x + s * VF_N - odd;
         for (int i = 0; i < count; i++) {
             if (column)
-                gather_columns(weights, &jobs[i], column, x, height, s);
+                gather_columns(t, weights, &jobs[i], column, x, height, s);
             else if (t->symmetric)
                 gather_any(t, &jobs[i], x, height, 1, s, work);
             else

@@ -50,9 +50,9 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
             const float sum = 0.25f * ((c00 + c10) + (c01 + c11));
             f->counts->clamped += !(__builtin_fabsf(sum) <= HF_LARGEST);
             if (f->near)
-                colour[c][x] = hf_limited(how == HF_DOWNSAMPLE_POINT ? c00 : sum);
+                colour[c][x] = hf_limited(how == HF_DOWNSAMPLE_POINT ? c00 : sum, HF_LARGEST);
             if (f->far)
-                far[c][x] = hf_limited(((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0]);
+                far[c][x] = hf_limited(((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0], HF_LARGEST);
         }
         if (f->near)
             *hf_at(&f->buf[HF_BUF_COC4], 0, r.x0 + x, y) = *hf_at(coc, 0, r.x0 + x, 2 * y);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Downsample on vectors: rows come split into even and odd pixels, so a quad is four aligned loads.
+#include "base/cpu.h"
 #include "gather/gather.h"
 #include "gather/inverse_vf.h"
 #include "pixel/coc_vf.h"
@@ -57,19 +58,19 @@ HF_INLINE vf down_far(const vf w[4], const vf c[4], vf f0)
     return vf_mul(vf_add(top, bottom), f0);
 }
 
-HF_INLINE vf down_limited(vf v)
+HF_INLINE vf down_limited(vf v, float largest)
 {
-    return vf_min(vf_max(v, vf_set1(-HF_LARGEST)), vf_set1(HF_LARGEST));
+    return vf_min(vf_max(v, vf_set1(-largest)), vf_set1(largest));
 }
 
 // Lanes of a row that are too large; only those that there are.
-static uint64_t down_count(vf sum, int lanes)
+static uint64_t down_count(vf sum, int lanes, float largest)
 {
     float v[VF_N];
     uint64_t n = 0;
     vf_store(v, sum);
     for (int i = 0; i < hf_min(lanes, VF_N); i++)
-        n += !(__builtin_fabsf(v[i]) <= HF_LARGEST);
+        n += !(__builtin_fabsf(v[i]) <= largest);
     return n;
 }
 
@@ -98,11 +99,11 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample
                                 vf_load(lane[3][c] + x)};
             const vf sum = vf_mul(vf_set1(0.25f), down_sum(quad));
             if (vm_any(vm_not(vf_le(vf_abs(sum), vf_set1(HF_LARGEST)))))
-                f->counts->clamped += down_count(sum, n - x);
+                f->counts->clamped += down_count(sum, n - x, HF_LARGEST);
             if (near)
-                vf_store(d.colour[c] + x, down_limited(how == HF_DOWNSAMPLE_POINT ? quad[0] : sum));
+                vf_store(d.colour[c] + x, down_limited(how == HF_DOWNSAMPLE_POINT ? quad[0] : sum, HF_LARGEST));
             if (far)
-                vf_store(d.colour_far[c] + x, down_limited(down_far(w, quad, g[0])));
+                vf_store(d.colour_far[c] + x, down_limited(down_far(w, quad, g[0]), HF_LARGEST));
         }
         if (near)
             vf_store(d.coc[0] + x, vf_load(d.near + x));
@@ -187,14 +188,14 @@ HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int f
     return !vm_any(vm_not(vf_lt(largest, vf_set1(16384))));
 }
 
-// Are the planes of a frame so large that what is written first has left the cache before it is read? Then they are
-// written past it, and push nothing else out.
+// Are the planes of a frame so large that what is written first has left the cache, through which the pictures go too,
+// before it is read? Then they are written past it, and push nothing else out.
 HF_INLINE int down_streams(const struct hf_frame *f, struct hf_rect r)
 {
     enum { LARGE = 12 << 20 };
     const struct hf_buf *b = &f->buf[HF_BUF_COC4];
-    return (size_t)b->stride * f->s->half_height * 8 * sizeof(float) > LARGE &&
-           (uintptr_t)hf_at(b, 0, r.x0, r.y0) % sizeof(vf) == 0;
+    const size_t bytes = (size_t)b->stride * (size_t)f->s->half_height * 8 * sizeof(float);
+    return bytes > LARGE && bytes > hf_cpu_cache() / 2 && (uintptr_t)hf_at(b, 0, r.x0, r.y0) % sizeof(vf) == 0;
 }
 
 HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far, struct hf_rect r)

@@ -54,7 +54,7 @@ static int channels(const struct hf_setup *s, int b)
     case HF_BUF_COC:
         return 4;
     case HF_BUF_COC4:
-        return g->area ? 4 : 2;
+        return !g->area ? 2 : hf_gather_is_simple(s, HF_FAR) ? HF_AREA_FAR_MOST : HF_AREA_FAR_MOST + 1;
     case HF_BUF_SUM:
         return !g->area || levels ? 2 : 0;
     case HF_BUF_MAX_X:
@@ -160,12 +160,12 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
     return most > fill ? most : fill;
 }
 
-// Tiles lower than the default: more of a mixed picture is skipped, and its scratch is smaller.
+// Tiles lower than the default: more of a mixed picture is skipped, and its scratch is smaller. By area they are wider:
+// fewer columns are made twice, and most sums take no room.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
-    (void)s;
     (void)sweep;
-    (void)width;
+    *width = hf_gather(s)->area && *width == 320 ? 480 : *width;
     *height = hf_min(*height, 72);
 }
 

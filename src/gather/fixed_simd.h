@@ -18,8 +18,8 @@ enum { FIXED_R = 8, FIXED_STRIP = 64 / VF_N };
 // Four lanes have no load that repeats a number: the weights are laid out four times each.
 enum { WEIGHT_N = VF_N == 4 ? 4 : 1 };
 
-// Discs by area, radius 4, 6 and 8: bits 0 to 8 as above, from bit 12 on the run of equal weights around the middle, 0 if
-// there is none, else one more than how far it reaches.
+// Discs by area, radius 4, 6 and 8: bits 0 to 8 as above, from bit 12 on the run of weights of 1 around the middle, 0 if
+// there is none, else one more than how far it reaches. Sums are scaled when they are complete.
 #define RUN(reach) (((reach) + 1) << 12)
 static const uint16_t disc_4[] = {RUN(3) | 0x10, RUN(3) | 0x10, RUN(2) | 0x18, RUN(1) | 0x0c, 0x07};
 static const uint16_t disc_6[] = {RUN(5) | 0x40, RUN(5) | 0x40, RUN(4) | 0x60, RUN(4) | 0x20,
@@ -114,8 +114,10 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
     vf sum = vf_zero();
     int j = 0;
     if (disc) {
-        if (rows[k] >> 12)
-            sum = vf_fma(fixed_weight(weight, n++), h[FIXED_R + (rows[k] >> 12)], sum);
+        if (rows[k] >> 12) {
+            sum = h[FIXED_R + (rows[k] >> 12)];
+            n++;
+        }
 #pragma GCC unroll 9
         for (; j <= r; j++)
             if (rows[k] >> j & 1)
@@ -142,8 +144,8 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
 }
 
 // An input row d rows outside of the strip: it reaches the first r - d + 1 output rows from that edge on.
-HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, const float *weight, const float *in,
-                          int d, int top, float *out, ptrdiff_t stride, int height)
+HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
+                          const float *in, int d, int top, float *out, ptrdiff_t stride, int height)
 {
     vf h[2 * FIXED_R + 2];
     fixed_pairs(in, r, h);
@@ -156,13 +158,16 @@ HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, con
         if (k >= d && k - d < height) {
             float *p = out + (k - d) * stride;
             const vf sum = fixed_sum(rows, k, r, h, weight, axis, disc);
-            vf_store(p, k == r && top ? sum : vf_add(vf_load(p), sum));
+            if (k == r && top)
+                vf_store(p, sum);
+            else
+                vf_store(p, disc && k == r ? vf_mul(vf_add(vf_load(p), sum), scale) : vf_add(vf_load(p), sum));
         }
 }
 
 // The rows of the strip itself; sums[i] is that of the output row r - i above the one at hand.
-HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, const float *weight, const float *in,
-                            ptrdiff_t in_stride, float *out, ptrdiff_t out_stride, int height)
+HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
+                            const float *in, ptrdiff_t in_stride, float *out, ptrdiff_t out_stride, int height)
 {
     vf sums[2 * FIXED_R + 1];
 #pragma GCC unroll 17
@@ -181,7 +186,7 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, c
             row[k] = fixed_sum(rows, k, r, h, weight, axis, disc);
             sums[r - k] = vf_add(sums[r - k + 1], row[k]);
             if (k == r && y >= r)
-                vf_store(out + (y - r) * out_stride, sums[0]);
+                vf_store(out + (y - r) * out_stride, disc ? vf_mul(sums[0], scale) : sums[0]);
         }
 #pragma GCC unroll 8
         for (int k = 1; k < r; k++)
@@ -195,30 +200,31 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, c
 }
 
 // One vector of columns.
-typedef void fixed_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out, ptrdiff_t out_stride,
-                          int height);
+typedef void fixed_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, float *out,
+                          ptrdiff_t out_stride, int height);
 
 // Two functions: inlined into one, the compiler keeps the weights of all rows as vectors, and spills them.
 #define FIXED_COLUMN(rows, r, disc)                                                                                    \
-    static __attribute__((noinline)) void rows##_edge(const float *weight, const float *in, int d, int top,            \
-                                                      float *out, ptrdiff_t stride, int height)                        \
+    static __attribute__((noinline)) void rows##_edge(const float *weight, float scale, const float *in, int d,        \
+                                                      int top, float *out, ptrdiff_t stride, int height)               \
     {                                                                                                                  \
-        fixed_edge(rows, r, disc, weight, in, d, top, out, stride, height);                                            \
+        fixed_edge(rows, r, disc, weight, vf_set1(scale), in, d, top, out, stride, height);                            \
     }                                                                                                                  \
-    static __attribute__((noinline)) void rows##_inside(const float *weight, const float *in, ptrdiff_t in_stride,     \
-                                                        float *out, ptrdiff_t out_stride, int height)                  \
+    static __attribute__((noinline)) void rows##_inside(const float *weight, float scale, const float *in,             \
+                                                        ptrdiff_t in_stride, float *out, ptrdiff_t out_stride,         \
+                                                        int height)                                                    \
     {                                                                                                                  \
-        fixed_inside(rows, r, disc, weight, in, in_stride, out, out_stride, height);                                   \
+        fixed_inside(rows, r, disc, weight, vf_set1(scale), in, in_stride, out, out_stride, height);                   \
     }                                                                                                                  \
-    static void rows##_column(const float *weight, const float *in, ptrdiff_t in_stride, float *out,                   \
+    static void rows##_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, float *out,      \
                               ptrdiff_t out_stride, int height)                                                        \
     {                                                                                                                  \
         for (int d = r; d >= 1; d--)                                                                                   \
-            rows##_edge(weight, in - d * in_stride, d, 1, out, out_stride, height);                                    \
-        rows##_inside(weight, in, in_stride, out, out_stride, height);                                                 \
+            rows##_edge(weight, scale, in - d * in_stride, d, 1, out, out_stride, height);                             \
+        rows##_inside(weight, scale, in, in_stride, out, out_stride, height);                                          \
         for (int d = 1; d <= r; d++)                                                                                   \
-            rows##_edge(weight, in + (height - 1 + d) * in_stride, d, 0, out + (height - 1) * out_stride, -out_stride, \
-                        height);                                                                                       \
+            rows##_edge(weight, scale, in + (height - 1 + d) * in_stride, d, 0, out + (height - 1) * out_stride,       \
+                        -out_stride, height);                                                                          \
     }
 
 FIXED_COLUMN(rings_4, 4, 0)

@@ -64,7 +64,7 @@ enum hf_gather_halo {
 };
 
 // The channels of half-resolution CoC by area: the mean near and far CoC of a quad, as weights of its colour; and the
-// largest near and far CoC of it.
+// largest near and far CoC of it, the latter for levels.
 enum { HF_AREA_NEAR, HF_AREA_FAR, HF_AREA_NEAR_MOST, HF_AREA_FAR_MOST };
 
 // A kernel as large as some pixels' blur. CoC is relative to the largest radius.
@@ -180,14 +180,15 @@ struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo);
 
 extern const struct hf_engine_def hf_gather_engine;
 
-// Half-resolution colour stays below this, so that no sum of thousands passes the largest float.
+// Half-resolution colour stays below this, so that no sum of thousands passes the largest float; by area of millions.
 #define HF_LARGEST 0x1p115f
+#define HF_AREA_LARGEST 0x1p104f
 
 // So limited; NaN, as of a sum of two infinities, becomes the least.
-static inline float hf_limited(float v)
+static inline float hf_limited(float v, float largest)
 {
-    v = v > -HF_LARGEST ? v : -HF_LARGEST;
-    return v < HF_LARGEST ? v : HF_LARGEST;
+    v = v > -largest ? v : -largest;
+    return v < largest ? v : largest;
 }
 
 // Uniform cubic B-spline a quarter of a pixel off the centre: weights of the neighbour on that side, of the one on

@@ -150,18 +150,17 @@ static void round_weights(struct hf_taps *t, const double *w, int *first, int *c
 static void enter_areas(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
 {
     const int row = 2 * t->rx + 1;
-    const double share = w[t->ry * row + t->rx + (t->rx > 1)];
     int n = 0;
     t->runs = t->symmetric && t->rx > 1 && t->ry > 1;
     for (int k = 0; k < t->rows; k++) {
         const double *p = t->symmetric ? w + (k + t->ry) * row + t->rx : w + k * row;
         int from = 0, run = 0;
         first[k] = n;
-        while (t->runs && run <= t->rx && p[run] == share)
+        while (t->runs && run <= t->rx && p[run] == 1)
             run++;
         if (run > 1) {
             column[n] = t->rx + run;
-            weight[n++] = (float)share;
+            weight[n++] = 1;
             from = run;
         }
         for (int j = from; j < (t->symmetric ? t->rx + 1 : row); j++)
@@ -173,7 +172,7 @@ static void enter_areas(struct hf_taps *t, const double *w, int *first, int *col
     first[t->rows] = n;
 }
 
-static void sum_areas(int *sums, const double *w, int rx, int ry)
+static void sum_areas(int *sums, const double *w, double unit, int rx, int ry)
 {
     const int row = 2 * rx + 2;
     memset(sums, 0, (size_t)row * sizeof *sums);
@@ -181,7 +180,7 @@ static void sum_areas(int *sums, const double *w, int rx, int ry)
         sums[(y + 1) * row] = 0;
         for (int x = 0; x <= 2 * rx; x++)
             sums[(y + 1) * row + x + 1] = sums[(y + 1) * row + x] + sums[y * row + x + 1] - sums[y * row + x] +
-                                          (int)(w[y * (2 * rx + 1) + x] * 0x1p24);
+                                          (int)(w[y * (2 * rx + 1) + x] / unit);
     }
 }
 
@@ -193,7 +192,7 @@ float hf_taps_part(const struct hf_taps *t, int x0, int x1, int y0, int y1)
     y0 = (y0 > -t->ry ? y0 : -t->ry) + t->ry;
     y1 = (y1 < t->ry + 1 ? y1 : t->ry + 1) + t->ry;
     const int sum = t->sums[y1 * row + x1] - t->sums[y1 * row + x0] - (t->sums[y0 * row + x1] - t->sums[y0 * row + x0]);
-    return (float)sum * 0x1p-24f;
+    return (float)sum * t->unit * t->scale;
 }
 
 // The lattice of an area: a pixel to either side at least, so that what lies between two pixels has both.
@@ -220,7 +219,8 @@ static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const stru
     float *weight = (float *)(w + lattice);
     int *column = (int *)(weight + lattice), *first = column + lattice, *sum = first + 2 * a.ry + 2;
     hf_area_cover(w, &a);
-    hf_area_weights(w, &a);
+    t->scale = hf_area_weights(w, &a);
+    t->unit = (float)hf_area_unit(&a);
     t->count = 0;
     t->rx = a.rx;
     t->ry = a.ry;
@@ -231,7 +231,7 @@ static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const stru
     t->weight = weight;
     t->sums = sum;
     enter_areas(t, w, first, column, weight);
-    sum_areas(sum, w, a.rx, a.ry);
+    sum_areas(sum, w, hf_area_unit(&a), a.rx, a.ry);
     t->key = *k;
     return HF_OK;
 }
@@ -244,6 +244,7 @@ int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct h
     if (k->area)
         return build_area(t, k, mem);
     t->runs = 0;
+    t->scale = 1;
     t->sums = NULL;
     const int count = tap_count(k);
     // Room for the largest reach there can be: a polygon's corners lie on its circle.

@@ -26,16 +26,18 @@ struct hf_taps {
 
     int rx, ry;     // lattice reach: offsets -rx..rx, -ry..ry
     int symmetric;  // weights mirror in x and in y
-    // The weights, each tap 1/count, summing to 1: only those that are not 0, row by row. Row k has entries first[k] to
+    // The weights, each tap 1/count, summing to 1 with their scale: only those that are not 0, row by row. Row k has entries first[k] to
     // first[k + 1]. symmetric: ry + 1 rows, for |dy| = k, with column |dx|. Else 2 ry + 1 rows, for dy = k - ry, with
     // column dx + rx. Of areas, a column beyond rx (symmetric) stands for the sum of all from -j to j, j = column - rx - 1.
     int rows;
     const int *first, *column;
     const float *weight;
+    float scale;  // what their sums are multiplied by in the end; 1 but for areas, whose covered pixels weigh 1
 
     int runs;  // there are such columns
-    // area: sums[y * (2 rx + 2) + x] of the weights above and left of lattice point (x - rx, y - ry), in 2^-24; else NULL.
+    // area: sums[y * (2 rx + 2) + x] of the weights above and left of lattice point (x - rx, y - ry), in units; else NULL.
     const int *sums;
+    float unit;
 
     struct hf_block block;   // owns all of the above
     struct hf_taps_key key;  // what it was built from; radius 0: nothing yet

@@ -174,11 +174,11 @@ static double largest_near(const struct world *w, int b, int c, int x, int y)
 }
 
 // Of a level: its planes 8 (12 with Karis), the pairs and their sums 2 rx, products and sums along a row 2 rx, rows 2 ry;
-// a level is added by 3. Then quotients and blends: 12.
+// the scale 1; a level is added by 3. Then quotients and blends: 12.
 static double area_roundings(const struct world *w)
 {
     const struct hf_taps *t = world_taps(w);
-    return (w->gather.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 12;
+    return (w->gather.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 13;
 }
 
 // What is hidden is divided by the part of the kernel that lies in the frame, or by all that counts: the weight of a
@@ -191,7 +191,7 @@ static double area_near_bound(const struct world *w, int c, int x, int y)
     if (c >= 0)
         most = fmax(largest_near(w, HF_BUF_COLOR4, c, x, y), largest_near(w, HF_BUF_COLORNEAR4, c, x, y));
     if (!hf_gather_is_simple(s, HF_NEAR))
-        part = fmin(part, t->weight[0]) / (w->gather.karis ? 100 : 1);
+        part = fmin(part, t->weight[0] * t->scale) / (w->gather.karis ? 100 : 1);
     return area_roundings(w) * FLT_EPSILON * most * 2 / part;
 }
 
@@ -200,6 +200,7 @@ static double area_far_bound(const struct world *w, int c, int x, int y)
 {
     const struct hf_levels *l = &w->gather.levels[1];
     const struct hf_taps *t = world_taps(w);
+    const int simple = hf_gather_is_simple(&w->setup, HF_FAR);
     double worst = 0;
     for (int i = 0; i < l->count; i++) {
         const struct hf_taps *k = &l->level[i].taps;
@@ -207,7 +208,8 @@ static double area_far_bound(const struct world *w, int c, int x, int y)
         for (int v = y - k->ry; v <= y + k->ry; v++)
             for (int u = x - k->rx; u <= x + k->rx; u++) {
                 const double part = hf_taps_part(k, u - x, u - x + 1, v - y, v - y + 1);
-                const double reach = hf_level_reach(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_MOST, u, v));
+                const double reach =
+                    simple ? 1 : hf_level_reach(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_MOST, u, v));
                 const double karis = w->gather.karis ? reference_at(w, HF_BUF_WEIGHT, 0, u, v) : 1;
                 sum += part * reach * karis * fabs((double)reference_at(w, HF_BUF_COLORFAR4, c, u, v));
                 weight += part * reach * karis * reference_at(w, HF_BUF_COC4, HF_AREA_FAR, u, v);
