@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 enum { ROUNDS = 7, QUICK_ROUNDS = 3, SLOW_ROUNDS = 3 };
-static const double slow_ms = 150;  // frames that take longer are measured SLOW_ROUNDS times
+static const double slow_ms = 100;  // frames that take longer are measured SLOW_ROUNDS times
 
 static void progress(const char *what, int i, int n, const char *name)
 {

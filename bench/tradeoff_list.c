@@ -13,7 +13,7 @@ const struct trade_setting trade_settings[] = {
     {"engine", "gaussian", "--engine gaussian", 1},
     {"engine", "layers", "--engine layers", 1},
 
-    {"resolution", "hexagon half", "--engine hexagon --resolution half", 1},
+    {"resolution", "hexagon half", "--engine hexagon --resolution half", 0},
     {"resolution", "scatter half", "--engine scatter --resolution half", 1},
     {"resolution", "gaussian half", "--engine gaussian --resolution half", 0},
     {"resolution", "gaussian quarter", "--engine gaussian --resolution quarter", 1},
