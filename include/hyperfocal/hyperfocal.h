@@ -437,8 +437,8 @@ struct hf_run_params {
     int colour_stats;
     // Milliseconds that a frame may take, 0 (default): any. What was asked for is then the best that a frame may be;
     // if earlier frames of this context took longer, cheaper settings are tried in turn, those of the ladder from which
-    // hf_choose_quality chooses. It goes back only when the better setting would
-    // leave a fifth of the budget for a dozen frames on end, so that a shot does not flicker between two looks.
+    // hf_choose_quality chooses that reach as far as the blur that is asked for. It goes back only when the better setting
+    // would leave a fifth of the budget for a dozen frames on end, so that a shot does not flicker between two looks.
     float budget_ms;
 };
 

@@ -125,7 +125,7 @@ static const struct tool_option options[] = {
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
      "this CPU.", NAME(isa, ISA)},
     {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. When the frames before took longer, cheaper "
-     "settings are chosen, those from which --quality chooses. Default: any time.",
+     "settings are chosen, those from which --quality chooses that blur as far as is asked for. Default: any time.",
      POSITIVE(params.run.budget_ms)},
     {"explain", 0, TOOL_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
      "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
