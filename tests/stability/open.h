@@ -13,7 +13,9 @@ static const struct {
     {"constant in, constant out: relative error", "gather faithful", 0.9,
      "the chapter's max fill starts from zero where a field is empty: 0 beats a negative constant"},
     {"centre of a highlight, half resolution: off, pixels", "hexagon half", 0.7,
-     "half-resolution taps around small radii lie to one side"},
+     "a slanted line's pixels are filled one after the other by distance, though two taps share each: the first takes "
+     "some "
+     "of the second's too early, its mean is nearer than half the radius, and only the upright line's is not"},
     {"opaque: samples of alpha that are not 1", "gather max", 4000,
      "the chapter's weights of taps add up to 1 only within rounding"},
     {"opaque: samples of alpha that are not 1", "gather none", 4000, "the same"},
