@@ -351,6 +351,7 @@ int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct
         err = check_aperture(&p->aperture, e, message);
     if (err)
         return err;
+    p->aperture.rotation = fmodf(p->aperture.rotation, 360);
     if (is_lens(p, depth)) {
         r->focal_px = (float)lens_focal_px(p);
         r->lens_k = (float)fmin(lens_k(p), FLT_MAX);

@@ -316,7 +316,7 @@ struct hf_lens_params {
 // sides and rotation, layers and scatter all, gaussian none.
 struct hf_aperture_params {
     // 0 (default) a disc, else a regular polygon with 3 to 16 sides, the middle of one on the +x axis turned by rotation
-    // degrees (any finite value, default 0).
+    // degrees (any finite value, default 0; whole turns do not count).
     int blades;
     float rotation;
     // Sides of the polygon bent towards the circle around it: 0 (default) straight .. 1 a disc.
@@ -588,7 +588,7 @@ struct hf_report {
     uint64_t colour_repaired;                        // colour samples (channels of pixels) that were NaN or infinite
     uint64_t depth_repaired;                         // depth samples that were NaN
     uint64_t no_surface;                             // pixels without a surface
-    uint64_t clamped;  // output samples outside the range of their format, and clamped to it
+    uint64_t clamped;  // samples clamped: of the output to the range of its format, of the input as engines need it
 };
 
 // What hf_render would do with the same arguments, without rendering: looks at the depth only. Errors as for hf_render.

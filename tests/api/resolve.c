@@ -98,6 +98,12 @@ static void derived(void)
     CHECK(r.params.gaussian.by_depth == 1 && fabsf(r.params.gaussian.sigma - sqrtf(3)) < 1e-6f);
     p.range.distance = 3;
     CHECK_INT(resolved(64, 64, &depth, &p).params.gaussian.by_depth, 0);
+    p = hf_default_params;  // angles that sines and cosines are still exact for
+    p.aperture.blades = 6;
+    p.aperture.rotation = -725;
+    CHECK(resolved(64, 64, &depth, &p).params.aperture.rotation == -5);
+    p.aperture.rotation = 3e38f;
+    CHECK(fabsf(resolved(64, 64, &depth, &p).params.aperture.rotation) < 360);
 }
 
 // Nothing says HF_DERIVE any more, for any engine and model.
