@@ -9,14 +9,13 @@
 // options; display-encoded root mean square error, geometric mean of the scenes and of the worst; milliseconds of a
 // megapixel
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 1", 0.083193f, 0.136679f, 1.870f}, \
-    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 1.887f}, \
-    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 1.960f}, \
-    {"--engine gather", 0.045834f, 0.091190f, 24.56f}, \
-    {"--engine layers --spacing 8 --no-unmix --no-highlights", 0.033730f, 0.079202f, 43.18f}, \
-    {"--engine layers --spacing 1 --half-from 4", 0.026221f, 0.039381f, 59.08f}
+    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 1.892f}, \
+    {"--engine gather", 0.045835f, 0.091194f, 31.57f}, \
+    {"--engine layers", 0.026320f, 0.040952f, 61.27f}, \
+    {"--engine layers --layers-quality high", 0.025950f, 0.039822f, 65.15f}, \
+    {"--engine layers --layers-quality best", 0.024207f, 0.039229f, 211.8f}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 0, 5, 5, 5
+#define HF_LADDER_QUALITIES 0, 2, 4, 4
 // milliseconds of a megapixel of each engine as it is
-#define HF_LADDER_ENGINES 24.56f, 38.75f, 87.58f, 3.938f, 53.30f
+#define HF_LADDER_ENGINES 31.57f, 56.02f, 107.9f, 3.820f, 61.27f
 // clang-format on
