@@ -172,6 +172,21 @@ HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, vf x, 
     return vf_mul(d, sum);
 }
 
+// Whether hexagons of radii q around (u, v) may lie partly outside the frame: not where that is farther away than twice
+// the longest of their sides, along which two steps lead. There all sums below are 18 exactly.
+HF_INLINE vm hex_at_edge(const struct hf_setup *s, vf u, vf v, vf q)
+{
+    const struct hf_hexagon *h = hf_hexagon(s);
+    float across = HUGE_VALF, along = HUGE_VALF;
+    for (int i = 0; i < 3; i++) {
+        across = __builtin_fminf(across, __builtin_fabsf(h->side[i][0]));
+        along = __builtin_fminf(along, __builtin_fabsf(h->side[i][1]));
+    }
+    const vf one = vf_set1(1), x = vf_fma(q, vf_set1(2.01f / across), one), y = vf_fma(q, vf_set1(2.01f / along), one);
+    const vf width = vf_set1((float)s->width), height = vf_set1((float)s->height);
+    return vm_or(vm_or(vf_lt(u, x), vf_lt(v, y)), vm_or(vf_lt(vf_sub(width, u), x), vf_lt(vf_sub(height, v), y)));
+}
+
 // Pixels from column x of row y on, `step` apart; p: their radii.
 HF_INLINE vf hex_left_over(const struct hf_setup *s, vf coverage, vf p, int x, int step, int y)
 {
@@ -181,8 +196,10 @@ HF_INLINE vf hex_left_over(const struct hf_setup *s, vf coverage, vf p, int x, i
     if (vm_any(near)) {
         const vf q = vf_select(near, vf_sub(vf_zero(), p), most), v = vf_set1((float)y + 0.5f);
         const vf u = vf_add(vf_set1((float)x + 0.5f), vf_mul(vf_set1((float)step), vf_load(steps)));
-        const vf sum = vf_add(hex_two_sides(s, 0, -1, 1, u, v, q), hex_two_sides(s, 0, 1, 2, u, v, q));
-        most = vf_select(near, vf_mul(sum, vf_set1(1 / 18.0f)), most);
+        if (vm_any(vm_and(near, hex_at_edge(s, u, v, q)))) {
+            const vf sum = vf_add(hex_two_sides(s, 0, -1, 1, u, v, q), hex_two_sides(s, 0, 1, 2, u, v, q));
+            most = vf_select(near, vf_mul(sum, vf_set1(1 / 18.0f)), most);
+        }
     }
     return vf_max(vf_sub(most, coverage), vf_zero());
 }
