@@ -36,6 +36,7 @@ int main(void)
     test_huge_header();
     test_claims();
     test_swapped_chunks();
+    test_growing();
     test_planes();
     test_depth_file_sizes();
     test_formats();

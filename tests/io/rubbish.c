@@ -113,6 +113,36 @@ void test_swapped_chunks(void)
     free(data);
 }
 
+// A file that is opened while another program still writes it: at each length it is cut there, opened, completed, and
+// read. What was not there when it was opened counts as missing, and no memory is made for it.
+void test_growing(void)
+{
+    const struct part parts[MAX_PARTS] = {
+        usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_NONE, EXR_LINEORDER_INCREASING_Y)};
+    const char *path = in_folder("growing.exr");
+    float planes[5][37 * 41];
+    int refused = 0, fetched = 0;
+    size_t size;
+    CHECK(!make_exr(path, parts, NULL));
+    uint8_t *data = slurp(path, &size);
+    for (size_t n = 64; n < size; n += 64) {
+        struct hf_io_file *f;
+        struct hf_io_error err = {""};
+        spill(path, data, n);
+        if (hf_io_open(&f, path, NULL, &err))
+            continue;  // not even the header and the tables
+        const struct hf_io_want want = {0, {planes[0], planes[1], planes[2], planes[3]}, planes[4]};
+        spill(path, data, size);
+        refused += hf_io_fetch(f, &want, 1, &err) || hf_io_decode(f, &want, 1, NULL, &err);
+        CHECK_MSG(strstr(err.message, "growing.exr: ") != NULL, "cut at %zu: %s", n, err.message);
+        fetched++;
+        hf_io_close(&f);
+    }
+    CHECK(fetched > 10);
+    CHECK_INT(refused, fetched);
+    free(data);
+}
+
 // Headers that Core believes and other readers do not, and files that are called what they are.
 void test_claims(void)
 {

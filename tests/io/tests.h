@@ -21,6 +21,7 @@ void test_rubbish(const char *path);
 void test_huge_header(void);
 void test_claims(void);
 void test_swapped_chunks(void);
+void test_growing(void);
 void test_planes(void);
 void test_depth_file_sizes(void);
 void test_formats(void);

@@ -79,7 +79,8 @@ static int fetch_part(struct hf_exr *e, int p, const uint64_t *starts, size_t co
         if (from < first || from >= e->size || (i && from == slots[i - 1].offset))
             continue;  // decoding will say so
         const uint64_t *own = bsearch(&from, starts, count, sizeof(*starts), compare);
-        const uint64_t to = own ? own[1] : from;
+        // A chunk that begins behind the end is not there: the file was cut, or is being written now and may grow yet.
+        const uint64_t to = !own ? from : own[1] < e->size ? own[1] : e->size;
         if (f->count && f->range[f->count - 1].to == from) {
             f->range[f->count - 1].to = to;
         } else {
