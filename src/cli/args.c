@@ -97,6 +97,21 @@ static const char *range_option(const struct cli_args *args)
                                          : NULL;
 }
 
+int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error)
+{
+    const enum hf_depth_type type = args->depth_type;
+    const int from_planes = type == HF_DEPTH_NDC_D3D || type == HF_DEPTH_NDC_GL || type == HF_DEPTH_NDC_REVERSED ||
+                            type == HF_DEPTH_INVERSE || args->normalized;
+    // The gaussian engine measures depth by the planes, whatever its type.
+    if (from_planes || (engine == HF_ENGINE_GAUSSIAN && type != HF_DEPTH_COC) ||
+        (!given(args->near_plane) && !given(args->far_plane)))
+        return 0;
+    return tool_fail(error, CLI_BAD_ARGUMENTS,
+                     "--%s is of use only with --depth-type ndc-d3d, ndc-gl, ndc-reversed, inverse and "
+                     "normalized, not %s",
+                     given(args->near_plane) ? "near" : "far", cli_depth_type_name(args));
+}
+
 static int check_depth(const struct cli_args *args, struct tool_error *error)
 {
     const int ndc = args->depth_type == HF_DEPTH_NDC_D3D || args->depth_type == HF_DEPTH_NDC_GL ||
@@ -111,14 +126,9 @@ static int check_depth(const struct cli_args *args, struct tool_error *error)
     if (args->near_plane >= args->far_plane)
         return tool_fail(error, -1, "--near %g must be less than --far %g%s", args->near_plane, args->far_plane,
                          args->normalized ? "; for a map that is white where it is near take normalized-inverted" : "");
-    // The gaussian engine measures depth by the planes, whatever its type.
-    const int wants_planes = ndc || inverse || args->normalized ||
-                             (args->params.engine == HF_ENGINE_GAUSSIAN && args->depth_type != HF_DEPTH_COC);
-    if (!wants_planes && (given(args->near_plane) || given(args->far_plane)))
-        return tool_fail(error, -1,
-                         "--%s is of use only with --depth-type ndc-d3d, ndc-gl, ndc-reversed, inverse and "
-                         "normalized, not %s",
-                         given(args->near_plane) ? "near" : "far", type);
+    // Which engine a quality is differs from picture to picture (setup.c).
+    if (args->quality < 0 && !given(args->max_error) && cli_check_planes(args, args->params.engine, error))
+        return -1;
     if (args->depth_scale == 0)
         return tool_fail(error, -1, "--depth-scale: '0' is out of range, it must not be 0");
     if (args->depth_type == HF_DEPTH_COC && (args->focus_at_given || args->focus_by == CLI_FOCUS_CENTER))

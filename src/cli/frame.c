@@ -79,9 +79,11 @@ static int read_depth_file(const struct cli_args *args, struct cli_view *v, stru
 {
     int size[2];
     const int status = hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, size, io);
-    const int scaled = size[0] != v->view->width || size[1] != v->view->height;
-    for (int i = 0; i < 2; i++)
+    const int to[2] = {v->view->width, v->view->height}, scaled = size[0] != to[0] || size[1] != to[1];
+    for (int i = 0; i < 2; i++) {
         v->map_size[i] = scaled ? size[i] : 0;
+        v->scaled_to[i] = to[i];
+    }
     return status;
 }
 

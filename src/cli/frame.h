@@ -26,7 +26,8 @@ struct cli_view {
     struct cli_setup setup;
     float *depth;  // NULL: not read yet, or not needed any more
     float *planes[4];
-    int map_size[2];  // width and height of the depth file, which was scaled to the view's; 0: not so
+    int map_size[2];  // width and height of the depth file, which was scaled; 0: it was not
+    int scaled_to[2];
     struct cli_depth_found found;
     float least_radius;  // pixels: what is least blurred
     float least_reach;   // of all that is blurred at all

@@ -209,6 +209,8 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
     p->view.display_height = view->display_window.y1 - view->display_window.y0;
     p->view.pixel_aspect = view->pixel_aspect;
     cli_choose(setup, args);
+    if (cli_check_planes(args, p->engine, error))
+        return CLI_BAD_ARGUMENTS;
     if (args->params.range.blend != hf_default_params.range.blend && setup->model != CLI_MODEL_RANGE)
         return tool_fail(error, CLI_BAD_ARGUMENTS,
                          "%s: --blend %s is of use only with a range, but here the %s says how "

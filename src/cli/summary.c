@@ -118,8 +118,8 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     char text[512];
     int n = 0;
     if (v->map_size[0])
-        n += snprintf(text, sizeof(text), "%d x %d scaled to %d x %d, ", v->map_size[0], v->map_size[1], v->view->width,
-                      v->view->height);
+        n += snprintf(text, sizeof(text), "%d x %d scaled to %d x %d, ", v->map_size[0], v->map_size[1],
+                      v->scaled_to[0], v->scaled_to[1]);
     n += snprintf(text + n, sizeof(text) - (size_t)n, "%s", hf_engine_name(p->engine));
     if (v->setup.model == CLI_MODEL_LENS)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", f/%g %g mm", p->lens.f_number, p->lens.focal_length_mm);

@@ -120,15 +120,15 @@ static float behind(enum hf_engine engine, float q)
 // at the edges.
 static float largest(const struct cli_frame *frame, int part)
 {
-    const enum hf_engine engine = frame->args->params.engine;
     float r = 0;
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
         const size_t n = v->view->part == part ? (size_t)v->view->width * (size_t)v->view->height : 0;
         r = n ? fmaxf(r, fmaxf(v->far_away, v->least_reach)) : r;
-        for (size_t k = 0; k < n; k++)
-            if (visible(v, k))
-                r = fmaxf(r, fmaxf(fabsf(v->radii[k]), v->radii[k] < 0 ? behind(engine, -v->radii[k]) : 0));
+        for (size_t k = 0; k < n; k++) {
+            const float q = v->radii[k], reach = fmaxf(fabsf(q), q < 0 ? behind(v->setup.params.engine, -q) : 0);
+            r = reach > r && visible(v, k) ? reach : r;
+        }
     }
     return r;
 }

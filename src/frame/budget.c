@@ -17,11 +17,13 @@ int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_para
     int n = 0;
     ladder[n++] = *asked;
     for (int i = hf_ladder_steps - 1; i >= 0 && n < HF_BUDGET_STEPS; i--) {
+        if (hf_ladder[i].ms >= ms)
+            continue;
         struct hf_params *p = &ladder[n];
         *p = *asked;
         hf_ladder_apply(p, i);
         hf_ladder_reshape(p);
-        n += hf_ladder[i].ms < ms && hf_ladder_farthest(p) >= far;
+        n += hf_ladder_farthest(p) >= far;
     }
     return n;
 }

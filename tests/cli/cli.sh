@@ -305,6 +305,8 @@ picture_tests() {
     plan "engine gather|rings of taps" plain.exr --focus 3 --engine gather --max-radius 40
     plan "--quality draft chose --engine|, step 1 of|expected: |measured 20" plain.exr --focus 3 --quality draft --explain
     # One blur of one width does for a range, but not for a lens.
+    plan "--quality draft chose --engine gaussian" plain.exr --focus 3 --quality draft --explain --near 1 --far 60
+    bad 1 "--near|--depth-type" plain.exr -o o.exr --focus 3 --quality draft --fstop 2 --focal-length 50mm --near 1 --far 60
     plan "engine gather|--quality draft chose --engine gather|passed over, the first because it does not reach" plain.exr --focus 3 \
         --quality draft --explain --fstop 2 --focal-length 50mm
     plan "engine gather|--quality draft chose --engine gather|passed over" plain.exr --quality draft --explain --depth-type coc

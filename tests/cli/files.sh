@@ -126,7 +126,7 @@ else
     for map in map8.png half8.png; do
         run photo.png -o "from-$map" --depth-file $map --depth-type normalized --near 1 --far 6 --focus 2 --range 2 \
             --max-radius 6 --verbose
-        [ "$status" -eq 0 ] && [ $map = map8.png ] || contains "$dir/err" "32 x 20 scaled to 64 x 40"
+        [ "$status" -eq 0 ] && { [ $map = map8.png ] || contains "$dir/err" "32 x 20 scaled to 64 x 40"; }
         result "$map" $?
     done
     # The README's one.
