@@ -172,7 +172,7 @@ static void enter_areas(struct hf_taps *t, const double *w, int *first, int *col
     first[t->rows] = n;
 }
 
-static void sum_areas(int *sums, const double *w, double unit, int rx, int ry)
+static void sum_areas(int *sums, const double *w, float unit, int rx, int ry)
 {
     const int row = 2 * rx + 2;
     memset(sums, 0, (size_t)row * sizeof *sums);
@@ -180,7 +180,7 @@ static void sum_areas(int *sums, const double *w, double unit, int rx, int ry)
         sums[(y + 1) * row] = 0;
         for (int x = 0; x <= 2 * rx; x++)
             sums[(y + 1) * row + x + 1] = sums[(y + 1) * row + x] + sums[y * row + x + 1] - sums[y * row + x] +
-                                          (int)(w[y * (2 * rx + 1) + x] / unit);
+                                          (int)(w[y * (2 * rx + 1) + x] / (double)unit);
     }
 }
 
@@ -231,7 +231,7 @@ static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const stru
     t->weight = weight;
     t->sums = sum;
     enter_areas(t, w, first, column, weight);
-    sum_areas(sum, w, hf_area_unit(&a), a.rx, a.ry);
+    sum_areas(sum, w, t->unit, a.rx, a.ry);
     t->key = *k;
     return HF_OK;
 }

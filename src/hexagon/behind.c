@@ -10,13 +10,7 @@
 
 static void near_full(const struct hf_frame *f, int q, int from, int to, float *out)
 {
-    const int even = hf_min(to, f->s->width / 2);
-    for (int y = 2 * q; y < hf_min(2 * q + 2, f->s->height); y++) {
-        const float *radius = hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, 0, y);
-        f->k->behind.near_row(radius + 2 * from, even - from, out);
-        if (even < to && -radius[2 * even] > out[even - from])
-            out[even - from] = -radius[2 * even];
-    }
+    hf_behind_near(f, &f->buf[HF_HEXAGON_WEIGHT], 1, q, from, to, out);
 }
 
 // Colours lie there divided by radii of more than a pixel: weights take that back.

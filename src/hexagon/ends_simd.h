@@ -40,6 +40,19 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
     }
 }
 
+// The sums of quads' colours by weights w, times scale.
+HF_INLINE void hex_quad_colours(const struct hf_frame *f, int colour, int x, int y, vf w[4], vf scale,
+                                float *const lane[2][2][4], int i)
+{
+    for (int t = 0; t < 4; t++)
+        w[t] = vf_mul(w[t], vf_set1(HEXAGON_SCALE));
+    for (int c = 0; c < f->s->channels; c++) {
+        const vf top = vf_fma(w[1], vf_load(lane[0][1][c] + i), vf_mul(w[0], vf_load(lane[0][0][c] + i)));
+        const vf bottom = vf_fma(w[3], vf_load(lane[1][1][c] + i), vf_mul(w[2], vf_load(lane[1][0][c] + i)));
+        vf_store(hf_at(&f->buf[colour], c, x, y), vf_mul(vf_add(top, bottom), scale));
+    }
+}
+
 HF_INLINE void hex_load_quads(const struct hf_frame *f, int colour, int x, int y, const vf radius[4],
                               float *const lane[2][2][4], int i)
 {
@@ -57,13 +70,7 @@ HF_INLINE void hex_load_quads(const struct hf_frame *f, int colour, int x, int y
     vf_store(hf_at(&f->buf[colour + 1], 0, x, y), weight);
     vf_store(hf_at(&f->buf[colour + 1], 1, x, y), q);
     vf_store(hf_at(&f->buf[colour + 1], 2, x, y), over);
-    for (int t = 0; t < 4; t++)
-        w[t] = vf_mul(w[t], vf_set1(HEXAGON_SCALE));
-    for (int c = 0; c < f->s->channels; c++) {
-        const vf top = vf_fma(w[1], vf_load(lane[0][1][c] + i), vf_mul(w[0], vf_load(lane[0][0][c] + i)));
-        const vf bottom = vf_fma(w[3], vf_load(lane[1][1][c] + i), vf_mul(w[2], vf_load(lane[1][0][c] + i)));
-        vf_store(hf_at(&f->buf[colour], c, x, y), vf_mul(vf_add(top, bottom), scale));
-    }
+    hex_quad_colours(f, colour, x, y, w, scale, lane, i);
 }
 
 HF_INLINE void hex_load_seen(const struct hf_frame *f, int x, int y, const vf radius[4], float *const lane[2][2][4],
@@ -74,13 +81,7 @@ HF_INLINE void hex_load_seen(const struct hf_frame *f, int x, int y, const vf ra
         w[t] = coc_saturate(vf_add(vf_set1(1.5f), radius[t]));
     const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])), quarter = vf_set1(0.25f);
     vf_store(hf_at(&f->buf[HF_HEXAGON_SEEN_WEIGHT_2], 0, x, y), vf_mul(sum, quarter));
-    for (int t = 0; t < 4; t++)
-        w[t] = vf_mul(w[t], vf_set1(HEXAGON_SCALE));
-    for (int c = 0; c < f->s->channels; c++) {
-        const vf top = vf_fma(w[1], vf_load(lane[0][1][c] + i), vf_mul(w[0], vf_load(lane[0][0][c] + i)));
-        const vf bottom = vf_fma(w[3], vf_load(lane[1][1][c] + i), vf_mul(w[2], vf_load(lane[1][0][c] + i)));
-        vf_store(hf_at(&f->buf[HF_HEXAGON_SEEN_COLOUR_2], c, x, y), vf_mul(vf_add(top, bottom), quarter));
-    }
+    hex_quad_colours(f, HF_HEXAGON_SEEN_COLOUR_2, x, y, w, quarter, lane, i);
 }
 
 // Radii of n pairs of pixels of row y, even and odd ones.
@@ -172,17 +173,11 @@ HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, vf x, 
     return vf_mul(d, sum);
 }
 
-// Whether hexagons of radii q around (u, v) may lie partly outside the frame: not where that is farther away than twice
-// the longest of their sides, along which two steps lead. There all sums below are 18 exactly.
+// Whether hexagons of radii q around (u, v) may lie partly outside the frame; elsewhere all sums below are 18 exactly.
 HF_INLINE vm hex_at_edge(const struct hf_setup *s, vf u, vf v, vf q)
 {
-    const struct hf_hexagon *h = hf_hexagon(s);
-    float across = HUGE_VALF, along = HUGE_VALF;
-    for (int i = 0; i < 3; i++) {
-        across = __builtin_fminf(across, __builtin_fabsf(h->side[i][0]));
-        along = __builtin_fminf(along, __builtin_fabsf(h->side[i][1]));
-    }
-    const vf one = vf_set1(1), x = vf_fma(q, vf_set1(2.01f / across), one), y = vf_fma(q, vf_set1(2.01f / along), one);
+    const float *clear = hf_hexagon(s)->clear;
+    const vf one = vf_set1(1), x = vf_fma(q, vf_set1(clear[0]), one), y = vf_fma(q, vf_set1(clear[1]), one);
     const vf width = vf_set1((float)s->width), height = vf_set1((float)s->height);
     return vm_or(vm_or(vf_lt(u, x), vf_lt(v, y)), vm_or(vf_lt(vf_sub(width, u), x), vf_lt(vf_sub(height, v), y)));
 }

@@ -14,7 +14,8 @@
 #define FIELDS (MADE(NEAR) | MADE(COVERAGE) | MADE(FAR))
 #define WEIGHTS (FRAME(WEIGHT) | FRAME(NEAR_WEIGHT_2) | FRAME(FAR_WEIGHT_2))
 #define INPUT (WEIGHTS | FRAME(COLOUR) | FRAME(NEAR_COLOUR_2) | FRAME(FAR_COLOUR_2))
-#define SEEN (FRAME(SEEN_COLOUR_2) | FRAME(SEEN_WEIGHT_2))
+#define FAR_2 (FRAME(FAR_COLOUR_2) | FRAME(FAR_WEIGHT_2))
+#define SEEN ((INPUT & ~FAR_2) | FRAME(SEEN_COLOUR_2) | FRAME(SEEN_WEIGHT_2))
 #define BEHIND (MADE(BEHIND) | MADE(BEHIND_W))
 
 // The largest CoC radius, twice; what is seen around near pixels; and a pixel.
@@ -24,7 +25,7 @@ static const struct hf_pass passes[HF_HEXAGON_PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 3},
     {"Load", .writes = INPUT | SEEN, .sweep = 1, .ns = 8},
     {"Passes 1 and 2", .around = INPUT, .writes = FIELDS, .halo = HALO_RADIUS, .sweep = 2, .ns = 40},
-    {"Behind", .around = INPUT | SEEN, .writes = BEHIND, .halo = HALO_BEHIND, .sweep = 2, .field = HF_NEAR, .ns = 8},
+    {"Behind", .around = SEEN, .writes = BEHIND, .halo = HALO_BEHIND, .sweep = 2, .field = HF_NEAR, .ns = 8},
     {"Composite", .reads = FRAME(WEIGHT), .around = FIELDS | BEHIND | FRAME(FAR_WEIGHT_2), .halo = HALO_UPSAMPLE,
      .sweep = 2, .ns = 9},
 };
@@ -284,6 +285,8 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
         x = hf_max(x, hf_max(-l->x0, l->x1));
         y = hf_max(y, hf_max(-l->y0, l->y1));
     }
+    for (int i = 0; i < 2; i++)
+        h->clear[i] = 2.01f / fminf(fabsf(h->side[0][i]), fminf(fabsf(h->side[1][i]), fabsf(h->side[2][i])));
     const struct hf_hexagon_line *v = &h->line[1], *w = &h->line[2];
     h->reach_x = half_resolution(s, x);
     h->reach_y = half_resolution(s, y);
@@ -302,12 +305,11 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     return halo == HALO_BEHIND ? (struct hf_reach){behind, behind} : (struct hf_reach){upsample, upsample};
 }
 
-// A far pixel changes itself alone.
+// A far pixel changes itself alone, and so does what lies behind a near one.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
 {
-    if (field == HF_FAR)
-        return (struct hf_reach){0, 0};
-    return p->buf[s->resolution == HF_RESOLUTION_HALF ? HF_HEXAGON_NEAR_COLOUR_2 : HF_HEXAGON_COLOUR];
+    const struct hf_reach made = p->pass[HF_HEXAGON_BLUR], around = halo(s, HALO_RADIUS);
+    return field == HF_FAR ? (struct hf_reach){0, 0} : (struct hf_reach){made.x + around.x, made.y + around.y};
 }
 
 static unsigned reads(const struct hf_setup *s, unsigned needs)

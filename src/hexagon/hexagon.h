@@ -106,8 +106,9 @@ struct hf_hexagon {
     float rotation;  // degrees
     struct hf_hexagon_line line[3];
     int left, right, above, below;
-    float side[3][2];      // 1 / what the sides' directions go along x and y, in pixels for 1 pixel of radius
-    int behind;            // neighbourhoods that near radii ask for (pixel/behind.h)
+    float side[3][2];  // 1 / what the sides' directions go along x and y, in pixels for 1 pixel of radius
+    float clear[2];    // farther from the frame's edges than this times its radius a hexagon lies inside; and a pixel
+    int behind;        // neighbourhoods that near radii ask for (pixel/behind.h)
     int reach_x, reach_y;  // of one blur in this frame, half-resolution pixels, once its depth has been looked at
     struct hf_block block;
 };

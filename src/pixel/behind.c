@@ -44,24 +44,29 @@ size_t hf_behind_floats(int levels, int planes)
     return levels ? (size_t)(2 * planes + 2) * plane + 3 * wide + 3 * line : 0;
 }
 
-// The largest near radius of each quad, of the planes and WIDE around; 0 beyond the frame. Returns whether some quad of
-// the block, or one of those around it, has any.
-static int load_near(const struct hf_behind *h, const struct hf_behind_source *source, const struct hf_frame *f,
-                     float *near)
+// Whether some quad of the block, or one of those around it, is near. line: scratch.
+static int has_near(const struct hf_behind_source *source, const struct hf_frame *f, struct hf_rect r, float *line)
+{
+    const int from = hf_max(r.x0 - 1, 0), to = hf_min(r.x1 + 1, f->s->half_width);
+    memset(line, 0, sizeof *line * (size_t)(to - from));
+    for (int y = hf_max(r.y0 - 1, 0); y < hf_min(r.y1 + 1, f->s->half_height); y++)
+        source->near(f, y, from, to, line);
+    for (int i = 0; i < to - from; i++)
+        if (line[i] > 0)
+            return 1;
+    return 0;
+}
+
+// The largest near radius of each quad, of the planes and WIDE around; 0 beyond the frame.
+static void load_near(const struct hf_behind *h, const struct hf_behind_source *source, const struct hf_frame *f,
+                      float *near)
 {
     const struct hf_setup *s = f->s;
-    const int rows = h->rows + 2 * WIDE, x0 = h->x0 - WIDE, y0 = h->y0 - WIDE, inner = h->reach + WIDE - 1;
+    const int rows = h->rows + 2 * WIDE, x0 = h->x0 - WIDE, y0 = h->y0 - WIDE;
     const int from = hf_max(x0, 0), to = hf_min(x0 + h->columns + 2 * WIDE, s->half_width);
-    float most = 0;
     memset(near, 0, sizeof(float) * (size_t)(h->near_stride * rows));
     for (int y = hf_max(y0, 0); y < hf_min(y0 + rows, s->half_height); y++)
         source->near(f, y, from, to, near + (ptrdiff_t)(y - y0) * h->near_stride + from - x0);
-    for (int y = inner; y < rows - inner; y++)
-        for (int x = inner; x < h->columns + 2 * WIDE - inner; x++) {
-            const float q = near[(ptrdiff_t)y * h->near_stride + x];
-            most = q > most ? q : most;
-        }
-    return most > 0;
 }
 
 // The largest of each quad's neighbours up to WIDE = 1 + 2 + 4 away, each way. work: as large.
@@ -76,6 +81,18 @@ static void spread_near(const struct hf_behind *h, const struct hf_frame *f, con
         memcpy(to, in, sizeof(float) * (size_t)step);
         memcpy(to + all - step, in + all - step, sizeof(float) * (size_t)step);
         f->k->behind.most_row(in, in + 2 * step, in + step, (int)(all - 2 * step), to + step);
+    }
+}
+
+void hf_behind_near(const struct hf_frame *f, const struct hf_buf *radii, int c, int q, int from, int to, float *out)
+{
+    const int even = hf_min(to, f->s->width / 2);
+    for (int y = 2 * q; y < hf_min(2 * q + 2, f->s->height); y++) {
+        const float *radius = hf_at(radii, c, 0, y);
+        f->k->behind.near_row(radius + 2 * from, even - from, out);
+        // The odd width's last pixel is half a quad.
+        if (even < to && -radius[2 * even] > out[even - from])
+            out[even - from] = -radius[2 * even];
     }
 }
 
@@ -157,8 +174,9 @@ int hf_behind_make(struct hf_behind *h, const struct hf_behind_source *source, c
     float *line = memory + plane * (size_t)(2 * planes), *part = line + plane, *near = part + plane;
     h->near_stride = h->stride + 2 * WIDE;
     const size_t wide = (size_t)(h->near_stride * (HF_BEHIND_BLOCK + 2 * h->reach + 2 * WIDE));
-    if (!load_near(h, source, f, near))
+    if (!has_near(source, f, r, near))
         return 0;
+    load_near(h, source, f, near);
     spread_near(h, f, near, near + wide, near + 2 * wide);
     h->near = near + WIDE * h->near_stride + WIDE;
     h->widest = h->near + 2 * wide;

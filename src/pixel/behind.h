@@ -53,6 +53,8 @@ int hf_behind_make(struct hf_behind *h, const struct hf_behind_source *source, c
                    struct hf_rect r, int levels, float *memory);
 // Plane p at n full-resolution pixels from (x, y) on, x even, bilinearly; 0 where there is nothing in it.
 void hf_behind_sample(const struct hf_behind *h, const struct hf_frame *f, int p, int x, int y, int n, float *out);
+// What sources do whose radii are pixels': the largest near radii of quads, from channel c of a buffer.
+void hf_behind_near(const struct hf_frame *f, const struct hf_buf *radii, int c, int q, int from, int to, float *out);
 // Pixels of a row of n, v times weight times scale, added to the quads of out; the last of an odd n is half of one.
 void hf_behind_add(const struct hf_frame *f, const float *v, const float *weight, float scale, int n, float *out);
 

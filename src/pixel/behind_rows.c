@@ -25,13 +25,13 @@ void hf_seen_row_c(const float *v, const float *weight, float scale, int n, floa
         out[i] += v[2 * i] * (weight[2 * i] * scale) + v[2 * i + 1] * (weight[2 * i + 1] * scale);
 }
 
-void hf_third_row_c(const float *a, const float *b, const float *c, int n, float *out)
+static void third_row(const float *a, const float *b, const float *c, int n, float *out)
 {
     for (int i = 0; i < n; i++)
         out[i] = (1 / 3.0f) * ((a[i] + b[i]) + c[i]);
 }
 
-void hf_part_row_c(const float *near, float share, float size, int n, float *out)
+static void part_row(const float *near, float share, float size, int n, float *out)
 {
     for (int i = 0; i < n; i++)
         out[i] = share * hf_saturate(2 - size / hf_behind_span(near[i]));
@@ -43,7 +43,7 @@ void hf_add_part_c(const float *in, const float *part, int n, float *out)
         out[i] += part[i] * in[i];
 }
 
-void hf_up_row_c(const float *own, const float *over, int n, float *out)
+static void up_row(const float *own, const float *over, int n, float *out)
 {
     for (int x = 0; x < 2 * n; x++) {
         const int i = x >> 1, j = x & 1 ? i + 1 : i - 1;
@@ -56,8 +56,8 @@ void hf_behind_rows_c(struct hf_pixel_kernels *k)
     k->behind = (struct hf_behind_kernels){.near_row = hf_near_row_c,
                                            .most_row = hf_most_row_c,
                                            .seen_row = hf_seen_row_c,
-                                           .third_row = hf_third_row_c,
-                                           .part_row = hf_part_row_c,
+                                           .third_row = third_row,
+                                           .part_row = part_row,
                                            .add_part = hf_add_part_c,
-                                           .up_row = hf_up_row_c};
+                                           .up_row = up_row};
 }

@@ -90,9 +90,6 @@ void hf_behind_rows_c(struct hf_pixel_kernels *k);     // and of what lies behin
 hf_near_row hf_near_row_c;
 hf_most_row hf_most_row_c;
 hf_seen_row hf_seen_row_c;
-hf_third_row hf_third_row_c;
-hf_part_row hf_part_row_c;
 hf_add_part hf_add_part_c;
-hf_up_row hf_up_row_c;
 
 #endif

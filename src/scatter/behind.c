@@ -19,14 +19,7 @@ int hf_scatter_behind_planes(int channels)
 
 static void near_quads(const struct hf_frame *f, int q, int from, int to, float *out)
 {
-    const int even = hf_min(to, f->s->width / 2);
-    for (int y = 2 * q; y < hf_min(2 * q + 2, f->s->height); y++) {
-        const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, 0, y);
-        f->k->behind.near_row(radius + 2 * from, even - from, out);
-        // The odd width's last pixel is half a quad.
-        if (even < to && -radius[2 * even] > out[even - from])
-            out[even - from] = -radius[2 * even];
-    }
+    hf_behind_near(f, &f->buf[HF_BUF_RADIUS], 0, q, from, to, out);
 }
 
 static unsigned seen_quads(const struct hf_frame *f, int q, int from, int to, const float *widest, float *line,
