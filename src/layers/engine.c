@@ -33,10 +33,9 @@ static const struct hf_pass passes[PASSES] = {
     {"Hidden", .reads = B(SEEN_AT) | B(MIXED_AT), .around = B(QUADS) | B(QUADS_AT), .halo = HALO_LEVELS,
      .writes = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT), .sweep = 3, .ns = 60},
     {"Patterns", .reads = B(HIDDEN), .around = B(SEEN_AT) | B(QUADS) | B(QUADS_AT) | B(HIDDEN_AT), .halo = HALO_CELL,
-     .writes = B(FILL), .sweep = 4, .ns = 400},
+     .writes = B(HIDDEN), .sweep = 4, .ns = 400},
     {"Composite",
-     .around =
-         B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(FILL) | B(BEYOND) | B(BEYOND_AT),
+     .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT),
      .halo = HALO_CELL, .sweep = 5, .ns = 300},
 };
 
@@ -53,7 +52,6 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
     [HF_LAYERS_BUF_HIDDEN_AT] = {"hiddenat", .frame = 1},
     [HF_LAYERS_BUF_BEYOND] = {"beyond", .frame = 1},
     [HF_LAYERS_BUF_BEYOND_AT] = {"beyondat", .frame = 1},
-    [HF_LAYERS_BUF_FILL] = {"fill", .frame = 1},
 };
 
 static const struct hf_layers_settings qualities[] = {
@@ -143,8 +141,7 @@ static void place_tiles(struct hf_layers *l)
     const size_t n = (size_t)l->columns * (size_t)l->rows;
     l->seen_range = l->tiles.data;
     l->mixed_range = l->seen_range + n;
-    l->hidden_range = l->mixed_range + n;
-    l->repaired = (atomic_uchar *)(l->hidden_range + n);
+    l->repaired = (atomic_uchar *)(l->mixed_range + n);
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
@@ -157,7 +154,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     set_shape(l, p);
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
-    int err = hf_block_grow(&l->tiles, tiles * 3 * sizeof(struct hf_layers_range) + 1, mem);
+    int err = hf_block_grow(&l->tiles, tiles * 2 * sizeof(struct hf_layers_range) + 1, mem);
     if (!err)
         err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
     if (!err)
@@ -236,11 +233,14 @@ static int channels(const struct hf_setup *s, int b)
     case HF_LAYERS_BUF_HIDDEN:
     case HF_LAYERS_BUF_BEYOND:
         return l->levels ? s->channels : 0;
-    case HF_LAYERS_BUF_FILL:
-        return l->levels && l->set.patterns ? s->channels : 0;
     default:
         return s->channels;
     }
+}
+
+static int runs(const struct hf_setup *s, int pass)
+{
+    return pass != PATTERNS || hf_layers_patterns_reach(hf_layers(s));
 }
 
 static struct hf_reach halo(const struct hf_setup *s, int halo)
@@ -366,6 +366,7 @@ const struct hf_engine_def hf_layers_engine = {
     .measure = measure,
     .tell = tell,
     .channels = channels,
+    .runs = runs,
     .halo = halo,
     .spread = spread,
     .reads = reads,

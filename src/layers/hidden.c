@@ -7,12 +7,6 @@
 
 #include "pixel/pass_c.h"
 
-// Negative samples keep their sign.
-static float root(float v)
-{
-    return v > 0 ? sqrtf(v) : v < 0 ? -sqrtf(-v) : 0;
-}
-
 // What pixels are to others: the surface behind its edge where one is mixed.
 void hf_layers_quads_c(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
                        float *const out[6])
@@ -32,7 +26,7 @@ void hf_layers_quads_c(const float *const seen[2][6], const float *const mixed[2
             sum = sum + g;
             r = r + g * from[i][5][at];
             for (int c = 0; c < channels; c++)
-                colour[c] = colour[c] + g * root(from[i][c][at]);
+                colour[c] = colour[c] + g * hf_layers_root(from[i][c][at]);
         }
         const float inverse = sum > 0 ? 1 / sum : 0;
         out[4][x] = sum * 0.25f;
@@ -104,8 +98,8 @@ void hf_layers_tap_c(const float *const in[6], int channels, const float *neares
 {
     for (int x = 0; x < n; x++) {
         const float behind = in[5][x] - nearest[x];
-        const float a = hf_layers_unit(behind * scale + off);
-        const float w = behind < 1 ? 0 : part * a * hf_layers_unit(9 * in[4][x]);
+        const float a = hf_saturate(behind * scale + off);
+        const float w = behind < 1 ? 0 : part * a * hf_saturate(9 * in[4][x]);
         for (int c = 0; c < channels; c++)
             sum[c][x] = sum[c][x] + w * in[c][x];
         sum[4][x] = sum[4][x] + w;

@@ -2,6 +2,8 @@
 #ifndef HF_LAYERS_HIDDEN_H
 #define HF_LAYERS_HIDDEN_H
 
+#include <math.h>
+
 #include "layers/kernels.h"
 
 enum {
@@ -20,10 +22,10 @@ static inline float hf_layers_line(int i)
 // The radius of what is not there: before anything.
 #define HF_LAYERS_NOTHING (-1e30f)
 
-static inline float hf_layers_unit(float v)
+// Negative samples keep their sign.
+static inline float hf_layers_root(float v)
 {
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
+    return v > 0 ? sqrtf(v) : v < 0 ? -sqrtf(-v) : 0;
 }
 
 // The farthest of each quad of a cell: where the levels begin.

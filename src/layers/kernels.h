@@ -129,7 +129,6 @@ enum {
     HF_LAYERS_BUF_HIDDEN_AT,
     HF_LAYERS_BUF_BEYOND,
     HF_LAYERS_BUF_BEYOND_AT,
-    HF_LAYERS_BUF_FILL,  // colours of hidden samples, by patterns
     HF_LAYERS_BUFS
 };
 

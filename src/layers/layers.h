@@ -95,7 +95,7 @@ struct hf_layers {
     struct hf_slice *group[3];  // the slices of one
 
     int columns, rows;  // of tiles
-    struct hf_layers_range *seen_range, *mixed_range, *hidden_range;
+    struct hf_layers_range *seen_range, *mixed_range;
     // Which slices have samples in a tile, a bit for each: of what is seen, mixed, hidden, hidden behind
     // that, and of shares.
     struct hf_block marks;

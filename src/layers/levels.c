@@ -150,10 +150,9 @@ static void find_farthest(struct band *b)
         }
 }
 
-// Which blocks may find something: what is a pixel of radius behind their nearest. Returns whether any may.
-static int find_needed(struct band *b)
+// Which blocks may find something: what is a pixel of radius behind their nearest.
+static void find_needed(struct band *b)
 {
-    int any = 0;
     for (int y = 0; y < b->rows; y++)
         for (int x = 0; x < b->columns; x++) {
             const int n = hf_min(b->r.x1 - b->r.x0 - x * BLOCK, BLOCK),
@@ -162,9 +161,7 @@ static int find_needed(struct band *b)
             // Means of radii are rounded.
             const float low = range_of(b, nearest, NULL, b->width, n, rows).low;
             b->needed[y * b->stride + x] = b->within[y * b->stride + x] - low > 0.99f;
-            any |= b->needed[y * b->stride + x];
         }
-    return any;
 }
 
 // How a level's samples are merged: of three along a row, and of what these have become in three rows.
@@ -346,7 +343,7 @@ static void begin_softly(const struct band *b, int y)
     float *weight = b->found.weight + y * b->found.stride;
     const float *nearest = b->nearest + (y - b->r.y0) * b->width - b->r.x0;
     for (int x = b->r.x0; x < b->r.x1; x++)
-        weight[x] = weight[x] * hf_layers_unit(-1 - nearest[x]);
+        weight[x] = weight[x] * hf_saturate(-1 - nearest[x]);
 }
 
 // Samples of rows r, smoothed, into two buffers; again: another search looks behind them.

@@ -34,6 +34,15 @@ static void mark_slices(const struct hf_frame *f, struct tile t, struct hf_layer
 
 static const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
 
+// Note the slices of a tile's samples; returns the range of their radii.
+static struct hf_layers_range mark_tile(const struct hf_frame *f, struct tile t, uint64_t *bits)
+{
+    struct hf_layers_range range = none;
+    hf_layers_kernels(f)->extremes(t.radius, t.weight, NULL, t.stride, t.n, t.rows, &range);
+    mark_slices(f, t, range, bits);
+    return range;
+}
+
 void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
@@ -45,11 +54,10 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
             const int n = hf_min(TILE, f->s->width - x), rows = hf_min(TILE, f->s->height - y);
             const struct tile s = tile_of(seen, 0, x, y, n, rows), m = tile_of(mixed, 0, x, y, n, rows);
             const float *share = l->set.highlights ? hf_at(seen, 2, x, y) : NULL;
-            l->seen_range[at] = l->mixed_range[at] = none;
+            l->seen_range[at] = none;
             const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
-            k->extremes(m.radius, m.weight, NULL, m.stride, n, rows, &l->mixed_range[at]);
             mark_slices(f, s, l->seen_range[at], &l->seen_marks[mark]);
-            mark_slices(f, m, l->mixed_range[at], &l->mixed_marks[mark]);
+            l->mixed_range[at] = mark_tile(f, m, &l->mixed_marks[mark]);
             mark_slices(f, tile_of(seen, share ? 2 : 0, x, y, n, rows), bright ? l->seen_range[at] : none,
                         &l->share_marks[mark]);
         }
@@ -59,18 +67,12 @@ void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
     const struct hf_buf *hidden = &f->buf[HF_LAYERS_BUF_HIDDEN_AT], *beyond = &f->buf[HF_LAYERS_BUF_BEYOND_AT];
-    const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const int size = TILE / 2;
     for (int ty = r.y0 / size; ty * size < r.y1; ty++)
         for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
-            const int x = tx * size, y = ty * size, at = ty * l->columns + tx;
+            const int x = tx * size, y = ty * size, mark = (ty * l->columns + tx) * l->words;
             const int n = hf_min(size, f->s->half_width - x), rows = hf_min(size, f->s->half_height - y);
-            const struct tile h = tile_of(hidden, 0, x, y, n, rows), b = tile_of(beyond, 0, x, y, n, rows);
-            struct hf_layers_range range = none;
-            l->hidden_range[at] = none;
-            k->extremes(h.radius, h.weight, NULL, h.stride, n, rows, &l->hidden_range[at]);
-            mark_slices(f, h, l->hidden_range[at], &l->hidden_marks[at * l->words]);
-            k->extremes(b.radius, b.weight, NULL, b.stride, n, rows, &range);
-            mark_slices(f, b, range, &l->beyond_marks[at * l->words]);
+            mark_tile(f, tile_of(hidden, 0, x, y, n, rows), &l->hidden_marks[mark]);
+            mark_tile(f, tile_of(beyond, 0, x, y, n, rows), &l->beyond_marks[mark]);
         }
 }

@@ -112,8 +112,7 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
     const struct hf_samples samples = {
         .seen = set_of(&f->buf[HF_LAYERS_BUF_SEEN], &f->buf[HF_LAYERS_BUF_SEEN_AT]),
         .mixed = set_of(&f->buf[HF_LAYERS_BUF_MIXED], &f->buf[HF_LAYERS_BUF_MIXED_AT]),
-        .hidden = set_of(&f->buf[l->set.patterns ? HF_LAYERS_BUF_FILL : HF_LAYERS_BUF_HIDDEN],
-                         &f->buf[HF_LAYERS_BUF_HIDDEN_AT]),
+        .hidden = set_of(&f->buf[HF_LAYERS_BUF_HIDDEN], &f->buf[HF_LAYERS_BUF_HIDDEN_AT]),
         .beyond = set_of(&f->buf[HF_LAYERS_BUF_BEYOND], &f->buf[HF_LAYERS_BUF_BEYOND_AT]),
         .share = f->buf[HF_LAYERS_BUF_SEEN_AT].ch[2]};
     const int x0 = 2 * r.x0, y0 = 2 * r.y0, x1 = hf_min(2 * r.x1, f->s->width), y1 = hf_min(2 * r.y1, f->s->height);

@@ -46,13 +46,15 @@ struct choices {
 struct band {
     const struct hf_frame *f;
     int channels;
-    struct hf_rect r, region;
+    struct hf_rect region;
     struct level level[LEVELS];
     struct choices *coarse, *fine;  // of an eighth and a quarter of the resolution
 };
 
-// What is known around a place.
+// What is known around sample (x, y) of a level.
 struct patch {
+    const struct level *level;
+    int x, y;
     struct hf_pattern_place place;
     int count;
     float sum, variance;
@@ -95,7 +97,7 @@ static size_t place(struct band *b, float *memory)
 size_t hf_layers_patterns_floats(const struct hf_layers *l, int width, int height)
 {
     struct band b = {.channels = l->channels, .region = region_of((struct hf_rect){0, 0, width, height})};
-    return l->levels && l->set.patterns ? place(&b, NULL) : 0;
+    return hf_layers_patterns_reach(l) ? place(&b, NULL) : 0;
 }
 
 // The choices of a sample of level j.
@@ -228,10 +230,19 @@ static struct hf_pattern_place surface_of(float radius, float nearest)
     return (struct hf_pattern_place){radius, 4 / (apart > 1 ? apart : 1)};
 }
 
-// What is known around sample (x, y) of a level.
+static struct hf_pattern_place place_at(const struct level *v, int x, int y)
+{
+    const ptrdiff_t at = y * v->set.stride + x;
+    return surface_of(v->place[at], v->nearest[at]);
+}
+
+// What is known of the patch's place around sample (x, y) of a level.
 static void look_around(const struct band *b, const struct level *v, int x, int y, struct patch *p)
 {
     float mean[4] = {0}, square = 0, all = 0;
+    p->level = v;
+    p->x = x;
+    p->y = y;
     p->count = 0;
     p->sum = p->variance = 0;
     for (int dy = -WINDOW; dy <= WINDOW; dy++)
@@ -291,25 +302,32 @@ static float order_of(int j, int sx, int sy)
     return (y + x * 0.0625f + 10) * 0.05f;
 }
 
-// Compare what is around sample (x, y) with what is around those shifted by (sx, sy) and n - 1 more to the right.
-static void compare(const struct band *b, const struct level *v, const struct patch *p, int x, int y, int sx, int sy,
-                    int n, int coarsest, struct choices *c)
+// Compare a patch with those shifted by (sx, sy) and n - 1 more to the right. At first no shift at all is no choice.
+static void compare(const struct band *b, const struct patch *p, int sx, int sy, int n, struct choices *c)
 {
-    const ptrdiff_t at = (y + sy) * v->set.stride + x + sx;
+    const struct level *v = p->level;
+    const int j = (int)(v - b->level);
+    const ptrdiff_t at = (p->y + sy) * v->set.stride + p->x + sx;
     const float *in[6] = {NULL};
-    float sum[LANES], off[LANES];
+    float sum[LANES], off[LANES], known[LANES], most = 0;
     for (int i = 0; i < b->channels; i++)
         in[i] = v->set.colour[i] + at;
     in[4] = v->set.weight + at;
     in[5] = v->set.radius + at;
+    for (int i = 0; i < n; i++) {
+        known[i] = hf_pattern_known(p->place, in[4][i], in[5][i]);
+        most = known[i] > most ? known[i] : most;
+    }
+    if (!(most > 0))
+        return;
     hf_layers_kernels(b->f)->alike(&p->place, p->tap, p->count, in, b->channels, n, sum, off);
     for (int i = 0; i < n; i++) {
-        const float known = hf_pattern_known(p->place, in[4][i], in[5][i]), missing = p->sum - sum[i];
+        const float missing = p->sum - sum[i];
         // What is not known there is as far off as anything.
-        if (known > 0 && !(coarsest && sx + i == 0 && sy == 0))
+        if (known[i] > 0 && !(j == LEVELS - 1 && sx + i == 0 && sy == 0))
             choose(c, sx + i, sy,
                    (off[i] + (missing > 0 ? missing : 0) * p->variance) / p->sum +
-                       (1 - known + ORDER * order_of((int)(v - b->level), sx + i, sy)) * p->variance);
+                       (1 - known[i] + ORDER * order_of(j, sx + i, sy)) * p->variance);
     }
 }
 
@@ -327,26 +345,25 @@ static void end_choices(struct choices *c, const struct patch *p)
 static void search(const struct band *b, int x, int y)
 {
     const struct level *v = &b->level[2];
-    const ptrdiff_t at = y * v->set.stride + x;
     struct choices *c = choices_at(b, 2, x, y);
     struct patch p;
     memset(c, 0, sizeof *c);
-    if (!(v->nearest[at] < HUGE_VALF))
+    if (!(v->nearest[y * v->set.stride + x] < HUGE_VALF))
         return;
-    p.place = surface_of(v->place[at], v->nearest[at]);
+    p.place = place_at(v, x, y);
     look_around(b, v, x, y, &p);
     for (int sy = -SHIFT; sy <= SHIFT && p.count; sy++)
-        compare(b, v, &p, x, y, -SHIFT, sy, 2 * SHIFT + 1, 1, c);
+        compare(b, &p, -SHIFT, sy, 2 * SHIFT + 1, c);
     end_choices(c, &p);
 }
 
-// Choices at twice the resolution of those given, in a level as seen from (x, y).
-static void refine(const struct band *b, const struct level *v, const struct patch *p, int x, int y,
-                   const struct choices *from, int count, struct choices *c)
+// Choices for a patch at twice the resolution of those given.
+static void refine(const struct band *b, const struct patch *p, const struct choices *from, int count,
+                   struct choices *c)
 {
     for (int i = 0; i < hf_min(from->count, count); i++)
         for (int dy = -1; dy <= 1; dy++)
-            compare(b, v, p, x, y, 2 * from->x[i] - 1, 2 * from->y[i] + dy, 3, 0, c);
+            compare(b, p, 2 * from->x[i] - 1, 2 * from->y[i] + dy, 3, c);
 }
 
 static void double_choices(struct choices *c)
@@ -362,20 +379,19 @@ static void double_choices(struct choices *c)
 static void search_fine(const struct band *b, int x, int y)
 {
     const struct level *v = &b->level[1];
-    const ptrdiff_t at = y * v->set.stride + x;
     struct choices *to = choices_at(b, 1, x, y), c = {0}, exact = {0};
     struct patch p;
     memset(to, 0, sizeof *to);
-    if (!(v->nearest[at] < HUGE_VALF))
+    if (!(v->nearest[y * v->set.stride + x] < HUGE_VALF))
         return;
     const int px = (x - (x & 1)) / 2, py = (y - (y & 1)) / 2, left = x & 1 ? 1 : -1, up = y & 1 ? 1 : -1;
     const struct choices *own = choices_at(b, 2, px, py);
-    p.place = surface_of(v->place[at], v->nearest[at]);
+    p.place = place_at(v, x, y);
     look_around(b, v, x, y, &p);
     if (p.count) {
-        refine(b, v, &p, x, y, own, CHOICES, &c);
-        refine(b, v, &p, x, y, choices_at(b, 2, px + left, py), 2, &c);
-        refine(b, v, &p, x, y, choices_at(b, 2, px, py + up), 2, &c);
+        refine(b, &p, own, CHOICES, &c);
+        refine(b, &p, choices_at(b, 2, px + left, py), 2, &c);
+        refine(b, &p, choices_at(b, 2, px, py + up), 2, &c);
         end_choices(&c, &p);
     } else {
         c = *own;
@@ -383,7 +399,7 @@ static void search_fine(const struct band *b, int x, int y)
     }
     look_around(b, &b->level[0], 2 * x, 2 * y, &p);
     if (p.count) {
-        refine(b, &b->level[0], &p, 2 * x, 2 * y, &c, CHOICES, &exact);
+        refine(b, &p, &c, CHOICES, &exact);
         end_choices(&exact, &p);
         *to = exact;
     } else {
@@ -421,10 +437,8 @@ static void add_choices(const struct band *b, const struct choices *c, struct hf
 static void fill(const struct band *b, int x, int y)
 {
     const struct hf_frame *f = b->f;
-    const struct level *v = &b->level[0];
-    const ptrdiff_t at = y * v->set.stride + x;
     struct found found = {.weight = 0};
-    const struct hf_pattern_place place = surface_of(v->place[at], v->nearest[at]);
+    const struct hf_pattern_place place = place_at(&b->level[0], x, y);
     for (int i = 0; i < 4; i++) {
         const int px = x / 2 + (i & 1 ? (x & 1 ? 1 : -1) : 0), py = y / 2 + (i & 2 ? (y & 1 ? 1 : -1) : 0);
         const struct choices *c = choices_at(b, 1, px, py);
@@ -434,19 +448,16 @@ static void fill(const struct band *b, int x, int y)
     if (!(found.weight > 0))
         return;
     for (int c = 0; c < b->channels; c++) {
-        const float was = *hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN], c, x, y);
-        const float root = was > 0 ? sqrtf(was) : was < 0 ? -sqrtf(-was) : 0;
-        const float now = (found.colour[c] + found.smooth * root) / (found.weight + found.smooth);
-        *hf_at(&f->buf[HF_LAYERS_BUF_FILL], c, x, y) = now * fabsf(now);
+        float *colour = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN], c, x, y);
+        const float now = (found.colour[c] + found.smooth * hf_layers_root(*colour)) / (found.weight + found.smooth);
+        *colour = now * fabsf(now);
     }
 }
 
 void hf_layers_patterns_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
-    struct band b = {.f = f, .channels = l->channels, .r = r, .region = region_of(r)};
-    if (!hf_layers_patterns_reach(l))
-        return;
+    struct band b = {.f = f, .channels = l->channels, .region = region_of(r)};
     place(&b, f->work);
     make_levels(&b);
     for (int y = r.y0 / 4 - 1; y <= (r.y1 + 3) / 4; y++)
@@ -455,12 +466,8 @@ void hf_layers_patterns_pass(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0 / 2 - 1; y <= (r.y1 + 1) / 2; y++)
         for (int x = r.x0 / 2 - 1; x <= (r.x1 + 1) / 2; x++)
             search_fine(&b, x, y);
-    for (int y = r.y0; y < hf_min(r.y1, f->s->half_height); y++) {
-        for (int c = 0; c < b.channels; c++)
-            memcpy(hf_at(&f->buf[HF_LAYERS_BUF_FILL], c, r.x0, y), hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN], c, r.x0, y),
-                   sizeof(float) * (size_t)(hf_min(r.x1, f->s->half_width) - r.x0));
+    for (int y = r.y0; y < hf_min(r.y1, f->s->half_height); y++)
         for (int x = r.x0; x < hf_min(r.x1, f->s->half_width); x++)
             if (b.level[0].nearest[y * b.level[0].set.stride + x] < HUGE_VALF)
                 fill(&b, x, y);
-    }
 }

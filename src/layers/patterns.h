@@ -19,8 +19,8 @@ struct hf_pattern_place {
 // How much a sample of weight w and radius r lies on the surface of the place.
 static inline float hf_pattern_known(struct hf_pattern_place p, float w, float r)
 {
-    const float d = r > p.radius ? r - p.radius : p.radius - r, t = 2 - d * p.slope, full = 9 * w;
-    return (t > 0 ? t < 1 ? t : 1 : 0) * (full < 1 ? full : 1);
+    const float d = r > p.radius ? r - p.radius : p.radius - r;
+    return hf_saturate(2 - d * p.slope) * hf_saturate(9 * w);
 }
 
 // Floats of scratch that the pass needs for a band of half-resolution rows.
