@@ -19,7 +19,7 @@ struct mark {
     const char *name;
     enum hf_engine engine;
     double x, low, high, y;
-    int on_front, tied;  // tied: not on it, but all that err no more overlap its time
+    enum trade_rank rank;  // in this chart
 };
 
 struct box {
@@ -151,9 +151,9 @@ static void add_others(struct view *v)
         v->chart->region != BENCH_WHOLE || v->chart->both)
         return;
     v->mark[v->marks++] = (struct mark){-1,         "Blender Defocus (elsewhere)", 0, blender_ms, blender_ms,
-                                        blender_ms, pow(10, -blender / 20),        0, 0};
+                                        blender_ms, pow(10, -blender / 20),        0};
     v->mark[v->marks++] =
-        (struct mark){-1, "GEGL lens-blur (elsewhere)", 0, gegl_ms, gegl_ms, gegl_ms, pow(10, -gegl / 20), 0, 0};
+        (struct mark){-1, "GEGL lens-blur (elsewhere)", 0, gegl_ms, gegl_ms, gegl_ms, pow(10, -gegl / 20), 0};
 }
 
 static int by_time(const void *a, const void *b)
@@ -162,20 +162,21 @@ static int by_time(const void *a, const void *b)
     return (x->x > y->x) - (x->x < y->x);
 }
 
-// The front of what this chart shows: faster than all that err less.
+// The front of what this chart shows: faster than all that err less. Tied: not so, but all that err no more overlap its time.
 static void find_front(struct view *v)
 {
     double least = INFINITY;
     for (int i = 0; i < v->marks; i++)
         if (v->mark[i].result >= 0 && v->mark[i].y < least) {
-            v->mark[i].on_front = 1;
+            v->mark[i].rank = TRADE_FRONT;
             least = v->mark[i].y;
         }
     for (int i = 0; i < v->marks; i++) {
         struct mark *m = &v->mark[i];
-        m->tied = m->result >= 0 && !m->on_front;
-        for (int k = 0; k < v->marks && m->tied; k++)
-            m->tied = !(v->mark[k].result >= 0 && v->mark[k].y <= m->y && v->mark[k].high < m->low);
+        int tied = m->result >= 0 && m->rank != TRADE_FRONT;
+        for (int k = 0; k < v->marks && tied; k++)
+            tied = !(v->mark[k].result >= 0 && v->mark[k].y <= m->y && v->mark[k].high < m->low);
+        m->rank = tied ? TRADE_TIED : m->rank;
     }
 }
 
@@ -189,7 +190,7 @@ static int collect(struct view *v)
         const struct trade_interval ms = time_of(v->chart, r);
         const double e = v->chart->error(v->t, r, v->chart->region);
         if (isfinite(e) && e > 0 && ms.median > 0)
-            v->mark[v->marks++] = (struct mark){i, r->setting->name, r->engine, ms.median, ms.low, ms.high, e, 0, 0};
+            v->mark[v->marks++] = (struct mark){i, r->setting->name, r->engine, ms.median, ms.low, ms.high, e, 0};
     }
     add_others(v);
     qsort(v->mark, (size_t)v->marks, sizeof *v->mark, by_time);
@@ -336,7 +337,7 @@ static void front_line(struct view *v)
     fputs("<path class=\"front\" d=\"", v->out);
     for (int i = 0; i < v->marks; i++) {
         const struct mark *m = &v->mark[i];
-        if (!m->on_front)
+        if (m->rank != TRADE_FRONT)
             continue;
         const double x = at_x(v, m->x), y = at_y(v, m->y);
         fprintf(v->out, last ? "H%.1fV%.1f" : "M%.1f %.1f", x, y);
@@ -368,12 +369,12 @@ static void draw_mark(struct view *v, const struct mark *m)
     const double x = at_x(v, m->x), y = at_y(v, m->y);
     const struct trade_result *r = m->result >= 0 ? &v->t->result[m->result] : NULL;
     fprintf(v->out, "<g class=\"pt %s%s\"", r ? hf_engine_name(m->engine) : "other",
-            m->on_front ? " on"
-            : m->tied   ? " on tied"
-                        : "");
+            m->rank == TRADE_FRONT  ? " on"
+            : m->rank == TRADE_TIED ? " on tied"
+                                    : "");
     if (r)
         fprintf(v->out, " data-i=\"%d\" tabindex=\"%d\" role=\"button\" aria-label=\"", m->result,
-                m->on_front ? 0 : -1);
+                m->rank == TRADE_FRONT ? 0 : -1);
     else
         fputs(" aria-label=\"", v->out);
     escaped(v->out, m->name);
@@ -441,10 +442,10 @@ static void draw(struct view *v)
     }
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < v->marks; i++)
-            if (v->mark[i].on_front == pass)
+            if ((v->mark[i].rank == TRADE_FRONT) == pass)
                 draw_mark(v, &v->mark[i]);
     for (int i = v->marks - 1; i >= 0; i--)
-        if (v->mark[i].on_front || v->mark[i].result < 0)
+        if (v->mark[i].rank == TRADE_FRONT || v->mark[i].result < 0)
             label(v, &v->mark[i]);
     legend(v);
 }

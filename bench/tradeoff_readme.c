@@ -28,13 +28,14 @@ static void paragraph(FILE *out, int number, const char *text)
     fputc('\n', out);
 }
 
-static void write_part(FILE *out, const struct trade *t, const char *command)
+// Returns whether it is not written.
+static int write_part(FILE *out, const struct trade *t, const char *command)
 {
     char *text = NULL, *save = NULL, last[512];
     size_t size;
     FILE *sentences = open_memstream(&text, &size);
     if (!sentences)
-        return;
+        return 1;
     trade_sentences(sentences, t, "", "");
     fclose(sentences);
     int number = 0;
@@ -47,6 +48,7 @@ static void write_part(FILE *out, const struct trade *t, const char *command)
     snprintf(last, sizeof last, "Measured with `%s` on %s, %s, %d thread%s, %s.", command, t->cpu, hf_isa_name(t->isa),
              t->threads, t->threads == 1 ? "" : "s", t->date);
     paragraph(out, 0, last);
+    return 0;
 }
 
 // A whole file; NULL if it cannot be read. The caller frees it.
@@ -100,9 +102,9 @@ int trade_readme(const char *path, const struct trade *t, const char *command, s
     FILE *f = err ? NULL : fopen(path, "w");
     if (f) {
         fwrite(text, 1, (size_t)(from - text) + strlen(begins), f);
-        write_part(f, t, command);
+        err = write_part(f, t, command);
         fputs(to, f);
-        err = ferror(f);
+        err |= ferror(f);
         err |= fclose(f);
     }
     if (!f && !err)

@@ -76,12 +76,10 @@ static void row(FILE *out, const struct trade *t, const struct trade_result *r, 
     fprintf(out, "  %s\n", r->setting->options);
 }
 
-static const char *const quality_names[TRADE_QUALITIES] = {"draft", "standard", "high", "best"};
-
 static const struct trade_result *at_step(const struct trade *t, int step)
 {
     for (int i = 0; i < t->results; i++)
-        if (step > 0 && t->result[i].step == step)
+        if (t->result[i].step == step)
             return &t->result[i];
     return NULL;
 }
@@ -98,15 +96,27 @@ static const struct trade_result *of_quality(const struct trade *t, int quality,
     return r;
 }
 
+// Qualities, the draft twice: where blur is narrow enough for its cheapest, and where it is not.
+static const struct quality_row {
+    enum hf_quality quality;
+    double radius;
+    const char *plain, *markdown;
+} quality_rows[] = {{HF_QUALITY_DRAFT, TRADE_RADIUS, "radius 12 or less", ", radius up to 12"},
+                    {HF_QUALITY_DRAFT, INFINITY, "any radius", ", with a lens"},
+                    {HF_QUALITY_STANDARD, INFINITY, "any radius", ""},
+                    {HF_QUALITY_HIGH, INFINITY, "any radius", ""},
+                    {HF_QUALITY_BEST, INFINITY, "any radius", ""}};
+enum { QUALITY_ROWS = sizeof quality_rows / sizeof *quality_rows };
+
 static void qualities(FILE *out, const struct trade *t)
 {
     if (!of_quality(t, 0, 0))
         return;
     fputc('\n', out);
-    for (int q = -1; q < TRADE_QUALITIES; q++) {
-        const struct trade_result *r = of_quality(t, q < 0 ? 0 : q, q < 0 ? TRADE_RADIUS : INFINITY);
-        fprintf(out, "--quality %-9s %-18s %8.2f ms  %6.2f dB  %s\n", quality_names[q < 0 ? 0 : q],
-                q < 0 ? "radius 12 or less" : "any radius", r->ms.median, db(r->error), r->setting->options);
+    for (const struct quality_row *q = quality_rows; q < quality_rows + QUALITY_ROWS; q++) {
+        const struct trade_result *r = of_quality(t, (int)q->quality, q->radius);
+        fprintf(out, "--quality %-9s %-18s %8.2f ms  %6.2f dB  %s\n", hf_name(HF_NAMES_QUALITY, (int)q->quality),
+                q->plain, r->ms.median, db(r->error), r->setting->options);
     }
 }
 
@@ -115,12 +125,9 @@ void trade_qualities_table(FILE *out, const struct trade *t)
     if (!of_quality(t, 0, 0))
         return;
     fputs("| `--quality` | chooses | ms | dB |\n|---|---|---|---|\n", out);
-    for (int q = -1; q < TRADE_QUALITIES; q++) {
-        const struct trade_result *r = of_quality(t, q < 0 ? 0 : q, q < 0 ? TRADE_RADIUS : INFINITY);
-        fprintf(out, "| %s%s | `%s` | %.1f | %.1f |\n", quality_names[q < 0 ? 0 : q],
-                q < 0   ? ", radius up to 12"
-                : q > 0 ? ""
-                        : ", with a lens",
+    for (const struct quality_row *q = quality_rows; q < quality_rows + QUALITY_ROWS; q++) {
+        const struct trade_result *r = of_quality(t, (int)q->quality, q->radius);
+        fprintf(out, "| %s%s | `%s` | %.1f | %.1f |\n", hf_name(HF_NAMES_QUALITY, (int)q->quality), q->markdown,
                 r->setting->options, r->ms.median, db(r->error));
     }
 }

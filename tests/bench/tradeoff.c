@@ -78,6 +78,16 @@ static void test_rank(void)
         CHECK_INT(order[i], want[i]);
 }
 
+// The ladder of the settings put; want: their steps.
+static void expect_steps(struct trade *t, const int *want)
+{
+    trade_rank(t);
+    trade_ladder(t);
+    for (int i = 0; i < t->results; i++)
+        CHECK_MSG(results[i].step == want[i], "%s: step %d, expected %d", settings[i].options, results[i].step,
+                  want[i]);
+}
+
 static void test_ladder(void)
 {
     struct trade t = empty(7);
@@ -88,12 +98,7 @@ static void test_ladder(void)
     put(4, "e", 16, 0.01, 0.029, 0.089);
     put(5, "e --threads 1", 30, 0.01, 0.028, 0.088);
     put(6, "worse", 20, 0.01, 0.2, 0.2);
-    trade_rank(&t);
-    trade_ladder(&t);
-    const int want[] = {1, 2, 0, 3, 4, 0, 0};
-    for (int i = 0; i < 7; i++)
-        CHECK_MSG(results[i].step == want[i], "%s: step %d, expected %d", settings[i].options, results[i].step,
-                  want[i]);
+    expect_steps(&t, (const int[]){1, 2, 0, 3, 4, 0, 0});
     // Means in dB below the last: a 5.9, b 2.4, d 0.2, e 0.
     int place[TRADE_QUALITIES];
     CHECK_INT(trade_qualities(&t, place), 0);
@@ -123,12 +128,7 @@ static void test_reach(void)
     put(4, "first -x", 4.01, 0.01, 0.05, 0.06);  // the same in more words
     put(5, "last", 8, 0.01, 0.03, 0.03);
     results[0].farthest = results[1].farthest = 15;
-    trade_rank(&t);
-    trade_ladder(&t);
-    const int want[] = {1, 2, 3, 4, 0, 5};
-    for (int i = 0; i < 6; i++)
-        CHECK_MSG(results[i].step == want[i], "%s: step %d, expected %d", settings[i].options, results[i].step,
-                  want[i]);
+    expect_steps(&t, (const int[]){1, 2, 3, 4, 0, 5});
     // On scene one they do reach: there the first must not be worse than what comes before it.
     put(2, "first", 4, 0.01, 0.09, 0.03);
     trade_rank(&t);
@@ -144,12 +144,7 @@ static void test_reach(void)
     put(3, "last", 8, 0.01, 0.03, 0.03);
     put(4, "soft", 0.5, 0.01, 0.12, 0.12);
     results[4].farthest = 15;
-    trade_rank(&t);
-    trade_ladder(&t);
-    const int ways[] = {2, 0, 0, 3, 1};
-    for (int i = 0; i < 5; i++)
-        CHECK_MSG(results[i].step == ways[i], "%s: step %d, expected %d", settings[i].options, results[i].step,
-                  ways[i]);
+    expect_steps(&t, (const int[]){2, 0, 0, 3, 1});
 }
 
 static void test_cache(void)
