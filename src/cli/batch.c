@@ -302,6 +302,11 @@ static int run_rest(struct batch *b, struct tool_error *error)
     return 0;
 }
 
+static const char *plural(int count)
+{
+    return count == 1 ? "" : "s";
+}
+
 static void print_summary(struct batch *b)
 {
     const struct cli_progress *p = &b->progress;
@@ -314,18 +319,19 @@ static void print_summary(struct batch *b)
     for (int s = 0; s < CLI_STAGES && all > 0; s++)
         snprintf(shares + strlen(shares), sizeof(shares) - strlen(shares), "%s%s %.0f %%", s ? ", " : "",
                  cli_stage_names[s], 100 * (double)p->us[s] / all);
-    tool_print_line("%d done, %d there already, %d failed of %d frames in %.2f s (%.2f frames/s)", done, skipped,
-                    failed, p->total, seconds, seconds > 0 ? done / seconds : 0);
+    tool_print_line("%d done, %d there already, %d failed of %d frame%s in %.2f s (%.2f frames/s)", done, skipped,
+                    failed, p->total, plural(p->total), seconds, seconds > 0 ? done / seconds : 0);
     if (done)
         tool_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->workers, b->threads,
-                        b->threads > 1 ? "s" : "", peak_memory() / GIB * 1024, shares);
+                        plural(b->threads), peak_memory() / GIB * 1024, shares);
     for (int s = 0; s < MAX_STEPS && b->args->params.run.budget_ms > 0; s++)
         if (b->chosen[s])
-            tool_print_line("--budget-ms %g: %d frames %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
-                            s ? "at step " : "as asked for", s);
+            tool_print_line("--budget-ms %g: %d frame%s %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
+                            plural(b->chosen[s]), s ? "at step " : "as asked for", s);
     if (done + skipped + failed < p->total)
-        tool_print_line("stopped%s; the same command with --resume makes the other %d frames",
-                        stop_signal ? " by a signal" : "", p->total - done - skipped);
+        tool_print_line("stopped%s; the same command with --resume makes the other %d frame%s",
+                        stop_signal ? " by a signal" : "", p->total - done - skipped,
+                        plural(p->total - done - skipped));
 }
 
 static int exit_code(const struct batch *b)
@@ -361,7 +367,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
     error->text[0] = '\0';
     keep_memory();
     if (shot->missing)
-        tool_print_line("%d frames are missing: %s", shot->missing, shot->gaps);
+        tool_print_line("%d frame%s missing: %s", shot->missing, shot->missing == 1 ? " is" : "s are", shot->gaps);
     int status = cli_plan_open(&b.plan, args, shot, error);
     if (!status)
         status = cli_log_open(&b.log, args->log_file, argc, argv, shot->jobs.count, error);
@@ -370,7 +376,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
     if (!status) {
         const int strays = args->resume ? cli_remove_strays(shot) : 0;
         if (strays)
-            tool_print_line("%d files that killed processes left were removed", strays);
+            tool_print_line("files left by killed processes: %d removed", strays);
         watch_signals(args->quiet);
         cli_progress_begin(&b.progress, shot->jobs.count, args->quiet);
         run_first(&b);

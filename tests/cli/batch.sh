@@ -158,7 +158,7 @@ host=$(uname -n | cut -c 1-32 | sed 's/[^A-Za-z0-9.]/_/g')
 touch -d '2 hours ago' "a/.hyperfocal-elsewhere-2-0.exr"
 run in/shot.####.exr -o a/shot.####.exr $quick --resume
 check "what is missing, cut off, empty or not ours is made" says "4 done, 2 there already"
-check "what dead processes left is removed" says "2 files that killed processes left"
+check "what dead processes left is removed" says "files left by killed processes: 2 removed"
 check "what living ones may still write is kept" test -e "a/.hyperfocal-$host-$alive-0.exr" -a \
     -e "a/.hyperfocal-elsewhere-1-0.exr"
 kill $alive 2>/dev/null
