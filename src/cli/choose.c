@@ -42,6 +42,7 @@ void cli_choose(struct cli_setup *setup, const struct cli_args *args)
         hf_choose_error(p->view.display_height, &setup->depth, p, args->max_error, &setup->choice);
     else if (args->quality >= 0)
         hf_choose_quality(p->view.display_height, &setup->depth, p, (enum hf_quality)args->quality, &setup->choice);
+    setup->missed = by_error(args) && setup->choice.error > args->max_error;
     p->aperture.picture = picture;
 }
 
@@ -58,7 +59,7 @@ void cli_choose_print(FILE *out, const struct cli_args *args, const struct cli_s
     if (c->passed)
         fprintf(out, "  %d cheaper step%s passed over, the first because it %s\n", c->passed,
                 c->passed == 1 ? " was" : "s were", c->why);
-    if (by_error(args) && c->error > args->max_error)
+    if (setup->missed)
         fprintf(out, "  no setting errs as little as was asked for\n");
     fprintf(out,
             "  expected: %.1f ms (%.1f a megapixel); error %.4f of the display's range (%.1f dB), %.4f in the worst "

@@ -21,6 +21,7 @@ struct cli_setup {
     const char *focus_from;
     struct hf_params params;
     struct hf_choice choice;  // of --quality or --max-error; options is NULL without them
+    bool missed;              // no setting errs as little as --max-error asks for
     struct hf_depth depth;    // data is the caller's to set
 };
 

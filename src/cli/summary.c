@@ -47,7 +47,7 @@ int cli_warnings_of(const struct cli_view *v)
 {
     const struct hf_report *r = &v->report;
     return v->warned + (r->colour_repaired > 0) + (r->depth_repaired > 0) + cli_is_limited(v) + v->found.flipped +
-           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0);
+           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0) + v->setup.missed;
 }
 
 // A picture of whole numbers that is taken for distances.
@@ -73,6 +73,9 @@ static void warn(const struct cli_view *v, const struct cli_args *args)
     if (v->found.negative)
         tool_print_line("%s: %" PRIu64 " samples of depth %s are negative and count as no surface", v->label,
                         v->found.negative, depth);
+    if (v->setup.missed)
+        tool_print_line("%s: no setting errs as little as --max-error %g: the most accurate is expected to err %.3g",
+                        v->label, args->max_error, v->setup.choice.error);
     if (is_empty(v))
         tool_print_line("%s: depth %s has no surface anywhere, so everything is infinitely far: is it the right "
                         "channel, and --depth-type %s?",

@@ -318,6 +318,10 @@ picture_tests() {
     [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "layers, focus 3" &&
         contains "$dir/err" "0 warnings"
     result "--verbose" $?
+    run plain.exr -o o.exr --focus 3 --range 2 --max-error 0.0001 --verbose
+    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 2 ] && contains "$dir/err" "errs as little as --max-error 0.0001" &&
+        contains "$dir/err" "1 warning"
+    result "an error that no setting keeps is a warning" $?
     good plain.exr --engine gather -o o.exr --focus 3 --range 2 --karis --per-pixel-kernel --bicubic --fill mean --blend smoothstep
     good plain.exr --engine gather -o o.exr --focus 3 --fill none --aperture ngon:6:0:15 --threads 2 --no-skip --storage half
     good plain.exr --engine gather -o o.exr --focus 3 --faithful --storage chapter --aperture disc --isa scalar
