@@ -1,143 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shapes, slices, and how these are put together.
+// Slices, and how these are put together.
 #include <string.h>
 
 #include "support/layers_reference_parts.h"
-
-static const double PI = 3.14159265358979323846;
-
-// ---- shapes ----
-
-// The run of height y of a polygon with corners on the unit circle; 0: there is none.
-static int chord(const struct hf_aperture_params *a, double y, double *left, double *right)
-{
-    *left = -INFINITY;
-    *right = INFINITY;
-    for (int i = 0; i < a->blades; i++) {
-        const double angle = 2 * PI * i / a->blades + a->rotation * PI / 180, nx = cos(angle), ny = sin(angle);
-        const double room = cos(PI / a->blades) - ny * y;
-        if (fabs(nx) < 1e-9 && room < 0)
-            return 0;
-        if (nx > 1e-9)
-            *right = fmin(*right, room / nx);
-        if (nx < -1e-9)
-            *left = fmax(*left, room / nx);
-    }
-    return *right > *left;
-}
-
-struct run {
-    double a, b, weight;
-};
-
-// Row dy of the outline of radius r. Between its corners a polygon's ends are straight: their middles are their means.
-static struct run outline(const struct frame *f, double r, int dy)
-{
-    const struct hf_aperture_params *a = &f->aperture;
-    double cut[20], hit = 0, left = 0, right = 0;
-    int cuts = 0;
-    if (!a->blades) {
-        const double u = fmax(dy - 0.5, -r), v = fmin(dy + 0.5, r);
-        const double h =
-            v > u ? (v * sqrt(r * r - v * v) + r * r * asin(v / r) - u * sqrt(r * r - u * u) - r * r * asin(u / r)) / 2
-                  : 0;
-        return (struct run){-h * f->wide, h * f->wide, h > 0};
-    }
-    cut[cuts++] = (dy - 0.5) / r;
-    cut[cuts++] = (dy + 0.5) / r;
-    for (int i = 0; i < a->blades; i++) {
-        const double y = sin(2 * PI * (i + 0.5) / a->blades + a->rotation * PI / 180);
-        if (y > cut[0] && y < cut[1])
-            cut[cuts++] = y;
-    }
-    for (int i = 0; i < cuts; i++)
-        for (int j = i + 1; j < cuts; j++)
-            if (cut[j] < cut[i]) {
-                const double swap = cut[i];
-                cut[i] = cut[j];
-                cut[j] = swap;
-            }
-    for (int i = 0; i + 1 < cuts; i++) {
-        double from, to;
-        if (!chord(a, (cut[i] + cut[i + 1]) / 2, &from, &to))
-            continue;
-        left += from * (cut[i + 1] - cut[i]);
-        right += to * (cut[i + 1] - cut[i]);
-        hit += cut[i + 1] - cut[i];
-    }
-    return hit * r > 1e-6 ? (struct run){left / hit * r * f->wide, right / hit * r * f->wide, hit * r}
-                          : (struct run){0, 0, 0};
-}
-
-// Add what a run covers of the pixels of a row, their middles at whole numbers.
-static double cover(double *row, int reach, double a, double b, double weight)
-{
-    for (int x = -reach; x <= reach && b > a; x++)
-        row[x + reach] += weight * fmax(0, fmin(b, x + 0.5) - fmax(a, x - 0.5));
-    return b > a ? weight * (b - a) : 0;
-}
-
-// What of texels from `from` to `to` a pixel covers, times their brightness: of a picture of floats, red.
-static double texels(const struct hf_image *m, double x0, double x1, double y0, double y1)
-{
-    double sum = 0;
-    for (int y = 0; y < m->height; y++)
-        for (int x = 0; x < m->width; x++) {
-            const double w = fmin(x + 1, x1) - fmax(x, x0), h = fmin(y + 1, y1) - fmax(y, y0);
-            const float *row = (const float *)(const void *)((const char *)m->data[0] + y * m->stride[0]);
-            sum += w > 0 && h > 0 ? w * h * row[3 * x] : 0;
-        }
-    return sum;
-}
-
-// The picture's shorter side is 2 r; what lies beyond twice of that is cut off.
-static double picture_shape(const struct frame *f, double r, int reach, double *w)
-{
-    const struct hf_image *m = f->aperture.picture;
-    const double shorter = fmin(m->width, m->height), unit = shorter / 2 / r, step = unit / f->wide;
-    const int high = (int)ceil(r * fmin(m->height / shorter, 2) - 0.5),
-              across = (int)ceil(r * f->wide * fmin(m->width / shorter, 2) - 0.5), side = 2 * reach + 1;
-    double sum = 0;
-    for (int dy = -high; dy <= high; dy++)
-        for (int dx = -across; dx <= across; dx++) {
-            const double x0 = m->width / 2.0 + (dx - 0.5) * step, y0 = m->height / 2.0 + (dy - 0.5) * unit;
-            sum += w[(dy + reach) * side + dx + reach] = texels(m, x0, x0 + step, y0, y0 + unit) / (unit * step);
-        }
-    return sum;
-}
-
-// Weights of a shape of radius r, (2 reach + 1)^2 of them, that sum to 1.
-static double *shape_new(const struct frame *f, double r, int *reach)
-{
-    const int longer = f->aperture.picture ? 2 : 1;
-    *reach = (int)ceil(longer * r * fmax(f->wide, 1)) + 1;
-    const int side = 2 * *reach + 1;
-    double *w = calloc((size_t)side * (size_t)side, sizeof *w), sum = 0;
-    if (!w)
-        abort();
-    if (f->aperture.picture && r > 0)
-        sum = picture_shape(f, r, *reach, w);
-    for (int dy = -*reach; dy <= *reach && r > 0 && !f->aperture.picture; dy++) {
-        double *row = w + (dy + *reach) * side;
-        const struct run o = outline(f, r, dy);
-        struct run hole = {0, 0, 0};
-        if (f->aperture.ring > 0)
-            hole = outline(f, r * f->aperture.ring, dy);
-        hole.a = fmax(hole.a, o.a);
-        hole.b = fmin(hole.b, o.b);
-        if (hole.weight > 0 && hole.b > hole.a) {
-            sum += cover(row, *reach, o.a, hole.a, o.weight) + cover(row, *reach, hole.b, o.b, o.weight);
-            sum += cover(row, *reach, hole.a, hole.b, o.weight - hole.weight);
-        } else {
-            sum += cover(row, *reach, o.a, o.b, o.weight);
-        }
-    }
-    if (r <= 0)
-        sum = w[*reach * side + *reach] = 1;
-    for (int i = 0; i < side * side; i++)
-        w[i] /= sum;
-    return w;
-}
 
 // ---- slices ----
 
@@ -190,11 +55,67 @@ static void add_sources(const struct frame *f, const struct slice *s, const stru
         }
 }
 
+// Every source draws the shape.
+static void scatter(const struct layers_shape *s, const struct grid *source, const struct grid *out)
+{
+    const int reach = s->reach;
+    for (int y = source->y0; y < source->y1; y++)
+        for (int x = source->x0; x < source->x1; x++) {
+            const double *v = at(source, x, y);
+            if (v[4] == 0)
+                continue;
+            for (int j = clamp(y - reach, out->y0, out->y1); j < clamp(y + reach + 1, out->y0, out->y1); j++)
+                for (int i = clamp(x - reach, out->x0, out->x1); i < clamp(x + reach + 1, out->x0, out->x1); i++) {
+                    const double k = s->weight[(j - y + reach) * (2 * reach + 1) + i - x + reach];
+                    for (int c = 0; c < 5; c++)
+                        at(out, i, j)[c] += k * v[c];
+                }
+        }
+}
+
+// Columns at which a cat's eye is made, so close that from one to the next its second circle moves by 1.5 pixels at the
+// most; between them the shapes are blended.
+static int node_apart(const struct frame *f, double r, int level)
+{
+    const double far =
+        1.5 * hypot(f->width, f->height) / (1 << level) / (2 * f->aperture.cat_eye * r * fmax(f->wide, 1));
+    int n = 4;
+    while (2 * n <= far && n < 256)
+        n *= 2;
+    return n;
+}
+
+// A cat's eye is the shape within a second circle, which is that of the pixel drawn to: towards the picture's corner by
+// cat_eye radii there, before the focus the other way.
+static void gather_cut(const struct frame *f, struct layers_shape *s, int sign, int level, const struct grid *source,
+                       const struct grid *out)
+{
+    const int reach = s->reach, apart = s->r > 0 ? node_apart(f, s->r, level) : 1, size = 1 << level;
+    const double move = sign * (double)f->aperture.cat_eye * s->r / hypot(f->width, f->height);
+    for (int node = out->x0 / apart * apart - apart; node < out->x1 + apart; node += apart)
+        for (int y = out->y0; y < out->y1; y++) {
+            const double px = fmin(fmax((node + 0.5) * size, 0), f->width),
+                         py = fmin(fmax((y + 0.5) * size, 0), f->height);
+            layers_shape_cut(f, s, move * (2 * px - f->width) * f->wide, move * (2 * py - f->height), s->r);
+            for (int x = clamp(node - apart + 1, out->x0, out->x1); x < clamp(node + apart, out->x0, out->x1); x++)
+                for (int j = -reach; j <= reach; j++)
+                    for (int i = -reach; i <= reach; i++) {
+                        const double *v = at(source, clamp(x - i, source->x0, source->x1 - 1),
+                                             clamp(y - j, source->y0, source->y1 - 1));
+                        const double k =
+                            (1 - abs(x - node) / (double)apart) * s->weight[(j + reach) * (2 * reach + 1) + i + reach];
+                        for (int c = 0; c < 5; c++)
+                            at(out, x, y)[c] += k * v[c];
+                    }
+        }
+}
+
 // A slice's sums of a kind at its level.
 static struct grid draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light)
 {
-    int reach;
-    double *w = shape_new(f, fabs(s->own) * (1 + (s->own < 0 ? -f->shift : f->shift)) / (1 << level), &reach);
+    struct layers_shape shape =
+        layers_shape_new(f, fabs(s->own) * (1 + (s->own < 0 ? -f->shift : f->shift)) / (1 << level));
+    const int reach = shape.reach;
     const int width = (f->width - 1) / (1 << level) + 1, height = (f->height - 1) / (1 << level) + 1,
               m = MARGIN + reach;
     struct grid source = grid_new(-m, -m, width + m, height + m, 5);
@@ -207,20 +128,12 @@ static struct grid draw(const struct frame *f, const struct slice *s, int level,
         if (kind == SEEN)
             add_sources(f, s, &f->mixed, level, BEHIND, 0, &source);
     }
-    for (int y = source.y0; y < source.y1; y++)
-        for (int x = source.x0; x < source.x1; x++) {
-            const double *v = at(&source, x, y);
-            if (v[4] == 0)
-                continue;
-            for (int j = clamp(y - reach, out.y0, out.y1); j < clamp(y + reach + 1, out.y0, out.y1); j++)
-                for (int i = clamp(x - reach, out.x0, out.x1); i < clamp(x + reach + 1, out.x0, out.x1); i++) {
-                    const double k = w[(j - y + reach) * (2 * reach + 1) + i - x + reach];
-                    for (int c = 0; c < 5; c++)
-                        at(&out, i, j)[c] += k * v[c];
-                }
-        }
+    if (f->aperture.cat_eye > 0)
+        gather_cut(f, &shape, s->own < 0 ? -1 : 1, level, &source, &out);
+    else
+        scatter(&shape, &source, &out);
     free(source.v);
-    free(w);
+    layers_shape_free(&shape);
     return out;
 }
 
@@ -390,12 +303,15 @@ struct picture layers_reference(const struct picture *colour, const float *radiu
     }
     layers_reference_samples(&f);
     // Red discs are larger behind the focus and smaller before it, blue ones the other way; alpha goes with green.
-    for (int i = 0; i < (f.aperture.chromatic != 0 ? 3 : 1); i++) {
+    // A coloured picture of the aperture has a shape for each channel.
+    const int groups = f.aperture.chromatic != 0 || f.aperture.picture ? 3 : 1;
+    for (int i = 0; i < groups; i++) {
         struct picture group = picture_new(f.width, f.height, f.channels);
         f.shift = f.aperture.chromatic == 0 ? 0 : (1 - i) * (double)f.aperture.chromatic;
+        f.plane = f.aperture.picture ? i : 0;
         put_together(&f, &group);
         for (int c = 0; c < f.channels; c++)
-            if (f.aperture.chromatic == 0 || i == (c < 3 ? c : 1))
+            if (groups == 1 || i == (c < 3 ? c : 1))
                 memcpy(out.plane[c], group.plane[c], (size_t)f.width * (size_t)f.height * sizeof(float));
         picture_free(&group);
     }

@@ -5,7 +5,7 @@
 
 #include "support/image.h"
 
-// radius: signed, one a pixel. params: resolved; apertures without a cat's eye or round blades; a picture is grey, RGB32F.
+// radius: signed, one a pixel. params: resolved; a picture of the aperture is RGB32F.
 struct picture layers_reference(const struct picture *colour, const float *radius, const struct hf_params *params);
 
 #endif

@@ -52,6 +52,7 @@ struct frame {
     int fine, unmix, hidden, highlights, patterns;
     double wide, half, quarter, low, high;
     double shift;                             // by this discs are larger behind the focus
+    int plane;                                // channel of a picture of the aperture
     struct grid seen, mixed, behind, beyond;  // samples
 };
 
@@ -64,6 +65,26 @@ static inline double radius_at(const struct frame *f, int x, int y)
 {
     return f->radius[clamp(y, 0, f->height - 1) * f->width + clamp(x, 0, f->width - 1)];
 }
+
+// A run of a row in pixels from the middle of the pixel around which a shape lies; its weight is what it covers of the
+// row's height.
+struct layers_run {
+    double a, b, weight;
+};
+
+// A shape of radius r: weights of (2 reach + 1)^2 pixels, which sum to 1, and the three runs of each row.
+struct layers_shape {
+    double r;
+    int reach;
+    double *weight;
+    struct layers_run *run;
+};
+
+// (layers_reference_shape.c)
+struct layers_shape layers_shape_new(const struct frame *f, double r);
+void layers_shape_free(struct layers_shape *s);
+// Weights of what lies within a circle of radius r (INFINITY: all) around (x, y); of the pixel itself if nothing does.
+void layers_shape_cut(const struct frame *f, struct layers_shape *s, double x, double y, double r);
 
 // Fill f's samples: seen, mixed and behind (layers_reference_samples.c).
 void layers_reference_samples(struct frame *f);
