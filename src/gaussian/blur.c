@@ -85,6 +85,12 @@ void hf_blend_row_c(const struct hf_frame *f, int x, int y, int n, float *const 
         }
 }
 
+void hf_gaussian_count_c(const struct hf_frame *f, int x, int y, int n, struct hf_counts *counts)
+{
+    float *const out[4] = {hf_line(f, 0), hf_line(f, 1), hf_line(f, 2), hf_line(f, 3)};
+    hf_gaussian_kernels(f)->blend_row(f, x, y, n, out, counts);
+}
+
 void hf_lerp_row_c(float *a, const float *b, const float *t, int n)
 {
     for (int i = 0; i < n; i++)
@@ -113,21 +119,27 @@ void hf_gaussian_up_c(const struct hf_buf *b, int c, int quarter, int x, int y, 
         }
 }
 
-void hf_gaussian_shrink_c(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
-                          float *const sum[4])
+// Down the rows first, then across. lines: sums, which become the means, those of odd pixels, and what is read.
+void hf_gaussian_shrink_c(const struct hf_frame *f, int x, int y, int n, float *const lines[16])
 {
     const struct hf_setup *s = f->s;
     const int rows = 1 << s->resolution;
     const float share = 1.0f / (float)(rows * rows);
     for (int i = 0; i < rows; i++) {
-        hf_read_colour(f, x, hf_min(y * rows + i, s->height - 1), n, even, odd, f->seen);
+        hf_read_colour(f, x, hf_min(y * rows + i, s->height - 1), n, lines + 8, lines + 12, f->seen);
         for (int c = 0; c < s->channels; c++)
-            for (int k = 0; k < n; k++)
-                sum[c][k] = (i ? sum[c][k] : 0) + (even[c][k] * share + odd[c][k] * share);
+            for (int k = 0; k < n; k++) {
+                const float even = lines[8 + c][k] * share, odd = lines[12 + c][k] * share;
+                lines[c][k] = i ? lines[c][k] + even : even;
+                lines[4 + c][k] = i ? lines[4 + c][k] + odd : odd;
+            }
     }
-    for (int c = 0; c < s->channels && s->resolution == HF_RESOLUTION_QUARTER; c++)
-        for (int k = 0; 2 * k < n; k++)
-            sum[c][k] = sum[c][2 * k] + sum[c][hf_min(2 * k + 1, n - 1)];
+    for (int c = 0; c < s->channels; c++) {
+        for (int k = 0; k < n; k++)
+            lines[c][k] += lines[4 + c][k];
+        for (int k = 0; 2 * k < n && s->resolution == HF_RESOLUTION_QUARTER; k++)
+            lines[c][k] = lines[c][2 * k] + lines[c][hf_min(2 * k + 1, n - 1)];
+    }
 }
 
 void hf_gaussian_merge_c(const struct hf_frame *f, int y, struct hf_rect r)
@@ -161,29 +173,25 @@ void hf_gaussian_merge_c(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_gaussian_depth_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    float *const out[4] = {hf_line(f, 0), hf_line(f, 1), hf_line(f, 2), hf_line(f, 3)};
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
-        hf_gaussian_kernels(f)->blend_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
+        hf_gaussian_kernels(f)->count_row(f, r.x0, y, r.x1 - r.x0, f->counts);
         hf_count_row(f->counts, y);
     }
 }
 
 // Scratch of the first sweep.
 struct lines {
-    float *even[4], *odd[4], *sum[4];
-    float *line[2];  // working resolution, HF_PAD floats before them
+    float *colour[16];  // see hf_gaussian_shrink
+    float *line[2];     // working resolution, HF_PAD floats before them
 };
 
 static struct lines lines_of(const struct hf_frame *f, size_t floats)
 {
     struct lines l;
-    for (int c = 0; c < 4; c++) {
-        l.even[c] = f->work + (size_t)c * floats;
-        l.odd[c] = f->work + (size_t)(4 + c) * floats;
-        l.sum[c] = f->work + (size_t)(8 + c) * floats;
-    }
+    for (int i = 0; i < 16; i++)
+        l.colour[i] = f->work + (size_t)i * floats;
     for (int i = 0; i < 2; i++)
-        l.line[i] = f->work + (size_t)(12 + 2 * i) * floats + HF_PAD;
+        l.line[i] = f->work + (size_t)(16 + 2 * i) * floats + HF_PAD;
     return l;
 }
 
@@ -191,9 +199,9 @@ static struct lines lines_of(const struct hf_frame *f, size_t floats)
 static void make_line(const struct hf_frame *f, const struct lines *l, int c, int lanes, int n, float *line)
 {
     if (f->s->resolution == HF_RESOLUTION_FULL)
-        f->k->zip(l->even[c], l->odd[c], lanes, line);
+        f->k->zip(l->colour[c], l->colour[4 + c], lanes, line);
     else
-        memcpy(line, l->sum[c], (size_t)n * sizeof *line);
+        memcpy(line, l->colour[c], (size_t)n * sizeof *line);
 }
 
 // All iterations on the line of n pixels in l->line[0]; the `count` pixels from `first` on to out.
@@ -226,9 +234,9 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
     struct lines l = lines_of(f, hf_gaussian_line_floats(s, r.x1 - r.x0));
     for (int y = out.y0; y < out.y1; y++) {
         if (s->resolution == HF_RESOLUTION_FULL)
-            hf_read_colour(f, read.x0, y, lanes, l.even, l.odd, f->seen);
+            hf_read_colour(f, read.x0, y, lanes, l.colour, l.colour + 4, f->seen);
         else
-            hf_gaussian_kernels(f)->shrink(f, read.x0, y, lanes, l.even, l.odd, l.sum);
+            hf_gaussian_kernels(f)->shrink(f, read.x0, y, lanes, l.colour);
         for (int c = 0; c < s->channels; c++) {
             make_line(f, &l, c, lanes, n, l.line[0]);
             blur_line(f, &l, n, out.x0 - in.x0, out.x1 - out.x0, hf_at(&f->buf[HF_GAUSSIAN_ROWS], c, out.x0, y));

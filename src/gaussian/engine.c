@@ -171,8 +171,10 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     s->resolution = from->resolution;
     s->faithful = from->faithful;
     g->by_depth = from->by_depth;
-    if (!g->by_depth)
+    if (!g->by_depth) {
+        hf_gaussian_limits(s, g);
         return;
+    }
     s->lens = 0;
     s->near_0 = s->far_0 = s->radius_0 = s->radius_k = 0;
     s->near_i = s->far_i = 1;  // there is blur
@@ -200,6 +202,7 @@ void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
         .passes = {{hf_gaussian_depth_pass, hf_gaussian_rows_pass, hf_wide_columns_pass, hf_wide_rows_pass,
                     hf_gaussian_columns_pass, hf_gaussian_merge_pass}},
         .blend_row = hf_blend_row_c,
+        .count_row = hf_gaussian_count_c,
         .lerp_row = hf_lerp_row_c,
         .line = hf_gaussian_line_c,
         .columns = hf_gaussian_columns_c,

@@ -19,6 +19,9 @@ struct hf_gaussian {
     float sigma;                           // full-resolution pixels; 0: iterations
     int by_depth;                          // blend by the distance in depth from the focus
     float plane_near, plane_far, focus_d;  // see hf_gaussian_depth
+    // There is near CoC where z <= near_last, far CoC where z >= far_first (limits.c); if by_limits.
+    int by_limits;
+    float near_last, far_first;
 };
 
 static inline const struct hf_gaussian *hf_gaussian(const struct hf_setup *s)
@@ -33,6 +36,11 @@ static inline float hf_gaussian_depth(const struct hf_gaussian *g, int faithful,
     z = z < g->plane_far ? z : g->plane_far;
     return faithful ? (2 * z) / (z + g->plane_far) : z / g->plane_far;
 }
+
+// Near and far CoC of a depth z, and the limits of where there is any: for depth that is z as it stands.
+float hf_gaussian_near(const struct hf_setup *s, float z);
+float hf_gaussian_far(const struct hf_setup *s, float z);
+void hf_gaussian_limits(const struct hf_setup *s, struct hf_gaussian *g);
 
 // Pixels that the iterations reach to either side in the working buffer.
 static inline int hf_gaussian_reach(const struct hf_setup *s)
@@ -53,7 +61,7 @@ static inline size_t hf_gaussian_line_floats(const struct hf_setup *s, int chunk
 }
 
 // How many of them there are: even and odd pixels and their sums, and two lines in working resolution, twice as long.
-enum { HF_GAUSSIAN_LINES = 16 };
+enum { HF_GAUSSIAN_LINES = 20 };
 
 // Size of the working resolution, and an area of it: half-resolution pixels in, inside the frame.
 static inline int hf_gaussian_size(const struct hf_setup *s, int full, int half)

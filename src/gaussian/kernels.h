@@ -9,6 +9,8 @@
 // Blend factors of the n lanes from lane x of row y into out[0], even, and out[1], odd; out[2] and out[3] are
 // scratch. counts NULL: nothing is counted.
 typedef void hf_blend_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
+// What blend_row counts, of lanes from x on, a multiple of 16. Uses scratch rows 0 to 3.
+typedef void hf_gaussian_count(const struct hf_frame *f, int x, int y, int n, struct hf_counts *counts);
 // a + t (b - a), a's own bits for t = 0.
 typedef void hf_lerp_row(float *a, const float *b, const float *t, int n);
 // One iteration of the 5-tap kernel along a line of n pixels with two more at either end. May read HF_PAD floats before
@@ -21,9 +23,8 @@ typedef void hf_gaussian_columns(const float *in, ptrdiff_t in_stride, int rows,
 // n lanes from lane x of row y of the frame, bilinearly from a buffer of half or a quarter of its size.
 typedef void hf_gaussian_up(const struct hf_buf *b, int c, int quarter, int x, int y, int n, float *even, float *odd);
 // Row y of a working resolution of half or a quarter, the means of 4 or 16 pixels, from n lanes of the picture from lane x
-// on, which is a multiple of 16: into sum. even and odd are scratch.
-typedef void hf_gaussian_shrink(const struct hf_frame *f, int x, int y, int n, float *const even[4],
-                                float *const odd[4], float *const sum[4]);
+// on, which is a multiple of 16: channel c into lines[c]. The other lines are scratch.
+typedef void hf_gaussian_shrink(const struct hf_frame *f, int x, int y, int n, float *const lines[16]);
 // Row y of the result, lanes r.x0 to r.x1. Uses scratch rows 0 to 13.
 typedef void hf_gaussian_merge(const struct hf_frame *f, int y, struct hf_rect r);
 typedef void hf_wide_block(float *block, int n, const struct hf_wide *w, float *work);
@@ -31,6 +32,7 @@ typedef void hf_wide_block(float *block, int n, const struct hf_wide *w, float *
 struct hf_gaussian_kernels {
     struct hf_passes passes;
     hf_blend_row *blend_row;
+    hf_gaussian_count *count_row;
     hf_lerp_row *lerp_row;
     hf_gaussian_line *line;
     hf_gaussian_columns *columns;
@@ -49,6 +51,7 @@ static inline const struct hf_gaussian_kernels *hf_gaussian_kernels(const struct
 hf_kernel hf_gaussian_depth_pass, hf_gaussian_rows_pass, hf_gaussian_columns_pass, hf_gaussian_merge_pass;
 hf_kernel hf_wide_columns_pass, hf_wide_rows_pass;
 hf_blend_row hf_blend_row_c;
+hf_gaussian_count hf_gaussian_count_c;
 hf_lerp_row hf_lerp_row_c;
 hf_gaussian_line hf_gaussian_line_c;
 hf_gaussian_columns hf_gaussian_columns_c;

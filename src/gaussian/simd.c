@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The gaussian engine's kernels of an instruction set.
 #include "gaussian/blur_simd.h"
+#include "gaussian/count_simd.h"
 #include "gaussian/merge_simd.h"
 #include "gaussian/wide_simd.h"
 
 void HF_SIMD_NAME(hf_gaussian_kernels)(struct hf_gaussian_kernels *k)
 {
     k->blend_row = blend_row_simd;
+    k->count_row = count_row_simd;
     k->lerp_row = lerp_row_simd;
     k->line = gaussian_line_simd;
     k->columns = gaussian_columns_simd;

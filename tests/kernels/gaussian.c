@@ -31,9 +31,9 @@ static void start(struct world *w)
     w->colours = w->bench ? COLOURS_PLAIN : COLOURS_MIXED;
 }
 
-void blend_row_make(struct world *w, int index)
+// count: nothing is wanted but what is counted.
+void blend_row_make(struct world *w, int count)
 {
-    (void)index;
     start(w);
     struct rng *r = &w->rng;
     w->params.engine = HF_ENGINE_GAUSSIAN;
@@ -49,11 +49,11 @@ void blend_row_make(struct world *w, int index)
     w->n = half - w->x;
     w->y = w->bench ? 0 : rng_int(r, 0, w->setup.height - 1);
     make_depth(w, rng_one_in(r, 2));
-    w->with_counts = !rng_one_in(r, 3);
+    w->with_counts = count || !rng_one_in(r, 3);
     w->x &= w->with_counts ? ~15 : ~0;
     make_lines(w, 4, (size_t)w->n + HF_PAD);
     for (int i = 0; i < 4; i++)
-        world_region(w, i < 2 ? REGION_FLOATS : REGION_SCRATCH, SLOT_LINES,
+        world_region(w, i < 2 && !count ? REGION_FLOATS : REGION_SCRATCH, SLOT_LINES,
                      floats_of(w, ARENA_MADE, SLOT_LINES) + (size_t)i * w->line_floats, (size_t)w->n * 4, HF_PAD * 4, 1,
                      0);
 }
@@ -66,6 +66,13 @@ void blend_row_call(struct world *w, const struct kernels *k, enum arena a, int 
     for (int i = 0; i < 4; i++)
         out[i] = floats_of(w, a, SLOT_LINES) + (size_t)i * w->line_floats;
     k->gaussian.blend_row(&f, w->x, w->y, w->n, out, w->with_counts ? &w->result[a].counts : NULL);
+}
+
+void count_row_call(struct world *w, const struct kernels *k, enum arena a, int index)
+{
+    (void)index;
+    const struct hf_frame f = world_frame(w, k, a);
+    k->gaussian.count_row(&f, w->x, w->y, w->n, &w->result[a].counts);
 }
 
 void lerp_row_make(struct world *w, int index)

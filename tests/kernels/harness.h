@@ -234,8 +234,9 @@ int row_pixels(const struct world *w);
 // gaussian.c
 void radius_make(struct world *w, int index);
 void radius_call(struct world *w, const struct kernels *k, enum arena a, int index);
-void blend_row_make(struct world *w, int index);
+void blend_row_make(struct world *w, int count);
 void blend_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
+void count_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void lerp_row_make(struct world *w, int index);
 void lerp_row_call(struct world *w, const struct kernels *k, enum arena a, int index);
 void gaussian_make(struct world *w, int which);

@@ -71,6 +71,7 @@ const struct test tests[] = {
     HEXAGON("hexagon_2", HEXAGON_SECOND, 900),
     HEXAGON("hexagon_composite", HEXAGON_COMPOSITE, 1600),
     ROW("blend_row", 0, 2000, blend_row_make, blend_row_call, row_check),
+    ROW("gaussian_count", 1, 2000, blend_row_make, count_row_call, row_check),
     ROW("lerp_row", 0, 600, lerp_row_make, lerp_row_call, row_check),
     ROW("gaussian_line", 0, 600, gaussian_make, gaussian_call, row_check),
     ROW("gaussian_line_faithful", 1, 600, gaussian_make, gaussian_call, row_check),
