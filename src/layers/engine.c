@@ -154,6 +154,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     set_shape(l, p);
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
+    l->parts = l->shaped ? 1 : 4;
     int err = hf_block_grow(&l->tiles, tiles * 2 * sizeof(struct hf_layers_range) + 1, mem);
     if (!err)
         err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
@@ -196,8 +197,9 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);
     l->words = (l->slices + 63) / 64;
-    const size_t marks = (size_t)l->columns * (size_t)l->rows * (size_t)l->words;
-    if (hf_block_grow(&l->marks, 5 * marks * sizeof(uint64_t), mem))
+    l->share_words = (l->shines + 63) / 64;
+    const size_t tiles = (size_t)l->columns * (size_t)l->rows, marks = tiles * (size_t)l->words;
+    if (hf_block_grow(&l->marks, (4 * marks + tiles * (size_t)l->share_words) * sizeof(uint64_t), mem))
         return HF_ERR_MEMORY;
     l->seen_marks = l->marks.data;
     l->mixed_marks = l->seen_marks + marks;

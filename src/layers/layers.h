@@ -62,6 +62,7 @@ struct hf_slice {
     const struct hf_disc_row *row;
     const struct hf_shape *shape;  // instead of the disc, or NULL
     int sparse;                    // it has few sources
+    int shine;                     // of what is seen: its number among the slices of shares
 };
 
 // What a quality stands for.
@@ -86,10 +87,14 @@ struct hf_layers {
     int most_tiles;                 // around a cell from which a slice reaches it
     int around;                     // how far samples are read around a cell, pixels
 
-    int width, height;                        // of the frame
-    int channels;                             // of colour, 3 or 4 with alpha
-    int slices, levels;                       // levels of hidden samples; 0: none are looked for
-    struct hf_slice *slice, *behind, *shine;  // of what is seen, of hidden samples, of shares at full resolution
+    int width, height;                // of the frame
+    int channels;                     // of colour, 3 or 4 with alpha
+    int slices, levels;               // levels of hidden samples; 0: none are looked for
+    struct hf_slice *slice, *behind;  // of what is seen, of hidden samples
+    // Of shares at full resolution: `parts` of them from one slice to the next, so that the rim of a highlight lies where
+    // its own radius has it.
+    struct hf_slice *shine;
+    int shines, parts;
     // Channels whose discs are their own: red, green with alpha, blue; or all are the first's.
     int groups;
     struct hf_slice *group[3];  // the slices of one
@@ -100,7 +105,7 @@ struct hf_layers {
     // that, and of shares.
     struct hf_block marks;
     atomic_uchar *repaired;  // whether the colour had samples to repair or to limit
-    int words;               // of a tile's bits
+    int words, share_words;  // of a tile's bits
     uint64_t *seen_marks, *mixed_marks, *hidden_marks, *beyond_marks, *share_marks;
 };
 

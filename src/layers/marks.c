@@ -20,13 +20,12 @@ static struct tile tile_of(const struct hf_buf *at, int weight, int x, int y, in
     return (struct tile){hf_at(at, 1, x, y), hf_at(at, weight, x, y), at->stride, n, rows};
 }
 
-// Which slices have samples of a tile whose radii lie in a range.
-static void mark_slices(const struct hf_frame *f, struct tile t, struct hf_layers_range range, uint64_t *bits)
+// Which of some slices have samples of a tile whose radii lie in a range.
+static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, int slices, struct tile t,
+                        struct hf_layers_range range, uint64_t *bits)
 {
-    const struct hf_layers *l = hf_layers(f->s);
-    const struct hf_slice *slice = l->slice;
-    memset(bits, 0, sizeof *bits * (size_t)l->words);
-    for (int i = 0; range.low <= range.high && i < l->slices && slice[i].before < range.high; i++)
+    memset(bits, 0, sizeof *bits * (size_t)((slices + 63) / 64));
+    for (int i = 0; range.low <= range.high && i < slices && slice[i].before < range.high; i++)
         if (slice[i].after > range.low &&
             hf_layers_kernels(f)->inside(t.radius, t.weight, t.stride, t.n, t.rows, slice[i].before, slice[i].after))
             bits[i / 64] |= (uint64_t)1 << i % 64;
@@ -39,7 +38,7 @@ static struct hf_layers_range mark_tile(const struct hf_frame *f, struct tile t,
 {
     struct hf_layers_range range = none;
     hf_layers_kernels(f)->extremes(t.radius, t.weight, NULL, t.stride, t.n, t.rows, &range);
-    mark_slices(f, t, range, bits);
+    mark_slices(f, hf_layers(f->s)->slice, hf_layers(f->s)->slices, t, range, bits);
     return range;
 }
 
@@ -56,10 +55,10 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
             const float *share = l->set.highlights ? hf_at(seen, 2, x, y) : NULL;
             l->seen_range[at] = none;
             const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
-            mark_slices(f, s, l->seen_range[at], &l->seen_marks[mark]);
+            mark_slices(f, l->slice, l->slices, s, l->seen_range[at], &l->seen_marks[mark]);
             l->mixed_range[at] = mark_tile(f, m, &l->mixed_marks[mark]);
-            mark_slices(f, tile_of(seen, share ? 2 : 0, x, y, n, rows), bright ? l->seen_range[at] : none,
-                        &l->share_marks[mark]);
+            mark_slices(f, l->shine, l->shines, tile_of(seen, share ? 2 : 0, x, y, n, rows),
+                        bright ? l->seen_range[at] : none, &l->share_marks[at * l->share_words]);
         }
 }
 

@@ -89,6 +89,11 @@ static inline const struct hf_slice *hf_layers_table(const struct hf_layers *l, 
     return kind == HF_KIND_SEEN ? l->slice : kind == HF_KIND_HIDDEN ? l->behind : l->shine;
 }
 
+static inline int hf_layers_words(const struct hf_layers *l, enum hf_kind kind)
+{
+    return kind == HF_KIND_SHARES ? l->share_words : l->words;
+}
+
 // tiles.c
 struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct hf_layers_range *map, int tx, int ty);
 // Which slices have samples that may reach the cell at all.

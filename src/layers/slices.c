@@ -2,6 +2,7 @@
 #include "layers/slices.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 // The radius after r >= 0. Far out, slices lie a share of their radius apart, which nobody sees.
 static float next_radius(const struct hf_layers_settings *set, float r)
@@ -68,7 +69,7 @@ static int count_slices(const struct hf_layers *l, float limit, size_t *rows)
     int n = 0;
     for (float r = 0; r < limit; n++) {
         r = next_radius(&l->set, r);
-        *rows += 3 * (size_t)disc_rows(r * (1 + fabsf(l->chromatic)));
+        *rows += (size_t)(2 + l->parts) * (size_t)disc_rows(r * (1 + fabsf(l->chromatic)));
     }
     return n;
 }
@@ -77,7 +78,7 @@ size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit)
 {
     size_t rows = 3;
     const size_t side = (size_t)count_slices(l, limit, &rows), n = 2 * side + 1;
-    const size_t group = 3 * n * sizeof(struct hf_slice) + 2 * rows * sizeof(struct hf_disc_row);
+    const size_t group = (size_t)(2 + l->parts) * n * sizeof(struct hf_slice) + 2 * rows * sizeof(struct hf_disc_row);
     return (size_t)l->groups * group + side * sizeof(struct hf_shape_size);
 }
 
@@ -88,28 +89,49 @@ static float shift_of(const struct hf_layers *l, int group, float radius)
     return radius < 0 ? -shift : shift;
 }
 
-// One radius, the number'th from 0, as all three tables hold it.
-static struct hf_disc_row *make_slice(struct hf_layers *l, int group, int i, float radius, int number,
-                                      struct hf_disc_row *row)
+// A slice of one radius, the number'th from 0, at a level; which: as in hf_shapes. Samples have pixels of `finest`.
+static struct hf_disc_row *make_slice(struct hf_layers *l, struct hf_slice *s, int group, float radius, int number,
+                                      int which, int level, int finest, struct hf_disc_row *row)
 {
     const float shift = shift_of(l, group, radius);
-    const int level = level_of(&l->set, radius), coarse = level > 1 ? level : 1;
-    const int levels[3] = {level, coarse, 0}, finest[3] = {0, 1, 0};
-    for (int t = 0; t < 3; t++) {
-        struct hf_slice *s = &l->group[group][t * l->slices + i];
-        *s = (struct hf_slice){.radius = radius, .level = levels[t], .sparse = t == 2};
-        if (l->shaped && number > 0) {
-            const struct hf_shapes *shapes = &l->shapes[shift > 0 ? 1 : shift < 0 ? 2 : 0];
-            const int plane = shapes->planes == 3 ? group : 0;
-            s->shape = &shapes->shape[number - 1][plane][t];
-            s->rows = 1 - s->shape->top;
-            s->reach = hf_max(s->shape->reach + 1, s->rows);
-            s->scale = (float)(1 / s->shape->sum);
-        } else {
-            make_disc(s, fabs((double)radius) * (1 + shift) / (1 << levels[t]), l->wide, row);
-            row += s->rows;
+    *s = (struct hf_slice){.radius = radius, .level = level, .sparse = which == 2};
+    if (l->shaped && number > 0) {
+        const struct hf_shapes *shapes = &l->shapes[shift > 0 ? 1 : shift < 0 ? 2 : 0];
+        s->shape = &shapes->shape[number - 1][shapes->planes == 3 ? group : 0][which];
+        s->rows = 1 - s->shape->top;
+        s->reach = hf_max(s->shape->reach + 1, s->rows);
+        s->scale = (float)(1 / s->shape->sum);
+    } else {
+        make_disc(s, fabs((double)radius) * (1 + shift) / (1 << level), l->wide, row);
+        row += s->rows;
+    }
+    s->scale /= (float)(1 << 2 * (level - finest));
+    return row;
+}
+
+// The radii of one slice in both tables.
+static struct hf_disc_row *make_both(struct hf_layers *l, int group, int i, float radius, int number,
+                                     struct hf_disc_row *row)
+{
+    struct hf_slice *s = l->group[group] + i;
+    const int level = level_of(&l->set, radius);
+    row = make_slice(l, s, group, radius, number, 0, level, 0, row);
+    return make_slice(l, s + l->slices, group, radius, number, 1, hf_max(level, 1), 1, row);
+}
+
+// Those of a group's shares: at its slices, and between two that are coarser than their pixels.
+static struct hf_disc_row *make_shines(struct hf_layers *l, int group, int middle, struct hf_disc_row *row)
+{
+    struct hf_slice *of = l->group[group], *s = of + 2 * l->slices;
+    l->shines = 0;
+    for (int i = 0; i < l->slices; i++) {
+        const int last = i + 1 == l->slices, parts = !last && of[i].level && of[i + 1].level ? l->parts : 1;
+        const float apart = last ? 0 : of[i + 1].radius - of[i].radius;
+        of[i].shine = l->shines;
+        for (int k = 0; k < parts; k++) {
+            const float r = of[i].radius + apart * (float)k / (float)parts;
+            row = make_slice(l, &s[l->shines++], group, r, abs(i - middle), 2, 0, 0, row);
         }
-        s->scale /= (float)(1 << 2 * (levels[t] - finest[t]));
     }
     return row;
 }
@@ -151,24 +173,25 @@ void hf_layers_make_slices(struct hf_layers *l)
     const int near = slices_of(l, -l->nearest), far = slices_of(l, l->farthest);
     l->slices = near + 1 + far;
     struct hf_slice *at = l->tables.data;
-    for (int g = 0; g < l->groups; g++, at += 3 * l->slices)
+    for (int g = 0; g < l->groups; g++, at += (2 + l->parts) * l->slices)
         l->group[g] = at;
     struct hf_disc_row *row = (struct hf_disc_row *)at;
+    l->most_tiles = 0;
     for (int g = 0; g < l->groups; g++) {
         float r = 0;
-        row = make_slice(l, g, near, 0, 0, row);
+        row = make_both(l, g, near, 0, 0, row);
         for (int i = 1; i <= near; i++)
-            row = make_slice(l, g, near - i, -(r = next_radius(&l->set, r)), i, row);
+            row = make_both(l, g, near - i, -(r = next_radius(&l->set, r)), i, row);
         r = 0;
         for (int i = 1; i <= far; i++)
-            row = make_slice(l, g, near + i, r = next_radius(&l->set, r), i, row);
+            row = make_both(l, g, near + i, r = next_radius(&l->set, r), i, row);
+        row = make_shines(l, g, near, row);
         for (int t = 0; t < 3; t++)
-            set_neighbours(l->group[g] + t * l->slices, l->slices);
+            set_neighbours(l->group[g] + t * l->slices, t < 2 ? l->slices : l->shines);
+        for (int i = 0; i < 2 * l->slices + l->shines; i++)
+            l->most_tiles = hf_max(l->most_tiles, hf_layers_tiles_around(l->group[g] + i));
     }
     hf_layers_use_group(l, 0);
-    l->most_tiles = 0;
-    for (int i = 0; i < 3 * l->slices * l->groups; i++)
-        l->most_tiles = hf_max(l->most_tiles, hf_layers_tiles_around((struct hf_slice *)l->tables.data + i));
 }
 
 void hf_layers_use_group(struct hf_layers *l, int group)

@@ -21,10 +21,11 @@ struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct 
 }
 
 // The bits of a slice in a row of tiles from tx on.
-static void mark_row(const struct hf_cell *c, const uint64_t *marks, int slice, int tx, int n, int ty, int bit)
+static void mark_row(const struct hf_cell *c, const uint64_t *marks, int words, int slice, int tx, int n, int ty,
+                     int bit)
 {
     const struct hf_layers *l = c->l;
-    const int first = c->x0 / TILE + tx, words = l->words, last = l->columns - 1;
+    const int first = c->x0 / TILE + tx, last = l->columns - 1;
     const uint64_t *row = marks + (ptrdiff_t)tile_number(c, -c->x0 / TILE, ty) * words + slice / 64;
     uint8_t *used = hf_layers_map_at(&c->used, tx, ty);
     for (int i = 0; i < n; i++) {
@@ -36,21 +37,25 @@ static void mark_row(const struct hf_cell *c, const uint64_t *marks, int slice, 
 void hf_layers_find_present(struct hf_cell *c)
 {
     const struct hf_layers *l = c->l;
-    const int n = l->most_tiles, words = l->words, left = hf_max(c->x0 / TILE - n, 0),
+    const int n = l->most_tiles, left = hf_max(c->x0 / TILE - n, 0),
               right = hf_min(c->x0 / TILE + c->columns + n, l->columns);
     const uint64_t *const marks[] = {l->seen_marks, l->mixed_marks, l->levels ? l->hidden_marks : NULL,
                                      l->levels ? l->beyond_marks : NULL, l->share_marks};
     static const enum hf_kind kinds[] = {HF_KIND_SEEN, HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_HIDDEN, HF_KIND_SHARES};
-    memset(c->present, 0, 3 * sizeof *c->present * (size_t)words);
-    for (int i = 0; i < 5; i++)
+    memset(c->present, 0, sizeof *c->present * (size_t)(2 * l->words + l->share_words));
+    for (int i = 0; i < 5; i++) {
+        const int words = hf_layers_words(l, kinds[i]);
+        uint64_t *present = c->present + (int)kinds[i] * l->words;
         for (int y = hf_max(c->y0 / TILE - n, 0); marks[i] && y < hf_min(c->y0 / TILE + c->rows + n, l->rows); y++)
             for (int x = left * words; x < right * words; x++)
-                c->present[(int)kinds[i] * words + x % words] |= marks[i][(ptrdiff_t)y * l->columns * words + x];
+                present[x % words] |= marks[i][(ptrdiff_t)y * l->columns * words + x];
+    }
 }
 
 int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
 {
     const struct hf_layers *l = c->l;
+    const int words = hf_layers_words(l, kind);
     if (!(c->present[(int)kind * l->words + slice / 64] >> slice % 64 & 1))
         return 0;
     const int n = hf_layers_tiles_around(hf_layers_table(l, kind) + slice), columns = c->columns + 2 * n;
@@ -61,9 +66,9 @@ int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
     for (int ty = -n; ty < c->rows + n; ty++) {
         uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
         memset(used, 0, (size_t)columns);
-        mark_row(c, marks, slice, -n, columns, ty, SEEN);
+        mark_row(c, marks, words, slice, -n, columns, ty, SEEN);
         if (kind != HF_KIND_SHARES)
-            mark_row(c, kind == HF_KIND_SEEN ? l->mixed_marks : l->beyond_marks, slice, -n, columns, ty, MORE);
+            mark_row(c, kind == HF_KIND_SEEN ? l->mixed_marks : l->beyond_marks, words, slice, -n, columns, ty, MORE);
         int first = 0, last = columns;
         while (first < last && !used[first])
             first++;

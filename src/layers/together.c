@@ -127,8 +127,17 @@ static void begin(struct hf_cell *c, int stack)
         begin_stack(c, stack);
 }
 
-// Shares of highlights, at full resolution, where the slice shows.
-static void put_light(struct hf_cell *c, int stack, int slice)
+// How much of a sample of radius r belongs to a slice.
+static float part_of(const struct hf_slice *s, float r)
+{
+    const float square = r * r;
+    return r <= s->before || r >= s->after ? 0
+           : r < s->radius                 ? (square - s->before_square) * s->before_scale
+                                           : 1 - (square - s->square) * s->after_scale;
+}
+
+// Shares of highlights of one radius, at full resolution, where the slice shows.
+static void put_light(struct hf_cell *c, int stack, int slice, float amount)
 {
     const struct hf_layers *l = c->l;
     const struct hf_slice *wide = &l->shine[slice];
@@ -148,9 +157,19 @@ static void put_light(struct hf_cell *c, int stack, int slice)
                     const float *in = c->shine.at + y * c->shine.row + i * c->shine.channel + x0;
                     float *out = to->at + y * to->row + i * to->channel + x0;
                     for (int x = 0; x < n; x++)
-                        out[x] = c->row[0][x] * in[x] + out[x];
+                        out[x] = c->row[0][x] * amount * in[x] + out[x];
                 }
             }
+}
+
+// All shares that belong to a slice: between its neighbours.
+static void put_lights(struct hf_cell *c, int stack, int slice)
+{
+    const struct hf_layers *l = c->l;
+    const int first = slice > 0 ? l->slice[slice - 1].shine + 1 : 0,
+              end = slice + 1 < l->slices ? l->slice[slice + 1].shine : l->shines;
+    for (int i = first; i < end; i++)
+        put_light(c, stack, i, part_of(&l->slice[slice], l->shine[i].radius));
 }
 
 void hf_layers_put_slice(struct hf_cell *c, int i)
@@ -173,7 +192,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
         if (s->radius != 0)
             mark(c, &c->touched, reached);
         if (shares)
-            put_light(c, stack, i);
+            put_lights(c, stack, i);
     }
     if (l->levels && hf_layers_mark_used(c, i, HF_KIND_HIDDEN) && hf_layers_mark_touched(c, behind, &c->touched)) {
         const struct hf_build b = {.s = behind,

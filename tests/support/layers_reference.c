@@ -191,6 +191,33 @@ static void put_under(struct grid *stack, const struct grid *sums, int hidden, s
         }
 }
 
+// Shares that belong to a slice, by radii between it and its neighbours: where the slice shows, at full resolution. Between
+// slices of full resolution and others there are no more.
+static void put_light(const struct frame *f, const struct slice *s, const struct grid *part, struct grid *light)
+{
+    const struct hf_aperture_params *a = &f->aperture;
+    const int most = a->blades || a->ring > 0 || a->picture ? 1 : 4;
+    double radius[9];
+    int count = 0;
+    for (int side = 0; side < 2; side++) {
+        const double next = side ? s->after : s->before;
+        const int parts = isfinite(next) && level_of(f, next) ? most : 1;
+        for (int i = 0; i < parts; i++)
+            radius[count++] =
+                side ? s->own + (i ? (next - s->own) * i / parts : 0) : next + (i ? (s->own - next) * i / parts : 0);
+    }
+    radius[count] = s->after;
+    for (int i = 1; i < count; i++) {
+        const struct slice t = {radius[i - 1], radius[i], radius[i + 1]};
+        struct grid shine = draw(f, &t, 0, SHINE, 0);
+        for (int y = 0; y < f->height; y++)
+            for (int x = 0; x < f->width; x++)
+                for (int c = 0; c < 3; c++)
+                    at(light, x, y)[c] += part_of(s, t.own) * up(part, 0, x, y) * at(&shine, x, y)[c];
+        free(shine.v);
+    }
+}
+
 // One slice into its stack; light: what shines of the stack, at full resolution.
 static void put_slice(const struct frame *f, const struct slice *s, struct grid *stack, struct grid *light)
 {
@@ -200,14 +227,8 @@ static void put_slice(const struct frame *f, const struct slice *s, struct grid 
     refine(&sums, f, level, finest);
     put_under(stack, &sums, 0, &part);
     free(sums.v);
-    if (lit) {
-        struct grid shine = draw(f, s, 0, SHINE, 0);
-        for (int y = 0; y < f->height; y++)
-            for (int x = 0; x < f->width; x++)
-                for (int c = 0; c < 3; c++)
-                    at(light, x, y)[c] += up(&part, 0, x, y) * at(&shine, x, y)[c];
-        free(shine.v);
-    }
+    if (lit)
+        put_light(f, s, &part, light);
     free(part.v);
     if (layers_reference_levels(f)) {
         const int coarse = level > 1 ? level : 1;
