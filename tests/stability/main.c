@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The cases of stability.h as a test.
 //
+// All of them, --full, also when HF_LONG is in the environment.
+//
 //     stability [--full] [--seed N] [--engine NAME] [--only GROUP] [--isa NAME]
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +20,7 @@ static enum hf_isa isa_of(const char *name)
 
 int main(int argc, char **argv)
 {
-    struct stability_options o = {.seed = 1};
+    struct stability_options o = {.seed = 1, .full = check_long()};
     for (int i = 1; i < argc; i++) {
         const char *value = i + 1 < argc ? argv[i + 1] : "";
         if (!strcmp(argv[i], "--full")) {

@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { CHECK_SKIP = 77, CHECK_PRINTED = 40 };
 
@@ -41,6 +42,12 @@ __attribute__((format(printf, 4, 5))) static inline int check_that(int ok, const
 static inline int check_int(long long got, long long want, const char *file, int line, const char *what)
 {
     return check_that(got == want, file, line, "%s is %lld, expected %lld", what, got, want);
+}
+
+// Tests that try many cases try some of them, always the same, and all when HF_LONG is in the environment.
+static inline int check_long(void)
+{
+    return getenv("HF_LONG") != NULL;
 }
 
 static inline int check_report(void)
