@@ -31,6 +31,7 @@ struct bench_uses {
     struct bench_row in_place, out_of_place;
     double first_ms;     // in place, in a new context: median
     double prepared_ms;  // the same after hf_prepare
+    double later_ms;     // and a later frame of that context
 };
 
 struct bench_result {

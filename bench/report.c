@@ -66,9 +66,9 @@ static void table_uses(FILE *out, const struct bench_uses *u)
         return;
     fprintf(out,
             "in turn: in place %.3f ms (least %.3f), out of place %.3f (%.3f); first frame of a context %.3f, after "
-            "hf_prepare %.3f\n",
+            "hf_prepare %.3f, later %.3f\n",
             u->in_place.median_ms, u->in_place.min_ms, u->out_of_place.median_ms, u->out_of_place.min_ms, u->first_ms,
-            u->prepared_ms);
+            u->prepared_ms, u->later_ms);
 }
 
 void bench_report_table(FILE *out, const struct bench_run *run)
@@ -172,6 +172,7 @@ void bench_report_json(FILE *out, const struct bench_run *run)
     tool_json_ms(&j, "out_of_place_ms", u->out_of_place.median_ms);
     tool_json_ms(&j, "first_ms", u->first_ms);
     tool_json_ms(&j, "prepared_ms", u->prepared_ms);
+    tool_json_ms(&j, "later_ms", u->later_ms);
     tool_json_row(&j, "all", '{');
     json_row(&j, &r->all);
     if (has_gtx660(run))

@@ -124,17 +124,23 @@ static void report_plan(struct hf_render *r, int64_t planning)
     r->c->report.plan_ms = (double)planning * 1e-6;
 }
 
-// Memory for whatever the frame may turn out to need, each page written to so that it is there.
+static void touch(struct hf_render *r, const struct hf_block *block)
+{
+    r->touched = block;
+    parallel(r, (int)((block->size + HF_TOUCH_BYTES - 1) / HF_TOUCH_BYTES), hf_sweep_touch);
+}
+
+// Memory for whatever the frame may turn out to need, written to, so that its pages are there, and by all threads, so that
+// it is in the caches, as it is in any later frame.
 static int take_memory(struct hf_render *r)
 {
     struct hf_context *c = r->c;
     const int err = hf_buffers_allocate(c, r->s, HF_FIELDS);
     if (err)
         return err;
-    if (c->planes.data)
-        memset(c->planes.data, 0, c->planes.size);
+    touch(r, &c->planes);
     for (int i = 0; i < c->threads; i++)
-        memset(c->workers[i].scratch.data, 0, c->workers[i].scratch.size);
+        touch(r, &c->workers[i].scratch);
     return HF_OK;
 }
 

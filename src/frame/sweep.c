@@ -2,6 +2,7 @@
 #include "frame/sweep.h"
 
 #include <math.h>
+#include <string.h>
 #include <time.h>
 
 #include "frame/buffers.h"
@@ -191,4 +192,14 @@ void hf_sweep_colour(void *arg, int i, int worker)
                 w->looked.alpha_min = fminf(w->looked.alpha_min, fminf(even[3][x], odd[3][x]));
         }
     }
+}
+
+// A kilobyte at a time: memset writes longer runs past the caches.
+void hf_sweep_touch(void *arg, int piece, int worker)
+{
+    const struct hf_block *block = ((const struct hf_render *)arg)->touched;
+    const size_t from = (size_t)piece * HF_TOUCH_BYTES;
+    (void)worker;
+    for (size_t at = from; at < from + HF_TOUCH_BYTES && at < block->size; at += 1024)
+        memset((char *)block->data + at, 0, block->size - at < 1024 ? block->size - at : 1024);
 }

@@ -12,8 +12,9 @@ struct hf_render {
     struct hf_context *c;
     const struct hf_setup *s;
     struct hf_copy copy;
-    unsigned have;  // fields whose buffers are allocated: what the first sweep makes at once
-    int sweep;      // the one that hf_sweep_cell runs
+    unsigned have;                   // fields whose buffers are allocated: what the first sweep makes at once
+    int sweep;                       // the one that hf_sweep_cell runs
+    const struct hf_block *touched;  // what hf_sweep_touch writes to
 };
 
 int64_t hf_now_ns(void);
@@ -32,5 +33,9 @@ void hf_sweep_cell(void *arg, int cell, int worker);
 // A tile of a frame without blur: checked, or copied.
 void hf_sweep_check(void *arg, int tile, int worker);
 void hf_sweep_copy(void *arg, int tile, int worker);
+
+// A piece of the block that a frame to come will use: zeros.
+enum { HF_TOUCH_BYTES = 1 << 18 };
+void hf_sweep_touch(void *arg, int piece, int worker);
 
 #endif
