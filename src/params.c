@@ -10,6 +10,7 @@
 #include "frame/engine.h"
 #include "pixel/depth_rows.h"
 #include "pixel/format.h"
+#include "pixel/highlight.h"
 #include "pixel/unorm.h"
 
 const struct hf_params hf_default_params = {
@@ -25,6 +26,7 @@ const struct hf_params hf_default_params = {
     .lens = {.f_number = 2.8f, .focal_length_mm = 50, .sensor_width_mm = 36, .world_unit_m = 1},
     .max_radius = HF_DERIVE,
     .aperture = {.squeeze = 1},
+    .highlight = {.gain = 1, .threshold = 0.9f},
     .view = {.display_width = HF_DERIVE, .display_height = HF_DERIVE, .pixel_aspect = 1},
     .gather = {.rings = HF_DERIVE, .fill = (enum hf_fill)HF_DERIVE},
     .layers = {.spacing = HF_DERIVE, .half_from = HF_DERIVE, .quarter_from = HF_DERIVE},
@@ -349,6 +351,10 @@ int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct
         err = check_radius(r, depth, message);
     if (!err)
         err = check_aperture(&p->aperture, e, message);
+    if (!err)
+        err = hf_check_between("highlight.gain", p->highlight.gain, 1, 64, message);
+    if (!err && p->highlight.gain > 1)
+        err = hf_check_between("highlight.threshold", p->highlight.threshold, 0, 0.99f, message);
     if (err)
         return err;
     p->aperture.rotation = fmodf(p->aperture.rotation, 360);
@@ -389,6 +395,7 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
                            .no_skip = p->run.no_skip,
                            .smoothstep = p->range.blend == HF_BLEND_SMOOTHSTEP,
                            .pixel_aspect = p->view.pixel_aspect,
+                           .highlight = hf_highlight_of(&p->highlight),
                            .resolved = r,
                            .own = own};
     set_coc(s, r, depth);

@@ -339,6 +339,19 @@ struct hf_aperture_params {
     const struct hf_image *picture;
 };
 
+// Light that a clipped picture has lost is given back before the blur and taken away after it, so that a lamp that the
+// picture holds as 1, like the paper beside it, leaves a disc in the blur and the paper does not. The largest of a pixel's
+// R, G and B, m, becomes m + (gain - 1) t^2, t = (m - threshold) / (1 - threshold) within 0..1: as it was up to the threshold,
+// gain at 1, where pictures of whole numbers are clipped. The hue is kept: R, G and B grow alike, a negative one stays.
+// What has been blurred goes back the same way, so that what is evenly bright stays as it was, and nothing is cut. A
+// pixel that the blur leaves alone keeps its bits.
+struct hf_highlight_params {
+    // What 1 becomes, as a multiple, 1 (default: all stays as it is, and costs nothing) to 64; 8 are three stops. Ours.
+    float gain;
+    // Linear value from which there is more: 0 to 0.99, default 0.9 (243 of 255 in sRGB). Not looked at when gain is 1.
+    float threshold;
+};
+
 // Of what picture the image given is a part, and of what pixels.
 struct hf_view_params {
     // Size of the whole picture when the image given is a part of it: pixels, > 0. HF_DERIVE (default): the image's own.
@@ -456,6 +469,7 @@ struct hf_params {
     // hexagon and scatter, and 256 in the gather, whose near and far kernels are then as large as the radii found.
     float max_radius;
     struct hf_aperture_params aperture;
+    struct hf_highlight_params highlight;
     struct hf_view_params view;
     struct hf_gather_params gather;
     struct hf_hexagon_params hexagon;

@@ -174,6 +174,8 @@ static int check_engine(const struct cli_args *args, const struct tool_parser *p
     if (p->hexagon.resolution == HF_RESOLUTION_QUARTER && tool_given(parser, "resolution") && !gaussian)
         return tool_fail(error, -1, "--resolution quarter is of use only with --engine gaussian, not %s",
                          hf_engine_name(p->engine));
+    if (tool_given(parser, "highlight-threshold") && !tool_given(parser, "highlight-gain"))
+        return tool_fail(error, -1, "--highlight-threshold is of use only with --highlight-gain");
     if (args->aperture_file && p->aperture.cat_eye > 0)
         return tool_fail(error, -1, "--cat-eye cannot be used with --aperture %s: a picture is the whole shape",
                          args->aperture_file);

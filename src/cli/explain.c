@@ -59,6 +59,9 @@ static void print_settings(FILE *out, const struct hf_report *r)
         fprintf(out, ", %d step%s below what was asked for, to keep the budget", r->budget_step,
                 r->budget_step == 1 ? "" : "s");
     fprintf(out, "\n  largest CoC radius: near %.2f, far %.2f pixels\n", r->near_radius, r->far_radius);
+    if (p->highlight.gain > 1)
+        fprintf(out, "  highlights above %g raised while they are blurred, 1 to %g\n", p->highlight.threshold,
+                p->highlight.gain);
     if (r->colour_known)
         fprintf(out, "  colour to blur: up to %g, %s, %llu samples not finite\n", r->brightest,
                 r->opaque ? "opaque" : "with alpha below 1", (unsigned long long)r->not_finite);

@@ -211,6 +211,17 @@ int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
     return status;
 }
 
+// Pixels whose highlights will be raised.
+static uint64_t count_highlights(const struct cli_view *v)
+{
+    const struct hf_highlight_params *p = &v->setup.params.highlight;
+    const size_t n = p->gain > 1 ? (size_t)v->view->width * (size_t)v->view->height : 0;
+    uint64_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += v->planes[0][i] > p->threshold || v->planes[1][i] > p->threshold || v->planes[2][i] > p->threshold;
+    return count;
+}
+
 // All that is needed to render a view; *image is its colour.
 static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
                      struct tool_error *error)
@@ -229,6 +240,7 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     session->warnings = 0;
     const int looked = cli_coc_look(v, frame->args, error);
     v->cut = !looked && v->radii ? cli_window_cut(v) : 0;
+    v->highlights = count_highlights(v);
     return looked;
 }
 

@@ -29,12 +29,13 @@ struct cli_view {
     int map_size[2];  // width and height of the depth file, which was scaled; 0: it was not
     int scaled_to[2];
     struct cli_depth_found found;
-    float least_radius;  // pixels: what is least blurred
-    float least_reach;   // of all that is blurred at all
-    float far_away;      // radius of what is infinitely far
-    float *radii;        // of all pixels, see cli_coc_look; NULL
-    int warned;          // times by the library
-    int cut;             // pixels by which the blur reaches beyond the data window, and is lost
+    float least_radius;   // pixels: what is least blurred
+    float least_reach;    // of all that is blurred at all
+    float far_away;       // radius of what is infinitely far
+    float *radii;         // of all pixels, see cli_coc_look; NULL
+    int warned;           // times by the library
+    uint64_t highlights;  // pixels above --highlight-threshold, if they are to be raised
+    int cut;              // pixels by which the blur reaches beyond the data window, and is lost
     struct hf_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for
 };

@@ -45,6 +45,8 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
     tool_json_flag(j, "depth_negative", v->found.flipped);
     tool_json_number(j, "least_radius", v->least_radius);
     tool_json_count(j, "cut", v->cut);
+    if (v->setup.params.highlight.gain > 1)
+        tool_json_count(j, "highlights", (long long)v->highlights);
     tool_json_count(j, "warnings", cli_warnings_of(v));
     tool_json_ms(j, "total_ms", s->total_ms);
     tool_json_open(j, "passes", '[');
@@ -152,6 +154,9 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     put_window(j, "data_window", &v->view->data_window);
     put_window(j, "display_window", &v->view->display_window);
     put_model(j, &v->setup);
+    tool_json_number(j, "highlight_gain", v->setup.params.highlight.gain);
+    if (v->setup.params.highlight.gain > 1)
+        tool_json_number(j, "highlight_threshold", v->setup.params.highlight.threshold);
     cli_choose_json(j, &v->setup, 1e-6 * v->view->width * v->view->height);
     if (!frame->args->dry_run)
         put_stats(j, v, frame);

@@ -43,11 +43,18 @@ static const char *limit_words(enum hf_limit limit)
     }
 }
 
+// There is no highlight to raise.
+static int lacks_highlights(const struct cli_view *v)
+{
+    return v->setup.params.highlight.gain > 1 && v->highlights == 0;
+}
+
 int cli_warnings_of(const struct cli_view *v)
 {
     const struct hf_report *r = &v->report;
     return v->warned + (r->colour_repaired > 0) + (r->depth_repaired > 0) + cli_is_limited(v) + v->found.flipped +
-           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0) + v->setup.missed;
+           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0) + v->setup.missed +
+           lacks_highlights(v);
 }
 
 // A picture of whole numbers that is taken for distances.
@@ -87,6 +94,15 @@ static void warn(const struct cli_view *v, const struct cli_args *args)
                                               : "");
 }
 
+static void warn_highlights(const struct cli_view *v)
+{
+    const struct hf_highlight_params *p = &v->setup.params.highlight;
+    if (lacks_highlights(v))
+        tool_print_line("%s: no pixel is brighter than %g, so --highlight-gain %g changes nothing: see "
+                        "--highlight-threshold",
+                        v->label, p->threshold, p->gain);
+}
+
 // Blur beyond the data window.
 static void warn_cut(const struct cli_view *v)
 {
@@ -102,6 +118,7 @@ int cli_print_warnings(const struct cli_frame *frame)
     int n = 0;
     for (int i = 0; i < frame->view_count; i++) {
         warn(&frame->views[i], frame->args);
+        warn_highlights(&frame->views[i]);
         warn_cut(&frame->views[i]);
         n += cli_warnings_of(&frame->views[i]);
     }
@@ -132,6 +149,9 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     if (cli_is_limited(v))
         n +=
             snprintf(text + n, sizeof(text) - (size_t)n, " (cut to %g, %s)", p->max_radius, limit_words(r->used.limit));
+    if (p->highlight.gain > 1)
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", %" PRIu64 " pixels above %g raised, 1 to %g",
+                      v->highlights, p->highlight.threshold, p->highlight.gain);
     if (r->budget_step)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", %d below what was asked for, for the budget",
                       r->budget_step);
@@ -172,6 +192,8 @@ int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
     if (r.params.engine == HF_ENGINE_GAUSSIAN)
         printf("    standard deviation %.4g pixels, blend by %s\n", r.params.gaussian.sigma,
                r.params.gaussian.by_depth ? "depth" : "radius");
+    if (r.params.highlight.gain > 1)
+        printf("    highlights above %g raised, 1 to %g\n", r.params.highlight.threshold, r.params.highlight.gain);
     if (r.sharp)
         printf("    nothing will be blurred\n");
     return 0;

@@ -60,7 +60,7 @@ void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_re
         if (copy->raw && row_finite(f, x, y, n, f->dst))
             continue;
         float *const *alpha = hf_image_channels(f->src) == 4 ? even : NULL;
-        hf_read_colour(f, r.x0, y, r.x1 - r.x0, even, odd, &w->counts);
+        hf_read_given(f, r.x0, y, r.x1 - r.x0, even, odd, &w->counts);
         const float *const e[4] = {even[0], even[1], even[2], alpha ? even[3] : NULL};
         const float *const o[4] = {odd[0], odd[1], odd[2], alpha ? odd[3] : NULL};
         w->counts.clamped += f->k->store[f->dst->format](f->dst, r.x0, y, r.x1 - r.x0, e, o);

@@ -36,6 +36,13 @@ enum hf_depth_form {
     HF_FORM_COC,  // d is the signed radius
 };
 
+// Highlights of clipped pictures (pixel/highlight.h).
+struct hf_highlight {
+    int on;
+    float gain, more;         // what 1 becomes, and how much more that is
+    float from, span, scale;  // the threshold, what lies between it and 1, and 1 over that
+};
+
 // What follows from the arguments of a render call: const once it is made.
 struct hf_setup {
     int width, height, half_width, half_height;
@@ -59,6 +66,7 @@ struct hf_setup {
     float max_radius;  // rho, full-resolution pixels
     float strength;    // 1 outside the range model
     float pixel_aspect;
+    struct hf_highlight highlight;
 
     // Signed CoC radius in full-resolution pixels, see hf_radius_row.
     float radius_0, radius_k;  // linear: r = (v - radius_0) * radius_k, within +-max_radius; radius_k 0: by range,

@@ -184,7 +184,7 @@ void hf_sweep_colour(void *arg, int i, int worker)
         odd[c] = hf_line(&w->frame, 4 + c);
     }
     for (int y = 2 * cell.y0; y < hf_min(2 * cell.y1, r->s->height); y++) {
-        hf_read_colour(&w->frame, cell.x0, y, n, even, odd, &w->looked);
+        hf_read_given(&w->frame, cell.x0, y, n, even, odd, &w->looked);
         for (int x = 0; x < n; x++) {
             for (int c = 0; c < 3; c++)
                 w->looked.brightest = fmaxf(w->looked.brightest, fmaxf(even[c][x], odd[c][x]));

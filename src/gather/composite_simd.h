@@ -348,8 +348,7 @@ static void composite_row_lines(const struct hf_frame *f, const struct composite
     hf_store_rgb(f, lane[1], n);
     if (s->channels == 3)
         lane[0][3] = lane[1][3] = NULL;
-    f->counts->clamped +=
-        f->k->store[f->dst->format](f->dst, x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
+    hf_store_colour(f, x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
 }
 
 // ---- in registers: R11G11B10F to R11G11B10F, two rows at once ----
@@ -573,7 +572,8 @@ static void composite_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const int end = hf_min(2 * r.y1, f->s->height);
     const int packs = f->src->format == HF_FORMAT_R11G11B10F && f->dst->format == HF_FORMAT_R11G11B10F &&
-                      f->s->storage != HF_STORAGE_HALF && !f->s->faithful && !hf_gather(f->s)->bicubic;
+                      f->s->storage != HF_STORAGE_HALF && !f->s->faithful && !hf_gather(f->s)->bicubic &&
+                      !f->s->highlight.on;
     // Rows 2 k - 1 and 2 k lie between the half-resolution rows k - 1 and k.
     for (int k = r.y0; 2 * k <= end; k++) {
         const int y[2] = {k > r.y0 ? 2 * k - 1 : -1, 2 * k < end ? 2 * k : -1};

@@ -204,9 +204,10 @@ HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far
     const enum hf_downsample how = hf_gather(f->s)->downsample;
     const enum hf_division division = hf_gather(f->s)->division;
     const int usual = how == HF_DOWNSAMPLE_BILATERAL && division == HF_DIVISION_EXACT;
+    const int words = usual && f->src->format == HF_FORMAT_R11G11B10F && !f->s->highlight.on;
     for (int y = r.y0; y < r.y1; y++) {
         int x = r.x0;
-        if (usual && f->src->format == HF_FORMAT_R11G11B10F) {
+        if (words) {
             // Up to the last vector that lies in the picture as a whole.
             const int x1 = hf_min(r.x1, x + (f->s->width / 2 - x) / VF_N * VF_N);
             if (x < x1 && down_row_r11(f, near, far, x, x1, y, stream))

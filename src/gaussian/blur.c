@@ -165,8 +165,7 @@ void hf_gaussian_merge_c(const struct hf_frame *f, int y, struct hf_rect r)
     }
     if (s->channels == 3)
         lane[0][3] = lane[1][3] = NULL;
-    f->counts->clamped +=
-        f->k->store[f->dst->format](f->dst, r.x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
+    hf_store_colour(f, r.x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
 }
 
 // ---- passes ----

@@ -158,7 +158,8 @@ static void merge_simd(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const enum hf_format format = f->src->format;
     const int pixels = hf_min(2 * r.x1, f->s->width) - 2 * r.x0;
-    const int n = f->dst->format == format ? pixels / 2 / (2 * VF_N) * (2 * VF_N) : 0;
+    const int direct = f->dst->format == format && !f->s->highlight.on;
+    const int n = direct ? pixels / 2 / (2 * VF_N) * (2 * VF_N) : 0;
     // In place, a sample that is not finite wants neighbours that have not been overwritten.
     const int in_place = f->src->data[0] == f->dst->data[0];
     vi clamped = vi_set1(0);

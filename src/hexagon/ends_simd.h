@@ -339,7 +339,7 @@ static void hex_half_row(const struct hf_frame *f, int y, struct hf_rect r)
         for (int c = 0; c < f->s->channels; c++)
             stored[odd][c] = lane[odd][c];
     }
-    f->counts->clamped += f->k->store[f->dst->format](f->dst, r.x0, y, n, stored[0], stored[1]);
+    hf_store_colour(f, r.x0, y, n, stored[0], stored[1]);
 }
 
 static void hexagon_composite_simd(const struct hf_frame *f, struct hf_rect r)

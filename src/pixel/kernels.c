@@ -10,7 +10,9 @@ void hf_pixel_kernels_c(struct hf_pixel_kernels *k)
                                    .sharp_row = hf_sharp_row_c,
                                    .radius_row = hf_radius_row_c,
                                    .zip = hf_zip_row_c,
-                                   .unzip = hf_unzip_row_c};
+                                   .unzip = hf_unzip_row_c,
+                                   .raise = hf_raise_row_c,
+                                   .lower = hf_lower_row_c};
     hf_format_kernels_c(k);
     hf_depth_rows_c(k);
     hf_behind_rows_c(k);

@@ -42,6 +42,9 @@ typedef void hf_unzip_row(const float *in, int n, float *even, float *odd);
 typedef void hf_round_row(float *v, int n);
 typedef void hf_round_rgb(float *r, float *g, float *b, int n);
 
+// Highlights of rows of n pixels, their R, G and B, in place: raised, and lowered again. May touch HF_PAD floats more.
+typedef void hf_highlight_row(const struct hf_highlight *h, float *r, float *g, float *b, int n);
+
 // What lies behind near pixels (behind.c), rows of n.
 // The largest of out and of what near radii two pixels each have.
 typedef void hf_near_row(const float *radius, int n, float *out);
@@ -80,6 +83,7 @@ struct hf_pixel_kernels {
     hf_finite *finite_f32, *finite_f16, *finite_r11, *finite_any;
     hf_round_rgb *truncate_r11;  // R11G11B10F, towards zero
     hf_round_row *round_half;    // to nearest even, clamped to +-65504
+    hf_highlight_row *raise, *lower;
     struct hf_behind_kernels behind;
 };
 HF_DECLARE_KERNELS(hf_pixel_kernels);
@@ -87,6 +91,8 @@ HF_DECLARE_KERNELS(hf_pixel_kernels);
 void hf_format_kernels_c(struct hf_pixel_kernels *k);  // the rows of images among them (format.c)
 void hf_behind_rows_c(struct hf_pixel_kernels *k);     // and of what lies behind near pixels (behind_rows.c)
 
+hf_highlight_row hf_raise_row_c;
+hf_highlight_row hf_lower_row_c;
 hf_near_row hf_near_row_c;
 hf_most_row hf_most_row_c;
 hf_seen_row hf_seen_row_c;

@@ -27,10 +27,17 @@ static inline float hf_ramp(const struct hf_setup *s, float t)
 
 float hf_round_coc(enum hf_storage storage, float t);
 
-// Load a row of the frame's colour: loaded, repaired where not finite, in chapter storage truncated.
-// Returns nothing; repaired samples are counted in counts when it is not NULL.
+// Load a row of the frame's colour for an engine: loaded, repaired where not finite, highlights raised if that is asked for,
+// in chapter storage truncated. Returns nothing; repaired samples are counted in counts when it is not NULL.
 void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
                     struct hf_counts *counts);
+// The same but for highlights, which stay as they are.
+void hf_read_given(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                   struct hf_counts *counts);
+// The way back, as an engine stores its rows: highlights lowered, and a sample that has the bits that hf_read_colour gave is
+// the one in the picture. even[3] and odd[3] NULL: alpha 1 if the format has one. What is clamped is counted.
+void hf_store_colour(const struct hf_frame *f, int x, int y, int n, const float *const even[4],
+                     const float *const odd[4]);
 // The same for 2n pixels in order from pixel 2x on. Uses scratch rows 0 to 7.
 void hf_read_pixels(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
 // Store 2n pixels in order from pixel 2x of row y on, as the target's format wants them; what it clamps is counted.

@@ -86,5 +86,5 @@ void hf_write_pixels(const struct hf_frame *f, int x, int y, int n, const float 
         e[c] = even[c];
         o[c] = odd[c];
     }
-    f->counts->clamped += f->k->store[f->dst->format](f->dst, x, y, n, e, o);
+    hf_store_colour(f, x, y, n, e, o);
 }

@@ -52,13 +52,17 @@ size_t hf_repair_list(const struct hf_image *m, struct hf_rect r, struct hf_repa
     return count;
 }
 
-void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
-                    struct hf_counts *counts)
+static void read_row(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                     struct hf_counts *counts, int raise)
 {
     if (f->k->load[f->src->format](f->src, x, y, n, even, odd)) {
         const uint64_t repairs = repair_row(f->src, x, y, n, even, odd);
         if (counts)
             counts->colour_repaired += repairs;
+    }
+    if (raise) {
+        f->k->raise(&f->s->highlight, even[0], even[1], even[2], n);
+        f->k->raise(&f->s->highlight, odd[0], odd[1], odd[2], n);
     }
     if (f->s->storage == HF_STORAGE_PACKED && f->src->format != HF_FORMAT_R11G11B10F) {
         f->k->truncate_r11(even[0], even[1], even[2], n);
@@ -70,4 +74,16 @@ void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const 
             f->k->round_half(odd[c], n);
         }
     }
+}
+
+void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                    struct hf_counts *counts)
+{
+    read_row(f, x, y, n, even, odd, counts, f->s->highlight.on);
+}
+
+void hf_read_given(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                   struct hf_counts *counts)
+{
+    read_row(f, x, y, n, even, odd, counts, 0);
 }

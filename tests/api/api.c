@@ -272,6 +272,16 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.gather.rings = 0);
     SPOIL(params.gather.rings = 65);
     SPOIL(params.run.budget_ms = NAN);
+    SPOIL(params.highlight.gain = 0.5f);
+    SPOIL(params.highlight.gain = 65);
+    SPOIL(params.highlight.gain = NAN);
+    ALLOW(params.highlight.threshold = NAN);  // not looked at
+    good.params.highlight.gain = 2;
+    SPOIL(params.highlight.threshold = 1);
+    SPOIL(params.highlight.threshold = -0.1f);
+    SPOIL(params.highlight.threshold = NAN);
+    ALLOW(params.highlight.threshold = 0);
+    good.params.highlight.gain = 1;
     // A picture is the whole shape.
     const struct hf_image aperture = good.src;
     good.params.engine = HF_ENGINE_LAYERS;

@@ -123,8 +123,8 @@ static struct hf_params blurred(void)
     return p;
 }
 
-// A frame out of place and in place against the same frame in floats.
-static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer)
+// A frame out of place and in place against the same frame in floats, with highlights given back or not.
+static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer, float gain)
 {
     uint8_t *codes = malloc(PIXELS * 8), *out = malloc(PIXELS * 8);
     float *light = malloc(PIXELS * 16), *want = malloc(PIXELS * 16), *depth = malloc(PIXELS * 4),
@@ -139,7 +139,8 @@ static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer)
                           copy = image_of(out, f, transfer, WIDTH, HEIGHT);
     const struct hf_image floats = floats_of(light, WIDTH, HEIGHT), blur = floats_of(want, WIDTH, HEIGHT);
     const struct hf_depth z = {.data = depth, .stride = WIDTH * 4}, sharp = {.data = far, .stride = WIDTH * 4};
-    const struct hf_params p = blurred();
+    struct hf_params p = blurred();
+    p.highlight.gain = gain;
     CHECK(hf_render(c, &floats, &in, &sharp, &p) == HF_OK);  // only to floats
     CHECK(hf_render(c, &blur, &floats, &z, &p) == HF_OK);
     CHECK(hf_render(c, &copy, &in, &z, &p) == HF_OK);
@@ -251,7 +252,8 @@ int main(void)
         for (int f = 0; f < FORMATS; f++)
             for (int transfer = HF_TRANSFER_LINEAR; transfer <= HF_TRANSFER_SRGB; transfer++) {
                 check_codes(c, f, (enum hf_transfer)transfer);
-                check_frame(c, f, (enum hf_transfer)transfer);
+                check_frame(c, f, (enum hf_transfer)transfer, 1);
+                check_frame(c, f, (enum hf_transfer)transfer, 8);
             }
         for (int d = 0; d < DEPTHS; d++)
             for (int e = 0; e < HF_ENGINE_COUNT; e++)

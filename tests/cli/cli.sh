@@ -21,7 +21,7 @@ for option in output focus focus-at range strength near-begin near-end far-begin
     sensor-width world-unit max-radius depth-channel depth-file depth-type near far views aperture karis \
     per-pixel-kernel bicubic fill blend threads isa no-skip json dump-passes compression dry-run version engine \
     faithful storage deterministic explain explain-image budget-ms rings resolution chromatic cat-eye squeeze uniform \
-    iterations sigma; do
+    iterations sigma highlight-gain highlight-threshold; do
     contains "$dir/help" "--$option"
     result "--help tells of --$option" $?
 done
@@ -130,6 +130,9 @@ bad 1 "--engine|'scater'|scatter?" a.exr -o o.exr --engine scater
 bad 1 "--fstop|'f/x'" a.exr -o o.exr --fstop f/x
 bad 1 "--focus|'3km'" a.exr -o o.exr --focus 3km
 bad 1 "--max-radius|'3mm'" a.exr -o o.exr --max-radius 3mm
+bad 1 "--highlight-gain|0.5|1 to 64" a.exr -o o.exr --highlight-gain 0.5
+bad 1 "--highlight-threshold|1|0 to 0.99" a.exr -o o.exr --highlight-gain 2 --highlight-threshold 1
+bad 1 "--highlight-threshold|--highlight-gain" a.exr -o o.exr --highlight-threshold 0.5
 bad 1 "--depth-of-field|--fstop" a.exr -o o.exr --depth-of-field 3 --fstop 2
 bad 1 "--verbose|--quiet" a.exr -o o.exr --verbose --quiet
 bad 1 "--cat-eye|scatter|hexagon" a.exr -o o.exr --engine hexagon --cat-eye 0.1

@@ -76,6 +76,8 @@ static struct hf_params random_params(struct rng *rng, enum hf_engine engine)
     p.range.distance = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
     p.aperture.rotation = (float)rng_below(rng, 90);
     p.run.deterministic = rng_below(rng, 2);
+    p.highlight.gain = rng_below(rng, 3) ? 1 : rng_range(rng, 1, 20);
+    p.highlight.threshold = rng_range(rng, 0, 0.99f);
     if (engine == HF_ENGINE_GATHER) {
         p.gather.faithful = rng_below(rng, 3) == 0;
         p.gather.karis = rng_below(rng, 3) == 0;

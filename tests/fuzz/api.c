@@ -161,6 +161,8 @@ static struct hf_params any_params(struct bytes *b)
     p.gaussian.iterations = any_choice(b, 70) - 1;
     maybe(b, &p.gaussian.sigma);
     maybe(b, &p.run.budget_ms);
+    maybe(b, &p.highlight.gain);
+    maybe(b, &p.highlight.threshold);
     return p;
 }
 

@@ -228,6 +228,8 @@ void finite_call(struct world *w, const struct kernels *k, enum arena a, int whi
 int finite_check(const struct world *w, const struct level *l, char message[256]);
 void round_make(struct world *w, int channels);
 void round_call(struct world *w, const struct kernels *k, enum arena a, int channels);
+void highlight_make(struct world *w, int which);
+void highlight_call(struct world *w, const struct kernels *k, enum arena a, int which);
 int row_check(const struct world *w, const struct level *l, char message[256]);
 int row_pixels(const struct world *w);
 

@@ -63,6 +63,8 @@ const struct test tests[] = {
     ROW("finite_r11", 2, 2000, finite_make, finite_call, finite_check),
     ROW("truncate_r11", 3, 1000, round_make, round_call, row_check),
     ROW("round_half", 1, 1000, round_make, round_call, row_check),
+    ROW("highlight_raise", 0, 1000, highlight_make, highlight_call, row_check),
+    ROW("highlight_lower", 1, 1000, highlight_make, highlight_call, row_check),
     ROW("radius_row", 0, 2000, radius_make, radius_call, row_check),
     ROW("zip", 1, 600, radius_make, radius_call, row_check),
     ROW("unzip", 2, 600, radius_make, radius_call, row_check),

@@ -5,6 +5,7 @@
 
 #include "harness.h"
 #include "pixel/depth_rows.h"
+#include "pixel/highlight.h"
 #include "pixel/unorm.h"
 
 enum { LANES = 8 };  // scratch rows: even 0..3, odd 4..7
@@ -304,6 +305,25 @@ void round_call(struct world *w, const struct kernels *k, enum arena a, int chan
         k->pixel.truncate_r11(lane(w, a, 0), lane(w, a, 1), lane(w, a, 2), w->n);
     else
         k->pixel.round_half(lane(w, a, 0), w->n);
+}
+
+// which 0: raised, 1: lowered.
+void highlight_make(struct world *w, int which)
+{
+    static const int lanes[3] = {0, 1, 2};
+    (void)which;
+    make_size(w);
+    random_row(w);
+    const struct hf_highlight_params p = {.gain = rng_float(&w->rng, 1, 64), .threshold = rng_float(&w->rng, 0, 0.99f)};
+    w->setup.highlight = hf_highlight_of(&p);
+    fill_lanes(w, lanes, 3);
+    for (int c = 0; c < 3; c++)
+        lane_region(w, REGION_FLOATS, c);
+}
+
+void highlight_call(struct world *w, const struct kernels *k, enum arena a, int which)
+{
+    (which ? k->pixel.lower : k->pixel.raise)(&w->setup.highlight, lane(w, a, 0), lane(w, a, 1), lane(w, a, 2), w->n);
 }
 
 int row_check(const struct world *w, const struct level *l, char message[256])

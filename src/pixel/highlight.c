@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Highlights of clipped pictures in plain C: the specification of the vector version.
+#include "pixel/highlight.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "pixel/pass_c.h"
+
+static float largest(float r, float g, float b)
+{
+    const float rg = r > g ? r : g;
+    return rg > b ? rg : b;
+}
+
+void hf_raise_row_c(const struct hf_highlight *h, float *r, float *g, float *b, int n)
+{
+    float *const rgb[3] = {r, g, b};
+    for (int i = 0; i < n; i++) {
+        const float m = largest(r[i], g[i], b[i]);
+        if (!(m > h->from))
+            continue;
+        const float far = (m - h->from) * h->scale, t = far < 1 ? far : 1;
+        const float part = (h->more * (t * t)) / m;
+        for (int c = 0; c < 3; c++)
+            if (rgb[c][i] > 0)
+                rgb[c][i] = rgb[c][i] + rgb[c][i] * part;
+    }
+}
+
+// (-span + sqrt(span^2 + 4 more d)) / (2 more), written so that nothing is taken away from what is as large.
+void hf_lower_row_c(const struct hf_highlight *h, float *r, float *g, float *b, int n)
+{
+    float *const rgb[3] = {r, g, b};
+    const float more4 = 4 * h->more, span2 = h->span * h->span;
+    for (int i = 0; i < n; i++) {
+        const float most = largest(r[i], g[i], b[i]);
+        if (!(most > h->from))
+            continue;
+        const float below = most < h->gain ? most : h->gain, d = below - h->from;
+        const float far = (d + d) / (h->span + sqrtf(span2 + more4 * d)), t = far < 1 ? far : 1;
+        const float m = (h->from + h->span * t) + (most - below), part = m / most;
+        for (int c = 0; c < 3; c++)
+            if (rgb[c][i] > 0)
+                rgb[c][i] = rgb[c][i] * part;
+    }
+}
+
+// ---- from the engines' rows to the picture ----
+
+enum { LANES = 64 };
+
+// Of both rows, even and odd, all channels.
+struct block {
+    _Alignas(64) float row[2][4][LANES + HF_PAD];
+};
+
+static void read_block(const struct hf_frame *f, int x, int y, int n, int raised, struct block *b)
+{
+    float *even[4], *odd[4];
+    for (int c = 0; c < 4; c++) {
+        even[c] = b->row[0][c];
+        odd[c] = b->row[1][c];
+    }
+    (raised ? hf_read_colour : hf_read_given)(f, x, y, n, even, odd, f->seen);
+}
+
+static int same_bits(float a, float b)
+{
+    uint32_t u, v;
+    memcpy(&u, &a, sizeof u);
+    memcpy(&v, &b, sizeof v);
+    return u == v;
+}
+
+static void store_block(const struct hf_frame *f, int x, int y, int n, const float *const from[2][4], int at)
+{
+    struct block given, raised, out;
+    const float *rows[2][4];
+    read_block(f, x, y, n, 0, &given);
+    read_block(f, x, y, n, 1, &raised);
+    for (int o = 0; o < 2; o++) {
+        for (int c = 0; c < 3; c++)
+            memcpy(out.row[o][c], from[o][c] + at, (size_t)n * sizeof(float));
+        f->k->lower(&f->s->highlight, out.row[o][0], out.row[o][1], out.row[o][2], n);
+        for (int c = 0; c < 3; c++) {
+            for (int i = 0; i < n; i++)
+                if (same_bits(from[o][c][at + i], raised.row[o][c][i]))
+                    out.row[o][c][i] = given.row[o][c][i];
+            rows[o][c] = out.row[o][c];
+        }
+        rows[o][3] = from[o][3] ? from[o][3] + at : NULL;
+    }
+    f->counts->clamped += f->k->store[f->dst->format](f->dst, x, y, n, rows[0], rows[1]);
+}
+
+void hf_store_colour(const struct hf_frame *f, int x, int y, int n, const float *const even[4],
+                     const float *const odd[4])
+{
+    if (!f->s->highlight.on) {
+        f->counts->clamped += f->k->store[f->dst->format](f->dst, x, y, n, even, odd);
+        return;
+    }
+    const float *const rows[2][4] = {{even[0], even[1], even[2], even[3]}, {odd[0], odd[1], odd[2], odd[3]}};
+    for (int i = 0; i < n; i += LANES)
+        store_block(f, x + i, y, hf_min(n - i, LANES), rows, i);
+}
