@@ -57,8 +57,9 @@ struct level {
 };
 
 enum { MAX_LEVELS = 12 };
-// Every table this CPU can run, the C first; filter: NULL, or part of a name. Returns how many.
-int levels_make(struct level levels[MAX_LEVELS], const char *filter);
+// Every table this CPU can run, the C first; filter: NULL, or part of a name; emulated: with what needs no CPU of its own.
+// Returns how many.
+int levels_make(struct level levels[MAX_LEVELS], const char *filter, int emulated);
 // AVX-512 in plain C (emulated/). Returns 0 if this build has none.
 int emulated_kernels(struct kernels *k, int fused);
 // Does the emulation do what the instructions do? Returns the number of operations that do not.

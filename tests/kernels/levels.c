@@ -30,7 +30,7 @@ static void init(struct kernels *k, enum hf_isa isa, int fused)
     hf_layers_kernels_init(&k->layers, isa, fused);
 }
 
-int levels_make(struct level levels[MAX_LEVELS], const char *filter)
+int levels_make(struct level levels[MAX_LEVELS], const char *filter, int emulated)
 {
     memset(levels, 0, sizeof *levels * MAX_LEVELS);
     init(&levels[0].k, HF_ISA_SCALAR, 0);
@@ -50,9 +50,9 @@ int levels_make(struct level levels[MAX_LEVELS], const char *filter)
             n = add(levels, n, isas[i], "", 0, filter);
     }
     crash_step = "avx512 (emulated)";
-    if (emulated_kernels(&levels[n].k, 0))
+    if (emulated && emulated_kernels(&levels[n].k, 0))
         n = add(levels, n, HF_ISA_AUTO, " exact", 1, filter);
-    if (emulated_kernels(&levels[n].k, 1))
+    if (emulated && emulated_kernels(&levels[n].k, 1))
         n = add(levels, n, HF_ISA_AUTO, "", 0, filter);
     return n;
 }

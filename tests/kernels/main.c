@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests every kernel of every instruction set against the C, and times them.
-//     kernels [--seed N] [--quick] [--isa NAME] [--kernel NAME] [--case N] [--list] [--bench [NAME]]
+// --quick: a sixth of the cases; --brief: a quarter of these, and nothing that would be emulated twice where the CPU is
+// emulated. With HF_LONG in the environment all cases all the same.
+//
+//     kernels [--seed N] [--quick | --brief] [--isa NAME] [--kernel NAME] [--case N] [--list] [--bench [NAME]]
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -135,7 +138,7 @@ const int test_count = sizeof tests / sizeof *tests;
 
 struct options {
     uint64_t seed;
-    int quick, list, bench, only_case;
+    int share, brief, list, bench, only_case;  // share: 1 of so many cases
     const char *isa, *kernel;
 };
 
@@ -208,7 +211,7 @@ static int run_tests(struct world *w, const struct options *o, const struct leve
         if (o->kernel && strcmp(o->kernel, t->name))
             continue;
         struct outcome outcomes[MAX_LEVELS] = {0};
-        const int cases = o->quick ? t->cases / 6 : t->cases;
+        const int cases = t->cases / o->share;
         for (int n = o->only_case < 0 ? 0 : o->only_case; n < (o->only_case < 0 ? cases : o->only_case + 1); n++)
             run_case(w, t, n, o, levels, level_count, outcomes);
         for (int l = 0; l < level_count; l++) {
@@ -227,21 +230,24 @@ static int run_tests(struct world *w, const struct options *o, const struct leve
 
 static void usage(void)
 {
-    fprintf(stderr, "usage: kernels [--seed N] [--quick] [--isa NAME] [--kernel NAME] [--case N] [--list] "
+    fprintf(stderr, "usage: kernels [--seed N] [--quick | --brief] [--isa NAME] [--kernel NAME] [--case N] [--list] "
                     "[--bench [NAME]]\n");
     exit(2);
 }
 
 static struct options parse(int argc, char **argv)
 {
-    struct options o = {.seed = 1, .only_case = -1};
+    struct options o = {.seed = 1, .share = 1, .only_case = -1};
     if (getenv("HF_TEST_SEED"))
         o.seed = strtoull(getenv("HF_TEST_SEED"), NULL, 0);
     for (int i = 1; i < argc; i++) {
         const char *value = i + 1 < argc ? argv[i + 1] : NULL;
         if (!strcmp(argv[i], "--quick"))
-            o.quick = 1;
-        else if (!strcmp(argv[i], "--list"))
+            o.share = 6;
+        else if (!strcmp(argv[i], "--brief")) {
+            o.share = 24;
+            o.brief = 1;
+        } else if (!strcmp(argv[i], "--list"))
             o.list = 1;
         else if (!strcmp(argv[i], "--bench")) {
             o.bench = 1;
@@ -260,6 +266,8 @@ static struct options parse(int argc, char **argv)
         else
             usage();
     }
+    if (getenv("HF_LONG"))
+        o.share = 1;
     return o;
 }
 
@@ -270,7 +278,7 @@ int main(int argc, char **argv)
     static struct world world;
     setvbuf(stdout, NULL, _IOLBF, 0);
     crash_handlers();
-    const int level_count = levels_make(levels, o.isa);
+    const int level_count = levels_make(levels, o.isa, !o.brief);
     if (o.isa && level_count == 1) {
         fprintf(stderr, "%s: not on this CPU or not in this build\n", o.isa);
         return 77;
@@ -288,7 +296,7 @@ int main(int argc, char **argv)
     putchar('\n');
     arenas_open();
     if (o.bench)
-        o.quick = 1;
+        o.share = 6;
     const int failed = run_tests(&world, &o, levels, level_count);
     if (!failed && o.bench)
         bench_run(&world, levels, level_count, o.kernel);

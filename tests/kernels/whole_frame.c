@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whole frames through the public calls, on every instruction set: deterministic frames have the bits of the C, others
 // are within the bound that follows from the number of operations.
-//     whole_frame [--seed N] [--quick] [--isa NAME]
+// --quick: fewer frames; --brief: besides, only small ones, and nothing that would be emulated twice where the CPU is
+// emulated. With HF_LONG in the environment all frames all the same.
+//
+//     whole_frame [--seed N] [--quick | --brief] [--isa NAME]
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +31,7 @@ static const struct frame_case special[] = {
     {"a row", 70, 1, 0, 0, 0},
 };
 
-enum { SPECIALS = sizeof special / sizeof *special };
+enum { SPECIALS = sizeof special / sizeof *special, LARGE = 3 };  // the large ones come first
 
 static int passed, failed;
 static uint32_t hash = 2166136261u;  // of the C's pictures: the same on every machine with the same libm
@@ -309,24 +312,28 @@ int main(int argc, char **argv)
     static struct level levels[MAX_LEVELS];
     static struct world w;
     const char *isa = NULL, *seed = getenv("HF_TEST_SEED");
-    int frames = 150;
+    int frames = 150, first = 0, brief = 0;
     for (int i = 1; i < argc; i++) {
         if (!strcmp(argv[i], "--quick"))
             frames = 12;
+        else if (!strcmp(argv[i], "--brief"))
+            frames = 12, first = LARGE, brief = 1;
         else if (!strcmp(argv[i], "--seed") && i + 1 < argc)
             seed = argv[++i];
         else if (!strcmp(argv[i], "--isa") && i + 1 < argc)
             isa = argv[++i];
         else
-            return fprintf(stderr, "usage: whole_frame [--seed N] [--quick] [--isa NAME]\n"), 2;
+            return fprintf(stderr, "usage: whole_frame [--seed N] [--quick | --brief] [--isa NAME]\n"), 2;
     }
+    if (getenv("HF_LONG"))
+        frames = 150, first = 0;
     crash_handlers();
-    const int level_count = levels_make(levels, isa);
+    const int level_count = levels_make(levels, isa, !brief);
     if (isa && level_count == 1)
         return 77;
     setvbuf(stdout, NULL, _IOLBF, 0);
     arenas_open();
-    for (int i = 0; i < SPECIALS + frames; i++)
+    for (int i = first; i < SPECIALS + frames; i++)
         run_frame(&w, levels, level_count, seed ? strtoull(seed, NULL, 0) : 1, i);
     hf_taps_free(&w.gather.taps, &hf_mem_default);
     printf("hash of the C's pictures: %08x\n", hash);
