@@ -249,7 +249,7 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
     const struct hf_layers *l = hf_layers(s);
     // Planes of one set of samples have one stride: whoever reads some of them reads as far around as the others do.
-    const int n = halo == HALO_EDGE     ? 6
+    const int n = halo == HALO_EDGE     ? (l->set.highlights ? HF_LAYERS_BRIGHT_REACH : 6)
                   : halo == HALO_LEVELS ? hf_layers_hidden_reach(l)
                                         : hf_max(l->around / 2, hf_layers_patterns_reach(l));
     return (struct hf_reach){n, n};

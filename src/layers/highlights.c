@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Highlights: what of a sample is so much brighter than what lies around it that the edge of its disc would show the
 // pixels of a coarser resolution. What they do to it then stays below LEAST of its surroundings, whatever the exposure;
-// what is less than PLAIN times as bright as these does not count, or every pattern would be made of highlights.
+// what is less than PLAIN times as bright as these does not count, or every pattern would be made of highlights. These are
+// the darkest of what lies at the sample and next to it on four sides: a disc's rim lies before that, and a lamp of some
+// pixels must not hide itself in its own mean. Nothing at all counts as bright as the sample: alpha, which has no shares,
+// would otherwise not go with the colour.
 #include "layers/highlights.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "pixel/pass_c.h"
 
-enum { REACH = 4, PAD = 32 };  // of the mean, half-resolution pixels
+// Half-resolution pixels: of a mean on either side of its middle, from one mean to the next, and beside a row of scratch.
+enum { MEAN = 4, APART = 2 * MEAN + 1, REACH = HF_LAYERS_BRIGHT_REACH, PAD = 32 };
+_Static_assert(MEAN + APART <= REACH && REACH + 16 <= PAD, "what means read and vectors write");
 
 #define LEAST 0.001f
 #define PLAIN 2
@@ -40,48 +46,75 @@ void hf_layers_nine_c(const float *const in[9], int n, float *out)
     }
 }
 
-void hf_layers_shares_c(const float *const in[6], const float *limit, int n, float *out)
+void hf_layers_shares_c(const float *const in[6], const float *const around[5], const float *const covered[5], int n,
+                        float *out)
 {
     for (int x = 0; x < n; x++) {
-        const float r = in[5][x], m = limit[x / 2], light = in[0][x] + in[1][x] + in[2][x];
+        const float r = in[5][x], light = in[0][x] + in[1][x] + in[2][x];
+        float m = HUGE_VALF;
+        for (int i = 0; i < 5; i++) {
+            const float v = covered ? around[i][x / 2] + (1 - covered[i][x / 2]) * root(light) : around[i][x / 2];
+            m = v < m ? v : m;
+        }
         const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));
         out[x] = fabsf(r) > HF_LAYERS_FINE && light > cap ? in[4][x] * (1 - cap / light) : 0;
     }
 }
 
+// Rows of means, and of roots above them and below; one row more, and two of nothing.
 size_t hf_layers_highlight_floats(int width, int height)
 {
-    return ((size_t)width + 2 * PAD) * ((size_t)height + 2 * REACH + 2);
+    return ((size_t)width + 2 * PAD) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
+}
+
+// Means around a cell: of roots of sums of three channels, of which those below 0 are nothing.
+static void make_means(const struct hf_frame *f, struct hf_rect r, const int channel[3], float *scratch, float *mean)
+{
+    const struct hf_layers_kernels *k = hf_layers_kernels(f);
+    const int width = r.x1 - r.x0, height = r.y1 - r.y0;
+    const ptrdiff_t stride = width + 2 * PAD;
+    float *down = scratch + PAD, *none = scratch + stride, *roots = scratch + (3 + REACH) * stride + PAD;
+    const float *in[9];
+    memset(none, 0, sizeof(float) * 2 * (size_t)stride);
+    for (int y = -REACH; y < height + REACH; y++) {
+        const float *row[2][3];
+        for (int i = 0; i < 6; i++)
+            row[i / 3][i % 3] = channel[i % 3] < 0 ? none
+                                                   : hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], channel[i % 3],
+                                                           2 * (r.x0 - REACH), 2 * (r.y0 + y) + i / 3);
+        k->roots(row[0], row[1], width + 2 * REACH, roots + y * stride - REACH);
+    }
+    for (int y = -APART; y < height + APART; y++) {
+        for (int i = 0; i < 9; i++)
+            in[i] = roots + (y + i - MEAN) * stride - REACH;
+        k->nine(in, width + 2 * REACH, down - REACH);
+        for (int i = 0; i < 9; i++)
+            in[i] = down + i - MEAN - APART;
+        k->nine(in, width + 2 * APART, mean + y * stride - APART);
+    }
 }
 
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const int width = r.x1 - r.x0, height = r.y1 - r.y0, n = hf_min(2 * r.x1, f->s->width) - 2 * r.x0;
-    const ptrdiff_t stride = width + 2 * PAD;
-    float *mean = f->work + PAD, *down = mean + (height + 2 * REACH) * stride, *across = down + stride;
-    for (int y = 0; y < height + 2 * REACH; y++) {
-        float *above[4], *below[4];
-        const int py = 2 * (r.y0 + y - REACH);
-        hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], 3, 2 * (r.x0 - REACH), py, above);
-        hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], 3, 2 * (r.x0 - REACH), py + 1, below);
-        k->roots((const float *const *)above, (const float *const *)below, width + 2 * REACH,
-                 mean + y * stride - REACH);
-    }
-    for (int y = 0; y < height; y++) {
-        const float *in[9];
-        for (int i = 0; i < 9; i++)
-            in[i] = mean + (y + i) * stride - REACH;
-        k->nine(in, width + 2 * REACH, down - REACH);
-        for (int i = 0; i < 9; i++)
-            in[i] = down + i - REACH;
-        k->nine(in, width, across);
-        for (int py = 2 * (r.y0 + y); py < hf_min(2 * (r.y0 + y) + 2, f->s->height); py++) {
-            float *at[6];
-            hf_row(&f->buf[HF_LAYERS_BUF_SEEN], 3, 2 * r.x0, py, at);
-            at[4] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 0, 2 * r.x0, py);
-            at[5] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * r.x0, py);
-            k->shares((const float *const *)at, across, n, hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * r.x0, py));
+    const int channels = hf_layers(f->s)->channels;
+    const ptrdiff_t stride = width + 2 * PAD, apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
+    float *mean = f->work + APART * stride + PAD, *cover = mean + (height + 2 * APART) * stride,
+          *scratch = cover + (height + APART) * stride - PAD;
+    make_means(f, r, (const int[]){0, 1, 2}, scratch, mean);
+    if (channels == 4)
+        make_means(f, r, (const int[]){3, -1, -1}, scratch, cover);
+    for (int py = 2 * r.y0; py < hf_min(2 * r.y1, f->s->height); py++) {
+        const float *around[5], *covered[5], *in[6];
+        for (int i = 0; i < 5; i++) {
+            around[i] = mean + (py / 2 - r.y0) * stride + apart[i];
+            covered[i] = cover + (py / 2 - r.y0) * stride + apart[i];
         }
+        for (int i = 0; i < 3; i++)
+            in[i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN], i, 2 * r.x0, py);
+        for (int i = 0; i < 2; i++)
+            in[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, 2 * r.x0, py);
+        hf_layers_kernels(f)->shares(in, around, channels == 4 ? covered : NULL, n,
+                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * r.x0, py));
     }
 }

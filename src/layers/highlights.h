@@ -4,6 +4,8 @@
 
 #include "layers/kernels.h"
 
+enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample that are looked at
+
 // Floats of scratch for a cell of half-resolution pixels.
 size_t hf_layers_highlight_floats(int width, int height);
 // The shares of a cell's pixels, from their samples.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Highlights on vectors: in the order of operations of highlights.c.
+#include <math.h>
+
 #include "layers/highlights.h"
 #include "simd/simd.h"
 
@@ -32,19 +34,34 @@ static void layers_nine_simd(const float *const in[9], int n, float *out)
     }
 }
 
-static void layers_shares_simd(const float *const in[6], const float *limit, int n, float *out)
+static void layers_shares_simd(const float *const in[6], const float *const around[5], const float *const covered[5],
+                               int n, float *out)
 {
     const vf one = vf_set1(1);
     for (int x = 0; x < n; x += 2 * VF_N) {
-        const vf m = vf_load(limit + x / 2), q = vf_mul(m, m);
-        vf cap[2];
-        vf_zip(q, q, &cap[0], &cap[1]);
-        for (int i = 0; i < 2; i++) {
-            const int at = x + i * VF_N;
-            const vf r = vf_load(in[5] + at), light = layers_light(in, at);
-            const vf c = vf_mul(cap[i], vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
-            const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light, c));
-            vf_store(out + at, vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(c, light)))));
+        const vf light[2] = {layers_light(in, x), layers_light(in, x + VF_N)};
+        vf least[2] = {vf_set1(HUGE_VALF), vf_set1(HUGE_VALF)};
+        for (int i = 0; i < 5; i++) {
+            const vf m = vf_load(around[i] + x / 2);
+            vf v[2];
+            vf_zip(m, m, &v[0], &v[1]);
+            if (covered) {
+                const vf open = vf_sub(one, vf_load(covered[i] + x / 2));
+                vf part[2];
+                vf_zip(open, open, &part[0], &part[1]);
+                for (int j = 0; j < 2; j++)
+                    v[j] = vf_fma(part[j], vf_sqrt(vf_max(light[j], vf_zero())), v[j]);
+            }
+            for (int j = 0; j < 2; j++)
+                least[j] = vf_min(v[j], least[j]);
+        }
+        for (int j = 0; j < 2; j++) {
+            const int at = x + j * VF_N;
+            const vf r = vf_load(in[5] + at);
+            const vf cap =
+                vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
+            const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
+            vf_store(out + at, vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(cap, light[j])))));
         }
     }
 }

@@ -14,8 +14,10 @@ typedef void hf_layers_unmix(const struct hf_unmix_row *row, int n);
 typedef void hf_layers_roots(const float *const above[3], const float *const below[3], int n, float *out);
 // Sums of nine numbers: of a line, and of lines.
 typedef void hf_layers_nine(const float *const in[9], int n, float *out);
-// What of n pixels' weight is a highlight: in is colour, weight (4), radius (5); limit the brightness around, one for two.
-typedef void hf_layers_shares(const float *const in[6], const float *limit, int n, float *out);
+// What of n pixels' weight is a highlight: in is colour, weight (4), radius (5); the least of five is the root of brightness
+// around, one for two pixels. covered: of the same places, roots of alpha, or NULL.
+typedef void hf_layers_shares(const float *const in[6], const float *const around[5], const float *const covered[5],
+                              int n, float *out);
 // The farthest of n quads from two rows of samples: colour, weight (4), radius (5).
 typedef void hf_layers_quads(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
                              float *const out[6]);

@@ -117,9 +117,7 @@ static void holes(struct hf_context *c)
     }
 }
 
-// Leaves with soft edges before nothing at all, as film alpha has them, put over grey: all is between the two. What counts
-// as a highlight, as the rim of something bright before nothing may, is drawn finer than its alpha: less than half a
-// step of a display shows of that.
+// Leaves with soft edges before nothing at all, as film alpha has them, put over grey: all is between the two.
 static void over_grey(struct hf_context *c)
 {
     const int width = 220, height = 160;
@@ -131,7 +129,7 @@ static void over_grey(struct hf_context *c)
         p.engine = HF_ENGINE_LAYERS;
         p.max_radius = HF_DERIVE;
         p.layers.no_highlights = (int)k % 2;
-        const double bound = p.layers.no_highlights ? 4e-6 : 0.5 / 255;
+        const double bound = 4e-6;
         for (int i = 0; i < width * height; i++) {
             const int x = i % width, y = i / width;
             const float d = 40 + 18 * sinf((float)x * 0.07f) - hypotf((float)x - 110.3f, (float)y - 79.6f);

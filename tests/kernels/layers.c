@@ -342,9 +342,11 @@ void layers_make(struct world *w, int which)
         put(w, IN, w->n, 32);
         return;
     case LAYERS_SHARES:
+    case LAYERS_SHARES_ALPHA:
         fill_set(w, 0, 0, w->n);
-        for (int x = 0; x < w->n; x++)
-            line(w, ARENA_MADE, 6)[x] = rng_float(&w->rng, 0, 0.5f);
+        for (int i = 6; i < 9; i++)
+            for (int x = 0; x < w->n; x++)
+                line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, 0.5f);
         put(w, IN, w->n, 32);
         return;
     case LAYERS_QUADS:
@@ -484,7 +486,11 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         s->nine(in, w->n, out);
         return;
     case LAYERS_SHARES:
-        s->shares(in, in[6], w->n, out);
+    case LAYERS_SHARES_ALPHA:
+        s->shares(in, (const float *const[]){in[6], in[7], in[8], in[6] + 1, in[7] + 1},
+                  which == LAYERS_SHARES_ALPHA ? (const float *const[]){in[8], in[6], in[7], in[8] + 1, in[6] + 1}
+                                               : NULL,
+                  w->n, out);
         return;
     case LAYERS_QUADS:
         quads_call(w, k, a);

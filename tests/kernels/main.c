@@ -114,6 +114,7 @@ const struct test tests[] = {
     ROW("layers_roots", LAYERS_ROOTS, 600, layers_make, layers_call, layers_check),
     ROW("layers_nine", LAYERS_NINE, 600, layers_make, layers_call, layers_check),
     ROW("layers_shares", LAYERS_SHARES, 600, layers_make, layers_call, layers_check),
+    ROW("layers_shares alpha", LAYERS_SHARES_ALPHA, 600, layers_make, layers_call, layers_check),
     ROW("layers_quads", LAYERS_QUADS, 600, layers_make, layers_call, layers_check),
     ROW("layers_merge", LAYERS_MERGE, 600, layers_make, layers_call, layers_check),
     ROW("layers_tap", LAYERS_TAP, 600, layers_make, layers_call, layers_check),

@@ -124,17 +124,29 @@ static double root(double v)
     return v > 0 ? sqrt(v) : v < 0 ? -sqrt(-v) : 0;
 }
 
-static void highlight(struct frame *f, int x, int y)
+// Mean root of brightness, of so many channels, of the 18 x 18 pixels around the quad of (x, y).
+static double bright_mean(const struct frame *f, int from, int to, int x, int y)
 {
-    double *s = at(&f->seen, x, y), mean = 0, light = s[0] + s[1] + s[2];
-    const int left = x & ~1, top = y & ~1;
+    double mean = 0;
     for (int v = -8; v < 10; v++)
         for (int u = -8; u < 10; u++) {
             double sum = 0;
-            for (int c = 0; c < 3; c++)
-                sum += colour_at(f, c, left + u, top + v);
+            for (int c = from; c < to; c++)
+                sum += colour_at(f, c, x + u, y + v);
             mean += root(fmax(sum, 0)) / (18 * 18);
         }
+    return mean;
+}
+
+static void highlight(struct frame *f, int x, int y)
+{
+    static const int side[5][2] = {{0, 0}, {-18, 0}, {18, 0}, {0, -18}, {0, 18}};
+    double *s = at(&f->seen, x, y), mean = INFINITY, light = s[0] + s[1] + s[2];
+    for (int i = 0; i < 5; i++) {
+        const int px = (x & ~1) + side[i][0], py = (y & ~1) + side[i][1];
+        const double open = f->channels == 4 ? 1 - bright_mean(f, 3, 4, px, py) : 0;
+        mean = fmin(mean, bright_mean(f, 0, 3, px, py) + open * root(fmax(light, 0)));
+    }
     const double cap = mean * mean * (2 + 0.001 * PI * s[RADIUS] * s[RADIUS]);
     s[SHARE] = fabs(s[RADIUS]) > 4 && light > cap ? s[WEIGHT] * (1 - cap / light) : 0;
 }
