@@ -133,6 +133,15 @@ static float largest(const struct cli_frame *frame, int part)
     return r;
 }
 
+// The first of the views of its part: these share a window, which grows once.
+static int is_first(const struct cli_frame *frame, int i)
+{
+    for (int k = 0; k < i; k++)
+        if (frame->views[k].view->part == frame->views[i].view->part)
+            return 0;
+    return 1;
+}
+
 int cli_window_grow(struct cli_frame *frame, struct tool_error *error)
 {
     for (int i = 0; i < frame->view_count; i++) {
@@ -148,7 +157,7 @@ int cli_window_grow(struct cli_frame *frame, struct tool_error *error)
         const struct hf_io_box box = grown(v->view, r > 0 ? (int)ceilf(r) + MARGIN : 0);
         struct hf_io_error io;
         int status = 0;
-        if (!memcmp(&old, &box, sizeof(box)))
+        if (!is_first(frame, i) || !memcmp(&old, &box, sizeof(box)))
             continue;
         if (hf_io_grow(frame->file, v->index, box, no_surface(frame->args, 1), frame->run, &io))
             return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);

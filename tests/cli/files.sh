@@ -279,6 +279,22 @@ raise SystemExit(worst >= 1e-5)
 PYTHON
     result "--grow is what the whole frame shows: $engine" $?
 done
+# Two views of one part share its window, which grows once, as for one of them.
+python3 - <<'PYTHON'
+from exr import exr
+one = {c: lambda x, y: 1 for c in 'RGB'} | {'Z': lambda x, y: 4 if x < 30 else 9}
+inside = dict(window=(24, 12, 43, 27), display=(0, 0, 63, 39))
+exr('one.exr', one, **inside)
+exr('two.exr', one | {'right.' + c: f for c, f in one.items()}, views=['left', 'right'], **inside)
+PYTHON
+for name in one two; do good $name.exr -o $name-out.exr --focus 4 --range 2 --max-radius 3 --grow; done
+python3 - <<'PYTHON'
+from exr import read, window
+one, two, w = read('one-out.exr'), read('two-out.exr'), window('one-out.exr')
+ok = w == window('two-out.exr') and 8 < w[0] < 24 and all(one[c] == two[c] == two['right.' + c] for c in 'RGBZ')
+raise SystemExit(not ok)
+PYTHON
+result "--grow of two views of one part" $?
 # A crop without windows: the lens is that of the frame it is from.
 plan "focal length 88.8889 pixels|display window -20,-10 to 43,29" bare.exr --focus 2 --fstop 2 --focal-length 50 \
     --display 64x40+20+10
