@@ -21,7 +21,7 @@
 
 static const struct tool_option options[] = {
     {"size", 0, TOOL_FILES, "WxH", "Size of a built-in scene, pixels. Default 1920x1080.", .parse = tool_parse_size,
-     FIELD(width), .max = 65536, .commands = "passes|scaling|batch"},
+     FIELD(width), .max = 65536, .commands = "passes|scaling|batch|formats"},
     {"scene", 0, TOOL_FILES, "NAME|FILE", "mixed (default), near, far, both, focus, band:PERCENT, or an EXR file.",
      TEXT(scene), .commands = "passes"},
     {"images", 0, TOOL_FILES, "DIR", "Folder of NAME.exr and NAME.truth.exr. Default: images "
@@ -34,9 +34,9 @@ static const struct tool_option options[] = {
     {"out", 0, TOOL_FILES, FORMATS, "Format of the colour written. Default r11g11b10f.", NAME(out, FORMAT), .commands = "passes|scaling"},
 
     {"focus", 0, TOOL_FOCUS, "D", "Focus distance, scene units. Default 20, or the file's.",
-     NUMBER(params.focus, 0, FLT_MAX), .above_min = 1, .commands = "passes|scaling"},
+     NUMBER(params.focus, 0, FLT_MAX), .above_min = 1, .commands = "passes|scaling|formats"},
     {"range", 0, TOOL_FOCUS, "D", "Distance from focus to full blur, scene units, or inf. Default 10; for a file half "
-     "its focus.", NUMBER(params.range.distance, 0, FLT_MAX), .inf = 1, .commands = "passes|scaling"},
+     "its focus.", NUMBER(params.range.distance, 0, FLT_MAX), .inf = 1, .commands = "passes|scaling|formats"},
     {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 to 2048. Default 12; truth: as the lens has "
      "it.", NUMBER(params.max_radius, 0, 2048)},
 
@@ -132,7 +132,8 @@ int bench_args_parse(struct bench_args *args, const char *command, int count, ch
     if (p.help)
         return 0;
     // Commands that measure one engine say what it does not do; the others have all of them.
-    const int one = !command || !strcmp(command, "passes") || !strcmp(command, "scaling");
+    const int one =
+        !command || !strcmp(command, "passes") || !strcmp(command, "scaling") || !strcmp(command, "formats");
     const struct tool_option *misfit = one ? tool_misfit(&p, args->params.engine) : NULL;
     char engines[256];
     if (misfit)

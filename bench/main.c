@@ -14,12 +14,13 @@ const char *const bench_command_words[][2] = {
     {"truth", "distance of each engine from ray-traced pictures, and its time"},
     {"tradeoff", "what every step of accuracy costs in time, and which settings are worth it"},
     {"scaling", "time of a frame as its blurred part and its size grow; --size: up to that width"},
+    {"formats", "what each format of colour and of depth costs to read and to store, and in a frame"},
     {"stability", "hard cases: what was tried, the bound, the worst value seen; of all engines or one"},
     {NULL, NULL},
 };
 // In the same order.
-static bench_command *const commands[] = {bench_passes,   bench_batch,   bench_truth,
-                                          bench_tradeoff, bench_scaling, bench_stability};
+static bench_command *const commands[] = {bench_passes,  bench_batch,   bench_truth,    bench_tradeoff,
+                                          bench_scaling, bench_formats, bench_stability};
 
 static int run(int argc, char **argv, struct tool_error *error)
 {

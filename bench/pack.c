@@ -90,11 +90,12 @@ static uint64_t to_unorm(float v, unsigned max, int srgb)
 static void pack_unorm(const struct bench_image *image, size_t i, const float rgb[3])
 {
     const enum hf_format format = image->image.format;
+    const int srgb = image->image.transfer == HF_TRANSFER_SRGB;
     const int swap = format == HF_FORMAT_BGRA8 || format == HF_FORMAT_BGRX8;
     const unsigned bits = format == HF_FORMAT_RGBA16 ? 16 : format == HF_FORMAT_RGB10A2 ? 10 : 8;
     uint64_t word = ~(uint64_t)0 << 3 * bits;
     for (unsigned c = 0; c < 3; c++)
-        word |= to_unorm(rgb[swap ? 2 - c : c], (1u << bits) - 1, is_srgb(format)) << c * bits;
+        word |= to_unorm(rgb[swap ? 2 - c : c], (1u << bits) - 1, srgb) << c * bits;
     memcpy((char *)image->memory + i * formats[format].pixel, &word, formats[format].pixel);
 }
 

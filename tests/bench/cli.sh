@@ -51,7 +51,7 @@ bad "--ladder|--setting" tradeoff --ladder x.h --setting "--engine gaussian"
 bad "--readme|missing.md" tradeoff --readme missing.md
 echo 'no marks' >plain.md
 bad "--readme|plain.md|<!-- /tradeoff -->" tradeoff --readme plain.md
-for command in passes truth tradeoff scaling batch stability; do
+for command in passes truth tradeoff scaling formats batch stability; do
     "$bench" --help >out 2>err && grep -q "^  $command " out
     result "--help tells of $command" $?
 done
@@ -67,6 +67,18 @@ result "--readme" $?
 result "--help=man" $?
 
 command -v python3 >/dev/null || { echo "skipped: no python3 for the JSON"; echo "$passed passed, $failed failed"; exit $((failed > 0)); }
+"$bench" formats --size 96x54 --threads 1 --json formats.json >out 2>err && [ "$(grep -c '^rgba8 ' out)" -eq 2 ] && python3 -c '
+import json
+d = json.load(open("formats.json"))
+assert d["command"] == "formats" and d["cpu"] and d["width"] == 96
+colour = {(c["format"], c["transfer"]): c for c in d["colour"]}
+assert len(colour) == 17 and len(d["depth"]) == 7
+for c in colour.values():
+    assert c["frame_ms"] > 0 and (c["format"] == "r11g11b10f") == (c["read_ms"] is None)
+assert colour["rgba8", "srgb"]["bytes"] == 96 * 54 * 4 and colour["rgba32f", "linear"]["bytes"] == 96 * 54 * 16
+assert {d["format"] for d in d["depth"]} == {"float32", "float16", "unorm16", "unorm32", "d24s8", "x8d24"}
+assert all(d["plan_ms"] > 0 and d["frame_ms"] > 0 for d in d["depth"])'
+result "formats" $?
 # A table of the documents is what its command prints; what has no command stays.
 printf '%s\n' '`hyperfocal-bench passes --size 64x64 --frames 1`: small' '' '    old' '' '    old' '' Text '' '    kept' >tables.md
 python3 "$source_root/docs/tables.py" --build "$(dirname "$(dirname "$bench")")" "$dir/tables.md" >out 2>err &&

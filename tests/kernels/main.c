@@ -64,6 +64,7 @@ const struct test tests[] = {
     ROW("finite_f32", 0, 2000, finite_make, finite_call, finite_check),
     ROW("finite_f16", 1, 2000, finite_make, finite_call, finite_check),
     ROW("finite_r11", 2, 2000, finite_make, finite_call, finite_check),
+    ROW("finite_any", 3, 1000, finite_make, finite_call, finite_check),
     ROW("truncate_r11", 3, 1000, round_make, round_call, row_check),
     ROW("round_half", 1, 1000, round_make, round_call, row_check),
     ROW("highlight_raise", 0, 1000, highlight_make, highlight_call, row_check),

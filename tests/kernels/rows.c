@@ -228,7 +228,7 @@ void store_call(struct world *w, const struct kernels *k, enum arena a, int form
 
 // ---- checks and roundings ----
 
-enum { FINITE_F32, FINITE_F16, FINITE_R11 };
+enum { FINITE_F32, FINITE_F16, FINITE_R11, FINITE_ANY };
 
 // A word with its largest exponent, or the one just below.
 static uint32_t extreme_word(struct rng *r, int which, int bad)
@@ -272,7 +272,8 @@ void finite_call(struct world *w, const struct kernels *k, enum arena a, int whi
 {
     hf_finite *const f = which == FINITE_F32   ? k->pixel.finite_f32
                          : which == FINITE_F16 ? k->pixel.finite_f16
-                                               : k->pixel.finite_r11;
+                         : which == FINITE_R11 ? k->pixel.finite_r11
+                                               : k->pixel.finite_any;
     w->result[a].returned = f(in_arena(a, w->words), w->word_count, in_arena(a, w->copy)) != 0;
 }
 
