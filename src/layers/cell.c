@@ -62,10 +62,10 @@ static size_t place(struct hf_cell *c, float *memory)
     c->part_row = part.row;
     c->none = take(&m, (size_t)width + AROUND, 0);
     c->any = (uint8_t *)take(&m, (size_t)wide / 16 / sizeof(float) + 1, 0);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++)
         c->line[i] = take(&m, (size_t)wide, 0);
+    for (int i = 0; i < 5; i++)
         c->row[i] = take(&m, (size_t)width + AROUND, 0);
-    }
     c->shape = take(&m, hf_layers_shape_floats(c->l, c->columns, c->rows), 0);
     return m.used;
 }

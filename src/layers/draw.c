@@ -39,6 +39,21 @@ static float *source_at(const struct hf_cell *c, int i, int x, int y)
     return c->source.at + y * c->source.row + i * c->source.channel + x;
 }
 
+// A row of samples of quads as samples of pixels: of each, the part that lies before it.
+static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int px, int py, int n, const float *in[6])
+{
+    const struct hf_layers_set *seen = &c->samples->seen;
+    const float *of[6] = {NULL}, *radius[2], *weight[2];
+    hf_layers_planes_at(c->l, set, set->weight, px >> 1, py >> 1, of);
+    for (int i = 0; i < 2; i++) {
+        weight[i] = hf_layers_at(seen, seen->weight, px, (py & ~1) + i);
+        radius[i] = hf_layers_at(seen, seen->radius, px, (py & ~1) + i);
+    }
+    c->k->spread(of, radius, weight, py & 1, c->l->channels, n / 2, c->line);
+    for (int i = 0; i < 6; i++)
+        in[i] = c->line[i];
+}
+
 // The sources of one row of a run of tiles; notes where there are any.
 static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int y)
 {
@@ -51,14 +66,20 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     memset(c->any, 0, (size_t)(n + 15) / 16);
     for (int i = 0; i < 5; i++)
         out[i] = level ? c->line[i] : source_at(c, i < 4 ? i : l->channels, tx * size, y);
-    hf_layers_planes_at(l, b->set, b->weight, px, py, in);
+    if (b->spread)
+        spread(c, b->set, px, py, n, in);
+    else
+        hf_layers_planes_at(l, b->set, b->weight, px, py, in);
     c->k->weigh(b->s, in, b->share ? b->share + (ptrdiff_t)py * b->set->stride + px : NULL, b->set->stride, rows,
                 l->channels, n, 0, out, c->any);
     for (int from = tx, to; b->more && (to = hf_layers_next_run(&c->used, &from, ty, end, MORE)) > from; from = to) {
         float *more[5];
         for (int i = 0; i < 5; i++)
             more[i] = out[i] + (from - tx) * size;
-        hf_layers_planes_at(l, b->more, b->more->weight, (c->x0 >> b->finest) + from * size, py, in);
+        if (b->spread)
+            spread(c, b->more, c->x0 + from * size, py, (to - from) * size, in);
+        else
+            hf_layers_planes_at(l, b->more, b->more->weight, (c->x0 >> b->finest) + from * size, py, in);
         c->k->weigh(b->s, in, NULL, b->more->stride, rows, l->channels, (to - from) * size, 1, more,
                     c->any + (from - tx) * size / 16);
     }

@@ -328,6 +328,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .tap = hf_layers_tap_c,
         .nearest = hf_layers_nearest_c,
         .found = hf_layers_found_c,
+        .spread = hf_layers_spread_c,
         .smooth = hf_layers_smooth_c,
         .alike = hf_layers_alike_c,
         .extremes = hf_layers_extremes_c,

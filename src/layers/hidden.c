@@ -133,6 +133,26 @@ void hf_layers_found_c(const float *const sum[6], const float *const radius[2], 
     }
 }
 
+void hf_layers_spread_c(const float *const in[6], const float *const radius[2], const float *const weight[2], int row,
+                        int channels, int n, float *const out[6])
+{
+    for (int x = 0; x < n; x++) {
+        const float r = in[5][x], w = in[4][x];
+        float before[4];
+        for (int i = 0; i < 4; i++) {
+            const int at = 2 * x + (i & 1);
+            before[i] = w > 0 && radius[i >> 1][at] < r - 1 ? weight[i >> 1][at] : 0;
+        }
+        const float sum = (before[0] + before[2]) + (before[1] + before[3]), part = sum > 0 ? 4 * w / sum : 0;
+        for (int i = 0; i < 2; i++) {
+            for (int c = 0; c < channels; c++)
+                out[c][2 * x + i] = in[c][x];
+            out[4][2 * x + i] = (part < 1 ? part : 1) * before[2 * row + i];
+            out[5][2 * x + i] = r;
+        }
+    }
+}
+
 void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, int n, float *const out[6])
 {
     for (int x = 0; x < n; x++) {

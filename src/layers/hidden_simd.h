@@ -172,6 +172,37 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
     }
 }
 
+static void layers_spread_simd(const float *const in[6], const float *const radius[2], const float *const weight[2],
+                               int row, int channels, int n, float *const out[6])
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf w = vf_load(in[4] + x), limit = vf_sub(vf_load(in[5] + x), vf_set1(1));
+        vf before[2][2], far[2], weights[2], even, odd, parts[2];
+        vf_zip(limit, limit, &far[0], &far[1]);
+        vf_zip(w, w, &weights[0], &weights[1]);
+        for (int i = 0; i < 4; i++) {
+            const int at = 2 * x + (i & 1) * VF_N;
+            const vm hides = vm_and(vf_gt(weights[i & 1], vf_zero()), vf_lt(vf_load(radius[i >> 1] + at), far[i & 1]));
+            before[i >> 1][i & 1] = vf_keep(hides, vf_load(weight[i >> 1] + at));
+        }
+        vf_unzip(vf_add(before[0][0], before[1][0]), vf_add(before[0][1], before[1][1]), &even, &odd);
+        const vf sum = vf_add(even, odd);
+        const vf part = vf_keep(vf_gt(sum, vf_zero()), vf_div(vf_mul(vf_set1(4), w), sum));
+        const vf most = vf_min(part, vf_set1(1));
+        vf_zip(most, most, &parts[0], &parts[1]);
+        for (int i = 0; i < 2; i++)
+            vf_store(out[4] + 2 * x + i * VF_N, vf_mul(parts[i], before[row][i]));
+        for (int c = 0; c < 6; c++) {
+            vf low, high;
+            if (c == 4 || (c < 4 && c >= channels))
+                continue;
+            vf_zip(vf_load(in[c] + x), vf_load(in[c] + x), &low, &high);
+            vf_store(out[c] + 2 * x, low);
+            vf_store(out[c] + 2 * x + VF_N, high);
+        }
+    }
+}
+
 HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels, int square, int n,
                                 float *const out[6])
 {

@@ -32,6 +32,10 @@ typedef void hf_layers_nearest(const float *above, const float *below, int n, fl
 // pixel of radius before them.
 typedef void hf_layers_found(const float *const sum[6], const float *const radius[2], const float *const weight[2],
                              int channels, int n, float *const out[6]);
+// Hidden samples of n quads as those of one row of their pixels: the weight goes to pixels that lie more than a pixel of
+// radius before them, of which radius and weight of both rows are given, and is no more than theirs.
+typedef void hf_layers_spread(const float *const in[6], const float *const radius[2], const float *const weight[2],
+                              int row, int channels, int n, float *const out[6]);
 // The mean of lines of thirteen hidden samples, of those with weight that are about as far as the middle one; its weight is
 // kept. square: colours are no longer roots.
 typedef void hf_layers_smooth(const float *const in[13][6], int channels, int square, int n, float *const out[6]);
@@ -90,6 +94,7 @@ struct hf_layers_kernels {
     hf_layers_tap *tap;
     hf_layers_nearest *nearest;
     hf_layers_found *found;
+    hf_layers_spread *spread;
     hf_layers_smooth *smooth;
     hf_layers_alike *alike;
     hf_layers_extremes *extremes;
@@ -150,6 +155,7 @@ hf_layers_merge hf_layers_merge_c;
 hf_layers_tap hf_layers_tap_c;
 hf_layers_nearest hf_layers_nearest_c;
 hf_layers_found hf_layers_found_c;
+hf_layers_spread hf_layers_spread_c;
 hf_layers_smooth hf_layers_smooth_c;
 hf_layers_alike hf_layers_alike_c;
 hf_layers_extremes hf_layers_extremes_c;

@@ -44,7 +44,7 @@ struct hf_cell {
     int opened[2];                         // near and far stack hold something
     struct hf_window source, sum[HF_LAYERS_COARSEST + 1], shine;
     struct hf_window stack[3], light[2];  // near, far, middle; what shines of near and far
-    float *line[5];                       // sums at full resolution, on their way to the source's
+    float *line[6];                       // sums at full resolution, on their way to the source's
     float *row[5];                        // upsampled
     float *none;                          // a row of zeros
     uint8_t *any;                         // where a row of a run has samples of the slice, 16 at once
@@ -65,6 +65,7 @@ struct hf_build {
     int finest;  // log2 of the pixels of its samples
     int channels;
     const struct hf_layers_set *more;  // samples behind those that belong to it, or NULL
+    int spread;                        // samples of quads, each of its pixels
 };
 
 static inline uint8_t *hf_layers_map_at(const struct hf_tile_map *m, int tx, int ty)

@@ -22,6 +22,7 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->tap = layers_tap_simd;
     k->nearest = layers_nearest_simd;
     k->found = layers_found_simd;
+    k->spread = layers_spread_simd;
     k->smooth = layers_smooth_simd;
     k->alike = layers_alike_simd;
     k->extremes = layers_extremes_simd;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The slices of a cell put together: what lies before the focus and behind it at half resolution, what is near the focus
 // at full resolution, and these three at the end.
+#include <math.h>
 #include <string.h>
 
 #include "layers/parts.h"
@@ -194,11 +195,16 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
         if (shares)
             put_lights(c, stack, i);
     }
+    // Next to the focus the border between what is seen and what is hidden is as fine as the picture: quads would leave a
+    // line open.
+    const int pixels = s->level == 0 && fabsf(s->radius) < 2;
+    behind = pixels ? s : behind;
     if (l->levels && hf_layers_mark_used(c, i, HF_KIND_HIDDEN) && hf_layers_mark_touched(c, behind, &c->touched)) {
         const struct hf_build b = {.s = behind,
                                    .set = &c->samples->hidden,
                                    .weight = c->samples->hidden.weight,
-                                   .finest = 1,
+                                   .finest = !pixels,
+                                   .spread = pixels,
                                    .channels = l->channels + 1,
                                    .more = &c->samples->beyond};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);

@@ -163,6 +163,15 @@ static void found_call(const struct world *w, const struct kernels *k, enum aren
     k->layers.found((const float *const *)sum, radius, weight, now.channels, w->n, out);
 }
 
+static void spread_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *in[6], *out[6];
+    const float *const radius[2] = {line(w, a, 6), line(w, a, 7)}, *const weight[2] = {line(w, a, 8), line(w, a, 9)};
+    set_of(w, a, 0, in);
+    set_of(w, a, IN, out);
+    k->layers.spread((const float *const *)in, radius, weight, now.rows & 1, now.channels, w->n, out);
+}
+
 // Nine lines, some of which are read more than once.
 static void smooth_call(const struct world *w, const struct kernels *k, enum arena a)
 {
@@ -372,10 +381,11 @@ void layers_make(struct world *w, int which)
         alike_make(w);
         return;
     case LAYERS_FOUND:
+    case LAYERS_SPREAD:
         fill_set(w, 0, 0, w->n);
         for (int i = 6; i < 10; i++)
             fill(w, i, 0, 2 * w->n, i < 8 ? RADIUS : WEIGHT);
-        put_set(w, IN, 6, w->n);
+        put_set(w, IN, 6, which == LAYERS_SPREAD ? 2 * w->n : w->n);
         return;
     case LAYERS_SMOOTH:
         for (int i = 0; i < 9; i++)
@@ -500,6 +510,9 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         return;
     case LAYERS_TAP:
         tap_call(w, k, a);
+        return;
+    case LAYERS_SPREAD:
+        spread_call(w, k, a);
         return;
     case LAYERS_FOUND:
         found_call(w, k, a);

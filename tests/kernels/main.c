@@ -120,6 +120,7 @@ const struct test tests[] = {
     ROW("layers_merge", LAYERS_MERGE, 600, layers_make, layers_call, layers_check),
     ROW("layers_tap", LAYERS_TAP, 600, layers_make, layers_call, layers_check),
     ROW("layers_nearest", LAYERS_NEAREST, 600, layers_make, layers_call, layers_check),
+    ROW("layers_spread", LAYERS_SPREAD, 600, layers_make, layers_call, layers_check),
     ROW("layers_found", LAYERS_FOUND, 600, layers_make, layers_call, layers_check),
     ROW("layers_smooth", LAYERS_SMOOTH, 600, layers_make, layers_call, layers_check),
     ROW("layers_alike", LAYERS_ALIKE, 600, layers_make, layers_call, layers_check),

@@ -37,13 +37,33 @@ static double part_of(const struct slice *s, double r)
 
 enum kind { SEEN, BEHIND, SHINE };
 
+// A hidden sample of a quad as that of pixel (x, y): where something lies before it, no more than that covers.
+static void spread(const struct frame *f, const struct grid *set, int x, int y, double *out)
+{
+    const int left = 2 * (int)floor(x / 2.0), top = 2 * (int)floor(y / 2.0);
+    double before = 0, own = 0;
+    memcpy(out, edge(set, left / 2, top / 2), SAMPLE * sizeof *out);
+    for (int i = 0; i < 4; i++) {
+        const double *s = edge(&f->seen, left + i % 2, top + i / 2);
+        const double w = s[RADIUS] < out[RADIUS] - 1 ? s[WEIGHT] : 0;
+        before += w / 4;
+        own = left + i % 2 == x && top + i / 2 == y ? w : own;
+    }
+    out[WEIGHT] = before > 0 ? own * fmin(out[WEIGHT] / before, 1) : 0;
+}
+
 // Add samples of a set that belong to a slice to the sources of a level.
 static void add_sources(const struct frame *f, const struct slice *s, const struct grid *set, int apart, enum kind kind,
-                        int light, struct grid *to)
+                        int light, int quads, struct grid *to)
 {
     for (int y = to->y0 * (1 << apart); y < to->y1 * (1 << apart); y++)
         for (int x = to->x0 * (1 << apart); x < to->x1 * (1 << apart); x++) {
+            double pixel[SAMPLE];
             const double *v = edge(set, x, y);
+            if (quads) {
+                spread(f, set, x, y, pixel);
+                v = pixel;
+            }
             double *out =
                 at(to, x >= 0 ? x >> apart : -((-x - 1) >> apart) - 1, y >= 0 ? y >> apart : -((-y - 1) >> apart) - 1);
             const double part = v[WEIGHT] > 0 ? part_of(s, v[RADIUS]) / pow(4, apart) : 0;
@@ -121,12 +141,12 @@ static struct grid draw(const struct frame *f, const struct slice *s, int level,
     struct grid source = grid_new(-m, -m, width + m, height + m, 5);
     struct grid out = grid_new(-MARGIN, -MARGIN, width + MARGIN, height + MARGIN, 5);
     if (kind == BEHIND) {
-        add_sources(f, s, &f->behind, level - 1, kind, 0, &source);
-        add_sources(f, s, &f->beyond, level - 1, kind, 0, &source);
+        add_sources(f, s, &f->behind, level ? level - 1 : 0, kind, 0, !level, &source);
+        add_sources(f, s, &f->beyond, level ? level - 1 : 0, kind, 0, !level, &source);
     } else {
-        add_sources(f, s, &f->seen, level, kind, light, &source);
+        add_sources(f, s, &f->seen, level, kind, light, 0, &source);
         if (kind == SEEN)
-            add_sources(f, s, &f->mixed, level, BEHIND, 0, &source);
+            add_sources(f, s, &f->mixed, level, BEHIND, 0, 0, &source);
     }
     if (f->aperture.cat_eye > 0)
         gather_cut(f, &shape, s->own < 0 ? -1 : 1, level, &source, &out);
@@ -231,7 +251,7 @@ static void put_slice(const struct frame *f, const struct slice *s, struct grid 
         put_light(f, s, &part, light);
     free(part.v);
     if (layers_reference_levels(f)) {
-        const int coarse = level > 1 ? level : 1;
+        const int coarse = level > 1 ? level : level == 0 && fabs(s->own) < 2 ? 0 : 1;
         struct grid hidden = draw(f, s, coarse, BEHIND, 0);
         refine(&hidden, f, coarse, finest);
         put_under(stack, &hidden, 1, NULL);
