@@ -212,9 +212,10 @@ static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
     const enum hf_limit limit = r->used.limit;
     if (p->model != HF_MODEL_LENS && depth->type != HF_DEPTH_COC)
         return;
-    if (p->engine == HF_ENGINE_GAUSSIAN)
-        say(&c->config, HF_LOG_WARNING,
-            "the gaussian engine blurs by its iterations or sigma, not by how much the lens or the radii ask for");
+    const struct hf_engine_def *engine = hf_engine_def(p->engine);
+    if (engine->width)
+        say(&c->config, HF_LOG_WARNING, "the %s engine blurs by %s, not by how much the lens or the radii ask for",
+            engine->name, engine->width);
     else if (fmaxf(r->near_radius, r->far_radius) >= p->max_radius)
         say(&c->config, limit == HF_LIMIT_ENGINE || limit == HF_LIMIT_PICTURE ? HF_LOG_WARNING : HF_LOG_INFO,
             "blur is cut to %g pixels where it would be larger%s", p->max_radius, why[limit]);

@@ -187,8 +187,8 @@ enum hf_engine {
     HF_ENGINE_SCATTER,   // every pixel becomes its aperture's picture (Wronski, 2012)
     HF_ENGINE_GAUSSIAN,  // iterated 5-tap blur blended by depth, with autofocus (2010)
     HF_ENGINE_LAYERS,  // un-mixed edges, hidden surfaces filled in, slices put together in order of depth: most accurate
+    HF_ENGINE_COUNT,   // how many there are: none itself
 };
-enum { HF_ENGINE_COUNT = HF_ENGINE_LAYERS + 1 };
 
 // The command line's name for an engine; NULL for a number that is none. As hf_name(HF_NAMES_ENGINE, engine).
 HF_API const char *hf_engine_name(enum hf_engine engine);

@@ -73,6 +73,7 @@ enum {
 struct hf_engine_def {
     const char *name;  // the command line's
     unsigned aperture;
+    const char *width;   // what says how wide its blur is, if it is not the radius
     int focus_anywhere;  // where there is no surface to focus on, it focuses on infinity
     const struct hf_pass *passes;
     int pass_count;

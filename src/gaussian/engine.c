@@ -215,6 +215,7 @@ void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
 
 const struct hf_engine_def hf_gaussian_engine = {
     .name = "gaussian",
+    .width = "its iterations or sigma",
     .focus_anywhere = 1,
     .check = check,
     .farthest = farthest,
