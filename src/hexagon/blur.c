@@ -24,15 +24,15 @@ static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
 }
 
 // The sum of a quad's colours by weights w, times scale.
-static void quad_colour(const struct hf_frame *f, int colour, int x, int y, float w[4], float scale,
-                        float *const lane[2][2][4], int i)
+static void quad_colour(const struct hf_frame *f, float w[4], float scale, float *const lane[2][2][4], int i,
+                        float *const to[4])
 {
     for (int t = 0; t < 4; t++)
         w[t] = w[t] * HEXAGON_SCALE;
     for (int c = 0; c < f->s->channels; c++)
-        *hf_at(&f->buf[colour], c, x, y) = ((w[0] * lane[0][0][c][i] + w[1] * lane[0][1][c][i]) +
-                                            (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) *
-                                           scale;
+        *to[c] = ((w[0] * lane[0][0][c][i] + w[1] * lane[0][1][c][i]) +
+                  (w[2] * lane[1][0][c][i] + w[3] * lane[1][1][c][i])) *
+                 scale;
 }
 
 // A field's part of a quad of radii: its mean radius in half-resolution pixels, and of its area how much it is. A
@@ -54,7 +54,9 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
     *hf_at(&f->buf[colour + 1], 2, x, y) = colour == HF_HEXAGON_NEAR_COLOUR_2 ? (sum * scale) * sqrtf(spread)
                                            : q > 0                            ? (sum * scale) / q
                                                                               : 0;
-    quad_colour(f, colour, x, y, w, scale, lane, i);
+    float *to[4];
+    hf_row(&f->buf[colour], f->s->channels, x, y, to);
+    quad_colour(f, w, scale, lane, i, to);
 }
 
 // What of a quad is seen behind what is near around it: all that is not near itself, or hardly.
@@ -64,7 +66,9 @@ static void load_seen(const struct hf_frame *f, int x, int y, const float radius
     for (int t = 0; t < 4; t++)
         w[t] = hf_saturate(1.5f + radius[t]);
     *hf_at(&f->buf[HF_HEXAGON_SEEN_WEIGHT_2], 0, x, y) = ((w[0] + w[1]) + (w[2] + w[3])) * 0.25f;
-    quad_colour(f, HF_HEXAGON_SEEN_COLOUR_2, x, y, w, 0.25f, lane, i);
+    float *to[4];
+    hf_row(&f->buf[HF_HEXAGON_SEEN_COLOUR_2], f->s->channels, x, y, to);
+    quad_colour(f, w, 0.25f, lane, i, to);
 }
 
 static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
