@@ -52,18 +52,19 @@ size_t hf_repair_list(const struct hf_image *m, struct hf_rect r, struct hf_repa
     return count;
 }
 
-static void read_row(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
-                     struct hf_counts *counts, int raise)
+static void load_row(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
+                     struct hf_counts *counts)
 {
     if (f->k->load[f->src->format](f->src, x, y, n, even, odd)) {
         const uint64_t repairs = repair_row(f->src, x, y, n, even, odd);
         if (counts)
             counts->colour_repaired += repairs;
     }
-    if (raise) {
-        f->k->raise(&f->s->highlight, even[0], even[1], even[2], n);
-        f->k->raise(&f->s->highlight, odd[0], odd[1], odd[2], n);
-    }
+}
+
+// To what the storage holds.
+static void round_row(const struct hf_frame *f, int n, float *const even[4], float *const odd[4])
+{
     if (f->s->storage == HF_STORAGE_PACKED && f->src->format != HF_FORMAT_R11G11B10F) {
         f->k->truncate_r11(even[0], even[1], even[2], n);
         f->k->truncate_r11(odd[0], odd[1], odd[2], n);
@@ -79,11 +80,17 @@ static void read_row(const struct hf_frame *f, int x, int y, int n, float *const
 void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
                     struct hf_counts *counts)
 {
-    read_row(f, x, y, n, even, odd, counts, f->s->highlight.on);
+    load_row(f, x, y, n, even, odd, counts);
+    if (f->s->highlight.on) {
+        f->k->raise(&f->s->highlight, even[0], even[1], even[2], n);
+        f->k->raise(&f->s->highlight, odd[0], odd[1], odd[2], n);
+    }
+    round_row(f, n, even, odd);
 }
 
 void hf_read_given(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
                    struct hf_counts *counts)
 {
-    read_row(f, x, y, n, even, odd, counts, 0);
+    load_row(f, x, y, n, even, odd, counts);
+    round_row(f, n, even, odd);
 }
