@@ -75,10 +75,8 @@ static int seen_bad(const struct hf_context *c)
     return n != 0;
 }
 
-int hf_copy_repair(struct hf_context *c)
+static int write_repairs(struct hf_context *c)
 {
-    if (!seen_bad(c))
-        return HF_OK;
     const struct hf_image *m = c->workers[0].frame.src;
     const struct hf_rect all = {0, 0, m->width, m->height};
     const size_t n = hf_repair_list(m, all, NULL, 0);
@@ -91,4 +89,12 @@ int hf_copy_repair(struct hf_context *c)
         hf_put_sample(m, list[i].channel, list[i].x, list[i].y, list[i].value);
     c->workers[0].counts.colour_repaired += n;
     return HF_OK;
+}
+
+int hf_copy_repair(struct hf_context *c)
+{
+    const int err = seen_bad(c) ? write_repairs(c) : HF_OK;
+    for (int i = 0; i < c->threads; i++)
+        c->workers[i].frame.repaired = !err;
+    return err;
 }

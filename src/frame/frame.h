@@ -135,6 +135,7 @@ struct hf_frame {
     const struct hf_depth *depth;
     struct hf_buf buf[HF_MAX_BUFS];
     int near, far;       // which fields the tile at hand needs
+    int repaired;        // in place: the picture is finite, repairs have been written into it
     int looking;         // nobody reads the CoC where there is none: it need not be written
     float *lines;        // scratch rows, see hf_line
     float *depth_lines;  // and HF_DEPTH_LINES more, see hf_depth_row

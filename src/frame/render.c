@@ -39,6 +39,7 @@ static void start_workers(const struct hf_render *r, const struct hf_job *job)
         w->frame.src = job->src;
         w->frame.dst = job->dst;
         w->frame.depth = job->depth;
+        w->frame.repaired = 0;
         w->frame.counts = &w->counts;
         w->frame.seen = &w->seen;
     }

@@ -506,7 +506,7 @@ static int composite_rows_packed(const struct hf_frame *f, const struct composit
         p.depth[i] = f->far && s->form == HF_FORM_Z ? hf_depth_row(f, 2 * x0, at, 2 * n, i) : NULL;
         p.to[i] = y[i] < 0 ? (uint8_t *)hf_line(f, 0) : plane_at(f->dst, 0, 4, x0, at);
         // In place, a sample that is not finite wants neighbours that have not been overwritten.
-        if (p.from[i] == p.to[i] && !f->k->finite_r11(p.from[i], (size_t)pixels, NULL))
+        if (p.from[i] == p.to[i] && !f->repaired && !f->k->finite_r11(p.from[i], (size_t)pixels, NULL))
             return 0;
         if (f->far && s->form != HF_FORM_Z) {
             float *const coc[4] = {hf_line(f, 8), hf_line(f, 9), hf_line(f, 10 + 2 * i), hf_line(f, 11 + 2 * i)};

@@ -161,7 +161,7 @@ static void merge_simd(const struct hf_frame *f, int y, struct hf_rect r)
     const int direct = f->dst->format == format && !f->s->highlight.on;
     const int n = direct ? pixels / 2 / (2 * VF_N) * (2 * VF_N) : 0;
     // In place, a sample that is not finite wants neighbours that have not been overwritten.
-    const int in_place = f->src->data[0] == f->dst->data[0];
+    const int in_place = f->src->data[0] == f->dst->data[0] && !f->repaired;
     vi clamped = vi_set1(0);
     int done = 0;
     if (n && format == HF_FORMAT_R11G11B10F &&
