@@ -89,10 +89,11 @@ static float shift_of(const struct hf_layers *l, int group, float radius)
     return radius < 0 ? -shift : shift;
 }
 
-// A slice of one radius, the number'th from 0, at a level; which: as in hf_shapes. Samples have pixels of `finest`.
+// A slice of one radius, the number'th from 0; which: as in hf_shapes, of which 0 and 2 have samples of single pixels.
 static struct hf_disc_row *make_slice(struct hf_layers *l, struct hf_slice *s, int group, float radius, int number,
-                                      int which, int level, int finest, struct hf_disc_row *row)
+                                      int which, struct hf_disc_row *row)
 {
+    const int finest = which == 1, level = which == 2 ? 0 : hf_max(level_of(&l->set, radius), finest);
     const float shift = shift_of(l, group, radius);
     *s = (struct hf_slice){.radius = radius, .level = level, .sparse = which == 2};
     if (l->shaped && number > 0) {
@@ -114,9 +115,8 @@ static struct hf_disc_row *make_both(struct hf_layers *l, int group, int i, floa
                                      struct hf_disc_row *row)
 {
     struct hf_slice *s = l->group[group] + i;
-    const int level = level_of(&l->set, radius);
-    row = make_slice(l, s, group, radius, number, 0, level, 0, row);
-    return make_slice(l, s + l->slices, group, radius, number, 1, hf_max(level, 1), 1, row);
+    row = make_slice(l, s, group, radius, number, 0, row);
+    return make_slice(l, s + l->slices, group, radius, number, 1, row);
 }
 
 // Those of a group's shares: at its slices, and between two that are coarser than their pixels.
@@ -130,7 +130,7 @@ static struct hf_disc_row *make_shines(struct hf_layers *l, int group, int middl
         of[i].shine = l->shines;
         for (int k = 0; k < parts; k++) {
             const float r = of[i].radius + apart * (float)k / (float)parts;
-            row = make_slice(l, &s[l->shines++], group, r, abs(i - middle), 2, 0, 0, row);
+            row = make_slice(l, &s[l->shines++], group, r, abs(i - middle), 2, row);
         }
     }
     return row;

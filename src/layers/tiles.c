@@ -20,15 +20,14 @@ struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct 
     return map[tile_number(c, tx, ty)];
 }
 
-// The bits of a slice in a row of tiles from tx on.
-static void mark_row(const struct hf_cell *c, const uint64_t *marks, int words, int slice, int tx, int n, int ty,
-                     int bit)
+// The bits of a slice in a row of tiles, with n more to either side.
+static void mark_row(const struct hf_cell *c, const uint64_t *marks, int words, int slice, int n, int ty, int bit)
 {
     const struct hf_layers *l = c->l;
-    const int first = c->x0 / TILE + tx, last = l->columns - 1;
+    const int first = c->x0 / TILE - n, last = l->columns - 1;
     const uint64_t *row = marks + (ptrdiff_t)tile_number(c, -c->x0 / TILE, ty) * words + slice / 64;
-    uint8_t *used = hf_layers_map_at(&c->used, tx, ty);
-    for (int i = 0; i < n; i++) {
+    uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
+    for (int i = 0; i < c->columns + 2 * n; i++) {
         const int x = hf_min(hf_max(first + i, 0), last);
         used[i] |= (uint8_t)((row[(ptrdiff_t)x * words] >> slice % 64 & 1) * (unsigned)bit);
     }
@@ -66,9 +65,9 @@ int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
     for (int ty = -n; ty < c->rows + n; ty++) {
         uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
         memset(used, 0, (size_t)columns);
-        mark_row(c, marks, words, slice, -n, columns, ty, SEEN);
+        mark_row(c, marks, words, slice, n, ty, SEEN);
         if (kind != HF_KIND_SHARES)
-            mark_row(c, kind == HF_KIND_SEEN ? l->mixed_marks : l->beyond_marks, words, slice, -n, columns, ty, MORE);
+            mark_row(c, kind == HF_KIND_SEEN ? l->mixed_marks : l->beyond_marks, words, slice, n, ty, MORE);
         int first = 0, last = columns;
         while (first < last && !used[first])
             first++;
