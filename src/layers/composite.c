@@ -43,7 +43,8 @@ void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[
         const float sum = w + g * a;
         for (int c = 0; c < channels; c++) {
             const float top = far ? near->colour[c][x] + g * far[c][x] : near->colour[c][x];
-            float v = top / (sum > 1e-30f ? sum : 1e-30f);
+            // What nothing reaches, where nothing is filled in behind it, stays as it was.
+            float v = sum > 1e-30f ? top / sum : own[c][x];
             if (c == 3)
                 v = fabsf(v - 1) < HF_LAYERS_OPAQUE ? 1 : v;
             out[c][x] = v == own[c][x] ? own[c][x] : v;

@@ -53,10 +53,11 @@ static void layers_finish_simd(const struct hf_stack_row *near, const float *con
         const vf w = vf_load(near->weight + x);
         const vf a = far ? vf_load(far[4] + x) : vf_zero();
         const vf g = far ? vf_div(vf_max(vf_sub(one, w), vf_zero()), vf_max(a, vf_set1(faint))) : vf_zero();
-        const vf sum = vf_max(vf_fma(g, a, w), tiny);
+        const vf sum = vf_fma(g, a, w);
         for (int c = 0; c < channels; c++) {
             const vf top = vf_load(near->colour[c] + x), was = vf_load(own[c] + x);
             vf v = vf_div(far ? vf_fma(g, vf_load(far[c] + x), top) : top, sum);
+            v = vf_select(vf_lt(tiny, sum), v, was);
             if (c == 3)
                 v = vf_select(vf_lt(vf_abs(vf_sub(v, one)), vf_set1(HF_LAYERS_OPAQUE)), one, v);
             vf_store(out[c] + x, vf_select(vf_eq(v, was), was, v));

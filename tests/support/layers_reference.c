@@ -308,7 +308,8 @@ static void put_together(const struct frame *f, struct picture *out)
                          g = fmax(0, 1 - m[4]) / fmax(a, f->hidden ? 0.5 : 1e-3);
             for (int c = 0; c < f->channels; c++) {
                 const double back = up(&far, c, x, y) + (c < 3 ? at(&light[1], x, y)[c] : 0);
-                out->plane[c][y * f->width + x] = (float)((m[c] + g * back) / fmax(m[4] + g * a, 1e-30));
+                if (m[4] + g * a > 1e-30)
+                    out->plane[c][y * f->width + x] = (float)((m[c] + g * back) / (m[4] + g * a));
             }
         }
     free(near.v);
@@ -337,7 +338,7 @@ struct picture layers_reference(const struct picture *colour, const float *radiu
                       .wide = 1 / ((double)params->view.pixel_aspect * params->aperture.squeeze),
                       .half = p->half_from,
                       .quarter = p->quarter_from};
-    struct picture out = picture_new(f.width, f.height, f.channels);
+    struct picture out = picture_copy(colour);  // what nothing reaches stays
     for (int i = 0; i < f.width * f.height; i++) {
         f.low = fmin(f.low, radius[i]);
         f.high = fmax(f.high, radius[i]);
