@@ -182,18 +182,27 @@ static float weighed(float colour, float weight, float counts, int karis)
     return !karis ? colour : weight > 0 ? colour / weight * counts : 0;
 }
 
+// Of what is seen behind, how much counts: what the near field leaves free, as the level at hand may be smaller than that of
+// the near pixels around, and see more.
+static float free_part(float cover, float see)
+{
+    const float room = 1 - cover > 0 ? 1 - cover : 0;
+    return see > room ? room / see : 1;
+}
+
 static void finish_levels(const struct hf_frame *f, int x, int y, const struct sums *near, const struct sums *behind)
 {
     const int karis = hf_gather(f->s)->karis;
     const float m = hidden(f, x, y), cover = *hf_at(near->weight[1], near->channel[1], x, y);
     const float see = *hf_at(behind->weight[1], behind->channel[1], x, y), most = cover > 1 ? cover : 1;
+    const float part = free_part(cover, see), all = cover + part * see;
     for (int c = 0; c < f->s->channels; c++) {
         float *v = hf_at(near->colour, c, x, y);
         const float own = weighed(*v, *hf_at(near->weight[0], near->channel[0], x, y), cover, karis);
         const float back =
             weighed(*hf_at(behind->colour, c, x, y), *hf_at(behind->weight[0], behind->channel[0], x, y), see, karis);
         const float outside = own / most;
-        *v = m > 0 ? outside + m * ((own + back) / (cover + see) - outside) : outside;
+        *v = m > 0 ? outside + m * ((own + part * back) / all - outside) : outside;
     }
     const float outside = cover / most;
     *hf_at(near->weight[1], near->channel[1], x, y) = m > 0 ? outside + m * (1 - outside) : outside;

@@ -4,6 +4,7 @@
 //
 //     gather_lens images      the folder of the ray-traced scenes
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "support/check.h"
 #include "support/render.h"
@@ -219,6 +220,31 @@ static void thin_bar(struct hf_context *c)
     picture_free(&radii);
 }
 
+// A dark near bar before a bright wall, both out of focus by radii of their own: from its middle outwards it only gets
+// brighter. Half a display's code, 1/510, is for what upsampling makes of a slope.
+static void near_bar(struct hf_context *c)
+{
+    enum { COLUMN = WIDTH / 2, END = WIDTH - 40 };
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        const int bar = abs(k % WIDTH - COLUMN) < 10;
+        colour.plane[1][k] = !bar;
+        radii.plane[0][k] = bar ? -24 : 9;
+    }
+    struct picture out = at_radius(c, &colour, &radii, HF_DERIVE);
+    const float *row = out.plane[1] + MIDDLE * WIDTH;
+    float most = 0, back = 0;
+    for (int x = COLUMN; x < END; x++) {
+        most = fmaxf(most, row[x]);
+        back = fmaxf(back, most - row[x]);
+    }
+    CHECK_MSG(back <= 1 / 510.0f, "beside a near bar a line is %g brighter than what is farther out", (double)back);
+    CHECK(row[END] > 0.99f && row[COLUMN] < 0.8f);
+    struct picture *const made[] = {&colour, &radii, &out};
+    for (int i = 0; i < 3; i++)
+        picture_free(made[i]);
+}
+
 int main(int argc, char **argv)
 {
     struct hf_context *c = NULL;
@@ -229,6 +255,7 @@ int main(int argc, char **argv)
     round_highlights(c);
     leaving_light(c);
     thin_bar(c);
+    near_bar(c);
     if (argc > 1) {
         truth(c, argv[1], "lights", 5, 0.37f);
         truth(c, argv[1], "fence", 6, 0.46f);

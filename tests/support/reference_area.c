@@ -166,10 +166,13 @@ static void fields(const struct area *a, double *near[5], double *far[4])
             own.part += n.part;
             back.part += w * b.part;
         }
+        const double room = fmax(1 - own.part, 0), part = back.part > room ? room / back.part : 1;
         for (int c = 0; c < a->r->channels; c++) {
             const double outside = own.colour[c] / fmax(own.part, 1);
             near[c][i] =
-                m > 0 ? outside + m * ((own.colour[c] + back.colour[c]) / (own.part + back.part) - outside) : outside;
+                m > 0
+                    ? outside + m * ((own.colour[c] + part * back.colour[c]) / (own.part + part * back.part) - outside)
+                    : outside;
         }
         near[4][i] = fmin(own.part, 1) + m * (1 - fmin(own.part, 1));
     }
