@@ -53,7 +53,8 @@ void hf_layers_shares_c(const float *const in[6], const float *const around[5], 
         const float r = in[5][x], light = in[0][x] + in[1][x] + in[2][x];
         float m = HUGE_VALF;
         for (int i = 0; i < 5; i++) {
-            const float v = covered ? around[i][x / 2] + (1 - covered[i][x / 2]) * root(light) : around[i][x / 2];
+            const float at = i ? around[i][x / 2] * HF_LAYERS_BESIDE : around[i][x / 2];
+            const float v = covered ? at + (1 - covered[i][x / 2]) * root(light) : at;
             m = v < m ? v : m;
         }
         const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));

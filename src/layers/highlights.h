@@ -6,6 +6,10 @@
 
 enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample that are looked at
 
+// By how much more roots of brightness must differ from what lies beside a sample than from what is around it: edges of
+// patterns, up to eighteen times as bright as what is next to them, are none.
+#define HF_LAYERS_BESIDE 3
+
 // Floats of scratch for a cell of half-resolution pixels.
 size_t hf_layers_highlight_floats(int width, int height);
 // The shares of a cell's pixels, from their samples.

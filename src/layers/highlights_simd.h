@@ -42,7 +42,7 @@ static void layers_shares_simd(const float *const in[6], const float *const arou
         const vf light[2] = {layers_light(in, x), layers_light(in, x + VF_N)};
         vf least[2] = {vf_set1(HUGE_VALF), vf_set1(HUGE_VALF)};
         for (int i = 0; i < 5; i++) {
-            const vf m = vf_load(around[i] + x / 2);
+            const vf mean = vf_load(around[i] + x / 2), m = i ? vf_mul(mean, vf_set1(HF_LAYERS_BESIDE)) : mean;
             vf v[2];
             vf_zip(m, m, &v[0], &v[1]);
             if (covered) {

@@ -145,7 +145,7 @@ static void highlight(struct frame *f, int x, int y)
     for (int i = 0; i < 5; i++) {
         const int px = (x & ~1) + side[i][0], py = (y & ~1) + side[i][1];
         const double open = f->channels == 4 ? 1 - bright_mean(f, 3, 4, px, py) : 0;
-        mean = fmin(mean, bright_mean(f, 0, 3, px, py) + open * root(fmax(light, 0)));
+        mean = fmin(mean, (i ? 3 : 1) * bright_mean(f, 0, 3, px, py) + open * root(fmax(light, 0)));
     }
     const double cap = mean * mean * (2 + 0.001 * PI * s[RADIUS] * s[RADIUS]);
     s[SHARE] = fabs(s[RADIUS]) > 4 && light > cap ? s[WEIGHT] * (1 - cap / light) : 0;
