@@ -201,7 +201,7 @@ static void cropped(const struct trial *t, struct rng *rng)
     // Its right and lower edges are the whole's.
     struct picture want = picture_cut(&t->out, x0 + m, y0 + m, pw - m, ph - m);
     struct picture got = picture_cut(&out, m, m, pw - m, ph - m);
-    // A hexagon's lines end where that follows from a pixel's place in the frame, rounded: up to a rounding bound.
+    // A hexagon's taps lie at places that count from the frame's corner, and round otherwise in a crop.
     if (t->p.engine == HF_ENGINE_HEXAGON)
         CHECK_MSG(largest_difference(&want, &got) <= constant_bound(&t->p) * largest_sample(&t->s.colour),
                   "%s: a crop: off by %g", name_of(t), largest_difference(&want, &got));

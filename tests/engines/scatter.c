@@ -271,7 +271,7 @@ static void same_bits(enum hf_isa isa, struct hf_context *scalar)
     struct hf_context *tiled[4];
     for (int i = 0; i < 4; i++)
         tiled[i] = context_new(isa, i + 1, tiles[i][0], tiles[i][1]);
-    for (unsigned i = 0; i < 100; i++) {
+    for (unsigned i = 0; i < (check_long() ? 100u : 40u); i++) {
         struct rng rng = rng_seed(seed + 1000 + i);
         const enum scene_kind kind = (enum scene_kind)rng_below(&rng, SCENE_KINDS);
         const int w = 1 + rng_below(&rng, i % 4 ? 60 : 210), h = 1 + rng_below(&rng, i % 4 ? 50 : 130);

@@ -13,7 +13,7 @@
 
 enum { CONTEXTS = 4 };
 
-static unsigned seed = 1, scenes = 300;
+static unsigned seed = 1, scenes;
 
 // Half-resolution pixels; 0: the library's choice.
 static const int tile_sizes[CONTEXTS][2] = {{0, 0}, {16, 16}, {48, 16}, {32, 40}};
@@ -166,7 +166,7 @@ static void check_engine(enum hf_isa isa, enum hf_engine engine)
 int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
-    scenes = argc > 2 ? (unsigned)strtoul(argv[2], NULL, 10) : scenes;
+    scenes = argc > 2 ? (unsigned)strtoul(argv[2], NULL, 10) : check_long() ? 300 : 150;
     printf("seed %u\n", seed);
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++)
         for (int engine = 0; engine < HF_ENGINE_COUNT; engine++)
