@@ -11,7 +11,8 @@ struct hf_area {
     int symmetric;              // mirrors in x and in y
 };
 
-// Part of each pixel of the lattice that is covered, 0..1: rows of 2 rx + 1.
+// Part of each pixel of the lattice that is covered, 0..1, and of polygons at least a little of the nine in the middle: rows
+// of 2 rx + 1.
 void hf_area_cover(double *cover, const struct hf_area *a);
 // Weights from that, in its place: whole numbers of hf_area_unit, 1 where a pixel is covered. Returns by what sums are
 // to be multiplied: that of the weights alone then is 1, exactly.

@@ -186,8 +186,8 @@ static float weighed(float colour, float weight, float counts, int karis)
 // the near pixels around, and see more.
 static float free_part(float cover, float see)
 {
-    const float room = 1 - cover > 0 ? 1 - cover : 0;
-    return see > room ? room / see : 1;
+    const float room = 1 - cover > 0 ? 1 - cover : 0, part = room / (see > FLT_MIN ? see : FLT_MIN);
+    return part < 1 ? part : 1;
 }
 
 static void finish_levels(const struct hf_frame *f, int x, int y, const struct sums *near, const struct sums *behind)

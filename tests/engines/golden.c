@@ -88,6 +88,7 @@ static struct hf_params own_params(const struct own *own)
     p.range.strength = d.range.strength;
     p.range.near_begin = p.range.near_end = p.range.far_begin = p.range.far_end = HF_DERIVE;
     p.max_radius = 12;
+    p.highlight = d.highlight;
     p.view = d.view;
     p.aperture.squeeze = d.aperture.squeeze;
     p.gather.rings = d.gather.rings;

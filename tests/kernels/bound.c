@@ -174,15 +174,17 @@ static double largest_near(const struct world *w, int b, int c, int x, int y)
 }
 
 // Of a level: its planes 8 (12 with Karis), the pairs and their sums 2 rx, products and sums along a row 2 rx, rows 2 ry;
-// the scale 1; a level is added by 3. Then quotients and blends: 12.
+// the scale 1; a level is added by 3. Then quotients and blends: 16.
 static double area_roundings(const struct world *w)
 {
     const struct hf_taps *t = world_taps(w);
-    return (w->gather.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 13;
+    return (w->gather.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 17;
 }
 
 // What is hidden is divided by the part of the kernel that lies in the frame, or by all that counts: the weight of a
-// pixel of its own smallest kernel at least, a hundredth and less of 1 with one large level.
+// pixel of its own smallest kernel at least, a hundredth and less of 1 with one large level. With levels what is behind
+// counts by what the near field leaves free, whose error it multiplies: by its mean, which is no larger than the largest
+// sample in a frame, but may be anything in buffers of noise.
 static double area_near_bound(const struct world *w, int c, int x, int y)
 {
     const struct hf_taps *t = world_taps(w);
@@ -192,7 +194,12 @@ static double area_near_bound(const struct world *w, int c, int x, int y)
         most = fmax(largest_near(w, HF_BUF_COLOR4, c, x, y), largest_near(w, HF_BUF_COLORNEAR4, c, x, y));
     if (!hf_gather_is_simple(s, HF_NEAR))
         part = fmin(part, t->weight[0] * t->scale) / (w->gather.karis ? 100 : 1);
-    return area_roundings(w) * FLT_EPSILON * most * 2 / part;
+    double behind = 0;
+    if (!hf_gather_is_simple(s, HF_NEAR) && c >= 0) {
+        const double weight = reference_at(w, HF_BUF_BEHIND_WEIGHT, !w->gather.karis, x, y);
+        behind = weight > 0 ? fabs((double)reference_at(w, HF_BUF_BEHIND, c, x, y)) / weight : 0;
+    }
+    return area_roundings(w) * FLT_EPSILON * (most * 2 / part + behind);
 }
 
 // A quotient: of the sum's magnitudes over the weight, twice. Denormal products are off by their own step.
