@@ -99,7 +99,8 @@ void hf_layers_tap_c(const float *const in[6], int channels, const float *neares
     for (int x = 0; x < n; x++) {
         const float behind = in[5][x] - nearest[x];
         const float a = hf_saturate(behind * scale + off);
-        const float w = behind < 1 ? 0 : part * a * hf_saturate(9 * in[4][x]);
+        const float v = part * a * hf_saturate(9 * in[4][x]) * hf_layers_hides(behind - 1);
+        const float w = v > HF_LAYERS_SOME ? v : 0;
         for (int c = 0; c < channels; c++)
             sum[c][x] = sum[c][x] + w * in[c][x];
         sum[4][x] = sum[4][x] + w;
@@ -124,7 +125,7 @@ void hf_layers_found_c(const float *const sum[6], const float *const radius[2], 
         float before[4];
         for (int i = 0; i < 4; i++) {
             const int at = 2 * x + (i & 1);
-            before[i] = radius[i >> 1][at] < r - 1 ? weight[i >> 1][at] : 0;
+            before[i] = weight[i >> 1][at] * hf_layers_hides((r - 1) - radius[i >> 1][at]);
         }
         out[4][x] = sum[4][x] > 0 ? ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f : 0;
         out[5][x] = r;
@@ -141,7 +142,7 @@ void hf_layers_spread_c(const float *const in[6], const float *const radius[2], 
         float before[4];
         for (int i = 0; i < 4; i++) {
             const int at = 2 * x + (i & 1);
-            before[i] = w > 0 && radius[i >> 1][at] < r - 1 ? weight[i >> 1][at] : 0;
+            before[i] = w > 0 ? weight[i >> 1][at] * hf_layers_hides((r - 1) - radius[i >> 1][at]) : 0;
         }
         const float sum = (before[0] + before[2]) + (before[1] + before[3]), part = sum > 0 ? 4 * w / sum : 0;
         for (int i = 0; i < 2; i++) {

@@ -19,6 +19,16 @@ static inline float hf_layers_line(int i)
     return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));
 }
 
+// How far a surface hides another whose radius is larger by 1 and so much more: wholly from half a pixel on, so that a
+// picture moves without a jump as radii grow.
+static inline float hf_layers_hides(float more)
+{
+    return hf_saturate(2 * more);
+}
+
+// Weights of taps below this are none: one over them has to be finite.
+#define HF_LAYERS_SOME 1e-30f
+
 // The radius of what is not there: before anything.
 #define HF_LAYERS_NOTHING (-1e30f)
 

@@ -109,6 +109,11 @@ static void layers_merge_simd(const float *const in[3][6], int channels, float s
         layers_merge_of(in, 4, slope, n, out);
 }
 
+HF_INLINE vf layers_hides(vf more)
+{
+    return vf_min(vf_max(vf_add(more, more), vf_zero()), vf_set1(1));
+}
+
 HF_INLINE void layers_tap_of(const float *const in[6], const int channels, const float *nearest, float scale, float off,
                              float part, int n, float *const sum[6])
 {
@@ -116,7 +121,8 @@ HF_INLINE void layers_tap_of(const float *const in[6], const int channels, const
         const vf r = vf_load(in[5] + x), behind = vf_sub(r, vf_load(nearest + x));
         const vf t = vf_max(vf_fma(behind, vf_set1(scale), vf_set1(off)), vf_zero());
         const vf a = vf_min(t, vf_set1(1)), full = vf_min(vf_mul(vf_set1(9), vf_load(in[4] + x)), vf_set1(1));
-        const vf w = vf_keep(vm_not(vf_lt(behind, vf_set1(1))), vf_mul(vf_mul(vf_set1(part), a), full));
+        const vf v = vf_mul(vf_mul(vf_mul(vf_set1(part), a), full), layers_hides(vf_sub(behind, vf_set1(1))));
+        const vf w = vf_keep(vf_gt(v, vf_set1(HF_LAYERS_SOME)), v);
         const vm some = vf_gt(w, vf_zero());
         if (!vm_any(some))
             continue;
@@ -161,8 +167,8 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
         for (int i = 0; i < 2; i++) {
             const int at = 2 * x + i * VF_N;
             const vf l = i ? second : first;
-            before[i] = vf_add(vf_keep(vf_lt(vf_load(radius[0] + at), l), vf_load(weight[0] + at)),
-                               vf_keep(vf_lt(vf_load(radius[1] + at), l), vf_load(weight[1] + at)));
+            before[i] = vf_add(vf_mul(vf_load(weight[0] + at), layers_hides(vf_sub(l, vf_load(radius[0] + at)))),
+                               vf_mul(vf_load(weight[1] + at), layers_hides(vf_sub(l, vf_load(radius[1] + at)))));
         }
         vf_unzip(before[0], before[1], &even, &odd);
         vf_store(out[4] + x, vf_keep(some, vf_mul(vf_add(even, odd), vf_set1(0.25f))));
@@ -182,8 +188,9 @@ static void layers_spread_simd(const float *const in[6], const float *const radi
         vf_zip(w, w, &weights[0], &weights[1]);
         for (int i = 0; i < 4; i++) {
             const int at = 2 * x + (i & 1) * VF_N;
-            const vm hides = vm_and(vf_gt(weights[i & 1], vf_zero()), vf_lt(vf_load(radius[i >> 1] + at), far[i & 1]));
-            before[i >> 1][i & 1] = vf_keep(hides, vf_load(weight[i >> 1] + at));
+            const vf hides = layers_hides(vf_sub(far[i & 1], vf_load(radius[i >> 1] + at)));
+            before[i >> 1][i & 1] =
+                vf_keep(vf_gt(weights[i & 1], vf_zero()), vf_mul(vf_load(weight[i >> 1] + at), hides));
         }
         vf_unzip(vf_add(before[0][0], before[1][0]), vf_add(before[0][1], before[1][1]), &even, &odd);
         const vf sum = vf_add(even, odd);

@@ -52,7 +52,7 @@ HF_INLINE vf layers_front(vf middle, vf slope, vf r)
 // Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
 HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5], vf *known)
 {
-    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x), faint = vf_set1(HF_UNMIX_FAINT);
+    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x);
     vf weight[2] = {vf_zero(), vf_zero()};
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 5; c++)
@@ -77,8 +77,9 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 5; c++)
             mean[i][c] = vf_keep(vf_gt(weight[i], vf_zero()), vf_div(mean[i][c], weight[i]));
-    *known = vf_min(vf_mul(vf_add(weight[0], weight[1]), vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
-    const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], faint), vf_gt(weight[1], faint))));
+    const vf both_weigh = vf_add(weight[0], weight[1]), little = vf_mul(vf_set1(HF_UNMIX_LEAN), both_weigh);
+    *known = vf_min(vf_mul(both_weigh, vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
+    const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], little), vf_gt(weight[1], little))));
     if (!vm_any(missing))
         return mixed;
     float w[2][VF_N], m[2][5][VF_N], both[VF_N];

@@ -43,27 +43,30 @@ static void slices(enum hf_layers_quality quality)
 }
 
 // In front of a grey wall of which all is sure lies an edge of which nothing is: of its pixels, mixed with the wall more
-// and less, the one least like the wall stands for it.
+// and less, those least like the wall stand for it, by the eighth power of how much less: one half as far counts a 256th.
 static void farthest(void)
 {
     enum { N = 7, AT = 3 };
-    float radius[N][N], colour[N][N], sure[N][N] = {{0}}, middle[N];
-    struct hf_unmix_row row = {.channels = 1, .middle = middle};
+    float radius[N][N], colour[N][N], sure[N][N] = {{0}}, middle[N], slope[N];
+    struct hf_unmix_row row = {.channels = 1, .middle = middle, .slope = slope};
     for (int y = 0; y < N; y++) {
         middle[y] = 0;
+        slope[y] = 1;
         row.radius[y] = radius[y];
         row.colour[y][0] = colour[y];
         row.sure[y] = sure[y];
         for (int x = 0; x < N; x++) {
             const int front = x == AT && y >= 2 && y <= 4;
             radius[y][x] = front ? -4.0f - (float)y : 5;
-            colour[y][x] = front ? 0.5f + 0.1f * (float)(y == 3 ? 4 : y) : 0.5f;
+            colour[y][x] = front && y == 3 ? 1 : front ? 0.75f : 0.5f;
         }
     }
     float weight[2] = {0, 1}, mean[2][5] = {{0}, {0.5f, 0, 0, 0, 5}};
+    const double all = 1 + 2.0 / 256, want = (1 + 2 * 0.75 / 256) / all, r = (-7 - (6 + 8) / 256.0) / all;
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 1);
-    CHECK_MSG(mean[0][0] == colour[3][AT] && mean[0][4] == radius[3][AT], "colour %g of radius %g, not %g of %g",
-              mean[0][0], mean[0][4], colour[3][AT], radius[3][AT]);
+    // Three products, sums and a quotient of either.
+    CHECK_MSG(fabs(mean[0][0] - want) <= 7 * FLT_EPSILON && fabs(mean[0][4] - r) <= 7 * 8 * FLT_EPSILON,
+              "colour %g of radius %g, not %g of %g", mean[0][0], mean[0][4], want, r);
     CHECK(mean[1][0] == 0.5f && mean[1][4] == 5);
     weight[1] = 0;
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 0);

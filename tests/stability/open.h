@@ -53,12 +53,6 @@ static const struct {
     {"radius 0 and the least above it: jump, 8-bit codes", "gather packed max", 170, "the same"},
     {"radius 0 and the least above it: jump, 8-bit codes", "gather packed", 6,
      "radius 0 is a copy, and otherwise colours are truncated when they are read"},
-    {"a range pull: worst jump, 8-bit codes", "layers", 16,
-     "what lies a pixel of radius behind a silhouette is hidden by it, what lies less far behind is not; and a pixel "
-     "is "
-     "a source of hidden samples by what is behind its edge as soon as it has one"},
-    {"a strength pull: worst jump, 8-bit codes", "layers", 9, "as for the range pull"},
-    {"a radius ramp: worst jump, 8-bit codes", "layers", 4, "as for the range pull"},
 };
 
 #endif

@@ -86,6 +86,12 @@ void layers_shape_free(struct layers_shape *s);
 // Weights of what lies within a circle of radius r (INFINITY: all) around (x, y); of the pixel itself if nothing does.
 void layers_shape_cut(const struct frame *f, struct layers_shape *s, double x, double y, double r);
 
+// How far a surface hides another that is `behind` farther: not at a pixel of radius, wholly at one and a half.
+static inline double layers_reference_hides(double behind)
+{
+    return fmin(fmax(2 * (behind - 1), 0), 1);
+}
+
 // Fill f's samples: seen, mixed and behind (layers_reference_samples.c).
 void layers_reference_samples(struct frame *f);
 // Samples that are about as far as the farthest of them, as one.

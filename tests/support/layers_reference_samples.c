@@ -49,24 +49,30 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
     return sum;
 }
 
-static void side_farthest(const struct frame *f, int x, int y, double middle, int front, const double other[5],
-                          double mean[5])
+// The mean of a side, by the eighth power of how far colours are from `other`.
+static void side_farthest(const struct frame *f, int x, int y, double middle, double slope, int front,
+                          const double other[5], double mean[5])
 {
-    double most = -1;
-    for (int v = -2; v <= 2; v++)
-        for (int u = -2; u <= 2; u++) {
-            double d = 0;
-            if ((radius_at(f, x + u, y + v) < middle) != front)
-                continue;
-            for (int c = 0; c < f->channels; c++)
-                d += pow(colour_at(f, c, x + u, y + v) - other[c], 2);
-            if (d <= most)
-                continue;
-            most = d;
-            for (int c = 0; c < f->channels; c++)
-                mean[c] = colour_at(f, c, x + u, y + v);
-            mean[4] = radius_at(f, x + u, y + v);
-        }
+    double far[25], part[25], most = 0, sum = 0;
+    for (int i = 0; i < 25; i++) {
+        const int px = x + i % 5 - 2, py = y + i / 5 - 2;
+        const double s = front_of(radius_at(f, px, py), middle, slope);
+        part[i] = front ? s : 1 - s;
+        far[i] = 0;
+        for (int c = 0; c < f->channels; c++)
+            far[i] += fabs(colour_at(f, c, px, py) - other[c]);
+        most = part[i] > 0 ? fmax(most, far[i]) : most;
+    }
+    memset(mean, 0, 5 * sizeof *mean);
+    for (int i = 0; i < 25; i++) {
+        const double w = part[i] * (most > 0 ? pow(far[i] / most, 8) : 1);
+        sum += w;
+        for (int c = 0; c < f->channels; c++)
+            mean[c] += w * colour_at(f, c, x + i % 5 - 2, y + i / 5 - 2);
+        mean[4] += w * radius_at(f, x + i % 5 - 2, y + i / 5 - 2);
+    }
+    for (int c = 0; c < 5; c++)
+        mean[c] = sum > 0 ? mean[c] / sum : 0;
 }
 
 static double share_of(const struct frame *f, int x, int y, double a0, const double *front, const double *back)
@@ -98,8 +104,8 @@ static void unmix(struct frame *f, int x, int y)
     if (weight[0] == 0 && weight[1] == 0)
         return;
     const int less = weight[0] < weight[1] ? 0 : 1;
-    const double known = fmin(weight[less] / 0.001, 1);
-    side_farthest(f, x, y, middle, !less, mean[!less], far);
+    const double known = fmin(weight[less] / (0.01 * (weight[0] + weight[1])), 1);
+    side_farthest(f, x, y, middle, slope, !less, mean[!less], far);
     for (int c = 0; c < 5 && known < 1; c++)
         mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
     const double a0 = front_of(own, middle, slope), a = share_of(f, x, y, a0, mean[0], mean[1]);
@@ -227,7 +233,7 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
             const double *q = at(&level[j], x + u * (1 << j), y + v * (1 << j)), behind = q[RADIUS] - nearest;
             const double a = fmin(fmax(behind / (2 << j) - hypot(u, v) + 0.5, 0), 1);
             const double some = fmin(9 * q[WEIGHT], 1);
-            const double w = behind >= 1 ? pow(256, -j) * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * some : 0;
+            const double w = pow(256, -j) * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * some * layers_reference_hides(behind);
             for (int c = 0; c < f->channels; c++)
                 sum[c] += w * q[c];
             sum[WEIGHT] += w;
@@ -240,7 +246,7 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
         out[c] = sum[c] / sum[WEIGHT];
     for (int i = 0; i < 4; i++) {
         const double *s = edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2);
-        out[WEIGHT] += s[RADIUS] < out[RADIUS] - 1 ? s[WEIGHT] / 4 : 0;
+        out[WEIGHT] += s[WEIGHT] / 4 * layers_reference_hides(out[RADIUS] - s[RADIUS]);
     }
 }
 
