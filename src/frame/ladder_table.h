@@ -9,13 +9,14 @@
 // options; display-encoded root mean square error, geometric mean of the scenes and of the worst; milliseconds of a
 // megapixel
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 1.892f}, \
-    {"--engine gather", 0.045835f, 0.091194f, 31.57f}, \
-    {"--engine layers", 0.026320f, 0.040952f, 61.27f}, \
-    {"--engine layers --layers-quality high", 0.025950f, 0.039822f, 65.15f}, \
-    {"--engine layers --layers-quality best", 0.024207f, 0.039229f, 211.8f}
+    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 1.741f}, \
+    {"--engine gaussian --resolution quarter", 0.059046f, 0.075406f, 1.837f}, \
+    {"--engine gather", 0.045627f, 0.091064f, 26.14f}, \
+    {"--engine layers --spacing 8 --no-unmix --no-highlights", 0.033109f, 0.079191f, 48.38f}, \
+    {"--engine layers", 0.025618f, 0.037848f, 57.72f}, \
+    {"--engine layers --layers-quality best", 0.023929f, 0.037740f, 180.5f}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 0, 2, 4, 4
+#define HF_LADDER_QUALITIES 0, 4, 5, 5
 // milliseconds of a megapixel of each engine as it is
-#define HF_LADDER_ENGINES 31.57f, 56.02f, 107.9f, 3.820f, 61.27f
+#define HF_LADDER_ENGINES 26.14f, 50.17f, 90.10f, 3.426f, 57.72f
 // clang-format on
