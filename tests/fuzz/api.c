@@ -111,6 +111,12 @@ static void maybe(struct bytes *b, float *field)
         *field = any_float(b);
 }
 
+// by * v - less; v may be any int.
+static int scaled(int v, unsigned by, unsigned less)
+{
+    return (int)((unsigned)v * by - less);
+}
+
 static struct hf_params any_params(struct bytes *b)
 {
     struct hf_params p = hf_default_params;
@@ -138,8 +144,8 @@ static struct hf_params any_params(struct bytes *b)
         maybe(b, &p.aperture.squeeze);
     }
     if (take_byte(b) < 40) {
-        p.view.display_width = any_choice(b, 255) * 16 - 16;
-        p.view.display_height = any_choice(b, 255) * 16 - 16;
+        p.view.display_width = scaled(any_choice(b, 255), 16, 16);
+        p.view.display_height = scaled(any_choice(b, 255), 16, 16);
         maybe(b, &p.view.pixel_aspect);
     }
     p.gather.storage = (enum hf_storage)any_choice(b, 3);
@@ -154,12 +160,12 @@ static struct hf_params any_params(struct bytes *b)
     p.run.no_skip = flags >> 6 & 1;
     p.run.colour_stats = flags >> 7;
     if (take_byte(b) < 30)
-        p.gather.rings = any_choice(b, 70) - 1;
+        p.gather.rings = scaled(any_choice(b, 70), 1, 1);
     p.hexagon.resolution = (enum hf_resolution)any_choice(b, 2);
     p.scatter.resolution = (enum hf_resolution)any_choice(b, 2);
     p.gaussian.resolution = (enum hf_resolution)any_choice(b, 3);
     maybe(b, &p.aperture.chromatic);
-    p.gaussian.iterations = any_choice(b, 70) - 1;
+    p.gaussian.iterations = scaled(any_choice(b, 70), 1, 1);
     maybe(b, &p.gaussian.sigma);
     maybe(b, &p.run.budget_ms);
     maybe(b, &p.highlight.gain);
