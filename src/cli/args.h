@@ -85,10 +85,11 @@ extern const struct tool_program cli_program;
 tool_parse cli_parse_depth_type, cli_parse_display, cli_parse_focus, cli_parse_focus_at, cli_parse_aperture,
     cli_parse_json, cli_parse_version;
 
+// Do the planes that were given mean something to the engine? Returns 0, or CLI_BAD_ARGUMENTS with one sentence in *error.
+// cli_parse_args asks for an engine that was given, cli_setup_view for one that a quality chose.
+int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error);
 // Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
 // --version the rest of the line is not looked at.
-// Whether planes that were given mean something to the engine; if not, the reason.
-int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error);
 int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_error *error);
 void cli_free_args(struct cli_args *args);
 

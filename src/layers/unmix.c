@@ -39,37 +39,34 @@ const float hf_unmix_weights[7][7] = {
 #undef W
 };
 
-// What of a pixel is of one side, and how far its colour is from `other`.
-static float side_of(const struct hf_unmix_row *u, int x, int y, int i, int front, const float *other, float *distance)
-{
-    const float share = hf_saturate((u->middle[x] - u->radius[y][i]) * u->slope[x] + 0.5f);
-    float d = 0;
-    for (int c = 0; c < u->channels; c++)
-        d = d + fabsf(u->colour[y][c][i] - other[c]) * 0.125f;  // of the largest samples, too, it is finite
-    *distance = d;
-    return front ? share : 1 - share;
-}
+enum { SIDE = 5 };  // pixels each way
 
 // The mean of the pixels of 5 x 5 on one side, the farther from `other` in colour the more of it, by the eighth power of
 // the distance: nearly the farthest alone, but where two are as far a picture that moves does not jump from one to the other.
 static void farthest(const struct hf_unmix_row *u, int x, int front, const float *other, float *colour, float *radius)
 {
-    float most = 0, sum = 0, d;
-    for (int y = 1; y < 6; y++)
-        for (int i = x - 2; i <= x + 2; i++)
-            most = side_of(u, x, y, i, front, other, &d) > 0 && d > most ? d : most;
-    for (int y = 1; y < 6; y++)
-        for (int i = x - 2; i <= x + 2; i++) {
-            const float share = side_of(u, x, y, i, front, other, &d), far = most > 0 ? d / most : 1;
-            const float square = far * far;
-            const float w = share * ((square * square) * (square * square)) * 0.03125f;  // sums of 25 are finite
-            if (!(w > 0))
-                continue;
-            sum = sum + w;
-            *radius = *radius + w * u->radius[y][i];
-            for (int c = 0; c < u->channels; c++)
-                colour[c] = colour[c] + w * u->colour[y][c][i];
-        }
+    float share[SIDE * SIDE], distance[SIDE * SIDE], most = 0, sum = 0;
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const int y = 1 + k / SIDE, i = x - 2 + k % SIDE;
+        const float of_front = hf_saturate((u->middle[x] - u->radius[y][i]) * u->slope[x] + 0.5f);
+        float d = 0;
+        for (int c = 0; c < u->channels; c++)
+            d = d + fabsf(u->colour[y][c][i] - other[c]) * 0.125f;  // of the largest samples, too, it is finite
+        share[k] = front ? of_front : 1 - of_front;
+        distance[k] = d;
+        most = share[k] > 0 && d > most ? d : most;
+    }
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const int y = 1 + k / SIDE, i = x - 2 + k % SIDE;
+        const float far = most > 0 ? distance[k] / most : 1, square = far * far;
+        const float w = share[k] * ((square * square) * (square * square)) * 0.03125f;  // sums of 25 are finite
+        if (!(w > 0))
+            continue;
+        sum = sum + w;
+        *radius = *radius + w * u->radius[y][i];
+        for (int c = 0; c < u->channels; c++)
+            colour[c] = colour[c] + w * u->colour[y][c][i];
+    }
     *radius = sum > 0 ? *radius / sum : 0;
     for (int c = 0; c < u->channels; c++)
         colour[c] = sum > 0 ? colour[c] / sum : 0;

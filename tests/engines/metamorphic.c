@@ -86,15 +86,6 @@ static const char *name_of(const struct trial *t)
     return name;
 }
 
-static int samples_other(const struct picture *a, const struct picture *b)
-{
-    int n = 0;
-    for (int c = 0; c < a->channels; c++)
-        for (size_t i = 0; i < samples_of(a); i++)
-            n += memcmp(&a->plane[c][i], &b->plane[c][i], sizeof(float)) != 0;
-    return n;
-}
-
 static void same(const struct trial *t, const struct picture *want, const struct picture *got, const char *what)
 {
     const int n = samples_other(want, got);

@@ -18,15 +18,6 @@ static double relative(const struct subject *s, double roundings)
 
 static const char *const from_roundings = "roundings on the way of a sample, and the storage's steps";
 
-static int samples_other(const struct picture *a, const struct picture *b)
-{
-    int n = 0;
-    for (int c = 0; c < a->channels; c++)
-        for (size_t i = 0; i < samples_of(a); i++)
-            n += memcmp(&a->plane[c][i], &b->plane[c][i], sizeof(float)) != 0;
-    return n;
-}
-
 static void constants(const struct run *r)
 {
     static const float values[] = {1, 0.1f, 1.0f / 3, 7.77f, 60000, 1e-3f, -3.3f, 1e-30f, 1e30f};

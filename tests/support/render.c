@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/render.h"
 
+#include <string.h>
+
 #include "support/check.h"
 
 struct hf_context *context_new(enum hf_isa isa, int threads, int tile_width, int tile_height)
@@ -79,6 +81,15 @@ double largest_difference(const struct picture *a, const struct picture *b)
         for (size_t i = 0; i < samples_of(a); i++)
             largest = worse(largest, fabs((double)a->plane[c][i] - b->plane[c][i]));
     return largest;
+}
+
+int samples_other(const struct picture *a, const struct picture *b)
+{
+    int n = 0;
+    for (int c = 0; c < a->channels; c++)
+        for (size_t i = 0; i < samples_of(a); i++)
+            n += memcmp(&a->plane[c][i], &b->plane[c][i], sizeof(float)) != 0;
+    return n;
 }
 
 struct picture picture_transposed(const struct picture *p)

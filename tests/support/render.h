@@ -25,6 +25,7 @@ size_t samples_of(const struct picture *p);  // of a plane
 int all_finite(const struct picture *p);
 double largest_sample(const struct picture *p);                               // of the finite ones, its magnitude
 double largest_difference(const struct picture *a, const struct picture *b);  // NaN if either holds one
+int samples_other(const struct picture *a, const struct picture *b);          // how many have other bits
 struct picture picture_transposed(const struct picture *p);
 void picture_fill(struct picture *p, int channel, float value);
 
