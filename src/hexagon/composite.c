@@ -55,11 +55,13 @@ static float background(const struct fields *v, int c, float own, float p)
     return hf_lerp(seen, own, hf_saturate(HEXAGON_ALL + p));
 }
 
-// How much of a side of length 1 / i from (x, y) on lies within the frame, in pixels from its corner. What rounding has put
-// on the edge is 2^-10 inside, for a side along it.
-static float along(const struct hf_setup *s, const float side[2], float x, float y, float i)
+// How much of a side of length 1 / i lies within the frame, from a place on that lies `by` beside a pixel's centre (at).
+// What rounding has put on the edge is 2^-10 inside, for a side along it. A pixel's distance from an edge is exact, so a
+// part of the frame with that edge has the same bits.
+static float along(const struct hf_setup *s, const float side[2], const float at[2], const float by[2], float i)
 {
-    const float right = side[0] > 0 ? (float)s->width - x : x, down = side[1] > 0 ? (float)s->height - y : y;
+    const float right = side[0] > 0 ? ((float)s->width - at[0]) - by[0] : at[0] + by[0];
+    const float down = side[1] > 0 ? ((float)s->height - at[1]) - by[1] : at[1] + by[1];
     const float dx = (right > 0x1p-10f ? right : 0x1p-10f) * __builtin_fabsf(side[0]) * i;
     const float dy = (down > 0x1p-10f ? down : 0x1p-10f) * __builtin_fabsf(side[1]) * i;
     const float d = dx < dy ? dx : dy;
@@ -68,14 +70,15 @@ static float along(const struct hf_setup *s, const float side[2], float x, float
 
 // What two blurs find of a near field that covers the whole frame, as nothing is made beyond it: the first along side a,
 // and b if it is one, the second along c. By Simpson's rule, as the first is linear but for its corners.
-static float two_sides(const struct hf_setup *s, int a, int b, int c, float x, float y, float p)
+static float two_sides(const struct hf_setup *s, int a, int b, int c, const float at[2], float p)
 {
+    static const float here[2] = {0, 0};
     const struct hf_hexagon *h = hf_hexagon(s);
-    const float i = 1 / p, d = along(s, h->side[c], x, y, i);
+    const float i = 1 / p, d = along(s, h->side[c], at, here, i);
     float sum = 0;
     for (int k = 0; k < 3; k++) {
-        const float t = d * p * (0.5f * (float)k), u = x + t / h->side[c][0], v = y + t / h->side[c][1];
-        const float first = along(s, h->side[a], u, v, i) + (b >= 0 ? along(s, h->side[b], u, v, i) : 0);
+        const float t = d * p * (0.5f * (float)k), by[2] = {t / h->side[c][0], t / h->side[c][1]};
+        const float first = along(s, h->side[a], at, by, i) + (b >= 0 ? along(s, h->side[b], at, by, i) : 0);
         sum = sum + (k == 1 ? 4 : 1) * first;
     }
     return d * sum;
@@ -86,8 +89,8 @@ static float left_over(const struct hf_setup *s, float coverage, float p, int x,
 {
     float most = 1;
     if (p < 0) {
-        const float u = (float)x + 0.5f, v = (float)y + 0.5f;
-        most = (two_sides(s, 0, -1, 1, u, v, -p) + two_sides(s, 0, 1, 2, u, v, -p)) * (1 / 18.0f);
+        const float at[2] = {(float)x + 0.5f, (float)y + 0.5f};
+        most = (two_sides(s, 0, -1, 1, at, -p) + two_sides(s, 0, 1, 2, at, -p)) * (1 / 18.0f);
     }
     const float o = most - coverage;
     return o > 0 ? o : 0;

@@ -147,27 +147,32 @@ HF_INLINE void hex_store_blend(vm shows, vf blend, float *colour)
 }
 
 // See composite.c.
-HF_INLINE vf hex_along(const struct hf_setup *s, const float side[2], vf x, vf y, vf i)
+HF_INLINE vf hex_beside(float side, int size, vf at, vf by)
 {
-    const vf least = vf_set1(0x1p-10f);
-    const vf right = vf_max(side[0] > 0 ? vf_sub(vf_set1((float)s->width), x) : x, least);
-    const vf down = vf_max(side[1] > 0 ? vf_sub(vf_set1((float)s->height), y) : y, least);
+    const vf inside = side > 0 ? vf_sub(vf_sub(vf_set1((float)size), at), by) : vf_add(at, by);
+    return vf_max(inside, vf_set1(0x1p-10f));
+}
+
+HF_INLINE vf hex_along(const struct hf_setup *s, const float side[2], const vf at[2], const vf by[2], vf i)
+{
+    const vf right = hex_beside(side[0], s->width, at[0], by[0]), down = hex_beside(side[1], s->height, at[1], by[1]);
     const vf d = vf_min(vf_mul(vf_mul(right, vf_set1(__builtin_fabsf(side[0]))), i),
                         vf_mul(vf_mul(down, vf_set1(__builtin_fabsf(side[1]))), i));
     return vf_min(d, vf_set1(1));
 }
 
-HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, vf x, vf y, vf p)
+HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, const vf at[2], vf p)
 {
     const struct hf_hexagon *h = hf_hexagon(s);
-    const vf i = vf_div(vf_set1(1), p), d = hex_along(s, h->side[c], x, y, i);
+    const vf here[2] = {vf_zero(), vf_zero()};
+    const vf i = vf_div(vf_set1(1), p), d = hex_along(s, h->side[c], at, here, i);
     vf sum = vf_zero();
     for (int k = 0; k < 3; k++) {
         const vf t = vf_mul(vf_mul(d, p), vf_set1(0.5f * (float)k));
-        const vf u = vf_add(x, vf_div(t, vf_set1(h->side[c][0]))), v = vf_add(y, vf_div(t, vf_set1(h->side[c][1])));
-        vf first = hex_along(s, h->side[a], u, v, i);
+        const vf by[2] = {vf_div(t, vf_set1(h->side[c][0])), vf_div(t, vf_set1(h->side[c][1]))};
+        vf first = hex_along(s, h->side[a], at, by, i);
         if (b >= 0)
-            first = vf_add(first, hex_along(s, h->side[b], u, v, i));
+            first = vf_add(first, hex_along(s, h->side[b], at, by, i));
         sum = vf_add(sum, k == 1 ? vf_mul(vf_set1(4), first) : first);
     }
     return vf_mul(d, sum);
@@ -189,10 +194,11 @@ HF_INLINE vf hex_left_over(const struct hf_setup *s, vf coverage, vf p, int x, i
     const vm near = vf_lt(p, vf_zero());
     vf most = vf_set1(1);
     if (vm_any(near)) {
-        const vf q = vf_select(near, vf_sub(vf_zero(), p), most), v = vf_set1((float)y + 0.5f);
+        const vf q = vf_select(near, vf_sub(vf_zero(), p), most);
         const vf u = vf_add(vf_set1((float)x + 0.5f), vf_mul(vf_set1((float)step), vf_load(steps)));
-        if (vm_any(vm_and(near, hex_at_edge(s, u, v, q)))) {
-            const vf sum = vf_add(hex_two_sides(s, 0, -1, 1, u, v, q), hex_two_sides(s, 0, 1, 2, u, v, q));
+        const vf at[2] = {u, vf_set1((float)y + 0.5f)};
+        if (vm_any(vm_and(near, hex_at_edge(s, at[0], at[1], q)))) {
+            const vf sum = vf_add(hex_two_sides(s, 0, -1, 1, at, q), hex_two_sides(s, 0, 1, 2, at, q));
             most = vf_select(near, vf_mul(sum, vf_set1(1 / 18.0f)), most);
         }
     }

@@ -192,12 +192,7 @@ static void cropped(const struct trial *t, struct rng *rng)
     // Its right and lower edges are the whole's.
     struct picture want = picture_cut(&t->out, x0 + m, y0 + m, pw - m, ph - m);
     struct picture got = picture_cut(&out, m, m, pw - m, ph - m);
-    // A hexagon's taps lie at places that count from the frame's corner, and round otherwise in a crop.
-    if (t->p.engine == HF_ENGINE_HEXAGON)
-        CHECK_MSG(largest_difference(&want, &got) <= constant_bound(&t->p) * largest_sample(&t->s.colour),
-                  "%s: a crop: off by %g", name_of(t), largest_difference(&want, &got));
-    else
-        same(t, &want, &got, "a crop");
+    same(t, &want, &got, "a crop");
     picture_free(&want);
     picture_free(&got);
     picture_free(&out);
@@ -302,8 +297,9 @@ static void try_one(unsigned seed)
     hf_close(&t.c);
 }
 
-// Trials that failed once: the gather's triangles of a small level saw nothing of a far pixel beside them.
-static const unsigned known[] = {200313, 203333, 103991};
+// Trials that failed once: the gather's triangles of a small level saw nothing of a far pixel beside them; a hexagon at the
+// frame's edges took sums of places that count from its corner.
+static const unsigned known[] = {200313, 203333, 103991, 741, 760};
 
 int main(int argc, char **argv)
 {
