@@ -73,15 +73,16 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     c->k->weigh(b->s, in, b->share ? b->share + (ptrdiff_t)py * b->set->stride + px : NULL, b->set->stride, rows,
                 l->channels, n, 0, out, c->any);
     for (int from = tx, to; b->more && (to = hf_layers_next_run(&c->used, &from, ty, end, MORE)) > from; from = to) {
+        // What is noted of 16 samples lies as it does in the run: a tile that has none of these may come first.
+        const int lead = (from - tx) * size & ~15, at = px + lead, count = (to - tx) * size - lead;
         float *more[5];
         for (int i = 0; i < 5; i++)
-            more[i] = out[i] + (from - tx) * size;
+            more[i] = out[i] + lead;
         if (b->spread)
-            spread(c, b->more, c->x0 + from * size, py, (to - from) * size, in);
+            spread(c, b->more, at, py, count, in);
         else
-            hf_layers_planes_at(l, b->more, b->more->weight, (c->x0 >> b->finest) + from * size, py, in);
-        c->k->weigh(b->s, in, NULL, b->more->stride, rows, l->channels, (to - from) * size, 1, more,
-                    c->any + (from - tx) * size / 16);
+            hf_layers_planes_at(l, b->more, b->more->weight, at, py, in);
+        c->k->weigh(b->s, in, NULL, b->more->stride, rows, l->channels, count, 1, more, c->any + lead / 16);
     }
     for (int i = tx; i < end; i++) {
         const int any = c->any[(i - tx) * size / 16];
