@@ -54,18 +54,13 @@ static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int
         in[i] = c->line[i];
 }
 
-// The sources of one row of a run of tiles; notes where there are any.
-static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int y)
+// Samples of a row of a run of tiles, the first of which is (px, py); notes in `any` of which 16 there are some.
+static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
+                      float *const out[5])
 {
     const struct hf_layers *l = c->l;
-    const int level = b->s->level - b->finest, size = TILE >> b->finest, n = (end - tx) * size, rows = 1 << level;
-    const int px = (c->x0 >> b->finest) + tx * size, py = (c->y0 >> b->finest) + ty * size + (y << level);
+    const int size = TILE >> b->finest, n = (end - tx) * size, rows = 1 << (b->s->level - b->finest);
     const float *in[6] = {NULL};
-    float *out[5];
-    int some = 0;
-    memset(c->any, 0, (size_t)(n + 15) / 16);
-    for (int i = 0; i < 5; i++)
-        out[i] = level ? c->line[i] : source_at(c, i < 4 ? i : l->channels, tx * size, y);
     if (b->spread)
         spread(c, b->set, px, py, n, in);
     else
@@ -84,6 +79,20 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
             hf_layers_planes_at(l, b->more, b->more->weight, at, py, in);
         c->k->weigh(b->s, in, NULL, b->more->stride, rows, l->channels, count, 1, more, c->any + lead / 16);
     }
+}
+
+// The sources of one row of a run of tiles; notes where there are any. The row is that of tile row `from`.
+static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int from, int y)
+{
+    const struct hf_layers *l = c->l;
+    const int level = b->s->level - b->finest, size = TILE >> b->finest, n = (end - tx) * size;
+    const int px = (c->x0 >> b->finest) + tx * size, py = (c->y0 >> b->finest) + from * size + (y << level);
+    float *out[5];
+    int some = 0;
+    memset(c->any, 0, (size_t)(n + 15) / 16);
+    for (int i = 0; i < 5; i++)
+        out[i] = level ? c->line[i] : source_at(c, i < 4 ? i : l->channels, tx * size, y);
+    weigh_run(c, b, tx, end, ty, px, py, out);
     for (int i = tx; i < end; i++) {
         const int any = c->any[(i - tx) * size / 16];
         *hf_layers_map_at(&c->filled, i, y / 2) |= (uint8_t)any;
@@ -96,14 +105,52 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     }
 }
 
-static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
+// Tiles beyond the frame, as far as there are samples of them: one on each side. Those farther out are like it.
+struct around {
+    int first, last;
+};
+
+static struct around around_of(int first, int tiles)
+{
+    return (struct around){-first / TILE - 1, tiles - first / TILE};
+}
+
+static int within(int t, struct around a)
+{
+    return t < a.first ? a.first : t > a.last ? a.last : t;
+}
+
+// Tiles beyond the frame become what tile `like` is: each of its rows is of one colour.
+static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int like, int tx, int end, int y)
 {
     const int size = TILE >> b->s->level;
+    if (tx >= end)
+        return;
+    const uint8_t any = *hf_layers_map_at(&c->filled, like, y / 2);
+    for (int i = tx; i < end; i++)
+        *hf_layers_map_at(&c->filled, i, y / 2) |= any;
+    for (int i = 0; any && i < b->channels; i++) {
+        const float v = *source_at(c, i, like * size, y);
+        float *to = source_at(c, i, tx * size, y);
+        for (int x = 0; x < (end - tx) * size; x++)
+            to[x] = v;
+    }
+}
+
+static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
+{
+    const int size = TILE >> b->s->level, from = within(ty, around_of(c->y0, c->l->rows));
+    const struct around wide = around_of(c->x0, c->l->columns);
     for (int i = 0; i < size / 2; i++)
         memset(hf_layers_map_at(&c->filled, c->box.x0, i), 0, (size_t)(c->box.x1 - c->box.x0));
-    for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0)) > tx; tx = end)
-        for (int y = 0; y < size; y++)
-            build_run(c, b, tx, end, ty, y);
+    for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0)) > tx; tx = end) {
+        const int first = within(tx, wide), last = within(end - 1, wide);
+        for (int y = 0; y < size; y++) {
+            build_run(c, b, first, last + 1, ty, from, y);
+            repeat_tile(c, b, first, tx, first, y);
+            repeat_tile(c, b, last, last + 1, end, y);
+        }
+    }
 }
 
 // Also what vectors have written past the last tile.

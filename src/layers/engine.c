@@ -248,10 +248,12 @@ static int runs(const struct hf_setup *s, int pass)
 static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
     const struct hf_layers *l = hf_layers(s);
-    // Planes of one set of samples have one stride: whoever reads some of them reads as far around as the others do.
+    // Planes of one set of samples have one stride: whoever reads some of them reads as far around as the others do. A
+    // cell's tiles beyond the frame's border are all like those next to it.
+    const int border = hf_min(l->around, HF_LAYERS_BORDER) / 2;
     const int n = halo == HALO_EDGE     ? (l->set.highlights ? HF_LAYERS_BRIGHT_REACH : 6)
                   : halo == HALO_LEVELS ? hf_layers_hidden_reach(l)
-                                        : hf_max(l->around / 2, hf_layers_patterns_reach(l));
+                                        : hf_max(border, hf_layers_patterns_reach(l));
     return (struct hf_reach){n, n};
 }
 
@@ -275,8 +277,9 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     if (sweep == 2) {
         // What is around a cell is weighed again for each: the more there is of it, the larger the cell.
         const int n = hf_layers(s)->around < 256 ? 1 : 2;
-        *width = 160 * n;
-        *height = 96 * n;
+        *width = hf_min(160 * n, (s->half_width + 15) & ~15);
+        *height =
+            hf_min(96 * n, (s->half_height + HF_LAYERS_TILE / 2 - 1) / (HF_LAYERS_TILE / 2) * (HF_LAYERS_TILE / 2));
     } else if (sweep == 3 || sweep == 4) {
         *width = (s->half_width + 15) & ~15;
         *height = sweep == 3 ? 96 : 48;

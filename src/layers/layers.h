@@ -18,9 +18,11 @@
 #include "layers/shape.h"
 
 enum {
-    HF_LAYERS_TILE = 16,    // pixels; the extremes of the radii are kept for each tile
-    HF_LAYERS_LEVELS = 7,   // of the hidden samples, at most
-    HF_LAYERS_COARSEST = 3  // log2 of the largest pixels of a slice
+    HF_LAYERS_TILE = 16,     // pixels; the extremes of the radii are kept for each tile
+    HF_LAYERS_LEVELS = 7,    // of the hidden samples, at most
+    HF_LAYERS_COARSEST = 3,  // log2 of the largest pixels of a slice
+    // Pixels beyond the frame's border of which there are samples: a tile, what makes the frame whole tiles, and vectors.
+    HF_LAYERS_BORDER = 3 * HF_LAYERS_TILE
 };
 
 // Radii up to this lie between slices of full resolution, those beyond do not.
