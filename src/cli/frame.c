@@ -69,7 +69,7 @@ int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const s
 
 static int new_plane(const struct cli_view *v, float **plane, struct tool_error *error)
 {
-    *plane = malloc((size_t)v->view->width * (size_t)v->view->height * sizeof(float));
+    *plane = hf_io_alloc((size_t)v->view->width * (size_t)v->view->height * sizeof(float));
     return *plane ? 0
                   : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory for %d x %d pixels", v->label, v->view->width,
                               v->view->height);

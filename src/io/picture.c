@@ -6,7 +6,15 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/mem.h"
 #include "tool/nearest.h"
+
+void *hf_io_alloc(size_t size)
+{
+    // The last page counts, where a picture is but a few.
+    const size_t page = (size_t)1 << 21, whole = size >= 2 * page && size <= SIZE_MAX - page ? page : 1;
+    return hf_mem_default.alloc(hf_mem_default.cookie, (size + whole - 1) / whole * whole, HF_ALIGN);
+}
 
 const char *hf_io_extension(const char *path)
 {

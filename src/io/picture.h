@@ -93,6 +93,10 @@ void hf_io_list(char *buf, size_t size, const char *part, const char *name, cons
 // none is near.
 int hf_io_nearest(const char *list, const char *wanted, char nearest[256]);
 
+// Memory for pixels, on large pages where there are: a fault of the page table for each 2 MiB instead of each 4 KiB. To be
+// freed with free(); NULL when there is none.
+void *hf_io_alloc(size_t size);
+
 // A file in memory; data is to be freed.
 struct hf_io_bytes {
     uint8_t *data;

@@ -252,7 +252,7 @@ static int decode_part(struct hf_exr *e, int p, const struct hf_exr_plane *plane
     const bool whole = hf_exr_is_dwa(part->compression);
     d.keep = part->samples;
     if (!d.decoded && (keep || whole)) {
-        d.keep = malloc(part->layout.bytes + 1);
+        d.keep = hf_io_alloc(part->layout.bytes + 1);
         if (!d.keep)
             return hf_io_fail(err, "%s: out of memory: %d x %d pixels of %d channels", e->path, part->width,
                               part->height, part->channel_count);
