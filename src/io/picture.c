@@ -5,15 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 
-#include "base/mem.h"
 #include "tool/nearest.h"
 
+// Not aligned to such a page: rooms between blocks that are would add up over a shot.
 void *hf_io_alloc(size_t size)
 {
-    // The last page counts, where a picture is but a few.
-    const size_t page = (size_t)1 << 21, whole = size >= 2 * page && size <= SIZE_MAX - page ? page : 1;
-    return hf_mem_default.alloc(hf_mem_default.cookie, (size + whole - 1) / whole * whole, HF_ALIGN);
+    void *ptr = malloc(size);
+#ifdef MADV_HUGEPAGE
+    const uintptr_t page = (uintptr_t)1 << 21, from = ((uintptr_t)ptr + page - 1) / page * page;
+    const uintptr_t to = ((uintptr_t)ptr + size) / page * page;
+    if (ptr && from < to)
+        madvise((void *)from, to - from, MADV_HUGEPAGE);  // a wish
+#endif
+    return ptr;
 }
 
 const char *hf_io_extension(const char *path)
