@@ -293,8 +293,8 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
     if (!l->slices)
         return 0;
     const int width = 2 * p->cell_width[2] + 2 * HF_LAYERS_TILE, height = 2 * p->cell_height[2] + 2 * HF_LAYERS_TILE;
-    const size_t need[] = {hf_layers_unmix_floats(2 * p->cell_width[2]),
-                           hf_layers_highlight_floats(p->cell_width[2], p->cell_height[2]),
+    const size_t need[] = {hf_layers_unmix_floats(2 * p->cell_width[2]) +
+                               hf_layers_highlight_floats(p->cell_width[2], p->cell_height[2]),
                            hf_layers_hidden_floats(l, p->cell_width[3], p->cell_height[3]),
                            hf_layers_patterns_floats(l, p->cell_width[4], p->cell_height[4]),
                            hf_layers_composite_floats(l, width, height)};

@@ -95,27 +95,42 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
     }
 }
 
-void hf_layers_highlights(const struct hf_frame *f, struct hf_rect r)
+// Means of colours and of alphas, one after the other: where the cell's first pixel is in the former.
+static ptrdiff_t stride_of(struct hf_rect cell)
 {
-    const int width = r.x1 - r.x0, height = r.y1 - r.y0, n = hf_min(2 * r.x1, f->s->width) - 2 * r.x0;
-    const int channels = hf_layers(f->s)->channels;
-    const ptrdiff_t stride = width + 2 * PAD, apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
-    float *mean = f->work + APART * stride + PAD, *cover = mean + (height + 2 * APART) * stride,
-          *scratch = cover + (height + APART) * stride - PAD;
-    make_means(f, r, (const int[]){0, 1, 2}, scratch, mean);
-    if (channels == 4)
-        make_means(f, r, (const int[]){3, -1, -1}, scratch, cover);
-    for (int py = 2 * r.y0; py < hf_min(2 * r.y1, f->s->height); py++) {
+    return cell.x1 - cell.x0 + 2 * PAD;
+}
+
+static ptrdiff_t cover_from(struct hf_rect cell)
+{
+    return (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
+}
+
+void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch)
+{
+    float *mean = scratch + APART * stride_of(cell) + PAD, *cover = mean + cover_from(cell);
+    scratch = cover + (cell.y1 - cell.y0 + APART) * stride_of(cell) - PAD;
+    make_means(f, cell, (const int[]){0, 1, 2}, scratch, mean);
+    if (hf_layers(f->s)->channels == 4)
+        make_means(f, cell, (const int[]){3, -1, -1}, scratch, cover);
+}
+
+void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch)
+{
+    const int n = hf_min(2 * cell.x1, f->s->width) - 2 * cell.x0, channels = hf_layers(f->s)->channels;
+    const ptrdiff_t stride = stride_of(cell), apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
+    const float *mean = scratch + APART * stride + PAD, *cover = mean + cover_from(cell);
+    for (int py = 2 * rows.y0; py < hf_min(2 * rows.y1, f->s->height); py++) {
         const float *around[5], *covered[5], *in[6];
         for (int i = 0; i < 5; i++) {
-            around[i] = mean + (py / 2 - r.y0) * stride + apart[i];
-            covered[i] = cover + (py / 2 - r.y0) * stride + apart[i];
+            around[i] = mean + (py / 2 - cell.y0) * stride + apart[i];
+            covered[i] = cover + (py / 2 - cell.y0) * stride + apart[i];
         }
         for (int i = 0; i < 3; i++)
-            in[i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN], i, 2 * r.x0, py);
+            in[i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN], i, 2 * cell.x0, py);
         for (int i = 0; i < 2; i++)
-            in[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, 2 * r.x0, py);
+            in[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, 2 * cell.x0, py);
         hf_layers_kernels(f)->shares(in, around, channels == 4 ? covered : NULL, n,
-                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * r.x0, py));
+                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * cell.x0, py));
     }
 }

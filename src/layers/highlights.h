@@ -12,7 +12,9 @@ enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample
 
 // Floats of scratch for a cell of half-resolution pixels.
 size_t hf_layers_highlight_floats(int width, int height);
-// The shares of a cell's pixels, from their samples.
-void hf_layers_highlights(const struct hf_frame *f, struct hf_rect r);
+// What is around a cell's pixels, into scratch.
+void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch);
+// The shares of rows of its pixels, from their samples.
+void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch);
 
 #endif

@@ -67,15 +67,22 @@ static void count_row(const struct hf_frame *f, struct hf_rect r, int y)
         f->counts->clamped += (uint64_t)limit(was[c], hf_min(2 * r.x1, f->s->width) - 2 * r.x0);
 }
 
+// A row of tiles at a time: what one step makes is still in the cache for the next.
 void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
-    hf_layers_unmix_rows(f, r);
+    float *means = f->work + hf_layers_unmix_floats(2 * (r.x1 - r.x0));
     if (l->set.highlights)
-        hf_layers_highlights(f, r);
-    if (l->levels)
-        hf_layers_quads_pass(f, r);
-    hf_layers_mark_seen(f, r);
+        hf_layers_highlight_means(f, r, means);
+    for (int y = r.y0; y < r.y1; y += TILE / 2) {
+        const struct hf_rect rows = {r.x0, y, r.x1, hf_min(y + TILE / 2, r.y1)};
+        hf_layers_unmix_rows(f, rows, y == r.y0);
+        if (l->set.highlights)
+            hf_layers_highlights(f, r, rows, means);
+        if (l->levels)
+            hf_layers_quads_pass(f, rows);
+        hf_layers_mark_seen(f, rows);
+    }
 }
 
 static struct hf_layers_set set_of(const struct hf_buf *colour, const struct hf_buf *at)

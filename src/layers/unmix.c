@@ -199,13 +199,13 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
                                sure + 16 * stride - AROUND);
 }
 
-void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r)
+void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)
 {
     const struct hf_layers *l = hf_layers(f->s);
     const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
     const ptrdiff_t stride = n + 2 * AROUND;
     float *ring = f->work + AROUND;
-    for (int y = y0 - 3; y < y0 + 3; y++)
+    for (int y = y0 - 3; begin && y < y0 + 3; y++)
         sure_row(f, x, n, y, ring, stride);
     for (int y = y0; y < y1; y++) {
         struct hf_unmix_row u = {

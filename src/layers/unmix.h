@@ -22,6 +22,7 @@ int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], fl
 
 // Floats of scratch that un-mixing a row of n pixels takes.
 size_t hf_layers_unmix_floats(int width);
-void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r);
+// begin: these are the first of a cell; others follow those before them.
+void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin);
 
 #endif
