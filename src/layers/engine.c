@@ -329,6 +329,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .quads = hf_layers_quads_c,
         .merge = hf_layers_merge_c,
         .tap = hf_layers_tap_c,
+        .between = hf_layers_between_c,
         .nearest = hf_layers_nearest_c,
         .found = hf_layers_found_c,
         .spread = hf_layers_spread_c,

@@ -108,6 +108,51 @@ void hf_layers_tap_c(const float *const in[6], int channels, const float *neares
     }
 }
 
+// The first on one side of a line that lies behind `nearest`, if need be of several in part: sums of colour, radius (4) and
+// distance (5); returns the parts' sum.
+static float side_of(const struct hf_hidden_line *line, int side, int channels, int x, float nearest, float end[6])
+{
+    float open = 1, whole = 0;
+    for (int i = 0; i < line->steps; i++) {
+        const float *const *in = line->side[side][i];
+        const float behind = in[5][x] - nearest, seen = hf_saturate(behind * (1.0f / 3) + (1 - line->away[i]));
+        const float part = open * (hf_saturate(9 * in[4][x]) * (hf_layers_hides(behind - 1) * seen));
+        open = open - part;
+        whole = whole + part;
+        for (int c = 0; c < channels; c++)
+            end[c] = end[c] + part * in[c][x];
+        end[4] = end[4] + part * in[5][x];
+        end[5] = end[5] + part * line->away[i];
+    }
+    return whole;
+}
+
+void hf_layers_between_c(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
+                         float *const sum[6])
+{
+    for (int x = 0; x < n; x++) {
+        float end[2][6] = {{0}}, whole[2], inverse[2];
+        for (int i = 0; i < 2; i++) {
+            whole[i] = side_of(line, i, channels, x, nearest[x], end[i]);
+            inverse[i] = whole[i] > 0 ? 1 / whole[i] : 0;
+        }
+        const float r0 = end[0][4] * inverse[0], r1 = end[1][4] * inverse[1];
+        const float t0 = end[0][5] * inverse[0], t1 = end[1][5] * inverse[1], t = t0 < t1 ? t0 : t1;
+        const float behind = (r0 + r1) * 0.5f - nearest[x], apart = behind > 1 ? behind : 1;
+        const float alike = hf_saturate(2 - fabsf(r0 - r1) * HF_LAYERS_UNLIKE / apart);
+        const float square = t * t, fourth = square * square;
+        const float v = whole[0] * whole[1] * alike * HF_LAYERS_BETWEEN / (fourth * fourth);
+        const float w = v > HF_LAYERS_SOME ? v : 0;
+        if (!(w > 0))
+            continue;
+        const float share = w / (t0 + t1), g0 = share * t1 * inverse[0], g1 = share * t0 * inverse[1];
+        for (int c = 0; c < channels; c++)
+            sum[c][x] = sum[c][x] + g0 * end[0][c] + g1 * end[1][c];
+        sum[4][x] = sum[4][x] + w;
+        sum[5][x] = sum[5][x] + g0 * end[0][4] + g1 * end[1][4];
+    }
+}
+
 void hf_layers_nearest_c(const float *above, const float *below, int n, float *out)
 {
     for (int x = 0; x < n; x++) {

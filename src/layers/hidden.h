@@ -26,6 +26,21 @@ static inline float hf_layers_hides(float more)
     return hf_saturate(2 * more);
 }
 
+// What is alike on two opposite sides goes on between them, and counts so much more than what is seen on one side alone: an
+// edge that passes behind a rod stays straight. Of a sample's distance behind what hides it, radii on the two sides differ by
+// less than 1 / UNLIKE, or little; from twice that on they are two surfaces.
+#define HF_LAYERS_BETWEEN 256
+#define HF_LAYERS_UNLIKE 4
+enum { HF_LAYERS_STEPS = 12, HF_LAYERS_LINES = 4 };
+
+// A line through n samples: those so many steps away on either side, colour, weight (4), radius (5), and how far that is,
+// half-resolution pixels.
+struct hf_hidden_line {
+    int steps;
+    const float *side[2][HF_LAYERS_STEPS][6];
+    float away[HF_LAYERS_STEPS];
+};
+
 // Weights of taps below this are none: one over them has to be finite.
 #define HF_LAYERS_SOME 1e-30f
 

@@ -143,6 +143,79 @@ static void layers_tap_simd(const float *const in[6], int channels, const float 
         layers_tap_of(in, 4, nearest, scale, off, part, n, sum);
 }
 
+HF_INLINE vf layers_saturate(vf v)
+{
+    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
+}
+
+HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, const int channels, int x, vf nearest,
+                            vf end[6])
+{
+    // Nothing lies behind what is infinitely far.
+    vf open = vf_keep(vf_lt(nearest, vf_set1(HUGE_VALF)), vf_set1(1)), whole = vf_zero();
+    for (int i = 0; i < 6; i++)
+        end[i] = vf_zero();
+    for (int i = 0; i < line->steps && vm_any(vf_gt(open, vf_zero())); i++) {
+        const float *const *in = line->side[side][i];
+        const vf r = vf_load(in[5] + x), behind = vf_sub(r, nearest), off = vf_set1(1 - line->away[i]);
+        const vf hides = layers_hides(vf_sub(behind, vf_set1(1)));
+        const vf sees = vf_mul(hides, layers_saturate(vf_fma(behind, vf_set1(1.0f / 3), off)));
+        if (!vm_any(vf_gt(sees, vf_zero())))
+            continue;
+        const vf part = vf_mul(open, vf_mul(layers_saturate(vf_mul(vf_set1(9), vf_load(in[4] + x))), sees));
+        open = vf_sub(open, part);
+        whole = vf_add(whole, part);
+        for (int c = 0; c < channels; c++)
+            end[c] = vf_fma(part, vf_load(in[c] + x), end[c]);
+        end[4] = vf_fma(part, r, end[4]);
+        end[5] = vf_fma(part, vf_set1(line->away[i]), end[5]);
+    }
+    return whole;
+}
+
+HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int channels, const float *nearest, int n,
+                                 float *const sum[6])
+{
+    const vf one = vf_set1(1);
+    for (int x = 0; x < n; x += VF_N) {
+        const vf from = vf_load(nearest + x);
+        vf end[2][6], whole[2], inverse[2], r[2], t[2];
+        whole[0] = layers_side_of(line, 0, channels, x, from, end[0]);
+        if (!vm_any(vf_gt(whole[0], vf_zero())))
+            continue;
+        whole[1] = layers_side_of(line, 1, channels, x, from, end[1]);
+        for (int i = 0; i < 2; i++) {
+            inverse[i] = vf_keep(vf_gt(whole[i], vf_zero()), vf_div(one, whole[i]));
+            r[i] = vf_mul(end[i][4], inverse[i]);
+            t[i] = vf_mul(end[i][5], inverse[i]);
+        }
+        const vf near = vf_min(t[0], t[1]), square = vf_mul(near, near), fourth = vf_mul(square, square);
+        const vf behind = vf_sub(vf_mul(vf_add(r[0], r[1]), vf_set1(0.5f)), from);
+        const vf unlike = vf_mul(vf_abs(vf_sub(r[0], r[1])), vf_set1(HF_LAYERS_UNLIKE));
+        const vf alike = layers_saturate(vf_sub(vf_set1(2), vf_div(unlike, vf_max(behind, one))));
+        const vf both = vf_mul(vf_mul(vf_mul(whole[0], whole[1]), alike), vf_set1(HF_LAYERS_BETWEEN));
+        const vf v = vf_div(both, vf_mul(fourth, fourth));
+        const vm some = vf_gt(v, vf_set1(HF_LAYERS_SOME));
+        if (!vm_any(some))
+            continue;
+        const vf w = vf_keep(some, v), share = vf_keep(some, vf_div(w, vf_add(t[0], t[1])));
+        const vf g0 = vf_mul(vf_mul(share, t[1]), inverse[0]), g1 = vf_mul(vf_mul(share, t[0]), inverse[1]);
+        for (int c = 0; c < channels; c++)
+            vf_store(sum[c] + x, vf_fma(g1, end[1][c], vf_fma(g0, end[0][c], vf_load(sum[c] + x))));
+        vf_store(sum[4] + x, vf_add(vf_load(sum[4] + x), w));
+        vf_store(sum[5] + x, vf_fma(g1, end[1][4], vf_fma(g0, end[0][4], vf_load(sum[5] + x))));
+    }
+}
+
+static void layers_between_simd(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
+                                float *const sum[6])
+{
+    if (channels == 3)
+        layers_between_of(line, 3, nearest, n, sum);
+    else
+        layers_between_of(line, 4, nearest, n, sum);
+}
+
 static void layers_nearest_simd(const float *above, const float *below, int n, float *out)
 {
     for (int x = 0; x < n; x += VF_N) {

@@ -26,6 +26,10 @@ typedef void hf_layers_merge(const float *const in[3][6], int channels, float sl
 // Add a tap of a level to the sums: as far behind `nearest` as scale and off say.
 typedef void hf_layers_tap(const float *const in[6], int channels, const float *nearest, float scale, float off,
                            float part, int n, float *const sum[6]);
+// Add what lies behind `nearest` on both sides of a line to the sums.
+struct hf_hidden_line;
+typedef void hf_layers_between(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
+                               float *const sum[6]);
 // Least of the radii of n quads, from two rows.
 typedef void hf_layers_nearest(const float *above, const float *below, int n, float *out);
 // Hidden samples, of which the colours are roots, from the sums of taps: their weight is how much of a quad, of which two rows are given, lies more than a
@@ -92,6 +96,7 @@ struct hf_layers_kernels {
     hf_layers_quads *quads;
     hf_layers_merge *merge;
     hf_layers_tap *tap;
+    hf_layers_between *between;
     hf_layers_nearest *nearest;
     hf_layers_found *found;
     hf_layers_spread *spread;
@@ -153,6 +158,7 @@ hf_layers_shares hf_layers_shares_c;
 hf_layers_quads hf_layers_quads_c;
 hf_layers_merge hf_layers_merge_c;
 hf_layers_tap hf_layers_tap_c;
+hf_layers_between hf_layers_between_c;
 hf_layers_nearest hf_layers_nearest_c;
 hf_layers_found hf_layers_found_c;
 hf_layers_spread hf_layers_spread_c;

@@ -228,6 +228,27 @@ static void make_levels(struct band *b)
         }
 }
 
+// Add what goes on between opposite sides, along rows, columns and both diagonals.
+static void find_between(const struct band *b, const float *nearest, int x, int n, int y, float *const sum[6])
+{
+    static const int step[HF_LAYERS_STEPS] = {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16},
+                     along[HF_LAYERS_LINES][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    for (int k = 0; k < HF_LAYERS_LINES; k++) {
+        struct hf_hidden_line line = {.steps = 0};
+        // No farther than the levels read.
+        for (int i = 0; i < HF_LAYERS_STEPS && step[i] <= 1 << b->l->levels; i++) {
+            for (int side = 0; side < 2; side++) {
+                const int by = side ? -step[i] : step[i];
+                float *in[6] = {NULL};
+                planes_of(&b->level[0], b->l->channels, x + by * along[k][0], y + by * along[k][1], in);
+                memcpy(line.side[side][i], in, sizeof in);
+            }
+            line.away[line.steps++] = (float)step[i] * (k < 2 ? 1 : 1.41421356f);
+        }
+        hf_layers_kernels(b->f)->between(&line, b->l->channels, nearest, n, sum);
+    }
+}
+
 static void find(const struct band *b, int x, int n, int y)
 {
     static const float distance[3] = {0, 1, 1.41421356f}, share[3] = {1, 0.5f, 0.25f};
@@ -248,6 +269,7 @@ static void find(const struct band *b, int x, int n, int y)
             k->tap((const float *const *)in, channels, nearest, 1.0f / (float)(2 << j), 0.5f - distance[away],
                    part * share[away], n, sum);
         }
+    find_between(b, nearest, x, n, y, sum);
     const float *radius[2], *weight[2];
     for (int i = 0; i < 2; i++) {
         weight[i] = hf_at(at, 0, 2 * x, 2 * y + i);

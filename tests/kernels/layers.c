@@ -5,6 +5,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "harness.h"
 #include "layers/hidden.h"
@@ -152,6 +153,44 @@ static void tap_call(const struct world *w, const struct kernels *k, enum arena 
     set_of(w, a, 0, in);
     set_of(w, a, IN, sum);
     k->layers.tap((const float *const *)in, now.channels, line(w, a, 6), now.scale, now.off, now.part, w->n, sum);
+}
+
+// Sums begin with 0, which has no sign.
+static void sums_make(struct world *w)
+{
+    fill_set(w, IN, 0, w->n);
+    for (int i = IN; i < IN + 6; i++)
+        for (int x = 0; x < w->n; x++)
+            line(w, ARENA_MADE, i)[x] += 0.0f;
+    put_set(w, IN, 6, w->n);
+}
+
+// Four steps to either side, where surfaces often go on; what is nearest; sums.
+static void between_make(struct world *w)
+{
+    for (int i = 0; i < 8; i++)
+        fill_set(w, 6 * i, 0, w->n);
+    for (int i = 0; i < 4; i++)
+        for (int x = 0; x < w->n; x++)
+            if (rng_one_in(&w->rng, 2))
+                line(w, ARENA_MADE, 6 * (4 + i) + 5)[x] = line(w, ARENA_MADE, 6 * i + 5)[x] + rng_float(&w->rng, -4, 4);
+    fill_surfaces(w, 48, 0, w->n);
+    for (int x = 0; x < w->n; x++)
+        if (rng_one_in(&w->rng, 16))
+            line(w, ARENA_MADE, 48)[x] = HUGE_VALF;
+    sums_make(w);
+}
+
+static void between_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    struct hf_hidden_line l = {.steps = 4, .away = {1, 2, 3, 4}};
+    float *in[6], *sum[6];
+    for (int i = 0; i < 8; i++) {
+        set_of(w, a, 6 * i, in);
+        memcpy(l.side[i / 4][i % 4], in, sizeof in);
+    }
+    set_of(w, a, IN, sum);
+    k->layers.between(&l, now.channels, line(w, a, 48), w->n, sum);
 }
 
 static void found_call(const struct world *w, const struct kernels *k, enum arena a)
@@ -371,11 +410,10 @@ void layers_make(struct world *w, int which)
     case LAYERS_TAP:
         fill_set(w, 0, 0, w->n);
         fill_surfaces(w, 6, 0, w->n);
-        fill_set(w, IN, 0, w->n);
-        for (int i = IN; i < IN + 6; i++)  // sums begin with 0, which has no sign
-            for (int x = 0; x < w->n; x++)
-                line(w, ARENA_MADE, i)[x] += 0.0f;
-        put_set(w, IN, 6, w->n);
+        sums_make(w);
+        return;
+    case LAYERS_BETWEEN:
+        between_make(w);
         return;
     case LAYERS_ALIKE:
         alike_make(w);
@@ -510,6 +548,9 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         return;
     case LAYERS_TAP:
         tap_call(w, k, a);
+        return;
+    case LAYERS_BETWEEN:
+        between_call(w, k, a);
         return;
     case LAYERS_SPREAD:
         spread_call(w, k, a);

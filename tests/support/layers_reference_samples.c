@@ -224,6 +224,52 @@ static double look_from(const struct frame *f, const struct grid *found, int x, 
     return nearest;
 }
 
+// The first on one side of a line that lies behind `nearest`, of several in part: its colour, radius, distance, and how much
+// of one there is.
+static double side_of(const struct frame *f, const struct grid *quads, const double nearest, const int from[2],
+                      const int by[2], int most, double *end, double *distance)
+{
+    double open = 1;
+    *distance = 0;
+    for (int i = 1; i <= most && i <= 16; i += i < 8 ? 1 : 2) {
+        const double *q = at(quads, from[0] + i * by[0], from[1] + i * by[1]);
+        const double part = open * fmin(9 * q[WEIGHT], 1) * layers_reference_hides(q[RADIUS] - nearest) *
+                            fmin(fmax((q[RADIUS] - nearest) / 3 - i * hypot(by[0], by[1]) + 1, 0), 1);
+        open -= part;
+        for (int c = 0; c < f->channels && part > 0; c++)
+            end[c] += part * q[c];
+        end[RADIUS] += part > 0 ? part * q[RADIUS] : 0;
+        *distance += part * i * hypot(by[0], by[1]);
+    }
+    for (int c = 0; c < f->channels && open < 1; c++)
+        end[c] /= 1 - open;
+    end[RADIUS] /= open < 1 ? 1 - open : 1;
+    *distance /= open < 1 ? 1 - open : 1;
+    return 1 - open;
+}
+
+// What goes on between two sides on which it is alike.
+static void find_between(const struct frame *f, const struct grid *quads, int levels, double nearest, int x, int y,
+                         double *sum)
+{
+    static const int along[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    for (int k = 0; k < 4; k++) {
+        const int from[2] = {x, y}, back[2] = {-along[k][0], -along[k][1]};
+        double a[SAMPLE] = {0}, b[SAMPLE] = {0}, t0, t1;
+        const double whole = side_of(f, quads, nearest, from, along[k], 1 << levels, a, &t0) *
+                             side_of(f, quads, nearest, from, back, 1 << levels, b, &t1);
+        if (whole <= 0)
+            continue;
+        const double behind = (a[RADIUS] + b[RADIUS]) / 2 - nearest, apart = fabs(a[RADIUS] - b[RADIUS]);
+        const double alike = fmin(fmax(2 - 4 * apart / fmax(behind, 1), 0), 1);
+        const double w = 256 * whole * alike / pow(fmin(t0, t1), 8);
+        for (int c = 0; c < f->channels; c++)
+            sum[c] += w * (t1 * a[c] + t0 * b[c]) / (t0 + t1);
+        sum[WEIGHT] += w;
+        sum[RADIUS] += w * (t1 * a[RADIUS] + t0 * b[RADIUS]) / (t0 + t1);
+    }
+}
+
 static void find(const struct frame *f, const struct grid *level, int levels, double nearest, int x, int y, double *out)
 {
     double sum[SAMPLE] = {0};
@@ -239,6 +285,7 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
             sum[WEIGHT] += w;
             sum[RADIUS] += w * q[RADIUS];
         }
+    find_between(f, &level[0], levels, nearest, x, y, sum);
     if (sum[WEIGHT] <= 0)
         return;
     out[RADIUS] = sum[RADIUS] / sum[WEIGHT];
