@@ -34,8 +34,9 @@ struct batch {
     const struct cli_shot *shot;
     struct cli_plan plan;
     struct cli_session *sessions;
-    int workers, threads;  // frames at once, threads for each
-    int next;              // the first job that is not done yet
+    int workers, threads;          // sessions, and threads of each
+    int at_once, threads_of_each;  // the same for most of the frames
+    int next;                      // the first job that is not done yet
     struct cli_progress progress;
     struct cli_log log;
     atomic_int stop;               // after an error
@@ -281,25 +282,42 @@ static double waiting(const struct cli_progress *p)
     return computing > 0 ? (double)(p->us[CLI_READ] + p->us[CLI_WRITE]) / computing : 0;
 }
 
+// The next frames, so many at once.
+static int run_some(struct batch *b, int count, int workers, struct tool_error *error)
+{
+    const int threads = cli_plan_threads(b->args) / workers;
+    struct hf_io_run run = {0};
+    if (workers != b->workers) {
+        const int status = open_sessions(b, workers, threads > 1 ? threads : 1, error);
+        if (status)
+            return status;
+    }
+    if (workers > 1)
+        hf_io_threads_open(&run, workers);
+    hf_io_run(&run, count, run_job, b);
+    hf_io_threads_close(&run);
+    b->next += count;
+    return 0;
+}
+
 static int run_rest(struct batch *b, struct tool_error *error)
 {
-    const int left = b->shot->jobs.count - b->next;
+    const int left = b->shot->jobs.count - b->next, threads = cli_plan_threads(b->args);
+    b->at_once = b->workers;
+    b->threads_of_each = b->threads;
     if (left <= 0)
         return 0;
-    const int threads = cli_plan_threads(b->args);
     const double base = peak_memory() - b->frame_bytes;
     const int workers = cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads, base, b->frame_bytes);
     b->room = cli_plan_memory_limit(b->args) - base;
-    struct hf_io_run run = {0};
-    if (workers > 1) {
-        const int status = open_sessions(b, workers, threads > workers ? threads / workers : 1, error);
-        if (status)
-            return status;
-        hf_io_threads_open(&run, workers);
-    }
-    hf_io_run(&run, left, run_job, b);
-    hf_io_threads_close(&run);
-    return 0;
+    // Where the last round has too few frames for all threads, each of them has more.
+    const int last = left % workers, alone = last && threads / last > 1 && threads / last > threads / workers;
+    int status = run_some(b, alone ? left - last : left, workers, error);
+    b->at_once = b->workers;
+    b->threads_of_each = b->threads;
+    if (!status && alone)
+        status = run_some(b, last, last, error);
+    return status;
 }
 
 static const char *plural(int count)
@@ -322,8 +340,8 @@ static void print_summary(struct batch *b)
     tool_print_line("%d done, %d there already, %d failed of %d frame%s in %.2f s (%.2f frames/s)", done, skipped,
                     failed, p->total, plural(p->total), seconds, seconds > 0 ? done / seconds : 0);
     if (done)
-        tool_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->workers, b->threads,
-                        plural(b->threads), peak_memory() / GIB * 1024, shares);
+        tool_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->at_once, b->threads_of_each,
+                        plural(b->threads_of_each), peak_memory() / GIB * 1024, shares);
     for (int s = 0; s < MAX_STEPS && b->args->params.run.budget_ms > 0; s++)
         if (b->chosen[s])
             tool_print_line("--budget-ms %g: %d frame%s %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
@@ -384,7 +402,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         cli_progress_end(&b.progress);
         if (!args->quiet)
             print_summary(&b);
-        cli_log_end(&b.log, &b.progress, b.workers, peak_memory());
+        cli_log_end(&b.log, &b.progress, b.at_once, peak_memory());
         if (!status)
             status = exit_code(&b);
     }
