@@ -384,8 +384,6 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
     struct batch b = {.args = args, .shot = shot};
     error->text[0] = '\0';
     keep_memory();
-    if (shot->missing)
-        tool_print_line("%d frame%s missing: %s", shot->missing, shot->missing == 1 ? " is" : "s are", shot->gaps);
     int status = cli_plan_open(&b.plan, args, shot, error);
     if (!status)
         status = cli_log_open(&b.log, args->log_file, argc, argv, shot->jobs.count, error);

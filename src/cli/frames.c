@@ -162,29 +162,57 @@ int cli_frames_parse(struct cli_frames *frames, const char *text, struct tool_er
     return 0;
 }
 
+// "4, 7-9", cut off at size.
+static void say_range(char *buf, size_t size, int from, int to)
+{
+    const size_t used = strlen(buf);
+    if (used + 32 >= size)
+        return;
+    const int n = snprintf(buf + used, size - used, "%s%d", used ? ", " : "", from);
+    if (to > from)
+        snprintf(buf + used + n, size - used - (size_t)n, "-%d", to);
+}
+
 int cli_frames_gaps(const struct cli_frames *sorted, char *buf, size_t size)
 {
     int missing = 0;
-    size_t used = 0;
     buf[0] = '\0';
     for (int i = 1; i < sorted->count; i++) {
         const int from = sorted->list[i - 1] + 1, to = sorted->list[i] - 1;
         if (from > to)
             continue;
         missing += to - from + 1;
-        if (used + 32 >= size)
-            continue;
-        used += (size_t)snprintf(buf + used, size - used, "%s%d", used ? ", " : "", from);
-        if (to > from)
-            used += (size_t)snprintf(buf + used, size - used, "-%d", to);
+        say_range(buf, size, from, to);
     }
     return missing;
 }
 
-void cli_frames_chunk(struct cli_frames *frames, int part, int parts)
+static int compare(const void *a, const void *b)
 {
-    const int from = (int)((long long)frames->count * part / parts);
-    const int to = (int)((long long)frames->count * (part + 1) / parts);
-    memmove(frames->list, frames->list + from, (size_t)(to - from) * sizeof(*frames->list));
-    frames->count = to - from;
+    const int x = *(const int *)a, y = *(const int *)b;
+    return (x > y) - (x < y);
+}
+
+int cli_frames_missing(const struct cli_frames *asked, const struct cli_frames *sorted, char *buf, size_t size)
+{
+    const size_t bytes = (size_t)asked->count * sizeof(*asked->list);
+    int *list = malloc(bytes + 1), missing = 0;
+    buf[0] = '\0';
+    if (!list)
+        return -1;
+    memcpy(list, asked->list, bytes);
+    qsort(list, (size_t)asked->count, sizeof(*list), compare);
+    for (int i = 0, at = 0; i < asked->count; i++) {
+        while (at < sorted->count && sorted->list[at] < list[i])
+            at++;
+        if (at == sorted->count || sorted->list[at] != list[i])
+            list[missing++] = list[i];
+    }
+    for (int from = 0, to; from < missing; from = to + 1) {
+        for (to = from; to + 1 < missing && list[to + 1] == list[to] + 1;)
+            to++;
+        say_range(buf, size, list[from], list[to]);
+    }
+    free(list);
+    return missing;
 }

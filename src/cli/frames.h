@@ -27,7 +27,7 @@ void cli_frames_free(struct cli_frames *frames);
 // The numbers missing between the first and the last of a sorted list, "4, 7-9", cut off at size. Returns how many.
 int cli_frames_gaps(const struct cli_frames *sorted, char *buf, size_t size);
 
-// Part number part of parts, counted from 0: consecutive ones, sizes as equal as can be. Keeps that part only.
-void cli_frames_chunk(struct cli_frames *frames, int part, int parts);
+// The same for those that were asked for, in any order, and are not in the sorted list; -1 without memory.
+int cli_frames_missing(const struct cli_frames *asked, const struct cli_frames *sorted, char *buf, size_t size);
 
 #endif

@@ -129,6 +129,8 @@ static int run_shot(int argc, char **argv, const struct cli_args *args, const st
                     struct tool_error *error)
 {
     int status = check_alone(args, error);
+    if (!status && shot->missing)
+        tool_print_line("%d frame%s missing: %s", shot->missing, shot->missing == 1 ? " is" : "s are", shot->gaps);
     if (!status && shot->jobs.count == 0)
         tool_print_line("no frame of the shot is this process's part: nothing to do");
     else if (!status && args->dry_run)

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "cli/frame.h"
 #include "cli/plan.h"
@@ -34,14 +35,23 @@ static void print_jobs(const struct cli_plan *plan, int *left)
     }
 }
 
-// Look at the first frame as if to render it.
+// The first frame that there is; the first, if there is none.
+static int first_there(const struct cli_shot *shot)
+{
+    for (int i = 0; i < shot->jobs.count; i++)
+        if (!access(shot->jobs.list[i].input, R_OK))
+            return i;
+    return 0;
+}
+
+// Look at a frame as if to render it.
 static int expect(const struct cli_plan *plan, int left, struct tool_error *error)
 {
     struct cli_args args;
     struct cli_session session = {0};
     struct cli_frame frame = {0};
     struct hf_report report = {0};
-    cli_plan_args(plan, 0, &args);
+    cli_plan_args(plan, first_there(plan->shot), &args);
     int status = cli_session_open(&session, &args, cli_plan_threads(&args), error);
     if (!status)
         status = cli_frame_open(&frame, &args, &session.run, error);

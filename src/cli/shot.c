@@ -150,8 +150,11 @@ static int add_frames(struct maker *m, struct names *names, int view)
     int status = look(m, names, &found);
     if (!status && m->request->frames && cli_frames_parse(&asked, m->request->frames, m->error))
         status = CLI_BAD_ARGUMENTS;
-    if (!status && !m->request->frames && !m->shot->missing)
-        m->shot->missing = cli_frames_gaps(&found, m->shot->gaps, sizeof(m->shot->gaps));
+    if (!status && !m->shot->missing)
+        m->shot->missing = m->request->frames ? cli_frames_missing(&asked, &found, m->shot->gaps, sizeof(m->shot->gaps))
+                                              : cli_frames_gaps(&found, m->shot->gaps, sizeof(m->shot->gaps));
+    if (m->shot->missing < 0)
+        status = no_memory(m);
     const struct cli_frames *wanted = m->request->frames ? &asked : &found;
     for (int i = 0; i < wanted->count && !status; i++)
         status = add_job(m, &m->shot->jobs, names,

@@ -32,7 +32,7 @@ struct cli_shot {
     struct cli_jobs jobs;    // those of this process, in the order in which they are to be made
     struct cli_jobs around;  // every frame that there is, without output: what a focus that follows looks at
     int sequence;            // INPUT was a pattern or a list, also if that is one frame
-    int missing;             // frames that there are not between the first and the last
+    int missing;             // frames that were asked for, or lie between the first and the last, and are not there
     char gaps[1024];         // which
 };
 

@@ -115,6 +115,9 @@ cp in/shot.0001.exr in/shot.0004.exr in/shot.0006.exr holes
 run holes/shot.#.exr -o b/shot.#.exr $quick
 check "gaps are no failure" exits 0
 check "gaps are named" says "3 frames are missing: 2-3, 5"
+run holes/shot.#.exr -o b/y.#.exr $quick --frames 7-1x2 --dry-run
+check "a dry run looks at a frame that is there" grep -q 'MiB' out
+check "frames that were asked for and are not there are named" says "3 frames are missing: 3, 5, 7"
 rm -f b/*
 head -c 100000 in/shot.0004.exr >holes/shot.0004.exr
 run holes/shot.#.exr -o b/shot.#.exr $quick --log log

@@ -70,31 +70,28 @@ static void gaps(void)
     CHECK_INT(buf[0], 0);
 }
 
-// The parts are all frames, each once, in order, and their sizes differ by one at most.
-static void chunks(void)
+static void missing(void)
 {
     struct tool_error error;
-    for (int parts = 1; parts <= 20; parts++) {
-        int next = 1;
-        for (int part = 0; part < parts; part++) {
-            struct cli_frames frames;
-            if (!CHECK(!cli_frames_parse(&frames, "1-16", &error)))
-                return;
-            cli_frames_chunk(&frames, part, parts);
-            CHECK_MSG(frames.count == 16 / parts || frames.count == 16 / parts + 1, "part %d of %d has %d frames", part,
-                      parts, frames.count);
-            for (int i = 0; i < frames.count; i++)
-                CHECK_INT(frames.list[i], next++);
-            cli_frames_free(&frames);
-        }
-        CHECK_INT(next, 17);
-    }
+    int list[] = {-1, 2, 3, 9};
+    const struct cli_frames there = {list, 4, 4}, none = {list, 0, 4};
+    struct cli_frames asked;
+    char buf[256];
+    if (!CHECK(!cli_frames_parse(&asked, "9-1,-2--1", &error)))
+        return;
+    CHECK_INT(cli_frames_missing(&asked, &there, buf, sizeof(buf)), 7);
+    CHECK_MSG(!strcmp(buf, "-2, 1, 4-8"), "missing are %s", buf);
+    CHECK_INT(cli_frames_missing(&asked, &none, buf, sizeof(buf)), 11);
+    CHECK_MSG(!strcmp(buf, "-2--1, 1-9"), "missing are %s", buf);
+    CHECK_INT(cli_frames_missing(&there, &there, buf, sizeof(buf)), 0);
+    CHECK_INT(buf[0], 0);
+    cli_frames_free(&asked);
 }
 
 int main(void)
 {
     parse();
     gaps();
-    chunks();
+    missing();
     return check_report();
 }
