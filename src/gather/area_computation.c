@@ -4,7 +4,8 @@
 // Far: the mean of what is far, by how far out of focus it is. Near: what is near, spread over the area that it covers, is
 // drawn over the picture; where a near pixel itself becomes see-through, what it hides is the mean of what is not near around
 // it. With several levels (gather.h) near samples are spread by the level that is theirs, and a far pixel is the mean of the
-// level that is its own. What lies beyond the frame has no weight.
+// level that is its own; what near pixels hide is the mean of all levels up to theirs, so that what is nearest counts most.
+// What lies beyond the frame has no weight.
 #include <float.h>
 
 #include "gather/gather.h"
@@ -182,8 +183,7 @@ static float weighed(float colour, float weight, float counts, int karis)
     return !karis ? colour : weight > 0 ? colour / weight * counts : 0;
 }
 
-// Of what is seen behind, how much counts: what the near field leaves free, as the level at hand may be smaller than that of
-// the near pixels around, and see more.
+// Of what is seen behind, how much counts: what the near field leaves free, as levels up to that at hand see it over and over.
 static float free_part(float cover, float see)
 {
     const float room = 1 - cover > 0 ? 1 - cover : 0, part = room / (see > FLT_MIN ? see : FLT_MIN);
@@ -226,7 +226,7 @@ static void near_levels(const struct hf_frame *f, struct hf_rect r)
         convolve_level(f, r, &l->level[i].taps);
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
-                const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y), share = hf_level_share(l, i, coc);
+                const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y), share = hf_level_near(l, i, coc);
                 if (coc > 0 && share > 0)
                     add(f, &behind, x, y, share);
             }

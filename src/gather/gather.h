@@ -126,6 +126,13 @@ static inline float hf_level_share(const struct hf_levels *l, int i, float coc)
     return hf_level_reached(l, i, coc) * (1 - hf_level_reached(l, i - 1, coc));
 }
 
+// How much a near pixel of this CoC takes from a level of what it hides: of each up to its own, by the inverse of its area.
+// So a sample counts by the inverse of its distance to the fourth, and a light far off draws no large disc there.
+static inline float hf_level_near(const struct hf_levels *l, int i, float coc)
+{
+    return hf_level_reached(l, i, coc) * (l->level[i].inverse * l->level[i].inverse);
+}
+
 // By how much less a far sample counts for a level that it is not blurred enough for.
 static inline float hf_level_reach(const struct hf_levels *l, int i, float coc)
 {

@@ -245,6 +245,28 @@ static void near_bar(struct hf_context *c)
         picture_free(made[i]);
 }
 
+// A near bar hides what lies nearest to its edge: 8 columns of black, before white. Where half of a disc of radius 30 lies
+// beyond the edge, 8 columns are a third of it; by the inverse of the distance to the fourth they are nearly all.
+static void nearest_behind(struct hf_context *c)
+{
+    struct hf_params p = lens_params();
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        radii.plane[0][i] = i % WIDTH < EDGE ? -NEAR : 0;
+        for (int k = 0; k < 3; k++)
+            colour.plane[k][i] = i % WIDTH < EDGE || i % WIDTH >= EDGE + 8;
+    }
+    // Of the bar's colour half is left at its edge, and what is behind fills the rest: white beyond the 8 columns is at
+    // least twice as far from there as their middle, and counts less than half of that.
+    const struct hf_depth depth = picture_radii(&radii);
+    struct picture out = render(c, &colour, &depth, &p);
+    const float v = out.plane[1][MIDDLE * WIDTH + EDGE - 1];
+    CHECK_MSG(v > 0.4f && v < 0.75f, "behind the edge of a near bar the nearest is black, but it shows %g", (double)v);
+    struct picture *const made[] = {&colour, &radii, &out};
+    for (int i = 0; i < 3; i++)
+        picture_free(made[i]);
+}
+
 int main(int argc, char **argv)
 {
     struct hf_context *c = NULL;
@@ -256,6 +278,7 @@ int main(int argc, char **argv)
     leaving_light(c);
     thin_bar(c);
     near_bar(c);
+    nearest_behind(c);
     if (argc > 1) {
         truth(c, argv[1], "lights", 5, 0.37f);
         truth(c, argv[1], "fence", 6, 0.46f);

@@ -73,6 +73,15 @@ static double share(const struct levels *l, int i, double coc)
     return i + 1 < l->count && v > l->coc[i + 1] ? (v - l->coc[i + 1]) / (l->coc[i] - l->coc[i + 1]) : 0;
 }
 
+// What near pixels hide is taken from all levels up to theirs, by the inverse of their area.
+static double share_behind(const struct levels *l, int i, double coc)
+{
+    double sum = 0;
+    for (int k = 0; k <= i; k++)
+        sum += share(l, k, coc);
+    return sum / (l->coc[i] * l->coc[i]);
+}
+
 static double smallest_part(const struct area *a, double coc)
 {
     return fmin(1, a->r->blend / a->levels.coc[a->levels.count - 1] * coc);
@@ -157,7 +166,7 @@ static void fields(const struct area *a, double *near[5], double *far[4])
         for (int k = 0; k < l->count; k++) {
             const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
             const struct sums f = mean(a, x, y, k, KIND_FAR);
-            const double w = share(l, k, hides), w_far = share(l, k, a->plane[FAR_MOST][i]);
+            const double w = share_behind(l, k, hides), w_far = share(l, k, a->plane[FAR_MOST][i]);
             for (int c = 0; c < a->r->channels; c++) {
                 own.colour[c] += n.colour[c];
                 back.colour[c] += w * b.colour[c];
