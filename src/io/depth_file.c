@@ -2,6 +2,7 @@
 // Depth from a file of its own. What a depth estimator makes of a photo is often smaller than the photo.
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "io/exr/chunks.h"
 #include "io/file.h"
@@ -80,6 +81,37 @@ static int read_other_size(const struct source *s, const char *depth_channel, co
     return status;
 }
 
+// Depth is one number a pixel. The red of a picture in colours is not it: a photograph named by mistake, or a map painted
+// for people. What compression makes of grey is grey within a twentieth.
+static int check_grey(struct source *s, const char *depth_channel, struct hf_io_error *err)
+{
+    const struct hf_io_view *v = hf_io_view(s->file, 0);
+    if (depth_channel || !v || v->depth_part >= 0 || !strcmp(v->colour[0], v->colour[1]) || v->width != s->width ||
+        v->height != s->height)
+        return 0;
+    const size_t n = (size_t)v->width * (size_t)v->height;
+    float *memory = malloc(3 * n * sizeof(float)), largest = 0, apart = 0;
+    if (!memory)
+        return hf_io_fail(err, "%s: out of memory", s->file->path);
+    float *planes[4] = {memory, memory + n, memory + 2 * n, NULL};
+    const int status = hf_io_read_colour(s->file, 0, planes, err);
+    for (size_t i = 0; i < n && !status; i++) {
+        const float r = planes[0][i], g = planes[1][i], b = planes[2][i];
+        if (isfinite(r) && isfinite(g) && isfinite(b)) {
+            largest = fmaxf(largest, fmaxf(fabsf(r), fmaxf(fabsf(g), fabsf(b))));
+            apart = fmaxf(apart, fmaxf(fabsf(r - g), fabsf(r - b)));
+        }
+    }
+    free(memory);
+    if (!status && apart > largest / 20)
+        return hf_io_fail(
+            err,
+            "%s: a picture in colours, where depth should be one number a pixel; --depth-channel %s takes "
+            "that one",
+            s->file->path, v->colour[0]);
+    return status;
+}
+
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
                           int size[2], struct hf_io_error *err)
 {
@@ -93,6 +125,8 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, const str
         status = read_own_size(&s, depth_channel, view, depth, err);
     else if (!status)
         status = read_other_size(&s, depth_channel, view, depth, err);
+    if (!status)
+        status = check_grey(&s, depth_channel, err);
     size[0] = s.width;
     size[1] = s.height;
     hf_io_close(&s.file);

@@ -44,6 +44,9 @@ struct hf_io_view {
     float screen_center_x, screen_center_y;  // screenWindowCenter
     float screen_width;                      // screenWindowWidth
     struct hf_io_camera camera;
+    // Of a photograph: how to turn it to see it upright, as EXIF counts, 1 upright; 0 not known. Pixels are never turned.
+    int orientation;
+    bool profile;  // it brings a colour profile other than that of sRGB
 };
 
 // The views of a file, a growing list.

@@ -2,6 +2,7 @@
 // hf_io_encode: an EXR made from an EXR is a copy with new colours; anything else is a new picture of one view.
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "io/exr/exr.h"
 #include "io/file.h"
@@ -63,19 +64,33 @@ static int make_exr(struct hf_io_bytes *made, const struct hf_io_job *job, const
 }
 
 static int make_by_oiio(struct hf_io_bytes *made, const struct hf_io_file *file, const struct hf_io_job *job,
-                        const struct hf_io_view *v, const struct picture *pic, struct hf_io_error *err)
+                        const struct hf_io_view *v, const struct picture *pic, struct hf_io_written *written,
+                        struct hf_io_error *err)
 {
-    const struct hf_oiio_picture picture = {.path = job->path,
-                                            .view = v,
-                                            .planes = {pic->planes[0], pic->planes[1], pic->planes[2], pic->planes[3]},
-                                            .bits = file->oiio ? hf_oiio_bits(file->oiio) : 0,
-                                            .compression = job->compression};
-    return hf_oiio_write(made, &picture, err);
+    struct hf_oiio_picture picture = {.path = job->path,
+                                      .view = v,
+                                      .planes = {pic->planes[0], pic->planes[1], pic->planes[2], pic->planes[3]},
+                                      .bits = file->oiio ? hf_oiio_bits(file->oiio) : 0,
+                                      .compression = job->compression,
+                                      .source = file->oiio ? file->path : NULL};
+    if (!hf_oiio_write(made, &picture, err))
+        return 0;
+    if (!picture.source)
+        return -1;
+    // A damaged profile, or one that the format does not like, is no reason to lose the picture.
+    const struct hf_io_error first = *err;
+    picture.source = NULL;
+    if (hf_oiio_write(made, &picture, err))
+        return -1;
+    snprintf(written->note, sizeof(written->note),
+             "%s: camera, colour profile and texts of %.200s are not kept; with them: %.200s", job->path, file->path,
+             first.message);
+    return 0;
 }
 
 // A picture with nothing but the colours of one view.
 static int make_view(struct hf_io_bytes *made, struct hf_io_file *file, const struct hf_io_job *job, int compression,
-                     struct hf_io_error *err)
+                     struct hf_io_written *written, struct hf_io_error *err)
 {
     struct picture pic;
     if (job->result_count != 1)
@@ -86,7 +101,7 @@ static int make_view(struct hf_io_bytes *made, struct hf_io_file *file, const st
     if (!status && hf_io_is_exr_name(job->path) && !(compression >= 0 && hf_exr_is_dwa(compression)))
         status = make_exr(made, job, v, pic.planes, compression, err);
     else if (!status)
-        status = make_by_oiio(made, file, job, v, &pic, err);
+        status = make_by_oiio(made, file, job, v, &pic, written, err);
     free_picture(&pic);
     return status;
 }
@@ -108,6 +123,32 @@ void hf_io_output_free(struct hf_io_output **out)
     free((*out)->path);
     free(*out);
     *out = NULL;
+}
+
+static bool one_of(const char *extension, const char *const *list)
+{
+    for (; *list; list++)
+        if (!strcasecmp(extension, *list))
+            return true;
+    return false;
+}
+
+// What a photograph says of itself and the new file has no place for.
+static void note_lost(const struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_written *written)
+{
+    static const char *const turned[] = {"jpg", "jpeg", "jpe", "tif", "tiff", NULL};
+    static const char *const profiled[] = {"jpg", "jpeg", "jpe", "tif", "tiff", "png", NULL};
+    const struct hf_io_view *v = &file->views.view[job->results[0].view];
+    const char *extension = hf_io_extension(job->path);
+    const bool orientation = v->orientation > 1 && !one_of(extension, turned);
+    const bool profile = v->profile && !one_of(extension, profiled);
+    if (!orientation && !profile)
+        return;
+    snprintf(written->note, sizeof(written->note),
+             "%s: %s%s%s of %.300s %s not kept, for which such a file has no place%s", job->path,
+             orientation ? "the orientation" : "", orientation && profile ? " and " : "",
+             profile ? "the colour profile" : "", file->path, orientation && profile ? "are" : "is",
+             orientation ? "; the pixels lie as in there" : "");
 }
 
 static int check_job(const struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_error *err)
@@ -145,9 +186,11 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
     o->unsynced = job->unsynced;
     int status = file->exr && hf_io_is_exr_name(job->path)
                      ? hf_exr_encode_file(&o->exr, file->exr, &exr, job->run, written, err)
-                     : make_view(&o->bytes, file, job, compression, err);
+                     : make_view(&o->bytes, file, job, compression, written, err);
     if (status)
         hf_io_output_free(&o);
+    else if (file->oiio && !written->note[0])
+        note_lost(file, job, written);
     *result = o;
     return status;
 }

@@ -120,6 +120,23 @@ else
             result "$1, $2 at $x" $?
         done
     done
+    # A photograph that must be turned to be upright stays one, or says that it does not.
+    run photo.png -o upright.jpg --depth-file map8.png --depth-type normalized --near 1 --far 6 --focus 2 --range 2
+    python3 -c '
+data = open("upright.jpg", "rb").read()
+exif = b"Exif\0\0MM\0*\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0"
+open("turned.jpg", "wb").write(data[:2] + b"\xff\xe1" + (len(exif) + 2).to_bytes(2, "big") + exif + data[2:])'
+    run turned.jpg -o out.jpg --depth-file map8.png --depth-type normalized --near 1 --far 6 --focus 2 --range 2
+    [ "$status" -eq 0 ] && [ ! -s "$dir/err" ] && python3 -c '
+import sys
+data = open("out.jpg", "rb").read()
+tag = [b"\x01\x12\0\3\0\0\0\1\0\6", b"\x12\x01\3\0\1\0\0\0\6\0"]
+sys.exit(not any(t in data for t in tag))'
+    result "a photograph's orientation goes along" $?
+    run turned.jpg -o out.exr --depth-file map8.png --depth-type normalized --near 1 --far 6 --focus 2 --range 2
+    [ "$status" -eq 0 ] && contains "$dir/err" "the orientation of turned.jpg is not kept"
+    result "or is told to be lost" $?
+    bad 3 "photo.png|a picture in colours|--depth-channel R" photo.png -o o.png --focus 2 --depth-file photo.png
     run photo.png -o photo-out.png --depth-file map8.png --focus 5 --fstop 0.1 --focal-length 50
     [ "$status" -eq 0 ] && contains "$dir/err" "nothing is in focus" && contains "$dir/err" "--depth-type normalized"
     result "a map taken for distances is a warning" $?

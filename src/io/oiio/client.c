@@ -400,6 +400,7 @@ int hf_oiio_write(struct hf_io_bytes *made, const struct hf_oiio_picture *p, str
         q->view = *p->view;
         q->bits = p->bits;
         set_name(q, p->compression);
+        snprintf(q->source, sizeof(q->source), "%s", p->source ? p->source : "");
         for (int k = 0; k < 4; k++)
             q->planes |= (p->planes[k] ? 1u : 0) << k;
         int sent = hf_wire_put(fd, q, sizeof(*q));

@@ -265,6 +265,9 @@ void fill_view(struct hf_io_view *v, const hf_oiio *o)
     v->pixel_aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
     v->screen_width = 1;
     v->camera = {unknown, unknown, unknown, unknown};
+    v->orientation = spec.get_int_attribute("Orientation");
+    v->profile = spec.find_attribute("ICCProfile") &&
+                 spec.get_string_attribute("ICCProfile:profile_description").find("sRGB") == std::string::npos;
 }
 
 // Channel c of all pixels as floats: integers become 0 .. 1.
@@ -366,6 +369,39 @@ int check_format(ImageOutput *out, const char *path, hf_io_error *err)
     return hf_io_fail(err, "%s: cannot write: the format \"%s\" holds no whole picture", path, hf_io_extension(path));
 }
 
+// What a photograph says of itself goes along: camera, place, time, texts, orientation, colour profile. What says how the
+// source's samples are stored does not, nor a small picture of it, which would show what is no longer there.
+void take_along(ImageSpec &spec, const char *source, const char *format)
+{
+    static const char *const stay[] = {"oiio:",         "compression",
+                                       "planarconfig",  "thumbnail",
+                                       "tiff:",         "png:",
+                                       "jpeg:",         "pnm:",
+                                       "dpx:",          "ICCProfile:",
+                                       "textureformat", "PixelAspectRatio",
+                                       "openexr:",      "Exif:ColorSpace",
+                                       "Exif:Pixel"};
+    // In TIFF they make an EXIF directory, which OpenImageIO 2.4 then links in place of the picture's.
+    static const char *const not_in_tiff[] = {"Exif:", "GPS:"};
+    const auto begins = [](const std::string &name, const char *with) {
+        return !strncasecmp(name.c_str(), with, strlen(with));
+    };
+    Input input;
+    hf_io_error ignored;  // the pixels are at hand: that the source has gone since costs no more than its texts
+    if (open_input(input, source, &ignored))
+        return;
+    for (const OIIO::ParamValue &p : input.in->spec().extra_attribs) {
+        const std::string name = p.name().string();
+        bool keep = name != "ICCProfile" || is_integer(spec.format);
+        for (const char *with : stay)
+            keep = keep && !begins(name, with);
+        for (const char *with : not_in_tiff)
+            keep = keep && !(begins(name, with) && !strcmp(format, "tiff"));
+        if (keep)
+            spec.extra_attribs.add_or_replace(p);
+    }
+}
+
 int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
 {
     const char *path = picture->path;
@@ -383,6 +419,8 @@ int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error
     if (alpha)
         spec.channelnames.push_back("A");
     spec.alpha_channel = alpha ? spec.nchannels - 1 : -1;
+    if (picture->source)
+        take_along(spec, picture->source, output.out->format_name());
     spec.attribute("PixelAspectRatio", v->pixel_aspect);
     if (alpha && is_integer(spec.format))
         spec.attribute("oiio:UnassociatedAlpha", 1);

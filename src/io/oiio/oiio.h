@@ -42,6 +42,7 @@ struct hf_oiio_picture {
     const float *planes[4];   // planes[3] NULL when there is no alpha, else the colours are premultiplied
     int bits;                 // of the source: 16 stay 16 where the format has them
     const char *compression;  // NULL: the format's own
+    const char *source;       // picture whose camera, orientation, colour profile and texts go along; NULL: none
 };
 int hf_oiio_write(struct hf_io_bytes *made, const struct hf_oiio_picture *picture, struct hf_io_error *err);
 

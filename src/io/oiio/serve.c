@@ -141,8 +141,11 @@ static int serve_format(struct job *job, const struct hf_wire_request *q)
 static int serve_write(struct job *job, const struct hf_wire_request *q)
 {
     struct hf_wire_reply r = {0};
-    struct hf_oiio_picture p = {
-        .path = q->path, .view = &q->view, .bits = q->bits, .compression = q->has_name ? q->name : NULL};
+    struct hf_oiio_picture p = {.path = q->path,
+                                .view = &q->view,
+                                .bits = q->bits,
+                                .compression = q->has_name ? q->name : NULL,
+                                .source = q->source[0] ? q->source : NULL};
     const size_t size = plane_bytes(&q->view);
     float *memory = malloc(4 * size + 1);
     struct hf_io_bytes made = {0};

@@ -26,7 +26,7 @@ enum hf_wire_op {
     HF_WIRE_DEPTH,       // the reply is followed by the plane
     HF_WIRE_DEPTH_ONLY,  // view, name
     HF_WIRE_FORMAT,      // path
-    HF_WIRE_WRITE,       // view, planes, bits, name: compression; followed by the planes; then the file
+    HF_WIRE_WRITE,       // view, planes, bits, source, name: compression; followed by the planes; then the file
     HF_WIRE_READ,        // samples, part, followed by the names; the reply by the data
     HF_WIRE_MAKE,        // samples, level, name: compression, followed by names and data; the reply by the file
 };
@@ -42,7 +42,7 @@ struct hf_wire_request {
     int32_t part, bits;
     float level;
     uint32_t has_name;
-    char name[256], path[HF_WIRE_PATH];
+    char name[256], path[HF_WIRE_PATH], source[HF_WIRE_PATH];
     struct hf_io_view view;
     struct hf_io_samples samples;  // its pointers mean nothing
 };
