@@ -223,7 +223,7 @@ void spill(const char *path, const void *data, size_t size)
 }
 
 // Where the header ends: names, types and sizes to an empty name, once per part, once more in multi-part files.
-static size_t header_size(const uint8_t *d, size_t size)
+size_t header_size(const uint8_t *d, size_t size)
 {
     const bool multi = d[5] & 0x10;
     size_t at = 8;

@@ -39,6 +39,8 @@ void *allocate(size_t size);
 exr_result_t make_exr(const char *path, const struct part *parts, const char *views);
 uint8_t *slurp(const char *path, size_t *size);
 void spill(const char *path, const void *data, size_t size);
+// Where the header ends and the first part's table of chunks begins.
+size_t header_size(const uint8_t *d, size_t size);
 // Whether the last chunk of the first part stands before the first.
 bool runs_backwards(const char *path, int chunks);
 // Core 3.1 writes chunks from the top whatever the line order; turn a single-part file round.
