@@ -258,6 +258,12 @@ static int check_radius(struct hf_resolved *r, const struct hf_depth *depth, cha
     return HF_OK;
 }
 
+float hf_most_picture_radius(const struct hf_params *p)
+{
+    const float wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
+    return wide > 4 ? 512 / sqrtf(wide) : 256;
+}
+
 float hf_model_radius(int display_height)
 {
     return fminf(12 * (float)display_height / 1080, MAX_RADIUS);

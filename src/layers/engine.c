@@ -62,8 +62,6 @@ static const struct hf_layers_settings qualities[] = {
         {.spacing = 1.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .patterns = 1, .half = 5, .quarter = 32},
 };
 
-static const float MAX_PICTURE = 256;  // radius, pixels
-
 static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
 {
     struct hf_layers_params *p = &r->params.layers;
@@ -73,9 +71,8 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
         return hf_bad(message, "layers.quality is %d, which is none", (int)p->quality);
     const struct hf_layers_settings *set = &qualities[p->quality];
     struct hf_params *all = &r->params;
-    // Every pixel of a picture is drawn: no larger than this.
-    if (all->aperture.picture && all->max_radius > MAX_PICTURE) {
-        all->max_radius = MAX_PICTURE;
+    if (all->aperture.picture && all->max_radius > hf_most_picture_radius(all)) {
+        all->max_radius = hf_most_picture_radius(all);
         r->limit = HF_LIMIT_PICTURE;
     }
     p->spacing = p->spacing == HF_DERIVE ? set->spacing : p->spacing;

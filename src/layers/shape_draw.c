@@ -12,6 +12,7 @@
 
 static const double STEP = 1.5;
 enum { CLOSEST = 4, FARTHEST = 256 };  // nodes
+enum { MOST_CHORDS = 1 << 23 };        // that are kept; of more than these each is made where it is read
 
 // Scratch of a cell: windows of a row; and for a cat's eye how much of a node shows, runs of a shape, and for every node
 // the circle's rows and what they leave of the shape.
@@ -49,6 +50,13 @@ static size_t nodes_of(const struct hf_layers *l, const struct hf_slice *s, int 
     return (size_t)nodes_across(l, s, columns) * (size_t)(rows * (TILE >> s->level) + 2 * MARGIN);
 }
 
+// Of so many nodes; 0: none are kept.
+static size_t chords_of(const struct hf_shape *s, size_t nodes)
+{
+    const size_t n = nodes * (size_t)s->rows;
+    return n <= MOST_CHORDS ? n : 0;
+}
+
 // Without the nodes, which are a slice's own.
 static size_t place(const struct hf_layers *l, int columns, float *memory, struct places *p)
 {
@@ -78,7 +86,7 @@ size_t hf_layers_shape_floats(const struct hf_layers *l, int columns, int rows)
     for (int i = 0; l->key.cat_eye > 0 && i < 3 * l->slices * l->groups; i++) {
         const struct hf_slice *s = &l->group[i / (3 * l->slices)][i % (3 * l->slices)];
         const size_t n = s->shape ? nodes_of(l, s, columns, rows) : 0;
-        const size_t need = n ? whole(n) + n * (size_t)s->shape->rows : 0;
+        const size_t need = n ? whole(n) + chords_of(s->shape, n) : 0;
         most = need > most ? need : most;
     }
     return place(l, columns, NULL, &p) + most;
@@ -179,15 +187,12 @@ static struct circle circle_at(const struct draw *d, int x, int y)
                            toward * (2 * py - l->height) * d->corner, d->shape->radius};
 }
 
-// Half the circle's width in each row of the shape, exact as a disc's.
-static void make_chords(const struct hf_shape *s, const struct circle *c, double wide, float *chord)
+// Half the circle's width in a row of the shape, exact as a disc's.
+static float chord_of(const struct hf_shape *s, const struct circle *c, double wide, int row)
 {
-    double from = hf_half_disc(c->r, s->top - 0.5 - c->y);
-    for (int i = 0; i < s->rows; i++) {
-        const double to = hf_half_disc(c->r, s->top + i + 0.5 - c->y);
-        chord[i] = (float)((to - from) * wide);
-        from = to;
-    }
+    const double from = hf_half_disc(c->r, s->top + row - 0.5 - c->y),
+                 to = hf_half_disc(c->r, s->top + row + 0.5 - c->y);
+    return (float)((to - from) * wide);
 }
 
 // What the circle leaves of a run; 0: nothing.
@@ -205,13 +210,16 @@ static float sum_at(const struct draw *d, const struct circle *c, size_t node)
     const struct hf_shape *s = d->shape;
     if (d->at.sum[node] >= 0)
         return d->at.sum[node];
-    float *chord = d->at.chord + node * (size_t)s->rows;
-    double sum = 0;
-    make_chords(s, c, d->c->l->key.wide, chord);
+    double sum = 0, from = hf_half_disc(c->r, s->top - 0.5 - c->y);
     for (int i = 0; i < s->rows; i++) {
+        const double to = hf_half_disc(c->r, s->top + i + 0.5 - c->y);
+        const float chord = (float)((to - from) * d->c->l->key.wide);
         float a, b;
+        from = to;
+        if (d->at.chord)
+            d->at.chord[node * (size_t)s->rows + (size_t)i] = chord;
         for (int j = s->row[i].first; j < s->row[i].first + s->row[i].count; j++)
-            if (cut(&s->end[j], (float)c->x, chord[i], &a, &b))
+            if (cut(&s->end[j], (float)c->x, chord, &a, &b))
                 sum += (double)s->end[j].weight * ((double)b - a);
     }
     return d->at.sum[node] = (float)sum;
@@ -233,8 +241,10 @@ static int cut_row(const struct draw *d, int column, int x, int y, struct hf_sha
         run[0] = hf_shape_run_of(-0.5f, 0.5f, (float)s->sum);
         return y == d->y;
     }
+    const float chord =
+        d->at.chord ? d->at.chord[node * (size_t)s->rows + (size_t)i] : chord_of(s, &c, d->c->l->key.wide, i);
     for (int j = row->first; j < row->first + row->count; j++)
-        if (cut(&s->end[j], (float)c.x, d->at.chord[node * (size_t)s->rows + (size_t)i], &a, &b))
+        if (cut(&s->end[j], (float)c.x, chord, &a, &b))
             run[n++] = hf_shape_run_of(a, b, (float)(s->end[j].weight * (s->sum / sum)));
     return n;
 }
@@ -309,7 +319,8 @@ void hf_layers_draw_shape(const struct hf_cell *c, const struct hf_build *b, con
     } else if (l->key.cat_eye > 0) {
         d.corner = 1 / hypot(l->width, l->height);
         d.across = nodes_across(l, b->s, c->columns);
-        d.at.chord = d.at.sum + whole(nodes_of(l, b->s, c->columns, c->rows));
+        const size_t nodes = nodes_of(l, b->s, c->columns, c->rows);
+        d.at.chord = chords_of(d.shape, nodes) ? d.at.sum + whole(nodes) : NULL;
         draw_cats_eye(&d);
     } else {
         draw_runs(&d);

@@ -70,16 +70,13 @@ static void set_groups(struct hf_scatter *t, const struct hf_setup *s, float chr
     }
 }
 
-static const float MAX_PICTURE = 256;  // radius, pixels
-
 static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
 {
     struct hf_params *p = &r->params;
     (void)asked;
     (void)depth;
-    // Every pixel of a picture is drawn: no larger than this.
-    if (p->aperture.picture && p->max_radius > MAX_PICTURE) {
-        p->max_radius = MAX_PICTURE;
+    if (p->aperture.picture && p->max_radius > hf_most_picture_radius(p)) {
+        p->max_radius = hf_most_picture_radius(p);
         r->limit = HF_LIMIT_PICTURE;
     }
     return hf_check_resolution("scatter", p->scatter.resolution, HF_RESOLUTION_HALF, message);
