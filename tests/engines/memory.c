@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Memory in proportion to what a picture can see: small pictures at the largest radius, drawn with every kind of aperture.
+#include <stdlib.h>
+
+#include "support/check.h"
+#include "support/render.h"
+
+// What the context holds, by its own allocator.
+struct held {
+    size_t now, largest;
+};
+
+enum { HEAD = 64 };  // bytes before a block, where its size lies
+
+static void *take(void *cookie, size_t size, size_t align)
+{
+    struct held *h = cookie;
+    void *p = NULL;
+    if (posix_memalign(&p, align < HEAD ? HEAD : align, size + HEAD))
+        return NULL;
+    *(size_t *)p = size;
+    h->now += size;
+    h->largest = size > h->largest ? size : h->largest;
+    return (char *)p + HEAD;
+}
+
+static void give(void *cookie, void *p)
+{
+    struct held *h = cookie;
+    if (!p)
+        return;
+    char *start = (char *)p - HEAD;
+    h->now -= *(size_t *)(void *)start;
+    free(start);
+}
+
+enum { RADIUS = 2048, THREADS = 2 };
+
+// Sources from which a picture can be reached, clamped border and all, as one plane of floats.
+static double plane_bytes(int width, int height, double wide)
+{
+    return sizeof(float) * (2 * RADIUS * wide + width) * (2.0 * RADIUS + height);
+}
+
+struct look {
+    const char *name;
+    enum hf_engine engine;
+    struct hf_aperture_params aperture;
+    // Planes that an engine may hold. The gather has whole windows of half resolution, a quarter of a plane each: up to 16
+    // of colours, CoC and sums for each of two threads. The others have some rows and tables alone.
+    int planes;
+};
+
+static void try_one(const struct look *look, int width, int height)
+{
+    struct rng rng = rng_seed(1);
+    struct held held = {0};
+    struct hf_params p = hf_default_params;
+    struct hf_config config = {.threads = THREADS, .alloc = take, .free = give, .alloc_cookie = &held};
+    struct hf_context *c = NULL;
+    struct hf_report report;
+    struct picture colour = picture_new(width, height, 3), out = picture_new(width, height, 3),
+                   radius = picture_new(width, height, 1);
+    for (int i = 0; i < width * height; i++) {
+        for (int k = 0; k < 3; k++)
+            colour.plane[k][i] = rng_float(&rng);
+        radius.plane[0][i] = rng_below(&rng, 4) ? rng_range(&rng, -RADIUS, RADIUS) : rng_range(&rng, -8, 8);
+    }
+    p.engine = look->engine;
+    p.aperture = look->aperture;
+    p.aperture.squeeze = p.aperture.squeeze > 0 ? p.aperture.squeeze : 1;
+    p.max_radius = RADIUS;
+    CHECK_INT(hf_open(&c, &config), HF_OK);
+    struct hf_depth depth = picture_depth(&radius);
+    const struct hf_image dst = picture_image(&out), src = picture_image(&colour);
+    depth.type = HF_DEPTH_COC;
+    CHECK_INT(hf_plan(c, &dst, &src, &depth, &p, &report), HF_OK);
+    // Not the width of a squeezed shape: rows of it are long, but there are no more of them.
+    const double bound = look->planes * plane_bytes(width, height, 1);
+    CHECK_MSG((double)held.now <= bound && (double)report.memory <= bound,
+              "%s, %s, %d x %d: holds %.0f MB, needs %.0f, bound %.0f", hf_engine_name(p.engine), look->name, width,
+              height, (double)held.now / 1e6, (double)report.memory / 1e6, bound / 1e6);
+    CHECK_MSG(held.largest < (size_t)1 << 31, "%s, %s: a block of %zu bytes", hf_engine_name(p.engine), look->name,
+              held.largest);
+    hf_close(&c);
+    CHECK_MSG(held.now == 0, "%zu bytes are not given back", held.now);
+    picture_free(&colour);
+    picture_free(&out);
+    picture_free(&radius);
+}
+
+int main(void)
+{
+    static const struct look looks[] = {
+        {"disc", HF_ENGINE_GATHER, {0}, 8},
+        {"disc", HF_ENGINE_HEXAGON, {0}, 4},
+        {"disc", HF_ENGINE_GAUSSIAN, {0}, 4},
+        {"disc", HF_ENGINE_SCATTER, {0}, 4},
+        {"squeezed", HF_ENGINE_SCATTER, {.squeeze = 0.25f}, 4},
+        {"cat's eye", HF_ENGINE_SCATTER, {.cat_eye = 1}, 4},
+        {"chromatic ring", HF_ENGINE_SCATTER, {.ring = 0.5f, .chromatic = 0.5f}, 4},
+        {"all", HF_ENGINE_SCATTER, {.blades = 5, .cat_eye = 1, .chromatic = 0.5f, .squeeze = 0.25f}, 4},
+        {"disc", HF_ENGINE_LAYERS, {0}, 4},
+        {"squeezed", HF_ENGINE_LAYERS, {.squeeze = 0.25f}, 4},
+        {"upright", HF_ENGINE_LAYERS, {.squeeze = 4}, 4},
+        {"cat's eye", HF_ENGINE_LAYERS, {.cat_eye = 1}, 4},
+        {"chromatic ring", HF_ENGINE_LAYERS, {.ring = 0.5f, .chromatic = 0.5f}, 4},
+        {"all", HF_ENGINE_LAYERS, {.blades = 5, .cat_eye = 1, .chromatic = 0.5f, .squeeze = 0.25f}, 4},
+    };
+    static const int sizes[][2] = {{19, 47}, {1, 300}};
+    for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
+        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+            try_one(&looks[i], sizes[k][0], sizes[k][1]);
+    return check_report();
+}
