@@ -276,16 +276,17 @@ float hf_asked_radius(const struct hf_params *p, enum hf_depth_type type, int di
     return type == HF_DEPTH_COC || p->model == HF_MODEL_LENS ? MAX_RADIUS : hf_model_radius(display_height);
 }
 
-// Focal length in pixels, and K.
+// Focal length in pixels of x.
 static double lens_focal_px(const struct hf_params *p)
 {
     return (double)p->lens.focal_length_mm / p->lens.sensor_width_mm * p->view.display_width;
 }
 
+// K in pixels of y, which are smaller than those of x where the pixels are wide: the sensor's width is the picture's.
 static double lens_k(const struct hf_params *p)
 {
     const double aperture = p->lens.focal_length_mm / 1000.0 / (2.0 * p->lens.f_number) / p->lens.world_unit_m;
-    return aperture * lens_focal_px(p);
+    return aperture * lens_focal_px(p) * p->view.pixel_aspect;
 }
 
 // Slope of a CoC that grows from 0 to 1 over a distance. A zero distance is a step, which the steepest finite slope

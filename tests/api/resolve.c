@@ -85,6 +85,10 @@ static void derived(void)
     p.lens.f_number = 2;  // aperture radius 0.05 / (2 * 2) m; 50 / 36 * 1800 pixels
     r = resolved(1800, 1000, &depth, &p);
     CHECK(fabsf(r.focal_px - 2500) < 1e-3f && fabsf(r.lens_k - 31.25f) < 1e-4f);
+    // The sensor is as wide as the picture, whatever the shape of a pixel: in low ones a radius counts more.
+    p.view.pixel_aspect = 2;
+    CHECK(fabsf(resolved(1800, 1000, &depth, &p).lens_k - 62.5f) < 1e-4f);
+    p.view.pixel_aspect = 1;
     p.engine = HF_ENGINE_SCATTER;
     r = resolved(1800, 1000, &depth, &p);
     CHECK(r.limit == HF_LIMIT_NONE && r.params.max_radius == 2048);
