@@ -88,7 +88,7 @@ struct hf_found {
 struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
-    float radius_min, radius_max;      // of passes that make signed radii
+    float radius_min, radius_max;      // of passes that make signed radii; before any, HUGE_VALF and -HUGE_VALF
     float near_max, far_max;           // of those that make near and far CoC
     float brightest, alpha_min;        // of the colour, if somebody asks
     uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes of a row

@@ -4,6 +4,7 @@
 // take each cell through its passes while its buffers are in the cache. The next step begins when the last has ended, so
 // that a frame takes the same way the first time and later, in place and not, on any number of threads.
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 #include "frame/buffers.h"
@@ -28,7 +29,7 @@ static void start_workers(const struct hf_render *r, const struct hf_job *job)
     struct hf_context *c = r->c;
     for (int i = 0; i < c->threads; i++) {
         struct hf_worker *w = &c->workers[i];
-        memset(&w->counts, 0, sizeof w->counts);
+        w->counts = (struct hf_counts){.radius_min = HUGE_VALF, .radius_max = -HUGE_VALF};
         memset(&w->seen, 0, sizeof w->seen);
         w->looked = (struct hf_counts){.brightest = -FLT_MAX, .alpha_min = 1};
         memset(w->ns, 0, sizeof w->ns);

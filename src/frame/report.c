@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/report.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "frame/buffers.h"
@@ -40,7 +41,7 @@ static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
 
 struct hf_counts hf_report_counts(const struct hf_context *c)
 {
-    struct hf_counts sum = {0};
+    struct hf_counts sum = {.radius_min = HUGE_VALF, .radius_max = -HUGE_VALF};
     for (int i = 0; i < c->threads; i++)
         add_counts(&sum, &c->workers[i].counts);
     return sum;
@@ -107,7 +108,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     }
     if (e->measured) {
         r->near_radius = found->radius_min < 0 ? -found->radius_min : 0;
-        r->far_radius = found->radius_max;
+        r->far_radius = found->radius_max > 0 ? found->radius_max : 0;
     } else {
         r->near_radius = found->near_pixels ? s->max_radius * found->near_max : 0;
         r->far_radius = found->far_pixels ? s->max_radius * found->far_max : 0;

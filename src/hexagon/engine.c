@@ -268,7 +268,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     (void)mem;
     const float radius = fmaxf(-found->radius_min, found->radius_max);
     int x = 0, y = 0;
-    h->behind = hf_behind_levels(-found->radius_min);
+    h->behind = hf_behind_levels(fmaxf(-found->radius_min, 0));
     for (int i = 0; i < 3; i++) {
         struct hf_hexagon_line *l = &h->line[i];
         const double angle = (h->rotation + (i == 0 ? 0 : i == 1 ? 240 : 120)) * (M_PI / 180);

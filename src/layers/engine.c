@@ -188,6 +188,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     hf_layers_make_slices(l);
     const float range = found->radius_max - found->radius_min;
     l->levels = 0;
+    l->edges = l->set.unmix && range > HF_UNMIX_FROM;
     if (l->set.hidden && range >= 1)
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;

@@ -85,7 +85,8 @@ struct hf_layers {
     struct hf_shapes shapes[3];     // of radii as they are, and of larger and smaller ones
     int most_windows, most_rows;    // of a shape
     float chromatic;                // by this
-    float nearest, farthest;        // radii of the frame
+    float nearest, farthest;        // radii of the frame, and 0
+    int edges;                      // pixels may be mixed
     int most_tiles;                 // around a cell from which a slice reaches it
     int around;                     // how far samples are read around a cell, pixels
 

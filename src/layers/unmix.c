@@ -205,12 +205,15 @@ void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)
     const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
     const ptrdiff_t stride = n + 2 * AROUND;
     float *ring = f->work + AROUND;
-    for (int y = y0 - 3; begin && y < y0 + 3; y++)
+    for (int y = y0 - 3; begin && l->edges && y < y0 + 3; y++)
         sure_row(f, x, n, y, ring, stride);
+    for (int i = 0; begin && !l->edges && i < 8 * stride; i++)
+        f->work[i] = 1;
     for (int y = y0; y < y1; y++) {
         struct hf_unmix_row u = {
             .channels = l->channels, .middle = ring + (8 + (y & 7)) * stride, .slope = ring + (16 + (y & 7)) * stride};
-        sure_row(f, x, n, y + 3, ring, stride);
+        if (l->edges)
+            sure_row(f, x, n, y + 3, ring, stride);
         for (int i = 0; i < 7; i++) {
             u.radius[i] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x, y + i - 3);
             u.sure[i] = ring + ((y + i - 3) & 7) * stride;
@@ -223,9 +226,6 @@ void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)
             u.seen[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, x, y);
             u.mixed[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], i, x, y);
         }
-        if (!l->set.unmix)
-            for (int i = 0; i < n; i++)
-                ring[(y & 7) * stride + i] = 1;
         hf_layers_kernels(f)->unmix(&u, n);
     }
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Signed CoC radii on vectors. As in CoC generation nothing is fused, so that what is sharp has one answer everywhere.
+#include <math.h>
+
 #include "pixel/depth_rows.h"
 #include "pixel/coc_vf.h"
 
@@ -61,7 +63,8 @@ static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float
 {
     const int whole = n / VF_N * VF_N;
     const vm no = vf_gt(vf_zero(), vf_zero());
-    struct radius_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_zero(), vf_zero(), no, no, no, 0, 0};
+    struct radius_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_set1(HUGE_VALF), vf_set1(-HUGE_VALF), no, no,
+                               no,         0,          0};
     switch (f->s->form) {
     case HF_FORM_Z:
         radius_form(f, HF_FORM_Z, x, y, whole, out, &sums);

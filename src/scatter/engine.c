@@ -163,8 +163,8 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     struct hf_scatter *t = own;
     (void)s;
     (void)mem;
-    t->largest[0] = -found->radius_min;
-    t->largest[1] = found->radius_max;
+    t->largest[0] = fmaxf(-found->radius_min, 0);
+    t->largest[1] = fmaxf(found->radius_max, 0);
     t->behind = hf_behind_levels(t->largest[0]);
     t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
