@@ -201,7 +201,7 @@ static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_p
 static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
 {
     static const char *const why[] = {
-        [HF_LIMIT_NONE] = "",
+        [HF_LIMIT_NONE] = ", the most that there can be",
         [HF_LIMIT_GIVEN] = ", as max_radius says",
         [HF_LIMIT_MODEL] = "",
         [HF_LIMIT_ENGINE] = ": the engine reaches no farther unless max_radius is given",
@@ -217,7 +217,7 @@ static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
         say(&c->config, HF_LOG_WARNING, "the %s engine blurs by %s, not by how much the lens or the radii ask for",
             engine->name, engine->width);
     else if (fmaxf(r->near_radius, r->far_radius) >= p->max_radius)
-        say(&c->config, limit == HF_LIMIT_ENGINE || limit == HF_LIMIT_PICTURE ? HF_LOG_WARNING : HF_LOG_INFO,
+        say(&c->config, limit == HF_LIMIT_GIVEN ? HF_LOG_INFO : HF_LOG_WARNING,
             "blur is cut to %g pixels where it would be larger%s", p->max_radius, why[limit]);
 }
 

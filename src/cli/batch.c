@@ -24,6 +24,7 @@
 #include "cli/progress.h"
 #include "cli/resume.h"
 #include "cli/summary.h"
+#include "cli/warn.h"
 #include "tool/machine.h"
 
 enum { MAX_STEPS = 16 };

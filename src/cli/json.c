@@ -4,6 +4,7 @@
 #include "cli/choose.h"
 #include "cli/explain.h"
 #include "cli/summary.h"
+#include "cli/warn.h"
 #include "tool/json.h"
 
 #include <errno.h>
@@ -47,7 +48,7 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
     tool_json_count(j, "cut", v->cut);
     if (v->setup.params.highlight.gain > 1)
         tool_json_count(j, "highlights", (long long)v->highlights);
-    tool_json_count(j, "warnings", cli_warnings_of(v));
+    tool_json_count(j, "warnings", cli_warnings_of(frame, v));
     tool_json_ms(j, "total_ms", s->total_ms);
     tool_json_open(j, "passes", '[');
     for (int i = 0; i < hf_pass_count(s->used.params.engine); i++) {

@@ -10,6 +10,7 @@
 
 #include "cli/json.h"
 #include "cli/summary.h"
+#include "cli/warn.h"
 #include "tool/json.h"
 #include "tool/machine.h"
 
@@ -93,7 +94,7 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         tool_json_number(j, "near_radius", v->report.near_radius);
         tool_json_number(j, "far_radius", v->report.far_radius);
         tool_json_flag(j, "limited", cli_is_limited(v));
-        tool_json_count(j, "warnings", cli_warnings_of(v));
+        tool_json_count(j, "warnings", cli_warnings_of(frame, v));
         tool_json_count(j, "colour_repaired", (long long)v->report.colour_repaired);
         tool_json_count(j, "depth_repaired", (long long)v->report.depth_repaired);
         tool_json_close(j);

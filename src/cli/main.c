@@ -9,6 +9,7 @@
 #include "cli/preview.h"
 #include "cli/summary.h"
 #include "cli/target.h"
+#include "cli/warn.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -101,6 +102,8 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
         status = write_json(argc, argv, &frame, session->context, error);
     else if (!status && args->dry_run)
         status = print_plan(&frame, session->context, error);
+    if (!status && args->dry_run)
+        cli_print_early_warnings(&frame);
     // JSON on stdout is for programs: then people are told on the other channel.
     if (!status && args->explain)
         cli_explain_print(args->json && !args->json_file ? stderr : stdout, &frame, !args->dry_run);

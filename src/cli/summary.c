@@ -2,9 +2,7 @@
 #include "cli/summary.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 int cli_is_limited(const struct cli_view *v)
@@ -12,18 +10,6 @@ int cli_is_limited(const struct cli_view *v)
     const struct hf_report *r = &v->report;
     const float most = r->used.params.max_radius;
     return v->setup.model != CLI_MODEL_RANGE && (r->near_radius >= most || r->far_radius >= most);
-}
-
-// All is infinitely far.
-static int is_empty(const struct cli_view *v)
-{
-    return v->setup.model != CLI_MODEL_COC &&
-           v->report.no_surface == (uint64_t)v->view->width * (uint64_t)v->view->height;
-}
-
-static int is_sharp(const struct cli_view *v)
-{
-    return v->least_radius < CLI_SHARP_RADIUS;
 }
 
 // Why a radius cannot be larger.
@@ -41,93 +27,6 @@ static const char *limit_words(enum hf_limit limit)
     default:
         return "the most that there can be";
     }
-}
-
-// There is no highlight to raise.
-static int lacks_highlights(const struct cli_view *v)
-{
-    return v->setup.params.highlight.gain > 1 && v->highlights == 0;
-}
-
-int cli_warnings_of(const struct cli_view *v)
-{
-    const struct hf_report *r = &v->report;
-    return v->warned + (r->colour_repaired > 0) + (r->depth_repaired > 0) + cli_is_limited(v) + v->found.flipped +
-           (v->found.negative > 0) + is_empty(v) + (!is_empty(v) && !is_sharp(v)) + (v->cut > 0) + v->setup.missed +
-           lacks_highlights(v);
-}
-
-// A picture of whole numbers that is taken for distances.
-static int is_unscaled_map(const struct cli_args *args)
-{
-    return args->depth_file && !cli_is_exr(args->depth_file) && args->depth_type == HF_DEPTH_VIEW &&
-           !args->normalized && isnan(args->depth_scale);
-}
-
-static void warn(const struct cli_view *v, const struct cli_args *args)
-{
-    const struct hf_report *r = &v->report;
-    const char *depth = args->depth_file ? args->depth_file : v->view->depth;
-    if (r->colour_repaired)
-        tool_print_line("%s: %" PRIu64 " colour samples were NaN or infinite, neighbours took their place", v->label,
-                        r->colour_repaired);
-    if (r->depth_repaired)
-        tool_print_line("%s: %" PRIu64 " depth samples were NaN, neighbours took their place", v->label,
-                        r->depth_repaired);
-    if (v->found.flipped)
-        tool_print_line("%s: depth %s is negative, so the camera looks along -z: taken without its sign", v->label,
-                        depth);
-    if (v->found.negative)
-        tool_print_line("%s: %" PRIu64 " samples of depth %s are negative and count as no surface", v->label,
-                        v->found.negative, depth);
-    if (v->setup.missed)
-        tool_print_line("%s: no setting errs as little as --max-error %g: the most accurate is expected to err %.3g",
-                        v->label, args->max_error, v->setup.choice.error);
-    if (is_empty(v))
-        tool_print_line("%s: depth %s has no surface anywhere, so everything is infinitely far: is it the right "
-                        "channel, and --depth-type %s?",
-                        v->label, depth, cli_depth_type_name(args));
-    else if (!is_sharp(v))
-        tool_print_line("%s: nothing is in focus: all is blurred by %.3g pixels or more%s", v->label, v->least_radius,
-                        is_unscaled_map(args) ? "; the numbers of a map are 0 to 1, is it --depth-type normalized or "
-                                                "inverse?"
-                                              : "");
-}
-
-static void warn_highlights(const struct cli_view *v)
-{
-    const struct hf_highlight_params *p = &v->setup.params.highlight;
-    if (lacks_highlights(v))
-        tool_print_line("%s: no pixel is brighter than %g, so --highlight-gain %g changes nothing: see "
-                        "--highlight-threshold",
-                        v->label, p->threshold, p->gain);
-}
-
-// Blur beyond the data window.
-static void warn_cut(const struct cli_view *v)
-{
-    if (v->cut)
-        tool_print_line(
-            "%s: blur reaches %d pixels beyond the data window, which is smaller than the display window, and "
-            "is cut there; --grow keeps it",
-            v->label, v->cut);
-}
-
-int cli_print_warnings(const struct cli_frame *frame)
-{
-    int n = 0;
-    for (int i = 0; i < frame->view_count; i++) {
-        warn(&frame->views[i], frame->args);
-        warn_highlights(&frame->views[i]);
-        warn_cut(&frame->views[i]);
-        n += cli_warnings_of(&frame->views[i]);
-    }
-    if (frame->written.note[0])
-        tool_print_line("%s", frame->written.note);
-    if (frame->written.clamped)
-        tool_print_line("%s: %" PRIu64 " samples did not fit their channels and were clamped", frame->args->output,
-                        frame->written.clamped);
-    return n + (frame->written.note[0] != '\0') + (frame->written.clamped > 0);
 }
 
 static void print_view(const struct cli_frame *frame, const struct cli_view *v, int warnings)

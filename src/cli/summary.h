@@ -8,11 +8,6 @@
 // 1 if radii of the lens or of a coc depth were cut to the largest that there may be.
 int cli_is_limited(const struct cli_view *v);
 
-// How many things were wrong with a view's picture but did not stop the work.
-int cli_warnings_of(const struct cli_view *v);
-// The same of a frame, each said on stderr, and what was lost in writing it.
-int cli_print_warnings(const struct cli_frame *frame);
-
 // A line on stderr for each view: with --verbose, or on a terminal unless --quiet.
 void cli_print_summary(const struct cli_frame *frame, int warnings);
 

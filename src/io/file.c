@@ -184,6 +184,12 @@ void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)
         hf_oiio_channels(file->oiio, buf, size);
 }
 
+int hf_io_other_layers(const struct hf_io_file *file, char *buf, size_t size)
+{
+    buf[0] = 0;
+    return file->exr ? hf_exr_other_layers(file->exr, &file->views, buf, size) : 0;
+}
+
 static int check_view(const struct hf_io_file *file, int view, struct hf_io_error *err)
 {
     if (view < 0 || view >= file->views.count)

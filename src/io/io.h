@@ -43,6 +43,10 @@ const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view);
 // size.
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size);
 
+// Names of other layers with a depth of their own, which the choice NULL has left out, "Foreground.Combined, Hair": one
+// for each depth, "and 2 more" behind the fourth. Returns how many; cut off at size.
+int hf_io_other_layers(const struct hf_io_file *file, char *buf, size_t size);
+
 // A text in the header of an EXR file's first part, cut off at size; "" when there is none. Returns buf.
 const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size);
 // Are all chunks of an EXR file there, as long as they say and none after the file's end? Looks at no pixels. 0, or -1

@@ -342,7 +342,7 @@ picture_tests() {
     bad 1 "--aperture|nothing.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture nothing.exr
     bad 1 "--aperture|black.exr|black" plain.exr -o o.exr --focus 3 --engine scatter --aperture black.exr
     bad 1 "--aperture|broken.exr" plain.exr -o o.exr --focus 3 --engine scatter --aperture broken.exr
-    good plain.exr -o o.exr --depth-type coc --depth-offset -3
+    good plain.exr -o o.exr --depth-type coc --depth-offset -3 --max-radius 64
     good plain.exr -o o.exr --focus 3 --depth-type ray
     good plain.exr -o o.exr --focus 3 --depth-type inverse
     good plain.exr -o o.exr --focus 3 --compression piz

@@ -190,6 +190,11 @@ for layer, z in {'ViewLayer': depth, 'Foreground': lambda x, y: 1 + y // 8}.item
     layers[layer + '.Depth.Z'] = z
 layers.update({'CryptoObject00.' + n: lambda x, y: x for n in 'rgba'})
 exr('layers.exr', layers)
+many = dict(colour, Z=depth)
+for i in range(1, 7):
+    many.update({'L%d.Combined.%s' % (i, n): f for n, f in colour.items()})
+    many['L%d.Depth.Z' % i] = lambda x, y: 1 + y // 8
+exr('many.exr', many)
 # An object that does not fill the frame, and the same cropped to it.
 inside = lambda x, y: 24 <= x <= 43 and 12 <= y <= 27
 film = {n: (lambda f: lambda x, y: f(x, y) * inside(x, y))(f) for n, f in colour.items()}

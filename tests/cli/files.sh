@@ -22,7 +22,18 @@ good layers.exr -o all.exr --focus 3 --max-radius 6 --layer all --json
 json_valid "$dir/out" && contains "$dir/out" '"layer": "Foreground.Combined"' &&
     contains "$dir/out" '"depth": "Foreground.Depth.Z"'
 result "--json names layer and depth" $?
-good layers.exr -o main.exr --focus 3 --max-radius 6
+run layers.exr -o main.exr --focus 3 --max-radius 6
+[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] &&
+    contains "$dir/err" "Foreground.Combined has a depth too and stays as it is; --layer all blurs each"
+result "a layer that could be blurred too is a warning" $?
+run layers.exr --focus 3 --dry-run
+contains "$dir/err" "Foreground.Combined has a depth too"
+result "in a dry run too" $?
+good layers.exr -o o.exr --focus 3 --layer ViewLayer
+good layers.exr -o o.exr --focus 3 --depth-file depth.exr
+run many.exr -o o.exr --focus 3
+contains "$dir/err" "L1.Combined, L2.Combined, L3.Combined, L4.Combined and 2 more have depths too and stay as they are"
+result "many such layers" $?
 # The layer that was not asked for is as it was, the other is the same as where both are made.
 python3 - <<'PYTHON'
 from exr import read
@@ -204,18 +215,18 @@ result "--focus-image without rendering" $?
 bad 1 "--focus-image|near.exr|INPUT" near.exr -o o.exr --focus 4 --focus-image near.exr
 
 # ---- lossy compression
-run layers.exr -o dwa.exr --focus 3 --compression dwaa
+run layers.exr -o dwa.exr --focus 3 --compression dwaa --layer ViewLayer
 if contains "$dir/err" "built without OpenImageIO"; then
     skip "DWA (no OpenImageIO)"
 else
     run dwa.exr -o o.exr --focus 3 --max-radius 6 --json
     [ "$status" -eq 0 ] && contains "$dir/err" "3 channels besides the colours (Foreground.Combined.B, ...)" &&
-        contains "$dir/err" "dwaa a second time" && contains "$dir/err" "--compression zip" && [ "$(wc -l <"$dir/err")" -eq 1 ] &&
+        contains "$dir/err" "dwaa a second time" && contains "$dir/err" "--compression zip" && [ "$(wc -l <"$dir/err")" -eq 2 ] &&
         contains "$dir/out" '"note": "dwa.exr'
     result "what DWA wears out is counted" $?
-    good dwa.exr -o o.exr --focus 3 --max-radius 6 --compression none
+    good dwa.exr -o o.exr --focus 3 --max-radius 6 --compression none --layer ViewLayer
     run dwa.exr -o o2.exr --focus 3 --max-radius 6
-    good o2.exr -o o3.exr --focus 3 --range inf --compression none
+    good o2.exr -o o3.exr --focus 3 --range inf --compression none --layer ViewLayer
     python3 -c '
 from exr import read
 a, b, c = (read(n) for n in ["layers.exr", "o.exr", "o3.exr"])
@@ -237,6 +248,25 @@ result "--quiet leaves warnings" $?
 run near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --engine gaussian --verbose
 [ "$status" -eq 0 ] && contains "$dir/err" "not by how much the lens" && ! contains "$dir/err" " 0 warnings"
 result "what the library warns of is counted" $?
+# As many sentences as are counted, each once.
+told() {  # WARNINGS ARGUMENTS...
+    want=$1
+    shift
+    run "$@" --verbose
+    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq $((want + 1)) ] && [ "$(sort -u "$dir/err" | wc -l)" -eq $((want + 1)) ] &&
+        tail -1 "$dir/err" | grep -q " $want warning"
+    result "$want warnings: $*" $?
+}
+told 0 near.exr -o o.exr --focus 4
+told 0 near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 2
+contains "$dir/err" "(cut to 2, by --max-radius)"
+result "a limit that was asked for is on the line" $?
+told 1 near.exr -o o.exr --focus 4 --fstop 0.0002 --focal-length 50
+contains "$dir/err" "blur is cut to 2048 pixels where it would be larger, the most that there can be"
+result "the largest radius that there can be" $?
+told 1 near.exr -o o.exr --focus 4 --fstop 0.002 --focal-length 50 --engine gather
+told 1 near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --engine gaussian
+told 2 layers.exr -o o.exr --focus 4 --fstop 0.0002 --focal-length 50
 if command -v script >/dev/null; then
     script -qec "'$program' near.exr -o o.exr --focus 4" /dev/null >"$dir/out" 2>&1 </dev/null
     contains "$dir/out" "RGB with depth Z, layers, focus 4"

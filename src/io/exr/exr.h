@@ -117,6 +117,8 @@ int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const s
 int hf_exr_find_depth_only(const struct hf_exr *e, const char *depth_channel, const char *name, int *channel);
 void hf_exr_channels(const struct hf_exr *e, char *buf, size_t size);
 void hf_exr_layers(const struct hf_exr *e, char *buf, size_t size);
+// Layers with depths that none of the views has; see hf_io_other_layers.
+int hf_exr_other_layers(const struct hf_exr *e, const struct hf_io_views *views, char *buf, size_t size);
 
 // layout.c
 struct hf_exr_chunk {

@@ -254,3 +254,57 @@ void hf_exr_layers(const struct hf_exr *e, char *buf, size_t size)
     }
     free(list);
 }
+
+static bool has_depth(const struct hf_io_views *views, const struct hf_io_view *of)
+{
+    for (int i = 0; i < views->count; i++)
+        if (views->view[i].depth_part == of->depth_part && !strcmp(views->view[i].depth, of->depth))
+            return true;
+    return false;
+}
+
+// The most likely picture among those layers whose depths are not in views nor found: added to found. False when there
+// is none left. What is wrong with such a layer is said when it is asked for.
+static bool next_other(const struct hf_exr *e, const struct hf_io_views *views, struct hf_io_views *found,
+                       const struct hf_exr_colours *list, int count)
+{
+    struct hf_io_error ignored;
+    struct hf_io_view best = {.depth_part = -1};
+    int score = 0;
+    for (int i = 0; i < count; i++) {
+        struct hf_io_views one = {0};
+        if (list[i].data || list[i].score <= score || has_view(views, &list[i]))
+            continue;
+        if (!add_view(e, &one, list[i].part, list[i].view, list[i].prefix, &ignored) &&
+            !hf_exr_set_depth(e, &one.view[0], false, NULL, &ignored) && one.view[0].depth_part >= 0 &&
+            !has_depth(views, &one.view[0]) && !has_depth(found, &one.view[0])) {
+            best = one.view[0];
+            score = list[i].score;
+        }
+        free(one.view);
+    }
+    struct hf_io_view *v = best.depth_part >= 0 ? hf_io_add_view(found) : NULL;
+    if (v) {
+        *v = best;
+        set_layer(e, v);
+    }
+    return v;
+}
+
+int hf_exr_other_layers(const struct hf_exr *e, const struct hf_io_views *views, char *buf, size_t size)
+{
+    enum { SHOWN = 4 };
+    struct hf_exr_colours *list;
+    struct hf_io_views found = {0};
+    const int count = hf_exr_list_colours(e, &list);
+    while (next_other(e, views, &found, list, count))
+        if (found.count <= SHOWN)
+            hf_io_list(buf, size, NULL, found.view[found.count - 1].layer, "");
+    const int others = found.count;
+    const size_t n = strlen(buf);
+    if (others > SHOWN && n < size)
+        snprintf(buf + n, size - n, " and %d more", others - SHOWN);
+    free(list);
+    free(found.view);
+    return others;
+}

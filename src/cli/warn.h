@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What may be wrong with a frame but does not stop the work. Each thing is counted where its sentence is made, so that
+// there are as many sentences as are counted.
+#ifndef HF_CLI_WARN_H
+#define HF_CLI_WARN_H
+
+#include "cli/frame.h"
+
+// How many warnings a view's picture has, those of the library included.
+int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v);
+// The same of a frame, each said on stderr (the library's have been), and what was lost in writing it.
+int cli_print_warnings(const struct cli_frame *frame);
+// Of these what is known before any pixel is.
+void cli_print_early_warnings(const struct cli_frame *frame);
+
+#endif
