@@ -3,6 +3,9 @@
 // that fusing would change: the bits are the same on every machine, deterministic or not.
 #include "gaussian/kernels.h"
 
+#include <float.h>
+#include <math.h>
+
 #include "pixel/pass_c.h"
 
 // 1 4 6 4 1 / 16 as 1 2 1 twice: a constant stays what it is, bit for bit, mirrored samples give mirrored bits, and
@@ -18,10 +21,12 @@ static float five(const float v[5])
     return smooth(smooth(a, b, c), smooth(b, c, d), smooth(c, d, e));
 }
 
-// As printed.
+// As printed; halves first, so that nothing overflows, and the weights' sum is 1 only within rounding.
 static float five_faithful(const float v[5])
 {
-    return ((v[0] + v[4]) * 0.3f + (v[1] + v[3]) * 0.15f) + v[2] * 0.1f;
+    const float outer = (v[0] * 0.5f + v[4] * 0.5f) * (2 * 0.3f), inner = (v[1] * 0.5f + v[3] * 0.5f) * (2 * 0.15f);
+    const float sum = (outer + inner) + v[2] * 0.1f;
+    return sum < FLT_MAX ? sum > -FLT_MAX ? sum : -FLT_MAX : FLT_MAX;
 }
 
 void hf_gaussian_line_c(const float *in, int n, float *out, int faithful)
@@ -94,7 +99,8 @@ void hf_gaussian_count_c(const struct hf_frame *f, int x, int y, int n, struct h
 void hf_lerp_row_c(float *a, const float *b, const float *t, int n)
 {
     for (int i = 0; i < n; i++)
-        a[i] = hf_lerp(a[i], b[i], t[i]);
+        // The largest floats of either sign lie farther apart than there are floats.
+        a[i] = fabsf(b[i] - a[i]) <= FLT_MAX ? hf_lerp(a[i], b[i], t[i]) : (1 - t[i]) * a[i] + t[i] * b[i];
 }
 
 // a + w (b - a)

@@ -4,6 +4,8 @@
 #ifndef HF_GAUSSIAN_BLUR_SIMD_H
 #define HF_GAUSSIAN_BLUR_SIMD_H
 
+#include <float.h>
+
 #include "pixel/depth_rows.h"
 #include "gaussian/kernels.h"
 #include "pixel/coc_vf.h"
@@ -31,8 +33,10 @@ HF_INLINE vf smooth_down(struct column *p, vf sample)
 
 HF_INLINE vf five_faithful_vf(vf a, vf b, vf c, vf d, vf e)
 {
-    const vf outer = vf_mul(vf_add(a, e), vf_set1(0.3f)), inner = vf_mul(vf_add(b, d), vf_set1(0.15f));
-    return vf_add(vf_add(outer, inner), vf_mul(c, vf_set1(0.1f)));
+    const vf half = vf_set1(0.5f), most = vf_set1(FLT_MAX), least = vf_set1(-FLT_MAX);
+    const vf outer = vf_mul(vf_add(vf_mul(a, half), vf_mul(e, half)), vf_set1(2 * 0.3f));
+    const vf inner = vf_mul(vf_add(vf_mul(b, half), vf_mul(d, half)), vf_set1(2 * 0.15f));
+    return vf_max(vf_min(vf_add(vf_add(outer, inner), vf_mul(c, vf_set1(0.1f))), most), least);
 }
 
 HF_INLINE vf line_sums(const float *p)
@@ -113,8 +117,11 @@ static void gaussian_columns_simd(const float *in, ptrdiff_t in_stride, int rows
 static void lerp_row_simd(float *a, const float *b, const float *t, int n)
 {
     for (int i = 0; i < n; i += VF_N) {
-        const vf w = vf_load(t + i), v = vf_load(a + i);
-        const vf mixed = vf_add(v, vf_mul(w, vf_sub(vf_load(b + i), v)));
+        const vf w = vf_load(t + i), v = vf_load(a + i), to = vf_load(b + i), apart = vf_sub(to, v);
+        const vm near = vf_le(vf_abs(apart), vf_set1(FLT_MAX));
+        vf mixed = vf_add(v, vf_mul(w, apart));
+        if (vm_any(vm_not(near)))
+            mixed = vf_select(near, mixed, vf_add(vf_mul(vf_sub(vf_set1(1), w), v), vf_mul(w, to)));
         vf_store(a + i, vf_select(vf_eq(w, vf_zero()), v, mixed));
     }
 }
