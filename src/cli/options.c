@@ -73,7 +73,8 @@ static const struct tool_option options[] = {
 
     {"fstop", 0, TOOL_LENS, "N", "f-number, more than 0, or inf (no blur). Default: the header's aperture.",
      POSITIVE(fstop), .unit = TOOL_UNIT_FSTOP, .inf = 1},
-    {"focal-length", 0, TOOL_LENS, "MM", "Focal length, millimetres. Default: the header's pinholeFocalLength.",
+    {"focal-length", 0, TOOL_LENS, "MM", "Focal length, millimetres. Default: the header's pinholeFocalLength, else its "
+     "nominalFocalLength.",
      POSITIVE(focal_length), .unit = TOOL_UNIT_MM},
     {"sensor-width", 0, TOOL_LENS, "MM", "Width of the sensor, millimetres. Default: the header's "
      "sensorOverallDimensions, else 36.", POSITIVE(sensor_width), .unit = TOOL_UNIT_MM},
@@ -176,8 +177,8 @@ const struct tool_program cli_program = {
     .more_title = "How much blur",
     .more = "--range, --strength and --near-begin to --far-end choose the range model: blur "
             "grows over a distance of your choice, whatever lens the header has. --fstop, "
-            "--focal-length or a complete lens in the header (focus, aperture and "
-            "pinholeFocalLength) choose the lens: blur as a camera has it. With neither, "
+            "--focal-length or a lens in the header (aperture and pinholeFocalLength or "
+            "nominalFocalLength) choose the lens: blur as a camera has it. With neither, "
             "the range is half the focus distance. --focus goes before the header's.",
     .examples =
         (const char *const[]){"hyperfocal shot.exr -o dof.exr --focus 4.2 --range 3",

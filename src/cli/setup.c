@@ -2,6 +2,7 @@
 #include "cli/setup.h"
 
 #include "cli/choose.h"
+#include "cli/lens.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,15 +12,9 @@ static int given(float number)
     return !isnan(number);
 }
 
-// Headers hold zeros where nobody knew better.
-static int usable(float number)
-{
-    return isfinite(number) && number > 0;
-}
-
 static float first_usable(float a, float b, float otherwise)
 {
-    return given(a) ? a : usable(b) ? b : otherwise;
+    return given(a) ? a : cli_lens_usable(b) ? b : otherwise;
 }
 
 const char *cli_model_name(enum cli_model model)
@@ -31,19 +26,6 @@ const char *cli_model_name(enum cli_model model)
 int cli_focus_needs_depth(const struct cli_args *args)
 {
     return args->focus_by == CLI_FOCUS_AT || args->focus_by == CLI_FOCUS_CENTER;
-}
-
-static enum cli_model choose_model(const struct cli_args *args, const struct hf_io_camera *camera)
-{
-    if (args->depth_type == HF_DEPTH_COC)
-        return CLI_MODEL_COC;
-    if (given(args->range) || given(args->depth_of_field) || given(args->strength) || given(args->near_begin) ||
-        given(args->near_end) || given(args->far_begin) || given(args->far_end))
-        return CLI_MODEL_RANGE;
-    if (given(args->fstop) || given(args->focal_length))
-        return CLI_MODEL_LENS;
-    return usable(camera->focus) && usable(camera->f_number) && usable(camera->focal_length_mm) ? CLI_MODEL_LENS
-                                                                                                : CLI_MODEL_RANGE;
 }
 
 static int display_width(const struct hf_io_view *view)
@@ -64,8 +46,8 @@ static void describe_depth(struct hf_depth *depth, const struct cli_args *args, 
     };
     const struct hf_io_box *display = &view->display_window;
     const float width = (float)display_width(view);
-    const float screen_width = usable(view->screen_width) ? view->screen_width : 1;
-    const float focal = first_usable(args->focal_length, view->camera.focal_length_mm, NAN);
+    const float screen_width = cli_lens_usable(view->screen_width) ? view->screen_width : 1;
+    const float focal = first_usable(args->focal_length, cli_lens_header_focal(&view->camera), NAN);
     const float sensor = first_usable(args->sensor_width, view->camera.sensor_width_mm, 36);
     depth->focal_px = given(focal) ? focal / sensor * width : width / screen_width;
 
@@ -129,31 +111,13 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
         return 0;
     }
     const float unit = given(args->world_unit) ? args->world_unit : 1;
-    if (!usable(view->camera.focus / unit))
+    if (!cli_lens_usable(view->camera.focus / unit))
         return tool_fail(error, CLI_BAD_ARGUMENTS,
                          "%s: there is no focus distance in the header, give one with "
                          "--focus or --focus-at",
                          label);
     setup->focus_from = "header";
     *focus = view->camera.focus / unit;
-    return 0;
-}
-
-static int set_lens(struct hf_params *p, const struct cli_args *args, const struct hf_io_camera *camera,
-                    const char *label, struct tool_error *error)
-{
-    p->lens.f_number = first_usable(args->fstop, camera->f_number, NAN);
-    p->lens.focal_length_mm = first_usable(args->focal_length, camera->focal_length_mm, NAN);
-    p->lens.sensor_width_mm = first_usable(args->sensor_width, camera->sensor_width_mm, 36);
-    p->lens.world_unit_m = given(args->world_unit) ? args->world_unit : 1;
-    if (!given(p->lens.focal_length_mm))
-        return tool_fail(error, CLI_BAD_ARGUMENTS,
-                         "%s: --fstop %g needs --focal-length, the header has no "
-                         "pinholeFocalLength",
-                         label, args->fstop);
-    if (!given(p->lens.f_number))
-        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --focal-length %g needs --fstop, the header has no aperture",
-                         label, args->focal_length);
     return 0;
 }
 
@@ -201,7 +165,7 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
 int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
                    const float *depth, const char *label, struct tool_error *error)
 {
-    *setup = (struct cli_setup){.params = args->params, .model = choose_model(args, &view->camera)};
+    *setup = (struct cli_setup){.params = args->params, .model = cli_lens_model(args, &view->camera)};
     struct hf_params *p = &setup->params;
     describe_depth(&setup->depth, args, view, depth);
     p->model = setup->model == CLI_MODEL_LENS ? HF_MODEL_LENS : HF_MODEL_RANGE;
@@ -220,6 +184,6 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
     const int status = find_focus(setup, args, view, label, error);
     if (status || setup->model == CLI_MODEL_COC)
         return status;
-    return setup->model == CLI_MODEL_LENS ? set_lens(p, args, &view->camera, label, error)
+    return setup->model == CLI_MODEL_LENS ? cli_lens_set(p, args, &view->camera, label, error)
                                           : set_range(p, args, label, error);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/warn.h"
 
+#include "cli/lens.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -97,9 +99,17 @@ static void warn_options(struct warner *w, const struct cli_view *v)
              v->cut);
 }
 
+static void warn_lens(struct warner *w, const struct cli_view *v)
+{
+    char text[512];
+    if (cli_lens_remark(w->args, &v->setup, &v->view->camera, text, sizeof(text)))
+        warn(w, "%s", text);
+}
+
 static void warn_view(struct warner *w, const struct cli_view *v)
 {
     w->label = v->label;
+    warn_lens(w, v);
     warn_samples(w, v);
     warn_focus(w, v);
     warn_options(w, v);
@@ -122,7 +132,7 @@ static void warn_layers(struct warner *w)
              count > 1 ? "stay" : "stays", count > 1 ? "they are" : "it is");
 }
 
-static void warn_early(struct warner *w)
+static void warn_frame(struct warner *w)
 {
     w->label = w->args->input;
     warn_layers(w);
@@ -138,7 +148,7 @@ int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v)
 int cli_print_warnings(const struct cli_frame *frame)
 {
     struct warner w = {.frame = frame, .args = frame->args, .say = 1};
-    warn_early(&w);
+    warn_frame(&w);
     for (int i = 0; i < frame->view_count; i++)
         warn_view(&w, &frame->views[i]);
     w.label = frame->args->output;
@@ -152,5 +162,9 @@ int cli_print_warnings(const struct cli_frame *frame)
 void cli_print_early_warnings(const struct cli_frame *frame)
 {
     struct warner w = {.frame = frame, .args = frame->args, .say = 1};
-    warn_early(&w);
+    warn_frame(&w);
+    for (int i = 0; i < frame->view_count; i++) {
+        w.label = frame->views[i].label;
+        warn_lens(&w, &frame->views[i]);
+    }
 }

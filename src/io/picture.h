@@ -20,10 +20,11 @@ enum {
 
 // Camera attributes of a header; NAN where the header has none. Names are those of the EXR attributes.
 struct hf_io_camera {
-    float focus;            // metres
-    float f_number;         // "aperture"
-    float focal_length_mm;  // "pinholeFocalLength"
-    float sensor_width_mm;  // "sensorOverallDimensions".x
+    float focus;              // metres
+    float f_number;           // "aperture"
+    float focal_length_mm;    // "pinholeFocalLength"
+    float sensor_width_mm;    // "sensorOverallDimensions".x
+    float nominal_length_mm;  // "nominalFocalLength": what is written on the lens
 };
 
 struct hf_io_box {

@@ -197,20 +197,20 @@ result "--highlight-gain without highlights is a warning" $?
 rm -f dark.exr o.json plain-o.exr
 
 # ---- what is in focus, as a picture
-good near.exr -o o.exr --focus 4 --fstop 0.05 --focal-length 50 --focus-image focus.exr
+good near.exr -o o.exr --focus 4 --fstop 0.05 --focal-length 50 --focus-image painted.exr
 python3 - <<'PYTHON'
 import struct
 from exr import read
-f = read('focus.exr')
+f = read("painted.exr")
 at = lambda c, x: struct.unpack_from('<f', f[c], 4 * (20 * 64 + x))[0]
 # depths 1 2 4 8: near, near, in focus, far
 ok = all(max('RGB', key=lambda c: at(c, x)) == want for x, want in [(4, 'R'), (20, 'R'), (36, 'G'), (52, 'B')])
 raise SystemExit(not ok)
 PYTHON
 result "--focus-image paints near red, in focus green, far blue" $?
-rm -f focus.exr
-good near.exr --focus 4 --focus-image focus.exr --dry-run
-[ -s focus.exr ]
+rm -f painted.exr
+good near.exr --focus 4 --focus-image painted.exr --dry-run
+[ -s painted.exr ]
 result "--focus-image without rendering" $?
 bad 1 "--focus-image|near.exr|INPUT" near.exr -o o.exr --focus 4 --focus-image near.exr
 
@@ -234,6 +234,30 @@ raise SystemExit(any(f[n] != a[n] for f in (b, c) for n in a if n.startswith("Cr
     result "masks and depth keep their bits through DWA" $?
     rm -f o2.exr o3.exr
 fi
+
+# ---- a lens that is not whole
+lens() {  # WORDS-ON-STDERR ARGUMENTS...
+    words=$1
+    shift
+    run "$@" -o o.exr
+    ok=$status
+    [ "$(wc -l <"$dir/err")" -eq 1 ] || { ok=1; echo "not one line on stderr:"; }
+    lacks "$dir/err" warning
+    result "lens: $*" "$ok"
+}
+lens "focus 4 and aperture 2, but no pinholeFocalLength|range|give --focal-length" stop.exr
+lens "aperture 2, but no pinholeFocalLength|give --focal-length" stop.exr --focus 3
+lens "focus 4, but no aperture and no pinholeFocalLength|give --fstop and --focal-length" focus.exr
+lens "focus 4 and pinholeFocalLength 50, but aperture 0|give --fstop" closed.exr
+lens "no pinholeFocalLength|nominalFocalLength, 50 mm, is taken|--focal-length" nominal.exr
+good stop.exr -o o.exr --range 2
+good stop.exr -o o.exr --focal-length 50
+good closed.exr -o o.exr --fstop 2
+good focus.exr -o o.exr --focus 3
+good nominal.exr -o o.exr --focal-length 85
+plan "model lens|f/2|focal length 50|focus 4 from header" nominal.exr
+plan "model lens|f/2|focal length 50|focus 3 from --focus" unfocused.exr --focus 3
+bad 1 "no focus distance" unfocused.exr -o o.exr
 
 # ---- what is said of a frame
 for i in 1 2; do cp near.exr shot.$i.exr; done

@@ -46,6 +46,7 @@ static int fill_windows(const struct hf_exr *e, struct hf_io_view *v, struct hf_
     v->camera.focus = camera_value(e, v->part, "focus");
     v->camera.f_number = camera_value(e, v->part, "aperture");
     v->camera.focal_length_mm = camera_value(e, v->part, "pinholeFocalLength");
+    v->camera.nominal_length_mm = camera_value(e, v->part, "nominalFocalLength");
     v->camera.sensor_width_mm =
         exr_attr_get_v2f(e->core, v->part, "sensorOverallDimensions", &sensor) == EXR_ERR_SUCCESS ? sensor.x : NAN;
     return hf_io_check_window(e->path, "display window", v->display_window, err);

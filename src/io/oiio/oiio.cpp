@@ -264,7 +264,7 @@ void fill_view(struct hf_io_view *v, const hf_oiio *o)
         v->display_window = v->data_window;
     v->pixel_aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
     v->screen_width = 1;
-    v->camera = {unknown, unknown, unknown, unknown};
+    v->camera = {unknown, unknown, unknown, unknown, unknown};
     v->orientation = spec.get_int_attribute("Orientation");
     v->profile = spec.find_attribute("ICCProfile") &&
                  spec.get_string_attribute("ICCProfile:profile_description").find("sRGB") == std::string::npos;
