@@ -166,7 +166,9 @@ static int run_args(int argc, char **argv, struct cli_args *args, struct tool_er
     int status = cli_shot_make(&shot, &request, error);
     for (int i = 0; i < shot.jobs.count && !status; i++) {
         struct cli_args own = *args;
+        own.input = shot.jobs.list[i].input;
         own.output = shot.jobs.list[i].output;
+        own.depth_file = shot.jobs.list[i].depth_file;
         status = cli_check_targets(&own, error);
     }
     if (!status)

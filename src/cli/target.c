@@ -74,7 +74,7 @@ struct named {
     int output;
 };
 
-enum { NAMED = 7 };
+enum { NAMED = 9 };
 
 static void list_files(const struct cli_args *args, struct named files[NAMED])
 {
@@ -82,10 +82,12 @@ static void list_files(const struct cli_args *args, struct named files[NAMED])
         {"INPUT", args->input, 0},
         {"--depth-file", args->depth_file, 0},
         {"--aperture", args->aperture_file, 0},
+        {"--keys", args->keys, 0},
         {"-o", args->output, 1},
         {"--json", args->json_file, 1},
         {"--explain-image", args->explain_image, 1},
         {"--focus-image", args->focus_image, 1},
+        {"--log", args->log_file, 1},
     };
     memcpy(files, all, sizeof(all));
 }
@@ -118,6 +120,8 @@ int cli_check_targets(const struct cli_args *args, struct tool_error *error)
             continue;
         const int json = f->path == args->json_file;
         status = cli_check_overwrite(args, f->option, f->path, error);
+        if (f->path == args->log_file)
+            continue;  // what is there stays, and opening it says what is wrong
         if (!status)
             status = check_file(f->path, f->option, !json, error);
         if (!status && !json && hf_io_check_format(f->path, &io))

@@ -213,6 +213,8 @@ good near.exr --focus 4 --focus-image painted.exr --dry-run
 [ -s painted.exr ]
 result "--focus-image without rendering" $?
 bad 1 "--focus-image|near.exr|INPUT" near.exr -o o.exr --focus 4 --focus-image near.exr
+bad 1 "--log|near.exr|INPUT" near.exr -o o.exr --focus 4 --log near.exr
+bad 1 "--log|o.exr" near.exr -o o.exr --focus 4 --log o.exr
 
 # ---- lossy compression
 run layers.exr -o dwa.exr --focus 3 --compression dwaa --layer ViewLayer
