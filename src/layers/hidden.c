@@ -203,12 +203,22 @@ void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, 
 {
     for (int x = 0; x < n; x++) {
         const float r = in[HF_LAYERS_SMOOTH][5][x], weight = in[HF_LAYERS_SMOOTH][4][x];
-        float sum = 0, radius = 0, colour[4] = {0};
+        float of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], like = 0, others = 0, size = 0, sum = 0, radius = 0,
+                                                        colour[4] = {0};
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            if (!(in[i][4][x] > 0))
+            const float far = in[i][4][x] > 0 ? in[i][5][x] : 0, line = in[i][4][x] > 0 ? hf_layers_line(i) : 0;
+            const float alike = 1 - fabsf(far - r) * (1.0f / HF_LAYERS_ALIKE);
+            of[i] = line * (alike > 0 ? alike : 0);
+            rest[i] = line - of[i];
+            like = like + of[i];
+            others = others + rest[i];
+            size = size + rest[i] * fabsf(far);
+        }
+        const float lonely = hf_layers_lonely(r, like, others, size);
+        for (int i = 0; i < HF_LAYERS_TAPS; i++) {
+            const float g = lonely * (rest[i] - of[i]) + of[i];
+            if (!(g > 0))
                 continue;
-            const float alike = 1 - fabsf(in[i][5][x] - r) * (1.0f / HF_LAYERS_ALIKE);
-            const float g = hf_layers_line(i) * (alike > 0 ? alike : 0);
             sum = sum + g;
             radius = radius + g * in[i][5][x];
             for (int c = 0; c < channels; c++)

@@ -19,6 +19,20 @@ static inline float hf_layers_line(int i)
     return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));
 }
 
+// How much a sample belongs to no surface: in its line less than ALONE is as far as itself, one more than 1 / COMPANY above
+// that being all that is needed. Its radius is then a mean of two surfaces'. In the slices that are drawn sharp it would be a
+// speck if it lies there, a hole if the others do, and takes their place. like and others: weights of what is as far and of
+// what is not; size: of the latter, times how large their radii are.
+#define HF_LAYERS_ALONE (1.0f / 7)
+#define HF_LAYERS_COMPANY 4
+#define HF_LAYERS_SHARP 2
+static inline float hf_layers_lonely(float r, float like, float others, float size)
+{
+    const float all = like + others, part = (all > 0 ? like / all : 1) - HF_LAYERS_ALONE;
+    const float around = others > 0 ? size / others : HF_LAYERS_SHARP, own = fabsf(r);
+    return (1 - hf_saturate(part * HF_LAYERS_COMPANY)) * hf_saturate(HF_LAYERS_SHARP - (own < around ? own : around));
+}
+
 // How far a surface hides another whose radius is larger by 1 and so much more: wholly from half a pixel on, so that a
 // picture moves without a jump as radii grow.
 static inline float hf_layers_hides(float more)

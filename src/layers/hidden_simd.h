@@ -283,23 +283,42 @@ static void layers_spread_simd(const float *const in[6], const float *const radi
     }
 }
 
+HF_INLINE vf layers_lonely(vf r, vf like, vf others, vf size)
+{
+    const vf one = vf_set1(1), sharp = vf_set1(HF_LAYERS_SHARP), all = vf_add(like, others);
+    const vf part = vf_sub(vf_select(vf_gt(all, vf_zero()), vf_div(like, all), one), vf_set1(HF_LAYERS_ALONE));
+    const vf around = vf_select(vf_gt(others, vf_zero()), vf_div(size, others), sharp);
+    const vf alone = vf_sub(one, layers_saturate(vf_mul(part, vf_set1(HF_LAYERS_COMPANY))));
+    return vf_mul(alone, layers_saturate(vf_sub(sharp, vf_min(vf_abs(r), around))));
+}
+
 HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels, int square, int n,
                                 float *const out[6])
 {
     for (int x = 0; x < n; x += VF_N) {
         const vf r = vf_load(in[HF_LAYERS_SMOOTH][5] + x), weight = vf_load(in[HF_LAYERS_SMOOTH][4] + x);
-        vf sum = vf_zero(), radius = vf_zero(), colour[4];
+        vf of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], colour[4];
+        vf like = vf_zero(), others = like, size = like, sum = like, radius = like;
         for (int c = 0; c < channels; c++)
             colour[c] = vf_zero();
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
             const vm some = vf_gt(vf_load(in[i][4] + x), vf_zero());
+            const vf far = vf_keep(some, vf_load(in[i][5] + x)), line = vf_keep(some, vf_set1(hf_layers_line(i)));
+            const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
+            of[i] = vf_mul(line, vf_max(alike, vf_zero()));
+            rest[i] = vf_sub(line, of[i]);
+            like = vf_add(like, of[i]);
+            others = vf_add(others, rest[i]);
+            size = vf_fma(rest[i], vf_abs(far), size);
+        }
+        const vf lonely = layers_lonely(r, like, others, size);
+        for (int i = 0; i < HF_LAYERS_TAPS; i++) {
+            const vf g = vf_fma(lonely, vf_sub(rest[i], of[i]), of[i]);
+            const vm some = vf_gt(g, vf_zero());
             if (!vm_any(some))
                 continue;
-            const vf far = vf_keep(some, vf_load(in[i][5] + x));
-            const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
-            const vf g = vf_keep(some, vf_mul(vf_set1(hf_layers_line(i)), vf_max(alike, vf_zero())));
             sum = vf_add(sum, g);
-            radius = vf_fma(g, far, radius);
+            radius = vf_fma(g, vf_keep(some, vf_load(in[i][5] + x)), radius);
             for (int c = 0; c < channels; c++)
                 colour[c] = vf_fma(g, vf_keep(some, vf_load(in[i][c] + x)), colour[c]);
         }

@@ -304,17 +304,30 @@ static struct grid smooth(const struct frame *f, const struct grid *from, int dx
     for (int y = to.y0; y < to.y1; y++)
         for (int x = to.x0; x < to.x1; x++) {
             const double *middle = at(from, x, y);
-            double *out = at(&to, x, y), sum = 0;
-            for (int i = -6; i <= 6; i++) {
-                const int px = x + i * dx, py = y + i * dy;
+            double *out = at(&to, x, y), of[13] = {0}, rest[13] = {0}, like = 0, others = 0, size = 0, sum = 0;
+            const double *line[13] = {NULL};
+            for (int i = 0; i < 13; i++) {
+                const int px = x + (i - 6) * dx, py = y + (i - 6) * dy;
                 if (px < from->x0 || px >= from->x1 || py < from->y0 || py >= from->y1 || !middle[WEIGHT])
                     continue;
-                const double *s = at(from, px, py);
-                const double g = s[WEIGHT] > 0 ? (7 - abs(i)) * fmax(1 - fabs(s[RADIUS] - middle[RADIUS]) / 4, 0) : 0;
+                const double *s = line[i] = at(from, px, py);
+                const double weight = s[WEIGHT] > 0 ? 7 - abs(i - 6) : 0;
+                of[i] = weight * fmax(1 - fabs(s[RADIUS] - middle[RADIUS]) / 4, 0);
+                rest[i] = weight - of[i];
+                like += of[i];
+                others += rest[i];
+                size += rest[i] * fabs(s[RADIUS]);
+            }
+            // What is alone in its line, where it or the rest of that is sharp, becomes what the rest is.
+            const double part = like + others > 0 ? like / (like + others) : 1, around = others > 0 ? size / others : 2;
+            const double lonely =
+                (1 - fmin(fmax(4 * (part - 1.0 / 7), 0), 1)) * fmin(fmax(2 - fmin(fabs(middle[RADIUS]), around), 0), 1);
+            for (int i = 0; i < 13; i++) {
+                const double g = of[i] + lonely * (rest[i] - of[i]);
                 sum += g;
-                for (int c = 0; c < f->channels; c++)
-                    out[c] += g * s[c];
-                out[RADIUS] += g * s[RADIUS];
+                for (int c = 0; c < f->channels && g > 0; c++)
+                    out[c] += g * line[i][c];
+                out[RADIUS] += g > 0 ? g * line[i][RADIUS] : 0;
             }
             for (int c = 0; c < f->channels; c++)
                 out[c] = sum > 0 ? out[c] / sum : 0;
