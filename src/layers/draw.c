@@ -42,12 +42,12 @@ static float *source_at(const struct hf_cell *c, int i, int x, int y)
 // A row of samples of quads as samples of pixels: of each, the part that lies before it.
 static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int px, int py, int n, const float *in[6])
 {
-    const struct hf_layers_set *seen = &c->samples->seen;
-    const float *of[6] = {NULL}, *radius[2], *weight[2];
+    const struct hf_layers_set *before[2] = {&c->samples->seen, &c->samples->mixed};
+    const float *of[6] = {NULL}, *radius[4], *weight[4];
     hf_layers_planes_at(c->l, set, set->weight, px >> 1, py >> 1, of);
-    for (int i = 0; i < 2; i++) {
-        weight[i] = hf_layers_at(seen, seen->weight, px, (py & ~1) + i);
-        radius[i] = hf_layers_at(seen, seen->radius, px, (py & ~1) + i);
+    for (int i = 0; i < 4; i++) {
+        weight[i] = hf_layers_at(before[i / 2], before[i / 2]->weight, px, (py & ~1) + i % 2);
+        radius[i] = hf_layers_at(before[i / 2], before[i / 2]->radius, px, (py & ~1) + i % 2);
     }
     c->k->spread(of, radius, weight, py & 1, c->l->channels, n / 2, c->line);
     for (int i = 0; i < 6; i++)

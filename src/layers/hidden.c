@@ -162,16 +162,23 @@ void hf_layers_nearest_c(const float *above, const float *below, int n, float *o
     }
 }
 
-void hf_layers_found_c(const float *const sum[6], const float *const radius[2], const float *const weight[2],
+// How much of a quad's pixel i lies before a radius: of what is seen there, and of what is behind a mixed edge.
+static float before_of(const float *const radius[4], const float *const weight[4], int x, int i, float limit)
+{
+    const int row = i >> 1, at = 2 * x + (i & 1);
+    const float mixed =
+        weight[2 + row][at] > 0 ? weight[2 + row][at] * hf_layers_hides(limit - radius[2 + row][at]) : 0;
+    return weight[row][at] * hf_layers_hides(limit - radius[row][at]) + mixed;
+}
+
+void hf_layers_found_c(const float *const sum[6], const float *const radius[4], const float *const weight[4],
                        int channels, int n, float *const out[6])
 {
     for (int x = 0; x < n; x++) {
         const float inverse = sum[4][x] > 0 ? 1 / sum[4][x] : 0, r = sum[5][x] * inverse;
         float before[4];
-        for (int i = 0; i < 4; i++) {
-            const int at = 2 * x + (i & 1);
-            before[i] = weight[i >> 1][at] * hf_layers_hides((r - 1) - radius[i >> 1][at]);
-        }
+        for (int i = 0; i < 4; i++)
+            before[i] = before_of(radius, weight, x, i, r - 1);
         out[4][x] = sum[4][x] > 0 ? ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f : 0;
         out[5][x] = r;
         for (int c = 0; c < channels; c++)
@@ -179,16 +186,14 @@ void hf_layers_found_c(const float *const sum[6], const float *const radius[2], 
     }
 }
 
-void hf_layers_spread_c(const float *const in[6], const float *const radius[2], const float *const weight[2], int row,
+void hf_layers_spread_c(const float *const in[6], const float *const radius[4], const float *const weight[4], int row,
                         int channels, int n, float *const out[6])
 {
     for (int x = 0; x < n; x++) {
         const float r = in[5][x], w = in[4][x];
         float before[4];
-        for (int i = 0; i < 4; i++) {
-            const int at = 2 * x + (i & 1);
-            before[i] = w > 0 ? weight[i >> 1][at] * hf_layers_hides((r - 1) - radius[i >> 1][at]) : 0;
-        }
+        for (int i = 0; i < 4; i++)
+            before[i] = w > 0 ? before_of(radius, weight, x, i, r - 1) : 0;
         const float sum = (before[0] + before[2]) + (before[1] + before[3]), part = sum > 0 ? 4 * w / sum : 0;
         for (int i = 0; i < 2; i++) {
             for (int c = 0; c < channels; c++)

@@ -227,7 +227,19 @@ static void layers_nearest_simd(const float *above, const float *below, int n, f
     }
 }
 
-static void layers_found_simd(const float *const sum[6], const float *const radius[2], const float *const weight[2],
+// How much of pixels from `at` on lies before a radius: of what is seen there, and of what is behind mixed edges.
+HF_INLINE vf layers_before(const float *const radius[4], const float *const weight[4], int row, int at, vf limit)
+{
+    const vf seen = vf_mul(vf_load(weight[row] + at), layers_hides(vf_sub(limit, vf_load(radius[row] + at))));
+    const vf w = vf_load(weight[2 + row] + at);
+    const vm some = vf_gt(w, vf_zero());
+    if (!vm_any(some))
+        return seen;
+    const vf hides = layers_hides(vf_sub(limit, vf_keep(some, vf_load(radius[2 + row] + at))));
+    return vf_add(seen, vf_keep(some, vf_mul(w, hides)));
+}
+
+static void layers_found_simd(const float *const sum[6], const float *const radius[4], const float *const weight[4],
                               int channels, int n, float *const out[6])
 {
     for (int x = 0; x < n; x += VF_N) {
@@ -240,8 +252,7 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
         for (int i = 0; i < 2; i++) {
             const int at = 2 * x + i * VF_N;
             const vf l = i ? second : first;
-            before[i] = vf_add(vf_mul(vf_load(weight[0] + at), layers_hides(vf_sub(l, vf_load(radius[0] + at)))),
-                               vf_mul(vf_load(weight[1] + at), layers_hides(vf_sub(l, vf_load(radius[1] + at)))));
+            before[i] = vf_add(layers_before(radius, weight, 0, at, l), layers_before(radius, weight, 1, at, l));
         }
         vf_unzip(before[0], before[1], &even, &odd);
         vf_store(out[4] + x, vf_keep(some, vf_mul(vf_add(even, odd), vf_set1(0.25f))));
@@ -251,7 +262,7 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
     }
 }
 
-static void layers_spread_simd(const float *const in[6], const float *const radius[2], const float *const weight[2],
+static void layers_spread_simd(const float *const in[6], const float *const radius[4], const float *const weight[4],
                                int row, int channels, int n, float *const out[6])
 {
     for (int x = 0; x < n; x += VF_N) {
@@ -261,9 +272,8 @@ static void layers_spread_simd(const float *const in[6], const float *const radi
         vf_zip(w, w, &weights[0], &weights[1]);
         for (int i = 0; i < 4; i++) {
             const int at = 2 * x + (i & 1) * VF_N;
-            const vf hides = layers_hides(vf_sub(far[i & 1], vf_load(radius[i >> 1] + at)));
             before[i >> 1][i & 1] =
-                vf_keep(vf_gt(weights[i & 1], vf_zero()), vf_mul(vf_load(weight[i >> 1] + at), hides));
+                vf_keep(vf_gt(weights[i & 1], vf_zero()), layers_before(radius, weight, i >> 1, at, far[i & 1]));
         }
         vf_unzip(vf_add(before[0][0], before[1][0]), vf_add(before[0][1], before[1][1]), &even, &odd);
         const vf sum = vf_add(even, odd);

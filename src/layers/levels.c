@@ -252,7 +252,6 @@ static void find_between(const struct band *b, const float *nearest, int x, int 
 static void find(const struct band *b, int x, int n, int y)
 {
     static const float distance[3] = {0, 1, 1.41421356f}, share[3] = {1, 0.5f, 0.25f};
-    const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_SEEN_AT];
     const struct hf_layers_kernels *k = hf_layers_kernels(b->f);
     const int channels = b->l->channels;
     const float *nearest = b->nearest + (y - b->r.y0) * b->width + x - b->r.x0;
@@ -270,10 +269,11 @@ static void find(const struct band *b, int x, int n, int y)
                    part * share[away], n, sum);
         }
     find_between(b, nearest, x, n, y, sum);
-    const float *radius[2], *weight[2];
-    for (int i = 0; i < 2; i++) {
-        weight[i] = hf_at(at, 0, 2 * x, 2 * y + i);
-        radius[i] = hf_at(at, 1, 2 * x, 2 * y + i);
+    const float *radius[4], *weight[4];
+    for (int i = 0; i < 4; i++) {
+        const struct hf_buf *of = &b->f->buf[i < 2 ? HF_LAYERS_BUF_SEEN_AT : HF_LAYERS_BUF_MIXED_AT];
+        weight[i] = hf_at(of, 0, 2 * x, 2 * y + i % 2);
+        radius[i] = hf_at(of, 1, 2 * x, 2 * y + i % 2);
     }
     planes_of(&b->found, channels, x, y, out);
     k->found((const float *const *)sum, radius, weight, channels, n, out);

@@ -196,7 +196,11 @@ static void between_call(const struct world *w, const struct kernels *k, enum ar
 static void found_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     float *sum[6], *out[6];
-    const float *const radius[2] = {line(w, a, 6), line(w, a, 7)}, *const weight[2] = {line(w, a, 8), line(w, a, 9)};
+    const float *const radius[4] = {line(w, a, 6), line(w, a, 7), line(w, a, 8), line(w, a, 9)}, *const weight[4] = {
+                                                                                                     line(w, a, 10),
+                                                                                                     line(w, a, 11),
+                                                                                                     line(w, a, 12),
+                                                                                                     line(w, a, 13)};
     set_of(w, a, 0, sum);
     set_of(w, a, IN, out);
     k->layers.found((const float *const *)sum, radius, weight, now.channels, w->n, out);
@@ -205,7 +209,11 @@ static void found_call(const struct world *w, const struct kernels *k, enum aren
 static void spread_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     float *in[6], *out[6];
-    const float *const radius[2] = {line(w, a, 6), line(w, a, 7)}, *const weight[2] = {line(w, a, 8), line(w, a, 9)};
+    const float *const radius[4] = {line(w, a, 6), line(w, a, 7), line(w, a, 8), line(w, a, 9)}, *const weight[4] = {
+                                                                                                     line(w, a, 10),
+                                                                                                     line(w, a, 11),
+                                                                                                     line(w, a, 12),
+                                                                                                     line(w, a, 13)};
     set_of(w, a, 0, in);
     set_of(w, a, IN, out);
     k->layers.spread((const float *const *)in, radius, weight, now.rows & 1, now.channels, w->n, out);
@@ -421,8 +429,8 @@ void layers_make(struct world *w, int which)
     case LAYERS_FOUND:
     case LAYERS_SPREAD:
         fill_set(w, 0, 0, w->n);
-        for (int i = 6; i < 10; i++)
-            fill(w, i, 0, 2 * w->n, i < 8 ? RADIUS : WEIGHT);
+        for (int i = 6; i < 14; i++)
+            fill(w, i, 0, 2 * w->n, i < 10 ? RADIUS : WEIGHT);
         put_set(w, IN, 6, which == LAYERS_SPREAD ? 2 * w->n : w->n);
         return;
     case LAYERS_SMOOTH:

@@ -44,8 +44,7 @@ static void spread(const struct frame *f, const struct grid *set, int x, int y, 
     double before = 0, own = 0;
     memcpy(out, edge(set, left / 2, top / 2), SAMPLE * sizeof *out);
     for (int i = 0; i < 4; i++) {
-        const double *s = edge(&f->seen, left + i % 2, top + i / 2);
-        const double w = s[WEIGHT] * layers_reference_hides(out[RADIUS] - s[RADIUS]);
+        const double w = layers_reference_before(f, left + i % 2, top + i / 2, out[RADIUS]);
         before += w / 4;
         own = left + i % 2 == x && top + i / 2 == y ? w : own;
     }

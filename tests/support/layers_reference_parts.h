@@ -100,6 +100,8 @@ void layers_reference_merge(const double *const *from, int count, double within,
 // Roots of colour of hidden samples, from those of quads (layers_reference_patterns.c).
 void layers_reference_patterns(const struct frame *f, const struct grid *quads, struct grid *hidden);
 // At how many distances hidden samples are looked for.
+// How much of a pixel lies before a radius: of what is seen, and of what is behind a mixed edge.
+double layers_reference_before(const struct frame *f, int x, int y, double radius);
 int layers_reference_levels(const struct frame *f);
 
 #endif

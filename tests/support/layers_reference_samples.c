@@ -224,6 +224,13 @@ static double look_from(const struct frame *f, const struct grid *found, int x, 
     return nearest;
 }
 
+double layers_reference_before(const struct frame *f, int x, int y, double radius)
+{
+    const double *seen = edge(&f->seen, x, y), *mixed = edge(&f->mixed, x, y);
+    return seen[WEIGHT] * layers_reference_hides(radius - seen[RADIUS]) +
+           (mixed[WEIGHT] > 0 ? mixed[WEIGHT] * layers_reference_hides(radius - mixed[RADIUS]) : 0);
+}
+
 // The first on one side of a line that lies behind `nearest`, of several in part: its colour, radius, distance, and how much
 // of one there is.
 static double side_of(const struct frame *f, const struct grid *quads, const double nearest, const int from[2],
@@ -291,10 +298,8 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
     out[RADIUS] = sum[RADIUS] / sum[WEIGHT];
     for (int c = 0; c < f->channels; c++)
         out[c] = sum[c] / sum[WEIGHT];
-    for (int i = 0; i < 4; i++) {
-        const double *s = edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2);
-        out[WEIGHT] += s[WEIGHT] / 4 * layers_reference_hides(out[RADIUS] - s[RADIUS]);
-    }
+    for (int i = 0; i < 4; i++)
+        out[WEIGHT] += layers_reference_before(f, 2 * x + i % 2, 2 * y + i / 2, out[RADIUS]) / 4;
 }
 
 // Means of 13 in a row or column, of those that are about as far.
