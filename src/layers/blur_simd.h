@@ -3,6 +3,16 @@
 #include "layers/kernels.h"
 #include "simd/simd.h"
 
+// A vector's samples: runs of tiles are too short for the processor to see what comes next.
+HF_INLINE void layers_ask_for(const float *const in[6], const float *share, ptrdiff_t at, const int channels)
+{
+    for (int c = 0; c < 6; c++)
+        if (c < channels || c > 3)
+            __builtin_prefetch(in[c] + at);
+    if (share)
+        __builtin_prefetch(share + at);
+}
+
 HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                                const int rows, const int channels, int n, int add, float *const out[5], uint8_t *any)
 {
@@ -17,6 +27,8 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
             const ptrdiff_t at = y * stride + x;
             const vf r = vf_load(in[5] + at), r2 = vf_mul(r, r);
             const vf weight = vf_load(in[4] + at);
+            if (x % 16 == 0)
+                layers_ask_for(in, share, at + rows * stride, channels);
             const vm inside = vm_and(vf_gt(weight, vf_zero()), vm_and(vf_gt(r, before), vf_lt(r, after)));
             if (!vm_any(inside))
                 continue;
