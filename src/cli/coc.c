@@ -37,7 +37,7 @@ static float radius_of(const struct model *m, float z)
     if (p->engine == HF_ENGINE_GAUSSIAN && p->gaussian.by_depth) {
         const float far_plane = m->depth->far_plane > 0 ? m->depth->far_plane : 100;
         const float d = fminf(1, z / far_plane) - fminf(1, p->focus / far_plane);
-        r = copysignf(fminf(1, 3 * fabsf(d)) * 2 * p->gaussian.sigma, d);
+        r = copysignf(range->strength * fminf(1, 3 * fabsf(d)) * 2 * p->gaussian.sigma, d);
     } else if (p->model == HF_MODEL_LENS) {
         r = m->r->lens_k * (1 / p->focus - 1 / z);
         r = fminf(fmaxf(r, -p->max_radius), p->max_radius);
@@ -48,10 +48,14 @@ static float radius_of(const struct model *m, float z)
     return r;
 }
 
-static float radius_at(const struct model *m, int x, int y)
+// *z becomes the distance, infinite where there is no surface or no distance.
+static float radius_at(const struct model *m, int x, int y, float *z)
 {
-    if (m->depth->type != HF_DEPTH_COC)
-        return radius_of(m, view_depth(m, x, y));
+    *z = INFINITY;
+    if (m->depth->type != HF_DEPTH_COC) {
+        *z = view_depth(m, x, y);
+        return radius_of(m, *z);
+    }
     const float most = m->r->params.max_radius;
     const float r = ((const float *)m->depth->data)[(size_t)y * (size_t)m->width + (size_t)x];
     return isfinite(r) ? fminf(fmaxf(r, -most), most) : 0;
@@ -79,14 +83,55 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
     // What the gaussian engine blurs at all it blurs alike, and blends: three standard deviations far.
     v->least_reach = resolved.params.engine == HF_ENGINE_GAUSSIAN ? 3 * resolved.params.gaussian.sigma : 0;
     v->least_radius = resolved.sharp ? 0 : INFINITY;
+    // The sky is in focus only where somebody focused on it.
+    const int sky = m.depth->type == HF_DEPTH_COC || resolved.params.focus == INFINITY;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
-            const float r = radius_at(&m, x, y);
+            float z;
+            const float r = radius_at(&m, x, y, &z);
             if (v->radii)
                 v->radii[(size_t)y * (size_t)width + (size_t)x] = r;
             else if (v->least_radius < CLI_SHARP_RADIUS)
                 return 0;
-            v->least_radius = fminf(v->least_radius, fabsf(r));
+            if (sky || z < INFINITY)
+                v->least_radius = fminf(v->least_radius, fabsf(r));
         }
     return 0;
+}
+
+float cli_coc_largest(const struct cli_view *v)
+{
+    const struct hf_report *r = &v->report;
+    const struct hf_params *p = &r->used.params;
+    if (p->engine == HF_ENGINE_GAUSSIAN)
+        return 2 * p->gaussian.sigma * fmaxf(v->blend[0], v->blend[1]);
+    if (p->engine == HF_ENGINE_HEXAGON && p->hexagon.uniform)
+        return p->max_radius;
+    return fmaxf(r->near_radius, r->far_radius);
+}
+
+void cli_coc_measure(struct cli_view *v)
+{
+    const struct hf_params *p = &v->report.used.params;
+    const struct model m = {&v->report.used, &v->setup.depth, v->view->width, v->view->height};
+    const int gaussian = p->engine == HF_ENGINE_GAUSSIAN;
+    float largest[2] = {0, 0};
+    v->range[0] = INFINITY;
+    v->range[1] = -INFINITY;
+    v->blend[0] = v->blend[1] = 0;
+    if (!gaussian && v->least_radius < CLI_SHARP_RADIUS && cli_coc_largest(v) >= CLI_SEEN_RADIUS)
+        return;
+    for (int y = 0; y < m.height; y++)
+        for (int x = 0; x < m.width; x++) {
+            float z;
+            const float r = radius_at(&m, x, y, &z);
+            largest[r > 0] = fmaxf(largest[r > 0], fabsf(r));
+            if (z < INFINITY) {
+                v->range[0] = fminf(v->range[0], z);
+                v->range[1] = fmaxf(v->range[1], z);
+            }
+        }
+    const float whole = p->gaussian.by_depth ? 2 * p->gaussian.sigma : p->max_radius;
+    for (int i = 0; i < 2 && gaussian && !v->report.used.sharp && whole > 0; i++)
+        v->blend[i] = fminf(1, largest[i] / whole);
 }

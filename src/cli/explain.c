@@ -44,8 +44,9 @@ static void print_slices(FILE *out, const struct hf_report *r)
         fprintf(out, ", hidden samples at %d distances", r->hidden_levels);
 }
 
-static void print_settings(FILE *out, const struct hf_report *r)
+static void print_settings(FILE *out, const struct cli_view *v)
 {
+    const struct hf_report *r = &v->report;
     const struct hf_params *p = &r->used.params;
     const int rings = p->gather.rings;
     fprintf(out, "  engine %s", hf_engine_name(p->engine));
@@ -58,7 +59,11 @@ static void print_settings(FILE *out, const struct hf_report *r)
     if (r->budget_step > 0)
         fprintf(out, ", %d step%s below what was asked for, to keep the budget", r->budget_step,
                 r->budget_step == 1 ? "" : "s");
-    fprintf(out, "\n  largest CoC radius: near %.2f, far %.2f pixels\n", r->near_radius, r->far_radius);
+    if (p->engine == HF_ENGINE_GAUSSIAN)
+        fprintf(out, "\n  standard deviation: %.2f pixels, of which at most %.0f %% are mixed in near, %.0f %% far\n",
+                p->gaussian.sigma, 100 * v->blend[0], 100 * v->blend[1]);
+    else
+        fprintf(out, "\n  largest CoC radius: near %.2f, far %.2f pixels\n", r->near_radius, r->far_radius);
     if (p->highlight.gain > 1)
         fprintf(out, "  highlights above %g raised while they are blurred, 1 to %g\n", p->highlight.threshold,
                 p->highlight.gain);
@@ -70,9 +75,10 @@ static void print_settings(FILE *out, const struct hf_report *r)
             r->tile_count[HF_TILE_BOTH]);
 }
 
-static void print_report(FILE *out, const struct hf_report *r, int ran)
+static void print_report(FILE *out, const struct cli_view *v, int ran)
 {
-    print_settings(out, r);
+    const struct hf_report *r = &v->report;
+    print_settings(out, v);
     fprintf(out, "  %-18s %7s %9s %13s %12s   %s\n", "pass", "runs on", "skips", "predicted ms",
             ran ? "measured ms" : "", "because");
     for (int i = 0; i < r->passes; i++) {
@@ -100,6 +106,6 @@ void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
         char name[TOOL_SHOWN];
         fprintf(out, "%s\n", tool_shown(frame->views[i].label, name));
         cli_choose_print(out, frame->args, &frame->views[i].setup, 1e-6 * view->width * view->height);
-        print_report(out, &frame->views[i].report, ran);
+        print_report(out, &frame->views[i], ran);
     }
 }

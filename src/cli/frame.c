@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/frame.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -75,16 +76,24 @@ static int new_plane(const struct cli_view *v, float **plane, struct tool_error 
                               v->view->height);
 }
 
-static int read_depth_file(const struct cli_args *args, struct cli_view *v, struct hf_io_error *io)
+static int read_depth_file(const struct cli_args *args, struct cli_view *v, struct tool_error *error)
 {
-    int size[2];
-    const int status = hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, size, io);
-    const int to[2] = {v->view->width, v->view->height}, scaled = size[0] != to[0] || size[1] != to[1];
-    for (int i = 0; i < 2; i++) {
-        v->map_size[i] = scaled ? size[i] : 0;
-        v->scaled_to[i] = to[i];
-    }
-    return status;
+    struct hf_io_error io;
+    struct hf_io_map map;
+    if (hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, &map, &io))
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    const int scaled = map.width != v->view->width || map.height != v->view->height;
+    v->map_size[0] = scaled ? map.width : 0;
+    v->map_size[1] = scaled ? map.height : 0;
+    v->scaled_to[0] = v->view->width;
+    v->scaled_to[1] = v->view->height;
+    v->map_bits = map.bits;
+    if (map.bits && args->depth_type == HF_DEPTH_INVERSE && isnan(args->near_plane) && isnan(args->depth_scale))
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "%s: whole numbers of %d bits count as 0 to 1, so --depth-type inverse needs --near, the "
+                         "distance of what is white, or --depth-scale",
+                         args->depth_file, map.bits);
+    return 0;
 }
 
 static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct tool_error *error)
@@ -97,9 +106,11 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
     const double fetched = tool_now_ms();
     if (hf_io_decode(frame->file, wants, frame->view_count, frame->run, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
-    for (int i = 0; i < frame->view_count && args->depth_file; i++)
-        if (read_depth_file(args, &frame->views[i], &io))
-            return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    for (int i = 0; i < frame->view_count && args->depth_file; i++) {
+        const int status = read_depth_file(args, &frame->views[i], error);
+        if (status)
+            return status;
+    }
     for (int i = 0; i < frame->view_count; i++) {
         struct cli_view *v = &frame->views[i];
         cli_depth_prepare(args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
@@ -135,8 +146,9 @@ static int load(struct cli_frame *frame, struct tool_error *error)
 }
 
 // Rows around the pixel in focus: that which is read, and its neighbours, which count where it is no number.
-static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, struct hf_io_error *io)
+static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, struct tool_error *error)
 {
+    struct hf_io_error io;
     const struct cli_args *args = frame->args;
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
     const int at = args->focus_by == CLI_FOCUS_AT ? args->focus_y : display->y0 + (display->y1 - display->y0) / 2;
@@ -145,9 +157,9 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, st
     if (args->depth_file) {
         from = data->y0;
         to = data->y1;
-        status = read_depth_file(args, v, io);
-    } else if (from < to) {
-        status = hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, io);
+        status = read_depth_file(args, v, error);
+    } else if (from < to && hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, &io)) {
+        status = tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     }
     if (!status && from < to)
         cli_depth_prepare(args, v->depth + (size_t)(from - data->y0) * (size_t)v->view->width,
@@ -158,12 +170,11 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, st
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error)
 {
     struct cli_view *v = &frame->views[0];
-    struct hf_io_error io;
     int status = 0;
     if (cli_focus_needs_depth(frame->args)) {
         status = new_plane(v, &v->depth, error);
-        if (!status && read_focus_rows(frame, v, &io))
-            status = tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+        if (!status)
+            status = read_focus_rows(frame, v, error);
     }
     if (!status)
         status = cli_setup_view(&v->setup, frame->args, v->view, v->depth, v->label, error);
@@ -255,6 +266,7 @@ static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     }
     hf_get_report(session->context, &v->report);
     v->warned = session->warnings;
+    cli_coc_measure(v);
     free(v->depth);
     v->depth = NULL;
     const struct cli_args *args = frame->args;

@@ -17,6 +17,8 @@ struct cli_session {
 
 // Up to this radius, pixels, one may say that something is in focus: half a pixel to each side.
 static const float CLI_SHARP_RADIUS = 1;
+// Below this one, nobody sees that there is blur.
+static const float CLI_SEEN_RADIUS = 0.1f;
 
 struct cli_view {
     int index;  // in the file
@@ -29,11 +31,14 @@ struct cli_view {
     int map_size[2];  // width and height of the depth file, which was scaled; 0: it was not
     int scaled_to[2];
     struct cli_depth_found found;
-    float least_radius;   // pixels: what is least blurred
-    float least_reach;    // of all that is blurred at all
-    float far_away;       // radius of what is infinitely far
-    float *radii;         // of all pixels, see cli_coc_look; NULL
-    int warned;           // times by the library
+    int map_bits;        // of the depth file's whole numbers; 0: floats, or no such file
+    float least_radius;  // pixels: the surface that is least blurred
+    float range[2];      // distances of the nearest surface and the farthest, see cli_coc_measure; [0] > [1]: not known
+    float blend[2];      // gaussian: how much of its one blur is mixed in at most, in front of the focus and behind
+    float least_reach;   // of all that is blurred at all
+    float far_away;      // radius of what is infinitely far
+    float *radii;        // of all pixels, see cli_coc_look; NULL
+    int warned;          // times by the library
     uint64_t highlights;  // pixels above --highlight-threshold, if they are to be raised
     int cut;              // pixels by which the blur reaches beyond the data window, and is lost
     struct hf_report report;

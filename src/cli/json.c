@@ -45,6 +45,11 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
     tool_json_count(j, "clamped", (long long)(s->clamped + (frame->view_count == 1 ? frame->written.clamped : 0)));
     tool_json_flag(j, "depth_negative", v->found.flipped);
     tool_json_number(j, "least_radius", v->least_radius);
+    if (s->used.params.engine == HF_ENGINE_GAUSSIAN) {
+        tool_json_number(j, "sigma", s->used.params.gaussian.sigma);
+        tool_json_number(j, "near_blend", v->blend[0]);
+        tool_json_number(j, "far_blend", v->blend[1]);
+    }
     tool_json_count(j, "cut", v->cut);
     if (v->setup.params.highlight.gain > 1)
         tool_json_count(j, "highlights", (long long)v->highlights);

@@ -44,7 +44,12 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", f/%g %g mm", p->lens.f_number, p->lens.focal_length_mm);
     if (v->setup.focus_from)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", focus %.4g (%s)", p->focus, v->setup.focus_from);
-    n += snprintf(text + n, sizeof(text) - (size_t)n, ", radius near %.1f far %.1f", r->near_radius, r->far_radius);
+    if (p->engine == HF_ENGINE_GAUSSIAN)
+        n += snprintf(text + n, sizeof(text) - (size_t)n,
+                      ", standard deviation %.1f mixed in up to near %.0f %% far %.0f %%", p->gaussian.sigma,
+                      100 * v->blend[0], 100 * v->blend[1]);
+    else
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", radius near %.1f far %.1f", r->near_radius, r->far_radius);
     if (cli_is_limited(v))
         n +=
             snprintf(text + n, sizeof(text) - (size_t)n, " (cut to %g, %s)", p->max_radius, limit_words(r->used.limit));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/warn.h"
 
+#include "cli/coc.h"
 #include "cli/lens.h"
 
 #include <inttypes.h>
@@ -62,24 +63,102 @@ static void warn_samples(struct warner *w, const struct cli_view *v)
              depth_name(w, v));
 }
 
-// A picture of whole numbers that is taken for distances.
-static int is_unscaled_map(const struct cli_args *args)
+static int is_distance(const struct cli_args *args)
 {
-    return args->depth_file && !cli_is_exr(args->depth_file) && args->depth_type == HF_DEPTH_VIEW &&
-           !args->normalized && isnan(args->depth_scale);
+    return (args->depth_type == HF_DEPTH_VIEW || args->depth_type == HF_DEPTH_RAY) && !args->normalized;
+}
+
+// Where the surfaces are, and what the focus may have to do with that.
+static void tell_range(const struct cli_view *v, char *text, size_t size)
+{
+    if (v->range[0] == v->range[1])
+        snprintf(text, size, "; the depth is %.4g", v->range[0]);
+    else if (v->range[0] < v->range[1])
+        snprintf(text, size, "; the depth is %.4g to %.4g", v->range[0], v->range[1]);
+    if (text[0] && v->setup.model != CLI_MODEL_COC)
+        snprintf(text + strlen(text), size - strlen(text), ", the focus %.4g", v->report.used.params.focus);
+}
+
+// A focus in other units than the depth: the powers of ten that bring it there.
+static void guess_unit(const struct cli_args *args, const struct cli_view *v, char *text, size_t size)
+{
+    static const float factors[] = {10, 100, 1000}, SLACK = 1.5f;
+    const float nearest = v->range[0] / SLACK, farthest = v->range[1] * SLACK, focus = v->report.used.params.focus;
+    const int beyond = focus > farthest, metres = args->focus_by == CLI_FOCUS_HEADER;
+    char list[64] = "";
+    if (!(focus < nearest) && !beyond)
+        return;
+    for (int i = 0; i < 3; i++) {
+        const float f = beyond ? focus / factors[i] : focus * factors[i];
+        if (f >= nearest && f <= farthest)
+            snprintf(list + strlen(list), sizeof(list) - strlen(list), "%s%g", list[0] ? " or " : "",
+                     beyond ? f : 1 / factors[i]);
+    }
+    if (!list[0])
+        return;
+    if (beyond)
+        snprintf(text, size, ": is the focus in other units? %s would be near", list);
+    else if (metres)
+        snprintf(text, size, ": is it in other units? --world-unit %s would bring them together", list);
+    else
+        snprintf(text, size,
+                 ": is it in other units? --depth-scale %s would bring them together, or --world-unit %s with --focus "
+                 "in metres (%gm)",
+                 list, list, focus);
 }
 
 static void warn_focus(struct warner *w, const struct cli_view *v)
 {
-    if (is_empty(v))
+    char range[128] = "", hint[256] = "";
+    if (is_empty(v)) {
         warn(w,
              "depth %s has no surface anywhere, so everything is infinitely far: is it the right channel, and "
              "--depth-type %s?",
              depth_name(w, v), cli_depth_type_name(w->args));
-    else if (!is_sharp(v))
-        warn(w, "nothing is in focus: all is blurred by %.3g pixels or more%s", v->least_radius,
-             is_unscaled_map(w->args) ? "; the numbers of a map are 0 to 1, is it --depth-type normalized or inverse?"
-                                      : "");
+        return;
+    }
+    if (is_sharp(v))
+        return;
+    const int raw = is_distance(w->args) && isnan(w->args->depth_scale);
+    tell_range(v, range, sizeof(range));
+    if (raw && v->map_bits)
+        snprintf(hint, sizeof(hint), ": the numbers of a map are 0 to 1, is it --depth-type normalized or inverse?%s",
+                 v->map_bits == 16 ? " For millimetres in 16 bits --depth-scale 65.535 makes metres" : "");
+    else if (raw && v->range[1] <= 1)
+        snprintf(hint, sizeof(hint), ": is it --depth-type normalized, inverse or ndc-d3d?");
+    else if (w->args->depth_type == HF_DEPTH_INVERSE && isnan(w->args->near_plane) && isnan(w->args->depth_scale))
+        snprintf(hint, sizeof(hint), ": inverse depth may have a scale of its own, see --near and --depth-scale");
+    else if (v->setup.model != CLI_MODEL_COC)
+        guess_unit(w->args, v, hint, sizeof(hint));
+    warn(w, "nothing is in focus: all is blurred by %.3g pixels or more%s%s", v->least_radius, range, hint);
+}
+
+// Blur that nobody sees, unless that was asked for.
+static void warn_sharp(struct warner *w, const struct cli_view *v)
+{
+    const struct cli_args *args = w->args;
+    const struct hf_lens_params *lens = &v->setup.params.lens;
+    const float largest = cli_coc_largest(v);
+    char hint[256] = "";
+    if (is_empty(v) || largest >= CLI_SEEN_RADIUS || args->strength == 0 || args->params.max_radius == 0 ||
+        isinf(args->fstop))
+        return;
+    if (v->setup.model == CLI_MODEL_LENS && lens->focal_length_mm < 1)
+        snprintf(hint, sizeof(hint), "; the focal length is %g mm: is it %g mm?", lens->focal_length_mm,
+                 1000 * lens->focal_length_mm);
+    else if (v->setup.model == CLI_MODEL_LENS) {
+        tell_range(v, hint, sizeof(hint));
+        snprintf(hint + strlen(hint), sizeof(hint) - strlen(hint), ", the lens f/%g and %g mm%s", lens->f_number,
+                 lens->focal_length_mm,
+                 v->range[1] >= 100 && isnan(args->world_unit)
+                     ? ": is the depth in metres? For millimetres --world-unit 0.001"
+                     : "");
+    } else if (isinf(args->range)) {
+        snprintf(hint, sizeof(hint), "; --range inf asks for none");
+    } else {
+        tell_range(v, hint, sizeof(hint));
+    }
+    warn(w, "nothing is blurred: the largest radius is %.2f pixels%s", largest, hint);
 }
 
 // What was asked for and cannot be had.
@@ -112,6 +191,7 @@ static void warn_view(struct warner *w, const struct cli_view *v)
     warn_lens(w, v);
     warn_samples(w, v);
     warn_focus(w, v);
+    warn_sharp(w, v);
     warn_options(w, v);
     w->count += v->warned;
 }

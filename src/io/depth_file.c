@@ -22,6 +22,8 @@ static int find_exr(struct source *s, const char *depth_channel, const struct hf
     char names[300];
     const struct hf_exr *exr = s->file->exr;
     s->part = hf_exr_find_depth_only(exr, depth_channel, view->name, &s->channel);
+    if (s->part < 0 && hf_io_is_deep(s->file))
+        return hf_io_fail_deep(s->file->path, err);
     if (s->part < 0) {
         hf_io_channels(s->file, names, sizeof(names));
         return hf_io_fail(err, "%s: no depth channel%s%s among: %s", s->file->path, depth_channel ? " " : "",
@@ -113,9 +115,10 @@ static int check_grey(struct source *s, const char *depth_channel, struct hf_io_
 }
 
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
-                          int size[2], struct hf_io_error *err)
+                          struct hf_io_map *map, struct hf_io_error *err)
 {
     struct source s = {0};
+    *map = (struct hf_io_map){0};
     int status = hf_io_open_any(&s.file, path, NULL, err);
     if (!status && s.file->exr)
         status = find_exr(&s, depth_channel, view, err);
@@ -127,8 +130,8 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, const str
         status = read_other_size(&s, depth_channel, view, depth, err);
     if (!status)
         status = check_grey(&s, depth_channel, err);
-    size[0] = s.width;
-    size[1] = s.height;
+    if (!status)
+        *map = (struct hf_io_map){s.width, s.height, s.file->exr ? 0 : hf_oiio_bits(s.file->oiio)};
     hf_io_close(&s.file);
     return status;
 }

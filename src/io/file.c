@@ -106,6 +106,20 @@ int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io
     return status;
 }
 
+bool hf_io_is_deep(const struct hf_io_file *file)
+{
+    bool deep = file->exr;
+    for (int p = 0; file->exr && p < file->exr->part_count; p++)
+        deep &= hf_exr_is_deep(&file->exr->parts[p]);
+    return deep;
+}
+
+int hf_io_fail_deep(const char *path, struct hf_io_error *err)
+{
+    return hf_io_fail(err, "%s: a deep picture (several samples per pixel), which is not supported: flatten it first",
+                      path);
+}
+
 int hf_io_open(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice, struct hf_io_error *err)
 {
     char names[1024] = "";
@@ -113,19 +127,16 @@ int hf_io_open(struct hf_io_file **out, const char *path, const struct hf_io_cho
         return -1;
     if ((*out)->views.count)
         return 0;
-    const bool exr = (*out)->exr;
-    bool deep = exr, several = false;
-    for (int p = 0; exr && p < (*out)->exr->part_count; p++)
-        deep &= hf_exr_is_deep(&(*out)->exr->parts[p]);
-    if (exr)
+    const bool deep = hf_io_is_deep(*out);
+    bool several = false;
+    if ((*out)->exr)
         hf_exr_layers((*out)->exr, names, sizeof(names));
     several = names[0] != 0;
     if (!several)
         hf_io_channels(*out, names, sizeof(names));
     hf_io_close(out);
     if (deep)
-        return hf_io_fail(
-            err, "%s: a deep picture (several samples per pixel), which is not supported: flatten it first", path);
+        return hf_io_fail_deep(path, err);
     if (several)
         return hf_io_fail(err, "%s: it is not clear which layer is the picture, choose with --layer: %s", path, names);
     return hf_io_fail(err, "%s: no colour channels (R, G, B or Y) among: %s", path, names);

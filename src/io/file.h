@@ -19,4 +19,8 @@ struct hf_io_file {
 int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
                    struct hf_io_error *err);
 
+// Are all parts of it deep? And the sentence for who cannot use such a file; returns -1.
+bool hf_io_is_deep(const struct hf_io_file *file);
+int hf_io_fail_deep(const char *path, struct hf_io_error *err);
+
 #endif

@@ -87,11 +87,16 @@ void hf_io_set_display(struct hf_io_file *file, int view, struct hf_io_box box);
 int hf_io_grow(struct hf_io_file *file, int view, struct hf_io_box box, float no_surface, const struct hf_io_run *run,
                struct hf_io_error *err);
 
+// What a depth file is.
+struct hf_io_map {
+    int width, height;
+    int bits;  // of its samples when they are whole numbers, else 0
+};
 // Depth from a file of its own, any format OpenImageIO or OpenEXRCore reads: its depth channel as searched above (or
-// its only channel, or R). size becomes width and height of it: when they are not the view's, the nearest samples are
-// taken; width / height may differ by 1 %, and the width be less than 5 times the view's.
+// its only channel, or R). When its size is not the view's, the nearest samples are taken; width / height may differ by
+// 1 %, and the width be less than 5 times the view's.
 int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
-                          int size[2], struct hf_io_error *err);
+                          struct hf_io_map *map, struct hf_io_error *err);
 
 // What to write, and how. All that is zero is the default.
 struct hf_io_job {

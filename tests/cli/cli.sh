@@ -297,7 +297,7 @@ picture_tests() {
     result "a picture is written, and nothing said" $?
     mv o.exr ../o.exr && [ "$(ls -A)" = "$before" ]
     result "no temporary file is left" $?
-    good plain.exr --output=o.exr --focus=3 --range=inf
+    good plain.exr --output=o.exr --focus=3 --strength=0
     good -o o.exr --focus 3 -- plain.exr
     good plain.exr -o o.exr --focus 3 --fstop inf --focal-length 50
     # Units, whatever their order; a depth of field; what the default is.
@@ -330,7 +330,7 @@ picture_tests() {
     good plain.exr --engine gather -o o.exr --focus 3 --faithful --storage chapter --aperture disc --isa scalar
     good plain.exr -o o.exr --focus 3 --max-radius 0 --deterministic
     for engine in scatter layers; do
-        good plain.exr -o o.exr --focus 3 --engine $engine
+        good plain.exr -o o.exr --focus 3 --engine $engine --max-radius 3
         good plain.exr -o o.exr --focus 3 --engine $engine --max-radius 8 --aperture ngon:4:0.5:30 --chromatic 0.1
         good plain.exr -o o.exr --focus 3 --engine $engine --max-radius 8 --aperture ring:0.5 --cat-eye 0.5 --squeeze 2
         good plain.exr -o o.exr --focus 3 --engine $engine --max-radius 8 --aperture aperture.exr
@@ -440,7 +440,7 @@ picture_tests() {
     good plain.exr --engine gather -o o.exr --focus 3 --explain
     contains "$dir/out" "Computation" && contains "$dir/out" "tiles of" && contains "$dir/out" "memory"
     result "--explain prints a table" $?
-    good plain.exr --engine gather -o o.exr --focus 3 --range inf --explain
+    good plain.exr --engine gather -o o.exr --focus 3 --max-radius 0 --explain
     contains "$dir/out" "no blur at all"
     result "--explain says why" $?
     rm -f o.exr

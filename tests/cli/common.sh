@@ -158,7 +158,7 @@ PYTHON
     python3 - <<'PYTHON'
 import struct
 import zlib
-from exr import exr
+from exr import exr, attribute
 
 colour = {'R': lambda x, y: x % 7 / 7, 'G': lambda x, y: y % 5 / 5, 'B': lambda x, y: (x ^ y) % 3}
 depth = lambda x, y: 1 + x // 8 if y < 30 else 1e10
@@ -216,6 +216,8 @@ exr('normal.exr', dict(colour, Z=lambda x, y: (near(x, y) - 1) / 8))
 exr('inverted.exr', dict(colour, Z=lambda x, y: 1 - (near(x, y) - 1) / 8))
 exr('inverse.exr', dict(colour, Z=lambda x, y: 1 / near(x, y)))
 exr('scaled.exr', dict(colour, Z=lambda x, y: near(x, y) * 4 - 5))
+exr('sky.exr', dict(colour, Z=lambda x, y: near(x, y) if y < 30 else 0))
+exr('ndc.exr', dict(colour, Z=lambda x, y: (x + 1) / 64))
 exr('void.exr', dict(colour, Z=lambda x, y: 0))
 def png(path, depth, bits, colours=None, width=64, height=40):
     rows = b''
@@ -232,6 +234,13 @@ png('half8.png', lambda x, y: 2 * x // 13 / 5, 8, width=32, height=20)
 png('map16.png', lambda x, y: x // 13 / 5, 16)
 png('white.png', lambda x, y: 1 - x // 13 / 5, 8)
 png('photo.png', None, 8, colours=[lambda x, y: x % 7 / 7, lambda x, y: y % 5 / 5, lambda x, y: (x ^ y) % 3 / 3])
+# A file of deep scan lines, as far as its header: one part of type deepscanline, version bit 11.
+flat = open('depth.exr', 'rb').read()
+at = flat.index(b'channels\0')
+deep = (struct.pack('<ii', 20000630, 2 | 0x800) + attribute('type', 'string', b'deepscanline') +
+        attribute('version', 'int', struct.pack('<i', 1)) + attribute('chunkCount', 'int', struct.pack('<i', 40)) +
+        attribute('maxSamplesPerPixel', 'int', struct.pack('<i', 1)) + attribute('name', 'string', b'main') + flat[at:])
+open('samples.exr', 'wb').write(deep)
 open('png.exr', 'wb').write(b'\x89PNG\r\n\x1a\n' + bytes(40))
 open('blend.exr', 'wb').write(b'BLENDER-v304' + bytes(40))
 open('garbage.exr', 'wb').write(b'this is not a picture\n' * 10)

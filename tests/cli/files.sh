@@ -46,6 +46,7 @@ for name in before:
 raise SystemExit(not ok)
 PYTHON
 result "each layer by its own depth, and no other touched" $?
+bad 3 "samples.exr|deep picture" flat.exr -o o.exr --focus 3 --depth-file samples.exr
 bad 3 "png.exr|PNG" png.exr -o o.exr --focus 3
 bad 3 "blend.exr|Blender" blend.exr -o o.exr --focus 3
 rm -f one.exr all.exr main.exr
@@ -149,7 +150,8 @@ sys.exit(not any(t in data for t in tag))'
     result "or is told to be lost" $?
     bad 3 "photo.png|a picture in colours|--depth-channel R" photo.png -o o.png --focus 2 --depth-file photo.png
     run photo.png -o photo-out.png --depth-file map8.png --focus 5 --fstop 0.1 --focal-length 50
-    [ "$status" -eq 0 ] && contains "$dir/err" "nothing is in focus" && contains "$dir/err" "--depth-type normalized"
+    [ "$status" -eq 0 ] && contains "$dir/err" "nothing is in focus" && contains "$dir/err" "--depth-type normalized" &&
+        ! contains "$dir/err" 65.535
     result "a map taken for distances is a warning" $?
     for map in map8.png half8.png; do
         run photo.png -o "from-$map" --depth-file $map --depth-type normalized --near 1 --far 6 --focus 2 --range 2 \
@@ -157,6 +159,13 @@ sys.exit(not any(t in data for t in tag))'
         [ "$status" -eq 0 ] && { [ $map = map8.png ] || contains "$dir/err" "32 x 20 scaled to 64 x 40"; }
         result "$map" $?
     done
+    run photo.png -o photo-out.png --depth-file map16.png --focus 5 --fstop 0.1 --focal-length 50
+    contains "$dir/err" "--depth-type normalized" && contains "$dir/err" "--depth-scale 65.535"
+    result "a map of 16 bits may be millimetres" $?
+    bad 1 "map8.png|8 bits|--depth-type inverse needs --near|--depth-scale" photo.png -o o.png --depth-file map8.png \
+        --depth-type inverse --focus 5
+    good photo.png -o o.png --depth-file map8.png --depth-type inverse --focus 5 --depth-scale 0.5 --max-radius 6
+    good flat.exr -o o.exr --depth-file inverse.exr --depth-type inverse --focus 4 --max-radius 6
     # The README's one.
     run "$source_root/images/lights-before.png" --depth-file "$source_root/images/lights-depth.png" --depth-type inverse \
         --near 1.5 --far 60 --focus 5 --fstop 0.37 --focal-length 50 -o photo-out.png --verbose
@@ -228,7 +237,7 @@ else
     result "what DWA wears out is counted" $?
     good dwa.exr -o o.exr --focus 3 --max-radius 6 --compression none --layer ViewLayer
     run dwa.exr -o o2.exr --focus 3 --max-radius 6
-    good o2.exr -o o3.exr --focus 3 --range inf --compression none --layer ViewLayer
+    good o2.exr -o o3.exr --focus 3 --max-radius 0 --compression none --layer ViewLayer
     python3 -c '
 from exr import read
 a, b, c = (read(n) for n in ["layers.exr", "o.exr", "o3.exr"])
@@ -287,6 +296,42 @@ told 0 near.exr -o o.exr --focus 4
 told 0 near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 2
 contains "$dir/err" "(cut to 2, by --max-radius)"
 result "a limit that was asked for is on the line" $?
+# Nothing in focus: what is no surface does not count, unless the focus is there; where the surfaces are, and in what unit.
+warns() {  # WORDS-ON-STDERR ARGUMENTS...
+    words=$1
+    shift
+    told 1 "$@"
+    ok=0
+    lacks "$dir/err" warning
+    result "warns: $*" "$ok"
+}
+warns "nothing is in focus|the depth is 1 to 8, the focus 60: is the focus in other units? 6 would be near" \
+    sky.exr -o o.exr --focus 60 --fstop 0.1 --focal-length 50
+warns "the depth is 1000 to 8000, the focus 4|--depth-scale 0.001|--world-unit 0.001|4m" \
+    near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --depth-scale 1000
+warns "the depth is 1000 to 8000, the focus 4|--world-unit 0.001" lens.exr -o o.exr --fstop 0.1 --depth-scale 1000
+warns "0.01562 to 1, the focus 4|normalized, inverse or ndc-d3d" \
+    ndc.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 50
+warns "inverse depth may have a scale of its own" \
+    near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --depth-type inverse
+# Nothing blurred, unless that was asked for.
+warns "nothing is blurred: the largest radius is 0.00 pixels|0.05 mm: is it 50 mm?" \
+    near.exr -o o.exr --focus 4 --fstop 2 --focal-length 0.05
+warns "nothing is blurred|0.00 pixels|f/800" near.exr -o o.exr --focus 4 --fstop 800 --focal-length 50
+warns "nothing is blurred|1000 to 8000|--world-unit 0.001" \
+    near.exr -o o.exr --focus 4000 --fstop 2 --focal-length 50 --depth-scale 1000
+warns "nothing is blurred|--range inf" near.exr -o o.exr --focus 4 --range inf
+told 0 near.exr -o o.exr --focus 4 --strength 0
+told 0 near.exr -o o.exr --focus 4 --max-radius 0
+told 0 near.exr -o o.exr --focus 4 --fstop inf --focal-length 50
+told 0 near.exr -o o.exr --focus 4 --engine hexagon --uniform --max-radius 4
+# The gaussian engine has one blur, and more or less of it: 3 |4 - 8| / 100 behind the focus.
+told 0 near.exr -o o.exr --focus 4 --engine gaussian --sigma 3
+contains "$dir/err" "standard deviation 3.0 mixed in up to near 9 % far 12 %"
+result "how much the gaussian engine blurs" $?
+run near.exr --focus 4 --engine gaussian --sigma 3 --explain --dry-run --range 2
+contains "$dir/out" "standard deviation: 3.00 pixels, of which at most 100 % are mixed in near, 100 % far"
+result "--explain of the gaussian engine" $?
 told 1 near.exr -o o.exr --focus 4 --fstop 0.0002 --focal-length 50
 contains "$dir/err" "blur is cut to 2048 pixels where it would be larger, the most that there can be"
 result "the largest radius that there can be" $?

@@ -19,19 +19,20 @@ void test_planes(void)
     const struct hf_io_planes planes = {5, 7, 3, names, data, 16};
     struct hf_io_error err = {""};
     struct hf_io_view v = {.width = 5, .height = 7};
-    int size[2];
+    struct hf_io_map found;
     for (int i = 0; i < 3 * 7 * 16; i++)
         buf[i % 3][i / 3] = (float)i * 0.1f;
     CHECK_MSG(!hf_io_write_planes(path, &planes, &err), "%s", err.message);
     for (int c = 0; c < 3; c++) {
-        CHECK_MSG(!hf_io_read_depth_file(path, names[c], &v, got, size, &err), "%s", err.message);
+        CHECK_MSG(!hf_io_read_depth_file(path, names[c], &v, got, &found, &err), "%s", err.message);
         for (int i = 0; i < 35; i++)
             CHECK(got[i] == buf[c][i / 5 * 16 + i % 5]);
     }
     v.width = 6;
-    expect_error(hf_io_read_depth_file(path, "R", &v, got, size, &err), &err,
+    expect_error(hf_io_read_depth_file(path, "R", &v, got, &found, &err), &err,
                  "5 x 7 pixels of depth for a picture of 6 x 7");
-    expect_error(hf_io_read_depth_file(path, "x", &v, got, size, &err), &err, "no depth channel x among: R, coc, near");
+    expect_error(hf_io_read_depth_file(path, "x", &v, got, &found, &err), &err,
+                 "no depth channel x among: R, coc, near");
     expect_error(hf_io_write_planes(in_folder("no/p.exr"), &planes, &err), &err, "cannot create");
     CHECK(!hf_io_write_planes(path, &planes, NULL));
     struct rlimit was, low;
@@ -56,7 +57,7 @@ void test_depth_file_sizes(void)
     float map[200 * 100], got[200 * 100];
     const float *data[1] = {map};
     struct hf_io_error err = {""};
-    int size[2];
+    struct hf_io_map found;
     for (int i = 0; i < 200 * 100; i++)
         map[i] = (float)(i + 1);
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
@@ -65,8 +66,8 @@ void test_depth_file_sizes(void)
         const struct hf_io_view v = {.width = w, .height = h};
         const char *path = in_folder("map.exr");
         CHECK(!hf_io_write_planes(path, &planes, &err));
-        CHECK_MSG(!hf_io_read_depth_file(path, NULL, &v, got, size, &err), "%s", err.message);
-        CHECK(size[0] == fw && size[1] == fh);
+        CHECK_MSG(!hf_io_read_depth_file(path, NULL, &v, got, &found, &err), "%s", err.message);
+        CHECK(found.width == fw && found.height == fh);
         for (int y = 0; y < h; y++)
             for (int x = 0; x < w; x++) {
                 const int sx = (int)floor((x + 0.5) * fw / w), sy = (int)floor((y + 0.5) * fh / h);
@@ -77,9 +78,10 @@ void test_depth_file_sizes(void)
     const struct hf_io_planes planes = {10, 10, 1, names, data, 10};
     const struct hf_io_view other = {.width = 100, .height = 98}, tiny = {.width = 2, .height = 2};
     CHECK(!hf_io_write_planes(in_folder("map.exr"), &planes, &err));
-    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, &other, got, size, &err), &err,
+    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, &other, got, &found, &err), &err,
                  "10 x 10 pixels of depth for a picture of 100 x 98");
-    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, &tiny, got, size, &err), &err, "less than 5 times");
+    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, &tiny, got, &found, &err), &err,
+                 "less than 5 times");
 }
 
 // Chunks of all lengths around that at which compressing gains nothing.
@@ -104,14 +106,14 @@ static void new_files(void)
         const struct hf_io_view v = {.width = w, .height = h};
         struct hf_io_bytes made;
         struct hf_io_error err = {""};
-        int size[2];
+        struct hf_io_map found;
         // Mantissas of few bits compress, those of many do not.
         for (int k = 0; k < w * h; k++)
             map[k] = i % 2 ? (float)(k + 1) : ldexpf((float)(rnd() >> 8 >> calm), -12);
         CHECK_MSG(!hf_exr_make_new(&made, path, &picture, &err), "%s", err.message);
         spill(path, made.data, made.size);
         free(made.data);
-        CHECK_MSG(!hf_io_read_depth_file(path, NULL, &v, got, size, &err), "%s", err.message);
+        CHECK_MSG(!hf_io_read_depth_file(path, NULL, &v, got, &found, &err), "%s", err.message);
         CHECK_MSG(!memcmp(map, got, (size_t)w * (size_t)h * sizeof(float)), "%s, %d x %d", kinds[i % 5], w, h);
     }
 }

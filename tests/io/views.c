@@ -58,9 +58,9 @@ void test_single_part_views(void)
     for (int i = 0; i < 2 && f; i++) {
         struct hf_io_error err = {""};
         float depth[45], own[45];
-        int size[2];
+        struct hf_io_map found;
         CHECK_MSG(!hf_io_read_depth(f, i, depth, &err), "%s", err.message);
-        CHECK_MSG(!hf_io_read_depth_file(path, NULL, hf_io_view(f, i), own, size, &err), "%s", err.message);
+        CHECK_MSG(!hf_io_read_depth_file(path, NULL, hf_io_view(f, i), own, &found, &err), "%s", err.message);
         CHECK(!memcmp(depth, own, sizeof(own)));
     }
     hf_io_close(&f);
