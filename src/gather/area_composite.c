@@ -4,13 +4,13 @@
 #include "gather/gather.h"
 #include "gather/phase.h"
 
-// How much of a pixel the far field is: its own part, less twice what its neighbourhood has less of it. A pixel beside
-// something sharp, where that is smoothed over its edge, so stays in part what it was.
+// How much of a pixel the far field is: its own part, less twice what its neighbourhood has less of what is out of focus. A
+// pixel beside something sharp, where that is smoothed over its edge, so stays in part what it was.
 static float far_part(const struct hf_frame *f, struct hf_phase p, float coc)
 {
     const float gain = hf_gather_levels(f->s, HF_FAR)->gain;
     const float own = gain * coc < 1 ? gain * coc : 1;
-    const float around = (2 / 16.0f) * hf_upsample(&f->buf[HF_BUF_COC4], HF_AREA_FAR, p) - own;
+    const float around = (2 / 16.0f) * hf_upsample(&f->buf[HF_BUF_FAR_PART], 0, p) - own;
     const float t = around < own ? around : own;
     return t > 0 ? t : 0;
 }

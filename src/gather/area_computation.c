@@ -3,9 +3,9 @@
 //
 // Far: the mean of what is far, by how far out of focus it is. Near: what is near, spread over the area that it covers, is
 // drawn over the picture; where a near pixel itself becomes see-through, what it hides is the mean of what is not near around
-// it. With several levels (gather.h) near samples are spread by the level that is theirs, and a far pixel is the mean of the
-// level that is its own; what near pixels hide is the mean of all levels up to theirs, so that what is nearest counts most.
-// What lies beyond the frame has no weight.
+// it. With several levels (gather.h) samples are spread by the level that is theirs, and a far pixel is the mean of what is
+// not blurred much more than itself; what near pixels hide is the mean of all levels up to theirs, so that what is nearest
+// counts most. What lies beyond the frame has no weight.
 #include <float.h>
 
 #include "gather/gather.h"
@@ -126,7 +126,7 @@ static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part p
                 share = hf_level_share(l, i, *hf_at(coc4, HF_AREA_NEAR_MOST, x, y));
                 weight = near;
             } else if (part == PART_FAR) {
-                share = hf_level_reach(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y));
+                share = hf_level_spread(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y));
                 weight = *hf_at(coc4, HF_AREA_FAR, x, y);
             } else {
                 share = 1;
@@ -271,26 +271,50 @@ static void far_simple(const struct hf_frame *f, struct hf_rect r)
     }
 }
 
+// A pixel's CoC as it sees the far field: what is not far itself, beside what is, sees what that does.
+static float far_seen(const struct hf_frame *f, int x, int y)
+{
+    const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4];
+    const float own = *hf_at(coc4, HF_AREA_FAR_MOST, x, y), rest = 1 - *hf_at(coc4, HF_AREA_FAR, x, y);
+    float most = 0;
+    for (int i = 0; i < 9; i++) {
+        const float v = *hf_at(coc4, HF_AREA_FAR_MOST, x - 1 + i % 3, y - 1 + i / 3);
+        most = v > most ? v : most;
+    }
+    return rest * most > own ? rest * most : own;
+}
+
+// From the smallest level on all that has been spread is summed up, and each pixel takes its mean when its level's turn is.
 static void far_levels(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
-    for (int i = 0; i < l->count; i++) {
+    const struct sums all = {
+        &f->buf[HF_BUF_BEHIND], {&f->buf[HF_BUF_BEHIND_WEIGHT], &f->buf[HF_BUF_BEHIND_WEIGHT]}, {0, 1}};
+    clear(f, r, &all);
+    for (int i = l->count - 1; i >= 0; i--) {
         level_planes(f, r, PART_FAR, i);
         convolve_level(f, r, &l->level[i].taps);
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
-                const float share = hf_level_share(l, i, *hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR_MOST, x, y));
+                add(f, &all, x, y, 1);
+                const float share = hf_level_seen(l, i, far_seen(f, x, y));
                 for (int c = 0; c < f->s->channels; c++) {
                     float *v = hf_at(&f->buf[HF_BUF_FAR], c, x, y);
-                    *v = i ? *v : 0;
-                    if (i == l->count - 1 && !is_wanted(f, x, y))
+                    *v = i == l->count - 1 ? 0 : *v;
+                    if (i == 0 && !is_wanted(f, x, y))
                         *v = 0;
                     else if (share > 0)
-                        *v += share * far_mean(c, x, y, &f->buf[HF_BUF_LEVEL_SUM],
-                                               *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 0, x, y));
+                        *v += share * far_mean(c, x, y, all.colour, *hf_at(all.weight[0], 0, x, y));
                 }
             }
     }
+}
+
+// What is near beside something far is no less out of focus.
+static void far_part(const struct hf_frame *f, int x, int y)
+{
+    const float far = *hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, x, y);
+    *hf_at(&f->buf[HF_BUF_FAR_PART], 0, x, y) = f->near ? far + *hf_at(&f->buf[HF_BUF_COC4], HF_AREA_NEAR, x, y) : far;
 }
 
 void hf_area_gather_c(const struct hf_frame *f, struct hf_rect r)
@@ -309,5 +333,7 @@ void hf_area_gather_c(const struct hf_frame *f, struct hf_rect r)
         float *far[4];
         hf_row(&f->buf[HF_BUF_FAR], f->s->channels, r.x0, y, far);
         hf_store_rgb(f, far, r.x1 - r.x0);
+        for (int x = r.x0; x < r.x1; x++)
+            far_part(f, x, y);
     }
 }

@@ -537,7 +537,7 @@ static struct composite_rows composite_rows_at(const struct hf_frame *f, int y, 
     if (hf_gather(f->s)->area) {
         rows.blend = hf_gather_levels(f->s, HF_FAR)->gain;
         rows.far = field_at(&f->buf[HF_BUF_FAR], 0, r.x0, hy, ny);
-        rows.far_coc = field_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, r.x0, hy, ny);
+        rows.far_coc = field_at(&f->buf[HF_BUF_FAR_PART], 0, r.x0, hy, ny);
         rows.near = field_at(&f->buf[HF_BUF_NEAR], 0, r.x0, hy, ny);
         rows.near_coc = field_at(&f->buf[HF_BUF_COVER], 0, r.x0, hy, ny);
         return rows;

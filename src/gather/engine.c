@@ -18,13 +18,13 @@ static const struct hf_pass passes[] = {
     {"Near CoC Blur Y", .around = B(BLUR_X), .writes = B(BLUR), .halo = HF_HALO_BLUR_Y, .sweep = 2, .field = HF_NEAR,
      .ns = 0.27f},
     {"Computation", .reads = B(BLUR), .around = B(COLOR4) | B(COLORNEAR4) | B(COLORFAR4) | B(COC4),
-     .writes = B(NEAR) | B(FAR) | B(COVER),
+     .writes = B(NEAR) | B(FAR) | B(COVER) | B(FAR_PART),
      .inside = B(SUM) | B(LEVEL_SUM) | B(LEVEL_WEIGHT_SUM) | B(BEHIND) | B(BEHIND_WEIGHT),
      .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4) | B(LEVEL) | B(LEVEL_WEIGHT), .halo = HF_HALO_TAPS, .sweep = 2,
      .ns = 4},
     {"Fill", .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4), .writes = B(NEAR_FILL) | B(FAR_FILL),
      .halo = HF_HALO_3X3, .sweep = 2, .ns = 0.75f},
-    {"Composite", .around = B(NEAR) | B(FAR) | B(NEAR_FILL) | B(FAR_FILL) | B(COVER) | B(BLUR) | B(COC4),
+    {"Composite", .around = B(NEAR) | B(FAR) | B(NEAR_FILL) | B(FAR_FILL) | B(COVER) | B(FAR_PART) | B(BLUR) | B(COC4),
      .halo = HF_HALO_UPSAMPLE, .sweep = 2, .ns = 3.2f},
 };
 _Static_assert(sizeof passes / sizeof *passes == HF_GATHER_PASSES, "one row per pass");
@@ -44,6 +44,7 @@ static const struct hf_buf_def bufs[HF_BUF_COUNT] = {
     [HF_BUF_FAR_FILL] = {"farfill", .field = HF_FAR},
     [HF_BUF_COLORNEAR4] = {"colormulnear4", .frame = 1, .field = HF_NEAR},
     [HF_BUF_COVER] = {"cover", .field = HF_NEAR},
+    [HF_BUF_FAR_PART] = {"farpart", .field = HF_FAR},
 };
 
 static int channels(const struct hf_setup *s, int b)
@@ -73,6 +74,7 @@ static int channels(const struct hf_setup *s, int b)
     case HF_BUF_COLORNEAR4:
         return g->area ? s->channels : 0;
     case HF_BUF_COVER:
+    case HF_BUF_FAR_PART:
         return g->area;
     case HF_BUF_LEVEL:
     case HF_BUF_LEVEL_SUM:
@@ -248,8 +250,9 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     }
 }
 
-// Levels' radii: of one, from the one before.
-static const float LEVEL_STEP = 0.5f;
+// Levels' radii: of one, from the one before. Far highlights are to be discs with an edge; the near field's larger ones are
+// dear, and mostly lie over one another.
+static const float LEVEL_STEP[2] = {0.5f, 0.75f};
 
 // radius: h. Of a measured one rings lie at most 2 apart, if there are so many.
 static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const struct hf_params *p, float radius,
@@ -266,11 +269,12 @@ static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const stru
     return hf_taps_build(taps, &key, mem);
 }
 
-// radius: h. With levels from it down to 1, each half of the one before; the last is 1, so that a radius that grows adds a
+// radius: h. With levels from it down to 1, each a step smaller than the one before; the last is 1, so that a radius that grows adds a
 // level where there is one already.
-static int build_levels(struct hf_levels *l, const struct hf_setup *s, const struct hf_params *p, float radius,
+static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, const struct hf_params *p, float radius,
                         const struct hf_mem *mem)
 {
+    struct hf_levels *l = &g->levels[far];
     const float scale = s->strength >= 0.25f ? s->strength : 0.25f, largest = __builtin_fmaxf(radius * scale, 1);
     const int many = s->measured || p->gather.per_pixel_kernel;
     l->count = 0;
@@ -284,8 +288,11 @@ static int build_levels(struct hf_levels *l, const struct hf_setup *s, const str
                                         .area = 1};
         level->coc = r / (radius * scale);
         level->inverse = 1 / level->coc;
-        next = __builtin_fmaxf(LEVEL_STEP * r, 1);
-        level->to_next = r > next ? 1 / (level->coc - next / (radius * scale)) : 0;
+        level->area = level->coc * level->coc;
+        next = __builtin_fmaxf(LEVEL_STEP[far] * r, 1);
+        const float after = next / (radius * scale);
+        level->to_next = r > next ? 1 / (level->coc - after) : 0;
+        level->area_to_next = r > next ? 1 / (level->area - after * after) : 0;
         l->gain = (s->strength < 0.25f ? 4 * s->strength : 1) / level->coc;
         const int err = hf_taps_build(&level->taps, &key, mem);
         if (err)
@@ -300,8 +307,8 @@ static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_
                  const struct hf_mem *mem)
 {
     if (g->area) {
-        const int err = build_levels(&g->levels[0], s, p, near, mem);
-        return err ? err : build_levels(&g->levels[1], s, p, far, mem);
+        const int err = build_levels(g, 0, s, p, near, mem);
+        return err ? err : build_levels(g, 1, s, p, far, mem);
     }
     const int err = build_taps(&g->taps, s, p, near, mem);
     return err || !s->measured ? err : build_taps(&g->far_taps, s, p, far, mem);

@@ -46,8 +46,9 @@ enum hf_gather_buf {
     HF_BUF_LEVEL_WEIGHT,  // ... and its weights
     HF_BUF_LEVEL_SUM,     // and their means
     HF_BUF_LEVEL_WEIGHT_SUM,
-    HF_BUF_BEHIND,  // what near pixels hide: colour, and its weights
+    HF_BUF_BEHIND,  // what near pixels hide, and far levels so far: colour, and its weights
     HF_BUF_BEHIND_WEIGHT,
+    HF_BUF_FAR_PART,  // how much of a pixel is out of focus, far or near
     HF_BUF_COUNT
 };
 
@@ -72,10 +73,15 @@ struct hf_level {
     float coc;      // the CoC of pixels as blurred as this
     float inverse;  // 1 / coc
     float to_next;  // 1 / (coc - that of the next one)
+    float area;     // coc^2, and as for coc:
+    float area_to_next;
     struct hf_taps taps;
 };
 
-enum { HF_MAX_LEVELS = 12 };
+enum { HF_MAX_LEVELS = 26 };
+
+// A far pixel sees what is blurred as much as its own level or less, and that many levels more: up to 1.8 times as much.
+enum { HF_LEVELS_WIDER = 2 };
 
 // One field's kernels, the largest first. A pixel between two of them is a blend of both; one that is blurred less than the
 // smallest is a blend of that and the picture.
@@ -133,11 +139,29 @@ static inline float hf_level_near(const struct hf_levels *l, int i, float coc)
     return hf_level_reached(l, i, coc) * (l->level[i].inverse * l->level[i].inverse);
 }
 
-// By how much less a far sample counts for a level that it is not blurred enough for.
-static inline float hf_level_reach(const struct hf_levels *l, int i, float coc)
+// How much of a far sample a level spreads. Both discs together are as bright inside the smaller one as a disc of its own
+// radius, and have its light; between them they are dimmer. (Shares that are linear in the radius leave the smaller one
+// much brighter.)
+static inline float hf_level_area(const struct hf_levels *l, int i, float area)
 {
-    const float least = l->level[l->count - 1].coc, ratio = (coc > least ? coc : least) * l->level[i].inverse;
-    return ratio < 1 ? ratio : 1;
+    if (i < 0 || i == l->count - 1)
+        return i >= 0;
+    return hf_saturate((area - l->level[i + 1].area) * l->level[i].area_to_next);
+}
+
+static inline float hf_level_spread(const struct hf_levels *l, int i, float coc)
+{
+    const float own = coc * coc, least = l->level[l->count - 1].area, area = own > least ? own : least;
+    return hf_level_area(l, i, own) * (1 - hf_level_area(l, i - 1, own)) * (l->level[i].area / area);
+}
+
+// How much a far pixel takes of what a level and the smaller ones spread. Shares sum to 1 exactly.
+static inline float hf_level_seen(const struct hf_levels *l, int i, float coc)
+{
+    const int own = i + HF_LEVELS_WIDER;
+    if (own >= l->count)
+        return i == 0;
+    return i == 0 ? hf_level_reached(l, own, coc) : hf_level_share(l, own, coc);
 }
 
 // A row's Karis weight.

@@ -267,6 +267,53 @@ static void nearest_behind(struct hf_context *c)
         picture_free(made[i]);
 }
 
+// A light of 4 x 4 pixels of radius 16 before a wall of radius 22: up to 7 pixels from its middle, less than its radius times
+// the step between levels, the reach of its corner and of upsampling, its disc is flat. The wall's discs are there too, with a
+// hole; every weight is the same wherever all of the light is seen, but for some 50 roundings.
+static void flat_highlight(struct hf_context *c)
+{
+    enum { X = WIDTH / 2, REACH = 7 };
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    picture_fill(&radii, 0, 22);
+    for (int k = 0; k < 16; k++) {
+        const int at = (MIDDLE - 2 + k / 4) * WIDTH + X - 2 + k % 4;
+        radii.plane[0][at] = 16;
+        colour.plane[1][at] = 1000;
+    }
+    struct picture out = at_radius(c, &colour, &radii, HF_DERIVE);
+    float least = INFINITY, most = 0;
+    for (int y = -REACH; y < REACH; y++)
+        for (int x = -REACH; x < REACH; x++) {
+            const float v = out.plane[1][(MIDDLE + y) * WIDTH + X + x];
+            if ((x + 0.5) * (x + 0.5) + (y + 0.5) * (y + 0.5) < REACH * REACH) {
+                least = fminf(least, v);
+                most = fmaxf(most, v);
+            }
+        }
+    CHECK_MSG(most - least <= most * 50 * 6e-8f, "a highlight is %g and %g inside", (double)least, (double)most);
+    struct picture *const made[] = {&colour, &radii, &out};
+    for (int i = 0; i < 3; i++)
+        picture_free(made[i]);
+}
+
+// A light of 2 x 2 pixels on the frame's lowest rows: what is left of it is in its disc of radius 9, 16 of 1000, of which half
+// lies outside, so that the rest counts twice. Twice more is for upsampling.
+static void no_speck(struct hf_context *c)
+{
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    picture_fill(&radii, 0, 9);
+    for (int k = 0; k < 4; k++)
+        colour.plane[1][(HEIGHT - 2 + k / 2) * WIDTH + EDGE + k % 2] = 1000;
+    struct picture out = at_radius(c, &colour, &radii, HF_DERIVE);
+    float most = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        most = fmaxf(most, out.plane[1][i]);
+    CHECK_MSG(most < 64, "at the frame's edge a light of 1000 leaves a speck of %g", (double)most);
+    struct picture *const made[] = {&colour, &radii, &out};
+    for (int i = 0; i < 3; i++)
+        picture_free(made[i]);
+}
+
 int main(int argc, char **argv)
 {
     struct hf_context *c = NULL;
@@ -279,6 +326,8 @@ int main(int argc, char **argv)
     thin_bar(c);
     near_bar(c);
     nearest_behind(c);
+    flat_highlight(c);
+    no_speck(c);
     if (argc > 1) {
         truth(c, argv[1], "lights", 5, 0.37f);
         truth(c, argv[1], "fence", 6, 0.46f);

@@ -202,21 +202,21 @@ static double area_near_bound(const struct world *w, int c, int x, int y)
     return area_roundings(w) * FLT_EPSILON * (most * 2 / part + behind);
 }
 
-// A quotient: of the sum's magnitudes over the weight, twice. Denormal products are off by their own step.
+// A quotient: of the sum's magnitudes over the weight, twice; of the smallest level, of that and the next, and so on.
+// Denormal products are off by their own step.
 static double area_far_bound(const struct world *w, int c, int x, int y)
 {
     const struct hf_levels *l = &w->gather.levels[1];
     const struct hf_taps *t = world_taps(w);
     const int simple = hf_gather_is_simple(&w->setup, HF_FAR);
-    double worst = 0;
-    for (int i = 0; i < l->count; i++) {
+    double worst = 0, sum = 0, weight = 0;
+    for (int i = l->count - 1; i >= 0; i--) {
         const struct hf_taps *k = &l->level[i].taps;
-        double sum = 0, weight = 0;
         for (int v = y - k->ry; v <= y + k->ry; v++)
             for (int u = x - k->rx; u <= x + k->rx; u++) {
                 const double part = hf_taps_part(k, u - x, u - x + 1, v - y, v - y + 1);
                 const double reach =
-                    simple ? 1 : hf_level_reach(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_MOST, u, v));
+                    simple ? 1 : hf_level_spread(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_MOST, u, v));
                 const double karis = w->gather.karis ? reference_at(w, HF_BUF_WEIGHT, 0, u, v) : 1;
                 sum += part * reach * karis * fabs((double)reference_at(w, HF_BUF_COLORFAR4, c, u, v));
                 weight += part * reach * karis * reference_at(w, HF_BUF_COC4, HF_AREA_FAR, u, v);

@@ -37,7 +37,8 @@ static float buffer_value(struct world *w, int b, int x, int y)
 
 static int is_coc(int b)
 {
-    return b == HF_BUF_COC || b == HF_BUF_COC4 || b == HF_BUF_COVER || (b >= HF_BUF_MAX_X && b <= HF_BUF_BLUR);
+    return b == HF_BUF_COC || b == HF_BUF_COC4 || b == HF_BUF_COVER || b == HF_BUF_FAR_PART ||
+           (b >= HF_BUF_MAX_X && b <= HF_BUF_BLUR);
 }
 
 // CoC anywhere; in patches with none between them, some wider than any vector; everywhere; so small that sums of
@@ -71,7 +72,7 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
 static int wanted(const struct world *w, int b)
 {
     const unsigned near = BIT(NEAR) | BIT(NEAR_FILL) | BIT(BLUR) | BIT(COLOR4) | BIT(COLORNEAR4) | BIT(COVER);
-    const unsigned far = BIT(FAR) | BIT(FAR_FILL) | BIT(COLORFAR4);
+    const unsigned far = BIT(FAR) | BIT(FAR_FILL) | BIT(COLORFAR4) | BIT(FAR_PART);
     return !(!w->near && (near >> b & 1)) && !(!w->far && (far >> b & 1));
 }
 

@@ -11,7 +11,7 @@
 // largest near and far CoC.
 enum { COLOUR, NEAR = 4, FAR = 8, NEAR_PART = 12, FAR_PART, NEAR_MOST, FAR_MOST, PLANES };
 
-enum { MAX_LEVELS = 12 };
+enum { MAX_LEVELS = 26 };
 struct levels {
     int count;
     double coc[MAX_LEVELS];
@@ -23,7 +23,7 @@ struct area {
     const struct reference *r;
     int width, height;
     double *plane[PLANES];
-    struct levels levels;  // both fields' radius is the same here
+    struct levels levels[2];  // near, far
 };
 
 // Area of the unit disc in x0..x1, y0..y1, slice by slice.
@@ -38,9 +38,9 @@ static double disc_area(double x0, double x1, double y0, double y1)
     return sum * (y1 - y0) / SLICES;
 }
 
-static void add_level(struct area *a, double radius, double full)
+static void add_level(struct area *a, int far, double radius, double full)
 {
-    struct levels *l = &a->levels;
+    struct levels *l = &a->levels[far];
     const double rx = fmax(radius / a->r->params.view.pixel_aspect, 1), ry = radius;
     const int i = l->count++;
     l->coc[i] = radius / full;
@@ -57,10 +57,12 @@ static void add_level(struct area *a, double radius, double full)
 static void make_levels(struct area *a)
 {
     const double full = a->r->reach_y * a->r->kernel_scale;
-    double radius = fmax(full, 1);
-    add_level(a, radius, full);
-    while (a->r->params.gather.per_pixel_kernel && radius > 1)
-        add_level(a, radius = fmax(radius / 2, 1), full);
+    for (int far = 0; far < 2; far++) {
+        double radius = fmax(full, 1);
+        add_level(a, far, radius, full);
+        while (a->r->params.gather.per_pixel_kernel && radius > 1)
+            add_level(a, far, radius = fmax(radius * (far ? 0.75 : 0.5), 1), full);
+    }
 }
 
 static double share(const struct levels *l, int i, double coc)
@@ -82,9 +84,27 @@ static double share_behind(const struct levels *l, int i, double coc)
     return sum / (l->coc[i] * l->coc[i]);
 }
 
+// A disc of an area between two levels' is so much of both that it is as bright inside the smaller one as its own would be.
+static double share_far(const struct levels *l, int i, double coc)
+{
+    double area[MAX_LEVELS];
+    for (int k = 0; k < l->count; k++)
+        area[k] = l->coc[k] * l->coc[k];
+    const double own = fmin(fmax(coc * coc, area[l->count - 1]), area[0]);
+    double part = 0;
+    if (own == area[i])
+        part = 1;
+    else if (own > area[i] && i > 0 && own < area[i - 1])
+        part = (area[i - 1] - own) / (area[i - 1] - area[i]);
+    else if (own < area[i] && own > area[i + 1])
+        part = (own - area[i + 1]) / (area[i] - area[i + 1]);
+    return part * area[i] / own;
+}
+
+// Both fields' last level is the same.
 static double smallest_part(const struct area *a, double coc)
 {
-    return fmin(1, a->r->blend / a->levels.coc[a->levels.count - 1] * coc);
+    return fmin(1, a->r->blend / a->levels[0].coc[a->levels[0].count - 1] * coc);
 }
 
 static void down(struct area *a)
@@ -116,7 +136,7 @@ enum kind { KIND_NEAR, KIND_BEHIND, KIND_FAR };
 // One level's mean around a pixel; nothing beyond the frame.
 static struct sums mean(const struct area *a, int x, int y, int i, enum kind kind)
 {
-    const struct levels *l = &a->levels;
+    const struct levels *l = &a->levels[kind == KIND_FAR];
     struct sums s = {{0}, 0};
     for (int v = -l->ry[i]; v <= l->ry[i]; v++)
         for (int u = -l->rx[i]; u <= l->rx[i]; u++) {
@@ -127,7 +147,7 @@ static struct sums mean(const struct area *a, int x, int y, int i, enum kind kin
             if (kind == KIND_NEAR)
                 w *= share(l, i, a->plane[NEAR_MOST][at]);
             if (kind == KIND_FAR)
-                w *= fmin(1, fmax(a->plane[FAR_MOST][at], l->coc[l->count - 1]) / l->coc[i]);
+                w *= share_far(l, i, a->plane[FAR_MOST][at]);
             for (int c = 0; c < a->r->channels; c++)
                 s.colour[c] += w * (kind == KIND_NEAR  ? a->plane[NEAR + c][at]
                                     : kind == KIND_FAR ? a->plane[FAR + c][at]
@@ -156,46 +176,68 @@ static double hidden(const struct area *a, int x, int y)
     return sum;
 }
 
-static void fields(const struct area *a, double *near[5], double *far[4])
+// What a far pixel sees: all that is spread by levels of up to two more than its own. What is not far itself is like what is
+// beside it.
+static void far_pixel(const struct area *a, int x, int y, double *far[4])
 {
-    const struct levels *l = &a->levels;
-    for (int i = 0; i < a->width * a->height; i++) {
-        const int x = i % a->width, y = i / a->width;
-        const double hides = hidden(a, x, y), m = smallest_part(a, hides);
-        struct sums own = {{0}, 0}, back = {{0}, 0};
-        for (int k = 0; k < l->count; k++) {
-            const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
+    const struct levels *l = &a->levels[1];
+    const int i = y * a->width + x;
+    double coc = 0;
+    for (int k = 0; k < 9; k++) {
+        const int u = x - 1 + k % 3, v = y - 1 + k / 3;
+        if (u >= 0 && v >= 0 && u < a->width && v < a->height)
+            coc = fmax(coc, (1 - a->plane[FAR_PART][i]) * a->plane[FAR_MOST][v * a->width + u]);
+    }
+    coc = fmax(coc, a->plane[FAR_MOST][i]);
+    for (int own = 0; own < l->count; own++) {
+        struct sums all = {{0}, 0};
+        if (!(share(l, own, coc) > 0))
+            continue;
+        for (int k = (int)fmax(own - 2, 0); k < l->count; k++) {
             const struct sums f = mean(a, x, y, k, KIND_FAR);
-            const double w = share_behind(l, k, hides), w_far = share(l, k, a->plane[FAR_MOST][i]);
-            for (int c = 0; c < a->r->channels; c++) {
-                own.colour[c] += n.colour[c];
-                back.colour[c] += w * b.colour[c];
-                far[c][i] += f.part > 0 ? w_far * f.colour[c] / f.part : 0;
-            }
-            own.part += n.part;
-            back.part += w * b.part;
+            for (int c = 0; c < a->r->channels; c++)
+                all.colour[c] += f.colour[c];
+            all.part += f.part;
         }
-        const double room = fmax(1 - own.part, 0), part = back.part > room ? room / back.part : 1;
-        for (int c = 0; c < a->r->channels; c++) {
-            const double outside = own.colour[c] / fmax(own.part, 1);
-            near[c][i] =
-                m > 0
-                    ? outside + m * ((own.colour[c] + part * back.colour[c]) / (own.part + part * back.part) - outside)
-                    : outside;
-        }
-        near[4][i] = fmin(own.part, 1) + m * (1 - fmin(own.part, 1));
+        for (int c = 0; c < a->r->channels; c++)
+            far[c][i] += all.part > 0 ? share(l, own, coc) * all.colour[c] / all.part : 0;
     }
 }
 
-static double up(const struct area *a, const double *plane, int x, int y, int zero)
+static void near_pixel(const struct area *a, int x, int y, double *near[5])
+{
+    const struct levels *l = &a->levels[0];
+    const int i = y * a->width + x;
+    const double hides = hidden(a, x, y), m = smallest_part(a, hides);
+    struct sums own = {{0}, 0}, back = {{0}, 0};
+    for (int k = 0; k < l->count; k++) {
+        const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
+        const double w = share_behind(l, k, hides);
+        for (int c = 0; c < a->r->channels; c++) {
+            own.colour[c] += n.colour[c];
+            back.colour[c] += w * b.colour[c];
+        }
+        own.part += n.part;
+        back.part += w * b.part;
+    }
+    const double room = fmax(1 - own.part, 0), part = back.part > room ? room / back.part : 1;
+    for (int c = 0; c < a->r->channels; c++) {
+        const double outside = own.colour[c] / fmax(own.part, 1);
+        near[c][i] =
+            m > 0 ? outside + m * ((own.colour[c] + part * back.colour[c]) / (own.part + part * back.part) - outside)
+                  : outside;
+    }
+    near[4][i] = fmin(own.part, 1) + m * (1 - fmin(own.part, 1));
+}
+
+static double up(const struct area *a, const double *plane, int x, int y)
 {
     const int hx = x / 2, hy = y / 2, nx = x % 2 ? hx + 1 : hx - 1, ny = y % 2 ? hy + 1 : hy - 1;
     double sum = 0;
     for (int k = 0; k < 4; k++) {
         const int u = k % 2 ? nx : hx, v = k / 2 ? ny : hy;
-        const int in = u >= 0 && v >= 0 && u < a->width && v < a->height;
         const int cu = (int)fmin(fmax(u, 0), a->width - 1), cv = (int)fmin(fmax(v, 0), a->height - 1);
-        sum += in || !zero ? (k % 2 ? 0.25 : 0.75) * (k / 2 ? 0.25 : 0.75) * plane[cv * a->width + cu] : 0;
+        sum += (k % 2 ? 0.25 : 0.75) * (k / 2 ? 0.25 : 0.75) * plane[cv * a->width + cu];
     }
     return sum;
 }
@@ -207,12 +249,12 @@ static void composite(const struct area *a, double *const near[5], double *const
         for (int x = 0; x < r->width; x++) {
             const int at = y * r->width + x;
             const double own = smallest_part(a, r->buffer[REF_COC].data[1][at]);
-            const double t = fmax(fmin(own, 2 * up(a, a->plane[FAR_PART], x, y, 1) - own), 0);
-            const double cover = up(a, near[4], x, y, 0);
+            const double blurred = up(a, a->plane[FAR_PART], x, y) + up(a, a->plane[NEAR_PART], x, y);
+            const double t = fmax(fmin(own, 2 * blurred - own), 0), cover = up(a, near[4], x, y);
             for (int c = 0; c < r->channels; c++) {
                 double v = r->buffer[REF_COLOUR].data[c][at];
-                v = t > 0 ? (1 - t) * v + t * up(a, far[c], x, y, 0) : v;
-                r->buffer[REF_RESULT].data[c][at] = (1 - cover) * v + up(a, near[c], x, y, 0);
+                v = t > 0 ? (1 - t) * v + t * up(a, far[c], x, y) : v;
+                r->buffer[REF_RESULT].data[c][at] = (1 - cover) * v + up(a, near[c], x, y);
             }
         }
 }
@@ -230,7 +272,10 @@ void ref_area(struct reference *r)
         far[i] = calloc(n, sizeof(double));
     make_levels(&a);
     down(&a);
-    fields(&a, near, far);
+    for (size_t i = 0; i < n; i++) {
+        near_pixel(&a, (int)i % a.width, (int)i / a.width, near);
+        far_pixel(&a, (int)i % a.width, (int)i / a.width, far);
+    }
     composite(&a, near, far);
     for (int i = 0; i < PLANES; i++)
         free(a.plane[i]);
@@ -238,6 +283,6 @@ void ref_area(struct reference *r)
         free(near[i]);
     for (int i = 0; i < 4; i++)
         free(far[i]);
-    for (int i = 0; i < a.levels.count; i++)
-        free(a.levels.weight[i]);
+    for (int i = 0; i < 2 * MAX_LEVELS; i++)
+        free(a.levels[i / MAX_LEVELS].weight[i % MAX_LEVELS]);
 }
