@@ -241,8 +241,10 @@ static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, cons
         }
         return HF_OK;
     }
-    return p->focus > 0 && hf_is_finite(p->focus) ? HF_OK
-                                                  : hf_bad(message, "focus is %g; it must be > 0 and finite", p->focus);
+    // A lens may be focused at infinity: 1 / focus is 0 then.
+    if (p->focus > 0 && (hf_is_finite(p->focus) || p->model == HF_MODEL_LENS))
+        return HF_OK;
+    return hf_bad(message, "focus is %g; it must be > 0, and finite but for a lens", p->focus);
 }
 
 // The limit of the radius, before the engine has its say.

@@ -458,9 +458,9 @@ struct hf_run_params {
 struct hf_params {
     enum hf_engine engine;  // default HF_ENGINE_GATHER
     enum hf_model model;    // default HF_MODEL_RANGE. Ignored for HF_DEPTH_COC.
-    // Distance of the plane in focus, scene units of view depth, > 0, finite. Default 10. Both models. HF_DERIVE: what
-    // pixel (width / 2, height / 2) shows; HF_ERR_FOCUS if that is no surface, but infinity for the gaussian engine.
-    // Ignored for HF_DEPTH_COC.
+    // Distance of the plane in focus, scene units of view depth, > 0, finite; HF_MODEL_LENS may have INFINITY. Default 10.
+    // Both models. HF_DERIVE: what pixel (width / 2, height / 2) shows; HF_ERR_FOCUS if that is no surface, but infinity
+    // for the gaussian engine. Ignored for HF_DEPTH_COC.
     float focus;
     struct hf_range_params range;
     struct hf_lens_params lens;

@@ -18,7 +18,10 @@ static void put_model(struct tool_json *j, const struct cli_setup *setup)
 {
     const struct hf_params *p = &setup->params;
     tool_json_text(j, "model", cli_model_name(setup->model));
-    tool_json_number(j, "focus", setup->focus_from && p->focus != HF_DERIVE ? p->focus : NAN);
+    if (setup->focus_from && p->focus == INFINITY)
+        tool_json_text(j, "focus", "inf");
+    else
+        tool_json_number(j, "focus", setup->focus_from && p->focus != HF_DERIVE ? p->focus : NAN);
     tool_json_text(j, "focus_from", setup->focus_from);
     if (setup->model != CLI_MODEL_LENS)
         return;

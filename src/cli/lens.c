@@ -42,7 +42,7 @@ enum cli_model cli_lens_model(const struct cli_args *args, const struct hf_io_ca
         return CLI_MODEL_RANGE;
     if (given(args->fstop) || given(args->focal_length))
         return CLI_MODEL_LENS;
-    const int focus = cli_lens_usable(camera->focus) || args->focus_by != CLI_FOCUS_HEADER;
+    const int focus = cli_lens_usable(camera->focus) || camera->focus == INFINITY || args->focus_by != CLI_FOCUS_HEADER;
     return focus && cli_lens_usable(camera->f_number) && given(cli_lens_header_focal(camera)) ? CLI_MODEL_LENS
                                                                                               : CLI_MODEL_RANGE;
 }

@@ -39,9 +39,9 @@ static const struct tool_option options[] = {
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
      "Default: that of INPUT.", .parse = tool_parse_choice_text, FIELD(compression)},
 
-    {"focus", 0, TOOL_FOCUS, "D|center", "Distance in perfect focus, scene units, more than 0; or center: what the "
-     "middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,
-     FIELD(focus), .unit = TOOL_UNIT_DISTANCE, .max = FLT_MAX, .above_min = 1},
+    {"focus", 0, TOOL_FOCUS, "D|center", "Distance in perfect focus, scene units, more than 0, or inf with a lens; or "
+     "center: what the middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,
+     FIELD(focus), .unit = TOOL_UNIT_DISTANCE, .max = FLT_MAX, .above_min = 1, .inf = 1},
     {"focus-at", 0, TOOL_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates.",
      .parse = cli_parse_focus_at},
     {"focus-smooth", 0, TOOL_FOCUS, "N", "A focus that is read from the pictures of a shot follows the mean of N frames "

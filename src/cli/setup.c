@@ -91,6 +91,10 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     case CLI_FOCUS_DISTANCE:
         setup->focus_from = args->focus_from ? args->focus_from : "--focus";
         *focus = args->focus;
+        if (isinf(*focus) && setup->model == CLI_MODEL_RANGE)
+            return tool_fail(error, CLI_BAD_ARGUMENTS,
+                             "%s: %s inf is for a lens, give --fstop and --focal-length; a range needs a distance",
+                             label, setup->focus_from);
         return 0;
     case CLI_FOCUS_CENTER:
         setup->focus_from = "--focus center";
@@ -111,7 +115,8 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
         return 0;
     }
     const float unit = given(args->world_unit) ? args->world_unit : 1;
-    if (!cli_lens_usable(view->camera.focus / unit))
+    const int endless = setup->model == CLI_MODEL_LENS && view->camera.focus == INFINITY;
+    if (!endless && !cli_lens_usable(view->camera.focus / unit))
         return tool_fail(error, CLI_BAD_ARGUMENTS,
                          "%s: there is no focus distance in the header, give one with "
                          "--focus or --focus-at",

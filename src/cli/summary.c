@@ -50,7 +50,7 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
                       100 * v->blend[0], 100 * v->blend[1]);
     else
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", radius near %.1f far %.1f", r->near_radius, r->far_radius);
-    if (cli_is_limited(v))
+    if (cli_is_limited(v) && p->engine != HF_ENGINE_GAUSSIAN)
         n +=
             snprintf(text + n, sizeof(text) - (size_t)n, " (cut to %g, %s)", p->max_radius, limit_words(r->used.limit));
     if (p->highlight.gain > 1)

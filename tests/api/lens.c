@@ -98,6 +98,26 @@ static void test_focus(const struct lens *l)
     CHECK_MSG(fabs(got[3] - k) <= 1e-5 * k, "at infinity %g, want %g", got[3], k);
 }
 
+// Focused at infinity, where 1 / focus is 0: -K / z, and 0 at infinity and where there is no surface.
+static void test_infinite_focus(const struct lens *of)
+{
+    struct lens l = *of;
+    float depth[N] = {0}, got[N];
+    l.focus = INFINITY;
+    depth[1] = INFINITY;
+    for (int i = 2; i < N; i++)
+        depth[i] = l.near * (float)i;
+    radii_of(&l, HF_DEPTH_VIEW, depth, got);
+    const double length = l.focal_mm / 1000.0 / l.unit;
+    const double k = length / l.f_number / 2 * (l.focal_mm / l.sensor_mm * l.width);
+    CHECK_MSG(got[0] == 0 && got[1] == 0, "far away the radius is %g and %g", got[0], got[1]);
+    // K, the quotient and the product are each rounded to float; so are the four numbers that K follows from.
+    for (int i = 2; i < N; i++) {
+        const double want = -fmin(k / depth[i], 2048);
+        CHECK_MSG(fabs(got[i] - want) <= 8 * 6e-8 * -want, "at %g the radius is %g, want %g", depth[i], got[i], want);
+    }
+}
+
 // Radii that are given are taken as they are.
 static void test_given(void)
 {
@@ -114,6 +134,7 @@ int main(void)
     for (size_t i = 0; i < sizeof lenses / sizeof *lenses; i++) {
         test_same_curve(&lenses[i]);
         test_focus(&lenses[i]);
+        test_infinite_focus(&lenses[i]);
     }
     test_given();
     return check_report();

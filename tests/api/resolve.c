@@ -152,6 +152,11 @@ static void focus(void)
     p.focus = -3;
     CHECK_INT(hf_resolve(3, 3, &depth, &p, &r, message, sizeof message), HF_ERR_ARG);
     CHECK_MSG(strstr(message, "focus is -3") != NULL, "%s", message);
+    p.focus = INFINITY;
+    CHECK_INT(hf_resolve(3, 3, &depth, &p, &r, message, sizeof message), HF_ERR_ARG);
+    CHECK_MSG(strstr(message, "focus is inf") != NULL, "%s", message);
+    p.model = HF_MODEL_LENS;
+    CHECK(resolved(3, 3, &depth, &p).params.focus == INFINITY);
 }
 
 // What an engine cannot draw is refused, by name.

@@ -83,7 +83,7 @@ done
 for value in -0 0.0 1e-320; do
     bad 1 "--focus|'$value'|more than 0" a.exr -o o.exr --focus $value
 done
-for option in focus focal-length sensor-width world-unit near; do
+for option in focal-length sensor-width world-unit near; do
     bad 1 "--$option|'inf'" a.exr -o o.exr --$option inf
 done
 bad 1 "--strength|'1.01'|0 to 1" a.exr -o o.exr --strength 1.01
@@ -267,6 +267,15 @@ picture_tests() {
     plan "model lens|f/inf" lens.exr --fstop inf
     plan "model coc" lens.exr --depth-type coc
     plan "model coc" plain.exr --depth-type coc
+    for focus in inf infinity; do
+        plan "model lens|focus inf from --focus" plain.exr --focus $focus --fstop 2 --focal-length 50
+        bad 1 "--focus inf is for a lens" plain.exr -o o.exr --focus $focus
+        bad 1 "--focus inf is for a lens" plain.exr -o o.exr --focus $focus --range 3
+    done
+    run plain.exr -o o.exr --focus inf --fstop 0.1 --focal-length 50 --json
+    [ "$status" -eq 0 ] && [ ! -s "$dir/err" ] && contains "$dir/out" '"focus": "inf"' && contains "$dir/out" '"far_share": 0,'
+    result "a lens focused at infinity" $?
+    rm -f o.exr
     plan "focus 3 from --focus-at" plain.exr --focus-at 20,5
     plan "focus 5 from --focus center" plain.exr --focus center
     plan "focus 2 from --focus-at" offset.exr --focus-at=-1,20
