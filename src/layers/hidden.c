@@ -114,14 +114,14 @@ static float side_of(const struct hf_hidden_line *line, int side, int channels, 
 {
     float open = 1, whole = 0;
     for (int i = 0; i < line->steps; i++) {
-        const float *const *in = line->side[side][i];
-        const float behind = in[5][x] - nearest, seen = hf_saturate(behind * (1.0f / 3) + (1 - line->away[i]));
-        const float part = open * (hf_saturate(9 * in[4][x]) * (hf_layers_hides(behind - 1) * seen));
+        const ptrdiff_t at = line->side[side][i] + x;
+        const float behind = line->in[5][at] - nearest, seen = hf_saturate(behind * (1.0f / 3) + (1 - line->away[i]));
+        const float part = open * (hf_saturate(9 * line->in[4][at]) * (hf_layers_hides(behind - 1) * seen));
         open = open - part;
         whole = whole + part;
         for (int c = 0; c < channels; c++)
-            end[c] = end[c] + part * in[c][x];
-        end[4] = end[4] + part * in[5][x];
+            end[c] = end[c] + part * line->in[c][at];
+        end[4] = end[4] + part * line->in[5][at];
         end[5] = end[5] + part * line->away[i];
     }
     return whole;

@@ -47,11 +47,12 @@ static inline float hf_layers_hides(float more)
 #define HF_LAYERS_UNLIKE 4
 enum { HF_LAYERS_STEPS = 12, HF_LAYERS_LINES = 4 };
 
-// A line through n samples: those so many steps away on either side, colour, weight (4), radius (5), and how far that is,
-// half-resolution pixels.
+// A line through n samples, colour, weight (4), radius (5): where those some steps away on either side are, and how far
+// that is, half-resolution pixels.
 struct hf_hidden_line {
     int steps;
-    const float *side[2][HF_LAYERS_STEPS][6];
+    const float *in[6];
+    ptrdiff_t side[2][HF_LAYERS_STEPS];
     float away[HF_LAYERS_STEPS];
 };
 

@@ -156,17 +156,17 @@ HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, const i
     for (int i = 0; i < 6; i++)
         end[i] = vf_zero();
     for (int i = 0; i < line->steps && vm_any(vf_gt(open, vf_zero())); i++) {
-        const float *const *in = line->side[side][i];
-        const vf r = vf_load(in[5] + x), behind = vf_sub(r, nearest), off = vf_set1(1 - line->away[i]);
+        const ptrdiff_t at = line->side[side][i] + x;
+        const vf r = vf_load(line->in[5] + at), behind = vf_sub(r, nearest), off = vf_set1(1 - line->away[i]);
         const vf hides = layers_hides(vf_sub(behind, vf_set1(1)));
         const vf sees = vf_mul(hides, layers_saturate(vf_fma(behind, vf_set1(1.0f / 3), off)));
         if (!vm_any(vf_gt(sees, vf_zero())))
             continue;
-        const vf part = vf_mul(open, vf_mul(layers_saturate(vf_mul(vf_set1(9), vf_load(in[4] + x))), sees));
+        const vf part = vf_mul(open, vf_mul(layers_saturate(vf_mul(vf_set1(9), vf_load(line->in[4] + at))), sees));
         open = vf_sub(open, part);
         whole = vf_add(whole, part);
         for (int c = 0; c < channels; c++)
-            end[c] = vf_fma(part, vf_load(in[c] + x), end[c]);
+            end[c] = vf_fma(part, vf_load(line->in[c] + at), end[c]);
         end[4] = vf_fma(part, r, end[4]);
         end[5] = vf_fma(part, vf_set1(line->away[i]), end[5]);
     }

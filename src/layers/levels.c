@@ -21,6 +21,7 @@ struct band {
     struct hf_rect r;
     int reach;
     struct hf_layers_set level[HF_LAYERS_LEVELS], across, found;
+    struct hf_hidden_line line[HF_LAYERS_LINES];
     float *nearest;  // least radius of what is seen in each quad, width in a row
     int width;
     // Blocks, those around the band included: (0, 0) is its first. Farthest radius in one, and within the search's reach;
@@ -228,23 +229,31 @@ static void make_levels(struct band *b)
         }
 }
 
-// Add what goes on between opposite sides, along rows, columns and both diagonals.
-static void find_between(const struct band *b, const float *nearest, int x, int n, int y, float *const sum[6])
+// Lines through a sample of level 0: rows, columns and both diagonals, no farther than the levels read.
+static void make_lines(struct band *b)
 {
     static const int step[HF_LAYERS_STEPS] = {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16},
                      along[HF_LAYERS_LINES][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
     for (int k = 0; k < HF_LAYERS_LINES; k++) {
-        struct hf_hidden_line line = {.steps = 0};
-        // No farther than the levels read.
-        for (int i = 0; i < HF_LAYERS_STEPS && step[i] <= 1 << b->l->levels; i++) {
-            for (int side = 0; side < 2; side++) {
-                const int by = side ? -step[i] : step[i];
-                float *in[6] = {NULL};
-                planes_of(&b->level[0], b->l->channels, x + by * along[k][0], y + by * along[k][1], in);
-                memcpy(line.side[side][i], in, sizeof in);
-            }
-            line.away[line.steps++] = (float)step[i] * (k < 2 ? 1 : 1.41421356f);
+        struct hf_hidden_line *line = &b->line[k];
+        const ptrdiff_t apart = along[k][1] * b->level[0].stride + along[k][0];
+        line->steps = 0;
+        for (int i = 0; i < HF_LAYERS_STEPS && step[i] <= 1 << b->l->levels; i++, line->steps++) {
+            line->side[0][i] = step[i] * apart;
+            line->side[1][i] = -step[i] * apart;
+            line->away[i] = (float)step[i] * (k < 2 ? 1 : 1.41421356f);
         }
+    }
+}
+
+// Add what goes on between opposite sides.
+static void find_between(const struct band *b, const float *nearest, int x, int n, int y, float *const sum[6])
+{
+    const float *in[6] = {NULL};
+    planes_of(&b->level[0], b->l->channels, x, y, (float **)in);
+    for (int k = 0; k < HF_LAYERS_LINES; k++) {
+        struct hf_hidden_line line = b->line[k];
+        memcpy(line.in, in, sizeof in);
         hf_layers_kernels(b->f)->between(&line, b->l->channels, nearest, n, sum);
     }
 }
@@ -257,9 +266,10 @@ static void find(const struct band *b, int x, int n, int y)
     const float *nearest = b->nearest + (y - b->r.y0) * b->width + x - b->r.x0;
     _Alignas(64) float memory[6][STEP + PAD];
     float *sum[6], *out[6] = {NULL}, part = 1;
-    memset(memory, 0, sizeof memory);
-    for (int i = 0; i < 6; i++)
+    for (int i = 0; i < 6; i++) {
         sum[i] = memory[i];
+        memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // and the rest of the last vector
+    }
     for (int j = 0; j < b->l->levels; j++, part *= 1.0f / 256)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
@@ -401,6 +411,7 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
     place_blocks(&b, &memory);
     find_farthest(&b);
     find_needed(&b);
+    make_lines(&b);
     make_levels(&b);
     search(&b, r, HF_LAYERS_BUF_HIDDEN, HF_LAYERS_BUF_HIDDEN_AT, 1);
     find_needed(&b);

@@ -185,10 +185,10 @@ static void between_call(const struct world *w, const struct kernels *k, enum ar
 {
     struct hf_hidden_line l = {.steps = 4, .away = {1, 2, 3, 4}};
     float *in[6], *sum[6];
-    for (int i = 0; i < 8; i++) {
-        set_of(w, a, 6 * i, in);
-        memcpy(l.side[i / 4][i % 4], in, sizeof in);
-    }
+    set_of(w, a, 0, in);
+    memcpy(l.in, in, sizeof in);
+    for (int i = 0; i < 8; i++)
+        l.side[i / 4][i % 4] = line(w, a, 6 * i) - line(w, a, 0);
     set_of(w, a, IN, sum);
     k->layers.between(&l, now.channels, line(w, a, 48), w->n, sum);
 }
