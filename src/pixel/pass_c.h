@@ -54,11 +54,11 @@ static inline void hf_store_rgb(const struct hf_frame *f, float *const ch[4], in
             f->k->round_half(ch[c], n);
 }
 
-// Row y of a buffer's channels, from x.
+// Row y of a buffer's channels, from x; NULL of a buffer that the frame does without.
 static inline void hf_row(const struct hf_buf *b, int channels, int x, int y, float *ch[4])
 {
     for (int c = 0; c < channels; c++)
-        ch[c] = hf_at(b, c, x, y);
+        ch[c] = b->ch[c] ? hf_at(b, c, x, y) : NULL;
 }
 
 // a + t (b - a), and a's own bits for t = 0: what is not blended must not change -0.0 or overflow.

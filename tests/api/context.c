@@ -380,6 +380,30 @@ static void statistics(void)
     hf_close(&c);
 }
 
+// A lens before which everything is near, or far: buffers of the other field are not there, and nobody may reach for them.
+static void one_field(void)
+{
+    for (int engine = 0; engine < HF_ENGINE_COUNT; engine++)
+        for (int far = 0; far < 2; far++) {
+            struct rng rng = rng_seed(seed);
+            struct scene s = scene_new(&rng, far ? SCENE_FAR : SCENE_NEAR, 40, 30, 4);
+            struct hf_context *c = context_new(HF_ISA_SCALAR, 2, 0, 0);
+            struct hf_params p = hf_default_params;
+            p.engine = (enum hf_engine)engine;
+            p.model = HF_MODEL_LENS;
+            p.focus = 20;
+            p.lens.f_number = 2.8f;
+            p.lens.focal_length_mm = 400;
+            p.lens.world_unit_m = 1;
+            struct picture out = render_scene(c, &s, &p);
+            CHECK_MSG(all_finite(&out), "%s, %s field alone: not finite", hf_engine_name(p.engine),
+                      far ? "far" : "near");
+            picture_free(&out);
+            scene_free(&s);
+            hf_close(&c);
+        }
+}
+
 int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
@@ -390,5 +414,6 @@ int main(int argc, char **argv)
     host_threads();
     many_contexts();
     statistics();
+    one_field();
     return check_report();
 }
