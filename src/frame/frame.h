@@ -150,7 +150,7 @@ struct hf_frame {
 typedef void hf_kernel(const struct hf_frame *f, struct hf_rect r);
 
 enum { HF_DEPTH_LINES = 4 };  // two rows of depth of full resolution
-enum { HF_LINES = 20 };       // scratch rows a frame has; the composite uses 17, the most
+enum { HF_LINES = 25 };       // scratch rows a frame has; scatter's composite uses them all
 enum { HF_PAD = 32 };  // floats that a vector loop may write past the end of a row; of a narrow one as many bytes
 
 // Scratch row i, 64-byte aligned.

@@ -17,6 +17,7 @@
 #include "layers/slices.h"
 #include "layers/unmix.h"
 #include "params.h"
+#include "pixel/edges.h"
 #include "pixel/pass_c.h"
 
 #define B(name) (1u << HF_LAYERS_BUF_##name)
@@ -188,7 +189,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     hf_layers_make_slices(l);
     const float range = found->radius_max - found->radius_min;
     l->levels = 0;
-    l->edges = l->set.unmix && range > HF_UNMIX_FROM;
+    l->edges = l->set.unmix && range > HF_EDGES_FROM;
     if (l->set.hidden && range >= 1)
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;
@@ -319,7 +320,6 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
     *k = (struct hf_layers_kernels){
         .passes = {{hf_radius_pass, hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass,
                     hf_layers_patterns_pass, hf_layers_composite_pass}},
-        .sure = hf_layers_sure_c,
         .unmix = hf_layers_unmix_c,
         .roots = hf_layers_roots_c,
         .nine = hf_layers_nine_c,

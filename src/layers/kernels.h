@@ -6,9 +6,6 @@
 #include "frame/engine.h"
 #include "layers/layers.h"
 
-// How little the 3 x 3 radii of a pixel differ, 1 for one surface to 0 for two; the middle of these radii; and how fast
-// front becomes back around it. Of the first and the last pixel it means nothing.
-typedef void hf_layers_sure(const float *const radius[3], int n, float *sure, float *middle, float *slope);
 typedef void hf_layers_unmix(const struct hf_unmix_row *row, int n);
 // Mean roots of brightness of n quads, from two rows of colour.
 typedef void hf_layers_roots(const float *const above[3], const float *const below[3], int n, float *out);
@@ -88,7 +85,6 @@ typedef void hf_layers_finish(const struct hf_stack_row *near, const float *cons
 
 struct hf_layers_kernels {
     struct hf_passes passes;
-    hf_layers_sure *sure;
     hf_layers_unmix *unmix;
     hf_layers_roots *roots;
     hf_layers_nine *nine;
@@ -150,7 +146,6 @@ hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_l
 void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r);
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r);
 
-hf_layers_sure hf_layers_sure_c;
 hf_layers_unmix hf_layers_unmix_c;
 hf_layers_roots hf_layers_roots_c;
 hf_layers_nine hf_layers_nine_c;

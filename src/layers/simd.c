@@ -12,7 +12,6 @@
 
 void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
 {
-    k->sure = layers_sure_simd;
     k->unmix = layers_unmix_simd;
     k->roots = layers_roots_simd;
     k->nine = layers_nine_simd;

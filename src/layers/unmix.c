@@ -10,23 +10,6 @@
 
 #include "pixel/pass_c.h"
 
-void hf_layers_sure_c(const float *const radius[3], int n, float *sure, float *middle, float *slope)
-{
-    for (int x = 0; x < n; x++) {
-        float low = radius[1][x], high = low;
-        for (int y = 0; y < 3; y++)
-            for (int i = x ? -1 : 0; i <= 1; i++) {
-                const float r = radius[y][x + i];
-                low = r < low ? r : low;
-                high = r > high ? r : high;
-            }
-        const float apart = high - low, least = apart > HF_UNMIX_FROM ? apart : HF_UNMIX_FROM;
-        sure[x] = 1 - hf_saturate((apart - HF_UNMIX_FROM) * HF_UNMIX_GROWS);
-        middle[x] = (low + high) * 0.5f;
-        slope[x] = HF_UNMIX_SIDES / least;
-    }
-}
-
 const float hf_unmix_weights[7][7] = {
 #define W(x, y) (x) || (y) ? 1.0f / (((x) * (x) + (y) * (y)) * ((x) * (x) + (y) * (y))) : 0
 #define ROW(y)                                                                                                         \
@@ -198,8 +181,7 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
     for (int i = 0; i < 3; i++)
         radius[i] = hf_at(b, 0, x - AROUND, y + i - 1);
     // Whole vectors, though only three pixels on either side are read.
-    hf_layers_kernels(f)->sure(radius, n + 2 * AROUND, sure - AROUND, sure + 8 * stride - AROUND,
-                               sure + 16 * stride - AROUND);
+    f->k->edges.sure(radius, n + 2 * AROUND, sure - AROUND, sure + 8 * stride - AROUND, sure + 16 * stride - AROUND);
 }
 
 void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)

@@ -5,13 +5,9 @@
 
 #include "layers/kernels.h"
 
-// Radii of 3 x 3 pixels that differ by more than FROM are mixed, by 1 / GROWS more wholly so: where they differ by about 1 a
-// surface folds under the lens. SIDES: 1 over which part of what they differ by is of both sides. FAINT: by pixels of less
-// weight than this little is un-mixed. LEAN: the mean of a side that has less than this of the weight of both leans on
-// those pixels of that side whose colours are farthest from the other's.
-#define HF_UNMIX_FROM 0.75f
-#define HF_UNMIX_GROWS 2
-#define HF_UNMIX_SIDES 2
+// Which pixels are mixed: pixel/edges.h. FAINT: by pixels of less weight than this little is un-mixed. LEAN: the mean of a
+// side that has less than this of the weight of both leans on those pixels of that side whose colours are farthest from
+// the other's.
 #define HF_UNMIX_FAINT 0.001f
 #define HF_UNMIX_LEAN 0.01f
 

@@ -3,36 +3,6 @@
 #include "layers/unmix.h"
 #include "simd/simd.h"
 
-// Least and largest of a column of three.
-HF_INLINE void layers_column(const float *const radius[3], int x, vf *low, vf *high)
-{
-    const vf a = vf_load(radius[0] + x), b = vf_load(radius[1] + x), c = vf_load(radius[2] + x);
-    *low = vf_min(a, vf_min(b, c));
-    *high = vf_max(a, vf_max(b, c));
-}
-
-static void layers_sure_simd(const float *const radius[3], int n, float *sure, float *middle, float *slope)
-{
-    vf low[3], high[3];
-    layers_column(radius, 0, &low[1], &high[1]);
-    low[0] = low[1];
-    high[0] = high[1];
-    for (int x = 0; x < n; x += VF_N) {
-        layers_column(radius, x + VF_N, &low[2], &high[2]);
-        const vf least = vf_min(vf_min(vf_back(low[0], low[1]), low[1]), vf_align(low[1], low[2], 1));
-        const vf most = vf_max(vf_max(vf_back(high[0], high[1]), high[1]), vf_align(high[1], high[2], 1));
-        const vf apart = vf_sub(most, least), from = vf_set1(HF_UNMIX_FROM), one = vf_set1(1);
-        const vf mixed = vf_mul(vf_sub(apart, from), vf_set1(HF_UNMIX_GROWS));
-        vf_store(sure + x, vf_sub(one, vf_min(vf_max(mixed, vf_zero()), one)));
-        vf_store(slope + x, vf_div(vf_set1(HF_UNMIX_SIDES), vf_max(apart, from)));
-        vf_store(middle + x, vf_mul(vf_add(least, most), vf_set1(0.5f)));
-        for (int i = 0; i < 2; i++) {
-            low[i] = low[i + 1];
-            high[i] = high[i + 1];
-        }
-    }
-}
-
 HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channels)
 {
     for (int c = 0; c < channels; c++)

@@ -12,7 +12,8 @@ void hf_pixel_kernels_c(struct hf_pixel_kernels *k)
                                    .zip = hf_zip_row_c,
                                    .unzip = hf_unzip_row_c,
                                    .raise = hf_raise_row_c,
-                                   .lower = hf_lower_row_c};
+                                   .lower = hf_lower_row_c,
+                                   .edges = {hf_edges_sure_c, hf_edges_take_c}};
     hf_format_kernels_c(k);
     hf_depth_rows_c(k);
     hf_behind_rows_c(k);

@@ -71,6 +71,32 @@ struct hf_behind_kernels {
     hf_up_row *up_row;
 };
 
+// A row of pixels to be taken apart (edges.h), and rows of its two sides; [0] the front.
+struct hf_edge_row {
+    int channels;
+    float sharp;             // radii up to here are 0
+    const float *own;        // the row's radii
+    const float *radius[5];  // of rows from two above it on, what is beyond `sharp`
+    const float *sure[5];    // 1: not mixed
+    const float *middle,
+        *slope;  // of the row: between front and back, and how fast a radius goes from one to the other
+    const float *colour[5][4];
+};
+struct hf_sides {
+    float *colour[2][4], *radius[2];
+    float *share;  // the back's, 0..1
+};
+// How little the 3 x 3 radii of a pixel differ, 1 for one surface to 0 for two; the middle of these radii; and how fast
+// front becomes back around it. Of the first and the last pixel it means nothing.
+typedef void hf_edges_sure(const float *const radius[3], int n, float *sure, float *middle, float *slope);
+// Reads two pixels around n; writes whole vectors.
+typedef void hf_edges_take(const struct hf_edge_row *row, int n, const struct hf_sides *out);
+
+struct hf_edges_kernels {
+    hf_edges_sure *sure;
+    hf_edges_take *take;
+};
+
 struct hf_pixel_kernels {
     hf_coc_row *coc_row;
     hf_sharp_row *sharp_row;
@@ -85,6 +111,7 @@ struct hf_pixel_kernels {
     hf_round_row *round_half;    // to nearest even, clamped to +-65504
     hf_highlight_row *raise, *lower;
     struct hf_behind_kernels behind;
+    struct hf_edges_kernels edges;
 };
 HF_DECLARE_KERNELS(hf_pixel_kernels);
 
@@ -93,6 +120,8 @@ void hf_behind_rows_c(struct hf_pixel_kernels *k);     // and of what lies behin
 
 hf_highlight_row hf_raise_row_c;
 hf_highlight_row hf_lower_row_c;
+hf_edges_sure hf_edges_sure_c;
+hf_edges_take hf_edges_take_c;
 hf_near_row hf_near_row_c;
 hf_most_row hf_most_row_c;
 hf_seen_row hf_seen_row_c;

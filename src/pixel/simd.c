@@ -4,6 +4,7 @@
 #include "pixel/behind_simd.h"
 #include "pixel/coc_simd.h"
 #include "pixel/depth_rows_simd.h"
+#include "pixel/edges_simd.h"
 #include "pixel/highlight_simd.h"
 #include "pixel/radius_simd.h"
 
@@ -18,6 +19,7 @@ void HF_SIMD_NAME(hf_pixel_kernels)(struct hf_pixel_kernels *k)
     k->unzip = unzip_row_simd;
     k->raise = raise_row_simd;
     k->lower = lower_row_simd;
+    k->edges = (struct hf_edges_kernels){edges_sure_simd, edges_take_simd};
     k->behind = (struct hf_behind_kernels){.near_row = near_row_simd,
                                            .most_row = most_row_simd,
                                            .seen_row = seen_row_simd,

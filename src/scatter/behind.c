@@ -5,6 +5,7 @@
 
 #include "pixel/pass_c.h"
 #include "scatter/kernels.h"
+#include "scatter/walk.h"
 
 // Planes: sharp colours x weight, far colours x weight, weights of both. Alpha that is 1 everywhere has none.
 static int channels_of(const struct hf_setup *s)
@@ -22,6 +23,39 @@ static void near_quads(const struct hf_frame *f, int q, int from, int to, float 
     hf_behind_near(f, &f->buf[HF_BUF_RADIUS], 0, q, from, to, out);
 }
 
+// What of a quad's two backs is seen is added to planes: the nearest to what lies behind their fronts, it counts in full,
+// but grows from nothing.
+static unsigned add_backs(const struct hf_frame *f, int x, int y, float widest, int quad,
+                          float *const plane[HF_BEHIND_PLANES])
+{
+    const struct hf_scatter *t = hf_scatter(f->s);
+    const int channels = channels_of(f->s);
+    float weight[2][2] = {{0}}, v[2] = {0};
+    unsigned seen = 0;
+    for (int i = 0; i < hf_min(2, f->s->width - x); i++) {
+        const float share = *hf_at(&f->buf[HF_BUF_BACK_AT], 0, x + i, y);
+        const float r = *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x + i, y);
+        float *out[2] = {&weight[0][i], &weight[1][i]};
+        if (!(share > 0))
+            continue;
+        hf_seen_weights_c(t, &r, &widest, 0, 1, out);
+        for (int k = 0; k < 2; k++)
+            weight[k][i] *= hf_saturate(64 * share);
+    }
+    for (int k = 0; k < 2; k++) {
+        if (!(weight[k][0] + weight[k][1] > 0))
+            continue;
+        for (int c = 0; c < channels; c++) {
+            for (int i = 0; i < 2; i++)
+                v[i] = weight[k][i] > 0 ? *hf_at(&f->buf[HF_BUF_BACK], c, x + i, y) * (weight[k][i] * t->dim) : 0;
+            plane[k * channels + c][quad] += v[0] + v[1];
+        }
+        plane[2 * channels + k][quad] += weight[k][0] + weight[k][1];
+        seen |= ((1u << channels) - 1) << k * channels | 1u << (2 * channels + k);
+    }
+    return seen;
+}
+
 static unsigned seen_quads(const struct hf_frame *f, int q, int from, int to, const float *widest, float *line,
                            float *const plane[HF_BEHIND_PLANES])
 {
@@ -32,8 +66,12 @@ static unsigned seen_quads(const struct hf_frame *f, int q, int from, int to, co
     for (int x = 0; x < n; x++)
         one[x] = 1;
     for (int y = 2 * q; y < hf_min(2 * q + 2, f->s->height); y++) {
+        const float *share = hf_back_shares(f, x0, y, n);
         const int some =
             hf_scatter_kernels(f)->seen_weights(t, hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y), widest, 0, n, weight);
+        for (int x = share ? hf_edges_next(share, 0, n) : n; x < n; x = hf_edges_next(share, x + 1, n))
+            for (int k = 0; k < 2; k++)
+                weight[k][x] *= 1 - share[x];
         for (int k = 0; k < 2; k++) {
             if (!(some >> k & 1))
                 continue;
@@ -43,17 +81,22 @@ static unsigned seen_quads(const struct hf_frame *f, int q, int from, int to, co
             hf_behind_add(f, one, weight[k], 1, n, plane[2 * channels + k]);
             seen |= ((1u << channels) - 1) << k * channels | 1u << (2 * channels + k);
         }
+        for (int x = share ? hf_edges_next(share, 0, n) : n; x < n; x = hf_edges_next(share, (x | 1) + 1, n))
+            seen |= add_backs(f, x0 + (x & ~1), y, widest[x >> 1], x >> 1, plane);
     }
     return seen;
 }
 
 const struct hf_behind_source hf_scatter_behind_source = {near_quads, seen_quads};
 
-int hf_scatter_behind_begin(const struct hf_scatter_behind *b, const struct hf_scatter_row *row)
+int hf_scatter_behind_begin(const struct hf_scatter_behind *b, const struct hf_scatter_row *row, const float *back,
+                            int backs)
 {
     int near = 0;
     for (int i = 0; i < row->n; i++)
         near += row->radius[i] < 0;
+    for (int i = 0; i < backs; i++)
+        near += back[i] < 0;
     for (int k = 0; k < 2 && near; k++)
         hf_behind_sample(b->behind, b->f, 2 * channels_of(b->f->s) + k, row->x, row->y, row->n, b->weight[k]);
     return near > 0;

@@ -15,8 +15,9 @@ struct hf_scatter_behind {
     const struct hf_behind *behind;
     float *weight[2], *colour[2];
 };
-// Returns 0 if none of the row's pixels is near.
-int hf_scatter_behind_begin(const struct hf_scatter_behind *b, const struct hf_scatter_row *row);
+// Returns 0 if none of the row's pixels is near, and none of the radii of backs.
+int hf_scatter_behind_begin(const struct hf_scatter_behind *b, const struct hf_scatter_row *row, const float *back,
+                            int backs);
 // One channel of what lies behind those that are near.
 void hf_scatter_behind_row(const struct hf_scatter_behind *b, const struct hf_scatter_row *row, int channel,
                            const float *own, float *out);

@@ -93,7 +93,7 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
         const vm is_near = vf_lt(r, zero);
         vf cover = near, back = show;
         if (row->near) {
-            const vf px = vf_add(vf_set1((float)(row->x + x)), vf_load(steps));
+            const vf px = row->column ? vf_load(row->column + x) : vf_add(vf_set1((float)(row->x + x)), vf_load(steps));
             const vf part = scatter_inside(row->setup, vf_mul(size, scale_x), size, px, row->y);
             cover = vf_select(is_near, vf_div(near, part), near);
             const vf left = vf_sub(one, cover);

@@ -18,11 +18,13 @@
 #include <string.h>
 
 #include "frame/plan.h"
+#include "pixel/edges.h"
 #include "pixel/pass_c.h"
 #include "scatter/behind.h"
 #include "scatter/kernels.h"
 
 #define B(name) (1u << HF_BUF_##name)
+#define SOURCES (B(SOURCE) | B(RADIUS) | B(BACK) | B(BACK_AT))
 
 enum {
     HALO_RADIUS = 1,  // the largest CoC radius
@@ -33,18 +35,20 @@ enum { COC, PREPARE, FAR, NEAR, COMPOSITE, PASSES };
 
 static const struct hf_pass passes[PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 2.5f},
-    {"Prepare", .writes = B(SOURCE) | B(RADIUS), .sweep = 1, .ns = 4},
-    {"Far splats", .around = B(SOURCE) | B(RADIUS), .writes = B(FAR_SUM) | B(FAR_WEIGHT), .halo = HALO_RADIUS,
-     .sweep = 2, .field = HF_FAR, .ns = 75},
-    {"Near splats", .around = B(SOURCE) | B(RADIUS), .writes = B(NEAR_SUM) | B(NEAR_WEIGHT), .halo = HALO_RADIUS,
-     .sweep = 2, .field = HF_NEAR, .ns = 75},
-    {"Composite", .reads = B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .around = B(SOURCE) | B(RADIUS),
+    {"Prepare", .writes = SOURCES, .sweep = 1, .ns = 4},
+    {"Far splats", .around = SOURCES, .writes = B(FAR_SUM) | B(FAR_WEIGHT), .halo = HALO_RADIUS, .sweep = 2,
+     .field = HF_FAR, .ns = 75},
+    {"Near splats", .around = SOURCES, .writes = B(NEAR_SUM) | B(NEAR_WEIGHT), .halo = HALO_RADIUS, .sweep = 2,
+     .field = HF_NEAR, .ns = 75},
+    {"Composite", .reads = B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .around = SOURCES,
      .halo = HALO_BEHIND, .sweep = 2, .ns = 9},
 };
 
 static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
     [HF_BUF_SOURCE] = {"source", .frame = 1, .bare = 1, .x = 1, .y = 1},
     [HF_BUF_RADIUS] = {"radius", .frame = 1, .bare = 1, .x = 1, .y = 1},
+    [HF_BUF_BACK] = {"back", .frame = 1, .bare = 1, .x = 1, .y = 1},
+    [HF_BUF_BACK_AT] = {"backat", .frame = 1, .bare = 1, .x = 1, .y = 1},
     [HF_BUF_FAR_SUM] = {"far", .x = 1, .y = 1, .field = HF_FAR},
     [HF_BUF_FAR_WEIGHT] = {"farweight", .x = 1, .y = 1, .field = HF_FAR},
     [HF_BUF_NEAR_SUM] = {"near", .x = 1, .y = 1, .field = HF_NEAR},
@@ -87,7 +91,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     struct hf_scatter *t = own;
     (void)depth;
     s->resolution = p->scatter.resolution;
-    t->ready = t->around_x = t->around_y = 0;
+    t->ready = t->around_x = t->around_y = t->mixed = 0;
     s->sharp_radius = 0.5f;
 }
 
@@ -165,6 +169,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     (void)mem;
     t->largest[0] = fmaxf(-found->radius_min, 0);
     t->largest[1] = fmaxf(found->radius_max, 0);
+    t->mixed = found->radius_max - found->radius_min > HF_EDGES_FROM;
     t->behind = hf_behind_levels(t->largest[0]);
     t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
@@ -251,6 +256,8 @@ static int channels(const struct hf_setup *s, int b)
     const struct hf_scatter *t = hf_scatter(s);
     if (b == HF_BUF_RADIUS)
         return 1;
+    if (b == HF_BUF_BACK || b == HF_BUF_BACK_AT)
+        return !t->mixed ? 0 : b == HF_BUF_BACK ? s->channels : 2;
     return b == HF_BUF_FAR_WEIGHT || b == HF_BUF_NEAR_WEIGHT ? (t->ready ? t->groups : 1) : s->channels;
 }
 
@@ -261,13 +268,14 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     return halo == HALO_RADIUS ? (struct hf_reach){t->around_x, t->around_y} : (struct hf_reach){behind, behind};
 }
 
-// A far field shows only on pixels that are blurred themselves: far ones, or near ones that it shines through.
+// A far field shows only on pixels that are blurred themselves, or mixed with such: far ones, or near ones that it shines
+// through.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
 {
     const struct hf_scatter *t = hf_scatter(s);
     (void)p;
     if (field == HF_FAR && t->largest[0] <= 0)
-        return (struct hf_reach){0, 0};
+        return (struct hf_reach){t->mixed, t->mixed};
     return (struct hf_reach){t->around_x, t->around_y};
 }
 
@@ -300,7 +308,9 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
         return 0;
     const size_t splats = hf_splat_work(t, p->cell_width[2], p->cell_height[2]);
     const size_t behind = hf_behind_floats(t->behind, hf_scatter_behind_planes(s->channels));
-    return splats > behind ? splats : behind;
+    const size_t edges = t->mixed ? hf_edges_floats(p->cell_width[1], s->channels) : 0;
+    const size_t most = splats > behind ? splats : behind;
+    return most > edges ? most : edges;
 }
 
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)

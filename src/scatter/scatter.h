@@ -6,9 +6,11 @@
 #include "pixel/aperture.h"
 
 // The engine's buffers.
-enum {
-    HF_BUF_SOURCE,  // colour of every pixel
-    HF_BUF_RADIUS,  // its signed radius
+enum hf_scatter_buf {
+    HF_BUF_SOURCE,   // colour of every pixel, of a mixed one its front's (pixel/edges.h)
+    HF_BUF_RADIUS,   // its signed radius
+    HF_BUF_BACK,     // the back's colour; means nothing where this has no share
+    HF_BUF_BACK_AT,  // the back's share, and its radius
     HF_BUF_FAR_SUM,
     HF_BUF_FAR_WEIGHT,
     HF_BUF_NEAR_SUM,
@@ -47,6 +49,7 @@ struct hf_scatter {
     float fade, fade_slope;            // radius up to which the pixel itself still shows, and 1 / its distance from 0.5
     int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
     int around_x, around_y;            // of the frame, half-resolution pixels, once its depth has been looked at
+    int mixed;                         // there may be mixed pixels
     int behind;                        // neighbourhoods that near radii ask for (behind.h)
     float ring, cat_eye;               // radii of the hole, and by which the second circle moves in the corners
     float corner;                      // 1 / the picture's diagonal, pixels
@@ -95,6 +98,7 @@ struct hf_scatter_row {
     int x, y, n;
     const float *radius, *far, *far_weight, *near, *near_weight;
     const float *behind;  // what lies behind near pixels; NULL: what far ones say
+    const float *column;  // where each is, if they do not lie side by side
 };
 
 // A row of pixels as parts of half-resolution means: n of these from column 0 on, two pixels each.

@@ -143,8 +143,13 @@ static struct hf_tent_row tent_row_of(const struct walk *w, int y)
 static void tent_row(struct walk *w, int y)
 {
     const struct hf_tent_row t = tent_row_of(w, y);
-    const int n = t.n, width = w->f->s->width;
+    const int n = t.n, width = w->f->s->width, pixels = hf_min(2 * n, width - 2 * w->tent_x0);
+    const float *share = hf_back_shares(w->f, 2 * w->tent_x0, y, pixels);
     w->lone[y & 3] = hf_scatter_kernels(w->f)->tent_weights(&t, 0);
+    for (int x = share ? hf_edges_next(share, 0, pixels) : pixels; x < pixels; x = hf_edges_next(share, x + 1, pixels))
+        for (int c = 0; c < 4; c++)
+            if (c == 3 || c < t.channels)
+                t.pixel[x & 1][c][x >> 1] *= 1 - share[x];
     for (int c = 0; c < 4; c++) {
         float *even = t.pixel[0][c], *odd = t.pixel[1][c];
         if (c >= t.channels && c < 3)
@@ -159,30 +164,53 @@ static void tent_row(struct walk *w, int y)
     }
 }
 
+// The half-resolution column that one of a pixel's two sides goes to, -1 if it is none of the window's.
+static int column_of(const struct walk *w, int x, int side)
+{
+    const int column = side ? hf_beside(x, w->f->s->half_width) : x >> 1;
+    int x0, x1;
+    hf_walk_columns(w, &x0, &x1);
+    return column >= x0 && column < x1 ? column : -1;
+}
+
 // Draw the pixels of row y that have no like neighbours, on half-resolution row q, with a share of `part`.
 static void list_lone(struct walk *w, int y, int q, float part)
 {
     const struct hf_frame *f = w->f;
     const struct hf_tent_row t = tent_row_of(w, y);
     const float half = 0.5f * w->group->factor[w->field];
-    int x0, x1;
-    hf_walk_columns(w, &x0, &x1);
     for (int x = 2 * w->tent_x0; x < hf_min(2 * w->tent_x1, f->s->width); x++) {
         int merged;
-        const float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
+        float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
         if (!(weight > 0) || merged)
             continue;
+        if (w->t->mixed)
+            weight *= 1 - *hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y);
         for (int side = 0; side < 2; side++) {
-            const int column = side ? hf_beside(x, f->s->half_width) : x >> 1;
+            const int column = column_of(w, x, side);
             const float share = weight * part * (side ? 0.25f : 0.75f);
             float v[3] = {0};
-            if (column < x0 || column >= x1)
+            if (column < 0 || !(share > 0))
                 continue;
             for (int c = 0; c < w->group->channels; c++)
                 v[c] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * (share * w->t->dim);
             hf_add_source(w, column, q, t.sign * t.radius[x - 2 * w->tent_x0] * half, v, share);
         }
     }
+    hf_flush_sources(w);
+}
+
+// The same of the backs of mixed pixels.
+static void list_backs(struct walk *w, int y, int q, float part)
+{
+    const int x0 = 2 * w->tent_x0, n = hf_min(2 * w->tent_x1, w->f->s->width) - x0;
+    const float *share = hf_back_shares(w->f, x0, y, n);
+    for (int x = share ? hf_edges_next(share, 0, n) : n; x < n; x = hf_edges_next(share, x + 1, n))
+        for (int side = 0; side < 2; side++) {
+            const int column = column_of(w, x0 + x, side);
+            if (column >= 0)
+                hf_add_back(w, x0 + x, y, column, q, part * (side ? 0.25f : 0.75f));
+        }
     hf_flush_sources(w);
 }
 
@@ -247,9 +275,12 @@ void hf_list_half(struct walk *w, int q)
     hf_scatter_kernels(w->f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)w->mean[4]);
     hf_list_sources(w, &r, 0, x1 - x0);
     hf_flush_sources(w);
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; k++) {
         if (part[k] > 0 && w->lone[row[k] & 3])
             list_lone(w, row[k], q, 0.25f * part[k]);
+        if (part[k] > 0)
+            list_backs(w, row[k], q, 0.25f * part[k]);
+    }
 }
 
 int hf_tent_columns(const struct hf_scatter *t, int field, int width)

@@ -6,8 +6,14 @@
 
 #include "scatter/walk.h"
 
-// Weights, colours and pictures of full-resolution row y, in the walk's rows.
-static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y)
+const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n)
+{
+    const float *share = hf_scatter(f->s)->mixed ? hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) : NULL;
+    return share && hf_edges_next(share, 0, n) < n ? share : NULL;
+}
+
+// Weights, colours and pictures of full-resolution row y, in the walk's rows. share: of the backs.
+static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, const float *share)
 {
     const struct hf_frame *f = w->f;
     const float sign = w->field ? 1 : -1, *colour[3] = {NULL};
@@ -24,22 +30,47 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y)
             colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x0, y);
     }
     hf_scatter_kernels(f)->source_weights(w->t, sign, r.radius, colour, w->group->channels, x1 - x0, row);
+    for (int x = share ? hf_edges_next(share, 0, x1 - x0) : x1; x < x1 - x0; x = hf_edges_next(share, x + 1, x1 - x0))
+        for (int c = 0; c < 4; c++)
+            if (c == 3 || c < w->group->channels)
+                row[c][x] *= 1 - share[x];
     hf_scatter_kernels(f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
     return r;
 }
 
+void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
+{
+    const struct hf_frame *f = w->f;
+    const float size = (w->field ? 1 : -1) * *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y), half = hf_half_part(w->t, size);
+    const float weight =
+        hf_field_weight(w->t, size) * (w->level ? half : 1 - half) * (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part);
+    float v[3] = {0};
+    if (!(weight > 0))
+        return;
+    for (int c = 0; c < w->group->channels; c++)
+        v[c] = *hf_at(&f->buf[HF_BUF_BACK], w->group->channel[c], x, y) * (weight * w->t->dim);
+    hf_add_source(w, to_x, to_y, size * (w->level ? 0.5f : 1) * w->group->factor[w->field], v, weight);
+}
+
 // Sources of full-resolution rows y0 to y1, four columns at a time: all rows of these draw on nearly the same lines of
-// the cache, which come from its second level and go back there once for all of them.
+// the cache, which come from its second level and go back there once for all of them. Then the backs of mixed pixels.
 static void list_full(struct walk *w, int y0, int y1)
 {
     struct hf_source_row row[TOGETHER];
+    const float *share[TOGETHER];
     int x0, x1;
     hf_walk_columns(w, &x0, &x1);
-    for (int y = y0; y < y1; y++)
-        row[y - y0] = prepare_row(w, x0, x1, y);
+    for (int y = y0; y < y1; y++) {
+        share[y - y0] = hf_back_shares(w->f, x0, y, x1 - x0);
+        row[y - y0] = prepare_row(w, x0, x1, y, share[y - y0]);
+    }
     for (int x = 0; x < x1 - x0; x += 4)
         for (int i = 0; i < y1 - y0; i++)
             hf_list_sources(w, &row[i], x, hf_min(x + 4, x1 - x0));
+    hf_flush_sources(w);
+    for (int i = 0, n = x1 - x0; i < y1 - y0; i++)
+        for (int x = share[i] ? hf_edges_next(share[i], 0, n) : n; x < n; x = hf_edges_next(share[i], x + 1, n))
+            hf_add_back(w, x0 + x, y0 + i, x0 + x, y0 + i, 1);
     hf_flush_sources(w);
 }
 

@@ -4,6 +4,7 @@
 #ifndef HF_WALK_H
 #define HF_WALK_H
 
+#include "pixel/edges.h"
 #include "pixel/pass_c.h"
 #include "scatter/kernels.h"
 
@@ -54,10 +55,14 @@ static inline int hf_beside(int pixel, int count)
     return q < 0 ? 0 : q >= count ? count - 1 : q;
 }
 
+// Shares of the backs of n pixels from (x, y) on; NULL: there are none.
+const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n);
 // Add sources `from` to `to` of a row to the list, which is drawn when it is full.
 void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to);
 // One source, its colour already weighted. r: of its picture.
 void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight);
+// A part of the back of full-resolution pixel (x, y), if it is in the walk's field and level, drawn on a pixel of the level.
+void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part);
 // Draw the list.
 void hf_flush_sources(struct walk *w);
 

@@ -3,6 +3,7 @@
 // those that come together keeps its own accuracy. On one instruction set: the others have the same bits (scatter.c).
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "support/check.h"
@@ -25,6 +26,13 @@ static struct scene stage(int channels)
         for (int c = 0; c < channels; c++)
             s.colour.plane[c][k] = powf(10, rng_range(&rng, -5, 1));
         s.depth.plane[0][k] = k % WIDTH < 40 ? -rng_range(&rng, 0.6f, RADIUS) : rng_range(&rng, 0.6f, RADIUS);
+    }
+    // Lights stand on surfaces: of a mixed pixel all channels have one share.
+    for (int i = 0; i < 4; i++) {
+        const int x = i ? 20 + 30 * (i - 1) : X, y = i ? Y + 45 : Y, at = y * WIDTH + x;
+        for (int k = 0; k < PIXELS; k++)
+            if (abs(k % WIDTH - x) <= 4 && abs(k / WIDTH - y) <= 4)
+                s.depth.plane[0][k] = s.depth.plane[0][at];
     }
     return s;
 }

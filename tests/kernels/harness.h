@@ -277,9 +277,13 @@ void scatter_make(struct world *w, int which);
 void scatter_call(struct world *w, const struct kernels *k, enum arena a, int which);
 int scatter_check(const struct world *w, const struct level *l, char message[256]);
 
+// edges.c
+enum { EDGES_SURE, EDGES_TAKE };
+void edges_make(struct world *w, int which);
+void edges_call(struct world *w, const struct kernels *k, enum arena a, int which);
+
 // layers.c
 enum {
-    LAYERS_SURE,
     LAYERS_UNMIX,
     LAYERS_ROOTS,
     LAYERS_NINE,

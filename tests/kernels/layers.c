@@ -378,16 +378,6 @@ void layers_make(struct world *w, int which)
 {
     start(w, which);
     switch (which) {
-    case LAYERS_SURE:
-        for (int i = 0; i < 3; i++)
-            fill_surfaces(w, i, -1, w->n + 1);
-        for (int i = IN; i < IN + 3; i++) {  // the first and the last mean nothing
-            put(w, i, w->n, 32);
-            w->regions[w->region_count - 1].kind = REGION_SCRATCH;
-            if (w->n > 2)
-                world_region(w, REGION_FLOATS, SLOT_LINES, line(w, ARENA_MADE, i) + 1, (size_t)(w->n - 2) * 4, 0, 1, 0);
-        }
-        return;
     case LAYERS_UNMIX:
         unmix_make(w);
         return;
@@ -529,9 +519,6 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
     for (int i = 0; i < 9; i++)
         in[i] = line(w, a, i);
     switch (which) {
-    case LAYERS_SURE:
-        s->sure(in, w->n, out, line(w, a, IN + 1), line(w, a, IN + 2));
-        return;
     case LAYERS_UNMIX:
         unmix_call(w, k, a);
         return;

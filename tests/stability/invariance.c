@@ -224,10 +224,22 @@ static void exposures(const struct run *r)
     }
 }
 
+// From near to far along both axes: over 122 pixels 0.9 of the range on either side of the focus, so that radii of 3 x 3
+// pixels differ by 4 * 2 * 0.9 * 12 / 122 = 0.71, and nothing is mixed.
+static void one_surface(struct scene *s)
+{
+    const int w = s->depth.width, steps = w + s->depth.height;
+    for (int k = 0; k < w * s->depth.height; k++)
+        s->depth.plane[0][k] =
+            STABILITY_FOCUS + 0.9f * STABILITY_RANGE * (2 * (float)(k % w + k / w) / (float)steps - 1);
+}
+
 static void sums(const struct run *r)
 {
     for (unsigned i = 0; i < 3; i++) {
         struct scene s = calm_scene(r->seed + i, 70, 52, 3);
+        if (r->subject->promises & ADDS_ONE_SURFACE)
+            one_surface(&s);
         struct scene t = {picture_new(70, 52, 3), picture_copy(&s.depth)};
         struct scene both = {picture_new(70, 52, 3), picture_copy(&s.depth)};
         struct rng rng = rng_seed(r->seed + 50 + i);
@@ -269,6 +281,6 @@ void invariance_cases(const struct run *r)
         permutations(r);
     if (promises & EXPOSES)
         exposures(r);
-    if (promises & ADDS)
+    if (promises & (ADDS | ADDS_ONE_SURFACE))
         sums(r);
 }

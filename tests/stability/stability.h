@@ -24,15 +24,16 @@
 
 // What a subject promises beyond what all do.
 enum promise {
-    KEEPS_ENERGY = 1,    // of a highlight where everything has one CoC
-    ADDS = 2,            // the blur of a sum is the sum of the blurs
-    EXPOSES = 4,         // a factor of 2^k passes through exactly
-    FLIPS = 8,           // left to right, bit for bit
-    FLIPS_QUADS = 16,    // the same where depth is constant per quad and the size even
-    TRANSPOSES = 32,     // within rounding
-    PERMUTES = 64,       // channels, bit for bit
-    EXACT = 128,         // float storage: bounds are those of rounding alone
-    KEEPS_CENTRE = 256,  // a highlight's centre of gravity, far and near
+    KEEPS_ENERGY = 1,        // of a highlight where everything has one CoC
+    ADDS = 2,                // the blur of a sum is the sum of the blurs
+    EXPOSES = 4,             // a factor of 2^k passes through exactly
+    FLIPS = 8,               // left to right, bit for bit
+    FLIPS_QUADS = 16,        // the same where depth is constant per quad and the size even
+    TRANSPOSES = 32,         // within rounding
+    PERMUTES = 64,           // channels, bit for bit
+    EXACT = 128,             // float storage: bounds are those of rounding alone
+    ADDS_ONE_SURFACE = 512,  // as ADDS, but for mixed pixels
+    KEEPS_CENTRE = 256,      // a highlight's centre of gravity, far and near
 };
 
 struct subject {

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "support/reference_edges.h"
 #include "support/seen.h"
 
 // A radius as the nearest of 1024 an octave, and half the width of its row dy in 1/256 pixel.
@@ -36,7 +37,7 @@ static double overlap(double a0, double a1, double b0, double b1)
     return fmax(0, fmin(a1, b1) - fmax(a0, b0));
 }
 
-static void splat(double *sum, const struct picture *c, int x, int y, float radius, double part)
+static void splat(double *sum, const struct picture *c, int x, int y, const double *colour, float radius, double part)
 {
     const double r = kept_radius(radius);
     const int reach = (int)ceil(r) + 1, n = c->channels;
@@ -52,7 +53,7 @@ static void splat(double *sum, const struct picture *c, int x, int y, float radi
                          share = part * row_weight(r, dy) * overlap(-w, w, dx - 0.5, dx + 0.5) / area;
             double *out = sum + (size_t)(py * c->width + px) * 5;
             for (int k = 0; k < n; k++)
-                out[k] += share * c->plane[k][y * c->width + x];
+                out[k] += share * colour[k];
             out[4] += share;
         }
 }
@@ -79,26 +80,35 @@ static double own_part(double r)
     return clamp01(1.5 - fabs(r));
 }
 
+// A pixel's front or back: its radius as far as it is blurred, and its share.
+static double part_of(const struct edge_reference *e, int k, double *radius)
+{
+    *radius = fabs(e->radius[k]) > 0.5 ? e->radius[k] : 0;
+    return k ? e->share : 1 - e->share;
+}
+
 // What is seen around near pixels: planes of sharp and far colours times weight, then both weights.
-static struct seen seen_of(const struct picture *c, const float *radius)
+static struct seen seen_of(const struct picture *c, const struct edge_reference *edge)
 {
     const int n = c->channels, pixels = c->width * c->height;
     struct seen s = seen_new((c->width + 1) / 2, (c->height + 1) / 2, 2 * n + 2);
     for (int i = 0; i < pixels; i++)
-        if (radius[i] < -0.5f) {
+        if (edge[i].radius[0] < -0.5) {
             double *near = seen_at(&s, 2 * n + 2, i % c->width / 2, i / c->width / 2);
-            *near = fmax(*near, -radius[i]);
+            *near = fmax(*near, -edge[i].radius[0]);
         }
-    for (int i = 0; i < pixels; i++) {
-        const int x = i % c->width / 2, y = i / c->width / 2;
-        const double r = fabs((double)radius[i]) > 0.5 ? radius[i] : 0;
+    for (int i = 0; i < 2 * pixels; i++) {
+        const int at = i / 2, x = at % c->width / 2, y = at / c->width / 2;
+        double r, part = part_of(&edge[at], i & 1, &r);
+        // What is seen of a back counts in full, but for a share of next to nothing.
+        part = i & 1 ? clamp01(64 * part) : part;
         const double own = r > 0 ? own_part(r) : seen_part(r, seen_widest(&s, x, y)), far = r > 0 ? 1 - own : 0;
         for (int k = 0; k < n; k++) {
-            *seen_at(&s, k, x, y) += own * c->plane[k][i] / 4;
-            *seen_at(&s, n + k, x, y) += far * c->plane[k][i] / 4;
+            *seen_at(&s, k, x, y) += part * own * edge[at].colour[i & 1][k] / 4;
+            *seen_at(&s, n + k, x, y) += part * far * edge[at].colour[i & 1][k] / 4;
         }
-        *seen_at(&s, 2 * n, x, y) += own / 4;
-        *seen_at(&s, 2 * n + 1, x, y) += far / 4;
+        *seen_at(&s, 2 * n, x, y) += part * own / 4;
+        *seen_at(&s, 2 * n + 1, x, y) += part * far / 4;
     }
     return seen_around(s);
 }
@@ -114,34 +124,51 @@ static double behind(const struct seen *s, int n, int k, int x, int y, const dou
     return (seen_sample(s, k, x, y) + blurred * shown + nothing * other) / (sharp + blurred + nothing);
 }
 
+// What a part of pixel i shows in channel k.
+static double composite(const struct seen *seen, const struct picture *c, const double *far, const double *near, int i,
+                        int k, double radius, double v)
+{
+    const double size = fabs(radius), own = size <= 0.5 ? 1 : own_part(size),
+                 front = near[4] > 0 ? near[k] / near[4] : v;
+    double back = far[4] > 0 ? far[k] / far[4] : v, cover = near[4];
+    if (radius < 0) {
+        back = behind(seen, c->channels, k, i % c->width, i / c->width, far, front);
+        cover /= visible_part(c, size, i % c->width, i / c->width);
+    }
+    // What shows of a near pixel itself covers what is behind as its picture does.
+    const double show = radius < 0 && own < 1 - cover ? own / (1 - cover) : radius < 0 ? 1 : own;
+    const double base = back + show * (v - back);
+    return base + clamp01(cover) * (front - base);
+}
+
 struct picture scatter_reference(const struct picture *c, const float *radius)
 {
     const int n = c->width * c->height;
-    double *sum[2] = {calloc((size_t)n * 5, sizeof(double)), calloc((size_t)n * 5, sizeof(double))};
+    double *sum[2] = {calloc((size_t)n * 5, sizeof(double)), calloc((size_t)n * 5, sizeof(double))}, r;
+    struct edge_reference *edge = calloc((size_t)n, sizeof *edge);
     struct picture out = picture_copy(c);
-    struct seen seen = seen_of(c, radius);
     for (int i = 0; i < n; i++)
-        if (fabsf(radius[i]) > 0.5f) {
-            const double own = clamp01(1.5 - fabs((double)radius[i]));
-            splat(sum[radius[i] > 0], c, i % c->width, i / c->width, fabsf(radius[i]), 1 - own);
-        }
+        edge[i] = edge_reference(c, radius, 0.5, i % c->width, i / c->width);
+    struct seen seen = seen_of(c, edge);
+    for (int i = 0; i < 2 * n; i++) {
+        const int x = i / 2 % c->width, y = i / 2 / c->width;
+        const double part = part_of(&edge[i / 2], i & 1, &r);
+        if (r != 0 && part > 0)
+            splat(sum[r > 0], c, x, y, edge[i / 2].colour[i & 1], (float)fabs(r), part * (1 - own_part(r)));
+    }
     for (int i = 0; i < n; i++)
         for (int k = 0; k < c->channels; k++) {
-            const double *near = sum[0] + 5 * (size_t)i, *far = sum[1] + 5 * (size_t)i, size = fabs((double)radius[i]);
-            const double own = size <= 0.5 ? 1 : clamp01(1.5 - size), v = c->plane[k][i];
-            const double front = near[4] > 0 ? near[k] / near[4] : v;
-            double back = far[4] > 0 ? far[k] / far[4] : v;
-            double cover = near[4];
-            if (radius[i] < -0.5f)
-                back = behind(&seen, c->channels, k, i % c->width, i / c->width, far, front);
-            if (radius[i] < -0.5f)
-                cover /= visible_part(c, size, i % c->width, i / c->width);
-            // What shows of a near pixel itself covers what is behind as its picture does.
-            const double show = radius[i] < -0.5f && own < 1 - cover ? own / (1 - cover) : radius[i] < -0.5f ? 1 : own;
-            const double base = back + show * (v - back);
-            out.plane[k][i] = (float)(base + clamp01(cover) * (front - base));
+            double v = 0;
+            for (int p = 0; p < 2; p++) {
+                const double part = part_of(&edge[i], p, &r);
+                if (part > 0)
+                    v += part * composite(&seen, c, sum[1] + 5 * (size_t)i, sum[0] + 5 * (size_t)i, i, k, r,
+                                          edge[i].colour[p][k]);
+            }
+            out.plane[k][i] = (float)v;
         }
     seen_free(&seen);
+    free(edge);
     free(sum[0]);
     free(sum[1]);
     return out;
