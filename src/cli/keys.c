@@ -19,15 +19,16 @@ static const struct {
     enum cli_key key;
     double min, max;
     int above_min;
+    enum tool_unit unit;
 } columns[] = {
-    {"frame", (enum cli_key)FRAME_COLUMN, -1e8, 1e8, 0},
-    {"focus", CLI_KEY_FOCUS, 0, FLT_MAX, 1},
-    {"range", CLI_KEY_RANGE, 0, FLT_MAX, 0},
-    {"strength", CLI_KEY_STRENGTH, 0, 1, 0},
-    {"fstop", CLI_KEY_FSTOP, 0, FLT_MAX, 1},
-    {"focal-length", CLI_KEY_FOCAL_LENGTH, 0, FLT_MAX, 1},
-    {"max-radius", CLI_KEY_MAX_RADIUS, 0, 256, 0},
-    {"focus-at", CLI_KEY_FOCUS_X, -1e8, 1e8, 0},
+    {"frame", (enum cli_key)FRAME_COLUMN, -1e8, 1e8, 0, TOOL_UNIT_NONE},
+    {"focus", CLI_KEY_FOCUS, 0, FLT_MAX, 1, TOOL_UNIT_DISTANCE},
+    {"range", CLI_KEY_RANGE, 0, FLT_MAX, 0, TOOL_UNIT_DISTANCE},
+    {"strength", CLI_KEY_STRENGTH, 0, 1, 0, TOOL_UNIT_NONE},
+    {"fstop", CLI_KEY_FSTOP, 0, FLT_MAX, 1, TOOL_UNIT_FSTOP},
+    {"focal-length", CLI_KEY_FOCAL_LENGTH, 0, FLT_MAX, 1, TOOL_UNIT_MM},
+    {"max-radius", CLI_KEY_MAX_RADIUS, 0, 2048, 0, TOOL_UNIT_NONE},
+    {"focus-at", CLI_KEY_FOCUS_X, -1e8, 1e8, 0, TOOL_UNIT_NONE},
 };
 
 struct reader {
@@ -89,7 +90,7 @@ static int read_names(struct reader *r, char *line)
     return frame ? 0 : fail(r, r->count ? columns[r->order[0]].name : "", "is there, but no column frame");
 }
 
-static int add_key(struct cli_keys *keys, enum cli_key key, double frame, double value)
+static int add_key(struct cli_keys *keys, enum cli_key key, struct cli_keyed added)
 {
     const size_t n = (size_t)keys->column[key].count;
     struct cli_keyed *k = keys->column[key].keys;
@@ -99,26 +100,60 @@ static int add_key(struct cli_keys *keys, enum cli_key key, double frame, double
             return -1;
         keys->column[key].keys = k;
     }
-    k[n] = (struct cli_keyed){frame, value};
+    k[n] = added;
     keys->column[key].count++;
     return 0;
 }
 
+static int check_value(const struct reader *r, const char *cell, int column, double value)
+{
+    return value < columns[column].min || value > columns[column].max ||
+                   (columns[column].above_min && value <= columns[column].min)
+               ? fail(r, cell, "is out of range")
+               : 0;
+}
+
+// The number at the beginning of a cell.
 static int read_value(const struct reader *r, const char *cell, int column, double *value, char **end)
 {
     *value = strtod(cell, end);
     if (*end == cell || isnan(*value))
         return fail(r, cell, "is not a number");
-    if (*value < columns[column].min || *value > columns[column].max ||
-        (columns[column].above_min && *value <= columns[column].min))
-        return fail(r, cell, "is out of range");
-    return 0;
+    return check_value(r, cell, column, *value);
+}
+
+// X:Y
+static int read_pixel(const struct reader *r, const char *cell, int column, double frame)
+{
+    struct cli_keyed x = {.frame = frame}, y = x;
+    char *end;
+    if (read_value(r, cell, column, &x.value, &end))
+        return CLI_BAD_ARGUMENTS;
+    const char *second = end + strspn(end, " :,");
+    if (second == end || read_value(r, second, column, &y.value, &end) || *end)
+        return fail(r, cell, "is not a pixel, X:Y");
+    return add_key(r->keys, CLI_KEY_FOCUS_X, x) || add_key(r->keys, CLI_KEY_FOCUS_Y, y) ? CLI_ALL_FAILED : 0;
+}
+
+static int read_cell(const struct reader *r, const char *cell, int column, double frame)
+{
+    const enum tool_unit unit = columns[column].unit;
+    struct cli_keyed key = {.frame = frame};
+    char what[64];
+    if (columns[column].key == CLI_KEY_FOCUS_X)
+        return read_pixel(r, cell, column, frame);
+    snprintf(what, sizeof(what), "is not a number%s", tool_units(unit));
+    if (tool_read_measure(unit, cell + strspn(cell, " "), &key.value, &key.metric))
+        return fail(r, cell, what);
+    if (check_value(r, cell, column, key.value))
+        return CLI_BAD_ARGUMENTS;
+    return add_key(r->keys, columns[column].key, key) ? CLI_ALL_FAILED : 0;
 }
 
 static int read_row(struct reader *r, char *line)
 {
     char *cells[MAX_COLUMNS] = {NULL}, *end;
-    double frame = NAN, value;
+    double frame = NAN;
     for (int i = 0; i < r->count; i++)
         cells[i] = next_cell(&line);
     if (line && next_cell(&line)[0])
@@ -127,22 +162,11 @@ static int read_row(struct reader *r, char *line)
         if (r->order[i] == 0 && (read_value(r, cells[i] ? cells[i] : "", 0, &frame, &end) || *end))
             return fail(r, cells[i] ? cells[i] : "", "is not a frame's number");
     for (int i = 0; i < r->count; i++) {
-        const int c = r->order[i];
-        if (c == 0 || !cells[i] || !*cells[i])
-            continue;
-        if (read_value(r, cells[i], c, &value, &end))
-            return CLI_BAD_ARGUMENTS;
-        int failed = add_key(r->keys, columns[c].key, frame, value);
-        if (columns[c].key == CLI_KEY_FOCUS_X) {
-            const char *second = end + strspn(end, " :,");
-            if (second == end || read_value(r, second, c, &value, &end))
-                return fail(r, cells[i], "is not a pixel, X:Y");
-            failed |= add_key(r->keys, CLI_KEY_FOCUS_Y, frame, value);
-        }
-        if (*end)
-            return fail(r, cells[i], "is not a number");
-        if (failed)
-            return tool_fail(r->error, CLI_ALL_FAILED, "%s: out of memory", r->path);
+        const int status = r->order[i] && cells[i] && *cells[i] ? read_cell(r, cells[i], r->order[i], frame) : 0;
+        if (status == CLI_ALL_FAILED)
+            return tool_fail(r->error, status, "%s: out of memory", r->path);
+        if (status)
+            return status;
     }
     return 0;
 }
@@ -195,6 +219,14 @@ int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct to
     if (status)
         cli_keys_free(keys);
     return status;
+}
+
+void cli_keys_scale(struct cli_keys *keys, double unit)
+{
+    for (int c = 0; c < CLI_KEY_COUNT; c++)
+        for (int i = 0; i < keys->column[c].count; i++)
+            if (keys->column[c].keys[i].metric)
+                keys->column[c].keys[i].value /= unit;
 }
 
 void cli_keys_free(struct cli_keys *keys)

@@ -7,7 +7,8 @@
 //
 // The first row names the columns: frame, and any of those below. A value holds before the first and after the last
 // row that has one; between two, it goes linearly or smoothly (a cubic through all of them that never overshoots).
-// An empty cell is no key. Lines that begin with # are comments; ; and tabs separate too.
+// An empty cell is no key. Lines that begin with # are comments; ; and tabs separate too. Numbers may have the units that
+// those of the options may: 4.5m, 50mm, f/2.8.
 #ifndef HF_CLI_KEYS_H
 #define HF_CLI_KEYS_H
 
@@ -27,6 +28,7 @@ enum cli_key {
 
 struct cli_keyed {
     double frame, value;
+    int metric;  // value is in metres
 };
 
 struct cli_keys {
@@ -39,6 +41,8 @@ struct cli_keys {
 
 // Returns 0, or an exit code with *error filled, which names the line.
 int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct tool_error *error);
+// Divide by it what was given in metres: it is how many metres a scene unit has. Once.
+void cli_keys_scale(struct cli_keys *keys, double unit);
 void cli_keys_free(struct cli_keys *keys);
 
 // Value of a column that has keys.

@@ -21,6 +21,8 @@ int cli_plan_open(struct cli_plan *plan, const struct cli_args *args, const stru
 {
     *plan = (struct cli_plan){.args = args, .shot = shot};
     int status = args->keys ? cli_keys_load(&plan->keys, args->keys, args->keys_blend == CLI_KEYS_SMOOTH, error) : 0;
+    if (!status && !isnan(args->world_unit))
+        cli_keys_scale(&plan->keys, args->world_unit);
     if (status || !shot->jobs.count || !cli_track_wanted(args, &plan->keys))
         return status;
     struct hf_io_run run = {0};

@@ -43,7 +43,8 @@ int cli_parse_focus(struct tool_parser *p, const struct tool_option *option, con
         return 0;
     args->focus_by = CLI_FOCUS_DISTANCE;
     if (isalpha((unsigned char)value[0]) && strncasecmp(value, "inf", 3))
-        return tool_fail(p->error, -1, "--focus: '%s' is neither a distance nor center", value);
+        return tool_fail(p->error, -1, "--focus: '%s' is neither a distance nor center%s", value,
+                         tool_units(option->unit));
     return tool_parse_float(p, option, value, &args->focus);
 }
 
@@ -89,6 +90,19 @@ static int parse_ngon(struct hf_aperture_params *aperture, const char *value, st
     return 0;
 }
 
+// What a word for a shape is here; NULL for what may be a file's name.
+static const char *aperture_word(const char *value)
+{
+    static const char *const words[][2] = {{"circle", "disc"},     {"round", "disc"},      {"disk", "disc"},
+                                           {"triangle", "ngon:3"}, {"square", "ngon:4"},   {"pentagon", "ngon:5"},
+                                           {"hexagon", "ngon:6"},  {"heptagon", "ngon:7"}, {"octagon", "ngon:8"},
+                                           {"ngon", "ngon:6"},     {"polygon", "ngon:6"},  {"ring", "ring:0.5"}};
+    for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+        if (!strcasecmp(value, words[i][0]))
+            return words[i][1];
+    return NULL;
+}
+
 int cli_parse_aperture(struct tool_parser *p, const struct tool_option *option, const char *value)
 {
     struct cli_args *args = p->args;
@@ -102,6 +116,10 @@ int cli_parse_aperture(struct tool_parser *p, const struct tool_option *option, 
         return 0;
     if (!strncmp(value, "ngon:", 5))
         return parse_ngon(aperture, value, p->error);
+    const char *meant = aperture_word(value);
+    if (meant)
+        return tool_fail(p->error, -1, "--%s: '%s' is neither %s, did you mean %s?", option->name, value,
+                         "disc, ngon:N, ring:R nor a picture", meant);
     if (strncmp(value, "ring:", 5)) {
         args->aperture_file = value;
         return value[0]

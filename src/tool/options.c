@@ -101,8 +101,9 @@ static int unknown_option(const struct tool_parser *p, const char *word)
     const struct tool_option *o;
     struct tool_nearest nearest = {NULL, 0, 0};
     char name[64] = "";
-    if (word[1] == '-')
-        snprintf(name, sizeof(name), "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    // -fstop is --fstop with a dash forgotten.
+    const char *first = word + (word[1] == '-' ? 2 : 1);
+    snprintf(name, sizeof(name), "%.*s", (int)strcspn(first, "="), first);
     for (int i = 0; (o = option_at(p->program, i)) && strlen(name) > 1; i++)
         tool_nearest_try(&nearest, o->name, (int)strlen(o->name), name);
     return tool_fail(p->error, -1, "unknown option %s,%s%s%s see %s --help", word,
@@ -120,6 +121,8 @@ static int set_value(struct tool_parser *p, int i, const char *value, int apart)
     p->metric = 0;
     if (o->parse(p, o, value))
         return -1;
+    p->measured = o->unit == TOOL_UNIT_NONE ? NULL : o;
+    p->measure = value;
     p->state[i].given = 1;
     p->state[i].metric = p->metric != 0;
     return p->seen ? p->seen(p, o, value, apart) : 0;
@@ -153,6 +156,25 @@ static int parse_option(struct tool_parser *p, int count, char **words)
     return set_value(p, i, next, next != NULL) ? -1 : next ? 2 : 1;
 }
 
+// A unit that stands by itself behind the number of an option.
+static int lone_unit(const struct tool_parser *p, const char *word)
+{
+    static const char *const names[] = {"m", "cm", "mm", "km", "ft", "feet", "in", "inch", "meter", "meters", "metres"};
+    char text[64];
+    double value;
+    int metric, known = 0;
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && p->measured; i++)
+        known |= !strcmp(word, names[i]);
+    if (!known)
+        return 0;
+    snprintf(text, sizeof(text), "%s%s", p->measure, word);
+    if (tool_read_measure(p->measured->unit, text, &value, &metric))
+        return tool_fail(p->error, -1, "--%s %s: '%s' is no unit here%s", p->measured->name, p->measure, word,
+                         tool_units(p->measured->unit));
+    return tool_fail(p->error, -1, "'%s' behind --%s %s: did you mean --%s %s?", word, p->measured->name, p->measure,
+                     p->measured->name, text);
+}
+
 int tool_parse_line(struct tool_parser *p, int count, char **words)
 {
     int words_only = 0;  // after "--"
@@ -160,6 +182,9 @@ int tool_parse_line(struct tool_parser *p, int count, char **words)
     for (int i = 0; i < count && !p->help && !p->stop;) {
         const char *word = words[i];
         int taken = 1;
+        if (!words_only && lone_unit(p, word))
+            return -1;
+        p->measured = NULL;
         if (!words_only && !strcmp(word, "--"))
             words_only = 1;
         else if (!words_only && word[0] == '-' && word[1] != '\0')

@@ -68,6 +68,9 @@ struct tool_parser {
     // What to do with a word that is no option, and after an option was set; NULL: refuse, nothing. apart: the value
     // was a word of its own.
     int (*word)(struct tool_parser *p, const char *word);
+    // The option whose value the last word was, if it may have a unit, which a word by itself then is not; else NULL.
+    const struct tool_option *measured;
+    const char *measure;  // its value
     int (*seen)(struct tool_parser *p, const struct tool_option *option, const char *value, int apart);
     int help;    // 1, or 2 for all of it, or 3 as a man page; the rest of the line is not looked at
     int stop;    // likewise, for another reason
@@ -99,6 +102,10 @@ tool_parse tool_parse_flag, tool_parse_number, tool_parse_count, tool_parse_text
 // The same of a number that stands for itself, and a whole number; *end is what follows that.
 int tool_parse_float(struct tool_parser *p, const struct tool_option *option, const char *text, float *out);
 int tool_read_int(const char *text, int *value, char **end);
+// A number with what may stand beside it, in the option's own unit; *metric: it is in metres. What an error says of the
+// units that there are, "" without: "; units are m, cm and mm".
+int tool_read_measure(enum tool_unit unit, const char *text, double *value, int *metric);
+const char *tool_units(enum tool_unit unit);
 // All of a text that is a number, no spaces, no NaN; infinity is left to the caller. Returns 0 or -1.
 int tool_read_number(const char *text, double *value);
 

@@ -38,29 +38,37 @@ int tool_read_number(const char *text, double *value)
     return isinf(*value) && errno == ERANGE ? -1 : 0;
 }
 
-// The number before a unit, in the option's own; *metric: it is in metres.
-static int read_measure(const struct tool_option *option, const char *text, double *value, int *metric)
+static const struct {
+    const char *name;
+    double metres;
+} units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
+
+const char *tool_units(enum tool_unit unit)
 {
-    static const struct {
-        const char *name;
-        double metres;
-    } units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
+    return unit == TOOL_UNIT_NONE ? "" : unit == TOOL_UNIT_FSTOP ? "; f/2.8 will do too" : "; units are m, cm and mm";
+}
+
+int tool_read_measure(enum tool_unit unit, const char *text, double *value, int *metric)
+{
     const size_t length = strlen(text);
     char number[64];
     *metric = 0;
-    if (option->unit == TOOL_UNIT_FSTOP && (text[0] == 'f' || text[0] == 'F') && text[1] == '/')
-        return tool_read_number(text + 2, value);
-    const int takes = option->unit == TOOL_UNIT_DISTANCE || option->unit == TOOL_UNIT_MM || option->unit == TOOL_UNIT_M;
+    if (unit == TOOL_UNIT_FSTOP && (text[0] == 'f' || text[0] == 'F'))
+        return tool_read_number(text + (text[1] == '/' ? 2 : 1), value);
+    const int takes = unit == TOOL_UNIT_DISTANCE || unit == TOOL_UNIT_MM || unit == TOOL_UNIT_M;
     for (int i = 0; i < 3 && takes; i++) {
-        const size_t n = strlen(units[i].name);
-        if (length <= n || length - n >= sizeof(number) || strcmp(text + length - n, units[i].name) ||
-            !(isdigit((unsigned char)text[length - n - 1]) || text[length - n - 1] == '.'))
+        size_t n = length - strlen(units[i].name);
+        if (length <= strlen(units[i].name) || strcmp(text + n, units[i].name))
             continue;
-        snprintf(number, sizeof(number), "%.*s", (int)(length - n), text);
+        while (n > 1 && text[n - 1] == ' ')  // "1.2 m"
+            n--;
+        if (n >= sizeof(number) || !(isdigit((unsigned char)text[n - 1]) || text[n - 1] == '.'))
+            continue;
+        snprintf(number, sizeof(number), "%.*s", (int)n, text);
         if (tool_read_number(number, value))
             return -1;
-        *value *= units[i].metres * (option->unit == TOOL_UNIT_MM ? 1000 : 1);
-        *metric = option->unit == TOOL_UNIT_DISTANCE;
+        *value *= units[i].metres * (unit == TOOL_UNIT_MM ? 1000 : 1);
+        *metric = unit == TOOL_UNIT_DISTANCE;
         return 0;
     }
     return tool_read_number(text, value);
@@ -72,8 +80,9 @@ int tool_parse_float(struct tool_parser *p, const struct tool_option *option, co
     double value;
     int metric;
     describe_limits(option, limits, sizeof(limits));
-    if (read_measure(option, text, &value, &metric))
-        return tool_fail(p->error, -1, "--%s: '%s' is not a number, it must be %s", option->name, text, limits);
+    if (tool_read_measure(option->unit, text, &value, &metric))
+        return tool_fail(p->error, -1, "--%s: '%s' is not a number, it must be %s%s", option->name, text, limits,
+                         tool_units(option->unit));
     // The library computes in float, so that is what has to be in range.
     const float f = (float)value + 0.0f;
     const int is_inf = isinf(value) && value > 0 && option->inf;

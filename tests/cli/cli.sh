@@ -94,6 +94,18 @@ bad 1 "--threads|'99999999999999999999'" a.exr -o o.exr --threads 99999999999999
 for value in 3 "3," ,3 a,b 3,4,5 3.5,4 "3, 4" 99999999999,1; do
     bad 1 "--focus-at|'$value'" a.exr -o o.exr --focus-at "$value"
 done
+# Units: which there are, and what was meant.
+bad 1 "--focus|'6ft'|units are m, cm and mm" a.exr -o o.exr --focus 6ft
+bad 1 "--range|'6ft'|units are m, cm and mm" a.exr -o o.exr --range 6ft
+bad 1 "--fstop|'2.8x'|f/2.8" a.exr -o o.exr --fstop 2.8x
+bad 1 "--focus 1.2|did you mean --focus 1.2m?" --focus 1.2 m a.exr -o o.exr
+bad 1 "--focal-length 50|did you mean --focal-length 50mm?" a.exr --focal-length 50 mm -o o.exr
+bad 1 "--focus 6|'ft' is no unit here|m, cm and mm" a.exr --focus 6 ft -o o.exr
+bad 1 "--fstop 2|'m' is no unit here" a.exr --fstop 2 m -o o.exr
+bad 1 "-fstop|did you mean --fstop?" a.exr -o o.exr -fstop 2
+bad 1 "-focus=3|did you mean --focus?" a.exr -o o.exr -focus=3
+bad 1 "'hexagon'|did you mean ngon:6?" a.exr -o o.exr --aperture hexagon
+bad 1 "'circle'|did you mean disc?" a.exr -o o.exr --aperture circle
 bad 1 "--focus|'middle'|center" a.exr -o o.exr --focus middle
 bad 1 "--focus|--focus-at" a.exr -o o.exr --focus 3 --focus-at 1,2
 bad 1 "--engine|'lager'|gather" a.exr -o o.exr --engine lager
@@ -311,6 +323,10 @@ picture_tests() {
     good plain.exr -o o.exr --focus 3 --fstop inf --focal-length 50
     # Units, whatever their order; a depth of field; what the default is.
     plan "focus 1.2 from --focus|f/2.8|focal length 50 mm" plain.exr --focus 1.2m --fstop f/2.8 --focal-length 5cm
+    for stop in f2.8 F2.8 F/2.8 f/2.8; do
+        plan "f/2.8" plain.exr --focus "1.2 m" --fstop $stop --focal-length "50 mm"
+    done
+    plan "focus 1.2 from" plain.exr --focus "1.2 m" --fstop 2 --focal-length 50
     plan "engine layers|focus 12 from --focus|sensor 36 mm" plain.exr --focus 120cm --world-unit 0.1 --fstop 2 \
         --focal-length 50mm --sensor-width 0.036m
     plan "focus 3 |none from 2.5; far blur none up to 3.5" plain.exr --focus 3 --depth-of-field 1

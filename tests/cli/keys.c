@@ -74,6 +74,24 @@ static void smooth(void)
     cli_keys_free(&keys);
 }
 
+// Numbers as the options take them: metres become scene units of half a metre, millimetres and f-numbers stay.
+static void units(void)
+{
+    struct cli_keys keys;
+    struct tool_error error = {""};
+    const char *text =
+        "frame,focus,range,focal-length,fstop,max-radius\n1,2 m,50cm,5cm,f/2.8,2048\n2,2,\" 1\",50,F2,4\n";
+    if (!CHECK_MSG(!load(&keys, text, 0, &error), "%s", error.text))
+        return;
+    cli_keys_scale(&keys, 0.5);
+    CHECK(cli_keys_at(&keys, CLI_KEY_FOCUS, 1) == 4 && cli_keys_at(&keys, CLI_KEY_FOCUS, 2) == 2);
+    CHECK(cli_keys_at(&keys, CLI_KEY_RANGE, 1) == 1 && cli_keys_at(&keys, CLI_KEY_RANGE, 2) == 1);
+    CHECK(cli_keys_at(&keys, CLI_KEY_FOCAL_LENGTH, 1) == 50 && cli_keys_at(&keys, CLI_KEY_FOCAL_LENGTH, 2) == 50);
+    CHECK(cli_keys_at(&keys, CLI_KEY_FSTOP, 1) == 2.8 && cli_keys_at(&keys, CLI_KEY_FSTOP, 2) == 2);
+    CHECK(cli_keys_at(&keys, CLI_KEY_MAX_RADIUS, 1) == 2048);
+    cli_keys_free(&keys);
+}
+
 static void refused(void)
 {
     static const struct {
@@ -86,7 +104,10 @@ static void refused(void)
         {"frame,focus,focus\n1,2,3\n", "comes twice"},
         {"frame,focus\n1,2\n1,3\n", "frame 1 comes twice"},
         {"frame,focus\n1,x\n", "line 2: 'x' is not a number"},
-        {"frame,focus\n1,2m\n", "'2m' is not a number"},
+        {"frame,focus\n1,2ft\n", "'2ft' is not a number; units are m, cm and mm"},
+        {"frame,fstop\n1,2m\n", "'2m' is not a number; f/2.8 will do too"},
+        {"frame,max-radius\n1,2m\n", "'2m' is not a number"},
+        {"frame,max-radius\n1,2049\n", "'2049' is out of range"},
         {"frame,focus\n,2\n", "is not a frame's number"},
         {"frame,focus\n1,0\n", "'0' is out of range"},
         {"frame,focus\n1,nan\n", "'nan' is not a number"},
@@ -112,6 +133,7 @@ int main(void)
     close(fd);
     linear();
     smooth();
+    units();
     refused();
     unlink(path);
     return check_report();
