@@ -109,6 +109,12 @@ static int check_places(const struct maker *m, const char *input)
             m->error, CLI_BAD_ARGUMENTS,
             "INPUT %s has a place for the view's name, but OUTPUT %s has none: all views would be one file", input,
             r->output);
+    if (!in && out && !pattern && r->input_count == 1)
+        return tool_fail(
+            m->error, CLI_BAD_ARGUMENTS,
+            "OUTPUT %s has a place for the view's name, but INPUT %s is one file, and so is OUTPUT with all "
+            "of its views; for a file with one of them name it in --views and -o",
+            r->output, input);
     if (!in && out && (pattern || r->input_count > 1))
         return tool_fail(m->error, CLI_BAD_ARGUMENTS,
                          "OUTPUT %s has a place for the view's name, but INPUT %s has none", r->output, input);

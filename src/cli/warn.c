@@ -212,10 +212,22 @@ static void warn_layers(struct warner *w)
              count > 1 ? "stay" : "stays", count > 1 ? "they are" : "it is");
 }
 
+// A window that OUTPUT cannot hold.
+static void warn_window(struct warner *w)
+{
+    const struct hf_io_view *v = w->frame->views[0].view;
+    const struct hf_io_box *data = &v->data_window, *display = &v->display_window;
+    if (w->args->output && !cli_is_exr(w->args->output) && memcmp(data, display, sizeof(*data)))
+        warn(w, "%s holds no windows: its picture is the data window, %d x %d at %d,%d of the display window, %d x %d",
+             w->args->output, v->width, v->height, data->x0 - display->x0, data->y0 - display->y0,
+             display->x1 - display->x0, display->y1 - display->y0);
+}
+
 static void warn_frame(struct warner *w)
 {
     w->label = w->args->input;
     warn_layers(w);
+    warn_window(w);
 }
 
 int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v)

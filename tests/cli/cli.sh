@@ -56,6 +56,7 @@ bad 1 "a.exr|-o" a.exr
 bad 1 "a.exr|b.png|write -o before it" a.exr b.png --focus 3
 bad 1 "o.exr|####" a.exr b.exr -o o.exr
 bad 1 "--frames|####|a.exr" a.exr -o o.exr --frames=1-2
+bad 1 "o.%V.exr|a.exr is one file|--views" a.exr -o o.%V.exr --focus 3
 bad 1 "--bogus|--help" a.exr -o o.exr --bogus
 bad 1 "--bogus=3|--help" a.exr -o o.exr --bogus=3
 bad 1 "-q|--help" -q a.exr -o o.exr

@@ -193,6 +193,10 @@ for layer, z in {'ViewLayer': depth, 'Foreground': lambda x, y: 1 + y // 8}.item
     layers[layer + '.Depth.Z'] = z
 layers.update({'CryptoObject00.' + n: lambda x, y: x for n in 'rgba'})
 exr('layers.exr', layers)
+# Depths with colours of their own, as Cinema 4D and Unreal write them, beside others.
+for name, layer in {'c4d': 'Z Depth', 'unreal': 'FinalImageMovieRenderQueue_WorldDepth', 'scene': 'X_SceneDepth'}.items():
+    exr(name + '.exr', dict(colour, **{layer + '.' + n: depth for n in 'RGB'}, **{'my.depth': depth}))
+exr('final.exr', {layer + '.' + n: f for n, f in colour.items() for layer in ['FinalImage', 'FinalImageWorldDepth']})
 many = dict(colour, Z=depth)
 for i in range(1, 7):
     many.update({'L%d.Combined.%s' % (i, n): f for n, f in colour.items()})

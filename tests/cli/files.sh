@@ -10,6 +10,10 @@ make_inputs || { echo "skipped: no python3"; exit 77; }
 plan "layer ViewLayer.Combined|colour ViewLayer.Combined.R|depth ViewLayer.Depth.Z" layers.exr --focus 3
 plan "layer Foreground.Combined|colour Foreground.Combined.R|depth Foreground.Depth.Z" layers.exr --focus 3 --layer Foreground
 plan "depth ViewLayer.Depth.Z|depth Foreground.Depth.Z" layers.exr --focus 3 --layer all
+plan "colour R, G, B|depth Z Depth.R," c4d.exr --focus 3
+plan "colour R, G, B|depth FinalImageMovieRenderQueue_WorldDepth.R," unreal.exr --focus 3
+plan "colour FinalImage.R|depth FinalImageWorldDepth.R," final.exr --focus 3 --layer FinalImage
+plan "colour R, G, B|depth X_SceneDepth.R," scene.exr --focus 3
 bad 3 "layers.exr|Forground|did you mean Foreground.Combined?" layers.exr -o o.exr --focus 3 --layer Forground
 bad 3 "layers.exr|did you mean ViewLayer.Depth.Z?" layers.exr -o o.exr --focus 3 --depth-channel ViewLayer.Dept.Z
 bad 3 "layers.exr|'Dept'|did you mean" layers.exr -o o.exr --focus 3 --depth-channel Dept
@@ -166,6 +170,11 @@ sys.exit(not any(t in data for t in tag))'
         --depth-type inverse --focus 5
     good photo.png -o o.png --depth-file map8.png --depth-type inverse --focus 5 --depth-scale 0.5 --max-radius 6
     good flat.exr -o o.exr --depth-file inverse.exr --depth-type inverse --focus 4 --max-radius 6
+    run crop.exr -o o.png --focus 1.5 --range 2
+    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] &&
+        contains "$dir/err" "o.png holds no windows: its picture is the data window, 20 x 16 at 24,12 of the display window, 64 x 40"
+    result "a window that PNG cannot hold is a warning" $?
+    good bare.exr -o o.png --focus 1.5 --range 2 --max-radius 6
     # The README's one.
     run "$source_root/images/lights-before.png" --depth-file "$source_root/images/lights-depth.png" --depth-type inverse \
         --near 1.5 --far 60 --focus 5 --fstop 0.37 --focal-length 50 -o photo-out.png --verbose

@@ -8,30 +8,12 @@
 #include "io/exr/names.h"
 
 // How they call a depth, behind the name of its layer, whatever the case: Blender (Depth.Z, Depth.V), Arnold and most
-// others (Z), RenderMan (z, zfiltered), V-Ray (VRayZDepth), Karma (Pz, hitPz), Unreal (FinalImageWorldDepth).
-static const char *const depth_names[] = {"Z",
-                                          "depth.Z",
-                                          "depth.V",
-                                          "depth",
-                                          "depth.R",
-                                          "depth.Y",
-                                          "Pz",
-                                          "Pz.Z",
-                                          "depth.Pz",
-                                          "hitPz",
-                                          "hitPz.Z",
-                                          "ZDepth",
-                                          "ZDepth.Z",
-                                          "ZDepth.R",
-                                          "ZDepth.Y",
-                                          "zfiltered",
-                                          "zfiltered.Z",
-                                          "Z.R",
-                                          "Z.Z",
-                                          "VRayZDepth",
-                                          "VRayZDepth.R",
-                                          "VRayZDepth.Z",
-                                          "FinalImageWorldDepth.R"};
+// others (Z), RenderMan (z, zfiltered), V-Ray (VRayZDepth), Karma (Pz, hitPz), Cinema 4D (Z Depth).
+static const char *const depth_names[] = {
+    "Z",           "depth.Z", "depth.V", "depth",      "depth.R",      "depth.Y",      "Pz",        "Pz.Z",
+    "depth.Pz",    "hitPz",   "hitPz.Z", "ZDepth",     "ZDepth.Z",     "ZDepth.R",     "ZDepth.Y",  "zfiltered",
+    "zfiltered.Z", "Z.R",     "Z.Z",     "VRayZDepth", "VRayZDepth.R", "VRayZDepth.Z", "Z Depth.R", "Z Depth.Y",
+    "Z Depth.Z"};
 
 static bool is_depth_name(const char *name)
 {
@@ -230,6 +212,27 @@ static int find_beside(const struct depth_search *s, int *channel)
     return -1;
 }
 
+// Unreal's, which stands beside the picture and has colours, all the same: FinalImageMovieRenderQueue_WorldDepth.R.
+static int find_unreal(const struct depth_search *s, int *channel)
+{
+    static const char *const ends[] = {"WorldDepth.R", "SceneDepth.R"};
+    for (int i = -1; i < s->e->part_count; i++) {
+        const int p = i < 0 ? s->colour_part : i;
+        if (p < 0 || !part_is_ours(s, p))
+            continue;
+        for (int c = 0; c < s->e->parts[p].channel_count; c++) {
+            const char *name = s->e->parts[p].channels[c].name;
+            const size_t n = strlen(name), end = strlen(ends[0]);
+            if (n < end || (strcasecmp(name + n - end, ends[0]) && strcasecmp(name + n - end, ends[1])) ||
+                names_other_view(s, p, name))
+                continue;
+            *channel = c;
+            return p;
+        }
+    }
+    return -1;
+}
+
 // Depth of a view: the given channel; else that of its layer (Z next to its R, and other names); for the view with plain names Z and depth.Z; <view>.Z,
 // depth.<view>.Z, <view>.depth.Z; any single channel with "depth" in its name. Returns the part, or -1.
 static int find_depth(const struct depth_search *s, const char *given, int *channel)
@@ -247,6 +250,8 @@ static int find_depth(const struct depth_search *s, const char *given, int *chan
         snprintf(full, sizeof(full), i == 0 ? named[0] : i == 1 ? named[1] : named[2], HF_EXR_NAME, s->view);
         p = find_name(s, full, channel);
     }
+    if (p < 0)
+        p = find_unreal(s, channel);
     return p >= 0 ? p : find_any_depth(s, channel);
 }
 
