@@ -80,8 +80,8 @@ struct hf_level {
 
 enum { HF_MAX_LEVELS = 26 };
 
-// A far pixel sees what is blurred as much as its own level or less, and that many levels more: up to 1.8 times as much.
-enum { HF_LEVELS_WIDER = 2 };
+// A far pixel sees what is blurred up to so much more than itself.
+#define HF_FAR_WIDER (16 / 9.0f)
 
 // One field's kernels, the largest first. A pixel between two of them is a blend of both; one that is blurred less than the
 // smallest is a blend of that and the picture.
@@ -158,10 +158,8 @@ static inline float hf_level_spread(const struct hf_levels *l, int i, float coc)
 // How much a far pixel takes of what a level and the smaller ones spread. Shares sum to 1 exactly.
 static inline float hf_level_seen(const struct hf_levels *l, int i, float coc)
 {
-    const int own = i + HF_LEVELS_WIDER;
-    if (own >= l->count)
-        return i == 0;
-    return i == 0 ? hf_level_reached(l, own, coc) : hf_level_share(l, own, coc);
+    const float least = l->level[l->count - 1].coc;
+    return hf_level_share(l, i, (coc > least ? coc : least) * HF_FAR_WIDER);
 }
 
 // A row's Karis weight.

@@ -176,7 +176,7 @@ static double hidden(const struct area *a, int x, int y)
     return sum;
 }
 
-// What a far pixel sees: all that is spread by levels of up to two more than its own. What is not far itself is like what is
+// What a far pixel sees: all that is spread by levels of up to 16/9 of its radius. What is not far itself is like what is
 // beside it.
 static void far_pixel(const struct area *a, int x, int y, double *far[4])
 {
@@ -191,16 +191,17 @@ static void far_pixel(const struct area *a, int x, int y, double *far[4])
     coc = fmax(coc, a->plane[FAR_MOST][i]);
     for (int own = 0; own < l->count; own++) {
         struct sums all = {{0}, 0};
-        if (!(share(l, own, coc) > 0))
+        const double part = share(l, own, fmax(coc, l->coc[l->count - 1]) * 16 / 9);
+        if (!(part > 0))
             continue;
-        for (int k = (int)fmax(own - 2, 0); k < l->count; k++) {
+        for (int k = own; k < l->count; k++) {
             const struct sums f = mean(a, x, y, k, KIND_FAR);
             for (int c = 0; c < a->r->channels; c++)
                 all.colour[c] += f.colour[c];
             all.part += f.part;
         }
         for (int c = 0; c < a->r->channels; c++)
-            far[c][i] += all.part > 0 ? share(l, own, coc) * all.colour[c] / all.part : 0;
+            far[c][i] += all.part > 0 ? part * all.colour[c] / all.part : 0;
     }
 }
 
