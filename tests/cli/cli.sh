@@ -488,13 +488,13 @@ picture_tests() {
     contains "$dir/out" '"budget_step": 0' && contains "$dir/out" '"rings": 2'
     result "--budget-ms and --rings" $?
 
-    passes="coc coc4 cocmaxx cocmax cocblurx cocblur color4 colormulcoc4 colormulnear4 near far cover composite"
+    passes="coc coc4 cocmaxx cocmax cocblurx cocblur color4 colormulcoc4 colormulnear4 near far farpart cover composite"
     good plain.exr --engine gather -o o.exr --focus 3 --dump-passes passes
     for pass in $passes; do
         [ -s "passes/$pass.exr" ]
         result "--dump-passes writes $pass.exr" $?
     done
-    [ "$(find passes -type f | wc -l)" -eq 13 ]
+    [ "$(find passes -type f | wc -l)" -eq 14 ]
     result "--dump-passes writes nothing else" $?
     good stereo.exr --engine gather -o o.exr --focus 3 --dump-passes passes
     for pass in $passes; do
