@@ -140,20 +140,17 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
     const float a = share(u, x, a0, mean[0], mean[1]), by = (1 - u->sure[3][x]) * known;
     // What is not taken apart goes with the front.
     const float seen = by * (a - 1) + 1, whole = seen > 0 ? (1 - by) / seen : 0;
-    // What the mixture leaves unexplained is kept from what is blurred more than the front: there it would be a haze.
-    const float near = (1 - a0) * (mean[0][4] - own) + own, far = a0 * (mean[1][4] - own) + own;
-    const float size = fabsf(near) + 1, part = (fabsf(near) + size) / (fabsf(far) + size);
-    const float stays = part < 1 ? part : 1;
     for (int c = 0; c < u->channels; c++) {
         const float v = u->colour[3][c][x], rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
         const float front = between(mean[0][c] + rest, mean[0][c], v);
         u->seen[c][x] = whole * (v - front) + front;
-        u->mixed[c][x] = between(stays * rest + mean[1][c], mean[1][c], v);
+        u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], v);
     }
+    const float front = (1 - a0) * (mean[0][4] - own) + own;
     u->seen[4][x] = seen;
     u->mixed[4][x] = 1 - seen;
-    u->seen[5][x] = whole * (own - near) + near;
-    u->mixed[5][x] = far;
+    u->seen[5][x] = whole * (own - front) + front;
+    u->mixed[5][x] = a0 * (mean[1][4] - own) + own;
 }
 
 void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)

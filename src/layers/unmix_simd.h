@@ -113,20 +113,18 @@ HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const in
     const vf a = layers_share(u, x, channels, a0, mean), by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known);
     const vf seen = vf_fma(by, vf_sub(a, one), one);
     const vf whole = vf_keep(vf_gt(seen, zero), vf_div(vf_sub(one, by), seen));
-    const vf near = vf_fma(vf_sub(one, a0), vf_sub(mean[0][4], own), own);
-    const vf far = vf_fma(a0, vf_sub(mean[1][4], own), own), size = vf_add(vf_abs(near), one);
-    const vf stays = vf_min(vf_div(vf_add(vf_abs(near), size), vf_add(vf_abs(far), size)), one);
     for (int c = 0; c < channels; c++) {
         const vf rest = layers_rest(u, x, c, a, mean);
         const vf v = vf_load(u->colour[3][c] + x);
         const vf front = layers_between(vf_add(mean[0][c], rest), mean[0][c], v);
         vf_store(u->seen[c] + x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
-        vf_store(u->mixed[c] + x, vf_keep(mixed, layers_between(vf_fma(stays, rest, mean[1][c]), mean[1][c], v)));
+        vf_store(u->mixed[c] + x, vf_keep(mixed, layers_between(vf_add(mean[1][c], rest), mean[1][c], v)));
     }
+    const vf front = vf_fma(vf_sub(one, a0), vf_sub(mean[0][4], own), own);
     vf_store(u->seen[4] + x, vf_select(mixed, seen, one));
     vf_store(u->mixed[4] + x, vf_keep(mixed, vf_sub(one, seen)));
-    vf_store(u->seen[5] + x, vf_select(mixed, vf_fma(whole, vf_sub(own, near), near), own));
-    vf_store(u->mixed[5] + x, vf_select(mixed, far, own));
+    vf_store(u->seen[5] + x, vf_select(mixed, vf_fma(whole, vf_sub(own, front), front), own));
+    vf_store(u->mixed[5] + x, vf_select(mixed, vf_fma(a0, vf_sub(mean[1][4], own), own), own));
 }
 
 HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int channels)

@@ -113,16 +113,14 @@ static void unmix(struct frame *f, int x, int y)
     seen[WEIGHT] = 1 - by * (1 - a);
     mixed[WEIGHT] = by * (1 - a);
     const double whole = seen[WEIGHT] > 0 ? (1 - by) / seen[WEIGHT] : 0;
-    const double near = a0 * own + (1 - a0) * mean[0][4], beyond = a0 * mean[1][4] + (1 - a0) * own;
-    const double stays = fmin((2 * fabs(near) + 1) / (fabs(near) + fabs(beyond) + 1), 1);
     for (int c = 0; c < f->channels; c++) {
         const double v = colour_at(f, c, x, y), rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
         const double front = fmin(fmax(mean[0][c] + rest, fmin(mean[0][c], v)), fmax(mean[0][c], v));
         seen[c] = whole * v + (1 - whole) * front;
-        mixed[c] = fmin(fmax(mean[1][c] + stays * rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
+        mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
     }
-    seen[RADIUS] = whole * own + (1 - whole) * near;
-    mixed[RADIUS] = beyond;
+    seen[RADIUS] = whole * own + (1 - whole) * (a0 * own + (1 - a0) * mean[0][4]);
+    mixed[RADIUS] = a0 * mean[1][4] + (1 - a0) * own;
 }
 
 // ---- highlights ----
