@@ -617,7 +617,7 @@ HF_API size_t hf_get_tiles(const struct hf_context *c, uint8_t *tiles, size_t si
 // One intermediate buffer, for looking at and for tests: planes of floats.
 struct hf_buffer {
     const char *name;   // gather: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far,
-                        // nearfill, farfill; by area colormulnear4 and cover instead of the last two
+                        // nearfill, farfill; by area colormulnear4, farpart and cover instead of the last two
     int width, height;  // full, half or quarter resolution
     int channels;       // 1..4: near and far CoC, one CoC, or R, G, B and perhaps A
     const float *data[4];
