@@ -9,14 +9,15 @@
 // options; display-encoded root mean square error, geometric mean of the scenes and of the worst; milliseconds of a
 // megapixel
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 1.741f}, \
-    {"--engine gaussian --resolution quarter", 0.059046f, 0.075406f, 1.837f}, \
-    {"--engine gather", 0.045627f, 0.091064f, 26.14f}, \
-    {"--engine layers --spacing 8 --no-unmix --no-highlights", 0.033109f, 0.079191f, 48.38f}, \
-    {"--engine layers", 0.025618f, 0.037848f, 57.72f}, \
-    {"--engine layers --layers-quality best", 0.023929f, 0.037740f, 180.5f}
+    {"--engine gaussian --resolution quarter --iterations 1", 0.083193f, 0.136679f, 1.542f}, \
+    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 1.553f}, \
+    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 1.614f}, \
+    {"--engine gather", 0.037081f, 0.078433f, 31.04f}, \
+    {"--engine layers --spacing 8", 0.025957f, 0.039993f, 54.96f}, \
+    {"--engine layers", 0.025169f, 0.037854f, 61.64f}, \
+    {"--engine layers --layers-quality best", 0.023613f, 0.037747f, 184.6f}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 0, 4, 5, 5
+#define HF_LADDER_QUALITIES 0, 4, 6, 6
 // milliseconds of a megapixel of each engine as it is
-#define HF_LADDER_ENGINES 26.14f, 50.17f, 90.10f, 3.426f, 57.72f
+#define HF_LADDER_ENGINES 31.04f, 55.89f, 115.3f, 3.820f, 61.64f
 // clang-format on
