@@ -334,8 +334,9 @@ struct hf_aperture_params {
     float chromatic;
     // A picture of the aperture, its centre the lens's axis and its shorter side the diameter; brightness is
     // transmission, per channel. NULL (default): the shape above. Must stay alive and unchanged during the call. Every
-    // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then. It is the whole
-    // shape: blades, roundness, ring and cat_eye with it are HF_ERR_ARG.
+    // pixel of it is drawn, so its cost grows with the square of the radius, which is at most 256 then, and at most 512 /
+    // sqrt(w) where squeeze and pixel_aspect make it w > 4 times as wide as high. It is the whole shape: blades, roundness,
+    // ring and cat_eye with it are HF_ERR_ARG.
     const struct hf_image *picture;
 };
 
