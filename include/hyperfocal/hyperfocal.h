@@ -304,7 +304,7 @@ struct hf_range_params {
 
 // Lens model: r(z) = K (1/focus - 1/z), K = aperture radius in scene units * focal length in pixels, aperture radius =
 // focal_length_mm / 1000 / (2 f_number) / world_unit_m, focal length in pixels = focal_length_mm / sensor_width_mm *
-// display width * pixel_aspect, counted like radii in pixels of y. All > 0 and finite, but f_number may be INFINITY (no blur).
+// display width * pixel_aspect, as radii count pixels of y. All > 0 and finite, but f_number may be INFINITY (no blur).
 struct hf_lens_params {
     float f_number;         // default 2.8
     float focal_length_mm;  // millimetres, default 50

@@ -108,8 +108,7 @@ static int check_grey(struct source *s, const char *depth_channel, struct hf_io_
     if (!status && apart > largest / 20)
         return hf_io_fail(
             err,
-            "%s: a picture in colours, where depth should be one number a pixel; --depth-channel %s takes "
-            "that one",
+            "%s: a picture in colours, where depth should be one number a pixel; --depth-channel %s takes that one",
             s->file->path, v->colour[0]);
     return status;
 }

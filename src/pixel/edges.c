@@ -88,6 +88,8 @@ static uint32_t others(const float *v, int n, float what)
 
 int hf_edges_next(const float *share, int i, int n)
 {
+    if (!share)
+        return n;
     while (i + 32 <= n && !others(share + i, 32, 0))
         i += 32;
     while (i < n && !(share[i] > 0))

@@ -42,7 +42,7 @@ void hf_edges_start(struct hf_edges *e, const struct hf_frame *f, struct hf_rect
 // written but shares of 0. Where a back has no share its colour and radius mean nothing. May write HF_PAD floats more.
 int hf_edges_row(struct hf_edges *e, int y, const struct hf_sides *out);
 
-// The first of a row of n shares from i on that is not 0; n if there is none.
+// The first of a row of n shares from i on that is not 0; n if there is none. share NULL: none are.
 int hf_edges_next(const float *share, int i, int n);
 
 // 1 / d^4 of 5 x 5, and of the pixel itself as of the nearest; times HF_EDGES_SCALE.

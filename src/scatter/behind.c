@@ -69,7 +69,7 @@ static unsigned seen_quads(const struct hf_frame *f, int q, int from, int to, co
         const float *share = hf_back_shares(f, x0, y, n);
         const int some =
             hf_scatter_kernels(f)->seen_weights(t, hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y), widest, 0, n, weight);
-        for (int x = share ? hf_edges_next(share, 0, n) : n; x < n; x = hf_edges_next(share, x + 1, n))
+        for (int x = hf_edges_next(share, 0, n); x < n; x = hf_edges_next(share, x + 1, n))
             for (int k = 0; k < 2; k++)
                 weight[k][x] *= 1 - share[x];
         for (int k = 0; k < 2; k++) {
@@ -81,7 +81,7 @@ static unsigned seen_quads(const struct hf_frame *f, int q, int from, int to, co
             hf_behind_add(f, one, weight[k], 1, n, plane[2 * channels + k]);
             seen |= ((1u << channels) - 1) << k * channels | 1u << (2 * channels + k);
         }
-        for (int x = share ? hf_edges_next(share, 0, n) : n; x < n; x = hf_edges_next(share, (x | 1) + 1, n))
+        for (int x = hf_edges_next(share, 0, n); x < n; x = hf_edges_next(share, (x | 1) + 1, n))
             seen |= add_backs(f, x0 + (x & ~1), y, widest[x >> 1], x >> 1, plane);
     }
     return seen;

@@ -158,7 +158,7 @@ static struct backs find_backs(const struct hf_frame *f, int x0, int y, int n)
                       .column = (int32_t *)(void *)hf_line(f, 19),
                       .radius = hf_line(f, 20),
                       .place = hf_line(f, 21)};
-    for (int x = b.share ? hf_edges_next(b.share, 0, n) : n; x < n; x = hf_edges_next(b.share, x + 1, n)) {
+    for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n)) {
         b.radius[b.count] = *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x0 + x, y);
         b.place[b.count] = (float)(x0 + x);
         b.column[b.count++] = x;

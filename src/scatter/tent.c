@@ -146,7 +146,7 @@ static void tent_row(struct walk *w, int y)
     const int n = t.n, width = w->f->s->width, pixels = hf_min(2 * n, width - 2 * w->tent_x0);
     const float *share = hf_back_shares(w->f, 2 * w->tent_x0, y, pixels);
     w->lone[y & 3] = hf_scatter_kernels(w->f)->tent_weights(&t, 0);
-    for (int x = share ? hf_edges_next(share, 0, pixels) : pixels; x < pixels; x = hf_edges_next(share, x + 1, pixels))
+    for (int x = hf_edges_next(share, 0, pixels); x < pixels; x = hf_edges_next(share, x + 1, pixels))
         for (int c = 0; c < 4; c++)
             if (c == 3 || c < t.channels)
                 t.pixel[x & 1][c][x >> 1] *= 1 - share[x];
@@ -205,7 +205,7 @@ static void list_backs(struct walk *w, int y, int q, float part)
 {
     const int x0 = 2 * w->tent_x0, n = hf_min(2 * w->tent_x1, w->f->s->width) - x0;
     const float *share = hf_back_shares(w->f, x0, y, n);
-    for (int x = share ? hf_edges_next(share, 0, n) : n; x < n; x = hf_edges_next(share, x + 1, n))
+    for (int x = hf_edges_next(share, 0, n); x < n; x = hf_edges_next(share, x + 1, n))
         for (int side = 0; side < 2; side++) {
             const int column = column_of(w, x0 + x, side);
             if (column >= 0)

@@ -9,7 +9,7 @@
 const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n)
 {
     const float *share = hf_scatter(f->s)->mixed ? hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) : NULL;
-    return share && hf_edges_next(share, 0, n) < n ? share : NULL;
+    return hf_edges_next(share, 0, n) < n ? share : NULL;
 }
 
 // Weights, colours and pictures of full-resolution row y, in the walk's rows. share: of the backs.
@@ -30,7 +30,7 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
             colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x0, y);
     }
     hf_scatter_kernels(f)->source_weights(w->t, sign, r.radius, colour, w->group->channels, x1 - x0, row);
-    for (int x = share ? hf_edges_next(share, 0, x1 - x0) : x1; x < x1 - x0; x = hf_edges_next(share, x + 1, x1 - x0))
+    for (int x = hf_edges_next(share, 0, x1 - x0); x < x1 - x0; x = hf_edges_next(share, x + 1, x1 - x0))
         for (int c = 0; c < 4; c++)
             if (c == 3 || c < w->group->channels)
                 row[c][x] *= 1 - share[x];
@@ -69,7 +69,7 @@ static void list_full(struct walk *w, int y0, int y1)
             hf_list_sources(w, &row[i], x, hf_min(x + 4, x1 - x0));
     hf_flush_sources(w);
     for (int i = 0, n = x1 - x0; i < y1 - y0; i++)
-        for (int x = share[i] ? hf_edges_next(share[i], 0, n) : n; x < n; x = hf_edges_next(share[i], x + 1, n))
+        for (int x = hf_edges_next(share[i], 0, n); x < n; x = hf_edges_next(share[i], x + 1, n))
             hf_add_back(w, x0 + x, y0 + i, x0 + x, y0 + i, 1);
     hf_flush_sources(w);
 }
