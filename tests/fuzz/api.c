@@ -111,10 +111,10 @@ static void maybe(struct bytes *b, float *field)
         *field = any_float(b);
 }
 
-// by * v - less; v may be any int.
-static int scaled(int v, unsigned by, unsigned less)
+// by * v + plus; v may be any int.
+static int scaled(int v, unsigned by, int plus)
 {
-    return (int)((unsigned)v * by - less);
+    return (int)((unsigned)v * by + (unsigned)plus);
 }
 
 static struct hf_params any_params(struct bytes *b)
@@ -144,8 +144,8 @@ static struct hf_params any_params(struct bytes *b)
         maybe(b, &p.aperture.squeeze);
     }
     if (take_byte(b) < 40) {
-        p.view.display_width = scaled(any_choice(b, 255), 16, 16);
-        p.view.display_height = scaled(any_choice(b, 255), 16, 16);
+        p.view.display_width = scaled(any_choice(b, 255), 16, -16);
+        p.view.display_height = scaled(any_choice(b, 255), 16, -16);
         maybe(b, &p.view.pixel_aspect);
     }
     p.gather.storage = (enum hf_storage)any_choice(b, 3);
@@ -160,12 +160,12 @@ static struct hf_params any_params(struct bytes *b)
     p.run.no_skip = flags >> 6 & 1;
     p.run.colour_stats = flags >> 7;
     if (take_byte(b) < 30)
-        p.gather.rings = scaled(any_choice(b, 70), 1, 1);
+        p.gather.rings = scaled(any_choice(b, 70), 1, -1);
     p.hexagon.resolution = (enum hf_resolution)any_choice(b, 2);
     p.scatter.resolution = (enum hf_resolution)any_choice(b, 2);
     p.gaussian.resolution = (enum hf_resolution)any_choice(b, 3);
     maybe(b, &p.aperture.chromatic);
-    p.gaussian.iterations = scaled(any_choice(b, 70), 1, 1);
+    p.gaussian.iterations = scaled(any_choice(b, 70), 1, -1);
     maybe(b, &p.gaussian.sigma);
     maybe(b, &p.run.budget_ms);
     maybe(b, &p.highlight.gain);
@@ -260,8 +260,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const unsigned how = take_byte(&b);
     struct hf_config config = {.threads = 1 + (how & 1), .isa = any_isa(&b), .alloc = take, .free = give};
     if (how & 4) {
-        config.tile_width = 16 * (1 + any_choice(&b, 6));
-        config.tile_height = 16 + any_choice(&b, 40);
+        config.tile_width = scaled(any_choice(&b, 6), 16, 16);
+        config.tile_height = scaled(any_choice(&b, 40), 1, 16);
     }
     live = calls = 0;
     fails_at = how & 8 ? (long)take_byte(&b) : -1;
