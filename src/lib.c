@@ -165,13 +165,13 @@ int hf_context_threads(const struct hf_context *c)
 int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z)
 {
     char message[HF_MESSAGE];
-    if (!z || width < 1 || height < 1 || hf_check_depth(depth, width, message) || x < 0 || y < 0 || x >= width ||
-        y >= height || depth->type == HF_DEPTH_COC)
+    if (!z || width > HF_MAX_SIZE || height > HF_MAX_SIZE || x < 0 || y < 0 || x >= width || y >= height ||
+        hf_check_depth(depth, width, message) || depth->type == HF_DEPTH_COC)
         return HF_ERR_ARG;
     struct hf_setup s = {0};
     hf_setup_depth(&s, depth, 1);
     *z = hf_depth_decode(&s, hf_depth_sample(depth, x, y), x, y);
-    return *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
+    return *z > 0 && *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
 }
 
 // A frame whose settings are known.

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "frame/engine.h"
 #include "pixel/depth_rows.h"
@@ -33,7 +32,7 @@ const struct hf_params hf_default_params = {
     .gaussian = {.iterations = 3, .sigma = HF_DERIVE, .by_depth = HF_DERIVE},
 };
 
-enum { MAX_SIZE = 65536, MAX_BLADES = 16 };
+enum { MAX_BLADES = 16 };
 static const float MAX_RADIUS = 2048;
 
 int hf_bad(char *message, const char *format, ...)
@@ -45,12 +44,19 @@ int hf_bad(char *message, const char *format, ...)
     return HF_ERR_ARG;
 }
 
+// Is a stride at least a row, up or down?
+static int strides(ptrdiff_t stride, size_t row)
+{
+    return stride >= (ptrdiff_t)row || stride <= -(ptrdiff_t)row;
+}
+
 static int check_image(const struct hf_image *m, const char *name, char *message)
 {
     if (!m)
         return hf_bad(message, "%s is NULL", name);
-    if (m->width < 1 || m->height < 1 || m->width > MAX_SIZE || m->height > MAX_SIZE)
-        return hf_bad(message, "%s is %d x %d pixels; each side must be 1 to %d", name, m->width, m->height, MAX_SIZE);
+    if (m->width < 1 || m->height < 1 || m->width > HF_MAX_SIZE || m->height > HF_MAX_SIZE)
+        return hf_bad(message, "%s is %d x %d pixels; each side must be 1 to %d", name, m->width, m->height,
+                      HF_MAX_SIZE);
     if ((unsigned)m->format >= HF_FORMAT_COUNT)
         return hf_bad(message, "%s.format is %d, which is no format", name, (int)m->format);
     if ((unsigned)m->transfer > HF_TRANSFER_SRGB)
@@ -60,7 +66,7 @@ static int check_image(const struct hf_image *m, const char *name, char *message
     for (int i = 0; i < hf_plane_count(m); i++) {
         if (!m->data[i])
             return hf_bad(message, "%s.data[%d] is NULL", name, i);
-        if ((size_t)llabs((long long)m->stride[i]) < hf_row_bytes(m->format, m->width) && m->height > 1)
+        if (!strides(m->stride[i], hf_row_bytes(m->format, m->width)) && m->height > 1)
             return hf_bad(message, "%s.stride[%d] is %lld bytes, less than the %zu of a row", name, i,
                           (long long)m->stride[i], hf_row_bytes(m->format, m->width));
     }
@@ -95,7 +101,7 @@ int hf_check_depth(const struct hf_depth *d, int width, char *message)
     if (!d->data)
         return hf_bad(message, "depth.data is NULL");
     const size_t row = (size_t)width * hf_depth_bytes(d->format);
-    if ((size_t)llabs((long long)d->stride) < row)
+    if (!strides(d->stride, row))
         return hf_bad(message, "depth.stride is %lld bytes, less than the %zu of a row", (long long)d->stride, row);
     return HF_OK;
 }
@@ -233,7 +239,7 @@ static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, cons
             return err;
         hf_setup_depth(&s, depth, p->view.pixel_aspect);
         const float z = hf_depth_surface(&s, depth, r->width / 2, r->height / 2, &repaired);
-        p->focus = z < 1e10f ? z : INFINITY;
+        p->focus = z > 0 && z < 1e10f ? z : INFINITY;  // a ray's may come to 0
         if (p->focus == INFINITY && !e->focus_anywhere) {
             hf_bad(message, "focus is to be that of pixel (%d, %d), where there is no surface", r->width / 2,
                    r->height / 2);
@@ -338,8 +344,8 @@ int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct
     *r = (struct hf_resolved){.params = *params, .width = width, .height = height};
     struct hf_params *p = &r->params;
     const struct hf_engine_def *e = hf_engine_def(p->engine);
-    if (width < 1 || height < 1 || width > MAX_SIZE || height > MAX_SIZE)
-        return hf_bad(message, "the picture is %d x %d pixels; each side must be 1 to %d", width, height, MAX_SIZE);
+    if (width < 1 || height < 1 || width > HF_MAX_SIZE || height > HF_MAX_SIZE)
+        return hf_bad(message, "the picture is %d x %d pixels; each side must be 1 to %d", width, height, HF_MAX_SIZE);
     if (!e)
         return hf_bad(message, "engine is %d, which is none", (int)p->engine);
     if ((unsigned)p->model > HF_MODEL_LENS)

@@ -5,7 +5,7 @@
 
 #include "frame/frame.h"
 
-enum { HF_MESSAGE = 256 };
+enum { HF_MESSAGE = 256, HF_MAX_SIZE = 65536 };  // pixels of a side
 
 // Put a sentence into message, which holds HF_MESSAGE bytes as all of these do. Returns HF_ERR_ARG.
 int hf_bad(char *message, const char *format, ...) __attribute__((format(printf, 2, 3)));

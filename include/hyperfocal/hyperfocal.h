@@ -177,8 +177,8 @@ struct hf_depth {
     float focal_px, center_x, center_y;
 };
 
-// The view depth at pixel (x, y) of a width x height depth buffer: what the focus commands of a viewer read.
-// For HF_DEPTH_COC there is no distance: HF_ERR_ARG. HF_ERR_FOCUS if there is no surface.
+// The view depth at pixel (x, y) of a width x height depth buffer of at most 65536 each: what the focus commands of a
+// viewer read. For HF_DEPTH_COC there is no distance: HF_ERR_ARG. HF_ERR_FOCUS if there is no surface.
 HF_API int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z);
 
 enum hf_engine {

@@ -320,6 +320,8 @@ static void focus_reading(void)
     static const int outside[][2] = {{-1, 0}, {4, 0}, {0, -1}, {0, 3}};
     for (int i = 0; i < 4; i++)
         CHECK_INT(hf_depth_at(&d, 4, 3, outside[i][0], outside[i][1], &z), HF_ERR_ARG);
+    CHECK_INT(hf_depth_at(&d, 65537, 3, 0, 0, &z), HF_ERR_ARG);
+    CHECK_INT(hf_depth_at(&d, 4, 65537, 0, 0, &z), HF_ERR_ARG);
     CHECK_INT(hf_depth_at(NULL, 4, 3, 0, 0, &z), HF_ERR_ARG);
     CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, NULL), HF_ERR_ARG);
     d.type = HF_DEPTH_COC;
@@ -332,6 +334,17 @@ static void focus_reading(void)
     data[1] = 0.5e-10f;
     CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_OK);
     CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z), HF_ERR_FOCUS);
+    // A ray so far off the axis that it comes to no depth.
+    d.type = HF_DEPTH_RAY;
+    d.focal_px = 1e-20f;
+    data[0] = 5;
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_ERR_FOCUS);
+    struct hf_params p = hf_default_params;
+    p.focus = HF_DERIVE;
+    p.model = HF_MODEL_LENS;
+    data[6] = 7;
+    CHECK_INT(hf_resolve(4, 3, &d, &p, NULL, NULL, 0), HF_ERR_FOCUS);
+    data[0] = 2e-10f;
     d.type = HF_DEPTH_NDC_REVERSED;
     d.near_plane = 0.5f;
     d.far_plane = INFINITY;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The library's own functions: any parameters, formats, strides, sizes to 256, failing allocations, instruction sets. A
-// call is refused or it works; it touches nothing but what its arguments describe, and gives all memory back. Without
-// AddressSanitizer every block ends where a page begins that nobody may touch.
+// call is refused, with one sentence, or it works: what it reads stays as it was, what it makes is finite, and all memory
+// is given back. Without AddressSanitizer every block ends where a page begins that nobody may touch.
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -11,14 +12,6 @@
 #include "hyperfocal/hyperfocal.h"
 
 // ---- memory ----
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ADDRESS_SANITIZER
-#endif
-#elif defined(__SANITIZE_ADDRESS__)
-#define ADDRESS_SANITIZER
-#endif
 
 #ifdef ADDRESS_SANITIZER
 static void *block_of(size_t size, size_t align)
@@ -58,17 +51,47 @@ static void free_block(void *p)
 }
 #endif
 
-static long live, calls, fails_at;
+// Memory of an argument.
+struct area {
+    void *start;
+    size_t bytes;
+};
+
+static struct area area_of(size_t bytes)
+{
+    const struct area a = {block_of(bytes, 4), bytes};
+    MUST(a.start != NULL);
+    return a;
+}
+
+static uint64_t hash_of(const struct area *areas, int count)
+{
+    uint64_t h = 0xcbf29ce484222325u;
+    for (int i = 0; i < count; i++)
+        for (size_t k = 0; k < areas[i].bytes; k += sizeof h) {
+            const size_t left = areas[i].bytes - k;
+            uint64_t word = 0;
+            memcpy(&word, (const char *)areas[i].start + k, left < sizeof word ? left : sizeof word);
+            h = (h ^ word) * 0x9e3779b97f4a7c15u;
+            h ^= h >> 29;
+        }
+    return h;
+}
+
+static long live, calls, fails_at, fails_to;  // which calls fail
+static int fresh;                             // what memory holds at first: what no pass writes is dumped too
 
 static void *take(void *cookie, size_t size, size_t align)
 {
     (void)cookie;
+    const long call = calls++;
     // Small frames under the largest radius may want more than a machine that runs tests has to give.
-    void *p = calls++ == fails_at || size > (size_t)1 << 31 ? NULL : block_of(size, align);
+    const int fails = (call >= fails_at && call < fails_to) || size > (size_t)1 << 31;
+    void *p = fails ? NULL : block_of(size, align);
     if (!p)
         return NULL;
     live++;
-    return memset(p, 0xff, size);
+    return memset(p, fresh, size);
 }
 
 static void give(void *cookie, void *p)
@@ -184,7 +207,7 @@ static int any_size(struct bytes *b, unsigned most)
 }
 
 // Memory for what the descriptor says, filled with anything; if it cannot be true, none is needed.
-static void *any_plane(struct bytes *b, size_t pixel, int w, int h, ptrdiff_t *stride, void **block)
+static void *any_plane(struct bytes *b, size_t pixel, int w, int h, ptrdiff_t *stride, struct area *area)
 {
     const size_t row = w > 0 ? pixel * (size_t)w : 0;
     const unsigned kind = take_byte(b);
@@ -196,10 +219,9 @@ static void *any_plane(struct bytes *b, size_t pixel, int w, int h, ptrdiff_t *s
     *stride = step;
     const size_t size = (step < 0 ? (size_t)-step : (size_t)step);
     if (!row || h < 1 || w > 65536 || h > 65536 || size < row)
-        return *block = block_of(1, 1);  // to be refused
+        return (*area = area_of(1)).start;  // to be refused
     const size_t offset = kind % 7 == 6 ? 1 : 0, bytes = size * (size_t)(h - 1) + row + offset;
-    unsigned char *p = *block = block_of(bytes, 4);
-    MUST(p != NULL);
+    unsigned char *p = (*area = area_of(bytes)).start;
     uint32_t state = take_word(b) | 1;
     const int calm = kind & 1;
     for (size_t i = 0; i < bytes; i++) {
@@ -210,7 +232,7 @@ static void *any_plane(struct bytes *b, size_t pixel, int w, int h, ptrdiff_t *s
     return step < 0 ? p + size * (size_t)(h - 1) : p;
 }
 
-static struct hf_image any_image(struct bytes *b, int w, int h, void *blocks[4])
+static struct hf_image any_image(struct bytes *b, int w, int h, struct area areas[4])
 {
     static const size_t pixel[] = {16, 12, 8, 4, 4, 4, 4, 4, 4, 4, 8};
     enum { FORMATS = sizeof pixel / sizeof *pixel };
@@ -220,23 +242,139 @@ static struct hf_image any_image(struct bytes *b, int w, int h, void *blocks[4])
     if (m.format >= HF_FORMAT_RGBA8 || take_byte(b) == 255)
         m.transfer = (enum hf_transfer)any_choice(b, 2);
     for (int i = 0; i < planes; i++)
-        m.data[i] = any_plane(b, bytes, w, h, &m.stride[i], &blocks[i]);
+        m.data[i] = any_plane(b, bytes, w, h, &m.stride[i], &areas[i]);
     if (take_byte(b) == 255)
         m.data[0] = NULL;
     return m;
 }
 
-static struct hf_depth any_depth(struct bytes *b, int w, int h, void **block)
+static struct hf_depth any_depth(struct bytes *b, int w, int h, struct area *area)
 {
     static const size_t sample[] = {4, 2, 2, 4, 4, 4};
     enum { FORMATS = sizeof sample / sizeof *sample };
     struct hf_depth d = {.type = (enum hf_depth_type)any_choice(b, 7),
                          .format = (enum hf_depth_format)any_choice(b, FORMATS)};
-    d.data = any_plane(b, (unsigned)d.format < FORMATS ? sample[d.format] : 0, w, h, &d.stride, block);
+    d.data = any_plane(b, (unsigned)d.format < FORMATS ? sample[d.format] : 0, w, h, &d.stride, area);
     maybe(b, &d.near_plane);
     maybe(b, &d.far_plane);
     maybe(b, &d.focal_px);
     return d;
+}
+
+// ---- what came to the API later, drawn last: bytes that were kept mean what they did, and zeros change nothing
+
+// Above what a byte of a calm input mostly is.
+static int now_and_then(struct bytes *b)
+{
+    return take_byte(b) > 200;
+}
+
+// Most of them between 0 and `most`.
+static void sensible(struct bytes *b, float *field, float most)
+{
+    const unsigned kind = take_byte(b);
+    if (kind > 230)
+        *field = any_float(b);
+    else if (kind > 180)
+        *field = most * (float)take_byte(b) / 255;
+}
+
+static void any_layers(struct bytes *b, struct hf_layers_params *p)
+{
+    const unsigned flags = take_byte(b);
+    p->no_unmix = flags & 1;
+    p->no_hidden = flags >> 1 & 1;
+    p->no_highlights = flags >> 2 & 1;
+    p->no_patterns = flags >> 3 & 1;
+    p->quality = (enum hf_layers_quality)any_choice(b, 4);
+    sensible(b, &p->spacing, 32);
+    sensible(b, &p->half_from, 16);
+    sensible(b, &p->quarter_from, 64);
+}
+
+// The aperture's picture lies in *picture and areas.
+static void any_more_params(struct bytes *b, struct hf_params *p, struct hf_image *picture, struct area areas[4])
+{
+    any_layers(b, &p->layers);
+    p->gather.downsample = (enum hf_downsample)any_choice(b, 3);
+    p->gather.division = (enum hf_division)any_choice(b, 4);
+    p->gaussian.faithful = take_byte(b) & 1;
+    if (now_and_then(b))
+        p->gaussian.by_depth = scaled(any_choice(b, 4), 1, -1);
+    if (now_and_then(b))
+        p->focus = HF_DERIVE;
+    if (now_and_then(b))
+        sensible(b, &p->aperture.chromatic, 0.5f);
+    if (now_and_then(b)) {
+        sensible(b, &p->highlight.gain, 64);
+        sensible(b, &p->highlight.threshold, 0.99f);
+    }
+    if (now_and_then(b)) {
+        sensible(b, &p->view.pixel_aspect, 10);
+        sensible(b, &p->aperture.squeeze, 4);
+        sensible(b, &p->aperture.roundness, 1);
+        sensible(b, &p->aperture.ring, 0.95f);
+        sensible(b, &p->aperture.cat_eye, 1);
+        sensible(b, &p->aperture.rotation, 720);
+    }
+    if (now_and_then(b)) {
+        const int w = 1 + (int)take_byte(b) % 40, h = 1 + (int)take_byte(b) % 40;
+        *picture = any_image(b, w, h, areas);
+        p->aperture.picture = picture;
+        if (take_byte(b) & 1)  // no shape besides
+            p->aperture.blades = 0, p->aperture.roundness = p->aperture.ring = p->aperture.cat_eye = 0;
+    }
+    if (now_and_then(b))  // what draws most of it
+        p->engine = take_byte(b) & 1 ? HF_ENGINE_SCATTER : HF_ENGINE_LAYERS;
+}
+
+static void any_more_depth(struct bytes *b, struct hf_depth *d)
+{
+    if (take_byte(b) % 8) {
+        d->near_plane = 0.25f;
+        d->far_plane = 100;
+        d->focal_px = 50;
+    }
+    sensible(b, &d->center_x, 256);
+    sensible(b, &d->center_y, 24);
+    sensible(b, &d->near_plane, 1);
+    sensible(b, &d->far_plane, 200);
+}
+
+// ---- a host
+
+// One line, not empty, of what can be printed.
+static long errors_told;
+
+static void hear(void *cookie, enum hf_log_level level, const char *message)
+{
+    (void)cookie;
+    MUST(level >= HF_LOG_ERROR && level <= HF_LOG_INFO);
+    const size_t n = strlen(message);
+    MUST(n > 10);
+    for (size_t i = 0; i < n; i++)
+        MUST((unsigned char)message[i] >= 32 && message[i] != 127);
+    errors_told += level == HF_LOG_ERROR;
+}
+
+// A host's own threads, of which there is one: backwards, and now one worker, now the other.
+static void backwards(void *cookie, int n, void (*fn)(void *arg, int i, int worker), void *arg)
+{
+    const int workers = *(const int *)cookie;
+    for (int i = n - 1; i >= 0; i--)
+        fn(arg, i, i % workers);
+}
+
+static void look(void *cookie, const struct hf_buffer *m)
+{
+    (void)cookie;
+    MUST(m->name && m->width > 0 && m->height > 0 && m->channels >= 1 && m->channels <= 4);
+    for (int c = 0; c < m->channels; c++)
+        for (int y = 0; y < m->height; y++) {
+            const float *row = (const float *)((const char *)m->data[c] + y * m->stride);
+            for (int x = 0; x < m->width; x++)
+                MUST(isfinite(row[x]));
+        }
 }
 
 // One of those that this processor has; all calls the one that HYPERFOCAL_ISA names.
@@ -253,43 +391,152 @@ static enum hf_isa any_isa(struct bytes *b)
     return HF_ISA_AUTO;
 }
 
+// ---- calls
+
+// What became of the calls, by -error.
+static long became[6];
+
+void fuzz_told(void)
+{
+    printf("%ld frames rendered, %ld refused, %ld out of memory, %ld without focus\n", became[0], became[-HF_ERR_ARG],
+           became[-HF_ERR_MEMORY], became[-HF_ERR_FOCUS]);
+}
+
+// No NaN and no infinity, where there could be some.
+static int is_finite_image(const struct hf_image *m)
+{
+    const int floats = m->format == HF_FORMAT_RGBA32F     ? 4
+                       : m->format == HF_FORMAT_RGB32F    ? 3
+                       : m->format == HF_FORMAT_PLANAR32F ? 1
+                                                          : 0,
+              halves = m->format == HF_FORMAT_RGBA16F ? 4 : 0;
+    int bad = 0;
+    for (int i = 0; i < 4 && m->data[i]; i++)
+        for (int y = 0; y < m->height; y++) {
+            const char *row = (const char *)m->data[i] + y * m->stride[i];
+            for (int x = 0; x < m->width * floats; x++) {
+                float v;
+                memcpy(&v, row + sizeof v * (size_t)x, sizeof v);
+                bad += !isfinite(v);
+            }
+            for (int x = 0; x < m->width * halves; x++) {
+                uint16_t v;
+                memcpy(&v, row + sizeof v * (size_t)x, sizeof v);
+                bad += (v & 0x7c00) == 0x7c00;
+            }
+        }
+    return !bad;
+}
+
+struct frame {
+    struct hf_image dst, src, picture;
+    struct hf_depth depth;
+    struct hf_params p;
+    struct area areas[16];  // 4 of src, 1 of depth, 4 of the aperture's picture, 4 of dst
+};
+
+// What takes numbers alone, or one sample.
+static void ask(struct bytes *b, struct frame *f)
+{
+    const int w = f->src.width, h = f->src.height;
+    char message[256];
+    struct hf_resolved r;
+    const size_t size = take_byte(b) % (sizeof message + 1);
+    const int err = hf_resolve(w, h, &f->depth, &f->p, &r, message, size);
+    MUST(err == HF_OK || err == HF_ERR_ARG || err == HF_ERR_FOCUS);
+    MUST(!size || memchr(message, 0, size));
+    MUST(err || (r.width == w && r.height == h && r.params.max_radius >= 0 && r.params.max_radius <= 2048));
+    float z = 1;
+    const int x = any_choice(b, 256), y = any_choice(b, 24);
+    const int read = hf_depth_at(&f->depth, w, h, x, y, &z);
+    MUST(read == HF_ERR_ARG || (x >= 0 && y >= 0 && x < w && y < h));
+    MUST(read || z > 0);
+    struct hf_choice choice;
+    struct hf_params p = f->p;
+    if (now_and_then(b) && !hf_choose_quality(h, &f->depth, &p, (enum hf_quality)any_choice(b, 4), &choice))
+        MUST(choice.step >= 0 && choice.step < choice.steps && choice.options);
+    if (now_and_then(b) && !hf_choose_error(h, &f->depth, &p, any_float(b), &choice))
+        MUST(choice.step >= 0 && choice.step < choice.steps && choice.options);
+    if (now_and_then(b))
+        f->p = p;
+}
+
+static void check_report(struct hf_context *c, int w, int h, int err)
+{
+    struct hf_report report;
+    hf_get_report(c, &report);
+    // Ranges that overlap make a pixel near and far at once; a copy looks at no depth.
+    const uint64_t n = (uint64_t)w * (uint64_t)h,
+                   counted = report.near_pixels + report.sharp_pixels + report.far_pixels;
+    MUST(err || counted == 0 ||
+         (counted >= n && report.near_pixels <= n && report.sharp_pixels + report.far_pixels <= n));
+    uint8_t tiles[64];
+    const size_t count = hf_get_tiles(c, tiles, sizeof tiles);
+    MUST(count == (size_t)report.columns * (size_t)report.rows);
+    for (size_t i = 0; i < count && i < sizeof tiles; i++)
+        MUST(tiles[i] <= HF_TILE_BOTH);
+    MUST(report.passes >= 0 && report.passes <= HF_MAX_PASSES);
+}
+
+static void render(struct hf_context *c, struct bytes *b, struct frame *f, int in_place)
+{
+    struct hf_report report;
+    struct hf_resolved r;
+    const uint64_t before = hash_of(in_place ? f->areas + 4 : f->areas, in_place ? 5 : 9);
+    const int planned = hf_plan(c, &f->dst, &f->src, &f->depth, &f->p, &report);
+    const int prepared = now_and_then(b) ? hf_prepare(c, &f->dst, &f->src, &f->depth, &f->p) : planned;
+    hf_set_dump(c, fresh ? NULL : look, NULL);
+    const long told = errors_told;
+    const int err = hf_render(c, &f->dst, &f->src, &f->depth, &f->p);
+    MUST(err == HF_OK || err == HF_ERR_ARG || err == HF_ERR_MEMORY || err == HF_ERR_FOCUS);
+    MUST((planned == HF_ERR_ARG) == (err == HF_ERR_ARG) && (prepared == HF_ERR_ARG) == (err == HF_ERR_ARG));
+    MUST(errors_told == told + (err != 0));
+    MUST(before == hash_of(in_place ? f->areas + 4 : f->areas, in_place ? 5 : 9));
+    MUST(err || hf_resolve(f->src.width, f->src.height, &f->depth, &f->p, &r, NULL, 0) || r.sharp ||
+         is_finite_image(&f->dst));
+    became[-err]++;
+    check_report(c, f->src.width, f->src.height, err);
+}
+
+static void one_frame(struct hf_context *c, struct bytes *b, unsigned how)
+{
+    struct frame f = {0};
+    const int w = any_size(b, how & 32 ? 24 : 256), h = any_size(b, how & 32 ? 256 : 24);
+    f.src = any_image(b, w, h, f.areas);
+    f.dst = how & 64 ? f.src : any_image(b, take_byte(b) == 255 ? w + 1 : w, h, f.areas + 9);
+    f.depth = any_depth(b, w, h, &f.areas[4]);
+    f.p = any_params(b);
+    any_more_params(b, &f.p, &f.picture, f.areas + 5);
+    any_more_depth(b, &f.depth);
+    ask(b, &f);
+    render(c, b, &f, how >> 6 & 1);
+    for (size_t i = 0; i < sizeof f.areas / sizeof *f.areas; i++)
+        free_block(f.areas[i].start);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct bytes b = {data, size};
-    void *blocks[12] = {0};
     const unsigned how = take_byte(&b);
-    struct hf_config config = {.threads = 1 + (how & 1), .isa = any_isa(&b), .alloc = take, .free = give};
+    int workers = 1 + (how & 1);
+    struct hf_config config = {
+        .threads = workers, .isa = any_isa(&b), .alloc = take, .free = give, .log = hear, .parallel_cookie = &workers};
     if (how & 4) {
         config.tile_width = scaled(any_choice(&b, 6), 16, 16);
         config.tile_height = scaled(any_choice(&b, 40), 1, 16);
     }
+    if (how & 2)
+        config.parallel_for = backwards;
     live = calls = 0;
-    fails_at = how & 8 ? (long)take_byte(&b) : -1;
+    fresh = how & 128 ? 0 : 0xff;
+    const unsigned fails = how & 8 ? take_byte(&b) : 0;
+    fails_at = how & 8 ? (long)(fails % 64) : LONG_MAX;
+    fails_to = how & 8 && fails < 192 ? fails_at + 1 : LONG_MAX;
     struct hf_context *c = NULL;
     const int opened = hf_open(&c, &config);
     MUST(!opened == (c != NULL));
-    for (int frame = 0; c && frame < 1 + (int)(how >> 4 & 1); frame++) {
-        const int w = any_size(&b, how & 32 ? 24 : 256), h = any_size(&b, how & 32 ? 256 : 24);
-        const struct hf_image src = any_image(&b, w, h, blocks);
-        struct hf_image dst = how & 64 ? src : any_image(&b, take_byte(&b) == 255 ? w + 1 : w, h, blocks + 4);
-        const struct hf_depth depth = any_depth(&b, w, h, &blocks[8]);
-        const struct hf_params p = any_params(&b);
-        struct hf_report report;
-        const int planned = hf_plan(c, &dst, &src, &depth, &p, &report);
-        const int err = hf_render(c, &dst, &src, &depth, &p);
-        MUST(err == HF_OK || err == HF_ERR_ARG || err == HF_ERR_MEMORY || err == HF_ERR_FOCUS);
-        MUST(planned != HF_ERR_ARG || err == HF_ERR_ARG);
-        hf_get_report(c, &report);
-        // Ranges that overlap make a pixel near and far at once; a copy looks at no depth.
-        const uint64_t n = (uint64_t)w * (uint64_t)h,
-                       counted = report.near_pixels + report.sharp_pixels + report.far_pixels;
-        MUST(err || counted == 0 ||
-             (counted >= n && report.near_pixels <= n && report.sharp_pixels + report.far_pixels <= n));
-        for (int i = 0; i < 12; i++) {
-            free_block(blocks[i]);
-            blocks[i] = NULL;
-        }
-    }
+    for (int frame = 0; c && frame < 1 + (int)(how >> 4 & 1); frame++)
+        one_frame(c, &b, how);
     hf_close(&c);
     MUST(live == 0);
     return 0;

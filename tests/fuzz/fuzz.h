@@ -9,7 +9,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ADDRESS_SANITIZER
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define ADDRESS_SANITIZER
+#endif
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+// What a target counted, printed when replay.c is done; targets may do without.
+__attribute__((weak)) void fuzz_told(void);
 
 // Bytes as a source of choices; zeros when they are used up.
 struct bytes {
