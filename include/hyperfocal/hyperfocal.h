@@ -216,7 +216,8 @@ enum hf_storage {
 
 // How the gaps between the gather's taps are closed (chapter 3.3.5).
 enum hf_fill {
-    HF_FILL_MAX,  // 3x3 maximum: brighter highlights than energy allows, the chapter's choice
+    HF_FILL_MAX,  // 3x3 maximum: brighter highlights than energy allows, the chapter's choice. Far neighbours come in by and
+                  // by over the first quarter of their CoC, but with .faithful
     HF_FILL_MEAN,  // no gaps: each tap is the mean over its part of the aperture's area, which keeps energy; 3x3 mean with
                    // .faithful or where downsample or division are not the default
     HF_FILL_NONE,  // none; instead 144 taps, a 12x12 grid mapped to the disc (Shirley and Chiu 1997)

@@ -48,6 +48,17 @@ static void far_weights_faithful(const struct hf_buf *coc, struct hf_phase p, fl
         w[t] *= i;
 }
 
+// Over the sum of the weights, which is 1 within rounding: what is opaque stays so.
+static float alpha_mean(const float w[4], const float v[4])
+{
+    float sum = w[0] * v[0], weight = w[0];
+    for (int i = 1; i < 4; i++) {
+        sum += w[i] * v[i];
+        weight += w[i];
+    }
+    return sum / weight;
+}
+
 static void blend_far(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i)
 {
     const struct hf_buf *far = &f->buf[HF_BUF_FAR_FILL];
@@ -61,11 +72,12 @@ static void blend_far(const struct hf_frame *f, struct hf_phase p, float coc, fl
         return;
     }
     for (int c = 0; c < f->s->channels && t != 0; c++) {
-        float rest = colour[c][i] - w[0] * *hf_at(far, c, p.x, p.y);  // of the colour, less the far field
-        rest -= w[1] * *hf_at(far, c, p.nx, p.y);
-        rest -= w[2] * *hf_at(far, c, p.x, p.ny);
-        rest -= w[3] * *hf_at(far, c, p.nx, p.ny);
-        colour[c][i] -= t * rest;
+        const float v[4] = {*hf_at(far, c, p.x, p.y), *hf_at(far, c, p.nx, p.y), *hf_at(far, c, p.x, p.ny),
+                            *hf_at(far, c, p.nx, p.ny)};
+        float rest = colour[c][i];  // less the far field
+        for (int k = 0; k < 4 && c < 3; k++)
+            rest -= w[k] * v[k];
+        colour[c][i] -= t * (c < 3 ? rest : rest - alpha_mean(w, v));
     }
 }
 

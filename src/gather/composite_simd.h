@@ -124,6 +124,22 @@ HF_INLINE vf blend_rest(vf v, vf rest, vf t, const int plain)
     return plain ? blended : vf_select(vf_ne(t, vf_zero()), blended, v);
 }
 
+// Colour less the far field; alpha's mean is over the sum of the weights, which is 1 within rounding.
+HF_INLINE vf far_rest(vf own, const vf w[4], const vf v[4], const int alpha)
+{
+    if (!alpha) {
+        for (int k = 0; k < 4; k++)
+            own = vf_fnma(w[k], v[k], own);
+        return own;
+    }
+    vf sum = vf_mul(w[0], v[0]), weight = w[0];
+    for (int k = 1; k < 4; k++) {
+        sum = vf_fma(w[k], v[k], sum);
+        weight = vf_add(weight, w[k]);
+    }
+    return vf_sub(own, vf_div(sum, weight));
+}
+
 HF_INLINE void blend_far_channel(const struct field_rows *field, const int rows, int c, int x, vf w[2][2][4],
                                  vf t[2][2], const int plain, struct composite_block *b)
 {
@@ -131,10 +147,10 @@ HF_INLINE void blend_far_channel(const struct field_rows *field, const int rows,
     load_around(field, c, x, v);
     for (int i = 0; i < 2 * rows; i++) {
         const int row = i / 2, odd = i % 2;
-        vf *to = &b->colour[row][odd][c], rest = *to;
-        for (int k = 0; k < 4; k++)
-            rest = vf_fnma(w[row][odd][k], around(v, row, odd, k), rest);
-        *to = blend_rest(*to, rest, t[row][odd], plain);
+        vf *to = &b->colour[row][odd][c];
+        const vf of[4] = {around(v, row, odd, 0), around(v, row, odd, 1), around(v, row, odd, 2),
+                          around(v, row, odd, 3)};
+        *to = blend_rest(*to, far_rest(*to, w[row][odd], of, c == 3), t[row][odd], plain);
     }
 }
 
@@ -158,11 +174,9 @@ HF_INLINE void blend_far_faithful(const struct composite_rows *r, const enum hf_
             w[i] = vf_mul(w[i], inverse);
         for (int c = 0; c < channels; c++) {
             const float *p = own + c * r->far.plane + x, *q = below + c * r->far.plane + x;
-            vf *to = &b->colour[0][o][c], rest = vf_fnma(w[0], vf_load(p), *to);
-            rest = vf_fnma(w[1], vf_load(p + o), rest);
-            rest = vf_fnma(w[2], vf_load(q), rest);
-            rest = vf_fnma(w[3], vf_load(q + o), rest);
-            *to = blend_rest(*to, rest, vf_mul(blend, b->coc[0][o]), 0);
+            const vf of[4] = {vf_load(p), vf_load(p + o), vf_load(q), vf_load(q + o)};
+            vf *to = &b->colour[0][o][c];
+            *to = blend_rest(*to, far_rest(*to, w, of, c == 3), vf_mul(blend, b->coc[0][o]), 0);
         }
     }
 }

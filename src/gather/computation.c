@@ -168,7 +168,8 @@ static void gather_far(const struct hf_frame *f, struct hf_rect r)
                 // FLT_MIN: a CoC so small that its weighted sum is 0. Without a tap on the centre there may be no far
                 // CoC under any tap: then the pixel's own colour is all there is.
                 const float inverse = 1 / (sum[x] > FLT_MIN ? sum[x] : FLT_MIN);
-                const float mean = sum[x] > 0 ? far[c][x] * inverse : own[x] / coc[x];
+                const float part = c == 3 ? far[c][x] / sum[x] : far[c][x] * inverse;  // what is opaque stays so
+                const float mean = sum[x] > 0 ? part : own[x] / coc[x];
                 far[c][x] = coc[x] > 0 ? mean : 0;
             }
         }

@@ -462,9 +462,10 @@ static void finish_far(const struct hf_frame *f, struct hf_rect r)
             const vf own = vf_load(coc + x), total = vf_load(sum + x);
             const vm is_far = vf_gt(own, vf_zero()), alone = vm_and(is_far, vm_not(vf_gt(total, vf_zero())));
             const vf inverse = inverse_vf(division, vf_max(total, vf_set1(FLT_MIN)));
-            for (int c = 0; c < s->channels; c++)
-                vf_store(far[c] + x,
-                         round_stored(s->storage, vf_keep(is_far, vf_mul(vf_load(far[c] + x), inverse)), c));
+            for (int c = 0; c < s->channels; c++) {
+                const vf v = vf_load(far[c] + x), mean = c == 3 ? vf_div(v, total) : vf_mul(v, inverse);
+                vf_store(far[c] + x, round_stored(s->storage, vf_keep(is_far, mean), c));
+            }
             if (vm_any(alone))
                 for (int c = 0; c < s->channels; c++) {
                     const vf v = vf_div(vf_load(hf_at(&f->buf[HF_BUF_COLORFAR4], c, r.x0 + x, y)), own);

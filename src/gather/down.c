@@ -51,8 +51,12 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
             f->counts->clamped += !(__builtin_fabsf(sum) <= HF_LARGEST);
             if (f->near)
                 colour[c][x] = hf_limited(how == HF_DOWNSAMPLE_POINT ? c00 : sum, HF_LARGEST);
-            if (f->far)
-                far[c][x] = hf_limited(((w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11)) * quad[0], HF_LARGEST);
+            if (f->far) {
+                float mean = (w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11);
+                if (c == 3)  // weights add up to 1 within rounding, and what is opaque stays so
+                    mean /= (w[0] + w[1]) + (w[2] + w[3]);
+                far[c][x] = hf_limited(mean * quad[0], HF_LARGEST);
+            }
         }
         if (f->near)
             *hf_at(&f->buf[HF_BUF_COC4], 0, r.x0 + x, y) = *hf_at(coc, 0, r.x0 + x, 2 * y);

@@ -239,6 +239,9 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     g->rings = p->gather.rings;
     g->area = !s->faithful && g->fill == HF_FILL_MEAN && !g->downsample && !g->division;
     s->zero_beyond = g->area;
+    // Fields of half resolution come in by and by where the radius is smaller than one of its pixels, as by area.
+    if (!g->area)
+        g->blend *= __builtin_fminf(h, 1);
     set_reach(g, s, h);
     s->measured = is_measured(s->resolved);
     if (s->measured) {  // until then the CoC is the radius over the largest there may be, which a byte cannot hold

@@ -27,24 +27,31 @@ static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
     return ((row[0] + row[2]) + row[1]) * (1 / 9.0f);
 }
 
-// Does a far neighbour of CoC g count for a pixel of CoC f? It has to hold far colour at all, except for the published
-// demo's maximum.
-static int counts(const struct hf_setup *s, float f, float g)
+// Is a far neighbour of CoC g like a pixel of CoC f?
+static int is_like(const struct hf_setup *s, float f, float g)
 {
-    if (hf_gather(s)->per_pixel_kernel && !(__builtin_fabsf(f - g) <= SIMILAR))
-        return 0;
-    return (s->faithful && hf_gather(s)->fill == HF_FILL_MAX) || g > 0;
+    return !hf_gather(s)->per_pixel_kernel || __builtin_fabsf(f - g) <= SIMILAR;
+}
+
+// What a neighbour of CoC g and value t brings to the maximum of a pixel of value own. The published demo takes what is
+// there, even if there is none; then a quad that begins to be far lights up the others around it at once. So it comes in by
+// and by, up to a quarter of the largest CoC.
+static float brought(const struct hf_setup *s, float own, float t, float g)
+{
+    const float part = 4 * g;
+    return s->faithful || part >= 1 ? t : own + part * (t - own);
 }
 
 static float far_max(const struct hf_frame *f, int c, int x, int y)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_FAR], *coc = &f->buf[HF_BUF_COC4];
     const float own = *hf_at(coc, 1, x, y);
-    float v = *hf_at(b, c, x, y);
+    const float value = *hf_at(b, c, x, y);
+    float v = value;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            const float t = *hf_at(b, c, x + i, y + j);
-            if (counts(f->s, own, *hf_at(coc, 1, x + i, y + j)))
+            const float g = *hf_at(coc, 1, x + i, y + j), t = brought(f->s, value, *hf_at(b, c, x + i, y + j), g);
+            if (is_like(f->s, own, g))
                 v = t > v ? t : v;
         }
     return v + 0;
@@ -58,7 +65,8 @@ static float far_mean(const struct hf_frame *f, int c, int x, int y)
     for (int j = -1; j <= 1; j++) {
         float t[3], w[3];
         for (int i = -1; i <= 1; i++) {
-            w[i + 1] = (float)counts(f->s, own, *hf_at(coc, 1, x + i, y + j));
+            const float g = *hf_at(coc, 1, x + i, y + j);
+            w[i + 1] = g > 0 && is_like(f->s, own, g);
             t[i + 1] = w[i + 1] != 0 ? *hf_at(b, c, x + i, y + j) : 0;
         }
         sum[j + 1] = (t[0] + t[2]) + t[1];
@@ -98,7 +106,8 @@ void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
         // The largest of what a storage holds is what it holds.
         if (f->near && hf_gather(f->s)->fill == HF_FILL_MEAN)
             hf_store_rgb(f, near, r.x1 - r.x0);
-        if (f->far && hf_gather(f->s)->fill == HF_FILL_MEAN)
+        if (f->far &&
+            (hf_gather(f->s)->fill == HF_FILL_MEAN || (hf_gather(f->s)->fill == HF_FILL_MAX && !f->s->faithful)))
             hf_store_rgb(f, far, r.x1 - r.x0);
     }
 }

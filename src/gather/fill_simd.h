@@ -78,31 +78,55 @@ static void fill_copy_row(const float *in, float *out, int n)
         vf_store(out + x, vf_load(in + x));
 }
 
-// Neighbours that count, all nine looked at: those of similar CoC (per-pixel kernel), and for a mean those
-// that are far at all.
-HF_INLINE void fill_far_picked(const struct hf_setup *s, const float *in, ptrdiff_t stride, const float *coc,
-                               ptrdiff_t coc_stride, float *out, int n)
+// What a neighbour brings to a maximum; rounded as the C is.
+HF_INLINE vf fill_brought(const struct hf_setup *s, vf own, vf t, vf g)
+{
+    const vf part = vf_mul(vf_set1(4), g);
+    return s->faithful ? t : vf_select(vf_lt(part, vf_set1(1)), vf_add(own, vf_mul(part, vf_sub(t, own))), t);
+}
+
+// Of the per-pixel kernel, neighbours of similar CoC.
+HF_INLINE vm fill_is_like(const struct hf_setup *s, vf own, vf g)
+{
+    const vm all = vf_eq(own, own);
+    return hf_gather(s)->per_pixel_kernel ? vf_le(vf_abs(vf_sub(own, g)), vf_set1(0.25f)) : all;
+}
+
+// All nine looked at, for a maximum ...
+HF_INLINE void fill_far_max(const struct hf_setup *s, const float *in, ptrdiff_t stride, const float *coc,
+                            ptrdiff_t coc_stride, float *out, int n)
 {
     for (int x = 0; x < n; x += VF_N) {
         const vf own = vf_load(coc + x), value = vf_load(in + x);
-        vf best = value, sum[3], count[3];
+        vf best = value;
+        for (int i = 0; i < 9; i++) {
+            const vf g = vf_load(coc + (i / 3 - 1) * coc_stride + x + i % 3 - 1);
+            const vf v = fill_brought(s, value, vf_load(in + (i / 3 - 1) * stride + x + i % 3 - 1), g);
+            best = vf_select(fill_is_like(s, own, g), vf_max(v, best), best);
+        }
+        vf_store(out + x, vf_select(vf_gt(own, vf_zero()), vf_add(best, vf_zero()), value));
+    }
+}
+
+// ... and those that are far at all for a mean.
+HF_INLINE void fill_far_mean(const struct hf_setup *s, const float *in, ptrdiff_t stride, const float *coc,
+                             ptrdiff_t coc_stride, float *out, int n)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf own = vf_load(coc + x), value = vf_load(in + x);
+        vf sum[3], count[3];
         for (int j = -1; j <= 1; j++) {
             vf t[3], w[3];
             for (int i = -1; i <= 1; i++) {
                 const vf g = vf_load(coc + j * coc_stride + x + i), v = vf_load(in + j * stride + x + i);
-                vm counts = s->faithful && hf_gather(s)->fill == HF_FILL_MAX ? vf_eq(own, own) : vf_gt(g, vf_zero());
-                if (hf_gather(s)->per_pixel_kernel)
-                    counts = vm_and(counts, vf_le(vf_abs(vf_sub(own, g)), vf_set1(0.25f)));
-                best = vf_select(counts, vf_max(v, best), best);
+                const vm counts = vm_and(fill_is_like(s, own, g), vf_gt(g, vf_zero()));
                 t[i + 1] = vf_keep(counts, v);
                 w[i + 1] = vf_keep(counts, vf_set1(1));
             }
             sum[j + 1] = sum3(t[0], t[1], t[2]);
             count[j + 1] = sum3(w[0], w[1], w[2]);
         }
-        const vf v = hf_gather(s)->fill == HF_FILL_MAX
-                         ? vf_add(best, vf_zero())
-                         : vf_div(sum3(sum[0], sum[1], sum[2]), sum3(count[0], count[1], count[2]));
+        const vf v = vf_div(sum3(sum[0], sum[1], sum[2]), sum3(count[0], count[1], count[2]));
         vf_store(out + x, vf_select(vf_gt(own, vf_zero()), v, value));
     }
 }
@@ -128,13 +152,15 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
         for (int c = 0; c < s->channels; c++)
             if (hf_gather(s)->fill == HF_FILL_NONE)
                 fill_copy_row(from[c], to[c], n);
+            else if (picked && hf_gather(s)->fill == HF_FILL_MAX)
+                fill_far_max(s, from[c], stride, w, want->stride, to[c], n);
             else if (picked)
-                fill_far_picked(s, from[c], stride, w, want->stride, to[c], n);
+                fill_far_mean(s, from[c], stride, w, want->stride, to[c], n);
             else
                 fill_mean_row(from[c], stride, w, to[c], n, f->work);
     }
     // The largest of what a storage holds is what it holds.
-    if (hf_gather(s)->fill == HF_FILL_MEAN)
+    if (hf_gather(s)->fill == HF_FILL_MEAN || (in == HF_BUF_FAR && picked && !s->faithful))
         hf_store_rgb(f, to, n);
 }
 

@@ -9,6 +9,9 @@
 // Weights below this are rounding of a tap that lies on a lattice line (the smallest real ones are above 1e-5).
 static const double NEGLIGIBLE = 1e-6;
 
+// Weights of taps are whole numbers of this: floats up to 1 hold them exactly.
+#define WEIGHT_UNIT 0x1p-24f
+
 int hf_taps_rings(float radius)
 {
     const int n = (int)ceil((double)radius / 2);
@@ -118,32 +121,51 @@ static int mirrors(const double *w, int rx, int ry)
     return 1;
 }
 
-// Round the lattice to floats, keep what is not 0, and move what rounding took from the sum to the largest weight, so that
-// a constant stays one.
+// Entries of the lattice: how often each stands there by symmetry.
+static int mirrored(const struct hf_taps *t, int row, int column)
+{
+    return t->symmetric ? (1 + (row > 0)) * (1 + (column > 0)) : 1;
+}
+
+// Gives the largest weight of those that stand there so often what whole units are missing of the sum of all.
+static void make_up(struct hf_taps *t, int times, int *missing, const int *first, const int *column, float *weight)
+{
+    int largest = -1;
+    for (int k = 0; k < t->rows; k++)
+        for (int i = first[k]; i < first[k + 1]; i++)
+            if (mirrored(t, k, column[i]) == times && (largest < 0 || weight[i] > weight[largest]))
+                largest = i;
+    if (largest < 0)
+        return;
+    weight[largest] += (float)(*missing / times) * WEIGHT_UNIT;
+    *missing %= times;
+}
+
+// Round the lattice to units, keep what is not 0, and make the sum 1: sums of weights are exact then in any order, so that
+// alpha of 1 stays 1. What rounding takes from one weight the next one gets that stands there as often.
 static void round_weights(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
 {
     const int row = 2 * t->rx + 1, columns = t->symmetric ? t->rx + 1 : row;
-    double sum = 0;
-    int n = 0, largest = 0, copies = 1;  // of the largest
+    double carry[5] = {0};
+    int n = 0, missing = (int)(1 / WEIGHT_UNIT);
     for (int k = 0; k < t->rows; k++) {
         first[k] = n;
         for (int j = 0; j < columns; j++) {
             const double *p = t->symmetric ? w + (k + t->ry) * row + j + t->rx : w + k * row + j;
-            const float v = (float)(*p / t->count);
-            const int mirrored = t->symmetric ? (1 + (k > 0)) * (1 + (j > 0)) : 1;
-            if (v == 0)
+            const int times = mirrored(t, k, j);
+            const double wanted = *p / t->count / WEIGHT_UNIT + carry[times];
+            const int units = *p > 0 ? (int)rint(wanted) : 0;
+            if (units <= 0)
                 continue;
-            if (n == 0 || v > weight[largest]) {
-                largest = n;
-                copies = mirrored;
-            }
+            carry[times] = wanted - units;
             column[n] = j;
-            weight[n++] = v;
-            sum += (double)v * mirrored;
+            weight[n++] = (float)units * WEIGHT_UNIT;
+            missing -= units * times;
         }
     }
     first[t->rows] = n;
-    weight[largest] += (float)((1 - sum) / copies);
+    for (int times = 4; times >= 1; times /= 2)
+        make_up(t, times, &missing, first, column, weight);
 }
 
 // Where all that the area covers of a row is one run around its middle, it is one entry.

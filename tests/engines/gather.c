@@ -119,8 +119,8 @@ static double coc_bound(const struct reference *r, const struct job *job)
     return U * (p->range.blend == HF_BLEND_SMOOTHSTEP ? 1.5 * bound + 6 : bound);
 }
 
-// Pass 7. L lattice weights: L products and sums, one more rounding in each weight, for numerator and denominator, and
-// the quotient: 2 L + 12 roundings of the largest colour. Tap positions are rounded to float: U h per axis, and a
+// Pass 7. L lattice weights: L products and sums, for numerator and denominator, and the quotient: 2 L + 12 roundings of
+// the largest colour. Weights are whole numbers of U, each within one of what it is. Tap positions are rounded to float: U h per axis, and a
 // bilinear sample moves by 2 * largest sample per pixel; with the per-pixel kernel the position in the picture
 // is rounded too. All relative to the mean weight of the taps, which can be small.
 static double gather_bound(const struct reference *r, enum ref_id id, int c, int x, int y)
@@ -136,7 +136,8 @@ static double gather_bound(const struct reference *r, enum ref_id id, int c, int
     const double largest = colour_near(r, c, x, y, rx, ry);
     // Karis weights w = 1 / (1 + Y): w c <= 1 / 0.0722 for every channel.
     const double sample = r->params.gather.karis ? fmin(largest, 14) : largest;
-    return many(2 * points + 12) * largest + U * 4 * moved * sample / mean;
+    const double units = per_pixel ? 0 : many(points);
+    return many(2 * points + 12) * largest + (units + U * 4 * moved) * sample / mean;
 }
 
 // What a sample of a buffer may differ by, storage apart.
@@ -165,8 +166,10 @@ static double bound_of(const struct reference *r, const struct job *job, enum re
         return gather_bound(r, id, c, x, y);
     case REF_NEARFILL:  // nine terms, and the quotient or a product with a rounded 1/9
         return r->params.gather.fill == HF_FILL_MEAN ? 11 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1) : 0;
-    case REF_FARFILL:
-        return r->params.gather.fill == HF_FILL_MEAN ? 11 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1) : 0;
+    case REF_FARFILL:  // of a maximum a difference, a product and a sum, of two values
+        return r->params.gather.fill == HF_FILL_MEAN  ? 11 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)
+               : r->params.gather.fill == HF_FILL_MAX ? 6 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)
+                                                      : 0;
     case REF_RESULT:
         return composite_bound(r, c, x, y);
     default:

@@ -3,6 +3,8 @@
 // its ends, or twenty times: what is left of the change is a jump.
 #include "stability/stability.h"
 
+#include <stdlib.h>
+
 #include "support/check.h"
 
 enum { WIDTH = 64, HEIGHT = 44, HALVINGS = 20, TRACKED = 3 };
@@ -25,6 +27,20 @@ struct pulling {
     enum pull pull;
 };
 
+// The published demo's maximum takes in what begins to be far at once, and its upsampling what is beside: how many quads up to
+// two away are far marks what that changes.
+static float *far_quads(const struct picture *depth, float focus)
+{
+    float *marks = calloc(samples_of(depth), sizeof *marks);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        for (int k = 0; k < 25; k++) {
+            const int x = i % WIDTH / 2 + k % 5 - 2, y = i / WIDTH / 2 + k / 5 - 2;
+            if (x >= 0 && y >= 0 && x < WIDTH / 2 && y < HEIGHT / 2)
+                marks[i] += depth->plane[0][2 * y * WIDTH + 2 * x] > focus;
+        }
+    return marks;
+}
+
 static struct picture at(void *cookie, double t)
 {
     const struct pulling *w = cookie;
@@ -44,7 +60,54 @@ static struct picture at(void *cookie, double t)
             w->moved->plane[0][i] = w->s->depth.plane[0][i] + v;
         depth.data = w->moved->plane[0];
     }
-    return render(w->r->c, &w->s->colour, &depth, &p);
+    struct picture out = render(w->r->c, &w->s->colour, &depth, &p);
+    if (p.gather.faithful)
+        out.plane[3] = far_quads(w->pull == PULL_DOLLY ? w->moved : &w->s->depth, p.focus);
+    return out;
+}
+
+// ---- bounds ----
+
+// A radius of 12 moves by 12 / 10 of what the focus moves, by some units in the last place of 30: 1e-5 pixels. Where a
+// sample hangs on it the most, at a radius of a pixel, it moves by four times that of a range of 1, and the sRGB curve makes
+// 12.92 * 255 codes of 1: 0.13. Half a code no one sees.
+static const double FLOAT_STEP = 0.5;
+
+// Codes by which a colour of 0.05 .. 1, as calm_scene() has them, may fall when it goes so far towards another of them, and is
+// truncated so often to 5 bits and the one in front, as blue is.
+static double fall(double part, int truncations)
+{
+    double most = 0;
+    for (int i = 0; i <= 950; i++) {
+        const double c = 0.05 + i * 1e-3, to = fmax(0.05, c - part * 0.95) * pow(1 - 1.0 / 32, truncations);
+        most = fmax(most, display_code(c) - display_code(to));
+    }
+    return most;
+}
+
+// What a jump from t on may be, and why.
+static double allowed(const struct run *r, enum pull pull, double t, const char **why)
+{
+    const struct hf_gather_params *g = &r->subject->params.gather;
+    const int is_gather = r->subject->params.engine == HF_ENGINE_GATHER, taps = is_gather && g->fill != HF_FILL_MEAN;
+    const int packed = is_gather && g->storage == HF_STORAGE_PACKED;
+    // CoC comes in bytes: one of a pixel's own, and as much of the mean that it is blended with; the maximum takes in a
+    // neighbour's colour by four times its CoC. A field is truncated when it is stored, and so is the result.
+    double part = packed ? (taps ? 6 : 2) / 255.0 : 0;
+    *why = packed ? "packed: two steps of an 8-bit CoC, four more of a maximum's, and two truncations to 5 bits"
+                  : "half a code: what the smallest step of a float can make, see continuity.c";
+    if (taps && pull == PULL_RADIUS) {
+        // The near maximum and its mean are 2 m + 1 wide, m = ceil(radius / 2), as in the chapter: from a straight edge on
+        // the mean falls as 1 - d / (2 m + 1), so that the next m changes it by 2 / (2 m + 3) at most. From N to N + 1 rings,
+        // every fourth pixel, eight taps and the centre are the same: 9 of 1 + 4 (N + 1) (N + 2).
+        const double m = round(t / 2), n = round(t / 4);
+        *why = "max and none fill: the chapter's near CoC reaches whole pixels, its rings are whole; see continuity.c";
+        if (fabs(t - 2 * m) < 1e-4)
+            part += m < 1 ? 1 : 2 / (2 * m + 3);
+        if (g->fill == HF_FILL_MAX && fabs(t - 4 * n) < 1e-4)
+            part += 1 - 9 / (1 + 4 * (n + 1) * (n + 2));
+    }
+    return part > 0 ? fall(part, packed ? 2 : 0) : FLOAT_STEP;
 }
 
 static void pulled(const struct run *r, enum pull pull, const struct scene *s, const char *scene)
@@ -67,19 +130,17 @@ static void pulled(const struct run *r, enum pull pull, const struct scene *s, c
         before = now;
     }
     picture_free(&before);
-    // A radius of 12 moves by 12 / 10 of what the focus moves, by some units in the last place of 30: 1e-5 pixels. Where
-    // a sample hangs on it the most, at a radius of a pixel, it moves by four times that of a range of 1, and the sRGB
-    // curve makes 12.92 * 255 codes of 1: 0.13. Half a code no one sees.
+    const char *why;
     for (int k = 0; k < TRACKED; k++) {
         if (worst[k] <= 0.5)
             continue;
         double from = place[k], to = place[k] + width;
         const double left = step_left(at, &w, HALVINGS, &from, &to);
-        see(r, pulls[pull].name, "half a code: what the smallest step of a float can make, see continuity.c", left, 0.5,
-            "%s, at %.9g (step %.3g)", scene, from, worst[k]);
+        const double bound = allowed(r, pull, from, &why);
+        see(r, pulls[pull].name, why, left, bound, "%s, at %.9g (step %.3g)", scene, from, worst[k]);
     }
-    see(r, pulls[pull].name, "half a code: what the smallest step of a float can make, see continuity.c", 0, 0.5, "%s",
-        scene);
+    see(r, pulls[pull].name, "half a code: what the smallest step of a float can make, see continuity.c", 0, FLOAT_STEP,
+        "%s", scene);
     picture_free(&moved);
 }
 
@@ -101,9 +162,12 @@ static void first_blur(const struct run *r, const struct scene *s)
 {
     struct pulling w = {r, s, NULL, PULL_RADIUS};
     struct picture none = at(&w, 0), least = at(&w, 1e-6);
+    const int packed =
+        r->subject->params.engine == HF_ENGINE_GATHER && r->subject->params.gather.storage == HF_STORAGE_PACKED;
     see(r, "radius 0 and the least above it: jump, 8-bit codes",
-        "half a code: what the smallest step of a float can make, see continuity.c", display_distance(&none, &least),
-        0.5, "radius 1e-6");
+        packed ? "packed: two truncations to 5 bits, of the colour when it is read and of the result"
+               : "half a code: what the smallest step of a float can make, see continuity.c",
+        display_distance(&none, &least), packed ? fall(0, 2) : FLOAT_STEP, "radius 1e-6");
     picture_free(&none);
     picture_free(&least);
 }

@@ -62,7 +62,7 @@ struct scene calm_scene(unsigned seed, int width, int height, int channels)
     return s;
 }
 
-static double code(double v)
+double display_code(double v)
 {
     v = fmax(0, fmin(1, v));
     return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055);
@@ -70,11 +70,12 @@ static double code(double v)
 
 double display_distance(const struct picture *a, const struct picture *b)
 {
+    const int marked = a->channels == 3 && a->plane[3] && b->plane[3];
     double most = 0;
     for (int c = 0; c < (a->channels < 3 ? a->channels : 3); c++)
         for (size_t i = 0; i < samples_of(a); i++)
-            if (a->plane[c][i] != b->plane[c][i])
-                most = worse(most, fabs(code(a->plane[c][i]) - code(b->plane[c][i])));
+            if (a->plane[c][i] != b->plane[c][i] && !(marked && a->plane[3][i] != b->plane[3][i]))
+                most = worse(most, fabs(display_code(a->plane[c][i]) - display_code(b->plane[c][i])));
     return most;
 }
 

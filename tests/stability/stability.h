@@ -97,7 +97,9 @@ void rounding_cases(const struct run *r);
 
 // A picture of blocks with a soft pattern in each, 0.05 .. 1, alpha as asked for, and depths on both sides of the focus.
 struct scene calm_scene(unsigned seed, int width, int height, int channels);
-// How far two pictures are apart at the worst sample, in codes of 8 bits after clamping and the sRGB curve.
+// In codes of 8 bits after clamping and the sRGB curve: a value, and how far two pictures are apart at the worst sample. Of
+// pictures of 3 channels a fourth plane may mark pixels: where the marks differ, they are not compared.
+double display_code(double v);
 double display_distance(const struct picture *a, const struct picture *b);
 
 // What is left of the step of a parameter from *from to *to, as display_distance tells, when it has been halved towards the

@@ -136,6 +136,8 @@ int stability_print(FILE *to)
                     : reason ? "open"
                              : "FAILED",
                     row->where);
+            if (strcmp(row->why, rows[first].why))
+                fprintf(to, "    %18s bound: %s\n", "", row->why);
             if (reason)
                 fprintf(to, "    %18s %s\n", "", reason);
             failed += !ok && !reason;

@@ -243,6 +243,11 @@ static void computation(struct reference *r)
     planes_free(&p);
 }
 
+static double lerp(double a, double b, double t)
+{
+    return t == 0 ? a : a + t * (b - a);
+}
+
 // One sample of pass 8. coc4 is given for the far field: only neighbours that hold far colour enter a mean, and with
 // the per-pixel kernel only those of like CoC enter at all.
 static double fill_one(const struct reference *r, const struct ref_buffer *b, const struct ref_buffer *coc4, int c,
@@ -256,8 +261,9 @@ static double fill_one(const struct reference *r, const struct ref_buffer *b, co
             if (r->params.gather.per_pixel_kernel && df > 0.25)
                 continue;
             const int holds = !coc4 || at(coc4, 1, i, j) > 0;
-            if (holds || r->params.gather.faithful)
-                largest = fmax(largest, at(b, c, i, j));
+            // By default a far neighbour comes in over the first quarter of its CoC.
+            const double part = coc4 && !r->params.gather.faithful ? fmin(1, 4 * at(coc4, 1, i, j)) : 1;
+            largest = fmax(largest, lerp(at(b, c, x, y), at(b, c, i, j), part));
             if (!holds)
                 continue;
             sum += at(b, c, i, j);
@@ -314,11 +320,6 @@ static int upsample_far(const struct reference *r, int x, int y, double out[4])
     return weights > 0;
 }
 
-static double lerp(double a, double b, double t)
-{
-    return t == 0 ? a : a + t * (b - a);
-}
-
 // Pass 9.
 static void composite(struct reference *r)
 {
@@ -350,6 +351,8 @@ static void set_scales(struct reference *r, const struct hf_depth *depth)
     r->strength = p->model == HF_MODEL_RANGE && depth->type != HF_DEPTH_COC ? p->range.strength : 1;
     r->kernel_scale = fmax(r->strength, 0.25);
     r->blend = fmin(1, 4 * r->strength);
+    if (p->gather.faithful || p->gather.fill != HF_FILL_MEAN)
+        r->blend *= fmin(1, r->reach_y);
 }
 
 // Store the colour as the passes read it. Returns 1 if it is to be copied only.
