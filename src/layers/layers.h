@@ -92,6 +92,7 @@ struct hf_layers {
 
     int width, height;                // of the frame
     int channels;                     // of colour, 3 or 4 with alpha
+    float largest;                    // sample; larger ones count as this
     int slices, levels;               // levels of hidden samples; 0: none are looked for
     struct hf_slice *slice, *behind;  // of what is seen, of hidden samples
     // Of shares at full resolution: `parts` of them from one slice to the next, so that the rim of a highlight lies where

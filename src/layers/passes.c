@@ -12,29 +12,26 @@
 
 enum { TILE = HF_LAYERS_TILE };
 
-// Larger samples count as this: then no sum of them, the weights of some being up to 7 together, passes the largest float.
-static const float LARGEST = 4.2535296e37f;  // 2^125
-
-// Is any of n beyond it? By their exponents, a comparison of integers, which costs next to nothing.
-static int has_larger(const float *v, int n)
+// Is any of n beyond it? By their bits, a comparison of integers, which costs next to nothing.
+static int has_larger(const float *v, int n, float largest)
 {
-    const uint32_t exponent = 0x7e000000;
-    uint32_t any = 0;
+    uint32_t most, any = 0;
+    memcpy(&most, &largest, sizeof most);
     for (int i = 0; i < n; i++) {
         uint32_t bits;
         memcpy(&bits, v + i, sizeof bits);
-        any |= (uint32_t)((bits & exponent) == exponent);
+        any |= (uint32_t)((bits & 0x7fffffff) > most);
     }
     return any != 0;
 }
 
 // Returns how many there were.
-static int limit(float *v, int n)
+static int limit(float *v, int n, float largest)
 {
     int count = 0;
     for (int i = 0; i < n; i++) {
         const float was = v[i];
-        v[i] = was > LARGEST ? LARGEST : was < -LARGEST ? -LARGEST : was;
+        v[i] = was > largest ? largest : was < -largest ? -largest : was;
         count += v[i] != was;
     }
     return count;
@@ -43,13 +40,14 @@ static int limit(float *v, int n)
 void hf_layers_load_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    const float largest = hf_layers(f->s)->largest;
     int large = 0;
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         float *colour[4] = {NULL};
         hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
         for (int c = 0; c < f->s->channels; c++)
-            large += has_larger(colour[c], n) ? limit(colour[c], n) : 0;
+            large += has_larger(colour[c], n, largest) ? limit(colour[c], n, largest) : 0;
         f->k->radius_row(f, x0, y, n, hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x0, y), NULL);
     }
     if (large || f->seen->colour_repaired)
@@ -64,7 +62,8 @@ static void count_row(const struct hf_frame *f, struct hf_rect r, int y)
         was[c] = hf_line(f, 8 + c);
     hf_read_pixels(f, r.x0, y, r.x1 - r.x0, was, f->counts);
     for (int c = 0; c < f->s->channels; c++)
-        f->counts->clamped += (uint64_t)limit(was[c], hf_min(2 * r.x1, f->s->width) - 2 * r.x0);
+        f->counts->clamped +=
+            (uint64_t)limit(was[c], hf_min(2 * r.x1, f->s->width) - 2 * r.x0, hf_layers(f->s)->largest);
 }
 
 // A row of tiles at a time: what one step makes is still in the cache for the next.

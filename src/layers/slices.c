@@ -168,6 +168,17 @@ int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, c
     return HF_OK;
 }
 
+// No sum of samples may pass the largest float: the weights of some are up to 7 together, and a source counts as much as
+// its shape is small, which a narrow ring or a dark picture is.
+static float largest_sample(const struct hf_layers *l)
+{
+    float scale = 4;
+    for (int g = 0; g < l->groups; g++)
+        for (int i = 0; i < 2 * l->slices + l->shines; i++)
+            scale = fmaxf(scale, l->group[g][i].scale);
+    return 1.7014118e38f / scale;  // 2^127: 2^125 for discs
+}
+
 void hf_layers_make_slices(struct hf_layers *l)
 {
     const int near = slices_of(l, -l->nearest), far = slices_of(l, l->farthest);
@@ -191,6 +202,7 @@ void hf_layers_make_slices(struct hf_layers *l)
         for (int i = 0; i < 2 * l->slices + l->shines; i++)
             l->most_tiles = hf_max(l->most_tiles, hf_layers_tiles_around(l->group[g] + i));
     }
+    l->largest = largest_sample(l);
     hf_layers_use_group(l, 0);
 }
 

@@ -3,6 +3,7 @@
 // without a jump, and what is opaque with it.
 //
 //     layers_aperture
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -224,12 +225,36 @@ static void opaque(struct hf_context *c)
     picture_free(&radii);
 }
 
+// A shape that covers little of its square counts each of its samples as much as that is little, by 20 and more: of the
+// largest floats, too, the sums are finite.
+static void largest_floats(struct hf_context *c)
+{
+    struct picture colour = picture_new(40, 24, 4), radii = picture_new(40, 24, 1);
+    struct hf_params p = hf_default_params;
+    p.engine = HF_ENGINE_LAYERS;
+    p.aperture.blades = 3;
+    p.aperture.ring = 0.95f;
+    p.aperture.squeeze = 4;
+    for (int k = 0; k < 4; k++)
+        picture_fill(&colour, k, k == 2 ? -FLT_MAX : FLT_MAX);
+    for (float radius = 0.25f; radius < 4; radius *= 1.5f) {
+        picture_fill(&radii, 0, radius);
+        const struct hf_depth depth = picture_radii(&radii);
+        struct picture out = render(c, &colour, &depth, &p);
+        CHECK_MSG(all_finite(&out), "radius %g of the largest floats is not finite", (double)radius);
+        picture_free(&out);
+    }
+    picture_free(&colour);
+    picture_free(&radii);
+}
+
 int main(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
     against_scatter(c);
     continuous(c);
     opaque(c);
+    largest_floats(c);
     hf_close(&c);
     return check_report();
 }

@@ -157,7 +157,9 @@ static struct hf_params any_params(struct bytes *b)
     maybe(b, &p.lens.focal_length_mm);
     maybe(b, &p.lens.sensor_width_mm);
     maybe(b, &p.lens.world_unit_m);
-    p.max_radius = take_byte(b) < 200 ? (float)take_byte(b) / 8 : any_float(b);
+    p.max_radius = take_byte(b) < 245 ? (float)take_byte(b) / 8 : any_float(b);
+    if (fuzz_small && p.max_radius > 64)
+        p.max_radius = 64;
     if (take_byte(b) < 60) {
         p.aperture.blades = any_choice(b, 17);
         maybe(b, &p.aperture.rotation);
@@ -501,7 +503,8 @@ static void render(struct hf_context *c, struct bytes *b, struct frame *f, int i
 static void one_frame(struct hf_context *c, struct bytes *b, unsigned how)
 {
     struct frame f = {0};
-    const int w = any_size(b, how & 32 ? 24 : 256), h = any_size(b, how & 32 ? 256 : 24);
+    const unsigned most = fuzz_small ? 24 : 256;
+    const int w = any_size(b, how & 32 ? 24 : most), h = any_size(b, how & 32 ? most : 24);
     f.src = any_image(b, w, h, f.areas);
     f.dst = how & 64 ? f.src : any_image(b, take_byte(b) == 255 ? w + 1 : w, h, f.areas + 9);
     f.depth = any_depth(b, w, h, &f.areas[4]);

@@ -18,6 +18,8 @@
 #endif
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+// Of inputs made up in great numbers most are to be small.
+__attribute__((weak)) int fuzz_small;
 // What a target counted, printed when replay.c is done; targets may do without.
 __attribute__((weak)) void fuzz_told(void);
 
