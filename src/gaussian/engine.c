@@ -153,6 +153,8 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     if (g->by_depth == HF_DERIVE)
         g->by_depth = g->faithful || only_focus(asked);
     g->by_depth = g->by_depth && depth->type != HF_DEPTH_COC;
+    if (!err && g->by_depth)  // whose strength is this, with a lens too
+        err = hf_check_between("range.strength", r->params.range.strength, 0, 1, message);
     if (g->by_depth)
         r->sharp = r->params.max_radius == 0 || r->params.range.strength == 0;
     r->sharp |= g->resolution == HF_RESOLUTION_FULL && g->sigma == 0;

@@ -244,6 +244,23 @@ static void focus_pull(struct hf_context *c, const char *isa)
     scene_free(&s);
 }
 
+// The blend by depth has the range model's strength, with a lens too.
+static void strengths(void)
+{
+    static const float odd[] = {NAN, INFINITY, -1, 1.5f};
+    const struct hf_depth depth = {.type = HF_DEPTH_VIEW};
+    struct hf_params p = hf_default_params;
+    p.engine = HF_ENGINE_GAUSSIAN;
+    p.model = HF_MODEL_LENS;
+    for (int i = 0; i < 4; i++) {
+        p.range.strength = odd[i];
+        p.gaussian.by_depth = 1;
+        CHECK_INT(hf_resolve(21, 13, &depth, &p, NULL, NULL, 0), HF_ERR_ARG);
+        p.gaussian.by_depth = 0;
+        CHECK_INT(hf_resolve(21, 13, &depth, &p, NULL, NULL, 0), HF_OK);
+    }
+}
+
 int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
@@ -265,5 +282,6 @@ int main(int argc, char **argv)
         hf_close(&c);
     }
     hf_close(&plain);
+    strengths();
     return check_report();
 }
