@@ -50,6 +50,9 @@ struct hf_exr_part {
     uint8_t *samples;             // all decoded chunks, or NULL
 };
 
+// Of all parts together: names are looked for one by one.
+enum { HF_EXR_MOST_CHANNELS = 4096 };
+
 // Who reads and writes the samples of parts whose compression Core does not know (DWA). Both return 0, or -1 with *err
 // filled.
 struct hf_exr_codec {

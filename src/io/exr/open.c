@@ -64,11 +64,16 @@ static int64_t core_size(exr_const_context_t core, void *user)
     return (int64_t)((const struct hf_exr *)user)->size;
 }
 
+// Core calls some corrupt chunks (B44) a lack of memory.
+static _Thread_local bool core_ran_out;
+
 // Zeroed and with room behind: Core 3.1 looks a few bytes past the end of some corrupt chunks. No honest header or
 // chunk needs as much as the limit.
 static void *core_alloc(size_t size)
 {
-    return size > (size_t)4 << 30 ? NULL : calloc(1, size + 64);
+    void *p = size > (size_t)4 << 30 ? NULL : calloc(1, size + 64);
+    core_ran_out |= !p;
+    return p;
 }
 
 static void core_free(void *p)
@@ -98,6 +103,7 @@ void hf_exr_context_init(void *user_data, exr_context_initializer_t *init)
 void hf_exr_quiet(void)
 {
     core_message[0] = 0;
+    core_ran_out = false;
 }
 
 const char *hf_exr_said(exr_result_t code)
@@ -107,8 +113,10 @@ const char *hf_exr_said(exr_result_t code)
 
 int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *err)
 {
-    if (code == EXR_ERR_OUT_OF_MEMORY)
+    if (code == EXR_ERR_OUT_OF_MEMORY && core_ran_out)
         return hf_io_fail(err, "%s: out of memory", e->path);
+    if (code == EXR_ERR_OUT_OF_MEMORY)
+        code = EXR_ERR_CORRUPT_CHUNK;
     return hf_io_fail(err, "%s: truncated or corrupt: %s", e->path, hf_exr_said(code));
 }
 
@@ -162,40 +170,59 @@ static int64_t next_int(struct cursor *c)
     return v;
 }
 
-// Core takes these attributes whatever type they claim to have; other readers do not.
-static bool right_type(const char *name, const char *type)
+// What every part has, but for tiles. Core takes these whatever type and size they claim to have, and does without some,
+// and with two of some; other readers do not, and what is written has them from here.
+static const struct {
+    const char *name, *type;
+    int64_t size;  // -1: any
+} needed[] = {
+    {"channels", "chlist", -1},       {"compression", "compression", 1}, {"dataWindow", "box2i", 16},
+    {"displayWindow", "box2i", 16},   {"lineOrder", "lineOrder", 1},     {"pixelAspectRatio", "float", 4},
+    {"screenWindowCenter", "v2f", 8}, {"screenWindowWidth", "float", 4}, {"tiles", "tiledesc", 9},
+};
+enum { NEEDED = sizeof(needed) / sizeof(needed[0]), NEEDED_BITS = (1 << (NEEDED - 1)) - 1 };
+
+// Notes which of these an attribute is. False if it cannot be.
+static bool right_type(const char *name, const char *type, int64_t size, unsigned *seen)
 {
-    static const char *const types[][2] = {
-        {"channels", "chlist"},        {"compression", "compression"}, {"dataWindow", "box2i"},
-        {"displayWindow", "box2i"},    {"lineOrder", "lineOrder"},     {"pixelAspectRatio", "float"},
-        {"screenWindowCenter", "v2f"}, {"screenWindowWidth", "float"}, {"tiles", "tiledesc"},
-    };
-    for (size_t i = 0; i < sizeof(types) / sizeof(types[0]); i++)
-        if (!strcmp(name, types[i][0]))
-            return !strcmp(type, types[i][1]);
+    for (int i = 0; i < NEEDED; i++) {
+        if (strcmp(name, needed[i].name))
+            continue;
+        if (strcmp(type, needed[i].type) || (needed[i].size >= 0 && size != needed[i].size) || (*seen & 1u << i))
+            return false;
+        *seen |= 1u << i;
+    }
     return true;
 }
 
 // One part's attributes up to and with the zero byte behind them.
 static int scan_part(struct cursor *c, struct hf_exr_part *part)
 {
+    unsigned seen = 0;
     for (;;) {
         char name[256], type[256];
         const int length = next_name(c, name);
         if (length <= 0)
-            return length;
+            return length || (seen & NEEDED_BITS) != NEEDED_BITS ? -1 : 0;
         if (next_name(c, type) < 0)
             return -1;
         const int64_t size = next_int(c);
-        if (size < 0 || (uint64_t)size > c->e->size - c->at || !right_type(name, type))
+        if (size < 0 || (uint64_t)size > c->e->size - c->at || !right_type(name, type, size, &seen))
             return -1;
-        if (!strcmp(name, "compression") && size == 1)
-            part->compression_at = c->at;
-        if (!strcmp(name, "dataWindow") && size == 16)
-            part->window_at = c->at;
-        if (!strcmp(name, "chunkCount") && !strcmp(type, "int") && size == 4)
-            part->chunk_count_at = c->at;
-        c->at += (uint64_t)size;
+        const uint64_t at = c->at;
+        const int last = part->storage == EXR_STORAGE_SCANLINE ? EXR_LINEORDER_DECREASING_Y : EXR_LINEORDER_RANDOM_Y;
+        if (!strcmp(name, "compression"))
+            part->compression_at = at;
+        if (!strcmp(name, "dataWindow"))
+            part->window_at = at;
+        if (!strcmp(name, "lineOrder") && next_byte(c) > last)  // Core takes what is none for increasing
+            return -1;
+        if (!strcmp(name, "chunkCount") && !strcmp(type, "int") && size == 4) {
+            part->chunk_count_at = at;
+            if (next_int(c) != part->chunk_count)
+                return -1;
+        }
+        c->at = at + (uint64_t)size;
     }
 }
 
@@ -211,7 +238,7 @@ static int scan_header(struct hf_exr *e, struct hf_io_error *err)
     if (ok && e->multipart)
         ok = next_byte(&c) == 0;
     if (!ok)
-        return hf_io_fail(err, "%s: truncated or corrupt: the header does not end, or an attribute has the wrong type",
+        return hf_io_fail(err, "%s: truncated or corrupt: the header does not end, or an attribute is missing or wrong",
                           e->path);
     e->header_size = c.at;
     uint64_t at = c.at;
@@ -221,6 +248,46 @@ static int scan_header(struct hf_exr *e, struct hf_io_error *err)
         if (at > e->size)
             return hf_io_fail(err, "%s: truncated or corrupt: %llu bytes long, its chunk tables alone need %llu",
                               e->path, (unsigned long long)e->size, (unsigned long long)at);
+    }
+    return 0;
+}
+
+// As many as a list of channels names, up to its end or where it is broken off.
+static int count_channels(struct cursor *c, uint64_t end)
+{
+    char name[256];
+    int n = 0;
+    for (; c->at < end && next_name(c, name) > 0; n++)
+        c->at += 16;
+    return n;
+}
+
+// Who sorts channels and looks for layers among them compares each with all others, Core too: before it sees them, too
+// many are refused. Whatever else is wrong is left to it.
+static int limit_channels(const struct hf_exr *e, struct hf_io_error *err)
+{
+    struct cursor c = {.e = e, .at = 4};
+    const int64_t version = next_int(&c);
+    int count = 0, ends = 0;
+    while (version >= 0) {
+        char name[256], type[256];
+        const int length = next_name(&c, name);
+        ends = length == 0 ? ends + 1 : 0;
+        if (length < 0 || ends > 1 || (ends == 1 && !(version & 0x1000)))
+            break;
+        if (ends)
+            continue;
+        if (next_name(&c, type) < 0)
+            break;
+        const int64_t size = next_int(&c);
+        if (size < 0 || (uint64_t)size > e->size - c.at)
+            break;
+        const uint64_t end = c.at + (uint64_t)size;
+        count += strcmp(name, "channels") ? 0 : count_channels(&c, end);
+        if (count > HF_EXR_MOST_CHANNELS)
+            return hf_io_fail(err, "%s: has %d channels, more than the %d that can be read", e->path, count,
+                              HF_EXR_MOST_CHANNELS);
+        c.at = end;
     }
     return 0;
 }
@@ -311,12 +378,15 @@ static int load_part(struct hf_exr *e, int p, struct hf_io_error *err)
 static int open_core(struct hf_exr **out, struct hf_exr *e, struct hf_io_error *err)
 {
     exr_context_initializer_t init;
+    exr_result_t rv = EXR_ERR_SUCCESS;
+    if (limit_channels(e, err))
+        goto error;
     hf_exr_context_init(e, &init);
     init.read_fn = core_read;
     init.size_fn = core_size;
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;  // half a picture is an error, not a puzzle
     hf_exr_quiet();
-    exr_result_t rv = exr_start_read(&e->core, e->path, &init);
+    rv = exr_start_read(&e->core, e->path, &init);
     if (!rv)
         rv = exr_get_count(e->core, &e->part_count);
     if (rv || e->part_count < 1) {
