@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame is made from beginning to end by one worker, and there are as many workers as fit the threads and the memory:
-// then frames wait for nothing but the disk, and bits depend on none of it. What remains of the threads is spread within
-// the frames.
+// A frame is made from beginning to end by one worker, and there are as many workers as plan.h says: then frames wait for
+// nothing but the disk, and bits depend on none of it. Each worker has its share of the threads.
 #include "cli/batch.h"
 
 #include <errno.h>

@@ -7,6 +7,7 @@
 
 #include "cli/track.h"
 
+static const double LITTLE_WAIT = 0.02;
 static const double MOST_WAIT = 3;  // more frames at once than this would not make a disk faster
 static const double GIB = 1024. * 1024 * 1024;
 
@@ -69,10 +70,17 @@ double cli_plan_memory_limit(const struct cli_args *args)
     return half < 2 * GIB ? half : 2 * GIB;
 }
 
+// Two threads make a frame in half the time, and need half the memory of two frames, whose pages the system has to find and
+// to clear first. Both wait for the disk, though: where that counts, each has a frame of its own.
+static int busy_with(int threads, double wait)
+{
+    return wait < LITTLE_WAIT ? (threads + 1) / 2 : (int)lround(threads * (1 + fmin(wait, MOST_WAIT)));
+}
+
 int cli_plan_workers(const struct cli_args *args, int frames, double wait, double base, double frame_bytes)
 {
     const double limit = cli_plan_memory_limit(args), fit = floor((limit - base) / frame_bytes);
-    const int busy = (int)lround(cli_plan_threads(args) * (1 + fmin(wait, MOST_WAIT)));
+    const int busy = busy_with(cli_plan_threads(args), wait);
     const int most = frames < 1 ? 1 : frames < busy ? frames : busy;
     if (fit < 1)
         tool_print_line("a frame takes %.2f GiB, more than the limit of %.2f GiB: one at a time",

@@ -30,8 +30,8 @@ int cli_plan_threads(const struct cli_args *args);
 double cli_plan_frame_bytes(const struct cli_frame *frame, double library);
 // Bytes that --memory-limit allows.
 double cli_plan_memory_limit(const struct cli_args *args);
-// How many of some frames go at once: one for each thread, more where a frame waits for the disk (wait: that time over
-// its time of computing on one thread), fewer where memory is short, base bytes being in use for other things.
+// How many of some frames go at once: one for two threads; where a frame waits for the disk (wait: that time over its time
+// of computing on one thread) one for each and more; fewer where memory is short, base bytes being in use for other things.
 int cli_plan_workers(const struct cli_args *args, int frames, double wait, double base, double frame_bytes);
 
 #endif
