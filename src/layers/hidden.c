@@ -211,7 +211,8 @@ void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, 
         float of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], like = 0, others = 0, size = 0, sum = 0, radius = 0,
                                                         colour[4] = {0};
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const float far = in[i][4][x] > 0 ? in[i][5][x] : 0, line = in[i][4][x] > 0 ? hf_layers_line(i) : 0;
+            const float far = in[i][4][x] > 0 ? in[i][5][x] : 0;
+            const float line = in[i][4][x] > 0 ? hf_layers_line(i) * hf_saturate(HF_LAYERS_WHOLE * in[i][4][x]) : 0;
             const float alike = 1 - fabsf(far - r) * (1.0f / HF_LAYERS_ALIKE);
             of[i] = line * (alike > 0 ? alike : 0);
             rest[i] = line - of[i];
@@ -229,7 +230,7 @@ void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, 
             for (int c = 0; c < channels; c++)
                 colour[c] = colour[c] + g * in[i][c][x];
         }
-        const float inverse = sum > 0 ? 1 / sum : 0;
+        const float inverse = sum > HF_LAYERS_SOME ? 1 / sum : 0;
         out[4][x] = weight;
         out[5][x] = radius * inverse;
         for (int c = 0; c < channels; c++) {

@@ -14,6 +14,8 @@ enum {
 // How much the samples of a line count in the mean of that in the middle, if they are as far; nothing beyond this
 // difference of radius.
 #define HF_LAYERS_ALIKE 4
+// Samples of less than 1 / WHOLE of a quad count less, so that none appears at once in its neighbours' means.
+#define HF_LAYERS_WHOLE 16
 static inline float hf_layers_line(int i)
 {
     return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));

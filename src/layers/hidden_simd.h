@@ -313,7 +313,9 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels
             colour[c] = vf_zero();
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
             const vm some = vf_gt(vf_load(in[i][4] + x), vf_zero());
-            const vf far = vf_keep(some, vf_load(in[i][5] + x)), line = vf_keep(some, vf_set1(hf_layers_line(i)));
+            const vf far = vf_keep(some, vf_load(in[i][5] + x));
+            const vf whole = layers_saturate(vf_mul(vf_set1(HF_LAYERS_WHOLE), vf_load(in[i][4] + x)));
+            const vf line = vf_keep(some, vf_mul(vf_set1(hf_layers_line(i)), whole));
             const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
             of[i] = vf_mul(line, vf_max(alike, vf_zero()));
             rest[i] = vf_sub(line, of[i]);
@@ -332,7 +334,7 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels
             for (int c = 0; c < channels; c++)
                 colour[c] = vf_fma(g, vf_keep(some, vf_load(in[i][c] + x)), colour[c]);
         }
-        const vf inverse = vf_keep(vf_gt(sum, vf_zero()), vf_div(vf_set1(1), sum));
+        const vf inverse = vf_keep(vf_gt(sum, vf_set1(HF_LAYERS_SOME)), vf_div(vf_set1(1), sum));
         vf_store(out[4] + x, weight);
         vf_store(out[5] + x, vf_mul(radius, inverse));
         for (int c = 0; c < channels; c++) {

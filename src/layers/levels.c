@@ -359,14 +359,15 @@ static void smooth_down(const struct band *b, int colour, int at, int y)
     }
 }
 
-// What was found and is near takes the place of what is seen: the next search looks behind it. What is in focus or far
-// need not be seen past, as its blur is that of a far field, which fills what is open.
+// What was found and is near takes the place of what is seen: the next search looks behind it, for what is less than half as
+// near, because nothing is looked for behind that: of three blades before a wall it has to find the wall. What is in focus or
+// far need not be seen past, as its blur is that of a far field, which fills what is open.
 static void look_behind(const struct band *b, int y)
 {
     const float *weight = b->found.weight + y * b->found.stride, *radius = b->found.radius + y * b->found.stride;
     float *nearest = b->nearest + (y - b->r.y0) * b->width - b->r.x0;
     for (int x = b->r.x0; x < b->r.x1; x++)
-        nearest[x] = weight[x] > 0 && radius[x] < -1 ? radius[x] : HUGE_VALF;
+        nearest[x] = weight[x] > 0 && radius[x] < -1 ? radius[x] * 0.5f : HUGE_VALF;
 }
 
 // What lies behind something that is hardly near counts less, so that nothing appears at once when that comes nearer.

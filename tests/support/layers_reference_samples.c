@@ -213,12 +213,12 @@ static void step(const struct frame *f, const struct grid *from, struct grid *to
         }
 }
 
-// The radius that a search looks behind: the nearest that is seen, or what was found behind that and is near itself.
+// The radius that a search looks behind: the nearest that is seen, or half that of what was found behind it and is near itself.
 static double look_from(const struct frame *f, const struct grid *found, int x, int y)
 {
     double nearest = INFINITY;
     if (found)
-        return at(found, x, y)[WEIGHT] > 0 && at(found, x, y)[RADIUS] < -1 ? at(found, x, y)[RADIUS] : INFINITY;
+        return at(found, x, y)[WEIGHT] > 0 && at(found, x, y)[RADIUS] < -1 ? at(found, x, y)[RADIUS] / 2 : INFINITY;
     for (int i = 0; i < 4; i++)
         nearest = fmin(nearest, edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2)[RADIUS]);
     return nearest;
@@ -316,7 +316,7 @@ static struct grid smooth(const struct frame *f, const struct grid *from, int dx
                 if (px < from->x0 || px >= from->x1 || py < from->y0 || py >= from->y1 || !middle[WEIGHT])
                     continue;
                 const double *s = line[i] = at(from, px, py);
-                const double weight = s[WEIGHT] > 0 ? 7 - abs(i - 6) : 0;
+                const double weight = s[WEIGHT] > 0 ? (7 - abs(i - 6)) * fmin(16 * s[WEIGHT], 1) : 0;
                 of[i] = weight * fmax(1 - fabs(s[RADIUS] - middle[RADIUS]) / 4, 0);
                 rest[i] = weight - of[i];
                 like += of[i];
