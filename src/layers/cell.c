@@ -43,9 +43,9 @@ static size_t place(struct hf_cell *c, float *memory)
     c->present = (uint64_t *)take(&m, 2 * (size_t)(2 * c->l->words + c->l->share_words), 0);
     c->used = take_map(&m, c->columns, c->rows, n);
     c->filled = take_map(&m, c->columns, TILE / 2, n);
-    struct hf_tile_map *const maps[] = {&c->touched, &c->shone, &c->near,   &c->far,
-                                        &c->middle,  &c->begun, &c->lit[0], &c->lit[1]};
-    for (int i = 0; i < 8; i++)
+    struct hf_tile_map *const maps[] = {&c->touched, &c->shone,  &c->near,   &c->far,    &c->middle,
+                                        &c->begun,   &c->lit[0], &c->lit[1], &c->covered};
+    for (int i = 0; i < 9; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
     c->source.channel = wide;
     c->source.row = (ptrdiff_t)wide * (channels + 1);
@@ -60,6 +60,7 @@ static size_t place(struct hf_cell *c, float *memory)
     const struct hf_window part = take_window(&m, width / 2, height / 2, 1);
     c->part = part.at;
     c->part_row = part.row;
+    c->lift = take_window(&m, width / 2, height / 2, 1).at;
     c->none = take(&m, (size_t)width + AROUND, 0);
     c->any = (uint8_t *)take(&m, (size_t)wide / 16 / sizeof(float) + 1, 0);
     for (int i = 0; i < 6; i++)
@@ -92,8 +93,8 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     // Where a slice does not reach, its light is 0 whatever part of it shows.
     memset(c.part - MARGIN * c.part_row - LEFT, 0,
            sizeof(float) * (size_t)c.part_row * (size_t)(c.rows * TILE / 2 + 2 * MARGIN));
-    struct hf_tile_map *const maps[] = {&c.near, &c.far, &c.middle, &c.begun, &c.lit[0], &c.lit[1]};
-    for (int i = 0; i < 6; i++)
+    struct hf_tile_map *const maps[] = {&c.near, &c.far, &c.middle, &c.begun, &c.lit[0], &c.lit[1], &c.covered};
+    for (int i = 0; i < 7; i++)
         for (int ty = -1; ty <= c.rows; ty++)
             memset(hf_layers_map_at(maps[i], -1, ty), 0, (size_t)c.columns + 2);
     int i = 0;
@@ -101,7 +102,10 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     while (i < l->slices && l->slice[i].level > 0 && l->slice[i].radius < 0)
         hf_layers_put_slice(&c, i++);
     hf_layers_begin_middle(&c);
-    for (; i < l->slices; i++)
+    for (; i < l->slices; i++) {
         hf_layers_put_slice(&c, i);
+        if (i == l->last)
+            hf_layers_cover(&c);
+    }
     hf_layers_finish_cell(&c, out, stride);
 }

@@ -14,11 +14,11 @@ void hf_layers_up_c(const float *a, const float *b, int n, float *out)
     }
 }
 
-void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float *const in[5], int hidden, int n,
-                       float *part)
+void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float *const in[5], enum hf_layers_sums sums,
+                       int n, float *part)
 {
     for (int x = 0; x < n; x++) {
-        const float v = in[4][x], open = to->open[x], behind = hidden ? to->behind[x] : open;
+        const float v = in[4][x], open = to->open[x], behind = sums == HF_SUMS_HIDDEN ? to->behind[x] : open;
         const float least = behind > 1e-30f ? behind : 1e-30f;
         const float k = open / (v > least ? v : least);
         const float left = open - k * v;
@@ -26,8 +26,8 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
             to->colour[c][x] = k * in[c][x] + to->colour[c][x];
         to->weight[x] = k * v + to->weight[x];
         to->open[x] = left > 0 ? left : 0;
-        if (hidden)
-            to->behind[x] = behind - v > 0 ? behind - v : 0;
+        if (sums != HF_SUMS_HIDING)
+            to->behind[x] = to->behind[x] - v > 0 ? to->behind[x] - v : 0;
         if (part)
             part[x] = k;
     }

@@ -18,31 +18,43 @@ static void layers_up_simd(const float *a, const float *b, int n, float *out)
     }
 }
 
-HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5], int hidden,
-                               int n, float *part)
+HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5],
+                               const enum hf_layers_sums sums, int n, float *part)
 {
     const vf tiny = vf_set1(1e-30f);
     for (int x = 0; x < n; x += VF_N) {
-        const vf v = vf_load(in[4] + x), open = vf_load(to->open + x), behind = hidden ? vf_load(to->behind + x) : open;
-        const vf k = vf_div(open, vf_max(v, vf_max(behind, tiny)));
+        const vf v = vf_load(in[4] + x), open = vf_load(to->open + x);
+        const vf left = sums == HF_SUMS_HIDING ? vf_zero() : vf_load(to->behind + x);
+        const vf k = vf_div(open, vf_max(v, vf_max(sums == HF_SUMS_HIDDEN ? left : open, tiny)));
         for (int c = 0; c < channels; c++)
             vf_store(to->colour[c] + x, vf_fma(k, vf_load(in[c] + x), vf_load(to->colour[c] + x)));
         vf_store(to->weight + x, vf_fma(k, v, vf_load(to->weight + x)));
         vf_store(to->open + x, vf_max(vf_fnma(k, v, open), vf_zero()));
-        if (hidden)
-            vf_store(to->behind + x, vf_max(vf_sub(behind, v), vf_zero()));
+        if (sums != HF_SUMS_HIDING)
+            vf_store(to->behind + x, vf_max(vf_sub(left, v), vf_zero()));
         if (part)
             vf_store(part + x, k);
     }
 }
 
-static void layers_blend_simd(const struct hf_stack_row *to, int channels, const float *const in[5], int hidden, int n,
-                              float *part)
+HF_INLINE void layers_blend_sums(const struct hf_stack_row *to, const int channels, const float *const in[5],
+                                 enum hf_layers_sums sums, int n, float *part)
+{
+    if (sums == HF_SUMS_HIDING)
+        layers_blend_of(to, channels, in, HF_SUMS_HIDING, n, part);
+    else if (sums == HF_SUMS_SEEN)
+        layers_blend_of(to, channels, in, HF_SUMS_SEEN, n, part);
+    else
+        layers_blend_of(to, channels, in, HF_SUMS_HIDDEN, n, part);
+}
+
+static void layers_blend_simd(const struct hf_stack_row *to, int channels, const float *const in[5],
+                              enum hf_layers_sums sums, int n, float *part)
 {
     if (channels == 3)
-        layers_blend_of(to, 3, in, hidden, n, part);
+        layers_blend_sums(to, 3, in, sums, n, part);
     else
-        layers_blend_of(to, 4, in, hidden, n, part);
+        layers_blend_sums(to, 4, in, sums, n, part);
 }
 
 static void layers_finish_simd(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],

@@ -6,7 +6,7 @@
 
 // Zero what the slice's blur reaches and what is read around that.
 static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
-                          int channels)
+                          int first, int channels)
 {
     const int margin = level ? MARGIN : 0, height = c->rows * (TILE >> level), around = level ? 2 : 0;
     for (int ty = -1; ty <= c->rows; ty++)
@@ -18,7 +18,7 @@ static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, 
             y0 = y0 - around > -margin ? y0 - around : -margin;
             y1 = y1 + around < height + margin ? y1 + around : height + margin;
             for (int y = y0; y < y1; y++)
-                for (int i = 0; i < channels; i++)
+                for (int i = first; i < channels; i++)
                     memset(w->at + y * w->row + i * w->channel + x0, 0, sizeof(float) * (size_t)(x1 - x0));
         }
 }
@@ -98,7 +98,7 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
         *hf_layers_map_at(&c->filled, i, y / 2) |= (uint8_t)any;
         some |= any;
     }
-    for (int i = 0; some && i < b->channels; i++) {
+    for (int i = b->first; some && i < b->channels; i++) {
         float *line = out[i < l->channels ? i : 4], *to = source_at(c, i, tx * (TILE >> b->s->level), y);
         for (int j = level; j > 0; j--)
             c->k->fold(line, n >> (level - j + 1), j > 1 ? line : to);
@@ -129,7 +129,7 @@ static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int l
     const uint8_t any = *hf_layers_map_at(&c->filled, like, y / 2);
     for (int i = tx; i < end; i++)
         *hf_layers_map_at(&c->filled, i, y / 2) |= any;
-    for (int i = 0; any && i < b->channels; i++) {
+    for (int i = b->first; any && i < b->channels; i++) {
         const float v = *source_at(c, i, like * size, y);
         float *to = source_at(c, i, tx * size, y);
         for (int x = 0; x < (end - tx) * size; x++)
@@ -171,7 +171,7 @@ static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at,
     const int margin = s->level ? MARGIN : 0, height = c->rows * (TILE >> s->level);
     for (int i = 0; s->shape && i < 2; i++)
         hf_layers_draw_shape(c, b, source_at(c, 0, x0, y + i), at + i, x0, x1, to);
-    for (int i = 0; !s->shape && i < b->channels; i++)
+    for (int i = b->first; !s->shape && i < b->channels; i++)
         c->k->disc(s, source_at(c, i, x0, y), source_at(c, i, x0, y + 1), x1 - x0, -margin - at, height + margin - at,
                    to->at + at * to->row + i * to->channel + x0, to->row);
 }
@@ -206,7 +206,7 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
                           const struct hf_window *to)
 {
     const int size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
-    clear_touched(c, touched, to, b->s->level, b->channels);
+    clear_touched(c, touched, to, b->s->level, b->first, b->channels);
     if (b->s->shape)
         hf_layers_begin_shape(c, b->s);
     for (int ty = c->box.y0; ty < c->box.y1; ty++) {

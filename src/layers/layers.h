@@ -95,6 +95,10 @@ struct hf_layers {
     float largest;                    // sample; larger ones count as this
     int slices, levels;               // levels of hidden samples; 0: none are looked for
     struct hf_slice *slice, *behind;  // of what is seen, of hidden samples
+    // What the middle holds of samples that the far stack holds the rest of, of what is seen and of hidden samples:
+    // between slice `last` and the next. last < 0: there are none.
+    struct hf_slice *cover;
+    int last;
     // Of shares at full resolution: `parts` of them from one slice to the next, so that the rim of a highlight lies where
     // its own radius has it.
     struct hf_slice *shine;
@@ -134,7 +138,8 @@ struct hf_unmix_row {
 };
 
 // Sums of a stack: colour, and weight (the coverage that has been seen); open is what is left of 1. behind is what is
-// left of 1 for hidden samples alone: a pixel has one at most, so those of all slices cover it once.
+// left of 1 for hidden samples alone: a pixel has one at most, so those of all slices, with what is seen of the same surfaces,
+// cover it once.
 struct hf_stack_row {
     float *colour[4], *weight, *open, *behind;
 };

@@ -49,6 +49,8 @@ struct hf_cell {
     float *none;                          // a row of zeros
     uint8_t *any;                         // where a row of a run has samples of the slice, 16 at once
     float *part;                          // how much of a slice shows, half resolution
+    struct hf_tile_map covered;           // where the far stack is not open wholly at first ...
+    float *lift;                          // ... and by what its sums are multiplied for that, with the rows of part
     ptrdiff_t part_row;
     float *shape;  // scratch of shapes
 };
@@ -66,6 +68,7 @@ struct hf_build {
     int channels;
     const struct hf_layers_set *more;  // samples behind those that belong to it, or NULL
     int spread;                        // samples of quads, each of its pixels
+    int first;                         // of the channels that are drawn
 };
 
 static inline uint8_t *hf_layers_map_at(const struct hf_tile_map *m, int tx, int ty)
@@ -129,6 +132,8 @@ void hf_layers_draw_shape(const struct hf_cell *c, const struct hf_build *b, con
 
 // together.c
 void hf_layers_put_slice(struct hf_cell *c, int i);
+// Before the first slice of the far stack: what the middle holds of the samples that lie between them covers there, too.
+void hf_layers_cover(struct hf_cell *c);
 // The near stack lies before what is near the focus.
 void hf_layers_begin_middle(const struct hf_cell *c);
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride);

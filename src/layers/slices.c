@@ -15,6 +15,9 @@ static float next_radius(const struct hf_layers_settings *set, float r)
                                         : r + fmaxf(set->spacing, far_out);
 }
 
+// How much of a sample is left to a cover's slice where that counts most.
+#define HF_LAYERS_COVER 0.75f
+
 static int level_of(const struct hf_layers_settings *set, float radius)
 {
     const float r = fabsf(radius);
@@ -76,9 +79,10 @@ static int count_slices(const struct hf_layers *l, float limit, size_t *rows)
 
 size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit)
 {
-    size_t rows = 3;
+    size_t rows = 3 + 2 * (size_t)disc_rows(limit);
     const size_t side = (size_t)count_slices(l, limit, &rows), n = 2 * side + 1;
-    const size_t group = (size_t)(2 + l->parts) * n * sizeof(struct hf_slice) + 2 * rows * sizeof(struct hf_disc_row);
+    const size_t group =
+        ((size_t)(2 + l->parts) * n + 2) * sizeof(struct hf_slice) + 2 * rows * sizeof(struct hf_disc_row);
     return (size_t)l->groups * group + side * sizeof(struct hf_shape_size);
 }
 
@@ -136,6 +140,31 @@ static struct hf_disc_row *make_shines(struct hf_layers *l, int group, int middl
     return row;
 }
 
+// The last slice of full resolution before the far ones, again at half of it: of samples between the two slices, what the
+// former has of them. It begins with none of those at the former's radius, or they would cover at once.
+static struct hf_disc_row *make_covers(struct hf_layers *l, int group, int middle, struct hf_disc_row *row)
+{
+    const struct hf_slice *s = l->group[group];
+    int i = middle;
+    while (i + 1 < l->slices && s[i + 1].level == 0)
+        i++;
+    l->last = i + 1 < l->slices ? i : -1;
+    for (int t = 0; t < 2 && l->last >= 0; t++) {
+        struct hf_slice *c = l->group[group] + (2 + l->parts) * l->slices + t;
+        const float from = s[i].radius * s[i].radius, to = s[i + 1].radius * s[i + 1].radius;
+        row = make_slice(l, c, group, s[i].radius, i - middle, 1, row);
+        c->scale *= t ? HF_LAYERS_COVER : HF_LAYERS_COVER / 4;
+        c->before = s[i].radius;
+        c->after = s[i + 1].radius;
+        c->before_square = from;
+        c->square = HF_LAYERS_COVER * from + (1 - HF_LAYERS_COVER) * to;
+        c->radius = sqrtf(c->square);
+        c->before_scale = 1 / (c->square - from);
+        c->after_scale = 1 / (to - c->square);
+    }
+    return row;
+}
+
 static int slices_of(const struct hf_layers *l, float limit)
 {
     size_t unused = 0;
@@ -184,7 +213,7 @@ void hf_layers_make_slices(struct hf_layers *l)
     const int near = slices_of(l, -l->nearest), far = slices_of(l, l->farthest);
     l->slices = near + 1 + far;
     struct hf_slice *at = l->tables.data;
-    for (int g = 0; g < l->groups; g++, at += (2 + l->parts) * l->slices)
+    for (int g = 0; g < l->groups; g++, at += (2 + l->parts) * l->slices + 2)
         l->group[g] = at;
     struct hf_disc_row *row = (struct hf_disc_row *)at;
     l->most_tiles = 0;
@@ -199,6 +228,7 @@ void hf_layers_make_slices(struct hf_layers *l)
         row = make_shines(l, g, near, row);
         for (int t = 0; t < 3; t++)
             set_neighbours(l->group[g] + t * l->slices, t < 2 ? l->slices : l->shines);
+        row = make_covers(l, g, near, row);
         for (int i = 0; i < 2 * l->slices + l->shines; i++)
             l->most_tiles = hf_max(l->most_tiles, hf_layers_tiles_around(l->group[g] + i));
     }
@@ -211,6 +241,7 @@ void hf_layers_use_group(struct hf_layers *l, int group)
     l->slice = l->group[group];
     l->behind = l->slice + l->slices;
     l->shine = l->behind + l->slices;
+    l->cover = l->slice + (2 + l->parts) * l->slices;
 }
 
 int hf_layers_tiles_around(const struct hf_slice *s)

@@ -27,7 +27,7 @@ static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int lev
 }
 
 // Put the sums of a slice under what a stack holds.
-static void put_under(struct hf_cell *c, int stack, int level, int hidden, int keep_part)
+static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_sums sums, int keep_part)
 {
     const int finest = stack == MIDDLE ? 0 : 1, channels = c->l->channels;
     while (level > finest + 1)
@@ -48,8 +48,10 @@ static void put_under(struct hf_cell *c, int stack, int level, int hidden, int k
                         c->k->up(a + s.x0 / 2, a + s.x0 / 2 + (y & 1 ? from->row : -from->row), (s.x1 - s.x0) / 2,
                                  c->row[as]);
                 }
-                c->k->blend(&to, channels, in, hidden, s.x1 - s.x0,
-                            keep_part ? c->part + y * c->part_row + s.x0 : NULL);
+                c->k->blend(&to, channels, in, sums, s.x1 - s.x0, keep_part ? c->part + y * c->part_row + s.x0 : NULL);
+                if (keep_part && stack == FAR)
+                    for (int x = s.x0; x < s.x1; x++)
+                        c->part[y * c->part_row + x] *= c->lift[y * c->part_row + x];
             }
         }
 }
@@ -68,6 +70,8 @@ static void fill_tile(const struct hf_window *w, int channel, int tx, int y, flo
     for (int x = 0; x < TILE; x++)
         p[x] = value;
 }
+
+#define LEAST_OPEN (1.0f / 16)
 
 // Of light: alpha goes with the coverage, or what is opaque would not be.
 enum { LIT = 3 };
@@ -117,6 +121,8 @@ static void begin_stack(struct hf_cell *c, int stack)
         memset(r.weight, 0, sizeof(float) * (size_t)n);
         for (int x = 0; x < n; x++)
             r.open[x] = r.behind[x] = 1;
+        for (int x = 0; stack == FAR && x < n; x++)
+            c->lift[y * c->part_row - MARGIN + x] = 1;
     }
 }
 
@@ -189,7 +195,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .more = &c->samples->mixed};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
         begin(c, stack);
-        put_under(c, stack, s->level, 0, shares);
+        put_under(c, stack, s->level, stack == NEAR ? HF_SUMS_HIDING : HF_SUMS_SEEN, shares);
         if (s->radius != 0)
             mark(c, &c->touched, reached);
         if (shares)
@@ -209,9 +215,75 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .more = &c->samples->beyond};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
         begin(c, stack);
-        put_under(c, stack, behind->level, 1, 0);
+        put_under(c, stack, behind->level, HF_SUMS_HIDDEN, 0);
         mark(c, &c->touched, reached);
     }
+}
+
+// What a cover leaves open of the far stack.
+static void cover_with(struct hf_cell *c, enum hf_kind kind)
+{
+    const struct hf_layers *l = c->l;
+    const int hidden = kind == HF_KIND_HIDDEN;
+    const struct hf_slice *s = &l->cover[hidden];
+    const struct hf_layers_set *set = hidden ? &c->samples->hidden : &c->samples->seen;
+    const struct hf_build b = {.s = s,
+                               .set = set,
+                               .weight = set->weight,
+                               .finest = hidden,
+                               .first = l->channels,
+                               .channels = l->channels + 1,
+                               .more = hidden ? &c->samples->beyond : &c->samples->mixed};
+    if (!hf_layers_mark_used(c, l->last + 1, kind) || !hf_layers_mark_touched(c, s, &c->touched))
+        return;
+    const struct hf_window *from = &c->sum[1];
+    hf_layers_draw_slice(c, &b, &c->touched, from);
+    begin_stack(c, FAR);
+    mark(c, &c->touched, &c->covered);
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span span = {.tx = -1}; hf_layers_next_span(c, &c->touched, 1, ty, &span);) {
+            int y0, y1;
+            hf_layers_clip_rows(c, 1, ty, &y0, &y1);
+            for (int y = y0; y < y1; y++) {
+                const struct hf_stack_row to = hf_layers_stack_at(c, FAR, span.x0, y);
+                const float *v = from->at + y * from->row + l->channels * from->channel + span.x0;
+                for (int x = 0; x < span.x1 - span.x0; x++) {
+                    const float left = v[x] < 1 ? 1 - v[x] : 0;
+                    to.open[x] *= left;
+                    to.behind[x] *= hidden ? left : 1;
+                }
+            }
+        }
+}
+
+// By what of the far stack was open at first its sums are divided: an edge of what covers it leaves a part of 1, and only
+// where hardly anything is open less is made of it.
+static void lift(const struct hf_cell *c, int whole)
+{
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, &c->covered, 1, ty, &s);) {
+            int y0, y1;
+            hf_layers_clip_rows(c, 1, ty, &y0, &y1);
+            for (int y = y0; y < y1; y++) {
+                const struct hf_stack_row r = hf_layers_stack_at(c, FAR, s.x0, y);
+                float *by = c->lift + y * c->part_row + s.x0;
+                for (int x = 0; !whole && x < s.x1 - s.x0; x++)
+                    by[x] = 1 / (r.open[x] > LEAST_OPEN ? r.open[x] : LEAST_OPEN);
+                for (int i = 0; whole && i < c->l->channels; i++)
+                    for (int x = 0; x < s.x1 - s.x0; x++)
+                        r.colour[i][x] *= by[x];
+                for (int x = 0; whole && x < s.x1 - s.x0; x++)
+                    r.weight[x] *= by[x];
+            }
+        }
+}
+
+void hf_layers_cover(struct hf_cell *c)
+{
+    cover_with(c, HF_KIND_SEEN);
+    if (c->l->levels)
+        cover_with(c, HF_KIND_HIDDEN);
+    lift(c, 0);
 }
 
 // Is a tile nothing but sharp pixels that nothing else reaches?
@@ -294,6 +366,7 @@ static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, 
 
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)
 {
+    lift(c, 1);
     for (int ty = 0; ty < c->rows; ty++)
         for (int tx = 0, end; tx < c->columns; tx = end) {
             const int state = state_of(c, tx, ty);

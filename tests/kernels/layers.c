@@ -338,7 +338,8 @@ static void blend_call(const struct world *w, const struct kernels *k, enum aren
     set_of(w, a, 0, in);
     for (int c = 0; c < 4; c++)
         to.colour[c] = line(w, a, IN + c);
-    k->layers.blend(&to, now.channels, (const float *const *)in, now.with, w->n, now.add ? line(w, a, IN + 7) : NULL);
+    k->layers.blend(&to, now.channels, (const float *const *)in, (enum hf_layers_sums)(now.rows % 3), w->n,
+                    now.add ? line(w, a, IN + 7) : NULL);
 }
 
 static void finish_call(const struct world *w, const struct kernels *k, enum arena a)
@@ -480,7 +481,7 @@ void layers_make(struct world *w, int which)
         for (int i = 0; i < 7; i++)
             fill(w, IN + i, 0, w->n, i < 4 ? COLOUR : WEIGHT);
         put_set(w, IN, which == LAYERS_BLEND ? 6 : 4, w->n);
-        if (which == LAYERS_BLEND && now.with)
+        if (which == LAYERS_BLEND && now.rows % 3 != HF_SUMS_HIDING)
             put(w, IN + 6, w->n, 32);
         if (which == LAYERS_BLEND && now.add)
             put(w, IN + 7, w->n, 32);

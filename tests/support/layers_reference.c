@@ -129,11 +129,12 @@ static void gather_cut(const struct frame *f, struct layers_shape *s, int sign, 
         }
 }
 
-// A slice's sums of a kind at its level.
-static struct grid draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light)
+// A slice's sums of a kind at a level, its shape of some radius.
+static struct grid draw_at(const struct frame *f, const struct slice *s, double radius, int level, enum kind kind,
+                           int light)
 {
     struct layers_shape shape =
-        layers_shape_new(f, fabs(s->own) * (1 + (s->own < 0 ? -f->shift : f->shift)) / (1 << level));
+        layers_shape_new(f, fabs(radius) * (1 + (radius < 0 ? -f->shift : f->shift)) / (1 << level));
     const int reach = shape.reach;
     const int width = (f->width - 1) / (1 << level) + 1, height = (f->height - 1) / (1 << level) + 1,
               m = MARGIN + reach;
@@ -154,6 +155,11 @@ static struct grid draw(const struct frame *f, const struct slice *s, int level,
     free(source.v);
     layers_shape_free(&shape);
     return out;
+}
+
+static struct grid draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light)
+{
+    return draw_at(f, s, s->own, level, kind, light);
 }
 
 // A number of a grid at a place of the next finer level.
@@ -194,17 +200,20 @@ static struct grid stack_new(const struct frame *f, int level)
     return g;
 }
 
-// Put sums under a stack; part receives how much of them shows.
-static void put_under(struct grid *stack, const struct grid *sums, int hidden, struct grid *part)
+// Put sums under a stack; part receives how much of them shows. What is seen before the focus hides; behind it, it is of
+// the surfaces of which others are hidden.
+enum sums { HIDING, WITH_HIDDEN, HIDDEN };
+
+static void put_under(struct grid *stack, const struct grid *sums, enum sums kind, struct grid *part)
 {
     for (int y = stack->y0; y < stack->y1; y++)
         for (int x = stack->x0; x < stack->x1; x++) {
             double *s = at(stack, x, y), *v = edge(sums, x, y);
-            const double k = s[OPEN] / fmax(v[4], fmax(s[hidden ? BEHIND_OPEN : OPEN], 1e-30));
+            const double k = s[OPEN] / fmax(v[4], fmax(s[kind == HIDDEN ? BEHIND_OPEN : OPEN], 1e-30));
             for (int c = 0; c < 5; c++)
                 s[c] += k * v[c];
             s[OPEN] = fmax(0, s[OPEN] - k * v[4]);
-            s[BEHIND_OPEN] -= hidden ? fmin(v[4], s[BEHIND_OPEN]) : 0;
+            s[BEHIND_OPEN] -= kind == HIDING ? 0 : fmin(v[4], s[BEHIND_OPEN]);
             if (part)
                 at(part, x, y)[0] = k;
         }
@@ -237,15 +246,18 @@ static void put_light(const struct frame *f, const struct slice *s, const struct
     }
 }
 
-// One slice into its stack; light: what shines of the stack, at full resolution.
-static void put_slice(const struct frame *f, const struct slice *s, struct grid *stack, struct grid *light)
+// One slice into its stack; light: what shines of the stack, at full resolution, times lift if not NULL.
+static void put_slice(const struct frame *f, const struct slice *s, struct grid *stack, struct grid *light,
+                      const struct grid *lift)
 {
     const int level = level_of(f, s->own), finest = level ? 1 : 0, lit = f->highlights && level;
     struct grid sums = draw(f, s, level, SEEN, lit);
     struct grid part = grid_new(stack->x0, stack->y0, stack->x1, stack->y1, 1);
     refine(&sums, f, level, finest);
-    put_under(stack, &sums, 0, &part);
+    put_under(stack, &sums, level && s->own < 0 ? HIDING : WITH_HIDDEN, &part);
     free(sums.v);
+    for (int i = 0; lift && i < (part.x1 - part.x0) * (part.y1 - part.y0); i++)
+        part.v[i] *= lift->v[i];
     if (lit)
         put_light(f, s, &part, light);
     free(part.v);
@@ -253,8 +265,31 @@ static void put_slice(const struct frame *f, const struct slice *s, struct grid 
         const int coarse = level > 1 ? level : level == 0 && fabs(s->own) < 2 ? 0 : 1;
         struct grid hidden = draw(f, s, coarse, BEHIND, 0);
         refine(&hidden, f, coarse, finest);
-        put_under(stack, &hidden, 1, NULL);
+        put_under(stack, &hidden, HIDDEN, NULL);
         free(hidden.v);
+    }
+}
+
+// What the last slice of the middle has of samples that lie between it and the first of the far stack leaves less of that
+// open, and is not there at its own radius; lift receives by what the stack's sums are multiplied for that.
+static void cover(const struct frame *f, const struct slice *last, struct grid *far, struct grid *lift)
+{
+    const double from = last->own * last->own, to = last->after * last->after;
+    for (int y = far->y0; y < far->y1; y++)
+        for (int x = far->x0; x < far->x1; x++)
+            at(lift, x, y)[0] = 1;
+    for (int hidden = 0; hidden <= (layers_reference_levels(f) > 0) && isfinite(last->after); hidden++) {
+        const struct slice s = {last->own, sqrt((3 * from + to) / 4), last->after};
+        struct grid sums = draw_at(f, &s, last->own, 1, hidden ? BEHIND : SEEN, 0);
+        for (int y = far->y0; y < far->y1; y++)
+            for (int x = far->x0; x < far->x1; x++) {
+                double *v = at(far, x, y);
+                const double left = fmax(1 - 0.75 * edge(&sums, x, y)[4], 0);
+                v[OPEN] *= left;
+                v[BEHIND_OPEN] *= hidden ? left : 1;
+                at(lift, x, y)[0] = 1 / fmax(v[OPEN], 1.0 / 16);
+            }
+        free(sums.v);
     }
 }
 
@@ -291,7 +326,7 @@ static void put_together(const struct frame *f, struct picture *out)
     struct grid light[2] = {grid_new(0, 0, f->width, f->height, 3), grid_new(0, 0, f->width, f->height, 3)};
     int i = 0;
     for (; i < count && s[i].own < 0 && level_of(f, s[i].own); i++)
-        put_slice(f, &s[i], &near, &light[0]);
+        put_slice(f, &s[i], &near, &light[0], NULL);
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++) {
             double *m = at(&middle, x, y);
@@ -299,8 +334,16 @@ static void put_together(const struct frame *f, struct picture *out)
                 m[c] = up(&near, c, x, y) + (c < 3 ? at(&light[0], x, y)[c] : 0);
             m[OPEN] = fmax(0, 1 - m[4]);
         }
+    for (; i < count && !level_of(f, s[i].own); i++)
+        put_slice(f, &s[i], &middle, &light[1], NULL);
+    struct grid lift = grid_new(far.x0, far.y0, far.x1, far.y1, 1);
+    cover(f, &s[i - 1], &far, &lift);
     for (; i < count; i++)
-        put_slice(f, &s[i], level_of(f, s[i].own) ? &far : &middle, &light[1]);
+        put_slice(f, &s[i], &far, &light[1], &lift);
+    for (int y = far.y0; y < far.y1; y++)
+        for (int x = far.x0; x < far.x1; x++)
+            for (int c = 0; c < 5; c++)
+                at(&far, x, y)[c] *= at(&lift, x, y)[0];
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++) {
             const double *m = at(&middle, x, y), a = up(&far, 4, x, y),
@@ -313,6 +356,7 @@ static void put_together(const struct frame *f, struct picture *out)
         }
     free(near.v);
     free(far.v);
+    free(lift.v);
     free(middle.v);
     free(light[0].v);
     free(light[1].v);
