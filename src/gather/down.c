@@ -55,7 +55,7 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
                 float mean = (w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11);
                 if (c == 3)  // weights add up to 1 within rounding, and what is opaque stays so
                     mean /= (w[0] + w[1]) + (w[2] + w[3]);
-                far[c][x] = hf_limited(mean * quad[0], HF_LARGEST);
+                far[c][x] = hf_limited(mean, HF_LARGEST) * quad[0];
             }
         }
         if (f->near)

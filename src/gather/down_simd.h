@@ -52,17 +52,17 @@ HF_INLINE vf down_sum(const vf c[4])
     return vf_add(vf_add(c[0], c[1]), vf_add(c[2], c[3]));
 }
 
-// alpha: over the sum of the weights, which is 1 within rounding.
-HF_INLINE vf down_far(const vf w[4], const vf c[4], const int alpha, vf f0)
-{
-    const vf top = vf_fma(w[1], c[1], vf_mul(w[0], c[0])), bottom = vf_fma(w[3], c[3], vf_mul(w[2], c[2]));
-    const vf mean = vf_add(top, bottom);
-    return vf_mul(alpha ? vf_div(mean, down_sum(w)) : mean, f0);
-}
-
 HF_INLINE vf down_limited(vf v, float largest)
 {
     return vf_min(vf_max(v, vf_set1(-largest)), vf_set1(largest));
+}
+
+// alpha: over the sum of the weights, which is 1 within rounding.
+HF_INLINE vf down_mean(const vf w[4], const vf c[4], const int alpha)
+{
+    const vf top = vf_fma(w[1], c[1], vf_mul(w[0], c[0])), bottom = vf_fma(w[3], c[3], vf_mul(w[2], c[2]));
+    const vf mean = vf_add(top, bottom);
+    return alpha ? vf_div(mean, down_sum(w)) : mean;
 }
 
 // Lanes of a row that are too large; only those that there are.
@@ -104,8 +104,9 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample
                 f->counts->clamped += down_count(sum, n - x, HF_LARGEST);
             if (near)
                 vf_store(d.colour[c] + x, down_limited(how == HF_DOWNSAMPLE_POINT ? quad[0] : sum, HF_LARGEST));
+            // Limited before the CoC makes it small, by which the gather divides again.
             if (far)
-                vf_store(d.colour_far[c] + x, down_limited(down_far(w, quad, c == 3, g[0]), HF_LARGEST));
+                vf_store(d.colour_far[c] + x, vf_mul(down_limited(down_mean(w, quad, c == 3), HF_LARGEST), g[0]));
         }
         if (near)
             vf_store(d.coc[0] + x, vf_load(d.near + x));
@@ -148,7 +149,7 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
         for (int c = 0; c < 3; c++) {
             for (int i = 0; i < 4; i++)
                 quad[c][i] = vf_mul(quad[c][i], vf_set1(0x1p112f));
-            vf_put(d->colour_far[c] + x, round_stored(storage, down_far(w, quad[c], 0, g[0]), c), stream);
+            vf_put(d->colour_far[c] + x, round_stored(storage, vf_mul(down_mean(w, quad[c], 0), g[0]), c), stream);
         }
     } else if (far) {  // quarters of small floats are exact, so that their sum is the mean
         for (int c = 0; c < 3; c++)

@@ -136,6 +136,30 @@ static void bad_depths(const struct run *run)
     }
 }
 
+// The largest floats, hardly blurred: a colour that a small CoC has made small is divided by it again.
+static void giants(const struct run *run)
+{
+    struct picture colour = picture_new(40, 24, 4), radii = picture_new(40, 24, 1);
+    for (int k = 0; k < 4; k++)
+        picture_fill(&colour, k, k == 2 ? -FLT_MAX : FLT_MAX);
+    for (int i = 0; i < 12; i++) {
+        struct hf_params p = hf_default_params;
+        p.max_radius = 16;
+        p.gather.fill = (enum hf_fill)(i % 4);
+        p.gather.downsample = (enum hf_downsample)(i / 4);
+        for (float radius = -0x1p-7f; radius <= 0x1p-7f; radius += 0x1p-6f) {
+            picture_fill(&radii, 0, radius);
+            const struct hf_depth depth = picture_radii(&radii);
+            struct picture out = render(run->c, &colour, &depth, &p);
+            CHECK_MSG(all_finite(&out), "%s: fill %d, downsample %d, radius %g: not finite", run->isa, i % 4, i / 4,
+                      (double)radius);
+            picture_free(&out);
+        }
+    }
+    picture_free(&colour);
+    picture_free(&radii);
+}
+
 // What "no surface" is in the other types, and what 0 is.
 static void special_depths(const struct run *run)
 {
@@ -403,6 +427,7 @@ int main(int argc, char **argv)
             bad_colours(&run, variant);
         all_bad(&run);
         bad_depths(&run);
+        giants(&run);
         special_depths(&run);
         copies(&run);
         constants(&run);
