@@ -404,7 +404,12 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         if (!status)
             status = exit_code(&b);
     }
-    cli_log_close(&b.log);
+    struct tool_error lost = {""};
+    const int log_status = cli_log_close(&b.log, &lost);
+    if (log_status && !error->text[0]) {
+        *error = lost;
+        status = status ? status : log_status;
+    }
     close_sessions(&b);
     cli_plan_close(&b.plan);
     return status;

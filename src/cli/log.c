@@ -43,7 +43,9 @@ static void end(struct cli_log *log, struct line *line)
     const int failed = ferror(line->json.out);
     if (!fclose(line->json.out) && !failed)
         fwrite(line->text, 1, line->size, log->out);
-    fflush(log->out);
+    if (fflush(log->out) && !log->error)
+        log->error = errno;
+    clearerr(log->out);
     free(line->text);
 }
 
@@ -51,7 +53,7 @@ int cli_log_open(struct cli_log *log, const char *path, int argc, char **argv, i
 {
     char host[64] = "";
     struct line line;
-    *log = (struct cli_log){NULL};
+    *log = (struct cli_log){.path = path};
     if (!path)
         return 0;
     log->out = fopen(path, "ae");
@@ -152,9 +154,11 @@ void cli_log_end(struct cli_log *log, const struct cli_progress *p, int at_once,
     end(log, &line);
 }
 
-void cli_log_close(struct cli_log *log)
+int cli_log_close(struct cli_log *log, struct tool_error *error)
 {
-    if (log->out)
-        fclose(log->out);
+    if (log->out && fclose(log->out) && !log->error)
+        log->error = errno;
     log->out = NULL;
+    return log->error ? tool_fail(error, CLI_ALL_FAILED, "--log %s: cannot write: %s", log->path, strerror(log->error))
+                      : 0;
 }

@@ -12,6 +12,8 @@ enum cli_frame_status { CLI_FRAME_DONE, CLI_FRAME_SKIPPED, CLI_FRAME_FAILED };
 
 struct cli_log {
     FILE *out;  // NULL: no log
+    const char *path;
+    int error;  // errno of the first line that was lost
 };
 
 // What became of a frame.
@@ -30,6 +32,7 @@ struct cli_record {
 int cli_log_open(struct cli_log *log, const char *path, int argc, char **argv, int frames, struct tool_error *error);
 void cli_log_frame(struct cli_log *log, const struct cli_record *record);
 void cli_log_end(struct cli_log *log, const struct cli_progress *progress, int at_once, double peak_memory);
-void cli_log_close(struct cli_log *log);
+// Returns 0, or an exit code with *error filled if not all of it could be written.
+int cli_log_close(struct cli_log *log, struct tool_error *error);
 
 #endif

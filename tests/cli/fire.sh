@@ -74,6 +74,13 @@ for name in new.exr old.exr; do
     [ "$(ls -A disk)" = old.exr ] || { echo "left: $(ls -A disk)"; exit 1; }
     [ "$(cat disk/old.exr)" = old ] || { echo "old.exr is another"; exit 1; }
 done
+# The frame is made, and that its log is not is said.
+head -c 300000 /dev/zero >disk/fill 2>/dev/null
+"$1" a.exr -o logged.exr --focus 4 --range 2 --engine gather --log disk/log --quiet 2>"$2/err" >"$2/out"
+status=$?
+rm -f disk/fill
+[ $status -eq 3 ] && [ -s logged.exr ] || { echo "exit code $status with a log"; exit 1; }
+[ "$(wc -l <"$2/err")" -eq 1 ] && grep -q -e "--log disk/log" "$2/err" || { echo "not one line for a log"; exit 1; }
 SH
 unshare -m sh "$dir/disk.sh" "$program" "$dir" >"$dir/disk.out" 2>&1
 status=$? command="on a disk of 256 kB"
