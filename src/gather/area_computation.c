@@ -26,7 +26,7 @@ int hf_area_inside(const struct hf_setup *s, const struct hf_taps *t, int x, int
 // How far the near field hides at a pixel what is behind it: 1 where near pixels are fully so.
 static float hidden(const struct hf_frame *f, int x, int y)
 {
-    const float m = hf_gather_levels(f->s, HF_NEAR)->gain * *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
+    const float m = hf_gather_levels(f->s, HF_NEAR)->hides * *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
     return m < 1 ? m : 1;
 }
 
@@ -112,6 +112,12 @@ static float karis(const struct hf_frame *f, int x, int y)
 
 enum part { PART_NEAR, PART_BEHIND, PART_FAR };
 
+// The largest far CoC of a quad; 0 where radii are too small to have levels.
+static float far_most(const struct hf_frame *f, int x, int y)
+{
+    return hf_gather_is_simple(f->s, HF_FAR) ? 0 : *hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR_MOST, x, y);
+}
+
 // What a level's taps are laid over: colour times weight, the weight, and the weight without Karis'.
 static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part part, int i)
 {
@@ -129,7 +135,7 @@ static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part p
                 share = hf_level_spread(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y));
                 weight = *hf_at(coc4, HF_AREA_FAR, x, y);
             } else {
-                share = 1;
+                share = hf_level_behind(l, i, far_most(f, x, y));
                 weight = in_frame(f->s, x, y) ? 1 - near : 0;
             }
             for (int c = 0; c < f->s->channels; c++) {

@@ -137,10 +137,12 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p,
     return (struct hf_reach){p->pass[HF_GATHER_MAX_X].x + g->max_x, p->pass[HF_GATHER_MAX_X].y};
 }
 
-// Karis weights are made from the colour, whatever they weigh.
+// Karis weights are made from the colour, whatever they weigh; and what near pixels hide hangs on how far it is blurred.
 static unsigned reads(const struct hf_setup *s, unsigned needs)
 {
-    return hf_gather(s)->karis && needs ? HF_FIELDS : needs;
+    const struct hf_gather *g = hf_gather(s);
+    const int levels = g->area && g->levels[0].count > 1 && g->levels[1].count > 1;
+    return (needs && g->karis) || (needs & HF_NEAR && levels) ? HF_FIELDS : needs;
 }
 
 // The passes that fill in between taps are for taps.
@@ -297,6 +299,7 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
         level->to_next = r > next ? 1 / (level->coc - after) : 0;
         level->area_to_next = r > next ? 1 / (level->area - after * after) : 0;
         l->gain = (s->strength < 0.25f ? 4 * s->strength : 1) / level->coc;
+        l->hides = many ? l->gain : l->gain * (8 / 7.0f);
         const int err = hf_taps_build(&level->taps, &key, mem);
         if (err)
             return err;
@@ -311,6 +314,8 @@ static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_
 {
     if (g->area) {
         const int err = build_levels(g, 0, s, p, near, mem);
+        for (int i = 0; i < g->levels[0].count; i++)
+            g->levels[0].level[i].half_far = far / near * 0.5f * g->levels[0].level[i].inverse;
         return err ? err : build_levels(g, 1, s, p, far, mem);
     }
     const int err = build_taps(&g->taps, s, p, near, mem);

@@ -75,6 +75,7 @@ struct hf_level {
     float to_next;  // 1 / (coc - that of the next one)
     float area;     // coc^2, and as for coc:
     float area_to_next;
+    float half_far;  // of near ones: times a far CoC, its radius in diameters of this
     struct hf_taps taps;
 };
 
@@ -88,6 +89,9 @@ enum { HF_MAX_LEVELS = 26 };
 struct hf_levels {
     int count;
     float gain;  // 1 / coc of the smallest: min(1, gain x CoC) is a pixel's part in the field
+    // Of near pixels: min(1, hides x CoC) is how far the field hides the picture where they are: as gain, but where there is
+    // one kernel alone, wholly from seven eighths of its radius on. A light in a mixed pixel would shine through as a speck.
+    float hides;
     struct hf_level level[HF_MAX_LEVELS];
 };
 
@@ -178,6 +182,14 @@ static inline const struct hf_levels *hf_gather_levels(const struct hf_setup *s,
 static inline int hf_gather_is_simple(const struct hf_setup *s, unsigned field)
 {
     return hf_gather_levels(s, field)->count == 1 && !hf_gather(s)->karis;
+}
+
+// How much a sample of this far CoC counts in a level of what near pixels hide: less where it is blurred more than twice as
+// much itself. Else a light would be a small bright disc there, before the large one that it is beside. The largest sees all.
+static inline float hf_level_behind(const struct hf_levels *l, int i, float far)
+{
+    const float times = far * l->level[i].half_far, square = times * times, most = square > 1 ? square : 1;
+    return i == 0 ? 1 : 1 / (most * most);
 }
 
 struct hf_gather_kernels {

@@ -148,6 +148,9 @@ static struct sums mean(const struct area *a, int x, int y, int i, enum kind kin
                 w *= share(l, i, a->plane[NEAR_MOST][at]);
             if (kind == KIND_FAR)
                 w *= share_far(l, i, a->plane[FAR_MOST][at]);
+            // What is blurred more than twice as much as a smaller level counts less there. (Both fields' radii are the same.)
+            if (kind == KIND_BEHIND && i > 0)
+                w /= pow(fmax(1, a->plane[FAR_MOST][at] / (2 * l->coc[i])), 4);
             for (int c = 0; c < a->r->channels; c++)
                 s.colour[c] += w * (kind == KIND_NEAR  ? a->plane[NEAR + c][at]
                                     : kind == KIND_FAR ? a->plane[FAR + c][at]
@@ -209,7 +212,7 @@ static void near_pixel(const struct area *a, int x, int y, double *near[5])
 {
     const struct levels *l = &a->levels[0];
     const int i = y * a->width + x;
-    const double hides = hidden(a, x, y), m = smallest_part(a, hides);
+    const double hides = hidden(a, x, y), m = smallest_part(a, a->r->params.gather.per_pixel_kernel ? hides : hides * 8 / 7);
     struct sums own = {{0}, 0}, back = {{0}, 0};
     for (int k = 0; k < l->count; k++) {
         const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
