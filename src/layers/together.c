@@ -305,15 +305,20 @@ static void copy_tile(const struct hf_cell *c, int tx, int ty, float *const out[
                    sizeof(float) * TILE);
 }
 
-// A row of a stack at full resolution: its colours and weight.
+// A row of a plane of a stack at full resolution.
+static void raise_plane(const struct hf_cell *c, int stack, int plane, int x, int n, int y, float *out)
+{
+    const struct hf_window *w = &c->stack[stack];
+    const float *a = w->at + (y >> 1) * w->row + plane * w->channel + (x >> 1);
+    c->k->up(a, a + (y & 1 ? w->row : -w->row), n / 2, out);
+}
+
+// Its colours and weight.
 static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float *const out[5])
 {
-    const struct hf_window *w = &c->stack[stack], *light = &c->light[stack];
-    for (int i = 0; i <= c->l->channels; i++) {
-        const float *a = w->at + (y >> 1) * w->row + i * w->channel + (x >> 1);
-        float *to = out[i < c->l->channels ? i : 4];
-        c->k->up(a, a + (y & 1 ? w->row : -w->row), n / 2, to);
-    }
+    const struct hf_window *light = &c->light[stack];
+    for (int i = 0; i <= c->l->channels; i++)
+        raise_plane(c, stack, i, x, n, y, out[i < c->l->channels ? i : 4]);
     for (int tx = x / TILE, end; (end = hf_layers_next_run(&c->lit[stack], &tx, y / TILE, (x + n) / TILE, 1)) > tx;
          tx = end)
         for (int i = 0; i < LIT; i++) {
@@ -332,10 +337,9 @@ void hf_layers_begin_middle(const struct hf_cell *c)
                 const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
                 float *const out[5] = {r.colour[0], r.colour[1], r.colour[2], r.colour[3], r.weight};
                 raise(c, NEAR, tx * TILE, (end - tx) * TILE, y, out);
-                for (int x = 0; x < (end - tx) * TILE; x++) {
+                for (int x = 0; x < (end - tx) * TILE; x++)
                     r.open[x] = r.weight[x] < 1 ? 1 - r.weight[x] : 0;
-                    r.behind[x] = 1;
-                }
+                raise_plane(c, NEAR, c->l->channels + 2, tx * TILE, (end - tx) * TILE, y, r.behind);
                 memset(hf_layers_map_at(&c->begun, tx, ty), 1, (size_t)(end - tx));
             }
 }

@@ -19,10 +19,18 @@ enum { MOST = 4, PLAIN = 20, PICTURES = 24, CATS_EYES = 30, CASES = 35, PICTURE_
 static const struct {
     int count;
     float radius[MOST];
-} stages[] = {{2, {-9.3f, 0}},          {2, {0, 11.7f}},        {2, {-21.3f, 20.4f}},
-              {3, {-22.9f, 0, 21.6f}},  {1, {13.1f}},           {1, {-5.2f}},
-              {3, {-2.3f, 0.4f, 7.9f}}, {2, {3.4f, 38.2f}},     {3, {-17, 2.2f, 26}},
-              {4, {-23, 0, 22, 45.5f}}, {3, {-15.6f, 5.3f, 23}}};
+} stages[] = {{2, {-9.3f, 0}},
+              {2, {0, 11.7f}},
+              {2, {-21.3f, 20.4f}},
+              {3, {-22.9f, 0, 21.6f}},
+              {1, {13.1f}},
+              {1, {-5.2f}},
+              {3, {-2.3f, 0.4f, 7.9f}},
+              {2, {3.4f, 38.2f}},
+              {3, {-17, 2.2f, 26}},
+              {4, {-23, 0, 22, 45.5f}},
+              {3, {-15.6f, 5.3f, 23}},
+              {3, {-16, -5.4f, 9}}};
 enum { STAGES = sizeof stages / sizeof *stages };
 
 static struct scene stage_new(struct rng *rng, int n, int width, int height, int channels, int lamps)

@@ -333,6 +333,7 @@ static void put_together(const struct frame *f, struct picture *out)
             for (int c = 0; c < 5; c++)
                 m[c] = up(&near, c, x, y) + (c < 3 ? at(&light[0], x, y)[c] : 0);
             m[OPEN] = fmax(0, 1 - m[4]);
+            m[BEHIND_OPEN] = up(&near, BEHIND_OPEN, x, y);
         }
     for (; i < count && !level_of(f, s[i].own); i++)
         put_slice(f, &s[i], &middle, &light[1], NULL);
