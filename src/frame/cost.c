@@ -27,11 +27,6 @@ static uint64_t key_of(const struct hf_setup *s, enum hf_isa isa)
     return mix(mix(hash, (uint64_t)reach), (uint64_t)scale) | 1;
 }
 
-static int fields_of(unsigned fields)
-{
-    return (fields & HF_NEAR ? 1 : 0) + (fields & HF_FAR ? 1 : 0);
-}
-
 static double area(struct hf_rect r)
 {
     return (double)(r.x1 - r.x0) * (r.y1 - r.y0);
@@ -52,7 +47,17 @@ static struct hf_rect cell_of(const struct hf_plan *p, int sweep, int cell)
     return hf_plan_is_tiled(p, sweep) ? hf_plan_active(p, cell) : hf_plan_cell(p, sweep, cell);
 }
 
-void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s)
+// What the table says of a unit of work for one field. A pass that serves both goes by the larger radius.
+static double table_ns(const struct hf_plan *p, const struct hf_setup *s, int pass, unsigned field,
+                       const float radius[2])
+{
+    const struct hf_pass *row = &p->engine->passes[pass];
+    const float own = radius[field == HF_FAR], most = radius[0] > radius[1] ? radius[0] : radius[1];
+    const float times = p->engine->times ? p->engine->times(s, pass, field, own) : 1;
+    return (row->ns + row->ns_radius * (row->field ? own : most)) * times;
+}
+
+void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s, const float radius[2])
 {
     *w = (struct hf_work){0};
     for (int i = 0; i < p->engine->pass_count; i++) {
@@ -60,11 +65,15 @@ void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_se
         w->all[i] = (uint32_t)hf_plan_count(p, pass->sweep);
         if (!hf_plan_pass_runs(p, s, i))
             continue;
+        const double ns[] = {table_ns(p, s, i, HF_NEAR, radius), table_ns(p, s, i, HF_FAR, radius)};
         for (int cell = 0; cell < (int)w->all[i]; cell++) {
-            const int fields = i == 0 ? 1 : fields_of(fields_in(p, pass, cell));
+            const unsigned fields = i == 0 ? HF_NEAR : fields_in(p, pass, cell);
             w->run[i] += fields > 0;
-            if (fields)
-                w->units[i] += fields * area(cell_of(p, pass->sweep, cell));
+            for (int f = 0; f < 2; f++)
+                if (fields & (f ? HF_FAR : HF_NEAR)) {
+                    w->units[i] += area(cell_of(p, pass->sweep, cell));
+                    w->ns[i] += ns[f] * area(cell_of(p, pass->sweep, cell));
+                }
         }
     }
 }
@@ -104,8 +113,8 @@ void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa is
         ms[i] = 0;
         if (i >= e->pass_count)
             continue;
-        const float ns = known && known->ns[i] > 0 ? known->ns[i] : e->passes[i].ns * isa_factor(isa);
-        ms[i] = 1e-6 * ns * w->units[i] / threads;
+        const double ns = known && known->ns[i] > 0 ? known->ns[i] * w->units[i] : w->ns[i] * isa_factor(isa);
+        ms[i] = 1e-6 * ns / threads;
     }
 }
 

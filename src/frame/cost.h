@@ -20,10 +20,11 @@ struct hf_cost {
 struct hf_work {
     uint32_t run[HF_MAX_PASSES], all[HF_MAX_PASSES];  // cells
     double units[HF_MAX_PASSES];
+    double ns[HF_MAX_PASSES];  // what these take by the engine's table
 };
 
-// Of the plan as it stands after classification.
-void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s);
+// Of the plan as it stands after classification; radius: the largest near and far ones, pixels.
+void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s, const float radius[2]);
 
 // Milliseconds of each pass, over the number of threads.
 void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,

@@ -36,9 +36,9 @@ struct hf_pass {
     int halo;          // the engine's number; 0: none
     int sweep;         // 1: over the input; 2 and more: per cell, from buffers to the output
     unsigned field;    // runs where this field is needed; 0: where any is
-    // Guess of its cost until it has been measured: nanoseconds per half-resolution pixel and field, at radius 12, with
-    // AVX-512 at 3.7 GHz.
-    float ns;
+    // Guess of its cost until it has been measured: nanoseconds per half-resolution pixel and field, with AVX-512 at about
+    // 3 GHz, and how much more for each full-resolution pixel of the field's largest radius.
+    float ns, ns_radius;
 };
 
 struct hf_reach {
@@ -132,6 +132,9 @@ struct hf_engine_def {
     // Floats of scratch (hf_frame.work) that a pass may use. NULL: none.
     size_t (*work)(const struct hf_setup *s, const struct hf_plan *p);
 
+    // How many times a pass costs what its row says, with what was found in the depth; radius: the field's largest, pixels.
+    // NULL: once.
+    float (*times)(const struct hf_setup *s, int pass, unsigned field, float radius);
     // Options that change what a unit of work costs; returns how many, at most HF_COST_NUMBERS. *reach: of its blur.
     int (*cost)(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach);
 };

@@ -96,7 +96,14 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     start_report(c, s);
     for (int i = 0; i < hf_plan_count(p, 2); i++)
         r->tile_count[p->tile_needs[i]]++;
-    hf_cost_work(&c->work, p, s);
+    if (e->measured) {
+        r->near_radius = found->radius_min < 0 ? -found->radius_min : 0;
+        r->far_radius = found->radius_max > 0 ? found->radius_max : 0;
+    } else {
+        r->near_radius = found->near_pixels ? s->max_radius * found->near_max : 0;
+        r->far_radius = found->far_pixels ? s->max_radius * found->far_max : 0;
+    }
+    hf_cost_work(&c->work, p, s, (const float[]){r->near_radius, r->far_radius});
     hf_cost_predict(&c->cost, s, c->isa, c->threads, &c->work, ms);
     for (int i = 0; i < e->pass_count; i++) {
         struct hf_pass_report *row = &r->pass[i];
@@ -105,13 +112,6 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
         if (row->run < row->all)
             row->skipped = reason(p, i);
         r->predicted_ms += ms[i];
-    }
-    if (e->measured) {
-        r->near_radius = found->radius_min < 0 ? -found->radius_min : 0;
-        r->far_radius = found->radius_max > 0 ? found->radius_max : 0;
-    } else {
-        r->near_radius = found->near_pixels ? s->max_radius * found->near_max : 0;
-        r->far_radius = found->far_pixels ? s->max_radius * found->far_max : 0;
     }
     if (e->tell)
         e->tell(s->own, r);

@@ -379,6 +379,22 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     return 5;
 }
 
+// With levels quads are mixed by each sample's CoC, and every level is a convolution of its own, whose rows grow with its
+// radius.
+static float times(const struct hf_setup *s, int pass, unsigned field, float radius)
+{
+    const struct hf_levels *l = hf_gather_levels(s, field);
+    if (!hf_gather(s)->area || l->count < 2)
+        return 1;
+    float sum = 0;  // of the levels' radii, half-resolution pixels
+    for (int i = 0; i < l->count; i++)
+        sum += l->level[i].coc * radius / 2;
+    return pass == HF_GATHER_DOWN          ? 6
+           : pass == HF_GATHER_COMPUTATION ? 5.7f + 0.52f * sum
+           : pass == HF_GATHER_COMPOSITE   ? 2.6f
+                                           : 1;
+}
+
 HF_CHOOSE_KERNELS(hf_gather_kernels)
 
 void hf_gather_kernels_c(struct hf_gather_kernels *k)
@@ -420,5 +436,6 @@ const struct hf_engine_def hf_gather_engine = {
     .runs = runs,
     .cell = cell,
     .work = work,
+    .times = times,
     .cost = cost,
 };

@@ -33,11 +33,11 @@ enum { HALO_COLUMNS = 1, HALO_UPSAMPLE };
 
 static const struct hf_pass passes[] = {
     {"Depth", .sweep = 1, .ns = 1.7f},
-    {"Horizontal blur", .writes = B(ROWS), .sweep = 1, .ns = 4},
+    {"Horizontal blur", .writes = B(ROWS), .sweep = 1, .ns = 6.5f},
     {"Wide vertical blur", .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_COLUMNS, .ns = 15},
     {"Wide horizontal blur", .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_ROWS, .ns = 14},
-    {"Vertical blur", .around = B(ROWS), .writes = B(BLUR), .halo = HALO_COLUMNS, .sweep = TILES, .ns = 4},
-    {"Merge", .around = B(BLUR), .halo = HALO_UPSAMPLE, .sweep = TILES, .ns = 5},
+    {"Vertical blur", .around = B(ROWS), .writes = B(BLUR), .halo = HALO_COLUMNS, .sweep = TILES, .ns = 5.5f},
+    {"Merge", .around = B(BLUR), .halo = HALO_UPSAMPLE, .sweep = TILES, .ns = 8},
 };
 
 static const struct hf_buf_def bufs[HF_GAUSSIAN_BUFS] = {

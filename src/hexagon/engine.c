@@ -23,11 +23,12 @@ enum { HALO_RADIUS = 1, HALO_BEHIND, HALO_UPSAMPLE };
 
 static const struct hf_pass passes[HF_HEXAGON_PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 3},
-    {"Load", .writes = INPUT | SEEN, .sweep = 1, .ns = 8},
-    {"Passes 1 and 2", .around = INPUT, .writes = FIELDS, .halo = HALO_RADIUS, .sweep = 2, .ns = 40},
-    {"Behind", .around = SEEN, .writes = BEHIND, .halo = HALO_BEHIND, .sweep = 2, .field = HF_NEAR, .ns = 8},
+    {"Load", .writes = INPUT | SEEN, .sweep = 1, .ns = 10},
+    {"Passes 1 and 2", .around = INPUT, .writes = FIELDS, .halo = HALO_RADIUS, .sweep = 2, .ns = 27, .ns_radius = 2.7f},
+    {"Behind", .around = SEEN, .writes = BEHIND, .halo = HALO_BEHIND, .sweep = 2, .field = HF_NEAR, .ns = 23,
+     .ns_radius = 1.45f},
     {"Composite", .reads = FRAME(WEIGHT), .around = FIELDS | BEHIND | FRAME(FAR_WEIGHT_2), .halo = HALO_UPSAMPLE,
-     .sweep = 2, .ns = 9},
+     .sweep = 2, .ns = 14},
 };
 
 #define FULL .x = 1, .y = 1

@@ -28,16 +28,16 @@ enum { COC, LOAD, PREPARE, HIDDEN, PATTERNS, COMPOSITE, PASSES };
 
 static const struct hf_pass passes[PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 2.5f},
-    {"Load", .writes = B(COLOUR) | B(RADIUS), .sweep = 2, .ns = 4},
+    {"Load", .writes = B(COLOUR) | B(RADIUS), .sweep = 2, .ns = 11},
     {"Un-mixing", .around = B(COLOUR) | B(RADIUS), .halo = HALO_EDGE,
-     .writes = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(QUADS) | B(QUADS_AT), .sweep = 2, .ns = 40},
+     .writes = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(QUADS) | B(QUADS_AT), .sweep = 2, .ns = 27},
     {"Hidden", .reads = B(SEEN_AT) | B(MIXED_AT), .around = B(QUADS) | B(QUADS_AT), .halo = HALO_LEVELS,
-     .writes = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT), .sweep = 3, .ns = 60},
+     .writes = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT), .sweep = 3, .ns = 19, .ns_radius = 0.72f},
     {"Patterns", .reads = B(HIDDEN), .around = B(SEEN_AT) | B(QUADS) | B(QUADS_AT) | B(HIDDEN_AT), .halo = HALO_CELL,
      .writes = B(HIDDEN), .sweep = 4, .ns = 400},
     {"Composite",
      .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT),
-     .halo = HALO_CELL, .sweep = 5, .ns = 300},
+     .halo = HALO_CELL, .sweep = 5, .ns = 58, .ns_radius = 0.65f},
 };
 
 static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {

@@ -35,13 +35,13 @@ enum { COC, PREPARE, FAR, NEAR, COMPOSITE, PASSES };
 
 static const struct hf_pass passes[PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 2.5f},
-    {"Prepare", .writes = SOURCES, .sweep = 1, .ns = 4},
+    {"Prepare", .writes = SOURCES, .sweep = 1, .ns = 20},
     {"Far splats", .around = SOURCES, .writes = B(FAR_SUM) | B(FAR_WEIGHT), .halo = HALO_RADIUS, .sweep = 2,
-     .field = HF_FAR, .ns = 75},
+     .field = HF_FAR, .ns = 106, .ns_radius = 3.1f},
     {"Near splats", .around = SOURCES, .writes = B(NEAR_SUM) | B(NEAR_WEIGHT), .halo = HALO_RADIUS, .sweep = 2,
-     .field = HF_NEAR, .ns = 75},
+     .field = HF_NEAR, .ns = 106, .ns_radius = 3.1f},
     {"Composite", .reads = B(FAR_SUM) | B(FAR_WEIGHT) | B(NEAR_SUM) | B(NEAR_WEIGHT), .around = SOURCES,
-     .halo = HALO_BEHIND, .sweep = 2, .ns = 9},
+     .halo = HALO_BEHIND, .sweep = 2, .ns = 39, .ns_radius = 1.15f},
 };
 
 static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {

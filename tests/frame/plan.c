@@ -92,6 +92,36 @@ static void planned_and_done(void)
     hf_close(&c);
 }
 
+// Of a frame that nothing has been learned from: the wider the lens is open, the longer an engine that follows it takes, by
+// its radii, in the gather by their levels too.
+static void wider_is_dearer(void)
+{
+    static const enum hf_engine engines[] = {HF_ENGINE_GATHER, HF_ENGINE_HEXAGON, HF_ENGINE_SCATTER, HF_ENGINE_LAYERS};
+    struct rng rng = rng_seed(1);
+    struct scene s = scene_new(&rng, (enum scene_kind)0, 300, 200, 3);
+    struct hf_params p = scene_params();
+    p.model = HF_MODEL_LENS;
+    p.max_radius = HF_DERIVE;
+    p.lens.focal_length_mm = 400;
+    for (size_t e = 0; e < sizeof engines / sizeof *engines; e++) {
+        double before = 0;
+        float radius = 0;
+        p.engine = engines[e];
+        for (float f_number = 16; f_number >= 2; f_number /= 2) {
+            struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
+            p.lens.f_number = f_number;
+            const struct hf_report r = plan(c, &s, &p);
+            const float most = r.near_radius > r.far_radius ? r.near_radius : r.far_radius;
+            CHECK_MSG(most > radius && r.predicted_ms > before, "%s, f/%g: radius %g, %g ms; before %g, %g ms",
+                      hf_engine_name(p.engine), f_number, most, r.predicted_ms, radius, before);
+            before = r.predicted_ms;
+            radius = most;
+            hf_close(&c);
+        }
+    }
+    scene_free(&s);
+}
+
 // 10 columns, 7 rows of tiles of 64 pixels.
 static void only_what_is_called_for(void)
 {
@@ -439,6 +469,7 @@ int main(void)
 {
     colour();
     planned_and_done();
+    wider_is_dearer();
     only_what_is_called_for();
     radii_found();
     budget();
