@@ -19,9 +19,11 @@
 static int print_plan(const struct cli_frame *frame, const struct hf_context *context, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
-    char name[TOOL_SHOWN], other[TOOL_SHOWN];
-    printf("%s: would write %s\n", tool_shown(args->input, name),
-           args->output ? tool_shown(args->output, other) : "nothing, as there is no -o");
+    char name[TOOL_SHOWN], other[TOOL_SHOWN], third[TOOL_SHOWN];
+    const int in_place = args->output && hf_io_same_file(args->input, args->output);
+    printf("%s: would write %s%s\n", tool_shown(args->input, name),
+           args->output ? tool_shown(args->output, other) : "nothing, as there is no -o",
+           in_place ? ", over the input" : "");
     const struct hf_params *first = &frame->views[0].setup.params;
     printf("  engine %s, ", hf_engine_name(first->engine));
     if (first->engine == HF_ENGINE_GATHER)
@@ -37,12 +39,15 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
                v->view->name[0] ? tool_shown(v->view->name, name) : "(no name)", v->view->layer[0] ? ", layer " : "",
                tool_shown(v->view->layer, other), v->view->width, v->view->height, data->x0, data->y0, data->x1 - 1,
                data->y1 - 1, display->x0, display->y0, display->x1 - 1, display->y1 - 1);
+        const char *part = hf_io_part_name(frame->file, v->view->part);
+        const char *depth_part = args->depth_file ? "" : hf_io_part_name(frame->file, v->view->depth_part);
         printf("    colour");
         for (int c = 0; c < 4; c++)
             if (v->view->colour[c][0])
                 printf("%s %s", c ? "," : "", tool_shown(v->view->colour[c], name));
-        printf("\n    depth %s, type %s\n", tool_shown(args->depth_file ? args->depth_file : v->view->depth, name),
-               cli_depth_type_name(args));
+        printf("%s%s\n    depth %s%s%s, type %s\n", part[0] ? " of part " : "", tool_shown(part, other),
+               tool_shown(args->depth_file ? args->depth_file : v->view->depth, name), depth_part[0] ? " of part " : "",
+               tool_shown(depth_part, third), cli_depth_type_name(args));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)
             printf(", f/%g, focal length %g mm, sensor %g mm, world unit %g m", p->lens.f_number,

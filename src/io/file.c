@@ -164,6 +164,12 @@ const struct hf_io_view *hf_io_view(const struct hf_io_file *file, int view)
     return view >= 0 && view < file->views.count ? &file->views.view[view] : NULL;
 }
 
+const char *hf_io_part_name(const struct hf_io_file *file, int part)
+{
+    const int there = file->exr && file->exr->part_count > 1 && part >= 0 && part < file->exr->part_count;
+    return there ? file->exr->parts[part].name : "";
+}
+
 const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size)
 {
     const char *text = "";

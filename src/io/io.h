@@ -47,6 +47,9 @@ void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size);
 // for each depth, "and 2 more" behind the fourth. Returns how many; cut off at size.
 int hf_io_other_layers(const struct hf_io_file *file, char *buf, size_t size);
 
+// The name of a part; "" where there is but one.
+const char *hf_io_part_name(const struct hf_io_file *file, int part);
+
 // A text in the header of an EXR file's first part, cut off at size; "" when there is none. Returns buf.
 const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size);
 // Are all chunks of an EXR file there, as long as they say and none after the file's end? Looks at no pixels. 0, or -1

@@ -384,6 +384,8 @@ if [ -d "$shared/beachball" ]; then
     check "beachball" exits 0
     run "$shared/beachball/multipart.#.exr" -o ball/m.#.exr --engine gather --focus center
     check "beachball, multi-part" exits 0
+    run "$shared/beachball/multipart.0001.exr" --engine gather --focus center --dry-run
+    check "a dry run names the parts" grep -q ' of part ' out
     check "its frames" files ball "m.0001.exr m.0002.exr s.0001.exr s.0002.exr s.0003.exr s.0004.exr"
     if command -v python3 >/dev/null; then
         for f in 1 2 3 4; do

@@ -308,6 +308,9 @@ picture_tests() {
     run plain.exr -o o.exr --focus 3 --dry-run --dump-passes passes
     [ "$status" -eq 0 ] && [ "$(ls -lR .)" = "$before" ] && contains "$dir/out" "o.exr"
     result "--dry-run writes nothing" $?
+    run plain.exr -o ./plain.exr --focus 3 --dry-run
+    [ "$status" -eq 0 ] && contains "$dir/out" "would write ./plain.exr, over the input"
+    result "--dry-run says what it would write over" $?
     run plain.exr --focus 3 --dry-run --json
     [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"dry_run": true'
     result "--dry-run --json" $?
