@@ -136,6 +136,10 @@ float hf_area_weights(double *weight, const struct hf_area *a)
         weight[i] = own < 1e-6 ? 0 : own > 1 - 1e-9 ? 1 : floor(own / unit + 0.5) * unit;
         all += weight[i];
     }
+    if (a->cut) {
+        const double turn = a->blades ? 2 * M_PI / a->blades : 0;
+        return (float)(1 / (a->radius_x * a->radius_y * (a->blades ? a->blades / 2.0 * sin(turn) : M_PI)));
+    }
     for (int i = 0, from = 0; i < 1024 && (float)(all * (double)(float)(1 / all)) != 1; i++)
         all += give(weight, a, unit, &from) * unit;
     return (float)(1 / all);

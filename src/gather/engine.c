@@ -290,7 +290,10 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
                                         .pixel_aspect = s->pixel_aspect,
                                         .blades = p->aperture.blades,
                                         .rotation = p->aperture.blades ? p->aperture.rotation : 0,
-                                        .area = 1};
+                                        .area = 1,
+                                        // Nothing lies beyond the frame: no pixel has another farther away.
+                                        .most_x = hf_max(s->half_width - 1, 1),
+                                        .most_y = hf_max(s->half_height - 1, 1)};
         level->coc = r / (radius * scale);
         level->inverse = 1 / level->coc;
         level->area = level->coc * level->coc;

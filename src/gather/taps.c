@@ -223,8 +223,16 @@ static struct hf_area area_of(const struct hf_taps_key *k)
     const double y = fmax((double)k->radius * k->scale, 1);
     const double x = fmax((double)k->radius * k->scale / k->pixel_aspect, 1);
     const int mirrors = k->blades % 2 == 0 && fmod(k->rotation, 180.0 / (k->blades ? k->blades : 1)) == 0;
-    return (struct hf_area){x,         y,           (int)fmax(ceil(x - 0.5), 1), (int)fmax(ceil(y - 0.5), 1),
-                            k->blades, k->rotation, !k->blades || mirrors};
+    const int rx = (int)fmax(ceil(x - 0.5), 1), ry = (int)fmax(ceil(y - 0.5), 1);
+    const int most_x = k->most_x ? k->most_x : rx, most_y = k->most_y ? k->most_y : ry;
+    return (struct hf_area){.radius_x = x,
+                            .radius_y = y,
+                            .rx = rx < most_x ? rx : most_x,
+                            .ry = ry < most_y ? ry : most_y,
+                            .blades = k->blades,
+                            .rotation = k->rotation,
+                            .symmetric = !k->blades || mirrors,
+                            .cut = rx > most_x || ry > most_y};
 }
 
 static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem)

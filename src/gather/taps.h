@@ -16,6 +16,7 @@ struct hf_taps_key {
     int dense;           // the 144-tap grid instead of rings
     int rings;           // 0: as many as lie at most 2 apart
     int area;            // instead of taps, all pixels by the area that the aperture covers of each
+    int most_x, most_y;  // area: what lies farther away is never met; 0: all may be
 };
 
 // All bilinear taps have fixed offsets, so together they are one convolution with fixed weights on whole pixels. The

@@ -49,6 +49,7 @@ struct look {
     // Planes that an engine may hold. The gather has whole windows of half resolution, a quarter of a plane each: up to 16
     // of colours, CoC and sums for each of two threads. The others have some rows and tables alone.
     int planes;
+    float pixel_aspect;  // 0: 1
 };
 
 static void try_one(const struct look *look, int width, int height)
@@ -70,6 +71,7 @@ static void try_one(const struct look *look, int width, int height)
     p.aperture = look->aperture;
     p.aperture.squeeze = p.aperture.squeeze > 0 ? p.aperture.squeeze : 1;
     p.max_radius = RADIUS;
+    p.view.pixel_aspect = look->pixel_aspect > 0 ? look->pixel_aspect : 1;
     CHECK_INT(hf_open(&c, &config), HF_OK);
     struct hf_depth depth = picture_depth(&radius);
     const struct hf_image dst = picture_image(&out), src = picture_image(&colour);
@@ -93,6 +95,8 @@ int main(void)
 {
     static const struct look looks[] = {
         {"disc", HF_ENGINE_GATHER, {0}, 8},
+        {"disc of wide pixels", HF_ENGINE_GATHER, {0}, 8, 0.1f},
+        {"disc of high pixels", HF_ENGINE_GATHER, {0}, 8, 10},
         {"disc", HF_ENGINE_HEXAGON, {0}, 4},
         {"disc", HF_ENGINE_GAUSSIAN, {0}, 4},
         {"disc", HF_ENGINE_SCATTER, {0}, 4},

@@ -212,7 +212,8 @@ static void near_pixel(const struct area *a, int x, int y, double *near[5])
 {
     const struct levels *l = &a->levels[0];
     const int i = y * a->width + x;
-    const double hides = hidden(a, x, y), m = smallest_part(a, a->r->params.gather.per_pixel_kernel ? hides : hides * 8 / 7);
+    const double hides = hidden(a, x, y),
+                 m = smallest_part(a, a->r->params.gather.per_pixel_kernel ? hides : hides * 8 / 7);
     struct sums own = {{0}, 0}, back = {{0}, 0};
     for (int k = 0; k < l->count; k++) {
         const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
