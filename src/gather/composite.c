@@ -74,10 +74,11 @@ static void blend_far(const struct hf_frame *f, struct hf_phase p, float coc, fl
     for (int c = 0; c < f->s->channels && t != 0; c++) {
         const float v[4] = {*hf_at(far, c, p.x, p.y), *hf_at(far, c, p.nx, p.y), *hf_at(far, c, p.x, p.ny),
                             *hf_at(far, c, p.nx, p.ny)};
-        float rest = colour[c][i];  // less the far field
+        const float own = hf_limited(colour[c][i], HF_BLENDED);
+        float rest = own;  // less the far field
         for (int k = 0; k < 4 && c < 3; k++)
             rest -= w[k] * v[k];
-        colour[c][i] -= t * (c < 3 ? rest : rest - alpha_mean(w, v));
+        colour[c][i] = own - t * (c < 3 ? rest : rest - alpha_mean(w, v));
     }
 }
 
@@ -109,8 +110,8 @@ static void blend_near(const struct hf_frame *f, struct hf_phase p, float *const
     hf_upsampling *up = hf_gather(f->s)->bicubic ? hf_upsample_cubic : hf_upsample;
     const float scale = hf_gather(f->s)->bicubic ? 1 : 1 / 16.0f;
     const float t = hf_gather(f->s)->blend * scale * up(&f->buf[HF_BUF_BLUR], 0, p);
-    for (int c = 0; c < f->s->channels; c++)
-        colour[c][i] = hf_lerp(colour[c][i], scale * up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);
+    for (int c = 0; c < f->s->channels && t != 0; c++)
+        colour[c][i] = hf_lerp(hf_limited(colour[c][i], HF_BLENDED), scale * up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);
 }
 
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)

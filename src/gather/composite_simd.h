@@ -116,11 +116,16 @@ HF_INLINE void far_weights(const struct field_rows *coc_rows, const enum hf_divi
             far_weights_block(division, coc[i / 2][i % 2], g, far, i / 2, i % 2, t[i / 2][i % 2], w[i / 2][i % 2]);
 }
 
-// v - t rest, rest being v less what it is blended with; v's own bits for t = 0, which it keeps anyway if it is plain:
-// finite and not -0.
-HF_INLINE vf blend_rest(vf v, vf rest, vf t, const int plain)
+// What is blended of v: less a field it is a float. Plain: finite, not -0, and much smaller.
+HF_INLINE vf blend_own(vf v, const int plain)
 {
-    const vf blended = vf_fnma(t, rest, v);
+    return plain ? v : vf_min(vf_max(v, vf_set1(-HF_BLENDED)), vf_set1(HF_BLENDED));
+}
+
+// own - t rest, rest being own less what it is blended with; v's own bits for t = 0, which it keeps anyway if it is plain.
+HF_INLINE vf blend_rest(vf v, vf own, vf rest, vf t, const int plain)
+{
+    const vf blended = vf_fnma(t, rest, own);
     return plain ? blended : vf_select(vf_ne(t, vf_zero()), blended, v);
 }
 
@@ -150,7 +155,8 @@ HF_INLINE void blend_far_channel(const struct field_rows *field, const int rows,
         vf *to = &b->colour[row][odd][c];
         const vf of[4] = {around(v, row, odd, 0), around(v, row, odd, 1), around(v, row, odd, 2),
                           around(v, row, odd, 3)};
-        *to = blend_rest(*to, far_rest(*to, w[row][odd], of, c == 3), t[row][odd], plain);
+        const vf own = blend_own(*to, plain);
+        *to = blend_rest(*to, own, far_rest(own, w[row][odd], of, c == 3), t[row][odd], plain);
     }
 }
 
@@ -176,7 +182,8 @@ HF_INLINE void blend_far_faithful(const struct composite_rows *r, const enum hf_
             const float *p = own + c * r->far.plane + x, *q = below + c * r->far.plane + x;
             const vf of[4] = {vf_load(p), vf_load(p + o), vf_load(q), vf_load(q + o)};
             vf *to = &b->colour[0][o][c];
-            *to = blend_rest(*to, far_rest(*to, w, of, c == 3), vf_mul(blend, b->coc[0][o]), 0);
+            const vf colour = blend_own(*to, 0);
+            *to = blend_rest(*to, colour, far_rest(colour, w, of, c == 3), vf_mul(blend, b->coc[0][o]), 0);
         }
     }
 }
@@ -270,8 +277,9 @@ HF_INLINE void blend_block(const struct composite_rows *r, const enum hf_divisio
             blend_far_channel(&r->far, rows, c, x, w, t, packed, b);
         for (int i = 0; i < 2 * rows && near; i++) {
             vf *to = &b->colour[i / 2][i % 2][c];
-            const vf rest = vf_fnma(vf_set1(bicubic ? 1 : 1 / 16.0f), up[i / 2][i % 2], *to);
-            *to = blend_rest(*to, rest, near_coc[i / 2][i % 2], packed);
+            const vf own = blend_own(*to, packed);
+            const vf rest = vf_fnma(vf_set1(bicubic ? 1 : 1 / 16.0f), up[i / 2][i % 2], own);
+            *to = blend_rest(*to, own, rest, near_coc[i / 2][i % 2], packed);
         }
     }
 }

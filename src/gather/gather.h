@@ -223,6 +223,8 @@ extern const struct hf_engine_def hf_gather_engine;
 
 // Half-resolution colour stays below this, so that no sum of thousands passes the largest float; by area of millions.
 #define HF_LARGEST 0x1p115f
+// Full-resolution colour that is blended: less a field it is a float.
+#define HF_BLENDED 0x1p127f
 #define HF_AREA_LARGEST 0x1p104f
 
 // So limited; NaN, as of a sum of two infinities, becomes the least.

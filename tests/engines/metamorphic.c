@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pairs of renders of which one tells the other, for any engine, options, size and instruction set: what a channel, an
-// exposure, a mirror, a crop, threads, skipping and one bad sample may change. A picture of one colour stays that; opaque
+// exposure, a mirror, a crop, threads, skipping and bad samples may change. A picture of one colour stays that; opaque
 // stays opaque; no mean leaves the range of what it is of.
 //
 //     metamorphic [COUNT [SEED]]
@@ -201,6 +201,11 @@ static void cropped(const struct trial *t, struct rng *rng)
 
 // ---- one picture
 
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
 static void bad_sample(const struct trial *t, struct rng *rng)
 {
     static const float values[] = {NAN, INFINITY, -INFINITY};
@@ -224,6 +229,46 @@ static void bad_sample(const struct trial *t, struct rng *rng)
     CHECK_MSG(report.colour_repaired == (uint64_t)!in_depth && report.depth_repaired == (uint64_t)in_depth,
               "%s: a bad sample is counted as %llu and %llu", name_of(t), (unsigned long long)report.colour_repaired,
               (unsigned long long)report.depth_repaired);
+    picture_free(&out);
+    scene_free(&s);
+}
+
+// A patch of what pictures hold at worst, in all channels: the same rules, but for what is finite, which is not repaired.
+static void bad_patch(const struct trial *t, struct rng *rng)
+{
+    static const float values[] = {NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 1e30f, 65504, 1e-42f, -1};
+    struct scene s = copied(&t->s);
+    const int w = s.colour.width, h = s.colour.height, x0 = rng_below(rng, w), y0 = rng_below(rng, h);
+    const int x1 = least(w, x0 + 1 + rng_below(rng, 8)), y1 = least(h, y0 + 1 + rng_below(rng, 8));
+    // The scatter's sums have four ranges of brightness. What is brighter than a half float holds takes one of them from
+    // what is dim, all over the frame, so such values are not its.
+    static const int usual[] = {0, 1, 2, 6, 7, 8};
+    const int m = t->margin + 1, any = rng_below(rng, 9), several = 1 + rng_below(rng, 4);
+    const int scatter = t->p.engine == HF_ENGINE_SCATTER, first = scatter ? usual[any % 6] : any;
+    const int kinds = scatter ? 1 : several;
+    uint64_t bad = 0;
+    for (int c = 0; c < s.colour.channels; c++)
+        for (int y = y0; y < y1; y++)
+            for (int x = x0; x < x1; x++) {
+                const float v = values[(first + rng_below(rng, kinds)) % 9];
+                s.colour.plane[c][y * w + x] = v;
+                bad += !isfinite(v);
+            }
+    struct picture out = render_scene(t->c, &s, &t->p);
+    struct hf_report report;
+    hf_get_report(t->c, &report);
+    int far = 0;
+    for (int c = 0; c < out.channels; c++)
+        for (int i = 0; i < w * h; i++)
+            far += (i % w < x0 - m || i % w >= x1 + m || i / w < y0 - m || i / w >= y1 + m) &&
+                   memcmp(&out.plane[c][i], &t->out.plane[c][i], sizeof(float)) != 0;
+    CHECK_MSG(all_finite(&out), "%s: a patch from %g on at (%d, %d) - (%d, %d) makes what is not finite", name_of(t),
+              (double)values[first], x0, y0, x1, y1);
+    CHECK_MSG(!far || t->p.layers.quality == HF_LAYERS_BEST,
+              "%s: a patch from %g on at (%d, %d) - (%d, %d) changes %d samples farther than %d", name_of(t),
+              (double)values[first], x0, y0, x1, y1, far, m);
+    CHECK_MSG(report.colour_repaired == bad, "%s: %llu bad samples are counted as %llu", name_of(t),
+              (unsigned long long)bad, (unsigned long long)report.colour_repaired);
     picture_free(&out);
     scene_free(&s);
 }
@@ -290,6 +335,7 @@ static void try_one(unsigned seed)
     mirrored(&t);
     cropped(&t, &rng);
     bad_sample(&t, &rng);
+    bad_patch(&t, &rng);
     constant(&t, &rng);
     in_range(&t);
     picture_free(&t.out);
