@@ -49,7 +49,7 @@ struct look {
     // Planes that an engine may hold. The gather has whole windows of half resolution, a quarter of a plane each: up to 16
     // of colours, CoC and sums for each of two threads. The others have some rows and tables alone.
     int planes;
-    float pixel_aspect;  // 0: 1
+    float pixel_aspect;
 };
 
 static void try_one(const struct look *look, int width, int height)
@@ -71,7 +71,7 @@ static void try_one(const struct look *look, int width, int height)
     p.aperture = look->aperture;
     p.aperture.squeeze = p.aperture.squeeze > 0 ? p.aperture.squeeze : 1;
     p.max_radius = RADIUS;
-    p.view.pixel_aspect = look->pixel_aspect > 0 ? look->pixel_aspect : 1;
+    p.view.pixel_aspect = look->pixel_aspect;
     CHECK_INT(hf_open(&c, &config), HF_OK);
     struct hf_depth depth = picture_depth(&radius);
     const struct hf_image dst = picture_image(&out), src = picture_image(&colour);
@@ -94,22 +94,22 @@ static void try_one(const struct look *look, int width, int height)
 int main(void)
 {
     static const struct look looks[] = {
-        {"disc", HF_ENGINE_GATHER, {0}, 8},
+        {"disc", HF_ENGINE_GATHER, {0}, 8, 1},
         {"disc of wide pixels", HF_ENGINE_GATHER, {0}, 8, 0.1f},
         {"disc of high pixels", HF_ENGINE_GATHER, {0}, 8, 10},
-        {"disc", HF_ENGINE_HEXAGON, {0}, 4},
-        {"disc", HF_ENGINE_GAUSSIAN, {0}, 4},
-        {"disc", HF_ENGINE_SCATTER, {0}, 4},
-        {"squeezed", HF_ENGINE_SCATTER, {.squeeze = 0.25f}, 4},
-        {"cat's eye", HF_ENGINE_SCATTER, {.cat_eye = 1}, 4},
-        {"chromatic ring", HF_ENGINE_SCATTER, {.ring = 0.5f, .chromatic = 0.5f}, 4},
-        {"all", HF_ENGINE_SCATTER, {.blades = 5, .cat_eye = 1, .chromatic = 0.5f, .squeeze = 0.25f}, 4},
-        {"disc", HF_ENGINE_LAYERS, {0}, 4},
-        {"squeezed", HF_ENGINE_LAYERS, {.squeeze = 0.25f}, 4},
-        {"upright", HF_ENGINE_LAYERS, {.squeeze = 4}, 4},
-        {"cat's eye", HF_ENGINE_LAYERS, {.cat_eye = 1}, 4},
-        {"chromatic ring", HF_ENGINE_LAYERS, {.ring = 0.5f, .chromatic = 0.5f}, 4},
-        {"all", HF_ENGINE_LAYERS, {.blades = 5, .cat_eye = 1, .chromatic = 0.5f, .squeeze = 0.25f}, 4},
+        {"disc", HF_ENGINE_HEXAGON, {0}, 4, 1},
+        {"disc", HF_ENGINE_GAUSSIAN, {0}, 4, 1},
+        {"disc", HF_ENGINE_SCATTER, {0}, 4, 1},
+        {"squeezed", HF_ENGINE_SCATTER, {.squeeze = 0.25f}, 4, 1},
+        {"cat's eye", HF_ENGINE_SCATTER, {.cat_eye = 1}, 4, 1},
+        {"chromatic ring", HF_ENGINE_SCATTER, {.ring = 0.5f, .chromatic = 0.5f}, 4, 1},
+        {"all", HF_ENGINE_SCATTER, {.blades = 5, .cat_eye = 1, .chromatic = 0.5f, .squeeze = 0.25f}, 4, 1},
+        {"disc", HF_ENGINE_LAYERS, {0}, 4, 1},
+        {"squeezed", HF_ENGINE_LAYERS, {.squeeze = 0.25f}, 4, 1},
+        {"upright", HF_ENGINE_LAYERS, {.squeeze = 4}, 4, 1},
+        {"cat's eye", HF_ENGINE_LAYERS, {.cat_eye = 1}, 4, 1},
+        {"chromatic ring", HF_ENGINE_LAYERS, {.ring = 0.5f, .chromatic = 0.5f}, 4, 1},
+        {"all", HF_ENGINE_LAYERS, {.blades = 5, .cat_eye = 1, .chromatic = 0.5f, .squeeze = 0.25f}, 4, 1},
     };
     static const int sizes[][2] = {{19, 47}, {1, 300}};
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
