@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/exr/zip.h"
 
+#include <string.h>
+
 #include <libdeflate.h>
 
 #if defined(__SSE2__)
@@ -72,9 +74,49 @@ int hf_exr_unzip(struct libdeflate_decompressor *d, uint8_t *to, size_t size, co
     return 0;
 }
 
+enum { STORED = 65535, STORED_HEAD = 5, ZLIB_HEAD = 2, ZLIB_TAIL = 4 };
+
+// The same with the first half of sorted bytes stored as they are: of noise those are the low bytes, which do not shrink,
+// and a block that begins among them and ends in the other half serves neither well. Returns 0 where there is no room.
+static size_t zip_noise(struct libdeflate_compressor *c, uint8_t *to, size_t room, const uint8_t *sorted, size_t size)
+{
+    const size_t half = (size + 1) / 2, blocks = (half + STORED - 1) / STORED;
+    uint8_t *p = to;
+    if (half + blocks * STORED_HEAD + ZLIB_HEAD + ZLIB_TAIL >= room)
+        return 0;
+    *p++ = 0x78;  // deflate, a window of 32 KB
+    *p++ = 0x01;  // what makes both a multiple of 31
+    for (size_t at = 0; at < half; at += STORED) {
+        const size_t n = half - at < STORED ? half - at : STORED;
+        *p++ = 0;  // stored, and not the last block
+        *p++ = (uint8_t)n;
+        *p++ = (uint8_t)(n >> 8);
+        *p++ = (uint8_t)~n;
+        *p++ = (uint8_t)(~n >> 8);
+        memcpy(p, sorted + at, n);
+        p += n;
+    }
+    const size_t left = room - (size_t)(p - to) - ZLIB_TAIL;
+    const size_t rest = libdeflate_deflate_compress(c, sorted + half, size - half, p, left);
+    if (!rest)
+        return 0;
+    p += rest;
+    const uint32_t sum = libdeflate_adler32(1, sorted, size);
+    for (int shift = 24; shift >= 0; shift -= 8)
+        *p++ = (uint8_t)(sum >> shift);
+    return (size_t)(p - to);
+}
+
 size_t hf_exr_zip(struct libdeflate_compressor *c, uint8_t *to, const uint8_t *from, size_t size, uint8_t *scratch)
 {
     hf_exr_split(scratch, scratch + size, from, size);
     const size_t packed = size ? libdeflate_zlib_compress(c, scratch, size, to, size) : 0;
+    if (size && (!packed || packed > size - size / 10)) {
+        const size_t noise = zip_noise(c, scratch + size, (packed ? packed : size) - 1, scratch, size);
+        if (noise) {
+            memcpy(to, scratch + size, noise);
+            return noise;
+        }
+    }
     return packed < size ? packed : 0;
 }
