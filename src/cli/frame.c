@@ -8,9 +8,20 @@
 #include "cli/coc.h"
 #include "cli/dump.h"
 #include "cli/explain.h"
+#include "cli/target.h"
 #include "cli/views.h"
 #include "cli/window.h"
 #include "tool/machine.h"
+
+static void keep_warning(struct cli_session *session, const char *message)
+{
+    char *said = NULL;
+    session->warnings++;
+    if (asprintf(&said, "%s%s\n", session->said ? session->said : "", message) < 0)
+        return;
+    free(session->said);
+    session->said = said;
+}
 
 // The library says why before it returns an error; that is the sentence to show.
 static void on_log(void *cookie, enum hf_log_level level, const char *message)
@@ -19,7 +30,7 @@ static void on_log(void *cookie, enum hf_log_level level, const char *message)
     if (level == HF_LOG_ERROR)
         tool_fail(&session->log, 0, "%s", message);
     else if (level == HF_LOG_WARNING)
-        session->warnings++;
+        keep_warning(session, message);
     if (level == HF_LOG_WARNING)
         tool_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", message);
 }
@@ -29,6 +40,8 @@ const char *const cli_stage_names[CLI_STAGES] = {"read", "decode", "defocus", "e
 void cli_session_close(struct cli_session *session)
 {
     hf_close(&session->context);
+    free(session->said);
+    session->said = NULL;
     hf_io_threads_close(&session->run);
 }
 
@@ -65,6 +78,7 @@ int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const s
     if (hf_io_open(&frame->file, args->input, &choice, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     frame->ms[CLI_READ] += tool_now_ms() - start;
+    frame->in_place = args->output && cli_is_in_place(args);
     return cli_select_views(frame, error);
 }
 
@@ -261,6 +275,8 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     session->label = v->label;
     session->log.text[0] = '\0';
     session->warnings = 0;
+    free(session->said);
+    session->said = NULL;
     const int looked = cli_coc_look(v, frame->args, error);
     v->cut = !looked && v->radii ? cli_window_cut(v) : 0;
     v->highlights = count_highlights(v);
@@ -278,6 +294,9 @@ static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     }
     hf_get_report(session->context, &v->report);
     v->warned = session->warnings;
+    free(v->said);
+    v->said = session->said;
+    session->said = NULL;
     cli_coc_measure(v);
     free(v->depth);
     v->depth = NULL;
@@ -382,6 +401,7 @@ void cli_frame_close(struct cli_frame *frame)
         free(v->tag);
         free(v->radii);
         free(v->tiles);
+        free(v->said);
     }
     free(frame->views);
     hf_io_output_free(&frame->output);

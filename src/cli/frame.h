@@ -13,6 +13,7 @@ struct cli_session {
     struct tool_error log;
     const char *label;  // what is being rendered, for warnings
     int warnings;       // that the library gave of it
+    char *said;         // what they were, a line each; NULL: none
 };
 
 // Up to this radius, pixels, one may say that something is in focus: half a pixel to each side.
@@ -39,6 +40,7 @@ struct cli_view {
     float far_away;      // radius of what is infinitely far
     float *radii;        // of all pixels, see cli_coc_look; NULL
     int warned;          // times by the library
+    char *said;          // what it said then, a line each; NULL: nothing
     uint64_t highlights;  // pixels above --highlight-threshold, if they are to be raised
     int cut;              // pixels by which the blur reaches beyond the data window, and is lost
     struct hf_report report;
@@ -56,7 +58,9 @@ struct cli_frame {
     struct hf_io_output *output;
     struct cli_view *views;  // the selected ones, in the order of the file
     int view_count;
-    int loaded;  // the pixels are there
+    int loaded;    // the pixels are there
+    int in_place;  // OUTPUT is INPUT, also through links
+    int alone;     // no frame of a shot
     double ms[CLI_STAGES];
     struct hf_io_written written;
 };

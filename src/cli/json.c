@@ -195,6 +195,8 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
         tool_json_count(&j, "clamped", (long long)frame->written.clamped);
         tool_json_text(&j, "note", frame->written.note[0] ? frame->written.note : NULL);
     }
+    tool_json_flag(&j, "in_place", frame->in_place);
+    cli_json_warnings(&j, frame);
     tool_json_open(&j, "views", '[');
     for (int i = 0; i < frame->view_count; i++)
         put_view(&j, &frame->views[i], frame);

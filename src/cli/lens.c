@@ -34,6 +34,22 @@ static int asks_range(const struct cli_args *args)
            given(args->near_end) || given(args->far_begin) || given(args->far_end);
 }
 
+// The option that chose the range model without having range in its meaning; NULL: there is one that has.
+static const char *hidden_range(const struct cli_args *args)
+{
+    if (given(args->range) || given(args->near_begin) || given(args->near_end) || given(args->far_begin) ||
+        given(args->far_end))
+        return NULL;
+    return given(args->depth_of_field) ? "--depth-of-field" : "--strength";
+}
+
+// Does the header have all that a lens needs, but what was given?
+static int has_lens(const struct cli_args *args, const struct hf_io_camera *camera)
+{
+    const int focus = cli_lens_usable(camera->focus) || camera->focus == INFINITY || args->focus_by != CLI_FOCUS_HEADER;
+    return focus && cli_lens_usable(camera->f_number) && given(cli_lens_header_focal(camera));
+}
+
 enum cli_model cli_lens_model(const struct cli_args *args, const struct hf_io_camera *camera)
 {
     if (args->depth_type == HF_DEPTH_COC)
@@ -42,9 +58,7 @@ enum cli_model cli_lens_model(const struct cli_args *args, const struct hf_io_ca
         return CLI_MODEL_RANGE;
     if (given(args->fstop) || given(args->focal_length))
         return CLI_MODEL_LENS;
-    const int focus = cli_lens_usable(camera->focus) || camera->focus == INFINITY || args->focus_by != CLI_FOCUS_HEADER;
-    return focus && cli_lens_usable(camera->f_number) && given(cli_lens_header_focal(camera)) ? CLI_MODEL_LENS
-                                                                                              : CLI_MODEL_RANGE;
+    return has_lens(args, camera) ? CLI_MODEL_LENS : CLI_MODEL_RANGE;
 }
 
 int cli_lens_set(struct hf_params *p, const struct cli_args *args, const struct hf_io_camera *camera, const char *label,
@@ -120,6 +134,14 @@ int cli_lens_remark(const struct cli_args *args, const struct cli_setup *setup, 
 {
     if (setup->model == CLI_MODEL_RANGE && !asks_range(args))
         return tell_gap(args, camera, text, size);
+    const char *option = setup->model == CLI_MODEL_RANGE ? hidden_range(args) : NULL;
+    if (option && has_lens(args, camera)) {
+        snprintf(text, size,
+                 "%s is of the range model, so blur follows a range and not the header's lens, f/%g and %g mm; --range "
+                 "says how far it grows",
+                 option, camera->f_number, cli_lens_header_focal(camera));
+        return 1;
+    }
     if (setup->model != CLI_MODEL_LENS || given(args->focal_length) || cli_lens_usable(camera->focal_length_mm))
         return 0;
     snprintf(

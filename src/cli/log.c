@@ -123,6 +123,7 @@ void cli_log_frame(struct cli_log *log, const struct cli_record *r)
     if (r->status == CLI_FRAME_DONE) {
         put_stages(j, r->frame->ms);
         put_views(j, r->frame);
+        cli_json_warnings(j, r->frame);
         tool_json_count(j, "clamped", (long long)r->frame->written.clamped);
         tool_json_text(j, "engine", hf_engine_name(r->report->used.params.engine));
         tool_json_count(j, "budget_step", r->report->budget_step);

@@ -20,10 +20,9 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
 {
     const struct cli_args *args = frame->args;
     char name[TOOL_SHOWN], other[TOOL_SHOWN], third[TOOL_SHOWN];
-    const int in_place = args->output && hf_io_same_file(args->input, args->output);
     printf("%s: would write %s%s\n", tool_shown(args->input, name),
            args->output ? tool_shown(args->output, other) : "nothing, as there is no -o",
-           in_place ? ", over the input" : "");
+           frame->in_place ? ", over the input" : "");
     const struct hf_params *first = &frame->views[0].setup.params;
     printf("  engine %s, ", hf_engine_name(first->engine));
     if (first->engine == HF_ENGINE_GATHER)
@@ -117,7 +116,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
 }
 
 // What is written about one frame only.
-static int check_alone(const struct cli_args *args, struct tool_error *error)
+static int check_alone(const struct cli_args *args, const struct cli_shot *shot, struct tool_error *error)
 {
     const char *option = args->json            ? "--json"
                          : args->explain       ? "--explain"
@@ -126,9 +125,15 @@ static int check_alone(const struct cli_args *args, struct tool_error *error)
                          : args->dump_dir      ? "--dump-passes"
                                                : NULL;
     if (option)
-        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s is for one frame; for a shot there is --log", option);
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "%s is for one picture by its own name; for a shot, also of one frame, there is --log",
+                         option);
     if (args->resume && args->output && !cli_is_exr(args->output))
         return tool_fail(error, CLI_BAD_ARGUMENTS, "--resume needs an EXR OUTPUT, as %s does not say what made it",
+                         args->output);
+    if (args->resume && !shot->sequence && cli_is_in_place(args))
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "--resume cannot be used where OUTPUT %s is INPUT: nobody would know whether it is done",
                          args->output);
     return 0;
 }
@@ -136,7 +141,7 @@ static int check_alone(const struct cli_args *args, struct tool_error *error)
 static int run_shot(int argc, char **argv, const struct cli_args *args, const struct cli_shot *shot,
                     struct tool_error *error)
 {
-    int status = check_alone(args, error);
+    int status = check_alone(args, shot, error);
     if (!status && shot->missing)
         tool_print_line("%d frame%s missing: %s", shot->missing, shot->missing == 1 ? " is" : "s are", shot->gaps);
     if (!status && shot->jobs.count == 0)

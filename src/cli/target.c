@@ -108,6 +108,15 @@ int cli_check_overwrite(const struct cli_args *args, const char *option, const c
     return 0;
 }
 
+int cli_is_in_place(const struct cli_args *args)
+{
+    char *input = realpath(args->input, NULL), *output = realpath(args->output, NULL);
+    const int same = input && output && !strcmp(input, output);
+    free(input);
+    free(output);
+    return same;
+}
+
 int cli_check_targets(const struct cli_args *args, struct tool_error *error)
 {
     struct hf_io_error io;

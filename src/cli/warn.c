@@ -13,8 +13,9 @@
 struct warner {
     const struct cli_frame *frame;
     const struct cli_args *args;
-    const char *label;  // what is warned of
-    int say;            // on stderr
+    const char *label;       // what is warned of
+    int say;                 // on stderr
+    struct tool_json *list;  // sentences are entered here; NULL
     int count;
 };
 
@@ -24,12 +25,13 @@ static void warn(struct warner *w, const char *format, ...)
     char text[2048];
     va_list list;
     w->count++;
-    if (!w->say)
-        return;
     va_start(list, format);
     vsnprintf(text, sizeof(text), format, list);
     va_end(list);
-    tool_print_line("%s: %s", w->label, text);
+    if (w->say)
+        tool_print_line("%s: %s", w->label, text);
+    if (w->list)
+        tool_json_text(w->list, NULL, text);
 }
 
 static const char *depth_name(const struct warner *w, const struct cli_view *v)
@@ -223,9 +225,22 @@ static void warn_window(struct warner *w)
              display->x1 - display->x0, display->y1 - display->y0);
 }
 
+// What is done to a picture that was defocused before, or that nobody has another copy of.
+static void warn_input(struct warner *w)
+{
+    char text[2];
+    if (hf_io_text(w->frame->file, "hyperfocalSettings", text, sizeof(text))[0] ||
+        hf_io_text(w->frame->file, "hyperfocalHash", text, sizeof(text))[0])
+        warn(w, "hyperfocal made this file: it is defocused already, and blurred a second time");
+    if (w->frame->in_place)
+        warn(w, "OUTPUT %s is INPUT: the picture is replaced by the defocused one; another OUTPUT keeps it",
+             w->args->output);
+}
+
 static void warn_frame(struct warner *w)
 {
     w->label = w->args->input;
+    warn_input(w);
     warn_layers(w);
     warn_window(w);
 }
@@ -237,26 +252,56 @@ int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v)
     return w.count;
 }
 
+static void warn_all(struct warner *w)
+{
+    const struct cli_frame *frame = w->frame;
+    warn_frame(w);
+    for (int i = 0; i < frame->view_count; i++)
+        warn_view(w, &frame->views[i]);
+    w->label = w->args->output;
+    if (frame->written.clamped)
+        warn(w, "%" PRIu64 " samples did not fit their channels and were clamped", frame->written.clamped);
+}
+
 int cli_print_warnings(const struct cli_frame *frame)
 {
     struct warner w = {.frame = frame, .args = frame->args, .say = 1};
-    warn_frame(&w);
-    for (int i = 0; i < frame->view_count; i++)
-        warn_view(&w, &frame->views[i]);
-    w.label = frame->args->output;
-    if (frame->written.clamped)
-        warn(&w, "%" PRIu64 " samples did not fit their channels and were clamped", frame->written.clamped);
+    warn_all(&w);
     if (frame->written.note[0])
         tool_print_line("%s", frame->written.note);
     return w.count + (frame->written.note[0] != '\0');
 }
 
+static void warn_early(struct warner *w)
+{
+    warn_frame(w);
+    for (int i = 0; i < w->frame->view_count; i++) {
+        w->label = w->frame->views[i].label;
+        warn_lens(w, &w->frame->views[i]);
+    }
+}
+
 void cli_print_early_warnings(const struct cli_frame *frame)
 {
     struct warner w = {.frame = frame, .args = frame->args, .say = 1};
-    warn_frame(&w);
-    for (int i = 0; i < frame->view_count; i++) {
-        w.label = frame->views[i].label;
-        warn_lens(&w, &frame->views[i]);
-    }
+    warn_early(&w);
+}
+
+void cli_json_warnings(struct tool_json *j, const struct cli_frame *frame)
+{
+    struct warner w = {.frame = frame, .args = frame->args, .list = j};
+    tool_json_open(j, "warning_texts", '[');
+    if (frame->args->dry_run)
+        warn_early(&w);
+    else
+        warn_all(&w);
+    for (int i = 0; i < frame->view_count; i++)
+        for (const char *c = frame->views[i].said; c && *c; c += strcspn(c, "\n") + 1) {
+            char text[1024];
+            snprintf(text, sizeof(text), "%.*s", (int)strcspn(c, "\n"), c);
+            tool_json_text(j, NULL, text);
+        }
+    if (frame->written.note[0])
+        tool_json_text(j, NULL, frame->written.note);
+    tool_json_close(j);
 }

@@ -5,6 +5,7 @@
 #define HF_CLI_WARN_H
 
 #include "cli/frame.h"
+#include "tool/json.h"
 
 // How many warnings a view's picture has, those of the library included.
 int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v);
@@ -12,5 +13,7 @@ int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v);
 int cli_print_warnings(const struct cli_frame *frame);
 // Of these what is known before any pixel is.
 void cli_print_early_warnings(const struct cli_frame *frame);
+// The sentences of a frame, those of the library included, as an array; in a dry run those that are known.
+void cli_json_warnings(struct tool_json *j, const struct cli_frame *frame);
 
 #endif

@@ -102,7 +102,7 @@ check "frames of a single file" exits 1
 run in/shot.####.exr -o a/x.####.exr --frames 1-x $quick
 check "frames that are none" says "'1-x'"
 run in/shot.####.exr -o a/x.####.exr $quick --json
-check "what is for one frame" says "--json is for one frame"
+check "what is for one frame" says "--json is for one picture by its own name"
 run in/shot.####.exr -o a/x.####.exr $quick --dry-run
 check "a dry run" exits 0
 check "says what it would do" grep -q 'in/shot.0006.exr -> a/x.0006.exr' out

@@ -309,7 +309,8 @@ picture_tests() {
     [ "$status" -eq 0 ] && [ "$(ls -lR .)" = "$before" ] && contains "$dir/out" "o.exr"
     result "--dry-run writes nothing" $?
     run plain.exr -o ./plain.exr --focus 3 --dry-run
-    [ "$status" -eq 0 ] && contains "$dir/out" "would write ./plain.exr, over the input"
+    [ "$status" -eq 0 ] && contains "$dir/out" "would write ./plain.exr, over the input" &&
+        contains "$dir/err" "OUTPUT ./plain.exr is INPUT"
     result "--dry-run says what it would write over" $?
     run plain.exr --focus 3 --dry-run --json
     [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"dry_run": true'
@@ -390,9 +391,42 @@ picture_tests() {
         bad 1 "o.png|stereo.exr|--views|left" stereo.exr -o o.png --focus 3
     fi
     rm -f o.png
-    cp plain.exr same.exr
-    good same.exr -o same.exr --focus 3
-    rm -f o.exr same.exr
+    # In place, by any name: done, and said. Another hard link is another picture.
+    for name in same.exr ./same.exr link.exr; do
+        cp plain.exr same.exr && ln -sf same.exr link.exr
+        run same.exr -o $name --focus 3 --json o.json
+        [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "OUTPUT $name is INPUT" &&
+            contains o.json '"in_place": true' && contains o.json "\"OUTPUT $name is INPUT" && ! cmp -s plain.exr same.exr
+        result "a picture replaced by its blur is a warning, $name" $?
+    done
+    cp plain.exr same.exr && ln -f same.exr hard.exr
+    good same.exr -o hard.exr --focus 3
+    cmp -s plain.exr same.exr
+    result "a hard link of the input leaves it as it was" $?
+    bad 1 "--resume|same.exr is INPUT" same.exr -o same.exr --focus 3 --resume
+    run plain.exr -o made.exr --focus 3 --resume --quiet
+    run made.exr -o o.exr --focus 3 --json
+    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "defocused already" &&
+        json_valid "$dir/out" && contains "$dir/out" '"hyperfocal made this file'
+    result "an input that was made here is a warning" $?
+    run made.exr -o o.exr --focus 3 --resume --verbose --log o.log
+    contains "$dir/err" "1 warning" && contains o.log '"warning_texts": ["hyperfocal made this file'
+    result "in a shot and its log too" $?
+    rm -f o.exr same.exr hard.exr link.exr made.exr o.json o.log
+
+    # Options of the range model that do not name a range: the header's lens goes, and that is said.
+    for option in "--strength 0.5" "--depth-of-field 2"; do
+        # shellcheck disable=SC2086
+        run lens.exr -o o.exr $option --json
+        [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "${option% *} is of the range model" &&
+            contains "$dir/out" "not the header's lens, f/2 and 50 mm"
+        result "$option puts the lens aside with a warning" $?
+        # shellcheck disable=SC2086
+        good lens.exr -o o.exr $option --range 2
+        # shellcheck disable=SC2086
+        good focus.exr -o o.exr $option
+    done
+    rm -f o.exr
 
     # No output may be an input, or another output, whatever the name says.
     cp plain.exr keep.exr && ln -s keep.exr link.exr && ln keep.exr hard.exr && cp depth.exr deep-map.exr
