@@ -80,6 +80,18 @@ static int check_config(const struct hf_config *g)
     return HF_OK;
 }
 
+// What is wrong with the environment variable.
+static void say_variable(const struct hf_config *g)
+{
+    const char *name = getenv("HYPERFOCAL_ISA");
+    int isa;
+    if (hf_value(HF_NAMES_ISA, name, &isa))
+        say(g, HF_LOG_ERROR,
+            "HYPERFOCAL_ISA is %s, which is no instruction set; there are scalar, sse4.1, avx2, avx512 and neon", name);
+    else
+        say(g, HF_LOG_ERROR, "HYPERFOCAL_ISA is %s, which this CPU or build does not have", name);
+}
+
 int hf_open(struct hf_context **out, const struct hf_config *config)
 {
     static const struct hf_config defaults;
@@ -95,8 +107,7 @@ int hf_open(struct hf_context **out, const struct hf_config *config)
         if (g->isa)
             say(g, HF_LOG_ERROR, "config.isa is %s, which this CPU or build does not have", hf_isa_name(g->isa));
         else
-            say(g, HF_LOG_ERROR, "HYPERFOCAL_ISA is %s, which this CPU or build does not have",
-                getenv("HYPERFOCAL_ISA"));
+            say_variable(g);
         return HF_ERR_ISA;
     }
     const struct hf_mem mem = g->alloc ? (struct hf_mem){g->alloc, g->free, g->alloc_cookie} : hf_mem_default;
@@ -188,12 +199,13 @@ static int run_resolved(struct hf_context *c, const struct hf_image *dst, const 
 // The cheapest settings that the budget asks for, and what they come to. Returns how many there are to choose from, or
 // an error.
 static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_params *p, const struct hf_depth *depth,
-                  char *message)
+                  const char **options, char *message)
 {
     struct hf_params ladder[HF_BUDGET_STEPS];
     const int steps = hf_budget_ladder(p, hf_asked_radius(p, depth->type, r->params.view.display_height), ladder);
     const int step = hf_budget_choose(&c->budget, ladder, steps);
     const int err = hf_params_resolve(r, r->width, r->height, depth, &ladder[step], message);
+    *options = step ? hf_budget_options(p, &ladder[step]) : NULL;
     return err ? err : steps;
 }
 
@@ -221,6 +233,22 @@ static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
             "blur is cut to %g pixels where it would be larger%s", p->max_radius, why[limit]);
 }
 
+// Whole numbers taken for distances, where they are surely none: those of a hardware depth buffer, or all before the focus.
+static void tell_depth(struct hf_context *c, const struct hf_depth *d, const struct hf_params *p)
+{
+    const int hardware = d->format == HF_DEPTH_FORMAT_D24S8 || d->format == HF_DEPTH_FORMAT_X8D24;
+    const int whole = hardware || d->format == HF_DEPTH_FORMAT_UNORM16 || d->format == HF_DEPTH_FORMAT_UNORM32;
+    const float sharp = p->model == HF_MODEL_LENS ? p->focus : p->range.near_end;
+    const int told = 1 + (int)d->format * (HF_DEPTH_COC + 1) + (int)d->type;
+    if (!whole || (d->type != HF_DEPTH_VIEW && d->type != HF_DEPTH_RAY) || d->near_plane != 0 || d->far_plane != 0 ||
+        !(hardware || sharp > 1) || told == c->depth_told)
+        return;
+    c->depth_told = told;
+    say(&c->config, HF_LOG_WARNING,
+        "depth.format is %s and depth.type %s: whole numbers are read as distances 0 to 1; set depth.type",
+        hf_name(HF_NAMES_DEPTH_FORMAT, (int)d->format), hf_name(HF_NAMES_DEPTH_TYPE, (int)d->type));
+}
+
 // Check, choose a setting that fits the budget, and go.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params, enum hf_task task)
@@ -241,23 +269,32 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     if (!err)
         err = hf_params_resolve(&r, src->width, src->height, depth, p, message);
     int steps = 0;
+    const char *options = NULL;
     c->budget.step = c->dump || !(p->run.budget_ms > 0) ? 0 : c->budget.step;
     if (!err && p->run.budget_ms > 0 && !c->dump) {
-        steps = choose(c, &r, p, depth, message);
+        steps = choose(c, &r, p, depth, &options, message);
         err = hf_min(steps, 0);
     }
     if (err) {
         say(&c->config, HF_LOG_ERROR, "%s", message);
         return err;
     }
+    tell_depth(c, depth, &r.params);
     err = run_resolved(c, dst, src, depth, &r, task);
     if (!err && !r.sharp)
         tell_limit(c, depth);
+    c->report.budget_steps = steps;
+    c->report.budget_options = options;
     if (err) {
         c->report = (struct hf_report){0};
         say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
     } else if (steps && task == HF_TASK_RENDER) {
         hf_budget_note(&c->budget, p->run.budget_ms, steps, (float)c->report.total_ms);
+        if (hf_budget_missed(&c->budget, p->run.budget_ms, steps))
+            say(&c->config, HF_LOG_WARNING,
+                "run.budget_ms is %g, which frames miss, and nothing cheaper blurs as far as is asked for: the last "
+                "took %.1f",
+                p->run.budget_ms, c->report.total_ms);
     }
     return err;
 }

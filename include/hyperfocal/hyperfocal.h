@@ -567,13 +567,14 @@ struct hf_pass_report {
     double ms;            // what it was; 0 in a plan
 };
 
-// What a frame calls for, and what became of it. All numbers, but for pass names: nothing in it ends with the context.
+// What a frame calls for, and what became of it. Numbers, and words that live as long as the library.
 struct hf_report {
     // In use: what was asked for, or what a budget left of it. Of aperture.picture only whether there was one: it is
     // NULL here, picture says so.
     struct hf_resolved used;
     int picture;
-    int budget_step;  // 0: as asked for; each step is cheaper
+    int budget_step, budget_steps;  // 0: as asked for, each step is cheaper; of how many, 0 without a budget
+    const char *budget_options;     // the command's words for a step, for ever; NULL: as asked for
 
     int tile_width, tile_height;  // full-resolution pixels
     int columns, rows;            // of tiles, see hf_get_tiles

@@ -51,7 +51,7 @@ int hf_budget_choose(struct hf_budget *b, const struct hf_params *ladder, int st
 {
     const uint64_t asked = hash_of(ladder, steps);
     if (b->asked != asked)
-        *b = (struct hf_budget){.asked = asked, .patience = PATIENCE};
+        *b = (struct hf_budget){.asked = asked, .patience = PATIENCE, .told = b->told};
     return b->step;
 }
 
@@ -84,4 +84,24 @@ void hf_budget_note(struct hf_budget *b, float budget_ms, int steps, float ms)
     b->calm = room ? b->calm + 1 : 0;
     if (b->calm >= b->patience)
         enter(b, b->step - 1);
+}
+
+int hf_budget_missed(struct hf_budget *b, float budget_ms, int steps)
+{
+    const int missed = b->step + 1 == steps && b->over >= OVER && b->told != budget_ms;
+    if (missed)
+        b->told = budget_ms;
+    return missed;
+}
+
+const char *hf_budget_options(const struct hf_params *asked, const struct hf_params *step)
+{
+    for (int i = 0; i < hf_ladder_steps; i++) {
+        struct hf_params p = *asked;
+        hf_ladder_apply(&p, i);
+        hf_ladder_reshape(&p);
+        if (hf_ladder_hash(&p) == hf_ladder_hash(step))
+            return hf_ladder[i].options;
+    }
+    return NULL;
 }

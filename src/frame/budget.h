@@ -14,6 +14,7 @@ struct hf_budget {
     int over, calm;                // frames on end beyond the budget, and with room for the step above
     int patience;                  // calm frames to wait for before going up
     int climbed;                   // this step was reached from a cheaper one
+    float told;                    // the budget of which was said that it cannot be met; 0: none
     float ms;                      // of a frame at this step, smoothed
     float above;                   // of the step above when it was left for this one; 0: it was not
     float ratio[HF_BUDGET_STEPS];  // cost of the step above over this one's, seen then
@@ -27,5 +28,9 @@ int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_para
 int hf_budget_choose(struct hf_budget *b, const struct hf_params *ladder, int steps);
 // That frame took so long.
 void hf_budget_note(struct hf_budget *b, float budget_ms, int steps, float ms);
+// The command's words for a step of the ladder, or NULL.
+const char *hf_budget_options(const struct hf_params *asked, const struct hf_params *step);
+// Do frames take longer even at the cheapest setting? 1 once for a budget.
+int hf_budget_missed(struct hf_budget *b, float budget_ms, int steps);
 
 #endif

@@ -47,6 +47,7 @@ struct hf_context {
     struct hf_work work;  // of the plan
     struct hf_cost cost;
     struct hf_budget budget;
+    int depth_told;  // the kind of depth of which was last said that it is no distance; 0: none
 
     void (*dump)(void *cookie, const struct hf_buffer *buffer);
     void *dump_cookie;

@@ -7,9 +7,11 @@
 #include "frame/buffers.h"
 
 // Why a pass does not run everywhere.
-static const char *reason(const struct hf_plan *p, int pass)
+static const char *reason(const struct hf_plan *p, const struct hf_setup *s, int pass)
 {
     const struct hf_pass *def = &p->engine->passes[pass];
+    if (!hf_plan_pass_runs(p, s, pass))
+        return "the settings do not call for it";
     if (def->sweep == 1)
         return pass == 0 ? "the depth is not looked at" : "no blurred tile reads there";
     if (def->field == HF_NEAR)
@@ -110,7 +112,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
         row->run = c->work.run[i];
         row->predicted_ms = ms[i];
         if (row->run < row->all)
-            row->skipped = reason(p, i);
+            row->skipped = reason(p, s, i);
         r->predicted_ms += ms[i];
     }
     if (e->tell)

@@ -242,8 +242,44 @@ static void check_refusals(struct hf_context *c)
     CHECK(hf_render(c, &image, &image, &depth, NULL) == HF_ERR_ARG);
 }
 
+static void count_warnings(void *cookie, enum hf_log_level level, const char *message)
+{
+    *(int *)cookie += level == HF_LOG_WARNING && strstr(message, "set depth.type") != NULL;
+}
+
+// Whole numbers taken for distances are told once, and only where they can be none.
+static void check_warning(void)
+{
+    float pixel[4] = {0};
+    const uint32_t z = UINT32_MAX;
+    int warned = 0;
+    const struct hf_config config = {.threads = 1, .log = count_warnings, .log_cookie = &warned};
+    struct hf_image image = floats_of(pixel, 1, 1);
+    struct hf_depth depth = {.data = &z, .stride = 4, .format = HF_DEPTH_FORMAT_UNORM16};
+    struct hf_params p = hf_default_params;
+    struct hf_context *c;
+    CHECK(hf_open(&c, &config) == HF_OK);
+    p.focus = 0.5f;  // something may be in focus
+    CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 0);
+    p.focus = 10;
+    CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 1);
+    CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 1);
+    depth.format = HF_DEPTH_FORMAT_D24S8;  // another mistake
+    p.focus = 0.5f;
+    CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 2);
+    depth.near_plane = 1;
+    depth.far_plane = 10;
+    depth.type = HF_DEPTH_NDC_D3D;
+    CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 2);
+    depth = (struct hf_depth){.data = &p.focus, .stride = 4};
+    CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 2);
+    hf_close(&c);
+}
+
 int main(void)
 {
+    check_warning();
+
     for (enum hf_isa isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         const struct hf_config config = {.isa = isa, .threads = 2};
         struct hf_context *c;

@@ -415,10 +415,43 @@ static void reaches(void)
     CHECK_INT(hf_choose_error(0, NULL, &p, 0.1f, &c), HF_ERR_ARG);
 }
 
-// No frame fits into a microsecond: after a few, the cheapest setting; the report says so.
-static void budget_of_frames(void)
+// Passes that settings leave out are not said to have found all sharp.
+static void reasons(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
+    struct scene s = sharp(200, 100);
+    struct hf_params p = scene_params();
+    put(&s, 0, 0, 200, 100, 40);
+    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+        p.engine = (enum hf_engine)e;
+        const struct hf_report r = plan(c, &s, &p);
+        int left_out = 0;
+        CHECK_INT(r.tile_count[HF_TILE_SHARP], 0);
+        for (int i = 0; i < r.passes; i++) {
+            if (r.pass[i].run == 0)
+                left_out += r.pass[i].skipped && !strcmp(r.pass[i].skipped, "the settings do not call for it");
+            CHECK_MSG(!r.pass[i].skipped || strcmp(r.pass[i].skipped, "sharp: copied"), "%s, %s",
+                      hf_engine_name(p.engine), r.pass[i].name);
+        }
+        // Fill by area, the gaussian's passes of a sigma, patterns of layers.
+        CHECK_INT(left_out > 0, e == HF_ENGINE_GATHER || e == HF_ENGINE_GAUSSIAN || e == HF_ENGINE_LAYERS);
+    }
+    scene_free(&s);
+    hf_close(&c);
+}
+
+static void count_warnings(void *cookie, enum hf_log_level level, const char *message)
+{
+    *(int *)cookie += level == HF_LOG_WARNING && strstr(message, "budget_ms") != NULL;
+}
+
+// No frame fits into a microsecond: after a few, the cheapest setting; the report says so, and the log once.
+static void budget_of_frames(void)
+{
+    int warned = 0;
+    const struct hf_config config = {.threads = 2, .log = count_warnings, .log_cookie = &warned};
+    struct hf_context *c;
+    CHECK_INT(hf_open(&c, &config), HF_OK);
     struct scene s = sharp(200, 100);
     struct hf_params p = scene_params();
     struct hf_report r = {.budget_step = -1};
@@ -432,9 +465,17 @@ static void budget_of_frames(void)
         r = report_of(c, &s, &p);
     CHECK_INT(r.budget_step, steps - 1);
     CHECK_INT(r.used.params.engine, ladder[steps - 1].engine);
+    CHECK_INT(r.budget_steps, steps);
+    CHECK(r.budget_options && strstr(r.budget_options, hf_engine_name(r.used.params.engine)));
+    CHECK_INT(warned, 1);
     p.run.budget_ms = 0;
     r = report_of(c, &s, &p);
     CHECK_INT(r.budget_step, 0);
+    CHECK(r.budget_steps == 0 && !r.budget_options);
+    p.run.budget_ms = 1e6f;
+    r = report_of(c, &s, &p);
+    CHECK(r.budget_steps == steps && !r.budget_options);
+    CHECK_INT(warned, 1);
     CHECK_INT(r.used.params.engine, HF_ENGINE_SCATTER);
     scene_free(&s);
     hf_close(&c);
@@ -478,5 +519,6 @@ int main(void)
     choices();
     reaches();
     budget_of_frames();
+    reasons();
     return check_report();
 }
