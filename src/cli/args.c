@@ -213,8 +213,6 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
     if (cli_is_exr(args->json_file) || !strcmp(args->json_file, args->input) ||
         (args->output && !strcmp(args->json_file, args->output)))
         return tool_fail(error, -1, "--json would write over the picture %s", args->json_file);
-    if (args->dry_run)
-        return tool_fail(error, -1, "--json %s cannot be written in a --dry-run", args->json_file);
     return 0;
 }
 
@@ -228,6 +226,12 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
         p->engine = HF_ENGINE_LAYERS;
     if (cli_choose_check(args, parser, error))
         return -1;
+    if (tool_given(parser, "keys-blend") && !args->keys)
+        return tool_fail(error, -1, "--keys-blend is of use only with --keys");
+    if (args->focus_smooth >= 0 && !args->keys && args->focus_by != CLI_FOCUS_CENTER && args->focus_by != CLI_FOCUS_AT)
+        return tool_fail(error, -1,
+                         "--focus-smooth is of use only with a focus that is read from the pictures: --focus center, "
+                         "--focus-at or keys for it");
     if (args->verbose && args->quiet)
         return tool_fail(error, -1, "--verbose and --quiet cannot be given together");
     return 0;
@@ -245,6 +249,8 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_err
     args->help = p.help;
     if (p.help || p.stop)
         return 0;
+    for (int i = 0; i < TOOL_MOST_OPTIONS; i++)
+        args->metric |= p.state[i].metric;
     if (given(args->world_unit))
         tool_scale_metric(&p, args->world_unit);
     if (combine(args, &p, error))

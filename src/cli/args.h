@@ -43,6 +43,7 @@ struct cli_args {
 
     float range, depth_of_field, strength, near_begin, near_end, far_begin, far_end;
     float fstop, focal_length, sensor_width, world_unit;
+    int metric;  // some distance was given in metres
 
     const char *depth_channel, *depth_file;
     enum hf_depth_type depth_type;    // as the library sees it, once cli_depth_prepare was there

@@ -16,7 +16,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cli/explain.h"
 #include "cli/frame.h"
 #include "cli/log.h"
 #include "cli/plan.h"
@@ -42,6 +41,7 @@ struct batch {
     atomic_int stop;               // after an error
     atomic_int bad_arguments;      // frames that failed for what the command line says
     atomic_int chosen[MAX_STEPS];  // frames by step of the time budget
+    atomic_int missed[2];          // frames that took longer than it; of these at the cheapest step
     int measuring;                 // one frame at a time, to see what it takes:
     double frame_bytes, frame_pixels;
     double room;           // bytes that frames in work may take together, and
@@ -152,14 +152,12 @@ static int make_frame(struct batch *b, struct cli_frame *frame, struct cli_sessi
 // What to say of a frame that is done.
 static void describe(const struct cli_frame *frame, const struct hf_report *report, double ms, char *text, size_t size)
 {
-    const struct hf_params *used = &report->used.params;
     const struct cli_setup *setup = &frame->views[0].setup;
     int n = snprintf(text, size, "%.2f s", ms / 1000);
     if (setup->focus_from && setup->params.focus != HF_DERIVE)
         n += snprintf(text + n, size - (size_t)n, ", focus %.4g", setup->params.focus);
     if (report->budget_step)
-        snprintf(text + n, size - (size_t)n, ", for the budget %s at %s resolution (step %d)",
-                 hf_engine_name(used->engine), hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(used)),
+        snprintf(text + n, size - (size_t)n, ", for the budget %s (step %d)", report->budget_options,
                  report->budget_step);
 }
 
@@ -180,6 +178,12 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
         }
         describe(frame, &report, r->ms, text, sizeof(text));
         atomic_fetch_add(&b->chosen[report.budget_step < MAX_STEPS ? report.budget_step : MAX_STEPS - 1], 1);
+        for (int i = 0; i < frame->view_count; i++)
+            if (cli_missed_budget(&frame->views[i])) {
+                atomic_fetch_add(&b->missed[0], 1);
+                atomic_fetch_add(&b->missed[1], report.budget_step + 1 == report.budget_steps);
+                break;
+            }
         for (int s = 0; s < CLI_STAGES; s++)
             atomic_fetch_add(&b->progress.us[s], (long long)(1000 * frame->ms[s]));
         atomic_fetch_add(&b->progress.rendered, 1);
@@ -346,6 +350,9 @@ static void print_summary(struct batch *b)
         if (b->chosen[s])
             tool_print_line("--budget-ms %g: %d frame%s %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
                             plural(b->chosen[s]), s ? "at step " : "as asked for", s);
+    if (b->missed[0])
+        tool_print_line("--budget-ms %g: %d frame%s took longer%s", b->args->params.run.budget_ms, (int)b->missed[0],
+                        plural(b->missed[0]), b->missed[1] ? ", and nothing cheaper blurs as far as is asked for" : "");
     if (done + skipped + failed < p->total)
         tool_print_line("stopped%s; the same command with --resume makes the other %d frame%s",
                         stop_signal ? " by a signal" : "", p->total - done - skipped,
@@ -400,7 +407,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         cli_progress_end(&b.progress);
         if (!args->quiet)
             print_summary(&b);
-        cli_log_end(&b.log, &b.progress, b.at_once, peak_memory());
+        cli_log_end(&b.log, &b.progress, b.at_once, b.missed[0], peak_memory());
         if (!status)
             status = exit_code(&b);
     }

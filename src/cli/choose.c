@@ -46,16 +46,22 @@ void cli_choose(struct cli_setup *setup, const struct cli_args *args)
     p->aperture.picture = picture;
 }
 
+struct cli_word cli_choice_option(const struct cli_args *args)
+{
+    struct cli_word w;
+    if (by_error(args))
+        snprintf(w.text, sizeof(w.text), "--max-error %g", args->max_error);
+    else
+        snprintf(w.text, sizeof(w.text), "--quality %s", hf_name(HF_NAMES_QUALITY, args->quality));
+    return w;
+}
+
 void cli_choose_print(FILE *out, const struct cli_args *args, const struct cli_setup *setup, double megapixels)
 {
     const struct hf_choice *c = &setup->choice;
     if (!c->options)
         return;
-    if (by_error(args))
-        fprintf(out, "  --max-error %g chose %s", args->max_error, c->options);
-    else
-        fprintf(out, "  --quality %s chose %s", hf_name(HF_NAMES_QUALITY, args->quality), c->options);
-    fprintf(out, ", step %d of %d\n", c->step + 1, c->steps);
+    fprintf(out, "  %s chose %s, step %d of %d\n", cli_choice_option(args).text, c->options, c->step + 1, c->steps);
     if (c->passed)
         fprintf(out, "  %d cheaper step%s passed over, the first because it %s\n", c->passed,
                 c->passed == 1 ? " was" : "s were", c->why);

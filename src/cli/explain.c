@@ -57,8 +57,8 @@ static void print_settings(FILE *out, const struct cli_view *v)
     else
         fprintf(out, ", %s resolution", hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(p)));
     if (r->budget_step > 0)
-        fprintf(out, ", %d step%s below what was asked for, to keep the budget", r->budget_step,
-                r->budget_step == 1 ? "" : "s");
+        fprintf(out, ", %d step%s below what was asked for, to keep the budget: %s", r->budget_step,
+                r->budget_step == 1 ? "" : "s", r->budget_options);
     if (p->engine == HF_ENGINE_GAUSSIAN)
         fprintf(out, "\n  standard deviation: %.2f pixels, of which at most %.0f %% are mixed in near, %.0f %% far\n",
                 p->gaussian.sigma, 100 * v->blend[0], 100 * v->blend[1]);

@@ -2,6 +2,7 @@
 #include "cli/frame.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +13,25 @@
 #include "cli/views.h"
 #include "cli/window.h"
 #include "tool/machine.h"
+
+const char *cli_in_options(const char *message, char buf[CLI_SENTENCE])
+{
+    static const char *const words[][2] = {{"layers.quarter_from", "--quarter-from"},
+                                           {"layers.half_from", "--half-from"},
+                                           {"run.budget_ms", "--budget-ms"},
+                                           {"max_radius", "--max-radius"}};
+    size_t used = 0;
+    while (*message && used + 32 < CLI_SENTENCE) {
+        size_t i = 0;
+        while (i < 4 && strncmp(message, words[i][0], strlen(words[i][0])))
+            i++;
+        used +=
+            (size_t)snprintf(buf + used, CLI_SENTENCE - used, "%.*s", i < 4 ? 31 : 1, i < 4 ? words[i][1] : message);
+        message += i < 4 ? strlen(words[i][0]) : 1;
+    }
+    buf[used] = '\0';
+    return buf;
+}
 
 static void keep_warning(struct cli_session *session, const char *message)
 {
@@ -27,6 +47,8 @@ static void keep_warning(struct cli_session *session, const char *message)
 static void on_log(void *cookie, enum hf_log_level level, const char *message)
 {
     struct cli_session *session = cookie;
+    char sentence[CLI_SENTENCE];
+    message = cli_in_options(message, sentence);
     if (level == HF_LOG_ERROR)
         tool_fail(&session->log, 0, "%s", message);
     else if (level == HF_LOG_WARNING)
@@ -60,11 +82,20 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, i
         return 0;
     const char *why = session->log.text[0] ? session->log.text : hf_error_string(status);
     // AUTO is only unavailable when the environment variable says so.
-    const char *variable = getenv("HYPERFOCAL_ISA");
-    if (status == HF_ERR_ISA && args->isa == HF_ISA_AUTO && variable)
-        return tool_fail(error, CLI_BAD_ARGUMENTS, "HYPERFOCAL_ISA=%s: %s", variable, why);
+    if (status == HF_ERR_ISA && args->isa == HF_ISA_AUTO)
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s", why);
     return tool_fail(error, status == HF_ERR_MEMORY || status == HF_ERR_THREAD ? CLI_ALL_FAILED : CLI_BAD_ARGUMENTS,
                      "--threads %d, --isa %s: %s", args->threads, hf_isa_name(args->isa), why);
+}
+
+// Of a file that could not be opened: was it for the layer that the command line names?
+static int lacks_layer(const struct cli_args *args)
+{
+    struct hf_io_file *file;
+    if (!args->layer || hf_io_open(&file, args->input, &(struct hf_io_choice){NULL, "all"}, NULL))
+        return 0;
+    hf_io_close(&file);
+    return 1;
 }
 
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
@@ -76,7 +107,7 @@ int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const s
     // With a depth file the channel's name is meant for that one.
     const struct hf_io_choice choice = {args->depth_file ? NULL : args->depth_channel, args->layer};
     if (hf_io_open(&frame->file, args->input, &choice, &io))
-        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+        return tool_fail(error, lacks_layer(args) ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s", io.message);
     frame->ms[CLI_READ] += tool_now_ms() - start;
     frame->in_place = args->output && cli_is_in_place(args);
     return cli_select_views(frame, error);

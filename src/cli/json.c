@@ -58,6 +58,8 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
         tool_json_count(j, "highlights", (long long)v->highlights);
     tool_json_count(j, "warnings", cli_warnings_of(frame, v));
     tool_json_ms(j, "total_ms", s->total_ms);
+    if (v->setup.params.run.budget_ms > 0)
+        tool_json_flag(j, "budget_missed", cli_missed_budget(v));
     tool_json_open(j, "passes", '[');
     for (int i = 0; i < hf_pass_count(s->used.params.engine); i++) {
         tool_json_row(j, NULL, '{');
@@ -89,6 +91,7 @@ static void put_report(struct tool_json *j, const struct hf_report *r)
     tool_json_text(j, "resolution", hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(used)));
     tool_json_count(j, "rings", used->engine == HF_ENGINE_GATHER && !r->used.sharp ? used->gather.rings : 0);
     tool_json_count(j, "budget_step", r->budget_step);
+    tool_json_text(j, "budget_options", r->budget_options);
     tool_json_row(j, "tile_size", '[');
     tool_json_count(j, NULL, r->tile_width);
     tool_json_count(j, NULL, r->tile_height);

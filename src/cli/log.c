@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/choose.h"
 #include "cli/json.h"
 #include "cli/summary.h"
 #include "cli/warn.h"
@@ -97,6 +98,9 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         tool_json_number(j, "far_radius", v->report.far_radius);
         tool_json_flag(j, "limited", cli_is_limited(v));
         tool_json_count(j, "warnings", cli_warnings_of(frame, v));
+        cli_choose_json(j, s, 1e-6 * v->view->width * v->view->height);
+        if (s->params.run.budget_ms > 0)
+            tool_json_flag(j, "budget_missed", cli_missed_budget(v));
         tool_json_count(j, "colour_repaired", (long long)v->report.colour_repaired);
         tool_json_count(j, "depth_repaired", (long long)v->report.depth_repaired);
         tool_json_close(j);
@@ -127,13 +131,15 @@ void cli_log_frame(struct cli_log *log, const struct cli_record *r)
         tool_json_count(j, "clamped", (long long)r->frame->written.clamped);
         tool_json_text(j, "engine", hf_engine_name(r->report->used.params.engine));
         tool_json_count(j, "budget_step", r->report->budget_step);
+        if (r->report->budget_steps)
+            tool_json_text(j, "budget_options", r->report->budget_options);
     }
     if (r->why)
         tool_json_text(j, "error", r->why);
     end(log, &line);
 }
 
-void cli_log_end(struct cli_log *log, const struct cli_progress *p, int at_once, double peak_memory)
+void cli_log_end(struct cli_log *log, const struct cli_progress *p, int at_once, int budget_missed, double peak_memory)
 {
     struct line line;
     struct tool_json *j = &line.json;
@@ -145,6 +151,7 @@ void cli_log_end(struct cli_log *log, const struct cli_progress *p, int at_once,
     tool_json_count(j, "done", p->done);
     tool_json_count(j, "skipped", p->skipped);
     tool_json_count(j, "failed", p->failed);
+    tool_json_count(j, "budget_missed", budget_missed);
     tool_json_count(j, "at_once", at_once);
     tool_json_number(j, "seconds", seconds);
     tool_json_number(j, "frames_per_second", seconds > 0 ? p->done / seconds : 0);

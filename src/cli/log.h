@@ -31,7 +31,8 @@ struct cli_record {
 // path NULL: no log. Returns 0, or an exit code with *error filled.
 int cli_log_open(struct cli_log *log, const char *path, int argc, char **argv, int frames, struct tool_error *error);
 void cli_log_frame(struct cli_log *log, const struct cli_record *record);
-void cli_log_end(struct cli_log *log, const struct cli_progress *progress, int at_once, double peak_memory);
+void cli_log_end(struct cli_log *log, const struct cli_progress *progress, int at_once, int budget_missed,
+                 double peak_memory);
 // Returns 0, or an exit code with *error filled if not all of it could be written.
 int cli_log_close(struct cli_log *log, struct tool_error *error);
 

@@ -6,6 +6,7 @@
 #include "cli/frame.h"
 #include "cli/json.h"
 #include "cli/overlay.h"
+#include "cli/pattern.h"
 #include "cli/preview.h"
 #include "cli/summary.h"
 #include "cli/target.h"
@@ -15,6 +16,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static int print_plan(const struct cli_frame *frame, const struct hf_context *context, struct tool_error *error)
 {
@@ -85,6 +87,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     struct cli_frame frame;
     const int explain = args->explain || args->explain_image || args->focus_image;
     int status = cli_frame_open(&frame, args, &session->run, error);
+    frame.alone = 1;
     if (!status)
         status = cli_frame_setup(&frame, error);
     if (!status)
@@ -104,7 +107,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
         status = cli_overlay_write(&frame, error);
     if (!status && args->json)
         status = write_json(argc, argv, &frame, session->context, error);
-    else if (!status && args->dry_run)
+    if (!status && args->dry_run && (!args->json || args->json_file))
         status = print_plan(&frame, session->context, error);
     if (!status && args->dry_run)
         cli_print_early_warnings(&frame);
@@ -174,6 +177,11 @@ static int run_args(int argc, char **argv, struct cli_args *args, struct tool_er
     struct cli_shot shot;
     struct cli_aperture aperture = {0};
     int status = cli_shot_make(&shot, &request, error);
+    // One for all frames; those that are numbered come with their frames.
+    if (!status && args->depth_file && !cli_pattern_has_frame(args->depth_file) &&
+        !cli_pattern_has_view(args->depth_file) && access(args->depth_file, R_OK))
+        status = tool_fail(error, CLI_BAD_ARGUMENTS, "--depth-file %s cannot be read: %s", args->depth_file,
+                           strerror(errno));
     for (int i = 0; i < shot.jobs.count && !status; i++) {
         struct cli_args own = *args;
         own.input = shot.jobs.list[i].input;

@@ -137,7 +137,8 @@ static const struct tool_option options[] = {
     {"json", 0, TOOL_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
      "FILE unless there is no other INPUT.", .parse = cli_parse_json},
     {"dump-passes", 0, TOOL_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},
-    {"dry-run", 0, TOOL_RUN, NULL, "Say what would be done, write nothing.", FLAG(dry_run)},
+    {"dry-run", 0, TOOL_RUN, NULL, "Say what would be done, write no OUTPUT. What --json, --explain-image and "
+     "--focus-image name is written.", FLAG(dry_run)},
     {"verbose", 0, TOOL_RUN, NULL, "Say in a line what was done with each frame, as on a terminal.", FLAG(verbose)},
     {"quiet", 0, TOOL_RUN, NULL, "Do not, on a terminal either, nor how far a shot is: warnings and errors alone.", FLAG(quiet)},
     {"help", 'h', TOOL_RUN, "[all|man]", "Print the usual options; --help=all: all of them; --help=man: the man page.",
@@ -184,5 +185,6 @@ const struct tool_program cli_program = {
         (const char *const[]){"hyperfocal shot.exr -o dof.exr --focus 4.2 --range 3",
                               "hyperfocal shot.exr -o dof.exr --focus-at 960,540 --fstop 2 --focal-length 50",
                               "hyperfocal shot.####.exr -o dof.####.exr --focus center --frames 1-9 --resume", NULL},
-    .outro = "Exit codes: 0 done, 1 bad arguments, 2 some frames failed, 3 all failed.",
+    .outro = "Exit codes: 0 done; 1 the command line is wrong, or names what is not there: no use to "
+             "try again; 2 some frames failed; 3 all failed.",
 };

@@ -83,7 +83,7 @@ int cli_plan_workers(const struct cli_args *args, int frames, double wait, doubl
     const int busy = busy_with(cli_plan_threads(args), wait);
     const int most = frames < 1 ? 1 : frames < busy ? frames : busy;
     if (fit < 1)
-        tool_print_line("a frame takes %.2f GiB, more than the limit of %.2f GiB: one at a time",
+        tool_print_line("a frame takes %.2f GiB, more than the limit of %.3g GiB: one at a time",
                         (base + frame_bytes) / GIB, limit / GIB);
     // A time budget learns from frame to frame, in one context.
     return fit < 1 || args->params.run.budget_ms > 0 ? 1 : fit < most ? (int)fit : most;

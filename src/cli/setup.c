@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static int given(float number)
 {
@@ -167,6 +168,26 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
     return 0;
 }
 
+// What says how much blur there is, where that is no lens: then what is of a lens alone would be ignored.
+static int check_unused(const struct cli_setup *setup, const struct cli_args *args, const char *label,
+                        struct tool_error *error)
+{
+    const char *model = setup->model == CLI_MODEL_RANGE ? "range" : "depth";
+    const int unit_used = args->metric || args->keys || (setup->focus_from && !strcmp(setup->focus_from, "header"));
+    if (given(args->sensor_width) && args->depth_type != HF_DEPTH_RAY)
+        return tool_fail(
+            error, CLI_BAD_ARGUMENTS,
+            "%s: --sensor-width %g is of use only with a lens, but here the %s says how much blur there is", label,
+            args->sensor_width, model);
+    if (given(args->world_unit) && !unit_used)
+        return tool_fail(
+            error, CLI_BAD_ARGUMENTS,
+            "%s: --world-unit %g is of use only with a lens, the header's focus or distances in metres, but "
+            "here the %s says how much blur there is",
+            label, args->world_unit, model);
+    return 0;
+}
+
 int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
                    const float *depth, const char *label, struct tool_error *error)
 {
@@ -186,7 +207,9 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
                          "much blur there is",
                          label, hf_name(HF_NAMES_BLEND, (int)args->params.range.blend),
                          setup->model == CLI_MODEL_LENS ? "lens" : "depth");
-    const int status = find_focus(setup, args, view, label, error);
+    int status = find_focus(setup, args, view, label, error);
+    if (!status && setup->model != CLI_MODEL_LENS)
+        status = check_unused(setup, args, label, error);
     if (status || setup->model == CLI_MODEL_COC)
         return status;
     return setup->model == CLI_MODEL_LENS ? cli_lens_set(p, args, &view->camera, label, error)

@@ -118,7 +118,13 @@ static int check_places(const struct maker *m, const char *input)
     if (!in && out && (pattern || r->input_count > 1))
         return tool_fail(m->error, CLI_BAD_ARGUMENTS,
                          "OUTPUT %s has a place for the view's name, but INPUT %s has none", r->output, input);
-    if ((in_frame || r->input_count > 1) && r->output && !cli_pattern_has_frame(r->output))
+    if (r->input_count > 1 && !in_frame && r->output && !cli_pattern_has_frame(r->output))
+        return tool_fail(
+            m->error, CLI_BAD_ARGUMENTS,
+            "there are %d INPUTs, %s and %s%s, so OUTPUT %s needs a place for the frame number, such as ####: "
+            "all would be one file",
+            r->input_count, r->inputs[0], r->inputs[1], r->input_count > 2 ? " and so on" : "", r->output);
+    if (in_frame && r->output && !cli_pattern_has_frame(r->output))
         return tool_fail(m->error, CLI_BAD_ARGUMENTS,
                          "OUTPUT %s has no place for the frame number, such as ####: all frames would be one file",
                          r->output);

@@ -5,6 +5,14 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "cli/choose.h"
+
+int cli_missed_budget(const struct cli_view *v)
+{
+    const struct hf_report *r = &v->report;
+    return v->setup.params.run.budget_ms > 0 && r->total_ms > v->setup.params.run.budget_ms;
+}
+
 int cli_is_limited(const struct cli_view *v)
 {
     const struct hf_report *r = &v->report;
@@ -34,12 +42,16 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     const struct hf_report *r = &v->report;
     const struct hf_params *p = &r->used.params;
     const char *depth = frame->args->depth_file ? frame->args->depth_file : v->view->depth;
-    char text[512];
+    const float budget = frame->args->params.run.budget_ms;
+    char text[1024];
     int n = 0;
     if (v->map_size[0])
         n += snprintf(text, sizeof(text), "%d x %d scaled to %d x %d, ", v->map_size[0], v->map_size[1],
                       v->scaled_to[0], v->scaled_to[1]);
     n += snprintf(text + n, sizeof(text) - (size_t)n, "%s", hf_engine_name(p->engine));
+    if (v->setup.choice.options)
+        n += snprintf(text + n, sizeof(text) - (size_t)n, " (%s chose %s)", cli_choice_option(frame->args).text,
+                      v->setup.choice.options);
     if (v->setup.model == CLI_MODEL_LENS)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", f/%g %g mm", p->lens.f_number, p->lens.focal_length_mm);
     if (v->setup.focus_from)
@@ -57,8 +69,10 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", %" PRIu64 " pixels above %g raised, 1 to %g",
                       v->highlights, p->highlight.threshold, p->highlight.gain);
     if (r->budget_step)
-        n += snprintf(text + n, sizeof(text) - (size_t)n, ", %d below what was asked for, for the budget",
-                      r->budget_step);
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", --budget-ms %g chose %s, %d below what was asked for",
+                      budget, r->budget_options, r->budget_step);
+    if (cli_missed_budget(v))
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", longer than --budget-ms %g", budget);
     snprintf(text + n, sizeof(text) - (size_t)n, ", %.0f ms, %d warning%s", r->total_ms, warnings,
              warnings == 1 ? "" : "s");
     tool_print_line("%s: %s with depth %s, %s", v->label, v->view->layer[0] ? v->view->layer : "RGB", depth, text);
@@ -75,12 +89,12 @@ void cli_print_summary(const struct cli_frame *frame, int warnings)
 int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
 {
     struct hf_resolved r;
-    char message[512];
+    char message[512], sentence[CLI_SENTENCE];
     // A focus that is the picture's own is known when the picture is read.
     if (v->setup.params.focus == HF_DERIVE && v->setup.model != CLI_MODEL_COC)
         return 0;
     if (hf_resolve(v->view->width, v->view->height, &v->setup.depth, &v->setup.params, &r, message, sizeof(message)))
-        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", v->label, message);
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", v->label, cli_in_options(message, sentence));
     const struct hf_range_params *range = &r.params.range;
     if (r.limit == HF_LIMIT_NONE)
         printf("    radius not limited, but by %g pixels\n", r.params.max_radius);

@@ -13,5 +13,7 @@ void cli_print_summary(const struct cli_frame *frame, int warnings);
 
 // What the library makes of a view's settings, to stdout. Returns 0, or an exit code with *error filled.
 int cli_print_resolved(const struct cli_view *v, struct tool_error *error);
+// Did the view take longer than --budget-ms?
+int cli_missed_budget(const struct cli_view *v);
 
 #endif

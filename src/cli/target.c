@@ -32,7 +32,7 @@ static int check_directory(const char *dir, const char *option, const char *path
         errno = ENOTDIR;
     else if (access(dir, W_OK | X_OK) == 0)
         return 0;
-    return tool_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: %s: %s", option, path, dir, strerror(errno));
+    return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s cannot be written: %s: %s", option, path, dir, strerror(errno));
 }
 
 // A file is written beside its target and renamed, so the directory has to be writable, and what is there replaceable.
@@ -40,7 +40,7 @@ static int check_file(const char *path, const char *option, int replaced, struct
 {
     struct stat st;
     if (stat(path, &st) == 0 && (S_ISDIR(st.st_mode) || (replaced && !S_ISREG(st.st_mode))))
-        return tool_fail(error, CLI_ALL_FAILED, "%s %s cannot be written: it is %s", option, path,
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s cannot be written: it is %s", option, path,
                          S_ISDIR(st.st_mode) ? "a directory" : "not a regular file");
     char *dir = directory_of(path);
     if (!dir)
@@ -134,7 +134,7 @@ int cli_check_targets(const struct cli_args *args, struct tool_error *error)
         if (!status)
             status = check_file(f->path, f->option, !json, error);
         if (!status && !json && hf_io_check_format(f->path, &io))
-            status = tool_fail(error, CLI_ALL_FAILED, "%s: %s", f->option, io.message);
+            status = tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", f->option, io.message);
     }
     if (!status && args->dump_dir)
         status = check_dump_dir(args->dump_dir, error);

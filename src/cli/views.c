@@ -79,8 +79,9 @@ static int check_view(const struct cli_view *v, const struct cli_frame *frame, s
         hf_io_channels(frame->file, channels, sizeof(channels));
         if (wanted && hf_io_nearest(channels, wanted, nearest))
             snprintf(meant, sizeof(meant), " (did you mean %s?)", nearest);
-        return tool_fail(error, CLI_ALL_FAILED, "%s: there is no depth channel%s%s%s%s%s, the channels are: %s",
-                         v->label, wanted ? " '" : "", wanted ? wanted : "", wanted ? "'" : "", meant,
+        return tool_fail(error, wanted ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED,
+                         "%s: there is no depth channel%s%s%s%s%s, the channels are: %s", v->label, wanted ? " '" : "",
+                         wanted ? wanted : "", wanted ? "'" : "", meant,
                          wanted ? "" : " (give one with --depth-channel or --depth-file)", channels);
     }
     if (check_window(&view->data_window, "data window", v->label, error) ||

@@ -173,6 +173,8 @@ static void warn_options(struct warner *w, const struct cli_view *v)
     if (p->gain > 1 && v->highlights == 0)
         warn(w, "no pixel is brighter than %g, so --highlight-gain %g changes nothing: see --highlight-threshold",
              p->threshold, p->gain);
+    if (v->whole)
+        warn(w, "--grow changes nothing: the data window holds all of the display window");
     if (v->cut)
         warn(w,
              "blur reaches %d pixels beyond the data window, which is smaller than the display window, and is cut "
@@ -237,12 +239,30 @@ static void warn_input(struct warner *w)
              w->args->output);
 }
 
+// Of one picture, what only a shot has a use for.
+static void warn_alone(struct warner *w)
+{
+    const struct cli_args *args = w->args;
+    const float budget = args->params.run.budget_ms;
+    int cheaper = 0;
+    if (!w->frame->alone)
+        return;
+    for (int i = 0; i < w->frame->view_count; i++)
+        cheaper |= w->frame->views[i].report.budget_step;
+    if (budget > 0 && !cheaper)
+        warn(w, "--budget-ms %g does nothing for one picture: cheaper settings are chosen from frame to frame", budget);
+    if (!isnan(args->memory_limit))
+        warn(w, "--memory-limit %g does nothing for one picture: it says how many frames are worked on at once",
+             args->memory_limit);
+}
+
 static void warn_frame(struct warner *w)
 {
     w->label = w->args->input;
     warn_input(w);
     warn_layers(w);
     warn_window(w);
+    warn_alone(w);
 }
 
 int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v)
@@ -285,6 +305,9 @@ void cli_print_early_warnings(const struct cli_frame *frame)
 {
     struct warner w = {.frame = frame, .args = frame->args, .say = 1};
     warn_early(&w);
+    if (frame->args->dump_dir)
+        tool_print_line("--dump-passes %s: a dry run renders nothing, so there are no passes to write",
+                        frame->args->dump_dir);
 }
 
 void cli_json_warnings(struct tool_json *j, const struct cli_frame *frame)

@@ -142,10 +142,18 @@ static int is_first(const struct cli_frame *frame, int i)
     return 1;
 }
 
+// Is there no room around the data window?
+static int fills(const struct hf_io_view *view)
+{
+    const struct hf_io_box *data = &view->data_window, *display = &view->display_window;
+    return data->x0 <= display->x0 && data->y0 <= display->y0 && data->x1 >= display->x1 && data->y1 >= display->y1;
+}
+
 int cli_window_grow(struct cli_frame *frame, struct tool_error *error)
 {
     for (int i = 0; i < frame->view_count; i++) {
         frame->views[i].setup.depth.data = frame->views[i].depth;
+        frame->views[i].whole = fills(frame->views[i].view);
         const int status = cli_coc_look(&frame->views[i], frame->args, error);
         if (status)
             return status;

@@ -107,8 +107,9 @@ int tool_parse_flag(struct tool_parser *p, const struct tool_option *option, con
 
 int tool_parse_help(struct tool_parser *p, const struct tool_option *option, const char *value)
 {
-    (void)option;
-    p->help = value && !strcmp(value, "man") ? 3 : value && !strcmp(value, "all") ? 2 : 1;
+    if (value && strcmp(value, "man") && strcmp(value, "all"))
+        return tool_fail(p->error, -1, "--%s: '%s' is unknown, there are all and man", option->name, value);
+    p->help = !value ? 1 : strcmp(value, "man") ? 2 : 3;
     return 0;
 }
 

@@ -103,6 +103,19 @@ run in/shot.####.exr -o a/x.####.exr --frames 1-x $quick
 check "frames that are none" says "'1-x'"
 run in/shot.####.exr -o a/x.####.exr $quick --json
 check "what is for one frame" says "--json is for one picture by its own name"
+run in/shot.####.exr -o a/x.####.exr $quick --layer Nope
+check "a layer that no frame has" exits 1
+run in/shot.####.exr -o a/x.####.exr $quick --depth-channel nope
+check "a depth channel that no frame has" exits 1
+run in/shot.####.exr -o a/x.####.exr $quick --depth-file nope.exr
+check "a depth file for all frames that is not there" exits 1
+run in/shot.####.exr -o a/x.####.exr $quick --depth-file nope.####.exr
+check "depth files that are not there, or not yet" exits 3
+run in/shot.####.exr -o none/x.####.exr $quick
+check "a directory that is not there" exits 1
+run in/shot.####.exr -o a/x.####.exr $quick --dry-run --log log
+check "a dry run's log" says "--log log: a dry run makes no frames"
+check "is not written" test ! -e log
 run in/shot.####.exr -o a/x.####.exr $quick --dry-run
 check "a dry run" exits 0
 check "says what it would do" grep -q 'in/shot.0006.exr -> a/x.0006.exr' out
@@ -358,7 +371,14 @@ check "depth of its own: the same picture" sh -c '! command -v oiiotool ||
 rm -f a/*
 run in/shot.####.exr -o a/shot.####.exr --engine scatter --focus 5 --range 3 --max-radius 6 --budget-ms 0.001
 check "a budget" exits 0
-check "says what it chose" sh -c 'grep -q "for the budget" err && grep -q "frames at step" err'
+check "says what it chose" sh -c 'grep -q "for the budget --engine" err && grep -q "frames at step" err'
+check "says that it is missed" says "--budget-ms 0.001: 6 frames took longer"
+run in/shot.####.exr -o a/shot.####.exr --engine gaussian --resolution quarter --iterations 1 --focus 5 --range 3 \
+    --budget-ms 0.001 --log log
+check "a budget that nothing meets" says "6 frames took longer, and nothing cheaper blurs as far as is asked for"
+check "is told once by the library" test "$(grep -c -e '--budget-ms is 0.001, which frames miss' err)" = 1
+check "is in the log" sh -c 'grep -q "\"budget_missed\": true" log && grep -q "\"budget_missed\": 6" log'
+rm -f log
 
 # Frames as Blender writes them.
 if [ -d "$shared/../blender" ]; then

@@ -14,9 +14,9 @@ plan "colour R, G, B|depth Z Depth.R," c4d.exr --focus 3
 plan "colour R, G, B|depth FinalImageMovieRenderQueue_WorldDepth.R," unreal.exr --focus 3
 plan "colour FinalImage.R|depth FinalImageWorldDepth.R," final.exr --focus 3 --layer FinalImage
 plan "colour R, G, B|depth X_SceneDepth.R," scene.exr --focus 3
-bad 3 "layers.exr|Forground|did you mean Foreground.Combined?" layers.exr -o o.exr --focus 3 --layer Forground
-bad 3 "layers.exr|did you mean ViewLayer.Depth.Z?" layers.exr -o o.exr --focus 3 --depth-channel ViewLayer.Dept.Z
-bad 3 "layers.exr|'Dept'|did you mean" layers.exr -o o.exr --focus 3 --depth-channel Dept
+bad 1 "layers.exr|Forground|did you mean Foreground.Combined?" layers.exr -o o.exr --focus 3 --layer Forground
+bad 1 "layers.exr|did you mean ViewLayer.Depth.Z?" layers.exr -o o.exr --focus 3 --depth-channel ViewLayer.Dept.Z
+bad 1 "layers.exr|'Dept'|did you mean" layers.exr -o o.exr --focus 3 --depth-channel Dept
 bad 3 "flat.exr|--depth-file" flat.exr -o o.exr --focus 3
 bad 1 "stereo.exr|'lefft'|did you mean left?" stereo.exr -o o.exr --focus 3 --views lefft
 run layers.exr -o one.exr --focus 3 --max-radius 6 --layer Foreground --verbose
@@ -214,6 +214,19 @@ run dark.exr -o o.exr $lens --highlight-gain 8
 result "--highlight-gain without highlights is a warning" $?
 rm -f dark.exr o.json plain-o.exr
 
+# What a quality chose is on the line, in JSON and in a log.
+run near.exr -o o.exr --focus 4 --range 2 --quality draft --verbose --json
+contains "$dir/err" "gaussian (--quality draft chose --engine gaussian --resolution quarter" &&
+    contains "$dir/out" '"options": "--engine gaussian --resolution quarter'
+result "--verbose names what --quality chose" $?
+run near.exr -o o.exr --focus 4 --range 2 --max-error 0.04 --verbose --log o.log
+contains "$dir/err" "(--max-error 0.04 chose --engine" && contains o.log '"choice": {"options": "--engine'
+result "--verbose and --log name what --max-error chose" $?
+run near.exr -o o.exr --focus 4 --range 2 --engine gather --explain
+[ "$status" -eq 0 ] && grep -q 'Fill .* the settings do not call for it' "$dir/out"
+result "--explain says why a pass does not run" $?
+rm -f o.log
+
 # ---- what is in focus, as a picture
 good near.exr -o o.exr --focus 4 --fstop 0.05 --focal-length 50 --focus-image painted.exr
 python3 - <<'PYTHON'
@@ -365,6 +378,9 @@ run crop.exr -o cut.exr $lens
     contains "$dir/err" "--grow"
 result "blur that is cut is a warning" $?
 # shellcheck disable=SC2086
+run plain.exr -o o.exr --focus 4 --range 2 --grow
+[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "--grow changes nothing"
+result "--grow of a whole frame is a warning" $?
 good crop.exr -o grown.exr $lens --grow
 python3 - <<'PYTHON'
 import struct

@@ -136,6 +136,7 @@ static void bad(void)
     } lines[] = {
         {"--flag=1", "--flag takes no value"},
         {"--chioce pear", "did you mean --choice?"},
+        {"--help=foo", "--help: 'foo' is unknown, there are all and man"},
         {"--zzz", "unknown option --zzz, see fruit --help"},
         {"-x", "unknown option -x"},
         {"--choice peer", "did you mean pear?"},
