@@ -110,9 +110,25 @@ static float between(float v, float a, float b)
     return v < high ? v : high;
 }
 
+static float light_of(const struct hf_unmix_row *u, int y, int x)
+{
+    return (fabsf(u->colour[y][0][x]) + fabsf(u->colour[y][1][x]) + fabsf(u->colour[y][2][x])) * 0.125f;
+}
+
+// How much a sample counts beside a mixture of brightness own / PLAIN. A mean of a lamp and the wall around it would be
+// brighter than the mixture of the wall and what lies before it, and all of that would seem to be the front.
+static float plain_of(float light, float own)
+{
+    if (!(light > own))
+        return 1;
+    const float part = own / light, some = part > HF_UNMIX_LEAST ? part : HF_UNMIX_LEAST, square = some * some;
+    return square * square;
+}
+
 static void unmix_pixel(const struct hf_unmix_row *u, int x)
 {
-    float weight[2] = {0}, mean[2][5] = {{0}};
+    float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}};
+    const float plain = light_of(u, 3, x) * HF_UNMIX_PLAIN;
     const float middle = u->middle[x], slope = u->slope[x], own = u->radius[3][x];
     const float a0 = hf_saturate((middle - own) * slope + 0.5f);
     for (int y = 0; y < 7; y++)
@@ -122,16 +138,19 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
                 continue;
             const float w = u->sure[y][at] * hf_unmix_weights[y][i];
             const float front = w * hf_saturate((middle - u->radius[y][at]) * slope + 0.5f), of[2] = {front, w - front};
+            const float counts = plain_of(light_of(u, y, at), plain);
             for (int side = 0; side < 2; side++) {
+                const float g = of[side] * counts;
                 weight[side] += of[side];
+                counted[side] += g;
                 for (int c = 0; c < u->channels; c++)
-                    mean[side][c] = mean[side][c] + of[side] * u->colour[y][c][at];
-                mean[side][4] = mean[side][4] + of[side] * u->radius[y][at];
+                    mean[side][c] = mean[side][c] + g * u->colour[y][c][at];
+                mean[side][4] = mean[side][4] + g * u->radius[y][at];
             }
         }
     for (int side = 0; side < 2; side++)
         for (int c = 0; c < 5; c++)
-            mean[side][c] = weight[side] > 0 ? mean[side][c] / weight[side] : 0;
+            mean[side][c] = counted[side] > 0 ? mean[side][c] / counted[side] : 0;
     if (!hf_unmix_complete(u, x, weight, mean)) {
         keep(u, x);
         return;

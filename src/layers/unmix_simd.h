@@ -19,11 +19,27 @@ HF_INLINE vf layers_front(vf middle, vf slope, vf r)
     return vf_min(vf_max(s, vf_zero()), vf_set1(1));
 }
 
+HF_INLINE vf layers_light_of(const struct hf_unmix_row *u, int y, int x)
+{
+    const vf sum = vf_add(vf_abs(vf_load(u->colour[y][0] + x)), vf_abs(vf_load(u->colour[y][1] + x)));
+    return vf_mul(vf_add(sum, vf_abs(vf_load(u->colour[y][2] + x))), vf_set1(0.125f));
+}
+
+HF_INLINE vf layers_plain_of(vf light, vf own)
+{
+    const vm bright = vf_gt(light, own);
+    if (!vm_any(bright))
+        return vf_set1(1);
+    const vf some = vf_max(vf_div(own, light), vf_set1(HF_UNMIX_LEAST)), square = vf_mul(some, some);
+    return vf_select(bright, vf_mul(square, square), vf_set1(1));
+}
+
 // Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
 HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5], vf *known)
 {
     const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x);
-    vf weight[2] = {vf_zero(), vf_zero()};
+    const vf plain = vf_mul(layers_light_of(u, 3, x), vf_set1(HF_UNMIX_PLAIN));
+    vf weight[2] = {vf_zero(), vf_zero()}, counted[2] = {vf_zero(), vf_zero()};
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 5; c++)
             mean[i][c] = vf_zero();
@@ -36,17 +52,21 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
             const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
             weight[0] = vf_add(weight[0], f);
             weight[1] = vf_add(weight[1], b);
+            const vf counts = layers_plain_of(layers_light_of(u, y, at), plain);
+            const vf front = vf_mul(f, counts), back = vf_mul(b, counts);
+            counted[0] = vf_add(counted[0], front);
+            counted[1] = vf_add(counted[1], back);
             for (int c = 0; c < channels; c++) {
                 const vf v = vf_load(u->colour[y][c] + at);
-                mean[0][c] = vf_fma(f, v, mean[0][c]);
-                mean[1][c] = vf_fma(b, v, mean[1][c]);
+                mean[0][c] = vf_fma(front, v, mean[0][c]);
+                mean[1][c] = vf_fma(back, v, mean[1][c]);
             }
-            mean[0][4] = vf_fma(f, r, mean[0][4]);
-            mean[1][4] = vf_fma(b, r, mean[1][4]);
+            mean[0][4] = vf_fma(front, r, mean[0][4]);
+            mean[1][4] = vf_fma(back, r, mean[1][4]);
         }
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 5; c++)
-            mean[i][c] = vf_keep(vf_gt(weight[i], vf_zero()), vf_div(mean[i][c], weight[i]));
+            mean[i][c] = vf_keep(vf_gt(counted[i], vf_zero()), vf_div(mean[i][c], counted[i]));
     const vf both_weigh = vf_add(weight[0], weight[1]), little = vf_mul(vf_set1(HF_UNMIX_LEAN), both_weigh);
     *known = vf_min(vf_mul(both_weigh, vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
     const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], little), vf_gt(weight[1], little))));

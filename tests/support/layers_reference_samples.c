@@ -27,10 +27,17 @@ static double front_of(double r, double middle, double slope)
     return fmin(fmax((middle - r) * slope + 0.5, 0), 1);
 }
 
-// Mean colour and radius of a side around a mixed pixel; returns its weight.
+static double light_of(const struct frame *f, int x, int y)
+{
+    return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
+}
+
+// Mean colour and radius of a side around a mixed pixel; returns its weight. What is more than four times as bright as the
+// pixel counts less.
 static double side_mean(const struct frame *f, int x, int y, double middle, double slope, int front, double mean[5])
 {
-    double sum = 0, unused;
+    const double own = 4 * light_of(f, x, y);
+    double sum = 0, all = 0, unused;
     memset(mean, 0, 5 * sizeof *mean);
     for (int v = -3; v <= 3; v++)
         for (int u = -3; u <= 3; u++) {
@@ -38,7 +45,10 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
             const double s = front_of(radius_at(f, x + u, y + v), middle, slope), part = front ? s : 1 - s;
             if ((!u && !v) || part == 0)
                 continue;
-            const double w = part * sure(f, x + u, y + v, &unused, &unused) / ((u * u + v * v) * (u * u + v * v));
+            const double light = light_of(f, x + u, y + v), counts = light > own ? fmax(own / light, 1.0 / 256) : 1;
+            const double known = part * sure(f, x + u, y + v, &unused, &unused) / pow(u * u + v * v, 2);
+            const double w = known * pow(counts, 4);
+            all += known;
             sum += w;
             for (int c = 0; c < f->channels; c++)
                 mean[c] += w * colour_at(f, c, x + u, y + v);
@@ -46,7 +56,7 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
         }
     for (int c = 0; c < 5; c++)
         mean[c] = sum > 0 ? mean[c] / sum : 0;
-    return sum;
+    return all;
 }
 
 // The mean of a side, by the eighth power of how far colours are from `other`.

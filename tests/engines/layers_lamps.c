@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The layers engine: lamps far behind a sharp edge that cuts their discs, beside what a lens sees of these two surfaces.
+#include <math.h>
+
+#include "support/check.h"
+#include "support/render.h"
+
+enum { WIDTH = 320, HEIGHT = 96, LAMPS = 3, RADIUS = 16, PARTS = 8 };
+
+static const double PI = 3.14159265358979323846, SIZE = 2.5, BOX = 0.1, WALL = 0.25;
+// Of the lamps' middles above the edge: half of one is hidden, a corner of the next, and the last stands just above.
+static const double above[LAMPS] = {0, 2, 4};
+
+struct lamps {
+    double x[LAMPS], y[LAMPS], light;
+};
+
+// The box begins below a line that is not quite level: its pixels are mixed by all shares.
+static double edge(double x)
+{
+    return 56 + 0.06 * x;
+}
+
+// What two discs have in common.
+static double common(double apart, double a, double b)
+{
+    const double small = fmin(a, b), large = fmax(a, b);
+    if (apart >= a + b)
+        return 0;
+    if (apart <= large - small)
+        return PI * small * small;
+    const double d = (apart * apart + small * small - large * large) / (2 * apart), e = apart - d;
+    return small * small * acos(d / small) - d * sqrt(small * small - d * d) + large * large * acos(e / large) -
+           e * sqrt(large * large - e * e);
+}
+
+// The wall with its lamps from a point: blurred, or through a pinhole.
+static double wall(const struct lamps *l, double x, double y, int blurred)
+{
+    double light = 0;
+    for (int i = 0; i < LAMPS; i++) {
+        const double apart = hypot(x - l->x[i], y - l->y[i]);
+        light += blurred ? common(apart, RADIUS, SIZE) / (PI * RADIUS * RADIUS) : apart < SIZE;
+    }
+    return WALL + light * (l->light - WALL);
+}
+
+static double pixel(const struct lamps *l, int x, int y, int blurred)
+{
+    double sum = 0;
+    for (int i = 0; i < PARTS * PARTS; i++) {
+        const double px = x + (i % PARTS + 0.5) / PARTS, py = y + (i / PARTS + 0.5) / PARTS;
+        sum += py > edge(px) ? BOX : wall(l, px, py, blurred);
+    }
+    return sum / (PARTS * PARTS);
+}
+
+// Is all of a lamp's light seen from all of a pixel, if nothing is before it? A pixel's half diagonal, and one of half
+// resolution on either side of which discs are upsampled.
+static int inside(const struct lamps *l, int i, int x, int y)
+{
+    return hypot(x + 0.5 - l->x[i], y + 0.5 - l->y[i]) < RADIUS - SIZE - 0.75 - 2;
+}
+
+// What is up to four times as bright as a mixed pixel may be what lies behind it, so the part of the pixel in which that
+// is seen is found to be a quarter of what it is at the least. Of the lamp that is cut in half nobody knows more than half.
+static void discs(struct hf_context *c, double light, enum hf_layers_quality quality)
+{
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1);
+    struct lamps l = {.light = light};
+    struct hf_params p = scene_params();
+    for (int i = 0; i < LAMPS; i++) {
+        l.x[i] = 50.3 + 100 * i;
+        l.y[i] = edge(l.x[i]) - above[i];
+    }
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        const int x = k % WIDTH, y = k / WIDTH;
+        radius.plane[0][k] = y + 0.5 > edge(x + 0.5) ? 0 : RADIUS;
+        for (int i = 0; i < 3; i++)
+            colour.plane[i][k] = (float)pixel(&l, x, y, 0);
+    }
+    p.engine = HF_ENGINE_LAYERS;
+    p.max_radius = HF_DERIVE;
+    p.layers.quality = quality;
+    const struct hf_depth depth = picture_radii(&radius);
+    struct picture out = render(c, &colour, &depth, &p);
+    for (int i = 0; i < LAMPS; i++) {
+        double least = 1;
+        int at = 0;
+        for (int k = 0; k < WIDTH * HEIGHT; k++) {
+            const double want = inside(&l, i, k % WIDTH, k / WIDTH) ? pixel(&l, k % WIDTH, k / WIDTH, 1) : 0;
+            if (!(want > 0) || out.plane[1][k] / want >= least)
+                continue;
+            least = out.plane[1][k] / want;
+            at = k;
+        }
+        CHECK_MSG(least >= 0.25, "light %g, quality %d, lamp %d: %.2f of what is seen at %d, %d", light, (int)quality,
+                  i, least, at % WIDTH, at / WIDTH);
+    }
+    picture_free(&out);
+    picture_free(&colour);
+    picture_free(&radius);
+}
+
+int main(void)
+{
+    static const double lights[] = {1.5, 30, 1000, 1e4};
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
+    for (int quality = HF_LAYERS_STANDARD; quality <= HF_LAYERS_BEST; quality++)
+        for (int i = 0; i < 4; i++)
+            discs(c, lights[i], (enum hf_layers_quality)quality);
+    hf_close(&c);
+    return check_report();
+}
