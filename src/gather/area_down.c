@@ -23,7 +23,8 @@ static struct quad quad_of(const struct hf_frame *f, int even, int odd, int x, i
     return q;
 }
 
-// What of four samples belongs to a field. Where all of them do it is their mean.
+// What of four samples belongs to a field. Where all of them do it is their mean. It is limited in proportion to their
+// mean part, by which the field is divided again.
 static float part_of(const struct quad *q, const float c[4])
 {
     return 0.25f * ((q->part[0] * c[0] + q->part[1] * c[1]) + (q->part[2] * c[2] + q->part[3] * c[3]));
@@ -54,10 +55,10 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
             f->counts->clamped += !(__builtin_fabsf(sum) <= HF_AREA_LARGEST);
             if (f->near) {
                 colour[c][x] = mean;
-                near[c][x] = hf_limited(part_of(&nq, quad), HF_AREA_LARGEST);
+                near[c][x] = hf_limited(part_of(&nq, quad), HF_AREA_LARGEST * nq.mean);
             }
             if (f->far)
-                far[c][x] = hf_limited(part_of(&fq, quad), HF_AREA_LARGEST);
+                far[c][x] = hf_limited(part_of(&fq, quad), HF_AREA_LARGEST * fq.mean);
         }
         if (f->near) {
             *hf_at(coc4, HF_AREA_NEAR, r.x0 + x, y) = nq.mean;
