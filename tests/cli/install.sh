@@ -60,6 +60,14 @@ if [ -x "$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio" ]; then
     "$bin/hyperfocal" "$source_root/images/lights.exr" -o other.png --max-radius 2 2>other
     check "a helper that does not answer is refused" grep -q "cannot start hyperfocal-oiio, or it is of another build" other
 fi
+# A build directory of before keeps absolute paths.
+pc=$(find "$dir/elsewhere" -name hyperfocal.pc)
+if command -v pkg-config >/dev/null && grep -q pcfiledir "$pc"; then
+    check "pkg-config finds the header" sh -c 'h=$(PKG_CONFIG_PATH=${1%/*} pkg-config --cflags hyperfocal) && \
+        test -f "$(echo "${h#-I}" | sed "s/ *$//")/hyperfocal/hyperfocal.h"' - "$pc"
+    check "and the library" sh -c 'l=$(PKG_CONFIG_PATH=${1%/*} pkg-config --variable=libdir hyperfocal) && \
+        test -e "$l/libhyperfocal.so"' - "$pc"
+fi
 # Not in the source, and not beside one: the scenes are those that were installed.
 check "the bench finds its scenes" "$bin/hyperfocal-bench" tradeoff --quick --cache none \
     --setting "--engine gaussian --resolution quarter --iterations 1 --threads 1"
