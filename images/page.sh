@@ -78,7 +78,8 @@ done
 # The engines beside the truth
 
 Three scenes, traced once with a pinhole and once with an open lens, and what each engine makes of the first. The camera is
-that of the EXR header. `sh images/page.sh` makes this page, its pictures and its figures.
+that of the EXR header. The inputs are EXR files in linear light that nothing clips; the figures do not hold for a clipped
+picture of 8 bits. `sh images/page.sh` makes this page, its pictures and its figures.
 
 Which one:
 

@@ -15,8 +15,8 @@
 // Words. "CoC" is the circle of confusion. Its radius is given in full-resolution pixels, negative in front of
 // the plane in focus (near), positive behind it (far). Depth is view depth unless said otherwise: positive distance
 // along the camera axis, in scene units. Pixel centres lie at +0.5. Colours are linear and premultiplied by alpha.
-// "Chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2018, the source of the default
-// engine and of its names.
+// "Chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2, the source of the default engine
+// and of its names.
 //
 // A context may be used by one thread at a time; any number of contexts may be used at once. After fork() the child
 // has none of the context's threads: a context that has threads of its own answers HF_ERR_THREAD there, and hf_close
@@ -153,7 +153,7 @@ enum hf_depth_type {
 };
 
 // How a depth sample is stored. Whole numbers are divided by their largest: 0..1, for the NDC types, HF_DEPTH_INVERSE, or
-// whatever hf_depth.type makes of it. They count as the nearest float.
+// whatever hf_depth.type makes of it. They count as the nearest float. The log warns of some that are surely no distances.
 enum hf_depth_format {
     HF_DEPTH_FORMAT_FLOAT32,
     HF_DEPTH_FORMAT_FLOAT16,
@@ -193,7 +193,8 @@ enum hf_engine {
 // The command line's name for an engine; NULL for a number that is none. As hf_name(HF_NAMES_ENGINE, engine).
 HF_API const char *hf_engine_name(enum hf_engine engine);
 
-// Size of the buffers in which the engines other than gather work. Smaller is faster and softer.
+// Size of the buffers in which hexagon, scatter and gaussian work. Smaller is faster and softer. gather works at half
+// resolution, layers at several at once.
 enum hf_resolution {
     HF_RESOLUTION_FULL,
     HF_RESOLUTION_HALF,     // half the width and half the height
@@ -265,7 +266,7 @@ enum hf_names {
     HF_NAMES_TRANSFER,      // linear, srgb
     HF_NAMES_DEPTH_FORMAT,  // float32, float16, unorm16, unorm32, d24s8, x8d24
     HF_NAMES_DEPTH_TYPE,    // view, ray, ndc-d3d, ndc-gl, ndc-reversed, inverse, coc
-    HF_NAMES_ENGINE,        // gather, hexagon, scatter, gaussian
+    HF_NAMES_ENGINE,        // gather, hexagon, scatter, gaussian, layers
     HF_NAMES_RESOLUTION,    // full, half, quarter
     HF_NAMES_MODEL,         // range, lens
     HF_NAMES_STORAGE,       // float, half, packed
@@ -454,6 +455,7 @@ struct hf_run_params {
     // if earlier frames of this context took longer, cheaper settings are tried in turn, those of the ladder from which
     // hf_choose_quality chooses that reach as far as the blur that is asked for. It goes back only when the better setting
     // would leave a fifth of the budget for a dozen frames on end, so that a shot does not flicker between two looks.
+    // The log warns once when even the cheapest of them takes longer.
     float budget_ms;
 };
 
@@ -468,7 +470,7 @@ struct hf_params {
     struct hf_lens_params lens;
     // Largest CoC radius, full-resolution pixels, 0 (the input, bit for bit) to 2048. HF_DERIVE (default): 12 at 1080
     // lines and by display height (12 when faithful), the chapter's reach; for the lens model and HF_DEPTH_COC, 2048 in
-    // hexagon and scatter, and 256 in the gather, whose near and far kernels are then as large as the radii found.
+    // hexagon, scatter and layers, and 256 in the gather, whose near and far kernels are then as large as the radii found.
     float max_radius;
     struct hf_aperture_params aperture;
     struct hf_highlight_params highlight;

@@ -109,8 +109,9 @@ static const struct tool_option options[] = {
     {"max-error", 0, TOOL_LOOK, "E", "The same by the error that is acceptable: root mean square distance from what a "
      "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1},
     {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
-     "(default), or a polygon with 3 to 16 sides turned by some degrees. layers, scatter: rounded by 0 to 1 (a lone number above 1 is the degrees); a "
-     "ring whose hole has R of the radius, 0 to 0.95; or the picture in FILE. hexagon: ngon:6 and the degrees.",
+     "(default), or a polygon with 3 to 16 sides, straight (0) to round (1), turned by some degrees: ngon:6:0.5:15. Of "
+     "one number alone, up to 1 is the roundness and more the degrees: ngon:6:15. Only layers and scatter draw round "
+     "sides, a ring whose hole has R of the radius, 0 to 0.95, or the picture in FILE. hexagon: ngon:6 and the degrees.",
      .parse = cli_parse_aperture},
 
     {"threads", 0, TOOL_RUN, "N", "Threads to work on, up to 256; 0 (default): one per processor.",
@@ -131,9 +132,9 @@ static const struct tool_option options[] = {
     {"explain", 0, TOOL_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
      "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
     {"explain-image", 0, TOOL_RUN, "FILE", "Write the picture with its tiles painted over: near red, far blue, both "
-     "violet, sharp as it is.", TEXT(explain_image)},
+     "violet, sharp as it is. Of several views each has its own: out.png is out.left.png and out.right.png.", TEXT(explain_image)},
     {"focus-image", 0, TOOL_RUN, "FILE", "Write the picture painted by what each pixel is: near red, in focus green, "
-     "far blue.", TEXT(focus_image)},
+     "far blue. Of several views each has its own: out.png is out.left.png and out.right.png.", TEXT(focus_image)},
     {"json", 0, TOOL_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
      "FILE unless there is no other INPUT.", .parse = cli_parse_json},
     {"dump-passes", 0, TOOL_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},

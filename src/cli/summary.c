@@ -75,7 +75,9 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", longer than --budget-ms %g", budget);
     snprintf(text + n, sizeof(text) - (size_t)n, ", %.0f ms, %d warning%s", r->total_ms, warnings,
              warnings == 1 ? "" : "s");
-    tool_print_line("%s: %s with depth %s, %s", v->label, v->view->layer[0] ? v->view->layer : "RGB", depth, text);
+    const char *part = frame->args->depth_file ? "" : hf_io_part_name(frame->file, v->view->depth_part);
+    tool_print_line("%s: %s with depth %s%s%s, %s", v->label, v->view->layer[0] ? v->view->layer : "RGB", depth,
+                    part[0] ? " of part " : "", part, text);
 }
 
 void cli_print_summary(const struct cli_frame *frame, int warnings)

@@ -406,6 +406,9 @@ if [ -d "$shared/beachball" ]; then
     check "beachball, multi-part" exits 0
     run "$shared/beachball/multipart.0001.exr" --engine gather --focus center --dry-run
     check "a dry run names the parts" grep -q ' of part ' out
+    run "$shared/beachball/multipart.0001.exr" -o ball.exr --engine gather --focus center --verbose
+    check "and so does the summary" sh -c 'grep -q "rgba_left with depth Z of part depth_left," err &&
+        grep -q "rgba_right with depth Z of part depth_right," err'
     check "its frames" files ball "m.0001.exr m.0002.exr s.0001.exr s.0002.exr s.0003.exr s.0004.exr"
     if command -v python3 >/dev/null; then
         for f in 1 2 3 4; do
