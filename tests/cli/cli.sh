@@ -328,23 +328,6 @@ picture_tests() {
     [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"dry_run": true'
     result "--dry-run --json" $?
 
-    # What is of a lens alone, where there is none.
-    bad 1 "--sensor-width 36|lens|range" plain.exr -o o.exr --focus 3 --sensor-width 36
-    bad 1 "--world-unit 0.1|lens|range" plain.exr -o o.exr --focus 3 --world-unit 0.1
-    bad 1 "--world-unit 0.1|lens|depth says" plain.exr -o o.exr --depth-type coc --world-unit 0.1
-    plan "model range|focus 30 from --focus" plain.exr --focus 3m --world-unit 0.1
-    plan "model range|focus 40 from header" focus.exr --world-unit 0.1
-    plan "type ray" plain.exr --focus 3 --depth-type ray --focal-length 50 --fstop 2 --sensor-width 24
-    plan "type ray|model range" lens.exr --range 3 --depth-type ray --sensor-width 24
-    # What one picture has no use for, and the library's words in the command's.
-    run plain.exr -o o.exr --focus 3 --memory-limit 0.5
-    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "--memory-limit 0.5 does nothing for one"
-    result "--memory-limit for one picture is a warning" $?
-    run plain.exr -o o.exr --focus 3 --fstop 0.01 --focal-length 50 --engine gather --faithful
-    [ "$status" -eq 0 ] && contains "$dir/err" "unless --max-radius is given" && ! contains "$dir/err" "max_radius"
-    result "options have their names in what the library says" $?
-    rm -f o.exr
-
     # Done, and what it says about it.
     before=$(ls -A)
     good plain.exr -o o.exr --focus 3
@@ -420,41 +403,6 @@ picture_tests() {
         bad 1 "o.png|stereo.exr|--views|left" stereo.exr -o o.png --focus 3
     fi
     rm -f o.png
-    # In place, by any name: done, and said. Another hard link is another picture.
-    for name in same.exr ./same.exr link.exr; do
-        cp plain.exr same.exr && ln -sf same.exr link.exr
-        run same.exr -o $name --focus 3 --json o.json
-        [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "OUTPUT $name is INPUT" &&
-            contains o.json '"in_place": true' && contains o.json "\"OUTPUT $name is INPUT" && ! cmp -s plain.exr same.exr
-        result "a picture replaced by its blur is a warning, $name" $?
-    done
-    cp plain.exr same.exr && ln -f same.exr hard.exr
-    good same.exr -o hard.exr --focus 3
-    cmp -s plain.exr same.exr
-    result "a hard link of the input leaves it as it was" $?
-    bad 1 "--resume|same.exr is INPUT" same.exr -o same.exr --focus 3 --resume
-    run plain.exr -o made.exr --focus 3 --resume --quiet
-    run made.exr -o o.exr --focus 3 --json
-    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "defocused already" &&
-        json_valid "$dir/out" && contains "$dir/out" '"hyperfocal made this file'
-    result "an input that was made here is a warning" $?
-    run made.exr -o o.exr --focus 3 --resume --verbose --log o.log
-    contains "$dir/err" "1 warning" && contains o.log '"warning_texts": ["hyperfocal made this file'
-    result "in a shot and its log too" $?
-    rm -f o.exr same.exr hard.exr link.exr made.exr o.json o.log
-
-    # Options of the range model that do not name a range: the header's lens goes, and that is said.
-    for option in "--strength 0.5" "--depth-of-field 2"; do
-        # shellcheck disable=SC2086
-        run lens.exr -o o.exr $option --json
-        [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "${option% *} is of the range model" &&
-            contains "$dir/out" "not the header's lens, f/2 and 50 mm"
-        result "$option puts the lens aside with a warning" $?
-        # shellcheck disable=SC2086
-        good lens.exr -o o.exr $option --range 2
-        # shellcheck disable=SC2086
-        good focus.exr -o o.exr $option
-    done
     rm -f o.exr
 
     # No output may be an input, or another output, whatever the name says.
