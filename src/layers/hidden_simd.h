@@ -302,6 +302,20 @@ HF_INLINE vf layers_lonely(vf r, vf like, vf others, vf size)
     return vf_mul(alone, layers_saturate(vf_sub(sharp, vf_min(vf_abs(r), around))));
 }
 
+HF_INLINE vf layers_roots_of(const float *const in[6], int x)
+{
+    return vf_add(vf_add(vf_abs(vf_load(in[0] + x)), vf_abs(vf_load(in[1] + x))), vf_abs(vf_load(in[2] + x)));
+}
+
+HF_INLINE vf layers_dim(vf all, vf roots, vf plain)
+{
+    const vm bright = vf_gt(roots, plain);
+    if (!vm_any(bright))
+        return all;
+    const vf some = vf_max(vf_div(plain, roots), vf_set1(HF_LAYERS_FAINTEST)), square = vf_mul(some, some);
+    return vf_select(bright, vf_mul(all, vf_mul(square, square)), all);
+}
+
 HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels, int square, int n,
                                 float *const out[6])
 {
@@ -324,11 +338,13 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels
             size = vf_fma(rest[i], vf_abs(far), size);
         }
         const vf lonely = layers_lonely(r, like, others, size);
+        const vf plain = vf_mul(layers_roots_of(in[HF_LAYERS_SMOOTH], x), vf_set1(HF_LAYERS_GLARE));
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const vf g = vf_fma(lonely, vf_sub(rest[i], of[i]), of[i]);
-            const vm some = vf_gt(g, vf_zero());
+            const vf all = vf_fma(lonely, vf_sub(rest[i], of[i]), of[i]);
+            const vm some = vf_gt(all, vf_zero());
             if (!vm_any(some))
                 continue;
+            const vf g = layers_dim(all, layers_roots_of(in[i], x), plain);
             sum = vf_add(sum, g);
             radius = vf_fma(g, vf_keep(some, vf_load(in[i][5] + x)), radius);
             for (int c = 0; c < channels; c++)

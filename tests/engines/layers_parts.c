@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What layers are made of, each alone: how densely slices lie, and which colour stands for a side of an edge of which
-// nothing is sure.
+// What layers are made of, each alone: how densely slices lie, which colour stands for a side of an edge of which nothing
+// is sure, and what a lamp counts among hidden samples.
 #include <float.h>
 #include <math.h>
 
-#include "layers/kernels.h"
+#include "layers/hidden.h"
 #include "layers/unmix.h"
 #include "params.h"
 #include "support/check.h"
@@ -72,10 +72,31 @@ static void farthest(void)
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 0);
 }
 
+// A lamp of 4096 among hidden samples of 1, and as far as these, counts by the fourth power of 16 / 64: a 256th of its place at
+// the end of the line, where it is one of 49 parts.
+static void lamp_in_line(void)
+{
+    float one[HF_LAYERS_TAPS][6], out[6];
+    float *to[6];
+    const float *in[HF_LAYERS_TAPS][6];
+    for (int i = 0; i < HF_LAYERS_TAPS; i++)
+        for (int c = 0; c < 6; c++) {
+            one[i][c] = c == 5 ? 20 : c < 4 && i == 0 ? 64 : 1;
+            in[i][c] = &one[i][c];
+            to[c] = &out[c];
+        }
+    const double want = (48 + 64.0 / 256) / (48 + 1.0 / 256);
+    hf_layers_smooth_c((const float *const(*)[6])in, 3, 0, 1, to);
+    // Thirteen products and sums, and a quotient, of either.
+    CHECK_MSG(fabs(out[0] - want) <= 28 * FLT_EPSILON * want, "%g, not %g", (double)out[0], want);
+    CHECK(out[4] == 1 && fabsf(out[5] - 20) <= 28 * 20 * FLT_EPSILON);
+}
+
 int main(void)
 {
     for (int quality = HF_LAYERS_DRAFT; quality <= HF_LAYERS_BEST; quality++)
         slices((enum hf_layers_quality)quality);
     farthest();
+    lamp_in_line();
     return check_report();
 }

@@ -312,6 +312,14 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
         out[WEIGHT] += layers_reference_before(f, 2 * x + i % 2, 2 * y + i / 2, out[RADIUS]) / 4;
 }
 
+// How much a sample of roots counts beside another: less, where it is more than 16 times as large.
+static double dim(const double *s, const double *middle)
+{
+    const double roots = fabs(s[0]) + fabs(s[1]) + fabs(s[2]);
+    const double plain = 16 * (fabs(middle[0]) + fabs(middle[1]) + fabs(middle[2]));
+    return roots > plain ? pow(fmax(plain / roots, 1.0 / 256), 4) : 1;
+}
+
 // Means of 13 in a row or column, of those that are about as far.
 static struct grid smooth(const struct frame *f, const struct grid *from, int dx, int dy)
 {
@@ -338,7 +346,7 @@ static struct grid smooth(const struct frame *f, const struct grid *from, int dx
             const double lonely =
                 (1 - fmin(fmax(4 * (part - 1.0 / 7), 0), 1)) * fmin(fmax(2 - fmin(fabs(middle[RADIUS]), around), 0), 1);
             for (int i = 0; i < 13; i++) {
-                const double g = of[i] + lonely * (rest[i] - of[i]);
+                const double g = line[i] ? (of[i] + lonely * (rest[i] - of[i])) * dim(line[i], middle) : 0;
                 sum += g;
                 for (int c = 0; c < f->channels && g > 0; c++)
                     out[c] += g * line[i][c];
