@@ -62,8 +62,8 @@ static int inside(const struct lamps *l, int i, int x, int y)
     return hypot(x + 0.5 - l->x[i], y + 0.5 - l->y[i]) < RADIUS - SIZE - 0.75 - 2;
 }
 
-// What is up to four times as bright as a mixed pixel may be what lies behind it, so the part of the pixel in which that
-// is seen is found to be a quarter of what it is at the least. Of the lamp that is cut in half nobody knows more than half.
+// What is up to eight times as bright as a mixed pixel may be what lies behind it, so the part of the pixel in which that
+// is seen is found to be an eighth of what it is at the least. Of the lamp that is cut in half nobody knows more than half.
 static void discs(struct hf_context *c, double light, enum hf_layers_quality quality)
 {
     struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1);
@@ -94,7 +94,7 @@ static void discs(struct hf_context *c, double light, enum hf_layers_quality qua
             least = out.plane[1][k] / want;
             at = k;
         }
-        CHECK_MSG(least >= 0.25, "light %g, quality %d, lamp %d: %.2f of what is seen at %d, %d", light, (int)quality,
+        CHECK_MSG(least >= 0.125, "light %g, quality %d, lamp %d: %.2f of what is seen at %d, %d", light, (int)quality,
                   i, least, at % WIDTH, at / WIDTH);
     }
     picture_free(&out);

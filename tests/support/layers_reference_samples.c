@@ -32,11 +32,11 @@ static double light_of(const struct frame *f, int x, int y)
     return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
 }
 
-// Mean colour and radius of a side around a mixed pixel; returns its weight. What is more than four times as bright as the
+// Mean colour and radius of a side around a mixed pixel; returns its weight. What is more than eight times as bright as the
 // pixel counts less.
 static double side_mean(const struct frame *f, int x, int y, double middle, double slope, int front, double mean[5])
 {
-    const double own = 4 * light_of(f, x, y);
+    const double own = 8 * light_of(f, x, y);
     double sum = 0, all = 0, unused;
     memset(mean, 0, 5 * sizeof *mean);
     for (int v = -3; v <= 3; v++)
