@@ -212,11 +212,14 @@ static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits
             bins->unscale[b][c] = ldexp(1, -unit);
         }
         // Bit k is exponents of 8 k - 127 to 8 k - 120, the last of up to 127: that one is not parted.
+        int held = 0;
         while (exponents) {
             const int k = 31 - __builtin_clz(exponents);
+            held |= 8 * k - 119 > bottom;
             if (8 * k - 127 < bottom && k < 30) {
-                // Colour leaves out whole bins, so that a factor of 2^k moves all of them alike.
-                const int unused = hf_max(bottom - (8 * k - 119), 0);
+                // Colour leaves out whole bins, so that a factor of 2^k moves all of them alike. What fades has a bin
+                // of its own before they are left out: whatever else is in the frame, it is cut no earlier.
+                const int unused = held ? 0 : hf_max(bottom - (8 * k - 119), 0);
                 top = bottom - (alpha ? unused : unused / bits * bits);
                 break;
             }

@@ -21,7 +21,7 @@ enum hf_scatter_buf {
 // Sums have a fixed point, so samples of very different brightness have sums of their own: those of a bin are below
 // 2^62 of its units in all, and every share of a sample down to its least is a whole number of them. So the sums are
 // exact, whatever else is in the frame. What is darker than the last bin's is cut to its units.
-enum { HF_BINS = 4 };
+enum { HF_BINS = 16 };
 
 struct hf_bins {
     int count;

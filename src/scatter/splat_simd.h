@@ -249,6 +249,8 @@ static void settle_simd(int64_t *const lane[HF_BINS], int bins, int n, int chann
         settle_bins(lane, 2, n, channels, unscale, out);
     else if (bins == 3)
         settle_bins(lane, 3, n, channels, unscale, out);
+    else if (bins == 4)
+        settle_bins(lane, 4, n, channels, unscale, out);
     else
-        settle_bins(lane, HF_BINS, n, channels, unscale, out);
+        settle_bins(lane, bins, n, channels, unscale, out);
 }

@@ -240,12 +240,7 @@ static void bad_patch(const struct trial *t, struct rng *rng)
     struct scene s = copied(&t->s);
     const int w = s.colour.width, h = s.colour.height, x0 = rng_below(rng, w), y0 = rng_below(rng, h);
     const int x1 = least(w, x0 + 1 + rng_below(rng, 8)), y1 = least(h, y0 + 1 + rng_below(rng, 8));
-    // The scatter's sums have four ranges of brightness. What is brighter than a half float holds takes one of them from
-    // what is dim, all over the frame, so such values are not its.
-    static const int usual[] = {0, 1, 2, 6, 7, 8};
-    const int m = t->margin + 1, any = rng_below(rng, 9), several = 1 + rng_below(rng, 4);
-    const int scatter = t->p.engine == HF_ENGINE_SCATTER, first = scatter ? usual[any % 6] : any;
-    const int kinds = scatter ? 1 : several;
+    const int m = t->margin + 1, first = rng_below(rng, 9), kinds = 1 + rng_below(rng, 4);
     uint64_t bad = 0;
     for (int c = 0; c < s.colour.channels; c++)
         for (int y = y0; y < y1; y++)
