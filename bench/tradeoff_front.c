@@ -87,11 +87,13 @@ static double error_on(const struct trade_result *r, int scene)
     return r->at[scene].distance[BENCH_WHOLE].display_rmse;
 }
 
+// By over 0.1 dB on any scene, that is, and better over all.
 static int is_no_worse(const struct trade *t, const struct trade_result *better, const struct trade_result *than)
 {
+    static const double same = 1.0116;  // 0.1 dB
     for (int s = 0; s < t->scenes; s++) {
         const int choosable = than->farthest >= t->largest[s] || better->farthest < t->largest[s];
-        if (choosable && error_on(better, s) > error_on(than, s))
+        if (choosable && error_on(better, s) > same * error_on(than, s))
             return 0;
     }
     return better->error < than->error && better->ms.median > than->ms.median;

@@ -142,22 +142,19 @@ static void make_up(struct hf_taps *t, int times, int *missing, const int *first
 }
 
 // Round the lattice to units, keep what is not 0, and make the sum 1: sums of weights are exact then in any order, so that
-// alpha of 1 stays 1. What rounding takes from one weight the next one gets that stands there as often.
+// alpha of 1 stays 1. Weights that are equal stay equal, as rows of them are added up before they are weighted.
 static void round_weights(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
 {
     const int row = 2 * t->rx + 1, columns = t->symmetric ? t->rx + 1 : row;
-    double carry[5] = {0};
     int n = 0, missing = (int)(1 / WEIGHT_UNIT);
     for (int k = 0; k < t->rows; k++) {
         first[k] = n;
         for (int j = 0; j < columns; j++) {
             const double *p = t->symmetric ? w + (k + t->ry) * row + j + t->rx : w + k * row + j;
             const int times = mirrored(t, k, j);
-            const double wanted = *p / t->count / WEIGHT_UNIT + carry[times];
-            const int units = *p > 0 ? (int)rint(wanted) : 0;
+            const int units = (int)rint(*p / t->count / WEIGHT_UNIT);
             if (units <= 0)
                 continue;
-            carry[times] = wanted - units;
             column[n] = j;
             weight[n++] = (float)units * WEIGHT_UNIT;
             missing -= units * times;
