@@ -9,15 +9,14 @@
 // options; display-encoded root mean square error, geometric mean of the scenes and of the worst; milliseconds of a
 // megapixel
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 1", 0.083193f, 0.136679f, 1.542f}, \
-    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 1.553f}, \
-    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 1.614f}, \
-    {"--engine gather", 0.037081f, 0.078433f, 31.04f}, \
-    {"--engine layers --spacing 8", 0.025957f, 0.039993f, 54.96f}, \
-    {"--engine layers", 0.025169f, 0.037854f, 61.64f}, \
-    {"--engine layers --layers-quality best", 0.023613f, 0.037747f, 184.6f}
+    {"--engine gaussian --resolution quarter --iterations 1", 0.083193f, 0.136679f, 1.988f}, \
+    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 2.003f}, \
+    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 2.030f}, \
+    {"--engine gather", 0.037152f, 0.078830f, 35.54f}, \
+    {"--engine layers", 0.025014f, 0.037648f, 64.61f}, \
+    {"--engine layers --layers-quality best", 0.023619f, 0.037659f, 192.9f}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 0, 4, 6, 6
+#define HF_LADDER_QUALITIES 0, 4, 5, 5
 // milliseconds of a megapixel of each engine as it is
-#define HF_LADDER_ENGINES 31.04f, 55.89f, 115.3f, 3.820f, 61.64f
+#define HF_LADDER_ENGINES 35.54f, 62.64f, 138.5f, 4.279f, 64.61f
 // clang-format on
