@@ -403,7 +403,7 @@ void trade_ladder_table(FILE *out, const struct trade *t)
         "// SPDX-License-Identifier: BSD-3-Clause\n// Made by `hyperfocal-bench tradeoff --ladder "
         "src/frame/ladder_table.h`. Do not edit.\n//\n// Settings worth having, cheapest first. Each takes longer than "
         "the "
-        "one before and errs less, on the mean and on every\n// scene where either may be chosen. Those of the "
+        "one before and errs less, and on no\n// scene where either may be chosen by 0.1 dB more. Those of the "
         "gaussian "
         "engine are for blur that is no wider than theirs; for a lens the\n// list begins below them.\n// clang-format "
         "off\n"

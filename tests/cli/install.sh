@@ -50,7 +50,7 @@ if [ -x "$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio" ]; then
     mv "$helper.new" "$helper"
     "$bin/hyperfocal" "$source_root/images/lights.exr" -o other.png --max-radius 2 2>other
     status=$?
-    check "a helper of another version is refused" test $status -eq 3 -a ! -e other.png
+    check "a helper of another version is refused" test $status -eq 1 -a ! -e other.png
     check "in one sentence" grep -q "hyperfocal-oiio is of version 9.8.7 (1, 2), but this program of [0-9]" other
     check "and no more" test "$(wc -l <other)" -eq 1
     # One that knows no such question, and ends when it hears what is no job.

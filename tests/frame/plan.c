@@ -319,10 +319,11 @@ static void choices(void)
 {
     struct hf_params p = hf_default_params;
     struct hf_choice last = {.step = -1}, c;
-    p.max_radius = 0;  // every step reaches as far
+    p.max_radius = 0;                   // every step reaches as far
+    static const float same = 1.0116f;  // 0.1 dB, which a step may be worse by on a scene
     for (int i = 1; i < hf_ladder_steps; i++)
         CHECK_MSG(hf_ladder[i].ms > hf_ladder[i - 1].ms && hf_ladder[i].error < hf_ladder[i - 1].error &&
-                      (starts_to_reach(i) || hf_ladder[i].worst <= hf_ladder[i - 1].worst),
+                      (starts_to_reach(i) || hf_ladder[i].worst <= same * hf_ladder[i - 1].worst),
                   "step %d", i);
     for (int i = 0; i < hf_ladder_steps; i++)
         CHECK_MSG(hf_ladder_understands(i), "%s: add the option to ladder.c", hf_ladder[i].options);
