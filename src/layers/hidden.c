@@ -209,15 +209,6 @@ static float roots_of(const float *const in[6], int x)
     return fabsf(in[0][x]) + fabsf(in[1][x]) + fabsf(in[2][x]);
 }
 
-// How much a sample of such roots counts beside one of which they are `plain` / GLARE.
-static float dim(float roots, float plain)
-{
-    if (!(roots > plain))
-        return 1;
-    const float part = plain / roots, some = part > HF_LAYERS_FAINTEST ? part : HF_LAYERS_FAINTEST;
-    return (some * some) * (some * some);
-}
-
 void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, int n, float *const out[6])
 {
     for (int x = 0; x < n; x++) {
@@ -238,7 +229,7 @@ void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, 
         const float plain = roots_of(in[HF_LAYERS_SMOOTH], x) * HF_LAYERS_GLARE;
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
             const float all = lonely * (rest[i] - of[i]) + of[i],
-                        g = all > 0 ? all * dim(roots_of(in[i], x), plain) : 0;
+                        g = all > 0 ? all * hf_layers_dimmed(roots_of(in[i], x), plain) : 0;
             if (!(g > 0))
                 continue;
             sum = sum + g;

@@ -16,10 +16,9 @@ enum {
 #define HF_LAYERS_ALIKE 4
 // Samples of less than 1 / WHOLE of a quad count less, so that none appears at once in its neighbours' means.
 #define HF_LAYERS_WHOLE 16
-// A sample of which the roots are GLARE times as large as the middle one's counts less, by the fourth power down to that of
-// FAINTEST: a lamp beside a silhouette would otherwise light up all that is hidden along it.
+// A sample of which the roots are more than GLARE times as large as the middle one's is dimmed: a lamp beside a silhouette
+// would otherwise light up all that is hidden along it.
 #define HF_LAYERS_GLARE 16
-#define HF_LAYERS_FAINTEST (1.0f / 256)
 static inline float hf_layers_line(int i)
 {
     return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));

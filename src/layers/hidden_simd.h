@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hidden samples on vectors: in the order of operations of hidden.c.
+#include "layers/dimmed_vf.h"
 #include "layers/hidden.h"
 #include "simd/simd.h"
 
@@ -307,15 +308,6 @@ HF_INLINE vf layers_roots_of(const float *const in[6], int x)
     return vf_add(vf_add(vf_abs(vf_load(in[0] + x)), vf_abs(vf_load(in[1] + x))), vf_abs(vf_load(in[2] + x)));
 }
 
-HF_INLINE vf layers_dim(vf all, vf roots, vf plain)
-{
-    const vm bright = vf_gt(roots, plain);
-    if (!vm_any(bright))
-        return all;
-    const vf some = vf_max(vf_div(plain, roots), vf_set1(HF_LAYERS_FAINTEST)), square = vf_mul(some, some);
-    return vf_select(bright, vf_mul(all, vf_mul(square, square)), all);
-}
-
 HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels, int square, int n,
                                 float *const out[6])
 {
@@ -344,7 +336,7 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels
             const vm some = vf_gt(all, vf_zero());
             if (!vm_any(some))
                 continue;
-            const vf g = layers_dim(all, layers_roots_of(in[i], x), plain);
+            const vf g = vf_mul(all, layers_dimmed(layers_roots_of(in[i], x), plain));
             sum = vf_add(sum, g);
             radius = vf_fma(g, vf_keep(some, vf_load(in[i][5] + x)), radius);
             for (int c = 0; c < channels; c++)

@@ -115,6 +115,18 @@ struct hf_layers_kernels {
 };
 HF_DECLARE_KERNELS(hf_layers_kernels);
 
+// How much a sample of so much light counts in a mean: wholly up to `plain`, from there on less, by the fourth power down to
+// that of FAINTEST. A mean of a lamp and what is around it would be the lamp's.
+#define HF_LAYERS_FAINTEST (1.0f / 256)
+static inline float hf_layers_dimmed(float light, float plain)
+{
+    if (!(light > plain))
+        return 1;
+    const float part = plain / light, some = part > HF_LAYERS_FAINTEST ? part : HF_LAYERS_FAINTEST,
+                square = some * some;
+    return square * square;
+}
+
 static inline const struct hf_layers *hf_layers(const struct hf_setup *s)
 {
     return s->own;

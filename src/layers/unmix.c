@@ -115,16 +115,6 @@ static float light_of(const struct hf_unmix_row *u, int y, int x)
     return (fabsf(u->colour[y][0][x]) + fabsf(u->colour[y][1][x]) + fabsf(u->colour[y][2][x])) * 0.125f;
 }
 
-// How much a sample counts beside a mixture of brightness own / PLAIN. A mean of a lamp and the wall around it would be
-// brighter than the mixture of the wall and what lies before it, and all of that would seem to be the front.
-static float plain_of(float light, float own)
-{
-    if (!(light > own))
-        return 1;
-    const float part = own / light, some = part > HF_UNMIX_LEAST ? part : HF_UNMIX_LEAST, square = some * some;
-    return square * square;
-}
-
 static void unmix_pixel(const struct hf_unmix_row *u, int x)
 {
     float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}};
@@ -138,7 +128,7 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
                 continue;
             const float w = u->sure[y][at] * hf_unmix_weights[y][i];
             const float front = w * hf_saturate((middle - u->radius[y][at]) * slope + 0.5f), of[2] = {front, w - front};
-            const float counts = plain_of(light_of(u, y, at), plain);
+            const float counts = hf_layers_dimmed(light_of(u, y, at), plain);
             for (int side = 0; side < 2; side++) {
                 const float g = of[side] * counts;
                 weight[side] += of[side];

@@ -7,12 +7,12 @@
 
 // Which pixels are mixed: pixel/edges.h. FAINT: by pixels of less weight than this little is un-mixed. LEAN: the mean of a
 // side that has less than this of the weight of both leans on those pixels of that side whose colours are farthest from
-// the other's. PLAIN: what is brighter than so many times the mixed pixel counts less, by the fourth power, down to that of
-// LEAST; what is behind less than an eighth of a pixel may be brighter, and a share that small is of little weight.
+// the other's. PLAIN: what is brighter than so many times the mixed pixel is dimmed, or the mean of a lamp and the wall
+// around it would be brighter than the mixture of the wall and what lies before it, and all of that would seem to be the
+// front; what is behind less than an eighth of a pixel may be brighter, and a share that small is of little weight.
 #define HF_UNMIX_FAINT 0.001f
 #define HF_UNMIX_LEAN 0.01f
 #define HF_UNMIX_PLAIN 8
-#define HF_UNMIX_LEAST (1.0f / 256)
 
 // 1 / d^4 of the 7 x 7, 0 in its middle.
 extern const float hf_unmix_weights[7][7];

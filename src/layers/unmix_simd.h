@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mixed pixels on vectors: in the order of operations of unmix.c.
+#include "layers/dimmed_vf.h"
 #include "layers/unmix.h"
 #include "simd/simd.h"
 
@@ -25,15 +26,6 @@ HF_INLINE vf layers_light_of(const struct hf_unmix_row *u, int y, int x)
     return vf_mul(vf_add(sum, vf_abs(vf_load(u->colour[y][2] + x))), vf_set1(0.125f));
 }
 
-HF_INLINE vf layers_plain_of(vf light, vf own)
-{
-    const vm bright = vf_gt(light, own);
-    if (!vm_any(bright))
-        return vf_set1(1);
-    const vf some = vf_max(vf_div(own, light), vf_set1(HF_UNMIX_LEAST)), square = vf_mul(some, some);
-    return vf_select(bright, vf_mul(square, square), vf_set1(1));
-}
-
 // Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
 HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5], vf *known)
 {
@@ -52,7 +44,7 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
             const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
             weight[0] = vf_add(weight[0], f);
             weight[1] = vf_add(weight[1], b);
-            const vf counts = layers_plain_of(layers_light_of(u, y, at), plain);
+            const vf counts = layers_dimmed(layers_light_of(u, y, at), plain);
             const vf front = vf_mul(f, counts), back = vf_mul(b, counts);
             counted[0] = vf_add(counted[0], front);
             counted[1] = vf_add(counted[1], back);

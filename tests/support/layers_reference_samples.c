@@ -27,6 +27,12 @@ static double front_of(double r, double middle, double slope)
     return fmin(fmax((middle - r) * slope + 0.5, 0), 1);
 }
 
+// How much a sample of so much light counts in a mean: less from `plain` on.
+static double dimmed(double light, double plain)
+{
+    return light > plain ? pow(fmax(plain / light, 1.0 / 256), 4) : 1;
+}
+
 static double light_of(const struct frame *f, int x, int y)
 {
     return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
@@ -45,9 +51,8 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
             const double s = front_of(radius_at(f, x + u, y + v), middle, slope), part = front ? s : 1 - s;
             if ((!u && !v) || part == 0)
                 continue;
-            const double light = light_of(f, x + u, y + v), counts = light > own ? fmax(own / light, 1.0 / 256) : 1;
             const double known = part * sure(f, x + u, y + v, &unused, &unused) / pow(u * u + v * v, 2);
-            const double w = known * pow(counts, 4);
+            const double w = known * dimmed(light_of(f, x + u, y + v), own);
             all += known;
             sum += w;
             for (int c = 0; c < f->channels; c++)
@@ -312,12 +317,9 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
         out[WEIGHT] += layers_reference_before(f, 2 * x + i % 2, 2 * y + i / 2, out[RADIUS]) / 4;
 }
 
-// How much a sample of roots counts beside another: less, where it is more than 16 times as large.
-static double dim(const double *s, const double *middle)
+static double roots_of(const double *s)
 {
-    const double roots = fabs(s[0]) + fabs(s[1]) + fabs(s[2]);
-    const double plain = 16 * (fabs(middle[0]) + fabs(middle[1]) + fabs(middle[2]));
-    return roots > plain ? pow(fmax(plain / roots, 1.0 / 256), 4) : 1;
+    return fabs(s[0]) + fabs(s[1]) + fabs(s[2]);
 }
 
 // Means of 13 in a row or column, of those that are about as far.
@@ -346,7 +348,9 @@ static struct grid smooth(const struct frame *f, const struct grid *from, int dx
             const double lonely =
                 (1 - fmin(fmax(4 * (part - 1.0 / 7), 0), 1)) * fmin(fmax(2 - fmin(fabs(middle[RADIUS]), around), 0), 1);
             for (int i = 0; i < 13; i++) {
-                const double g = line[i] ? (of[i] + lonely * (rest[i] - of[i])) * dim(line[i], middle) : 0;
+                const double g =
+                    line[i] ? (of[i] + lonely * (rest[i] - of[i])) * dimmed(roots_of(line[i]), 16 * roots_of(middle))
+                            : 0;
                 sum += g;
                 for (int c = 0; c < f->channels && g > 0; c++)
                     out[c] += g * line[i][c];
