@@ -400,13 +400,17 @@ void trade_ladder_table(FILE *out, const struct trade *t)
     int place[TRADE_QUALITIES];
     fprintf(
         out,
-        "// SPDX-License-Identifier: BSD-3-Clause\n// Made by `hyperfocal-bench tradeoff --ladder "
-        "src/frame/ladder_table.h`. Do not edit.\n//\n// Settings worth having, cheapest first. Each takes longer than "
-        "the "
-        "one before and errs less, and on no\n// scene where either may be chosen by 0.1 dB more. Those of the "
-        "gaussian "
-        "engine are for blur that is no wider than theirs; for a lens the\n// list begins below them.\n// clang-format "
-        "off\n"
+        "// SPDX-License-Identifier: BSD-3-Clause\n"
+        "// Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.\n"
+        "//\n"
+        "// Settings worth having, cheapest first. Each takes longer than the one before and errs less, and on no "
+        "scene "
+        "where\n"
+        "// either may be chosen by 0.1 dB more. Those of the gaussian engine are for blur that is no wider than "
+        "theirs; "
+        "for a\n"
+        "// lens the list begins below them.\n"
+        "// clang-format off\n"
         "#define HF_LADDER_MEASURED \"%s, %s, %s, %d thread%s\"\n// options; display-encoded root mean square error, "
         "geometric mean of the scenes and of the worst; milliseconds of a\n// megapixel\n#define HF_LADDER_STEPS",
         t->date, t->cpu, hf_isa_name(t->isa), t->threads, t->threads == 1 ? "" : "s");

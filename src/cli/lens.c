@@ -28,17 +28,21 @@ static float first(float option, float header, float otherwise)
     return given(option) ? option : cli_lens_usable(header) ? header : otherwise;
 }
 
+static int names_range(const struct cli_args *args)
+{
+    return given(args->range) || given(args->near_begin) || given(args->near_end) || given(args->far_begin) ||
+           given(args->far_end);
+}
+
 static int asks_range(const struct cli_args *args)
 {
-    return given(args->range) || given(args->depth_of_field) || given(args->strength) || given(args->near_begin) ||
-           given(args->near_end) || given(args->far_begin) || given(args->far_end);
+    return names_range(args) || given(args->depth_of_field) || given(args->strength);
 }
 
 // The option that chose the range model without having range in its meaning; NULL: there is one that has.
 static const char *hidden_range(const struct cli_args *args)
 {
-    if (given(args->range) || given(args->near_begin) || given(args->near_end) || given(args->far_begin) ||
-        given(args->far_end))
+    if (names_range(args))
         return NULL;
     return given(args->depth_of_field) ? "--depth-of-field" : "--strength";
 }

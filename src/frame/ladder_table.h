@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.
 //
-// Settings worth having, cheapest first. Each takes longer than the one before and errs less, and on no
-// scene where either may be chosen by 0.1 dB more. Those of the gaussian engine are for blur that is no wider than theirs; for a lens the
-// list begins below them.
+// Settings worth having, cheapest first. Each takes longer than the one before and errs less, and on no scene where
+// either may be chosen by 0.1 dB more. Those of the gaussian engine are for blur that is no wider than theirs; for a
+// lens the list begins below them.
 // clang-format off
 #define HF_LADDER_MEASURED "2026-11-22, Intel(R) Xeon(R) Processor, avx512, 2 threads"
 // options; display-encoded root mean square error, geometric mean of the scenes and of the worst; milliseconds of a

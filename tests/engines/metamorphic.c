@@ -206,6 +206,18 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
+// Samples of a picture that differ from the trial's farther than m from these pixels.
+static int changed_beyond(const struct trial *t, const struct picture *out, int x0, int y0, int x1, int y1, int m)
+{
+    const int w = t->s.colour.width, h = t->s.colour.height;
+    int far = 0;
+    for (int c = 0; c < out->channels; c++)
+        for (int i = 0; i < w * h; i++)
+            far += (i % w < x0 - m || i % w >= x1 + m || i / w < y0 - m || i / w >= y1 + m) &&
+                   memcmp(&out->plane[c][i], &t->out.plane[c][i], sizeof(float)) != 0;
+    return far;
+}
+
 static void bad_sample(const struct trial *t, struct rng *rng)
 {
     static const float values[] = {NAN, INFINITY, -INFINITY};
@@ -218,11 +230,7 @@ static void bad_sample(const struct trial *t, struct rng *rng)
     struct picture out = render_scene(t->c, &s, &t->p);
     struct hf_report report;
     hf_get_report(t->c, &report);
-    int far = 0;
-    for (int c = 0; c < out.channels; c++)
-        for (int i = 0; i < w * h; i++)
-            far += (abs(i % w - x) > m || abs(i / w - y) > m) &&
-                   memcmp(&out.plane[c][i], &t->out.plane[c][i], sizeof(float)) != 0;
+    const int far = changed_beyond(t, &out, x, y, x + 1, y + 1, m);
     CHECK_MSG(all_finite(&out), "%s: a bad sample at (%d, %d) spreads", name_of(t), x, y);
     CHECK_MSG(!far || t->p.layers.quality == HF_LAYERS_BEST, "%s: a bad sample at (%d, %d) changes %d farther than %d",
               name_of(t), x, y, far, m);
@@ -252,11 +260,7 @@ static void bad_patch(const struct trial *t, struct rng *rng)
     struct picture out = render_scene(t->c, &s, &t->p);
     struct hf_report report;
     hf_get_report(t->c, &report);
-    int far = 0;
-    for (int c = 0; c < out.channels; c++)
-        for (int i = 0; i < w * h; i++)
-            far += (i % w < x0 - m || i % w >= x1 + m || i / w < y0 - m || i / w >= y1 + m) &&
-                   memcmp(&out.plane[c][i], &t->out.plane[c][i], sizeof(float)) != 0;
+    const int far = changed_beyond(t, &out, x0, y0, x1, y1, m);
     CHECK_MSG(all_finite(&out), "%s: a patch from %g on at (%d, %d) - (%d, %d) makes what is not finite", name_of(t),
               (double)values[first], x0, y0, x1, y1);
     CHECK_MSG(!far || t->p.layers.quality == HF_LAYERS_BEST,

@@ -10,8 +10,8 @@
 #include "io/exr/zip.h"
 
 // Files are not to be longer than those of the C++ library (zlib, level 4). libdeflate's 4 makes blurred pictures shorter
-// by 4 % and takes two thirds of the time of its 6, which makes them shorter by another 3 to 5 %. Of noise
-// in all its bits zip.c stores the half that does not shrink.
+// by 4 % and takes two thirds of the time of its 6, which makes them shorter by another 3 to 5 %. Of noise in all
+// its bits zip.c stores the half that does not shrink.
 enum { ZIP_LEVEL = 4 };
 
 static int64_t write_nowhere(exr_const_context_t core, void *user, const void *data, uint64_t size, uint64_t offset,
