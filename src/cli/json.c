@@ -3,6 +3,7 @@
 
 #include "cli/choose.h"
 #include "cli/explain.h"
+#include "cli/preview.h"
 #include "cli/summary.h"
 #include "cli/warn.h"
 #include "tool/json.h"
@@ -191,7 +192,11 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     tool_json_count(&j, "threads", hf_context_threads(context));
     tool_json_text(&j, "storage", hf_name(HF_NAMES_STORAGE, (int)frame->views[0].setup.params.gather.storage));
     if (args->dry_run) {
+        const struct cli_expected e = cli_expect(frame, context);
         tool_json_flag(&j, "dry_run", 1);
+        tool_json_count(&j, "expected_memory", (long long)e.bytes);
+        tool_json_ms(&j, "expected_ms", e.ms);
+        tool_json_ms(&j, "expected_defocus_ms", e.defocus_ms);
     } else {
         tool_json_ms(&j, "read_ms", frame->ms[CLI_READ] + frame->ms[CLI_DECODE]);
         tool_json_ms(&j, "write_ms", frame->ms[CLI_ENCODE] + frame->ms[CLI_WRITE]);

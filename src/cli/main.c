@@ -69,6 +69,8 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
         if (status)
             return status;
     }
+    const struct cli_expected e = cli_expect(frame, context);
+    printf("  expected: %.0f MiB, %.0f ms, defocus %.0f ms of it\n", e.bytes / (1 << 20), e.ms, e.defocus_ms);
     return 0;
 }
 
@@ -85,7 +87,6 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
                      struct tool_error *error)
 {
     struct cli_frame frame;
-    const int explain = args->explain || args->explain_image || args->focus_image;
     int status = cli_frame_open(&frame, args, &session->run, error);
     frame.alone = 1;
     if (!status)
@@ -94,7 +95,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
         status = cli_overlay_check(&frame, error);
     if (!status && !args->dry_run)
         status = cli_frame_render(&frame, session, error);
-    else if (!status && explain)
+    else if (!status)
         status = cli_frame_plan(&frame, session, error);
     if (!status && !args->dry_run)
         status = cli_frame_encode(&frame, NULL, 0, error);

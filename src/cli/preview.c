@@ -44,13 +44,21 @@ static int first_there(const struct cli_shot *shot)
     return 0;
 }
 
+struct cli_expected cli_expect(const struct cli_frame *frame, const struct hf_context *context)
+{
+    struct hf_report report = {0};
+    hf_get_report(context, &report);
+    const double defocus = frame->view_count * report.predicted_ms;
+    const double files = frame->ms[CLI_READ] + frame->ms[CLI_DECODE] * (1 + ENCODE_BY_DECODE);
+    return (struct cli_expected){cli_plan_frame_bytes(frame, (double)report.memory), files + defocus, defocus};
+}
+
 // Look at a frame as if to render it.
 static int expect(const struct cli_plan *plan, int left, struct tool_error *error)
 {
     struct cli_args args;
     struct cli_session session = {0};
     struct cli_frame frame = {0};
-    struct hf_report report = {0};
     cli_plan_args(plan, first_there(plan->shot), &args);
     int status = cli_session_open(&session, &args, cli_plan_threads(&args), error);
     if (!status)
@@ -60,15 +68,12 @@ static int expect(const struct cli_plan *plan, int left, struct tool_error *erro
     if (!status)
         status = cli_frame_plan(&frame, &session, error);
     if (!status) {
-        hf_get_report(session.context, &report);
-        const double bytes = cli_plan_frame_bytes(&frame, (double)report.memory);
-        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, 0, 0, bytes);
-        const double io = frame.ms[CLI_READ] + frame.ms[CLI_DECODE] * (1 + ENCODE_BY_DECODE);
-        const double ms = io + frame.view_count * report.predicted_ms;
+        const struct cli_expected e = cli_expect(&frame, session.context);
+        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, 0, 0, e.bytes);
         printf("%d frames, %d at a time; a frame takes about %.0f MiB, all at once %.0f MiB\n", left, workers,
-               bytes / (1 << 20), workers * bytes / (1 << 20));
-        printf("expected: %.0f ms for a frame alone, defocus %.0f ms of it; about %.0f s for all\n", ms,
-               frame.view_count * report.predicted_ms, ms * left / 1000);
+               e.bytes / (1 << 20), workers * e.bytes / (1 << 20));
+        printf("expected: %.0f ms for a frame alone, defocus %.0f ms of it; about %.0f s for all\n", e.ms, e.defocus_ms,
+               e.ms * left / 1000);
     }
     cli_frame_close(&frame);
     cli_session_close(&session);

@@ -4,7 +4,15 @@
 #define HF_CLI_PREVIEW_H
 
 #include "cli/args.h"
+#include "cli/frame.h"
 #include "cli/shot.h"
+
+// What a frame that was planned will take: bytes of memory, milliseconds alone, and those of them that defocus takes.
+// Encoding is guessed from decoding.
+struct cli_expected {
+    double bytes, ms, defocus_ms;
+};
+struct cli_expected cli_expect(const struct cli_frame *frame, const struct hf_context *context);
 
 // The frames with their files, and the memory and time that the first lets expect. Returns an exit code.
 int cli_preview(const struct cli_args *args, const struct cli_shot *shot, struct tool_error *error);

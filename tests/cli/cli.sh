@@ -314,6 +314,8 @@ picture_tests() {
     run plain.exr -o o.exr --focus 3 --dry-run --dump-passes passes
     [ "$status" -eq 0 ] && [ "$(ls -lR .)" = "$before" ] && contains "$dir/out" "o.exr"
     result "--dry-run writes nothing" $?
+    grep -q 'expected: [1-9][0-9]* MiB, [1-9][0-9]* ms, defocus [0-9]* ms of it' "$dir/out"
+    result "--dry-run says what memory and time to expect" $?
     contains "$dir/err" "--dump-passes passes: a dry run renders nothing"
     result "--dry-run says that it dumps no passes" $?
     run plain.exr -o ./plain.exr --focus 3 --dry-run
@@ -325,7 +327,8 @@ picture_tests() {
     result "--dry-run --json FILE writes FILE" $?
     rm -f s.json
     run plain.exr --focus 3 --dry-run --json
-    [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"dry_run": true'
+    [ "$status" -eq 0 ] && json_valid "$dir/out" && contains "$dir/out" '"dry_run": true' &&
+        grep -q '"expected_memory": [1-9]' "$dir/out"
     result "--dry-run --json" $?
 
     # Done, and what it says about it.
