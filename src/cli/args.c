@@ -232,6 +232,11 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
         return tool_fail(error, -1,
                          "--focus-smooth is of use only with a focus that is read from the pictures: --focus center, "
                          "--focus-at or keys for it");
+    if (args->focus_smooth > 0 && args->focus_per_view)
+        return tool_fail(
+            error, -1,
+            "--focus-smooth and --focus-per-view cannot be given together: a focus that follows is that of "
+            "the first view, and all share it");
     if (args->verbose && args->quiet)
         return tool_fail(error, -1, "--verbose and --quiet cannot be given together");
     return 0;

@@ -111,7 +111,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     if (!status && args->dry_run && (!args->json || args->json_file))
         status = print_plan(&frame, session->context, error);
     if (!status && args->dry_run)
-        cli_print_early_warnings(&frame);
+        cli_print_warnings(&frame);
     // JSON on stdout is for programs: then people are told on the other channel.
     if (!status && args->explain)
         cli_explain_print(args->json && !args->json_file ? stderr : stdout, &frame, !args->dry_run);

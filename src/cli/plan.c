@@ -24,6 +24,9 @@ int cli_plan_open(struct cli_plan *plan, const struct cli_args *args, const stru
     int status = args->keys ? cli_keys_load(&plan->keys, args->keys, args->keys_blend == CLI_KEYS_SMOOTH, error) : 0;
     if (!status && !isnan(args->world_unit))
         cli_keys_scale(&plan->keys, args->world_unit);
+    if (!status && args->focus_smooth > 0 && !cli_track_wanted(args, &plan->keys))
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "--focus-smooth %d is of no use: --keys %s has the focus itself",
+                         args->focus_smooth, args->keys);
     if (status || !shot->jobs.count || !cli_track_wanted(args, &plan->keys))
         return status;
     struct hf_io_run run = {0};

@@ -10,6 +10,7 @@
 #include "cli/plan.h"
 #include "cli/progress.h"
 #include "cli/resume.h"
+#include "cli/warn.h"
 
 // How long encoding takes by how long decoding does, zlib at its usual level: a rough figure, said to be one.
 static const double ENCODE_BY_DECODE = 2.5;
@@ -74,6 +75,7 @@ static int expect(const struct cli_plan *plan, int left, struct tool_error *erro
                e.bytes / (1 << 20), workers * e.bytes / (1 << 20));
         printf("expected: %.0f ms for a frame alone, defocus %.0f ms of it; about %.0f s for all\n", e.ms, e.defocus_ms,
                e.ms * left / 1000);
+        cli_print_warnings(&frame);
     }
     cli_frame_close(&frame);
     cli_session_close(&session);

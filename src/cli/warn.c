@@ -254,6 +254,13 @@ static void warn_alone(struct warner *w)
     if (!isnan(args->memory_limit))
         warn(w, "--memory-limit %g does nothing for one picture: it says how many frames are worked on at once",
              args->memory_limit);
+    if (args->stop_on_error)
+        warn(w, "--stop-on-error does nothing for one picture: it is about the frames after a bad one");
+    if (args->focus_smooth > 0)
+        warn(w, "--focus-smooth %d does nothing for one picture: it is a mean over the frames before and after",
+             args->focus_smooth);
+    if (args->dump_dir && args->dry_run)
+        warn(w, "--dump-passes %s: a dry run renders nothing, so there are no passes to write", args->dump_dir);
 }
 
 static void warn_frame(struct warner *w)
@@ -292,32 +299,11 @@ int cli_print_warnings(const struct cli_frame *frame)
     return w.count + (frame->written.note[0] != '\0');
 }
 
-static void warn_early(struct warner *w)
-{
-    warn_frame(w);
-    for (int i = 0; i < w->frame->view_count; i++) {
-        w->label = w->frame->views[i].label;
-        warn_lens(w, &w->frame->views[i]);
-    }
-}
-
-void cli_print_early_warnings(const struct cli_frame *frame)
-{
-    struct warner w = {.frame = frame, .args = frame->args, .say = 1};
-    warn_early(&w);
-    if (frame->args->dump_dir)
-        tool_print_line("--dump-passes %s: a dry run renders nothing, so there are no passes to write",
-                        frame->args->dump_dir);
-}
-
 void cli_json_warnings(struct tool_json *j, const struct cli_frame *frame)
 {
     struct warner w = {.frame = frame, .args = frame->args, .list = j};
     tool_json_open(j, "warning_texts", '[');
-    if (frame->args->dry_run)
-        warn_early(&w);
-    else
-        warn_all(&w);
+    warn_all(&w);
     for (int i = 0; i < frame->view_count; i++)
         for (const char *c = frame->views[i].said; c && *c; c += strcspn(c, "\n") + 1) {
             char text[1024];

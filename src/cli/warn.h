@@ -11,9 +11,7 @@
 int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v);
 // The same of a frame, each said on stderr (the library's have been), and what was lost in writing it.
 int cli_print_warnings(const struct cli_frame *frame);
-// Of these what is known before any pixel is.
-void cli_print_early_warnings(const struct cli_frame *frame);
-// The sentences of a frame, those of the library included, as an array; in a dry run those that are known.
+// The sentences of a frame, those of the library included, as an array. After a dry run they are those that planning knows.
 void cli_json_warnings(struct tool_json *j, const struct cli_frame *frame);
 
 #endif

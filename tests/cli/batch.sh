@@ -287,6 +287,10 @@ check "keys in the log" grep -q '"focus": 4.5' keylog
 printf 'frame,focus\n1,4\n1,5\n' >twice.csv
 run in/shot.####.exr --print-focus --keys twice.csv
 check "keys that are none" exits 1
+run in/shot.####.exr --print-focus --keys keys.csv --focus-smooth 3
+check "smoothing of keys" says "--focus-smooth 3 is of no use: --keys keys.csv has the focus itself"
+run in/shot.####.exr --print-focus --focus center --focus-smooth 3 --focus-per-view
+check "smoothing of each view" says "--focus-smooth and --focus-per-view cannot be given together"
 run in/shot.####.exr --print-focus --focus center --focus-smooth 0
 check "focus of the pictures" exits 0
 cp out raw

@@ -322,6 +322,13 @@ picture_tests() {
     [ "$status" -eq 0 ] && contains "$dir/out" "would write ./plain.exr, over the input" &&
         contains "$dir/err" "OUTPUT ./plain.exr is INPUT"
     result "--dry-run says what it would write over" $?
+    run plain.exr --focus center --focus-smooth 2 --stop-on-error --dry-run
+    contains "$dir/err" "--stop-on-error does nothing for one picture" &&
+        contains "$dir/err" "--focus-smooth 2 does nothing for one picture"
+    result "what only a shot has a use for" $?
+    run plain.exr --focus 3 --range inf --dry-run
+    contains "$dir/err" "nothing is blurred"
+    result "--dry-run warns as rendering would" $?
     good plain.exr --focus 3 --dry-run --json s.json
     json_valid s.json && contains s.json '"dry_run": true' && contains "$dir/out" "would write nothing"
     result "--dry-run --json FILE writes FILE" $?
