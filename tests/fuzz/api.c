@@ -383,8 +383,15 @@ static void look(void *cookie, const struct hf_buffer *m)
 static enum hf_isa any_isa(struct bytes *b)
 {
     const unsigned first = take_byte(b);
-    if (getenv("HYPERFOCAL_ISA"))
+    const char *named = getenv("HYPERFOCAL_ISA");
+    if (named) {
+        // A name that is none would have every call refused and nothing tried.
+        int known = 0;
+        for (int i = 0; i <= HF_ISA_NEON; i++)
+            known |= hf_isa_available((enum hf_isa)i) && !strcmp(hf_isa_name((enum hf_isa)i), named);
+        MUST(known);
         return HF_ISA_AUTO;
+    }
     for (unsigned i = 0; i <= HF_ISA_NEON; i++) {
         const enum hf_isa isa = (enum hf_isa)((first + i) % (HF_ISA_NEON + 1));
         if (hf_isa_available(isa))
