@@ -140,6 +140,7 @@ static void place_tiles(struct hf_layers *l)
     l->seen_range = l->tiles.data;
     l->mixed_range = l->seen_range + n;
     l->repaired = (atomic_uchar *)(l->mixed_range + n);
+    l->transparent = l->repaired + 1;
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
@@ -153,7 +154,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     set_shape(l, p);
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
     l->parts = l->shaped ? 1 : 4;
-    int err = hf_block_grow(&l->tiles, tiles * 2 * sizeof(struct hf_layers_range) + 1, mem);
+    int err = hf_block_grow(&l->tiles, tiles * 2 * sizeof(struct hf_layers_range) + 2, mem);
     if (!err)
         err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
     if (!err)
@@ -195,6 +196,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
             l->levels++;
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);
+    atomic_init(l->transparent, 0);
     l->words = (l->slices + 63) / 64;
     l->share_words = (l->shines + 63) / 64;
     const size_t tiles = (size_t)l->columns * (size_t)l->rows, marks = tiles * (size_t)l->words;

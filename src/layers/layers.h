@@ -112,8 +112,9 @@ struct hf_layers {
     // Which slices have samples in a tile, a bit for each: of what is seen, mixed, hidden, hidden behind
     // that, and of shares.
     struct hf_block marks;
-    atomic_uchar *repaired;  // whether the colour had samples to repair or to limit
-    int words, share_words;  // of a tile's bits
+    atomic_uchar *repaired;     // whether the colour had samples to repair or to limit ...
+    atomic_uchar *transparent;  // ... and whether its alpha is anywhere other than 1
+    int words, share_words;     // of a tile's bits
     uint64_t *seen_marks, *mixed_marks, *hidden_marks, *beyond_marks, *share_marks;
 };
 
@@ -124,6 +125,13 @@ struct hf_samples {
     float *share;  // of a visible sample's weight whose colour is drawn at full resolution; stride of seen
     struct hf_layers_set hidden, beyond;  // at half resolution: behind what is seen, and behind that
 };
+
+// Channels that are looked for and drawn once all of the frame is loaded: alpha that is 1 everywhere stays so, and no other
+// channel hangs on it.
+static inline int hf_layers_drawn(const struct hf_layers *l)
+{
+    return l->channels == 4 && !atomic_load_explicit(l->transparent, memory_order_relaxed) ? 3 : l->channels;
+}
 
 static inline float *hf_layers_at(const struct hf_layers_set *set, float *plane, int x, int y)
 {

@@ -394,20 +394,32 @@ static void search(const struct band *b, struct hf_rect r, int colour, int at, i
         smooth_down(b, colour, at, y);
 }
 
+// Alpha that nothing was looked for of, for whoever looks at the samples.
+static void fill_alpha(const struct hf_frame *f, struct hf_rect r, int colour)
+{
+    for (int y = r.y0; y < r.y1; y++) {
+        float *alpha = hf_at(&f->buf[colour], 3, r.x0, y);
+        for (int x = 0; x < r.x1 - r.x0; x++)
+            alpha[x] = 1;
+    }
+}
+
 // The hidden samples of a band.
 static void find_hidden(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_layers *l = hf_layers(f->s);
-    struct band b = {.f = f, .l = l, .r = r, .reach = hf_layers_hidden_reach(l)};
+    struct hf_layers l = *hf_layers(f->s);
+    const int channels = l.channels;
+    struct band b = {.f = f, .l = &l, .r = r, .reach = hf_layers_hidden_reach(&l)};
     const struct hf_buf *colour = &f->buf[HF_LAYERS_BUF_QUADS], *at = &f->buf[HF_LAYERS_BUF_QUADS_AT];
     float *memory = f->work;
+    l.channels = hf_layers_drawn(&l);
     b.r.y0 = hf_max(r.y0 - HF_LAYERS_SMOOTH, 0);
     b.r.y1 = hf_min(r.y1 + HF_LAYERS_SMOOTH, f->s->half_height);
     b.level[0] = (struct hf_layers_set){.weight = at->ch[0], .radius = at->ch[1], .stride = colour->stride};
     memcpy(b.level[0].colour, colour->ch, sizeof colour->ch);
     b.across = place(&b, &memory);
     b.found = place(&b, &memory);
-    for (int j = 1; j < l->levels; j++)
+    for (int j = 1; j < l.levels; j++)
         b.level[j] = place(&b, &memory);
     place_blocks(&b, &memory);
     find_farthest(&b);
@@ -417,6 +429,10 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
     search(&b, r, HF_LAYERS_BUF_HIDDEN, HF_LAYERS_BUF_HIDDEN_AT, 1);
     find_needed(&b);
     search(&b, r, HF_LAYERS_BUF_BEYOND, HF_LAYERS_BUF_BEYOND_AT, 0);
+    if (l.channels == channels)
+        return;
+    fill_alpha(f, r, HF_LAYERS_BUF_HIDDEN);
+    fill_alpha(f, r, HF_LAYERS_BUF_BEYOND);
 }
 
 void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)

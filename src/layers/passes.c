@@ -25,6 +25,14 @@ static int has_larger(const float *v, int n, float largest)
     return any != 0;
 }
 
+static int has_other_than_one(const float *v, int n)
+{
+    int any = 0;
+    for (int i = 0; i < n; i++)
+        any |= v[i] != 1;
+    return any;
+}
+
 // Returns how many there were.
 static int limit(float *v, int n, float largest)
 {
@@ -41,17 +49,20 @@ void hf_layers_load_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
     const float largest = hf_layers(f->s)->largest;
-    int large = 0;
+    int large = 0, transparent = 0;
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         float *colour[4] = {NULL};
         hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
+        transparent |= f->s->channels == 4 && has_other_than_one(colour[3], n);
         for (int c = 0; c < f->s->channels; c++)
             large += has_larger(colour[c], n, largest) ? limit(colour[c], n, largest) : 0;
         f->k->radius_row(f, x0, y, n, hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x0, y), NULL);
     }
     if (large || f->seen->colour_repaired)
         atomic_store_explicit(hf_layers(f->s)->repaired, 1, memory_order_relaxed);
+    if (transparent)
+        atomic_store_explicit(hf_layers(f->s)->transparent, 1, memory_order_relaxed);
 }
 
 // Samples are counted where they show: a cell loads some of its neighbours' too.
@@ -114,7 +125,7 @@ static void make_group(const struct hf_frame *f, const struct hf_layers *l, cons
 
 void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_layers *l = hf_layers(f->s);
+    struct hf_layers l = *hf_layers(f->s);
     const struct hf_samples samples = {
         .seen = set_of(&f->buf[HF_LAYERS_BUF_SEEN], &f->buf[HF_LAYERS_BUF_SEEN_AT]),
         .mixed = set_of(&f->buf[HF_LAYERS_BUF_MIXED], &f->buf[HF_LAYERS_BUF_MIXED_AT]),
@@ -124,20 +135,23 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
     const int x0 = 2 * r.x0, y0 = 2 * r.y0, x1 = hf_min(2 * r.x1, f->s->width), y1 = hf_min(2 * r.y1, f->s->height);
     const struct hf_rect tiles = {x0 / TILE * TILE, y0 / TILE * TILE, (x1 + TILE - 1) / TILE * TILE,
                                   (y1 + TILE - 1) / TILE * TILE};
-    const int width = tiles.x1 - tiles.x0, height = tiles.y1 - tiles.y0;
+    const int width = tiles.x1 - tiles.x0, height = tiles.y1 - tiles.y0, channels = l.channels;
     float *memory = f->work, *out[4] = {NULL};
-    for (int c = 0; c < l->channels; c++, memory += (size_t)width * (size_t)height)
+    for (int c = 0; c < channels; c++, memory += (size_t)width * (size_t)height)
         out[c] = memory;
-    const int repaired = atomic_load_explicit(l->repaired, memory_order_relaxed);
-    for (int g = 0; g < l->groups; g++)
-        make_group(f, l, &samples, tiles, g, memory, out);
+    l.channels = hf_layers_drawn(&l);
+    for (int i = 0; l.channels < channels && i < width * height; i++)
+        out[3][i] = 1;
+    const int repaired = atomic_load_explicit(l.repaired, memory_order_relaxed);
+    for (int g = 0; g < l.groups; g++)
+        make_group(f, &l, &samples, tiles, g, memory, out);
     for (int y = y0; y < y1; y++) {
         float *row[4] = {NULL};
         if (repaired)
             count_row(f, r, y);
-        for (int c = 0; c < l->channels; c++)
+        for (int c = 0; c < channels; c++)
             row[c] = out[c] + (ptrdiff_t)(y - tiles.y0) * width + x0 - tiles.x0;
         hf_store_rgb(f, row, x1 - x0);
-        hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)row, l->channels == 4);
+        hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)row, channels == 4);
     }
 }
