@@ -3,6 +3,8 @@
 #include "layers/kernels.h"
 #include "simd/simd.h"
 
+enum { LAYERS_SIDE = 2 };  // vectors of a disc side by side
+
 // A vector's samples: runs of tiles are too short for the processor to see what comes next.
 HF_INLINE void layers_ask_for(const float *const in[6], const float *share, ptrdiff_t at, const int channels)
 {
@@ -81,35 +83,52 @@ static void layers_fold_simd(const float *in, int n, float *out)
     hf_layers_fold_c(in + 2 * x, n - x, out + x);
 }
 
-// Two rows at once: what they add to a row of the result is added in registers.
+// Two rows at once: what they add to a row of the result is added in registers. `side` vectors side by side.
+HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, const float *lower, const int side,
+                              int from, int to, float *out, ptrdiff_t stride)
+{
+    // Of the upper row and the lower one; pair: what comes next on either side of what the sums hold.
+    vf sum[2][LAYERS_SIDE], last[2][LAYERS_SIDE], pair[2][LAYERS_SIDE];
+    const float *const row[2] = {upper, lower};
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < side; j++) {
+            const vf middle = vf_load(row[i] + j * VF_N);
+            sum[i][j] = last[i][j] = vf_zero();
+            pair[i][j] = vf_add(middle, middle);
+        }
+    int have = -1;
+    for (int d = s->rows - 1; d >= 0; d--) {
+        const struct hf_disc_row part = s->row[d];
+        for (; have < part.n; have++)
+            for (int i = 0; i < 2; i++)
+                for (int j = 0; j < side; j++) {
+                    const float *p = row[i] + j * VF_N;
+                    sum[i][j] = have < 0 ? vf_load(p) : vf_add(sum[i][j], pair[i][j]);
+                    pair[i][j] = vf_add(vf_load(p - have - 2), vf_load(p + have + 2));
+                }
+        vf v[2][LAYERS_SIDE];
+        for (int i = 0; i < 2; i++)
+            for (int j = 0; j < side; j++)
+                v[i][j] = vf_fma(vf_set1(part.f), pair[i][j], sum[i][j]);
+        for (int i = 0; i < 2; i++) {
+            const int y = i ? d + 1 : -d;
+            for (int j = 0; y >= from && y < to && j < side; j++) {
+                float *o = out + y * stride + j * VF_N;
+                vf_store(o, vf_add(vf_load(o), vf_add(v[i][j], last[!i][j])));
+            }
+        }
+        for (int i = 0; i < 2; i++)
+            for (int j = 0; j < side; j++)
+                last[i][j] = v[i][j];
+    }
+}
+
 static void layers_disc_simd(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
                              float *out, ptrdiff_t stride)
 {
-    for (int x = 0; x < n; x += VF_N) {
-        const vf middle_u = vf_load(upper + x), middle_l = vf_load(lower + x);
-        vf sum_u = vf_zero(), sum_l = vf_zero(), last_u = vf_zero(), last_l = vf_zero();
-        // The pair that comes next, on either side of what the sums hold.
-        vf pair_u = vf_add(middle_u, middle_u), pair_l = vf_add(middle_l, middle_l);
-        int have = -1;
-        for (int d = s->rows - 1; d >= 0; d--) {
-            const struct hf_disc_row row = s->row[d];
-            for (; have < row.n; have++) {
-                sum_u = have < 0 ? middle_u : vf_add(sum_u, pair_u);
-                sum_l = have < 0 ? middle_l : vf_add(sum_l, pair_l);
-                pair_u = vf_add(vf_load(upper + x - have - 2), vf_load(upper + x + have + 2));
-                pair_l = vf_add(vf_load(lower + x - have - 2), vf_load(lower + x + have + 2));
-            }
-            const vf f = vf_set1(row.f), u = vf_fma(f, pair_u, sum_u), l = vf_fma(f, pair_l, sum_l);
-            if (-d >= from && -d < to) {
-                float *o = out - d * stride + x;
-                vf_store(o, vf_add(vf_load(o), vf_add(u, last_l)));
-            }
-            if (d + 1 >= from && d + 1 < to) {
-                float *o = out + (d + 1) * stride + x;
-                vf_store(o, vf_add(vf_load(o), vf_add(l, last_u)));
-            }
-            last_u = u;
-            last_l = l;
-        }
-    }
+    int x = 0;
+    for (; x + LAYERS_SIDE * VF_N <= n; x += LAYERS_SIDE * VF_N)
+        layers_disc_of(s, upper + x, lower + x, LAYERS_SIDE, from, to, out + x, stride);
+    for (; x < n; x += VF_N)
+        layers_disc_of(s, upper + x, lower + x, 1, from, to, out + x, stride);
 }

@@ -137,7 +137,7 @@ static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int l
     }
 }
 
-static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
+static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int y0, int y1)
 {
     const int size = TILE >> b->s->level, from = within(ty, around_of(c->y0, c->l->rows));
     const struct around wide = around_of(c->x0, c->l->columns);
@@ -145,7 +145,7 @@ static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
         memset(hf_layers_map_at(&c->filled, c->box.x0, i), 0, (size_t)(c->box.x1 - c->box.x0));
     for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0)) > tx; tx = end) {
         const int first = within(tx, wide), last = within(end - 1, wide);
-        for (int y = 0; y < size; y++) {
+        for (int y = y0; y < y1; y++) {
             build_run(c, b, first, last + 1, ty, from, y);
             repeat_tile(c, b, first, tx, first, y);
             repeat_tile(c, b, last, last + 1, end, y);
@@ -154,10 +154,10 @@ static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty)
 }
 
 // Also what vectors have written past the last tile.
-static void clear_row(const struct hf_cell *c, const struct hf_build *b)
+static void clear_row(const struct hf_cell *c, const struct hf_build *b, int y0, int y1)
 {
     const int size = TILE >> b->s->level;
-    for (int y = 0; y < size; y += 2)
+    for (int y = y0; y < y1; y += 2)
         for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end)
             for (int i = 0; i <= 2 * c->l->channels + 1; i++)
                 memset(source_at(c, i / 2, tx * size, y + i % 2), 0, sizeof(float) * (size_t)((end - tx) * size + 16));
@@ -214,9 +214,12 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
         if (hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0) == tx || (ty + 1) * size + b->s->rows <= -margin ||
             ty * size - b->s->rows >= c->rows * size + margin)
             continue;
-        build_row(c, b, ty);
-        for (int y = 0; y < size; y += 2)
+        // The pairs of rows whose blur reaches what is made.
+        const int least = -margin - b->s->rows - ty * size, most = c->rows * size + margin + b->s->rows - ty * size;
+        const int y0 = least > 0 ? least & ~1 : 0, y1 = most < size ? (most + 1) & ~1 : size;
+        build_row(c, b, ty, y0, y1);
+        for (int y = y0; y < y1; y += 2)
             draw_pair(c, b, ty, y, to);
-        clear_row(c, b);
+        clear_row(c, b, y0, y1);
     }
 }
