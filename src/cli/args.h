@@ -6,6 +6,7 @@
 #include <limits.h>
 
 #include "hyperfocal/hyperfocal.h"
+#include "io/io.h"
 #include "tool/options.h"
 
 enum { CLI_DONE = 0, CLI_BAD_ARGUMENTS = 1, CLI_SOME_FAILED = 2, CLI_ALL_FAILED = 3 };
@@ -48,6 +49,7 @@ struct cli_args {
     const char *depth_channel, *depth_file;
     enum hf_depth_type depth_type;    // as the library sees it, once cli_depth_prepare was there
     int normalized;                   // 1: a map from 0 at near_plane to 1 at far_plane; -1: the other way; else 0
+    enum hf_io_edges depth_edges;     // of depth_file
     float near_plane, far_plane;      // scene units
     float depth_scale, depth_offset;  // of the numbers as they are stored, before all else
 

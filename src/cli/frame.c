@@ -125,7 +125,7 @@ static int read_depth_file(const struct cli_args *args, struct cli_view *v, stru
 {
     struct hf_io_error io;
     struct hf_io_map map;
-    if (hf_io_read_depth_file(args->depth_file, args->depth_channel, v->view, v->depth, &map, &io))
+    if (hf_io_read_depth_file(args->depth_file, args->depth_channel, args->depth_edges, v->view, v->depth, &map, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     const int scaled = map.width != v->view->width || map.height != v->view->height;
     v->map_size[0] = scaled ? map.width : 0;
@@ -133,6 +133,7 @@ static int read_depth_file(const struct cli_args *args, struct cli_view *v, stru
     v->scaled_to[0] = v->view->width;
     v->scaled_to[1] = v->view->height;
     v->map_bits = map.bits;
+    v->sharpened = map.sharpened;
     if (map.bits && args->depth_type == HF_DEPTH_INVERSE && isnan(args->near_plane) && isnan(args->depth_scale))
         return tool_fail(error, CLI_BAD_ARGUMENTS,
                          "%s: whole numbers of %d bits count as 0 to 1, so --depth-type inverse needs --near, the "

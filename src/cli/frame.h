@@ -32,15 +32,16 @@ struct cli_view {
     int map_size[2];  // width and height of the depth file, which was scaled; 0: it was not
     int scaled_to[2];
     struct cli_depth_found found;
-    int map_bits;        // of the depth file's whole numbers; 0: floats, or no such file
-    float least_radius;  // pixels: the surface that is least blurred
-    float range[2];      // distances of the nearest surface and the farthest, see cli_coc_measure; [0] > [1]: not known
-    float blend[2];      // gaussian: how much of its one blur is mixed in at most, in front of the focus and behind
-    float least_reach;   // of all that is blurred at all
-    float far_away;      // radius of what is infinitely far
-    float *radii;        // of all pixels, see cli_coc_look; NULL
-    int warned;          // times by the library
-    char *said;          // what it said then, a line each; NULL: nothing
+    long long sharpened;  // samples of the depth file, see --depth-edges
+    int map_bits;         // of the depth file's whole numbers; 0: floats, or no such file
+    float least_radius;   // pixels: the surface that is least blurred
+    float range[2];     // distances of the nearest surface and the farthest, see cli_coc_measure; [0] > [1]: not known
+    float blend[2];     // gaussian: how much of its one blur is mixed in at most, in front of the focus and behind
+    float least_reach;  // of all that is blurred at all
+    float far_away;     // radius of what is infinitely far
+    float *radii;       // of all pixels, see cli_coc_look; NULL
+    int warned;         // times by the library
+    char *said;         // what it said then, a line each; NULL: nothing
     uint64_t highlights;  // pixels above --highlight-threshold, if they are to be raised
     int whole;            // --grow: the data window was as large as it may get
     int cut;              // pixels by which the blur reaches beyond the data window, and is lost

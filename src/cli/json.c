@@ -139,8 +139,10 @@ static void put_window(struct tool_json *j, const char *name, const struct hf_io
     tool_json_close(j);
 }
 
-void cli_json_map_size(struct tool_json *j, const struct cli_view *v)
+void cli_json_map(struct tool_json *j, const struct cli_view *v)
 {
+    if (v->map_bits || v->sharpened)
+        tool_json_count(j, "depth_sharpened", v->sharpened);
     if (!v->map_size[0])
         return;
     tool_json_row(j, "depth_scaled_from", '[');
@@ -161,7 +163,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     tool_json_close(j);
     tool_json_text(j, "depth", frame->args->depth_file ? frame->args->depth_file : v->view->depth);
     tool_json_text(j, "depth_type", cli_depth_type_name(frame->args));
-    cli_json_map_size(j, v);
+    cli_json_map(j, v);
     tool_json_count(j, "width", v->view->width);
     tool_json_count(j, "height", v->view->height);
     put_window(j, "data_window", &v->view->data_window);

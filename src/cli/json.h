@@ -8,8 +8,9 @@
 
 #include "tool/json.h"
 
-// Of a view whose depth file was scaled to it: "depth_scaled_from", its width and height. Else nothing.
-void cli_json_map_size(struct tool_json *j, const struct cli_view *v);
+// Of a view's depth file: "depth_sharpened", samples, when it has whole numbers or some were; "depth_scaled_from", width
+// and height, when it was.
+void cli_json_map(struct tool_json *j, const struct cli_view *v);
 
 // One JSON object about a frame: what was asked for, what was done, how long it took. Of a --dry-run the first only.
 void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context);

@@ -48,6 +48,8 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     if (v->map_size[0])
         n += snprintf(text, sizeof(text), "%d x %d scaled to %d x %d, ", v->map_size[0], v->map_size[1],
                       v->scaled_to[0], v->scaled_to[1]);
+    if (v->sharpened)
+        n += snprintf(text + n, sizeof(text) - (size_t)n, "%lld samples beside outlines sharpened, ", v->sharpened);
     n += snprintf(text + n, sizeof(text) - (size_t)n, "%s", hf_engine_name(p->engine));
     if (v->setup.choice.options)
         n += snprintf(text + n, sizeof(text) - (size_t)n, " (%s chose %s)", cli_choice_option(frame->args).text,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/depth_edges.h"
 #include "io/exr/chunks.h"
 #include "io/file.h"
 #include "io/oiio/oiio.h"
@@ -15,6 +16,9 @@ struct source {
     struct hf_io_file *file;
     int part, channel;  // of an EXR
     int width, height;
+    int bits;
+    enum hf_io_edges edges;
+    long long sharpened;
 };
 
 static int find_exr(struct source *s, const char *depth_channel, const struct hf_io_view *view, struct hf_io_error *err)
@@ -40,8 +44,8 @@ static int find_exr(struct source *s, const char *depth_channel, const struct hf
     return 0;
 }
 
-static int read_own_size(const struct source *s, const char *depth_channel, const struct hf_io_view *view, float *depth,
-                         struct hf_io_error *err)
+static int read_samples(const struct source *s, const char *depth_channel, const struct hf_io_view *view, float *depth,
+                        struct hf_io_error *err)
 {
     struct hf_io_view own = *view;
     own.width = s->width;
@@ -54,6 +58,17 @@ static int read_own_size(const struct source *s, const char *depth_channel, cons
     return hf_exr_decode(s->file->exr, &plane, 1, NULL, err);
 }
 
+static int read_own_size(struct source *s, const char *depth_channel, const struct hf_io_view *view, float *depth,
+                         struct hf_io_error *err)
+{
+    if (read_samples(s, depth_channel, view, depth, err))
+        return -1;
+    if ((s->edges == HF_IO_EDGES_SHARPEN || (s->edges == HF_IO_EDGES_AUTO && s->bits)) &&
+        hf_io_sharpen_depth(depth, s->width, s->height, &s->sharpened))
+        return hf_io_fail(err, "%s: out of memory", s->file->path);
+    return 0;
+}
+
 // The nearest sample: a mean of two surfaces would be a distance at which there is nothing.
 static void resample(const float *from, const struct source *s, float *to, int width, int height)
 {
@@ -64,8 +79,8 @@ static void resample(const float *from, const struct source *s, float *to, int w
     }
 }
 
-static int read_other_size(const struct source *s, const char *depth_channel, const struct hf_io_view *view,
-                           float *depth, struct hf_io_error *err)
+static int read_other_size(struct source *s, const char *depth_channel, const struct hf_io_view *view, float *depth,
+                           struct hf_io_error *err)
 {
     const double shape = (double)s->width * view->height / ((double)s->height * view->width);
     if (!(fabs(shape - 1) <= 0.01) || s->width / view->width >= LARGEST)
@@ -113,16 +128,18 @@ static int check_grey(struct source *s, const char *depth_channel, struct hf_io_
     return status;
 }
 
-int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
-                          struct hf_io_map *map, struct hf_io_error *err)
+int hf_io_read_depth_file(const char *path, const char *depth_channel, enum hf_io_edges edges,
+                          const struct hf_io_view *view, float *depth, struct hf_io_map *map, struct hf_io_error *err)
 {
-    struct source s = {0};
+    struct source s = {.edges = edges};
     *map = (struct hf_io_map){0};
     int status = hf_io_open_any(&s.file, path, NULL, err);
     if (!status && s.file->exr)
         status = find_exr(&s, depth_channel, view, err);
     else if (!status)
         hf_oiio_size(s.file->oiio, &s.width, &s.height);
+    if (!status && !s.file->exr)
+        s.bits = hf_oiio_bits(s.file->oiio);
     if (!status && s.width == view->width && s.height == view->height)
         status = read_own_size(&s, depth_channel, view, depth, err);
     else if (!status)
@@ -130,7 +147,7 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, const str
     if (!status)
         status = check_grey(&s, depth_channel, err);
     if (!status)
-        *map = (struct hf_io_map){s.width, s.height, s.file->exr ? 0 : hf_oiio_bits(s.file->oiio)};
+        *map = (struct hf_io_map){s.width, s.height, s.bits, s.sharpened};
     hf_io_close(&s.file);
     return status;
 }

@@ -93,13 +93,20 @@ int hf_io_grow(struct hf_io_file *file, int view, struct hf_io_box box, float no
 // What a depth file is.
 struct hf_io_map {
     int width, height;
-    int bits;  // of its samples when they are whole numbers, else 0
+    int bits;             // of its samples when they are whole numbers, else 0
+    long long sharpened;  // samples that lay between the two sides of an outline
+};
+// What becomes of depths between the two sides of an outline, at which there is nothing.
+enum hf_io_edges {
+    HF_IO_EDGES_AUTO,  // sharpen whole numbers: maps that were painted, estimated or made smaller
+    HF_IO_EDGES_KEEP,
+    HF_IO_EDGES_SHARPEN,  // they go to the nearer side, before the map is scaled
 };
 // Depth from a file of its own, any format OpenImageIO or OpenEXRCore reads: its depth channel as searched above (or
 // its only channel, or R). When its size is not the view's, the nearest samples are taken; width / height may differ by
 // 1 %, and the width be less than 5 times the view's.
-int hf_io_read_depth_file(const char *path, const char *depth_channel, const struct hf_io_view *view, float *depth,
-                          struct hf_io_map *map, struct hf_io_error *err);
+int hf_io_read_depth_file(const char *path, const char *depth_channel, enum hf_io_edges edges,
+                          const struct hf_io_view *view, float *depth, struct hf_io_map *map, struct hf_io_error *err);
 
 // What to write, and how. All that is zero is the default.
 struct hf_io_job {

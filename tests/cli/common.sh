@@ -234,6 +234,7 @@ def png(path, depth, bits, colours=None, width=64, height=40):
         chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, bits, 2 if colours else 0, 0, 0, 0)) +
         chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
 png('map8.png', lambda x, y: x // 13 / 5, 8)
+png('soft8.png', lambda x, y: .2 if x < 30 else .5 if x < 31 else .8, 8)
 png('half8.png', lambda x, y: 2 * x // 13 / 5, 8, width=32, height=20)
 png('map16.png', lambda x, y: x // 13 / 5, 16)
 png('white.png', lambda x, y: 1 - x // 13 / 5, 8)

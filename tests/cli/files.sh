@@ -163,6 +163,16 @@ sys.exit(not any(t in data for t in tag))'
         [ "$status" -eq 0 ] && { [ $map = map8.png ] || contains "$dir/err" "32 x 20 scaled to 64 x 40"; }
         result "$map" $?
     done
+    for edges in auto keep; do
+        run photo.png -o edges-$edges.png --depth-file soft8.png --depth-type normalized --near 1 --far 6 --focus 2 \
+            --range 2 --max-radius 6 --depth-edges $edges --verbose
+        said=$(grep -o '[0-9]* samples beside outlines sharpened' "$dir/err")
+        [ "$status" -eq 0 ] && [ "$said" = "$([ $edges = keep ] || echo 40 samples beside outlines sharpened)" ]
+        result "--depth-edges $edges" $?
+    done
+    ! cmp -s edges-auto.png edges-keep.png
+    result "--depth-edges has an effect" $?
+    bad 1 "--depth-edges is of use only with --depth-file" photo.png -o o.png --depth-edges sharpen
     run photo.png -o photo-out.png --depth-file map16.png --focus 5 --fstop 0.1 --focal-length 50
     contains "$dir/err" "--depth-type normalized" && contains "$dir/err" "--depth-scale 65.535"
     result "a map of 16 bits may be millimetres" $?

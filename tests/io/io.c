@@ -39,6 +39,7 @@ int main(void)
     test_growing();
     test_planes();
     test_depth_file_sizes();
+    test_depth_edges();
     test_formats();
     test_signals();
     test_rubbish(in_folder("views.exr"));

@@ -24,6 +24,7 @@ void test_swapped_chunks(void);
 void test_growing(void);
 void test_planes(void);
 void test_depth_file_sizes(void);
+void test_depth_edges(void);
 void test_formats(void);
 void test_half(void);
 void test_half_rows(void);
