@@ -7,26 +7,38 @@
 
 #include "pixel/pass_c.h"
 
-// What pixels are to others: the surface behind its edge where one is mixed.
+// What a pixel is to others: the surface behind its edge where it is mixed, and itself where it is not. A pixel of which
+// hardly anything is of what is behind is in between, or a quad would jump from one to the other.
+static float behind_of(const float *const seen[6], const float *const mixed[6], int at, float *weight)
+{
+    const float m = mixed[4][at], own = m > 0 ? seen[4][at] * hf_saturate(1 - HF_LAYERS_EDGE * m) : seen[4][at];
+    *weight = m > 0 ? m + own : own;
+    return m > 0 ? m / *weight : 0;
+}
+
+static float between(const float *const seen[6], const float *const mixed[6], int c, int at, float share)
+{
+    return share > 0 ? share * mixed[c][at] + (1 - share) * seen[c][at] : seen[c][at];
+}
+
 void hf_layers_quads_c(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
                        float *const out[6])
 {
     for (int x = 0; x < n; x++) {
-        const float *const *from[4];
-        float farthest = HF_LAYERS_NOTHING, sum = 0, r = 0, colour[4] = {0};
+        float weight[4], share[4], radius[4], farthest = HF_LAYERS_NOTHING, sum = 0, r = 0, colour[4] = {0};
         for (int i = 0; i < 4; i++) {
-            const int at = 2 * x + (i & 1);
-            from[i] = mixed[i >> 1][4][at] > 0 ? mixed[i >> 1] : seen[i >> 1];
-            farthest = from[i][4][at] > 0 && from[i][5][at] > farthest ? from[i][5][at] : farthest;
+            const int y = i >> 1, at = 2 * x + (i & 1);
+            share[i] = behind_of(seen[y], mixed[y], at, &weight[i]);
+            radius[i] = between(seen[y], mixed[y], 5, at, share[i]);
+            farthest = weight[i] > 0 && radius[i] > farthest ? radius[i] : farthest;
         }
         for (int i = 0; i < 4; i++) {
-            const int at = 2 * x + (i & 1);
-            const float near = 1 - (farthest - from[i][5][at]) * 0.5f;
-            const float g = from[i][4][at] * (near > 0 ? near : 0);
+            const int y = i >> 1, at = 2 * x + (i & 1);
+            const float near = 1 - (farthest - radius[i]) * 0.5f, g = weight[i] * (near > 0 ? near : 0);
             sum = sum + g;
-            r = r + g * from[i][5][at];
+            r = r + g * radius[i];
             for (int c = 0; c < channels; c++)
-                colour[c] = colour[c] + g * hf_layers_root(from[i][c][at]);
+                colour[c] = colour[c] + g * hf_layers_root(between(seen[y], mixed[y], c, at, share[i]));
         }
         const float inverse = sum > 0 ? 1 / sum : 0;
         out[4][x] = sum * 0.25f;
@@ -209,26 +221,54 @@ static float roots_of(const float *const in[6], int x)
     return fabsf(in[0][x]) + fabsf(in[1][x]) + fabsf(in[2][x]);
 }
 
-void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, int n, float *const out[6])
+// How much a sample counts in the mean of one of radius r, some places away in its line; and for which part it is as far.
+static float in_line(float weight, float radius, float r, int i, float *of)
+{
+    const float line = weight > 0 ? hf_layers_line(i) * hf_saturate(HF_LAYERS_WHOLE * weight) : 0;
+    const float alike = 1 - fabsf((weight > 0 ? radius : 0) - r) * (1.0f / HF_LAYERS_ALIKE);
+    *of = line * (alike > 0 ? alike : 0);
+    return line - *of;
+}
+
+// Weights of what is as far and of what is not, and of the latter times how large their radii are.
+struct company {
+    float like, others, size;
+};
+
+static void add_company(struct company *c, float of, float rest, float weight, float radius)
+{
+    c->like = c->like + of;
+    c->others = c->others + rest;
+    c->size = c->size + rest * fabsf(weight > 0 ? radius : 0);
+}
+
+static float lonely(const struct company *c, float r)
+{
+    return hf_layers_lonely(r, c->like, c->others, c->size);
+}
+
+void hf_layers_smooth_c(const float *const in[13][6], const float *const along[2], int channels, int n,
+                        float *const out[6])
 {
     for (int x = 0; x < n; x++) {
         const float r = in[HF_LAYERS_SMOOTH][5][x], weight = in[HF_LAYERS_SMOOTH][4][x];
-        float of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], like = 0, others = 0, size = 0, sum = 0, radius = 0,
-                                                        colour[4] = {0};
+        float of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], alone = 0, sum = 0, radius = 0, colour[4] = {0};
+        struct company line = {0}, across = {0};
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const float far = in[i][4][x] > 0 ? in[i][5][x] : 0;
-            const float line = in[i][4][x] > 0 ? hf_layers_line(i) * hf_saturate(HF_LAYERS_WHOLE * in[i][4][x]) : 0;
-            const float alike = 1 - fabsf(far - r) * (1.0f / HF_LAYERS_ALIKE);
-            of[i] = line * (alike > 0 ? alike : 0);
-            rest[i] = line - of[i];
-            like = like + of[i];
-            others = others + rest[i];
-            size = size + rest[i] * fabsf(far);
+            rest[i] = in_line(in[i][4][x], in[i][5][x], r, i, &of[i]);
+            add_company(&line, of[i], rest[i], in[i][4][x], in[i][5][x]);
         }
-        const float lonely = hf_layers_lonely(r, like, others, size);
+        for (int i = 0; along && i < HF_LAYERS_TAPS; i++) {
+            const int at = x + i - HF_LAYERS_SMOOTH;
+            float near;
+            const float far = in_line(along[0][at], along[1][at], r, i, &near);
+            add_company(&across, near, far, along[0][at], along[1][at]);
+        }
+        if (along)
+            alone = lonely(&line, r) < lonely(&across, r) ? lonely(&line, r) : lonely(&across, r);
         const float plain = roots_of(in[HF_LAYERS_SMOOTH], x) * HF_LAYERS_GLARE;
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const float all = lonely * (rest[i] - of[i]) + of[i],
+            const float all = alone * (rest[i] - of[i]) + of[i],
                         g = all > 0 ? all * hf_layers_dimmed(roots_of(in[i], x), plain) : 0;
             if (!(g > 0))
                 continue;
@@ -242,7 +282,7 @@ void hf_layers_smooth_c(const float *const in[13][6], int channels, int square, 
         out[5][x] = radius * inverse;
         for (int c = 0; c < channels; c++) {
             const float v = colour[c] * inverse;
-            out[c][x] = square ? v * fabsf(v) : v;
+            out[c][x] = along ? v * fabsf(v) : v;
         }
     }
 }

@@ -24,10 +24,11 @@ static inline float hf_layers_line(int i)
     return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));
 }
 
-// How much a sample belongs to no surface: in its line less than ALONE is as far as itself, one more than 1 / COMPANY above
-// that being all that is needed. Its radius is then a mean of two surfaces'. In the slices that are drawn sharp it would be a
-// speck if it lies there, a hole if the others do, and takes their place. like and others: weights of what is as far and of
-// what is not; size: of the latter, times how large their radii are.
+// How much a sample of radius r belongs to no surface: in its row and in its column less than ALONE is as far as itself, one
+// more than 1 / COMPANY above that being all that is needed of either, or a thin rod's would be lost. Its radius is then a mean
+// of two surfaces'. In the slices that are drawn sharp it would be a speck if it lies there, a hole if the others do, and takes
+// their place. like and others: weights of what is as far and of what is not; size: of the latter, times how large their radii
+// are.
 #define HF_LAYERS_ALONE (1.0f / 7)
 #define HF_LAYERS_COMPANY 4
 #define HF_LAYERS_SHARP 2
@@ -66,6 +67,9 @@ struct hf_hidden_line {
 
 // The radius of what is not there: before anything.
 #define HF_LAYERS_NOTHING (-1e30f)
+
+// A pixel that is mixed by less than 1 / EDGE is in part what it is by itself to others.
+#define HF_LAYERS_EDGE 64
 
 // Negative samples keep their sign.
 static inline float hf_layers_root(float v)

@@ -10,16 +10,47 @@ HF_INLINE vf layers_signed_root(vf v)
     return vf_select(vf_lt(v, vf_zero()), vf_sub(vf_zero(), s), s);
 }
 
-// Channel c of a row of pairs, of what lies behind where a pixel is mixed.
-HF_INLINE void layers_pairs(const float *const seen[6], const float *const mixed[6], int c, int x, const vm behind[2],
-                            vf *even, vf *odd)
+// A row of pairs, and for which part each is what lies behind it.
+struct layers_pairs {
+    vm mixed[2];
+    vf share[2];
+};
+
+// Their weights: what is hardly mixed is in part what it is by itself.
+HF_INLINE struct layers_pairs layers_pairs_at(const float *const seen[6], const float *const mixed[6], int x, vf *even,
+                                              vf *odd)
+{
+    const vf one = vf_set1(1), zero = vf_zero();
+    struct layers_pairs p;
+    vf weight[2];
+    for (int i = 0; i < 2; i++) {
+        const int at = 2 * x + i * VF_N;
+        const vf m = vf_load(mixed[4] + at), s = vf_load(seen[4] + at);
+        p.mixed[i] = vf_gt(m, zero);
+        p.share[i] = zero;
+        weight[i] = s;
+        if (!vm_any(p.mixed[i]))
+            continue;
+        const vf own = vf_mul(s, vf_max(vf_fnma(vf_set1(HF_LAYERS_EDGE), m, one), zero));
+        weight[i] = vf_select(p.mixed[i], vf_add(m, own), s);
+        p.share[i] = vf_keep(p.mixed[i], vf_div(m, weight[i]));
+    }
+    vf_unzip(weight[0], weight[1], even, odd);
+    return p;
+}
+
+// Channel c of such a row.
+HF_INLINE void layers_pairs(const float *const seen[6], const float *const mixed[6], int c, int x,
+                            const struct layers_pairs *p, vf *even, vf *odd)
 {
     vf v[2];
     for (int i = 0; i < 2; i++) {
         const int at = 2 * x + i * VF_N;
         v[i] = vf_load(seen[c] + at);
-        if (vm_any(behind[i]))
-            v[i] = vf_select(behind[i], vf_load(mixed[c] + at), v[i]);
+        if (vm_any(p->mixed[i])) {
+            const vf own = vf_mul(vf_sub(vf_set1(1), p->share[i]), v[i]);
+            v[i] = vf_select(p->mixed[i], vf_fma(p->share[i], vf_load(mixed[c] + at), own), v[i]);
+        }
         if (c < 4)
             v[i] = layers_signed_root(v[i]);
     }
@@ -31,18 +62,11 @@ HF_INLINE void layers_quads_of(const float *const seen[2][6], const float *const
 {
     const vf zero = vf_zero(), one = vf_set1(1);
     for (int x = 0; x < n; x += VF_N) {
-        vm behind[2][2];
+        struct layers_pairs pairs[2];
         vf r[4], g[4], farthest = vf_set1(HF_LAYERS_NOTHING), sum = zero, radius = zero;
         for (int y = 0; y < 2; y++) {
-            for (int i = 0; i < 2; i++)
-                behind[y][i] = vf_gt(vf_load(mixed[y][4] + 2 * x + i * VF_N), zero);
-            layers_pairs(seen[y], mixed[y], 5, x, behind[y], &r[2 * y], &r[2 * y + 1]);
-            vf w[2];
-            for (int i = 0; i < 2; i++) {
-                const int at = 2 * x + i * VF_N;
-                w[i] = vf_select(behind[y][i], vf_load(mixed[y][4] + at), vf_load(seen[y][4] + at));
-            }
-            vf_unzip(w[0], w[1], &g[2 * y], &g[2 * y + 1]);
+            pairs[y] = layers_pairs_at(seen[y], mixed[y], x, &g[2 * y], &g[2 * y + 1]);
+            layers_pairs(seen[y], mixed[y], 5, x, &pairs[y], &r[2 * y], &r[2 * y + 1]);
         }
         for (int i = 0; i < 4; i++)
             farthest = vf_select(vf_gt(g[i], zero), vf_max(r[i], farthest), farthest);
@@ -60,7 +84,7 @@ HF_INLINE void layers_quads_of(const float *const seen[2][6], const float *const
             vf colour = zero;
             for (int y = 0; y < 2; y++) {
                 vf even, odd;
-                layers_pairs(seen[y], mixed[y], c, x, behind[y], &even, &odd);
+                layers_pairs(seen[y], mixed[y], c, x, &pairs[y], &even, &odd);
                 colour = vf_fma(g[2 * y], even, colour);
                 colour = vf_fma(g[2 * y + 1], odd, colour);
             }
@@ -308,32 +332,50 @@ HF_INLINE vf layers_roots_of(const float *const in[6], int x)
     return vf_add(vf_add(vf_abs(vf_load(in[0] + x)), vf_abs(vf_load(in[1] + x))), vf_abs(vf_load(in[2] + x)));
 }
 
-HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels, int square, int n,
+// How much samples count in the mean of those of radius r, and for which part they are as far; adds to both, and to the
+// weights of what is not, times how large their radii are.
+HF_INLINE vf layers_in_line(const float *weight, const float *radius, vf r, int i, vf *of, vf company[3])
+{
+    const vf w = vf_load(weight);
+    const vm some = vf_gt(w, vf_zero());
+    const vf far = vf_keep(some, vf_load(radius)), whole = layers_saturate(vf_mul(vf_set1(HF_LAYERS_WHOLE), w));
+    const vf line = vf_keep(some, vf_mul(vf_set1(hf_layers_line(i)), whole));
+    const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
+    *of = vf_mul(line, vf_max(alike, vf_zero()));
+    const vf rest = vf_sub(line, *of);
+    company[0] = vf_add(company[0], *of);
+    company[1] = vf_add(company[1], rest);
+    company[2] = vf_fma(rest, vf_abs(far), company[2]);
+    return rest;
+}
+
+HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const along[2], const int channels, int n,
                                 float *const out[6])
 {
+    const vf zero = vf_zero();
     for (int x = 0; x < n; x += VF_N) {
         const vf r = vf_load(in[HF_LAYERS_SMOOTH][5] + x), weight = vf_load(in[HF_LAYERS_SMOOTH][4] + x);
-        vf of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], colour[4];
-        vf like = vf_zero(), others = like, size = like, sum = like, radius = like;
+        vf of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], colour[4], alone = zero, sum = zero, radius = zero;
+        vf line[3] = {zero, zero, zero}, across[3] = {zero, zero, zero};
         for (int c = 0; c < channels; c++)
-            colour[c] = vf_zero();
-        for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const vm some = vf_gt(vf_load(in[i][4] + x), vf_zero());
-            const vf far = vf_keep(some, vf_load(in[i][5] + x));
-            const vf whole = layers_saturate(vf_mul(vf_set1(HF_LAYERS_WHOLE), vf_load(in[i][4] + x)));
-            const vf line = vf_keep(some, vf_mul(vf_set1(hf_layers_line(i)), whole));
-            const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
-            of[i] = vf_mul(line, vf_max(alike, vf_zero()));
-            rest[i] = vf_sub(line, of[i]);
-            like = vf_add(like, of[i]);
-            others = vf_add(others, rest[i]);
-            size = vf_fma(rest[i], vf_abs(far), size);
+            colour[c] = zero;
+        for (int i = 0; i < HF_LAYERS_TAPS; i++)
+            rest[i] = layers_in_line(in[i][4] + x, in[i][5] + x, r, i, &of[i], line);
+        if (along) {
+            alone = layers_lonely(r, line[0], line[1], line[2]);
+            if (vm_any(vf_gt(alone, zero))) {
+                for (int i = 0; i < HF_LAYERS_TAPS; i++) {
+                    const int at = x + i - HF_LAYERS_SMOOTH;
+                    vf near;
+                    layers_in_line(along[0] + at, along[1] + at, r, i, &near, across);
+                }
+                alone = vf_min(alone, layers_lonely(r, across[0], across[1], across[2]));
+            }
         }
-        const vf lonely = layers_lonely(r, like, others, size);
         const vf plain = vf_mul(layers_roots_of(in[HF_LAYERS_SMOOTH], x), vf_set1(HF_LAYERS_GLARE));
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const vf all = vf_fma(lonely, vf_sub(rest[i], of[i]), of[i]);
-            const vm some = vf_gt(all, vf_zero());
+            const vf all = vf_fma(alone, vf_sub(rest[i], of[i]), of[i]);
+            const vm some = vf_gt(all, zero);
             if (!vm_any(some))
                 continue;
             const vf g = vf_mul(all, layers_dimmed(layers_roots_of(in[i], x), plain));
@@ -347,17 +389,18 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const int channels
         vf_store(out[5] + x, vf_mul(radius, inverse));
         for (int c = 0; c < channels; c++) {
             const vf v = vf_mul(colour[c], inverse);
-            vf_store(out[c] + x, square ? vf_mul(v, vf_abs(v)) : v);
+            vf_store(out[c] + x, along ? vf_mul(v, vf_abs(v)) : v);
         }
     }
 }
 
-static void layers_smooth_simd(const float *const in[13][6], int channels, int square, int n, float *const out[6])
+static void layers_smooth_simd(const float *const in[13][6], const float *const along[2], int channels, int n,
+                               float *const out[6])
 {
     if (channels == 3)
-        layers_smooth_of(in, 3, square, n, out);
+        layers_smooth_of(in, along, 3, n, out);
     else
-        layers_smooth_of(in, 4, square, n, out);
+        layers_smooth_of(in, along, 4, n, out);
 }
 
 static int layers_extremes_simd(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,

@@ -332,10 +332,13 @@ static void smooth_along(const struct band *b, int y)
         for (int i = 0; i < HF_LAYERS_TAPS; i++)
             planes_of(&b->found, channels, run.x + i - HF_LAYERS_SMOOTH, y, in[i]);
         if (run.needed)
-            hf_layers_kernels(b->f)->smooth((const float *const(*)[6])in, channels, 0, run.n, out);
+            hf_layers_kernels(b->f)->smooth((const float *const(*)[6])in, NULL, channels, run.n, out);
         else
             memset(out[4], 0, sizeof(float) * (size_t)run.n);
     }
+    float *weight = b->across.weight + y * b->across.stride;
+    memset(weight + b->r.x0 - HF_LAYERS_SMOOTH, 0, sizeof(float) * HF_LAYERS_SMOOTH);
+    memset(weight + b->r.x1, 0, sizeof(float) * HF_LAYERS_SMOOTH);
 }
 
 static void smooth_down(const struct band *b, int colour, int at, int y)
@@ -352,8 +355,9 @@ static void smooth_down(const struct band *b, int colour, int at, int y)
             planes_of(&b->across, channels, run.x, inside ? from : y, in[i]);
             in[i][4] = inside ? in[i][4] : (float *)none;
         }
+        const float *const along[2] = {in[HF_LAYERS_SMOOTH][4], in[HF_LAYERS_SMOOTH][5]};
         if (run.needed)
-            hf_layers_kernels(b->f)->smooth((const float *const(*)[6])in, channels, 1, run.n, out);
+            hf_layers_kernels(b->f)->smooth((const float *const(*)[6])in, along, channels, run.n, out);
         else
             memset(out[4], 0, sizeof(float) * (size_t)run.n);
     }

@@ -86,7 +86,7 @@ static void lamp_in_line(void)
             to[c] = &out[c];
         }
     const double want = (48 + 64.0 / 256) / (48 + 1.0 / 256);
-    hf_layers_smooth_c((const float *const(*)[6])in, 3, 0, 1, to);
+    hf_layers_smooth_c((const float *const(*)[6])in, NULL, 3, 1, to);
     // Thirteen products and sums, and a quotient, of either.
     CHECK_MSG(fabs(out[0] - want) <= 28 * FLT_EPSILON * want, "%g, not %g", (double)out[0], want);
     CHECK(out[4] == 1 && fabsf(out[5] - 20) <= 28 * 20 * FLT_EPSILON);

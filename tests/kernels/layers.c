@@ -226,7 +226,8 @@ static void smooth_call(const struct world *w, const struct kernels *k, enum are
     for (int i = 0; i < HF_LAYERS_TAPS; i++)
         set_of(w, a, 6 * (i % 9), set[i]);
     set_of(w, a, IN, out);
-    k->layers.smooth((const float *const(*)[6])set, now.channels, now.with, w->n, out);
+    const float *const along[2] = {line(w, a, 4), line(w, a, 5)};
+    k->layers.smooth((const float *const(*)[6])set, now.with ? along : NULL, now.channels, w->n, out);
 }
 
 // ---- slices ----
@@ -426,7 +427,7 @@ void layers_make(struct world *w, int which)
         return;
     case LAYERS_SMOOTH:
         for (int i = 0; i < 9; i++)
-            fill_set(w, 6 * i, 0, w->n);
+            fill_set(w, 6 * i, -HF_LAYERS_SMOOTH, w->n + HF_LAYERS_SMOOTH);
         put_set(w, IN, 6, w->n);
         return;
     case LAYERS_NEAREST:

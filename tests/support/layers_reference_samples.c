@@ -193,15 +193,18 @@ void layers_reference_merge(const double *const *from, int count, double within,
     out[WEIGHT] = sum * part;
 }
 
-// The surface behind an edge where a pixel is mixed, as roots.
+// The surface behind an edge where a pixel is mixed, as roots; what is mixed by less than a 64th is in part itself.
 static void quad(const struct frame *f, int x, int y, double *out)
 {
     double s[4][SAMPLE];
     const double *from[4] = {s[0], s[1], s[2], s[3]};
     for (int i = 0; i < 4; i++) {
         const int px = clamp(2 * x + i % 2, 0, f->width - 1), py = clamp(2 * y + i / 2, 0, f->height - 1);
-        const double *mixed = at(&f->mixed, px, py);
-        memcpy(s[i], mixed[WEIGHT] > 0 ? mixed : at(&f->seen, px, py), sizeof s[i]);
+        const double *mixed = at(&f->mixed, px, py), *seen = at(&f->seen, px, py);
+        const double own = seen[WEIGHT] * fmax(1 - 64 * mixed[WEIGHT], 0), weight = mixed[WEIGHT] + own;
+        for (int c = 0; c < SAMPLE; c++)
+            s[i][c] = mixed[WEIGHT] > 0 ? (mixed[WEIGHT] * mixed[c] + own * seen[c]) / weight : seen[c];
+        s[i][WEIGHT] = weight;
         for (int c = 0; c < f->channels; c++)
             s[i][c] = root(s[i][c]);
     }
@@ -322,42 +325,61 @@ static double roots_of(const double *s)
     return fabs(s[0]) + fabs(s[1]) + fabs(s[2]);
 }
 
-// Means of 13 in a row or column, of those that are about as far.
-static struct grid smooth(const struct frame *f, const struct grid *from, int dx, int dy)
+struct company {
+    double of[13], rest[13], like, others, size;
+    const double *line[13];
+};
+
+// A hidden sample's row or column: what of it is as far, and what is not.
+static struct company company_of(const struct grid *from, int x, int y, int dx, int dy)
+{
+    const double *middle = at(from, x, y);
+    struct company c = {{0}, {0}, 0, 0, 0, {NULL}};
+    for (int i = 0; i < 13; i++) {
+        const int px = x + (i - 6) * dx, py = y + (i - 6) * dy;
+        if (px < from->x0 || px >= from->x1 || py < from->y0 || py >= from->y1 || !middle[WEIGHT])
+            continue;
+        const double *s = c.line[i] = at(from, px, py);
+        const double weight = s[WEIGHT] > 0 ? (7 - abs(i - 6)) * fmin(16 * s[WEIGHT], 1) : 0;
+        c.of[i] = weight * fmax(1 - fabs(s[RADIUS] - middle[RADIUS]) / 4, 0);
+        c.rest[i] = weight - c.of[i];
+        c.like += c.of[i];
+        c.others += c.rest[i];
+        c.size += c.rest[i] * fabs(s[RADIUS]);
+    }
+    return c;
+}
+
+// How much it is alone in it where it or the rest is sharp.
+static double lonely(const struct company *c, double r)
+{
+    const double part = c->like + c->others > 0 ? c->like / (c->like + c->others) : 1;
+    const double around = c->others > 0 ? c->size / c->others : 2;
+    return (1 - fmin(fmax(4 * (part - 1.0 / 7), 0), 1)) * fmin(fmax(2 - fmin(fabs(r), around), 0), 1);
+}
+
+// Means of 13 in a row or column, of those that are about as far. What is alone in both becomes what the rest of its column
+// is.
+static struct grid smooth(const struct frame *f, const struct grid *from, int down)
 {
     struct grid to = grid_new(from->x0, from->y0, from->x1, from->y1, SAMPLE);
     for (int y = to.y0; y < to.y1; y++)
         for (int x = to.x0; x < to.x1; x++) {
             const double *middle = at(from, x, y);
-            double *out = at(&to, x, y), of[13] = {0}, rest[13] = {0}, like = 0, others = 0, size = 0, sum = 0;
-            const double *line[13] = {NULL};
+            const struct company c = company_of(from, x, y, !down, down), other = company_of(from, x, y, down, !down);
+            const double alone = down ? fmin(lonely(&c, middle[RADIUS]), lonely(&other, middle[RADIUS])) : 0;
+            double *out = at(&to, x, y), sum = 0;
             for (int i = 0; i < 13; i++) {
-                const int px = x + (i - 6) * dx, py = y + (i - 6) * dy;
-                if (px < from->x0 || px >= from->x1 || py < from->y0 || py >= from->y1 || !middle[WEIGHT])
-                    continue;
-                const double *s = line[i] = at(from, px, py);
-                const double weight = s[WEIGHT] > 0 ? (7 - abs(i - 6)) * fmin(16 * s[WEIGHT], 1) : 0;
-                of[i] = weight * fmax(1 - fabs(s[RADIUS] - middle[RADIUS]) / 4, 0);
-                rest[i] = weight - of[i];
-                like += of[i];
-                others += rest[i];
-                size += rest[i] * fabs(s[RADIUS]);
-            }
-            // What is alone in its line, where it or the rest of that is sharp, becomes what the rest is.
-            const double part = like + others > 0 ? like / (like + others) : 1, around = others > 0 ? size / others : 2;
-            const double lonely =
-                (1 - fmin(fmax(4 * (part - 1.0 / 7), 0), 1)) * fmin(fmax(2 - fmin(fabs(middle[RADIUS]), around), 0), 1);
-            for (int i = 0; i < 13; i++) {
+                const double *s = c.line[i];
                 const double g =
-                    line[i] ? (of[i] + lonely * (rest[i] - of[i])) * dimmed(roots_of(line[i]), 16 * roots_of(middle))
-                            : 0;
+                    s ? (c.of[i] + alone * (c.rest[i] - c.of[i])) * dimmed(roots_of(s), 16 * roots_of(middle)) : 0;
                 sum += g;
-                for (int c = 0; c < f->channels && g > 0; c++)
-                    out[c] += g * line[i][c];
-                out[RADIUS] += g > 0 ? g * line[i][RADIUS] : 0;
+                for (int k = 0; k < f->channels && g > 0; k++)
+                    out[k] += g * c.line[i][k];
+                out[RADIUS] += g > 0 ? g * c.line[i][RADIUS] : 0;
             }
-            for (int c = 0; c < f->channels; c++)
-                out[c] = sum > 0 ? out[c] / sum : 0;
+            for (int k = 0; k < f->channels; k++)
+                out[k] = sum > 0 ? out[k] / sum : 0;
             out[RADIUS] = sum > 0 ? out[RADIUS] / sum : 0;
             out[WEIGHT] = middle[WEIGHT];
         }
@@ -380,7 +402,7 @@ static struct grid search(const struct frame *f, const struct grid *level, int l
 // Their colours, by patterns of quads unless these are NULL.
 static struct grid smooth_found(const struct frame *f, const struct grid *found, const struct grid *quads)
 {
-    struct grid along = smooth(f, found, 1, 0), down = smooth(f, &along, 0, 1);
+    struct grid along = smooth(f, found, 0), down = smooth(f, &along, 1);
     if (quads)
         layers_reference_patterns(f, quads, &down);
     for (int y = down.y0; y < down.y1; y++)
