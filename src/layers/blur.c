@@ -9,15 +9,15 @@ void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const
         float sum[5] = {0};
         for (int y = 0; y < rows; y++) {
             const ptrdiff_t at = y * stride + x;
-            const float r = in[5][at], r2 = r * r;
+            const float r = in[5][at], r2 = r * r, weight = in[4] ? in[4][at] : 1;
             const float before = (r2 - s->before_square) * s->before_scale,
                         after = 1 - (r2 - s->square) * s->after_scale;
             const float part = r < s->radius ? before : after;
             // What has no weight has no radius and no colour either.
-            if (!(in[4][at] > 0 && r > s->before && r < s->after))
+            if (!(weight > 0 && r > s->before && r < s->after))
                 continue;
             const float shown = part * s->scale;
-            const float w = shown * in[4][at], v = share ? shown * (in[4][at] - share[at]) : w;
+            const float w = shown * weight, v = share ? shown * (weight - share[at]) : w;
             for (int c = 0; c < channels; c++)
                 sum[c] = sum[c] + (c < 3 ? v : w) * in[c][at];
             sum[4] = sum[4] + w;

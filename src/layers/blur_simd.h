@@ -9,7 +9,7 @@ enum { LAYERS_SIDE = 2 };  // vectors of a disc side by side
 HF_INLINE void layers_ask_for(const float *const in[6], const float *share, ptrdiff_t at, const int channels)
 {
     for (int c = 0; c < 6; c++)
-        if (c < channels || c > 3)
+        if (c < channels || c == 5 || (c == 4 && in[4]))
             __builtin_prefetch(in[c] + at);
     if (share)
         __builtin_prefetch(share + at);
@@ -28,7 +28,7 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
         for (int y = 0; y < rows; y++) {
             const ptrdiff_t at = y * stride + x;
             const vf r = vf_load(in[5] + at), r2 = vf_mul(r, r);
-            const vf weight = vf_load(in[4] + at);
+            const vf weight = in[4] ? vf_load(in[4] + at) : vf_set1(1);
             if (x % 16 == 0)
                 layers_ask_for(in, share, at + rows * stride, channels);
             const vm inside = vm_and(vf_gt(weight, vf_zero()), vm_and(vf_gt(r, before), vf_lt(r, after)));

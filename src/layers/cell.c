@@ -42,6 +42,7 @@ static size_t place(struct hf_cell *c, float *memory)
     const int wide = width + 2 * n * TILE + 2 * AROUND;
     c->present = (uint64_t *)take(&m, 2 * (size_t)(2 * c->l->words + c->l->share_words), 0);
     c->used = take_map(&m, c->columns, c->rows, n);
+    c->plain = take_map(&m, c->columns, c->rows, n);
     c->filled = take_map(&m, c->columns, TILE / 2, n);
     struct hf_tile_map *const maps[] = {&c->touched, &c->shone,  &c->near,   &c->far,    &c->middle,
                                         &c->begun,   &c->lit[0], &c->lit[1], &c->covered};
@@ -89,6 +90,7 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
                         .rows = (r.y1 - r.y0) / TILE};
     place(&c, memory);
     hf_layers_find_present(&c);
+    hf_layers_mark_plain(&c);
     memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
     // Where a slice does not reach, its light is 0 whatever part of it shows.
     memset(c.part - MARGIN * c.part_row - LEFT, 0,

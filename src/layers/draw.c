@@ -54,6 +54,26 @@ static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int
         in[i] = c->line[i];
 }
 
+// What is seen, of tiles that have the same in common at once: weights of 1 and shares of nothing are not read.
+static void weigh_seen(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
+                       float *const out[5])
+{
+    const ptrdiff_t stride = b->set->stride;
+    for (int from = tx, to; from < end; from = to) {
+        const int plain = *hf_layers_map_at(&c->plain, from, ty), lead = (from - tx) * TILE;
+        const float *in[6] = {NULL}, *share = b->share ? b->share + (ptrdiff_t)py * stride + px + lead : NULL;
+        float *part[5];
+        for (to = from + 1; to < end && *hf_layers_map_at(&c->plain, to, ty) == plain;)
+            to++;
+        for (int i = 0; i < 5; i++)
+            part[i] = out[i] + lead;
+        hf_layers_planes_at(c->l, b->set, b->weight, px + lead, py, in);
+        in[4] = plain & WHOLE ? NULL : in[4];
+        c->k->weigh(b->s, in, plain & DULL ? NULL : share, stride, 1 << b->s->level, c->l->channels, (to - from) * TILE,
+                    0, part, c->any + lead / 16);
+    }
+}
+
 // Samples of a row of a run of tiles, the first of which is (px, py); notes in `any` of which 16 there are some.
 static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
                       float *const out[5])
@@ -65,8 +85,10 @@ static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx,
         spread(c, b->set, px, py, n, in);
     else
         hf_layers_planes_at(l, b->set, b->weight, px, py, in);
-    c->k->weigh(b->s, in, b->share ? b->share + (ptrdiff_t)py * b->set->stride + px : NULL, b->set->stride, rows,
-                l->channels, n, 0, out, c->any);
+    if (b->weight == c->samples->seen.weight)
+        weigh_seen(c, b, tx, end, ty, px, py, out);
+    else
+        c->k->weigh(b->s, in, NULL, b->set->stride, rows, l->channels, n, 0, out, c->any);
     for (int from = tx, to; b->more && (to = hf_layers_next_run(&c->used, &from, ty, end, MORE)) > from; from = to) {
         // What is noted of 16 samples lies as it does in the run: a tile that has none of these may come first.
         const int lead = (from - tx) * size & ~15, at = px + lead, count = (to - tx) * size - lead;

@@ -403,44 +403,49 @@ static void layers_smooth_simd(const float *const in[13][6], const float *const 
         layers_smooth_of(in, along, 4, n, out);
 }
 
+// Which of a vector's lanes are among the first n.
+HF_INLINE vm layers_first(int n)
+{
+    static const float lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return vf_lt(vf_load(lane), vf_set1((float)n));
+}
+
 static int layers_extremes_simd(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
                                 int rows, struct hf_layers_range *out)
 {
-    const int whole = n / VF_N * VF_N;
-    if (whole) {
-        vf low = vf_set1(out->low), high = vf_set1(out->high), bright = vf_zero();
-        float lows[VF_N];
-        for (int y = 0; y < rows; y++)
-            for (int x = 0; x < whole; x += VF_N) {
-                const ptrdiff_t at = y * stride + x;
-                const vf r = vf_load(radius + at);
-                const vm some = vf_gt(weight ? vf_load(weight + at) : vf_set1(1), vf_zero());
-                low = vf_min(vf_select(some, r, low), low);
-                high = vf_max(vf_select(some, r, high), high);
-                if (share)
-                    bright = vf_max(vf_load(share + at), bright);
-            }
-        vf_store(lows, low);
-        for (int i = 0; i < VF_N; i++)
-            out->low = lows[i] < out->low ? lows[i] : out->low;
-        out->high = vf_most(high);
-        const int more = whole < n && hf_layers_extremes_c(radius + whole, weight ? weight + whole : NULL,
-                                                           share ? share + whole : NULL, stride, n - whole, rows, out);
-        return more || vf_most(bright) > 0;
+    vf low = vf_set1(out->low), high = vf_set1(out->high), bright = vf_zero();
+    float lows[VF_N];
+    for (int x = 0; x < n; x += VF_N) {
+        const vm own = layers_first(n - x);
+        for (int y = 0; y < rows; y++) {
+            const ptrdiff_t at = y * stride + x;
+            const vf r = vf_load(radius + at);
+            const vm some = vm_and(own, vf_gt(weight ? vf_load(weight + at) : vf_set1(1), vf_zero()));
+            low = vf_min(vf_select(some, r, low), low);
+            high = vf_max(vf_select(some, r, high), high);
+            if (share)
+                bright = vf_max(vf_keep(own, vf_load(share + at)), bright);
+        }
     }
-    return hf_layers_extremes_c(radius, weight, share, stride, n, rows, out);
+    vf_store(lows, low);
+    for (int i = 0; i < VF_N; i++)
+        out->low = lows[i] < out->low ? lows[i] : out->low;
+    out->high = vf_most(high);
+    return vf_most(bright) > 0;
 }
 
 static int layers_inside_simd(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
                               float after)
 {
-    const int whole = n / VF_N * VF_N;
-    for (int y = 0; y < rows; y++)
-        for (int x = 0; x < whole; x += VF_N) {
-            const vf r = vf_load(radius + y * stride + x);
-            const vm inside = vm_and(vf_gt(r, vf_set1(before)), vf_lt(r, vf_set1(after)));
-            if (vm_any(vm_and(inside, vf_gt(vf_load(weight + y * stride + x), vf_zero()))))
+    const vf from = vf_set1(before), to = vf_set1(after);
+    for (int x = 0; x < n; x += VF_N) {
+        const vm own = layers_first(n - x);
+        for (int y = 0; y < rows; y++) {
+            const vf r = vf_load(radius + y * stride + x), w = vf_load(weight + y * stride + x);
+            const vm inside = vm_and(vf_gt(r, from), vf_lt(r, to));
+            if (vm_any(vm_and(own, vm_and(inside, vf_gt(w, vf_zero())))))
                 return 1;
         }
-    return hf_layers_inside_c(radius + whole, weight + whole, stride, n - whole, rows, before, after);
+    }
+    return 0;
 }

@@ -57,7 +57,7 @@ typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t
                              float after);
 // Shares of a slice in n samples, and in those of rows - 1 rows below them, summed. add: to what out holds. share: of
 // their weight whose colour, but not its alpha, is left out. any[i]
-// is made 1 where there is any in the 16 samples from 16 i on.
+// is made 1 where there is any in the 16 samples from 16 i on. in[4] NULL: all weigh 1.
 typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                              int rows, int channels, int n, int add, float *const out[5], uint8_t *any);
 // Sums of pairs of 2n numbers; out may be in.

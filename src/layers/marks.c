@@ -25,10 +25,13 @@ static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, 
                         struct hf_layers_range range, uint64_t *bits)
 {
     memset(bits, 0, sizeof *bits * (size_t)((slices + 63) / 64));
-    for (int i = 0; range.low <= range.high && i < slices && slice[i].before < range.high; i++)
-        if (slice[i].after > range.low &&
-            hf_layers_kernels(f)->inside(t.radius, t.weight, t.stride, t.n, t.rows, slice[i].before, slice[i].after))
+    for (int i = 0; range.low <= range.high && i < slices && slice[i].before < range.high; i++) {
+        const float before = slice[i].before, after = slice[i].after;
+        if (after > range.low &&
+            ((before < range.low && range.high < after) ||
+             hf_layers_kernels(f)->inside(t.radius, t.weight, t.stride, t.n, t.rows, before, after)))
             bits[i / 64] |= (uint64_t)1 << i % 64;
+    }
 }
 
 static const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};

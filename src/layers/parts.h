@@ -23,6 +23,9 @@ struct hf_tile_map {
 // Tiles that have samples of a set, and of the set behind it.
 enum { SEEN = 1, MORE = 2 };
 
+// Of what is seen in a tile: nothing is mixed, so that all weigh 1; there are no shares.
+enum { WHOLE = 1, DULL = 2 };
+
 // What of a slice is drawn: samples that are seen with those behind mixed edges, hidden ones, shares at full resolution.
 enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
 
@@ -36,6 +39,7 @@ struct hf_cell {
     struct hf_tile_map used;               // tiles that have samples of the slice
     uint64_t *present;                     // slices with samples that may reach the cell, a bit for each, of each kind
     struct hf_rect box;                    // those around which there are none
+    struct hf_tile_map plain;              // what the samples that are seen have in common, see below
     struct hf_tile_map filled;             // pairs of rows of a row of tiles: where there are any
     struct hf_tile_map touched;            // tiles that its blur reaches, one more around the cell
     struct hf_tile_map shone;              // the same of its shares at full resolution
@@ -100,6 +104,8 @@ static inline int hf_layers_words(const struct hf_layers *l, enum hf_kind kind)
 
 // tiles.c
 struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct hf_layers_range *map, int tx, int ty);
+// What the samples of the tiles around the cell have in common.
+void hf_layers_mark_plain(const struct hf_cell *c);
 // Which slices have samples that may reach the cell at all.
 void hf_layers_find_present(struct hf_cell *c);
 // Mark the tiles around the cell that have samples of the slice. Returns 0 if there are none.

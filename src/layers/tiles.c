@@ -33,6 +33,22 @@ static void mark_row(const struct hf_cell *c, const uint64_t *marks, int words, 
     }
 }
 
+void hf_layers_mark_plain(const struct hf_cell *c)
+{
+    const struct hf_layers *l = c->l;
+    const int n = l->most_tiles;
+    for (int ty = -n; ty < c->rows + n; ty++)
+        for (int tx = -n; tx < c->columns + n; tx++) {
+            const int at = tile_number(c, tx, ty);
+            const struct hf_layers_range mixed = l->mixed_range[at];
+            uint64_t shares = 0;
+            for (int i = 0; i < l->share_words; i++)
+                shares |= l->share_marks[at * l->share_words + i];
+            *hf_layers_map_at(&c->plain, tx, ty) =
+                (uint8_t)((mixed.low > mixed.high ? WHOLE : 0) | (shares ? 0 : DULL));
+        }
+}
+
 void hf_layers_find_present(struct hf_cell *c)
 {
     const struct hf_layers *l = c->l;

@@ -156,7 +156,7 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
         u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], v);
     }
     const float front = (1 - a0) * (mean[0][4] - own) + own;
-    u->seen[4][x] = seen;
+    u->seen[4][x] = seen;  // at most 1, and 1 where the other is 0: slices do not read the weights of such tiles
     u->mixed[4][x] = 1 - seen;
     u->seen[5][x] = whole * (own - front) + front;
     u->mixed[5][x] = a0 * (mean[1][4] - own) + own;

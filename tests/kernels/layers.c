@@ -14,7 +14,7 @@
 enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13 };
 
 static struct {
-    int which, channels, rows, add, with, taps;
+    int which, channels, rows, add, with, whole, taps;
     int roundings;  // of a fused sum whose terms are all positive; 0: no bound is known
     float scale, off, part;
     struct hf_slice slice;
@@ -238,6 +238,7 @@ static void weigh_make(struct world *w)
     const float before = rng_float(r, -20, 10), own = before + rng_float(r, 0.5f, 8),
                 after = own + rng_float(r, 0.5f, 8);
     now.rows = 1 << rng_int(r, 0, 3);
+    now.whole = rng_one_in(r, 3);
     now.slice = (struct hf_slice){.radius = own, .before = before, .after = after, .scale = rng_float(r, 0.01f, 1)};
     now.slice.square = own * own;
     now.slice.before_square = before * before;
@@ -263,6 +264,8 @@ static void weigh_call(const struct world *w, const struct kernels *k, enum aren
     float *out[6];
     for (int c = 0; c < 6; c++)
         in[c] = line(w, a, 8 * c);
+    if (now.whole)
+        in[4] = NULL;
     set_of(w, a, IN, out);
     k->layers.weigh(&now.slice, in, now.with ? line(w, a, 48) : NULL, stride(w), now.rows, now.channels, w->n, now.add,
                     out, slot_start(w, a, SLOT_WORK));
