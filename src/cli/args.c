@@ -228,8 +228,6 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
         return -1;
     if (tool_given(parser, "keys-blend") && !args->keys)
         return tool_fail(error, -1, "--keys-blend is of use only with --keys");
-    if (tool_given(parser, "depth-edges") && !args->depth_file)
-        return tool_fail(error, -1, "--depth-edges is of use only with --depth-file");
     if (args->focus_smooth >= 0 && !args->keys && args->focus_by != CLI_FOCUS_CENTER && args->focus_by != CLI_FOCUS_AT)
         return tool_fail(error, -1,
                          "--focus-smooth is of use only with a focus that is read from the pictures: --focus center, "

@@ -47,9 +47,9 @@ struct cli_args {
     int metric;  // some distance was given in metres
 
     const char *depth_channel, *depth_file;
-    enum hf_depth_type depth_type;    // as the library sees it, once cli_depth_prepare was there
-    int normalized;                   // 1: a map from 0 at near_plane to 1 at far_plane; -1: the other way; else 0
-    enum hf_io_edges depth_edges;     // of depth_file
+    enum hf_depth_type depth_type;  // as the library sees it, once cli_depth_prepare was there
+    int normalized;                 // 1: a map from 0 at near_plane to 1 at far_plane; -1: the other way; else 0
+    enum hf_io_edges depth_edges;
     float near_plane, far_plane;      // scene units
     float depth_scale, depth_offset;  // of the numbers as they are stored, before all else
 

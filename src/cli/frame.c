@@ -12,6 +12,7 @@
 #include "cli/target.h"
 #include "cli/views.h"
 #include "cli/window.h"
+#include "io/depth_edges.h"
 #include "tool/machine.h"
 
 const char *cli_in_options(const char *message, char buf[CLI_SENTENCE])
@@ -142,6 +143,16 @@ static int read_depth_file(const struct cli_args *args, struct cli_view *v, stru
     return 0;
 }
 
+// Depth in INPUT itself, rows of it.
+static int sharpen(const struct cli_args *args, struct cli_view *v, float *depth, int height, struct tool_error *error)
+{
+    if (args->depth_file || args->depth_edges != HF_IO_EDGES_SHARPEN)
+        return 0;
+    if (hf_io_sharpen_depth(depth, v->view->width, height, &v->sharpened))
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+    return 0;
+}
+
 static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
@@ -159,6 +170,9 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
     }
     for (int i = 0; i < frame->view_count; i++) {
         struct cli_view *v = &frame->views[i];
+        const int status = sharpen(args, v, v->depth, v->view->height, error);
+        if (status)
+            return status;
         cli_depth_prepare(args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
     }
     frame->ms[CLI_READ] += fetched - start;
@@ -198,8 +212,9 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, st
     const struct cli_args *args = frame->args;
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
     const int at = args->focus_by == CLI_FOCUS_AT ? args->focus_y : display->y0 + (display->y1 - display->y0) / 2;
-    int from = at - 1 > data->y0 ? at - 1 : data->y0, to = at + 2 < data->y1 ? at + 2 : data->y1;
-    int status = 0;
+    const int reach = 1 + (args->depth_edges == HF_IO_EDGES_SHARPEN ? HF_IO_EDGE_REACH : 0);
+    int from = at - reach > data->y0 ? at - reach : data->y0, status = 0;
+    int to = at + reach + 1 < data->y1 ? at + reach + 1 : data->y1;
     if (args->depth_file) {
         from = data->y0;
         to = data->y1;
@@ -207,9 +222,12 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, st
     } else if (from < to && hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, &io)) {
         status = tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     }
-    if (!status && from < to)
-        cli_depth_prepare(args, v->depth + (size_t)(from - data->y0) * (size_t)v->view->width,
-                          (size_t)(to - from) * (size_t)v->view->width, &v->found);
+    if (status || from >= to)
+        return status;
+    float *rows = v->depth + (size_t)(from - data->y0) * (size_t)v->view->width;
+    status = sharpen(args, v, rows, to - from, error);
+    if (!status)
+        cli_depth_prepare(args, rows, (size_t)(to - from) * (size_t)v->view->width, &v->found);
     return status;
 }
 

@@ -32,7 +32,7 @@ struct cli_view {
     int map_size[2];  // width and height of the depth file, which was scaled; 0: it was not
     int scaled_to[2];
     struct cli_depth_found found;
-    long long sharpened;  // samples of the depth file, see --depth-edges
+    long long sharpened;  // samples of depth, see --depth-edges
     int map_bits;         // of the depth file's whole numbers; 0: floats, or no such file
     float least_radius;   // pixels: the surface that is least blurred
     float range[2];     // distances of the nearest surface and the farthest, see cli_coc_measure; [0] > [1]: not known

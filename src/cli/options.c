@@ -98,9 +98,9 @@ static const struct tool_option options[] = {
      "of a picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
     {"depth-offset", 0, TOOL_DEPTH, "D", "What is added to them then. Default 0.",
      NUMBER(depth_offset, -FLT_MAX, FLT_MAX)},
-    {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers of --depth-file between the two sides of an "
-     "outline, at which there is nothing, go to the nearer side. auto (default): sharpen whole numbers, as smoothed and "
-     "estimated maps have.", CHOICE(depth_edges)},
+    {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers between the two sides of an outline, at which "
+     "there is nothing, go to the nearer side: for depth that was filtered, smoothed or made smaller. auto (default): "
+     "sharpen a --depth-file of whole numbers.", CHOICE(depth_edges)},
 
     {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. layers (default): edges un-mixed, "
      "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "

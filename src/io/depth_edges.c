@@ -9,6 +9,7 @@
 
 // Pixels to each side that are looked at: an outline is found that is no wider than half of the window.
 enum { REACH = 3 };
+_Static_assert(REACH + 2 == HF_IO_EDGE_REACH, "as far as find_ends is asked for");
 // The least step that is an outline, of the larger number: below, what is behind is hardly blurred otherwise.
 static const float LEAST_STEP = 0.05f;
 // Parts of a step. Samples within OF_PLATEAU of its end are the plateau; those within MIXED are left alone; an outline's
@@ -88,7 +89,7 @@ static float sharpen_one(const struct window *w)
         return d;
     const int lesser = on[1] < on[0];
     float beyond[2];
-    if ((float)on[lesser] < LESSER * all && find_ends(w, REACH + 2, beyond) &&
+    if ((float)on[lesser] < LESSER * all && find_ends(w, HF_IO_EDGE_REACH, beyond) &&
         fabsf(beyond[lesser] - ends[lesser]) > CLIMB * step)
         return d;
     return plateau_at(w, d - ends[0] < ends[1] - d ? ends[0] : ends[1], OF_PLATEAU * step);

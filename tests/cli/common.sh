@@ -213,6 +213,7 @@ exr('bare.exr', cropped, window=(0, 0, 19, 15))
 # The same depth in other words: negative, from 0 to 1 and from 1 to 0 between 1 and 9, as 1/z, in thirds less 5.
 near = lambda x, y: 2 ** (x // 16)
 exr('near.exr', dict(colour, Z=near))
+exr('filtered.exr', dict(colour, Z=lambda x, y: 2 if x < 30 else 4 if x < 31 else 8))
 exr('negative.exr', dict(colour, Z=lambda x, y: -near(x, y)))
 exr('background.exr', dict(colour, Z=lambda x, y: -near(x, y) if y < 30 else 0))
 exr('mixed.exr', dict(colour, Z=lambda x, y: near(x, y) if y else -1))

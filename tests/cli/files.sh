@@ -172,7 +172,6 @@ sys.exit(not any(t in data for t in tag))'
     done
     ! cmp -s edges-auto.png edges-keep.png
     result "--depth-edges has an effect" $?
-    bad 1 "--depth-edges is of use only with --depth-file" photo.png -o o.png --depth-edges sharpen
     run photo.png -o photo-out.png --depth-file map16.png --focus 5 --fstop 0.1 --focal-length 50
     contains "$dir/err" "--depth-type normalized" && contains "$dir/err" "--depth-scale 65.535"
     result "a map of 16 bits may be millimetres" $?
@@ -392,6 +391,18 @@ warns() {  # WORDS-ON-STDERR ARGUMENTS...
     lacks "$dir/err" warning
     result "warns: $*" "$ok"
 }
+# Depth that a renderer filtered: what lies between two surfaces goes to the nearer number, where the focus is read too.
+for edges in auto sharpen; do
+    run filtered.exr -o o.exr --focus-at 30,20 --fstop 0.1 --focal-length 50 --depth-edges $edges --verbose
+    [ "$status" -eq 0 ] && contains "$dir/err" "focus $([ $edges = auto ] && echo 4 || echo 2) (--focus-at)"
+    result "focus, --depth-edges $edges" $?
+    said=$(grep -o '[0-9]* samples beside outlines sharpened' "$dir/err")
+    [ "$said" = "$([ $edges = auto ] || echo 40 samples beside outlines sharpened)" ]
+    result "depth of an EXR, --depth-edges $edges" $?
+    run filtered.exr --print-focus --focus-at 30,20 --depth-edges $edges
+    [ "$(tail -n 1 "$dir/out" | cut -d, -f2)" = "$([ $edges = auto ] && echo 4 || echo 2)" ]
+    result "--print-focus, --depth-edges $edges" $?
+done
 warns "nothing is in focus|the depth is 1 to 8, the focus 60: is the focus in other units? 6 would be near" \
     sky.exr -o o.exr --focus 60 --fstop 0.1 --focal-length 50
 warns "the depth is 1000 to 8000, the focus 4|--depth-scale 0.001|--world-unit 0.001|4m" \
