@@ -355,7 +355,9 @@ struct hf_highlight_params {
     float threshold;
 };
 
-// Of what picture the image given is a part, and of what pixels.
+// Of what picture the image given is a part, and of what pixels. Pixels of coarser resolutions are counted from the part's
+// own top left corner: where it is to have the bits of the whole, it begins at even x and y of that for gather, and at
+// multiples of 4 for the other engines (there are none for HF_LAYERS_BEST).
 struct hf_view_params {
     // Size of the whole picture when the image given is a part of it: pixels, > 0. HF_DERIVE (default): the image's own.
     // Only scales blur: the height max_radius, the width the lens.
@@ -370,8 +372,9 @@ struct hf_gather_params {
     enum hf_storage storage;  // default HF_STORAGE_FLOAT
     // Reproduce the published demo, the flaws of its composite included. Default 0: those are mended.
     int faithful;
-    // Rings of taps, 1..64. HF_DERIVE (default): as many as keep them two half-resolution pixels apart, up to 64. Fewer
-    // are faster and leave gaps. Ignored with HF_FILL_NONE, and with HF_FILL_MEAN where that has no taps.
+    // Rings of taps, 1..64. HF_DERIVE (default): as many as keep them two half-resolution pixels apart, up to 64; where
+    // that is no whole number, a blend of both beside it, so that the picture follows a radius without a jump, but with
+    // .faithful. Fewer are faster and leave gaps. Ignored with HF_FILL_NONE, and with HF_FILL_MEAN where that has no taps.
     int rings;
     // Weight samples by 1 / (1 + luminance) in the gather, against fireflies: darker highlights. Default 0.
     // B. Karis, "Tone mapping", 2013; chapter 3.4.4.
@@ -534,6 +537,7 @@ struct hf_resolved {
     struct hf_params params;  // as given, but HF_DERIVE nowhere
     int width, height;        // of the image
     enum hf_limit limit;      // why params.max_radius is what it is
+    int rings_given;          // 1: params.gather.rings was; 0: that is rounded up, see there
     float lens_k;             // K, scene units * pixels; 0 unless the lens is in use
     float focal_px;           // focal length of the lens, pixels of the display width
     int sharp;                // nothing can be blurred: the frame will be a copy

@@ -107,7 +107,7 @@ static void gather_near(const struct hf_frame *f, struct hf_rect r)
         for (int c = 0; c < s->channels; c++) {
             const float *colour = hf_at(&f->buf[HF_BUF_COLOR4], c, r.x0, y);
             for (int x = 0; x < r.x1 - r.x0; x++)
-                near[c][x] = blur[x] > 0 ? (sum ? near[c][x] / sum[x] : near[c][x]) : colour[x];
+                near[c][x] = hf_near_part(s, colour[x], sum ? near[c][x] / sum[x] : near[c][x], blur[x]);
         }
         hf_store_rgb(f, near, r.x1 - r.x0);
     }
@@ -132,9 +132,10 @@ static void sample_taps(const struct hf_frame *f, int x, int y, const struct hf_
         if (i % 8 == 0)
             memset(sum, 0, sizeof sum);
         const float dx = t->dx[i] * scale, dy = t->dy[i] * scale, fx = floorf(dx), fy = floorf(dy);
+        const float share = t->share[i];
         for (int c = 0; c < f->s->channels; c++)
-            sum[c] += bilinear(hf_at(colour, c, x + (int)fx, y + (int)fy), colour->stride, dx - fx, dy - fy);
-        sum[4] += bilinear(hf_at(weight, 1, x + (int)fx, y + (int)fy), weight->stride, dx - fx, dy - fy);
+            sum[c] += share * bilinear(hf_at(colour, c, x + (int)fx, y + (int)fy), colour->stride, dx - fx, dy - fy);
+        sum[4] += share * bilinear(hf_at(weight, 1, x + (int)fx, y + (int)fy), weight->stride, dx - fx, dy - fy);
         if (i % 8 == 7 || i == t->count - 1)
             for (int c = 0; c < 5; c++)
                 total[c] += sum[c];

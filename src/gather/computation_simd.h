@@ -9,6 +9,7 @@
 // stay in the first-level cache.
 #include "gather/gather.h"
 #include "gather/inverse_vf.h"
+#include "gather/near_part_vf.h"
 #include "pixel/coc_vf.h"
 #include "pixel/format_vf.h"
 #include <float.h>
@@ -378,12 +379,13 @@ static void finish_near(const struct hf_frame *f, struct hf_rect r)
         hf_row(&f->buf[HF_BUF_NEAR], s->channels, r.x0, y, near);
         hf_row(&f->buf[HF_BUF_COLOR4], s->channels, r.x0, y, colour);
         for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
-            const vm is_near = vf_gt(vf_load(blur + x), vf_zero());
+            const vf coc = vf_load(blur + x);
             for (int c = 0; c < s->channels; c++) {
                 vf v = vf_load(near[c] + x);
                 if (sum)
                     v = vf_div(v, vf_load(sum + x));
-                vf_store(near[c] + x, round_stored(s->storage, vf_select(is_near, v, vf_load(colour[c] + x)), c));
+                vf_store(near[c] + x,
+                         round_stored(s->storage, near_part_vf(s->faithful, vf_load(colour[c] + x), v, coc), c));
             }
         }
     }
@@ -432,13 +434,16 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
                     for (int c = 0; c < 5; c++)
                         sum[c] = vf_zero();
                 const vf dx = vf_mul(vf_set1(t->dx[i]), scale), dy = vf_mul(vf_set1(t->dy[i]), scale);
+                const vf share = vf_set1(t->share[i]);
                 const vf fx = vf_floor(dx), fy = vf_floor(dy);
                 const vf ax = vf_sub(dx, fx), ay = vf_sub(dy, fy);
                 const vi at = tap_index(fx, fy, colour->stride, lane);
                 for (int c = 0; c < f->s->channels; c++)
-                    sum[c] = vf_add(sum[c], sample_simd(hf_at(colour, c, x, y), colour->stride, at, ax, ay));
-                sum[4] = vf_add(sum[4], sample_simd(hf_at(weight, 1, x, y), weight->stride,
-                                                    tap_index(fx, fy, weight->stride, lane), ax, ay));
+                    sum[c] = vf_fma(share, sample_simd(hf_at(colour, c, x, y), colour->stride, at, ax, ay), sum[c]);
+                sum[4] = vf_fma(share,
+                                sample_simd(hf_at(weight, 1, x, y), weight->stride,
+                                            tap_index(fx, fy, weight->stride, lane), ax, ay),
+                                sum[4]);
                 if (i % 8 == 7 || i == t->count - 1)
                     for (int c = 0; c < 5; c++)
                         total[c] = vf_add(total[c], sum[c]);

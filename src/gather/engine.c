@@ -205,7 +205,8 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
                                : r->limit == HF_LIMIT_ENGINE ? MEASURED_RADIUS
                                                              : hf_model_radius(r->params.view.display_height);
     }
-    if (g->rings == HF_DERIVE)
+    r->rings_given = g->rings != HF_DERIVE;
+    if (!r->rings_given)
         g->rings = is_measured(r) ? MEASURED_RINGS : hf_taps_rings(r->params.max_radius / 2);
     if (g->rings < 1 || g->rings > HF_MAX_RINGS)
         return hf_bad(message, "gather.rings is %d; it must be 1 to %d", g->rings, HF_MAX_RINGS);
@@ -216,10 +217,19 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
 // and what full-resolution pixels of a quad and its neighbours see of that.
 enum { AREA_MAX = 2, AREA_BLUR = 1 };
 
+// How much the outermost of so many values to either side count where a window reaches a radius: all in the chapter.
+static float edge(const struct hf_gather *g, const struct hf_setup *s, int reach, float radius)
+{
+    return g->area || s->faithful ? 1 : radius - (float)(reach - 1);
+}
+
 static void set_reach(struct hf_gather *g, const struct hf_setup *s, float h)
 {
-    g->max_x = g->area ? AREA_MAX : (int)__builtin_ceilf(h / s->pixel_aspect);
+    const float hx = h / s->pixel_aspect;
+    g->max_x = g->area ? AREA_MAX : (int)__builtin_ceilf(hx);
     g->max_y = g->area ? AREA_MAX : (int)__builtin_ceilf(h);
+    g->edge_x = edge(g, s, g->max_x, hx);
+    g->edge_y = edge(g, s, g->max_y, h);
     g->blur_x = g->area ? AREA_BLUR : g->max_x;
     g->blur_y = g->area ? AREA_BLUR : g->max_y;
 }
@@ -259,7 +269,16 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 // dear, and mostly lie over one another.
 static const float LEVEL_STEP[2] = {0.5f, 0.75f};
 
-// radius: h. Of a measured one rings lie at most 2 apart, if there are so many.
+// Rings for a radius of h: those that lie 2 apart where nothing else is said, or of a measured one, if there are so many.
+static float ring_count(const struct hf_setup *s, const struct hf_params *p, float radius)
+{
+    const float most = (float)p->gather.rings, spaced = hf_taps_spaced(radius);
+    if (s->faithful || (s->resolved->rings_given && !s->measured))
+        return most;
+    return spaced < most ? spaced : most;
+}
+
+// radius: h.
 static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const struct hf_params *p, float radius,
                       const struct hf_mem *mem)
 {
@@ -269,8 +288,7 @@ static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const stru
                                     .blades = p->aperture.blades,
                                     .rotation = p->aperture.blades ? p->aperture.rotation : 0,
                                     .dense = p->gather.fill == HF_FILL_NONE,
-                                    .rings =
-                                        s->measured ? hf_min(p->gather.rings, hf_taps_rings(radius)) : p->gather.rings};
+                                    .rings = p->gather.fill == HF_FILL_NONE ? 0 : ring_count(s, p, radius)};
     return hf_taps_build(taps, &key, mem);
 }
 

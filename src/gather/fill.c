@@ -3,9 +3,6 @@
 // which keeps their energy.
 #include "gather/gather.h"
 
-// The per-pixel kernel takes only far neighbours of about its own CoC (chapter 3.5).
-static const float SIMILAR = 0.25f;
-
 static float max_3x3(const struct hf_buf *b, int c, int x, int y)
 {
     float v = *hf_at(b, c, x, y);
@@ -27,19 +24,16 @@ static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
     return ((row[0] + row[2]) + row[1]) * (1 / 9.0f);
 }
 
-// Is a far neighbour of CoC g like a pixel of CoC f?
-static int is_like(const struct hf_setup *s, float f, float g)
+// How much a far neighbour of CoC g counts for a pixel of CoC f. The per-pixel kernel takes only neighbours of about its own
+// CoC, by up to a quarter of the largest (chapter 3.5). The published demo takes what is there, whatever its CoC; then a
+// quad that begins to be far lights up the others around it at once. So by default it comes in by and by, up to a quarter,
+// and goes so from a quarter to half of difference.
+static float far_counts(const struct hf_setup *s, float f, float g)
 {
-    return !hf_gather(s)->per_pixel_kernel || __builtin_fabsf(f - g) <= SIMILAR;
-}
-
-// What a neighbour of CoC g and value t brings to the maximum of a pixel of value own. The published demo takes what is
-// there, even if there is none; then a quad that begins to be far lights up the others around it at once. So it comes in by
-// and by, up to a quarter of the largest CoC.
-static float brought(const struct hf_setup *s, float own, float t, float g)
-{
-    const float part = 4 * g;
-    return s->faithful || part >= 1 ? t : own + part * (t - own);
+    const float apart = hf_gather(s)->per_pixel_kernel ? 4 * __builtin_fabsf(f - g) : 0;
+    if (s->faithful)
+        return apart <= 1;
+    return hf_saturate(4 * g) * hf_saturate(2 - apart);
 }
 
 static float far_max(const struct hf_frame *f, int c, int x, int y)
@@ -50,9 +44,9 @@ static float far_max(const struct hf_frame *f, int c, int x, int y)
     float v = value;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            const float g = *hf_at(coc, 1, x + i, y + j), t = brought(f->s, value, *hf_at(b, c, x + i, y + j), g);
-            if (is_like(f->s, own, g))
-                v = t > v ? t : v;
+            const float part = far_counts(f->s, own, *hf_at(coc, 1, x + i, y + j)), t = *hf_at(b, c, x + i, y + j);
+            const float brought = part < 1 ? value + part * (t - value) : t;
+            v = brought > v ? brought : v;
         }
     return v + 0;
 }
@@ -66,8 +60,8 @@ static float far_mean(const struct hf_frame *f, int c, int x, int y)
         float t[3], w[3];
         for (int i = -1; i <= 1; i++) {
             const float g = *hf_at(coc, 1, x + i, y + j);
-            w[i + 1] = g > 0 && is_like(f->s, own, g);
-            t[i + 1] = w[i + 1] != 0 ? *hf_at(b, c, x + i, y + j) : 0;
+            w[i + 1] = g > 0 ? far_counts(f->s, own, g) : 0;
+            t[i + 1] = w[i + 1] > 0 ? w[i + 1] * *hf_at(b, c, x + i, y + j) : 0;
         }
         sum[j + 1] = (t[0] + t[2]) + t[1];
         n[j + 1] = (w[0] + w[2]) + w[1];
@@ -78,9 +72,11 @@ static float far_mean(const struct hf_frame *f, int c, int x, int y)
 static float fill_near(const struct hf_frame *f, int c, int x, int y)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_NEAR];
-    if (hf_gather(f->s)->fill == HF_FILL_NONE || !(*hf_at(&f->buf[HF_BUF_BLUR], 0, x, y) > 0))
-        return *hf_at(b, c, x, y);
-    return hf_gather(f->s)->fill == HF_FILL_MAX ? max_3x3(b, c, x, y) : mean_3x3(b, c, x, y);
+    const float own = *hf_at(b, c, x, y), blur = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
+    if (hf_gather(f->s)->fill == HF_FILL_NONE || !(blur > 0))
+        return own;
+    return hf_near_part(f->s, own, hf_gather(f->s)->fill == HF_FILL_MAX ? max_3x3(b, c, x, y) : mean_3x3(b, c, x, y),
+                        blur);
 }
 
 static float fill_far(const struct hf_frame *f, int c, int x, int y)
@@ -104,10 +100,11 @@ void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
                     far[c][x - r.x0] = fill_far(f, c, x, y);
             }
         // The largest of what a storage holds is what it holds.
-        if (f->near && hf_gather(f->s)->fill == HF_FILL_MEAN)
+        const int rounds =
+            hf_gather(f->s)->fill == HF_FILL_MEAN || (hf_gather(f->s)->fill == HF_FILL_MAX && !f->s->faithful);
+        if (f->near && rounds)
             hf_store_rgb(f, near, r.x1 - r.x0);
-        if (f->far &&
-            (hf_gather(f->s)->fill == HF_FILL_MEAN || (hf_gather(f->s)->fill == HF_FILL_MAX && !f->s->faithful)))
+        if (f->far && rounds)
             hf_store_rgb(f, far, r.x1 - r.x0);
     }
 }

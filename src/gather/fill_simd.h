@@ -2,6 +2,8 @@
 // Fill on vectors. Maximum and mean are separable: a column's three values are combined once and serve three
 // pixels. Only the per-pixel kernel, which picks its neighbours, and the far mean, which counts them, look at all nine.
 #include "gather/gather.h"
+#include "gather/near_part_vf.h"
+#include "pixel/coc_vf.h"
 #include "pixel/format_vf.h"
 
 HF_INLINE vf max3(vf a, vf b, vf c)
@@ -26,17 +28,27 @@ HF_INLINE void fill_max_vector(vf left, vf middle, vf right, const float *in, vm
     vf_store(out, vf_select(wanted, v, vf_load(in)));
 }
 
+// Of those, in part what begins to be near.
+HF_INLINE void fill_max_begins(float *const in[4], float *const out[4], int x, vf want, const int channels)
+{
+    if (near_begins_vf(want))
+        for (int c = 0; c < channels; c++)
+            vf_store(out[c] + x, near_part_vf(0, vf_load(in[c] + x), vf_load(out[c] + x), want));
+}
+
 // A row of them. A first vector lies where the row begins, the others are aligned: their columns' maxima are made
 // once, and shifted for the neighbours.
 HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *want, float *const out[4], int n,
-                            int first, const int channels)
+                            int first, const int faithful, const int channels)
 {
-    vf left[4], middle[4];
-    vm wanted = vf_gt(vf_load(want), vf_zero());
+    vf left[4], middle[4], near = vf_load(want);
+    vm wanted = vf_gt(near, vf_zero());
 #pragma GCC unroll 4
     for (int c = 0; c < channels; c++)
         fill_max_vector(column_max(in[c] - 1, stride), column_max(in[c], stride), column_max(in[c] + 1, stride), in[c],
                         wanted, out[c]);
+    if (!faithful)
+        fill_max_begins(in, out, 0, near, channels);
     int x = VF_N - (first & (VF_N - 1));
 #pragma GCC unroll 4
     for (int c = 0; c < channels && x < n; c++) {
@@ -44,7 +56,8 @@ HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *w
         middle[c] = column_max(in[c] + x, stride);
     }
     for (; x < n; x += VF_N) {
-        wanted = vf_gt(vf_load(want + x), vf_zero());
+        near = vf_load(want + x);
+        wanted = vf_gt(near, vf_zero());
 #pragma GCC unroll 4
         for (int c = 0; c < channels; c++) {
             const vf right = column_max(in[c] + x + VF_N, stride);
@@ -53,10 +66,13 @@ HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *w
             left[c] = middle[c];
             middle[c] = right;
         }
+        if (!faithful)
+            fill_max_begins(in, out, x, near, channels);
     }
 }
 
-static void fill_mean_row(const float *in, ptrdiff_t stride, const float *want, float *out, int n, float *sums)
+static void fill_mean_row(const int faithful, const float *in, ptrdiff_t stride, const float *want, float *out, int n,
+                          float *sums)
 {
     // Rows first, then their sum, as in the C.
     for (int i = 0; i < 3; i++)
@@ -67,8 +83,7 @@ static void fill_mean_row(const float *in, ptrdiff_t stride, const float *want, 
     for (int x = 0; x < n; x += VF_N) {
         const float *p = sums + x;
         const vf v = sum3(vf_load(p), vf_load(p + n + HF_PAD), vf_load(p + 2 * (size_t)(n + HF_PAD)));
-        vf_store(out + x,
-                 vf_select(vf_gt(vf_load(want + x), vf_zero()), vf_mul(v, vf_set1(1 / 9.0f)), vf_load(in + x)));
+        vf_store(out + x, near_part_vf(faithful, vf_load(in + x), vf_mul(v, vf_set1(1 / 9.0f)), vf_load(want + x)));
     }
 }
 
@@ -78,18 +93,16 @@ static void fill_copy_row(const float *in, float *out, int n)
         vf_store(out + x, vf_load(in + x));
 }
 
-// What a neighbour brings to a maximum; rounded as the C is.
-HF_INLINE vf fill_brought(const struct hf_setup *s, vf own, vf t, vf g)
+// How much a far neighbour counts, 1 or more: wholly; rounded as the C is.
+HF_INLINE vf fill_counts(const struct hf_setup *s, vf own, vf g)
 {
-    const vf part = vf_mul(vf_set1(4), g);
-    return s->faithful ? t : vf_select(vf_lt(part, vf_set1(1)), vf_add(own, vf_mul(part, vf_sub(t, own))), t);
-}
-
-// Of the per-pixel kernel, neighbours of similar CoC.
-HF_INLINE vm fill_is_like(const struct hf_setup *s, vf own, vf g)
-{
-    const vm all = vf_eq(own, own);
-    return hf_gather(s)->per_pixel_kernel ? vf_le(vf_abs(vf_sub(own, g)), vf_set1(0.25f)) : all;
+    const vf one = vf_set1(1), begins = s->faithful ? one : vf_mul(vf_set1(4), g);
+    if (!hf_gather(s)->per_pixel_kernel)
+        return begins;
+    const vf apart = vf_mul(vf_set1(4), vf_abs(vf_sub(own, g)));
+    if (s->faithful)
+        return vf_keep(vf_le(apart, one), one);
+    return vf_mul(vf_min(begins, one), coc_saturate(vf_sub(vf_set1(2), apart)));
 }
 
 // All nine looked at, for a maximum ...
@@ -101,8 +114,9 @@ HF_INLINE void fill_far_max(const struct hf_setup *s, const float *in, ptrdiff_t
         vf best = value;
         for (int i = 0; i < 9; i++) {
             const vf g = vf_load(coc + (i / 3 - 1) * coc_stride + x + i % 3 - 1);
-            const vf v = fill_brought(s, value, vf_load(in + (i / 3 - 1) * stride + x + i % 3 - 1), g);
-            best = vf_select(fill_is_like(s, own, g), vf_max(v, best), best);
+            const vf part = fill_counts(s, own, g), t = vf_load(in + (i / 3 - 1) * stride + x + i % 3 - 1);
+            const vf brought = vf_add(value, vf_mul(part, vf_sub(t, value)));
+            best = vf_max(vf_select(vf_lt(part, vf_set1(1)), brought, t), best);
         }
         vf_store(out + x, vf_select(vf_gt(own, vf_zero()), vf_add(best, vf_zero()), value));
     }
@@ -119,9 +133,8 @@ HF_INLINE void fill_far_mean(const struct hf_setup *s, const float *in, ptrdiff_
             vf t[3], w[3];
             for (int i = -1; i <= 1; i++) {
                 const vf g = vf_load(coc + j * coc_stride + x + i), v = vf_load(in + j * stride + x + i);
-                const vm counts = vm_and(fill_is_like(s, own, g), vf_gt(g, vf_zero()));
-                t[i + 1] = vf_keep(counts, v);
-                w[i + 1] = vf_keep(counts, vf_set1(1));
+                w[i + 1] = vf_keep(vf_gt(g, vf_zero()), vf_min(fill_counts(s, own, g), vf_set1(1)));
+                t[i + 1] = vf_keep(vf_gt(w[i + 1], vf_zero()), vf_mul(w[i + 1], v));
             }
             sum[j + 1] = sum3(t[0], t[1], t[2]);
             count[j + 1] = sum3(w[0], w[1], w[2]);
@@ -144,10 +157,12 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
     const int picked = in == HF_BUF_FAR && hf_gather(s)->fill != HF_FILL_NONE &&
                        (hf_gather(s)->per_pixel_kernel || hf_gather(s)->fill == HF_FILL_MEAN || !s->faithful);
     if (hf_gather(s)->fill == HF_FILL_MAX && !picked) {
-        if (s->channels == 3)
-            fill_max_row(from, stride, w, to, n, r.x0, 3);
+        if (s->channels == 4)
+            fill_max_row(from, stride, w, to, n, r.x0, s->faithful, 4);
+        else if (s->faithful)
+            fill_max_row(from, stride, w, to, n, r.x0, 1, 3);
         else
-            fill_max_row(from, stride, w, to, n, r.x0, 4);
+            fill_max_row(from, stride, w, to, n, r.x0, 0, 3);
     } else {
         for (int c = 0; c < s->channels; c++)
             if (hf_gather(s)->fill == HF_FILL_NONE)
@@ -157,10 +172,10 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
             else if (picked)
                 fill_far_mean(s, from[c], stride, w, want->stride, to[c], n);
             else
-                fill_mean_row(from[c], stride, w, to[c], n, f->work);
+                fill_mean_row(s->faithful, from[c], stride, w, to[c], n, f->work);
     }
     // The largest of what a storage holds is what it holds.
-    if (hf_gather(s)->fill == HF_FILL_MEAN || (in == HF_BUF_FAR && picked && !s->faithful))
+    if (hf_gather(s)->fill == HF_FILL_MEAN || (hf_gather(s)->fill == HF_FILL_MAX && !s->faithful))
         hf_store_rgb(f, to, n);
 }
 

@@ -109,7 +109,8 @@ struct hf_gather {
     int rings;
     int max_x, max_y;  // near max reach to either side
     int blur_x, blur_y;
-    int smoothstep;  // measured: of the CoC, and how it is stored, once the radii are known
+    float edge_x, edge_y;  // how much the outermost values in reach count, 0..1: 1 but between whole reaches of taps
+    int smoothstep;        // measured: of the CoC, and how it is stored, once the radii are known
     enum hf_storage storage;
     struct hf_taps taps;      // of both fields
     struct hf_taps far_taps;  // measured: of the far one
@@ -118,6 +119,21 @@ struct hf_gather {
 static inline const struct hf_gather *hf_gather(const struct hf_setup *s)
 {
     return s->own;
+}
+
+// One over what 2 m + 1 values weigh, the outermost of them by edge.
+static inline float hf_blur_scale(int m, float edge)
+{
+    return 1 / ((float)(2 * m + 1) - 2 * (1 - edge));
+}
+
+// Taps: what a pixel becomes where there is near CoC, v, or what it was. The chapter takes v wherever there is any; then what
+// the near field begins to reach changes at once, and lights up what is beside. So it comes in by and by, up to an eighth.
+#define HF_NEAR_WHOLE 8.0f
+static inline float hf_near_part(const struct hf_setup *s, float own, float v, float blur)
+{
+    const float part = HF_NEAR_WHOLE * blur;
+    return !(blur > 0) ? own : s->faithful || part >= 1 ? v : own + part * (v - own);
 }
 
 static inline const struct hf_taps *hf_gather_taps(const struct hf_setup *s, unsigned field)

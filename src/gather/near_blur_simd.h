@@ -160,11 +160,12 @@ struct blur_line {
 };
 
 // n values of a line of any width from n + 2m; per: how many of them a vector makes. Windows of the m values to either
-// side grow bit by bit of m, in place: a value is read for the last time when it is replaced. out_advance: bytes.
+// side grow bit by bit of m, in place: a value is read for the last time when it is replaced. edge: how much the outermost
+// count. out_advance: bytes.
 HF_INLINE void blur_line(const int bytes, const int widen, struct blur_line in, struct blur_line sum, char *out,
-                         ptrdiff_t out_advance, int m, int n, int per)
+                         ptrdiff_t out_advance, int m, float edge, int n, int per)
 {
-    const vf scale = vf_set1(1 / (float)(2 * m + 1));
+    const vf scale = vf_set1(hf_blur_scale(m, edge)), less = vf_set1(1 - edge);
     struct blur_line w = in;
     int size = 1;
     for (int bit = 30 - __builtin_clz((unsigned)m); bit >= 0; bit--) {
@@ -181,8 +182,10 @@ HF_INLINE void blur_line(const int bytes, const int widen, struct blur_line in, 
     }
     for (int i = 0; i * per < n; i++) {
         const float *p = w.p + i * w.advance;
-        const vf centre = vf_load(in.p + i * in.advance + m * in.step);
-        const vf total = blur_sum(centre, vf_load(p), vf_load(p + (m + 1) * w.step));
+        const float *first = in.p + i * in.advance;
+        vf total = blur_sum(vf_load(first + m * in.step), vf_load(p), vf_load(p + (m + 1) * w.step));
+        if (edge < 1)
+            total = vf_sub(total, vf_mul(less, vf_add(vf_load(first), vf_load(first + 2 * m * in.step))));
         blur_put(bytes, widen, out + i * out_advance, vf_mul(total, scale));
     }
 }
@@ -212,7 +215,7 @@ HF_INLINE void blur_row_13(const int bytes, const char *in, char *out, int n)
     }
 }
 
-HF_INLINE void blur_row_wide(const struct hf_frame *f, const int bytes, char *in, char *out, int n, int m)
+HF_INLINE void blur_row_wide(const struct hf_frame *f, const int bytes, char *in, char *out, int n, int m, float edge)
 {
     struct blur_line from = {hf_line(f, 0), VF_N, 1}, sum = {hf_line(f, 1), VF_N, 1};
     if (bytes == 4)
@@ -220,23 +223,26 @@ HF_INLINE void blur_row_wide(const struct hf_frame *f, const int bytes, char *in
     else
         for (int x = 0; x < n + 2 * m; x += VF_N)
             vf_store(from.p + x, narrow_load(bytes, in + x * bytes));
-    blur_line(bytes, 0, from, sum, out, VF_N * bytes, m, n, VF_N);
+    blur_line(bytes, 0, from, sum, out, VF_N * bytes, m, edge, n, VF_N);
 }
 
 HF_INLINE void blur_rows(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
     const int m = hf_gather(f->s)->blur_x, n = r.x1 - r.x0;
+    const float edge = hf_gather(f->s)->edge_x;
     for (int y = r.y0; y < r.y1; y++) {
         char *in = hf_narrow_at(&f->buf[HF_BUF_MAX], 0, r.x0 - m, y, bytes);
         char *out = hf_narrow_at(&f->buf[HF_BUF_BLUR_X], 0, r.x0, y, bytes);
-        if (m == 6 && bytes == 1)
+        if (edge < 1)
+            blur_row_wide(f, bytes, in, out, n, m, edge);
+        else if (m == 6 && bytes == 1)
             blur_bytes_13(in, out, n);
         else if (m == 6)
             blur_row_13(bytes, in, out, n);
         else if (bytes == 1 && m <= BLUR_BYTES)
             blur_bytes(in, (char *)hf_line(f, 0), out, n, m);
         else
-            blur_row_wide(f, bytes, in, out, n, m);
+            blur_row_wide(f, bytes, in, out, n, m, 1);
     }
 }
 
@@ -291,7 +297,7 @@ HF_INLINE void blur_column_13(const int bytes, const char *in, ptrdiff_t stride,
 }
 
 HF_INLINE void blur_column_wide(const struct hf_frame *f, const int bytes, char *in, ptrdiff_t stride, float *out,
-                                ptrdiff_t out_stride, int n, int m)
+                                ptrdiff_t out_stride, int n, int m, float edge)
 {
     const struct blur_line sum = {f->work, VF_N, VF_N};
     struct blur_line from = {f->work + (ptrdiff_t)(n + 2 * m) * VF_N, VF_N, VF_N};
@@ -300,7 +306,7 @@ HF_INLINE void blur_column_wide(const struct hf_frame *f, const int bytes, char 
     else
         for (int y = 0; y < n + 2 * m; y++)
             vf_store(from.p + y * VF_N, narrow_load(bytes, in + y * stride));
-    blur_line(bytes, 1, from, sum, (char *)out, out_stride * (ptrdiff_t)sizeof(float), m, n, 1);
+    blur_line(bytes, 1, from, sum, (char *)out, out_stride * (ptrdiff_t)sizeof(float), m, edge, n, 1);
 }
 
 // 3 high, row by row: nothing is shared that would be worth keeping.
@@ -323,10 +329,11 @@ HF_INLINE void blur_rows_3(const struct hf_frame *f, struct hf_rect r, const int
 HF_INLINE void blur_columns(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_BLUR_X], *to = &f->buf[HF_BUF_BLUR];
-    const int m = hf_gather(f->s)->blur_y, n = r.y1 - r.y0, is_sum = bytes == 1 && m <= BLUR_BYTES,
+    const float edge = hf_gather(f->s)->edge_y;
+    const int m = hf_gather(f->s)->blur_y, n = r.y1 - r.y0, is_sum = bytes == 1 && m <= BLUR_BYTES && !(edge < 1),
               width = is_sum ? VECTOR : VF_N;
     const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float);
-    if (m == 1 && bytes > 1) {
+    if (m == 1 && bytes > 1 && !(edge < 1)) {
         blur_rows_3(f, r, bytes);
         return;
     }
@@ -335,10 +342,10 @@ HF_INLINE void blur_columns(const struct hf_frame *f, struct hf_rect r, const in
         float *out = hf_at(to, 0, x, r.y0);
         if (is_sum)
             blur_byte_column(in, stride, out, to->stride, hf_min(r.x1 - x, VECTOR), n, m);
-        else if (m == 6)
+        else if (m == 6 && !(edge < 1))
             blur_column_13(bytes, in, stride, out, to->stride, n);
         else
-            blur_column_wide(f, bytes, in, stride, out, to->stride, n, m);
+            blur_column_wide(f, bytes, in, stride, out, to->stride, n, m, edge);
     }
 }
 

@@ -130,9 +130,37 @@ HF_INLINE const char *narrow_row(const int bytes, const float *in, int n, char *
     return out;
 }
 
+// A stored CoC as hf_narrow_load and hf_narrow_store have it.
+HF_INLINE vf narrow_value(const int bytes, const char *p)
+{
+    return bytes == 1   ? vf_mul(vi_to_vf(vi_load_u8(p)), vf_set1(1 / 255.0f))
+           : bytes == 2 ? coc_load_half(p)
+                        : vf_load(p);
+}
+
+HF_INLINE void narrow_put(const int bytes, char *p, vf v)
+{
+    if (bytes == 1)
+        vi_store_u8(p, vf_to_vi(vf_add(vf_mul(v, vf_set1(255)), vf_set1(0.5f))));
+    else if (bytes == 2)
+        coc_store_half(p, v);
+    else
+        vf_store(p, v);
+}
+
+// Maxima of a row with a window's first and last values, which lie in rows or columns of their own, times the edge.
+HF_INLINE void max_edges(const int bytes, const char *first, const char *last, char *out, int n, float edge)
+{
+    for (int x = 0; x < n * bytes; x += VF_N * bytes) {
+        const vf ends = vf_max(narrow_value(bytes, first + x), narrow_value(bytes, last + x));
+        narrow_put(bytes, out + x, vf_max(vf_mul(vf_set1(edge), ends), narrow_value(bytes, out + x)));
+    }
+}
+
 HF_INLINE void max_rows(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
     const int m = hf_gather(f->s)->max_x, n = r.x1 - r.x0;
+    const float edge = hf_gather(f->s)->edge_x;
     const struct hf_buf *b = &f->buf[HF_BUF_COC4];
     for (int y = r.y0; y < r.y1; y++) {
         const float *coc = hf_at(b, hf_gather(f->s)->area ? HF_AREA_NEAR_MOST : 0, r.x0 - m, y);
@@ -140,12 +168,16 @@ HF_INLINE void max_rows(const struct hf_frame *f, struct hf_rect r, const int by
         for (int x = 0; x < n + 2 * m + 15; x += 16)  // comes from memory, in rows too short for hardware prefetchers
             __builtin_prefetch(coc + 4 * b->stride + x);
         const char *in = narrow_row(bytes, coc, n + 2 * m, (char *)hf_line(f, 0));
-        if (m == 6)
+        if (edge < 1) {
+            max_row_wide(bytes, in + bytes, (char *)hf_line(f, 1), out, n, m - 1);
+            max_edges(bytes, in, in + 2 * m * bytes, out, n, edge);
+        } else if (m == 6) {
             max_row(bytes, in, out, n, 13);
-        else if (m == 2)
+        } else if (m == 2) {
             max_row_5(bytes, in, out, n);
-        else
+        } else {
             max_row_wide(bytes, in, (char *)hf_line(f, 1), out, n, m);
+        }
     }
 }
 
@@ -190,9 +222,9 @@ HF_INLINE void max_columns(const struct hf_frame *f, struct hf_rect r, const int
 {
     const struct hf_buf *b = &f->buf[HF_BUF_MAX_X], *to = &f->buf[HF_BUF_MAX];
     const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float), out_stride = to->stride * (ptrdiff_t)sizeof(float);
-    const int m = hf_gather(f->s)->max_y, most = m < MAX_ROWS / 2 ? 2 * m + 1
-                                                 : m < 24         ? MAX_ROWS
-                                                                  : hf_min(2 * m + 1, MAX_MANY);
+    const float edge = hf_gather(f->s)->edge_y;
+    const int reach = hf_gather(f->s)->max_y, m = reach - (edge < 1);
+    const int most = m < MAX_ROWS / 2 ? 2 * m + 1 : m < 24 ? MAX_ROWS : hf_min(2 * m + 1, MAX_MANY);
     for (int y = r.y0, rows; y < r.y1; y += rows) {
         rows = hf_min(most, r.y1 - y);
         for (int x = r.x0; x < r.x1; x += VECTOR / bytes) {
@@ -207,6 +239,9 @@ HF_INLINE void max_columns(const struct hf_frame *f, struct hf_rect r, const int
                 max_column(bytes, in, stride, out, out_stride, m, rows, up);
         }
     }
+    for (int y = r.y0; y < r.y1 && edge < 1; y++)
+        max_edges(bytes, hf_narrow_at(b, 0, r.x0, y - reach, bytes), hf_narrow_at(b, 0, r.x0, y + reach, bytes),
+                  hf_narrow_at(to, 0, r.x0, y, bytes), r.x1 - r.x0, edge);
 }
 
 static void max_y_simd(const struct hf_frame *f, struct hf_rect r)

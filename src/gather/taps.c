@@ -12,21 +12,26 @@ static const double NEGLIGIBLE = 1e-6;
 // Weights of taps are whole numbers of this: floats up to 1 hold them exactly.
 #define WEIGHT_UNIT 0x1p-24f
 
-int hf_taps_rings(float radius)
+float hf_taps_spaced(float radius)
 {
-    const int n = (int)ceil((double)radius / 2);
+    const float n = radius / 2;
     return n < 1 ? 1 : n > HF_MAX_RINGS ? HF_MAX_RINGS : n;
 }
 
-static int ring_count(const struct hf_taps_key *k)
+int hf_taps_rings(float radius)
 {
-    return k->rings ? k->rings : hf_taps_rings(k->radius);
+    return (int)ceilf(hf_taps_spaced(radius));
+}
+
+static int taps_of_rings(int rings)
+{
+    return 1 + 4 * rings * (rings + 1);
 }
 
 static int tap_count(const struct hf_taps_key *k)
 {
-    const int rings = ring_count(k);
-    return k->dense ? 144 : 1 + 4 * rings * (rings + 1);
+    const int rings = (int)ceilf(k->rings), blended = k->rings < (float)rings;
+    return k->dense ? 144 : taps_of_rings(rings) + (blended ? taps_of_rings(rings - 1) : 0);
 }
 
 // Distance from the centre to the side of a unit n-gon in direction t (Sousa 2013).
@@ -49,27 +54,28 @@ static void concentric(double x, double y, double *u, double *v)
     *v = r * sin(t);
 }
 
-static void place_taps(const struct hf_taps_key *k, float *dx, float *dy)
+static void place_grid(const struct hf_taps_key *k, float *dx, float *dy, float *share)
 {
     const double reach = (double)k->radius * k->scale;
-    int n = 0;
-    if (k->dense) {
-        for (int i = 0; i < 144; i++, n++) {
-            double u, v;
-            concentric((i % 12 + 0.5) / 6 - 1, (i / 12 + 0.5) / 6 - 1, &u, &v);
-            if (k->blades) {
-                const double t = atan2(v, u) - k->rotation * M_PI / 180;
-                u *= polygon_radius(k->blades, t);
-                v *= polygon_radius(k->blades, t);
-            }
-            dx[n] = (float)(u * reach / k->pixel_aspect);
-            dy[n] = (float)(v * reach);
+    for (int i = 0; i < 144; i++) {
+        double u, v;
+        concentric((i % 12 + 0.5) / 6 - 1, (i / 12 + 0.5) / 6 - 1, &u, &v);
+        if (k->blades) {
+            const double t = atan2(v, u) - k->rotation * M_PI / 180;
+            u *= polygon_radius(k->blades, t);
+            v *= polygon_radius(k->blades, t);
         }
-        return;
+        dx[i] = (float)(u * reach / k->pixel_aspect);
+        dy[i] = (float)(v * reach);
+        share[i] = 1;
     }
-    dx[n] = dy[n] = 0;
-    n++;
-    const int rings = ring_count(k);
+}
+
+static void place_rings(const struct hf_taps_key *k, int rings, float *dx, float *dy)
+{
+    const double reach = (double)k->radius * k->scale;
+    int n = 1;
+    dx[0] = dy[0] = 0;
     for (int ring = 1; ring <= rings; ring++) {
         for (int i = 0; i < 8 * ring; i++, n++) {
             const double t = 2 * M_PI * i / (8 * ring);
@@ -82,22 +88,39 @@ static void place_taps(const struct hf_taps_key *k, float *dx, float *dy)
     }
 }
 
+// One ring more moves every tap. So that a radius that grows changes the picture by and by, taps of both numbers of rings
+// take part, each by how near its number is.
+static void place_taps(const struct hf_taps_key *k, float *dx, float *dy, float *share)
+{
+    if (k->dense) {
+        place_grid(k, dx, dy, share);
+        return;
+    }
+    const int rings = (int)ceilf(k->rings), all = tap_count(k), count = taps_of_rings(rings);
+    const double part = 1 - ((double)rings - (double)k->rings);
+    place_rings(k, rings, dx, dy);
+    if (all > count)
+        place_rings(k, rings - 1, dx + count, dy + count);
+    for (int i = 0; i < all; i++)
+        share[i] = (float)(i < count ? part : (1 - part) * count / (all - count));
+}
+
 // Add a tap's four bilinear weights to the lattice w of (2 rx + 1) columns.
-static void splat(double *w, int rx, int ry, double x, double y)
+static void splat(double *w, int rx, int ry, double x, double y, double share)
 {
     const double fx = floor(x), fy = floor(y);
     const double ax = x - fx, ay = y - fy;
     double *p = w + ((int)fy + ry) * (2 * rx + 1) + (int)fx + rx;
     // A tap on the outermost lattice line has no weight beyond it, and there is no room for one.
     if (1 - ax > NEGLIGIBLE && 1 - ay > NEGLIGIBLE)
-        p[0] += (1 - ax) * (1 - ay);
+        p[0] += share * ((1 - ax) * (1 - ay));
     if (ax > NEGLIGIBLE && 1 - ay > NEGLIGIBLE)
-        p[1] += ax * (1 - ay);
+        p[1] += share * (ax * (1 - ay));
     p += 2 * rx + 1;
     if (1 - ax > NEGLIGIBLE && ay > NEGLIGIBLE)
-        p[0] += (1 - ax) * ay;
+        p[0] += share * ((1 - ax) * ay);
     if (ax > NEGLIGIBLE && ay > NEGLIGIBLE)
-        p[1] += ax * ay;
+        p[1] += share * (ax * ay);
 }
 
 // Lattice points needed on either side of the centre.
@@ -143,7 +166,7 @@ static void make_up(struct hf_taps *t, int times, int *missing, const int *first
 
 // Round the lattice to units, keep what is not 0, and make the sum 1: sums of weights are exact then in any order, so that
 // alpha of 1 stays 1. Weights that are equal stay equal, as rows of them are added up before they are weighted.
-static void round_weights(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
+static void round_weights(struct hf_taps *t, const double *w, double all, int *first, int *column, float *weight)
 {
     const int row = 2 * t->rx + 1, columns = t->symmetric ? t->rx + 1 : row;
     int n = 0, missing = (int)(1 / WEIGHT_UNIT);
@@ -152,7 +175,7 @@ static void round_weights(struct hf_taps *t, const double *w, int *first, int *c
         for (int j = 0; j < columns; j++) {
             const double *p = t->symmetric ? w + (k + t->ry) * row + j + t->rx : w + k * row + j;
             const int times = mirrored(t, k, j);
-            const int units = (int)rint(*p / t->count / WEIGHT_UNIT);
+            const int units = (int)rint(*p / all / WEIGHT_UNIT);
             if (units <= 0)
                 continue;
             column[n] = j;
@@ -278,23 +301,24 @@ int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct h
     const int max_rx = (int)ceil((double)k->radius * k->scale / k->pixel_aspect) + 1;
     const int max_ry = (int)ceil((double)k->radius * k->scale) + 1;
     const size_t lattice = (size_t)(2 * max_rx + 1) * (2 * max_ry + 1);
-    const size_t size = lattice * (sizeof(double) + sizeof(float) + sizeof(int)) + 2 * (size_t)count * sizeof(float) +
+    const size_t size = lattice * (sizeof(double) + sizeof(float) + sizeof(int)) + 3 * (size_t)count * sizeof(float) +
                         (size_t)(2 * max_ry + 2) * sizeof(int);
     const int err = hf_block_grow(&t->block, size, mem);
     if (err)
         return err;
     double *w = t->block.data;
-    float *dx = (float *)(w + lattice), *dy = dx + count, *weight = dy + count;
+    float *dx = (float *)(w + lattice), *dy = dx + count, *share = dy + count, *weight = share + count;
     int *column = (int *)(weight + lattice), *first = column + lattice;
     memset(w, 0, lattice * sizeof *w);
-    place_taps(k, dx, dy);
+    place_taps(k, dx, dy, share);
     const int rx = lattice_reach(dx, count), ry = lattice_reach(dy, count);
     // The positions are rounded to float for the per-pixel kernel; the lattice takes the same ones.
     for (int i = 0; i < count; i++)
-        splat(w, rx, ry, dx[i], dy[i]);
+        splat(w, rx, ry, dx[i], dy[i], share[i]);
     t->count = count;
     t->dx = dx;
     t->dy = dy;
+    t->share = share;
     t->rx = rx;
     t->ry = ry;
     t->symmetric = mirrors(w, rx, ry);
@@ -302,7 +326,7 @@ int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct h
     t->first = first;
     t->column = column;
     t->weight = weight;
-    round_weights(t, w, first, column, weight);
+    round_weights(t, w, k->dense ? count : taps_of_rings((int)ceilf(k->rings)), first, column, weight);
     t->key = *k;
     return HF_OK;
 }

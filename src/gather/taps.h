@@ -14,7 +14,7 @@ struct hf_taps_key {
     int blades;          // 0: circles
     float rotation;      // degrees
     int dense;           // the 144-tap grid instead of rings
-    int rings;           // 0: as many as lie at most 2 apart
+    float rings;         // how many; between whole numbers a blend of that many and one fewer; 0 with dense or area
     int area;            // instead of taps, all pixels by the area that the aperture covers of each
     int most_x, most_y;  // area: what lies farther away is never met; 0: all may be
 };
@@ -24,10 +24,11 @@ struct hf_taps_key {
 struct hf_taps {
     int count;             // taps: the centre and the rings, or the dense grid, which has none on the centre
     const float *dx, *dy;  // their offsets in half-resolution pixels, kernel scale included; the centre comes first
+    const float *share;    // what each counts: 1, but where two numbers of rings are blended
 
     int rx, ry;     // lattice reach: offsets -rx..rx, -ry..ry
     int symmetric;  // weights mirror in x and in y
-    // The weights, each tap 1/count, summing to 1 with their scale: only those that are not 0, row by row. Row k has entries first[k] to
+    // The weights, each tap by its share, summing to 1 with their scale: only those that are not 0, row by row. Row k has entries first[k] to
     // first[k + 1]. symmetric: ry + 1 rows, for |dy| = k, with column |dx|. Else 2 ry + 1 rows, for dy = k - ry, with
     // column dx + rx. Of areas, a column beyond rx (symmetric) stands for the sum of all from -j to j, j = column - rx - 1.
     int rows;
@@ -45,8 +46,9 @@ struct hf_taps {
 };
 
 enum { HF_MAX_RINGS = 64 };
-// Rings that reach a radius of so many half-resolution pixels, at most 2 apart.
+// Rings that reach a radius of so many half-resolution pixels, at most 2 apart; and before they are rounded up.
 int hf_taps_rings(float radius);
+float hf_taps_spaced(float radius);
 
 // (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
 int hf_taps_build(struct hf_taps *taps, const struct hf_taps_key *key, const struct hf_mem *mem);

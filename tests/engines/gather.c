@@ -137,7 +137,23 @@ static double gather_bound(const struct reference *r, enum ref_id id, int c, int
     // Karis weights w = 1 / (1 + Y): w c <= 1 / 0.0722 for every channel.
     const double sample = r->params.gather.karis ? fmin(largest, 14) : largest;
     const double units = per_pixel ? 0 : many(points);
-    return many(2 * points + 12) * largest + (units + U * 4 * moved) * sample / mean;
+    // With the pixel's own colour in part: a product, a difference, a product and a sum.
+    return many(2 * points + 12 + 4) * largest + (units + U * 4 * moved) * sample / mean;
+}
+
+// Passes 3 to 6 where the outermost values of a window count in part: that part is rounded by U times the radius, and times
+// a value of at most 1.
+static double edge_bound(const struct reference *r, double radius)
+{
+    return r->params.gather.faithful || radius == ceil(radius) ? 0 : U * (ceil(radius) + 1);
+}
+
+// And a mean of such: 2 m + 1 positive terms, and the scale; less what two values do not count, of their size, over what
+// the others weigh.
+static double mean_bound(const struct reference *r, double radius, double want)
+{
+    const double edge = edge_bound(r, radius);
+    return U * want * (2 * ceil(radius) + 3) + (edge > 0 ? (4 * edge + 8 * U) / (2 * ceil(radius) - 1) : 0);
 }
 
 // What a sample of a buffer may differ by, storage apart.
@@ -149,13 +165,15 @@ static double bound_of(const struct reference *r, const struct job *job, enum re
     case REF_COC:
         return coc_bound(r, job);
     case REF_COC4:
+        return 0;  // copies
     case REF_COCMAXX:
+        return edge_bound(r, r->reach_x);
     case REF_COCMAX:
-        return 0;       // copies
-    case REF_COCBLURX:  // 2 m + 1 positive terms, and the scale
-        return U * want * (2 * ceil(r->reach_x) + 3);
+        return edge_bound(r, r->reach_y);
+    case REF_COCBLURX:
+        return mean_bound(r, r->reach_x, want);
     case REF_COCBLUR:
-        return U * want * (2 * ceil(r->reach_y) + 3);
+        return mean_bound(r, r->reach_y, want);
     case REF_COLOR4:  // three sums
         return 3 * U * colour_near(r, c, x, y, 0, 0);
     case REF_COLORMULCOC4:  // weights of products of three rounded differences (11), their sum (3), the inverse (1),
@@ -164,8 +182,10 @@ static double bound_of(const struct reference *r, const struct job *job, enum re
     case REF_NEAR:
     case REF_FAR:
         return gather_bound(r, id, c, x, y);
-    case REF_NEARFILL:  // nine terms, and the quotient or a product with a rounded 1/9
-        return r->params.gather.fill == HF_FILL_MEAN ? 11 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1) : 0;
+    case REF_NEARFILL:  // nine terms, and the quotient or a product with a rounded 1/9; of a maximum as below
+        return r->params.gather.fill == HF_FILL_MEAN  ? 11 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1)
+               : r->params.gather.fill == HF_FILL_MAX ? 6 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1)
+                                                      : 0;
     case REF_FARFILL:  // of a maximum a difference, a product and a sum, of two values
         return r->params.gather.fill == HF_FILL_MEAN  ? 11 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)
                : r->params.gather.fill == HF_FILL_MAX ? 6 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)

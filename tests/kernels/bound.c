@@ -125,15 +125,21 @@ double bound_quotient(double error, double divisor_error, double divisor, double
     return (error + value * divisor_error) / (divisor - divisor_error) + 2 * value * FLT_EPSILON;
 }
 
+// What is mixed with the pixel's own colour has four roundings more; the part of the mean in it is no larger than it and that.
 static double bound_near(const struct world *w, int c, int x, int y, float want)
 {
-    const double k = gather_roundings(w) * FLT_EPSILON;
-    if (!(reference_at(w, HF_BUF_BLUR, 0, x, y) > 0))
+    const double k = gather_roundings(w) * FLT_EPSILON, blur = reference_at(w, HF_BUF_BLUR, 0, x, y);
+    if (!(blur > 0))
         return 0;  // a copy
+    double value = fabs((double)want), mixed = 0;
+    if (!w->setup.faithful && HF_NEAR_WHOLE * blur < 1) {
+        value += fabs((double)reference_at(w, HF_BUF_COLOR4, c, x, y));
+        mixed = 4 * FLT_EPSILON * value;
+    }
     if (!w->gather.karis)
-        return k * lattice_sum(w, HF_BUF_COLOR4, c, x, y);
+        return k * lattice_sum(w, HF_BUF_COLOR4, c, x, y) + mixed;
     const double divisor = lattice_sum(w, HF_BUF_WEIGHT, 0, x, y);
-    return bound_quotient(k * lattice_sum(w, HF_BUF_COLORW4, c, x, y), k * divisor, divisor, fabs((double)want));
+    return bound_quotient(k * lattice_sum(w, HF_BUF_COLORW4, c, x, y), k * divisor, divisor, value) + mixed;
 }
 
 static double bound_far(const struct world *w, int c, int x, int y, float want)

@@ -208,6 +208,8 @@ void pass_make(struct world *w, int pass)
     if (!w->bench && pass >= HF_GATHER_MAX_X && pass <= HF_GATHER_BLUR_Y && rng_one_in(&w->rng, 4)) {
         w->gather.max_x = w->gather.blur_x = rng_int(&w->rng, 1, 140);
         w->gather.max_y = w->gather.blur_y = rng_int(&w->rng, 1, 140);
+        w->gather.edge_x = rng_one_in(&w->rng, 2) ? 1 : rng_float(&w->rng, 0, 1);
+        w->gather.edge_y = rng_one_in(&w->rng, 2) ? 1 : rng_float(&w->rng, 0, 1);
     }
     if (pass == HF_GATHER_COC)
         w->r.x0 &= ~15;  // as cells are

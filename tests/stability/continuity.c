@@ -90,21 +90,25 @@ static double allowed(const struct run *r, enum pull pull, double t, const char 
 {
     const struct hf_gather_params *g = &r->subject->params.gather;
     const int is_gather = r->subject->params.engine == HF_ENGINE_GATHER, taps = is_gather && g->fill != HF_FILL_MEAN;
-    const int packed = is_gather && g->storage == HF_STORAGE_PACKED;
-    // CoC comes in bytes: one of a pixel's own, and as much of the mean that it is blended with; the maximum takes in a
-    // neighbour's colour by four times its CoC. A field is truncated when it is stored, and so is the result.
-    double part = packed ? (taps ? 6 : 2) / 255.0 : 0;
-    *why = packed ? "packed: two steps of an 8-bit CoC, four more of a maximum's, and two truncations to 5 bits"
+    const int packed = is_gather && g->storage == HF_STORAGE_PACKED, chapters = taps && g->faithful;
+    // CoC comes in bytes: one of a pixel's own far CoC, and one of the near mean. A field is truncated when it is stored, and so
+    // is the result. Where there is a maximum, far neighbours come into it by four times their CoC up to a quarter, at a pixel
+    // of no more: one byte more. Near colour, and its maximum, come in by eight times the mean's bytes up to an eighth, at a
+    // half-resolution pixel that has at most 9/16 of the picture's; means of neighbours are at most 1 / (2 h + 1) apart, the
+    // radius 2 h, and half of that and the eighth is the largest part that it has there: 8 * 9/16 * (1/8 + 1/6) = 1.32 bytes
+    // at h = 1, and less for all others, twice.
+    double part = packed ? (taps ? 2 + 1 + 2 * 1.32 : 2) / 255.0 : 0;
+    *why = packed ? "packed: steps of an 8-bit CoC, 2 or for a maximum 5.64, and two truncations to 5 bits"
                   : "half a code: what the smallest step of a float can make, see continuity.c";
-    if (taps && pull == PULL_RADIUS) {
+    if (chapters && pull == PULL_RADIUS) {
         // The near maximum and its mean are 2 m + 1 wide, m = ceil(radius / 2), as in the chapter: from a straight edge on
         // the mean falls as 1 - d / (2 m + 1), so that the next m changes it by 2 / (2 m + 3) at most. From N to N + 1 rings,
         // every fourth pixel, eight taps and the centre are the same: 9 of 1 + 4 (N + 1) (N + 2).
         const double m = round(t / 2), n = round(t / 4);
-        *why = "max and none fill: the chapter's near CoC reaches whole pixels, its rings are whole; see continuity.c";
+        *why = "faithful: the chapter's near CoC reaches whole pixels, its rings are whole; see continuity.c";
         if (fabs(t - 2 * m) < 1e-4)
             part += m < 1 ? 1 : 2 / (2 * m + 3);
-        if (g->fill == HF_FILL_MAX && fabs(t - 4 * n) < 1e-4)
+        if (fabs(t - 4 * n) < 1e-4)
             part += 1 - 9 / (1 + 4 * (n + 1) * (n + 2));
     }
     return part > 0 ? fall(part, packed ? 2 : 0) : FLOAT_STEP;

@@ -140,21 +140,24 @@ static void downsample(struct reference *r)
     }
 }
 
-// Passes 3 to 6: maximum or mean over 2 * reach + 1 samples along one axis.
+// Passes 3 to 6: maximum or mean over 2 * reach + 1 samples along one axis. By default the outermost of them come in as
+// the radius reaches them.
 static void window(struct reference *r, enum ref_id from, enum ref_id to, int dx, int dy, int mean)
 {
     const struct ref_buffer *in = &r->buffer[from];
-    const int reach = (int)ceil(dx ? r->reach_x : r->reach_y);
+    const double radius = dx ? r->reach_x : r->reach_y;
+    const int reach = (int)ceil(radius);
+    const double edge = r->params.gather.faithful ? 1 : radius - (reach - 1);
     new_buffer(r, to);
     for (int y = 0; y < r->half_height; y++) {
         for (int x = 0; x < r->half_width; x++) {
             double sum = 0, largest = 0;
             for (int i = -reach; i <= reach; i++) {
-                const double v = at(in, 0, x + i * dx, y + i * dy);
+                const double v = at(in, 0, x + i * dx, y + i * dy) * (i == -reach || i == reach ? edge : 1);
                 sum += v;
                 largest = worse(largest, v);
             }
-            store(r, to, 0, x, y, mean ? sum / (2 * reach + 1) : largest);
+            store(r, to, 0, x, y, mean ? sum / (2 * reach - 1 + 2 * edge) : largest);
         }
     }
 }
@@ -202,17 +205,29 @@ static void planes_free(struct planes *p)
 
 static double gather_one(const struct reference *r, const struct ref_buffer *b, int c, int x, int y, double scale)
 {
-    double sum = r->centre ? at(b, c, x, y) : 0;
+    double sum = r->centre * at(b, c, x, y);
     for (int i = 0; i < r->taps; i++)
-        sum += bilinear(b, c, x + scale * r->tap_x[i], y + scale * r->tap_y[i]);
+        sum += r->tap_share[i] * bilinear(b, c, x + scale * r->tap_x[i], y + scale * r->tap_y[i]);
     return sum;
+}
+
+static double lerp(double a, double b, double t)
+{
+    return t == 0 ? a : a + t * (b - a);
+}
+
+// By default the near field comes in up to an eighth of the blurred near CoC.
+static double near_part(const struct reference *r, int x, int y)
+{
+    const double blur = at(&r->buffer[REF_COCBLUR], 0, x, y);
+    return r->params.gather.faithful ? blur > 0 : fmin(1, 8 * blur);
 }
 
 // Pass 7.
 static void computation(struct reference *r)
 {
     struct planes p = weigh(r);
-    const double taps = r->taps + r->centre;
+    const double taps = r->shares;
     r->near_mean = calloc((size_t)r->half_width * (size_t)r->half_height, sizeof(double));
     r->far_mean = calloc((size_t)r->half_width * (size_t)r->half_height, sizeof(double));
     new_buffer(r, REF_NEAR);
@@ -229,10 +244,11 @@ static void computation(struct reference *r)
             // The dense grid has no tap on the pixel itself, and may meet nothing far at all: then its own colour.
             const int alone = far_weight < 1e-9 * f * taps;
             for (int c = 0; c < r->channels; c++) {
-                const double own = at(&r->buffer[REF_COLORMULCOC4], c, x, y) / f;
+                const double own = at(&r->buffer[REF_COLORMULCOC4], c, x, y) / f,
+                             colour = at(&r->buffer[REF_COLOR4], c, x, y);
                 store(r, REF_NEAR, c, x, y,
-                      has_near ? gather_one(r, &p.near, c, x, y, 1) / near_weight
-                               : at(&r->buffer[REF_COLOR4], c, x, y));
+                      has_near ? lerp(colour, gather_one(r, &p.near, c, x, y, 1) / near_weight, near_part(r, x, y))
+                               : colour);
                 store(r, REF_FAR, c, x, y,
                       !(f > 0) ? 0
                       : alone  ? own
@@ -243,31 +259,26 @@ static void computation(struct reference *r)
     planes_free(&p);
 }
 
-static double lerp(double a, double b, double t)
-{
-    return t == 0 ? a : a + t * (b - a);
-}
-
 // One sample of pass 8. coc4 is given for the far field: only neighbours that hold far colour enter a mean, and with
-// the per-pixel kernel only those of like CoC enter at all.
+// the per-pixel kernel only those of like CoC enter at all. By default a far neighbour comes in over the first quarter of
+// its CoC, and goes over a quarter of difference.
 static double fill_one(const struct reference *r, const struct ref_buffer *b, const struct ref_buffer *coc4, int c,
                        int x, int y)
 {
-    double largest = at(b, c, x, y), sum = 0;
-    int count = 0;
+    const int faithful = r->params.gather.faithful;
+    double largest = at(b, c, x, y), sum = 0, count = 0;
     for (int j = y - 1; j <= y + 1; j++) {
         for (int i = x - 1; i <= x + 1; i++) {
             const double df = coc4 ? fabs(at(coc4, 1, i, j) - at(coc4, 1, x, y)) : 0;
-            if (r->params.gather.per_pixel_kernel && df > 0.25)
-                continue;
             const int holds = !coc4 || at(coc4, 1, i, j) > 0;
-            // By default a far neighbour comes in over the first quarter of its CoC.
-            const double part = coc4 && !r->params.gather.faithful ? fmin(1, 4 * at(coc4, 1, i, j)) : 1;
+            double part = coc4 && !faithful ? fmin(1, 4 * at(coc4, 1, i, j)) : 1;
+            if (r->params.gather.per_pixel_kernel)
+                part *= faithful ? df <= 0.25 : fmax(0, fmin(1, 2 - 4 * df));
             largest = fmax(largest, lerp(at(b, c, x, y), at(b, c, i, j), part));
             if (!holds)
                 continue;
-            sum += at(b, c, i, j);
-            count++;
+            sum += part * at(b, c, i, j);
+            count += part;
         }
     }
     return r->params.gather.fill == HF_FILL_MAX ? largest : sum / count;
@@ -286,7 +297,9 @@ static void fill(struct reference *r)
             const int has_near = !none && at(&r->buffer[REF_COCBLUR], 0, x, y) > 0;
             const int has_far = !none && at(coc4, 1, x, y) > 0;
             for (int c = 0; c < r->channels; c++) {
-                store(r, REF_NEARFILL, c, x, y, has_near ? fill_one(r, near, NULL, c, x, y) : at(near, c, x, y));
+                const double own = at(near, c, x, y);
+                store(r, REF_NEARFILL, c, x, y,
+                      has_near ? lerp(own, fill_one(r, near, NULL, c, x, y), near_part(r, x, y)) : own);
                 store(r, REF_FARFILL, c, x, y, has_far ? fill_one(r, far, coc4, c, x, y) : at(far, c, x, y));
             }
         }
@@ -442,6 +455,7 @@ void reference_free(struct reference *r)
     free(r->near_mean);
     free(r->far_mean);
     free(r->tap_x);
+    free(r->tap_share);
     free(r->tap_y);
     free(r);
 }

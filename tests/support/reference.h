@@ -12,7 +12,7 @@
 #include "hyperfocal/hyperfocal.h"
 #include "support/image.h"
 
-enum { REF_MAX_TAPS = 8 * 256 * 257 / 2 + 1 };
+enum { REF_MAX_TAPS = 2 * (8 * 256 * 257 / 2 + 1) };
 
 // A buffer of the pipeline: planes of doubles, tightly packed.
 struct ref_buffer {
@@ -49,7 +49,8 @@ struct reference {
     double kernel_scale, blend;
     int taps;                      // without the centre
     double *tap_x, *tap_y;         // half-resolution pixels, kernel scale included
-    int centre;                    // 1: the centre counts as a tap more
+    double *tap_share;             // what each counts: 1, but where two numbers of rings are blended
+    double centre, shares;         // the centre's, and of all
     double *near_mean, *far_mean;  // mean weight of the taps of a half-resolution pixel; 0 where none was taken
     struct ref_buffer buffer[REF_COUNT];
 };

@@ -17,22 +17,35 @@ static double polygon(const struct hf_params *p, double angle)
     return cos(pi / n) / cos(t - 2 * pi / n * floor((n * t + pi) / (2 * pi)));
 }
 
-static void add_tap(struct reference *r, double radius, double angle)
+static void add_tap(struct reference *r, double radius, double angle, double share)
 {
     const double scaled = radius * polygon(&r->params, angle) * r->kernel_scale;
     r->tap_x[r->taps] = scaled * cos(angle) / r->params.view.pixel_aspect;
     r->tap_y[r->taps] = scaled * sin(angle);
+    r->tap_share[r->taps] = share;
+    r->shares += share;
     r->taps++;
 }
 
-static void make_rings(struct reference *r)
+static void add_rings(struct reference *r, int rings, double share)
 {
-    const int given = r->params.gather.rings;
-    const int rings = given > 0 ? given : (int)fmax(1, ceil(r->reach_y / 2));
     for (int k = 1; k <= rings; k++)
         for (int i = 0; i < 8 * k; i++)
-            add_tap(r, r->reach_y * k / rings, 2 * pi * i / (8 * k));
-    r->centre = 1;
+            add_tap(r, r->reach_y * k / rings, 2 * pi * i / (8 * k), share);
+    r->centre += share;
+    r->shares += share;
+}
+
+// Two pixels apart. Where that makes no whole number of rings: a blend of both beside it, each a mean.
+static void make_rings(struct reference *r)
+{
+    const double apart = fmax(1, r->reach_y / 2);
+    const int given = r->params.gather.rings, rings = given > 0 ? given : (int)ceil(apart);
+    const double more = given > 0 || r->params.gather.faithful ? 1 : 1 - (rings - apart);
+    const double all = 1 + 4 * rings * (rings + 1), fewer = 1 + 4 * rings * (rings - 1);
+    add_rings(r, rings, more);
+    if (more < 1)
+        add_rings(r, rings - 1, (1 - more) * all / fewer);
 }
 
 // Shirley and Chiu: squares around the centre become circles.
@@ -53,17 +66,18 @@ static void make_grid(struct reference *r)
                 radius = -radius;
                 angle += pi;
             }
-            add_tap(r, r->reach_y * radius, angle);
+            add_tap(r, r->reach_y * radius, angle, 1);
         }
     }
-    r->centre = 0;
 }
 
 void ref_make_taps(struct reference *r)
 {
     r->tap_x = malloc(sizeof *r->tap_x * REF_MAX_TAPS);
     r->tap_y = malloc(sizeof *r->tap_y * REF_MAX_TAPS);
+    r->tap_share = malloc(sizeof *r->tap_share * REF_MAX_TAPS);
     r->taps = 0;
+    r->centre = r->shares = 0;
     if (r->params.gather.fill == HF_FILL_NONE)
         make_grid(r);
     else
