@@ -342,16 +342,16 @@ struct hf_aperture_params {
     const struct hf_image *picture;
 };
 
-// Light that a clipped picture has lost is given back before the blur and taken away after it, so that a lamp that the
-// picture holds as 1, like the paper beside it, leaves a disc in the blur and the paper does not. The largest of a pixel's
-// R, G and B, m, becomes m + (gain - 1) t^2, t = (m - threshold) / (1 - threshold) within 0..1: as it was up to the threshold,
-// gain at 1, where pictures of whole numbers are clipped. The hue is kept: R, G and B grow alike, a negative one stays.
-// What has been blurred goes back the same way, so that what is evenly bright stays as it was, and nothing is cut. A
-// pixel that the blur leaves alone keeps its bits.
+// Light that a clipped picture has lost is given back before the blur and taken away after it, so that a lamp held as 1
+// leaves a disc and the paper beside it does not. The luminance m, 0.2126 R + 0.7152 G + 0.0722 B of what is above 0
+// (Rec. 709), becomes m + (gain - 1) t^2, t = (m - threshold) / (1 - threshold) within 0..1; R, G and B above 0 grow alike. So
+// white grows to gain, and paint that is full in one channel stays. Back it goes the same way: what is evenly bright stays
+// as it was; only where light falls on what is full of one colour may that channel exceed 1, as on a sensor. A pixel that
+// the blur leaves alone keeps its bits.
 struct hf_highlight_params {
     // What 1 becomes, as a multiple, 1 (default: all stays as it is, and costs nothing) to 64; 8 are three stops. Ours.
     float gain;
-    // Linear value from which there is more: 0 to 0.99, default 0.9 (243 of 255 in sRGB). Not looked at when gain is 1.
+    // Luminance from which there is more: 0 to 0.99, default 0.9 (a grey of 243 in sRGB). Not looked at when gain is 1.
     float threshold;
 };
 

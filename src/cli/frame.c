@@ -292,8 +292,11 @@ static uint64_t count_highlights(const struct cli_view *v)
     const struct hf_highlight_params *p = &v->setup.params.highlight;
     const size_t n = p->gain > 1 ? (size_t)v->view->width * (size_t)v->view->height : 0;
     uint64_t count = 0;
-    for (size_t i = 0; i < n; i++)
-        count += v->planes[0][i] > p->threshold || v->planes[1][i] > p->threshold || v->planes[2][i] > p->threshold;
+    for (size_t i = 0; i < n; i++) {
+        const float red = fmaxf(v->planes[0][i], 0), green = fmaxf(v->planes[1][i], 0),
+                    blue = fmaxf(v->planes[2][i], 0);
+        count += 0.2126f * red + 0.7152f * green + 0.0722f * blue > p->threshold;
+    }
     return count;
 }
 

@@ -2,22 +2,24 @@
 // Highlights of clipped pictures in plain C: the specification of the vector version.
 #include "pixel/highlight.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "pixel/pass_c.h"
 
-static float largest(float r, float g, float b)
+static float luminance(float r, float g, float b)
 {
-    const float rg = r > g ? r : g;
-    return rg > b ? rg : b;
+    const float red = r > 0 ? r : 0, green = g > 0 ? g : 0, blue = b > 0 ? b : 0;
+    const float y = (HF_LUMINANCE_R * red + HF_LUMINANCE_G * green) + HF_LUMINANCE_B * blue;
+    return y < FLT_MAX ? y : FLT_MAX;
 }
 
 void hf_raise_row_c(const struct hf_highlight *h, float *r, float *g, float *b, int n)
 {
     float *const rgb[3] = {r, g, b};
     for (int i = 0; i < n; i++) {
-        const float m = largest(r[i], g[i], b[i]);
+        const float m = luminance(r[i], g[i], b[i]);
         if (!(m > h->from))
             continue;
         const float far = (m - h->from) * h->scale, t = far < 1 ? far : 1;
@@ -34,7 +36,7 @@ void hf_lower_row_c(const struct hf_highlight *h, float *r, float *g, float *b, 
     float *const rgb[3] = {r, g, b};
     const float more4 = 4 * h->more, span2 = h->span * h->span;
     for (int i = 0; i < n; i++) {
-        const float most = largest(r[i], g[i], b[i]);
+        const float most = luminance(r[i], g[i], b[i]);
         if (!(most > h->from))
             continue;
         const float below = most < h->gain ? most : h->gain, d = below - h->from;

@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Highlights of clipped pictures on vectors, as highlight.c has them: nothing is fused.
+#include <float.h>
+
+#include "pixel/highlight.h"
 #include "pixel/kernels.h"
 #include "simd/simd.h"
+
+HF_INLINE vf highlight_luminance(const vf v[3])
+{
+    const vf red = vf_mul(vf_set1(HF_LUMINANCE_R), vf_max(v[0], vf_zero()));
+    const vf green = vf_mul(vf_set1(HF_LUMINANCE_G), vf_max(v[1], vf_zero()));
+    const vf blue = vf_mul(vf_set1(HF_LUMINANCE_B), vf_max(v[2], vf_zero()));
+    return vf_min(vf_add(vf_add(red, green), blue), vf_set1(FLT_MAX));
+}
 
 static void raise_row_simd(const struct hf_highlight *h, float *r, float *g, float *b, int n)
 {
@@ -9,7 +20,7 @@ static void raise_row_simd(const struct hf_highlight *h, float *r, float *g, flo
     const vf from = vf_set1(h->from), scale = vf_set1(h->scale), more = vf_set1(h->more);
     for (int i = 0; i < n; i += VF_N) {
         const vf v[3] = {vf_load(r + i), vf_load(g + i), vf_load(b + i)};
-        const vf m = vf_max(vf_max(v[0], v[1]), v[2]);
+        const vf m = highlight_luminance(v);
         const vm high = vf_gt(m, from);
         if (!vm_any(high))
             continue;
@@ -29,7 +40,7 @@ static void lower_row_simd(const struct hf_highlight *h, float *r, float *g, flo
     const vf more4 = vf_set1(4 * h->more), span2 = vf_set1(h->span * h->span);
     for (int i = 0; i < n; i += VF_N) {
         const vf v[3] = {vf_load(r + i), vf_load(g + i), vf_load(b + i)};
-        const vf most = vf_max(vf_max(v[0], v[1]), v[2]);
+        const vf most = highlight_luminance(v);
         const vm high = vf_gt(most, from);
         if (!vm_any(high))
             continue;

@@ -51,8 +51,8 @@ const struct tool_option tool_params_options[] = {
     {"highlight-gain", 0, TOOL_LOOK, "G", "Give clipped highlights light back while they are blurred, so that lamps leave "
      "bright discs: what is 1 counts as G, 1 (none, default) to 64, and what the blur leaves alone stays. 8 are three stops.",
      NUMBER(highlight.gain, 1, 64)},
-    {"highlight-threshold", 0, TOOL_LOOK, "V", "Linear value, of the largest of R, G and B, above which --highlight-gain "
-     "sets in, 0 to 0.99. Default 0.9, in sRGB 243 of 255.", NUMBER(highlight.threshold, 0, 0.99)},
+    {"highlight-threshold", 0, TOOL_LOOK, "V", "Linear luminance (Rec. 709) above which --highlight-gain sets in, 0 to 0.99: "
+     "not saturated paint. Default 0.9, a grey of 243 of 255 in sRGB.", NUMBER(highlight.threshold, 0, 0.99)},
     {"uniform", 0, TOOL_LOOK, NULL, "The same blur everywhere, --max-radius.", FLAG(hexagon.uniform),
      .engines = "hexagon"},
     {"iterations", 0, TOOL_LOOK, "N", "Passes of the 5-tap blur, 0 to 64. Default 3.",

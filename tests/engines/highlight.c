@@ -41,42 +41,86 @@ static double lowered(const struct hf_highlight_params *p, double most)
 // product 2: fewer than 14. One more for what a float between two halvings is.
 static const double ROUNDINGS = 15 * 0x1p-24;
 
+// Luminance rounds three times on its way, which changes what comes of it by its condition: m M'(m) / M(m) of raising; of
+// lowering M / m beyond the gain, where m grows as M does, and below that less than 1.
+static double condition(const struct hf_highlight_params *p, double m)
+{
+    const double span = 1 - (double)p->threshold, t = fmin(fmax((m - (double)p->threshold) / span, 0), 1);
+    return m * (1 + 2 * ((double)p->gain - 1) * t / span) / raised(p, m);
+}
+
+static double luminance(const float v[3])
+{
+    return (double)HF_LUMINANCE_R * fmax(v[0], 0) + (double)HF_LUMINANCE_G * fmax(v[1], 0) +
+           (double)HF_LUMINANCE_B * fmax(v[2], 0);
+}
+
+// How far channels that grew are off from `times` what they were, relative; one below 0 must not change.
+static double off_by(const float from[3], const float to[3], double times)
+{
+    double worst = 0;
+    for (int c = 0; c < 3; c++) {
+        CHECK_MSG(from[c] > 0 || to[c] == from[c], "a channel of %g became %g", (double)from[c], (double)to[c]);
+        if (from[c] > 0)
+            worst = worse(worst, fabs((double)to[c] / from[c] - times) / times);
+    }
+    return worst;
+}
+
 static void check_formulas(const struct hf_highlight_params *p)
 {
     const struct hf_highlight h = hf_highlight_of(p);
     struct rng rng = rng_seed(7);
-    double worst[2] = {0, 0}, last = -1;
+    double worst[2] = {0, 0};
+    float last = -1;
     int grows = 1;
     for (int i = 0; i <= 40000; i++) {
-        const float m = i < 30000 ? (float)i / 20000 : rng_range(&rng, 0, 100), part = rng_float(&rng);
-        float r = m * part, g = m, b = -m;
-        const float red = r;
-        hf_raise_row_c(&h, &r, &g, &b, 1);
-        const double want = raised(p, m);
-        worst[0] = worse(worst[0], fabs((double)g - want) / fmax(want, 1e-30));
-        worst[0] =
-            worse(worst[0], fabs((double)r - (m > 0 ? red * want / m : 0)) / fmax(red * want / fmax(m, 1e-30), 1e-30));
-        CHECK_MSG(b == -m, "a negative channel of %g became %g", (double)-m, (double)b);
-        grows = grows && (i >= 30000 || (double)g > last);
-        last = g;
-        float v = m * p->gain, u = v * part, w = 0;
-        const double most = v, share = u;
-        hf_lower_row_c(&h, &w, &v, &u, 1);
-        const double back = most > (double)p->threshold ? lowered(p, most) : most;
-        worst[1] = worse(worst[1], fabs((double)v - back) / fmax(back, 1e-30));
-        worst[1] = worse(worst[1], fabs((double)u - (most > 0 ? share * back / most : 0)) /
-                                       fmax(share * back / fmax(most, 1e-30), 1e-30));
+        const float m = i < 30000 ? (float)i / 20000 : rng_range(&rng, 0, 100);
+        float grey[3] = {m, m, m};
+        hf_raise_row_c(&h, &grey[0], &grey[1], &grey[2], 1);
+        grows = grows && (i >= 30000 || grey[1] > last);
+        last = grey[1];
+        const float v[3] = {m * rng_float(&rng), m, i % 3 ? m * rng_float(&rng) : -m};
+        float up[3] = {v[0], v[1], v[2]}, down[3];
+        const double y = luminance(v);
+        hf_raise_row_c(&h, &up[0], &up[1], &up[2], 1);
+        if (y > 0)
+            worst[0] = worse(worst[0], off_by(v, up, raised(p, y) / y) - 3 * 0x1p-24 * condition(p, y));
+        const float bright[3] = {v[0] * p->gain, v[1] * p->gain, v[2]};
+        memcpy(down, bright, sizeof down);
+        const double most = luminance(bright);
+        hf_lower_row_c(&h, &down[0], &down[1], &down[2], 1);
+        const double back = lowered(p, most), grows_by = most > (double)p->gain ? most / back : 1;
+        if (most > 0)
+            worst[1] = worse(worst[1], off_by(bright, down, back / most) - 3 * 0x1p-24 * grows_by);
     }
     CHECK_MSG(grows, "gain %g from %g: a brighter highlight is not raised to more", p->gain, p->threshold);
     CHECK_MSG(worst[0] <= ROUNDINGS, "gain %g from %g: raised %g off", p->gain, p->threshold, worst[0]);
     CHECK_MSG(worst[1] <= ROUNDINGS, "gain %g from %g: lowered %g off", p->gain, p->threshold, worst[1]);
     // Where nothing is to be done nothing is done, and nothing overflows.
-    float still[3] = {p->threshold, -0.0f, -FLT_MAX}, huge[3] = {FLT_MAX, FLT_MAX, 0x1p-149f};
-    for (int i = 0; i < 2; i++) {
-        (i ? hf_lower_row_c : hf_raise_row_c)(&h, &still[0], &still[1], &still[2], 1);
-        CHECK(still[0] == p->threshold && signbit(still[1]) && still[2] == -FLT_MAX);
-        (i ? hf_lower_row_c : hf_raise_row_c)(&h, &huge[0], &huge[1], &huge[2], 1);
-        CHECK(huge[0] == FLT_MAX && huge[1] == FLT_MAX && huge[2] == 0x1p-149f);
+    static const float fixed[][3] = {{0, -0.0f, -FLT_MAX}, {FLT_MAX, FLT_MAX, 0x1p-149f}, {FLT_MAX, FLT_MAX, FLT_MAX}};
+    for (int i = 0; i < 6; i++) {
+        float v[3] = {fixed[i / 2][0], fixed[i / 2][1], fixed[i / 2][2]};
+        (i % 2 ? hf_lower_row_c : hf_raise_row_c)(&h, &v[0], &v[1], &v[2], 1);
+        CHECK(!memcmp(v, fixed[i / 2], sizeof v));
+    }
+}
+
+// Paint that is full in one channel or two, but yellow, is no lamp at the threshold of 0.9, and white is one.
+static void check_colours(void)
+{
+    const struct hf_highlight h = hf_highlight_of(&cases[0]);
+    for (int i = 0; i < 8; i++) {
+        const float paint[3] = {(float)(i & 1), (float)(i >> 1 & 1), (float)(i >> 2)};
+        float v[3] = {paint[0], paint[1], paint[2]};
+        hf_raise_row_c(&h, &v[0], &v[1], &v[2], 1);
+        if (i == 3)
+            CHECK_MSG(v[0] > 1 && v[0] < 2, "yellow becomes %g", (double)v[0]);
+        else if (i == 7)
+            CHECK_MSG(fabs((double)v[0] - 8) < 1e-4, "white becomes %g", (double)v[0]);
+        else
+            CHECK_MSG(!memcmp(v, paint, sizeof v), "colour %d becomes %g %g %g", i, (double)v[0], (double)v[1],
+                      (double)v[2]);
     }
 }
 
@@ -242,6 +286,28 @@ static void check_lamp(struct hf_context *c, enum hf_engine engine)
         picture_free(made[i]);
 }
 
+// Saturated paint, blurred: the same bits with a gain and without.
+static void check_paint(struct hf_context *c, enum hf_engine engine)
+{
+    struct picture colour, z;
+    struct rng rng = rng_seed(5);
+    make_scene(&colour, &z, 0);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const int full = rng_below(&rng, 3);
+        for (int k = 0; k < 3; k++)
+            colour.plane[k][i] = k == full ? 1 : 0.5f * rng_float(&rng);
+    }
+    struct hf_params off = lens(engine, 1), on = lens(engine, 8);
+    off.highlight.threshold = on.highlight.threshold = 0.9f;
+    struct picture plain = render(c, &colour, &z, &off, HF_FORMAT_PLANAR32F, 0);
+    struct picture bright = render(c, &colour, &z, &on, HF_FORMAT_PLANAR32F, 0);
+    CHECK_MSG(picture_same_bits(&plain, &bright), "%s: paint of a full channel counts as a lamp",
+              hf_engine_name(engine));
+    struct picture *const made[] = {&colour, &z, &plain, &bright};
+    for (size_t i = 0; i < sizeof made / sizeof *made; i++)
+        picture_free(made[i]);
+}
+
 int main(void)
 {
     struct hf_context *contexts[2];
@@ -250,9 +316,11 @@ int main(void)
         return 1;
     for (int i = 0; i < CASES; i++)
         check_formulas(&cases[i]);
+    check_colours();
     for (int e = 0; e < HF_ENGINE_COUNT; e++) {
         check_even(contexts[0], (enum hf_engine)e);
         check_lamp(contexts[0], (enum hf_engine)e);
+        check_paint(contexts[0], (enum hf_engine)e);
         for (int f = 0; f <= HF_FORMAT_PLANAR32F; f++)
             check_frame(contexts, (enum hf_engine)e, (enum hf_format)f);
     }
