@@ -132,7 +132,7 @@ static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_fi
             w = w < most ? w : most;
         }
         w = w < t->b ? w : t->b;
-        w = w > 0 ? w : 0;
+        w = (w > 0 ? w : 0) * t->part;
         for (int c = 0; c < f->s->channels; c++)
             sum.colour[c] = sum.colour[c] + w * *hf_at(in->colour, c, u, v);
         sum.a = sum.a + w * *hf_at(in->weight, in->a, u, v);

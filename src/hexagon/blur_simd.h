@@ -2,7 +2,7 @@
 // The hexagon engine on vectors.
 //
 // A line's taps are the same for all pixels, so each is a load at a fixed offset, and most of these are not aligned.
-// A line that is not steep meets a column of pixels in two or three taps: rows are taken together, as many as the
+// A line that is not steep meets a column of pixels in two taps: rows are taken together, as many as the
 // registers have room for the sums of, and a sample is loaded once for all that meet it (hf_hexagon_step).
 //
 // What a tap costs beyond that is asking how much of a sample counts, so the radii around each block of pixels are
@@ -132,7 +132,7 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
 #pragma GCC unroll 4
         for (int i = 0; i < rows; i++)
             if (p->rows >> i & 1) {
-                const vf b = vf_set1(p->b[i]);
+                const vf b = vf_set1(p->whole[i]);
                 for (int c = 0; c < channels; c++)
                     s[i].colour[c] = vf_fma(b, v[c], s[i].colour[c]);
                 s[i].a = vf_fma(b, weight, s[i].a);
@@ -158,7 +158,7 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
                 vf w = vf_sub(q, vf_set1(p->c[i]));
                 if (limit)
                     w = vf_min(w, vf_mul(vf_set1(p->b[i]), vf_fma(limit[i].slope, q, limit[i].limit)));
-                w = vf_max(vf_min(w, vf_set1(p->b[i])), vf_zero());
+                w = vf_mul(vf_max(vf_min(w, vf_set1(p->b[i])), vf_zero()), vf_set1(p->part[i]));
                 for (int c = 0; c < channels; c++)
                     s[i].colour[c] = vf_fma(w, v[c], s[i].colour[c]);
                 s[i].a = vf_fma(w, weight, s[i].a);

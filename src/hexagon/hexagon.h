@@ -68,24 +68,27 @@ enum hf_hexagon_made {
 };
 enum { HF_HEXAGON_BUF_COUNT = HF_HEXAGON_MADE + 2 * HF_HEXAGON_MADE_COUNT };
 
-// The line of a blur: taps at k + 0.5 along it, bilinear, gathered to weights b of pixels in the order of their
-// distance. c is the sum of the weights before. A sample of radius q that lies there counts min(b, q - c), not less
-// than 0: the weights of a line of one radius sum to q for any q, and every weight grows from 0 as q does.
+// The line of a blur: places equally far apart along it, from the pixel itself on, each for the length b of the line that is
+// nearest to it; c is how long the line is before that. A sample of radius q at a place counts min(b, q - c), not less than
+// 0: the weights of a line of one radius sum to q for any q, and every weight grows from 0 as q does. Places lie between
+// pixels, so each is some of these, by bilinear parts. All lines have the same c and b: what the places of one put too near
+// or too far, those of the others do, and as the directions of three sides add up to nothing, so do these errors.
 struct hf_hexagon_tap {
     int dx, dy;
-    float b, c;
+    float b, c, part;
 };
 
 // The same for some rows of pixels at once: a sample (dx, dy) from the first of them, and what each row's own tap there
-// weighs. A line that is not steep meets a column in two or three taps, so that neighbouring rows share their samples.
-// Each row meets its taps in their order.
+// weighs. A line that is not steep meets a column in two taps, so that neighbouring rows share their samples. Each row
+// meets its taps in their order.
 enum { HF_HEXAGON_ROWS = 4 };
 
 struct hf_hexagon_step {
     int dx, dy;
     unsigned rows;  // bit i: row i has a tap there
     float least;    // the least c of them
-    float b[HF_HEXAGON_ROWS], c[HF_HEXAGON_ROWS];
+    float b[HF_HEXAGON_ROWS], c[HF_HEXAGON_ROWS], part[HF_HEXAGON_ROWS];
+    float whole[HF_HEXAGON_ROWS];  // part times b
 };
 
 struct hf_hexagon_steps {

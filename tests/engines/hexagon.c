@@ -25,11 +25,11 @@ static struct hf_params hexagon_params(void)
     return p;
 }
 
-// A line of n pixels rounds its weights' sums n times and n more for what they weigh; radii and colours carry some
+// A line of n taps, four a place, rounds its weights' sums n times and 2 n more for what they weigh; radii and colours carry some
 // 30 more through loading, dividing, upsampling. What is divided by is not less than a quarter, in each of two passes.
 static double bound(const struct hf_params *p, double reach)
 {
-    const double taps = 3 * (reach + 4) / fmin(p->view.pixel_aspect, 1);
+    const double taps = 4 * (reach + 4) / fmin(p->view.pixel_aspect, 1);
     return 2 * 4 * (3 * taps + 30) * U;
 }
 
@@ -179,7 +179,9 @@ static void test_highlight(float radius, float degrees, enum hf_resolution resol
     const struct hf_depth depth = picture_radii(&r);
     struct picture out = rendered(&in, &depth, &p);
     double sum = 0, inside = 0, wrong = 0;
-    const double s = fabs(radius), soft = resolution == HF_RESOLUTION_HALF ? 7 : 3;
+    // The last place of either line lies up to 0.6 beyond its end, and the pixels around a place up to the root of 2 beside
+    // it, those of the square 0.7 beside its middle: 4.1. At half resolution all but the last twice, and upsampling 2.1.
+    const double s = fabs(radius), soft = resolution == HF_RESOLUTION_HALF ? 9 : 4.1;
     const double flat = 4e4 / (1.5 * sqrt(3) * s * s);
     for (int y = 0; y < N; y++)
         for (int x = 0; x < N; x++) {

@@ -287,18 +287,20 @@ static struct line_sums sum_line(const struct world *w, const struct hf_hexagon_
             continue;
         if (p > 0)
             weight = fmax(fmin(weight, t->b * (2 * p / fmin(p, 1) + 1 - q / fmin(p, 1))), 0);
+        const double most = t->b * t->part;
+        weight *= t->part;
         s.colour += weight * colour;
-        s.colour_size += t->b * fabs(colour);
+        s.colour_size += most * fabs(colour);
         s.a += weight * a;
-        s.a_size += t->b * a;
+        s.a_size += most * a;
         s.w += in->mean < 0 ? 0 : weight * *hf_at(in->weight, in->mean, u, v);
-        s.w_size += in->mean < 0 ? 0 : t->b * *hf_at(in->weight, in->mean, u, v);
+        s.w_size += in->mean < 0 ? 0 : most * *hf_at(in->weight, in->mean, u, v);
     }
     return s;
 }
 
-// A line of the far field. Each sum: a product and an addition a tap, and the weight within 2 of its tap's, as the limit,
-// 3 less a product of less, is within 2. The pixel's own part is 1 less the sum of weights, or less: within that and 4.
+// A line of the far field. Each sum: a product and an addition a tap, and the weight within 3 of its tap's, as the limit,
+// 3 less a product of less, is within 2, and its part is a product. The pixel's own part is 1 less the sum of weights, or less: within that and 4.
 // What both are divided by is not less than a quarter.
 struct far_sums {
     double value, error, a, a_error, w, w_error;  // the colour; all that is found, and its sum for the mean radius
@@ -311,7 +313,7 @@ static struct far_sums far_line(const struct world *w, const struct hf_hexagon_f
     if (!(p > 0))
         return f;
     const struct line_sums s = sum_line(w, in, line, c, x, y, p);
-    const double k = (s.n + 3) * FLT_EPSILON, a_error = k * s.a_size;
+    const double k = (s.n + 4) * FLT_EPSILON, a_error = k * s.a_size;
     const double own = fmax(fmax((1 - s.a) * fmin(fmax(HEXAGON_ALL - p, 0), 1), HEXAGON_LEAST - s.a), 0);
     const double mine = *hf_at(in->colour, c, x, y) / (double)*hf_at(in->weight, in->a, x, y);
     const double sum = s.colour + own * mine, divisor = s.a + own;

@@ -10,12 +10,6 @@ static const struct {
     double most;
     const char *reason;
 } open_rows[] = {
-    {"centre of a highlight, half resolution: off, pixels", "hexagon half", 0.7,
-     "a slanted line's pixels are filled one after the other by distance, though two taps share each: the first takes "
-     "some "
-     "of the second's too early, its mean is nearer than half the radius, and only the upright line's is not"},
-    {"opaque: samples of alpha that are not 1", "hexagon", 600,
-     "alpha is summed like colour; its weights add up to 1 only within rounding"},
     {"transposes: difference, of the largest", "scatter", 0.015,
      "a disc's rows end between pixels, its first and last row do not: its outline differs along the axes"},
     {"flips: samples that are not the mirror's bits", "scatter", 5000,

@@ -41,9 +41,9 @@ static struct subject gather(const char *name, enum hf_fill fill, enum hf_storag
 
 static struct subject hexagon(const char *name, enum hf_resolution resolution)
 {
-    // A line of n pixels rounds its weights' sums n times and n more for what they weigh, 30 besides, divided by no less
+    // A line of n taps rounds its weights' sums n times and 2 n more for what they weigh, 30 besides, divided by no less
     // than a quarter, in each of two passes: hexagon.c derives it.
-    const double taps = 3 * (STABILITY_RADIUS + 4);
+    const double taps = 4 * (STABILITY_RADIUS + 4);
     struct subject s = {name,
                         scene_params(),
                         EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS,

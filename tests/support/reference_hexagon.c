@@ -18,11 +18,11 @@ static int clampi(int v, int n)
     return v < 0 ? 0 : v < n ? v : n - 1;
 }
 
-enum { MAX_TAPS = 4000 };
+enum { MAX_TAPS = 16000 };
 
 struct tap {
     int dx, dy;
-    double b, t;
+    double b, before, part;
 };
 
 struct line {
@@ -30,33 +30,32 @@ struct line {
     int count;
 };
 
-static int nearer(const void *a, const void *b)
+// From one place to the next: one on each column or row for the line farthest from the axes, unless others lie far apart then.
+static double spacing(double degrees, double aspect)
 {
-    const struct tap *p = a, *q = b;
-    return (p->t > q->t) - (p->t < q->t);
+    double most = 0, least = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        const double angle = (degrees + 120 * i) * M_PI / 180, each = fmax(fabs(sin(angle)) / aspect, fabs(cos(angle)));
+        most = fmax(most, 1 / each);
+        least = fmin(least, 1 / each);
+    }
+    return fmin(most, 1.16 * least);
 }
 
-// Pixels that bilinear taps at half steps along a direction touch, by distance along it.
-static void make_line(struct line *l, double degrees, double aspect, double reach)
+// The pixels around places along a direction, and the lengths of the line that are nearest to these. nearer: by so much at
+// half resolution, but for the pixel itself.
+static void make_line(struct line *l, double degrees, double aspect, double reach, double step, double nearer)
 {
-    const double ux = sin(degrees * M_PI / 180), uy = -cos(degrees * M_PI / 180), step = aspect < 1 ? aspect : 1;
+    const double ux = sin(degrees * M_PI / 180), uy = -cos(degrees * M_PI / 180);
     l->count = 0;
-    for (double d = step / 2; d < reach + 5 + 2 * aspect; d += step) {
-        const double x = floor(d * ux / aspect * 4096 + 0.5) / 4096, y = floor(d * uy * 4096 + 0.5) / 4096;
+    for (int k = 0; k == 0 || (k - 0.5) * step < reach + 1; k++) {
+        const double t = k ? k * step - nearer : 0;
+        const double x = floor(t * ux / aspect * 4096 + 0.5) / 4096, y = floor(t * uy * 4096 + 0.5) / 4096;
         for (int j = (int)floor(y); j <= (int)floor(y) + 1; j++)
-            for (int i = (int)floor(x); i <= (int)floor(x) + 1; i++) {
-                const double b = step * (1 - fabs(x - i)) * (1 - fabs(y - j));
-                int k = 0;
-                while (k < l->count && !(l->tap[k].dx == i && l->tap[k].dy == j))
-                    k++;
-                if (b == 0)
-                    continue;
-                if (k == l->count)
-                    l->tap[l->count++] = (struct tap){i, j, 0, (float)(i * aspect * ux + j * uy)};
-                l->tap[k].b += b;
-            }
+            for (int i = (int)floor(x); i <= (int)floor(x) + 1; i++)
+                l->tap[l->count++] = (struct tap){i, j, k ? step : step / 2, k ? (k - 0.5) * step : 0,
+                                                  (1 - fabs(x - i)) * (1 - fabs(y - j))};
     }
-    qsort(l->tap, (size_t)l->count, sizeof *l->tap, nearer);
 }
 
 struct field {
@@ -91,18 +90,16 @@ struct sum {
 static struct sum sum_of(const struct field *f, const struct line *l, int x, int y, double p)
 {
     struct sum s = {{0}, 0, 0};
-    double before = 0;
     for (int i = 0; i < l->count; i++) {
         const struct tap *t = &l->tap[i];
         // Beyond the picture there is nothing.
         const int at = clampi(y + t->dy, f->height) * f->width + clampi(x + t->dx, f->width);
         const int is = at == (y + t->dy) * f->width + x + t->dx && x + t->dx == clampi(x + t->dx, f->width);
         const double q = is ? f->q[at] : 0;
-        double w = fmin(t->b, q - before);
+        double w = fmin(t->b, q - t->before);
         if (p > 0)
             w = fmin(w, t->b * (1 + (2 * p - q) / fmin(p, 1)));
-        w = fmax(w, 0);
-        before += t->b;
+        w = fmax(w, 0) * t->part;
         for (int c = 0; c < f->channels; c++)
             s.colour[c] += w * f->colour[c][at];
         s.a += w * f->a[at];
@@ -328,8 +325,13 @@ struct picture hexagon_reference(const struct picture *colour, const struct pict
     double reach = 0;
     for (int i = 0; i < r->width * r->height; i++)
         reach = worse(reach, fabs((double)r->plane[0][i]));
+    const double step = spacing(p->aperture.rotation, p->view.pixel_aspect);
     for (int i = 0; i < 3; i++)
-        make_line(&l[i], p->aperture.rotation + (i == 0 ? 0 : i == 1 ? 240 : 120), p->view.pixel_aspect, reach);
+        make_line(&l[i],
+                  p->aperture.rotation + (i == 0   ? 0
+                                          : i == 1 ? 240
+                                                   : 120),
+                  p->view.pixel_aspect, reach, step, half ? 0.05 : 0);
     struct field near_in = field_new(w, h, n), far_in = field_new(w, h, n);
     struct field near = field_new(w, h, n), far = field_new(w, h, n);
     (half ? load_half : load_full)(colour, r->plane[0], &near_in, -1);
