@@ -252,6 +252,12 @@ void hf_layers_smooth_c(const float *const in[13][6], const float *const along[2
 {
     for (int x = 0; x < n; x++) {
         const float r = in[HF_LAYERS_SMOOTH][5][x], weight = in[HF_LAYERS_SMOOTH][4][x];
+        if (!(weight > 0)) {
+            for (int c = 0; c < 6; c++)
+                if (c < channels || c >= 4)
+                    out[c][x] = 0;
+            continue;
+        }
         float of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], alone = 0, sum = 0, radius = 0, colour[4] = {0};
         struct company line = {0}, across = {0};
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {

@@ -355,6 +355,13 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
     const vf zero = vf_zero();
     for (int x = 0; x < n; x += VF_N) {
         const vf r = vf_load(in[HF_LAYERS_SMOOTH][5] + x), weight = vf_load(in[HF_LAYERS_SMOOTH][4] + x);
+        const vm there = vf_gt(weight, zero);
+        if (!vm_any(there)) {
+            for (int c = 0; c < 6; c++)
+                if (c < channels || c >= 4)
+                    vf_store(out[c] + x, zero);
+            continue;
+        }
         vf of[HF_LAYERS_TAPS], rest[HF_LAYERS_TAPS], colour[4], alone = zero, sum = zero, radius = zero;
         vf line[3] = {zero, zero, zero}, across[3] = {zero, zero, zero};
         for (int c = 0; c < channels; c++)
@@ -385,10 +392,10 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
                 colour[c] = vf_fma(g, vf_keep(some, vf_load(in[i][c] + x)), colour[c]);
         }
         const vf inverse = vf_keep(vf_gt(sum, vf_set1(HF_LAYERS_SOME)), vf_div(vf_set1(1), sum));
-        vf_store(out[4] + x, weight);
-        vf_store(out[5] + x, vf_mul(radius, inverse));
+        vf_store(out[4] + x, vf_keep(there, weight));
+        vf_store(out[5] + x, vf_keep(there, vf_mul(radius, inverse)));
         for (int c = 0; c < channels; c++) {
-            const vf v = vf_mul(colour[c], inverse);
+            const vf v = vf_keep(there, vf_mul(colour[c], inverse));
             vf_store(out[c] + x, along ? vf_mul(v, vf_abs(v)) : v);
         }
     }

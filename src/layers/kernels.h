@@ -38,8 +38,8 @@ typedef void hf_layers_found(const float *const sum[6], const float *const radiu
 typedef void hf_layers_spread(const float *const in[6], const float *const radius[4], const float *const weight[4],
                               int row, int channels, int n, float *const out[6]);
 // The mean of lines of thirteen hidden samples, of those with weight that are about as far as the middle one; its weight is
-// kept. along: weights and radii of the middle ones, of which six more are read on either side; a sample that is alone in
-// its line and along these takes its line's place, and colours are no longer roots. Or NULL.
+// kept, and without any it becomes nothing. along: weights and radii of the middle ones, of which six more are read on either
+// side; a sample that is alone in its line and along these takes its line's place, and colours are no longer roots. Or NULL.
 typedef void hf_layers_smooth(const float *const in[13][6], const float *const along[2], int channels, int n,
                               float *const out[6]);
 // How alike what lies around n places side by side is to what is known around another: sums of the weights of its taps that

@@ -8,6 +8,7 @@
 
 // Samples that are looked for at once; floats around a row; blocks of samples of which it is known whether they need any.
 enum { STEP = 128, PAD = 32, BLOCK = 16 };
+#define ROUNDED 0.01f  // by less than this means of radii are beyond the largest of them
 
 int hf_layers_hidden_reach(const struct hf_layers *l)
 {
@@ -246,14 +247,27 @@ static void make_lines(struct band *b)
     }
 }
 
-// Add what goes on between opposite sides.
-static void find_between(const struct band *b, const float *nearest, int x, int n, int y, float *const sum[6])
+// No more than how far behind its nearest a run of a row may find anything. Means of radii are rounded.
+static float farthest_behind(const struct band *b, const float *nearest, int x, int n, int y)
+{
+    const float *within = b->within + (y - b->r.y0) / BLOCK * b->stride;
+    float high = -HUGE_VALF;
+    for (int i = (x - b->r.x0) / BLOCK; i * BLOCK < x - b->r.x0 + n; i++)
+        high = fmaxf(within[i], high);
+    return high - range_of(b, nearest, NULL, 0, n, 1).low + ROUNDED;
+}
+
+// Add what goes on between opposite sides, no farther away than what is so far behind is seen.
+static void find_between(const struct band *b, const float *nearest, float behind, int x, int n, int y,
+                         float *const sum[6])
 {
     const float *in[6] = {NULL};
     planes_of(&b->level[0], b->l->channels, x, y, (float **)in);
     for (int k = 0; k < HF_LAYERS_LINES; k++) {
         struct hf_hidden_line line = b->line[k];
         memcpy(line.in, in, sizeof in);
+        while (line.steps > 0 && behind * (1.0f / 3) + (1 - line.away[line.steps - 1]) < -ROUNDED)
+            line.steps--;
         hf_layers_kernels(b->f)->between(&line, b->l->channels, nearest, n, sum);
     }
 }
@@ -270,15 +284,18 @@ static void find(const struct band *b, int x, int n, int y)
         sum[i] = memory[i];
         memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // and the rest of the last vector
     }
+    const float behind = farthest_behind(b, nearest, x, n, y);
     for (int j = 0; j < b->l->levels; j++, part *= 1.0f / 256)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
             float *in[6] = {NULL};
+            if (!(behind > 1) || behind / (float)(2 << j) + (0.5f - distance[away]) < -ROUNDED)
+                continue;
             planes_of(&b->level[j], channels, x + u * (1 << j), y + v * (1 << j), in);
             k->tap((const float *const *)in, channels, nearest, 1.0f / (float)(2 << j), 0.5f - distance[away],
                    part * share[away], n, sum);
         }
-    find_between(b, nearest, x, n, y, sum);
+    find_between(b, nearest, behind, x, n, y, sum);
     const float *radius[4], *weight[4];
     for (int i = 0; i < 4; i++) {
         const struct hf_buf *of = &b->f->buf[i < 2 ? HF_LAYERS_BUF_SEEN_AT : HF_LAYERS_BUF_MIXED_AT];
