@@ -328,7 +328,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .shares = hf_layers_shares_c,
         .quads = hf_layers_quads_c,
         .merge = hf_layers_merge_c,
-        .tap = hf_layers_tap_c,
+        .taps = hf_layers_taps_c,
         .between = hf_layers_between_c,
         .nearest = hf_layers_nearest_c,
         .found = hf_layers_found_c,

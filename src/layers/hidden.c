@@ -105,19 +105,26 @@ void hf_layers_merge_c(const float *const in[3][6], int channels, float slope, i
     }
 }
 
-void hf_layers_tap_c(const float *const in[6], int channels, const float *nearest, float scale, float off, float part,
-                     int n, float *const sum[6])
+static void add_tap(const struct hf_hidden_tap *tap, int channels, const float *nearest, int n, float *const sum[6])
 {
+    const float *const *in = tap->in;
     for (int x = 0; x < n; x++) {
         const float behind = in[5][x] - nearest[x];
-        const float a = hf_saturate(behind * scale + off);
-        const float v = part * a * hf_saturate(9 * in[4][x]) * hf_layers_hides(behind - 1);
+        const float a = hf_saturate(behind * tap->scale + tap->off);
+        const float v = tap->part * a * hf_saturate(9 * in[4][x]) * hf_layers_hides(behind - 1);
         const float w = v > HF_LAYERS_SOME ? v : 0;
         for (int c = 0; c < channels; c++)
             sum[c][x] = sum[c][x] + w * in[c][x];
         sum[4][x] = sum[4][x] + w;
         sum[5][x] = w > 0 ? sum[5][x] + w * in[5][x] : sum[5][x];
     }
+}
+
+void hf_layers_taps_c(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
+                      float *const sum[6])
+{
+    for (int i = 0; i < count; i++)
+        add_tap(&tap[i], channels, nearest, n, sum);
 }
 
 // The first on one side of a line that lies behind `nearest`, if need be of several in part: sums of colour, radius (4) and

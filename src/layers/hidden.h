@@ -53,6 +53,13 @@ static inline float hf_layers_hides(float more)
 #define HF_LAYERS_UNLIKE 4
 enum { HF_LAYERS_STEPS = 12, HF_LAYERS_LINES = 4 };
 
+// A tap of a level: its samples, colour, weight (4), radius (5), and how much they count, by `part` of how far behind the
+// nearest they lie as scale and off say.
+struct hf_hidden_tap {
+    const float *in[6];
+    float scale, off, part;
+};
+
 // A line through n samples, colour, weight (4), radius (5): where those some steps away on either side are, and how far
 // that is, half-resolution pixels.
 struct hf_hidden_line {

@@ -139,33 +139,44 @@ HF_INLINE vf layers_hides(vf more)
     return vf_min(vf_max(vf_add(more, more), vf_zero()), vf_set1(1));
 }
 
-HF_INLINE void layers_tap_of(const float *const in[6], const int channels, const float *nearest, float scale, float off,
-                             float part, int n, float *const sum[6])
+HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const int channels, const float *nearest,
+                              int n, float *const sum[6])
 {
     for (int x = 0; x < n; x += VF_N) {
-        const vf r = vf_load(in[5] + x), behind = vf_sub(r, vf_load(nearest + x));
-        const vf t = vf_max(vf_fma(behind, vf_set1(scale), vf_set1(off)), vf_zero());
-        const vf a = vf_min(t, vf_set1(1)), full = vf_min(vf_mul(vf_set1(9), vf_load(in[4] + x)), vf_set1(1));
-        const vf v = vf_mul(vf_mul(vf_mul(vf_set1(part), a), full), layers_hides(vf_sub(behind, vf_set1(1))));
-        const vf w = vf_keep(vf_gt(v, vf_set1(HF_LAYERS_SOME)), v);
-        const vm some = vf_gt(w, vf_zero());
-        if (!vm_any(some))
-            continue;
-        for (int c = 0; c < channels; c++)
-            vf_store(sum[c] + x, vf_fma(w, vf_load(in[c] + x), vf_load(sum[c] + x)));
-        const vf s = vf_load(sum[5] + x);
-        vf_store(sum[4] + x, vf_add(vf_load(sum[4] + x), w));
-        vf_store(sum[5] + x, vf_select(some, vf_fma(w, r, s), s));
+        const vf from = vf_load(nearest + x);
+        vf all[6];
+        for (int c = 0; c < 6; c++)
+            if (c < channels || c > 3)
+                all[c] = vf_load(sum[c] + x);
+        for (int i = 0; i < count; i++) {
+            const float *const *in = tap[i].in;
+            const vf r = vf_load(in[5] + x), behind = vf_sub(r, from);
+            const vf t = vf_max(vf_fma(behind, vf_set1(tap[i].scale), vf_set1(tap[i].off)), vf_zero());
+            const vf a = vf_min(t, vf_set1(1)), full = vf_min(vf_mul(vf_set1(9), vf_load(in[4] + x)), vf_set1(1));
+            const vf v =
+                vf_mul(vf_mul(vf_mul(vf_set1(tap[i].part), a), full), layers_hides(vf_sub(behind, vf_set1(1))));
+            const vm some = vf_gt(v, vf_set1(HF_LAYERS_SOME));
+            if (!vm_any(some))
+                continue;
+            const vf w = vf_keep(some, v);
+            for (int c = 0; c < channels; c++)
+                all[c] = vf_fma(w, vf_load(in[c] + x), all[c]);
+            all[4] = vf_add(all[4], w);
+            all[5] = vf_select(some, vf_fma(w, r, all[5]), all[5]);
+        }
+        for (int c = 0; c < 6; c++)
+            if (c < channels || c > 3)
+                vf_store(sum[c] + x, all[c]);
     }
 }
 
-static void layers_tap_simd(const float *const in[6], int channels, const float *nearest, float scale, float off,
-                            float part, int n, float *const sum[6])
+static void layers_taps_simd(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
+                             float *const sum[6])
 {
     if (channels == 3)
-        layers_tap_of(in, 3, nearest, scale, off, part, n, sum);
+        layers_taps_of(tap, count, 3, nearest, n, sum);
     else
-        layers_tap_of(in, 4, nearest, scale, off, part, n, sum);
+        layers_taps_of(tap, count, 4, nearest, n, sum);
 }
 
 HF_INLINE vf layers_saturate(vf v)

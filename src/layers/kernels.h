@@ -20,9 +20,10 @@ typedef void hf_layers_quads(const float *const seen[2][6], const float *const m
                              float *const out[6]);
 // Three samples of each lane become one: those within about 1 / slope of the farthest. out may be none of in.
 typedef void hf_layers_merge(const float *const in[3][6], int channels, float slope, int n, float *const out[6]);
-// Add a tap of a level to the sums: as far behind `nearest` as scale and off say.
-typedef void hf_layers_tap(const float *const in[6], int channels, const float *nearest, float scale, float off,
-                           float part, int n, float *const sum[6]);
+// Add taps of levels to the sums, one after the other.
+struct hf_hidden_tap;
+typedef void hf_layers_taps(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
+                            float *const sum[6]);
 // Add what lies behind `nearest` on both sides of a line to the sums.
 struct hf_hidden_line;
 typedef void hf_layers_between(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
@@ -95,7 +96,7 @@ struct hf_layers_kernels {
     hf_layers_shares *shares;
     hf_layers_quads *quads;
     hf_layers_merge *merge;
-    hf_layers_tap *tap;
+    hf_layers_taps *taps;
     hf_layers_between *between;
     hf_layers_nearest *nearest;
     hf_layers_found *found;
@@ -168,7 +169,7 @@ hf_layers_nine hf_layers_nine_c;
 hf_layers_shares hf_layers_shares_c;
 hf_layers_quads hf_layers_quads_c;
 hf_layers_merge hf_layers_merge_c;
-hf_layers_tap hf_layers_tap_c;
+hf_layers_taps hf_layers_taps_c;
 hf_layers_between hf_layers_between_c;
 hf_layers_nearest hf_layers_nearest_c;
 hf_layers_found hf_layers_found_c;

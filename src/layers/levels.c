@@ -285,16 +285,20 @@ static void find(const struct band *b, int x, int n, int y)
         memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // and the rest of the last vector
     }
     const float behind = farthest_behind(b, nearest, x, n, y);
-    for (int j = 0; j < b->l->levels; j++, part *= 1.0f / 256)
+    struct hf_hidden_tap taps[9 * HF_LAYERS_LEVELS];
+    int count = 0;
+    for (int j = 0; j < b->l->levels && behind > 1; j++, part *= 1.0f / 256)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
-            float *in[6] = {NULL};
-            if (!(behind > 1) || behind / (float)(2 << j) + (0.5f - distance[away]) < -ROUNDED)
+            struct hf_hidden_tap *tap = &taps[count];
+            *tap = (struct hf_hidden_tap){
+                .scale = 1.0f / (float)(2 << j), .off = 0.5f - distance[away], .part = part * share[away]};
+            if (behind * tap->scale + tap->off < -ROUNDED)
                 continue;
-            planes_of(&b->level[j], channels, x + u * (1 << j), y + v * (1 << j), in);
-            k->tap((const float *const *)in, channels, nearest, 1.0f / (float)(2 << j), 0.5f - distance[away],
-                   part * share[away], n, sum);
+            planes_of(&b->level[j], channels, x + u * (1 << j), y + v * (1 << j), (float **)tap->in);
+            count++;
         }
+    k->taps(taps, count, channels, nearest, n, sum);
     find_between(b, nearest, behind, x, n, y, sum);
     const float *radius[4], *weight[4];
     for (int i = 0; i < 4; i++) {

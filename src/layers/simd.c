@@ -18,7 +18,7 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->shares = layers_shares_simd;
     k->quads = layers_quads_simd;
     k->merge = layers_merge_simd;
-    k->tap = layers_tap_simd;
+    k->taps = layers_taps_simd;
     k->between = layers_between_simd;
     k->nearest = layers_nearest_simd;
     k->found = layers_found_simd;

@@ -147,12 +147,18 @@ static void merge_call(const struct world *w, const struct kernels *k, enum aren
     k->layers.merge((const float *const(*)[6])set, now.channels, now.scale, w->n, out);
 }
 
-static void tap_call(const struct world *w, const struct kernels *k, enum arena a)
+// Up to three taps of samples of their own.
+static void taps_call(const struct world *w, const struct kernels *k, enum arena a)
 {
-    float *in[6], *sum[6];
-    set_of(w, a, 0, in);
+    struct hf_hidden_tap tap[3];
+    float *sum[6];
     set_of(w, a, IN, sum);
-    k->layers.tap((const float *const *)in, now.channels, line(w, a, 6), now.scale, now.off, now.part, w->n, sum);
+    for (int i = 0; i < 3; i++) {
+        tap[i] = (struct hf_hidden_tap){
+            .scale = now.scale / (float)(1 << i), .off = now.off - 0.5f * (float)i, .part = now.part / (float)(1 << i)};
+        set_of(w, a, 7 + 6 * i, (float **)tap[i].in);
+    }
+    k->layers.taps(tap, now.rows % 4, now.channels, line(w, a, 6), w->n, sum);
 }
 
 // Sums begin with 0, which has no sign.
@@ -410,8 +416,9 @@ void layers_make(struct world *w, int which)
             fill_set(w, 6 * i, 0, w->n);
         put_set(w, IN, 6, w->n);
         return;
-    case LAYERS_TAP:
-        fill_set(w, 0, 0, w->n);
+    case LAYERS_TAPS:
+        for (int i = 0; i < 3; i++)
+            fill_set(w, 7 + 6 * i, 0, w->n);
         fill_surfaces(w, 6, 0, w->n);
         sums_make(w);
         return;
@@ -546,8 +553,8 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
     case LAYERS_MERGE:
         merge_call(w, k, a);
         return;
-    case LAYERS_TAP:
-        tap_call(w, k, a);
+    case LAYERS_TAPS:
+        taps_call(w, k, a);
         return;
     case LAYERS_BETWEEN:
         between_call(w, k, a);

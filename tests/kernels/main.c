@@ -119,7 +119,7 @@ const struct test tests[] = {
     ROW("layers_shares alpha", LAYERS_SHARES_ALPHA, 600, layers_make, layers_call, layers_check),
     ROW("layers_quads", LAYERS_QUADS, 600, layers_make, layers_call, layers_check),
     ROW("layers_merge", LAYERS_MERGE, 600, layers_make, layers_call, layers_check),
-    ROW("layers_tap", LAYERS_TAP, 600, layers_make, layers_call, layers_check),
+    ROW("layers_taps", LAYERS_TAPS, 600, layers_make, layers_call, layers_check),
     ROW("layers_between", LAYERS_BETWEEN, 600, layers_make, layers_call, layers_check),
     ROW("layers_nearest", LAYERS_NEAREST, 600, layers_make, layers_call, layers_check),
     ROW("layers_spread", LAYERS_SPREAD, 600, layers_make, layers_call, layers_check),
