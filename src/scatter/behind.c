@@ -129,6 +129,8 @@ static float mix(float a, float b, float t)
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
+// Far pictures say what lies there by how much of them reaches it: with little of it they are the rim of what lies on one side
+// of an object, and in its middle another side's begins at once.
 void hf_behind_blend_c(const struct hf_scatter_row *row, const float *const weight[2], const float *const colour[2],
                        const float *own, float *out)
 {
@@ -142,7 +144,7 @@ void hf_behind_blend_c(const struct hf_scatter_row *row, const float *const weig
         if (sharp + blurred > 0) {
             float seen = v;
             if (blurred > 0)
-                seen = mix(colour[1][i] / blurred, far, reached);
+                seen = mix(colour[1][i] / blurred, far, hf_saturate(far_weight));
             if (sharp > 0)
                 seen = mix(seen, colour[0][i] / sharp, sharp / (sharp + blurred));
             v = mix(seen, v, HF_BEHIND_NOTHING / ((sharp + blurred) + HF_BEHIND_NOTHING));

@@ -48,8 +48,9 @@ static void behind_blend_simd(const struct hf_scatter_row *row, const float *con
         const vf reached = coc_saturate(vf_mul(vf_set1(16), far_weight));
         const vf sharp = vf_load(weight[0] + i), blurred = vf_load(weight[1] + i), both = vf_add(sharp, blurred);
         const vf v = scatter_mix(front, far, reached);
+        const vf trusted = coc_saturate(far_weight);
         vf seen =
-            vf_select(vf_gt(blurred, zero), scatter_mix(vf_div(vf_load(colour[1] + i), blurred), far, reached), v);
+            vf_select(vf_gt(blurred, zero), scatter_mix(vf_div(vf_load(colour[1] + i), blurred), far, trusted), v);
         seen = vf_select(vf_gt(sharp, zero),
                          scatter_mix(seen, vf_div(vf_load(colour[0] + i), sharp), vf_div(sharp, both)), seen);
         const vf some = scatter_mix(seen, v, vf_div(nothing, vf_add(both, nothing)));
