@@ -191,14 +191,15 @@ static float before_of(const float *const radius[4], const float *const weight[4
 }
 
 void hf_layers_found_c(const float *const sum[6], const float *const radius[4], const float *const weight[4],
-                       int channels, int n, float *const out[6])
+                       int channels, float scale, int n, float *const out[6])
 {
     for (int x = 0; x < n; x++) {
         const float inverse = sum[4][x] > 0 ? 1 / sum[4][x] : 0, r = sum[5][x] * inverse;
         float before[4];
         for (int i = 0; i < 4; i++)
             before[i] = before_of(radius, weight, x, i, r - 1);
-        out[4][x] = sum[4][x] > 0 ? ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f : 0;
+        const float all = ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f;
+        out[4][x] = sum[4][x] > 0 ? all * hf_saturate(sum[4][x] * scale) : 0;
         out[5][x] = r;
         for (int c = 0; c < channels; c++)
             out[c][x] = sum[c][x] * inverse;
@@ -254,6 +255,14 @@ static float lonely(const struct company *c, float r)
     return hf_layers_lonely(r, c->like, c->others, c->size);
 }
 
+// How far a sample has the colour of the middle one.
+static float shade(const float *const in[6], const float *const middle[6], int x, float apart)
+{
+    const float off = fabsf(in[0][x] - middle[0][x]) + fabsf(in[1][x] - middle[1][x]) + fabsf(in[2][x] - middle[2][x]);
+    const float v = 1 - off * apart;
+    return v > HF_LAYERS_OTHER ? v : HF_LAYERS_OTHER;
+}
+
 void hf_layers_smooth_c(const float *const in[13][6], const float *const along[2], int channels, int n,
                         float *const out[6])
 {
@@ -280,8 +289,11 @@ void hf_layers_smooth_c(const float *const in[13][6], const float *const along[2
         if (along)
             alone = lonely(&line, r) < lonely(&across, r) ? lonely(&line, r) : lonely(&across, r);
         const float plain = roots_of(in[HF_LAYERS_SMOOTH], x) * HF_LAYERS_GLARE;
+        const float middle = roots_of(in[HF_LAYERS_SMOOTH], x);
+        const float apart = HF_LAYERS_SHADES / (middle > HF_LAYERS_SOME ? middle : HF_LAYERS_SOME);
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const float all = alone * (rest[i] - of[i]) + of[i],
+            const float near = of[i] * shade(in[i], in[HF_LAYERS_SMOOTH], x, apart),
+                        all = alone * (rest[i] - near) + near,
                         g = all > 0 ? all * hf_layers_dimmed(roots_of(in[i], x), plain) : 0;
             if (!(g > 0))
                 continue;

@@ -19,6 +19,10 @@ enum {
 // A sample of which the roots are more than GLARE times as large as the middle one's is dimmed: a lamp beside a silhouette
 // would otherwise light up all that is hidden along it.
 #define HF_LAYERS_GLARE 16
+// Of another colour, measured by the sum of the middle's roots, a sample counts the less the more SHADES times that is, and
+// OTHER at the least: an edge behind an object stays one, and streaks do not.
+#define HF_LAYERS_SHADES 2
+#define HF_LAYERS_OTHER 0.1f
 static inline float hf_layers_line(int i)
 {
     return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));
@@ -68,6 +72,9 @@ struct hf_hidden_line {
     ptrdiff_t side[2][HF_LAYERS_STEPS];
     float away[HF_LAYERS_STEPS];
 };
+
+// What the farthest level's taps have just begun to reach covers nothing yet, and wholly from 1 / REACHED of a tap on.
+#define HF_LAYERS_REACHED 4
 
 // Weights of taps below this are none: one over them has to be finite.
 #define HF_LAYERS_SOME 1e-30f

@@ -276,7 +276,7 @@ HF_INLINE vf layers_before(const float *const radius[4], const float *const weig
 }
 
 static void layers_found_simd(const float *const sum[6], const float *const radius[4], const float *const weight[4],
-                              int channels, int n, float *const out[6])
+                              int channels, float scale, int n, float *const out[6])
 {
     for (int x = 0; x < n; x += VF_N) {
         const vf total = vf_load(sum[4] + x);
@@ -291,7 +291,8 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
             before[i] = vf_add(layers_before(radius, weight, 0, at, l), layers_before(radius, weight, 1, at, l));
         }
         vf_unzip(before[0], before[1], &even, &odd);
-        vf_store(out[4] + x, vf_keep(some, vf_mul(vf_add(even, odd), vf_set1(0.25f))));
+        const vf all = vf_mul(vf_add(even, odd), vf_set1(0.25f));
+        vf_store(out[4] + x, vf_keep(some, vf_mul(all, layers_saturate(vf_mul(total, vf_set1(scale))))));
         vf_store(out[5] + x, r);
         for (int c = 0; c < channels; c++)
             vf_store(out[c] + x, vf_mul(vf_load(sum[c] + x), inverse));
@@ -360,6 +361,16 @@ HF_INLINE vf layers_in_line(const float *weight, const float *radius, vf r, int 
     return rest;
 }
 
+// How far a sample has the colour of the middle one.
+HF_INLINE vf layers_shade(const float *const in[6], const float *const middle[6], int x, vf apart)
+{
+    vf off = vf_abs(vf_sub(vf_load(in[0] + x), vf_load(middle[0] + x)));
+    for (int c = 1; c < 3; c++)
+        off = vf_add(off, vf_abs(vf_sub(vf_load(in[c] + x), vf_load(middle[c] + x))));
+    const vf v = vf_fnma(off, apart, vf_set1(1)), least = vf_set1(HF_LAYERS_OTHER);
+    return vf_select(vf_gt(v, least), v, least);
+}
+
 HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const along[2], const int channels, int n,
                                 float *const out[6])
 {
@@ -390,9 +401,11 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
                 alone = vf_min(alone, layers_lonely(r, across[0], across[1], across[2]));
             }
         }
-        const vf plain = vf_mul(layers_roots_of(in[HF_LAYERS_SMOOTH], x), vf_set1(HF_LAYERS_GLARE));
+        const vf middle = layers_roots_of(in[HF_LAYERS_SMOOTH], x), plain = vf_mul(middle, vf_set1(HF_LAYERS_GLARE));
+        const vf apart = vf_div(vf_set1(HF_LAYERS_SHADES), vf_max(middle, vf_set1(HF_LAYERS_SOME)));
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
-            const vf all = vf_fma(alone, vf_sub(rest[i], of[i]), of[i]);
+            const vf shade = layers_shade(in[i], in[HF_LAYERS_SMOOTH], x, apart), near = vf_mul(of[i], shade);
+            const vf all = vf_fma(alone, vf_sub(rest[i], near), near);
             const vm some = vf_gt(all, zero);
             if (!vm_any(some))
                 continue;

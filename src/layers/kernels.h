@@ -31,9 +31,10 @@ typedef void hf_layers_between(const struct hf_hidden_line *line, int channels, 
 // Least of the radii of n quads, from two rows.
 typedef void hf_layers_nearest(const float *above, const float *below, int n, float *out);
 // Hidden samples, of which the colours are roots, from the sums of taps: their weight is how much of a quad lies more than a
-// pixel of radius before them; its two rows are given of what is seen, then of what is behind mixed edges.
+// pixel of radius before them; its two rows are given of what is seen, then of what is behind mixed edges. Those of which the
+// weight of taps times scale is below 1 weigh as much less.
 typedef void hf_layers_found(const float *const sum[6], const float *const radius[4], const float *const weight[4],
-                             int channels, int n, float *const out[6]);
+                             int channels, float scale, int n, float *const out[6]);
 // Hidden samples of n quads as those of one row of their pixels: the weight goes to pixels that lie more than a pixel of
 // radius before them, of which radius and weight are given as for hf_layers_found, and is no more than theirs.
 typedef void hf_layers_spread(const float *const in[6], const float *const radius[4], const float *const weight[4],

@@ -307,7 +307,8 @@ static void find(const struct band *b, int x, int n, int y)
         radius[i] = hf_at(of, 1, 2 * x, 2 * y + i % 2);
     }
     planes_of(&b->found, channels, x, y, out);
-    k->found((const float *const *)sum, radius, weight, channels, n, out);
+    k->found((const float *const *)sum, radius, weight, channels, ldexpf(HF_LAYERS_REACHED, 8 * (b->l->levels - 1)), n,
+             out);
 }
 
 // The next run of blocks of a row that need a search, or do not, at most STEP samples.

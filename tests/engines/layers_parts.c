@@ -72,8 +72,8 @@ static void farthest(void)
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 0);
 }
 
-// A lamp of 4096 among hidden samples of 1, and as far as these, counts by the fourth power of 16 / 64: a 256th of its place at
-// the end of the line, where it is one of 49 parts.
+// A lamp of 4096 among hidden samples of 1, and as far as these, counts by the fourth power of 16 / 64, a 256th, and a tenth of
+// that as it is of another colour, of its place at the end of the line, where it is one of 49 parts.
 static void lamp_in_line(void)
 {
     float one[HF_LAYERS_TAPS][6], out[6];
@@ -85,7 +85,7 @@ static void lamp_in_line(void)
             in[i][c] = &one[i][c];
             to[c] = &out[c];
         }
-    const double want = (48 + 64.0 / 256) / (48 + 1.0 / 256);
+    const double want = (48 + 64.0 / 2560) / (48 + 1.0 / 2560);
     hf_layers_smooth_c((const float *const(*)[6])in, NULL, 3, 1, to);
     // Thirteen products and sums, and a quotient, of either.
     CHECK_MSG(fabs(out[0] - want) <= 28 * FLT_EPSILON * want, "%g, not %g", (double)out[0], want);

@@ -209,7 +209,7 @@ static void found_call(const struct world *w, const struct kernels *k, enum aren
                                                                                                      line(w, a, 13)};
     set_of(w, a, 0, sum);
     set_of(w, a, IN, out);
-    k->layers.found((const float *const *)sum, radius, weight, now.channels, w->n, out);
+    k->layers.found((const float *const *)sum, radius, weight, now.channels, 4, w->n, out);
 }
 
 static void spread_call(const struct world *w, const struct kernels *k, enum arena a)

@@ -318,11 +318,22 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
         out[c] = sum[c] / sum[WEIGHT];
     for (int i = 0; i < 4; i++)
         out[WEIGHT] += layers_reference_before(f, 2 * x + i % 2, 2 * y + i / 2, out[RADIUS]) / 4;
+    // What the farthest taps have just begun to reach covers nothing yet.
+    out[WEIGHT] *= fmin(4 * pow(256, levels - 1) * sum[WEIGHT], 1);
 }
 
 static double roots_of(const double *s)
 {
     return fabs(s[0]) + fabs(s[1]) + fabs(s[2]);
+}
+
+// How far a sample has the colour of another.
+static double shade(const double *s, const double *other)
+{
+    double off = 0;
+    for (int c = 0; c < 3; c++)
+        off += fabs(s[c] - other[c]);
+    return fmax(1 - 2 * off / fmax(roots_of(other), 1e-30), 0.1);
 }
 
 struct company {
@@ -371,8 +382,8 @@ static struct grid smooth(const struct frame *f, const struct grid *from, int do
             double *out = at(&to, x, y), sum = 0;
             for (int i = 0; i < 13; i++) {
                 const double *s = c.line[i];
-                const double g =
-                    s ? (c.of[i] + alone * (c.rest[i] - c.of[i])) * dimmed(roots_of(s), 16 * roots_of(middle)) : 0;
+                const double of = s ? c.of[i] * shade(s, middle) : 0;
+                const double g = s ? (of + alone * (c.rest[i] - of)) * dimmed(roots_of(s), 16 * roots_of(middle)) : 0;
                 sum += g;
                 for (int k = 0; k < f->channels && g > 0; k++)
                     out[k] += g * c.line[i][k];
