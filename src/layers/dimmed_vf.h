@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much bright samples count in a mean.
+// How much bright samples count in a mean, and weights that seldom change.
 #ifndef HF_LAYERS_DIMMED_VF_H
 #define HF_LAYERS_DIMMED_VF_H
 
 #include "layers/kernels.h"
 #include "simd/simd.h"
+
+// Store what is mostly there already, from the frame before: what is not written need not go back to memory.
+HF_INLINE void layers_leave(float *p, vf v)
+{
+    if (vi_any(vi_xor(vi_load(p), vf_as_vi(v))))
+        vf_store(p, v);
+}
 
 // hf_layers_dimmed. There is hardly ever a lamp.
 HF_INLINE vf layers_dimmed(vf light, vf plain)

@@ -2,6 +2,7 @@
 // Highlights on vectors: in the order of operations of highlights.c.
 #include <math.h>
 
+#include "layers/dimmed_vf.h"
 #include "layers/highlights.h"
 #include "simd/simd.h"
 
@@ -61,7 +62,7 @@ static void layers_shares_simd(const float *const in[6], const float *const arou
             const vf cap =
                 vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
             const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
-            vf_store(out + at, vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(cap, light[j])))));
+            layers_leave(out + at, vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(cap, light[j])))));
         }
     }
 }

@@ -8,8 +8,8 @@ HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channe
 {
     for (int c = 0; c < channels; c++)
         vf_store(u->seen[c] + x, vf_load(u->colour[3][c] + x));
-    vf_store(u->seen[4] + x, vf_set1(1));
-    vf_store(u->mixed[4] + x, vf_zero());
+    layers_leave(u->seen[4] + x, vf_set1(1));
+    layers_leave(u->mixed[4] + x, vf_zero());
     vf_store(u->seen[5] + x, vf_load(u->radius[3] + x));
 }
 
