@@ -61,15 +61,15 @@ static struct scene stage_new(struct rng *rng, int n, int width, int height, int
 // (96), how much each sample counts, the fourth power of a quotient of sums of three (4 * (3 + 3 + 1) + 2), and a share
 // of which numerator and denominator are such means' products, 6 times as large as what they leave where colours differ
 // by 0.3 or more, of 0.3 to 0.9: 6 * (96 + 30 + 20). Highlights: 18 + 18 sums of roots and squares of them, 60. Hidden:
-// what of a mixed pixel is behind, 8, three products and sums a level, twice (8 * 2 * 5), nine taps of each (9 * 5 * 3),
-// means of 13, twice (2 * (13 + 3)), and squares: 280, how much each counts in these, twice 4 * (3 + 3 + 1) + 2: 60, and
-// how far it is of the middle's colour, twice the quotient, as it is, of sums of three: 2 * 2 * (5 + 2 + 2) = 36. Patterns: how far a choice is off
-// and the variance by which that is measured, 61 products and sums each (4 * 61), to the fourth power, and twice as much
-// for the trust in the best: (4 + 2) * 4 * 61. A slice's share, its sums over 4 x 4 pixels: 24. Rows of runs: 10 a row and the sum of rows, 2 * 46 + 2; of a disc, twice as many
-// columns as rows: 140 at the most. A cover is such sums too, and the far stack is divided by what it leaves open, a
-// sixteenth at the least: 16 * (24 + 140). Upsampling: 6 a level, 3 levels. A stack: 7 a slice, of which a sample is in
-// two, and all that lies before weighs on what is open: 7 * 40. The result: 12. Single floats for the table's weights:
-// 4 more.
+// what of a mixed pixel is behind, 8, three products and sums a level, twice (8 * 2 * 5), nine taps of each (9 * 5 *
+// 3), means of 13, twice (2 * (13 + 3)), and squares: 280, how much each counts in these, twice 4 * (3 + 3 + 1) + 2:
+// 60, and how far it is of the middle's colour, twice the quotient, as it is, of sums of three: 2 * 2 * (5 + 2 + 2) =
+// 36. Patterns: how far a choice is off and the variance by which that is measured, 61 products and sums each (4 * 61),
+// to the fourth power, and twice as much for the trust in the best: (4 + 2) * 4 * 61. A slice's share, its sums over 4
+// x 4 pixels: 24. Rows of runs: 10 a row and the sum of rows, 2 * 46 + 2; of a disc, twice as many columns as rows: 140
+// at the most. A cover is such sums too, and the far stack is divided by what it leaves open, a sixteenth at the least:
+// 16 * (24 + 140). Upsampling: 6 a level, 3 levels. A stack: 7 a slice, of which a sample is in two, and all that lies
+// before weighs on what is open: 7 * 40. The result: 12. Single floats for the table's weights: 4 more.
 static const double ROUNDINGS =
     6 * (96 + 30 + 20) + 60 + 280 + 60 + 36 + 6 * 4 * 61 + 24 + 140 + 16 * (24 + 140) + 18 + 7 * 40 + 12 + 4;
 
