@@ -111,8 +111,8 @@ void trade_ladder(struct trade *t);
 // Results in the order of a table: by time.
 void trade_order(const struct trade *t, int order[]);
 
-// Steps of the ladder that stand for --quality: the cheapest; the cheapest within 1 dB of the last; within 0.25 dB; the
-// last. Fills results' places. Returns 0, or -1 if there is no ladder.
+// Steps of the ladder that stand for --quality: the cheapest that reaches any radius; the cheapest within 1 dB of the last;
+// within 0.25 dB; the last. Fills results' places. Returns 0, or -1 if there is no ladder.
 enum { TRADE_QUALITIES = 4 };
 int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES]);
 

@@ -224,7 +224,8 @@ int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES])
         place[q] = last;
         for (int k = 0; k < t->results; k++) {
             const struct trade_result *r = &t->result[order[k]];
-            if (r->step > 0 && 20 * log10(r->error / t->result[last].error) <= within_db[q]) {
+            if (r->step > 0 && (q > 0 || r->farthest == INFINITY) &&
+                20 * log10(r->error / t->result[last].error) <= within_db[q]) {
                 place[q] = order[k];
                 break;
             }

@@ -84,51 +84,34 @@ static const struct trade_result *at_step(const struct trade *t, int step)
     return NULL;
 }
 
-// What stands for a quality where blur reaches that far: the library's rule.
-static const struct trade_result *of_quality(const struct trade *t, int quality, double radius)
+// What stands for a quality.
+static const struct trade_result *of_quality(const struct trade *t, int quality)
 {
     int place[TRADE_QUALITIES];
-    if (t->results < 2 || trade_qualities(t, place))
-        return NULL;
-    const struct trade_result *r = &t->result[place[quality]];
-    for (const struct trade_result *next; r->farthest < radius && (next = at_step(t, r->step + 1));)
-        r = next;
-    return r;
+    return t->results < 2 || trade_qualities(t, place) ? NULL : &t->result[place[quality]];
 }
-
-// Qualities, the draft twice: where blur is narrow enough for its cheapest, and where it is not.
-static const struct quality_row {
-    enum hf_quality quality;
-    double radius;
-    const char *plain, *markdown;
-} quality_rows[] = {{HF_QUALITY_DRAFT, TRADE_RADIUS, "radius 12 or less", ", radius up to 12"},
-                    {HF_QUALITY_DRAFT, INFINITY, "any radius", ", with a lens"},
-                    {HF_QUALITY_STANDARD, INFINITY, "any radius", ""},
-                    {HF_QUALITY_HIGH, INFINITY, "any radius", ""},
-                    {HF_QUALITY_BEST, INFINITY, "any radius", ""}};
-enum { QUALITY_ROWS = sizeof quality_rows / sizeof *quality_rows };
 
 static void qualities(FILE *out, const struct trade *t)
 {
-    if (!of_quality(t, 0, 0))
+    if (!of_quality(t, 0))
         return;
     fputc('\n', out);
-    for (const struct quality_row *q = quality_rows; q < quality_rows + QUALITY_ROWS; q++) {
-        const struct trade_result *r = of_quality(t, (int)q->quality, q->radius);
-        fprintf(out, "--quality %-9s %-18s %8.2f ms  %6.2f dB  %s\n", hf_name(HF_NAMES_QUALITY, (int)q->quality),
-                q->plain, r->ms.median, db(r->error), r->setting->options);
+    for (int q = 0; q < TRADE_QUALITIES; q++) {
+        const struct trade_result *r = of_quality(t, q);
+        fprintf(out, "--quality %-9s %8.2f ms  %6.2f dB  %s\n", hf_name(HF_NAMES_QUALITY, q), r->ms.median,
+                db(r->error), r->setting->options);
     }
 }
 
 void trade_qualities_table(FILE *out, const struct trade *t)
 {
-    if (!of_quality(t, 0, 0))
+    if (!of_quality(t, 0))
         return;
     fputs("| `--quality` | chooses | ms | dB |\n|---|---|---|---|\n", out);
-    for (const struct quality_row *q = quality_rows; q < quality_rows + QUALITY_ROWS; q++) {
-        const struct trade_result *r = of_quality(t, (int)q->quality, q->radius);
-        fprintf(out, "| %s%s | `%s` | %.1f | %.1f |\n", hf_name(HF_NAMES_QUALITY, (int)q->quality), q->markdown,
-                r->setting->options, r->ms.median, db(r->error));
+    for (int q = 0; q < TRADE_QUALITIES; q++) {
+        const struct trade_result *r = of_quality(t, q);
+        fprintf(out, "| %s | `%s` | %.1f | %.1f |\n", hf_name(HF_NAMES_QUALITY, q), r->setting->options, r->ms.median,
+                db(r->error));
     }
 }
 
@@ -195,8 +178,8 @@ static void say_taps(FILE *out, const struct trade *t, const char *before, const
 
 void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after)
 {
-    const struct trade_result *soft = of_quality(t, 0, TRADE_RADIUS), *draft = of_quality(t, 0, INFINITY);
-    const struct trade_result *standard = of_quality(t, 1, INFINITY), *best = of_quality(t, 3, INFINITY);
+    const struct trade_result *draft = of_quality(t, 0), *standard = of_quality(t, 1), *best = of_quality(t, 3);
+    const struct trade_result *soft = at_step(t, 1);
     if (!soft || draft == standard)
         return;
     fprintf(
@@ -205,8 +188,8 @@ void trade_sentences(FILE *out, const struct trade *t, const char *before, const
         "sees%s",
         before, draft->ms.median, t->width[0], t->height[0], db(draft->error), soft == draft ? "." : "; where");
     if (soft != draft)
-        fprintf(out, " blur of one width up to 12 pixels will do, a draft takes %.1f ms (%.1f at 1920 x 1080).",
-                soft->ms.median, soft->both_ms.median);
+        fprintf(out, " blur of one width up to 12 pixels will do, `%s` takes %.1f ms (%.1f at 1920 x 1080).",
+                soft->setting->options, soft->ms.median, soft->both_ms.median);
     fprintf(out, "%s\n%sThe standard quality takes %.1f times as long, %.0f ms, and comes %.1f dB closer", after,
             before, standard->ms.median / draft->ms.median, standard->ms.median,
             db(standard->error) - db(draft->error));

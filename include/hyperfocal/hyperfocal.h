@@ -500,7 +500,7 @@ HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const str
 // How good a picture has to be. Settings that are worth having lie on a ladder, each slower than the one before and on no
 // measured scene where either can be chosen farther from what a ray tracer sees; a quality is a step of it.
 enum hf_quality {
-    HF_QUALITY_DRAFT,     // the cheapest that blurs as far as is asked for
+    HF_QUALITY_DRAFT,     // the cheapest that blurs as far as any lens: the gather
     HF_QUALITY_STANDARD,  // the cheapest within 1 dB of the best
     HF_QUALITY_HIGH,      // the cheapest within 0.25 dB of it
     HF_QUALITY_BEST,      // the most accurate

@@ -16,7 +16,7 @@
     {"--engine layers", 0.025014f, 0.037648f, 64.61f}, \
     {"--engine layers --layers-quality best", 0.023619f, 0.037659f, 192.9f}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 0, 4, 5, 5
+#define HF_LADDER_QUALITIES 3, 4, 5, 5
 // milliseconds of a megapixel of each engine as it is
 #define HF_LADDER_ENGINES 35.54f, 62.64f, 138.5f, 4.279f, 64.61f
 // clang-format on

@@ -358,13 +358,14 @@ picture_tests() {
         --focal-length 50mm --sensor-width 0.036m
     plan "focus 3 |none from 2.5; far blur none up to 3.5" plain.exr --focus 3 --depth-of-field 1
     plan "engine gather|rings of taps" plain.exr --focus 3 --engine gather --max-radius 40
-    plan "--quality draft chose --engine|, step 1 of|expected: |measured 20" plain.exr --focus 3 --quality draft --explain
-    # One blur of one width does for a range, but not for a lens.
-    plan "--quality draft chose --engine gaussian" plain.exr --focus 3 --quality draft --explain --near 1 --far 60
+    plan "--quality draft chose --engine gather, step |expected: |measured 20" plain.exr --focus 3 --quality draft --explain
+    # One blur of one width does for a range, but not for a lens, and never for a draft.
+    plan "--max-error 0.9 chose --engine gaussian" plain.exr --focus 3 --max-error 0.9 --explain --near 1 --far 60
+    bad 1 "--near|--depth-type" plain.exr -o o.exr --focus 3 --quality draft --near 1 --far 60
     bad 1 "--near|--depth-type" plain.exr -o o.exr --focus 3 --quality draft --fstop 2 --focal-length 50mm --near 1 --far 60
-    plan "engine gather|--quality draft chose --engine gather|passed over, the first because it does not reach" plain.exr --focus 3 \
-        --quality draft --explain --fstop 2 --focal-length 50mm
-    plan "engine gather|--quality draft chose --engine gather|passed over" plain.exr --quality draft --explain --depth-type coc
+    plan "engine gather|--max-error 0.9 chose --engine gather|passed over, the first because it does not reach" plain.exr --focus 3 \
+        --max-error 0.9 --explain --fstop 2 --focal-length 50mm
+    plan "engine gather|--max-error 0.9 chose --engine gather|passed over" plain.exr --max-error 0.9 --explain --depth-type coc
     plan "--max-error 0.9 chose --engine|, step 1 of" plain.exr --focus 3 --max-error 0.9 --explain
     plan "no setting errs as little" plain.exr --focus 3 --max-error 0.0001 --explain
     plan "--quality draft chose --engine" plain.exr --focus 3 --quality draft --explain --aperture ring:0.5

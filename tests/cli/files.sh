@@ -225,8 +225,8 @@ rm -f dark.exr o.json plain-o.exr
 
 # What a quality chose is on the line, in JSON and in a log.
 run near.exr -o o.exr --focus 4 --range 2 --quality draft --verbose --json
-contains "$dir/err" "gaussian (--quality draft chose --engine gaussian --resolution quarter" &&
-    contains "$dir/out" '"options": "--engine gaussian --resolution quarter'
+contains "$dir/err" "gather (--quality draft chose --engine gather" &&
+    contains "$dir/out" '"options": "--engine gather'
 result "--verbose names what --quality chose" $?
 run near.exr -o o.exr --focus 4 --range 2 --max-error 0.04 --verbose --log o.log
 contains "$dir/err" "(--max-error 0.04 chose --engine" && contains o.log '"choice": {"options": "--engine'

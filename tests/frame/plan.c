@@ -335,7 +335,7 @@ static void choices(void)
     }
     CHECK_INT(last.step, hf_ladder_steps - 1);
     CHECK_INT(hf_choose_quality(720, NULL, &p, HF_QUALITY_DRAFT, NULL), HF_OK);
-    CHECK(hf_ladder_ms(&p) == hf_ladder[0].ms);
+    CHECK(hf_ladder_farthest(&p) == INFINITY);
     for (int i = 0; i < hf_ladder_steps; i++) {
         CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &c), HF_OK);
         CHECK_INT(c.step, i);
@@ -360,10 +360,10 @@ static void choices(void)
 }
 
 // The radius of a step that must do for a picture of this height.
-static float farthest_of(struct hf_params p, int height, const struct hf_depth *depth, enum hf_quality q, int *passed)
+static float farthest_of(struct hf_params p, int height, const struct hf_depth *depth, int *passed)
 {
     struct hf_choice c;
-    CHECK_INT(hf_choose_quality(height, depth, &p, q, &c), HF_OK);
+    CHECK_INT(hf_choose_error(height, depth, &p, 1, &c), HF_OK);
     CHECK_INT(!c.why, !c.passed);
     *passed = c.passed;
     return hf_ladder_farthest(&p);
@@ -376,22 +376,27 @@ static void reaches(void)
     struct hf_params p = hf_default_params, lens = p, cut = p;
     lens.model = cut.model = HF_MODEL_LENS;
     cut.max_radius = 4;
-    int passed, draft;
+    int passed;
     struct hf_choice c, all;
     // The cheapest step is a blur of one width, which is enough for the chapter's radii but not for a lens.
-    CHECK(farthest_of(p, 540, NULL, HF_QUALITY_DRAFT, &passed) < INFINITY);
-    CHECK(farthest_of(p, 1080, NULL, HF_QUALITY_DRAFT, &passed) >= 12);
-    CHECK(farthest_of(p, 16384, NULL, HF_QUALITY_DRAFT, &passed) >= 12.f * 16384 / 1080);
+    CHECK(farthest_of(p, 540, NULL, &passed) < INFINITY);
+    CHECK(farthest_of(p, 1080, NULL, &passed) >= 12);
+    CHECK(farthest_of(p, 16384, NULL, &passed) >= 12.f * 16384 / 1080);
     CHECK(passed > 0);
-    CHECK(farthest_of(lens, 540, NULL, HF_QUALITY_DRAFT, &passed) == INFINITY);
+    CHECK(farthest_of(lens, 540, NULL, &passed) == INFINITY);
     CHECK(passed > 0);
-    CHECK(farthest_of(p, 540, &radii, HF_QUALITY_DRAFT, &draft) == INFINITY);
-    CHECK_INT(draft, passed);
-    CHECK(farthest_of(cut, 540, NULL, HF_QUALITY_DRAFT, &passed) >= 4);
+    const int lens_passed = passed;
+    CHECK(farthest_of(p, 540, &radii, &passed) == INFINITY);
+    CHECK_INT(passed, lens_passed);
+    CHECK(farthest_of(cut, 540, NULL, &passed) >= 4);
     CHECK_INT(passed, 0);
     // The height that counts is the display's.
     p.view.display_height = 16384;
-    CHECK(farthest_of(p, 540, NULL, HF_QUALITY_DRAFT, &passed) >= 12.f * 16384 / 1080);
+    CHECK(farthest_of(p, 540, NULL, &passed) >= 12.f * 16384 / 1080);
+    // A draft is the first that reaches any radius, whatever is asked for.
+    p = hf_default_params;
+    CHECK_INT(hf_choose_quality(540, NULL, &p, HF_QUALITY_DRAFT, &c), HF_OK);
+    CHECK(c.step == lens_passed && c.passed == 0 && p.engine == HF_ENGINE_GATHER);
     for (float r = 0; r <= 2048; r = r < 64 ? r + 0.5f : 2 * r) {
         int last = -1;
         for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {

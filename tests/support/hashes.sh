@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Print a hash of the pixels of 60 renders over engines, options, storages and instruction sets. Two builds whose lists
+# Print a hash of the pixels of 68 renders over engines, options, storages and instruction sets. Two builds whose lists
 # are equal make the same pictures to the bit:
 #     tests/support/hashes.sh old/src/cli/hyperfocal > old.txt; tests/support/hashes.sh build/src/cli/hyperfocal | diff old.txt -
 # Needs oiiotool (Debian: openimageio-tools).
@@ -33,6 +33,7 @@ for isa in scalar sse4.1 avx2 avx512; do
     render foliage --engine hexagon --isa $isa --max-radius 20
     render lights --engine scatter --isa $isa --max-radius 24
     render fence --engine gaussian --isa $isa
+    render fence --engine layers --isa $isa
 done
 for options in --karis --per-pixel-kernel --bicubic '--fill mean' '--fill none' '--blend smoothstep' --faithful \
     '--faithful --storage chapter' '--rings 2' '--aperture ngon:6' '--aperture ngon:5:0:20' '--strength 0.1' \
@@ -48,4 +49,7 @@ for options in '--resolution half' '--aperture ngon:5:0.4:10' '--aperture ring:0
 done
 for options in '--sigma 8' '--iterations 9' '--resolution quarter'; do
     render foliage --engine gaussian --focus 4 $options
+done
+for options in '--layers-quality draft' '--layers-quality best' '--chromatic 0.1' '--aperture ngon:5:0.4:10'; do
+    render lights --engine layers $options
 done
