@@ -11,9 +11,9 @@
 #include "support/check.h"
 #include "support/render.h"
 
-// What tells one quality from the next is 0.25 dB and more. A step may come out worse by a fifth of that where an engine
-// has changed a little since it was measured; the error of its table may be off by all of it.
-static const double SLACK = 0.05, TOLD_APART = 0.25;
+// A step of the ladder may be worse than the one before by 0.1 dB on a scene: trade_ladder's rule. What tells one quality
+// from the next is 0.25 dB and more: by that the error of its table may be off.
+static const double SLACK = 0.1, TOLD_APART = 0.25;
 // What the cheapest has to gain over no blur at all, dB.
 static const double WORTH = 3;
 
