@@ -9,14 +9,16 @@
 // options; display-encoded root mean square error, geometric mean of the scenes and of the worst; milliseconds of a
 // megapixel
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 1", 0.083193f, 0.136679f, 1.988f}, \
-    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 2.003f}, \
-    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 2.030f}, \
-    {"--engine gather", 0.037152f, 0.078830f, 35.54f}, \
-    {"--engine layers", 0.025014f, 0.037648f, 64.61f}, \
-    {"--engine layers --layers-quality best", 0.023619f, 0.037659f, 192.9f}
+    {"--engine gaussian --resolution quarter --iterations 1", 0.083193f, 0.136679f, 1.507f}, \
+    {"--engine gaussian --resolution quarter --iterations 2", 0.067721f, 0.094646f, 1.556f}, \
+    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 1.570f}, \
+    {"--engine gather", 0.037152f, 0.078830f, 28.79f}, \
+    {"--engine layers --spacing 8 --no-highlights", 0.031272f, 0.074652f, 39.06f}, \
+    {"--engine layers", 0.024655f, 0.037599f, 46.50f}, \
+    {"--engine layers --layers-quality high", 0.024639f, 0.037499f, 52.11f}, \
+    {"--engine layers --layers-quality best --spacing 4", 0.023550f, 0.037762f, 137.7f}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 3, 4, 5, 5
+#define HF_LADDER_QUALITIES 3, 5, 7, 7
 // milliseconds of a megapixel of each engine as it is
-#define HF_LADDER_ENGINES 35.54f, 62.64f, 138.5f, 4.279f, 64.61f
+#define HF_LADDER_ENGINES 28.79f, 44.94f, 92.68f, 3.162f, 46.50f
 // clang-format on
