@@ -3,6 +3,7 @@
 
 #include "flip.h"
 #include "ssim.h"
+#include "tool/luminance.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -103,7 +104,7 @@ void bench_regions(uint8_t *out, const float *rgb, const float *radius, int widt
 
 static float luma(const float *shown)
 {
-    return 0.2126f * shown[0] + 0.7152f * shown[1] + 0.0722f * shown[2];
+    return tool_luminance(shown[0], shown[1], shown[2]);
 }
 
 struct bench_metrics *bench_metrics_open(const float *want, const uint8_t *regions, int width, int height)

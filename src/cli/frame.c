@@ -13,6 +13,7 @@
 #include "cli/views.h"
 #include "cli/window.h"
 #include "io/depth_edges.h"
+#include "tool/luminance.h"
 #include "tool/machine.h"
 
 const char *cli_in_options(const char *message, char buf[CLI_SENTENCE])
@@ -286,17 +287,15 @@ int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
     return status;
 }
 
-// Pixels whose highlights will be raised.
+// Pixels whose highlights will be raised: by the luminance of what is above 0, as the library has it.
 static uint64_t count_highlights(const struct cli_view *v)
 {
     const struct hf_highlight_params *p = &v->setup.params.highlight;
     const size_t n = p->gain > 1 ? (size_t)v->view->width * (size_t)v->view->height : 0;
     uint64_t count = 0;
-    for (size_t i = 0; i < n; i++) {
-        const float red = fmaxf(v->planes[0][i], 0), green = fmaxf(v->planes[1][i], 0),
-                    blue = fmaxf(v->planes[2][i], 0);
-        count += 0.2126f * red + 0.7152f * green + 0.0722f * blue > p->threshold;
-    }
+    for (size_t i = 0; i < n; i++)
+        count += tool_luminance(fmaxf(v->planes[0][i], 0), fmaxf(v->planes[1][i], 0), fmaxf(v->planes[2][i], 0)) >
+                 p->threshold;
     return count;
 }
 

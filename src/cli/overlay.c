@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/target.h"
+#include "tool/luminance.h"
 
 typedef void paint(const struct cli_view *v, float *const planes[3]);
 
@@ -37,7 +38,7 @@ static void paint_focus(const struct cli_view *v, float *const planes[3])
     for (size_t i = 0; i < n; i++) {
         const float r = v->radii[i];
         const float *tint = tints[fabsf(r) < CLI_SHARP_RADIUS ? 1 : r < 0 ? 0 : 2];
-        const float luma = 0.2126f * v->planes[0][i] + 0.7152f * v->planes[1][i] + 0.0722f * v->planes[2][i];
+        const float luma = tool_luminance(v->planes[0][i], v->planes[1][i], v->planes[2][i]);
         const float grey = luma > 0 ? fminf(luma, 1) : 0;
         for (int c = 0; c < 3; c++)
             planes[c][i] = tint[c] * (0.08f + 0.92f * grey) + 0.1f * grey;

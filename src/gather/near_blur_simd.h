@@ -123,34 +123,9 @@ HF_INLINE void blur_byte_column(const char *in, ptrdiff_t stride, float *out, pt
 
 // ---- floats; narrow numbers become floats on the way ----
 
-// Bytes as whole numbers.
-HF_INLINE vf narrow_load(const int bytes, const char *p)
-{
-    return bytes == 1 ? vi_to_vf(vi_load_u8(p)) : bytes == 2 ? coc_load_half(p) : vf_load(p);
-}
-
 HF_INLINE vf blur_sum(vf centre, vf left, vf right)
 {
     return vf_add(centre, vf_add(left, right));
-}
-
-// A mean as the storage holds it: in its own width, or in a float.
-HF_INLINE void blur_put(const int bytes, const int widen, char *p, vf mean)
-{
-    if (bytes == 1) {
-        const vi k = vf_to_vi(vf_add(mean, vf_set1(0.5f)));
-        if (widen)
-            vf_store(p, vf_mul(vi_to_vf(k), vf_set1(1 / 255.0f)));
-        else
-            vi_store_u8(p, k);
-    } else if (bytes == 2) {
-        uint16_t half[VF_N];
-        coc_store_half(widen ? (char *)half : p, mean);
-        if (widen)
-            vf_store(p, coc_load_half(half));
-    } else {
-        vf_store(p, mean);
-    }
 }
 
 // A row or a column: where it begins, and how far apart its vectors and the values that a sum adds lie.
@@ -186,7 +161,7 @@ HF_INLINE void blur_line(const int bytes, const int widen, struct blur_line in, 
         vf total = blur_sum(vf_load(first + m * in.step), vf_load(p), vf_load(p + (m + 1) * w.step));
         if (edge < 1)
             total = vf_sub(total, vf_mul(less, vf_add(vf_load(first), vf_load(first + 2 * m * in.step))));
-        blur_put(bytes, widen, out + i * out_advance, vf_mul(total, scale));
+        narrow_store(bytes, widen, out + i * out_advance, vf_mul(total, scale));
     }
 }
 
@@ -211,7 +186,8 @@ HF_INLINE void blur_row_13(const int bytes, const char *in, char *out, int n)
             w6[k] = w6[k + 1];
         w6[LAG - 2] = vf_add(w3[0], vf_shift(w3, 3));
         if (i >= LAG)
-            blur_put(bytes, 0, out + (i - LAG) * size, vf_mul(blur_sum(vf_shift(a, 6), w6[0], vf_shift(w6, 7)), scale));
+            narrow_store(bytes, 0, out + (i - LAG) * size,
+                         vf_mul(blur_sum(vf_shift(a, 6), w6[0], vf_shift(w6, 7)), scale));
     }
 }
 
@@ -283,7 +259,7 @@ HF_INLINE void blur_column_13(const int bytes, const char *in, ptrdiff_t stride,
             a[k + 6] = narrow_load(bytes, in + 12 * stride);
             w3[k + 3] = vf_add(vf_add(a[k + 4], a[k + 6]), a[k + 5]);
             w6[k + 7] = vf_add(w3[k], w3[k + 3]);
-            blur_put(bytes, 1, (char *)out, vf_mul(blur_sum(centre, w6[k], w6[k + 7]), scale));
+            narrow_store(bytes, 1, (char *)out, vf_mul(blur_sum(centre, w6[k], w6[k + 7]), scale));
             in += stride;
             out += out_stride;
         }
@@ -321,7 +297,7 @@ HF_INLINE void blur_rows_3(const struct hf_frame *f, struct hf_rect r, const int
         for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
             const char *p = in + x * bytes;
             const vf above = narrow_load(bytes, p - stride), below = narrow_load(bytes, p + stride);
-            blur_put(bytes, 1, (char *)(out + x), vf_mul(blur_sum(narrow_load(bytes, p), above, below), scale));
+            narrow_store(bytes, 1, (char *)(out + x), vf_mul(blur_sum(narrow_load(bytes, p), above, below), scale));
         }
     }
 }

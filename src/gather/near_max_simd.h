@@ -130,22 +130,36 @@ HF_INLINE const char *narrow_row(const int bytes, const float *in, int n, char *
     return out;
 }
 
-// A stored CoC as hf_narrow_load and hf_narrow_store have it.
-HF_INLINE vf narrow_value(const int bytes, const char *p)
+// A stored CoC, bytes as whole numbers.
+HF_INLINE vf narrow_load(const int bytes, const char *p)
 {
-    return bytes == 1   ? vf_mul(vi_to_vf(vi_load_u8(p)), vf_set1(1 / 255.0f))
-           : bytes == 2 ? coc_load_half(p)
-                        : vf_load(p);
+    return bytes == 1 ? vi_to_vf(vi_load_u8(p)) : bytes == 2 ? coc_load_half(p) : vf_load(p);
 }
 
-HF_INLINE void narrow_put(const int bytes, char *p, vf v)
+// As the storage holds it: in its own width, or in a float.
+HF_INLINE void narrow_store(const int bytes, const int widen, char *p, vf v)
 {
-    if (bytes == 1)
-        vi_store_u8(p, vf_to_vi(vf_add(vf_mul(v, vf_set1(255)), vf_set1(0.5f))));
-    else if (bytes == 2)
-        coc_store_half(p, v);
-    else
+    if (bytes == 1) {
+        const vi k = vf_to_vi(vf_add(v, vf_set1(0.5f)));
+        if (widen)
+            vf_store(p, vf_mul(vi_to_vf(k), vf_set1(1 / 255.0f)));
+        else
+            vi_store_u8(p, k);
+    } else if (bytes == 2) {
+        uint16_t half[VF_N];
+        coc_store_half(widen ? (char *)half : p, v);
+        if (widen)
+            vf_store(p, coc_load_half(half));
+    } else {
         vf_store(p, v);
+    }
+}
+
+// Bytes as fractions: their products are rounded as those of the C are.
+HF_INLINE vf narrow_value(const int bytes, const char *p)
+{
+    const vf v = narrow_load(bytes, p);
+    return bytes == 1 ? vf_mul(v, vf_set1(1 / 255.0f)) : v;
 }
 
 // Maxima of a row with a window's first and last values, which lie in rows or columns of their own, times the edge.
@@ -153,7 +167,8 @@ HF_INLINE void max_edges(const int bytes, const char *first, const char *last, c
 {
     for (int x = 0; x < n * bytes; x += VF_N * bytes) {
         const vf ends = vf_max(narrow_value(bytes, first + x), narrow_value(bytes, last + x));
-        narrow_put(bytes, out + x, vf_max(vf_mul(vf_set1(edge), ends), narrow_value(bytes, out + x)));
+        const vf most = vf_max(vf_mul(vf_set1(edge), ends), narrow_value(bytes, out + x));
+        narrow_store(bytes, 0, out + x, bytes == 1 ? vf_mul(most, vf_set1(255)) : most);
     }
 }
 

@@ -286,10 +286,11 @@ void hf_layers_smooth_c(const float *const in[13][6], const float *const along[2
             const float far = in_line(along[0][at], along[1][at], r, i, &near);
             add_company(&across, near, far, along[0][at], along[1][at]);
         }
-        if (along)
-            alone = lonely(&line, r) < lonely(&across, r) ? lonely(&line, r) : lonely(&across, r);
-        const float plain = roots_of(in[HF_LAYERS_SMOOTH], x) * HF_LAYERS_GLARE;
-        const float middle = roots_of(in[HF_LAYERS_SMOOTH], x);
+        if (along) {
+            const float here = lonely(&line, r), there = lonely(&across, r);
+            alone = here < there ? here : there;
+        }
+        const float middle = roots_of(in[HF_LAYERS_SMOOTH], x), plain = middle * HF_LAYERS_GLARE;
         const float apart = HF_LAYERS_SHADES / (middle > HF_LAYERS_SOME ? middle : HF_LAYERS_SOME);
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
             const float near = of[i] * shade(in[i], in[HF_LAYERS_SMOOTH], x, apart),

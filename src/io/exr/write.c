@@ -8,6 +8,7 @@
 
 #include "io/exr/chunks.h"
 #include "io/half.h"
+#include "tool/luminance.h"
 
 // A chunk with its leader: in memory, or at `from` in the source.
 struct piece {
@@ -163,7 +164,7 @@ static float grey(const float *const planes[4], size_t i)
 {
     if (!planes[1] || !planes[2] || (planes[0][i] == planes[1][i] && planes[1][i] == planes[2][i]))
         return planes[0][i];
-    return 0.2126f * planes[0][i] + 0.7152f * planes[1][i] + 0.0722f * planes[2][i];
+    return tool_luminance(planes[0][i], planes[1][i], planes[2][i]);
 }
 
 static void put_row(uint8_t *to, const float *from, int n, exr_pixel_type_t type, uint64_t *clamped)
