@@ -103,10 +103,10 @@ void hf_lerp_row_c(float *a, const float *b, const float *t, int n)
         a[i] = fabsf(b[i] - a[i]) <= FLT_MAX ? hf_lerp(a[i], b[i], t[i]) : (1 - t[i]) * a[i] + t[i] * b[i];
 }
 
-// a + w (b - a)
+// a + w (b - a), of halves: the largest floats of either sign lie farther apart than there are floats.
 static float between(float a, float b, float w)
 {
-    return a + w * (b - a);
+    return a + 2 * w * (0.5f * b - 0.5f * a);
 }
 
 // The pixels of row y of the frame from a smaller buffer: bilinear, even and odd ones.

@@ -232,9 +232,11 @@ static void blend_row_simd(const struct hf_frame *f, int x, int y, int n, float 
 
 // ---- upsampling ----
 
+// a + w (b - a), of halves as in the C.
 HF_INLINE vf between_vf(vf a, vf b, float w)
 {
-    return vf_add(a, vf_mul(vf_set1(w), vf_sub(b, a)));
+    const vf half = vf_set1(0.5f);
+    return vf_add(a, vf_mul(vf_set1(2 * w), vf_sub(vf_mul(half, b), vf_mul(half, a))));
 }
 
 // A vector interpolated in y, from column x on.

@@ -32,10 +32,10 @@ HF_INLINE struct merge_rows merge_rows_at(const struct hf_frame *f, const int sc
             continue;
         const float *next = hf_at(b, c, column, 2 * phase < scale ? row - 1 : row + 1);
         float *line = hf_line(f, c) + HF_PAD;
-        line[-1] = own[-1] + w * (next[-1] - own[-1]);
+        line[-1] = own[-1] + 2 * w * (0.5f * next[-1] - 0.5f * own[-1]);
         for (int i = 0; i < columns; i += VF_N)
             vf_store(line + i, up_column(own, next, i, w));
-        line[columns] = own[columns] + w * (next[columns] - own[columns]);
+        line[columns] = own[columns] + 2 * w * (0.5f * next[columns] - 0.5f * own[columns]);
         r.channel[c] = line;
     }
     return r;
@@ -64,7 +64,7 @@ HF_INLINE void merge_up(const float *line, const int scale, int i, vf even[2], v
     }
 }
 
-// A colour of the small floats is never -0, and finite: a sum with nothing is the colour itself.
+// As lerp_row_simd. A colour of the small floats is never -0, and finite: a sum with nothing is the colour itself.
 HF_INLINE vf merge_mix(const int format, vf a, vf b, vf t)
 {
     const vf mixed = vf_add(a, vf_mul(t, vf_sub(b, a)));
@@ -88,7 +88,7 @@ HF_INLINE vm merge_blend(const struct hf_setup *s, const uint8_t *depth, vf t[2]
 }
 
 // Lanes from r.x0 on, a multiple of 2 VF_N. lines: even and odd blend factors, NULL: made here, of depth. Returns how many
-// were done: n, or those before a block with a sample that is not finite.
+// were done: n, or those before a block with a sample that is not finite, or farther from its blur than the largest float.
 HF_INLINE int merge_lanes(const struct hf_frame *f, const int format, const int bpp, const int scale, int y,
                           struct hf_rect r, int n, float *const *lines, vi *clamped)
 {
@@ -114,14 +114,17 @@ HF_INLINE int merge_lanes(const struct hf_frame *f, const int format, const int 
                 bad = vm_or(bad, merge_blend(&s, d, t[k]));
             }
         }
-        if (vm_any(bad))
-            return i;
         for (int c = 0; c < 3; c++) {
             merge_up(rows.channel[c], scale, i, up[0], up[1]);
             for (int k = 0; k < 2; k++)
-                for (int o = 0; o < 2; o++)
+                for (int o = 0; o < 2; o++) {
                     colour[k][o][c] = merge_mix(format, colour[k][o][c], up[o][k], t[k][o]);
+                    if (format != HF_FORMAT_R11G11B10F)
+                        bad = vm_or(bad, not_finite(colour[k][o][c]));
+                }
         }
+        if (vm_any(bad))
+            return i;
         for (int k = 0; k < 2; k++)
             store_block(format, to + (size_t)(i + k * VF_N) * 2 * (size_t)bpp, colour[k][0], colour[k][1], clamped);
     }

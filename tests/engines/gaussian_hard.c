@@ -176,6 +176,39 @@ static void bad_samples(struct hf_context *c, const char *isa)
     }
 }
 
+// The largest floats of either sign side by side, which lie farther apart than there are floats: what is between them is
+// finite, in planes and in pixels, and the plain C's.
+static void largest_floats(struct hf_context *plain, struct hf_context *c, const char *isa)
+{
+    for (unsigned i = 0; i < 24; i++) {
+        struct rng rng = rng_seed(seed + i);
+        struct scene s = scene_new(&rng, SCENE_NOISE, 1 + rng_below(&rng, 200), 1 + rng_below(&rng, 30), 3);
+        for (int ch = 0; ch < 3; ch++)
+            for (int k = 0; k < s.colour.width * s.colour.height; k++)
+                s.colour.plane[ch][k] = k / 3 % 5 < 3 ? FLT_MAX : -FLT_MAX;
+        struct hf_params p = random_params(&rng);
+        p.gaussian.resolution = (enum hf_resolution)(i % 3);
+        const struct hf_depth depth = picture_depth(&s.depth);
+        const enum hf_format format = i % 2 ? HF_FORMAT_RGB32F : HF_FORMAT_PLANAR32F;
+        struct packed in = packed_new(s.colour.width, s.colour.height, format, 0, 0, 0, 0, 0);
+        packed_write(&in, &s.colour);
+        struct picture out[2];
+        for (int k = 0; k < 2; k++) {
+            struct packed to = packed_new(s.colour.width, s.colour.height, format, 0, 0, 0, 0, 0);
+            CHECK_INT(hf_render(k ? c : plain, &to.image, &in.image, &depth, &p), HF_OK);
+            out[k] = packed_read(&to);
+            packed_free(&to);
+        }
+        CHECK_MSG(all_finite(&out[1]), "%s: seed %u: between the largest floats is what is not finite", isa, seed + i);
+        CHECK_MSG(picture_same_bits(&out[0], &out[1]), "%s: seed %u: largest floats: other bits than the C's", isa,
+                  seed + i);
+        picture_free(&out[0]);
+        picture_free(&out[1]);
+        packed_free(&in);
+        scene_free(&s);
+    }
+}
+
 // A constant picture stays what it is, bit for bit; a denormal one to within a few of its steps. Faithfully the
 // weights add up to 1 but for their rounding: 20 roundings an iteration, and as many for resampling.
 static void constants(struct hf_context *c, const char *isa)
@@ -276,6 +309,7 @@ int main(int argc, char **argv)
         crops(c, isa);
         exposures(c, isa);
         bad_samples(c, isa);
+        largest_floats(plain, c, isa);
         constants(c, isa);
         copies(c, isa);
         focus_pull(c, isa);
