@@ -69,7 +69,7 @@ struct hf_slice {
 
 // What a quality stands for.
 struct hf_layers_settings {
-    float spacing;  // of the slices; below 2 it is 1 anyway
+    float spacing;  // of the slices; small radii have it 1 anyway
     int fine;       // slices lie closer: see slices.c
     int unmix, hidden, highlights;
     int patterns;                 // hidden samples take theirs from what looks alike
