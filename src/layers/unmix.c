@@ -81,8 +81,9 @@ static void keep(const struct hf_unmix_row *u, int x)
     u->seen[5][x] = u->radius[3][x];
 }
 
-// How much of the pixel the front is: colours of front and back are given.
-static float share(const struct hf_unmix_row *u, int x, float a0, const float *f, const float *b)
+// How much of the pixel the front is: colours of front and back, and how far those of both spread, are given. The pixel's
+// own surface is nearly all of it where its own colours spread too far to tell.
+static float share(const struct hf_unmix_row *u, int x, float a0, const float *f, const float *b, const float *spread)
 {
     float along = 0, apart = 0, size = 0, off = 0;
     for (int c = 0; c < u->channels; c++) {
@@ -91,7 +92,8 @@ static float share(const struct hf_unmix_row *u, int x, float a0, const float *f
         apart = apart + d * d;
         size = size + (f[c] * f[c] + b[c] * b[c]);
     }
-    const float es = 1e-3f * size;
+    const float own = a0 * a0 * spread[0] + (1 - a0) * (1 - a0) * spread[1];
+    const float es = HF_UNMIX_SPREAD * own + 1e-3f * size;
     float a = (along + es * a0) / (apart + es);
     a = a > 0 ? a < 1 ? a : 1 : a <= 0 ? 0 : a0;
     for (int c = 0; c < u->channels; c++) {
@@ -115,9 +117,21 @@ static float light_of(const struct hf_unmix_row *u, int y, int x)
     return (fabsf(u->colour[y][0][x]) + fabsf(u->colour[y][1][x]) + fabsf(u->colour[y][2][x])) * 0.125f;
 }
 
+// Sums of a side become its mean. Returns its colours' variance.
+static float finish(int channels, float counted, float squares, float *mean)
+{
+    float square = 0;
+    for (int c = 0; c < 5; c++)
+        mean[c] = counted > 0 ? mean[c] / counted : 0;
+    for (int c = 0; c < channels; c++)
+        square = square + mean[c] * mean[c];
+    const float spread = (counted > 0 ? squares / counted : 0) - square;
+    return spread > 0 ? spread : 0;
+}
+
 static void unmix_pixel(const struct hf_unmix_row *u, int x)
 {
-    float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}};
+    float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}}, spread[2] = {0};
     const float plain = light_of(u, 3, x) * HF_UNMIX_PLAIN;
     const float middle = u->middle[x], slope = u->slope[x], own = u->radius[3][x];
     const float a0 = hf_saturate((middle - own) * slope + 0.5f);
@@ -129,24 +143,27 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
             const float w = u->sure[y][at] * hf_unmix_weights[y][i];
             const float front = w * hf_saturate((middle - u->radius[y][at]) * slope + 0.5f), of[2] = {front, w - front};
             const float counts = hf_layers_dimmed(light_of(u, y, at), plain);
+            float square = 0;
+            for (int c = 0; c < u->channels; c++)
+                square = square + u->colour[y][c][at] * u->colour[y][c][at];
             for (int side = 0; side < 2; side++) {
                 const float g = of[side] * counts;
                 weight[side] += of[side];
                 counted[side] += g;
+                spread[side] = spread[side] + g * square;
                 for (int c = 0; c < u->channels; c++)
                     mean[side][c] = mean[side][c] + g * u->colour[y][c][at];
                 mean[side][4] = mean[side][4] + g * u->radius[y][at];
             }
         }
     for (int side = 0; side < 2; side++)
-        for (int c = 0; c < 5; c++)
-            mean[side][c] = counted[side] > 0 ? mean[side][c] / counted[side] : 0;
+        spread[side] = finish(u->channels, counted[side], spread[side], mean[side]);
     if (!hf_unmix_complete(u, x, weight, mean)) {
         keep(u, x);
         return;
     }
     const float known = hf_saturate((weight[0] + weight[1]) * (1 / HF_UNMIX_FAINT));
-    const float a = share(u, x, a0, mean[0], mean[1]), by = (1 - u->sure[3][x]) * known;
+    const float a = share(u, x, a0, mean[0], mean[1], spread), by = (1 - u->sure[3][x]) * known;
     // What is not taken apart goes with the front.
     const float seen = by * (a - 1) + 1, whole = seen > 0 ? (1 - by) / seen : 0;
     for (int c = 0; c < u->channels; c++) {

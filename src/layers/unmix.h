@@ -13,6 +13,9 @@
 #define HF_UNMIX_FAINT 0.001f
 #define HF_UNMIX_LEAN 0.01f
 #define HF_UNMIX_PLAIN 8
+// A share by colours, whose variance in units of the distance between front and back is v, and that of the depth sample,
+// wrong by an eighth of a pixel or so, are weighed as 1 to 60 v.
+#define HF_UNMIX_SPREAD 60
 
 // 1 / d^4 of the 7 x 7, 0 in its middle.
 extern const float hf_unmix_weights[7][7];

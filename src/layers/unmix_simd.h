@@ -26,15 +26,31 @@ HF_INLINE vf layers_light_of(const struct hf_unmix_row *u, int y, int x)
     return vf_mul(vf_add(sum, vf_abs(vf_load(u->colour[y][2] + x))), vf_set1(0.125f));
 }
 
-// Means of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
-HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5], vf *known)
+// Sums of a side become its mean. Returns its colours' variance.
+HF_INLINE vf layers_finish(const int channels, vf counted, vf squares, vf *mean)
+{
+    const vm some = vf_gt(counted, vf_zero());
+    vf square = vf_zero();
+    for (int c = 0; c < 5; c++)
+        mean[c] = vf_keep(some, vf_div(mean[c], counted));
+    for (int c = 0; c < channels; c++)
+        square = vf_fma(mean[c], mean[c], square);
+    const vf spread = vf_sub(vf_keep(some, vf_div(squares, counted)), square);
+    return vf_keep(vf_gt(spread, vf_zero()), spread);
+}
+
+// Means and variances of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
+HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5],
+                          vf spread[2], vf *known)
 {
     const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x);
     const vf plain = vf_mul(layers_light_of(u, 3, x), vf_set1(HF_UNMIX_PLAIN));
     vf weight[2] = {vf_zero(), vf_zero()}, counted[2] = {vf_zero(), vf_zero()};
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 2; i++) {
+        spread[i] = vf_zero();
         for (int c = 0; c < 5; c++)
             mean[i][c] = vf_zero();
+    }
     for (int y = 0; y < 7; y++)
         for (int i = 0; i < 7; i++) {
             const int at = x + i - 3;
@@ -48,17 +64,20 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
             const vf front = vf_mul(f, counts), back = vf_mul(b, counts);
             counted[0] = vf_add(counted[0], front);
             counted[1] = vf_add(counted[1], back);
+            vf square = vf_zero();
             for (int c = 0; c < channels; c++) {
                 const vf v = vf_load(u->colour[y][c] + at);
+                square = vf_fma(v, v, square);
                 mean[0][c] = vf_fma(front, v, mean[0][c]);
                 mean[1][c] = vf_fma(back, v, mean[1][c]);
             }
+            spread[0] = vf_fma(front, square, spread[0]);
+            spread[1] = vf_fma(back, square, spread[1]);
             mean[0][4] = vf_fma(front, r, mean[0][4]);
             mean[1][4] = vf_fma(back, r, mean[1][4]);
         }
     for (int i = 0; i < 2; i++)
-        for (int c = 0; c < 5; c++)
-            mean[i][c] = vf_keep(vf_gt(counted[i], vf_zero()), vf_div(mean[i][c], counted[i]));
+        spread[i] = layers_finish(channels, counted[i], spread[i], mean[i]);
     const vf both_weigh = vf_add(weight[0], weight[1]), little = vf_mul(vf_set1(HF_UNMIX_LEAN), both_weigh);
     *known = vf_min(vf_mul(both_weigh, vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
     const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], little), vf_gt(weight[1], little))));
@@ -91,7 +110,8 @@ HF_INLINE vf layers_rest(const struct hf_unmix_row *u, int x, int c, vf a, vf me
     return vf_fnma(vf_sub(vf_set1(1), a), mean[1][c], vf_fnma(a, mean[0][c], vf_load(u->colour[3][c] + x)));
 }
 
-HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channels, vf a0, vf mean[2][5])
+HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channels, vf a0, vf mean[2][5],
+                          const vf spread[2])
 {
     vf along = vf_zero(), apart = vf_zero(), size = vf_zero(), off = vf_zero();
     for (int c = 0; c < channels; c++) {
@@ -100,7 +120,9 @@ HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channel
         apart = vf_fma(d, d, apart);
         size = vf_add(size, vf_fma(f, f, vf_mul(b, b)));
     }
-    const vf es = vf_mul(vf_set1(1e-3f), size), zero = vf_zero(), one = vf_set1(1);
+    const vf zero = vf_zero(), one = vf_set1(1), b0 = vf_sub(one, a0);
+    const vf own = vf_fma(vf_mul(a0, a0), spread[0], vf_mul(vf_mul(b0, b0), spread[1]));
+    const vf es = vf_fma(vf_set1(HF_UNMIX_SPREAD), own, vf_mul(vf_set1(1e-3f), size));
     vf a = vf_div(vf_fma(es, a0, along), vf_add(apart, es));
     a = vf_select(vf_gt(a, zero), vf_select(vf_lt(a, one), a, one), vf_select(vf_le(a, zero), zero, a0));
     for (int c = 0; c < channels; c++) {
@@ -118,11 +140,12 @@ HF_INLINE vf layers_between(vf v, vf a, vf b)
 
 HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const int channels, vm mixed)
 {
-    vf mean[2][5], known;
-    mixed = layers_sides(u, x, channels, mixed, mean, &known);
+    vf mean[2][5], spread[2], known;
+    mixed = layers_sides(u, x, channels, mixed, mean, spread, &known);
     const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
     const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
-    const vf a = layers_share(u, x, channels, a0, mean), by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known);
+    const vf a = layers_share(u, x, channels, a0, mean, spread),
+             by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known);
     const vf seen = vf_fma(by, vf_sub(a, one), one);
     const vf whole = vf_keep(vf_gt(seen, zero), vf_div(vf_sub(one, by), seen));
     for (int c = 0; c < channels; c++) {

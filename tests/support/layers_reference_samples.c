@@ -38,12 +38,13 @@ static double light_of(const struct frame *f, int x, int y)
     return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
 }
 
-// Mean colour and radius of a side around a mixed pixel; returns its weight. What is more than eight times as bright as the
+// Mean colour and radius of a side around a mixed pixel, and its colours' variance; returns its weight. What is more than eight times as bright as the
 // pixel counts less.
-static double side_mean(const struct frame *f, int x, int y, double middle, double slope, int front, double mean[5])
+static double side_mean(const struct frame *f, int x, int y, double middle, double slope, int front, double mean[5],
+                        double *spread)
 {
     const double own = 8 * light_of(f, x, y);
-    double sum = 0, all = 0, unused;
+    double sum = 0, all = 0, squares = 0, unused;
     memset(mean, 0, 5 * sizeof *mean);
     for (int v = -3; v <= 3; v++)
         for (int u = -3; u <= 3; u++) {
@@ -55,12 +56,18 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
             const double w = known * dimmed(light_of(f, x + u, y + v), own);
             all += known;
             sum += w;
-            for (int c = 0; c < f->channels; c++)
+            for (int c = 0; c < f->channels; c++) {
                 mean[c] += w * colour_at(f, c, x + u, y + v);
+                squares += w * pow(colour_at(f, c, x + u, y + v), 2);
+            }
             mean[4] += w * radius_at(f, x + u, y + v);
         }
     for (int c = 0; c < 5; c++)
         mean[c] = sum > 0 ? mean[c] / sum : 0;
+    *spread = sum > 0 ? squares / sum : 0;
+    for (int c = 0; c < f->channels; c++)
+        *spread -= mean[c] * mean[c];
+    *spread = fmax(*spread, 0);
     return all;
 }
 
@@ -90,7 +97,8 @@ static void side_farthest(const struct frame *f, int x, int y, double middle, do
         mean[c] = sum > 0 ? mean[c] / sum : 0;
 }
 
-static double share_of(const struct frame *f, int x, int y, double a0, const double *front, const double *back)
+static double share_of(const struct frame *f, int x, int y, double a0, const double *front, const double *back,
+                       const double spread[2])
 {
     double along = 0, apart = 0, size = 0, off = 0;
     for (int c = 0; c < f->channels; c++) {
@@ -98,7 +106,8 @@ static double share_of(const struct frame *f, int x, int y, double a0, const dou
         apart += pow(front[c] - back[c], 2);
         size += front[c] * front[c] + back[c] * back[c];
     }
-    const double a = fmin(fmax((along + 1e-3 * size * a0) / (apart + 1e-3 * size), 0), 1);
+    const double depth = 1e-3 * size + 60 * (a0 * a0 * spread[0] + (1 - a0) * (1 - a0) * spread[1]);
+    const double a = apart + depth > 0 ? fmin(fmax((along + depth * a0) / (apart + depth), 0), 1) : a0;
     for (int c = 0; c < f->channels; c++)
         off += pow(colour_at(f, c, x, y) - a * front[c] - (1 - a) * back[c], 2);
     return a0 + (a - a0) * (apart + off > 0 ? apart / (apart + off) : 0);
@@ -107,6 +116,7 @@ static double share_of(const struct frame *f, int x, int y, double a0, const dou
 static void unmix(struct frame *f, int x, int y)
 {
     double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, slope, mean[2][5], weight[2], far[5] = {0};
+    double spread[2];
     for (int c = 0; c < f->channels; c++)
         seen[c] = colour_at(f, c, x, y);
     seen[WEIGHT] = 1;
@@ -115,7 +125,7 @@ static void unmix(struct frame *f, int x, int y)
     if (!f->unmix || apart == 0)
         return;
     for (int i = 0; i < 2; i++)
-        weight[i] = side_mean(f, x, y, middle, slope, !i, mean[i]);
+        weight[i] = side_mean(f, x, y, middle, slope, !i, mean[i], &spread[i]);
     if (weight[0] == 0 && weight[1] == 0)
         return;
     const int less = weight[0] < weight[1] ? 0 : 1;
@@ -123,7 +133,7 @@ static void unmix(struct frame *f, int x, int y)
     side_farthest(f, x, y, middle, slope, !less, mean[!less], far);
     for (int c = 0; c < 5 && known < 1; c++)
         mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
-    const double a0 = front_of(own, middle, slope), a = share_of(f, x, y, a0, mean[0], mean[1]);
+    const double a0 = front_of(own, middle, slope), a = share_of(f, x, y, a0, mean[0], mean[1], spread);
     const double by = apart * fmin((weight[0] + weight[1]) / 0.001, 1);
     seen[WEIGHT] = 1 - by * (1 - a);
     mixed[WEIGHT] = by * (1 - a);
