@@ -181,6 +181,10 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     return HF_OK;
 }
 
+// A sample that is drawn is at least 2^-25 of its pixel's, at radius 0.5, of which a share can be 2^-16 and a tent's corner
+// 2^-6; and where a mean's add up to next to nothing, what is left is 2^-24 of the least at least.
+enum { FADE = 25 + 16 + 6 + 24, LEAST_EXPONENT = -149 };
+
 // Bits from which a bin takes samples down to which their shares are whole numbers: all that its units have but those of
 // a share and of the largest picture's area. Larger pictures than that cut what is darkest in a bin.
 static int bin_bits(const struct hf_scatter *t, int level, int room)
@@ -190,21 +194,20 @@ static int bin_bits(const struct hf_scatter *t, int level, int room)
     for (int field = 0; field < 2; field++) {
         const float r = level ? t->largest[field] / 2 : fminf(t->largest[field], fmaxf(t->half_to, 0));
         for (int g = 0; g < t->groups && r > 0; g++) {
-            const int number = hf_picture_number(r * t->group[g].factor[field]) / t->aperture.steps;
-            area = fmaxf(area, t->aperture.picture[number].area);
+            const int number = hf_picture_number(r * t->group[g].factor[field]) / t->aperture.steps + 1;
+            for (int plane = 0; plane < t->aperture.planes; plane++)
+                area = fmaxf(area, t->aperture.picture[plane * t->aperture.count + number].area);
         }
     }
     return hf_max(room - SHARE + 1 - (int)ceil(log2((double)area)), LEAST);
 }
 
-// Bins from the brightest exponent down, each from the highest one that is left. top: samples are below 2^top. Alpha of 1
-// has the units of weights: where it is 1 all over, its sum is theirs.
+// Bins from the brightest exponent down. top: samples are below 2^top. Alpha of 1 has the units of weights: where it is 1
+// all over, its sum is theirs.
 static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits, int room, int dim, int alpha)
 {
-    bins->count = 0;
-    // One more than there are samples for, as these fade.
-    for (int more = 1; bins->count < HF_BINS && more; bins->count++) {
-        more = exponents != 0;
+    int faded = top;  // what has been seen may have faded down to here
+    for (bins->count = 0; bins->count < HF_BINS && (exponents || top > faded || !bins->count); bins->count++) {
         const int b = bins->count, bottom = alpha && top > 1 ? hf_max(top - bits, 1) : top - bits;
         for (int c = 0; c < 4; c++) {
             const int unit = c == 3 ? room - 1 : room - top - dim;
@@ -212,21 +215,16 @@ static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits
             bins->unscale[b][c] = ldexp(1, -unit);
         }
         // Bit k is exponents of 8 k - 127 to 8 k - 120, the last of up to 127: that one is not parted.
-        int held = 0;
-        while (exponents) {
-            const int k = 31 - __builtin_clz(exponents);
-            held |= 8 * k - 119 > bottom;
-            if (8 * k - 127 < bottom && k < 30) {
-                // Colour leaves out whole bins, so that a factor of 2^k moves all of them alike. What fades has a bin
-                // of its own before they are left out: whatever else is in the frame, it is cut no earlier.
-                const int unused = held ? 0 : hf_max(bottom - (8 * k - 119), 0);
-                top = bottom - (alpha ? unused : unused / bits * bits);
-                break;
-            }
-            exponents &= ~(1u << k);
+        int next = 0, k = 0;
+        for (; exponents && !next; exponents &= next ? ~0u : ~(1u << k)) {
+            k = 31 - __builtin_clz(exponents);
+            next = 8 * k - 127 < bottom && k < 30;
+            if (8 * k - 119 > bottom)
+                faded = hf_max(8 * k - 127 - FADE, LEAST_EXPONENT);
         }
-        // What lies between two bins, as what has faded may, counts to the upper one.
-        top = exponents ? top : bottom;
+        // Where nothing is, not even what has faded, whole bins are left out.
+        const int unused = exponents && bottom <= faded ? hf_max(bottom - (8 * k - 119), 0) : 0;
+        top = bottom - (alpha ? unused : unused / bits * bits);
         bins->least[b] = ldexpf(1, top + dim);
     }
     bins->least[bins->count - 1] = 0;

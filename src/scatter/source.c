@@ -23,26 +23,40 @@ void hf_source_pictures_c(const float *radius, const float *weight, float scale,
     }
 }
 
+// What of a source is drawn: 1 / its picture's area, and of a hole how much of that, negative; 1: no hole.
+struct part {
+    float share, hole;
+};
+
+// A hole's share is a whole number of the units of its outline's: however faint, it is not cut by those of a bin.
+static float hole_share(float share, float hole)
+{
+    const float t = 4 * share, part = __builtin_fabsf(hole), whole = part < 1 ? (t + share * part) - t : share;
+    return hole < 0 ? -whole : whole;
+}
+
 // Bits of the lanes that bin b holds of a source, 0 for none: channels by their own brightness, and with the first of
-// them the weight (bit 3).
+// them the weight (bit 3); of black the first bin has that.
 static int lanes_of(const struct hf_bins *bins, int b, const float colour[3])
 {
-    int held = 0, before = 0;
+    int held = 0, before = 0, black = 1;
     for (int c = 0; c < 3; c++) {
         const float v = __builtin_fabsf(colour[c]);
+        black &= v == 0;
         held |= (v > 0 && v >= bins->least[b] && (!b || v < bins->least[b - 1])) << c;
         before |= b && v >= bins->least[b - 1];
     }
-    return held | (!before && (held || b == bins->count - 1)) << 3;
+    return held | (!before && (held || (black && !b))) << 3;
 }
 
-// What each lane of a source adds to bin b for 1 unit of weight.
-static void set_share(const struct hf_bins *bins, int b, int lanes, const float colour[3], float weight, float part,
-                      int64_t share[4])
+// What each lane of a source adds to bin b for 1 unit of weight. part: 1 / the picture's area.
+static void set_share(const struct hf_bins *bins, int b, int lanes, const float colour[3], float weight,
+                      struct part part, int64_t share[4])
 {
-    for (int c = 0; c < 3; c++)
-        share[c] = lanes >> c & 1 ? (int64_t)((double)hf_share(colour[c] * part) * bins->scale[b][c]) : 0;
-    share[3] = lanes >> 3 ? (int64_t)((double)hf_share(weight * part) * bins->scale[b][3]) : 0;
+    for (int c = 0; c < 4; c++) {
+        const float v = hf_share((c == 3 ? weight : colour[c]) * part.share);
+        share[c] = lanes >> c & 1 ? (int64_t)((double)hole_share(v, part.hole) * bins->scale[b][c]) : 0;
+    }
 }
 
 void hf_list_row_c(struct hf_splats list[HF_BINS], const struct hf_source_row *row, int from, int to,
@@ -58,7 +72,7 @@ void hf_list_row_c(struct hf_splats list[HF_BINS], const struct hf_source_row *r
             list[b].x[k] = row->x + i;
             list[b].y[k] = row->y;
             list[b].picture[k] = row->picture[i];
-            set_share(bins, b, lanes, v, row->weight[i], inverse[row->picture[i]], list[b].share[k]);
+            set_share(bins, b, lanes, v, row->weight[i], (struct part){inverse[row->picture[i]], 1}, list[b].share[k]);
         }
 }
 
@@ -93,7 +107,7 @@ void hf_flush_sources(struct walk *w)
     }
 }
 
-static void add_picture(struct walk *w, int x, int y, int number, const float colour[3], float weight, float part)
+static void add_picture(struct walk *w, int x, int y, int number, const float colour[3], float weight, struct part part)
 {
     for (int b = 0; b < w->bins->count; b++) {
         struct hf_splats *l = &w->list[b];
@@ -155,7 +169,7 @@ static float cut_picture(struct walk *w, const struct hf_picture *p, const struc
 
 // The same with what is to be drawn of it.
 static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, const float colour[3], float weight,
-                     float part)
+                     struct part part)
 {
     for (int b = 0; b < w->bins->count; b++) {
         const int lanes = lanes_of(w->bins, b, colour);
@@ -184,10 +198,10 @@ static void add_cat_eye(struct walk *w, int x, int y, float r, const float colou
         w->runs[-p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
         area = 2 * HF_WHOLE_ROW;
     }
-    draw_cut(w, x, y, p, colour, weight, 1 / area);
+    draw_cut(w, x, y, p, colour, weight, (struct part){1 / area, 1});
     if (hidden > 0) {
         cut_picture(w, inside, p, r, cx, cy);
-        draw_cut(w, x, y, inside, colour, weight, -hole / area);
+        draw_cut(w, x, y, inside, colour, weight, (struct part){1 / area, -hole});
     }
 }
 
@@ -202,15 +216,15 @@ void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3],
         return;
     }
     if (w->t->ring <= 0) {
-        add_picture(w, x, y, number, colour, weight, 1 / picture[number].area);
+        add_picture(w, x, y, number, colour, weight, (struct part){1 / picture[number].area, 1});
         return;
     }
     // A hole too small for a picture of its own is a faint one.
     const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
     const int inside = hf_picture_number(inner);
     const float part = 1 / (picture[number].area - hole * picture[inside].area);
-    add_picture(w, x, y, number, colour, weight, part);
-    add_picture(w, x, y, inside, colour, weight, -hole * part);
+    add_picture(w, x, y, number, colour, weight, (struct part){part, 1});
+    add_picture(w, x, y, inside, colour, weight, (struct part){part, -hole});
 }
 
 void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to)

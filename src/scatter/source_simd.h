@@ -51,8 +51,8 @@ HF_INLINE int source_bin(const struct hf_source_row *row, int i, const struct hf
     }
     while (b < bins->count - 1 && !(least >= bins->least[b]))
         b++;
-    // Black takes its weight to the last bin.
-    return (b == 0 || most < bins->least[b - 1]) && (!black || b == bins->count - 1) ? b : -1;
+    // Black takes its weight to the first bin.
+    return (b == 0 || most < bins->least[b - 1]) && (!black || b == 0) ? b : -1;
 }
 
 HF_INLINE v4 source_share(v4 v, v4 part)

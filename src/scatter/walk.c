@@ -38,6 +38,16 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
     return r;
 }
 
+struct hf_sums hf_draw_bin(struct walk *w, int b)
+{
+    struct hf_sums s = w->sums;
+    s.lane += b * w->bin_lanes;
+    if (w->drawn[b] < 0)
+        memset(s.lane, 0, sizeof *s.lane * (size_t)w->bin_lanes);
+    w->drawn[b] = w->reached;
+    return s;
+}
+
 void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
 {
     const struct hf_frame *f = w->f;
@@ -147,17 +157,21 @@ static void settle(struct walk *w, const struct target *to, int y)
     float *out[4];
     for (int c = 0; c < 4; c++)
         out[c] = to->ch[c] ? to->ch[c] + (ptrdiff_t)(y - w->sums.y0) * to->stride : NULL;
-    // Those bins of which something has been drawn here; one at least.
+    // Those bins of which something has been drawn here.
     int64_t *lane[HF_BINS];
     double unscale[HF_BINS][4];
     int n = 0;
     for (int b = 0; b < w->bins->count; b++)
-        if (y <= w->drawn[b] || (n == 0 && b == w->bins->count - 1)) {
+        if (y <= w->drawn[b]) {
             lane[n] = w->sums.lane + b * w->bin_lanes + w->sums.row[y - w->sums.y0];
             memcpy(unscale[n++], w->bins->unscale[b], sizeof *unscale);
         }
-    hf_scatter_kernels(w->f)->settle(lane, n, w->sums.x1 - w->sums.x0, w->group->channels, (const double(*)[4])unscale,
-                                     out);
+    if (n)
+        hf_scatter_kernels(w->f)->settle(lane, n, w->sums.x1 - w->sums.x0, w->group->channels,
+                                         (const double(*)[4])unscale, out);
+    for (int c = 0; c < 4 && !n; c++)
+        if (out[c])
+            memset(out[c], 0, sizeof *out[c] * (size_t)(w->sums.x1 - w->sums.x0));
 }
 
 // All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
@@ -171,7 +185,6 @@ static void walk_level(struct walk *w, const struct layout *l, const struct targ
     w->bin_lanes = (ptrdiff_t)l->stride[w->level] * l->ring[w->level];
     for (int b = 0; b < HF_BINS; b++)
         w->drawn[b] = -1;
-    memset(w->sums.lane, 0, sizeof *w->sums.lane * (size_t)w->bin_lanes * (size_t)w->bins->count);
     int settled = w->sums.y0;
     const int end = hf_min(w->sums.y1 + reach, height), step = w->level ? 1 : TOGETHER;
     for (int y = hf_max(w->sums.y0 - reach, 0); y < end; y += step) {

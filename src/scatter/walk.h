@@ -39,14 +39,8 @@ static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
     *x1 = hf_min(w->sums.x1 + reach, w->level ? w->f->s->half_width : w->f->s->width);
 }
 
-// A bin's sums, to be drawn on.
-static inline struct hf_sums hf_draw_bin(struct walk *w, int b)
-{
-    w->drawn[b] = w->reached;
-    struct hf_sums s = w->sums;
-    s.lane += b * w->bin_lanes;
-    return s;
-}
+// A bin's sums, to be drawn on; zeroed first if nothing has been drawn on them.
+struct hf_sums hf_draw_bin(struct walk *w, int b);
 
 // The neighbour of a pixel's half-resolution one that its tent reaches, on one axis.
 static inline int hf_beside(int pixel, int count)

@@ -83,6 +83,35 @@ static void far_off(struct hf_context *c, int half)
     scene_free(&s);
 }
 
+// The faintest there is to draw: holes of rings that are hardly there, and pixels that are hardly blurred.
+static void faintest(struct hf_context *c, int half)
+{
+    static const float rings[] = {0, 0.05f, 0.3f}, values_beside[] = {1e-42f, 65504, 1e30f, FLT_MAX};
+    for (int i = 0; i < 3; i++) {
+        struct scene s = stage(4);
+        for (int k = 0; k < PIXELS; k++) {
+            const float r = s.depth.plane[0][k] / RADIUS, least = nextafterf(0.5f, 1);
+            s.depth.plane[0][k] = copysignf(k % 3 ? least + 0.5f * r * r : least, r);
+        }
+        const struct hf_depth depth = picture_radii(&s.depth);
+        struct hf_params p = scene_params();
+        p.engine = HF_ENGINE_SCATTER;
+        p.scatter.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+        p.aperture.ring = rings[i];
+        struct picture calm = render(c, &s.colour, &depth, &p);
+        for (int k = 0; k < 4; k++) {
+            for (int ch = 0; ch < 4; ch++)
+                s.colour.plane[ch][Y * WIDTH + X] = values_beside[k];
+            struct picture out = render(c, &s.colour, &depth, &p);
+            CHECK_MSG(!changed(&calm, &out, 0, 4), "half %d, ring %g, %g: %d samples beyond its reach changed", half,
+                      (double)rings[i], (double)values_beside[k], changed(&calm, &out, 0, 4));
+            picture_free(&out);
+        }
+        picture_free(&calm);
+        scene_free(&s);
+    }
+}
+
 // Lights of all kinds at once, at a distance from each other: around each there is what there would be without the others.
 static void many(struct hf_context *c, int half)
 {
@@ -220,6 +249,7 @@ int main(void)
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
     for (int half = 0; half < HALVES; half++) {
         far_off(c, half);
+        faintest(c, half);
         many(c, half);
         beside_constant(c, half);
         faded(c, half);
