@@ -5,7 +5,8 @@
 // drawn over the picture; where a near pixel itself becomes see-through, what it hides is the mean of what is not near around
 // it. With several levels (gather.h) samples are spread by the level that is theirs, and a far pixel is the mean of what is
 // not blurred much more than itself; what near pixels hide is the mean of all levels up to theirs, so that what is nearest
-// counts most. What lies beyond the frame has no weight.
+// counts most. A far sample is too sharp in levels that are smaller than its own blur: there it counts, but its colour is
+// what the far levels spread to the pixel. What lies beyond the frame has no weight.
 #include <float.h>
 
 #include "gather/gather.h"
@@ -110,13 +111,7 @@ static float karis(const struct hf_frame *f, int x, int y)
     return hf_gather(f->s)->karis ? *hf_at(&f->buf[HF_BUF_WEIGHT], 0, x, y) : 1;
 }
 
-enum part { PART_NEAR, PART_BEHIND, PART_FAR };
-
-// The largest far CoC of a quad; 0 where radii are too small to have levels.
-static float far_most(const struct hf_frame *f, int x, int y)
-{
-    return hf_gather_is_simple(f->s, HF_FAR) ? 0 : *hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR_MOST, x, y);
-}
+enum part { PART_NEAR, PART_FAR };
 
 // What a level's taps are laid over: colour times weight, the weight, and the weight without Karis'.
 static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part part, int i)
@@ -124,29 +119,43 @@ static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part p
     const struct hf_levels *l = hf_gather_levels(f->s, part == PART_FAR ? HF_FAR : HF_NEAR);
     const struct hf_rect area = grown(&l->level[i].taps, r);
     const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4];
+    const struct hf_buf *from = &f->buf[part == PART_FAR ? HF_BUF_COLORFAR4 : HF_BUF_COLORNEAR4];
     for (int y = area.y0; y < area.y1; y++)
         for (int x = area.x0; x < area.x1; x++) {
-            const float near = *hf_at(coc4, HF_AREA_NEAR, x, y), w = karis(f, x, y);
-            float share, weight;
-            if (part == PART_NEAR) {
-                share = hf_level_share(l, i, *hf_at(coc4, HF_AREA_NEAR_MOST, x, y));
-                weight = near;
-            } else if (part == PART_FAR) {
-                share = hf_level_spread(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y));
-                weight = *hf_at(coc4, HF_AREA_FAR, x, y);
-            } else {
-                share = hf_level_behind(l, i, far_most(f, x, y));
-                weight = in_frame(f->s, x, y) ? 1 - near : 0;
-            }
-            for (int c = 0; c < f->s->channels; c++) {
-                const float colour = part == PART_FAR    ? *hf_at(&f->buf[HF_BUF_COLORFAR4], c, x, y)
-                                     : part == PART_NEAR ? *hf_at(&f->buf[HF_BUF_COLORNEAR4], c, x, y)
-                                                         : *hf_at(&f->buf[HF_BUF_COLOR4], c, x, y) -
-                                                               *hf_at(&f->buf[HF_BUF_COLORNEAR4], c, x, y);
-                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = colour * (share * w);
-            }
+            const float w = karis(f, x, y);
+            const float share = part == PART_FAR ? hf_level_spread(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y))
+                                                 : hf_level_share(l, i, *hf_at(coc4, HF_AREA_NEAR_MOST, x, y));
+            const float weight = *hf_at(coc4, part == PART_FAR ? HF_AREA_FAR : HF_AREA_NEAR, x, y);
+            for (int c = 0; c < f->s->channels; c++)
+                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = *hf_at(from, c, x, y) * (share * w);
             *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT], 0, x, y) = weight * (share * w);
             *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT], 1, x, y) = weight * share;
+        }
+}
+
+// The same of what is not near, less what of far samples is left to the far levels; that is the last weight.
+static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
+    const struct hf_rect area = grown(&l->level[i].taps, r);
+    const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4], *level = &f->buf[HF_BUF_LEVEL_WEIGHT];
+    const int leaves = hf_gather_leaves(f->s);
+    for (int y = area.y0; y < area.y1; y++)
+        for (int x = area.x0; x < area.x1; x++) {
+            const float w = karis(f, x, y);
+            const float left = leaves ? hf_level_left(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y)) : 0;
+            const float far = leaves ? left * *hf_at(coc4, HF_AREA_FAR, x, y) : 0;
+            const float rest = (1 - *hf_at(coc4, HF_AREA_NEAR, x, y)) - far;
+            const float weight = rest > 0 && in_frame(f->s, x, y) ? rest : 0;
+            for (int c = 0; c < f->s->channels; c++) {
+                const float hidden = leaves ? left * *hf_at(&f->buf[HF_BUF_COLORFAR4], c, x, y) : 0;
+                const float colour =
+                    (*hf_at(&f->buf[HF_BUF_COLOR4], c, x, y) - *hf_at(&f->buf[HF_BUF_COLORNEAR4], c, x, y)) - hidden;
+                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = rest > 0 ? colour * w : 0;
+            }
+            *hf_at(level, 0, x, y) = weight * w;
+            *hf_at(level, 1, x, y) = weight;
+            *hf_at(level, 2, x, y) = far;
         }
 }
 
@@ -214,6 +223,36 @@ static void finish_levels(const struct hf_frame *f, int x, int y, const struct s
     *hf_at(near->weight[1], near->channel[1], x, y) = m > 0 ? outside + m * (1 - outside) : outside;
 }
 
+// What far levels spread to a pixel: as much of it as is seen, and as far samples count in the levels that left them to these.
+static void add_far(const struct hf_frame *f, const struct sums *to, int x, int y)
+{
+    const struct hf_buf *weight = &f->buf[HF_BUF_SPREAD_WEIGHT];
+    const float seen = *hf_at(weight, 1, x, y), part = *hf_at(to->weight[0], 2, x, y) / (seen > 1 ? seen : 1);
+    if (!(seen > 0 && part > 0))
+        return;
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(to->colour, c, x, y) += part * *hf_at(&f->buf[HF_BUF_SPREAD], c, x, y);
+    for (int i = 0; i < 2; i++)
+        *hf_at(to->weight[i], i, x, y) += part * *hf_at(weight, i, x, y);
+}
+
+static void add_behind(const struct hf_frame *f, const struct sums *behind, struct hf_rect r, int i)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
+    const int leaves = hf_gather_leaves(f->s);
+    if (leaves)
+        hf_convolve_c(f, r, &l->level[i].taps, &f->buf[HF_BUF_LEVEL_WEIGHT], 2, &f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 2);
+    for (int y = r.y0; y < r.y1; y++)
+        for (int x = r.x0; x < r.x1; x++) {
+            const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y), share = hf_level_near(l, i, coc);
+            if (!(coc > 0 && share > 0))
+                continue;
+            add(f, behind, x, y, share);
+            if (leaves)
+                *hf_at(behind->weight[0], 2, x, y) += share * *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 2, x, y);
+        }
+}
+
 static void near_levels(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
@@ -222,21 +261,22 @@ static void near_levels(const struct hf_frame *f, struct hf_rect r)
         &f->buf[HF_BUF_BEHIND], {&f->buf[HF_BUF_BEHIND_WEIGHT], &f->buf[HF_BUF_BEHIND_WEIGHT]}, {0, 1}};
     clear(f, r, &near);
     clear(f, r, &behind);
+    for (int y = r.y0; y < r.y1; y++)
+        for (int x = r.x0; x < r.x1; x++)
+            *hf_at(behind.weight[0], 2, x, y) = 0;
     for (int i = 0; i < l->count; i++) {
         level_planes(f, r, PART_NEAR, i);
         convolve_level(f, r, &l->level[i].taps);
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++)
                 add(f, &near, x, y, 1);
-        level_planes(f, r, PART_BEHIND, i);
+        behind_planes(f, r, i);
         convolve_level(f, r, &l->level[i].taps);
-        for (int y = r.y0; y < r.y1; y++)
-            for (int x = r.x0; x < r.x1; x++) {
-                const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y), share = hf_level_near(l, i, coc);
-                if (coc > 0 && share > 0)
-                    add(f, &behind, x, y, share);
-            }
+        add_behind(f, &behind, r, i);
     }
+    for (int y = r.y0; y < r.y1 && hf_gather_leaves(f->s); y++)
+        for (int x = r.x0; x < r.x1; x++)
+            add_far(f, &behind, x, y);
     for (int y = r.y0; y < r.y1; y++) {
         for (int x = r.x0; x < r.x1; x++)
             finish_levels(f, x, y, &near, &behind);
@@ -290,12 +330,27 @@ static float far_seen(const struct hf_frame *f, int x, int y)
     return rest * most > own ? rest * most : own;
 }
 
-// From the smallest level on all that has been spread is summed up, and each pixel takes its mean when its level's turn is.
+// A far pixel takes its mean of what has been spread so far when its level's turn is.
+static void take_far(const struct hf_frame *f, const struct sums *all, int x, int y, int i)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
+    const float share = hf_level_seen(l, i, far_seen(f, x, y));
+    for (int c = 0; c < f->s->channels; c++) {
+        float *v = hf_at(&f->buf[HF_BUF_FAR], c, x, y);
+        *v = i == l->count - 1 ? 0 : *v;
+        if (i == 0 && !is_wanted(f, x, y))
+            *v = 0;
+        else if (share > 0)
+            *v += share * far_mean(c, x, y, all->colour, *hf_at(all->weight[0], 0, x, y));
+    }
+}
+
+// From the smallest level on all that is spread is summed up.
 static void far_levels(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
     const struct sums all = {
-        &f->buf[HF_BUF_BEHIND], {&f->buf[HF_BUF_BEHIND_WEIGHT], &f->buf[HF_BUF_BEHIND_WEIGHT]}, {0, 1}};
+        &f->buf[HF_BUF_SPREAD], {&f->buf[HF_BUF_SPREAD_WEIGHT], &f->buf[HF_BUF_SPREAD_WEIGHT]}, {0, 1}};
     clear(f, r, &all);
     for (int i = l->count - 1; i >= 0; i--) {
         level_planes(f, r, PART_FAR, i);
@@ -303,15 +358,8 @@ static void far_levels(const struct hf_frame *f, struct hf_rect r)
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
                 add(f, &all, x, y, 1);
-                const float share = hf_level_seen(l, i, far_seen(f, x, y));
-                for (int c = 0; c < f->s->channels; c++) {
-                    float *v = hf_at(&f->buf[HF_BUF_FAR], c, x, y);
-                    *v = i == l->count - 1 ? 0 : *v;
-                    if (i == 0 && !is_wanted(f, x, y))
-                        *v = 0;
-                    else if (share > 0)
-                        *v += share * far_mean(c, x, y, all.colour, *hf_at(all.weight[0], 0, x, y));
-                }
+                if (f->far)
+                    take_far(f, &all, x, y, i);
             }
     }
 }
@@ -327,14 +375,15 @@ void hf_area_gather_c(const struct hf_frame *f, struct hf_rect r)
 {
     if (hf_gather(f->s)->karis)
         weigh(f, r);
-    if (f->near && hf_gather_is_simple(f->s, HF_NEAR))
+    const int near_is_simple = hf_gather_is_simple(f->s, HF_NEAR), far_is_simple = hf_gather_is_simple(f->s, HF_FAR);
+    if (f->far && far_is_simple)
+        far_simple(f, r);
+    else if (f->far || (f->near && hf_gather_leaves(f->s)))
+        far_levels(f, r);
+    if (f->near && near_is_simple)
         near_simple(f, r);
     else if (f->near)
         near_levels(f, r);
-    if (f->far && hf_gather_is_simple(f->s, HF_FAR))
-        far_simple(f, r);
-    else if (f->far)
-        far_levels(f, r);
     for (int y = r.y0; y < r.y1 && f->far; y++) {
         float *far[4];
         hf_row(&f->buf[HF_BUF_FAR], f->s->channels, r.x0, y, far);

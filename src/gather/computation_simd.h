@@ -125,12 +125,14 @@ HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_
     }
 }
 
+enum { HF_JOB_PLANES = 7 };
+
 // Planes to convolve together, and where: only rows with need > 0 are wanted, those within reach of some, or all.
 struct gather_job {
-    const float *in[6];
-    float *out[6];
-    ptrdiff_t in_stride[6], out_stride[6];
-    int of_strip[6];  // out is a strip's own, see strip_plane
+    const float *in[HF_JOB_PLANES];
+    float *out[HF_JOB_PLANES];
+    ptrdiff_t in_stride[HF_JOB_PLANES], out_stride[HF_JOB_PLANES];
+    int of_strip[HF_JOB_PLANES];  // out is a strip's own, see strip_plane
     int planes;
     const float *need;  // NULL: all
     ptrdiff_t need_stride;

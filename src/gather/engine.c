@@ -19,7 +19,8 @@ static const struct hf_pass passes[] = {
      .ns = 0.27f},
     {"Computation", .reads = B(BLUR), .around = B(COLOR4) | B(COLORNEAR4) | B(COLORFAR4) | B(COC4),
      .writes = B(NEAR) | B(FAR) | B(COVER) | B(FAR_PART),
-     .inside = B(SUM) | B(LEVEL_SUM) | B(LEVEL_WEIGHT_SUM) | B(BEHIND) | B(BEHIND_WEIGHT),
+     .inside =
+         B(SUM) | B(LEVEL_SUM) | B(LEVEL_WEIGHT_SUM) | B(BEHIND) | B(BEHIND_WEIGHT) | B(SPREAD) | B(SPREAD_WEIGHT),
      .weighed = B(WEIGHT) | B(COLORW4) | B(COLORFARW4) | B(LEVEL) | B(LEVEL_WEIGHT), .halo = HF_HALO_TAPS, .sweep = 2,
      .ns = 4},
     {"Fill", .reads = B(BLUR), .around = B(NEAR) | B(FAR) | B(COC4), .writes = B(NEAR_FILL) | B(FAR_FILL),
@@ -79,11 +80,13 @@ static int channels(const struct hf_setup *s, int b)
     case HF_BUF_LEVEL:
     case HF_BUF_LEVEL_SUM:
     case HF_BUF_BEHIND:
+    case HF_BUF_SPREAD:
         return levels ? s->channels : 0;
     case HF_BUF_LEVEL_WEIGHT:
     case HF_BUF_LEVEL_WEIGHT_SUM:
     case HF_BUF_BEHIND_WEIGHT:
-        return levels ? 2 : 0;
+    case HF_BUF_SPREAD_WEIGHT:
+        return levels ? 3 : 0;
     default:
         return s->channels;
     }
@@ -141,8 +144,8 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p,
 static unsigned reads(const struct hf_setup *s, unsigned needs)
 {
     const struct hf_gather *g = hf_gather(s);
-    const int levels = g->area && g->levels[0].count > 1 && g->levels[1].count > 1;
-    return (needs && g->karis) || (needs & HF_NEAR && levels) ? HF_FIELDS : needs;
+    const int leaves = g->area && hf_gather_leaves(s);
+    return (needs && g->karis) || (needs & HF_NEAR && leaves) ? HF_FIELDS : needs;
 }
 
 // The passes that fill in between taps are for taps.
@@ -267,7 +270,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 
 // Levels' radii: of one, from the one before. Far highlights are to be discs with an edge; the near field's larger ones are
 // dear, and mostly lie over one another.
-static const float LEVEL_STEP[2] = {0.5f, 0.75f};
+static const float LEVEL_STEP[2] = {0.5f, 0.8f};
 
 // Rings for a radius of h: those that lie 2 apart where nothing else is said, or of a measured one, if there are so many.
 static float ring_count(const struct hf_setup *s, const struct hf_params *p, float radius)

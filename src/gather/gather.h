@@ -48,6 +48,8 @@ enum hf_gather_buf {
     HF_BUF_LEVEL_WEIGHT_SUM,
     HF_BUF_BEHIND,  // what near pixels hide, and far levels so far: colour, and its weights
     HF_BUF_BEHIND_WEIGHT,
+    HF_BUF_SPREAD,  // what all far levels spread
+    HF_BUF_SPREAD_WEIGHT,
     HF_BUF_FAR_PART,  // how much of a pixel is out of focus, far or near
     HF_BUF_COUNT
 };
@@ -79,7 +81,7 @@ struct hf_level {
     struct hf_taps taps;
 };
 
-enum { HF_MAX_LEVELS = 26 };
+enum { HF_MAX_LEVELS = 34 };
 
 // A far pixel sees what is blurred up to so much more than itself.
 #define HF_FAR_WIDER (16 / 9.0f)
@@ -200,12 +202,19 @@ static inline int hf_gather_is_simple(const struct hf_setup *s, unsigned field)
     return hf_gather_levels(s, field)->count == 1 && !hf_gather(s)->karis;
 }
 
-// How much a sample of this far CoC counts in a level of what near pixels hide: less where it is blurred more than twice as
-// much itself. Else a light would be a small bright disc there, before the large one that it is beside. The largest sees all.
-static inline float hf_level_behind(const struct hf_levels *l, int i, float far)
+// Do levels of what near pixels hide leave anything to the far levels?
+static inline int hf_gather_leaves(const struct hf_setup *s)
+{
+    return hf_gather_levels(s, HF_NEAR)->count > 1 && hf_gather_levels(s, HF_FAR)->count > 1;
+}
+
+// How much of a sample of this far CoC a level of what near pixels hide leaves to the far levels: what is blurred more
+// than twice as much itself would be too sharp in it, a light a small bright disc before the large one that it is beside. The largest leaves nothing.
+static inline float hf_level_left(const struct hf_levels *l, int i, float far)
 {
     const float times = far * l->level[i].half_far, square = times * times, most = square > 1 ? square : 1;
-    return i == 0 ? 1 : 1 / (most * most);
+    const float fourth = most * most;
+    return i == 0 ? 0 : 1 - 1 / (fourth * fourth);
 }
 
 struct hf_gather_kernels {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nine passes, each alone: random input buffers, only as large as pass.c's table says that it reads.
+#include <math.h>
 #include <stdio.h>
 
 #include "harness.h"
@@ -55,6 +56,14 @@ static float coc_value(struct world *w, int mode, int patch)
     return mode == COC_PATCHES && patch ? 0 : mode == COC_EVERYWHERE && v == 0 ? 1 : v;
 }
 
+// By area, near and far parts of a quad are 1 together at most.
+static float part_at_most(const struct world *w, int b, int c, int x, int y, float v)
+{
+    if (b != HF_BUF_COC4 || c != HF_AREA_FAR || !w->gather.area)
+        return v;
+    return fminf(v, 1 - *world_at(w, ARENA_MADE, HF_BUF_COC4, HF_AREA_NEAR, x, y));
+}
+
 static void fill_buf(struct world *w, int b, struct hf_rect r)
 {
     const int mode = rng_int(&w->rng, 0, rng_one_in(&w->rng, 2) ? COC_MODES - 1 : COC_EVERYWHERE);
@@ -64,7 +73,9 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
                 const int patch = pattern >> ((x - r.x0) / size + 3 * ((y - r.y0) / 2) + 5 * (c / 2)) % 32 & 1;
-                world_put(w, b, c, x, y, is_coc(b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y));
+                world_put(
+                    w, b, c, x, y,
+                    part_at_most(w, b, c, x, y, is_coc(b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y)));
             }
 }
 
@@ -87,8 +98,9 @@ static void make_inputs(struct world *w, int pass)
             continue;
         const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? rect_grown(w->r, halo) : w->r);
         make_buf(w, b, r);
-        // Karis weights come from the colour, whatever the field.
-        if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->gather.karis))
+        // Karis weights come from the colour, whatever the field; what near pixels hide in part from what is far.
+        if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->gather.karis) ||
+            (b == HF_BUF_COLORFAR4 && w->gather.area && hf_gather_leaves(&w->setup)))
             fill_buf(w, b, r);
     }
     if (pass == HF_GATHER_COC || pass == HF_GATHER_COMPOSITE)

@@ -11,7 +11,7 @@
 // largest near and far CoC.
 enum { COLOUR, NEAR = 4, FAR = 8, NEAR_PART = 12, FAR_PART, NEAR_MOST, FAR_MOST, PLANES };
 
-enum { MAX_LEVELS = 26 };
+enum { MAX_LEVELS = 34 };
 struct levels {
     int count;
     double coc[MAX_LEVELS];
@@ -61,7 +61,7 @@ static void make_levels(struct area *a)
         double radius = fmax(full, 1);
         add_level(a, far, radius, full);
         while (a->r->params.gather.per_pixel_kernel && radius > 1)
-            add_level(a, far, radius = fmax(radius * (far ? 0.75 : 0.5), 1), full);
+            add_level(a, far, radius = fmax(radius * (far ? 0.8 : 0.5), 1), full);
     }
 }
 
@@ -128,16 +128,23 @@ static void down(struct area *a)
 }
 
 struct sums {
-    double colour[4], part;
+    double colour[4], part, left;  // left: to the far levels
 };
 
 enum kind { KIND_NEAR, KIND_BEHIND, KIND_FAR };
+
+// What is blurred more than twice as much as a smaller level is left to the far levels there. (Both fields' radii are the
+// same.)
+static double left_of(const struct levels *l, int i, double coc)
+{
+    return i > 0 ? 1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8) : 0;
+}
 
 // One level's mean around a pixel; nothing beyond the frame.
 static struct sums mean(const struct area *a, int x, int y, int i, enum kind kind)
 {
     const struct levels *l = &a->levels[kind == KIND_FAR];
-    struct sums s = {{0}, 0};
+    struct sums s = {{0}, 0, 0};
     for (int v = -l->ry[i]; v <= l->ry[i]; v++)
         for (int u = -l->rx[i]; u <= l->rx[i]; u++) {
             if (x + u < 0 || y + v < 0 || x + u >= a->width || y + v >= a->height)
@@ -148,16 +155,19 @@ static struct sums mean(const struct area *a, int x, int y, int i, enum kind kin
                 w *= share(l, i, a->plane[NEAR_MOST][at]);
             if (kind == KIND_FAR)
                 w *= share_far(l, i, a->plane[FAR_MOST][at]);
-            // What is blurred more than twice as much as a smaller level counts less there. (Both fields' radii are the same.)
-            if (kind == KIND_BEHIND && i > 0)
-                w /= pow(fmax(1, a->plane[FAR_MOST][at] / (2 * l->coc[i])), 4);
+            const double left = kind == KIND_BEHIND ? left_of(l, i, a->plane[FAR_MOST][at]) : 0;
+            const double rest = 1 - a->plane[NEAR_PART][at] - left * a->plane[FAR_PART][at];
+            s.left += w * left * a->plane[FAR_PART][at];
+            if (kind == KIND_BEHIND && !(rest > 0))
+                continue;
             for (int c = 0; c < a->r->channels; c++)
                 s.colour[c] += w * (kind == KIND_NEAR  ? a->plane[NEAR + c][at]
                                     : kind == KIND_FAR ? a->plane[FAR + c][at]
-                                                       : a->plane[COLOUR + c][at] - a->plane[NEAR + c][at]);
+                                                       : a->plane[COLOUR + c][at] - a->plane[NEAR + c][at] -
+                                                             left * a->plane[FAR + c][at]);
             s.part += w * (kind == KIND_NEAR  ? a->plane[NEAR_PART][at]
                            : kind == KIND_FAR ? a->plane[FAR_PART][at]
-                                              : 1 - a->plane[NEAR_PART][at]);
+                                              : rest);
         }
     return s;
 }
@@ -193,7 +203,7 @@ static void far_pixel(const struct area *a, int x, int y, double *far[4])
     }
     coc = fmax(coc, a->plane[FAR_MOST][i]);
     for (int own = 0; own < l->count; own++) {
-        struct sums all = {{0}, 0};
+        struct sums all = {{0}, 0, 0};
         const double part = share(l, own, fmax(coc, l->coc[l->count - 1]) * 16 / 9);
         if (!(part > 0))
             continue;
@@ -208,13 +218,29 @@ static void far_pixel(const struct area *a, int x, int y, double *far[4])
     }
 }
 
+// What is left to far levels has the colour that all of them spread to the pixel, and counts as far as any is spread there.
+static void add_far(const struct area *a, int x, int y, struct sums *back)
+{
+    struct sums far = {{0}, 0, 0};
+    for (int k = 0; k < a->levels[1].count && back->left > 0; k++) {
+        const struct sums f = mean(a, x, y, k, KIND_FAR);
+        for (int c = 0; c < a->r->channels; c++)
+            far.colour[c] += f.colour[c];
+        far.part += f.part;
+    }
+    const double part = back->left / fmax(far.part, 1);
+    for (int c = 0; c < a->r->channels; c++)
+        back->colour[c] += part * far.colour[c];
+    back->part += part * far.part;
+}
+
 static void near_pixel(const struct area *a, int x, int y, double *near[5])
 {
     const struct levels *l = &a->levels[0];
     const int i = y * a->width + x;
     const double hides = hidden(a, x, y),
                  m = smallest_part(a, a->r->params.gather.per_pixel_kernel ? hides : hides * 8 / 7);
-    struct sums own = {{0}, 0}, back = {{0}, 0};
+    struct sums own = {{0}, 0, 0}, back = {{0}, 0, 0};
     for (int k = 0; k < l->count; k++) {
         const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
         const double w = share_behind(l, k, hides);
@@ -224,7 +250,9 @@ static void near_pixel(const struct area *a, int x, int y, double *near[5])
         }
         own.part += n.part;
         back.part += w * b.part;
+        back.left += w * b.left;
     }
+    add_far(a, x, y, &back);
     const double room = fmax(1 - own.part, 0), part = back.part > room ? room / back.part : 1;
     for (int c = 0; c < a->r->channels; c++) {
         const double outside = own.colour[c] / fmax(own.part, 1);
