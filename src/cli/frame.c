@@ -123,11 +123,13 @@ static int new_plane(const struct cli_view *v, float **plane, struct tool_error 
                               v->view->height);
 }
 
-static int read_depth_file(const struct cli_args *args, struct cli_view *v, struct tool_error *error)
+static int read_depth_file(const struct cli_args *args, const struct hf_io_run *run, struct cli_view *v,
+                           struct tool_error *error)
 {
     struct hf_io_error io;
     struct hf_io_map map;
-    if (hf_io_read_depth_file(args->depth_file, args->depth_channel, args->depth_edges, v->view, v->depth, &map, &io))
+    if (hf_io_read_depth_file(args->depth_file, args->depth_channel, args->depth_edges, v->view, run, v->depth, &map,
+                              &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     const int scaled = map.width != v->view->width || map.height != v->view->height;
     v->map_size[0] = scaled ? map.width : 0;
@@ -145,11 +147,12 @@ static int read_depth_file(const struct cli_args *args, struct cli_view *v, stru
 }
 
 // Depth in INPUT itself, rows of it.
-static int sharpen(const struct cli_args *args, struct cli_view *v, float *depth, int height, struct tool_error *error)
+static int sharpen(const struct cli_args *args, const struct hf_io_run *run, struct cli_view *v, float *depth,
+                   int height, struct tool_error *error)
 {
     if (args->depth_file || args->depth_edges != HF_IO_EDGES_SHARPEN)
         return 0;
-    if (hf_io_sharpen_depth(depth, v->view->width, height, &v->sharpened))
+    if (hf_io_sharpen_depth(depth, v->view->width, height, run, &v->sharpened))
         return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
     return 0;
 }
@@ -165,13 +168,13 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
     if (hf_io_decode(frame->file, wants, frame->view_count, frame->run, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     for (int i = 0; i < frame->view_count && args->depth_file; i++) {
-        const int status = read_depth_file(args, &frame->views[i], error);
+        const int status = read_depth_file(args, frame->run, &frame->views[i], error);
         if (status)
             return status;
     }
     for (int i = 0; i < frame->view_count; i++) {
         struct cli_view *v = &frame->views[i];
-        const int status = sharpen(args, v, v->depth, v->view->height, error);
+        const int status = sharpen(args, frame->run, v, v->depth, v->view->height, error);
         if (status)
             return status;
         cli_depth_prepare(args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
@@ -219,14 +222,14 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, st
     if (args->depth_file) {
         from = data->y0;
         to = data->y1;
-        status = read_depth_file(args, v, error);
+        status = read_depth_file(args, frame->run, v, error);
     } else if (from < to && hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, &io)) {
         status = tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     }
     if (status || from >= to)
         return status;
     float *rows = v->depth + (size_t)(from - data->y0) * (size_t)v->view->width;
-    status = sharpen(args, v, rows, to - from, error);
+    status = sharpen(args, frame->run, v, rows, to - from, error);
     if (!status)
         cli_depth_prepare(args, rows, (size_t)(to - from) * (size_t)v->view->width, &v->found);
     return status;

@@ -19,6 +19,7 @@ struct source {
     int bits;
     enum hf_io_edges edges;
     long long sharpened;
+    const struct hf_io_run *run;
 };
 
 static int find_exr(struct source *s, const char *depth_channel, const struct hf_io_view *view, struct hf_io_error *err)
@@ -64,7 +65,7 @@ static int read_own_size(struct source *s, const char *depth_channel, const stru
     if (read_samples(s, depth_channel, view, depth, err))
         return -1;
     if ((s->edges == HF_IO_EDGES_SHARPEN || (s->edges == HF_IO_EDGES_AUTO && s->bits)) &&
-        hf_io_sharpen_depth(depth, s->width, s->height, &s->sharpened))
+        hf_io_sharpen_depth(depth, s->width, s->height, s->run, &s->sharpened))
         return hf_io_fail(err, "%s: out of memory", s->file->path);
     return 0;
 }
@@ -129,9 +130,10 @@ static int check_grey(struct source *s, const char *depth_channel, struct hf_io_
 }
 
 int hf_io_read_depth_file(const char *path, const char *depth_channel, enum hf_io_edges edges,
-                          const struct hf_io_view *view, float *depth, struct hf_io_map *map, struct hf_io_error *err)
+                          const struct hf_io_view *view, const struct hf_io_run *run, float *depth,
+                          struct hf_io_map *map, struct hf_io_error *err)
 {
-    struct source s = {.edges = edges};
+    struct source s = {.edges = edges, .run = run};
     *map = (struct hf_io_map){0};
     int status = hf_io_open_any(&s.file, path, NULL, err);
     if (!status && s.file->exr)

@@ -104,9 +104,10 @@ enum hf_io_edges {
 };
 // Depth from a file of its own, any format OpenImageIO or OpenEXRCore reads: its depth channel as searched above (or
 // its only channel, or R). When its size is not the view's, the nearest samples are taken; width / height may differ by
-// 1 %, and the width be less than 5 times the view's.
+// 1 %, and the width be less than 5 times the view's. run NULL: outlines are sharpened on this thread.
 int hf_io_read_depth_file(const char *path, const char *depth_channel, enum hf_io_edges edges,
-                          const struct hf_io_view *view, float *depth, struct hf_io_map *map, struct hf_io_error *err);
+                          const struct hf_io_view *view, const struct hf_io_run *run, float *depth,
+                          struct hf_io_map *map, struct hf_io_error *err);
 
 // What to write, and how. All that is zero is the default.
 struct hf_io_job {

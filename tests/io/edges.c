@@ -13,7 +13,7 @@ enum { W = 48, H = 40 };
 static long long sharpen(float *depth)
 {
     long long changed = -1;
-    CHECK(!hf_io_sharpen_depth(depth, W, H, &changed));
+    CHECK(!hf_io_sharpen_depth(depth, W, H, NULL, &changed));
     return changed;
 }
 
@@ -99,5 +99,5 @@ void test_depth_edges(void)
     unchanged("no number between", depth);
     float one = 0.5f;
     long long changed;
-    CHECK(!hf_io_sharpen_depth(&one, 1, 1, &changed) && changed == 0 && one == 0.5f);
+    CHECK(!hf_io_sharpen_depth(&one, 1, 1, NULL, &changed) && changed == 0 && one == 0.5f);
 }

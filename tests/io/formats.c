@@ -24,14 +24,15 @@ void test_planes(void)
         buf[i % 3][i / 3] = (float)i * 0.1f;
     CHECK_MSG(!hf_io_write_planes(path, &planes, &err), "%s", err.message);
     for (int c = 0; c < 3; c++) {
-        CHECK_MSG(!hf_io_read_depth_file(path, names[c], HF_IO_EDGES_KEEP, &v, got, &found, &err), "%s", err.message);
+        CHECK_MSG(!hf_io_read_depth_file(path, names[c], HF_IO_EDGES_KEEP, &v, NULL, got, &found, &err), "%s",
+                  err.message);
         for (int i = 0; i < 35; i++)
             CHECK(got[i] == buf[c][i / 5 * 16 + i % 5]);
     }
     v.width = 6;
-    expect_error(hf_io_read_depth_file(path, "R", HF_IO_EDGES_KEEP, &v, got, &found, &err), &err,
+    expect_error(hf_io_read_depth_file(path, "R", HF_IO_EDGES_KEEP, &v, NULL, got, &found, &err), &err,
                  "5 x 7 pixels of depth for a picture of 6 x 7");
-    expect_error(hf_io_read_depth_file(path, "x", HF_IO_EDGES_KEEP, &v, got, &found, &err), &err,
+    expect_error(hf_io_read_depth_file(path, "x", HF_IO_EDGES_KEEP, &v, NULL, got, &found, &err), &err,
                  "no depth channel x among: R, coc, near");
     expect_error(hf_io_write_planes(in_folder("no/p.exr"), &planes, &err), &err, "cannot create");
     CHECK(!hf_io_write_planes(path, &planes, NULL));
@@ -66,7 +67,7 @@ void test_depth_file_sizes(void)
         const struct hf_io_view v = {.width = w, .height = h};
         const char *path = in_folder("map.exr");
         CHECK(!hf_io_write_planes(path, &planes, &err));
-        CHECK_MSG(!hf_io_read_depth_file(path, NULL, HF_IO_EDGES_KEEP, &v, got, &found, &err), "%s", err.message);
+        CHECK_MSG(!hf_io_read_depth_file(path, NULL, HF_IO_EDGES_KEEP, &v, NULL, got, &found, &err), "%s", err.message);
         CHECK(found.width == fw && found.height == fh);
         for (int y = 0; y < h; y++)
             for (int x = 0; x < w; x++) {
@@ -78,10 +79,10 @@ void test_depth_file_sizes(void)
     const struct hf_io_planes planes = {10, 10, 1, names, data, 10};
     const struct hf_io_view other = {.width = 100, .height = 98}, tiny = {.width = 2, .height = 2};
     CHECK(!hf_io_write_planes(in_folder("map.exr"), &planes, &err));
-    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, HF_IO_EDGES_KEEP, &other, got, &found, &err), &err,
-                 "10 x 10 pixels of depth for a picture of 100 x 98");
-    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, HF_IO_EDGES_KEEP, &tiny, got, &found, &err), &err,
-                 "less than 5 times");
+    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, HF_IO_EDGES_KEEP, &other, NULL, got, &found, &err),
+                 &err, "10 x 10 pixels of depth for a picture of 100 x 98");
+    expect_error(hf_io_read_depth_file(in_folder("map.exr"), NULL, HF_IO_EDGES_KEEP, &tiny, NULL, got, &found, &err),
+                 &err, "less than 5 times");
 }
 
 // Chunks of all lengths around that at which compressing gains nothing.
@@ -113,7 +114,7 @@ static void new_files(void)
         CHECK_MSG(!hf_exr_make_new(&made, path, &picture, &err), "%s", err.message);
         spill(path, made.data, made.size);
         free(made.data);
-        CHECK_MSG(!hf_io_read_depth_file(path, NULL, HF_IO_EDGES_KEEP, &v, got, &found, &err), "%s", err.message);
+        CHECK_MSG(!hf_io_read_depth_file(path, NULL, HF_IO_EDGES_KEEP, &v, NULL, got, &found, &err), "%s", err.message);
         CHECK_MSG(!memcmp(map, got, (size_t)w * (size_t)h * sizeof(float)), "%s, %d x %d", kinds[i % 5], w, h);
     }
 }

@@ -60,7 +60,7 @@ void test_single_part_views(void)
         float depth[45], own[45];
         struct hf_io_map found;
         CHECK_MSG(!hf_io_read_depth(f, i, depth, &err), "%s", err.message);
-        CHECK_MSG(!hf_io_read_depth_file(path, NULL, HF_IO_EDGES_KEEP, hf_io_view(f, i), own, &found, &err), "%s",
+        CHECK_MSG(!hf_io_read_depth_file(path, NULL, HF_IO_EDGES_KEEP, hf_io_view(f, i), NULL, own, &found, &err), "%s",
                   err.message);
         CHECK(!memcmp(depth, own, sizeof(own)));
     }
