@@ -12,7 +12,9 @@ static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, 
     for (int ty = -1; ty <= c->rows; ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, m, level, ty, &s);) {
             const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT;
-            const int right = (c->columns * (TILE >> level)) + RIGHT, x1 = s.x1 + 16 < right ? s.x1 + 16 : right;
+            // A level that is refined is read farther by vectors that are not whole.
+            const int more = level > 2 ? 32 : 16;
+            const int right = (c->columns * (TILE >> level)) + RIGHT, x1 = s.x1 + more < right ? s.x1 + more : right;
             int y0, y1;
             hf_layers_clip_rows(c, level, ty, &y0, &y1);
             y0 = y0 - around > -margin ? y0 - around : -margin;

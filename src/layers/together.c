@@ -10,18 +10,20 @@
 static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int level)
 {
     const struct hf_window *from = &c->sum[level], *to = &c->sum[level - 1];
-    const int height = c->rows * (TILE >> (level - 1)) + MARGIN;
+    const int height = c->rows * (TILE >> (level - 1)) + MARGIN, right = c->columns * (TILE >> (level - 1)) + LEFT;
     for (int ty = -1; ty <= c->rows; ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, touched, level - 1, ty, &s);) {
+            // One more on every side: what comes next reads that.
+            const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT, x1 = s.x1 + 16 < right ? s.x1 + 16 : right;
             int y0, y1;
             hf_layers_clip_rows(c, level - 1, ty, &y0, &y1);
             y0 = y0 - 1 > -MARGIN ? y0 - 1 : -MARGIN;
             y1 = y1 + 1 < height ? y1 + 1 : height;
             for (int y = y0; y < y1; y++)
                 for (int i = 0; i <= c->l->channels; i++) {
-                    const float *a = from->at + (y >> 1) * from->row + i * from->channel + s.x0 / 2;
-                    c->k->up(a, a + (y & 1 ? from->row : -from->row), (s.x1 - s.x0) / 2,
-                             to->at + y * to->row + i * to->channel + s.x0);
+                    const float *a = from->at + (y >> 1) * from->row + i * from->channel + x0 / 2;
+                    c->k->up(a, a + (y & 1 ? from->row : -from->row), (x1 - x0) / 2,
+                             to->at + y * to->row + i * to->channel + x0);
                 }
         }
 }
