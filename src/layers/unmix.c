@@ -129,6 +129,31 @@ static float finish(int channels, float counted, float squares, float *mean)
     return spread > 0 ? spread : 0;
 }
 
+float hf_unmix_lamp(const struct hf_unmix_row *u, int x, float most, float alpha)
+{
+    const float own = light_of(u, 3, x), least = most > 1e-30f ? most : 1e-30f;
+    const float over = own - most, scale = 4 / (over > 1e-30f ? over : 1e-30f);
+    float count = 0;
+    for (int i = 0; i < 49; i++)
+        count = count + hf_saturate((light_of(u, i / 7, x + i % 7 - 3) - most) * scale - 1);
+    const float lamp = hf_saturate((own / least - HF_UNMIX_LAMP) * 2) * hf_saturate(HF_UNMIX_PIXELS - count);
+    if (u->channels < 4)
+        return lamp;
+    return lamp * hf_saturate((HF_UNMIX_LAMP - u->colour[3][3][x] / (alpha > 1e-30f ? alpha : 1e-30f)) * 4);
+}
+
+// How far the pixel is of a lamp behind the edge.
+static float lit(const struct hf_unmix_row *u, int x, float mean[2][5])
+{
+    float light[2];
+    for (int i = 0; i < 2; i++)
+        light[i] = (fabsf(mean[i][0]) + fabsf(mean[i][1]) + fabsf(mean[i][2])) * 0.125f;
+    const float most = light[0] > light[1] ? light[0] : light[1], wider = fabsf(mean[1][4]) - fabsf(mean[0][4]);
+    const float alpha = mean[0][3] > mean[1][3] ? mean[0][3] : mean[1][3];
+    return light_of(u, 3, x) > most * HF_UNMIX_LAMP && wider > 0 ? hf_saturate(wider) * hf_unmix_lamp(u, x, most, alpha)
+                                                                 : 0;
+}
+
 static void unmix_pixel(const struct hf_unmix_row *u, int x)
 {
     float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}}, spread[2] = {0};
@@ -163,12 +188,15 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
         return;
     }
     const float known = hf_saturate((weight[0] + weight[1]) * (1 / HF_UNMIX_FAINT));
-    const float a = share(u, x, a0, mean[0], mean[1], spread), by = (1 - u->sure[3][x]) * known;
+    const float own_share = share(u, x, a0, mean[0], mean[1], spread), by = (1 - u->sure[3][x]) * known;
+    const float lamp = lit(u, x, mean), less = own_share < HF_UNMIX_RIM ? own_share : HF_UNMIX_RIM;
+    const float a = lamp * (less - own_share) + own_share;
     // What is not taken apart goes with the front.
     const float seen = by * (a - 1) + 1, whole = seen > 0 ? (1 - by) / seen : 0;
     for (int c = 0; c < u->channels; c++) {
         const float v = u->colour[3][c][x], rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
-        const float front = between(mean[0][c] + rest, mean[0][c], v);
+        const float more = rest > 0 && c < 3 ? rest : 0;
+        const float front = between(rest - lamp * more + mean[0][c], mean[0][c], v);
         u->seen[c][x] = whole * (v - front) + front;
         u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], v);
     }

@@ -17,10 +17,23 @@
 // wrong by an eighth of a pixel or so, are weighed as 1 to 60 v.
 #define HF_UNMIX_SPREAD 60
 
+// A mixed pixel LAMP times as bright as front and back are is a lamp's of which the edge leaves so little that no whole pixel
+// is of it, wholly from LAMP + 1 / 2 on. Drawn with a sharp front it would be a white speck on the rim, so the light stays
+// with a back that is blurred more, and the front is no more than RIM of the pixel. The back has no more than the pixel's
+// colour: hidden samples, which repeat it behind the edge, make up for the rest of it. Edges lit from behind are as bright, so
+// that a lamp covers fewer than PIXELS of 7 x 7; a line through them does not.
+#define HF_UNMIX_LAMP 1.5f
+#define HF_UNMIX_PIXELS 7
+#define HF_UNMIX_RIM 0.75f
+
 // 1 / d^4 of the 7 x 7, 0 in its middle.
 extern const float hf_unmix_weights[7][7];
 // Fill in the mean of a side of which there is nothing or little. 0: there are none. A mean is colour, radius (4).
 int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], float mean[2][5]);
+
+// How far a pixel is of a lamp. most: brightness of the brighter one of front and back, the sum of channels / 8; alpha: the
+// larger one of theirs, if there are any: what is brighter as it covers more is none.
+float hf_unmix_lamp(const struct hf_unmix_row *row, int x, float most, float alpha);
 
 // Floats of scratch that un-mixing a row of n pixels takes.
 size_t hf_layers_unmix_floats(int width);

@@ -138,22 +138,46 @@ HF_INLINE vf layers_between(vf v, vf a, vf b)
     return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
 }
 
+// How far pixels are of lamps behind the edge: there are few.
+HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2][5])
+{
+    vf light[2];
+    for (int i = 0; i < 2; i++)
+        light[i] = vf_mul(vf_add(vf_add(vf_abs(mean[i][0]), vf_abs(mean[i][1])), vf_abs(mean[i][2])), vf_set1(0.125f));
+    const vf most = vf_max(light[0], light[1]), wider = vf_sub(vf_abs(mean[1][4]), vf_abs(mean[0][4]));
+    const vm bright = vm_and(vf_gt(layers_light_of(u, 3, x), vf_mul(most, vf_set1(HF_UNMIX_LAMP))),
+                             vm_and(mixed, vf_gt(wider, vf_zero())));
+    if (!vm_any(bright))
+        return vf_zero();
+    float lamp[VF_N], limit[VF_N], alpha[VF_N];
+    vf_store(lamp, vf_keep(bright, vf_min(wider, vf_set1(1))));
+    vf_store(limit, most);
+    vf_store(alpha, vf_max(mean[0][3], mean[1][3]));
+    for (int lane = 0; lane < VF_N; lane++)
+        if (lamp[lane] > 0)
+            lamp[lane] = lamp[lane] * hf_unmix_lamp(u, x + lane, limit[lane], alpha[lane]);
+    return vf_load(lamp);
+}
+
 HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const int channels, vm mixed)
 {
     vf mean[2][5], spread[2], known;
     mixed = layers_sides(u, x, channels, mixed, mean, spread, &known);
     const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
     const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
-    const vf a = layers_share(u, x, channels, a0, mean, spread),
-             by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known);
+    const vf by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known), lamp = layers_lit(u, x, mixed, mean);
+    vf a = layers_share(u, x, channels, a0, mean, spread);
+    a = vf_fma(lamp, vf_sub(vf_min(a, vf_set1(HF_UNMIX_RIM)), a), a);
     const vf seen = vf_fma(by, vf_sub(a, one), one);
     const vf whole = vf_keep(vf_gt(seen, zero), vf_div(vf_sub(one, by), seen));
     for (int c = 0; c < channels; c++) {
         const vf rest = layers_rest(u, x, c, a, mean);
         const vf v = vf_load(u->colour[3][c] + x);
-        const vf front = layers_between(vf_add(mean[0][c], rest), mean[0][c], v);
+        const vf more = c < 3 ? vf_max(rest, zero) : zero;
+        const vf front = layers_between(vf_add(vf_fnma(lamp, more, rest), mean[0][c]), mean[0][c], v);
+        const vf back = layers_between(vf_add(mean[1][c], rest), mean[1][c], v);
         vf_store(u->seen[c] + x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
-        vf_store(u->mixed[c] + x, vf_keep(mixed, layers_between(vf_add(mean[1][c], rest), mean[1][c], v)));
+        vf_store(u->mixed[c] + x, vf_keep(mixed, back));
     }
     const vf front = vf_fma(vf_sub(one, a0), vf_sub(mean[0][4], own), own);
     vf_store(u->seen[4] + x, vf_select(mixed, seen, one));

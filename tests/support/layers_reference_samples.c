@@ -113,6 +113,30 @@ static double share_of(const struct frame *f, int x, int y, double a0, const dou
     return a0 + (a - a0) * (apart + off > 0 ? apart / (apart + off) : 0);
 }
 
+static double light_at(const struct frame *f, int x, int y)
+{
+    return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
+}
+
+// How far a mixed pixel is of a small lamp behind the edge: one and a half times to twice as bright as either side, with fewer
+// than six to seven pixels that have a quarter to a half of what it has more than these.
+static double lamp_of(const struct frame *f, int x, int y, double mean[2][5])
+{
+    double most = 0, count = 0;
+    const double own = light_at(f, x, y), wider = fabs(mean[1][4]) - fabs(mean[0][4]);
+    for (int i = 0; i < 2; i++)
+        most = fmax(most, fabs(mean[i][0]) + fabs(mean[i][1]) + fabs(mean[i][2]));
+    if (own <= 1.5 * most || wider <= 0)
+        return 0;
+    for (int i = 0; i < 49; i++) {
+        const double over = light_at(f, x + i % 7 - 3, y + i / 7 - 3) - most;
+        count += fmin(fmax(4 * over / (own - most) - 1, 0), 1);
+    }
+    const double bright = most > 0 ? fmin(2 * (own / most - 1.5), 1) : 1;
+    const double alpha = f->channels == 4 ? colour_at(f, 3, x, y) / fmax(mean[0][3], mean[1][3]) : 1;
+    return bright * fmin(wider, 1) * fmin(fmax(7 - count, 0), 1) * fmin(fmax(4 * (1.5 - alpha), 0), 1);
+}
+
 static void unmix(struct frame *f, int x, int y)
 {
     double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), middle, slope, mean[2][5], weight[2], far[5] = {0};
@@ -133,14 +157,17 @@ static void unmix(struct frame *f, int x, int y)
     side_farthest(f, x, y, middle, slope, !less, mean[!less], far);
     for (int c = 0; c < 5 && known < 1; c++)
         mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
-    const double a0 = front_of(own, middle, slope), a = share_of(f, x, y, a0, mean[0], mean[1], spread);
+    const double a0 = front_of(own, middle, slope), lamp = lamp_of(f, x, y, mean);
+    const double share = share_of(f, x, y, a0, mean[0], mean[1], spread),
+                 a = share + lamp * (fmin(share, 0.75) - share);
     const double by = apart * fmin((weight[0] + weight[1]) / 0.001, 1);
     seen[WEIGHT] = 1 - by * (1 - a);
     mixed[WEIGHT] = by * (1 - a);
     const double whole = seen[WEIGHT] > 0 ? (1 - by) / seen[WEIGHT] : 0;
     for (int c = 0; c < f->channels; c++) {
         const double v = colour_at(f, c, x, y), rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
-        const double front = fmin(fmax(mean[0][c] + rest, fmin(mean[0][c], v)), fmax(mean[0][c], v));
+        const double moved = c < 3 ? lamp * fmax(rest, 0) : 0;
+        const double front = fmin(fmax(mean[0][c] + rest - moved, fmin(mean[0][c], v)), fmax(mean[0][c], v));
         seen[c] = whole * v + (1 - whole) * front;
         mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
     }
