@@ -162,6 +162,11 @@ static int check_range_model(struct hf_resolved *r, char *message)
     if (!(p->far_begin >= 0 && p->far_begin <= p->far_end && (p->far_begin < INFINITY || endless)))
         return hf_bad(message, "range.far_begin is %g and far_end %g; they must be 0 <= begin <= end", p->far_begin,
                       p->far_end);
+    if (p->near_end > p->far_begin)
+        return hf_bad(message,
+                      "range.near_end is %g and far_begin %g; what lies between them would be near and far at once: "
+                      "near_end must be <= far_begin",
+                      p->near_end, p->far_begin);
     return HF_OK;
 }
 

@@ -298,8 +298,8 @@ struct hf_range_params {
     // a quarter and the result is blended with the input by 4 * strength. Chapter, listing 3.14.
     float strength;
     // Near blur is full up to near_begin and gone at near_end; far blur starts at far_begin and is full at far_end:
-    // >= 0, near_begin <= near_end, far_begin <= far_end. HF_DERIVE (default): max(0, F - R), F, F, F + R. Chapter,
-    // figure 3.2.
+    // >= 0, near_begin <= near_end <= far_begin <= far_end, as nothing is near and far at once. HF_DERIVE (default):
+    // max(0, F - R), F, F, F + R. Chapter, figure 3.2.
     float near_begin, near_end, far_begin, far_end;
     enum hf_blend blend;  // default HF_BLEND_LINEAR
 };

@@ -157,6 +157,11 @@ static int check_model(const struct cli_args *args, struct tool_error *error)
     if (args->far_begin > args->far_end)
         return tool_fail(error, -1, "--far-begin %g must not be more than --far-end %g", args->far_begin,
                          args->far_end);
+    if (args->near_end > args->far_begin)
+        return tool_fail(error, -1,
+                         "--near-end %g must not be more than --far-begin %g: what lies between would be near and far "
+                         "at once",
+                         args->near_end, args->far_begin);
     return check_depth(args, error);
 }
 

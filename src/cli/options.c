@@ -62,7 +62,7 @@ static const struct tool_option options[] = {
     {"strength", 0, TOOL_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1)},
     {"near-begin", 0, TOOL_FOCUS, "D", "Near blur is full up to here, scene units. Default: focus - range.",
      NUMBER(near_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
-    {"near-end", 0, TOOL_FOCUS, "D", "Near blur ends here, scene units. Default: the focus.",
+    {"near-end", 0, TOOL_FOCUS, "D", "Near blur ends here, scene units, not beyond --far-begin. Default: the focus.",
      NUMBER(near_end, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
     {"far-begin", 0, TOOL_FOCUS, "D", "Far blur begins here, scene units. Default: the focus.",
      NUMBER(far_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},

@@ -159,6 +159,12 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
     if (far_begin > far_end)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --far-begin %g is beyond --far-end %g (focus %g, range %g)",
                          label, far_begin, far_end, focus, range);
+    if (near_end > far_begin)
+        return tool_fail(
+            error, CLI_BAD_ARGUMENTS,
+            "%s: --near-end %g is beyond --far-begin %g (focus %g): what lies between would be near and far "
+            "at once",
+            label, near_end, far_begin, focus);
     if (half > 0) {
         p->range.near_begin = near_begin;
         p->range.near_end = near_end;

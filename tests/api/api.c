@@ -232,6 +232,7 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.range.near_begin = NAN);
     SPOIL(params.range.near_begin = -3);
     SPOIL(params.range.near_end = 5);
+    SPOIL(params.range.near_end = 20.5f);
     SPOIL(params.range.near_end = INFINITY);
     SPOIL(params.range.far_begin = 31);
     SPOIL(params.range.far_begin = NAN);

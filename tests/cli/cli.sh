@@ -166,6 +166,7 @@ bad 1 "--strength|--focal-length" a.exr -o o.exr --focal-length 50 --strength 1
 bad 1 "--far-end|--fstop" a.exr -o o.exr --far-end 9 --fstop 2
 bad 1 "--near-begin 5|--near-end 4" a.exr -o o.exr --near-begin 5 --near-end 4
 bad 1 "--far-begin 5|--far-end 4" a.exr -o o.exr --far-begin 5 --far-end 4
+bad 1 "--near-end 9|--far-begin 5" a.exr -o o.exr --near-end 9 --far-begin 5 --far-end 12
 for type in ndc-d3d ndc-gl ndc-reversed; do
     bad 1 "$type|--near" a.exr -o o.exr --depth-type $type --far 9
     bad 1 "$type|--far" a.exr -o o.exr --depth-type $type --near 9
