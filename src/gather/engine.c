@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The gather: order, names and buffers of the chapter's figure 3.6 and table 3.1.
+#include <float.h>
+
 #include "frame/plan.h"
 #include "gather/gather.h"
 
@@ -295,8 +297,9 @@ static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const stru
     return hf_taps_build(taps, &key, mem);
 }
 
-// radius: h. With levels from it down to 1, each a step smaller than the one before; the last is 1, so that a radius that grows adds a
-// level where there is one already.
+// radius: h. With levels from it down to 1, each a step smaller than the one before; the last is 1, so that a radius that
+// grows adds a level where there is one already. Where levels are summed, that one counts by how far it is away from the one
+// before, else its samples would at once count twice.
 static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, const struct hf_params *p, float radius,
                         const struct hf_mem *mem)
 {
@@ -304,7 +307,7 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
     const float scale = s->strength >= 0.25f ? s->strength : 0.25f, largest = __builtin_fmaxf(radius * scale, 1);
     const int many = s->measured || p->gather.per_pixel_kernel;
     l->count = 0;
-    for (float r = largest, next; l->count < HF_MAX_LEVELS; r = next) {
+    for (float r = largest, before = 0, next; l->count < HF_MAX_LEVELS; before = r, r = next) {
         struct hf_level *level = &l->level[l->count++];
         const struct hf_taps_key key = {.radius = r,
                                         .scale = 1,
@@ -317,11 +320,13 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
                                         .most_y = hf_max(s->half_height - 1, 1)};
         level->coc = r / (radius * scale);
         level->inverse = 1 / level->coc;
+        level->again = before > 0 ? 1 - (1 - r / before) / (1 - LEVEL_STEP[far]) : 0;
         level->area = level->coc * level->coc;
         next = __builtin_fmaxf(LEVEL_STEP[far] * r, 1);
         const float after = next / (radius * scale);
-        level->to_next = r > next ? 1 / (level->coc - after) : 0;
-        level->area_to_next = r > next ? 1 / (level->area - after * after) : 0;
+        // Radii that differ may have one CoC.
+        level->to_next = r > next ? __builtin_fminf(1 / (level->coc - after), FLT_MAX) : 0;
+        level->area_to_next = r > next ? __builtin_fminf(1 / (level->area - after * after), FLT_MAX) : 0;
         l->gain = (s->strength < 0.25f ? 4 * s->strength : 1) / level->coc;
         l->hides = many ? l->gain : l->gain * (8 / 7.0f);
         const int err = hf_taps_build(&level->taps, &key, mem);

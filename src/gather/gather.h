@@ -74,6 +74,7 @@ enum { HF_AREA_NEAR, HF_AREA_FAR, HF_AREA_NEAR_MOST, HF_AREA_FAR_MOST };
 struct hf_level {
     float coc;      // the CoC of pixels as blurred as this
     float inverse;  // 1 / coc
+    float again;    // of near ones: how much of it the one before sees already, 0 where that is a whole step larger
     float to_next;  // 1 / (coc - that of the next one)
     float area;     // coc^2, and as for coc:
     float area_to_next;
@@ -154,11 +155,12 @@ static inline float hf_level_share(const struct hf_levels *l, int i, float coc)
     return hf_level_reached(l, i, coc) * (1 - hf_level_reached(l, i - 1, coc));
 }
 
-// How much a near pixel of this CoC takes from a level of what it hides: of each up to its own, by the inverse of its area.
-// So a sample counts by the inverse of its distance to the fourth, and a light far off draws no large disc there.
+// How much a near pixel of this CoC takes from a level of what it hides: of each up to its own, by the inverse of its area
+// squared. So a sample counts by the inverse of its distance to the fourth, and a light far off draws no large disc there.
 static inline float hf_level_near(const struct hf_levels *l, int i, float coc)
 {
-    return hf_level_reached(l, i, coc) * (l->level[i].inverse * l->level[i].inverse);
+    const float part = hf_level_reached(l, i, coc) * (1 - hf_level_reached(l, i - 1, coc) * l->level[i].again);
+    return part * (l->level[i].inverse * l->level[i].inverse);
 }
 
 // How much of a far sample a level spreads. Both discs together are as bright inside the smaller one as a disc of its own
@@ -245,6 +247,12 @@ enum { HF_STRIP_PLANES = 5, HF_STRIP = 112 };
 struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo);
 
 extern const struct hf_engine_def hf_gather_engine;
+
+// A far pixel takes the colour of a neighbour that is less far than itself, but where it is more than so many times as far
+// only so many times the neighbour's part: what begins to be far changes nothing at once, however far the pixels around are.
+#define HF_FAR_WHOLE 16.0f
+// Weights that sum to less have no inverse; pixels that are so little far stay what they are.
+#define HF_FAR_LEAST 0x1p-120f
 
 // Half-resolution colour stays below this, so that no sum of thousands passes the largest float; by area of millions.
 #define HF_LARGEST 0x1p115f

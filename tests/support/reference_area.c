@@ -75,13 +75,17 @@ static double share(const struct levels *l, int i, double coc)
     return i + 1 < l->count && v > l->coc[i + 1] ? (v - l->coc[i + 1]) / (l->coc[i] - l->coc[i + 1]) : 0;
 }
 
-// What near pixels hide is taken from all levels up to theirs, by the inverse of their area.
+// What near pixels hide is taken from all levels up to theirs, by the inverse of their area squared; where there are more
+// than the last one, from that by how far it is from the one before, which at the most is twice it.
 static double share_behind(const struct levels *l, int i, double coc)
 {
-    double sum = 0;
+    double sum = 0, before = 0;
     for (int k = 0; k <= i; k++)
         sum += share(l, k, coc);
-    return sum / (l->coc[i] * l->coc[i]);
+    const double again = i > 0 ? 1 - 2 * (1 - l->coc[i] / l->coc[i - 1]) : 0;
+    for (int k = 0; k < i; k++)
+        before += share(l, k, coc);
+    return sum * (1 - before * again) / (l->coc[i] * l->coc[i]);
 }
 
 // A disc of an area between two levels' is so much of both that it is as bright inside the smaller one as its own would be.
