@@ -2,6 +2,8 @@
 // Composite on vectors. Even and odd pixels are lanes of their own, so the four phases of the upsampling are four
 // pieces of plain arithmetic over the same half-resolution loads; both phases in x are made together and share them.
 // So do two rows of the picture that lie between the same two half-resolution rows, where they can be made together.
+#include <float.h>
+
 #include "pixel/depth_rows.h"
 #include "gather/gather.h"
 #include "gather/inverse_vf.h"
@@ -51,13 +53,13 @@ HF_INLINE vf far_distance(vf coc, vf g, float factor)
     return vf_fma(vf_set1(1000 * factor), vf_abs(vf_sub(coc, g)), vf_set1(factor));
 }
 
-// Weights in proportion to 9 3 3 1 / d, d being 1 + 1000 |CoC difference|; returns t, or 0 where no neighbour is far:
-// the pixel keeps its colour.
-HF_INLINE vf far_weights_block(const enum hf_division division, vf coc, vf g[2][3], const vm far[2][3], int row,
-                               int odd, vf t, vf w[4])
+// Weights in proportion to 9 3 3 1 / d, d being 1 + 1000 |CoC difference|, and to what neighbours have to give, if some have
+// not all. Returns how far the pixel is, 0 where it keeps its colour.
+HF_INLINE vf far_weights_block(const enum hf_division division, const int some, vf coc, vf g[2][3], int row, int odd,
+                               vf w[4])
 {
     static const float factor[4] = {1, 3, 3, 9};
-    vf d[4];
+    vf d[4], most = vf_zero();
     for (int i = 0; i < 4; i++)
         d[i] = far_distance(coc, around(g, row, odd, i), factor[i]);
     const vf p01 = vf_mul(d[0], d[1]), p23 = vf_mul(d[2], d[3]);
@@ -65,14 +67,26 @@ HF_INLINE vf far_weights_block(const enum hf_division division, vf coc, vf g[2][
     w[1] = vf_mul(d[0], p23);
     w[2] = vf_mul(d[3], p01);
     w[3] = vf_mul(d[2], p01);
-    for (int i = 0; i < 4; i++)
-        w[i] = vf_keep(far[i < 2 ? row : !row][i % 2 == 0 ? 1 : odd ? 2 : 0], w[i]);
+    const vf part = some ? vf_div(vf_set1(1), vf_max(coc, vf_set1(FLT_MIN))) : vf_zero();
+    for (int i = 0; i < 4 && some; i++) {
+        const vf has = vf_min(vf_mul(vf_mul(vf_set1(HF_FAR_WHOLE), around(g, row, odd, i)), part), vf_set1(1));
+        w[i] = vf_mul(w[i], has);
+        most = vf_max(most, has);
+    }
     const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
-    const vm any = vf_gt(sum, vf_zero());
-    const vf inverse = vf_keep(any, inverse_vf(division, sum));
+    const vm any = vf_gt(sum, vf_set1(HF_FAR_LEAST));
+    const vf inverse = some ? vf_keep(any, inverse_vf(division, sum)) : inverse_vf(division, sum);
     for (int i = 0; i < 4; i++)
         w[i] = vf_mul(w[i], inverse);
-    return vf_keep(any, t);
+    return some ? vf_keep(any, vf_mul(coc, most)) : coc;
+}
+
+// Apart, as there are few such blocks, and the others keep more in registers without.
+static __attribute__((noinline)) void far_weights_some(const enum hf_division division, const int rows, vf coc[2][2],
+                                                       vf g[2][3], vf w[2][2][4], vf far[2][2])
+{
+    for (int i = 0; i < 2 * rows; i++)
+        far[i / 2][i % 2] = far_weights_block(division, 1, coc[i / 2][i % 2], g, i / 2, i % 2, w[i / 2][i % 2]);
 }
 
 // Are the CoCs of pixels and neighbours not all the same?
@@ -96,7 +110,6 @@ HF_INLINE void far_weights(const struct field_rows *coc_rows, const enum hf_divi
                            const int differs, int x, vf blend, vf coc[2][2], vf w[2][2][4], vf t[2][2])
 {
     vf g[2][3];
-    vm far[2][3];
     const float inverse = 1 / 144.0f;
     for (int i = 0; i < 2 * rows; i++) {
         vf *of = w[i / 2][i % 2];
@@ -108,12 +121,25 @@ HF_INLINE void far_weights(const struct field_rows *coc_rows, const enum hf_divi
     if (!differs)
         return;
     load_around(coc_rows, 0, x, g);
-    for (int i = 0; i < 6; i++)
-        far[i / 3][i % 3] = vf_gt(g[i / 3][i % 3], vf_zero());
+    vm some = vf_gt(vf_zero(), vf_zero());
+    const vf middle = vf_min(g[0][1], g[1][1]);
+    for (int odd = 0; odd < 2; odd++) {
+        const vf least = vf_mul(vf_set1(HF_FAR_WHOLE / 2), vf_min(middle, vf_min(g[0][2 * odd], g[1][2 * odd])));
+        for (int row = 0; row < rows; row++)
+            some = vm_or(some, vf_lt(least, coc[row][odd]));
+    }
+    if (vm_any(some)) {
+        vf far[2][2], from[2][3];
+        for (int i = 0; i < 6; i++)
+            from[i / 3][i % 3] = g[i / 3][i % 3];
+        far_weights_some(division, rows, coc, from, w, far);
+        for (int i = 0; i < 2 * rows; i++)
+            t[i / 2][i % 2] = vf_mul(blend, far[i / 2][i % 2]);
+        return;
+    }
 #pragma GCC unroll 4
     for (int i = 0; i < 2 * rows; i++)
-        t[i / 2][i % 2] =
-            far_weights_block(division, coc[i / 2][i % 2], g, far, i / 2, i % 2, t[i / 2][i % 2], w[i / 2][i % 2]);
+        far_weights_block(division, 0, coc[i / 2][i % 2], g, i / 2, i % 2, w[i / 2][i % 2]);
 }
 
 // What is blended of v: less a field it is a float. Plain: finite, not -0, and much smaller.

@@ -306,31 +306,33 @@ static void fill(struct reference *r)
     }
 }
 
-// The far field at full resolution. Returns 0 if no tap holds any.
-static int upsample_far(const struct reference *r, int x, int y, double out[4])
+// The far field at full resolution. Returns how far the pixel is: no tap has more than 16 times its own part to give.
+static double upsample_far(const struct reference *r, int x, int y, double out[4])
 {
     const struct ref_buffer *coc4 = &r->buffer[REF_COC4];
     const double f = at(&r->buffer[REF_COC], 1, x, y);
     const int faithful = r->params.gather.faithful;
     const double hx = (x + 0.5) / 2 - 0.5, hy = (y + 0.5) / 2 - 0.5;
     const int cx = (int)floor(hx), cy = (int)floor(hy);  // of the CoCs: (k-1, k) for 2k, (k, k+1) for 2k+1
-    double weights = 0;
+    double weights = 0, most = 0;
     for (int c = 0; c < 4; c++)
         out[c] = 0;
     for (int j = 0; j < 2; j++) {
         for (int i = 0; i < 2; i++) {
             const double f_half = at(coc4, 1, cx + i, cy + j);
             const double bx = i ? hx - cx : 1 - (hx - cx), by = j ? hy - cy : 1 - (hy - cy);
-            const double w = (faithful ? 0.25 : f_half > 0 ? bx * by : 0) / (fabs(f - f_half) + 0.001);
+            const double has = faithful ? f : fmin(16 * f_half, f);
+            const double w = (faithful ? 0.25 : has * bx * by) / (fabs(f - f_half) + 0.001);
             const int tx = faithful ? (x + i) / 2 : cx + i, ty = faithful ? (y + j) / 2 : cy + j;
             for (int c = 0; c < r->channels; c++)
                 out[c] += w * at(&r->buffer[REF_FARFILL], c, tx, ty);
             weights += w;
+            most = fmax(most, has);
         }
     }
     for (int c = 0; c < r->channels && weights > 0; c++)
         out[c] /= weights;
-    return weights > 0;
+    return most;
 }
 
 // Pass 9.
@@ -344,8 +346,7 @@ static void composite(struct reference *r)
             double far[4];
             const double hx = (x + 0.5) / 2 - 0.5, hy = (y + 0.5) / 2 - 0.5;
             const double near_t = r->blend * sample(&r->buffer[REF_COCBLUR], 0, hx, hy);
-            const int has_far = upsample_far(r, x, y, far);
-            const double far_t = has_far ? r->blend * at(&r->buffer[REF_COC], 1, x, y) : 0;
+            const double far_t = r->blend * upsample_far(r, x, y, far);
             for (int c = 0; c < r->channels; c++) {
                 const double v = lerp(at(&r->buffer[REF_COLOUR], c, x, y), far[c], far_t);
                 store(r, REF_RESULT, c, x, y, lerp(v, sample(&r->buffer[REF_NEARFILL], c, hx, hy), near_t));
