@@ -138,6 +138,7 @@ static int read_depth_file(const struct cli_args *args, const struct hf_io_run *
     v->scaled_to[1] = v->view->height;
     v->map_bits = map.bits;
     v->sharpened = map.sharpened;
+    v->smoothed = map.smoothed;
     if (map.bits && args->depth_type == HF_DEPTH_INVERSE && isnan(args->near_plane) && isnan(args->depth_scale))
         return tool_fail(error, CLI_BAD_ARGUMENTS,
                          "%s: whole numbers of %d bits count as 0 to 1, so --depth-type inverse needs --near, the "

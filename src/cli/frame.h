@@ -32,9 +32,9 @@ struct cli_view {
     int map_size[2];  // width and height of the depth file, which was scaled; 0: it was not
     int scaled_to[2];
     struct cli_depth_found found;
-    long long sharpened;  // samples of depth, see --depth-edges
-    int map_bits;         // of the depth file's whole numbers; 0: floats, or no such file
-    float least_radius;   // pixels: the surface that is least blurred
+    long long sharpened, smoothed;  // samples of depth, see --depth-edges
+    int map_bits;                   // of the depth file's whole numbers; 0: floats, or no such file
+    float least_radius;             // pixels: the surface that is least blurred
     float range[2];     // distances of the nearest surface and the farthest, see cli_coc_measure; [0] > [1]: not known
     float blend[2];     // gaussian: how much of its one blur is mixed in at most, in front of the focus and behind
     float least_reach;  // of all that is blurred at all

@@ -143,6 +143,8 @@ void cli_json_map(struct tool_json *j, const struct cli_view *v)
 {
     if (v->map_bits || v->sharpened)
         tool_json_count(j, "depth_sharpened", v->sharpened);
+    if (v->smoothed)
+        tool_json_count(j, "depth_smoothed", v->smoothed);
     if (!v->map_size[0])
         return;
     tool_json_row(j, "depth_scaled_from", '[');

@@ -8,8 +8,8 @@
 
 #include "tool/json.h"
 
-// Of a view's depth file: "depth_sharpened", samples, when it has whole numbers or some were; "depth_scaled_from", width
-// and height, when it was.
+// Of a view's depth file: "depth_sharpened", samples, when it has whole numbers or some were; "depth_smoothed", when some
+// were; "depth_scaled_from", width and height, when it was.
 void cli_json_map(struct tool_json *j, const struct cli_view *v);
 
 // One JSON object about a frame: what was asked for, what was done, how long it took. Of a --dry-run the first only.

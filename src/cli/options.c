@@ -100,7 +100,8 @@ static const struct tool_option options[] = {
      NUMBER(depth_offset, -FLT_MAX, FLT_MAX)},
     {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers between the two sides of an outline, at which "
      "there is nothing, go to the nearer side: for depth that was filtered, smoothed or made smaller. auto (default): "
-     "sharpen a --depth-file of whole numbers.", CHOICE(depth_edges)},
+     "sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, unless keep is "
+     "given.", CHOICE(depth_edges)},
 
     {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. layers (default): edges un-mixed, "
      "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "

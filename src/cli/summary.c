@@ -50,6 +50,8 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
                       v->scaled_to[0], v->scaled_to[1]);
     if (v->sharpened)
         n += snprintf(text + n, sizeof(text) - (size_t)n, "%lld samples beside outlines sharpened, ", v->sharpened);
+    if (v->smoothed)
+        n += snprintf(text + n, sizeof(text) - (size_t)n, "%lld samples of slopes smoothed, ", v->smoothed);
     n += snprintf(text + n, sizeof(text) - (size_t)n, "%s", hf_engine_name(p->engine));
     if (v->setup.choice.options)
         n += snprintf(text + n, sizeof(text) - (size_t)n, " (%s chose %s)", cli_choice_option(frame->args).text,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "io/depth_edges.h"
+#include "io/depth_steps.h"
 #include "io/exr/chunks.h"
 #include "io/file.h"
 #include "io/oiio/oiio.h"
@@ -18,7 +19,7 @@ struct source {
     int width, height;
     int bits;
     enum hf_io_edges edges;
-    long long sharpened;
+    long long sharpened, smoothed;
     const struct hf_io_run *run;
 };
 
@@ -66,6 +67,9 @@ static int read_own_size(struct source *s, const char *depth_channel, const stru
         return -1;
     if ((s->edges == HF_IO_EDGES_SHARPEN || (s->edges == HF_IO_EDGES_AUTO && s->bits)) &&
         hf_io_sharpen_depth(depth, s->width, s->height, s->run, &s->sharpened))
+        return hf_io_fail(err, "%s: out of memory", s->file->path);
+    if (s->edges != HF_IO_EDGES_KEEP && s->bits && s->bits <= 8 &&
+        hf_io_smooth_steps(depth, s->width, s->height, 1.0f / (float)((1 << s->bits) - 1), s->run, &s->smoothed))
         return hf_io_fail(err, "%s: out of memory", s->file->path);
     return 0;
 }
@@ -149,7 +153,7 @@ int hf_io_read_depth_file(const char *path, const char *depth_channel, enum hf_i
     if (!status)
         status = check_grey(&s, depth_channel, err);
     if (!status)
-        *map = (struct hf_io_map){s.width, s.height, s.bits, s.sharpened};
+        *map = (struct hf_io_map){s.width, s.height, s.bits, s.sharpened, s.smoothed};
     hf_io_close(&s.file);
     return status;
 }

@@ -95,6 +95,7 @@ struct hf_io_map {
     int width, height;
     int bits;             // of its samples when they are whole numbers, else 0
     long long sharpened;  // samples that lay between the two sides of an outline
+    long long smoothed;   // samples of gentle slopes that 8 bits had made terraces of
 };
 // What becomes of depths between the two sides of an outline, at which there is nothing.
 enum hf_io_edges {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What becomes of a map's outlines, and what stays.
 #include "io/depth_edges.h"
+#include "io/depth_steps.h"
 
 #include <math.h>
 #include <string.h>
@@ -67,8 +68,45 @@ static void unchanged(const char *what, const float *depth)
     CHECK_MSG(sharpen(copy) == 0 && !memcmp(copy, depth, sizeof(copy)), "%s", what);
 }
 
+// Of a gentle slope in codes only what is rounded is taken back; a step of more than two codes stays, bit for bit.
+static void steps(void)
+{
+    enum { STEP = 30 };
+    const float unit = 1 / 255.0f;
+    float depth[W * H], slope[W * H];
+    long long changed = 0, wrong = 0;
+    for (int i = 0; i < W * H; i++) {
+        slope[i] = (0.07f * (float)(i % W) + 0.04f * (float)(i / W)) * unit + (i % W < STEP ? 0 : 40 * unit);
+        depth[i] = roundf(slope[i] * 255) * unit;
+    }
+    float copy[W * H], off[2] = {0, 0};
+    memcpy(copy, depth, sizeof(copy));
+    CHECK(!hf_io_smooth_steps(copy, W, H, unit, NULL, &changed));
+    CHECK_MSG(changed > W * H / 3, "%lld", changed);
+    for (int i = 0; i < W * H; i++) {
+        const int x = i % W, y = i / W;
+        const int beside = x >= STEP - 6 && x < STEP + 6;
+        wrong += beside && copy[i] != depth[i];
+        // Means of a slope are its own where 13 x 13 pixels lie within the map.
+        if (beside || x < 6 || y < 6 || x >= W - 6 || y >= H - 6)
+            continue;
+        off[0] += (depth[i] - slope[i]) * (depth[i] - slope[i]);
+        off[1] += (copy[i] - slope[i]) * (copy[i] - slope[i]);
+    }
+    CHECK_MSG(wrong == 0, "%lld samples beside the step changed", wrong);
+    // Along a row rounding's error has a period of 1 / 0.07 = 14.3 pixels, of which 13 leave a tenth; its squares are a
+    // hundredth, and with what rows add far less than a quarter.
+    CHECK_MSG(off[1] < off[0] / 4, "squares of %g, before %g", (double)off[1], (double)off[0]);
+    for (int i = 0; i < W * H; i++)
+        depth[i] = i % W < STEP ? 0.2f : 0.2f + 3 * unit;
+    memcpy(copy, depth, sizeof(copy));
+    CHECK(!hf_io_smooth_steps(copy, W, H, unit, NULL, &changed) && changed == 0);
+    CHECK(!memcmp(copy, depth, sizeof(copy)));
+}
+
 void test_depth_edges(void)
 {
+    steps();
     float depth[W * H];
     disc(0.8f, 0.2f);
     disc(3, 40);
