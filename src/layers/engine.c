@@ -194,6 +194,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     if (l->set.hidden && range >= 1)
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;
+    l->reached = l->levels > 1 ? hf_saturate(range / (float)(1 << (l->levels - 1)) - 3) : 1;
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);
     atomic_init(l->transparent, 0);

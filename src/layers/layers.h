@@ -94,6 +94,7 @@ struct hf_layers {
     int channels;                     // of colour, 3 or 4 with alpha
     float largest;                    // sample; larger ones count as this
     int slices, levels;               // levels of hidden samples; 0: none are looked for
+    float reached;                    // how much the last level counts, 0..1, as the range of radii has reached it
     struct hf_slice *slice, *behind;  // of what is seen, of hidden samples
     // What the middle holds of samples that the far stack holds the rest of, of what is seen and of hidden samples:
     // between slice `last` and the next. last < 0: there are none.

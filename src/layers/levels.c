@@ -287,7 +287,7 @@ static void find(const struct band *b, int x, int n, int y)
     const float behind = farthest_behind(b, nearest, x, n, y);
     struct hf_hidden_tap taps[9 * HF_LAYERS_LEVELS];
     int count = 0;
-    for (int j = 0; j < b->l->levels && behind > 1; j++, part *= 1.0f / 256)
+    for (int j = 0; j < b->l->levels && behind > 1; j++, part *= (j == b->l->levels - 1 ? b->l->reached : 1) / 256)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
             struct hf_hidden_tap *tap = &taps[count];
@@ -307,8 +307,9 @@ static void find(const struct band *b, int x, int n, int y)
         radius[i] = hf_at(of, 1, 2 * x, 2 * y + i % 2);
     }
     planes_of(&b->found, channels, x, y, out);
-    k->found((const float *const *)sum, radius, weight, channels, ldexpf(HF_LAYERS_REACHED, 8 * (b->l->levels - 1)), n,
-             out);
+    // A level that is new counts for nothing yet, and what the one before finds is as much as it was.
+    const float whole = HF_LAYERS_REACHED / 256.0f * (1 + 255 * b->l->reached);
+    k->found((const float *const *)sum, radius, weight, channels, ldexpf(whole, 8 * (b->l->levels - 1)), n, out);
 }
 
 // The next run of blocks of a row that need a search, or do not, at most STEP samples.

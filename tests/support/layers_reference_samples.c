@@ -335,13 +335,15 @@ static void find_between(const struct frame *f, const struct grid *quads, int le
 static void find(const struct frame *f, const struct grid *level, int levels, double nearest, int x, int y, double *out)
 {
     double sum[SAMPLE] = {0};
+    const double reached = levels > 1 ? fmin((f->high - f->low) / (1 << (levels - 1)) - 3, 1) : 1;
     for (int j = 0; j < levels; j++)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1;
             const double *q = at(&level[j], x + u * (1 << j), y + v * (1 << j)), behind = q[RADIUS] - nearest;
             const double a = fmin(fmax(behind / (2 << j) - hypot(u, v) + 0.5, 0), 1);
             const double some = fmin(9 * q[WEIGHT], 1);
-            const double w = pow(256, -j) * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * some * layers_reference_hides(behind);
+            const double part = pow(256, -j) * (j == levels - 1 ? reached : 1);
+            const double w = part * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * some * layers_reference_hides(behind);
             for (int c = 0; c < f->channels; c++)
                 sum[c] += w * q[c];
             sum[WEIGHT] += w;
@@ -356,7 +358,7 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
     for (int i = 0; i < 4; i++)
         out[WEIGHT] += layers_reference_before(f, 2 * x + i % 2, 2 * y + i / 2, out[RADIUS]) / 4;
     // What the farthest taps have just begun to reach covers nothing yet.
-    out[WEIGHT] *= fmin(4 * pow(256, levels - 1) * sum[WEIGHT], 1);
+    out[WEIGHT] *= fmin(4 * pow(256, levels - 2) * (1 + 255 * reached) * sum[WEIGHT], 1);
 }
 
 static double roots_of(const double *s)
