@@ -55,7 +55,7 @@ static void farthest(const struct hf_unmix_row *u, int x, int front, const float
         colour[c] = sum > 0 ? colour[c] / sum : 0;
 }
 
-int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], float mean[2][5])
+int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], float mean[2][5], float spread[2])
 {
     if (weight[0] == 0 && weight[1] == 0)
         return 0;
@@ -65,6 +65,7 @@ int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], floa
     if (!(weight[side] < little))
         return 1;
     const float known = weight[side] / little;
+    spread[side] = spread[side] * known;
     farthest(u, x, !side, mean[!side], colour, &radius);
     for (int c = 0; c < u->channels; c++)
         mean[side][c] = known > 0 ? colour[c] + known * (mean[side][c] - colour[c]) : colour[c];
@@ -183,7 +184,7 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
         }
     for (int side = 0; side < 2; side++)
         spread[side] = finish(u->channels, counted[side], spread[side], mean[side]);
-    if (!hf_unmix_complete(u, x, weight, mean)) {
+    if (!hf_unmix_complete(u, x, weight, mean, spread)) {
         keep(u, x);
         return;
     }

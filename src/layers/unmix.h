@@ -28,8 +28,9 @@
 
 // 1 / d^4 of the 7 x 7, 0 in its middle.
 extern const float hf_unmix_weights[7][7];
-// Fill in the mean of a side of which there is nothing or little. 0: there are none. A mean is colour, radius (4).
-int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], float mean[2][5]);
+// Fill in the mean of a side of which there is nothing or little, and take its variance for as little. 0: there are none. A
+// mean is colour, radius (4).
+int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], float mean[2][5], float spread[2]);
 
 // How far a pixel is of a lamp. most: brightness of the brighter one of front and back, the sum of channels / 8; alpha: the
 // larger one of theirs, if there are any: what is brighter as it covers more is none.

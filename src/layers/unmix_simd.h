@@ -83,25 +83,30 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
     const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], little), vf_gt(weight[1], little))));
     if (!vm_any(missing))
         return mixed;
-    float w[2][VF_N], m[2][5][VF_N], both[VF_N];
+    float w[2][VF_N], m[2][5][VF_N], s[2][VF_N], both[VF_N];
     vf_store(both, vf_keep(mixed, vf_set1(1)));
     for (int i = 0; i < 2; i++) {
         vf_store(w[i], weight[i]);
+        vf_store(s[i], spread[i]);
         for (int c = 0; c < 5; c++)
             vf_store(m[i][c], mean[i][c]);
     }
     for (int lane = 0; lane < VF_N; lane++) {
-        float one[2] = {w[0][lane], w[1][lane]}, of[2][5];
+        float one[2] = {w[0][lane], w[1][lane]}, of[2][5], spreads[2] = {s[0][lane], s[1][lane]};
         if (both[lane] == 0)
             continue;
         for (int i = 0; i < 10; i++)
             of[i / 5][i % 5] = m[i / 5][i % 5][lane];
-        both[lane] = (float)hf_unmix_complete(u, x + lane, one, of);
+        both[lane] = (float)hf_unmix_complete(u, x + lane, one, of, spreads);
+        s[0][lane] = spreads[0];
+        s[1][lane] = spreads[1];
         for (int i = 0; i < 10; i++)
             m[i / 5][i % 5][lane] = of[i / 5][i % 5];
     }
     for (int i = 0; i < 10; i++)
         mean[i / 5][i % 5] = vf_load(m[i / 5][i % 5]);
+    for (int i = 0; i < 2; i++)
+        spread[i] = vf_load(s[i]);
     return vf_gt(vf_load(both), vf_zero());
 }
 

@@ -61,15 +61,22 @@ static void farthest(void)
             colour[y][x] = front && y == 3 ? 1 : front ? 0.75f : 0.5f;
         }
     }
-    float weight[2] = {0, 1}, mean[2][5] = {{0}, {0.5f, 0, 0, 0, 5}};
+    float weight[2] = {0, 1}, mean[2][5] = {{0}, {0.5f, 0, 0, 0, 5}}, spread[2] = {0.25f, 0.5f};
     const double all = 1 + 2.0 / 256, want = (1 + 2 * 0.75 / 256) / all, r = (-7 - (6 + 8) / 256.0) / all;
-    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 1);
+    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 1);
     // Three products, sums and a quotient of either.
     CHECK_MSG(fabs(mean[0][0] - want) <= 7 * FLT_EPSILON && fabs(mean[0][4] - r) <= 7 * 8 * FLT_EPSILON,
               "colour %g of radius %g, not %g of %g", mean[0][0], mean[0][4], want, r);
     CHECK(mean[1][0] == 0.5f && mean[1][4] == 5);
+    // Nothing is known of a front of no weight, nor how far its colours spread, and half of it at half of what is little.
+    CHECK(spread[0] == 0 && spread[1] == 0.5f);
+    weight[0] = 1 / (2 / (double)HF_UNMIX_LEAN - 1);
+    spread[0] = 0.25f;
+    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 1);
+    CHECK_MSG(fabs(spread[0] - 0.125) <= 4 * 0.125 * FLT_EPSILON, "a variance of %g, not 0.125", spread[0]);
+    weight[0] = 0;
     weight[1] = 0;
-    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean), 0);
+    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 0);
 }
 
 // A lamp of 4096 among hidden samples of 1, and as far as these, counts by the fourth power of 16 / 64, a 256th, and a tenth of

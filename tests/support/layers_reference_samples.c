@@ -157,6 +157,7 @@ static void unmix(struct frame *f, int x, int y)
     side_farthest(f, x, y, middle, slope, !less, mean[!less], far);
     for (int c = 0; c < 5 && known < 1; c++)
         mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
+    spread[less] *= known;
     const double a0 = front_of(own, middle, slope), lamp = lamp_of(f, x, y, mean);
     const double share = share_of(f, x, y, a0, mean[0], mean[1], spread),
                  a = share + lamp * (fmin(share, 0.75) - share);
