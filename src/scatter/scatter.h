@@ -50,6 +50,7 @@ struct hf_scatter {
     int reach_x[2][2], reach_y[2][2];  // [field: near, far][level]: of the pictures, the level's pixels; -1: none
     int around_x, around_y;            // of the frame, half-resolution pixels, once its depth has been looked at
     int mixed;                         // there may be mixed pixels
+    int slices;                        // of the far field (slice.c)
     int behind;                        // neighbourhoods that near radii ask for (behind.h)
     float ring, cat_eye;               // radii of the hole, and by which the second circle moves in the corners
     float corner;                      // 1 / the picture's diagonal, pixels
@@ -88,6 +89,10 @@ static inline float hf_field_weight(const struct hf_scatter *t, float r)
 {
     return r > 0 ? 1 - hf_own_part(t, r) : 0;
 }
+
+// Slices that a far field of radii up to this has.
+enum { HF_SLICES = 8 };
+int hf_slice_count(float largest);
 
 // Floats of scratch that the splats of such a cell need, half-resolution pixels.
 size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height);

@@ -150,6 +150,12 @@ static void tent_row(struct walk *w, int y)
         for (int c = 0; c < 4; c++)
             if (c == 3 || c < t.channels)
                 t.pixel[x & 1][c][x >> 1] *= 1 - share[x];
+    for (int x = 0; x < pixels && !w->slice.whole; x++) {
+        const float part = hf_slice_part(&w->slice, t.sign * t.radius[x]);
+        for (int c = 0; c < 4; c++)
+            if (c == 3 || c < t.channels)
+                t.pixel[x & 1][c][x >> 1] *= part;
+    }
     for (int c = 0; c < 4; c++) {
         float *even = t.pixel[0][c], *odd = t.pixel[1][c];
         if (c >= t.channels && c < 3)
@@ -184,6 +190,7 @@ static void list_lone(struct walk *w, int y, int q, float part)
         float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
         if (!(weight > 0) || merged)
             continue;
+        weight *= hf_slice_part(&w->slice, t.sign * t.radius[x - 2 * w->tent_x0]);
         if (w->t->mixed)
             weight *= 1 - *hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y);
         for (int side = 0; side < 2; side++) {

@@ -34,6 +34,9 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
         for (int c = 0; c < 4; c++)
             if (c == 3 || c < w->group->channels)
                 row[c][x] *= 1 - share[x];
+    for (int c = 0; c < 4 && !w->slice.whole; c++)
+        if (c == 3 || c < w->group->channels)
+            hf_slice_row(&w->slice, sign, r.radius, x1 - x0, row[c]);
     hf_scatter_kernels(f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
     return r;
 }
@@ -52,8 +55,8 @@ void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
 {
     const struct hf_frame *f = w->f;
     const float size = (w->field ? 1 : -1) * *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y), half = hf_half_part(w->t, size);
-    const float weight =
-        hf_field_weight(w->t, size) * (w->level ? half : 1 - half) * (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part);
+    const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) *
+                         (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part) * hf_slice_part(&w->slice, size);
     float v[3] = {0};
     if (!(weight > 0))
         return;
@@ -140,19 +143,14 @@ size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height
     size_t most = 0;
     for (int field = 0; field < 2; field++) {
         const struct layout l = layout_of(t, field, cell_width, cell_height);
-        const size_t all = l.sums + l.rows + l.list + l.runs + l.half + l.lines;
+        const size_t part = field && t->slices > 1 ? 16 * (size_t)(cell_width + HF_PAD) * (size_t)cell_height : 0;
+        const size_t all = l.sums + l.rows + l.list + l.runs + l.half + l.lines + part;
         most = all > most ? all : most;
     }
     return most;
 }
 
-// Rows of the result of one level: where settled rows go.
-struct target {
-    float *ch[4];
-    ptrdiff_t stride;
-};
-
-static void settle(struct walk *w, const struct target *to, int y)
+static void settle(struct walk *w, const struct hf_target *to, int y)
 {
     float *out[4];
     for (int c = 0; c < 4; c++)
@@ -175,7 +173,7 @@ static void settle(struct walk *w, const struct target *to, int y)
 }
 
 // All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
-static void walk_level(struct walk *w, const struct layout *l, const struct target *to)
+static void walk_level(struct walk *w, const struct layout *l, const struct hf_target *to)
 {
     const struct hf_setup *s = w->f->s;
     const int reach = w->t->reach_y[w->field][w->level], height = w->level ? s->half_height : s->height;
@@ -226,15 +224,13 @@ static void place_rows(struct walk *w, float *memory, int length)
         w->source[i / 5][i % 5] = memory;
 }
 
-// One group's sums of a field on r.
-static void splat_group(struct walk *w, struct hf_rect r, int group, const struct hf_buf *sum,
-                        const struct hf_buf *weight)
+// One group's sums of a field on r, of the walk's slice.
+static void splat_slice(struct walk *w, struct hf_rect r, const struct hf_target *to)
 {
     const struct hf_frame *f = w->f;
     const struct hf_setup *s = f->s;
     const struct layout l = layout_of(w->t, w->field, r.x1 - r.x0, r.y1 - r.y0);
     float *memory = f->work;
-    w->group = &w->t->group[group];
     w->sums.lane = (int64_t *)memory;
     w->sums.row = (ptrdiff_t *)(memory += l.sums);
     w->list = (struct hf_splats *)(memory += l.rows);
@@ -253,22 +249,19 @@ static void splat_group(struct walk *w, struct hf_rect r, int group, const struc
         w->level = 1;
         w->sums.x0 = h.x0, w->sums.x1 = h.x1, w->sums.y0 = h.y0, w->sums.y1 = h.y1;
         hf_tent_start(w, memory, l.line[1]);
-        const struct target to = {{half, half + half_plane, half + 2 * half_plane, half + 3 * half_plane}, half_stride};
-        walk_level(w, &l, &to);
+        const struct hf_target sums = {{half, half + half_plane, half + 2 * half_plane, half + 3 * half_plane},
+                                       half_stride};
+        walk_level(w, &l, &sums);
     }
-    struct target to = {.stride = sum->stride};
-    for (int c = 0; c < w->group->channels; c++)
-        to.ch[c] = hf_at(sum, w->group->channel[c], x0, y0);
-    to.ch[3] = hf_at(weight, group, x0, y0);
     if (w->t->reach_x[w->field][0] >= 0) {
         w->level = 0;
         w->sums.x0 = x0, w->sums.x1 = x1, w->sums.y0 = y0, w->sums.y1 = y1;
         place_rows(w, memory, l.line[0]);
-        walk_level(w, &l, &to);
+        walk_level(w, &l, to);
     }
     for (int c = 0; c < 4; c++)
-        for (int y = y0; y < y1 && to.ch[c]; y++) {
-            float *row = to.ch[c] + (ptrdiff_t)(y - y0) * to.stride;
+        for (int y = y0; y < y1 && to->ch[c]; y++) {
+            float *row = to->ch[c] + (ptrdiff_t)(y - y0) * to->stride;
             if (w->t->reach_x[w->field][0] < 0)
                 memset(row, 0, sizeof *row * (size_t)(x1 - x0));
             if (w->t->reach_x[w->field][1] >= 0)
@@ -276,11 +269,55 @@ static void splat_group(struct walk *w, struct hf_rect r, int group, const struc
         }
 }
 
+static void clear(const struct hf_setup *s, struct hf_rect r, const struct hf_target *to)
+{
+    const int n = hf_min(2 * r.x1, s->width) - 2 * r.x0, rows = hf_min(2 * r.y1, s->height) - 2 * r.y0;
+    for (int c = 0; c < 4; c++)
+        for (int y = 0; y < rows && to->ch[c]; y++)
+            memset(to->ch[c] + y * to->stride, 0, sizeof(float) * (size_t)n);
+}
+
+// The far field's slices that reach r, from front to back.
+static void splat_slices(struct walk *w, struct hf_rect r, const struct hf_target *to, float least, float most)
+{
+    const struct layout l = layout_of(w->t, w->field, r.x1 - r.x0, r.y1 - r.y0);
+    const ptrdiff_t stride = 2 * (r.x1 - r.x0) + HF_PAD, plane = stride * 2 * (r.y1 - r.y0);
+    float *memory = (float *)w->f->work + l.sums + l.rows + l.list + l.runs + l.half + l.lines;
+    struct hf_target part = {.stride = stride};
+    for (int c = 0; c < 4; c++)
+        part.ch[c] = to->ch[c] ? memory + c * plane : NULL;
+    for (int k = 0; k < w->t->slices; k++) {
+        w->slice = hf_slice_make(w->t, k);
+        const int none = most <= w->slice.begin[0] || least >= w->slice.end[1];
+        w->slice.whole = least >= w->slice.begin[1] && most <= w->slice.end[0];
+        if (k == 0 && none)
+            clear(w->f->s, r, to);
+        else if (!none) {
+            splat_slice(w, r, k ? &part : to);
+            if (k)
+                hf_slice_behind(w->f, r, to, &part);
+        }
+    }
+}
+
 static void splat_field(const struct hf_frame *f, struct hf_rect r, int field, int sum, int weight)
 {
-    struct walk w = {.f = f, .t = hf_scatter(f->s), .field = field};
-    for (int group = 0; group < w.t->groups; group++)
-        splat_group(&w, r, group, &f->buf[sum], &f->buf[weight]);
+    struct walk w = {.f = f, .t = hf_scatter(f->s), .field = field, .slice = {.whole = 1}};
+    const int sliced = field && w.t->slices > 1;
+    float least, most;
+    if (sliced)
+        hf_slice_range(f, r, &least, &most);
+    for (int group = 0; group < w.t->groups; group++) {
+        struct hf_target to = {.stride = f->buf[sum].stride};
+        w.group = &w.t->group[group];
+        for (int c = 0; c < w.group->channels; c++)
+            to.ch[c] = hf_at(&f->buf[sum], w.group->channel[c], 2 * r.x0, 2 * r.y0);
+        to.ch[3] = hf_at(&f->buf[weight], group, 2 * r.x0, 2 * r.y0);
+        if (sliced)
+            splat_slices(&w, r, &to, least, most);
+        else
+            splat_slice(&w, r, &to);
+    }
 }
 
 void hf_splat_far(const struct hf_frame *f, struct hf_rect r)

@@ -10,6 +10,18 @@
 
 enum { TOGETHER = 4 };  // rows of full-resolution sources that are drawn at once
 
+// Sources of a range of radii: all of each from begin[1] to end[0], less of those from begin[0] and up to end[1].
+struct hf_slice {
+    int whole;  // there are no others: the rest means nothing
+    float begin[2], end[2];
+};
+
+// One group's sums on a window.
+struct hf_target {
+    float *ch[4];
+    ptrdiff_t stride;
+};
+
 // The walk over a window: one field's sums of one group and level.
 struct walk {
     const struct hf_frame *f;
@@ -23,6 +35,7 @@ struct walk {
     struct hf_splats *list;       // of each bin
     int reached, drawn[HF_BINS];  // the last row that sources at hand reach, and on which each bin has been drawn
     struct hf_run *runs;          // of a picture that is its source's own
+    struct hf_slice slice;        // of the radii that are drawn
     float *source[TOGETHER][5];   // level 0: channels, weight, and numbers of pictures
     // level 1: of the last rows, source radii and pixels; see hf_list_half
     float *quad[4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *nothing;
@@ -30,6 +43,15 @@ struct walk {
     int tent_x0, tent_x1, quads_done, sites_done,
         tents_done;  // half-resolution columns; rows up to which they are made
 };
+
+// How much of a source of radius r > 0 is in the slice.
+static inline float hf_slice_part(const struct hf_slice *s, float r)
+{
+    if (s->whole)
+        return 1;
+    return hf_saturate((r - s->begin[0]) / (s->begin[1] - s->begin[0])) *
+           (1 - hf_saturate((r - s->end[0]) / (s->end[1] - s->end[0])));
+}
 
 // Sources of columns x0 to x1 that reach the window.
 static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
@@ -59,6 +81,15 @@ void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3],
 void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part);
 // Draw the list.
 void hf_flush_sources(struct walk *w);
+
+// Slice k of the far field, and least and largest of its radii that reach the window r.
+struct hf_slice hf_slice_make(const struct hf_scatter *t, int k);
+void hf_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, float *most);
+// Multiply a row of n pixels by how much of each is in a slice.
+void hf_slice_row(const struct hf_slice *s, float sign, const float *radius, int n, float *row);
+// Put a slice behind what there is of those in front of it.
+void hf_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
+                     const struct hf_target *slice);
 
 // Columns of means, and floats of each line and how many there are, that a window so wide needs.
 int hf_tent_columns(const struct hf_scatter *t, int field, int width);

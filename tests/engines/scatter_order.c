@@ -134,6 +134,28 @@ static void crossing_bars(struct hf_context *c)
     }
 }
 
+// A light of radius 12 beside a nearer wall of a quarter of that. Where the wall's own blur ends it covers all that is
+// behind it: slices begin at 4 and are whole at 5, so what is left there is rounding.
+static void hides_light(struct hf_context *c)
+{
+    enum { W = 96, H = 64, EDGE = 48, BLUR = 3 };
+    struct picture colour = picture_new(W, H, 3), radii = picture_new(W, H, 1);
+    for (int i = 0; i < W * H; i++)
+        radii.plane[0][i] = i % W < EDGE ? BLUR : 4 * BLUR;
+    for (int ch = 0; ch < 3; ch++)
+        colour.plane[ch][H / 2 * W + EDGE + 4] = 1e4f;
+    struct picture out = render_radii(c, HF_ENGINE_SCATTER, &colour, &radii, 0);
+    double on_wall = 0, all = 0;
+    for (int i = 0; i < W * H; i++) {
+        all += out.plane[1][i];
+        on_wall += i % W < EDGE - BLUR - 2 ? out.plane[1][i] : 0;
+    }
+    CHECK_MSG(on_wall <= 1e-5 * all, "%.3g of a light's energy lie on a nearer wall", on_wall / all);
+    picture_free(&out);
+    picture_free(&colour);
+    picture_free(&radii);
+}
+
 int main(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
@@ -141,6 +163,7 @@ int main(void)
     thresholds(c);
     drawn_once(c);
     crossing_bars(c);
+    hides_light(c);
     hf_close(&c);
     return check_report();
 }

@@ -141,10 +141,41 @@ static double composite(const struct seen *seen, const struct picture *c, const 
     return base + clamp01(cover) * (front - base);
 }
 
+// How much of a far radius is in slice k: they begin at 4, 12, 36 .. and have all of a source from 1.25 times that on.
+static double slice_part(int k, int slices, double r)
+{
+    const double from = 4 * pow(3, k - 1), to = from * 3;
+    return (k ? clamp01((r / from - 1) * 4) : 1) * (k < slices - 1 ? 1 - clamp01((r / to - 1) * 4) : 1);
+}
+
+// Far sums of pixel i: behind each slice there is room for what it leaves of 1, and of what shows of a pixel itself.
+static void add_slices(double *sum[], int slices, int channels, int i, const struct edge_reference *e)
+{
+    double room = 0, r, *all = sum[1] + 5 * (size_t)i;
+    for (int k = 0; k < 2; k++) {
+        const double part = part_of(e, k, &r);
+        room += part * (1 - own_part(r));
+    }
+    for (int k = 1; k < slices; k++) {
+        const double *own = sum[1 + k] + 5 * (size_t)i, left = fmax(room - all[4], 0);
+        for (int c = 0; c < channels && own[4] > 0; c++)
+            all[c] += own[c] * fmin(1, left / own[4]);
+        all[4] += fmin(left, own[4]);
+    }
+}
+
 struct picture scatter_reference(const struct picture *c, const float *radius)
 {
+    enum { SLICES = 8 };
     const int n = c->width * c->height;
-    double *sum[2] = {calloc((size_t)n * 5, sizeof(double)), calloc((size_t)n * 5, sizeof(double))}, r;
+    double *sum[1 + SLICES], r, largest = 0;
+    int slices = 1;
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, radius[i]);
+    for (double from = 4; from < largest && slices < SLICES; from *= 3)
+        slices++;
+    for (int k = 0; k < 1 + slices; k++)
+        sum[k] = calloc((size_t)n * 5, sizeof(double));
     struct edge_reference *edge = calloc((size_t)n, sizeof *edge);
     struct picture out = picture_copy(c);
     for (int i = 0; i < n; i++)
@@ -152,10 +183,16 @@ struct picture scatter_reference(const struct picture *c, const float *radius)
     struct seen seen = seen_of(c, edge);
     for (int i = 0; i < 2 * n; i++) {
         const int x = i / 2 % c->width, y = i / 2 / c->width;
-        const double part = part_of(&edge[i / 2], i & 1, &r);
-        if (r != 0 && part > 0)
-            splat(sum[r > 0], c, x, y, edge[i / 2].colour[i & 1], (float)fabs(r), part * (1 - own_part(r)));
+        const struct edge_reference *e = &edge[i / 2];
+        const double part = part_of(e, i & 1, &r) * (1 - own_part(r)), size = fabs(r);
+        for (int k = 0; k < slices && r != 0 && part > 0; k++) {
+            const double inside = r > 0 ? slice_part(k, slices, size) : k == 0;
+            if (inside > 0)
+                splat(sum[r > 0 ? 1 + k : 0], c, x, y, e->colour[i & 1], (float)size, part * inside);
+        }
     }
+    for (int i = 0; i < n; i++)
+        add_slices(sum, slices, c->channels, i, &edge[i]);
     for (int i = 0; i < n; i++)
         for (int k = 0; k < c->channels; k++) {
             double v = 0;
@@ -169,7 +206,7 @@ struct picture scatter_reference(const struct picture *c, const float *radius)
         }
     seen_free(&seen);
     free(edge);
-    free(sum[0]);
-    free(sum[1]);
+    for (int k = 0; k < 1 + slices; k++)
+        free(sum[k]);
     return out;
 }
