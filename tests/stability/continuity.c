@@ -148,6 +148,26 @@ static void pulled(const struct run *r, enum pull pull, const struct scene *s, c
     picture_free(&moved);
 }
 
+// Steps that 120 may pass over: where the first quad around becomes far, and where there is one level more of the gather's
+// kernels or of hidden samples.
+static void known_places(const struct run *r, const struct scene *s, const char *scene)
+{
+    static const struct {
+        enum pull pull;
+        double from, to;
+    } places[] = {{PULL_FOCUS, 20.84, 20.845},
+                  {PULL_STRENGTH, 0.666, 0.668},
+                  {PULL_RADIUS, 15.99, 16.01},
+                  {PULL_RADIUS, 16.55, 16.56}};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        struct pulling w = {r, s, NULL, places[i].pull};
+        double from = places[i].from, to = places[i].to;
+        const char *why;
+        const double left = step_left(at, &w, HALVINGS, &from, &to), bound = allowed(r, places[i].pull, from, &why);
+        see(r, pulls[places[i].pull].name, why, left, bound, "%s, at %.9g", scene, from);
+    }
+}
+
 // A floor through the focus, a wall behind and a bar in front.
 static struct scene stage(const struct run *r)
 {
@@ -225,6 +245,7 @@ void continuity_cases(const struct run *r)
     struct scene s = stage(r);
     for (int pull = 0; pull < PULLS; pull++)
         pulled(r, (enum pull)pull, &s, "floor, wall and bar");
+    known_places(r, &s, "floor, wall and bar");
     // The gaussian's blur does not follow from the radius: 0 alone means a copy.
     if (r->subject->params.engine != HF_ENGINE_GAUSSIAN)
         first_blur(r, &s);
