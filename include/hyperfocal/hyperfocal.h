@@ -431,9 +431,8 @@ enum hf_layers_quality {
 // HF_DERIVE leaves a number to the quality.
 struct hf_layers_params {
     enum hf_layers_quality quality;  // default HF_LAYERS_STANDARD
-    // Distance between slices, pixels of radius, 0.25 to 32. Up to radius 2, and up to 4 if it is 2 or less, they lie at
-    // most 1 apart, beyond 64 at least a 32nd of their radius; those of HIGH and BEST closer together by this over 2.
-    // Default HF_DERIVE.
+    // Distance between slices, pixels of radius, 0.25 to 32. They lie at most 1, or half of their radius, apart, beyond 64 at
+    // least a 32nd of it; those of HIGH and BEST closer together by this over 2. Default HF_DERIVE.
     float spacing;
     // CoC radii from which slices are blurred at half and a quarter of the resolution (and from four times the latter at
     // an eighth), 1 to 2048 pixels, half_from <= quarter_from. Default HF_DERIVE.

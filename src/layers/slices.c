@@ -10,9 +10,8 @@ static float next_radius(const struct hf_layers_settings *set, float r)
     const float far_out = r / 32;
     if (set->fine)
         return r + fminf(fmaxf(0.5f, r / 4), fmaxf(1, r / 16)) * set->spacing / 2;
-    return r < 2 || (r < 4 && set->spacing <= 2) ? r + fminf(1, set->spacing)
-           : r == 2 && set->spacing > 2          ? set->spacing
-                                                 : r + fmaxf(set->spacing, far_out);
+    // A mixture of two discs is seen where one is much larger than the other: small radii lie closer.
+    return r + fmaxf(fminf(fmaxf(1, floorf(r / 2)), set->spacing), far_out);
 }
 
 // How much of a sample is left to a cover's slice where that counts most.

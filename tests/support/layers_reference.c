@@ -11,7 +11,7 @@ static double next_radius(const struct frame *f, double r)
     const double spacing = f->set.spacing;
     if (f->fine)
         return r + fmin(fmax(0.5, r / 4), fmax(1, r / 16)) * spacing / 2;
-    return r < 2 || (r < 4 && spacing <= 2) ? r + fmin(1, spacing) : r == 2 ? spacing : r + fmax(spacing, r / 32);
+    return r + fmax(fmin(fmax(1, floor(r / 2)), spacing), r / 32);
 }
 
 static int level_of(const struct frame *f, double r)
