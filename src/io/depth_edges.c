@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A map of depth that was smoothed or made smaller has distances at the outlines of objects at which there is nothing. They
 // are told from slopes by what lies around: two plateaus that fill most of the window, and little between.
+#include "io/depth_edges.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/depth_edges.h"
+#include "io/depth_blocks.h"
 
 // Pixels to each side that are looked at: an outline is found that is no wider than half of the window.
 enum { REACH = 3 };
@@ -95,20 +97,11 @@ static float sharpen_one(const struct window *w)
     return plateau_at(w, d - ends[0] < ends[1] - d ? ends[0] : ends[1], OF_PLATEAU * step);
 }
 
-// Rows that are sharpened together, and how many pixels of a row are told apart before one is looked at.
-enum { GROUP = 16, BLOCK = 1024 };
 // A little less than what an outline's neighbours differ by at least, of the larger: the product is rounded.
 static const float LEAST_NEAR_BY = 0.99f * 0.05f * 0.2f;
 
-struct sharpening {
-    const float *from;
-    float *to;
-    int width, height;
-    long long *changed;  // by group
-};
-
 // The least and the largest of three rows from x on; infinite where some is no number.
-static void ends_of_columns(const struct sharpening *s, int x, int n, int y, float *least, float *largest)
+static void ends_of_columns(const struct hf_io_depth *s, int x, int n, int y, float *least, float *largest)
 {
     const float *row[3];
     for (int k = 0; k < 3; k++) {
@@ -125,9 +118,11 @@ static void ends_of_columns(const struct sharpening *s, int x, int n, int y, flo
 }
 
 // Where 3 x 3 pixels do not differ enough, most of a picture, nothing else is asked.
-static void sharpen_block(const struct sharpening *s, int x0, int n, int y, long long *changed)
+static long long sharpen_block(const struct hf_io_depth *s, const void *unused, int x0, int n, int y)
 {
-    float least[BLOCK + 2], largest[BLOCK + 2];
+    float least[HF_IO_DEPTH_BLOCK + 2], largest[HF_IO_DEPTH_BLOCK + 2];
+    long long changed = 0;
+    (void)unused;
     const int from = x0 > 0 ? x0 - 1 : 0, to = x0 + n < s->width ? x0 + n + 1 : s->width;
     float *low = least + (from == x0), *high = largest + (from == x0);
     ends_of_columns(s, from, to - from, y, low, high);
@@ -143,38 +138,13 @@ static void sharpen_block(const struct sharpening *s, int x0, int n, int y, long
             continue;
         const struct window w = {s->from, s->width, s->height, x0 + i, y};
         float *d = s->to + (size_t)y * (size_t)s->width + (size_t)(x0 + i), sharp = sharpen_one(&w);
-        *changed += memcmp(&sharp, d, sizeof sharp) != 0;  // where it is no number it stays that
+        changed += memcmp(&sharp, d, sizeof sharp) != 0;  // where it is no number it stays that
         *d = sharp;
     }
-}
-
-static void sharpen_group(void *arg, int group, int worker)
-{
-    const struct sharpening *s = arg;
-    const int end = (group + 1) * GROUP < s->height ? (group + 1) * GROUP : s->height;
-    (void)worker;
-    s->changed[group] = 0;
-    for (int y = group * GROUP; y < end; y++)
-        for (int x = 0; x < s->width; x += BLOCK)
-            sharpen_block(s, x, x + BLOCK < s->width ? BLOCK : s->width - x, y, &s->changed[group]);
+    return changed;
 }
 
 int hf_io_sharpen_depth(float *depth, int width, int height, const struct hf_io_run *run, long long *changed)
 {
-    const size_t n = (size_t)width * (size_t)height;
-    const int groups = (height + GROUP - 1) / GROUP;
-    float *from = malloc(n * sizeof(float));
-    long long *counts = malloc((size_t)groups * sizeof *counts);
-    const int status = from && counts ? 0 : -1;
-    if (!status) {
-        struct sharpening s = {from, depth, width, height, counts};
-        memcpy(from, depth, n * sizeof(float));
-        hf_io_run(run, groups, sharpen_group, &s);
-        *changed = 0;
-        for (int i = 0; i < groups; i++)
-            *changed += counts[i];
-    }
-    free(from);
-    free(counts);
-    return status;
+    return hf_io_depth_blocks(depth, width, height, run, sharpen_block, NULL, changed);
 }
