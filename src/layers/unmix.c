@@ -113,9 +113,15 @@ static float between(float v, float a, float b)
     return v < high ? v : high;
 }
 
+// An eighth of how bright a colour is: of the largest samples, too, it is finite.
+static float eighth_light(float red, float green, float blue)
+{
+    return (fabsf(red) + fabsf(green) + fabsf(blue)) * 0.125f;
+}
+
 static float light_of(const struct hf_unmix_row *u, int y, int x)
 {
-    return (fabsf(u->colour[y][0][x]) + fabsf(u->colour[y][1][x]) + fabsf(u->colour[y][2][x])) * 0.125f;
+    return eighth_light(u->colour[y][0][x], u->colour[y][1][x], u->colour[y][2][x]);
 }
 
 // Sums of a side become its mean. Returns its colours' variance.
@@ -146,10 +152,9 @@ float hf_unmix_lamp(const struct hf_unmix_row *u, int x, float most, float alpha
 // How far the pixel is of a lamp behind the edge.
 static float lit(const struct hf_unmix_row *u, int x, float mean[2][5])
 {
-    float light[2];
-    for (int i = 0; i < 2; i++)
-        light[i] = (fabsf(mean[i][0]) + fabsf(mean[i][1]) + fabsf(mean[i][2])) * 0.125f;
-    const float most = light[0] > light[1] ? light[0] : light[1], wider = fabsf(mean[1][4]) - fabsf(mean[0][4]);
+    const float front = eighth_light(mean[0][0], mean[0][1], mean[0][2]),
+                back = eighth_light(mean[1][0], mean[1][1], mean[1][2]);
+    const float most = front > back ? front : back, wider = fabsf(mean[1][4]) - fabsf(mean[0][4]);
     const float alpha = mean[0][3] > mean[1][3] ? mean[0][3] : mean[1][3];
     return light_of(u, 3, x) > most * HF_UNMIX_LAMP && wider > 0 ? hf_saturate(wider) * hf_unmix_lamp(u, x, most, alpha)
                                                                  : 0;

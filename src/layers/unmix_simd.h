@@ -20,10 +20,16 @@ HF_INLINE vf layers_front(vf middle, vf slope, vf r)
     return vf_min(vf_max(s, vf_zero()), vf_set1(1));
 }
 
+// An eighth of how bright a colour is: of the largest samples, too, it is finite.
+HF_INLINE vf layers_eighth_light(vf red, vf green, vf blue)
+{
+    return vf_mul(vf_add(vf_add(vf_abs(red), vf_abs(green)), vf_abs(blue)), vf_set1(0.125f));
+}
+
 HF_INLINE vf layers_light_of(const struct hf_unmix_row *u, int y, int x)
 {
-    const vf sum = vf_add(vf_abs(vf_load(u->colour[y][0] + x)), vf_abs(vf_load(u->colour[y][1] + x)));
-    return vf_mul(vf_add(sum, vf_abs(vf_load(u->colour[y][2] + x))), vf_set1(0.125f));
+    return layers_eighth_light(vf_load(u->colour[y][0] + x), vf_load(u->colour[y][1] + x),
+                               vf_load(u->colour[y][2] + x));
 }
 
 // Sums of a side become its mean. Returns its colours' variance.
@@ -148,7 +154,7 @@ HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2
 {
     vf light[2];
     for (int i = 0; i < 2; i++)
-        light[i] = vf_mul(vf_add(vf_add(vf_abs(mean[i][0]), vf_abs(mean[i][1])), vf_abs(mean[i][2])), vf_set1(0.125f));
+        light[i] = layers_eighth_light(mean[i][0], mean[i][1], mean[i][2]);
     const vf most = vf_max(light[0], light[1]), wider = vf_sub(vf_abs(mean[1][4]), vf_abs(mean[0][4]));
     const vm bright = vm_and(vf_gt(layers_light_of(u, 3, x), vf_mul(most, vf_set1(HF_UNMIX_LAMP))),
                              vm_and(mixed, vf_gt(wider, vf_zero())));
