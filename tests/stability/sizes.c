@@ -241,7 +241,7 @@ static void copies(const struct run *r)
     scene_free(&s);
 }
 
-void sizes_cases(const struct run *r)
+void small_sizes_cases(const struct run *r)
 {
     at = mmap(NULL, PAGE, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (at == MAP_FAILED)
@@ -256,5 +256,9 @@ void sizes_cases(const struct run *r)
     const int lost = child < 0 || waitpid(child, &status, 0) != child || status != 0;
     see(r, "sizes: crashes", "none may be", lost, 0, "%s", lost ? at : "all sizes");
     munmap(at, PAGE);
+}
+
+void sizes_cases(const struct run *r)
+{
     copies(r);
 }

@@ -90,6 +90,7 @@ struct stability_options {
 int stability_run(const struct stability_options *o);
 
 void samples_cases(const struct run *r);
+void small_sizes_cases(const struct run *r);  // in a process of its own: r->c is not there
 void sizes_cases(const struct run *r);
 void invariance_cases(const struct run *r);
 void continuity_cases(const struct run *r);
