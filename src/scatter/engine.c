@@ -191,7 +191,7 @@ enum { FADE = 25 + 16 + 6 + 24, LEAST_EXPONENT = -149 };
 // a share and of the largest picture's area. Larger pictures than that cut what is darkest in a bin.
 static int bin_bits(const struct hf_scatter *t, int level, int room)
 {
-    enum { LEAST = 6, SHARE = 22 };
+    enum { SHARE = 22 };
     float area = 1;
     for (int field = 0; field < 2; field++) {
         const float r = level ? t->largest[field] / 2 : fminf(t->largest[field], fmaxf(t->half_to, 0));
@@ -201,7 +201,7 @@ static int bin_bits(const struct hf_scatter *t, int level, int room)
                 area = fmaxf(area, t->aperture.picture[plane * t->aperture.count + number].area);
         }
     }
-    return hf_max(room - SHARE + 1 - (int)ceil(log2((double)area)), LEAST);
+    return hf_max(room - SHARE + 1 - (int)ceil(log2((double)area)), HF_BIN_BITS);
 }
 
 // Bins from the brightest exponent down. top: samples are below 2^top. Alpha of 1 has the units of weights: where it is 1

@@ -3,6 +3,8 @@
 #ifndef HF_SCATTER_H
 #define HF_SCATTER_H
 
+#include <float.h>
+
 #include "pixel/aperture.h"
 
 // The engine's buffers.
@@ -20,8 +22,9 @@ enum hf_scatter_buf {
 
 // Sums have a fixed point, so samples of very different brightness have sums of their own: those of a bin are below
 // 2^62 of its units in all, and every share of a sample down to its least is a whole number of them. So the sums are
-// exact, whatever else is in the frame. What is darker than the last bin's is cut to its units.
-enum { HF_BINS = 16 };
+// exact, whatever else is in the frame. A bin takes at least HF_BIN_BITS exponents, so these bins hold all that floats
+// have. A frame draws on a few of them, and does not touch the memory of the others.
+enum { HF_BIN_BITS = 6, HF_BINS = (FLT_MAX_EXP - (FLT_MIN_EXP - FLT_MANT_DIG) + HF_BIN_BITS - 1) / HF_BIN_BITS };
 
 struct hf_bins {
     int count;
