@@ -431,8 +431,9 @@ enum hf_layers_quality {
 // HF_DERIVE leaves a number to the quality.
 struct hf_layers_params {
     enum hf_layers_quality quality;  // default HF_LAYERS_STANDARD
-    // Distance between slices, pixels of radius, 0.25 to 32. They lie at most 1, or half of their radius, apart, beyond 64 at
-    // least a 32nd of it; those of HIGH and BEST closer together by this over 2. Default HF_DERIVE.
+    // Distance between slices, pixels of radius, 0.25 to 32. From 1 on they lie at most 1, or a third of their radius, of DRAFT
+    // half of it, apart, beyond 64 at least a 32nd of it; those of HIGH and BEST closer together by this over 2. Default
+    // HF_DERIVE.
     float spacing;
     // CoC radii from which slices are blurred at half and a quarter of the resolution (and from four times the latter at
     // an eighth), 1 to 2048 pixels, half_from <= quarter_from. Default HF_DERIVE.

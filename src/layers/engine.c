@@ -57,10 +57,11 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
 
 static const struct hf_layers_settings qualities[] = {
     [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 6, .quarter = 32},
-    [HF_LAYERS_STANDARD] = {.spacing = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
-    [HF_LAYERS_HIGH] = {.spacing = 2.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 5, .quarter = 32},
+    [HF_LAYERS_STANDARD] =
+        {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
+    [HF_LAYERS_HIGH] = {.spacing = 2.5f, .fine = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
     [HF_LAYERS_BEST] =
-        {.spacing = 1.5f, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .patterns = 1, .half = 5, .quarter = 32},
+        {.spacing = 1.5f, .fine = 2, .unmix = 1, .hidden = 1, .highlights = 1, .patterns = 1, .half = 5, .quarter = 32},
 };
 
 static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)

@@ -70,7 +70,7 @@ struct hf_slice {
 // What a quality stands for.
 struct hf_layers_settings {
     float spacing;  // of the slices; small radii have it 1 anyway
-    int fine;       // slices lie closer: see slices.c
+    int fine;       // 0 to 2: slices lie closer, see slices.c
     int unmix, hidden, highlights;
     int patterns;                 // hidden samples take theirs from what looks alike
     float half, quarter, eighth;  // radii from which slices are blurred at these parts of the resolution

@@ -4,14 +4,17 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The radius after r >= 0. Far out, slices lie a share of their radius apart, which nobody sees.
+// The radius after r >= 0. Far out, slices lie a share of their radius apart, which nobody sees. There is none between 0 and
+// 1: a disc that covers no more than its own pixel would be as sharp as that, and a mixture of these two is not.
 static float next_radius(const struct hf_layers_settings *set, float r)
 {
     const float far_out = r / 32;
-    if (set->fine)
+    if (r < 1)
+        return r + 1;
+    if (set->fine > 1)
         return r + fminf(fmaxf(0.5f, r / 4), fmaxf(1, r / 16)) * set->spacing / 2;
     // A mixture of two discs is seen where one is much larger than the other: small radii lie closer.
-    return r + fmaxf(fminf(fmaxf(1, floorf(r / 2)), set->spacing), far_out);
+    return r + fmaxf(fminf(fmaxf(1, floorf(r / (float)(2 + set->fine))), set->spacing), far_out);
 }
 
 // How much of a sample is left to a cover's slice where that counts most.

@@ -9,9 +9,11 @@
 static double next_radius(const struct frame *f, double r)
 {
     const double spacing = f->set.spacing;
-    if (f->fine)
+    if (r < 1)
+        return r + 1;
+    if (f->fine > 1)
         return r + fmin(fmax(0.5, r / 4), fmax(1, r / 16)) * spacing / 2;
-    return r + fmax(fmin(fmax(1, floor(r / 2)), spacing), r / 32);
+    return r + fmax(fmin(fmax(1, floor(r / (2 + f->fine))), spacing), r / 32);
 }
 
 static int level_of(const struct frame *f, double r)
@@ -374,7 +376,9 @@ struct picture layers_reference(const struct picture *colour, const float *radiu
                       .channels = colour->channels,
                       .set = *p,
                       .aperture = params->aperture,
-                      .fine = p->quality == HF_LAYERS_HIGH || p->quality == HF_LAYERS_BEST,
+                      .fine = p->quality == HF_LAYERS_DRAFT      ? 0
+                              : p->quality == HF_LAYERS_STANDARD ? 1
+                                                                 : 2,
                       .unmix = !p->no_unmix,
                       .hidden = !p->no_hidden && p->quality != HF_LAYERS_DRAFT,
                       .highlights = !p->no_highlights,
