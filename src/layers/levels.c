@@ -142,14 +142,22 @@ static void find_farthest(struct band *b)
             b->farthest[y * b->stride + x] =
                 range_of(b, hf_at(at, 1, x0, y0), hf_at(at, 0, x0, y0), at->stride, x1 - x0, y1 - y0).high;
         }
+    // Along rows, then along columns, in place: what is found takes a row that is not read any more.
+    for (int y = -b->around; y < b->rows + b->around; y++)
+        for (int x = 0; x < b->columns; x++) {
+            float high = -HUGE_VALF;
+            for (int j = x - b->around; j <= x + b->around; j++)
+                high = fmaxf(b->farthest[y * b->stride + j], high);
+            b->within[y * b->stride + x] = high;
+        }
     for (int y = 0; y < b->rows; y++)
         for (int x = 0; x < b->columns; x++) {
             float high = -HUGE_VALF;
             for (int i = y - b->around; i <= y + b->around; i++)
-                for (int j = x - b->around; j <= x + b->around; j++)
-                    high = fmaxf(b->farthest[i * b->stride + j], high);
-            b->within[y * b->stride + x] = high;
+                high = fmaxf(b->within[i * b->stride + x], high);
+            b->within[(y - b->around) * b->stride + x] = high;
         }
+    b->within -= b->around * b->stride;
 }
 
 // Which blocks may find something: what is a pixel of radius behind their nearest.

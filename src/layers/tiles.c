@@ -24,13 +24,19 @@ struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct 
 static void mark_row(const struct hf_cell *c, const uint64_t *marks, int words, int slice, int n, int ty, int bit)
 {
     const struct hf_layers *l = c->l;
-    const int first = c->x0 / TILE - n, last = l->columns - 1;
-    const uint64_t *row = marks + (ptrdiff_t)tile_number(c, -c->x0 / TILE, ty) * words + slice / 64;
+    const int first = c->x0 / TILE - n, columns = c->columns + 2 * n, begin = hf_max(-first, 0),
+              end = hf_min(l->columns - first, columns);
+    const uint64_t *row = marks + (ptrdiff_t)tile_number(c, begin - n, ty) * words + slice / 64, *last = row;
+    const uint64_t *const left = row, mask = (uint64_t)1 << slice % 64;
     uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
-    for (int i = 0; i < c->columns + 2 * n; i++) {
-        const int x = hf_min(hf_max(first + i, 0), last);
-        used[i] |= (uint8_t)((row[(ptrdiff_t)x * words] >> slice % 64 & 1) * (unsigned)bit);
+    for (int i = begin; i < end; i++, row += words) {
+        used[i] |= *row & mask ? (uint8_t)bit : 0;
+        last = row;
     }
+    for (int i = 0; *left & mask && i < begin; i++)
+        used[i] |= (uint8_t)bit;
+    for (int i = end; *last & mask && i < columns; i++)
+        used[i] |= (uint8_t)bit;
 }
 
 void hf_layers_mark_plain(const struct hf_cell *c)
