@@ -84,8 +84,9 @@ static void layers_fold_simd(const float *in, int n, float *out)
 }
 
 // Two rows at once: what they add to a row of the result is added in registers. `side` vectors side by side.
+// Most of what a sparse slice adds is nothing, which is not read and written.
 HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, const float *lower, const int side,
-                              int from, int to, float *out, ptrdiff_t stride)
+                              const int sparse, int from, int to, float *out, ptrdiff_t stride)
 {
     // Of the upper row and the lower one; pair: what comes next on either side of what the sums hold.
     vf sum[2][LAYERS_SIDE], last[2][LAYERS_SIDE], pair[2][LAYERS_SIDE];
@@ -114,7 +115,9 @@ HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, cons
             const int y = i ? d + 1 : -d;
             for (int j = 0; y >= from && y < to && j < side; j++) {
                 float *o = out + y * stride + j * VF_N;
-                vf_store(o, vf_add(vf_load(o), vf_add(v[i][j], last[!i][j])));
+                const vf more = vf_add(v[i][j], last[!i][j]);
+                if (!sparse || vm_any(vf_ne(more, vf_zero())))
+                    vf_store(o, vf_add(vf_load(o), more));
             }
         }
         for (int i = 0; i < 2; i++)
@@ -123,12 +126,21 @@ HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, cons
     }
 }
 
-static void layers_disc_simd(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
-                             float *out, ptrdiff_t stride)
+HF_INLINE void layers_disc_all(const struct hf_slice *s, const float *upper, const float *lower, int n,
+                               const int sparse, int from, int to, float *out, ptrdiff_t stride)
 {
     int x = 0;
     for (; x + LAYERS_SIDE * VF_N <= n; x += LAYERS_SIDE * VF_N)
-        layers_disc_of(s, upper + x, lower + x, LAYERS_SIDE, from, to, out + x, stride);
+        layers_disc_of(s, upper + x, lower + x, LAYERS_SIDE, sparse, from, to, out + x, stride);
     for (; x < n; x += VF_N)
-        layers_disc_of(s, upper + x, lower + x, 1, from, to, out + x, stride);
+        layers_disc_of(s, upper + x, lower + x, 1, sparse, from, to, out + x, stride);
+}
+
+static void layers_disc_simd(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
+                             float *out, ptrdiff_t stride)
+{
+    if (s->sparse)
+        layers_disc_all(s, upper, lower, n, 1, from, to, out, stride);
+    else
+        layers_disc_all(s, upper, lower, n, 0, from, to, out, stride);
 }

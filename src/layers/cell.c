@@ -44,16 +44,19 @@ static size_t place(struct hf_cell *c, float *memory)
     c->used = take_map(&m, c->columns, c->rows, n);
     c->plain = take_map(&m, c->columns, c->rows, n);
     c->filled = take_map(&m, c->columns, TILE / 2, n);
-    struct hf_tile_map *const maps[] = {&c->touched, &c->shone,  &c->near,   &c->far,    &c->middle,
+    struct hf_tile_map *const maps[] = {&c->touched, &c->near,   &c->far,    &c->middle,
                                         &c->begun,   &c->lit[0], &c->lit[1], &c->covered};
-    for (int i = 0; i < 9; i++)
+    for (int i = 0; i < 8; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
     c->source.channel = wide;
     c->source.row = (ptrdiff_t)wide * (channels + 1);
     c->source.at = take(&m, (size_t)c->source.row * TILE, n * TILE + AROUND);
     for (int i = 0; i <= HF_LAYERS_COARSEST; i++)
         c->sum[i] = take_window(&m, width >> i, height >> i, channels + 1);
-    c->shine = take_window(&m, width, height, 3);
+    for (int i = 0; i < (c->l->set.highlights ? c->l->parts : 0); i++) {
+        c->shine[i].shone = take_map(&m, c->columns, c->rows, 1);
+        c->shine[i].sum = take_window(&m, width, height, 3);
+    }
     for (int i = 0; i < 3; i++)
         c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2, channels + 3);
     for (int i = 0; i < 2; i++)

@@ -33,6 +33,12 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
     }
 }
 
+void hf_layers_light_c(const float *part, float amount, const float *in, int n, float *out)
+{
+    for (int x = 0; x < n; x++)
+        out[x] = part[x] * amount * in[x] + out[x];
+}
+
 void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
                         int channels, float faint, int n, float *const out[4])
 {

@@ -57,6 +57,14 @@ static void layers_blend_simd(const struct hf_stack_row *to, int channels, const
         layers_blend_sums(to, 4, in, sums, n, part);
 }
 
+// The sum is no fused one, whatever the others are.
+static void layers_light_simd(const float *part, float amount, const float *in, int n, float *out)
+{
+    const vf much = vf_set1(amount);
+    for (int x = 0; x < n; x += VF_N)
+        vf_store(out + x, vf_add(vf_mul(vf_mul(vf_load(part + x), much), vf_load(in + x)), vf_load(out + x)));
+}
+
 static void layers_finish_simd(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
                                int channels, float faint, int n, float *const out[4])
 {

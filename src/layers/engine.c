@@ -154,7 +154,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     set_shape(l, p);
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
-    l->parts = l->shaped ? 1 : 4;
+    l->parts = l->shaped ? 1 : HF_LAYERS_PARTS;
     int err = hf_block_grow(&l->tiles, tiles * 2 * sizeof(struct hf_layers_range) + 2, mem);
     if (!err)
         err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
@@ -346,6 +346,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .runs = hf_layers_runs_c,
         .weights = hf_layers_weights_c,
         .stamp = hf_layers_stamp_c,
+        .light = hf_layers_light_c,
         .up = hf_layers_up_c,
         .blend = hf_layers_blend_c,
         .finish = hf_layers_finish_c,

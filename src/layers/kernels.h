@@ -84,6 +84,8 @@ typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
 enum hf_layers_sums { HF_SUMS_HIDING, HF_SUMS_SEEN, HF_SUMS_HIDDEN };
 typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, const float *const in[5],
                              enum hf_layers_sums sums, int n, float *part);
+// Shares of one radius, of which a slice shows so much: out += part * amount * in.
+typedef void hf_layers_light(const float *part, float amount, const float *in, int n, float *out);
 // The result of n pixels from what is near and, if not NULL, what is far, a gap before coverage below `faint` being
 // shared by both; where the result is the pixel itself, its own bits.
 typedef void hf_layers_finish(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
@@ -115,6 +117,7 @@ struct hf_layers_kernels {
     hf_layers_stamp *stamp;
     hf_layers_up *up;
     hf_layers_blend *blend;
+    hf_layers_light *light;
     hf_layers_finish *finish;
 };
 HF_DECLARE_KERNELS(hf_layers_kernels);
@@ -188,6 +191,7 @@ hf_layers_weights hf_layers_weights_c;
 hf_layers_stamp hf_layers_stamp_c;
 hf_layers_up hf_layers_up_c;
 hf_layers_blend hf_layers_blend_c;
+hf_layers_light hf_layers_light_c;
 hf_layers_finish hf_layers_finish_c;
 
 extern const struct hf_engine_def hf_layers_engine;

@@ -20,6 +20,7 @@
 enum {
     HF_LAYERS_TILE = 16,     // pixels; the extremes of the radii are kept for each tile
     HF_LAYERS_LEVELS = 7,    // of the hidden samples, at most
+    HF_LAYERS_PARTS = 4,     // of the way from one slice of shares to the next, at most
     HF_LAYERS_COARSEST = 3,  // log2 of the largest pixels of a slice
     // Pixels beyond the frame's border of which there are samples: a tile, what makes the frame whole tiles, and vectors.
     HF_LAYERS_BORDER = 3 * HF_LAYERS_TILE

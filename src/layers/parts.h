@@ -31,6 +31,13 @@ enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
 
 enum { NEAR, FAR, MIDDLE };
 
+// Shares of one radius, drawn. Those between two slices are a part of both: the second finds them here.
+struct hf_shine {
+    int number, any;           // of what: from 1 on; whether there are any
+    struct hf_tile_map shone;  // tiles that their blur reaches
+    struct hf_window sum;
+};
+
 struct hf_cell {
     const struct hf_layers *l;
     const struct hf_samples *samples;
@@ -42,11 +49,12 @@ struct hf_cell {
     struct hf_tile_map plain;              // what the samples that are seen have in common, see below
     struct hf_tile_map filled;             // pairs of rows of a row of tiles: where there are any
     struct hf_tile_map touched;            // tiles that its blur reaches, one more around the cell
-    struct hf_tile_map shone;              // the same of its shares at full resolution
     struct hf_tile_map near, far, middle;  // where the slices of a stack reach, but for what is in focus
     struct hf_tile_map begun, lit[2];      // tiles of the middle, and of the lights, that hold something
     int opened[2];                         // near and far stack hold something
-    struct hf_window source, sum[HF_LAYERS_COARSEST + 1], shine;
+    int covering;                          // the far stack is not open wholly somewhere
+    struct hf_window source, sum[HF_LAYERS_COARSEST + 1];
+    struct hf_shine shine[HF_LAYERS_PARTS];
     struct hf_window stack[3], light[2];  // near, far, middle; what shines of near and far
     float *line[6];                       // sums at full resolution, on their way to the source's
     float *row[5];                        // upsampled

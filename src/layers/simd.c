@@ -34,6 +34,7 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->runs = layers_runs_simd;
     k->weights = layers_weights_simd;
     k->stamp = layers_stamp_simd;
+    k->light = layers_light_simd;
     k->up = layers_up_simd;
     k->blend = layers_blend_simd;
     k->finish = layers_finish_simd;

@@ -51,7 +51,7 @@ static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_su
                                  c->row[as]);
                 }
                 c->k->blend(&to, channels, in, sums, s.x1 - s.x0, keep_part ? c->part + y * c->part_row + s.x0 : NULL);
-                if (keep_part && stack == FAR)
+                if (keep_part && stack == FAR && c->covering)
                     for (int x = s.x0; x < s.x1; x++)
                         c->part[y * c->part_row + x] *= c->lift[y * c->part_row + x];
             }
@@ -79,12 +79,12 @@ static void fill_tile(const struct hf_window *w, int channel, int tx, int y, flo
 enum { LIT = 3 };
 
 // No light where there is none yet.
-static void begin_light(const struct hf_cell *c, int stack)
+static void begin_light(const struct hf_cell *c, int stack, const struct hf_tile_map *shone)
 {
     for (int ty = 0; ty < c->rows; ty++)
         for (int tx = 0; tx < c->columns; tx++) {
             uint8_t *lit = hf_layers_map_at(&c->lit[stack], tx, ty);
-            if (*lit || !*hf_layers_map_at(&c->shone, tx, ty))
+            if (*lit || !*hf_layers_map_at(shone, tx, ty))
                 continue;
             *lit = 1;
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
@@ -145,28 +145,34 @@ static float part_of(const struct hf_slice *s, float r)
                                            : 1 - (square - s->square) * s->after_scale;
 }
 
-// Shares of highlights of one radius, at full resolution, where the slice shows.
-static void put_light(struct hf_cell *c, int stack, int slice, float amount)
+// Draw shares of highlights of one radius, at full resolution, unless the slice before has.
+static void draw_light(struct hf_cell *c, int number, struct hf_shine *shine)
 {
-    const struct hf_layers *l = c->l;
-    const struct hf_slice *wide = &l->shine[slice];
+    const struct hf_slice *wide = &c->l->shine[number];
     const struct hf_build b = {.s = wide, .set = &c->samples->seen, .weight = c->samples->share, .channels = LIT};
-    if (!hf_layers_mark_used(c, slice, HF_KIND_SHARES) || !hf_layers_mark_touched(c, wide, &c->shone))
+    if (shine->number == number + 1)
         return;
-    hf_layers_draw_slice(c, &b, &c->shone, &c->shine);
+    shine->number = number + 1;
+    shine->any = hf_layers_mark_used(c, number, HF_KIND_SHARES) && hf_layers_mark_touched(c, wide, &shine->shone);
+    if (shine->any)
+        hf_layers_draw_slice(c, &b, &shine->shone, &shine->sum);
+}
+
+// Put them where the slice shows.
+static void put_light(struct hf_cell *c, int stack, const struct hf_shine *shine, float amount)
+{
     const struct hf_window *to = &c->light[stack];
-    begin_light(c, stack);
+    begin_light(c, stack, &shine->shone);
     for (int ty = 0; ty < c->rows; ty++)
-        for (int tx = 0, end; (end = hf_layers_next_run(&c->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
+        for (int tx = 0, end; (end = hf_layers_next_run(&shine->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
                 const int x0 = tx * TILE, n = (end - tx) * TILE;
                 const float *a = c->part + (y >> 1) * c->part_row + (x0 >> 1);
                 c->k->up(a, a + (y & 1 ? c->part_row : -c->part_row), n / 2, c->row[0]);
                 for (int i = 0; i < LIT; i++) {
-                    const float *in = c->shine.at + y * c->shine.row + i * c->shine.channel + x0;
+                    const float *in = shine->sum.at + y * shine->sum.row + i * shine->sum.channel + x0;
                     float *out = to->at + y * to->row + i * to->channel + x0;
-                    for (int x = 0; x < n; x++)
-                        out[x] = c->row[0][x] * amount * in[x] + out[x];
+                    c->k->light(c->row[0], amount, in, n, out);
                 }
             }
 }
@@ -175,10 +181,14 @@ static void put_light(struct hf_cell *c, int stack, int slice, float amount)
 static void put_lights(struct hf_cell *c, int stack, int slice)
 {
     const struct hf_layers *l = c->l;
-    const int first = slice > 0 ? l->slice[slice - 1].shine + 1 : 0,
+    const int before = slice > 0 ? l->slice[slice - 1].shine : -1, own = l->slice[slice].shine,
               end = slice + 1 < l->slices ? l->slice[slice + 1].shine : l->shines;
-    for (int i = first; i < end; i++)
-        put_light(c, stack, i, part_of(&l->slice[slice], l->shine[i].radius));
+    for (int i = before + 1; i < end; i++) {
+        struct hf_shine *shine = &c->shine[i - (i < own ? before : own)];
+        draw_light(c, i, shine);
+        if (shine->any)
+            put_light(c, stack, shine, part_of(&l->slice[slice], l->shine[i].radius));
+    }
 }
 
 void hf_layers_put_slice(struct hf_cell *c, int i)
@@ -241,6 +251,7 @@ static void cover_with(struct hf_cell *c, enum hf_kind kind)
     const struct hf_window *from = &c->sum[1];
     hf_layers_draw_slice(c, &b, &c->touched, from);
     begin_stack(c, FAR);
+    c->covering = 1;
     mark(c, &c->touched, &c->covered);
     for (int ty = -1; ty <= c->rows; ty++)
         for (struct hf_span span = {.tx = -1}; hf_layers_next_span(c, &c->touched, 1, ty, &span);) {

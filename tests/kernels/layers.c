@@ -291,8 +291,15 @@ static void disc_make(struct world *w)
     now.to = rng_int(r, now.from, DISC_ROWS + 1);
     for (int i = 0; i < 2; i++)
         fill(w, i, -MOST - 2, w->n + MOST + 2, COLOUR);
+    // Few sources, and sums that began with 0, so that none is -0.
+    now.slice.sparse = rng_one_in(r, 2);
+    for (int i = 0; now.slice.sparse && i < 2; i++)
+        for (int x = -MOST - 2; x < w->n + MOST + 2; x++)
+            line(w, ARENA_MADE, i)[x] = rng_one_in(r, 40) ? line(w, ARENA_MADE, i)[x] : 0;
     for (int i = 0; i < 2 * DISC_ROWS + 2; i++) {
         fill(w, IN + i, 0, w->n, COLOUR);
+        for (int x = 0; now.slice.sparse && x < w->n; x++)
+            line(w, ARENA_MADE, IN + i)[x] += 0.0f;
         put(w, IN + i, w->n, 32);
     }
     now.roundings = 4 * MOST + 8;
@@ -480,6 +487,11 @@ void layers_make(struct world *w, int which)
             line(w, ARENA_MADE, 1)[x] = rng_float(&w->rng, 0, 1);
         now.roundings = 2 * MOST + 4;
         break;
+    case LAYERS_LIGHT:
+        fill(w, 0, 0, w->n, WEIGHT);
+        fill(w, 1, 0, w->n, COLOUR);
+        now.roundings = 3;
+        break;
     case LAYERS_UP:
         fill(w, 0, -1, w->n + 1, COLOUR);
         fill(w, 1, -1, w->n + 1, COLOUR);
@@ -519,6 +531,8 @@ static void drawing_call(struct world *w, const struct kernels *k, enum arena a,
         s->pairs(line(w, a, 0), now.rows, w->n, out);
     else if (which == LAYERS_FOLD)
         s->fold(line(w, a, 0), w->n, out);
+    else if (which == LAYERS_LIGHT)
+        s->light(line(w, a, 0), now.part, line(w, a, 1), w->n, out);
     else
         s->up(line(w, a, 0), line(w, a, 1), w->n, out);
 }

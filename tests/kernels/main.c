@@ -135,6 +135,7 @@ const struct test tests[] = {
     ROW("layers_runs", LAYERS_RUNS, 600, layers_make, layers_call, layers_check),
     ROW("layers_weights", LAYERS_WEIGHTS, 600, layers_make, layers_call, layers_check),
     ROW("layers_stamp", LAYERS_STAMP, 600, layers_make, layers_call, layers_check),
+    ROW("layers_light", LAYERS_LIGHT, 600, layers_make, layers_call, layers_check),
     ROW("layers_up", LAYERS_UP, 600, layers_make, layers_call, layers_check),
     ROW("layers_blend", LAYERS_BLEND, 600, layers_make, layers_call, layers_check),
     ROW("layers_finish", LAYERS_FINISH, 600, layers_make, layers_call, layers_check),
