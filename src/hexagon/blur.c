@@ -3,23 +3,24 @@
 #include <math.h>
 
 #include "hexagon/kernels.h"
+#include "pixel/edges.h"
 
 // ---- Load ----
 
-static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
+static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r, struct hf_edges *e)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
     const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
     float *colour[4], *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *over = hf_at(weight, 2, x0, y);
     hf_row(&f->buf[HF_HEXAGON_COLOUR], f->s->channels, x0, y, colour);
-    hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
-    f->k->radius_row(f, x0, y, n, q, NULL);
+    const float *whole = hf_hexagon_row(e, f, y, r, colour, q);
     for (int x = 0; x < n; x++) {
         const float m = __builtin_fabsf(q[x]);
-        a[x] = 1 / (m > 1 ? m : 1);
-        over[x] = q[x] > 0 ? a[x] / q[x] : sqrtf(a[x]);
+        const float share = 1 / (m > 1 ? m : 1), w = whole ? whole[x] : 1;
+        a[x] = w * share;
+        over[x] = q[x] > 0 ? a[x] / q[x] : w * sqrtf(share);
         for (int c = 0; c < f->s->channels; c++)
-            colour[c][x] *= a[x] * HEXAGON_SCALE;
+            colour[c][x] *= share * HEXAGON_SCALE;
     }
 }
 
@@ -95,8 +96,15 @@ static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 void hf_hexagon_load_c(const struct hf_frame *f, struct hf_rect r)
 {
     const int half = f->s->resolution == HF_RESOLUTION_HALF;
+    struct hf_edges e;
+    const int mixed = !half && hf_hexagon(f->s)->mixed;
+    if (mixed)
+        hf_edges_start(&e, f, r, f->work);
     for (int y = half ? r.y0 : 2 * r.y0; y < (half ? r.y1 : hf_min(2 * r.y1, f->s->height)); y++)
-        (half ? load_half_row : load_full_row)(f, y, r);
+        if (half)
+            load_half_row(f, y, r);
+        else
+            load_full_row(f, y, r, mixed ? &e : NULL);
 }
 
 // ---- the passes ----

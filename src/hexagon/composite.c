@@ -6,6 +6,7 @@
 // The fields at a pixel: the near one with its coverage, the far one with its weight, what lies behind with its own.
 struct fields {
     float near[5], far[5], behind[5];
+    float source[4], part;  // of a far pixel, or of what is far in a mixed one
 };
 
 static void fields_full(const struct hf_frame *f, int x, int y, struct fields *v)
@@ -18,6 +19,10 @@ static void fields_full(const struct hf_frame *f, int x, int y, struct fields *v
     v->near[4] = f->near ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, x, y) : 0;
     v->behind[4] = f->near ? *hf_at(hf_hexagon_made(f, HF_HEXAGON_BEHIND_W), 0, x, y) : 0;
     v->far[4] = 1;
+    const float r = *hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, x, y), size = r > 1 ? r : 1;
+    v->part = *hf_at(&f->buf[HF_HEXAGON_WEIGHT], 0, x, y) * size;
+    for (int c = 0; c < f->s->channels; c++)
+        v->source[c] = *hf_at(&f->buf[HF_HEXAGON_COLOUR], c, x, y) * size;
 }
 
 // Bilinear between half-resolution pixels; far ones count as far as they are far.
@@ -96,6 +101,12 @@ static float left_over(const struct hf_setup *s, float coverage, float p, int x,
     return o > 0 ? o : 0;
 }
 
+// A far pixel; of a mixed one what is far in it.
+static float far_full(const struct fields *v, int c, float own)
+{
+    return v->part < HEXAGON_WHOLE ? own + (v->part * v->far[c] - v->source[c]) : v->far[c];
+}
+
 static void composite_pixel(const struct hf_frame *f, int x, int y, float p, float *const colour[4], int i)
 {
     const int half = f->s->resolution == HF_RESOLUTION_HALF;
@@ -106,7 +117,7 @@ static void composite_pixel(const struct hf_frame *f, int x, int y, float p, flo
     for (int c = 0; c < f->s->channels && (has_far || cover != 0); c++) {
         float b = colour[c][i] * HEXAGON_SCALE;
         if (has_far)
-            b = half ? hf_lerp(b, v.far[c] / v.far[4], hf_saturate(0.5f * p)) : v.far[c];
+            b = half ? hf_lerp(b, v.far[c] / v.far[4], hf_saturate(0.5f * p)) : far_full(&v, c, b);
         if (p < 0)
             b = background(&v, c, b, p);
         if (cover != 0)
@@ -126,6 +137,8 @@ void hf_hexagon_composite_c(const struct hf_frame *f, struct hf_rect r)
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->counts);
         f->k->radius_row(f, x0, y, n, radius, NULL);
+        for (int i = 0; i < n && f->s->resolution == HF_RESOLUTION_FULL; i++)
+            radius[i] = *hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, x0 + i, y);
         for (int i = 0; i < n; i++)
             composite_pixel(f, x0 + i, y, radius[i], colour, i);
         hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)colour, f->s->channels == 4);

@@ -4,6 +4,7 @@
 #include "hexagon/kernels.h"
 #include "pixel/behind.h"
 #include "pixel/coc_vf.h"
+#include "pixel/edges.h"
 
 // ---- Load ----
 
@@ -16,25 +17,25 @@ static int hex_streams(const struct hf_frame *f, const float *row)
     return planes * stride * (size_t)f->s->height * sizeof(float) > LARGE && (uintptr_t)row % sizeof(vf) == 0;
 }
 
-static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r)
+static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r, struct hf_edges *e)
 {
     const struct hf_setup *s = f->s;
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, s->width) - x0;
     const struct hf_buf *weight = &f->buf[HF_HEXAGON_WEIGHT];
     float *a = hf_at(weight, 0, x0, y), *q = hf_at(weight, 1, x0, y), *over = hf_at(weight, 2, x0, y), *out[4];
-    float *const colour[4] = {hf_line(f, 8), hf_line(f, 9), hf_line(f, 10), hf_line(f, 11)}, *radius = hf_line(f, 12);
+    float *const colour[4] = {hf_line(f, 13), hf_line(f, 14), hf_line(f, 15), hf_line(f, 16)}, *radius = hf_line(f, 17);
     hf_row(&f->buf[HF_HEXAGON_COLOUR], s->channels, x0, y, out);
-    hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
-    f->k->radius_row(f, x0, y, n, radius, NULL);
+    const float *whole = hf_hexagon_row(e, f, y, r, colour, radius);
     // What lies at the frame's edges is read at once, to be repeated outwards.
     const int inner = y > 0 && y < s->height - 1 && hex_streams(f, a);
     for (int x = 0; x < n; x += VF_N) {
         const int stream = inner && x0 + x > 0 && x0 + x + VF_N < s->width;
-        const vf own = vf_load(radius + x), spread = vf_max(vf_abs(own), vf_set1(1)), w = vf_div(vf_set1(1), spread);
+        const vf own = vf_load(radius + x), share = vf_div(vf_set1(1), vf_max(vf_abs(own), vf_set1(1)));
+        const vf part = whole ? vf_load(whole + x) : vf_set1(1), w = vf_mul(part, share);
         vf_put(a + x, w, stream);
         vf_put(q + x, own, stream);
-        vf_put(over + x, vf_select(vf_gt(own, vf_zero()), vf_div(w, own), vf_sqrt(w)), stream);
-        const vf darker = vf_mul(w, vf_set1(HEXAGON_SCALE));
+        vf_put(over + x, vf_select(vf_gt(own, vf_zero()), vf_div(w, own), vf_mul(part, vf_sqrt(share))), stream);
+        const vf darker = vf_mul(share, vf_set1(HEXAGON_SCALE));
         for (int c = 0; c < s->channels; c++)
             vf_put(out[c] + x, vf_mul(vf_load(colour[c] + x), darker), stream);
     }
@@ -122,11 +123,15 @@ static void hex_load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 static void hexagon_load_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const int half = f->s->resolution == HF_RESOLUTION_HALF;
+    struct hf_edges e;
+    const int mixed = !half && hf_hexagon(f->s)->mixed;
+    if (mixed)
+        hf_edges_start(&e, f, r, f->work);
     for (int y = half ? r.y0 : 2 * r.y0; y < (half ? r.y1 : hf_min(2 * r.y1, f->s->height)); y++)
         if (half)
             hex_load_half_row(f, y, r);
         else
-            hex_load_full_row(f, y, r);
+            hex_load_full_row(f, y, r, mixed ? &e : NULL);
     vf_stream_end();
 }
 
@@ -219,11 +224,20 @@ HF_INLINE vf hex_background(const struct hex_behind *v, int c, vf near, vf cover
     return vf_lerp(seen, own, coc_saturate(vf_add(vf_set1(HEXAGON_ALL), p)));
 }
 
+// A far pixel; of a mixed one what is far in it.
+HF_INLINE vf hex_far_colour(vf far, vf source, vf own, vf part, vf size, vm is_far)
+{
+    const vf mixed = vf_add(own, vf_sub(vf_mul(part, far), vf_mul(source, size)));
+    return vf_select(is_far, vf_select(vf_lt(part, vf_set1(HEXAGON_WHOLE)), mixed, far), own);
+}
+
 HF_INLINE void hex_composite_full(const struct hf_frame *f, int x0, int y, int n, float *const colour[4],
                                   const int has_near, const int has_far)
 {
     const float *radius = hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, x0, y);
-    float *near[4], *far[4], *coverage[4], *behind[4], *weight[4];
+    const float *share = hf_at(&f->buf[HF_HEXAGON_WEIGHT], 0, x0, y);
+    float *near[4], *far[4], *coverage[4], *behind[4], *weight[4], *source[4];
+    hf_row(&f->buf[HF_HEXAGON_COLOUR], f->s->channels, x0, y, source);
     hf_row(hf_hexagon_made(f, HF_HEXAGON_BEHIND), f->s->channels, x0, y, behind);
     hf_row(hf_hexagon_made(f, HF_HEXAGON_BEHIND_W), 1, x0, y, weight);
     hf_row(hf_hexagon_made(f, HF_HEXAGON_NEAR), f->s->channels, x0, y, near);
@@ -233,6 +247,7 @@ HF_INLINE void hex_composite_full(const struct hf_frame *f, int x0, int y, int n
         const vf p = vf_load(radius + x), a = has_near ? vf_load(coverage[0] + x) : vf_zero();
         const vf left = has_near ? hex_left_over(f->s, a, p, x0 + x, 1, y) : vf_zero(), all = vf_add(a, left);
         const vm is_far = vf_gt(p, vf_zero()), is_near = vf_ne(a, vf_zero()), covers = vf_lt(p, vf_zero());
+        const vf size = vf_max(p, vf_set1(1)), part = vf_mul(vf_load(share + x), size);
         const int any = has_near && vm_any(covers);
         struct hex_behind back = {.weight = vf_zero()};
         for (int c = 0; c < f->s->channels && any; c++)
@@ -242,7 +257,7 @@ HF_INLINE void hex_composite_full(const struct hf_frame *f, int x0, int y, int n
         for (int c = 0; c < f->s->channels; c++) {
             vf b = vf_mul(vf_load(colour[c] + x), vf_set1(HEXAGON_SCALE));
             if (has_far)
-                b = vf_select(is_far, vf_load(far[c] + x), b);
+                b = hex_far_colour(vf_load(far[c] + x), vf_load(source[c] + x), b, part, size, is_far);
             if (any)
                 b = vf_select(covers, hex_background(&back, c, vf_load(near[c] + x), a, b, p), b);
             if (has_near)

@@ -6,6 +6,7 @@
 #include "frame/plan.h"
 #include "hexagon/kernels.h"
 #include "pixel/behind.h"
+#include "pixel/edges.h"
 
 #define FRAME(name) (1u << HF_HEXAGON_##name)
 #define MADE(name)                                                                                                     \
@@ -22,12 +23,12 @@ enum { HALO_RADIUS = 1, HALO_BEHIND, HALO_UPSAMPLE };
 
 static const struct hf_pass passes[HF_HEXAGON_PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 3},
-    {"Load", .writes = INPUT | SEEN, .sweep = 1, .ns = 10},
+    {"Load", .writes = INPUT | SEEN, .sweep = 1, .ns = 20},
     {"Passes 1 and 2", .around = INPUT, .writes = FIELDS, .halo = HALO_RADIUS, .sweep = 2, .ns = 27, .ns_radius = 2.7f},
     {"Behind", .around = SEEN, .writes = BEHIND, .halo = HALO_BEHIND, .sweep = 2, .field = HF_NEAR, .ns = 23,
      .ns_radius = 1.45f},
-    {"Composite", .reads = FRAME(WEIGHT), .around = FIELDS | BEHIND | FRAME(FAR_WEIGHT_2), .halo = HALO_UPSAMPLE,
-     .sweep = 2, .ns = 14},
+    {"Composite", .reads = FRAME(WEIGHT) | FRAME(COLOUR), .around = FIELDS | BEHIND | FRAME(FAR_WEIGHT_2),
+     .halo = HALO_UPSAMPLE, .sweep = 2, .ns = 14},
 };
 
 #define FULL .x = 1, .y = 1
@@ -99,7 +100,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 {
     struct hf_hexagon *h = own;
     (void)depth;
-    h->ready = h->reach_x = h->reach_y = h->behind = 0;
+    h->ready = h->reach_x = h->reach_y = h->behind = h->mixed = 0;
     h->rotation = p->aperture.rotation;
     s->resolution = p->hexagon.resolution;
     s->uniform = p->hexagon.uniform;
@@ -277,6 +278,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     double u[3][2];
     directions(h->rotation, u);
     const double step = spacing(s, u);
+    h->mixed = s->resolution == HF_RESOLUTION_FULL && found->radius_max - found->radius_min > HF_EDGES_FROM;
     h->behind = hf_behind_levels(fmaxf(-found->radius_min, 0));
     for (int i = 0; i < 3; i++) {
         struct hf_hexagon_line *l = &h->line[i];
@@ -312,11 +314,12 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     return halo == HALO_BEHIND ? (struct hf_reach){behind, behind} : (struct hf_reach){upsample, upsample};
 }
 
-// A far pixel changes itself alone, and so does what lies behind a near one.
+// A far pixel changes itself alone, and those that are mixed with it, and so does what lies behind a near one.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_plan *p, unsigned field)
 {
     const struct hf_reach made = p->pass[HF_HEXAGON_BLUR], around = halo(s, HALO_RADIUS);
-    return field == HF_FAR ? (struct hf_reach){0, 0} : (struct hf_reach){made.x + around.x, made.y + around.y};
+    const int mixed = hf_hexagon(s)->mixed;
+    return field == HF_FAR ? (struct hf_reach){mixed, mixed} : (struct hf_reach){made.x + around.x, made.y + around.y};
 }
 
 static unsigned reads(const struct hf_setup *s, unsigned needs)
@@ -331,7 +334,9 @@ static size_t work(const struct hf_setup *s, const struct hf_plan *p)
     const size_t band = hf_hexagon(s)->ready ? hf_hexagon_band_floats(s, p->cell_width[2] + 2) : 0;
     const size_t behind = hf_behind_floats(hf_hexagon(s)->behind, s->channels + 1);
     const size_t most = band > behind ? band : behind;
-    return most > p->line_floats ? most : p->line_floats;
+    const size_t edges = hf_hexagon(s)->mixed ? hf_edges_floats(p->cell_width[1], s->channels) : 0;
+    const size_t all = most > edges ? most : edges;
+    return all > p->line_floats ? all : p->line_floats;
 }
 
 // Narrow enough that a band stays in the second-level cache, but wider than the rim that is made of it twice.

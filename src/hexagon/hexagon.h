@@ -111,6 +111,7 @@ struct hf_hexagon {
     int left, right, above, below;
     float side[3][2];  // 1 / what the sides' directions go along x and y, in pixels for 1 pixel of radius
     float clear[2];    // farther from the frame's edges than this times its radius a hexagon lies inside; and a pixel
+    int mixed;         // there may be mixed pixels
     int behind;        // neighbourhoods that near radii ask for (pixel/behind.h)
     int reach_x, reach_y;  // of one blur in this frame, half-resolution pixels, once its depth has been looked at
     struct hf_block block;
@@ -182,6 +183,8 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 // Of what a pixel of radius p finds, how little is too little, and from which p on it need not be all.
 #define HEXAGON_LEAST 0.25f
 #define HEXAGON_ALL 2.0f
+// A sample of this weight is whole.
+#define HEXAGON_WHOLE (1 - 0x1p-20f)
 
 // Colours are summed up this much darker, so that no sum overflows where none of its samples does: a line's weights add
 // up to at most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times

@@ -20,6 +20,12 @@ static inline const struct hf_hexagon_kernels *hf_hexagon_kernels(const struct h
 hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_behind_pass,
     hf_hexagon_composite_c;
 
+// Row y of a rectangle of pixels, mixed ones as samples (mixed.c), e NULL if there are none. Uses the frame's rows from 0
+// to 12 and from 18 on. Returns the samples' weights, NULL if all are 1; colours are times these.
+struct hf_edges;
+const float *hf_hexagon_row(struct hf_edges *e, const struct hf_frame *f, int y, struct hf_rect r,
+                            float *const colour[4], float *radius);
+
 extern const struct hf_engine_def hf_hexagon_engine;
 
 #endif

@@ -161,6 +161,7 @@ static void make_second(struct world *w, const struct hf_frame *f)
     make_buf(w, weight, r);
     make_buf(w, behind, r);
     make_buf(w, behind_weight, r);
+    make_buf(w, colour_buf(w, HF_FAR), r);
     choose_radii(w, 1.25f);  // coverage
     EACH(r, x, y)
     {
@@ -172,6 +173,10 @@ static void make_second(struct world *w, const struct hf_frame *f)
         const float seen = rng_one_in(&w->rng, 3) ? 0 : rng_float(&w->rng, 0.01f, 2);
         put(w, behind_weight, 0, x, y, seen);
         put_colour(w, behind, x, y, seen);
+        // A whole sample, or of a mixed pixel.
+        const float part = rng_one_in(&w->rng, 3) ? rng_float(&w->rng, 0.03f, 1) : 1;
+        put(w, weight, 0, x, y, part);
+        put_colour(w, colour_buf(w, HF_FAR), x, y, part);
     }
     choose_radii(w, 4);
     EACH(r, x, y)
@@ -206,6 +211,7 @@ static void start(struct world *w)
     if (w->engine->prepare(&w->hexagon, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK ||
         w->engine->measure(&w->hexagon, &w->setup, &found, &hf_mem_default) != HF_OK)
         abort();
+    w->hexagon.mixed = 0;  // tests/engines/hexagon.c
     choose_radii(w, is_half(w) ? most / 2 : most);
     random_area(w);
     w->is_pass = 1;
@@ -449,11 +455,12 @@ static double largest_colour(const struct hf_frame *f, enum hf_hexagon_made colo
 // Composite: a mean of a near colour and a background, by coverage and what that leaves. In roundings of the largest
 // colour: at half resolution coverage and what lies behind are quotients of means of four (4 and 4, 1), blended twice
 // (3 each); the far one is no worse; what is left is a difference from coverage (4 and 1), and both weights tell by how
-// much two colours count that are up to twice the largest apart; product, two sums and a quotient (4).
+// much two colours count that are up to twice the largest apart; product, two sums and a quotient (4). Of a mixed pixel the sample is
+// taken off, times its radius, and as much of the far field added: two products and two sums (4) of three colours.
 double hexagon_bound_pixel(const struct world *w, int c, int x, int y)
 {
     const struct hf_frame *f = &w->reference;
-    double most = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
+    double source = 0, most = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
     const int half = is_half(w), reach = half ? 1 : 0, u = half ? x / 2 : x, v = half ? y / 2 : y;
     const struct hf_rect r = {u - reach, v - reach, u + reach + 1, v + reach + 1};
     if (w->near && c < w->setup.channels) {
@@ -462,5 +469,12 @@ double hexagon_bound_pixel(const struct world *w, int c, int x, int y)
     }
     if (w->far && c < w->setup.channels)
         most = fmax(most, largest_colour(f, HF_HEXAGON_FAR, HF_HEXAGON_FAR, c, r));
-    return (4 + 4 + 1 + 3 + 3 + 2 * (4 + 4 + 1) + 4) * most * FLT_EPSILON + 0x1p-130;
+    if (!half && c < w->setup.channels)
+        EACH(r, i, j)
+        {
+            const float size = fmaxf(1, *hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, i, j));
+            source = fabs((double)*hf_at(&f->buf[HF_HEXAGON_COLOUR], c, i, j)) * size / HEXAGON_SCALE;
+        }
+    return ((4 + 4 + 1 + 3 + 3 + 2 * (4 + 4 + 1) + 4) * most + (half ? 0 : 4 * (2 * most + source))) * FLT_EPSILON +
+           0x1p-130;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/reference_edges.h"
 #include "support/seen.h"
 
 static double clamp01(double v)
@@ -196,24 +197,58 @@ static void far_field(const struct field *in, const struct line l[3], struct fie
     field_free(&b);
 }
 
-static void load_full(const struct picture *colour, const float *r, struct field *f, int sign)
+// What of a pixel is blurred: how much, in colours times that, and its radius.
+struct sample {
+    double colour[4], whole, q;
+};
+
+static double nearer_to_0(double a, double b)
+{
+    return a * b <= 0 ? 0 : fabs(a) < fabs(b) ? a : b;
+}
+
+// Of mixed pixels with a sharp front the back.
+static struct sample sample_of(const struct picture *c, const float *r, int at, int half)
+{
+    struct sample s = {.whole = 1, .q = r[at]};
+    for (int k = 0; k < c->channels; k++)
+        s.colour[k] = c->plane[k][at];
+    if (half)
+        return s;
+    const struct edge_reference e = edge_reference(c, r, 0x1p-40, at % c->width, at / c->width);
+    const double front = e.radius[0], back = e.radius[1];
+    if (!(e.share > 0) && front == r[at])
+        return s;
+    const double sharp = clamp01(2 - (front > 0 ? front : -2 * front));
+    const double share = e.share > 0 ? e.share * sharp * clamp01(back - 2 * fabs(front)) : 0;
+    const double base = r[at] + sharp * (front - r[at]), least = fmax(share, 1 / 32.0);
+    s.whole = 1 + (least - 1) * clamp01(32 * share);
+    s.q = share > 1 / 32.0 ? base + (back - base) * clamp01(32 * share - 1) : base;
+    for (int k = 0; k < c->channels; k++) {
+        const double own = s.colour[k], to_back = share > 0 ? s.whole * (e.colour[1][k] - own) : 0;
+        s.colour[k] = s.whole * own + nearer_to_0(to_back, (1 - s.whole) * (own - e.colour[0][k]));
+    }
+    return s;
+}
+
+static void load_full(const struct picture *colour, const struct sample *from, struct field *f, int sign)
 {
     for (int at = 0; at < f->width * f->height; at++) {
-        f->q[at] = sign * (double)r[at];
-        f->a[at] = 1 / fmax(fabs(f->q[at]), 1);
-        for (int c = 0; c < f->channels; c++)
-            f->colour[c][at] = colour->plane[c][at] * f->a[at];
+        f->q[at] = sign * from[at].q;
+        f->a[at] = from[at].whole / fmax(fabs(f->q[at]), 1);
+        for (int c = 0; c < colour->channels; c++)
+            f->colour[c][at] = from[at].colour[c] / fmax(fabs(f->q[at]), 1);
     }
 }
 
-static void load_half(const struct picture *colour, const float *r, struct field *f, int sign)
+static void load_half(const struct picture *colour, const struct sample *sample, struct field *f, int sign)
 {
     for (int at = 0; at < f->width * f->height; at++) {
         double sum = 0, q = 0, mean[4] = {0};
         for (int i = 0; i < 4; i++) {
             const int x = clampi(at % f->width * 2 + i % 2, colour->width);
             const int y = clampi(at / f->width * 2 + i / 2, colour->height), from = y * colour->width + x;
-            const double m = fmax(sign * (double)r[from], 0), w = fmin(2 * m, 1);
+            const double m = fmax(sign * sample[from].q, 0), w = fmin(2 * m, 1);
             sum += w;
             q += w * m;
             for (int c = 0; c < f->channels; c++)
@@ -252,25 +287,24 @@ static double fields_at(const struct field *near, const struct field *far, const
 }
 
 // What is seen around near pixels: colours times weight, and the weight.
-static struct seen seen_of(const struct picture *c, const float *r, const struct field *near, int half)
+static struct seen seen_of(const struct picture *c, const struct sample *from, const struct field *near, int half)
 {
     const int n = c->channels, width = (c->width + 1) / 2, height = (c->height + 1) / 2;
     struct seen s = seen_new(width, height, n + 1);
     for (int i = 0; i < (half ? width * height : c->width * c->height); i++) {
         double *most = seen_at(&s, n + 1, half ? i % width : i % c->width / 2, half ? i / width : i / c->width / 2);
-        *most = fmax(*most, half ? 2 * near->q[i] : fmax(0, -r[i]));
+        *most = fmax(*most, half ? 2 * near->q[i] : fmax(0, -from[i].q));
     }
     for (int i = 0; i < 4 * width * height; i++) {
         const int px = i % (2 * width), py = i / (2 * width), x = px / 2, y = py / 2;
         const int at = clampi(py, c->height) * c->width + clampi(px, c->width);
-        double part = clamp01(1.5 + r[at]);
+        const double r = from[at].q;
+        double part = clamp01(1.5 + r);
         if (!half)
-            part = at != py * c->width + px || px >= c->width ? 0
-                   : r[at] < 0                                ? seen_part(r[at], seen_widest(&s, x, y))
-                                                              : 1;
+            part = at != py * c->width + px || px >= c->width ? 0 : r < 0 ? seen_part(r, seen_widest(&s, x, y)) : 1;
         for (int k = 0; k < n; k++)
-            *seen_at(&s, k, x, y) += part * c->plane[k][at] / 4;
-        *seen_at(&s, n, x, y) += part / 4;
+            *seen_at(&s, k, x, y) += part * from[at].colour[k] / 4;
+        *seen_at(&s, n, x, y) += part * from[at].whole / 4;
     }
     for (int i = 0; half && i < width * height; i++) {
         const double q = near->q[i], p = -2 * q;
@@ -332,25 +366,28 @@ struct picture hexagon_reference(const struct picture *colour, const struct pict
                                           : i == 1 ? 240
                                                    : 120),
                   p->view.pixel_aspect, reach, step, half ? 0.05 : 0);
+    struct sample *sample = calloc((size_t)(colour->width * colour->height), sizeof *sample);
+    for (int i = 0; i < colour->width * colour->height; i++)
+        sample[i] = sample_of(colour, r->plane[0], i, half);
     struct field near_in = field_new(w, h, n), far_in = field_new(w, h, n);
     struct field near = field_new(w, h, n), far = field_new(w, h, n);
-    (half ? load_half : load_full)(colour, r->plane[0], &near_in, -1);
-    (half ? load_half : load_full)(colour, r->plane[0], &far_in, 1);
+    (half ? load_half : load_full)(colour, sample, &near_in, -1);
+    (half ? load_half : load_full)(colour, sample, &far_in, 1);
     near_field(&near_in, l, &near);
     far_field(&far_in, l, &far);
     struct picture out = picture_new(colour->width, colour->height, n);
-    struct seen seen = seen_of(colour, r->plane[0], &near_in, half);
+    struct seen seen = seen_of(colour, sample, &near_in, half);
     for (int i = 0; i < out.width * out.height; i++) {
         double nc[4], fc[4];
         const int x = i % out.width, y = i / out.width;
-        const double q = r->plane[0][i], some = behind_sample(&seen, n, x, y, half);
+        const double q = sample[i].q, some = behind_sample(&seen, n, x, y, half);
         const double cover = fields_at(&near, &far, &far_in, half, x, y, nc, fc);
         const double part = q < 0 ? most_coverage(&out, p, x, y, -q) : 1;
         const double left = fmax(0, part - cover);
         for (int c = 0; c < n; c++) {
             double b = colour->plane[c][i];
             if (q > 0)
-                b += (half ? clamp01(q / 2) : 1) * (fc[c] - b);
+                b += half ? clamp01(q / 2) * (fc[c] - b) : sample[i].whole * fc[c] - sample[i].colour[c];
             if (q < 0 && cover > 0) {
                 const double front = nc[c] / cover;
                 const double other = (behind_sample(&seen, c, x, y, half) + 1e-8 * front) / (some + 1e-8);
@@ -359,6 +396,7 @@ struct picture hexagon_reference(const struct picture *colour, const struct pict
             out.plane[c][i] = (float)(cover == 0 ? b : (nc[c] + left * b) / (cover + left));
         }
     }
+    free(sample);
     seen_free(&seen);
     field_free(&near_in);
     field_free(&far_in);
