@@ -7,11 +7,13 @@
 
 // Which pixels are mixed: pixel/edges.h. FAINT: by pixels of less weight than this little is un-mixed. LEAN: the mean of a
 // side that has less than this of the weight of both leans on those pixels of that side whose colours are farthest from
-// the other's. PLAIN: what is brighter than so many times the mixed pixel is dimmed, or the mean of a lamp and the wall
-// around it would be brighter than the mixture of the wall and what lies before it, and all of that would seem to be the
-// front; what is behind less than an eighth of a pixel may be brighter, and a share that small is of little weight.
-#define HF_UNMIX_FAINT 0.001f
-#define HF_UNMIX_LEAN 0.01f
+// the other's. Where a slope is hardly mixed, weights grow from 0 with its radii, ten times as fast: these two fade slowly
+// enough that the last bit of a radius shows nowhere. PLAIN: what is brighter than so many times the mixed pixel is
+// dimmed, or the mean of a lamp and the wall around it would be brighter than the mixture of the wall and what lies before
+// it, and all of that would seem to be the front; what is behind less than an eighth of a pixel may be brighter, and a share
+// that small is of little weight.
+#define HF_UNMIX_FAINT 0.25f
+#define HF_UNMIX_LEAN 0.08f
 #define HF_UNMIX_PLAIN 8
 // A share by colours, whose variance in units of the distance between front and back is v, and that of the depth sample,
 // wrong by an eighth of a pixel or so, are weighed as 1 to 60 v.

@@ -157,6 +157,7 @@ static void known_places(const struct run *r, const struct scene *s, const char 
         double from, to;
     } places[] = {{PULL_FOCUS, 20.84, 20.845},
                   {PULL_STRENGTH, 0.666, 0.668},
+                  {PULL_RANGE, 6.06318, 6.0643},
                   {PULL_RADIUS, 15.99, 16.01},
                   {PULL_RADIUS, 16.55, 16.56}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {

@@ -153,7 +153,7 @@ static void unmix(struct frame *f, int x, int y)
     if (weight[0] == 0 && weight[1] == 0)
         return;
     const int less = weight[0] < weight[1] ? 0 : 1;
-    const double known = fmin(weight[less] / (0.01 * (weight[0] + weight[1])), 1);
+    const double known = fmin(weight[less] / (0.08 * (weight[0] + weight[1])), 1);
     side_farthest(f, x, y, middle, slope, !less, mean[!less], far);
     for (int c = 0; c < 5 && known < 1; c++)
         mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
@@ -161,7 +161,7 @@ static void unmix(struct frame *f, int x, int y)
     const double a0 = front_of(own, middle, slope), lamp = lamp_of(f, x, y, mean);
     const double share = share_of(f, x, y, a0, mean[0], mean[1], spread),
                  a = share + lamp * (fmin(share, 0.75) - share);
-    const double by = apart * fmin((weight[0] + weight[1]) / 0.001, 1);
+    const double by = apart * fmin((weight[0] + weight[1]) / 0.25, 1);
     seen[WEIGHT] = 1 - by * (1 - a);
     mixed[WEIGHT] = by * (1 - a);
     const double whole = seen[WEIGHT] > 0 ? (1 - by) / seen[WEIGHT] : 0;
