@@ -49,7 +49,7 @@ void hf_layers_disc_c(const struct hf_slice *s, const float *upper, const float 
     for (int x = 0; x < n; x++) {
         float sum[2] = {0}, last[2] = {0};
         int have[2] = {-1, -1};
-        for (int d = s->rows - 1; d >= 0; d--) {
+        for (int d = s->rows - 1; d >= hf_layers_least_row(from, to); d--) {
             const float u = disc_row(upper, x, s->row[d], &have[0], &sum[0]);
             const float l = disc_row(lower, x, s->row[d], &have[1], &sum[1]);
             if (-d >= from && -d < to)

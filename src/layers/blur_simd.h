@@ -97,8 +97,9 @@ HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, cons
             sum[i][j] = last[i][j] = vf_zero();
             pair[i][j] = vf_add(middle, middle);
         }
+    const int least = hf_layers_least_row(from, to);
     int have = -1;
-    for (int d = s->rows - 1; d >= 0; d--) {
+    for (int d = s->rows - 1; d >= least; d--) {
         const struct hf_disc_row part = s->row[d];
         for (; have < part.n; have++)
             for (int i = 0; i < 2; i++)

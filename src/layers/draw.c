@@ -161,9 +161,9 @@ static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int l
     }
 }
 
-static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int y0, int y1)
+static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int from, int y0, int y1)
 {
-    const int size = TILE >> b->s->level, from = within(ty, around_of(c->y0, c->l->rows));
+    const int size = TILE >> b->s->level;
     const struct around wide = around_of(c->x0, c->l->columns);
     for (int i = 0; i < size / 2; i++)
         memset(hf_layers_map_at(&c->filled, c->box.x0, i), 0, (size_t)(c->box.x1 - c->box.x0));
@@ -226,10 +226,17 @@ static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty,
         draw_span(c, b, at, y, x0, x1, to);
 }
 
+// Rows of sources that are held, of a row of tiles.
+struct held {
+    int from, y0, y1;
+};
+
 void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
                           const struct hf_window *to)
 {
     const int size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
+    const struct around high = around_of(c->y0, c->l->rows);
+    struct held held = {0};
     clear_touched(c, touched, to, b->s->level, b->first, b->channels);
     if (b->s->shape)
         hf_layers_begin_shape(c, b->s);
@@ -241,9 +248,15 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
         // The pairs of rows whose blur reaches what is made.
         const int least = -margin - b->s->rows - ty * size, most = c->rows * size + margin + b->s->rows - ty * size;
         const int y0 = least > 0 ? least & ~1 : 0, y1 = most < size ? (most + 1) & ~1 : size;
-        build_row(c, b, ty, y0, y1);
+        const int from = within(ty, high), beyond = from == high.first || from == high.last;
+        // All rows of tiles beyond the frame are the same.
+        if (!beyond || held.y0 == held.y1 || held.from != from) {
+            clear_row(c, b, held.y0, held.y1);
+            held = beyond ? (struct held){from, 0, size} : (struct held){from, y0, y1};
+            build_row(c, b, ty, from, held.y0, held.y1);
+        }
         for (int y = y0; y < y1; y += 2)
             draw_pair(c, b, ty, y, to);
-        clear_row(c, b, y0, y1);
     }
+    clear_row(c, b, held.y0, held.y1);
 }

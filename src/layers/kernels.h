@@ -167,6 +167,12 @@ hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_l
 void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r);
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r);
 
+// Of a disc's rows, from the outermost inwards, the last that reaches rows from..to around two of its sources.
+static inline int hf_layers_least_row(int from, int to)
+{
+    return from > 1 ? from - 1 : to < 1 ? 1 - to : 0;
+}
+
 hf_layers_unmix hf_layers_unmix_c;
 hf_layers_roots hf_layers_roots_c;
 hf_layers_nine hf_layers_nine_c;
