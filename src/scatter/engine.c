@@ -171,7 +171,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     t->largest[1] = fmaxf(found->radius_max, 0);
     t->mixed = found->radius_max - found->radius_min > HF_EDGES_FROM;
     t->behind = hf_behind_levels(t->largest[0]);
-    // Means of half resolution have radii in common, and jump when these do: with nothing to take turns, hardly visibly.
+    // Means of half resolution have radii in common: those of a slice may be of sources of another.
     t->slices = t->half_to > 0 ? hf_slice_count(t->largest[1]) : 1;
     t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
@@ -184,8 +184,9 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
 }
 
 // A sample that is drawn is at least 2^-25 of its pixel's, at radius 0.5, of which a share can be 2^-16 and a tent's corner
-// 2^-6; and where a mean's add up to next to nothing, what is left is 2^-24 of the least at least.
-enum { FADE = 25 + 16 + 6 + 24, LEAST_EXPONENT = -149 };
+// 2^-6, and as much what is like its neighbours; and where a mean's add up to next to nothing, what is left is 2^-24 of the
+// least at least.
+enum { FADE = 25 + 16 + 6 + HF_ALIKE_LOG2 + 24, LEAST_EXPONENT = -149 };
 
 // Bits from which a bin takes samples down to which their shares are whole numbers: all that its units have but those of
 // a share and of the largest picture's area. Larger pictures than that cut what is darkest in a bin.

@@ -32,12 +32,12 @@ typedef void hf_scatter_note(const float *radius, float *const colour[4], int ch
                              struct hf_counts *counts);
 // Put the fields over and under a row of pixels.
 typedef void hf_scatter_blend(const struct hf_scatter_row *row, float *out);
-// Radii of n half-resolution pixels from two rows of 2n: 0 where none of the four is in the field, -1 where those that
-// are differ.
-typedef void hf_quad_row(const float *above, const float *below, int n, float sign, float *out);
-// The same of n half-resolution sources, 0 for none, from three rows of quads; these from -1 to n.
-typedef void hf_site_row(const float *const quad[3], int n, float *out);
-// Weights and weighted colours of a row's pixels from column `first` on; returns whether some are no part of a mean.
+// What n half-resolution pixels weigh in a field, and the same times their radii, from two rows of 2n radii.
+typedef void hf_quad_row(const struct hf_scatter *t, const float *above, const float *below, int n, float sign,
+                         float *const out[2]);
+// Radii of n half-resolution sources, 0 for none, from three rows of quads; these from -1 to n.
+typedef void hf_site_row(const float *const weight[3], const float *const moment[3], int n, float *out);
+// Weights and weighted colours of a row's pixels from column `first` on; returns whether some are not wholly part of a mean.
 typedef int hf_tent_weights(const struct hf_tent_row *t, int first);
 // Means over 1 3 3 1 in eighths, of even and odd pixels; even up to n and odd from -1 on.
 typedef void hf_tent(const float *even, const float *odd, int n, float *out);

@@ -93,6 +93,18 @@ static inline float hf_field_weight(const struct hf_scatter *t, float r)
     return r > 0 ? 1 - hf_own_part(t, r) : 0;
 }
 
+// What the quads around a half-resolution source count in its radius.
+#define HF_SITE_AROUND 0x1p-12f
+// Of a pixel whole 64ths are parts of means: no part is so small that exact sums lose it.
+enum { HF_ALIKE_LOG2 = 6 };
+
+// How much of a pixel of radius r is alike to sources whose radii are so far apart from it at most.
+static inline float hf_alike(float r, float apart)
+{
+    const float most = 0.25f + r * (1 / 32.0f);
+    return (float)(int)(hf_saturate((most - apart) * 8) * (1 << HF_ALIKE_LOG2)) * (1.0f / (1 << HF_ALIKE_LOG2));
+}
+
 // Slices that a far field of radii up to this has.
 enum { HF_SLICES = 8 };
 int hf_slice_count(float largest);

@@ -1,35 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: sources of half resolution. Each is the tent-weighted mean of 4x4 pixels (1 3 3 1), which keeps centroids,
-// where those have like radii; else pixels are drawn one by one, each on the four nearest.
+// where those have like radii; else pixels are drawn one by one, each on the four nearest. What is nearly unlike is drawn
+// in part so and in part so: no radius that moves makes a picture jump.
 #include <math.h>
 #include <string.h>
 
 #include "scatter/walk.h"
 
-// The radius in the middle of like ones between two positive ones; -1: they are not alike.
-static float middle(float least, float most)
+// What a pixel of radius r is drawn with at half resolution.
+static float half_weight(const struct hf_scatter *t, float r)
 {
-    return most - least <= 0.5f + least * (1 / 32.0f) ? 0.5f * (least + most) : -1;
+    return hf_field_weight(t, r) * hf_half_part(t, r);
 }
 
-// Radius of a half-resolution pixel: of those of its four that are in the field. 0: none is; -1: they are not alike.
-static float quad_radius(const float r[4])
-{
-    float least = INFINITY, most = 0;
-    for (int i = 0; i < 4; i++) {
-        if (!(r[i] > 0))
-            continue;
-        least = r[i] < least ? r[i] : least;
-        most = r[i] > most ? r[i] : most;
-    }
-    return most > 0 ? middle(least, most) : 0;
-}
-
-void hf_quad_row_c(const float *above, const float *below, int n, float sign, float *out)
+void hf_quad_row_c(const struct hf_scatter *t, const float *above, const float *below, int n, float sign,
+                   float *const out[2])
 {
     for (int i = 0; i < n; i++) {
         const float r[4] = {sign * above[2 * i], sign * above[2 * i + 1], sign * below[2 * i], sign * below[2 * i + 1]};
-        out[i] = quad_radius(r);
+        float w[4];
+        for (int k = 0; k < 4; k++)
+            w[k] = half_weight(t, r[k]);
+        out[0][i] = (w[0] + w[1]) + (w[2] + w[3]);
+        out[1][i] = (w[0] * r[0] + w[1] * r[1]) + (w[2] * r[2] + w[3] * r[3]);
     }
 }
 
@@ -41,63 +34,69 @@ static void quad_row(struct walk *w, int q)
     const int x0 = hf_max(w->tent_x0 - 1, 0), x1 = hf_min(w->tent_x1 + 1, s->half_width), n = x1 - x0;
     const float *a = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * x0, 2 * q);
     const float *b = hf_at(&w->f->buf[HF_BUF_RADIUS], 0, 2 * x0, hf_min(2 * q + 1, s->height - 1));
-    float *out = w->quad[q & 3] + (x0 - w->tent_x0);
+    float *const out[2] = {w->quad[0][q & 3] + (x0 - w->tent_x0), w->quad[1][q & 3] + (x0 - w->tent_x0)};
     const int odd_edge = 2 * x1 > s->width;
-    hf_scatter_kernels(w->f)->quad_row(a, b, n - odd_edge, sign, out);
+    hf_scatter_kernels(w->f)->quad_row(w->t, a, b, n - odd_edge, sign, out);
     if (odd_edge) {
-        const float r[4] = {sign * a[2 * n - 2], sign * a[2 * n - 2], sign * b[2 * n - 2], sign * b[2 * n - 2]};
-        out[n - 1] = quad_radius(r);
+        const float above[2] = {a[2 * n - 2], a[2 * n - 2]}, below[2] = {b[2 * n - 2], b[2 * n - 2]};
+        hf_quad_row_c(w->t, above, below, 1, sign, (float *const[2]){out[0] + n - 1, out[1] + n - 1});
     }
-    if (x0 == 0)
-        out[-1] = 0;
-    if (x1 == s->half_width)
-        out[n] = 0;
+    for (int k = 0; k < 2; k++) {
+        if (x0 == 0)
+            out[k][-1] = 0;
+        if (x1 == s->half_width)
+            out[k][n] = 0;
+    }
 }
 
-void hf_site_row_c(const float *const quad[3], int n, float *out)
+// The sum of three by three, mirrored ones together.
+static float sum_around(const float *const row[3], int i)
+{
+    float v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = row[k][i] + (row[k][i - 1] + row[k][i + 1]);
+    return v[1] + (v[0] + v[2]);
+}
+
+void hf_site_row_c(const float *const weight[3], const float *const moment[3], int n, float *out)
 {
     for (int i = 0; i < n; i++) {
-        float least = INFINITY, most = 0;
-        for (int k = 0; k < 9; k++) {
-            const float r = quad[k / 3][i + k % 3 - 1];
-            least = r > 0 && r < least ? r : least;
-            most = r > most ? r : most;
-        }
-        const float v = quad[1][i] != 0 ? quad[1][i] : most > 0 ? middle(least, most) : 0;
-        out[i] = v > 0 ? v : 0;
+        const float all = weight[1][i] + HF_SITE_AROUND * sum_around(weight, i);
+        out[i] = all > 0 ? (moment[1][i] + HF_SITE_AROUND * sum_around(moment, i)) / all : 0;
     }
 }
 
-// Radii of a row of half-resolution sources: that of its quad, or where there is none in the field, as just beside an
-// object, that of the quads around.
+// Radii of a row of half-resolution sources: the mean of its quad, or where next to nothing of it is in the field, as just
+// beside an object, that of the quads around.
 static void site_row(struct walk *w, int q)
 {
     const int n = w->tent_x1 - w->tent_x0;
-    const float *quad[3];
+    const float *quad[2][3];
     float *out = w->site[q & 3];
-    for (int k = 0; k < 3; k++) {
-        const int row = q + k - 1;
-        quad[k] = row < 0 || row >= w->f->s->half_height ? w->nothing + HF_PAD : w->quad[row & 3];
+    for (int k = 0; k < 6; k++) {
+        const int row = q + k % 3 - 1, none = row < 0 || row >= w->f->s->half_height;
+        quad[k / 3][k % 3] = none ? w->nothing + HF_PAD : w->quad[k / 3][row & 3];
     }
-    hf_scatter_kernels(w->f)->site_row(quad, n, out);
+    hf_scatter_kernels(w->f)->site_row(quad[0], quad[1], n, out);
     out[-1] = out[0];
     out[n] = out[n - 1];
 }
 
-// Is a pixel of radius r > 0 like those of the quad?
-static int alike(float site, float r)
+static float farther(float a, float b, float r)
 {
-    const float d = site - r;
-    return site > 0 && (d < 0 ? -d : d) <= 0.5f + r * (1 / 32.0f);
+    a = __builtin_fabsf(a - r);
+    b = __builtin_fabsf(b - r);
+    return a > b ? a : b;
 }
 
-// Weight of pixel `odd` of half-resolution column i in the half-resolution sums; *merged: as a part of means.
-static float tent_weight(const struct hf_tent_row *t, int i, int odd, int *merged)
+// Weight of pixel `odd` of half-resolution column i in the half-resolution sums; *merged: how much of it is a part of means.
+static float tent_weight(const struct hf_tent_row *t, int i, int odd, float *merged)
 {
-    const float r = t->sign * t->radius[2 * i + odd];
+    const float r = t->sign * t->radius[2 * i + odd], weight = half_weight(t->scatter, r);
     const int next = odd ? i + 1 : i - 1;
-    *merged = alike(t->own[i], r) && alike(t->own[next], r) && alike(t->next[i], r) && alike(t->next[next], r);
-    return hf_field_weight(t->scatter, r) * hf_half_part(t->scatter, r);
+    const float own = farther(t->own[i], t->own[next], r), other = farther(t->next[i], t->next[next], r);
+    *merged = weight * hf_alike(r, own > other ? own : other);
+    return weight;
 }
 
 int hf_tent_weights_c(const struct hf_tent_row *t, int first)
@@ -105,12 +104,10 @@ int hf_tent_weights_c(const struct hf_tent_row *t, int first)
     int lone = 0;
     for (int i = first; i < t->n; i++)
         for (int odd = 0; odd < 2; odd++) {
-            int merged;
-            const float weight = tent_weight(t, i, odd, &merged);
-            t->pixel[odd][3][i] = merged ? weight : 0;
-            lone |= weight > 0 && !merged;
+            float *merged = &t->pixel[odd][3][i];
+            lone |= tent_weight(t, i, odd, merged) > *merged;
             for (int c = 0; c < t->channels; c++)
-                t->pixel[odd][c][i] = t->colour[c][2 * i + odd] * (t->pixel[odd][3][i] * t->scatter->dim);
+                t->pixel[odd][c][i] = t->colour[c][2 * i + odd] * (*merged * t->scatter->dim);
         }
     return lone;
 }
@@ -179,18 +176,21 @@ static int column_of(const struct walk *w, int x, int side)
     return column >= x0 && column < x1 ? column : -1;
 }
 
-// Draw the pixels of row y that have no like neighbours, on half-resolution row q, with a share of `part`.
+// Draw what of the pixels of row y has no like neighbours on half-resolution row q, with a share of `part`.
 static void list_lone(struct walk *w, int y, int q, float part)
 {
     const struct hf_frame *f = w->f;
     const struct hf_tent_row t = tent_row_of(w, y);
     const float half = 0.5f * w->group->factor[w->field];
     for (int x = 2 * w->tent_x0; x < hf_min(2 * w->tent_x1, f->s->width); x++) {
-        int merged;
-        float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
-        if (!(weight > 0) || merged)
+        const float r = t.sign * t.radius[x - 2 * w->tent_x0];
+        float merged;
+        if (!(r > 0))
             continue;
-        weight *= hf_slice_part(&w->slice, t.sign * t.radius[x - 2 * w->tent_x0]);
+        float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
+        if (!(weight > merged))
+            continue;
+        weight = (weight - merged) * hf_slice_part(&w->slice, r);
         if (w->t->mixed)
             weight *= 1 - *hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y);
         for (int side = 0; side < 2; side++) {
@@ -201,7 +201,7 @@ static void list_lone(struct walk *w, int y, int q, float part)
                 continue;
             for (int c = 0; c < w->group->channels; c++)
                 v[c] = *hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x, y) * (share * w->t->dim);
-            hf_add_source(w, column, q, t.sign * t.radius[x - 2 * w->tent_x0] * half, v, share);
+            hf_add_source(w, column, q, r * half, v, share);
         }
     }
     hf_flush_sources(w);
@@ -297,8 +297,8 @@ int hf_tent_columns(const struct hf_scatter *t, int field, int width)
 
 void hf_tent_start(struct walk *w, float *memory, int length)
 {
-    float **const lines[] = {w->quad,    w->site,     w->tent[0],  w->tent[1], w->tent[2],
-                             w->tent[3], w->pixel[0], w->pixel[1], w->mean};
+    float **const lines[] = {w->quad[0], w->quad[1], w->site,     w->tent[0],  w->tent[1],
+                             w->tent[2], w->tent[3], w->pixel[0], w->pixel[1], w->mean};
     const int reach = w->t->reach_x[w->field][1];
     w->tent_x0 = hf_max(w->sums.x0 - reach - 1, 0);
     w->tent_x1 = hf_min(w->sums.x1 + reach + 1, w->f->s->half_width);

@@ -4,57 +4,67 @@
 #include "scatter/kernels.h"
 #include "simd/simd.h"
 
-// Smallest and largest of the positive ones so far.
-HF_INLINE void tent_range(vf r, vf *least, vf *most)
-{
-    *least = vf_select(vf_gt(r, vf_zero()), vf_min(r, *least), *least);
-    *most = vf_max(r, *most);
-}
-
-// In the middle between the two; -1: they are not alike; 0: there are none.
-HF_INLINE vf tent_middle(vf least, vf most)
-{
-    const vf bound = vf_add(vf_set1(0.5f), vf_mul(least, vf_set1(1 / 32.0f)));
-    const vf v = vf_select(vf_le(vf_sub(most, least), bound), vf_mul(vf_set1(0.5f), vf_add(least, most)), vf_set1(-1));
-    return vf_keep(vf_gt(most, vf_zero()), v);
-}
-
-static void quad_row_simd(const float *above, const float *below, int n, float sign, float *out)
-{
-    const vf s = vf_set1(sign);
-    for (int i = 0; i < n; i += VF_N) {
-        vf r[4], least = vf_set1(__builtin_inff()), most = vf_zero();
-        vf_unzip(vf_load(above + 2 * i), vf_load(above + 2 * i + VF_N), &r[0], &r[1]);
-        vf_unzip(vf_load(below + 2 * i), vf_load(below + 2 * i + VF_N), &r[2], &r[3]);
-        for (int k = 0; k < 4; k++)
-            tent_range(vf_mul(s, r[k]), &least, &most);
-        vf_store(out + i, tent_middle(least, most));
-    }
-}
-
-static void site_row_simd(const float *const quad[3], int n, float *out)
-{
-    for (int i = 0; i < n; i += VF_N) {
-        vf own = vf_load(quad[1] + i);
-        if (vm_any(vf_eq(own, vf_zero()))) {
-            vf least = vf_set1(__builtin_inff()), most = vf_zero();
-            for (int k = 0; k < 9; k++)
-                tent_range(vf_load(quad[k / 3] + i + k % 3 - 1), &least, &most);
-            own = vf_select(vf_eq(own, vf_zero()), tent_middle(least, most), own);
-        }
-        vf_store(out + i, vf_max(own, vf_zero()));
-    }
-}
-
 HF_INLINE vf tent_saturate(vf v)
 {
     return vf_min(vf_max(v, vf_zero()), vf_set1(1));
 }
 
-HF_INLINE vm tent_alike(const float *quad, vf r, vf bound)
+HF_INLINE vf tent_half_weight(const struct hf_scatter *t, vf r)
 {
-    const vf q = vf_load(quad);
-    return vm_and(vf_gt(q, vf_zero()), vf_le(vf_abs(vf_sub(q, r)), bound));
+    const vf part = tent_saturate(vf_mul(vf_sub(r, vf_set1(t->half_from)), vf_set1(t->half_slope)));
+    const vf own = tent_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
+    return vf_mul(vf_keep(vf_gt(r, vf_zero()), vf_sub(vf_set1(1), own)), part);
+}
+
+static void quad_row_simd(const struct hf_scatter *t, const float *above, const float *below, int n, float sign,
+                          float *const out[2])
+{
+    const vf s = vf_set1(sign);
+    for (int i = 0; i < n; i += VF_N) {
+        vf r[4], w[4];
+        vf_unzip(vf_load(above + 2 * i), vf_load(above + 2 * i + VF_N), &r[0], &r[1]);
+        vf_unzip(vf_load(below + 2 * i), vf_load(below + 2 * i + VF_N), &r[2], &r[3]);
+        for (int k = 0; k < 4; k++) {
+            r[k] = vf_mul(s, r[k]);
+            w[k] = tent_half_weight(t, r[k]);
+        }
+        vf_store(out[0] + i, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
+        for (int k = 0; k < 4; k++)
+            w[k] = vf_mul(w[k], r[k]);
+        vf_store(out[1] + i, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
+    }
+}
+
+HF_INLINE vf tent_sum_around(const float *const row[3], int i)
+{
+    vf v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = vf_add(vf_load(row[k] + i), vf_add(vf_load(row[k] + i - 1), vf_load(row[k] + i + 1)));
+    return vf_add(v[1], vf_add(v[0], v[2]));
+}
+
+static void site_row_simd(const float *const weight[3], const float *const moment[3], int n, float *out)
+{
+    const vf around = vf_set1(HF_SITE_AROUND);
+    for (int i = 0; i < n; i += VF_N) {
+        const vf all = vf_add(vf_load(weight[1] + i), vf_mul(around, tent_sum_around(weight, i)));
+        const vf sum = vf_add(vf_load(moment[1] + i), vf_mul(around, tent_sum_around(moment, i)));
+        vf_store(out + i, vf_keep(vf_gt(all, vf_zero()), vf_div(sum, all)));
+    }
+}
+
+// How far r is from two sites.
+HF_INLINE vf tent_apart(const float *site, int i, int next, vf r)
+{
+    return vf_max(vf_abs(vf_sub(vf_load(site + i), r)), vf_abs(vf_sub(vf_load(site + next), r)));
+}
+
+// See hf_alike().
+HF_INLINE vf tent_alike(vf r, vf apart)
+{
+    const vf most = vf_add(vf_set1(0.25f), vf_mul(r, vf_set1(1 / 32.0f))), steps = vf_set1(1 << HF_ALIKE_LOG2);
+    const vf part = vf_mul(tent_saturate(vf_mul(vf_sub(most, apart), vf_set1(8))), steps);
+    return vf_mul(vi_to_vf(vf_to_vi(part)), vf_set1(1.0f / (1 << HF_ALIKE_LOG2)));
 }
 
 static int tent_weights_simd(const struct hf_tent_row *t, int first)
@@ -66,16 +76,12 @@ static int tent_weights_simd(const struct hf_tent_row *t, int first)
         vf r[2];
         vf_unzip(vf_load(t->radius + 2 * i), vf_load(t->radius + 2 * i + VF_N), &r[0], &r[1]);
         for (int odd = 0; odd < 2; odd++) {
-            const vf v = vf_mul(vf_set1(t->sign), r[odd]), bound = vf_add(vf_set1(0.5f), vf_mul(v, vf_set1(1 / 32.0f)));
-            const vf part = tent_saturate(vf_mul(vf_sub(v, vf_set1(s->half_from)), vf_set1(s->half_slope)));
-            const vf own = tent_saturate(vf_mul(vf_sub(vf_set1(s->fade), v), vf_set1(s->fade_slope)));
-            vf weight = vf_sub(vf_set1(1), own);
-            weight = vf_mul(vf_keep(vf_gt(v, vf_zero()), weight), part);
+            const vf v = vf_mul(vf_set1(t->sign), r[odd]), weight = tent_half_weight(s, v);
             const int next = odd ? i + 1 : i - 1;
-            const vm merged = vm_and(vm_and(tent_alike(t->own + i, v, bound), tent_alike(t->own + next, v, bound)),
-                                     vm_and(tent_alike(t->next + i, v, bound), tent_alike(t->next + next, v, bound)));
-            lone = vm_or(lone, vm_and(vf_gt(weight, vf_zero()), vm_not(merged)));
-            vf_store(t->pixel[odd][3] + i, vf_keep(merged, weight));
+            const vf apart = vf_max(tent_apart(t->own, i, next, v), tent_apart(t->next, i, next, v));
+            const vf merged = vf_mul(weight, tent_alike(v, apart));
+            lone = vm_or(lone, vf_gt(weight, merged));
+            vf_store(t->pixel[odd][3] + i, merged);
         }
         const vf dim = vf_set1(s->dim);
         const vf even = vf_mul(vf_load(t->pixel[0][3] + i), dim), odd = vf_mul(vf_load(t->pixel[1][3] + i), dim);

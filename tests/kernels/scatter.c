@@ -190,11 +190,12 @@ static void quad_make(struct world *w)
     for (int i = 0; i < 2; i++)
         fill_radii(w, i, 0, 2 * w->n, 0);
     put_out(w, LINES_IN, w->n);
+    put_out(w, LINES_IN + 1, w->n);
 }
 
 static void site_make(struct world *w)
 {
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 6; i++)
         fill_radii(w, i, -1, w->n + 1, 1);
     put_out(w, LINES_IN, w->n);
 }
@@ -554,7 +555,8 @@ void scatter_make(struct world *w, int which)
 void scatter_call(struct world *w, const struct kernels *k, enum arena a, int which)
 {
     const struct hf_scatter_kernels *s = &k->scatter;
-    const float *const in[4] = {line(w, a, 0), line(w, a, 1), line(w, a, 2), line(w, a, 3)};
+    const float *const in[6] = {line(w, a, 0), line(w, a, 1), line(w, a, 2),
+                                line(w, a, 3), line(w, a, 4), line(w, a, 5)};
     float *const out = line(w, a, LINES_IN);
     if (behind_rows_call(w, k, a, which))
         return;
@@ -569,10 +571,10 @@ void scatter_call(struct world *w, const struct kernels *k, enum arena a, int wh
         list_call(w, k, a);
         return;
     case SCATTER_QUAD:
-        s->quad_row(in[0], in[1], w->n, now.sign, out);
+        s->quad_row(&now.scatter, in[0], in[1], w->n, now.sign, (float *const[2]){out, line(w, a, LINES_IN + 1)});
         return;
     case SCATTER_SITE:
-        s->site_row(in, w->n, out);
+        s->site_row(in, in + 3, w->n, out);
         return;
     case SCATTER_TENT_WEIGHTS:
         tent_weights_call(w, k, a);
