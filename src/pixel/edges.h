@@ -22,7 +22,7 @@
 #define HF_EDGES_SIDES 2
 
 // Shares are whole numbers of 1 / PARTS: no weight is so small that exact sums lose it.
-#define HF_EDGES_PARTS 65536
+#define HF_EDGES_PARTS (1 << 20)
 
 // Rows of a rectangle and what lies around them, from the images.
 struct hf_edges {

@@ -183,10 +183,10 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     return HF_OK;
 }
 
-// A sample that is drawn is at least 2^-25 of its pixel's, at radius 0.5, of which a share can be 2^-16 and a tent's corner
+// A sample that is drawn is at least 2^-25 of its pixel's, at radius 0.5, of which a share can be 2^-20 and a tent's corner
 // 2^-6, and as much what is like its neighbours; and where a mean's add up to next to nothing, what is left is 2^-24 of the
 // least at least.
-enum { FADE = 25 + 16 + 6 + HF_ALIKE_LOG2 + 24, LEAST_EXPONENT = -149 };
+enum { FADE = 25 + 20 + 6 + HF_ALIKE_LOG2 + 24, LEAST_EXPONENT = -149 };
 
 // Bits from which a bin takes samples down to which their shares are whole numbers: all that its units have but those of
 // a share and of the largest picture's area. Larger pictures than that cut what is darkest in a bin.

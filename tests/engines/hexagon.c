@@ -33,7 +33,7 @@ static double bound(const struct hf_params *p, double reach)
     return 2 * 4 * (3 * taps + 30) * U;
 }
 
-// Shares of mixed pixels are whole 2^-16ths, of which one may be another by 16 times 50 roundings (scatter.c); a sample's weight
+// Shares of mixed pixels are whole 2^-20ths, of which one may be another by 16 times 50 roundings (scatter.c); a sample's weight
 // and radius go from the pixel's own to the back's within a 32nd. Below a difference of radii of 0.75 nothing is mixed.
 static double bound_shares(const struct hf_params *p, const struct picture *r)
 {
@@ -42,7 +42,7 @@ static double bound_shares(const struct hf_params *p, const struct picture *r)
         low = fminf(low, r->plane[0][i]);
         high = fmaxf(high, r->plane[0][i]);
     }
-    return high - low > 0.75f && !p->hexagon.resolution ? 32 * (0x1p-16 + 16 * 50 * U) : 0;
+    return high - low > 0.75f && !p->hexagon.resolution ? 32 * (0x1p-20 + 16 * 50 * U) : 0;
 }
 
 static struct picture rendered_in(struct hf_context *c, const struct picture *in, const struct hf_depth *depth,

@@ -28,10 +28,10 @@ static struct hf_params params_new(void)
 // lerp,
 // three times over for a base, and 12 for what of a picture is visible, in units of the largest sample. And for a mixed
 // pixel's shares: 30 for a mean of 25 taps, 20 for what is made of two, and each counts for up to 16 where the two sides
-// are hardly apart. Shares are cut to whole parts.
+// are hardly apart. Shares are cut to whole 2^-20ths.
 static void against_reference(struct hf_context *c, const char *isa)
 {
-    const double bound = (40 + 16 * 50) * U + 1.0 / 65536;
+    const double bound = (40 + 16 * 50) * U + 0x1p-20;
     double worst = 0;
     for (unsigned i = 0; i < 14; i++) {
         struct rng rng = rng_seed(seed + i);

@@ -60,9 +60,9 @@ static struct subject hexagon(const char *name, enum hf_resolution resolution)
 static struct subject scatter(const char *name, enum hf_resolution resolution)
 {
     // 40: scatter.c derives it; half resolution comes down and up again: 8 and 12 more. Shares of mixed pixels, 16 times 50
-    // and a part of 2^-16, are derived there too; they are quotients of colours, so sums add up where nothing is mixed. A
+    // and a part of 2^-20, are derived there too; they are quotients of colours, so sums add up where nothing is mixed. A
     // mixed pixel looks two pixels around, and these one more: 4, as the frame is cut at whole quads.
-    const double shares = 16 * 50 + 256;
+    const double shares = 16 * 50 + 16;
     struct subject s = {name,
                         scene_params(),
                         EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS_ONE_SURFACE | FLIPS | TRANSPOSES |
