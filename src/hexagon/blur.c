@@ -7,6 +7,12 @@
 
 // ---- Load ----
 
+// What a far sample's mean radius is made of.
+static float light_over(float r, float g, float b, float q)
+{
+    return hf_hexagon_light(r, g, b) / (q > HEXAGON_LEAST_MEAN ? q : HEXAGON_LEAST_MEAN);
+}
+
 static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r, struct hf_edges *e)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
@@ -18,9 +24,9 @@ static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r, str
         const float m = __builtin_fabsf(q[x]);
         const float share = 1 / (m > 1 ? m : 1), w = whole ? whole[x] : 1;
         a[x] = w * share;
-        over[x] = q[x] > 0 ? a[x] / q[x] : w * sqrtf(share);
         for (int c = 0; c < f->s->channels; c++)
             colour[c][x] *= share * HEXAGON_SCALE;
+        over[x] = q[x] > 0 ? light_over(colour[0][x], colour[1][x], colour[2][x], q[x]) : w * sqrtf(share);
     }
 }
 
@@ -52,12 +58,11 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
     const float spread = q > 1 ? q : 1, scale = 0.25f / spread;
     *hf_at(&f->buf[colour + 1], 0, x, y) = sum * scale;
     *hf_at(&f->buf[colour + 1], 1, x, y) = q;
-    *hf_at(&f->buf[colour + 1], 2, x, y) = colour == HF_HEXAGON_NEAR_COLOUR_2 ? (sum * scale) * sqrtf(spread)
-                                           : q > 0                            ? (sum * scale) / q
-                                                                              : 0;
     float *to[4];
     hf_row(&f->buf[colour], f->s->channels, x, y, to);
     quad_colour(f, w, scale, lane, i, to);
+    *hf_at(&f->buf[colour + 1], 2, x, y) =
+        colour == HF_HEXAGON_NEAR_COLOUR_2 ? (sum * scale) * sqrtf(spread) : light_over(*to[0], *to[1], *to[2], q);
 }
 
 // What of a quad is seen behind what is near around it: all that is not near itself, or hardly.
@@ -192,8 +197,8 @@ static float own(float found, float p)
     return o > 0 ? o : 0;
 }
 
-// A blur of the far field at a far pixel: colours of the samples that count, in proportion, and all that is found, and
-// that over its radii.
+// A blur of the far field at a far pixel: colours of the samples that count, in proportion, all that is found, and in
+// pass 1 light over radii, in proportion.
 struct found {
     float colour[4], a, w;
 };
@@ -204,8 +209,10 @@ static struct found far_line(const struct hf_frame *f, const struct hf_hexagon_f
     const struct limit limit = limit_of(p);
     const struct sums s = sum_line(f, in, line, x, y, &limit);
     const float o = own(s.a, p), mine = o / *hf_at(in->weight, in->a, x, y);
-    struct found all = {.a = s.a + o, .w = s.w + o / p};
+    struct found all = {.a = s.a + o};
     const float i = 1 / all.a;
+    if (in->mean >= 0)
+        all.w = (s.w + mine * *hf_at(in->weight, in->mean, x, y)) * i;
     for (int c = 0; c < 3; c++)
         all.colour[c] = (s.colour[c] + mine * *hf_at(in->colour, c, x, y)) * i;
     // Divided by what they were multiplied with, sums of 1 are 1.
@@ -214,12 +221,14 @@ static struct found far_line(const struct hf_frame *f, const struct hf_hexagon_f
     return all;
 }
 
-// Colours that were found, with a weight and the mean radius.
-static void store_far(const struct hf_frame *f, const struct found *all, enum hf_hexagon_made colour, int weight, int x,
-                      int y)
+// Colours that were found, with a weight and the mean radius: without light, that of the pixel itself.
+static void store_far(const struct hf_frame *f, const struct found *all, float p, enum hf_hexagon_made colour,
+                      int weight, int x, int y)
 {
     const int any = all->a > 0;
-    const float q = any ? all->a / all->w : 0, a = any ? 1 / (q > 1 ? q : 1) : 0;
+    const float light = hf_hexagon_light(all->colour[0], all->colour[1], all->colour[2]);
+    const float mean = all->w > 0 ? light / all->w : p, least = mean > HEXAGON_LEAST_MEAN ? mean : HEXAGON_LEAST_MEAN;
+    const float q = any ? least : 0, a = any ? 1 / (q > 1 ? q : 1) : 0;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(hf_hexagon_made(f, colour), c, x, y) = all->colour[c] * a;
     *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight, x, y) = a;
@@ -235,12 +244,12 @@ static void far_1(const struct hf_frame *f, int x, int y)
         u = far_line(f, &in, 0, x, y, p);
         v = far_line(f, &in, 1, x, y, p);
     }
-    store_far(f, &u, HF_HEXAGON_FAR_U, 0, x, y);
+    store_far(f, &u, p, HF_HEXAGON_FAR_U, 0, x, y);
     for (int c = 0; c < f->s->channels; c++)
         u.colour[c] = u.colour[c] + v.colour[c];
     u.a = u.a + v.a;
     u.w = u.w + v.w;
-    store_far(f, &u, HF_HEXAGON_FAR_B, 2, x, y);
+    store_far(f, &u, p, HF_HEXAGON_FAR_B, 2, x, y);
 }
 
 static void far_2(const struct hf_frame *f, int x, int y)

@@ -304,15 +304,27 @@ HF_INLINE struct hex_limit hex_limit(vf p)
     return (struct hex_limit){vf_add(vf_mul(vf_mul(vf_set1(2), p), slope), vf_set1(1)), vf_sub(vf_zero(), slope)};
 }
 
-// The sums of a line at pixels of radius p as colours, all that was found, and that over its radii; with the pixel's
-// own where it is too little.
+// See hf_hexagon_light.
+HF_INLINE vf hex_light(const vf colour[3])
+{
+    const vf low = vf_min(colour[0], colour[1]), high = vf_max(colour[0], colour[1]), b = colour[2];
+    const vf most = vf_max(high, b), other = vf_min(high, b), least = vf_min(low, b), middle = vf_max(low, other);
+    return vf_abs(vf_add(vf_add(most, least), middle));
+}
+
+// The sums of a line at pixels of radius p as colours, all that was found, and in pass 1 light over radii; with the
+// pixel's own where it is too little.
 HF_INLINE struct hex_sums hex_found(const struct hf_hexagon_field *in, const struct hex_sums *s, const int channels,
-                                    int x, int y, vf p)
+                                    const int first, int x, int y, vf p)
 {
     const vf o = hex_own(s->a, p), all = vf_add(s->a, o), scale = vf_div(vf_set1(1), all);
     const vf mine = vf_div(o, vf_load(hf_at(in->weight, in->a, x, y)));
     const vm is = vf_gt(p, vf_zero());
-    struct hex_sums found = {.a = vf_keep(is, all), .w = vf_keep(is, vf_add(s->w, vf_div(o, p)))};
+    struct hex_sums found = {.a = vf_keep(is, all), .w = vf_zero()};
+    if (first) {
+        const vf own = vf_load(hf_at(in->weight, in->mean, x, y));
+        found.w = vf_keep(is, vf_mul(vf_fma(mine, own, s->w), scale));
+    }
     for (int c = 0; c < 3; c++) {
         const vf own = vf_load(hf_at(in->colour, c, x, y));
         found.colour[c] = vf_keep(is, vf_mul(vf_fma(mine, own, s->colour[c]), scale));
@@ -337,16 +349,18 @@ HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const i
         hex_line(&l->in, &l->run, channels, first, rows, x, y, NULL, s);
     }
     for (int i = 0; i < rows; i++)
-        out[i] = hex_found(&l->in, &s[i], channels, x, y + i, p[i]);
+        out[i] = hex_found(&l->in, &s[i], channels, first, x, y + i, p[i]);
 }
 
-HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels,
+HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels, vf p,
                              enum hf_hexagon_made colour, int weight, int x, int y)
 {
     const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_FAR_W);
     const vf one = vf_set1(1);
     const vm any = vf_gt(s->a, vf_zero());
-    const vf q = vf_keep(any, vf_div(s->a, s->w)), a = vf_keep(any, vf_div(one, vf_max(q, one)));
+    const vf mean = vf_select(vf_gt(s->w, vf_zero()), vf_div(hex_light(s->colour), s->w), p);
+    const vf q = vf_keep(any, vf_max(mean, vf_set1(HEXAGON_LEAST_MEAN)));
+    const vf a = vf_keep(any, vf_div(one, vf_max(q, one)));
     for (int c = 0; c < channels; c++)
         vf_store(hf_at(out, c, x, y), vf_mul(s->colour[c], a));
     vf_store(hf_at(weights, weight, x, y), a);
@@ -375,11 +389,11 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
             p[i] = vf_load(hf_at(in.radius, in.q, x, y + i));
         hex_far_line(&up, channels, 1, rows, x, y, p, u);
         for (int i = 0; i < rows; i++)
-            hex_store_far(f, &u[i], channels, HF_HEXAGON_FAR_U, 0, x, y + i);
+            hex_store_far(f, &u[i], channels, p[i], HF_HEXAGON_FAR_U, 0, x, y + i);
         hex_far_line(&left, channels, 1, rows, x, y, p, v);
         for (int i = 0; i < rows; i++) {
             hex_add(&u[i], &v[i], channels);
-            hex_store_far(f, &u[i], channels, HF_HEXAGON_FAR_B, 2, x, y + i);
+            hex_store_far(f, &u[i], channels, p[i], HF_HEXAGON_FAR_B, 2, x, y + i);
         }
     }
 }

@@ -17,6 +17,12 @@ static int hex_streams(const struct hf_frame *f, const float *row)
     return planes * stride * (size_t)f->s->height * sizeof(float) > LARGE && (uintptr_t)row % sizeof(vf) == 0;
 }
 
+// What a far sample's mean radius is made of.
+HF_INLINE vf hex_light_over(const vf colour[3], vf q)
+{
+    return vf_div(hex_light(colour), vf_max(q, vf_set1(HEXAGON_LEAST_MEAN)));
+}
+
 static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r, struct hf_edges *e)
 {
     const struct hf_setup *s = f->s;
@@ -34,23 +40,28 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r,
         const vf part = whole ? vf_load(whole + x) : vf_set1(1), w = vf_mul(part, share);
         vf_put(a + x, w, stream);
         vf_put(q + x, own, stream);
-        vf_put(over + x, vf_select(vf_gt(own, vf_zero()), vf_div(w, own), vf_mul(part, vf_sqrt(share))), stream);
         const vf darker = vf_mul(share, vf_set1(HEXAGON_SCALE));
-        for (int c = 0; c < s->channels; c++)
-            vf_put(out[c] + x, vf_mul(vf_load(colour[c] + x), darker), stream);
+        vf v[4];
+        for (int c = 0; c < s->channels; c++) {
+            v[c] = vf_mul(vf_load(colour[c] + x), darker);
+            vf_put(out[c] + x, v[c], stream);
+        }
+        const vf far = hex_light_over(v, own), near = vf_mul(part, vf_sqrt(share));
+        vf_put(over + x, vf_select(vf_gt(own, vf_zero()), far, near), stream);
     }
 }
 
 // The sums of quads' colours by weights w, times scale.
 HF_INLINE void hex_quad_colours(const struct hf_frame *f, int colour, int x, int y, vf w[4], vf scale,
-                                float *const lane[2][2][4], int i)
+                                float *const lane[2][2][4], int i, vf out[4])
 {
     for (int t = 0; t < 4; t++)
         w[t] = vf_mul(w[t], vf_set1(HEXAGON_SCALE));
     for (int c = 0; c < f->s->channels; c++) {
         const vf top = vf_fma(w[1], vf_load(lane[0][1][c] + i), vf_mul(w[0], vf_load(lane[0][0][c] + i)));
         const vf bottom = vf_fma(w[3], vf_load(lane[1][1][c] + i), vf_mul(w[2], vf_load(lane[1][0][c] + i)));
-        vf_store(hf_at(&f->buf[colour], c, x, y), vf_mul(vf_add(top, bottom), scale));
+        out[c] = vf_mul(vf_add(top, bottom), scale);
+        vf_store(hf_at(&f->buf[colour], c, x, y), out[c]);
     }
 }
 
@@ -66,12 +77,12 @@ HF_INLINE void hex_load_quads(const struct hf_frame *f, int colour, int x, int y
     const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3]));
     q = vf_keep(vf_gt(sum, vf_zero()), vf_mul(vf_set1(0.5f), vf_div(q, sum)));
     const vf spread = vf_max(q, vf_set1(1)), scale = vf_div(vf_set1(0.25f), spread), weight = vf_mul(sum, scale);
-    const vf over = colour == HF_HEXAGON_NEAR_COLOUR_2 ? vf_mul(weight, vf_sqrt(spread))
-                                                       : vf_keep(vf_gt(q, vf_zero()), vf_div(weight, q));
+    vf v[4];
+    hex_quad_colours(f, colour, x, y, w, scale, lane, i, v);
+    const vf over = colour == HF_HEXAGON_NEAR_COLOUR_2 ? vf_mul(weight, vf_sqrt(spread)) : hex_light_over(v, q);
     vf_store(hf_at(&f->buf[colour + 1], 0, x, y), weight);
     vf_store(hf_at(&f->buf[colour + 1], 1, x, y), q);
     vf_store(hf_at(&f->buf[colour + 1], 2, x, y), over);
-    hex_quad_colours(f, colour, x, y, w, scale, lane, i);
 }
 
 HF_INLINE void hex_load_seen(const struct hf_frame *f, int x, int y, const vf radius[4], float *const lane[2][2][4],
@@ -81,8 +92,9 @@ HF_INLINE void hex_load_seen(const struct hf_frame *f, int x, int y, const vf ra
     for (int t = 0; t < 4; t++)
         w[t] = coc_saturate(vf_add(vf_set1(1.5f), radius[t]));
     const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])), quarter = vf_set1(0.25f);
+    vf v[4];
     vf_store(hf_at(&f->buf[HF_HEXAGON_SEEN_WEIGHT_2], 0, x, y), vf_mul(sum, quarter));
-    hex_quad_colours(f, HF_HEXAGON_SEEN_COLOUR_2, x, y, w, quarter, lane, i);
+    hex_quad_colours(f, HF_HEXAGON_SEEN_COLOUR_2, x, y, w, quarter, lane, i, v);
 }
 
 // Radii of n pairs of pixels of row y, even and odd ones.

@@ -14,8 +14,9 @@
 // radius of what covers a pixel, so that pass 2 carries it as far as pass 1 did over pixels that are sharp
 // themselves; the far field is divided by what was found, and stays behind the edges of sharper things. It too keeps the
 // mean radius of what was found: light that pass 1 has spread over something else is spread as far by pass 2.
-// The mean radius is the near field's by its square root and the far field's by 1 / radius, each sample by its share of
-// what is found: what covers little changes it little, however large its radius.
+// The mean radius is the near field's by its square root, each sample by its share of what is found: what covers little
+// changes it little, however large its radius. The far field's is by 1 / radius, each sample by the light that it brings:
+// that of a light before a dark wall goes as far as its own radius, not the wall's.
 //
 // What near coverage leaves of a sharp or far pixel shows that pixel; of a near one, which is what covers, it shows what
 // is seen around it (behind.c), and the pixel itself only up to a radius of 2. A far pixel that finds less than a quarter
@@ -42,7 +43,7 @@ enum hf_hexagon_pass {
 // both, and each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
 enum hf_hexagon_buf {
     HF_HEXAGON_COLOUR,         // full resolution: colour x a
-    HF_HEXAGON_WEIGHT,         // a, the signed radius, and what its mean is made of: near a sqrt(1 / a), far a / q
+    HF_HEXAGON_WEIGHT,         // a, the signed radius, and what its mean is made of: near a sqrt(1 / a), far light / q
     HF_HEXAGON_NEAR_COLOUR_2,  // half resolution: radii are not negative, and in half-resolution pixels
     HF_HEXAGON_NEAR_WEIGHT_2,  // a times how much of the quad is near, radius, and the same for its mean
     HF_HEXAGON_FAR_COLOUR_2,
@@ -183,6 +184,8 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 // Of what a pixel of radius p finds, how little is too little, and from which p on it need not be all.
 #define HEXAGON_LEAST 0.25f
 #define HEXAGON_ALL 2.0f
+// Far mean radii are not below this, which reaches no other pixel.
+#define HEXAGON_LEAST_MEAN 0.25f
 // A sample of this weight is whole.
 #define HEXAGON_WHOLE (1 - 0x1p-20f)
 
@@ -191,5 +194,15 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 // their sum. A power of two, so that no bit changes. What rounds up beyond the largest number is that number.
 #define HEXAGON_SCALE 0x1p-10f
 #define HEXAGON_MOST (FLT_MAX * HEXAGON_SCALE)
+
+// How much light a colour is: the sum of its channels, the same in whatever order they are. What is darker than nothing
+// counts as light, but not beside what is brighter: then less, so that no mean radius is larger than all that it is of.
+static inline float hf_hexagon_light(float r, float g, float b)
+{
+    const float low = r < g ? r : g, high = r > g ? r : g;
+    const float most = high > b ? high : b, other = high < b ? high : b;
+    const float least = low < b ? low : b, middle = low > other ? low : other;
+    return __builtin_fabsf((most + least) + middle);
+}
 
 #endif

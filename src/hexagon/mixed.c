@@ -27,6 +27,22 @@ static float nearest(float a, float b)
     return low > 0 ? low : high < 0 ? high : 0;
 }
 
+// Where both sides are far, a mixed pixel lies as far behind as the light that it has of both: of a light's edges before a
+// dark wall that of the light.
+static float by_light(const struct hf_sides *s, int x, float own)
+{
+    float light[2] = {0, 0};
+    for (int k = 0; k < 2; k++)
+        if (k == 0 || s->share[x] > 0)
+            light[k] = (k ? s->share[x] : 1 - s->share[x]) * hf_hexagon_light(s->colour[k][0][x] * HEXAGON_SCALE,
+                                                                              s->colour[k][1][x] * HEXAGON_SCALE,
+                                                                              s->colour[k][2][x] * HEXAGON_SCALE);
+    const float sum = light[0] + light[1];
+    if (!(sum > 0))
+        return own;
+    return light[1] > 0 ? hf_lerp(s->radius[0][x], s->radius[1][x], light[1] / sum) : s->radius[0][x];
+}
+
 // A pixel becomes what of it is blurred, of a weight, and the rest, which composite.c shows as it is. Their sum is the pixel,
 // and neither has colours that are not between its own and its sides'. The less is of the back, the nearer lies the sample,
 // so that nothing jumps where an edge comes or goes.
@@ -37,7 +53,8 @@ static void take(const struct hf_sides *s, int channels, int x, float *const col
     const float share =
         s->share[x] > 0 ? s->share[x] * (sharp * hf_saturate(back - 2 * (front > 0 ? front : -front))) : 0;
     const float t = hf_saturate(share * (2 / ALL)), u = hf_saturate(share * (2 / ALL) - 1);
-    const float base = hf_lerp(own, front, sharp), least = share > ALL / 2 ? share : ALL / 2, w = hf_lerp(1, least, t);
+    const float base = hf_lerp(front > 0 ? by_light(s, x, own) : own, front, sharp),
+                least = share > ALL / 2 ? share : ALL / 2, w = hf_lerp(1, least, t);
     *radius = u > 0 ? hf_lerp(base, back, u) : base;
     *whole = w;
     for (int c = 0; c < channels; c++) {

@@ -52,6 +52,57 @@ static void lights(struct hf_context *c, int half)
     }
 }
 
+// How far inside its nearest edge a pixel lies in a hexagon around the middle.
+static double inside_hexagon(int k, double side)
+{
+    double least = side;
+    for (int i = 0; i < 6; i++) {
+        const double angle = i * M_PI / 3, along = (k % SIZE - MIDDLE) * cos(angle) + (k / SIZE - MIDDLE) * sin(angle);
+        least = fmin(least, side * sqrt(3) / 2 - along);
+    }
+    return least;
+}
+
+// A light of five pixels before a dark wall of a larger radius is a hexagon of its own radius r, corners and all.
+// Inside, but for the light's own 2.5 pixels, half a place (0.6) and a pixel's diagonal (1.4), all of it arrives, whatever
+// the direction. What is found in a blur is divided by all of it: by 1 and what the light has more than the wall that it
+// stands for, its width (and a place) times the difference of 1 / radius; twice. 0.1 is left for a disc that is made of
+// pixels. Outside, softer by 4.1 (hexagon.c), comes what is as dark as the wall W: a mean radius is e larger than the light's
+// where the wall has e / r of the light, or more. At half resolution quads and their sampling blur more: hexagon.c's 9, and a
+// light is wider by a quad and a place on either side.
+static void full(struct hf_context *c, int half)
+{
+    static const float radii[][2] = {{15.6f, 22}, {12, 20}, {18, 21}, {10, 19}, {14, 14}, {17, 24}};
+    const double wall = 1e-3, rim = 2.5, soft = rim + (half ? 9 : 4.1), inner = half ? soft : rim + 0.6 + 1.4;
+    for (int i = 0; i < 6; i++) {
+        struct picture colour = picture_new(SIZE, SIZE, 3), radius = picture_new(SIZE, SIZE, 1);
+        const double r = radii[i][0], R = radii[i][1], width = 2 * rim + (half ? 2 * (2 + 2.3) : 1.2);
+        double light = 0, least = INFINITY, most = 0;
+        for (int k = 0; k < PIXELS; k++) {
+            const int is = hypot(k % SIZE - MIDDLE, k / SIZE - MIDDLE) <= rim;
+            radius.plane[0][k] = radii[i][!is];
+            for (int ch = 0; ch < 3; ch++)
+                colour.plane[ch][k] = is ? 200 : (float)wall;
+            light += is * 200;
+        }
+        struct picture out = render_radii(c, HF_ENGINE_HEXAGON, &colour, &radius, half);
+        for (int k = 0; k < PIXELS; k++) {
+            const double inside = inside_hexagon(k, r), e = -inside - soft;
+            if (inside >= inner)
+                least = fmin(least, out.plane[1][k]);
+            if (e > 0)
+                most = fmax(most, out.plane[1][k] / (wall * (1 + r / e)));
+        }
+        const double want = 0.9 * light / (1.5 * sqrt(3) * r * r) / pow(1 + width * (1 / r - 1 / R), 2);
+        CHECK_MSG(least >= want, "half %d, a light of radius %g before %g: %g inside, at least %g", half, r, R, least,
+                  want);
+        CHECK_MSG(most <= 1, "half %d, a light of radius %g before %g: %g of what may be outside", half, r, R, most);
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+}
+
 // Pixels before a wall that is sharp, at one radius; and one of them at a radius that goes across the picture. It covers
 // 1 / R of a line, so the root of the mean radius r moves by no more than (sqrt(R) - sqrt(r)) / R, and the radius by twice
 // that share of itself, and a line's mean by as much of what its end differs by, 0.8: in two of three rhombi. Close to it
@@ -171,6 +222,7 @@ int main(void)
         struct hf_context *c = context_new(isas[i], 2, 0, 0);
         for (int half = 0; half < 2; half++) {
             lights(c, half);
+            full(c, half);
             one_far_reaching(c, half);
             drawn_once(c, half);
             for (int k = 0; k < 4; k++)

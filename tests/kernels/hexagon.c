@@ -112,8 +112,12 @@ static void make_samples(struct world *w, struct hf_rect r)
             put(w, colour + 1, 0, x, y, a);
             put(w, colour + 1, 1, x, y, half || !near ? q : -q);
             const int is_near = half ? field == HF_NEAR : near;
-            put(w, colour + 1, 2, x, y, is_near || q == 0 ? a * sqrtf(fmaxf(q, 1)) : a / q);
             put_colour(w, colour, x, y, a);
+            const float light =
+                hf_hexagon_light(*world_at(w, ARENA_MADE, colour, 0, x, y), *world_at(w, ARENA_MADE, colour, 1, x, y),
+                                 *world_at(w, ARENA_MADE, colour, 2, x, y));
+            const float over = light / fmaxf(q, HEXAGON_LEAST_MEAN);
+            put(w, colour + 1, 2, x, y, is_near || q == 0 ? a * sqrtf(fmaxf(q, 1)) : over);
         }
     }
 }
@@ -309,7 +313,7 @@ static struct line_sums sum_line(const struct world *w, const struct hf_hexagon_
 // 3 less a product of less, is within 2, and its part is a product. The pixel's own part is 1 less the sum of weights, or less: within that and 4.
 // What both are divided by is not less than a quarter.
 struct far_sums {
-    double value, error, a, a_error, w, w_error;  // the colour; all that is found, and its sum for the mean radius
+    double value, error, w, w_error;  // the colour; light over radii
 };
 
 static struct far_sums far_line(const struct world *w, const struct hf_hexagon_field *in, int line, int c, int x, int y,
@@ -324,38 +328,55 @@ static struct far_sums far_line(const struct world *w, const struct hf_hexagon_f
     const double mine = *hf_at(in->colour, c, x, y) / (double)*hf_at(in->weight, in->a, x, y);
     const double sum = s.colour + own * mine, divisor = s.a + own;
     const double error = k * s.colour_size + (a_error + (4 + 2 * own) * FLT_EPSILON) * fabs(mine);
-    f.value = fabs(sum / divisor);
-    f.error = bound_quotient(error, 2 * a_error + 6 * FLT_EPSILON, divisor, f.value);
-    f.a = divisor;
-    f.a_error = 2 * a_error + 6 * FLT_EPSILON;
-    f.w = s.w + own / p;
-    f.w_error = k * s.w_size + (a_error + (6 + 2 * own) * FLT_EPSILON) / p + f.w * FLT_EPSILON;
+    f.value = sum / divisor;
+    f.error = bound_quotient(error, 2 * a_error + 6 * FLT_EPSILON, divisor, fabs(f.value));
+    if (in->mean >= 0) {
+        const double over = *hf_at(in->weight, in->mean, x, y) / (double)*hf_at(in->weight, in->a, x, y);
+        f.w = (s.w + own * over) / divisor;
+        f.w_error = bound_quotient(k * s.w_size + (a_error + (4 + 2 * own) * FLT_EPSILON) * over,
+                                   2 * a_error + 6 * FLT_EPSILON, divisor, f.w);
+    }
     return f;
+}
+
+// What pass 1 finds along one line, or along both.
+static struct far_sums far_lines(const struct world *w, int both, int c, int x, int y, float p)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_FAR);
+    struct far_sums u = far_line(w, &in, 0, c, x, y, p);
+    if (both) {
+        const struct far_sums v = far_line(w, &in, 1, c, x, y, p);
+        u.error += v.error + FLT_EPSILON * (fabs(u.value) + fabs(v.value));
+        u.value += v.value;
+        u.w += v.w;
+        u.w_error += v.w_error + 2 * FLT_EPSILON * u.w;
+    }
+    return u;
 }
 
 static double bound_far_1(const struct world *w, int b, int c, int x, int y)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_FAR);
     const float p = *hf_at(in.radius, in.q, x, y);
-    const int is_weight = b == HF_HEXAGON_FAR_W;
-    struct far_sums u = far_line(w, &in, 0, is_weight ? 0 : c, x, y, p);
+    const int is_weight = b == HF_HEXAGON_FAR_W, both = is_weight ? c >= 2 : b == HF_HEXAGON_FAR_B;
+    double light = 0, size = 0, light_error = 0;
     if (!(p > 0))
         return 0;
-    if (b == HF_HEXAGON_FAR_B || (is_weight && c >= 2)) {
-        const struct far_sums v = far_line(w, &in, 1, is_weight ? 0 : c, x, y, p);
-        u.value += v.value;
-        u.error += v.error;
-        u.a += v.a;
-        u.a_error += v.a_error + 2 * FLT_EPSILON * u.a;
-        u.w += v.w;
-        u.w_error += v.w_error + 2 * FLT_EPSILON * u.w;
+    for (int i = 0; i < 3; i++) {
+        const struct far_sums u = far_lines(w, both, i, x, y, p);
+        light += u.value;
+        size += fabs(u.value);
+        light_error += u.error;
     }
     // The mean radius, and the weight: 1 over it, where it is not below 1.
-    const double q = u.a / u.w, q_error = bound_quotient(u.a_error, u.w_error, u.w, q), a = 1 / fmax(q, 1);
-    const double a_error = a * (q_error / fmax(q, 1e-30) * 2 + 2 * FLT_EPSILON);
+    const struct far_sums u = far_lines(w, both, is_weight ? 0 : c, x, y, p);
+    light_error += 2 * FLT_EPSILON * size;
+    const double mean = u.w > 0 ? fabs(light) / u.w : p, q = fmax(mean, HEXAGON_LEAST_MEAN), a = 1 / fmax(q, 1);
+    const double q_error = u.w > 0 ? bound_quotient(light_error, u.w_error, u.w, mean) + FLT_EPSILON * mean : 0;
+    const double a_error = a * (q_error / fmax(q, 1) * 2 + 2 * FLT_EPSILON);
     if (is_weight)
         return c % 2 ? q_error : a_error;
-    return (u.error + 2 * FLT_EPSILON * u.value) * a + u.value * a_error;
+    return (u.error + 2 * FLT_EPSILON * fabs(u.value)) * a + fabs(u.value) * a_error;
 }
 
 static double bound_far_2(const struct world *w, int c, int x, int y)
@@ -365,7 +386,7 @@ static double bound_far_2(const struct world *w, int c, int x, int y)
     const struct hf_hexagon_field pixel = hf_hexagon_field(&w->reference, HF_FAR);
     const float p = *hf_at(pixel.radius, pixel.q, x, y);
     const struct far_sums v = far_line(w, &in[0], 1, c, x, y, p), u = far_line(w, &in[1], 2, c, x, y, p);
-    return (v.error + u.error + 2 * FLT_EPSILON * (v.value + u.value)) / 3;
+    return (v.error + u.error + 2 * FLT_EPSILON * (fabs(v.value) + fabs(u.value))) / 3;
 }
 
 // Near sums are of numbers that are not negative, but for colours. A quotient of two of them is within twice the
@@ -402,11 +423,18 @@ static double bound_near_2(const struct world *w, int b, int c, int x, int y)
     return (n + 3) * FLT_EPSILON * size / 3;
 }
 
-// Load: products and two sums of four colours, times a weight.
+// Load: products and two sums of four colours, times a weight; light is the sum of three of these, over a radius.
 static double bound_load(const struct world *w, int b, int c, int x, int y)
 {
     const int is_colour =
         b == HF_HEXAGON_NEAR_COLOUR_2 || b == HF_HEXAGON_FAR_COLOUR_2 || b == HF_HEXAGON_SEEN_COLOUR_2;
+    if (b == HF_HEXAGON_FAR_WEIGHT_2 && c == 2) {
+        double light = 0;
+        for (int i = 0; i < 3; i++)
+            light += (5 + 3) * FLT_EPSILON * HEXAGON_SCALE *
+                     bound_largest_sample(w, i, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
+        return light / HEXAGON_LEAST_MEAN;
+    }
     const double most = bound_largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
     return is_colour ? 5 * FLT_EPSILON * HEXAGON_SCALE * most : 0;
 }

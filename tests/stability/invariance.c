@@ -266,12 +266,23 @@ static void one_surface(struct scene *s)
             STABILITY_FOCUS + 0.9f * STABILITY_RANGE * (2 * (float)(k % w + k / w) / (float)steps - 1);
 }
 
+// Either what is near of it, sharp where it would be far, or one far radius.
+static void one_radius(struct scene *s, int far)
+{
+    one_surface(s);
+    for (int k = 0; k < s->depth.width * s->depth.height; k++)
+        s->depth.plane[0][k] =
+            far ? STABILITY_FOCUS + 0.9f * STABILITY_RANGE : fminf(s->depth.plane[0][k], STABILITY_FOCUS);
+}
+
 static void sums(const struct run *r)
 {
     for (unsigned i = 0; i < 3; i++) {
         struct scene s = calm_scene(r->seed + i, 70, 52, 3);
         if (r->subject->promises & ADDS_ONE_SURFACE)
             one_surface(&s);
+        if (r->subject->promises & ADDS_ONE_RADIUS)
+            one_radius(&s, i % 2);
         struct scene t = {picture_new(70, 52, 3), picture_copy(&s.depth)};
         struct scene both = {picture_new(70, 52, 3), picture_copy(&s.depth)};
         struct rng rng = rng_seed(r->seed + 50 + i);
@@ -313,6 +324,6 @@ void invariance_cases(const struct run *r)
         permutations(r);
     if (promises & EXPOSES)
         exposures(r);
-    if (promises & (ADDS | ADDS_ONE_SURFACE))
+    if (promises & (ADDS | ADDS_ONE_SURFACE | ADDS_ONE_RADIUS))
         sums(r);
 }

@@ -33,6 +33,7 @@ enum promise {
     PERMUTES = 64,           // channels, bit for bit
     EXACT = 128,             // float storage: bounds are those of rounding alone
     ADDS_ONE_SURFACE = 512,  // as ADDS, but for mixed pixels
+    ADDS_ONE_RADIUS = 1024,  // as ADDS_ONE_SURFACE, of what is far where that has one radius
     KEEPS_CENTRE = 256,      // a highlight's centre of gravity, far and near
 };
 

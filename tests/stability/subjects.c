@@ -43,11 +43,11 @@ static struct subject hexagon(const char *name, enum hf_resolution resolution)
 {
     // A line of n taps rounds its weights' sums n times and 2 n more for what they weigh, 30 besides, divided by no less
     // than a quarter, in each of two passes: hexagon.c derives it. Mixed pixels are as the scatter has them: what is four more
-    // around, and sums that add up where nothing is mixed.
+    // around. Of far radii that differ the light chooses, so sums add up where there is one.
     const double taps = 4 * (STABILITY_RADIUS + 4);
     struct subject s = {name,
                         scene_params(),
-                        EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | (resolution ? ADDS : ADDS_ONE_SURFACE),
+                        EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS_ONE_RADIUS,
                         2 * (int)STABILITY_RADIUS + 8 + 4,
                         2 * 2 * (taps + 16),
                         2 * 4 * (3 * taps + 30),

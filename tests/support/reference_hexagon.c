@@ -64,6 +64,11 @@ struct field {
     double *colour[4], *a, *q;
 };
 
+static double light_of(double r, double g, double b)
+{
+    return fabs(r + g + b);
+}
+
 static struct field field_new(int width, int height, int channels)
 {
     struct field f = {.width = width, .height = height, .channels = channels};
@@ -105,7 +110,8 @@ static struct sum sum_of(const struct field *f, const struct line *l, int x, int
             s.colour[c] += w * f->colour[c][at];
         s.a += w * f->a[at];
         if (w > 0)
-            s.w += p > 0 ? w * f->a[at] / q : w * f->a[at] * sqrt(fmax(q, 1));
+            s.w += p > 0 ? w * light_of(f->colour[0][at], f->colour[1][at], f->colour[2][at]) / fmax(q, 0.25)
+                         : w * f->a[at] * sqrt(fmax(q, 1));
     }
     return s;
 }
@@ -149,21 +155,22 @@ static void near_field(const struct field *in, const struct line l[3], struct fi
     field_free(&b);
 }
 
-// Blur of premultiplied colours at a far pixel of radius p, to plain ones, with all that was found and its radii.
+// Blur of premultiplied colours at a far pixel of radius p, to plain ones, with all that was found, and light over radii.
 static struct sum far_blur(const struct field *in, const struct line *l, int at, double p)
 {
     struct sum s = sum_of(in, l, at % in->width, at / in->width, p);
     const double o = own_of(s.a, p);
     for (int c = 0; c < in->channels; c++)
         s.colour[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
+    const double light = light_of(in->colour[0][at], in->colour[1][at], in->colour[2][at]);
+    s.w = (s.w + o * light / in->a[at] / fmax(in->q[at], 0.25)) / (s.a + o);
     s.a += o;
-    s.w += o / p;
     return s;
 }
 
-static void put_far(struct field *out, const struct sum *s, int at)
+static void put_far(struct field *out, const struct sum *s, double p, int at)
 {
-    out->q[at] = s->a / s->w;
+    out->q[at] = fmax(s->w > 0 ? light_of(s->colour[0], s->colour[1], s->colour[2]) / s->w : p, 0.25);
     out->a[at] = 1 / fmax(out->q[at], 1);
     for (int c = 0; c < out->channels; c++)
         out->colour[c][at] = s->colour[c] * out->a[at];
@@ -178,12 +185,12 @@ static void far_field(const struct field *in, const struct line l[3], struct fie
             continue;
         struct sum up = far_blur(in, &l[0], at, p);
         const struct sum left = far_blur(in, &l[1], at, p);
-        put_far(&u, &up, at);
+        put_far(&u, &up, p, at);
         for (int c = 0; c < in->channels; c++)
             up.colour[c] += left.colour[c];
         up.a += left.a;
         up.w += left.w;
-        put_far(&b, &up, at);
+        put_far(&b, &up, p, at);
     }
     for (int at = 0; at < in->width * in->height; at++) {
         const double p = in->q[at];
@@ -221,7 +228,13 @@ static struct sample sample_of(const struct picture *c, const float *r, int at, 
         return s;
     const double sharp = clamp01(2 - (front > 0 ? front : -2 * front));
     const double share = e.share > 0 ? e.share * sharp * clamp01(back - 2 * fabs(front)) : 0;
-    const double base = r[at] + sharp * (front - r[at]), least = fmax(share, 1 / 32.0);
+    double by_light = r[at];
+    if (front > 0) {
+        const double lf = (1 - e.share) * light_of(e.colour[0][0], e.colour[0][1], e.colour[0][2]);
+        const double lb = e.share > 0 ? e.share * light_of(e.colour[1][0], e.colour[1][1], e.colour[1][2]) : 0;
+        by_light = lf + lb > 0 ? front + (lb > 0 ? lb / (lf + lb) * (back - front) : 0) : r[at];
+    }
+    const double base = by_light + sharp * (front - by_light), least = fmax(share, 1 / 32.0);
     s.whole = 1 + (least - 1) * clamp01(32 * share);
     s.q = share > 1 / 32.0 ? base + (back - base) * clamp01(32 * share - 1) : base;
     for (int k = 0; k < c->channels; k++) {
