@@ -65,6 +65,7 @@ struct hf_slice {
     const struct hf_disc_row *row;
     const struct hf_shape *shape;  // instead of the disc, or NULL
     int sparse;                    // it has few sources
+    int empty;                     // it has none
     int shine;                     // of what is seen: its number among the slices of shares
 };
 

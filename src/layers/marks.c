@@ -27,7 +27,7 @@ static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, 
     memset(bits, 0, sizeof *bits * (size_t)((slices + 63) / 64));
     for (int i = 0; range.low <= range.high && i < slices && slice[i].before < range.high; i++) {
         const float before = slice[i].before, after = slice[i].after;
-        if (after > range.low &&
+        if (after > range.low && !slice[i].empty &&
             ((before < range.low && range.high < after) ||
              hf_layers_kernels(f)->inside(t.radius, t.weight, t.stride, t.n, t.rows, before, after)))
             bits[i / 64] |= (uint64_t)1 << i % 64;
@@ -37,11 +37,12 @@ static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, 
 static const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
 
 // Note the slices of a tile's samples; returns the range of their radii.
-static struct hf_layers_range mark_tile(const struct hf_frame *f, struct tile t, uint64_t *bits)
+static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct hf_slice *slice, struct tile t,
+                                        uint64_t *bits)
 {
     struct hf_layers_range range = none;
     hf_layers_kernels(f)->extremes(t.radius, t.weight, NULL, t.stride, t.n, t.rows, &range);
-    mark_slices(f, hf_layers(f->s)->slice, hf_layers(f->s)->slices, t, range, bits);
+    mark_slices(f, slice, hf_layers(f->s)->slices, t, range, bits);
     return range;
 }
 
@@ -59,7 +60,7 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
             l->seen_range[at] = none;
             const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
             mark_slices(f, l->slice, l->slices, s, l->seen_range[at], &l->seen_marks[mark]);
-            l->mixed_range[at] = mark_tile(f, m, &l->mixed_marks[mark]);
+            l->mixed_range[at] = mark_tile(f, l->slice, m, &l->mixed_marks[mark]);
             mark_slices(f, l->shine, l->shines, tile_of(seen, share ? 2 : 0, x, y, n, rows),
                         bright ? l->seen_range[at] : none, &l->share_marks[at * l->share_words]);
         }
@@ -74,7 +75,7 @@ void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
         for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
             const int x = tx * size, y = ty * size, mark = (ty * l->columns + tx) * l->words;
             const int n = hf_min(size, f->s->half_width - x), rows = hf_min(size, f->s->half_height - y);
-            mark_tile(f, tile_of(hidden, 0, x, y, n, rows), &l->hidden_marks[mark]);
-            mark_tile(f, tile_of(beyond, 0, x, y, n, rows), &l->beyond_marks[mark]);
+            mark_tile(f, l->behind, tile_of(hidden, 0, x, y, n, rows), &l->hidden_marks[mark]);
+            mark_tile(f, l->behind, tile_of(beyond, 0, x, y, n, rows), &l->beyond_marks[mark]);
         }
 }

@@ -17,14 +17,21 @@ static float next_radius(const struct hf_layers_settings *set, float r)
     return r + fmaxf(fminf(fmaxf(1, floorf(r / (float)(2 + set->fine))), set->spacing), far_out);
 }
 
-// How much of a sample is left to a cover's slice where that counts most.
-#define HF_LAYERS_COVER 0.75f
-
 static int level_of(const struct hf_layers_settings *set, float radius)
 {
     const float r = fabsf(radius);
     return r < set->half ? 0 : r < set->quarter ? 1 : r < set->eighth ? 2 : 3;
 }
+
+// What is hidden is a guess: of its slices every other one is left out where its neighbours are so coarse and lie within an
+// eighth of its radius. n: its number from the focus on.
+static int is_left_out(const struct hf_layers_settings *set, int n, float before, float r)
+{
+    return n % 2 && level_of(set, before) > 1 && next_radius(set, r) - before <= r / 8;
+}
+
+// How much of a sample is left to a cover's slice where that counts most.
+#define HF_LAYERS_COVER 0.75f
 
 // Rows on one side of a disc, the middle one counted.
 static int disc_rows(double r)
@@ -58,21 +65,28 @@ static void set_neighbours(struct hf_slice *slice, int count)
 {
     for (int i = 0; i < count; i++) {
         struct hf_slice *s = &slice[i];
-        const float before = i ? slice[i - 1].radius : 0, after = i + 1 < count ? slice[i + 1].radius : 0;
+        int a = i - 1, z = i + 1;
+        while (a >= 0 && slice[a].empty)
+            a--;
+        while (z < count && slice[z].empty)
+            z++;
+        const float before = a >= 0 ? slice[a].radius : 0, after = z < count ? slice[z].radius : 0;
         s->square = s->radius * s->radius;
-        s->before = i ? before : -HUGE_VALF;
-        s->after = i + 1 < count ? after : HUGE_VALF;
+        s->before = a >= 0 ? before : -HUGE_VALF;
+        s->after = z < count ? after : HUGE_VALF;
         s->before_square = before * before;
-        s->before_scale = i ? 1 / (s->square - before * before) : 0;
-        s->after_scale = i + 1 < count ? 1 / (after * after - s->square) : 0;
+        s->before_scale = a >= 0 ? 1 / (s->square - before * before) : 0;
+        s->after_scale = z < count ? 1 / (after * after - s->square) : 0;
     }
 }
 
-// Slices and rows of discs on one side, the one at 0 not counted.
+// Slices and rows of discs on one side, the one at 0 not counted. The last is none that is left out, or hidden samples next
+// to it would jump as the next is needed.
 static int count_slices(const struct hf_layers *l, float limit, size_t *rows)
 {
     int n = 0;
-    for (float r = 0; r < limit; n++) {
+    for (float r = 0, before = 0; r < limit || is_left_out(&l->set, n, before, r); n++) {
+        before = r;
         r = next_radius(&l->set, r);
         *rows += (size_t)(2 + l->parts) * (size_t)disc_rows(r * (1 + fabsf(l->chromatic)));
     }
@@ -116,13 +130,15 @@ static struct hf_disc_row *make_slice(struct hf_layers *l, struct hf_slice *s, i
     return row;
 }
 
-// The radii of one slice in both tables.
-static struct hf_disc_row *make_both(struct hf_layers *l, int group, int i, float radius, int number,
+// The radii of one slice in both tables; before: how large that of the one towards the focus is.
+static struct hf_disc_row *make_both(struct hf_layers *l, int group, int i, float radius, int number, float before,
                                      struct hf_disc_row *row)
 {
     struct hf_slice *s = l->group[group] + i;
     row = make_slice(l, s, group, radius, number, 0, row);
-    return make_slice(l, s + l->slices, group, radius, number, 1, row);
+    row = make_slice(l, s + l->slices, group, radius, number, 1, row);
+    s[l->slices].empty = is_left_out(&l->set, number, before, fabsf(radius));
+    return row;
 }
 
 // Those of a group's shares: at its slices, and between two that are coarser than their pixels.
@@ -220,13 +236,14 @@ void hf_layers_make_slices(struct hf_layers *l)
     struct hf_disc_row *row = (struct hf_disc_row *)at;
     l->most_tiles = 0;
     for (int g = 0; g < l->groups; g++) {
-        float r = 0;
-        row = make_both(l, g, near, 0, 0, row);
-        for (int i = 1; i <= near; i++)
-            row = make_both(l, g, near - i, -(r = next_radius(&l->set, r)), i, row);
-        r = 0;
-        for (int i = 1; i <= far; i++)
-            row = make_both(l, g, near + i, r = next_radius(&l->set, r), i, row);
+        row = make_both(l, g, near, 0, 0, 0, row);
+        for (int side = -1; side <= 1; side += 2) {
+            float before = 0, r;
+            for (int i = 1; i <= (side < 0 ? near : far); i++, before = r) {
+                r = next_radius(&l->set, before);
+                row = make_both(l, g, near + side * i, (float)side * r, i, before, row);
+            }
+        }
         row = make_shines(l, g, near, row);
         for (int t = 0; t < 3; t++)
             set_neighbours(l->group[g] + t * l->slices, t < 2 ? l->slices : l->shines);

@@ -26,7 +26,14 @@ static int level_of(const struct frame *f, double r)
 
 struct slice {
     double before, own, after;
+    double hidden[2];  // before and after, of hidden samples; equal: it has none of these
 };
+
+// Number n from the focus on, all coarser than half resolution and close to each other: hidden samples do without.
+static int is_left_out(const struct frame *f, int n, double before, double r)
+{
+    return n % 2 && level_of(f, before) > 1 && next_radius(f, r) - before <= r / 8;
+}
 
 static double part_of(const struct slice *s, double r)
 {
@@ -238,7 +245,7 @@ static void put_light(const struct frame *f, const struct slice *s, const struct
     }
     radius[count] = s->after;
     for (int i = 1; i < count; i++) {
-        const struct slice t = {radius[i - 1], radius[i], radius[i + 1]};
+        const struct slice t = {radius[i - 1], radius[i], radius[i + 1], {0}};
         struct grid shine = draw(f, &t, 0, SHINE, 0);
         for (int y = 0; y < f->height; y++)
             for (int x = 0; x < f->width; x++)
@@ -263,9 +270,10 @@ static void put_slice(const struct frame *f, const struct slice *s, struct grid 
     if (lit)
         put_light(f, s, &part, light);
     free(part.v);
-    if (layers_reference_levels(f)) {
+    if (layers_reference_levels(f) && s->hidden[0] < s->hidden[1]) {
+        const struct slice behind = {s->hidden[0], s->own, s->hidden[1], {0}};
         const int coarse = level > 1 ? level : level == 0 && fabs(s->own) < 2 ? 0 : 1;
-        struct grid hidden = draw(f, s, coarse, BEHIND, 0);
+        struct grid hidden = draw(f, &behind, coarse, BEHIND, 0);
         refine(&hidden, f, coarse, finest);
         put_under(stack, &hidden, HIDDEN, NULL);
         free(hidden.v);
@@ -281,7 +289,7 @@ static void cover(const struct frame *f, const struct slice *last, struct grid *
         for (int x = far->x0; x < far->x1; x++)
             at(lift, x, y)[0] = 1;
     for (int hidden = 0; hidden <= (layers_reference_levels(f) > 0) && isfinite(last->after); hidden++) {
-        const struct slice s = {last->own, sqrt((3 * from + to) / 4), last->after};
+        const struct slice s = {last->own, sqrt((3 * from + to) / 4), last->after, {0}};
         struct grid sums = draw_at(f, &s, last->own, 1, hidden ? BEHIND : SEEN, 0);
         for (int y = far->y0; y < far->y1; y++)
             for (int x = far->x0; x < far->x1; x++) {
@@ -297,25 +305,37 @@ static void cover(const struct frame *f, const struct slice *last, struct grid *
 
 static int slices_new(const struct frame *f, struct slice **out)
 {
-    int near = 0, far = 0;
-    double r;
-    for (r = 0; r < -f->low; near++)
-        r = next_radius(f, r);
-    for (r = 0; r < f->high; far++)
-        r = next_radius(f, r);
+    int count[2] = {0};
+    for (int side = 0; side < 2; side++) {
+        double r = 0, before = 0;
+        for (; r < (side ? f->high : -f->low) || is_left_out(f, count[side], before, r); count[side]++) {
+            before = r;
+            r = next_radius(f, r);
+        }
+    }
+    const int near = count[0], far = count[1];
     struct slice *s = calloc((size_t)(near + far) + 1, sizeof *s);
-    if (!s)
+    int *left_out = calloc((size_t)(near + far) + 1, sizeof *left_out);
+    if (!s || !left_out)
         abort();
-    r = 0;
-    for (int i = near - 1; i >= 0; i--)
-        s[i].own = -(r = next_radius(f, r));
-    r = 0;
-    for (int i = near + 1; i <= near + far; i++)
-        s[i].own = r = next_radius(f, r);
+    for (int side = -1; side <= 1; side += 2) {
+        double r, before = 0;
+        for (int i = 1; i <= count[side > 0]; i++, before = r) {
+            r = next_radius(f, before);
+            s[near + side * i].own = side * r;
+            left_out[near + side * i] = is_left_out(f, i, before, r);
+        }
+    }
     for (int i = 0; i <= near + far; i++) {
         s[i].before = i ? s[i - 1].own : -INFINITY;
         s[i].after = i < near + far ? s[i + 1].own : INFINITY;
     }
+    // The ones next to one that is left out are not.
+    for (int i = 0; i <= near + far; i++) {
+        s[i].hidden[0] = left_out[i] ? 0 : i && left_out[i - 1] ? s[i - 1].before : s[i].before;
+        s[i].hidden[1] = left_out[i] ? 0 : i < near + far && left_out[i + 1] ? s[i + 1].after : s[i].after;
+    }
+    free(left_out);
     *out = s;
     return near + far + 1;
 }
