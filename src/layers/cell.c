@@ -40,7 +40,7 @@ static size_t place(struct hf_cell *c, float *memory)
     struct scratch m = {.memory = memory};
     const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels, n = c->l->most_tiles;
     const int wide = width + 2 * n * TILE + 2 * AROUND;
-    c->present = (uint64_t *)take(&m, 2 * (size_t)(2 * c->l->words + c->l->share_words), 0);
+    c->present = (uint64_t *)take(&m, 2 * (size_t)(4 * c->l->words + c->l->share_words) * (size_t)(c->rows + 2 * n), 0);
     c->used = take_map(&m, c->columns, c->rows, n);
     c->plain = take_map(&m, c->columns, c->rows, n);
     c->filled = take_map(&m, c->columns, TILE / 2, n);

@@ -18,11 +18,23 @@ static void layers_up_simd(const float *a, const float *b, int n, float *out)
     }
 }
 
+// Is any of these something?
+HF_INLINE int layers_is_any(const float *const in[5], const int channels, int x)
+{
+    vm any = vf_ne(vf_load(in[4] + x), vf_zero());
+    for (int c = 0; c < channels; c++)
+        any = vm_or(any, vf_ne(vf_load(in[c] + x), vf_zero()));
+    return vm_any(any);
+}
+
+// Most of a slice's discs is nothing, which is not put under anything, but for how much would show.
 HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5],
                                const enum hf_layers_sums sums, int n, float *part)
 {
     const vf tiny = vf_set1(1e-30f);
     for (int x = 0; x < n; x += VF_N) {
+        if (!part && !layers_is_any(in, channels, x))
+            continue;
         const vf v = vf_load(in[4] + x), open = vf_load(to->open + x);
         const vf left = sums == HF_SUMS_HIDING ? vf_zero() : vf_load(to->behind + x);
         const vf k = vf_div(open, vf_max(v, vf_max(sums == HF_SUMS_HIDDEN ? left : open, tiny)));
@@ -61,8 +73,11 @@ static void layers_blend_simd(const struct hf_stack_row *to, int channels, const
 static void layers_light_simd(const float *part, float amount, const float *in, int n, float *out)
 {
     const vf much = vf_set1(amount);
-    for (int x = 0; x < n; x += VF_N)
-        vf_store(out + x, vf_add(vf_mul(vf_mul(vf_load(part + x), much), vf_load(in + x)), vf_load(out + x)));
+    for (int x = 0; x < n; x += VF_N) {
+        const vf v = vf_load(in + x);
+        if (vm_any(vf_ne(v, vf_zero())))
+            vf_store(out + x, vf_add(vf_mul(vf_mul(vf_load(part + x), much), v), vf_load(out + x)));
+    }
 }
 
 static void layers_finish_simd(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],

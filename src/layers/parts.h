@@ -29,6 +29,9 @@ enum { WHOLE = 1, DULL = 2 };
 // What of a slice is drawn: samples that are seen with those behind mixed edges, hidden ones, shares at full resolution.
 enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
 
+// Sets of samples in whose tiles slices are marked.
+enum hf_marks { HF_MARKS_SEEN, HF_MARKS_MIXED, HF_MARKS_HIDDEN, HF_MARKS_BEYOND, HF_MARKS_SHARES };
+
 enum { NEAR, FAR, MIDDLE };
 
 // Shares of one radius, drawn. Those between two slices are a part of both: the second finds them here.
@@ -44,7 +47,7 @@ struct hf_cell {
     const struct hf_layers_kernels *k;
     int x0, y0, columns, rows;             // of tiles
     struct hf_tile_map used;               // tiles that have samples of the slice
-    uint64_t *present;                     // slices with samples that may reach the cell, a bit for each, of each kind
+    uint64_t *present;                     // slices in each row of tiles that may reach the cell, a bit for each
     struct hf_rect box;                    // those around which there are none
     struct hf_tile_map plain;              // what the samples that are seen have in common, see below
     struct hf_tile_map filled;             // pairs of rows of a row of tiles: where there are any
@@ -103,11 +106,6 @@ static inline struct hf_stack_row hf_layers_stack_at(const struct hf_cell *c, in
 static inline const struct hf_slice *hf_layers_table(const struct hf_layers *l, enum hf_kind kind)
 {
     return kind == HF_KIND_SEEN ? l->slice : kind == HF_KIND_HIDDEN ? l->behind : l->shine;
-}
-
-static inline int hf_layers_words(const struct hf_layers *l, enum hf_kind kind)
-{
-    return kind == HF_KIND_SHARES ? l->share_words : l->words;
 }
 
 // tiles.c

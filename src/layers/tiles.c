@@ -55,42 +55,83 @@ void hf_layers_mark_plain(const struct hf_cell *c)
         }
 }
 
+// Rows of tiles that may reach the cell, those of the frame.
+static struct hf_rect rows_of(const struct hf_cell *c)
+{
+    const int n = c->l->most_tiles, y = c->y0 / TILE;
+    return (struct hf_rect){.y0 = hf_max(y - n, 0), .y1 = hf_min(y + c->rows + n, c->l->rows)};
+}
+
+// The slices of set `of` in row y of the frame's tiles.
+static uint64_t *present_in(const struct hf_cell *c, enum hf_marks of, int y)
+{
+    const struct hf_layers *l = c->l;
+    return c->present + (ptrdiff_t)(y - rows_of(c).y0) * (4 * l->words + l->share_words) + (int)of * l->words;
+}
+
+static const uint64_t *marks_of(const struct hf_layers *l, enum hf_marks of)
+{
+    const uint64_t *const marks[] = {l->seen_marks, l->mixed_marks, l->hidden_marks, l->beyond_marks, l->share_marks};
+    return !l->levels && (of == HF_MARKS_HIDDEN || of == HF_MARKS_BEYOND) ? NULL : marks[of];
+}
+
 void hf_layers_find_present(struct hf_cell *c)
 {
     const struct hf_layers *l = c->l;
     const int n = l->most_tiles, left = hf_max(c->x0 / TILE - n, 0),
               right = hf_min(c->x0 / TILE + c->columns + n, l->columns);
-    const uint64_t *const marks[] = {l->seen_marks, l->mixed_marks, l->levels ? l->hidden_marks : NULL,
-                                     l->levels ? l->beyond_marks : NULL, l->share_marks};
-    static const enum hf_kind kinds[] = {HF_KIND_SEEN, HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_HIDDEN, HF_KIND_SHARES};
-    memset(c->present, 0, sizeof *c->present * (size_t)(2 * l->words + l->share_words));
-    for (int i = 0; i < 5; i++) {
-        const int words = hf_layers_words(l, kinds[i]);
-        uint64_t *present = c->present + (int)kinds[i] * l->words;
-        for (int y = hf_max(c->y0 / TILE - n, 0); marks[i] && y < hf_min(c->y0 / TILE + c->rows + n, l->rows); y++)
-            for (int x = left * words; x < right * words; x++)
-                present[x % words] |= marks[i][(ptrdiff_t)y * l->columns * words + x];
+    const struct hf_rect r = rows_of(c);
+    memset(c->present, 0, sizeof *c->present * (size_t)(4 * l->words + l->share_words) * (size_t)(r.y1 - r.y0));
+    for (int i = HF_MARKS_SEEN; i <= HF_MARKS_SHARES; i++) {
+        const uint64_t *marks = marks_of(l, (enum hf_marks)i);
+        const int words = i == HF_MARKS_SHARES ? l->share_words : l->words;
+        for (int y = r.y0; marks && y < r.y1; y++) {
+            uint64_t *present = present_in(c, (enum hf_marks)i, y);
+            for (int x = left; x < right; x++)
+                for (int k = 0; k < words; k++)
+                    present[k] |= marks[((ptrdiff_t)y * l->columns + x) * words + k];
+        }
     }
+}
+
+static int is_present(const struct hf_cell *c, enum hf_marks of, int slice, int y)
+{
+    return present_in(c, of, y)[slice / 64] >> slice % 64 & 1;
+}
+
+// Mark a row's tiles of a set. Returns 0 if there are none.
+static int mark_set(const struct hf_cell *c, enum hf_marks of, int slice, int n, int ty, int bit)
+{
+    const int y = c->y0 / TILE + ty, inside = y < 0 ? 0 : y < c->l->rows ? y : c->l->rows - 1;
+    if (!is_present(c, of, slice, inside))
+        return 0;
+    mark_row(c, marks_of(c->l, of), of == HF_MARKS_SHARES ? c->l->share_words : c->l->words, slice, n, ty, bit);
+    return 1;
 }
 
 int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
 {
     const struct hf_layers *l = c->l;
-    const int words = hf_layers_words(l, kind);
-    if (!(c->present[(int)kind * l->words + slice / 64] >> slice % 64 & 1))
-        return 0;
     const int n = hf_layers_tiles_around(hf_layers_table(l, kind) + slice), columns = c->columns + 2 * n;
-    const uint64_t *marks = kind == HF_KIND_HIDDEN   ? l->hidden_marks
-                            : kind == HF_KIND_SHARES ? l->share_marks
-                                                     : l->seen_marks;
+    const enum hf_marks own = kind == HF_KIND_SEEN     ? HF_MARKS_SEEN
+                              : kind == HF_KIND_HIDDEN ? HF_MARKS_HIDDEN
+                                                       : HF_MARKS_SHARES,
+                        more = kind == HF_KIND_SEEN     ? HF_MARKS_MIXED
+                               : kind == HF_KIND_HIDDEN ? HF_MARKS_BEYOND
+                                                        : HF_MARKS_SHARES;
+    struct hf_rect r = rows_of(c);
+    while (r.y0 < r.y1 && !is_present(c, own, slice, r.y0) && !is_present(c, more, slice, r.y0))
+        r.y0++;
+    if (r.y0 == r.y1)
+        return 0;
     c->box = (struct hf_rect){c->columns + n, c->rows + n, -n, -n};
     for (int ty = -n; ty < c->rows + n; ty++) {
         uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
         memset(used, 0, (size_t)columns);
-        mark_row(c, marks, words, slice, n, ty, SEEN);
+        int any = mark_set(c, own, slice, n, ty, SEEN);
         if (kind != HF_KIND_SHARES)
-            mark_row(c, kind == HF_KIND_SEEN ? l->mixed_marks : l->beyond_marks, words, slice, n, ty, MORE);
-        int first = 0, last = columns;
+            any |= mark_set(c, more, slice, n, ty, MORE);
+        int first = 0, last = any ? columns : 0;
         while (first < last && !used[first])
             first++;
         while (last > first && !used[last - 1])
@@ -109,16 +150,15 @@ int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct h
     int any = 0;
     for (int ty = -1; ty <= c->rows; ty++)
         memset(hf_layers_map_at(to, -1, ty), 0, (size_t)c->columns + 2);
-    for (int ty = c->box.y0; ty < c->box.y1; ty++)
-        for (int tx = c->box.x0; tx < c->box.x1; tx++) {
-            if (!*hf_layers_map_at(&c->used, tx, ty))
-                continue;
-            const int a = tx - by > -1 ? tx - by : -1, b = tx + by < c->columns ? tx + by : c->columns;
-            const int top = ty - by > -1 ? ty - by : -1, low = ty + by < c->rows ? ty + by : c->rows;
+    for (int ty = c->box.y0; ty < c->box.y1; ty++) {
+        const int top = ty - by > -1 ? ty - by : -1, low = ty + by < c->rows ? ty + by : c->rows;
+        for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0)) > tx; tx = end) {
+            const int a = tx - by > -1 ? tx - by : -1, b = end - 1 + by < c->columns ? end - 1 + by : c->columns;
             for (int y = top; y <= low && a <= b; y++)
                 memset(hf_layers_map_at(to, a, y), 1, (size_t)(b - a + 1));
             any |= a <= b && top <= low;
         }
+    }
     return any;
 }
 
