@@ -29,20 +29,26 @@ enum { SIDE = 5 };  // pixels each way
 static void farthest(const struct hf_unmix_row *u, int x, int front, const float *other, float *colour, float *radius)
 {
     float share[SIDE * SIDE], distance[SIDE * SIDE], most = 0, sum = 0;
+    int pixel[SIDE * SIDE], count = 0;
     for (int k = 0; k < SIDE * SIDE; k++) {
         const int y = 1 + k / SIDE, i = x - 2 + k % SIDE;
         const float of_front = hf_saturate((u->middle[x] - u->radius[y][i]) * u->slope[x] + 0.5f);
+        share[count] = front ? of_front : 1 - of_front;
+        pixel[count] = k;
+        count += share[count] > 0;  // mostly few are
+    }
+    for (int j = 0; j < count; j++) {
+        const int y = 1 + pixel[j] / SIDE, i = x - 2 + pixel[j] % SIDE;
         float d = 0;
         for (int c = 0; c < u->channels; c++)
             d = d + fabsf(u->colour[y][c][i] - other[c]) * 0.125f;  // of the largest samples, too, it is finite
-        share[k] = front ? of_front : 1 - of_front;
-        distance[k] = d;
-        most = share[k] > 0 && d > most ? d : most;
+        distance[j] = d;
+        most = d > most ? d : most;
     }
-    for (int k = 0; k < SIDE * SIDE; k++) {
-        const int y = 1 + k / SIDE, i = x - 2 + k % SIDE;
-        const float far = most > 0 ? distance[k] / most : 1, square = far * far;
-        const float w = share[k] * ((square * square) * (square * square)) * 0.03125f;  // sums of 25 are finite
+    for (int j = 0; j < count; j++) {
+        const int y = 1 + pixel[j] / SIDE, i = x - 2 + pixel[j] % SIDE;
+        const float far = most > 0 ? distance[j] / most : 1, square = far * far;
+        const float w = share[j] * ((square * square) * (square * square)) * 0.03125f;  // sums of 25 are finite
         if (!(w > 0))
             continue;
         sum = sum + w;
