@@ -279,7 +279,7 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     if (sweep == 2) {
         // What is around a cell is weighed again for each: the more there is of it, the larger the cell.
-        const int n = hf_layers(s)->around < 256 ? 1 : 2;
+        const int n = hf_layers(s)->around < 13 * HF_LAYERS_TILE ? 1 : 2;
         *width = hf_min(160 * n, (s->half_width + 15) & ~15);
         *height =
             hf_min(96 * n, (s->half_height + HF_LAYERS_TILE / 2 - 1) / (HF_LAYERS_TILE / 2) * (HF_LAYERS_TILE / 2));
