@@ -54,6 +54,25 @@ static void constants(const struct run *r)
 
 enum { SPOT = 96 };
 
+// How far a highlight is from its transpose, of its energy. A disc is made of rows. What a row holds of the outline, from 1
+// inside to 0 outside over a length l, is a step where its mean is: off by l / 2 at most, for neither is below 0 or above 1.
+// The lengths of a quarter's rows add up to the radius: 4 r / 2 of an area of pi r^2, and twice that from its transpose. At half
+// resolution r is half as large; what upsamples it makes nothing of that more. Rows are whole 128ths of a pixel high, and
+// 256ths wide: each is off by (1 / 256 + 2 / 512) of itself at most, in both.
+static void turned_disc(const struct run *r, const struct picture *out, float radius, int x, int y)
+{
+    const double size = radius < 0 ? -radius : radius, half = r->subject->params.scatter.resolution ? 2 : 1;
+    double off = 0, sum = 0;
+    for (int j = -40; j <= 40; j++)
+        for (int i = -40; i <= 40; i++) {
+            const double v = out->plane[1][(y + j) * SPOT + x + i];
+            off += fabs(v - out->plane[1][(y + i) * SPOT + x + j]);
+            sum += v;
+        }
+    see(r, "a disc and its transpose: difference, of its energy", "what rows are off by along its outline", off / sum,
+        half * 4 / (M_PI * size) + 2.0 / 128, "radius %g at (%d, %d)", radius, x, y);
+}
+
 static void highlight(const struct run *r, float radius, int x, int y)
 {
     struct picture colour = picture_new(SPOT, SPOT, 3), radii = picture_new(SPOT, SPOT, 1);
@@ -81,6 +100,8 @@ static void highlight(const struct run *r, float radius, int x, int y)
         see(r, "centre of a highlight, half resolution: off, pixels",
             "the middle of its quad is half a pixel away, and a thousandth; faithful takes the next quad's", off,
             r->subject->params.gather.faithful ? 1.001 : 0.501, "radius %g at (%d, %d)", radius, x, y);
+    if (r->subject->params.engine == HF_ENGINE_SCATTER && (x - y) % 2 == 0)
+        turned_disc(r, &out, radius, x, y);
     picture_free(&out);
     picture_free(&colour);
     picture_free(&radii);
@@ -179,18 +200,55 @@ static void quads(struct picture *depth)
             depth->plane[0][y * depth->width + x] = depth->plane[0][(y & ~1) * depth->width + (x & ~1)];
 }
 
+// Is something near at a pixel or up to two away, from where mixed ones have their sides?
+static int near_around(const struct picture *depth, int x, int y)
+{
+    for (int k = 0; k < 25; k++) {
+        const int i = x + k % 5 - 2, j = y + k / 5 - 2;
+        if (i >= 0 && j >= 0 && i < depth->width && j < depth->height &&
+            depth->plane[0][j * depth->width + i] < STABILITY_FOCUS)
+            return 1;
+    }
+    return 0;
+}
+
+// Samples of two pictures that are not the same bits, but of near pixels; *compared: how many were.
+static int others_not_near(const struct picture *a, const struct picture *b, const struct picture *depth, int *compared)
+{
+    int n = 0;
+    *compared = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++) {
+            const size_t i = (size_t)(y * a->width + x);
+            if (near_around(depth, x, y))
+                continue;
+            *compared += a->channels;
+            for (int c = 0; c < a->channels; c++)
+                n += memcmp(&a->plane[c][i], &b->plane[c][i], sizeof(float)) != 0;
+        }
+    return n;
+}
+
+// What lies behind near pixels is made from quads, and a crop has the bits of the whole: so quads are counted from the left,
+// and those of an odd width are others in its mirror, for near pixels that show some of it.
 static void flips(const struct run *r)
 {
     const int only_quads = (r->subject->promises & FLIPS_QUADS) != 0;
     for (unsigned i = 0; i < 3; i++) {
-        struct scene s = calm_scene(r->seed + i, only_quads ? 64 : 63 + (int)i, only_quads ? 48 : 47, 4);
+        const int width = only_quads ? 64 : 63 + (int)i;
+        const int but_near = width % 2 && r->subject->promises & FLIPS_EVEN;
+        struct scene s = calm_scene(r->seed + i, width, only_quads ? 48 : 47, 4);
         if (only_quads)
             quads(&s.depth);
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
         struct picture a = render_scene(r->c, &s, &r->subject->params);
         struct picture b = render_scene(r->c, &mirror, &r->subject->params), back = picture_flipped(&b);
-        see(r, "flips: samples that are not the mirror's bits", "none may be", samples_other(&a, &back), 0, "scene %u",
-            i);
+        int compared, other = but_near ? others_not_near(&a, &back, &s.depth, &compared) : samples_other(&a, &back);
+        if (but_near)
+            see(r, "flips of odd widths: samples that are not the mirror's bits, but of near pixels", "none may be",
+                other, 0, "scene %u, %d samples", i, compared);
+        else
+            see(r, "flips: samples that are not the mirror's bits", "none may be", other, 0, "scene %u", i);
         picture_free(&a);
         picture_free(&b);
         picture_free(&back);
@@ -199,12 +257,28 @@ static void flips(const struct run *r)
     }
 }
 
+// A round picture of an aperture that is its own transpose.
+static struct picture round_aperture(void)
+{
+    enum { SIZE = 16 };
+    struct picture p = picture_new(SIZE, SIZE, 3);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        for (int c = 0; c < 3; c++)
+            p.plane[c][i] = hypot(i % SIZE - (SIZE - 1) / 2.0, i / SIZE - (SIZE - 1) / 2.0) < SIZE / 2.0;
+    return p;
+}
+
+// The scatter's own disc is made of rows, which is no symmetry: see turned_disc().
 static void transposes(const struct run *r)
 {
+    struct picture aperture = round_aperture();
+    const struct hf_image image = picture_image(&aperture);
     for (unsigned i = 0; i < 3; i++) {
         struct scene s = calm_scene(r->seed + i, 70, 52, 3);
         struct scene turned = {picture_transposed(&s.colour), picture_transposed(&s.depth)};
         struct hf_params p = r->subject->params;
+        if (p.engine == HF_ENGINE_SCATTER)
+            p.aperture.picture = &image;
         struct picture a = render_scene(r->c, &s, &p), b = render_scene(r->c, &turned, &p),
                        back = picture_transposed(&b);
         see(r, "transposes: difference, of the largest", "twice the roundings on the way of a sample",
@@ -216,6 +290,7 @@ static void transposes(const struct run *r)
         scene_free(&turned);
         scene_free(&s);
     }
+    picture_free(&aperture);
 }
 
 static void permutations(const struct run *r)

@@ -28,6 +28,7 @@ enum promise {
     ADDS = 2,                // the blur of a sum is the sum of the blurs
     EXPOSES = 4,             // a factor of 2^k passes through exactly
     FLIPS = 8,               // left to right, bit for bit
+    FLIPS_EVEN = 1024,       // FLIPS, but for near pixels at odd widths
     FLIPS_QUADS = 16,        // the same where depth is constant per quad and the size even
     TRANSPOSES = 32,         // within rounding
     PERMUTES = 64,           // channels, bit for bit
@@ -69,12 +70,12 @@ __attribute__((format(printf, 6, 7))) void see(const struct run *r, const char *
 
 // Before the first finding.
 void stability_open_table(void);
-// All rows so far as a table; returns how many exceed their bound and are not known to.
+// All rows so far as a table; returns how many exceed their bound.
 int stability_print(FILE *to);
-int stability_passed(void), stability_open(void);
-// Each row: reason is why it exceeds its bound where that is known, else NULL.
+int stability_passed(void);
+// Each row.
 struct stability_row {
-    const char *subject, *what, *why, *where, *reason;
+    const char *subject, *what, *why, *where;
     double value, bound;
     int within;
 };

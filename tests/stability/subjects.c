@@ -65,7 +65,7 @@ static struct subject scatter(const char *name, enum hf_resolution resolution)
     const double shares = 16 * 50 + 16;
     struct subject s = {name,
                         scene_params(),
-                        EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS_ONE_SURFACE | FLIPS | TRANSPOSES |
+                        EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS_ONE_SURFACE | FLIPS | FLIPS_EVEN | TRANSPOSES |
                             KEEPS_CENTRE,
                         (int)STABILITY_RADIUS + 8 + 4,
                         32,

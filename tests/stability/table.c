@@ -6,7 +6,6 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "stability/open.h"
 #include "support/check.h"
 
 enum { MAX_ROWS = 1000 };
@@ -74,41 +73,20 @@ void see(const struct run *r, const char *what, const char *why, double value, d
     va_end(args);
 }
 
-// Why the row exceeds its bound, if that is known and it is no worse than known; else NULL.
-static const char *open_reason(const struct row *row)
-{
-    for (size_t i = 0; i < sizeof open_rows / sizeof *open_rows; i++)
-        if (!within(row->value, row->bound) && within(row->value, open_rows[i].most) &&
-            !strcmp(open_rows[i].what, row->what) &&
-            !strncmp(open_rows[i].subject, row->subject, strlen(open_rows[i].subject)))
-            return open_rows[i].reason;
-    return NULL;
-}
-
-static int count(int exceeding, int known)
+int stability_passed(void)
 {
     int n = 0;
     for (int i = 0; i < row_count; i++)
-        n += within(rows[i].value, rows[i].bound) != exceeding && (open_reason(&rows[i]) != NULL) == known;
+        n += within(rows[i].value, rows[i].bound);
     return n;
-}
-
-int stability_passed(void)
-{
-    return count(0, 0);
-}
-
-int stability_open(void)
-{
-    return count(1, 1);
 }
 
 void stability_each(void (*fn)(void *cookie, const struct stability_row *row), void *cookie)
 {
     for (int i = 0; i < row_count; i++) {
         const struct row *r = &rows[i];
-        const struct stability_row row = {r->subject,     r->what,  r->why,   r->where,
-                                          open_reason(r), r->value, r->bound, within(r->value, r->bound)};
+        const struct stability_row row = {
+            r->subject, r->what, r->why, r->where, r->value, r->bound, within(r->value, r->bound)};
         fn(cookie, &row);
     }
 }
@@ -129,18 +107,12 @@ int stability_print(FILE *to)
             const struct row *row = &rows[i];
             if (strcmp(row->what, what))
                 continue;
-            const char *reason = open_reason(row);
             const int ok = within(row->value, row->bound);
             fprintf(to, "    %-18s %10.4g of %-10.4g %-7s %s\n", row->subject, row->value, row->bound,
-                    ok       ? ""
-                    : reason ? "open"
-                             : "FAILED",
-                    row->where);
+                    ok ? "" : "FAILED", row->where);
             if (strcmp(row->why, rows[first].why))
                 fprintf(to, "    %18s bound: %s\n", "", row->why);
-            if (reason)
-                fprintf(to, "    %18s %s\n", "", reason);
-            failed += !ok && !reason;
+            failed += !ok;
         }
     }
     return failed;
