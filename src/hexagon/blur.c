@@ -221,14 +221,15 @@ static struct found far_line(const struct hf_frame *f, const struct hf_hexagon_f
     return all;
 }
 
-// Colours that were found, with a weight and the mean radius: without light, that of the pixel itself.
-static void store_far(const struct hf_frame *f, const struct found *all, float p, enum hf_hexagon_made colour,
-                      int weight, int x, int y)
+// Colours that were found, with a weight and the mean radius: without light, that of the pixel itself. What is found at a
+// pixel that is far in part counts as much less.
+static void store_far(const struct hf_frame *f, const struct found *all, float p, float part,
+                      enum hf_hexagon_made colour, int weight, int x, int y)
 {
     const int any = all->a > 0;
     const float light = hf_hexagon_light(all->colour[0], all->colour[1], all->colour[2]);
     const float mean = all->w > 0 ? light / all->w : p, least = mean > HEXAGON_LEAST_MEAN ? mean : HEXAGON_LEAST_MEAN;
-    const float q = any ? least : 0, a = any ? 1 / (q > 1 ? q : 1) : 0;
+    const float q = any ? least : 0, a = any ? part / (q > 1 ? q : 1) : 0;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(hf_hexagon_made(f, colour), c, x, y) = all->colour[c] * a;
     *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight, x, y) = a;
@@ -238,18 +239,18 @@ static void store_far(const struct hf_frame *f, const struct found *all, float p
 static void far_1(const struct hf_frame *f, int x, int y)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
-    const float p = *hf_at(in.radius, in.q, x, y);
+    const float p = *hf_at(in.radius, in.q, x, y), part = *hf_at(in.weight, in.a, x, y) * (p > 1 ? p : 1);
     struct found u = {{0}, 0, 0}, v = u;
     if (p > 0) {
         u = far_line(f, &in, 0, x, y, p);
         v = far_line(f, &in, 1, x, y, p);
     }
-    store_far(f, &u, p, HF_HEXAGON_FAR_U, 0, x, y);
+    store_far(f, &u, p, part, HF_HEXAGON_FAR_U, 0, x, y);
     for (int c = 0; c < f->s->channels; c++)
         u.colour[c] = u.colour[c] + v.colour[c];
     u.a = u.a + v.a;
     u.w = u.w + v.w;
-    store_far(f, &u, p, HF_HEXAGON_FAR_B, 2, x, y);
+    store_far(f, &u, p, part, HF_HEXAGON_FAR_B, 2, x, y);
 }
 
 static void far_2(const struct hf_frame *f, int x, int y)

@@ -352,7 +352,7 @@ HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const i
         out[i] = hex_found(&l->in, &s[i], channels, first, x, y + i, p[i]);
 }
 
-HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels, vf p,
+HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels, vf p, vf part,
                              enum hf_hexagon_made colour, int weight, int x, int y)
 {
     const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_FAR_W);
@@ -360,7 +360,7 @@ HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s,
     const vm any = vf_gt(s->a, vf_zero());
     const vf mean = vf_select(vf_gt(s->w, vf_zero()), vf_div(hex_light(s->colour), s->w), p);
     const vf q = vf_keep(any, vf_max(mean, vf_set1(HEXAGON_LEAST_MEAN)));
-    const vf a = vf_keep(any, vf_div(one, vf_max(q, one)));
+    const vf a = vf_keep(any, vf_div(part, vf_max(q, one)));
     for (int c = 0; c < channels; c++)
         vf_store(hf_at(out, c, x, y), vf_mul(s->colour[c], a));
     vf_store(hf_at(weights, weight, x, y), a);
@@ -382,18 +382,20 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
     const struct hex_far up = hex_far(f, &in, 0, least, b, rows), left = hex_far(f, &in, 1, least, b, rows);
     HEX_EACH(b, rows, x, y)
     {
-        vf p[HEX_ROWS];
+        vf p[HEX_ROWS], part[HEX_ROWS];
         struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
         hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
-        for (int i = 0; i < rows; i++)
+        for (int i = 0; i < rows; i++) {
             p[i] = vf_load(hf_at(in.radius, in.q, x, y + i));
+            part[i] = vf_mul(vf_load(hf_at(in.weight, in.a, x, y + i)), vf_max(p[i], vf_set1(1)));
+        }
         hex_far_line(&up, channels, 1, rows, x, y, p, u);
         for (int i = 0; i < rows; i++)
-            hex_store_far(f, &u[i], channels, p[i], HF_HEXAGON_FAR_U, 0, x, y + i);
+            hex_store_far(f, &u[i], channels, p[i], part[i], HF_HEXAGON_FAR_U, 0, x, y + i);
         hex_far_line(&left, channels, 1, rows, x, y, p, v);
         for (int i = 0; i < rows; i++) {
             hex_add(&u[i], &v[i], channels);
-            hex_store_far(f, &u[i], channels, p[i], HF_HEXAGON_FAR_B, 2, x, y + i);
+            hex_store_far(f, &u[i], channels, p[i], part[i], HF_HEXAGON_FAR_B, 2, x, y + i);
         }
     }
 }

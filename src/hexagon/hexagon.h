@@ -59,7 +59,7 @@ enum hf_hexagon_made {
     HF_HEXAGON_NEAR_W,  // coverage x weight and mean radius, of U and of B
     HF_HEXAGON_FAR_U,   // colour x weight
     HF_HEXAGON_FAR_B,
-    HF_HEXAGON_FAR_W,  // weight and mean radius, of U and of B
+    HF_HEXAGON_FAR_W,  // weight, of what is far of a pixel, and mean radius, of U and of B
     HF_HEXAGON_NEAR,   // coverage x colour
     HF_HEXAGON_COVERAGE,
     HF_HEXAGON_FAR,

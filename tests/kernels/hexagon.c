@@ -368,10 +368,11 @@ static double bound_far_1(const struct world *w, int b, int c, int x, int y)
         size += fabs(u.value);
         light_error += u.error;
     }
-    // The mean radius, and the weight: 1 over it, where it is not below 1.
+    // The mean radius, and the weight: what of the pixel is far over it, where it is not below 1.
+    const double part = *hf_at(in.weight, in.a, x, y) * fmax(p, 1);
     const struct far_sums u = far_lines(w, both, is_weight ? 0 : c, x, y, p);
     light_error += 2 * FLT_EPSILON * size;
-    const double mean = u.w > 0 ? fabs(light) / u.w : p, q = fmax(mean, HEXAGON_LEAST_MEAN), a = 1 / fmax(q, 1);
+    const double mean = u.w > 0 ? fabs(light) / u.w : p, q = fmax(mean, HEXAGON_LEAST_MEAN), a = part / fmax(q, 1);
     const double q_error = u.w > 0 ? bound_quotient(light_error, u.w_error, u.w, mean) + FLT_EPSILON * mean : 0;
     const double a_error = a * (q_error / fmax(q, 1) * 2 + 2 * FLT_EPSILON);
     if (is_weight)

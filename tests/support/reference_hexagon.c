@@ -168,10 +168,10 @@ static struct sum far_blur(const struct field *in, const struct line *l, int at,
     return s;
 }
 
-static void put_far(struct field *out, const struct sum *s, double p, int at)
+static void put_far(struct field *out, const struct sum *s, double p, double part, int at)
 {
     out->q[at] = fmax(s->w > 0 ? light_of(s->colour[0], s->colour[1], s->colour[2]) / s->w : p, 0.25);
-    out->a[at] = 1 / fmax(out->q[at], 1);
+    out->a[at] = part / fmax(out->q[at], 1);
     for (int c = 0; c < out->channels; c++)
         out->colour[c][at] = s->colour[c] * out->a[at];
 }
@@ -180,17 +180,17 @@ static void far_field(const struct field *in, const struct line l[3], struct fie
 {
     struct field u = field_new(in->width, in->height, in->channels), b = field_new(in->width, in->height, in->channels);
     for (int at = 0; at < in->width * in->height; at++) {
-        const double p = in->q[at];
+        const double p = in->q[at], part = in->a[at] * fmax(p, 1);
         if (!(p > 0))
             continue;
         struct sum up = far_blur(in, &l[0], at, p);
         const struct sum left = far_blur(in, &l[1], at, p);
-        put_far(&u, &up, p, at);
+        put_far(&u, &up, p, part, at);
         for (int c = 0; c < in->channels; c++)
             up.colour[c] += left.colour[c];
         up.a += left.a;
         up.w += left.w;
-        put_far(&b, &up, p, at);
+        put_far(&b, &up, p, part, at);
     }
     for (int at = 0; at < in->width * in->height; at++) {
         const double p = in->q[at];
