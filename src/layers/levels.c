@@ -174,23 +174,39 @@ static void find_needed(struct band *b)
         }
 }
 
+// Beyond the frame all is like its border, so that of a level nothing changes farther out than its samples come from: rows
+// there are not made.
+static int row_of(const struct band *b, int level, int y)
+{
+    const int reach = (1 << level) - 1, last = b->f->s->half_height - 1 + reach;
+    return y < -reach ? -reach : y < last ? y : last;
+}
+
+// Columns of a level that are made: from x0 to before x1.
+static void columns_of(const struct band *b, int level, int *x0, int *x1)
+{
+    const int around = (1 << b->l->levels) - (1 << level), reach = (1 << level) - 1;
+    *x0 = hf_max(b->r.x0 - around, -reach);
+    *x1 = hf_min(b->r.x1 + around, b->f->s->half_width + reach);
+}
+
 // How a level's samples are merged: of three along a row, and of what these have become in three rows.
 struct merge {
     const struct hf_layers_set *from, *to;
     int row[3], dx;  // of the former: rows, and columns apart
-    int reach;       // columns beyond the band
+    int x0, x1;      // columns
     float slope;
 };
 
 // Merge what becomes row y of a level, into row `to`, where its blocks are marked.
 static void merge_row(const struct band *b, const struct merge *m, const uint8_t *marks, int y, int to)
 {
-    const int x0 = b->r.x0 - m->reach, x1 = b->r.x1 + m->reach, channels = b->l->channels;
+    const int channels = b->l->channels;
     const uint8_t *row = marks + ((y - b->r.y0 + b->around * BLOCK) / BLOCK - b->around) * b->stride;
     for (int start = -b->around, end; start < b->columns + b->around; start = end) {
         for (end = start + 1; end < b->columns + b->around && !row[end] == !row[start];)
             end++;
-        const int x = hf_max(b->r.x0 + start * BLOCK, x0), n = hf_min(b->r.x0 + end * BLOCK, x1) - x;
+        const int x = hf_max(b->r.x0 + start * BLOCK, m->x0), n = hf_min(b->r.x0 + end * BLOCK, m->x1) - x;
         float *in[3][6] = {{NULL}}, *out[6];
         if (!row[start] || n <= 0)
             continue;
@@ -198,6 +214,24 @@ static void merge_row(const struct band *b, const struct merge *m, const uint8_t
             planes_of(m->from, channels, x + (i - 1) * m->dx, m->row[i], in[i]);
         planes_of(m->to, channels, x, to, out);
         hf_layers_kernels(b->f)->merge((const float *const(*)[6])in, channels, m->slope, n, out);
+    }
+}
+
+// What is read of a level's row beyond the columns that are made, where its blocks are marked: like the last of these.
+static void repeat_ends(const struct band *b, int level, const uint8_t *marks, int x0, int x1, int y)
+{
+    const int first = b->r.x0 - b->around * BLOCK, more = 3 << level, around = (1 << b->l->levels) - (1 << level);
+    const int from[2] = {hf_max(b->r.x0 - around, x0 - more), x1}, to[2] = {x0, hf_min(b->r.x1 + around, x1 + more)};
+    const uint8_t *row = marks + ((y - b->r.y0 + b->around * BLOCK) / BLOCK - b->around) * b->stride - b->around;
+    for (int side = 0; side < 2; side++) {
+        const int like = side ? x1 - 1 : x0;
+        float *plane[6] = {NULL};
+        if (!row[(like - first) / BLOCK])
+            continue;
+        planes_of(&b->level[level], b->l->channels, 0, y, plane);
+        for (int c = 0; c < 6; c++)
+            for (int x = from[side]; plane[c] && x < to[side]; x++)
+                plane[c][x] = plane[c][like];
     }
 }
 
@@ -222,19 +256,20 @@ static void make_levels(struct band *b)
                               .to = &b->across,
                               .row = {y, y, y},
                               .dx = step,
-                              .reach = reach,
                               .slope = 1.0f / (float)(2 << j)};
-            if (y >= top - reach - step && y < low + reach + step)
+            columns_of(b, j, &m.x0, &m.x1);
+            if (y >= top - reach - step && y < low + reach + step && y == row_of(b, j - 1, y))
                 merge_row(b, &m, b->made[j - 1], y, ring_row(b, j, y));
             y -= step;
-            if (y < top - reach || y >= low + reach)
+            if (y < top - reach || y >= low + reach || y != row_of(b, j, y))
                 continue;
             m.from = &b->across;
             m.to = &b->level[j];
             m.dx = 0;
             for (int i = 0; i < 3; i++)
-                m.row[i] = ring_row(b, j, y + (i - 1) * step);
+                m.row[i] = ring_row(b, j, row_of(b, j - 1, y + (i - 1) * step));
             merge_row(b, &m, b->made[j], y, y);
+            repeat_ends(b, j, b->made[j], m.x0, m.x1, y);
         }
 }
 
@@ -303,7 +338,7 @@ static void find(const struct band *b, int x, int n, int y)
                 .scale = 1.0f / (float)(2 << j), .off = 0.5f - distance[away], .part = part * share[away]};
             if (behind * tap->scale + tap->off < -ROUNDED)
                 continue;
-            planes_of(&b->level[j], channels, x + u * (1 << j), y + v * (1 << j), (float **)tap->in);
+            planes_of(&b->level[j], channels, x + u * (1 << j), row_of(b, j, y + v * (1 << j)), (float **)tap->in);
             count++;
         }
     k->taps(taps, count, channels, nearest, n, sum);
