@@ -135,6 +135,19 @@ static struct hf_tent_row tent_row_of(const struct walk *w, int y)
     return t;
 }
 
+// What of a row's pixels is in the walk's slice.
+static void slice_pixels(const struct walk *w, const struct hf_tent_row *t)
+{
+    for (int odd = 0; odd < 2; odd++) {
+        float *part = w->part[odd];
+        for (int i = 0; i < t->n; i++)
+            part[i] = hf_slice_part(&w->slice, t->sign * t->radius[2 * i + odd]);
+        for (int c = 0; c < 4; c++)
+            for (int i = 0; i < t->n && (c == 3 || c < t->channels); i++)
+                t->pixel[odd][c][i] *= part[i];
+    }
+}
+
 // One full-resolution row's pixels that are parts of means, weighted, and their tent along x. Lanes 0..2 are the
 // channels, 3 the weight. What the tent would put outside the frame stays at its edge.
 static void tent_row(struct walk *w, int y)
@@ -147,12 +160,8 @@ static void tent_row(struct walk *w, int y)
         for (int c = 0; c < 4; c++)
             if (c == 3 || c < t.channels)
                 t.pixel[x & 1][c][x >> 1] *= 1 - share[x];
-    for (int x = 0; x < pixels && !w->slice.whole; x++) {
-        const float part = hf_slice_part(&w->slice, t.sign * t.radius[x]);
-        for (int c = 0; c < 4; c++)
-            if (c == 3 || c < t.channels)
-                t.pixel[x & 1][c][x >> 1] *= part;
-    }
+    if (!w->slice.whole)
+        slice_pixels(w, &t);
     for (int c = 0; c < 4; c++) {
         float *even = t.pixel[0][c], *odd = t.pixel[1][c];
         if (c >= t.channels && c < 3)
@@ -185,7 +194,7 @@ static void list_lone(struct walk *w, int y, int q, float part)
     for (int x = 2 * w->tent_x0; x < hf_min(2 * w->tent_x1, f->s->width); x++) {
         const float r = t.sign * t.radius[x - 2 * w->tent_x0];
         float merged;
-        if (!(r > 0))
+        if (!(r > 0 && (w->slice.whole || (r > w->slice.begin[0] && r < w->slice.end[1]))))
             continue;
         float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
         if (!(weight > merged))
@@ -304,7 +313,9 @@ void hf_tent_start(struct walk *w, float *memory, int length)
     w->tent_x1 = hf_min(w->sums.x1 + reach + 1, w->f->s->half_width);
     w->quads_done = w->sites_done = w->tents_done = 0;
     memory += HF_PAD;
-    for (int i = 0; i < HF_TENT_LINES - 1; i++, memory += length)
+    for (int i = 0; i < HF_TENT_LINES - 3; i++, memory += length)
         lines[i >> 2][i & 3] = memory;
     w->mean[4] = memory;
+    for (int i = 0; i < 2; i++)
+        w->part[i] = memory += length;
 }

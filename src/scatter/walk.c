@@ -205,15 +205,27 @@ struct half_sums {
     struct hf_rect r;
 };
 
-// Add them, bilinearly, to pixels x0 to x1 of row y.
-static void add_half(const struct hf_setup *s, const struct half_sums *h, int x0, int x1, int y, float *out)
+// Bilinearly at the frame's left or right edge, beyond which it goes on as it is.
+static float at_edge(float own, float over)
 {
-    const float *a = h->plane + (ptrdiff_t)((y >> 1) - h->r.y0) * h->stride - h->r.x0;
-    const float *b = h->plane + (ptrdiff_t)(hf_beside(y, s->half_height) - h->r.y0) * h->stride - h->r.x0;
-    for (int x = x0; x < x1; x++) {
-        const int xa = x >> 1, xb = hf_beside(x, s->half_width);
-        out[x - x0] += 0.75f * (0.75f * a[xa] + 0.25f * b[xa]) + 0.25f * (0.75f * a[xb] + 0.25f * b[xb]);
-    }
+    const float v = 0.75f * own + 0.25f * over;
+    return 0.75f * v + 0.25f * v;
+}
+
+// Add them, bilinearly, to pixels x0 (even) to x1 of row y.
+static void add_half(const struct hf_frame *f, const struct half_sums *h, int x0, int x1, int y, float *out)
+{
+    const float *a = h->plane + (ptrdiff_t)((y >> 1) - h->r.y0) * h->stride + ((x0 >> 1) - h->r.x0);
+    const float *b = a + (ptrdiff_t)(hf_beside(y, f->s->half_height) - (y >> 1)) * h->stride;
+    const int n = x1 - x0, last = (n - 1) >> 1;
+    float *up = hf_line(f, 0);
+    f->k->behind.up_row(a, b, last + 1, up);
+    if (x0 == 0)
+        up[0] = at_edge(a[0], b[0]);
+    if (x1 == f->s->width && !(n & 1))
+        up[n - 1] = at_edge(a[last], b[last]);
+    for (int x = 0; x < n; x++)
+        out[x] += up[x];
 }
 
 // The rows of full-resolution sources.
@@ -265,7 +277,7 @@ static void splat_slice(struct walk *w, struct hf_rect r, const struct hf_target
             if (w->t->reach_x[w->field][0] < 0)
                 memset(row, 0, sizeof *row * (size_t)(x1 - x0));
             if (w->t->reach_x[w->field][1] >= 0)
-                add_half(s, &(struct half_sums){half + c * half_plane, half_stride, h}, x0, x1, y, row);
+                add_half(f, &(struct half_sums){half + c * half_plane, half_stride, h}, x0, x1, y, row);
         }
 }
 

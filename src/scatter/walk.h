@@ -38,7 +38,7 @@ struct walk {
     struct hf_slice slice;        // of the radii that are drawn
     float *source[TOGETHER][5];   // level 0: channels, weight, and numbers of pictures
     // level 1: of the last rows, quads' weights and these times radii, source radii and pixels; see hf_list_half
-    float *quad[2][4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *nothing;
+    float *quad[2][4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *part[2], *nothing;
     int lone[4];
     int tent_x0, tent_x1, quads_done, sites_done,
         tents_done;  // half-resolution columns; rows up to which they are made
@@ -93,7 +93,7 @@ void hf_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf
 
 // Columns of means, and floats of each line and how many there are, that a window so wide needs.
 int hf_tent_columns(const struct hf_scatter *t, int field, int width);
-enum { HF_TENT_LINES = 8 + 4 + 16 + 8 + 5 };
+enum { HF_TENT_LINES = 8 + 4 + 16 + 8 + 5 + 2 };
 // Lay out its lines, each with HF_PAD floats before and after it. Before the first hf_list_half of a window.
 void hf_tent_start(struct walk *w, float *memory, int length);
 // Sources of half-resolution row q.
