@@ -14,7 +14,7 @@ static const struct {
 } groups[] = {
     {"samples", NULL, samples_cases},       {"sizes", small_sizes_cases, sizes_cases},
     {"invariance", NULL, invariance_cases}, {"continuity", NULL, continuity_cases},
-    {"rounding", NULL, rounding_cases},
+    {"rounding", NULL, rounding_cases},     {"silhouettes", NULL, silhouettes_cases},
 };
 
 static void run_subject(const struct subject *s, const struct stability_options *o)

@@ -10,6 +10,7 @@
 //   invariance.c  constants, energy, centre, range, opacity, shifts, crops, flips, transposes, exposure, sums
 //   continuity.c  pulls and ramps in tiny steps, flicker
 //   rounding.c    against references in double precision; long rows and large radii
+//   silhouettes.c anti-aliased outlines in focus
 #ifndef HF_TESTS_STABILITY_H
 #define HF_TESTS_STABILITY_H
 
@@ -24,18 +25,20 @@
 
 // What a subject promises beyond what all do.
 enum promise {
-    KEEPS_ENERGY = 1,        // of a highlight where everything has one CoC
-    ADDS = 2,                // the blur of a sum is the sum of the blurs
-    EXPOSES = 4,             // a factor of 2^k passes through exactly
-    FLIPS = 8,               // left to right, bit for bit
-    FLIPS_EVEN = 1024,       // FLIPS, but for near pixels at odd widths
-    FLIPS_QUADS = 16,        // the same where depth is constant per quad and the size even
-    TRANSPOSES = 32,         // within rounding
-    PERMUTES = 64,           // channels, bit for bit
-    EXACT = 128,             // float storage: bounds are those of rounding alone
-    ADDS_ONE_SURFACE = 512,  // as ADDS, but for mixed pixels
-    ADDS_ONE_RADIUS = 1024,  // as ADDS_ONE_SURFACE, of what is far where that has one radius
-    KEEPS_CENTRE = 256,      // a highlight's centre of gravity, far and near
+    KEEPS_ENERGY = 1 << 0,      // of a highlight where everything has one CoC
+    ADDS = 1 << 1,              // the blur of a sum is the sum of the blurs
+    EXPOSES = 1 << 2,           // a factor of 2^k passes through exactly
+    FLIPS = 1 << 3,             // left to right, bit for bit
+    FLIPS_EVEN = 1 << 4,        // FLIPS, but for near pixels at odd widths
+    FLIPS_QUADS = 1 << 5,       // the same where depth is constant per quad and the size even
+    TRANSPOSES = 1 << 6,        // within rounding
+    PERMUTES = 1 << 7,          // channels, bit for bit
+    EXACT = 1 << 8,             // float storage: bounds are those of rounding alone
+    ADDS_ONE_SURFACE = 1 << 9,  // as ADDS, but for mixed pixels
+    ADDS_ONE_RADIUS = 1 << 10,  // as ADDS_ONE_SURFACE, of what is far where that has one radius
+    KEEPS_CENTRE = 1 << 11,     // a highlight's centre of gravity, far and near
+    SMOOTH = 1 << 12,           // anti-aliased silhouettes before what is blurred stay nearer to smooth than to stairs
+    UNMIXES = 1 << 13,          // and are as they were
 };
 
 struct subject {
@@ -97,6 +100,7 @@ void sizes_cases(const struct run *r);
 void invariance_cases(const struct run *r);
 void continuity_cases(const struct run *r);
 void rounding_cases(const struct run *r);
+void silhouettes_cases(const struct run *r);
 
 // A picture of blocks with a soft pattern in each, 0.05 .. 1, alpha as asked for, and depths on both sides of the focus.
 struct scene calm_scene(unsigned seed, int width, int height, int channels);

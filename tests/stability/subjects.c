@@ -28,6 +28,8 @@ static struct subject gather(const char *name, enum hf_fill fill, enum hf_storag
     s.params.gather.storage = storage;
     if (fill != HF_FILL_MAX)
         s.promises |= KEEPS_ENERGY | ADDS;
+    if (fill == HF_FILL_MEAN)
+        s.promises |= SMOOTH;
     if (storage == HF_STORAGE_HALF) {
         s.promises &= ~(unsigned)(EXPOSES | EXACT | TRANSPOSES);
         s.step = 1.0 / 1024;
@@ -54,6 +56,8 @@ static struct subject hexagon(const char *name, enum hf_resolution resolution)
                         0};
     s.params.engine = HF_ENGINE_HEXAGON;
     s.params.hexagon.resolution = resolution;
+    if (!resolution)
+        s.promises |= SMOOTH;
     return s;
 }
 
@@ -66,7 +70,7 @@ static struct subject scatter(const char *name, enum hf_resolution resolution)
     struct subject s = {name,
                         scene_params(),
                         EXPOSES | PERMUTES | EXACT | KEEPS_ENERGY | ADDS_ONE_SURFACE | FLIPS | FLIPS_EVEN | TRANSPOSES |
-                            KEEPS_CENTRE,
+                            KEEPS_CENTRE | SMOOTH,
                         (int)STABILITY_RADIUS + 8 + 4,
                         32,
                         (resolution ? 60 : 40) + shares,
@@ -85,8 +89,13 @@ static struct subject scatter(const char *name, enum hf_resolution resolution)
 // A cat's eye is another shape at every place: that has its own test.
 static struct subject layers(const char *name, const struct hf_aperture_params *aperture)
 {
-    struct subject s = {
-        name, scene_params(), EXACT | KEEPS_ENERGY | KEEPS_CENTRE, (int)STABILITY_RADIUS + 4 + 32 + 4 + 2, 34, 60, 0};
+    struct subject s = {name,
+                        scene_params(),
+                        EXACT | KEEPS_ENERGY | KEEPS_CENTRE | UNMIXES,
+                        (int)STABILITY_RADIUS + 4 + 32 + 4 + 2,
+                        34,
+                        60,
+                        0};
     s.params.engine = HF_ENGINE_LAYERS;
     s.params.aperture = *aperture;
     return s;
