@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "hexagon/kernels.h"
-#include "pixel/edges.h"
 
 // ---- Load ----
 
@@ -77,8 +76,9 @@ static void load_seen(const struct hf_frame *f, int x, int y, const float radius
     quad_colour(f, w, 0.25f, lane, i, to);
 }
 
-static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
+static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r, struct hf_edges *e)
 {
+    (void)e;
     const int n = r.x1 - r.x0, y1 = hf_min(2 * y + 1, f->s->height - 1), last = f->s->width - 1 - 2 * r.x0;
     float *lane[2][2][4];  // [row][odd][channel]
     for (int i = 0; i < 16; i++)
@@ -100,16 +100,7 @@ static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_hexagon_load_c(const struct hf_frame *f, struct hf_rect r)
 {
-    const int half = f->s->resolution == HF_RESOLUTION_HALF;
-    struct hf_edges e;
-    const int mixed = !half && hf_hexagon(f->s)->mixed;
-    if (mixed)
-        hf_edges_start(&e, f, r, f->work);
-    for (int y = half ? r.y0 : 2 * r.y0; y < (half ? r.y1 : hf_min(2 * r.y1, f->s->height)); y++)
-        if (half)
-            load_half_row(f, y, r);
-        else
-            load_full_row(f, y, r, mixed ? &e : NULL);
+    hf_hexagon_load_rows(f, r, f->s->resolution == HF_RESOLUTION_HALF ? load_half_row : load_full_row);
 }
 
 // ---- the passes ----

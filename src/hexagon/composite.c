@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hexagon's last pass in plain C: the near field over the far one, over what is sharp, and over what lies behind it.
+#include <string.h>
+
 #include "hexagon/kernels.h"
 #include "pixel/behind.h"
 
@@ -136,9 +138,10 @@ void hf_hexagon_composite_c(const struct hf_frame *f, struct hf_rect r)
         colour[c] = hf_line(f, 8 + c);
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->counts);
-        f->k->radius_row(f, x0, y, n, radius, NULL);
-        for (int i = 0; i < n && f->s->resolution == HF_RESOLUTION_FULL; i++)
-            radius[i] = *hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, x0 + i, y);
+        if (f->s->resolution == HF_RESOLUTION_HALF)
+            f->k->radius_row(f, x0, y, n, radius, NULL);
+        else
+            memcpy(radius, hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, x0, y), sizeof *radius * (size_t)n);
         for (int i = 0; i < n; i++)
             composite_pixel(f, x0 + i, y, radius[i], colour, i);
         hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)colour, f->s->channels == 4);

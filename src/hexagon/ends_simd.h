@@ -4,7 +4,6 @@
 #include "hexagon/kernels.h"
 #include "pixel/behind.h"
 #include "pixel/coc_vf.h"
-#include "pixel/edges.h"
 
 // ---- Load ----
 
@@ -107,8 +106,9 @@ static void hex_radius_lanes(const struct hf_frame *f, int x, int y, int n, floa
     f->k->unzip(line, n, even, odd);
 }
 
-static void hex_load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
+static void hex_load_half_row(const struct hf_frame *f, int y, struct hf_rect r, struct hf_edges *e)
 {
+    (void)e;
     const int n = r.x1 - r.x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
     float *lane[2][2][4], *radius[4];
     for (int i = 0; i < 16; i++)
@@ -134,16 +134,7 @@ static void hex_load_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 static void hexagon_load_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    const int half = f->s->resolution == HF_RESOLUTION_HALF;
-    struct hf_edges e;
-    const int mixed = !half && hf_hexagon(f->s)->mixed;
-    if (mixed)
-        hf_edges_start(&e, f, r, f->work);
-    for (int y = half ? r.y0 : 2 * r.y0; y < (half ? r.y1 : hf_min(2 * r.y1, f->s->height)); y++)
-        if (half)
-            hex_load_half_row(f, y, r);
-        else
-            hex_load_full_row(f, y, r, mixed ? &e : NULL);
+    hf_hexagon_load_rows(f, r, f->s->resolution == HF_RESOLUTION_HALF ? hex_load_half_row : hex_load_full_row);
     vf_stream_end();
 }
 

@@ -26,6 +26,10 @@ struct hf_edges;
 const float *hf_hexagon_row(struct hf_edges *e, const struct hf_frame *f, int y, struct hf_rect r,
                             float *const colour[4], float *radius);
 
+// Load of a rectangle row by row, at the working resolution; e: NULL without mixed pixels.
+typedef void hf_hexagon_load_row(const struct hf_frame *f, int y, struct hf_rect r, struct hf_edges *e);
+void hf_hexagon_load_rows(const struct hf_frame *f, struct hf_rect r, hf_hexagon_load_row *row);
+
 extern const struct hf_engine_def hf_hexagon_engine;
 
 #endif

@@ -87,3 +87,14 @@ const float *hf_hexagon_row(struct hf_edges *e, const struct hf_frame *f, int y,
     take_row(f, &s, n, colour, radius, hf_line(f, 24));
     return hf_line(f, 24);
 }
+
+void hf_hexagon_load_rows(const struct hf_frame *f, struct hf_rect r, hf_hexagon_load_row *row)
+{
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
+    const int mixed = hf_hexagon(f->s)->mixed;
+    struct hf_edges e;
+    if (mixed)
+        hf_edges_start(&e, f, r, f->work);
+    for (int y = p.y0; y < p.y1; y++)
+        row(f, y, r, mixed ? &e : NULL);
+}
