@@ -27,16 +27,31 @@ struct pulling {
     enum pull pull;
 };
 
-// The published demo's maximum takes in what begins to be far at once, and its upsampling what is beside: how many quads up to
-// two away are far marks what that changes.
-static float *far_quads(const struct picture *depth, float focus)
+// The published demo does two things at once where others come in by and by. Its far maximum takes in what begins to be far,
+// and its upsampling what is beside: two quads on. And its near colour is the mean of all taps where the blurred near CoC is
+// over 0, else the quad's own: a quad that begins to be near by next to nothing does that to all quads that its maximum and
+// its blur, m each, reach. The quads beside these have (4 m + 1) / (2 m + 1)^2 of a blurred CoC at most, 25 / 169 at m = 6
+// (windows shifted by one along both axes have all but so many in common), their maximum takes the changed colour in, and
+// upsampling what is beside. How many quads up to two away are far, and how many have a blurred near CoC, marks what changes.
+static float *demo_marks(const struct picture *depth, const struct hf_params *p)
 {
+    enum { W = WIDTH / 2, H = HEIGHT / 2 };
+    const int reach = 2 * (int)ceilf(p->max_radius / 2);
     float *marks = calloc(samples_of(depth), sizeof *marks);
+    char far[H][W] = {{0}}, near[H][W] = {{0}};
+    for (int i = 0; i < W * H; i++) {
+        const float z = depth->plane[0][2 * (i / W) * WIDTH + 2 * (i % W)];
+        far[i / W][i % W] = z > p->focus;
+        for (int y = i / W - reach; z < p->focus && y <= i / W + reach; y++)
+            for (int x = i % W - reach; x <= i % W + reach; x++)
+                if (x >= 0 && y >= 0 && x < W && y < H)
+                    near[y][x] = 1;
+    }
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         for (int k = 0; k < 25; k++) {
             const int x = i % WIDTH / 2 + k % 5 - 2, y = i / WIDTH / 2 + k / 5 - 2;
-            if (x >= 0 && y >= 0 && x < WIDTH / 2 && y < HEIGHT / 2)
-                marks[i] += depth->plane[0][2 * y * WIDTH + 2 * x] > focus;
+            if (x >= 0 && y >= 0 && x < W && y < H)
+                marks[i] += (float)(far[y][x] + 32 * near[y][x]);
         }
     return marks;
 }
@@ -62,7 +77,7 @@ static struct picture at(void *cookie, double t)
     }
     struct picture out = render(w->r->c, &w->s->colour, &depth, &p);
     if (p.gather.faithful)
-        out.plane[3] = far_quads(w->pull == PULL_DOLLY ? w->moved : &w->s->depth, p.focus);
+        out.plane[3] = demo_marks(w->pull == PULL_DOLLY ? w->moved : &w->s->depth, &p);
     return out;
 }
 
