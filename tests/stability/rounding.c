@@ -81,6 +81,19 @@ static void against_double(const struct run *r)
     }
 }
 
+// Half units that the gather's sums by area may add to a constant, its kernels as large as the radius: h half-resolution
+// pixels. A sample is rounded once beside its pair on the other side of a row, h + 1 times as pairs of the row are added, and
+// 2 h + 1 times as rows are. Samples of a constant are alike, and so are these roundings, all up or all down: they do add up.
+// The sums of weights are rounded as often at most, and not at all where samples count wholly.
+static double area_sums(const struct run *r, double radius)
+{
+    const struct hf_gather_params *g = &r->subject->params.gather;
+    const int by_area =
+        r->subject->params.engine == HF_ENGINE_GATHER && g->fill == HF_FILL_MEAN && !g->per_pixel_kernel;
+    const double h = ceil(radius / 2);
+    return by_area ? 2 * (1 + (h + 1) + (2 * h + 1)) : 0;
+}
+
 // A constant in a row of 16384 pixels under a radius of 500: sums that drift would show.
 static void long_rows(const struct run *r)
 {
@@ -95,8 +108,11 @@ static void long_rows(const struct run *r)
     p.max_radius = radius;
     const struct hf_depth depth = picture_radii(&radii);
     struct picture out = render(r->c, &colour, &depth, &p);
-    see(r, "long rows, large radii: relative error of a constant", "that of short rows: errors do not add up",
-        largest_difference(&out, &colour) / 0.7, r->subject->constant * U, "%d pixels, radius %g", w, radius);
+    const double sums = area_sums(r, radius);
+    see(r, "long rows, large radii: relative error of a constant",
+        sums > 0 ? "that of short rows, and half a unit for each sum of the kernel that a sample goes through"
+                 : "that of short rows: errors do not add up",
+        largest_difference(&out, &colour) / 0.7, (r->subject->constant + sums) * U, "%d pixels, radius %g", w, radius);
     picture_free(&out);
     picture_free(&colour);
     picture_free(&radii);
