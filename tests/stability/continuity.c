@@ -88,6 +88,14 @@ static struct picture at(void *cookie, double t)
 // 12.92 * 255 codes of 1: 0.13. Half a code no one sees.
 static const double FLOAT_STEP = 0.5;
 
+static const char *half_a_code(const struct run *r)
+{
+    const struct hf_params *p = &r->subject->params;
+    return p->engine == HF_ENGINE_GATHER && p->gather.faithful
+               ? "faithful: half a code, beside what the demo changes at once, which is left out; see continuity.c"
+               : "half a code: what the smallest step of a float can make, see continuity.c";
+}
+
 // Codes by which a colour of 0.05 .. 1, as calm_scene() has them, may fall when it goes so far towards another of them, and is
 // truncated so often to 5 bits and the one in front, as blue is.
 static double fall(double part, int truncations)
@@ -114,7 +122,7 @@ static double allowed(const struct run *r, enum pull pull, double t, const char 
     // at h = 1, and less for all others, twice.
     double part = packed ? (taps ? 2 + 1 + 2 * 1.32 : 2) / 255.0 : 0;
     *why = packed ? "packed: steps of an 8-bit CoC, 2 or for a maximum 5.64, and two truncations to 5 bits"
-                  : "half a code: what the smallest step of a float can make, see continuity.c";
+                  : half_a_code(r);
     if (chapters && pull == PULL_RADIUS) {
         // The near maximum and its mean are 2 m + 1 wide, m = ceil(radius / 2), as in the chapter: from a straight edge on
         // the mean falls as 1 - d / (2 m + 1), so that the next m changes it by 2 / (2 m + 3) at most. From N to N + 1 rings,
@@ -158,8 +166,7 @@ static void pulled(const struct run *r, enum pull pull, const struct scene *s, c
         const double bound = allowed(r, pull, from, &why);
         see(r, pulls[pull].name, why, left, bound, "%s, at %.9g (step %.3g)", scene, from, worst[k]);
     }
-    see(r, pulls[pull].name, "half a code: what the smallest step of a float can make, see continuity.c", 0, FLOAT_STEP,
-        "%s", scene);
+    see(r, pulls[pull].name, half_a_code(r), 0, FLOAT_STEP, "%s", scene);
     picture_free(&moved);
 }
 
