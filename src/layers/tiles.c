@@ -75,6 +75,11 @@ static const uint64_t *marks_of(const struct hf_layers *l, enum hf_marks of)
     return !l->levels && (of == HF_MARKS_HIDDEN || of == HF_MARKS_BEYOND) ? NULL : marks[of];
 }
 
+static int words_of(const struct hf_layers *l, enum hf_marks of)
+{
+    return of == HF_MARKS_SHARES ? l->share_words : l->words;
+}
+
 void hf_layers_find_present(struct hf_cell *c)
 {
     const struct hf_layers *l = c->l;
@@ -84,7 +89,7 @@ void hf_layers_find_present(struct hf_cell *c)
     memset(c->present, 0, sizeof *c->present * (size_t)(4 * l->words + l->share_words) * (size_t)(r.y1 - r.y0));
     for (int i = HF_MARKS_SEEN; i <= HF_MARKS_SHARES; i++) {
         const uint64_t *marks = marks_of(l, (enum hf_marks)i);
-        const int words = i == HF_MARKS_SHARES ? l->share_words : l->words;
+        const int words = words_of(l, (enum hf_marks)i);
         for (int y = r.y0; marks && y < r.y1; y++) {
             uint64_t *present = present_in(c, (enum hf_marks)i, y);
             for (int x = left; x < right; x++)
@@ -105,7 +110,7 @@ static int mark_set(const struct hf_cell *c, enum hf_marks of, int slice, int n,
     const int y = c->y0 / TILE + ty, inside = y < 0 ? 0 : y < c->l->rows ? y : c->l->rows - 1;
     if (!is_present(c, of, slice, inside))
         return 0;
-    mark_row(c, marks_of(c->l, of), of == HF_MARKS_SHARES ? c->l->share_words : c->l->words, slice, n, ty, bit);
+    mark_row(c, marks_of(c->l, of), words_of(c->l, of), slice, n, ty, bit);
     return 1;
 }
 
@@ -113,12 +118,10 @@ int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
 {
     const struct hf_layers *l = c->l;
     const int n = hf_layers_tiles_around(hf_layers_table(l, kind) + slice), columns = c->columns + 2 * n;
-    const enum hf_marks own = kind == HF_KIND_SEEN     ? HF_MARKS_SEEN
-                              : kind == HF_KIND_HIDDEN ? HF_MARKS_HIDDEN
-                                                       : HF_MARKS_SHARES,
-                        more = kind == HF_KIND_SEEN     ? HF_MARKS_MIXED
-                               : kind == HF_KIND_HIDDEN ? HF_MARKS_BEYOND
-                                                        : HF_MARKS_SHARES;
+    static const enum hf_marks sets[][2] = {[HF_KIND_SEEN] = {HF_MARKS_SEEN, HF_MARKS_MIXED},
+                                            [HF_KIND_HIDDEN] = {HF_MARKS_HIDDEN, HF_MARKS_BEYOND},
+                                            [HF_KIND_SHARES] = {HF_MARKS_SHARES, HF_MARKS_SHARES}};
+    const enum hf_marks own = sets[kind][0], more = sets[kind][1];
     struct hf_rect r = rows_of(c);
     while (r.y0 < r.y1 && !is_present(c, own, slice, r.y0) && !is_present(c, more, slice, r.y0))
         r.y0++;
@@ -129,7 +132,7 @@ int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
         uint8_t *used = hf_layers_map_at(&c->used, -n, ty);
         memset(used, 0, (size_t)columns);
         int any = mark_set(c, own, slice, n, ty, SEEN);
-        if (kind != HF_KIND_SHARES)
+        if (more != own)
             any |= mark_set(c, more, slice, n, ty, MORE);
         int first = 0, last = any ? columns : 0;
         while (first < last && !used[first])

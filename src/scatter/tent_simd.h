@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: the half-resolution means on vectors. Nothing is fused: what is alike has one answer everywhere.
 #include "pixel/pass_c.h"
+#include "pixel/coc_vf.h"
 #include "scatter/kernels.h"
 #include "simd/simd.h"
 
-HF_INLINE vf tent_saturate(vf v)
-{
-    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
-}
-
 HF_INLINE vf tent_half_weight(const struct hf_scatter *t, vf r)
 {
-    const vf part = tent_saturate(vf_mul(vf_sub(r, vf_set1(t->half_from)), vf_set1(t->half_slope)));
-    const vf own = tent_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
+    const vf part = coc_saturate(vf_mul(vf_sub(r, vf_set1(t->half_from)), vf_set1(t->half_slope)));
+    const vf own = coc_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
     return vf_mul(vf_keep(vf_gt(r, vf_zero()), vf_sub(vf_set1(1), own)), part);
 }
 
@@ -63,7 +59,7 @@ HF_INLINE vf tent_apart(const float *site, int i, int next, vf r)
 HF_INLINE vf tent_alike(vf r, vf apart)
 {
     const vf most = vf_add(vf_set1(0.25f), vf_mul(r, vf_set1(1 / 32.0f))), steps = vf_set1(1 << HF_ALIKE_LOG2);
-    const vf part = vf_mul(tent_saturate(vf_mul(vf_sub(most, apart), vf_set1(8))), steps);
+    const vf part = vf_mul(coc_saturate(vf_mul(vf_sub(most, apart), vf_set1(8))), steps);
     return vf_mul(vi_to_vf(vf_to_vi(part)), vf_set1(1.0f / (1 << HF_ALIKE_LOG2)));
 }
 

@@ -16,6 +16,9 @@ static double beyond(double x, double y, double middle)
 // How much of a pixel the disc covers.
 static double share_of(int x, int y, double middle)
 {
+    const double d = beyond(x + 0.5, y + 0.5, middle);
+    if (fabs(d) > 1)
+        return d < 0;
     int inside = 0;
     for (int i = 0; i < FINE * FINE; i++)
         inside += beyond(x + (i % FINE + 0.5) / FINE, y + ((double)(i / FINE) + 0.5) / FINE, middle) < 0;
