@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const bench_scene_names[] = {"mixed",  "near",        "far",        "both",        "focus",
+const char *const bench_scene_names[] = {"mixed",  "near",        "far",        "both",        "full", "focus",
                                          "band:P", "band-near:P", "band-far:P", "band-both:P", NULL};
 
-enum scene_kind { MIXED, NEAR, FAR, BOTH, FOCUS, BAND, BAND_NEAR, BAND_FAR, BAND_BOTH, KINDS };
+enum scene_kind { MIXED, NEAR, FAR, BOTH, FULL, FOCUS, BAND, BAND_NEAR, BAND_FAR, BAND_BOTH, KINDS };
 
 static int scene_kind(const char *name, float *band)
 {
@@ -79,6 +79,8 @@ static float depth_of_kind(const struct painter *p, int x, int y, float t)
     case BOTH:
     case BAND_BOTH:
         return on_disc(x, y, p->pitch) ? -1.0f : 0.5f + order;
+    case FULL:
+        return 1.5f;
     case BAND:
         return x < p->width / 2 ? -0.5f - order : 0.5f + order;
     default:

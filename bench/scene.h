@@ -28,6 +28,7 @@ struct bench_optics {
 //   near    near everywhere, blurred by 0.2 to 1
 //   far     far everywhere, blurred by 0.2 to 1
 //   both    near discs all over a far background: the blurred near CoC is > 0 on every pixel, f > 0 on most
+//   full    far everywhere, blurred by 1: one radius
 //   focus   all sharp
 //   band:P  sharp but for a band of P % of the rows, half of it near, half far; band-near:P, band-far:P and band-both:P:
 //           the band is as `near`, `far` or `both`

@@ -248,6 +248,7 @@ int main(void)
     test_mixed(270, 480);
     test_pure("near", (struct shares){1, 0, 0});
     test_pure("far", (struct shares){0, 0, 1});
+    test_pure("full", (struct shares){0, 0, 1});
     test_pure("focus", (struct shares){0, 1, 0});
     test_pure("band:0", (struct shares){0, 1, 0});
     test_pure("band:40", (struct shares){0.2, 0.6, 0.2});
