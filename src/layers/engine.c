@@ -34,7 +34,7 @@ static const struct hf_pass passes[PASSES] = {
     {"Hidden", .reads = B(SEEN_AT) | B(MIXED_AT), .around = B(QUADS) | B(QUADS_AT), .halo = HALO_LEVELS,
      .writes = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT), .sweep = 3, .ns = 19, .ns_radius = 0.72f},
     {"Patterns", .reads = B(HIDDEN), .around = B(SEEN_AT) | B(QUADS) | B(QUADS_AT) | B(HIDDEN_AT), .halo = HALO_CELL,
-     .writes = B(HIDDEN), .sweep = 4, .ns = 400},
+     .writes = B(HIDDEN), .sweep = 4, .ns = 170},
     {"Composite",
      .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT),
      .halo = HALO_CELL, .sweep = 5, .ns = 58, .ns_radius = 0.65f},
@@ -285,7 +285,7 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
             hf_min(96 * n, (s->half_height + HF_LAYERS_TILE / 2 - 1) / (HF_LAYERS_TILE / 2) * (HF_LAYERS_TILE / 2));
     } else if (sweep == 3 || sweep == 4) {
         *width = (s->half_width + 15) & ~15;
-        *height = sweep == 3 ? 96 : 48;
+        *height = 96;
     }
 }
 

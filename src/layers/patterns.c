@@ -2,7 +2,8 @@
 // Patterns: what is hidden goes on like what is around it. For each place places elsewhere are looked for around which the
 // same surface looks alike, and the hidden sample takes the colour that is found there: edges go on behind a rod, and so do
 // checks. Only what is known of the surface is compared. What is chosen may jump where two choices are as good. Coarse
-// shifts are searched at an eighth of the frame's resolution, then made exact at a quarter and at half of it.
+// shifts are searched at an eighth of the frame's resolution, then made exact at a quarter and at half of it. A place between
+// four of an eighth takes from the choices of all of them.
 #include "layers/patterns.h"
 
 #include <math.h>
@@ -13,9 +14,10 @@
 
 enum {
     LEVELS = 3,
-    REACH = 64,  // half-resolution pixels that are read around a band
-    PAD = 32,    // samples beside a row that vectors may read
-    WINDOW = 4,  // samples compared on either side
+    COARSE = 1 << (LEVELS - 1),  // half-resolution pixels of a sample of the last level
+    REACH = 48,                  // half-resolution pixels that are read around a band
+    PAD = 32,                    // samples beside a row that vectors may read
+    WINDOW = 4,                  // samples compared on either side
     MOST = (2 * WINDOW + 1) * (2 * WINDOW + 1),
     SHIFT = 7,  // the largest that are searched, eighths of the resolution
     CHOICES = 6,
@@ -48,7 +50,7 @@ struct band {
     int channels;
     struct hf_rect region;
     struct level level[LEVELS];
-    struct choices *coarse, *fine;  // of an eighth and a quarter of the resolution
+    struct choices *choices;  // of an eighth of the resolution
 };
 
 // What is known around sample (x, y) of a level.
@@ -85,12 +87,9 @@ static size_t place(struct band *b, float *memory)
         for (int i = 0; i < b->channels + 4; i++, used += plane)
             *planes[i] = memory ? memory + used - r.y0 / (1 << j) * stride - r.x0 / (1 << j) + PAD : NULL;
     }
-    for (int j = 1; j < LEVELS; j++) {
-        struct choices **c = j == 1 ? &b->fine : &b->coarse;
-        *c = memory ? (struct choices *)(memory + used) : NULL;
-        used += (size_t)((b->region.x1 - b->region.x0) >> j) * (size_t)((b->region.y1 - b->region.y0) >> j) *
-                sizeof(struct choices) / sizeof(float);
-    }
+    b->choices = memory ? (struct choices *)(memory + used) : NULL;
+    used += (size_t)((b->region.x1 - b->region.x0) / COARSE) * (size_t)((b->region.y1 - b->region.y0) / COARSE) *
+            sizeof(struct choices) / sizeof(float);
     return used;
 }
 
@@ -100,46 +99,69 @@ size_t hf_layers_patterns_floats(const struct hf_layers *l, int width, int heigh
     return hf_layers_patterns_reach(l) ? place(&b, NULL) : 0;
 }
 
-// The choices of a sample of level j.
-static struct choices *choices_at(const struct band *b, int j, int x, int y)
+static struct choices *choices_at(const struct band *b, int x, int y)
 {
     const struct hf_rect r = b->region;
-    return (j == 1 ? b->fine : b->coarse) + (ptrdiff_t)(y - r.y0 / (1 << j)) * ((r.x1 - r.x0) >> j) + x -
-           r.x0 / (1 << j);
+    return b->choices + (ptrdiff_t)(y - r.y0 / COARSE) * ((r.x1 - r.x0) / COARSE) + x - r.x0 / COARSE;
 }
 
 // ---- levels ----
 
-static float nearest_of_quad(const struct hf_frame *f, int x, int y)
+// Beyond the frame there is nothing.
+static void clear_row(const struct band *b, int y)
 {
-    float nearest = HUGE_VALF;
-    for (int i = 0; i < 4; i++)
-        nearest = fminf(*hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 1, hf_min(2 * x + i % 2, f->s->width - 1),
-                               hf_min(2 * y + i / 2, f->s->height - 1)),
-                        nearest);
-    return nearest;
+    const struct level *v = &b->level[0];
+    const int x0 = b->region.x0, n = b->region.x1 - x0;
+    const ptrdiff_t at = y * v->set.stride + x0;
+    float *const planes[] = {v->set.colour[0], v->set.colour[1], v->set.colour[2],
+                             v->set.weight,    v->place,         v->set.colour[3]};
+    for (int i = 0; i < b->channels + 2; i++)
+        memset(planes[i] + at, 0, sizeof(float) * (size_t)n);
+    for (int x = 0; x < n; x++) {
+        v->set.radius[at + x] = HF_LAYERS_NOTHING;
+        v->nearest[at + x] = HUGE_VALF;
+    }
 }
 
-// What is seen, and the places behind it. Beyond the frame there is neither.
-static void begin_levels(const struct band *b)
+// What is seen in a row, and the places behind it. Returns whether there are any.
+static int begin_row(const struct band *b, int y)
 {
     const struct hf_frame *f = b->f;
     const struct level *v = &b->level[0];
-    for (int y = b->region.y0; y < b->region.y1; y++)
-        for (int x = b->region.x0; x < b->region.x1; x++) {
-            const ptrdiff_t at = y * v->set.stride + x;
-            const int inside = x >= 0 && y >= 0 && x < f->s->half_width && y < f->s->half_height;
-            for (int c = 0; c < b->channels; c++)
-                v->set.colour[c][at] = inside ? *hf_at(&f->buf[HF_LAYERS_BUF_QUADS], c, x, y) : 0;
-            v->set.weight[at] = inside ? *hf_at(&f->buf[HF_LAYERS_BUF_QUADS_AT], 0, x, y) : 0;
-            v->set.radius[at] = inside ? *hf_at(&f->buf[HF_LAYERS_BUF_QUADS_AT], 1, x, y) : HF_LAYERS_NOTHING;
-            v->place[at] = 0;
-            v->nearest[at] = HUGE_VALF;
-            if (inside && *hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, x, y) > 0) {
-                v->place[at] = *hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, x, y);
-                v->nearest[at] = nearest_of_quad(f, x, y);
-            }
+    const struct hf_buf *quads = &f->buf[HF_LAYERS_BUF_QUADS_AT], *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT];
+    const int n = f->s->half_width;
+    const size_t bytes = sizeof(float) * (size_t)n;
+    const ptrdiff_t at = y * v->set.stride;
+    float nearest[LANES];
+    int any = 0;
+    for (int c = 0; c < b->channels; c++)
+        memcpy(v->set.colour[c] + at, hf_at(&f->buf[HF_LAYERS_BUF_QUADS], c, 0, y), bytes);
+    memcpy(v->set.weight + at, hf_at(quads, 0, 0, y), bytes);
+    memcpy(v->set.radius + at, hf_at(quads, 1, 0, y), bytes);
+    const float *hidden = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, 0, y),
+                *radius = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, 0, y);
+    for (int x = 0; x < n; x += LANES) {
+        const int count = hf_min(n - x, LANES);
+        hf_layers_kernels(f)->nearest(hf_at(seen, 1, 2 * x, 2 * y), hf_at(seen, 1, 2 * x, 2 * y + 1), count, nearest);
+        for (int i = 0; i < count; i++) {
+            const int some = hidden[x + i] > 0;
+            v->place[at + x + i] = some ? radius[x + i] : 0;
+            v->nearest[at + x + i] = some ? nearest[i] : HUGE_VALF;
+            any |= some;
         }
+    }
+    return any;
+}
+
+static int begin_levels(const struct band *b)
+{
+    int any = 0;
+    for (int y = b->region.y0; y < b->region.y1; y++) {
+        clear_row(b, y);
+        if (y >= 0 && y < b->f->s->half_height)
+            any |= begin_row(b, y);
+    }
+    return any;
 }
 
 // The farthest of four samples, and the mean of the places among them.
@@ -186,9 +208,11 @@ static void clear_pads(const struct level *v, int channels, int x0, int x1, int 
     }
 }
 
-static void make_levels(const struct band *b)
+// Returns whether anything is hidden.
+static int make_levels(const struct band *b)
 {
-    begin_levels(b);
+    if (!begin_levels(b))
+        return 0;
     for (int j = 0; j < LEVELS; j++) {
         const int x0 = b->region.x0 / (1 << j), x1 = b->region.x1 / (1 << j);
         for (int y = b->region.y0 / (1 << j); y < b->region.y1 / (1 << j); y++) {
@@ -197,6 +221,7 @@ static void make_levels(const struct band *b)
             clear_pads(&b->level[j], b->channels, x0, x1, y);
         }
     }
+    return 1;
 }
 
 // ---- what is alike ----
@@ -276,6 +301,8 @@ static void look_around(const struct band *b, const struct level *v, int x, int 
 static void choose(struct choices *c, int x, int y, float off)
 {
     int i = 0;
+    if (c->count == CHOICES && off >= c->off[CHOICES - 1])
+        return;
     while (i < c->count && (c->x[i] - x > 1 || x - c->x[i] > 1 || c->y[i] - y > 1 || y - c->y[i] > 1))
         i++;
     if (i < c->count && off >= c->off[i])
@@ -344,8 +371,8 @@ static void end_choices(struct choices *c, const struct patch *p)
 // All shifts at an eighth of the resolution.
 static void search(const struct band *b, int x, int y)
 {
-    const struct level *v = &b->level[2];
-    struct choices *c = choices_at(b, 2, x, y);
+    const struct level *v = &b->level[LEVELS - 1];
+    struct choices *c = choices_at(b, x, y);
     struct patch p;
     memset(c, 0, sizeof *c);
     if (!(v->nearest[y * v->set.stride + x] < HUGE_VALF))
@@ -358,10 +385,9 @@ static void search(const struct band *b, int x, int y)
 }
 
 // Choices for a patch at twice the resolution of those given.
-static void refine(const struct band *b, const struct patch *p, const struct choices *from, int count,
-                   struct choices *c)
+static void refine(const struct band *b, const struct patch *p, const struct choices *from, struct choices *c)
 {
-    for (int i = 0; i < hf_min(from->count, count); i++)
+    for (int i = 0; i < from->count; i++)
         for (int dy = -1; dy <= 1; dy++)
             compare(b, p, 2 * from->x[i] - 1, 2 * from->y[i] + dy, 3, c);
 }
@@ -374,41 +400,27 @@ static void double_choices(struct choices *c)
     }
 }
 
-// The choices of a sample of a quarter of the resolution, in half-resolution pixels: from those of the coarser one in which
-// it lies, and the best of the two next to that.
+// What was chosen at an eighth of the resolution, in half-resolution pixels.
 static void search_fine(const struct band *b, int x, int y)
 {
-    const struct level *v = &b->level[1];
-    struct choices *to = choices_at(b, 1, x, y), c = {0}, exact = {0};
-    struct patch p;
-    memset(to, 0, sizeof *to);
-    if (!(v->nearest[y * v->set.stride + x] < HUGE_VALF))
-        return;
-    const int px = (x - (x & 1)) / 2, py = (y - (y & 1)) / 2, left = x & 1 ? 1 : -1, up = y & 1 ? 1 : -1;
-    const struct choices *own = choices_at(b, 2, px, py);
-    p.place = place_at(v, x, y);
-    look_around(b, v, x, y, &p);
-    if (p.count) {
-        refine(b, &p, own, CHOICES, &c);
-        refine(b, &p, choices_at(b, 2, px + left, py), 2, &c);
-        refine(b, &p, choices_at(b, 2, px, py + up), 2, &c);
-        end_choices(&c, &p);
-    } else {
-        c = *own;
-        double_choices(&c);
-    }
-    look_around(b, &b->level[0], 2 * x, 2 * y, &p);
-    if (p.count) {
-        refine(b, &p, &c, CHOICES, &exact);
-        end_choices(&exact, &p);
-        *to = exact;
-    } else {
-        double_choices(&c);
-        *to = c;
+    struct choices *c = choices_at(b, x, y);
+    struct patch p = {.place = place_at(&b->level[LEVELS - 1], x, y)};
+    for (int j = LEVELS - 2; j >= 0 && c->count; j--) {
+        const int middle = COARSE >> j;  // of the sample, in those of level j, rounded
+        struct choices finer = {0};
+        look_around(b, &b->level[j], x * middle + (j == 0 ? middle / 2 : 0), y * middle + (j == 0 ? middle / 2 : 0),
+                    &p);
+        if (p.count) {
+            refine(b, &p, c, &finer);
+            end_choices(&finer, &p);
+            *c = finer;
+        } else {
+            double_choices(c);
+        }
     }
 }
 
-// Sums of what four samples of a quarter of the resolution choose for a place.
+// Sums of what four samples of an eighth of the resolution choose for a place.
 struct found {
     float colour[4], weight, smooth;
 };
@@ -439,11 +451,14 @@ static void fill(const struct band *b, int x, int y)
     const struct hf_frame *f = b->f;
     struct found found = {.weight = 0};
     const struct hf_pattern_place place = place_at(&b->level[0], x, y);
+    const float fx = ((float)((x + COARSE / 2) % COARSE) + 0.5f) / COARSE,
+                fy = ((float)((y + COARSE / 2) % COARSE) + 0.5f) / COARSE;
     for (int i = 0; i < 4; i++) {
-        const int px = x / 2 + (i & 1 ? (x & 1 ? 1 : -1) : 0), py = y / 2 + (i & 2 ? (y & 1 ? 1 : -1) : 0);
-        const struct choices *c = choices_at(b, 1, px, py);
+        const int right = i & 1, low = i >> 1;
+        const struct choices *c =
+            choices_at(b, (x + COARSE / 2) / COARSE - 1 + right, (y + COARSE / 2) / COARSE - 1 + low);
         if (c->count > 0)
-            add_choices(b, c, place, x, y, (i & 1 ? 0.25f : 0.75f) * (i & 2 ? 0.25f : 0.75f), &found);
+            add_choices(b, c, place, x, y, (right ? fx : 1 - fx) * (low ? fy : 1 - fy), &found);
     }
     if (!(found.weight > 0))
         return;
@@ -459,13 +474,13 @@ void hf_layers_patterns_pass(const struct hf_frame *f, struct hf_rect r)
     const struct hf_layers *l = hf_layers(f->s);
     struct band b = {.f = f, .channels = l->channels, .region = region_of(r)};
     place(&b, f->work);
-    make_levels(&b);
-    for (int y = r.y0 / 4 - 1; y <= (r.y1 + 3) / 4; y++)
-        for (int x = r.x0 / 4 - 1; x <= (r.x1 + 3) / 4; x++)
+    if (!make_levels(&b))
+        return;
+    for (int y = r.y0 / COARSE - 1; y <= (r.y1 + COARSE - 1) / COARSE; y++)
+        for (int x = r.x0 / COARSE - 1; x <= (r.x1 + COARSE - 1) / COARSE; x++) {
             search(&b, x, y);
-    for (int y = r.y0 / 2 - 1; y <= (r.y1 + 1) / 2; y++)
-        for (int x = r.x0 / 2 - 1; x <= (r.x1 + 1) / 2; x++)
             search_fine(&b, x, y);
+        }
     for (int y = r.y0; y < hf_min(r.y1, f->s->half_height); y++)
         for (int x = r.x0; x < hf_min(r.x1, f->s->half_width); x++)
             if (b.level[0].nearest[y * b.level[0].set.stride + x] < HUGE_VALF)

@@ -136,9 +136,9 @@ static void end_choices(struct choices *c, const struct patch *p)
 }
 
 static void refine(const struct level *v, int channels, const struct patch *p, int x, int y, const struct choices *from,
-                   int count, struct choices *to)
+                   struct choices *to)
 {
-    for (int i = 0; i < from->count && i < count; i++)
+    for (int i = 0; i < from->count; i++)
         for (int k = 0; k < 9; k++)
             compare(v, channels, p, x, y, 2 * from->x[i] + k % 3 - 1, 2 * from->y[i] + k / 3 - 1, to);
 }
@@ -176,44 +176,42 @@ static struct choices search(const struct level *v, int channels, int x, int y)
     return c;
 }
 
-// From the choices of the coarser samples: its own, and the two next to it.
-static struct choices search_fine(const struct level *v, int channels, int x, int y,
-                                  const struct choices *const from[3])
+// The choices of a sample of an eighth of the resolution, made exact at a quarter and at half of it.
+static struct choices search_fine(const struct level *v, int channels, int x, int y)
 {
-    struct choices c = {0}, exact = {0};
+    struct choices c = search(&v[2], channels, x, y);
     struct patch p;
-    if (!surface(&v[1], x, y, &p))
-        return c;
-    look_around(&v[1], channels, x, y, &p);
-    for (int i = 0; i < 3 && p.count; i++)
-        if (from[i])
-            refine(&v[1], channels, &p, x, y, from[i], i ? 2 : CHOICES, &c);
-    if (p.count)
-        end_choices(&c, &p);
-    else
-        c = doubled(*from[0]);
-    look_around(&v[0], channels, 2 * x, 2 * y, &p);
-    if (!p.count)
-        return doubled(c);
-    refine(&v[0], channels, &p, 2 * x, 2 * y, &c, CHOICES, &exact);
-    end_choices(&exact, &p);
-    return exact;
+    surface(&v[2], x, y, &p);
+    for (int j = 1; j >= 0 && c.count; j--) {
+        const int px = j ? 2 * x : 4 * x + 2, py = j ? 2 * y : 4 * y + 2;
+        struct choices finer = {0};
+        look_around(&v[j], channels, px, py, &p);
+        if (!p.count) {
+            c = doubled(c);
+            continue;
+        }
+        refine(&v[j], channels, &p, px, py, &c, &finer);
+        end_choices(&finer, &p);
+        c = finer;
+    }
+    return c;
 }
 
 // The root of colour of place (x, y): that of four samples' choices.
-static void fill(const struct level *v, const struct choices *fine, int channels, int x, int y, const double *was,
+static void fill(const struct level *v, const struct choices *chosen, int channels, int x, int y, const double *was,
                  double *out)
 {
-    const int width = v[1].seen.x1, height = v[1].seen.y1;
+    const int wide = v[2].seen.x1, high = v[2].seen.y1, left = (x + 2) / 4 - 1, above = (y + 2) / 4 - 1;
+    const double fx = ((x + 2) % 4 + 0.5) / 4, fy = ((y + 2) % 4 + 0.5) / 4;
     double total[4] = {0}, weight = 0, smooth = 0;
     struct patch p;
     surface(v, x, y, &p);
     for (int i = 0; i < 4; i++) {
-        const int px = x / 2 + (i & 1 ? (x & 1 ? 1 : -1) : 0), py = y / 2 + (i & 2 ? (y & 1 ? 1 : -1) : 0);
-        const double part = (i & 1 ? 0.25 : 0.75) * (i & 2 ? 0.25 : 0.75);
-        if (px < 0 || py < 0 || px >= width || py >= height)
+        const int px = left + i % 2, py = above + i / 2;
+        const double part = (i % 2 ? fx : 1 - fx) * (i / 2 ? fy : 1 - fy);
+        if (px < 0 || py < 0 || px >= wide || py >= high)
             continue;
-        const struct choices *c = &fine[py * width + px];
+        const struct choices *c = &chosen[py * wide + px];
         double sum = 0, colour[4] = {0};
         for (int k = 0; k < c->count; k++) {
             const double near = fmax(1 - (c->off[k] - c->off[0]) / (0.4 * c->variance + 0.002), 0);
@@ -246,28 +244,19 @@ void layers_reference_patterns(const struct frame *f, const struct grid *quads, 
     }
     v[1] = halve(&v[0], channels);
     v[2] = halve(&v[1], channels);
-    const int wide = v[2].seen.x1, high = v[2].seen.y1, width = v[1].seen.x1, height = v[1].seen.y1;
-    struct choices *coarse = calloc((size_t)(wide * high), sizeof *coarse);
-    struct choices *fine = calloc((size_t)(width * height), sizeof *fine);
+    const int wide = v[2].seen.x1, high = v[2].seen.y1;
+    struct choices *chosen = calloc((size_t)(wide * high), sizeof *chosen);
     for (int i = 0; i < wide * high; i++)
-        coarse[i] = search(&v[2], channels, i % wide, i / wide);
-    for (int i = 0; i < width * height; i++) {
-        const int x = i % width, y = i / width, px = x / 2 + (x & 1 ? 1 : -1), py = y / 2 + (y & 1 ? 1 : -1);
-        const struct choices *const from[3] = {&coarse[y / 2 * wide + x / 2],
-                                               px >= 0 && px < wide ? &coarse[y / 2 * wide + px] : NULL,
-                                               py >= 0 && py < high ? &coarse[py * wide + x / 2] : NULL};
-        fine[i] = search_fine(v, channels, x, y, from);
-    }
+        chosen[i] = search_fine(v, channels, i % wide, i / wide);
     struct grid out = grid_new(0, 0, quads->x1, quads->y1, SAMPLE);
     for (int y = 0; y < quads->y1; y++)
         for (int x = 0; x < quads->x1; x++)
             if (at(hidden, x, y)[WEIGHT] > 0) {
-                fill(v, fine, channels, x, y, at(hidden, x, y), at(&out, x, y));
+                fill(v, chosen, channels, x, y, at(hidden, x, y), at(&out, x, y));
                 memcpy(at(hidden, x, y), at(&out, x, y), sizeof(double) * 4);
             }
     free(out.v);
-    free(coarse);
-    free(fine);
+    free(chosen);
     for (int j = 0; j < 3; j++) {
         free(v[j].place.v);
         if (j)
