@@ -6,7 +6,7 @@
 // it. With several levels (gather.h) samples are spread by the level that is theirs, and a far pixel is the mean of what is
 // not blurred much more than itself; what near pixels hide is the mean of all levels up to theirs, so that what is nearest
 // counts most. A far sample is too sharp in levels that are smaller than its own blur: there it counts, but its colour is
-// what the far levels spread to the pixel. What lies beyond the frame has no weight.
+// what the far levels spread to the pixel. What lies beyond the frame has no weight: sums are over what lies within.
 #include <float.h>
 
 #include "gather/gather.h"
@@ -74,8 +74,11 @@ static void near_simple(const struct hf_frame *f, struct hf_rect r)
             hf_convolve_c(f, (struct hf_rect){r.x0, y, r.x1, y + 1}, t, &f->buf[HF_BUF_COLOR4], c, &behind, c);
         for (int x = r.x0; x < r.x1; x++) {
             const float m = hidden(f, x, y), part = cut ? inside[x - r.x0] : 1;
-            for (int c = 0; c < s->channels; c++)
+            for (int c = 0; c < s->channels; c++) {
+                *hf_at(near, c, x, y) /= part;
                 hide(hf_at(near, c, x, y), m, *hf_at(&behind, c, x, y) / part);
+            }
+            *hf_at(cover, 0, x, y) /= part;
             hide(hf_at(cover, 0, x, y), m, 1);
         }
         store_near(f, y, r);
@@ -236,21 +239,34 @@ static void add_far(const struct hf_frame *f, const struct sums *to, int x, int 
         *hf_at(to->weight[i], i, x, y) += part * *hf_at(weight, i, x, y);
 }
 
+// One over what of a level lies in the frame.
+static const float *beyond(const struct hf_frame *f, const struct hf_taps *t, struct hf_rect r, int y)
+{
+    float *inside = hf_line(f, 0);
+    const int n = r.x1 - r.x0, cut = hf_area_inside(f->s, t, r.x0, y, n, inside);
+    for (int x = 0; x < n; x++)
+        inside[x] = cut ? 1 / inside[x] : 1;
+    return inside;
+}
+
 static void add_behind(const struct hf_frame *f, const struct sums *behind, struct hf_rect r, int i)
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
     const int leaves = hf_gather_leaves(f->s);
     if (leaves)
         hf_convolve_c(f, r, &l->level[i].taps, &f->buf[HF_BUF_LEVEL_WEIGHT], 2, &f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 2);
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1; y++) {
+        const float *part = beyond(f, &l->level[i].taps, r, y);
         for (int x = r.x0; x < r.x1; x++) {
-            const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y), share = hf_level_near(l, i, coc);
+            const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
+            const float share = hf_level_near(l, i, coc) * part[x - r.x0];
             if (!(coc > 0 && share > 0))
                 continue;
             add(f, behind, x, y, share);
             if (leaves)
                 *hf_at(behind->weight[0], 2, x, y) += share * *hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 2, x, y);
         }
+    }
 }
 
 static void near_levels(const struct hf_frame *f, struct hf_rect r)
@@ -267,9 +283,11 @@ static void near_levels(const struct hf_frame *f, struct hf_rect r)
     for (int i = 0; i < l->count; i++) {
         level_planes(f, r, PART_NEAR, i);
         convolve_level(f, r, &l->level[i].taps);
-        for (int y = r.y0; y < r.y1; y++)
+        for (int y = r.y0; y < r.y1; y++) {
+            const float *part = beyond(f, &l->level[i].taps, r, y);
             for (int x = r.x0; x < r.x1; x++)
-                add(f, &near, x, y, 1);
+                add(f, &near, x, y, part[x - r.x0]);
+        }
         behind_planes(f, r, i);
         convolve_level(f, r, &l->level[i].taps);
         add_behind(f, &behind, r, i);

@@ -314,6 +314,32 @@ static void no_speck(struct hf_context *c)
         picture_free(made[i]);
 }
 
+// A bar that goes on beyond the frame covers as much at its edge as within. Of the half of a disc that is seen there the
+// middle row is 2 R of pi R^2 / 2 + R, R half the radius, and of a whole disc half as much: by R / (pi R^2 / 2 + R) counts
+// what rows differ by, at most 1. A quarter more is for discs made of pixels.
+static void bar_at_border(struct hf_context *c, float max_radius)
+{
+    enum { LEFT = 140, RIGHT = 180, BAR_RADIUS = 24 };
+    const float h = BAR_RADIUS / 2, bound = 1.25f * h / ((float)M_PI * h * h / 2 + h);
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const int bar = i % WIDTH >= LEFT && i % WIDTH < RIGHT;
+        colour.plane[1][i] = (float)bar;
+        radii.plane[0][i] = bar ? -BAR_RADIUS : 0;
+    }
+    struct picture out = at_radius(c, &colour, &radii, max_radius);
+    for (int edge = 0; edge < 2; edge++)
+        for (int x = 0; x < WIDTH; x++) {
+            const float at = out.plane[1][edge * (HEIGHT - 1) * WIDTH + x], within = out.plane[1][MIDDLE * WIDTH + x];
+            if (!CHECK_MSG(fabsf(at - within) <= bound, "at column %d a bar is %g at the frame's edge, %g within", x,
+                           (double)at, (double)within))
+                break;
+        }
+    struct picture *const made[] = {&colour, &radii, &out};
+    for (int i = 0; i < 3; i++)
+        picture_free(made[i]);
+}
+
 int main(int argc, char **argv)
 {
     struct hf_context *c = NULL;
@@ -328,6 +354,8 @@ int main(int argc, char **argv)
     nearest_behind(c);
     flat_highlight(c);
     no_speck(c);
+    bar_at_border(c, HF_DERIVE);
+    bar_at_border(c, 24);
     if (argc > 1) {
         truth(c, argv[1], "lights", 5, 0.37f);
         truth(c, argv[1], "fence", 6, 0.46f);

@@ -144,17 +144,19 @@ static double left_of(const struct levels *l, int i, double coc)
     return i > 0 ? 1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8) : 0;
 }
 
-// One level's mean around a pixel; nothing beyond the frame.
+// One level's mean around a pixel, of the near field over what of the disc lies within the frame; nothing beyond it.
 static struct sums mean(const struct area *a, int x, int y, int i, enum kind kind)
 {
     const struct levels *l = &a->levels[kind == KIND_FAR];
     struct sums s = {{0}, 0, 0};
+    double inside = 0;
     for (int v = -l->ry[i]; v <= l->ry[i]; v++)
         for (int u = -l->rx[i]; u <= l->rx[i]; u++) {
             if (x + u < 0 || y + v < 0 || x + u >= a->width || y + v >= a->height)
                 continue;
             const int at = (y + v) * a->width + x + u;
             double w = l->weight[i][(v + l->ry[i]) * (2 * l->rx[i] + 1) + u + l->rx[i]];
+            inside += w;
             if (kind == KIND_NEAR)
                 w *= share(l, i, a->plane[NEAR_MOST][at]);
             if (kind == KIND_FAR)
@@ -173,6 +175,10 @@ static struct sums mean(const struct area *a, int x, int y, int i, enum kind kin
                            : kind == KIND_FAR ? a->plane[FAR_PART][at]
                                               : rest);
         }
+    for (int c = 0; c < a->r->channels && kind != KIND_FAR; c++)
+        s.colour[c] /= inside;
+    s.part /= kind == KIND_FAR ? 1 : inside;
+    s.left /= inside;
     return s;
 }
 
