@@ -58,7 +58,8 @@ static size_t place(struct hf_cell *c, float *memory)
         c->shine[i].sum = take_window(&m, width, height, 3);
     }
     for (int i = 0; i < 3; i++)
-        c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2, channels + 3);
+        c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2,
+                                  channels + (i == MIDDLE ? 4 : 3));
     for (int i = 0; i < 2; i++)
         c->light[i] = take_window(&m, width, height, 3);
     const struct hf_window part = take_window(&m, width / 2, height / 2, 1);

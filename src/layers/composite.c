@@ -18,14 +18,18 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
                        int n, float *part)
 {
     for (int x = 0; x < n; x++) {
-        const float v = in[4][x], open = to->open[x], behind = sums == HF_SUMS_HIDDEN ? to->behind[x] : open;
+        const float v = in[4][x], open = to->open[x],
+                    behind = sums == HF_SUMS_HIDDEN && to->behind[x] > open ? to->behind[x] : open;
         const float least = behind > 1e-30f ? behind : 1e-30f;
-        const float k = open / (v > least ? v : least);
+        const float hold = sums == HF_SUMS_HELD ? (v < to->held[x] ? v : to->held[x]) : 0;
+        const float k = hold > 0 ? (v - hold < open ? v - hold : open) / v : open / (v > least ? v : least);
         const float left = open - k * v;
         for (int c = 0; c < channels; c++)
             to->colour[c][x] = k * in[c][x] + to->colour[c][x];
         to->weight[x] = k * v + to->weight[x];
         to->open[x] = left > 0 ? left : 0;
+        if (sums == HF_SUMS_HELD)
+            to->held[x] = to->held[x] - hold;
         if (sums != HF_SUMS_HIDING)
             to->behind[x] = to->behind[x] - v > 0 ? to->behind[x] - v : 0;
         if (part)

@@ -37,7 +37,12 @@ HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels
             continue;
         const vf v = vf_load(in[4] + x), open = vf_load(to->open + x);
         const vf left = sums == HF_SUMS_HIDING ? vf_zero() : vf_load(to->behind + x);
-        const vf k = vf_div(open, vf_max(v, vf_max(sums == HF_SUMS_HIDDEN ? left : open, tiny)));
+        vf k = vf_div(open, vf_max(v, vf_max(sums == HF_SUMS_HIDDEN ? vf_max(left, open) : open, tiny)));
+        if (sums == HF_SUMS_HELD) {
+            const vf held = vf_load(to->held + x), hold = vf_min(v, held);
+            k = vf_select(vf_gt(hold, vf_zero()), vf_div(vf_min(vf_sub(v, hold), open), v), k);
+            vf_store(to->held + x, vf_sub(held, hold));
+        }
         for (int c = 0; c < channels; c++)
             vf_store(to->colour[c] + x, vf_fma(k, vf_load(in[c] + x), vf_load(to->colour[c] + x)));
         vf_store(to->weight + x, vf_fma(k, v, vf_load(to->weight + x)));
@@ -56,6 +61,8 @@ HF_INLINE void layers_blend_sums(const struct hf_stack_row *to, const int channe
         layers_blend_of(to, channels, in, HF_SUMS_HIDING, n, part);
     else if (sums == HF_SUMS_SEEN)
         layers_blend_of(to, channels, in, HF_SUMS_SEEN, n, part);
+    else if (sums == HF_SUMS_HELD)
+        layers_blend_of(to, channels, in, HF_SUMS_HELD, n, part);
     else
         layers_blend_of(to, channels, in, HF_SUMS_HIDDEN, n, part);
 }

@@ -58,10 +58,18 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
 static const struct hf_layers_settings qualities[] = {
     [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 6, .quarter = 32},
     [HF_LAYERS_STANDARD] =
-        {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
-    [HF_LAYERS_HIGH] = {.spacing = 2.5f, .fine = 2, .unmix = 1, .hidden = 1, .highlights = 1, .half = 6, .quarter = 32},
-    [HF_LAYERS_BEST] =
-        {.spacing = 1.5f, .fine = 2, .unmix = 1, .hidden = 1, .highlights = 1, .patterns = 1, .half = 5, .quarter = 32},
+        {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .held = 0.25f, .half = 6, .quarter = 32},
+    [HF_LAYERS_HIGH] =
+        {.spacing = 2.5f, .fine = 2, .unmix = 1, .hidden = 1, .highlights = 1, .held = 0.25f, .half = 6, .quarter = 32},
+    [HF_LAYERS_BEST] = {.spacing = 1.5f,
+                        .fine = 2,
+                        .unmix = 1,
+                        .hidden = 1,
+                        .highlights = 1,
+                        .patterns = 1,
+                        .held = 0.75f,
+                        .half = 5,
+                        .quarter = 32},
 };
 
 static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
@@ -102,6 +110,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->hidden &= !given->no_hidden;
     set->highlights &= !given->no_highlights;
     set->patterns &= !given->no_patterns;
+    set->held = !set->hidden ? 0 : set->patterns ? set->held : fminf(set->held, qualities[HF_LAYERS_STANDARD].held);
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;
     l->slices = l->levels = 0;
@@ -195,6 +204,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     if (l->set.hidden && range >= 1)
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
             l->levels++;
+    l->held = l->set.held * hf_saturate(range - 1);
     l->reached = l->levels > 1 ? hf_saturate(range / (float)(1 << (l->levels - 1)) - 3) : 1;
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);

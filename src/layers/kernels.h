@@ -80,8 +80,9 @@ typedef void hf_layers_stamp(const float *weight, int n, float v, float *out);
 // 2n numbers from n of two rows, three quarters of a and one of b; reads one more at either end.
 typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
 // Put sums, the weight at 4, under what a stack holds; part, if not NULL, receives how much of them shows. Of samples that are
-// seen, those that hide others leave these as much to cover as they found; those behind them leave less.
-enum hf_layers_sums { HF_SUMS_HIDING, HF_SUMS_SEEN, HF_SUMS_HIDDEN };
+// seen, those that hide others leave these as much to cover as they found; those behind them leave less. HELD: of what is
+// seen as much is held back as to->held says, which becomes less by that.
+enum hf_layers_sums { HF_SUMS_HIDING, HF_SUMS_SEEN, HF_SUMS_HELD, HF_SUMS_HIDDEN };
 typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, const float *const in[5],
                              enum hf_layers_sums sums, int n, float *part);
 // Shares of one radius, of which a slice shows so much: out += part * amount * in.

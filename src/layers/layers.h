@@ -74,7 +74,11 @@ struct hf_layers_settings {
     float spacing;  // of the slices; small radii have it 1 anyway
     int fine;       // 0 to 2: slices lie closer, see slices.c
     int unmix, hidden, highlights;
-    int patterns;                 // hidden samples take theirs from what looks alike
+    int patterns;  // hidden samples take theirs from what looks alike
+    // Rays that what is near blocks are those to what is seen beside it, as rays cross between what is before the focus and
+    // what is behind it: this part of its coverage is held back of the latter, for hidden samples. The better these are, the
+    // more.
+    float held;
     float half, quarter, eighth;  // radii from which slices are blurred at these parts of the resolution
 };
 
@@ -96,6 +100,7 @@ struct hf_layers {
     int channels;                     // of colour, 3 or 4 with alpha
     float largest;                    // sample; larger ones count as this
     int slices, levels;               // levels of hidden samples; 0: none are looked for
+    float held;                       // set.held, from 0 on as the range of radii begins to need hidden samples
     float reached;                    // how much the last level counts, 0..1, as the range of radii has reached it
     struct hf_slice *slice, *behind;  // of what is seen, of hidden samples
     // What the middle holds of samples that the far stack holds the rest of, of what is seen and of hidden samples:
@@ -150,9 +155,9 @@ struct hf_unmix_row {
 
 // Sums of a stack: colour, and weight (the coverage that has been seen); open is what is left of 1. behind is what is
 // left of 1 for hidden samples alone: a pixel has one at most, so those of all slices, with what is seen of the same surfaces,
-// cover it once.
+// cover it once. held, of the middle: how much of what is seen behind the focus waits for hidden samples.
 struct hf_stack_row {
-    float *colour[4], *weight, *open, *behind;
+    float *colour[4], *weight, *open, *behind, *held;
 };
 
 #endif

@@ -97,7 +97,8 @@ static inline struct hf_stack_row hf_layers_stack_at(const struct hf_cell *c, in
     float *p = w->at + y * w->row + x;
     struct hf_stack_row r = {.weight = p + c->l->channels * w->channel,
                              .open = p + (c->l->channels + 1) * w->channel,
-                             .behind = p + (c->l->channels + 2) * w->channel};
+                             .behind = p + (c->l->channels + 2) * w->channel,
+                             .held = p + (c->l->channels + 3) * w->channel};
     for (int i = 0; i < c->l->channels; i++)
         r.colour[i] = p + i * w->channel;
     return r;

@@ -104,8 +104,8 @@ static void begin_tiles(const struct hf_cell *c)
                 continue;
             *begun = 1;
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
-                for (int i = 0; i <= channels + 2; i++)
-                    fill_tile(&c->stack[MIDDLE], i, tx, y, i > channels);
+                for (int i = 0; i <= channels + 3; i++)
+                    fill_tile(&c->stack[MIDDLE], i, tx, y, i == channels + 1 || i == channels + 2);
         }
 }
 
@@ -191,12 +191,34 @@ static void put_lights(struct hf_cell *c, int stack, int slice)
     }
 }
 
+// Before the first slice behind the focus: what is near has covered so much, of which a part is held back.
+static void hold_back(const struct hf_cell *c)
+{
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++)
+            for (int y = ty * TILE; *hf_layers_map_at(&c->begun, tx, ty) && y < (ty + 1) * TILE; y++) {
+                const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
+                for (int x = 0; x < TILE; x++)
+                    r.held[x] = c->l->held * (1 - r.open[x]);
+            }
+}
+
+// How what is seen of a slice is put under a stack.
+static enum hf_layers_sums sums_of(const struct hf_layers *l, const struct hf_slice *s, int stack)
+{
+    return stack == NEAR                                                  ? HF_SUMS_HIDING
+           : stack == MIDDLE && s->radius > 0 && l->levels && l->held > 0 ? HF_SUMS_HELD
+                                                                          : HF_SUMS_SEEN;
+}
+
 void hf_layers_put_slice(struct hf_cell *c, int i)
 {
     const struct hf_layers *l = c->l;
     const struct hf_slice *s = &l->slice[i], *behind = &l->behind[i];
     const int stack = s->level == 0 ? MIDDLE : s->radius < 0 ? NEAR : FAR;
     struct hf_tile_map *reached = stack == NEAR ? &c->near : stack == FAR ? &c->far : &c->middle;
+    if (s->radius == 0)
+        hold_back(c);
     if (hf_layers_mark_used(c, i, HF_KIND_SEEN) && hf_layers_mark_touched(c, s, &c->touched)) {
         const int shares = l->set.highlights && s->level > 0;
         const struct hf_build b = {.s = s,
@@ -207,7 +229,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .more = &c->samples->mixed};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
         begin(c, stack);
-        put_under(c, stack, s->level, stack == NEAR ? HF_SUMS_HIDING : HF_SUMS_SEEN, shares);
+        put_under(c, stack, s->level, sums_of(l, s, stack), shares);
         if (s->radius != 0)
             mark(c, &c->touched, reached);
         if (shares)

@@ -207,6 +207,57 @@ static void cells(void)
     }
 }
 
+// What a lens sees at x of a ramp of radius 4 behind a black rod of radius -8, from x = ROD to ROD + WIDE: the mean over rays.
+enum { ROD = 94, WIDE = 12, RAMP = 200 };
+static double ramp_at(double x)
+{
+    return 0.2 + 0.6 * fmin(fmax(x / RAMP, 0), 1);
+}
+
+static double seen_at(double x)
+{
+    double sum = 0, all = 0;
+    for (int i = 0; i < 1000; i++) {
+        const double u = (i + 0.5) / 500 - 1, w = sqrt(1 - u * u), near = x - 8 * u;
+        sum += near >= ROD && near < ROD + WIDE ? 0 : w * ramp_at(x + 4 * u);
+        all += w;
+    }
+    return sum / all;
+}
+
+// Rays cross between what is before the focus and what is behind it: beside a rod a lens sees what the rod hides, not what
+// lies beside it. What is hidden of a ramp is found exactly, so that the order is all that is wrong: with nothing held back
+// the root mean square is 0.0035, a twentieth of the ramp over a disc's width. A quarter held back is an eighth less at the
+// least, three quarters a quarter less: half of the former, and a third of the latter, whose rest the rod's other side has.
+static void crossed(void)
+{
+    struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
+    struct picture colour = picture_new(RAMP, 64, 3), radii = picture_new(RAMP, 64, 1);
+    const struct hf_depth depth = picture_radii(&radii);
+    for (int i = 0; i < RAMP * 64; i++) {
+        const int x = i % RAMP, rod = x >= ROD && x < ROD + WIDE;
+        radii.plane[0][i] = rod ? -8 : 4;
+        for (int k = 0; k < 3; k++)
+            colour.plane[k][i] = rod ? 0 : (float)ramp_at(x + 0.5);
+    }
+    for (int q = HF_LAYERS_STANDARD; q <= HF_LAYERS_BEST; q++) {
+        struct hf_params p = hf_default_params;
+        p.engine = HF_ENGINE_LAYERS;
+        p.layers.quality = (enum hf_layers_quality)q;
+        struct picture out = render(c, &colour, &depth, &p);
+        double error = 0;
+        for (int x = ROD - 8; x < ROD + WIDE + 8; x++)
+            error += pow(out.plane[0][32 * RAMP + x] - seen_at(x + 0.5), 2);
+        error = sqrt(error / (WIDE + 16));
+        if (q != HF_LAYERS_DRAFT)  // which has no hidden samples
+            CHECK_MSG(error < 0.0036 * (q == HF_LAYERS_BEST ? 3.0 / 4 : 7.0 / 8), "quality %d is off by %g", q, error);
+        picture_free(&out);
+    }
+    picture_free(&colour);
+    picture_free(&radii);
+    hf_close(&c);
+}
+
 int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)atoi(argv[1]) : 1;
@@ -215,5 +266,6 @@ int main(int argc, char **argv)
     ranges();
     pull();
     cells();
+    crossed();
     return check_report();
 }

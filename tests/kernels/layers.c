@@ -350,12 +350,15 @@ static void alike_call(const struct world *w, const struct kernels *k, enum aren
 
 static void blend_call(const struct world *w, const struct kernels *k, enum arena a)
 {
-    struct hf_stack_row to = {.weight = line(w, a, IN + 4), .open = line(w, a, IN + 5), .behind = line(w, a, IN + 6)};
+    struct hf_stack_row to = {.weight = line(w, a, IN + 4),
+                              .open = line(w, a, IN + 5),
+                              .behind = line(w, a, IN + 6),
+                              .held = line(w, a, IN + 8)};
     float *in[6];
     set_of(w, a, 0, in);
     for (int c = 0; c < 4; c++)
         to.colour[c] = line(w, a, IN + c);
-    k->layers.blend(&to, now.channels, (const float *const *)in, (enum hf_layers_sums)(now.rows % 3), w->n,
+    k->layers.blend(&to, now.channels, (const float *const *)in, (enum hf_layers_sums)(now.rows % 4), w->n,
                     now.add ? line(w, a, IN + 7) : NULL);
 }
 
@@ -503,9 +506,12 @@ void layers_make(struct world *w, int which)
             fill_set(w, 6 * i, 0, w->n);
         for (int i = 0; i < 7; i++)
             fill(w, IN + i, 0, w->n, i < 4 ? COLOUR : WEIGHT);
+        fill(w, IN + 8, 0, w->n, WEIGHT);
         put_set(w, IN, which == LAYERS_BLEND ? 6 : 4, w->n);
-        if (which == LAYERS_BLEND && now.rows % 3 != HF_SUMS_HIDING)
+        if (which == LAYERS_BLEND && now.rows % 4 != HF_SUMS_HIDING)
             put(w, IN + 6, w->n, 32);
+        if (which == LAYERS_BLEND && now.rows % 4 == HF_SUMS_HELD)
+            put(w, IN + 8, w->n, 32);
         if (which == LAYERS_BLEND && now.add)
             put(w, IN + 7, w->n, 32);
         return;

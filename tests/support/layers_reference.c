@@ -195,9 +195,10 @@ static void refine(struct grid *g, const struct frame *f, int level, int to)
     }
 }
 
-// ---- stacks: colour, weight (4), what is open (5), and what hidden samples have left to cover (6) ----
+// ---- stacks: colour, weight (4), what is open (5), what hidden samples have left to cover (6),
+// and what of those seen behind the focus is held back for these (7) ----
 
-enum { OPEN = 5, BEHIND_OPEN, STACK };
+enum { OPEN = 5, BEHIND_OPEN, HELD, STACK };
 
 static struct grid stack_new(const struct frame *f, int level)
 {
@@ -211,14 +212,18 @@ static struct grid stack_new(const struct frame *f, int level)
 
 // Put sums under a stack; part receives how much of them shows. What is seen before the focus hides; behind it, it is of
 // the surfaces of which others are hidden.
-enum sums { HIDING, WITH_HIDDEN, HIDDEN };
+enum sums { HIDING, WITH_HIDDEN, HELD_BACK, HIDDEN };
 
 static void put_under(struct grid *stack, const struct grid *sums, enum sums kind, struct grid *part)
 {
     for (int y = stack->y0; y < stack->y1; y++)
         for (int x = stack->x0; x < stack->x1; x++) {
             double *s = at(stack, x, y), *v = edge(sums, x, y);
-            const double k = s[OPEN] / fmax(v[4], fmax(s[kind == HIDDEN ? BEHIND_OPEN : OPEN], 1e-30));
+            const double hold = kind == HELD_BACK ? fmin(v[4], s[HELD]) : 0;
+            const double k =
+                hold > 0 ? fmin(v[4] - hold, s[OPEN]) / v[4]
+                         : s[OPEN] / fmax(v[4], fmax(fmax(s[OPEN], kind == HIDDEN ? s[BEHIND_OPEN] : 0), 1e-30));
+            s[HELD] -= hold;
             for (int c = 0; c < 5; c++)
                 s[c] += k * v[c];
             s[OPEN] = fmax(0, s[OPEN] - k * v[4]);
@@ -263,7 +268,7 @@ static void put_slice(const struct frame *f, const struct slice *s, struct grid 
     struct grid sums = draw(f, s, level, SEEN, lit);
     struct grid part = grid_new(stack->x0, stack->y0, stack->x1, stack->y1, 1);
     refine(&sums, f, level, finest);
-    put_under(stack, &sums, level && s->own < 0 ? HIDING : WITH_HIDDEN, &part);
+    put_under(stack, &sums, level ? s->own < 0 ? HIDING : WITH_HIDDEN : s->own > 0 ? HELD_BACK : WITH_HIDDEN, &part);
     free(sums.v);
     for (int i = 0; lift && i < (part.x1 - part.x0) * (part.y1 - part.y0); i++)
         part.v[i] *= lift->v[i];
@@ -357,8 +362,16 @@ static void put_together(const struct frame *f, struct picture *out)
             m[OPEN] = fmax(0, 1 - m[4]);
             m[BEHIND_OPEN] = up(&near, BEHIND_OPEN, x, y);
         }
-    for (; i < count && !level_of(f, s[i].own); i++)
+    for (; i < count && !level_of(f, s[i].own); i++) {
+        // A part of what is near is held back of what is seen behind the focus.
+        const double begun = fmin(fmax(f->high - f->low - 1, 0), 1);
+        const double part = f->hidden ? (f->patterns ? 0.75 : 0.25) * begun : 0;
+        for (int p = 0; s[i].own == 0 && p < f->width * f->height; p++) {
+            double *m = at(&middle, p % f->width, p / f->width);
+            m[HELD] = part * (1 - m[OPEN]);
+        }
         put_slice(f, &s[i], &middle, &light[1], NULL);
+    }
     struct grid lift = grid_new(far.x0, far.y0, far.x1, far.y1, 1);
     cover(f, &s[i - 1], &far, &lift);
     for (; i < count; i++)
