@@ -50,26 +50,38 @@ static void place(struct hf_frame *f, struct band *b, int x, int y)
     }
 }
 
-// Beyond the frame nothing was made: rows of `have`, all of it in `want`, are continued to its width by zeros, and so are
-// rows above and below the frame. Working pixels.
-static void extend(const struct hf_frame *f, const struct band *b, struct hf_rect have, struct hf_rect want, int height)
+// A part beyond the frame, working pixels: far light, nothing near.
+static void beyond(const struct hf_frame *f, const struct band *b, struct hf_rect r)
 {
-    const struct hf_buf *first = hf_hexagon_made(f, f->near ? HF_HEXAGON_NEAR_U : HF_HEXAGON_FAR_U);
-    const size_t bytes = (size_t)(want.x1 - want.x0) * sizeof(float);
-    for (int i = 0; i < b->planes; i++) {
-        float *plane = first->ch[0] + i * b->rows * b->stride;
-        for (int y = have.y0; y < have.y1; y++) {
-            float *row = plane + y * b->stride;
-            for (int x = want.x0; x < have.x0; x++)
-                row[x] = 0;
-            for (int x = have.x1; x < want.x1; x++)
-                row[x] = 0;
-        }
-        for (int y = want.y0; y < 0 && have.y0 == 0; y++)
-            memset(plane + y * b->stride + want.x0, 0, bytes);
-        for (int y = height; y < want.y1; y++)
-            memset(plane + y * b->stride + want.x0, 0, bytes);
+    if (r.x0 >= r.x1 || r.y0 >= r.y1)
+        return;
+    if (f->far) {
+        hf_hexagon_kernels(f)->beyond(f, r);
+        return;
     }
+    const struct hf_buf *first = hf_hexagon_made(f, HF_HEXAGON_NEAR_U);
+    for (int i = 0; i < b->planes; i++)
+        for (int y = r.y0; y < r.y1; y++)
+            memset(hf_at(first, 0, r.x0, y) + i * b->rows * b->stride, 0, (size_t)(r.x1 - r.x0) * sizeof(float));
+}
+
+// Pass 1 of some rows, half-resolution pixels, in the frame and around it. From left to right, as vectors write more to the
+// right than they are asked for.
+static void make_rows(const struct hf_frame *f, const struct band *b, struct hf_rect r)
+{
+    const struct hf_setup *s = f->s;
+    const int scale = scale_of(s);
+    const struct hf_rect inside = {hf_max(r.x0, 0), hf_max(r.y0, 0), hf_min(r.x1, s->half_width),
+                                   hf_min(r.y1, s->half_height)};
+    const struct hf_rect all = {r.x0 * scale, r.y0 * scale, r.x1 * scale, r.y1 * scale};
+    const int top = hf_max(hf_min(0, all.y1), all.y0), bottom = hf_min(hf_max(hf_hexagon_height(s), all.y0), all.y1);
+    if (top < bottom) {
+        beyond(f, b, (struct hf_rect){all.x0, top, 0, bottom});
+        hf_hexagon_kernels(f)->first(f, inside);
+        beyond(f, b, (struct hf_rect){hf_hexagon_width(s), top, all.x1, bottom});
+    }
+    beyond(f, b, (struct hf_rect){all.x0, all.y0, all.x1, top});
+    beyond(f, b, (struct hf_rect){all.x0, bottom, all.x1, all.y1});
 }
 
 static void blur(const struct hf_frame *frame, struct hf_rect r, unsigned field)
@@ -78,21 +90,17 @@ static void blur(const struct hf_frame *frame, struct hf_rect r, unsigned field)
     const struct hf_setup *s = f.s;
     const struct hf_hexagon *h = hf_hexagon(s);
     struct band b = band_of(s, r.x1 - r.x0);
-    const int scale = scale_of(s), height = scale == 2 ? s->height : s->half_height;
+    const int scale = scale_of(s);
     b.memory = f.work;
     f.near = field == HF_NEAR;
     f.far = field == HF_FAR;
-    struct hf_rect make = {hf_max(r.x0 - h->left, 0), 0, hf_min(r.x1 + h->right, s->half_width),
-                           hf_max(r.y0 - h->above, 0)};
+    struct hf_rect make = {.x0 = r.x0 - h->left, .x1 = r.x1 + h->right, .y1 = r.y0 - h->above};
     for (int y = r.y0; y < r.y1; y += HF_HEXAGON_BAND) {
         const struct hf_rect out = {r.x0, y, r.x1, hf_min(y + HF_HEXAGON_BAND, r.y1)};
-        const struct hf_rect want = {(out.x0 - h->left) * scale, (out.y0 - h->above) * scale,
-                                     (out.x1 + h->right) * scale, (out.y1 + h->below) * scale};
         make.y0 = make.y1;
-        make.y1 = hf_min(out.y1 + h->below, s->half_height);
+        make.y1 = out.y1 + h->below;
         place(&f, &b, r.x0, y);
-        hf_hexagon_kernels(&f)->first(&f, make);
-        extend(&f, &b, hf_hexagon_rect(s, make), want, height);
+        make_rows(&f, &b, make);
         hf_hexagon_kernels(&f)->second(&f, out);
         for (int i = 0; i < b.planes; i++) {
             float *plane = b.memory + i * b.rows * b.stride;

@@ -213,8 +213,8 @@ static struct found far_line(const struct hf_frame *f, const struct hf_hexagon_f
 }
 
 // Colours that were found, with a weight and the mean radius: without light, that of the pixel itself. What is found at a
-// pixel that is far in part counts as much less.
-static void store_far(const struct hf_frame *f, const struct found *all, float p, float part,
+// pixel that is far in part counts as much less. whole: of what weighs 1, how much was found.
+static void store_far(const struct hf_frame *f, const struct found *all, float p, float part, float whole,
                       enum hf_hexagon_made colour, int weight, int x, int y)
 {
     const int any = all->a > 0;
@@ -223,8 +223,29 @@ static void store_far(const struct hf_frame *f, const struct found *all, float p
     const float q = any ? least : 0, a = any ? part / (q > 1 ? q : 1) : 0;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(hf_hexagon_made(f, colour), c, x, y) = all->colour[c] * a;
-    *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight, x, y) = a;
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight, x, y) = whole * a;
     *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight + 1, x, y) = q;
+}
+
+static void add(struct found *u, const struct found *v, int channels)
+{
+    for (int c = 0; c < channels; c++)
+        u->colour[c] = u->colour[c] + v->colour[c];
+    u->a = u->a + v->a;
+    u->w = u->w + v->w;
+}
+
+// What a line found counts as much of it as lies within the frame; returns that.
+static float keep_within(const struct hf_frame *f, struct found *s, int line, int x, int y, float p)
+{
+    static const float here[2] = {0, 0};
+    const float at[2] = {(float)x + 0.5f, (float)y + 0.5f};
+    const float part = hf_hexagon_along(hf_hexagon_width(f->s), hf_hexagon_height(f->s), hf_hexagon(f->s)->side[line],
+                                        at, here, 1 / p);
+    for (int c = 0; c < f->s->channels; c++)
+        s->colour[c] = s->colour[c] * part;
+    s->w = s->w * part;
+    return part;
 }
 
 static void far_1(const struct hf_frame *f, int x, int y)
@@ -232,16 +253,46 @@ static void far_1(const struct hf_frame *f, int x, int y)
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     const float p = *hf_at(in.radius, in.q, x, y), part = *hf_at(in.weight, in.a, x, y) * (p > 1 ? p : 1);
     struct found u = {{0}, 0, 0}, v = u;
+    float up = 1, left = 1;
     if (p > 0) {
         u = far_line(f, &in, 0, x, y, p);
         v = far_line(f, &in, 1, x, y, p);
+        up = keep_within(f, &u, 0, x, y, p);
+        left = keep_within(f, &v, 1, x, y, p);
     }
-    store_far(f, &u, p, part, HF_HEXAGON_FAR_U, 0, x, y);
+    store_far(f, &u, p, part, up, HF_HEXAGON_FAR_U, 0, x, y);
+    add(&u, &v, f->s->channels);
+    store_far(f, &u, p, part, 0.5f * (up + left), HF_HEXAGON_FAR_B, 2, x, y);
+}
+
+// What is found from beyond the frame, of no more than there is to find.
+static struct found beyond_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y,
+                                float p)
+{
+    const struct limit limit = limit_of(p);
+    const struct sums s = sum_line(f, in, line, x, y, &limit);
+    const float i = 1 / (s.a > 1 ? s.a : 1);
+    struct found all = {.a = s.a * i, .w = s.w * i};
     for (int c = 0; c < f->s->channels; c++)
-        u.colour[c] = u.colour[c] + v.colour[c];
-    u.a = u.a + v.a;
-    u.w = u.w + v.w;
-    store_far(f, &u, p, part, HF_HEXAGON_FAR_B, 2, x, y);
+        all.colour[c] = s.colour[c] * i;
+    return all;
+}
+
+static void far_beyond(const struct hf_frame *f, int x, int y)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    int at_x = x, at_y = y;
+    const int is = hf_hexagon_nearest(f->s, &at_x, &at_y);
+    const float p = is ? *hf_at(in.radius, in.q, at_x, at_y) : 0;
+    const float part = *hf_at(in.weight, in.a, at_x, at_y) * (p > 1 ? p : 1);
+    struct found u = {{0}, 0, 0}, v = u;
+    if (p > 0) {
+        u = beyond_line(f, &in, 0, x, y, p);
+        v = beyond_line(f, &in, 1, x, y, p);
+    }
+    store_far(f, &u, p, part, u.a, HF_HEXAGON_FAR_U, 0, x, y);
+    add(&u, &v, f->s->channels);
+    store_far(f, &u, p, part, 0.5f * u.a, HF_HEXAGON_FAR_B, 2, x, y);
 }
 
 static void far_2(const struct hf_frame *f, int x, int y)
@@ -258,9 +309,8 @@ static void far_2(const struct hf_frame *f, int x, int y)
         *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR), c, x, y) = (v.colour[c] + w.colour[c]) * (1 / 3.0f);
 }
 
-static void each_pixel(const struct hf_frame *f, struct hf_rect r, void (*fn)(const struct hf_frame *f, int x, int y))
+static void each_pixel(const struct hf_frame *f, struct hf_rect p, void (*fn)(const struct hf_frame *f, int x, int y))
 {
-    const struct hf_rect p = hf_hexagon_rect(f->s, r);
     for (int y = p.y0; y < p.y1; y++)
         for (int x = p.x0; x < p.x1; x++)
             fn(f, x, y);
@@ -268,16 +318,23 @@ static void each_pixel(const struct hf_frame *f, struct hf_rect r, void (*fn)(co
 
 void hf_hexagon_1_c(const struct hf_frame *f, struct hf_rect r)
 {
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
     if (f->near)
-        each_pixel(f, r, near_1);
+        each_pixel(f, p, near_1);
     if (f->far)
-        each_pixel(f, r, far_1);
+        each_pixel(f, p, far_1);
 }
 
 void hf_hexagon_2_c(const struct hf_frame *f, struct hf_rect r)
 {
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
     if (f->near)
-        each_pixel(f, r, near_2);
+        each_pixel(f, p, near_2);
     if (f->far)
-        each_pixel(f, r, far_2);
+        each_pixel(f, p, far_2);
+}
+
+void hf_hexagon_beyond_c(const struct hf_frame *f, struct hf_rect r)
+{
+    each_pixel(f, r, far_beyond);
 }

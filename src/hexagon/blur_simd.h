@@ -336,10 +336,10 @@ HF_INLINE struct hex_sums hex_found(const struct hf_hexagon_field *in, const str
     return found;
 }
 
-HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const int first, const int rows, int x, int y,
-                            const vf p[HEX_ROWS], struct hex_sums out[HEX_ROWS])
+// The sums alone, without the pixel's own.
+HF_INLINE void hex_far_sums(const struct hex_far *l, const int channels, const int first, const int rows, int x, int y,
+                            const vf p[HEX_ROWS], struct hex_sums s[HEX_ROWS])
 {
-    struct hex_sums s[HEX_ROWS];
     if (l->limited) {
         struct hex_limit limit[HEX_ROWS];
         for (int i = 0; i < rows; i++)
@@ -348,12 +348,19 @@ HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const i
     } else {
         hex_line(&l->in, &l->run, channels, first, rows, x, y, NULL, s);
     }
+}
+
+HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const int first, const int rows, int x, int y,
+                            const vf p[HEX_ROWS], struct hex_sums out[HEX_ROWS])
+{
+    struct hex_sums s[HEX_ROWS];
+    hex_far_sums(l, channels, first, rows, x, y, p, s);
     for (int i = 0; i < rows; i++)
         out[i] = hex_found(&l->in, &s[i], channels, first, x, y + i, p[i]);
 }
 
 HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels, vf p, vf part,
-                             enum hf_hexagon_made colour, int weight, int x, int y)
+                             vf whole, enum hf_hexagon_made colour, int weight, int x, int y)
 {
     const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_FAR_W);
     const vf one = vf_set1(1);
@@ -363,8 +370,52 @@ HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s,
     const vf a = vf_keep(any, vf_div(part, vf_max(q, one)));
     for (int c = 0; c < channels; c++)
         vf_store(hf_at(out, c, x, y), vf_mul(s->colour[c], a));
-    vf_store(hf_at(weights, weight, x, y), a);
+    vf_store(hf_at(weights, weight, x, y), vf_mul(whole, a));
     vf_store(hf_at(weights, weight + 1, x, y), q);
+}
+
+// See hf_hexagon_along.
+HF_INLINE vf hex_beside(float side, int size, vf at, vf by)
+{
+    const vf inside = side > 0 ? vf_sub(vf_sub(vf_set1((float)size), at), by) : vf_add(at, by);
+    return vf_max(inside, vf_set1(0x1p-10f));
+}
+
+HF_INLINE vf hex_along(int width, int height, const float side[2], const vf at[2], const vf by[2], vf i)
+{
+    const vf right = hex_beside(side[0], width, at[0], by[0]), down = hex_beside(side[1], height, at[1], by[1]);
+    const vf d = vf_min(vf_mul(vf_mul(right, vf_set1(__builtin_fabsf(side[0]))), i),
+                        vf_mul(vf_mul(down, vf_set1(__builtin_fabsf(side[1]))), i));
+    return vf_min(d, vf_set1(1));
+}
+
+HF_INLINE vf hex_across(int x)
+{
+    static const float steps[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return vf_add(vf_set1((float)x + 0.5f), vf_load(steps));
+}
+
+// What a line of pixels of radius p found counts as much of it as lies within the frame; returns that.
+HF_INLINE vf hex_keep_within(const struct hf_frame *f, struct hex_sums *s, const int channels, int line, int x, int y,
+                             vf p)
+{
+    const vf here[2] = {vf_zero(), vf_zero()}, at[2] = {hex_across(x), vf_set1((float)y + 0.5f)};
+    const vf i = vf_div(vf_set1(1), vf_select(vf_gt(p, vf_zero()), p, vf_set1(1)));
+    const vf part =
+        hex_along(hf_hexagon_width(f->s), hf_hexagon_height(f->s), hf_hexagon(f->s)->side[line], at, here, i);
+    for (int c = 0; c < channels; c++)
+        s->colour[c] = vf_mul(s->colour[c], part);
+    s->w = vf_mul(s->w, part);
+    return part;
+}
+
+// May a line of some pixel in a block leave the frame? If not, all of each lies within it. A line's length reaches less
+// than 2 pixels beyond its last place.
+HF_INLINE int hex_leaves(const struct hf_frame *f, struct hf_rect b)
+{
+    const struct hf_hexagon_line *u = &hf_hexagon(f->s)->line[0], *v = &hf_hexagon(f->s)->line[1];
+    return b.x0 + hf_min(u->x0, v->x0) < 2 || b.x1 + hf_max(u->x1, v->x1) > hf_hexagon_width(f->s) - 2 ||
+           b.y0 + hf_min(u->y0, v->y0) < 2 || b.y1 + hf_max(u->y1, v->y1) > hf_hexagon_height(f->s) - 2;
 }
 
 HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
@@ -380,9 +431,10 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
         return;
     }
     const struct hex_far up = hex_far(f, &in, 0, least, b, rows), left = hex_far(f, &in, 1, least, b, rows);
+    const int leaves = hex_leaves(f, b);
     HEX_EACH(b, rows, x, y)
     {
-        vf p[HEX_ROWS], part[HEX_ROWS];
+        vf p[HEX_ROWS], part[HEX_ROWS], all[HEX_ROWS];
         struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
         hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
         for (int i = 0; i < rows; i++) {
@@ -390,12 +442,88 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
             part[i] = vf_mul(vf_load(hf_at(in.weight, in.a, x, y + i)), vf_max(p[i], vf_set1(1)));
         }
         hex_far_line(&up, channels, 1, rows, x, y, p, u);
-        for (int i = 0; i < rows; i++)
-            hex_store_far(f, &u[i], channels, p[i], part[i], HF_HEXAGON_FAR_U, 0, x, y + i);
+        for (int i = 0; i < rows; i++) {
+            all[i] = leaves ? hex_keep_within(f, &u[i], channels, 0, x, y + i, p[i]) : vf_set1(1);
+            hex_store_far(f, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_U, 0, x, y + i);
+        }
         hex_far_line(&left, channels, 1, rows, x, y, p, v);
         for (int i = 0; i < rows; i++) {
+            if (leaves)
+                all[i] = vf_mul(vf_set1(0.5f), vf_add(all[i], hex_keep_within(f, &v[i], channels, 1, x, y + i, p[i])));
             hex_add(&u[i], &v[i], channels);
-            hex_store_far(f, &u[i], channels, p[i], part[i], HF_HEXAGON_FAR_B, 2, x, y + i);
+            hex_store_far(f, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_B, 2, x, y + i);
+        }
+    }
+}
+
+// ---- far, beyond the frame ----
+
+// Of the frame's nearest pixels, for those of a block; a vector past a row's end is 0.
+struct hex_nearest {
+    float p[HEX_HEIGHT][HEX_WIDTH + VF_N], part[HEX_HEIGHT][HEX_WIDTH + VF_N];
+    float least;  // radius above 0
+};
+
+static void hex_nearest(const struct hf_frame *f, const struct hf_hexagon_field *in, struct hf_rect b,
+                        struct hex_nearest *n)
+{
+    n->least = FLT_MAX;
+    for (int y = b.y0; y < b.y1; y++)
+        for (int x = b.x0; x < b.x1 + VF_N; x++) {
+            int u = x, v = y;
+            const int is = hf_hexagon_nearest(f->s, &u, &v) && x < b.x1;
+            const float q = is ? *hf_at(in->radius, in->q, u, v) : 0;
+            n->p[y - b.y0][x - b.x0] = q;
+            n->part[y - b.y0][x - b.x0] = is ? *hf_at(in->weight, in->a, u, v) * (q > 1 ? q : 1) : 0;
+            if (q > 0 && q < n->least)
+                n->least = q;
+        }
+}
+
+// What is found from there, of no more than there is to find.
+HF_INLINE void hex_beyond_line(const struct hex_far *l, const int channels, const int rows, int x, int y,
+                               const vf p[HEX_ROWS], struct hex_sums s[HEX_ROWS])
+{
+    const vf one = vf_set1(1);
+    hex_far_sums(l, channels, 1, rows, x, y, p, s);
+    for (int i = 0; i < rows; i++) {
+        const vm is = vf_gt(p[i], vf_zero());
+        const vf scale = vf_div(one, vf_max(s[i].a, one));
+        s[i].a = vf_keep(is, vf_mul(s[i].a, scale));
+        s[i].w = vf_keep(is, vf_mul(s[i].w, scale));
+        for (int c = 0; c < channels; c++)
+            s[i].colour[c] = vf_keep(is, vf_mul(s[i].colour[c], scale));
+    }
+}
+
+HF_INLINE void hex_far_beyond(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    struct hex_nearest n;
+    hex_nearest(f, &in, b, &n);
+    const struct hex_far up = hex_far(f, &in, 0, n.least, b, rows), left = hex_far(f, &in, 1, n.least, b, rows);
+    if (n.least == FLT_MAX || (up.run.end == up.run.step && left.run.end == left.run.step)) {
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_U), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_B), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_W), b, 4);
+        return;
+    }
+    HEX_EACH(b, rows, x, y)
+    {
+        vf p[HEX_ROWS], part[HEX_ROWS];
+        struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
+        for (int i = 0; i < rows; i++) {
+            p[i] = vf_load(&n.p[y + i - b.y0][x - b.x0]);
+            part[i] = vf_load(&n.part[y + i - b.y0][x - b.x0]);
+        }
+        hex_beyond_line(&up, channels, rows, x, y, p, u);
+        for (int i = 0; i < rows; i++)
+            hex_store_far(f, &u[i], channels, p[i], part[i], u[i].a, HF_HEXAGON_FAR_U, 0, x, y + i);
+        hex_beyond_line(&left, channels, rows, x, y, p, v);
+        for (int i = 0; i < rows; i++) {
+            hex_add(&u[i], &v[i], channels);
+            hex_store_far(f, &u[i], channels, p[i], part[i], vf_mul(vf_set1(0.5f), u[i].a), HF_HEXAGON_FAR_B, 2, x,
+                          y + i);
         }
     }
 }
@@ -427,14 +555,20 @@ HF_INLINE void hex_far_2(const struct hf_frame *f, struct hf_rect b, const int c
 
 // ---- the passes ----
 
-HF_INLINE void hex_block(const struct hf_frame *f, struct hf_rect b, const int second, const int channels,
+enum { HEX_FIRST, HEX_SECOND, HEX_BEYOND };
+
+HF_INLINE void hex_block(const struct hf_frame *f, struct hf_rect b, const int which, const int channels,
                          const int rows)
 {
-    if (f->near && second)
+    if (which == HEX_BEYOND) {
+        hex_far_beyond(f, b, channels, rows);
+        return;
+    }
+    if (f->near && which == HEX_SECOND)
         hex_near_2(f, b, channels, rows);
     else if (f->near)
         hex_near_1(f, b, channels, rows);
-    if (f->far && second)
+    if (f->far && which == HEX_SECOND)
         hex_far_2(f, b, channels, rows);
     else if (f->far)
         hex_far_1(f, b, channels, rows);
@@ -449,35 +583,44 @@ HF_INLINE int hex_is_shared(const struct hf_hexagon *h)
     return 1;
 }
 
-HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect r, const int second, const int channels)
+HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect p, const int which, const int channels)
 {
-    const struct hf_rect p = hf_hexagon_rect(f->s, r);
     const int shared = hex_is_shared(hf_hexagon(f->s));
     for (int y = p.y0; y < p.y1; y += HEX_HEIGHT)
         for (int x = p.x0; x < p.x1; x = (x + HEX_WIDTH) & ~(HEX_WIDTH - 1)) {
             const struct hf_rect b = {x, y, hf_min((x + HEX_WIDTH) & ~(HEX_WIDTH - 1), p.x1),
                                       hf_min(y + HEX_HEIGHT, p.y1)};
             if (shared && b.y1 - b.y0 >= HEX_ROWS)
-                hex_block(f, b, second, channels, HEX_ROWS);
+                hex_block(f, b, which, channels, HEX_ROWS);
             else
-                hex_block(f, b, second, channels, 1);
+                hex_block(f, b, which, channels, 1);
         }
 }
 
 static void hexagon_1_simd(const struct hf_frame *f, struct hf_rect r)
 {
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
     if (f->s->channels == 4)
-        hex_pass(f, r, 0, 4);
+        hex_pass(f, p, HEX_FIRST, 4);
     else
-        hex_pass(f, r, 0, 3);
+        hex_pass(f, p, HEX_FIRST, 3);
 }
 
 static void hexagon_2_simd(const struct hf_frame *f, struct hf_rect r)
 {
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
     if (f->s->channels == 4)
-        hex_pass(f, r, 1, 4);
+        hex_pass(f, p, HEX_SECOND, 4);
     else
-        hex_pass(f, r, 1, 3);
+        hex_pass(f, p, HEX_SECOND, 3);
+}
+
+static void hexagon_beyond_simd(const struct hf_frame *f, struct hf_rect p)
+{
+    if (f->s->channels == 4)
+        hex_pass(f, p, HEX_BEYOND, 4);
+    else
+        hex_pass(f, p, HEX_BEYOND, 3);
 }
 
 #endif

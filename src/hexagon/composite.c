@@ -62,30 +62,19 @@ static float background(const struct fields *v, int c, float own, float p)
     return hf_lerp(seen, own, hf_saturate(HEXAGON_ALL + p));
 }
 
-// How much of a side of length 1 / i lies within the frame, from a place on that lies `by` beside a pixel's centre (at).
-// What rounding has put on the edge is 2^-10 inside, for a side along it. A pixel's distance from an edge is exact, so a
-// part of the frame with that edge has the same bits.
-static float along(const struct hf_setup *s, const float side[2], const float at[2], const float by[2], float i)
-{
-    const float right = side[0] > 0 ? ((float)s->width - at[0]) - by[0] : at[0] + by[0];
-    const float down = side[1] > 0 ? ((float)s->height - at[1]) - by[1] : at[1] + by[1];
-    const float dx = (right > 0x1p-10f ? right : 0x1p-10f) * __builtin_fabsf(side[0]) * i;
-    const float dy = (down > 0x1p-10f ? down : 0x1p-10f) * __builtin_fabsf(side[1]) * i;
-    const float d = dx < dy ? dx : dy;
-    return d < 1 ? d : 1;
-}
-
-// What two blurs find of a near field that covers the whole frame, as nothing is made beyond it: the first along side a,
+// What two blurs find of a near field that covers the whole frame, as nothing near is made beyond it: the first along side a,
 // and b if it is one, the second along c. By Simpson's rule, as the first is linear but for its corners.
 static float two_sides(const struct hf_setup *s, int a, int b, int c, const float at[2], float p)
 {
     static const float here[2] = {0, 0};
     const struct hf_hexagon *h = hf_hexagon(s);
-    const float i = 1 / p, d = along(s, h->side[c], at, here, i);
+    const float i = 1 / p, d = hf_hexagon_along(s->width, s->height, h->side[c], at, here, i);
     float sum = 0;
     for (int k = 0; k < 3; k++) {
         const float t = d * p * (0.5f * (float)k), by[2] = {t / h->side[c][0], t / h->side[c][1]};
-        const float first = along(s, h->side[a], at, by, i) + (b >= 0 ? along(s, h->side[b], at, by, i) : 0);
+        float first = hf_hexagon_along(s->width, s->height, h->side[a], at, by, i);
+        if (b >= 0)
+            first = first + hf_hexagon_along(s->width, s->height, h->side[b], at, by, i);
         sum = sum + (k == 1 ? 4 : 1) * first;
     }
     return d * sum;

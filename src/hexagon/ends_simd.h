@@ -155,32 +155,18 @@ HF_INLINE void hex_store_blend(vm shows, vf blend, float *colour)
 }
 
 // See composite.c.
-HF_INLINE vf hex_beside(float side, int size, vf at, vf by)
-{
-    const vf inside = side > 0 ? vf_sub(vf_sub(vf_set1((float)size), at), by) : vf_add(at, by);
-    return vf_max(inside, vf_set1(0x1p-10f));
-}
-
-HF_INLINE vf hex_along(const struct hf_setup *s, const float side[2], const vf at[2], const vf by[2], vf i)
-{
-    const vf right = hex_beside(side[0], s->width, at[0], by[0]), down = hex_beside(side[1], s->height, at[1], by[1]);
-    const vf d = vf_min(vf_mul(vf_mul(right, vf_set1(__builtin_fabsf(side[0]))), i),
-                        vf_mul(vf_mul(down, vf_set1(__builtin_fabsf(side[1]))), i));
-    return vf_min(d, vf_set1(1));
-}
-
 HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, const vf at[2], vf p)
 {
     const struct hf_hexagon *h = hf_hexagon(s);
     const vf here[2] = {vf_zero(), vf_zero()};
-    const vf i = vf_div(vf_set1(1), p), d = hex_along(s, h->side[c], at, here, i);
+    const vf i = vf_div(vf_set1(1), p), d = hex_along(s->width, s->height, h->side[c], at, here, i);
     vf sum = vf_zero();
     for (int k = 0; k < 3; k++) {
         const vf t = vf_mul(vf_mul(d, p), vf_set1(0.5f * (float)k));
         const vf by[2] = {vf_div(t, vf_set1(h->side[c][0])), vf_div(t, vf_set1(h->side[c][1]))};
-        vf first = hex_along(s, h->side[a], at, by, i);
+        vf first = hex_along(s->width, s->height, h->side[a], at, by, i);
         if (b >= 0)
-            first = vf_add(first, hex_along(s, h->side[b], at, by, i));
+            first = vf_add(first, hex_along(s->width, s->height, h->side[b], at, by, i));
         sum = vf_add(sum, k == 1 ? vf_mul(vf_set1(4), first) : first);
     }
     return vf_mul(d, sum);

@@ -247,10 +247,11 @@ static void make_steps(const struct hf_hexagon_line *l, const struct direction *
     }
 }
 
-// From anywhere in the picture, that far and farther there is nothing. Returns whether there is such a tap.
+// From anywhere in the picture and its own size around it (hf_hexagon_nearest), that far and farther there is nothing.
+// Returns whether there is such a tap.
 static int keep_inside(const struct hf_setup *s, struct hf_hexagon_line *l)
 {
-    const int x = s->width, y = s->height, outside = l->x0 < -x || l->x1 > x || l->y0 < -y || l->y1 > y;
+    const int x = 2 * s->width, y = 2 * s->height, outside = l->x0 < -x || l->x1 > x || l->y0 < -y || l->y1 > y;
     for (int i = 0; i < l->count; i++) {
         l->taps[i].dx = hf_max(hf_min(l->taps[i].dx, x), -x);
         l->taps[i].dy = hf_max(hf_min(l->taps[i].dy, y), -y);
@@ -364,6 +365,7 @@ void hf_hexagon_kernels_c(struct hf_hexagon_kernels *k)
                     hf_hexagon_composite_c}},
         .first = hf_hexagon_1_c,
         .second = hf_hexagon_2_c,
+        .beyond = hf_hexagon_beyond_c,
     };
 }
 

@@ -18,6 +18,10 @@
 // changes it little, however large its radius. The far field's is by 1 / radius, each sample by the light that it brings:
 // that of a light before a dark wall goes as far as its own radius, not the wall's.
 //
+// Beyond the frame's edges far light of pass 1 goes on, or pass 2 would miss what it brings back: hexagons beside an edge
+// would be cut. There a pixel is as far behind the focus as the frame's nearest, has no colour of its own, and weighs as
+// much as it finds; before the edge, what a line makes weighs as much of it as lies within the frame. (What covers near pixels beyond the edge is not made: how much of a hexagon that leaves is known.)
+//
 // What near coverage leaves of a sharp or far pixel shows that pixel; of a near one, which is what covers, it shows what
 // is seen around it (behind.c), and the pixel itself only up to a radius of 2. A far pixel that finds less than a quarter
 // of its samples makes up a quarter with its own colour. All weights are continuous in every radius and vanish with it,
@@ -171,6 +175,42 @@ static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *
                                      1,
                                      -1,
                                      1};
+}
+
+// The frame's size at the working resolution.
+static inline int hf_hexagon_width(const struct hf_setup *s)
+{
+    return s->resolution == HF_RESOLUTION_HALF ? s->half_width : s->width;
+}
+
+static inline int hf_hexagon_height(const struct hf_setup *s)
+{
+    return s->resolution == HF_RESOLUTION_HALF ? s->half_height : s->height;
+}
+
+// The frame's pixel that is nearest to one beyond its edges. Returns 0 if that is more than the frame's own size away:
+// nothing is made there.
+static inline int hf_hexagon_nearest(const struct hf_setup *s, int *x, int *y)
+{
+    const int width = hf_hexagon_width(s), height = hf_hexagon_height(s);
+    const int is = *x >= -width && *x < 2 * width && *y >= -height && *y < 2 * height;
+    *x = hf_max(hf_min(*x, width - 1), 0);
+    *y = hf_max(hf_min(*y, height - 1), 0);
+    return is;
+}
+
+// How much of a side of length 1 / i lies within a frame, from a place on that lies `by` beside a pixel's centre (at).
+// What rounding has put on the edge is 2^-10 inside, for a side along it. A pixel's distance from an edge is exact, so a
+// part of the frame with that edge has the same bits.
+static inline float hf_hexagon_along(int width, int height, const float side[2], const float at[2], const float by[2],
+                                     float i)
+{
+    const float right = side[0] > 0 ? ((float)width - at[0]) - by[0] : at[0] + by[0];
+    const float down = side[1] > 0 ? ((float)height - at[1]) - by[1] : at[1] + by[1];
+    const float dx = (right > 0x1p-10f ? right : 0x1p-10f) * __builtin_fabsf(side[0]) * i;
+    const float dy = (down > 0x1p-10f ? down : 0x1p-10f) * __builtin_fabsf(side[1]) * i;
+    const float d = dx < dy ? dx : dy;
+    return d < 1 ? d : 1;
 }
 
 // r in pixels of the working resolution.

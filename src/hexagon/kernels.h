@@ -9,6 +9,7 @@
 struct hf_hexagon_kernels {
     struct hf_passes passes;
     hf_kernel *first, *second;  // the two passes of blurs, of a band
+    hf_kernel *beyond;          // pass 1 beyond the frame's edges, far field alone; the rectangle in working pixels
 };
 HF_DECLARE_KERNELS(hf_hexagon_kernels);
 
@@ -17,8 +18,8 @@ static inline const struct hf_hexagon_kernels *hf_hexagon_kernels(const struct h
     return f->kernels;
 }
 
-hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_blur_pass, hf_hexagon_behind_pass,
-    hf_hexagon_composite_c;
+hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_beyond_c, hf_hexagon_blur_pass,
+    hf_hexagon_behind_pass, hf_hexagon_composite_c;
 
 // Row y of a rectangle of pixels, mixed ones as samples (mixed.c), e NULL if there are none. Uses the frame's rows from 0
 // to 12 and from 18 on. Returns the samples' weights, NULL if all are 1; colours are times these.

@@ -9,4 +9,5 @@ void HF_SIMD_NAME(hf_hexagon_kernels)(struct hf_hexagon_kernels *k)
     k->passes.pass[HF_HEXAGON_COMPOSITE] = hexagon_composite_simd;
     k->first = hexagon_1_simd;
     k->second = hexagon_2_simd;
+    k->beyond = hexagon_beyond_simd;
 }

@@ -29,6 +29,7 @@ struct tap {
 struct line {
     struct tap tap[MAX_TAPS];
     int count;
+    double degrees, aspect;
 };
 
 // From one place to the next: one on each column or row for the line farthest from the axes, unless others lie far apart then.
@@ -49,6 +50,8 @@ static void make_line(struct line *l, double degrees, double aspect, double reac
 {
     const double ux = sin(degrees * M_PI / 180), uy = -cos(degrees * M_PI / 180);
     l->count = 0;
+    l->degrees = degrees;
+    l->aspect = aspect;
     for (int k = 0; k == 0 || (k - 0.5) * step < reach + 1; k++) {
         const double t = k ? k * step - nearer : 0;
         const double x = floor(t * ux / aspect * 4096 + 0.5) / 4096, y = floor(t * uy * 4096 + 0.5) / 4096;
@@ -60,7 +63,7 @@ static void make_line(struct line *l, double degrees, double aspect, double reac
 }
 
 struct field {
-    int width, height, channels;
+    int x0, y0, width, height, channels;  // of its first pixel, in those of the picture
     double *colour[4], *a, *q;
 };
 
@@ -78,6 +81,21 @@ static struct field field_new(int width, int height, int channels)
     for (int c = 0; c < channels; c++)
         f.colour[c] = calloc(n, sizeof *f.a);
     return f;
+}
+
+// The frame of another, and as much around it as lines reach, but not more than the frame's own size.
+static struct field field_around(const struct field *in, int reach)
+{
+    const int x = reach < in->width ? reach : in->width, y = reach < in->height ? reach : in->height;
+    struct field f = field_new(in->width + 2 * x, in->height + 2 * y, in->channels);
+    f.x0 = -x;
+    f.y0 = -y;
+    return f;
+}
+
+static int at_of(const struct field *f, int x, int y)
+{
+    return clampi(y - f->y0, f->height) * f->width + clampi(x - f->x0, f->width);
 }
 
 static void field_free(struct field *f)
@@ -98,10 +116,9 @@ static struct sum sum_of(const struct field *f, const struct line *l, int x, int
     struct sum s = {{0}, 0, 0};
     for (int i = 0; i < l->count; i++) {
         const struct tap *t = &l->tap[i];
-        // Beyond the picture there is nothing.
-        const int at = clampi(y + t->dy, f->height) * f->width + clampi(x + t->dx, f->width);
-        const int is = at == (y + t->dy) * f->width + x + t->dx && x + t->dx == clampi(x + t->dx, f->width);
-        const double q = is ? f->q[at] : 0;
+        // Beyond the field there is nothing.
+        const int u = x + t->dx - f->x0, v = y + t->dy - f->y0, at = at_of(f, x + t->dx, y + t->dy);
+        const double q = u == clampi(u, f->width) && v == clampi(v, f->height) ? f->q[at] : 0;
         double w = fmin(t->b, q - t->before);
         if (p > 0)
             w = fmin(w, t->b * (1 + (2 * p - q) / fmin(p, 1)));
@@ -156,9 +173,10 @@ static void near_field(const struct field *in, const struct line l[3], struct fi
 }
 
 // Blur of premultiplied colours at a far pixel of radius p, to plain ones, with all that was found, and light over radii.
-static struct sum far_blur(const struct field *in, const struct line *l, int at, double p)
+static struct sum far_blur(const struct field *in, const struct line *l, int x, int y, double p)
 {
-    struct sum s = sum_of(in, l, at % in->width, at / in->width, p);
+    struct sum s = sum_of(in, l, x, y, p);
+    const int at = at_of(in, x, y);
     const double o = own_of(s.a, p);
     for (int c = 0; c < in->channels; c++)
         s.colour[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
@@ -168,35 +186,85 @@ static struct sum far_blur(const struct field *in, const struct line *l, int at,
     return s;
 }
 
-static void put_far(struct field *out, const struct sum *s, double p, double part, int at)
+static struct sum both(const struct sum *u, const struct sum *v)
 {
-    out->q[at] = fmax(s->w > 0 ? light_of(s->colour[0], s->colour[1], s->colour[2]) / s->w : p, 0.25);
-    out->a[at] = part / fmax(out->q[at], 1);
-    for (int c = 0; c < out->channels; c++)
-        out->colour[c][at] = s->colour[c] * out->a[at];
+    struct sum s = {.a = u->a + v->a, .w = u->w + v->w};
+    for (int c = 0; c < 4; c++)
+        s.colour[c] = u->colour[c] + v->colour[c];
+    return s;
 }
 
-static void far_field(const struct field *in, const struct line l[3], struct field *out)
+// whole: how much was found of what weighs 1.
+static void put_far(struct field *out, const struct sum *s, double p, double part, double whole, int at)
 {
-    struct field u = field_new(in->width, in->height, in->channels), b = field_new(in->width, in->height, in->channels);
-    for (int at = 0; at < in->width * in->height; at++) {
-        const double p = in->q[at], part = in->a[at] * fmax(p, 1);
-        if (!(p > 0))
-            continue;
-        struct sum up = far_blur(in, &l[0], at, p);
-        const struct sum left = far_blur(in, &l[1], at, p);
-        put_far(&u, &up, p, part, at);
-        for (int c = 0; c < in->channels; c++)
-            up.colour[c] += left.colour[c];
-        up.a += left.a;
-        up.w += left.w;
-        put_far(&b, &up, p, part, at);
+    if (!(s->a > 0))
+        return;
+    out->q[at] = fmax(s->w > 0 ? light_of(s->colour[0], s->colour[1], s->colour[2]) / s->w : p, 0.25);
+    out->a[at] = whole * part / fmax(out->q[at], 1);
+    for (int c = 0; c < out->channels; c++)
+        out->colour[c][at] = s->colour[c] * part / fmax(out->q[at], 1);
+}
+
+// Blur of premultiplied colours beyond the frame: no more than all there is to find.
+static struct sum beyond_blur(const struct field *in, const struct line *l, int x, int y, double p)
+{
+    struct sum s = sum_of(in, l, x, y, p);
+    const double all = fmax(s.a, 1);
+    for (int c = 0; c < in->channels; c++)
+        s.colour[c] /= all;
+    s.a /= all;
+    s.w /= all;
+    return s;
+}
+
+// How much of a side of length p lies within the frame.
+static double along(double degrees, double aspect, int width, int height, double x, double y, double p)
+{
+    const double dx = p * sin(degrees * M_PI / 180) / aspect, dy = p * -cos(degrees * M_PI / 180);
+    const double right = fmax(dx > 0 ? width - x : x, 1 / 1024.0), down = fmax(dy > 0 ? height - y : y, 1 / 1024.0);
+    return fmin(1, fmin(right / fabs(dx), down / fabs(dy)));
+}
+
+// Of what a line found, that part.
+static void keep_within(struct sum *s, double part, int channels)
+{
+    for (int c = 0; c < channels; c++)
+        s->colour[c] *= part;
+    s->w *= part;
+    s->a = part;
+}
+
+// Pass 1 at a pixel in the frame, or beyond: there with the radius of the frame's nearest.
+static void far_first(const struct field *in, const struct line l[3], int x, int y, struct field *u, struct field *b)
+{
+    const int nearest = at_of(in, x, y), to = at_of(u, x, y);
+    const int inside = x == clampi(x, in->width) && y == clampi(y, in->height);
+    const double p = in->q[nearest], part = in->a[nearest] * fmax(p, 1);
+    if (!(p > 0))
+        return;
+    struct sum up = (inside ? far_blur : beyond_blur)(in, &l[0], x, y, p);
+    struct sum left = (inside ? far_blur : beyond_blur)(in, &l[1], x, y, p);
+    if (inside) {
+        keep_within(&up, along(l[0].degrees, l[0].aspect, in->width, in->height, x + 0.5, y + 0.5, p), in->channels);
+        keep_within(&left, along(l[1].degrees, l[1].aspect, in->width, in->height, x + 0.5, y + 0.5, p), in->channels);
     }
+    const struct sum sum = both(&up, &left);
+    put_far(u, &up, p, part, up.a, to);
+    put_far(b, &sum, p, part, sum.a / 2, to);
+}
+
+static void far_field(const struct field *in, const struct line l[3], int reach, struct field *out)
+{
+    struct field u = field_around(in, reach), b = field_around(in, reach);
+    for (int y = u.y0; y < u.y0 + u.height; y++)
+        for (int x = u.x0; x < u.x0 + u.width; x++)
+            far_first(in, l, x, y, &u, &b);
     for (int at = 0; at < in->width * in->height; at++) {
         const double p = in->q[at];
         if (!(p > 0))
             continue;
-        const struct sum left = far_blur(&u, &l[1], at, p), right = far_blur(&b, &l[2], at, p);
+        const int x = at % in->width, y = at / in->width;
+        const struct sum left = far_blur(&u, &l[1], x, y, p), right = far_blur(&b, &l[2], x, y, p);
         for (int c = 0; c < in->channels; c++)
             out->colour[c][at] = (left.colour[c] + right.colour[c]) / 3;
     }
@@ -340,14 +408,6 @@ static double behind_sample(const struct seen *s, int p, int x, int y, int half)
     return half ? v : seen_sample(s, p, x, y);
 }
 
-static double along(double degrees, double aspect, const struct picture *c, double x, double y, double p)
-{
-    const double dx = p * sin(degrees * M_PI / 180) / aspect, dy = p * -cos(degrees * M_PI / 180);
-    const double right = fmax(dx > 0 ? c->width - x : x, 1 / 1024.0),
-                 down = fmax(dy > 0 ? c->height - y : y, 1 / 1024.0);
-    return fmin(1, fmin(right / fabs(dx), down / fabs(dy)));
-}
-
 // What two blurs find of a near field that covers the whole frame, by Simpson's rule along the second.
 static double most_coverage(const struct picture *c, const struct hf_params *par, int x, int y, double p)
 {
@@ -357,9 +417,9 @@ static double most_coverage(const struct picture *c, const struct hf_params *par
     for (int k = 0; k < 9; k++) {
         // Upwards and down left; upwards and down right; down left and down right.
         const double second = side[k / 3 == 0 ? 1 : 2], first = side[k / 3 == 2];
-        const double d = along(second, aspect, c, x + 0.5, y + 0.5, p), t = d * p * (k % 3) / 2;
+        const double d = along(second, aspect, c->width, c->height, x + 0.5, y + 0.5, p), t = d * p * (k % 3) / 2;
         const double u = x + 0.5 + t * sin(second * M_PI / 180) / aspect, v = y + 0.5 - t * cos(second * M_PI / 180);
-        sum += d * (k % 3 == 1 ? 4 : 1) / 6 * along(first, aspect, c, u, v, p);
+        sum += d * (k % 3 == 1 ? 4 : 1) / 6 * along(first, aspect, c->width, c->height, u, v, p);
     }
     return sum / 3;
 }
@@ -387,7 +447,7 @@ struct picture hexagon_reference(const struct picture *colour, const struct pict
     (half ? load_half : load_full)(colour, sample, &near_in, -1);
     (half ? load_half : load_full)(colour, sample, &far_in, 1);
     near_field(&near_in, l, &near);
-    far_field(&far_in, l, &far);
+    far_field(&far_in, l, (int)(reach / fmin(p->view.pixel_aspect, 1)) + 4, &far);
     struct picture out = picture_new(colour->width, colour->height, n);
     struct seen seen = seen_of(colour, sample, &near_in, half);
     for (int i = 0; i < out.width * out.height; i++) {
