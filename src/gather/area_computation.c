@@ -146,6 +146,7 @@ static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
     for (int y = area.y0; y < area.y1; y++)
         for (int x = area.x0; x < area.x1; x++) {
             const float w = karis(f, x, y);
+            const float counts = hf_gather(f->s)->lights ? *hf_at(&f->buf[HF_BUF_WEIGHT], 2, x, y) : 1;
             const float left = leaves ? hf_level_left(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y)) : 0;
             const float far = leaves ? left * *hf_at(coc4, HF_AREA_FAR, x, y) : 0;
             const float rest = (1 - *hf_at(coc4, HF_AREA_NEAR, x, y)) - far;
@@ -154,7 +155,7 @@ static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
                 const float hidden = leaves ? left * *hf_at(&f->buf[HF_BUF_COLORFAR4], c, x, y) : 0;
                 const float colour =
                     (*hf_at(&f->buf[HF_BUF_COLOR4], c, x, y) - *hf_at(&f->buf[HF_BUF_COLORNEAR4], c, x, y)) - hidden;
-                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = rest > 0 ? colour * w : 0;
+                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = rest > 0 ? (colour * counts) * w : 0;
             }
             *hf_at(level, 0, x, y) = weight * w;
             *hf_at(level, 1, x, y) = weight;
@@ -275,6 +276,8 @@ static void near_levels(const struct hf_frame *f, struct hf_rect r)
     const struct sums near = {&f->buf[HF_BUF_NEAR], {&f->buf[HF_BUF_SUM], &f->buf[HF_BUF_COVER]}, {0, 0}};
     const struct sums behind = {
         &f->buf[HF_BUF_BEHIND], {&f->buf[HF_BUF_BEHIND_WEIGHT], &f->buf[HF_BUF_BEHIND_WEIGHT]}, {0, 1}};
+    if (hf_gather(f->s)->lights)
+        hf_area_lights_c(f, r);
     clear(f, r, &near);
     clear(f, r, &behind);
     for (int y = r.y0; y < r.y1; y++)

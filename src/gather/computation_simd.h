@@ -499,6 +499,7 @@ static void gather_far_simd(const struct hf_frame *f, struct hf_rect r)
     gather_run(f, r, hf_gather_taps(s, HF_FAR), &j, HF_BUF_COC4, 1, finish_far);
 }
 
+#include "gather/area_lights_simd.inc"
 #include "gather/area_computation_simd.inc"
 
 static void gather_simd(const struct hf_frame *f, struct hf_rect r)

@@ -67,7 +67,7 @@ static int channels(const struct hf_setup *s, int b)
     case HF_BUF_BLUR:
         return 1;
     case HF_BUF_WEIGHT:
-        return g->karis ? (g->area ? 1 : 2) : 0;
+        return g->area ? (g->lights ? 3 : g->karis) : g->karis ? 2 : 0;
     case HF_BUF_COLORW4:
     case HF_BUF_COLORFARW4:
         return g->karis && !g->area ? s->channels : 0;
@@ -119,7 +119,8 @@ struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo)
         return (struct hf_reach){0, g->blur_y};
     case HF_HALO_TAPS:
         // One more for the per-pixel kernel, whose bilinear taps read a neighbour even with weight 0.
-        return (struct hf_reach){taps_reach(s).x + g->per_pixel_kernel, taps_reach(s).y + g->per_pixel_kernel};
+        return (struct hf_reach){taps_reach(s).x + g->per_pixel_kernel + g->lights,
+                                 taps_reach(s).y + g->per_pixel_kernel + g->lights};
     case HF_HALO_UPSAMPLE:
         return g->bicubic ? (struct hf_reach){2, 2} : (struct hf_reach){1, 1};
     default:
@@ -254,6 +255,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     g->downsample = p->gather.downsample;
     g->division = p->run.deterministic ? HF_DIVISION_EXACT : p->gather.division;
     g->rings = p->gather.rings;
+    g->lights = 0;
     g->area = !s->faithful && g->fill == HF_FILL_MEAN && !g->downsample && !g->division;
     s->zero_beyond = g->area;
     // Fields of half resolution come in by and by where the radius is smaller than one of its pixels, as by area.
@@ -357,6 +359,13 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     return s->measured ? HF_OK : build(g, s, p, s->max_radius / 2, s->max_radius / 2, mem);
 }
 
+// How far apart what is beside a light is looked at: as far as a light is large that leaves no rings, 16 pixels in a frame
+// of 720 lines.
+static int lights_apart(int display_height)
+{
+    return hf_max(hf_min(display_height / 90, 32), 1);
+}
+
 // Each field's CoC is relative to the largest radius that there is of its kind, and so are its kernels. That is at least
 // a pixel.
 static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
@@ -370,7 +379,9 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     s->smoothstep = g->smoothstep;
     s->storage = g->storage;
     set_reach(g, s, near / 2);
-    return build(g, s, p, near / 2, far / 2, mem);
+    const int err = build(g, s, p, near / 2, far / 2, mem);
+    g->lights = g->area && g->levels[0].count > 1 ? lights_apart(s->resolved->params.view.display_height) : 0;
+    return err;
 }
 
 static void release(void *own, const struct hf_mem *mem)

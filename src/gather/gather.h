@@ -36,7 +36,7 @@ enum hf_gather_buf {
     HF_BUF_NEAR_FILL,
     HF_BUF_FAR_FILL,
     HF_BUF_SUM,         // inside the gather: sums of weights, near and far
-    HF_BUF_WEIGHT,      // with Karis average: w and far CoC x w
+    HF_BUF_WEIGHT,      // with Karis average: w and far CoC x w; by area w, the largest channel, and what counts of it
     HF_BUF_COLORW4,     // colour x w
     HF_BUF_COLORFARW4,  // colour x far CoC x w
     // By area (see struct hf_gather):
@@ -106,6 +106,7 @@ struct hf_gather {
     int area;
     struct hf_levels levels[2];  // near, far
     int karis, per_pixel_kernel, bicubic;
+    int lights;         // measured, by area: how far apart what is beside a light is looked at; else 0
     enum hf_fill fill;  // of OPEN as of NONE: they differ in the taps
     enum hf_downsample downsample;
     enum hf_division division;
@@ -231,6 +232,12 @@ void hf_convolve_c(const struct hf_frame *f, struct hf_rect r, const struct hf_t
                    int c_in, const struct hf_buf *out, int c_out);
 
 hf_kernel hf_area_down_c, hf_area_gather_c;
+
+// How much of what is not near counts as what near pixels hide, within reach of their levels: what is more than so many
+// times as bright as what is on both sides of it, sideways and up and down, counts as that. It is a light, of which near pixels
+// that are farther away than its own disc see nothing; else each level draws a ring of its own size around it, over them.
+#define HF_LIGHT 16.0f
+void hf_area_lights_c(const struct hf_frame *f, struct hf_rect r);
 
 // Do a level's taps at row y end within the frame, above and below? Then what lies in it is as in all such rows.
 static inline int hf_area_is_whole(const struct hf_setup *s, const struct hf_taps *t, int y)

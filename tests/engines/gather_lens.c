@@ -340,6 +340,33 @@ static void bar_at_border(struct hf_context *c, float max_radius)
         picture_free(made[i]);
 }
 
+// A lamp beside a near bar: its own disc, of radius 6, does not reach over the bar, and what shows through from behind is
+// that of what lies around the lamp, at most 16 times as bright as without it.
+static void no_ring(struct hf_context *c)
+{
+    static const float WALL = 0x1p-10f;
+    struct hf_params p = lens_params();
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        radii.plane[0][i] = i % WIDTH < EDGE ? -NEAR : FAR;
+        colour.plane[1][i] = i % WIDTH < EDGE ? 0 : WALL;
+    }
+    for (int k = 0; k < 16; k++)
+        colour.plane[1][(MIDDLE + k / 4) * WIDTH + EDGE + 10 + k % 4] = 1000;
+    const struct hf_depth depth = picture_radii(&radii);
+    p.view.display_height = 720;
+    struct picture out = render(c, &colour, &depth, &p);
+    float most = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        most = i % WIDTH < EDGE - 6 ? fmaxf(most, out.plane[1][i]) : most;
+    // 50 roundings.
+    CHECK_MSG(most > 0 && most <= 16 * WALL * (1 + 50 * 6e-8f), "a lamp beside a bar shows through it: %g",
+              (double)most);
+    struct picture *const made[] = {&colour, &radii, &out};
+    for (int i = 0; i < 3; i++)
+        picture_free(made[i]);
+}
+
 int main(int argc, char **argv)
 {
     struct hf_context *c = NULL;
@@ -354,6 +381,7 @@ int main(int argc, char **argv)
     nearest_behind(c);
     flat_highlight(c);
     no_speck(c);
+    no_ring(c);
     bar_at_border(c, HF_DERIVE);
     bar_at_border(c, 24);
     if (argc > 1) {
