@@ -226,9 +226,8 @@ static double seen_at(double x)
 }
 
 // Rays cross between what is before the focus and what is behind it: beside a rod a lens sees what the rod hides, not what
-// lies beside it. What is hidden of a ramp is found exactly, so that the order is all that is wrong: with nothing held back
-// the root mean square is 0.0035, a twentieth of the ramp over a disc's width. A quarter held back is an eighth less at the
-// least, three quarters a quarter less: half of the former, and a third of the latter, whose rest the rod's other side has.
+// lies beside it. Root mean squares as measured: 0.00358, 0.00342 and 0.00347 (standard, high, best) with nothing held back,
+// 0.00309, 0.00291 and 0.00257 with what is. The bounds, 0.00315 and 0.0027, lie between; they follow from nothing else.
 static void crossed(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
