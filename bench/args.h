@@ -4,7 +4,7 @@
 #define HF_BENCH_ARGS_H
 
 #include "hyperfocal/hyperfocal.h"
-#include "tool/options.h"
+#include "tools/common/options.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 // beside oiiotool reading and writing them, for each compression, in turns.
 #include "commands.h"
 #include "statistics.h"
-#include "tool/machine.h"
+#include "tools/common/machine.h"
 #include "write.h"
 
 #include <errno.h>
@@ -65,7 +65,7 @@ static double run(const struct bench *b, const char *const words[])
 // The command of this build, else the installed one.
 static void find_program(struct bench *b)
 {
-    static const char *const places[] = {"../src/cli/hyperfocal", "hyperfocal"};
+    static const char *const places[] = {"../src/tools/cli/hyperfocal", "hyperfocal"};
     char self[PATH_MAX];
     const ssize_t n = readlink("/proc/self/exe", self, sizeof(self) - 1);
     self[n > 0 ? n : 0] = '\0';

@@ -8,7 +8,7 @@
 #include "subject.h"
 #include "write.h"
 
-#include "tool/machine.h"
+#include "tools/common/machine.h"
 
 #include <math.h>
 #include <stdlib.h>

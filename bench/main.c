@@ -2,8 +2,8 @@
 // hyperfocal-bench: measures whole frames. Single kernels are the business of tests/kernels.
 #include "commands.h"
 
-#include "tool/nearest.h"
-#include "tool/options.h"
+#include "tools/common/nearest.h"
+#include "tools/common/options.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 
 #include "peak.h"
 #include "statistics.h"
-#include "tool/machine.h"
+#include "tools/common/machine.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -3,7 +3,7 @@
 #ifndef HF_BENCH_MEASURE_H
 #define HF_BENCH_MEASURE_H
 
-#include "tool/error.h"
+#include "tools/common/error.h"
 #include "hyperfocal/hyperfocal.h"
 #include "pack.h"
 #include "workers.h"

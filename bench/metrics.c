@@ -3,7 +3,7 @@
 
 #include "flip.h"
 #include "ssim.h"
-#include "tool/luminance.h"
+#include "tools/common/luminance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "report.h"
 
 #include "scene.h"
-#include "tool/machine.h"
+#include "tools/common/machine.h"
 #include "write.h"
 
 #include <stdint.h>

@@ -7,7 +7,7 @@
 #ifndef HF_BENCH_SCENE_H
 #define HF_BENCH_SCENE_H
 
-#include "tool/error.h"
+#include "tools/common/error.h"
 
 // A picture: width * height pixels, rows packed tightly.
 struct bench_scene {

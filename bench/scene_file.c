@@ -2,7 +2,7 @@
 #include "scene.h"
 
 #if HF_HAVE_IO
-#include "io/io.h"
+#include "tools/io/io.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 #include "machine.h"
 #include "page.h"
 #include "subject.h"
-#include "tool/machine.h"
+#include "tools/common/machine.h"
 #include "tradeoff.h"
 #include "tradeoff_run.h"
 #include "write.h"

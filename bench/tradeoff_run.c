@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tradeoff_run.h"
 
-#include "tool/machine.h"
+#include "tools/common/machine.h"
 
 #include <math.h>
 #include <stdlib.h>

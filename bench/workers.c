@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "workers.h"
 
-#include "tool/machine.h"
+#include "tools/common/machine.h"
 
 #include <pthread.h>
 #include <sched.h>

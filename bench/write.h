@@ -4,7 +4,7 @@
 #define HF_BENCH_WRITE_H
 
 #include "args.h"
-#include "tool/json.h"
+#include "tools/common/json.h"
 
 // Write a report: as a table to stdout, or as JSON to args->json, or both if that is a file. Returns 0, or -1 with
 // *error filled.

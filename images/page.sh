@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build}
-hyperfocal=$build/src/cli/hyperfocal
+hyperfocal=$build/src/tools/cli/hyperfocal
 bench=$build/bench/hyperfocal-bench
 engines="layers scatter gather hexagon gaussian"
 tmp=$(mktemp -d)

@@ -44,8 +44,8 @@ static struct window window_of(const struct hf_plan *p, const struct hf_setup *s
     struct window w = {.bytes = bytes_of(s, def)};
     const int mask = 64 / w.bytes - 1;  // rows begin on a cache line
     if (!def->bare) {
-        w.left = (scaled(p->buf[b].x, lx) + mask) & ~mask;
-        w.top = scaled(p->buf[b].y, ly);
+        w.left = (scaled(p->cells.buf[b].x, lx) + mask) & ~mask;
+        w.top = scaled(p->cells.buf[b].y, ly);
     }
     w.stride = (((scaled(width, lx) + mask) & ~mask) + 2 * w.left) * w.bytes / (int)sizeof(float) + HF_PAD;
     if (w.stride % 1024 == 0)
@@ -97,7 +97,7 @@ static size_t sweep_floats(const struct hf_context *c, const struct hf_setup *s,
     for (int b = 0; b < e->buf_count; b++)
         if (bufs >> b & 1)
             floats += (size_t)e->channels(s, b) *
-                      window_floats(window_of(&c->plan, s, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]));
+                      window_floats(window_of(&c->plan, s, b, c->plan.cells.width[sweep], c->plan.cells.height[sweep]));
     return floats;
 }
 
@@ -115,13 +115,13 @@ static size_t scratch_floats(const struct hf_context *c, const struct hf_setup *
 
 static size_t work_floats(const struct hf_context *c, const struct hf_setup *s)
 {
-    const size_t n = c->plan.engine->work ? c->plan.engine->work(s, &c->plan) : 0;
+    const size_t n = c->plan.engine->work ? c->plan.engine->work(s, &c->plan.cells) : 0;
     return (n + 15) & ~(size_t)15;
 }
 
 static size_t worker_floats(const struct hf_context *c, const struct hf_setup *s)
 {
-    return (HF_LINES + HF_DEPTH_LINES) * c->plan.line_floats + work_floats(c, s) +
+    return (HF_LINES + HF_DEPTH_LINES) * c->plan.cells.line_floats + work_floats(c, s) +
            scratch_floats(c, s, c->plan.engine->sweeps);
 }
 
@@ -158,7 +158,7 @@ int hf_buffers_allocate(struct hf_context *c, const struct hf_setup *s, unsigned
     for (int i = 0; i < c->threads; i++) {
         struct hf_frame *f = &c->workers[i].frame;
         memcpy(f->buf, planes, sizeof planes);
-        f->line_floats = c->plan.line_floats;
+        f->line_floats = c->plan.cells.line_floats;
         f->lines = c->workers[i].scratch.data;
         f->depth_lines = f->lines + HF_LINES * f->line_floats;
         f->work = f->depth_lines + HF_DEPTH_LINES * f->line_floats;
@@ -174,9 +174,10 @@ void hf_buffers_place(const struct hf_context *c, const struct hf_setup *s, stru
     float *memory = f->work + work_floats(c, s) + (c->dump ? scratch_floats(c, s, sweep - 1) : 0);
     for (int b = 0; b < e->buf_count; b++)
         if (bufs >> b & 1)
-            memory = place(&f->buf[b], window_of(&c->plan, s, b, c->plan.cell_width[sweep], c->plan.cell_height[sweep]),
-                           e->channels(s, b), memory, offset(cell.x0, log2_x(s, &e->bufs[b])),
-                           offset(cell.y0, log2_y(s, &e->bufs[b])));
+            memory =
+                place(&f->buf[b], window_of(&c->plan, s, b, c->plan.cells.width[sweep], c->plan.cells.height[sweep]),
+                      e->channels(s, b), memory, offset(cell.x0, log2_x(s, &e->bufs[b])),
+                      offset(cell.y0, log2_y(s, &e->bufs[b])));
 }
 
 struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def *def, struct hf_rect r)
@@ -233,7 +234,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
     const struct hf_engine_def *e = c->plan.engine;
     const struct hf_buf_def *def = &e->bufs[b];
     const int lx = log2_x(s, def), ly = log2_y(s, def);
-    const struct hf_reach reach = {scaled(c->plan.buf[b].x, lx), scaled(c->plan.buf[b].y, ly)};
+    const struct hf_reach reach = {scaled(c->plan.cells.buf[b].x, lx), scaled(c->plan.cells.buf[b].y, ly)};
     if (!f->buf[b].ch[0] || def->bare || (reach.x == 0 && reach.y == 0))
         return;
     const struct hf_rect have = hf_buffers_rect(s, def, r);

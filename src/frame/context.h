@@ -5,10 +5,11 @@
 
 #include "frame/budget.h"
 #include "frame/cost.h"
-#include "frame/engine.h"
+#include "pass/engine.h"
 #include "frame/plan.h"
 #include "base/pool.h"
-#include "params.h"
+#include "frame/resolve.h"
+#include "pass/check.h"
 #include "pixel/kernels.h"
 
 struct hf_worker {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "frame/engine.h"
+#include "pass/engine.h"
 
 // Adding an engine adds a line.
 #define ENGINES(DO)                                                                                                    \
@@ -18,21 +18,4 @@ const struct hf_engine_def *hf_engine_def(enum hf_engine engine)
 {
     static const struct hf_engine_def *const engines[HF_ENGINE_COUNT] = {ENGINES(ENTER)};
     return (unsigned)engine < HF_ENGINE_COUNT ? engines[engine] : NULL;
-}
-
-const char *hf_engine_name(enum hf_engine engine)
-{
-    const struct hf_engine_def *e = hf_engine_def(engine);
-    return e ? e->name : NULL;
-}
-
-int hf_pass_count(enum hf_engine engine)
-{
-    const struct hf_engine_def *e = hf_engine_def(engine);
-    return e ? e->pass_count : 0;
-}
-
-const char *hf_pass_name(enum hf_engine engine, int pass)
-{
-    return pass >= 0 && pass < hf_pass_count(engine) ? hf_engine_def(engine)->passes[pass].name : NULL;
 }

@@ -6,15 +6,15 @@
 #include <string.h>
 
 #include "frame/budget.h"
-#include "frame/engine.h"
+#include "pass/engine.h"
 #include "frame/ladder_table.h"
-#include "params.h"
 
 const struct hf_ladder_step hf_ladder[] = {HF_LADDER_STEPS};
 _Static_assert(sizeof hf_ladder / sizeof *hf_ladder < HF_BUDGET_STEPS, "a budget may step to all of them");
 const int hf_ladder_steps = sizeof hf_ladder / sizeof *hf_ladder;
 const float hf_ladder_engine_ms[HF_ENGINE_COUNT] = {HF_LADDER_ENGINES};
-static const int qualities[] = {HF_LADDER_QUALITIES};
+const int hf_ladder_quality[] = {HF_LADDER_QUALITIES};
+const char hf_ladder_measured[] = HF_LADDER_MEASURED;
 
 // The options that steps may have. A word of several rows sets all of them.
 static const struct word {
@@ -173,67 +173,4 @@ float hf_ladder_ms(const struct hf_params *p)
 {
     const int step = step_of(p);
     return step >= 0 ? hf_ladder[step].ms : hf_ladder_engine_ms[p->engine];
-}
-
-// Why params as they are would not give what was asked for; NULL: they do.
-static const char *misfit(const struct hf_params *p, float radius)
-{
-    return hf_ladder_farthest(p) < radius ? "does not reach as far as the blur that is asked for"
-           : !hf_ladder_can_draw(p)       ? "does not draw the aperture's shape"
-                                          : NULL;
-}
-
-// The first step from there on that gives what is asked for; the last one does always.
-static void choose(struct hf_params *p, int step, float radius, struct hf_choice *choice)
-{
-    struct hf_params chosen = *p;
-    const char *why = NULL;
-    const int from = step;
-    hf_ladder_apply(&chosen, step);
-    for (const char *here; step + 1 < hf_ladder_steps && (here = misfit(&chosen, radius));
-         hf_ladder_apply(&chosen, step)) {
-        why = why ? why : here;
-        step++;
-    }
-    *p = chosen;
-    if (choice)
-        *choice = (struct hf_choice){
-            .step = step,
-            .steps = hf_ladder_steps,
-            .options = hf_ladder[step].options,
-            .error = hf_ladder[step].error,
-            .worst = hf_ladder[step].worst,
-            .ms = hf_ladder[step].ms,
-            .passed = step - from,
-            .why = why,
-            .measured = HF_LADDER_MEASURED,
-        };
-}
-
-// The radius asked for in a picture of this height with such a depth.
-static float asked_radius(int height, const struct hf_depth *depth, const struct hf_params *p)
-{
-    const int display = p->view.display_height;
-    return hf_asked_radius(p, depth ? depth->type : HF_DEPTH_VIEW, display > 0 ? display : height);
-}
-
-int hf_choose_quality(int height, const struct hf_depth *depth, struct hf_params *params, enum hf_quality quality,
-                      struct hf_choice *choice)
-{
-    if (!params || height < 1 || !hf_name(HF_NAMES_QUALITY, (int)quality))
-        return HF_ERR_ARG;
-    choose(params, qualities[quality], asked_radius(height, depth, params), choice);
-    return HF_OK;
-}
-
-int hf_choose_error(int height, const struct hf_depth *depth, struct hf_params *params, float error,
-                    struct hf_choice *choice)
-{
-    int step = 0;
-    if (!params || height < 1 || !(error > 0 && error <= 1))
-        return HF_ERR_ARG;
-    while (step + 1 < hf_ladder_steps && !(hf_ladder[step].error <= error))
-        step++;
-    choose(params, step, asked_radius(height, depth, params), choice);
-    return HF_OK;
 }

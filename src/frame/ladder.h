@@ -14,6 +14,8 @@ struct hf_ladder_step {
 
 extern const struct hf_ladder_step hf_ladder[];
 extern const int hf_ladder_steps;
+extern const int hf_ladder_quality[];    // the step of each enum hf_quality
+extern const char hf_ladder_measured[];  // when and on what machine
 // Milliseconds of a megapixel of each engine as it is, likewise.
 extern const float hf_ladder_engine_ms[HF_ENGINE_COUNT];
 

@@ -42,7 +42,7 @@ int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sw
 static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
 {
     const struct hf_engine_def *e = p->engine;
-    memset(p->buf, 0, sizeof p->buf);
+    memset(p->cells.buf, 0, sizeof p->cells.buf);
     for (int i = e->pass_count - 1; i >= 0; i--) {
         const struct hf_pass *pass = &e->passes[i];
         const struct hf_reach halo = pass->halo ? e->halo(s, pass->halo) : (struct hf_reach){0, 0};
@@ -50,18 +50,18 @@ static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
         // A buffer of the whole frame is made once, without rims.
         for (int b = 0; b < e->buf_count; b++)
             if (pass->writes >> b & 1 && !e->bufs[b].frame)
-                out = reach_max(out, p->buf[b]);
-        p->pass[i] = out;
+                out = reach_max(out, p->cells.buf[b]);
+        p->cells.pass[i] = out;
         const struct hf_reach around = {out.x + halo.x, out.y + halo.y};
         for (int b = 0; b < e->buf_count; b++) {
             if (pass->reads >> b & 1)
-                p->buf[b] = reach_max(p->buf[b], out);
+                p->cells.buf[b] = reach_max(p->cells.buf[b], out);
             if (pass->around >> b & 1)
-                p->buf[b] = reach_max(p->buf[b], around);
+                p->cells.buf[b] = reach_max(p->cells.buf[b], around);
             if (pass->inside >> b & 1)
-                p->buf[b] = out;
+                p->cells.buf[b] = out;
             if (pass->weighed >> b & 1)
-                p->buf[b] = around;
+                p->cells.buf[b] = around;
         }
     }
 }
@@ -84,10 +84,10 @@ static void choose_tile(const struct hf_plan *p, int threads, int *width, int *h
 
 static void set_cells(struct hf_plan *p, int sweep, int width, int height, int whole)
 {
-    p->cell_width[sweep] = whole ? (p->width + 15) & ~15 : width;
-    p->cell_height[sweep] = whole ? p->height : height;
-    p->columns[sweep] = ceil_div(p->width, p->cell_width[sweep]);
-    p->rows[sweep] = ceil_div(p->height, p->cell_height[sweep]);
+    p->cells.width[sweep] = whole ? (p->width + 15) & ~15 : width;
+    p->cells.height[sweep] = whole ? p->height : height;
+    p->columns[sweep] = ceil_div(p->width, p->cells.width[sweep]);
+    p->rows[sweep] = ceil_div(p->height, p->cells.height[sweep]);
 }
 
 void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s, int tile_width,
@@ -102,7 +102,7 @@ void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const
         width /= 2;
     set_cells(p, 1, tile_width ? tile_width : width, tile_height ? hf_min(CHUNK_HEIGHT, tile_height) : CHUNK_HEIGHT,
               whole);
-    p->line_floats = 2 * (size_t)p->cell_width[1] + 2 * HF_PAD;
+    p->cells.line_floats = 2 * (size_t)p->cells.width[1] + 2 * HF_PAD;
 }
 
 void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads, int whole)
@@ -112,8 +112,8 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
     choose_tile(p, threads, &width, &height);
     for (int sweep = 2; sweep <= e->sweeps; sweep++) {
         if (sweep > 2) {
-            width = p->cell_width[2];
-            height = p->cell_height[2];
+            width = p->cells.width[2];
+            height = p->cells.height[2];
         }
         if (e->cell)
             e->cell(s, sweep, &width, &height);
@@ -127,11 +127,11 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
         const int sweep = e->passes[i].sweep;
         for (int b = 0; hf_plan_pass_runs(p, s, i) && b < e->buf_count; b++) {
             const int touched = (e->passes[i].reads | e->passes[i].around | e->passes[i].writes) >> b & 1;
-            const int length = (p->cell_width[sweep] + 2 * p->buf[b].x) << hf_max(e->bufs[b].x, 0);
+            const int length = (p->cells.width[sweep] + 2 * p->cells.buf[b].x) << hf_max(e->bufs[b].x, 0);
             longest = touched ? hf_max(longest, length) : longest;
         }
     }
-    p->line_floats = (size_t)((longest + 15) & ~15) + 2 * HF_PAD;
+    p->cells.line_floats = (size_t)((longest + 15) & ~15) + 2 * HF_PAD;
 }
 
 int hf_plan_count(const struct hf_plan *p, int sweep)
@@ -173,7 +173,7 @@ void hf_plan_chunk_memory(struct hf_plan *p, void *memory)
 
 struct hf_rect hf_plan_cell(const struct hf_plan *p, int sweep, int i)
 {
-    const int w = p->cell_width[sweep], h = p->cell_height[sweep];
+    const int w = p->cells.width[sweep], h = p->cells.height[sweep];
     const int x = i % p->columns[sweep] * w, y = i / p->columns[sweep] * h;
     return (struct hf_rect){x, y, hf_min(x + w, p->width), hf_min(y + h, p->height)};
 }
@@ -186,7 +186,7 @@ struct hf_rect hf_plan_active(const struct hf_plan *p, int tile)
 // The chunks that touch r grown by reach, as a rectangle of chunk numbers.
 static struct hf_rect chunks_around(const struct hf_plan *p, struct hf_rect r, struct hf_reach reach)
 {
-    const int w = p->cell_width[1], h = p->cell_height[1];
+    const int w = p->cells.width[1], h = p->cells.height[1];
     return (struct hf_rect){hf_max(r.x0 - reach.x, 0) / w, hf_max(r.y0 - reach.y, 0) / h,
                             hf_min((r.x1 + reach.x - 1) / w + 1, p->columns[1]),
                             hf_min((r.y1 + reach.y - 1) / h + 1, p->rows[1])};
@@ -198,7 +198,7 @@ static struct hf_reach read_reach(const struct hf_plan *p)
     struct hf_reach reach = {0, 0};
     for (int b = 0; b < p->engine->buf_count; b++)
         if (p->engine->bufs[b].frame)
-            reach = reach_max(reach, p->buf[b]);
+            reach = reach_max(reach, p->cells.buf[b]);
     return reach;
 }
 
@@ -207,8 +207,8 @@ static int reads_all(const struct hf_plan *p, const struct hf_setup *s)
 {
     for (int sweep = 3; sweep <= p->engine->sweeps; sweep++)
         if (hf_plan_sweep_runs(p, s, sweep) &&
-            (p->engine->across >> sweep & 1 || p->cell_width[sweep] != p->cell_width[2] ||
-             p->cell_height[sweep] != p->cell_height[2]))
+            (p->engine->across >> sweep & 1 || p->cells.width[sweep] != p->cells.width[2] ||
+             p->cells.height[sweep] != p->cells.height[2]))
             return 1;
     return 0;
 }
@@ -255,7 +255,8 @@ static int is_whole(struct hf_rect active, struct hf_rect tile)
 // What a tile needs, and in which part of it: a tile is much larger than what a thin thing in front of it blurs.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
 {
-    const struct hf_reach near = p->engine->spread(s, p, HF_NEAR), far = p->engine->spread(s, p, HF_FAR);
+    const struct hf_reach near = p->engine->spread(s, &p->cells, HF_NEAR),
+                          far = p->engine->spread(s, &p->cells, HF_FAR);
     const struct hf_rect tile = hf_plan_cell(p, 2, i), c = chunks_around(p, tile, reach_max(near, far));
     struct hf_rect active = {tile.x1, tile.y1, tile.x0, tile.y0};
     unsigned needs = 0;
@@ -284,11 +285,12 @@ unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *cou
 // that what is made early is read.
 unsigned hf_plan_foreseen(const struct hf_plan *p, const struct hf_setup *s, int chunk)
 {
-    const int columns = p->columns[1], y0 = chunk / columns * p->cell_height[1], reads = read_reach(p).y;
-    const int near = p->engine->spread(s, p, HF_NEAR).y + reads, far = p->engine->spread(s, p, HF_FAR).y + reads;
+    const int columns = p->columns[1], y0 = chunk / columns * p->cells.height[1], reads = read_reach(p).y;
+    const int near = p->engine->spread(s, &p->cells, HF_NEAR).y + reads,
+              far = p->engine->spread(s, &p->cells, HF_FAR).y + reads;
     unsigned needs = 0;
     for (int i = chunk - columns; i >= 0 && needs != HF_FIELDS; i -= columns) {
-        if (y0 - (i / columns + 1) * p->cell_height[1] >= hf_max(near, far))
+        if (y0 - (i / columns + 1) * p->cells.height[1] >= hf_max(near, far))
             break;
         if (!atomic_load_explicit(&p->chunk_known[i], memory_order_acquire))
             continue;

@@ -5,16 +5,14 @@
 
 #include <stdatomic.h>
 
-#include "frame/engine.h"
+#include "pass/cells.h"
 
-enum { HF_MAX_SWEEPS = 6 };
-
-// Cells of sweep i have cell_width[i] x cell_height[i] half-resolution pixels and lie in columns[i] x rows[i]; those of
-// sweep 1 are called chunks, those of sweep 2 tiles. [0] is not used.
+// Cells of sweep i lie in columns[i] x rows[i]; those of sweep 1 are called chunks, those of sweep 2 tiles. [0] is not used.
 struct hf_plan {
     const struct hf_engine_def *engine;
     int width, height;  // of the frame, half-resolution pixels
-    int cell_width[HF_MAX_SWEEPS], cell_height[HF_MAX_SWEEPS], columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
+    struct hf_cells cells;
+    int columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
     struct hf_found *near, *far;  // in each chunk
     atomic_uchar *chunk_known;    // its depth has been looked at
@@ -25,10 +23,6 @@ struct hf_plan {
     uint8_t *tile_needs;          // fields
     struct hf_rect *tile_active;  // the part of each tile that is not sharp
     unsigned needs, reads;        // of all tiles
-
-    struct hf_reach pass[HF_MAX_PASSES];  // by how much a pass's rectangle exceeds the cell
-    struct hf_reach buf[HF_MAX_BUFS];     // and each buffer
-    size_t line_floats;                   // longest row that a pass may keep of a cell
 };
 
 // Sizes of the chunks for a number of threads; tile sizes 0: chosen. whole: one cell for all.

@@ -66,8 +66,8 @@ static void start_report(struct hf_context *c, const struct hf_setup *s)
     *r = (struct hf_report){.used = *s->resolved,
                             .picture = s->resolved->params.aperture.picture != NULL,
                             .budget_step = c->budget.step,
-                            .tile_width = 2 * p->cell_width[2],
-                            .tile_height = 2 * p->cell_height[2],
+                            .tile_width = 2 * p->cells.width[2],
+                            .tile_height = 2 * p->cells.height[2],
                             .columns = p->columns[2],
                             .rows = p->rows[2],
                             .passes = p->engine->pass_count};

@@ -30,7 +30,7 @@ static hf_kernel *kernel_of(const struct hf_frame *f, int pass)
 static void run_pass(const struct hf_render *r, struct hf_worker *w, int pass, struct hf_rect cell, int64_t *clock)
 {
     const struct hf_plan *p = &r->c->plan;
-    const struct hf_rect area = grown_in_frame(p, cell, p->pass[pass]);
+    const struct hf_rect area = grown_in_frame(p, cell, p->cells.pass[pass]);
     kernel_of(&w->frame, pass)(&w->frame, area);
     for (int b = 0; b < p->engine->buf_count; b++)
         if (p->engine->passes[pass].writes >> b & 1)

@@ -3,7 +3,7 @@
 #ifndef HF_APERTURE_H
 #define HF_APERTURE_H
 
-#include "frame/frame.h"
+#include "pass/frame.h"
 #include "base/mem.h"
 
 enum { HF_WHOLE_ROW = 128 };

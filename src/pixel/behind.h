@@ -3,7 +3,7 @@
 #ifndef HF_BEHIND_H
 #define HF_BEHIND_H
 
-#include "frame/frame.h"
+#include "pass/frame.h"
 
 enum { HF_BEHIND_LEVELS = 9, HF_BEHIND_BLOCK = 128, HF_BEHIND_PLANES = 10 };
 

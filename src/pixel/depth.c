@@ -5,7 +5,7 @@
 
 #include "pixel/depth_rows.h"
 #include "pixel/format.h"
-#include "params.h"
+#include "pixel/depth.h"
 
 void hf_setup_depth(struct hf_setup *s, const struct hf_depth *d, float pixel_aspect)
 {

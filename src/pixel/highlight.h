@@ -9,7 +9,7 @@
 #ifndef HF_HIGHLIGHT_H
 #define HF_HIGHLIGHT_H
 
-#include "frame/frame.h"
+#include "pass/frame.h"
 
 // Rec. 709, linear; they add up to 1.
 #define HF_LUMINANCE_R 0.2126f

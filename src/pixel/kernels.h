@@ -3,7 +3,7 @@
 #ifndef HF_PIXEL_KERNELS_H
 #define HF_PIXEL_KERNELS_H
 
-#include "frame/frame.h"
+#include "pass/frame.h"
 #include "pixel/format.h"
 #include "simd/choose.h"
 

@@ -5,7 +5,7 @@
 #ifndef HF_PASS_C_H
 #define HF_PASS_C_H
 
-#include "params.h"
+#include "pixel/depth.h"
 #include "pixel/kernels.h"
 
 hf_coc_row hf_coc_row_c;

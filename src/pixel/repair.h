@@ -4,7 +4,7 @@
 #ifndef HF_REPAIR_H
 #define HF_REPAIR_H
 
-#include "frame/frame.h"
+#include "pass/frame.h"
 
 struct hf_repair {
     int x, y, channel;

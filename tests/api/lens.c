@@ -9,8 +9,9 @@
 #include <stdio.h>
 
 #include "support/check.h"
-#include "hexagon/kernels.h"
-#include "params.h"
+#include "engine/hexagon/kernels.h"
+#include "frame/resolve.h"
+#include "pass/check.h"
 
 enum { N = 1001 };
 

@@ -65,7 +65,7 @@ for header in $(find src tests bench -name '*.h' | sort); do
         # Stands in for the compiler's own of this name.
         flags='-Itests/kernels/emulated -Wno-psabi' isa=x86_64
         echo '#include <simde/x86/avx512.h>' | "$@" -fsyntax-only -x c - 2>/dev/null || continue ;;
-    src/io/* | tests/io/*)
+    src/tools/io/* | tests/io/*)
         [ "$exr" != none ] || continue
         flags=$exr isa=$family ;;
     *) isa=$family ;;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lists of frame numbers.
-#include "cli/frames.h"
+#include "tools/cli/frames.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tables of parameters that change over a shot.
-#include "cli/keys.h"
+#include "tools/cli/keys.h"
 
 #include <math.h>
 #include <stdio.h>

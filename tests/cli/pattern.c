@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // File names with a place for the frame number.
-#include "cli/pattern.h"
+#include "tools/cli/pattern.h"
 
 #include <fcntl.h>
 #include <stdio.h>

@@ -4,9 +4,10 @@
 #include <float.h>
 #include <math.h>
 
-#include "layers/hidden.h"
-#include "layers/unmix.h"
-#include "params.h"
+#include "engine/layers/hidden.h"
+#include "engine/layers/unmix.h"
+#include "frame/resolve.h"
+#include "pass/check.h"
 #include "support/check.h"
 #include "support/render.h"
 

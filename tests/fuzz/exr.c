@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "fuzz/fuzz.h"
-#include "io/io.h"
+#include "tools/io/io.h"
 
 static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
 

@@ -2,7 +2,7 @@
 // Lists of frames: a byte for how many of them are there and one for the room of a text, then the list.
 #include <string.h>
 
-#include "cli/frames.h"
+#include "tools/cli/frames.h"
 #include "fuzz/fuzz.h"
 
 static int by_number(const void *a, const void *b)

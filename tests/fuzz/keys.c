@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "cli/keys.h"
+#include "tools/cli/keys.h"
 #include "fuzz/fuzz.h"
 
 // A column is sorted, and what lies between two keys is between their values, but for roundings of the cubic.

@@ -2,7 +2,7 @@
 // The command line's parser: one argument a line.
 #include <string.h>
 
-#include "cli/args.h"
+#include "tools/cli/args.h"
 #include "fuzz/fuzz.h"
 
 enum { MAX_ARGS = 40 };

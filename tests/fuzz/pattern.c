@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/pattern.h"
+#include "tools/cli/pattern.h"
 #include "fuzz/fuzz.h"
 
 static char folder[] = "/tmp/hyperfocal-pattern-XXXXXX";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What becomes of a map's outlines, and what stays.
-#include "io/depth_edges.h"
-#include "io/depth_steps.h"
+#include "tools/io/depth_edges.h"
+#include "tools/io/depth_steps.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/half.h"
+#include "tools/io/half.h"
 
 const char *folder;
 uint64_t seed = 20240229;

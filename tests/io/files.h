@@ -8,7 +8,7 @@
 
 #include <openexr.h>
 
-#include "io/io.h"
+#include "tools/io/io.h"
 #include "support/check.h"
 
 enum { MAX_PARTS = 6, MAX_CHANNELS = 24 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // New files, and formats that are not EXR.
-#include "io/exr/exr.h"
+#include "tools/io/exr/exr.h"
 #include "io/tests.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "io/out.h"
+#include "tools/io/out.h"
 #include "io/tests.h"
 
 enum { STRIKES = 60, WRITERS = 3 };

@@ -10,8 +10,8 @@
 
 #include <libdeflate.h>
 
-#include "io/exr/zip.h"
-#include "io/half.h"
+#include "tools/io/exr/zip.h"
+#include "tools/io/half.h"
 
 void test_half(void)
 {

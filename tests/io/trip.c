@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/half.h"
+#include "tools/io/half.h"
 
 struct hf_io_run threads;
 

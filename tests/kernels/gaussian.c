@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows of the gaussian engine. None of them fuses anything: the bits are those of the C on every level.
 #include "harness.h"
-#include "gaussian/wide.h"
+#include "engine/gaussian/wide.h"
 
 enum { LINE, LINE_FAITHFUL, COLUMNS, COLUMNS_FAITHFUL, COLUMNS_IN_PLACE, UP_HALF, UP_QUARTER };
 

@@ -7,11 +7,11 @@
 #ifndef HF_TESTS_HARNESS_H
 #define HF_TESTS_HARNESS_H
 
-#include "gather/gather.h"
-#include "gaussian/kernels.h"
-#include "hexagon/kernels.h"
-#include "layers/kernels.h"
-#include "scatter/kernels.h"
+#include "engine/gather/gather.h"
+#include "engine/gaussian/kernels.h"
+#include "engine/hexagon/kernels.h"
+#include "engine/layers/kernels.h"
+#include "engine/scatter/kernels.h"
 
 // ---- random numbers: one seed, one sequence, so never two draws where C leaves the order open ----
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 #include "harness.h"
+#include "frame/resolve.h"
+#include "pass/check.h"
 #include "pixel/depth_rows.h"
 #include "pixel/unorm.h"
 

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "harness.h"
-#include "layers/hidden.h"
-#include "layers/patterns.h"
+#include "engine/layers/hidden.h"
+#include "engine/layers/patterns.h"
 
 enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13 };
 

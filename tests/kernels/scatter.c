@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "harness.h"
-#include "scatter/kernels.h"
+#include "engine/scatter/kernels.h"
 
 enum { LINES_IN = 12, LINES_OUT = 8, LINES = LINES_IN + LINES_OUT, INVERSES = 64 };
 

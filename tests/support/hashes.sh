@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Print a hash of the pixels of 68 renders over engines, options, storages and instruction sets. Two builds whose lists
 # are equal make the same pictures to the bit:
-#     tests/support/hashes.sh old/src/cli/hyperfocal > old.txt; tests/support/hashes.sh build/src/cli/hyperfocal | diff old.txt -
+#     tests/support/hashes.sh old/src/tools/cli/hyperfocal > old.txt; tests/support/hashes.sh build/src/tools/cli/hyperfocal | diff old.txt -
 # Needs oiiotool (Debian: openimageio-tools).
 set -u
 program=$1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The JSON writer, letter by letter.
-#include "tool/json.h"
+#include "tools/common/json.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Command lines by a table of two sections: values, units, what is refused and how.
-#include "tool/options.h"
+#include "tools/common/options.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gather's convolution for tap sets whose lattice is known when this is compiled: whole rings at kernel scale 1,
+// radius 4, 6 and 8 (12 pixels of a picture of 1080 lines, and the same at 720 and 1440).
+//
+// One vector of columns is walked down with all sums in registers: the pairs h[j] of the row at hand, and one sum for
+// each of the 2 r + 1 output rows that it reaches. A sum moves one place up as the next row is added to it, which costs
+// nothing in an instruction of three operands. So an output row is stored once, no pair is stored at all, and what is
+// left of the loads are the weights and the shifted values.
+#include "engine/gather/gather.h"
+#include "pixel/format_vf.h"
+
+// Which columns the rows of weights have, bit j for |dx| = j.
+static const uint16_t rings_4[] = {0x15, 0x1e, 0x1f, 0x0e, 0x07};
+static const uint16_t rings_6[] = {0x55, 0x7e, 0x7f, 0x6e, 0x37, 0x3e, 0x0f};
+static const uint16_t rings_8[] = {0x155, 0x1fe, 0x1ff, 0x1ee, 0x1f7, 0x0fe, 0x07f, 0x03e, 0x01f};
+
+enum { FIXED_R = 8, FIXED_STRIP = 64 / VF_N };
+// Four lanes have no load that repeats a number: the weights are laid out four times each.
+enum { WEIGHT_N = VF_N == 4 ? 4 : 1 };
+
+// Discs by area, radius 4, 6 and 8: bits 0 to 8 as above, from bit 12 on the run of weights of 1 around the middle, 0 if
+// there is none, else one more than how far it reaches. Sums are scaled when they are complete.
+#define RUN(reach) (((reach) + 1) << 12)
+static const uint16_t disc_4[] = {RUN(3) | 0x10, RUN(3) | 0x10, RUN(2) | 0x18, RUN(1) | 0x0c, 0x07};
+static const uint16_t disc_6[] = {RUN(5) | 0x40, RUN(5) | 0x40, RUN(4) | 0x60, RUN(4) | 0x20,
+                                  RUN(3) | 0x30, RUN(1) | 0x1c, 0x07};
+static const uint16_t disc_8[] = {RUN(7) | 0x100, RUN(7) | 0x100, RUN(7) | 0x100,
+                                  RUN(6) | 0x180, RUN(6) | 0x080, RUN(5) | 0x0c0,
+                                  RUN(4) | 0x060, RUN(2) | 0x038, 0x0f};
+
+static int discs_are(const struct hf_taps *t, const uint16_t *rows, int r)
+{
+    if (!t->runs || t->rx != r || t->ry != r)
+        return 0;
+    for (int k = 0; k <= r; k++) {
+        unsigned columns = 0;
+        for (int i = t->first[k]; i < t->first[k + 1]; i++)
+            columns |= 1u * (t->column[i] > r ? RUN(t->column[i] - r - 1) : 1 << t->column[i]);
+        if (columns != rows[k])
+            return 0;
+    }
+    return 1;
+}
+
+static int taps_are(const struct hf_taps *t, const uint16_t *rows, int r)
+{
+    if (t->runs || !t->symmetric || t->rx != r || t->ry != r)
+        return 0;
+    for (int k = 0; k <= r; k++) {
+        unsigned columns = 0;
+        for (int i = t->first[k]; i < t->first[k + 1]; i++)
+            columns |= 1u << t->column[i];
+        if (columns != rows[k])
+            return 0;
+    }
+    // Taps on the axes hit lattice points, all with one weight; see fixed_sum.
+    for (int i = 2; i <= r; i += 2)
+        if (t->weight[t->first[i]] != t->weight[1] || t->weight[i / 2] != t->weight[1])
+            return 0;
+    return 1;
+}
+
+// Sums of pairs from the middle on, behind the pairs.
+HF_INLINE void fixed_runs(const int r, vf *h)
+{
+    vf *sum = h + FIXED_R + 1;
+    sum[0] = h[0];
+#pragma GCC unroll 8
+    for (int j = 1; j < r; j++)
+        sum[j] = vf_add(sum[j - 1], h[j]);
+}
+
+HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
+{
+    h[0] = vf_load(p);
+#if VF_ALIGNED_ONLY
+    // A vector of 64 bytes that is not aligned is two loads. The right neighbours are shifted out of aligned ones: half
+    // of the values, as shifts share a pipe with the sums.
+    const vf next = vf_load(p + VF_N);
+#define PAIR(j)                                                                                                        \
+    if (j <= r)                                                                                                        \
+    h[j] = vf_add(vf_load(p - j), vf_align(h[0], next, j))
+    PAIR(1);
+    PAIR(2);
+    PAIR(3);
+    PAIR(4);
+    PAIR(5);
+    PAIR(6);
+    PAIR(7);
+    PAIR(8);
+#undef PAIR
+#else
+#pragma GCC unroll 8
+    for (int j = 1; j <= r; j++)
+        h[j] = vf_add(vf_load(p - j), vf_load(p + j));
+#endif
+}
+
+HF_INLINE vf fixed_weight(const float *weight, int i)
+{
+    return WEIGHT_N == 1 ? vf_set1(weight[i]) : vf_load(weight + i * WEIGHT_N);
+}
+
+// Row k's sum. The weights lie one after the other; where each one is, is known when this is compiled. Fused, the
+// weight of the taps on the axes is used once for all of row 0, and its product with h[0], axis, starts the other even
+// rows: 32 multiply-adds for radius 6 instead of 36, at the price of two additions, which have units of their own.
+HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf *h, const float *weight, vf axis,
+                       const int disc)
+{
+    int n = 0;
+#pragma GCC unroll 8
+    for (int i = 0; i < k; i++)
+        n += __builtin_popcount(rows[i] & 0xfff) + (rows[i] >> 12 != 0);
+    vf sum = vf_zero();
+    int j = 0;
+    if (disc) {
+        if (rows[k] >> 12) {
+            sum = h[FIXED_R + (rows[k] >> 12)];
+            n++;
+        }
+#pragma GCC unroll 9
+        for (; j <= r; j++)
+            if (rows[k] >> j & 1)
+                sum = vf_fma(fixed_weight(weight, n++), h[j], sum);
+        return sum;
+    }
+    if (HF_FUSED && k == 0) {
+        vf even = h[2];
+#pragma GCC unroll 4
+        for (int i = 4; i <= r; i += 2)
+            even = vf_add(even, h[i]);
+        return vf_fma(fixed_weight(weight, 0), h[0], vf_mul(fixed_weight(weight, 1), even));
+    }
+    if (HF_FUSED && k % 2 == 0) {
+        sum = axis;
+        j++;
+        n++;
+    }
+#pragma GCC unroll 9
+    for (; j <= r; j++)
+        if (rows[k] >> j & 1)
+            sum = vf_fma(fixed_weight(weight, n++), h[j], sum);
+    return sum;
+}
+
+// An input row d rows outside of the strip: it reaches the first r - d + 1 output rows from that edge on.
+HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
+                          const float *in, int d, int top, float *out, ptrdiff_t stride, int height)
+{
+    vf h[2 * FIXED_R + 2];
+    fixed_pairs(in, r, h);
+    if (disc)
+        fixed_runs(r, h);
+    __builtin_prefetch(in + 2 * VF_N);
+    const vf axis = disc ? vf_zero() : vf_mul(fixed_weight(weight, 1), h[0]);
+#pragma GCC unroll 8
+    for (int k = r; k >= 1; k--)
+        if (k >= d && k - d < height) {
+            float *p = out + (k - d) * stride;
+            const vf sum = fixed_sum(rows, k, r, h, weight, axis, disc);
+            if (k == r && top)
+                vf_store(p, sum);
+            else
+                vf_store(p, disc && k == r ? vf_mul(vf_add(vf_load(p), sum), scale) : vf_add(vf_load(p), sum));
+        }
+}
+
+// The rows of the strip itself; sums[i] is that of the output row r - i above the one at hand.
+HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
+                            const float *in, ptrdiff_t in_stride, float *out, ptrdiff_t out_stride, int height)
+{
+    vf sums[2 * FIXED_R + 1];
+#pragma GCC unroll 17
+    for (int i = 0; i <= 2 * r; i++)
+        sums[i] = i > r && i - r - 1 < height ? vf_load(out + (i - r - 1) * out_stride) : vf_zero();
+    for (int y = 0; y < height; y++) {
+        const float *p = in + y * in_stride;
+        vf h[2 * FIXED_R + 2], row[FIXED_R + 1];
+        fixed_pairs(p, r, h);
+        if (disc)
+            fixed_runs(r, h);
+        __builtin_prefetch(p + 2 * VF_N);
+        const vf axis = disc ? vf_zero() : vf_mul(fixed_weight(weight, 1), h[0]);
+#pragma GCC unroll 9
+        for (int k = r; k >= 0; k--) {
+            row[k] = fixed_sum(rows, k, r, h, weight, axis, disc);
+            sums[r - k] = vf_add(sums[r - k + 1], row[k]);
+            if (k == r && y >= r)
+                vf_store(out + (y - r) * out_stride, disc ? vf_mul(sums[0], scale) : sums[0]);
+        }
+#pragma GCC unroll 8
+        for (int k = 1; k < r; k++)
+            sums[r + k] = vf_add(sums[r + k + 1], row[k]);
+        sums[2 * r] = row[r];
+    }
+#pragma GCC unroll 8
+    for (int i = 1; i <= r; i++)
+        if (height - 1 - r + i >= 0)
+            vf_store(out + (height - 1 - r + i) * out_stride, sums[i]);
+}
+
+// One vector of columns.
+typedef void fixed_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, float *out,
+                          ptrdiff_t out_stride, int height);
+
+// Two functions: inlined into one, the compiler keeps the weights of all rows as vectors, and spills them.
+#define FIXED_COLUMN(rows, r, disc)                                                                                    \
+    static __attribute__((noinline)) void rows##_edge(const float *weight, float scale, const float *in, int d,        \
+                                                      int top, float *out, ptrdiff_t stride, int height)               \
+    {                                                                                                                  \
+        fixed_edge(rows, r, disc, weight, vf_set1(scale), in, d, top, out, stride, height);                            \
+    }                                                                                                                  \
+    static __attribute__((noinline)) void rows##_inside(const float *weight, float scale, const float *in,             \
+                                                        ptrdiff_t in_stride, float *out, ptrdiff_t out_stride,         \
+                                                        int height)                                                    \
+    {                                                                                                                  \
+        fixed_inside(rows, r, disc, weight, vf_set1(scale), in, in_stride, out, out_stride, height);                   \
+    }                                                                                                                  \
+    static void rows##_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, float *out,      \
+                              ptrdiff_t out_stride, int height)                                                        \
+    {                                                                                                                  \
+        for (int d = r; d >= 1; d--)                                                                                   \
+            rows##_edge(weight, scale, in - d * in_stride, d, 1, out, out_stride, height);                             \
+        rows##_inside(weight, scale, in, in_stride, out, out_stride, height);                                          \
+        for (int d = 1; d <= r; d++)                                                                                   \
+            rows##_edge(weight, scale, in + (height - 1 + d) * in_stride, d, 0, out + (height - 1) * out_stride,       \
+                        -out_stride, height);                                                                          \
+    }
+
+FIXED_COLUMN(rings_4, 4, 0)
+FIXED_COLUMN(rings_6, 6, 0)
+FIXED_COLUMN(rings_8, 8, 0)
+FIXED_COLUMN(disc_4, 4, 1)
+FIXED_COLUMN(disc_6, 6, 1)
+FIXED_COLUMN(disc_8, 8, 1)
+
+// The weights as columns take them.
+static const float *fixed_weights(const struct hf_taps *t, float *work)
+{
+    if (WEIGHT_N == 1)
+        return t->weight;
+    for (int i = 0; i < t->first[t->rows]; i++)
+        vf_store(work + i * VF_N, vf_set1(t->weight[i]));
+    return work;
+}
+
+// NULL: none fits.
+static fixed_column *fixed_column_for(const struct hf_taps *t)
+{
+    return discs_are(t, disc_6, 6)   ? disc_6_column
+           : discs_are(t, disc_4, 4) ? disc_4_column
+           : discs_are(t, disc_8, 8) ? disc_8_column
+           : taps_are(t, rings_6, 6) ? rings_6_column
+           : taps_are(t, rings_4, 4) ? rings_4_column
+           : taps_are(t, rings_8, 8) ? rings_8_column
+                                     : NULL;
+}

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gaussian engine: a blurred copy of the picture, blended with it by depth. After a shader of 2010 for a GTX 470,
+// which focuses on what the picture's centre shows.
+//
+// Blur. n iterations of a 5-tap kernel along the rows and down the columns, 1 4 6 4 1 / 16, faithfully .3 .15 .1 .15 .3
+// (the printed weights, which are upside down). Each iteration clamps to the frame's edge. Along the rows and down the
+// columns are linear and independent, clamping included, so all iterations along the rows come first: from the picture
+// itself, chunk by chunk, which is why the engine works in place. Cost: n times 2 x 4 additions a sample, or with sigma
+// (wide.c) 2 x 4 boxes of three. Half and quarter buffers: mean of 2 x 2 or 4 x 4 pixels, bilinear back.
+//
+// Blend, per pixel at full resolution whatever the buffer's size. With nothing but a focus given (range model, all of
+// range and near_begin to far_end derived), and always when faithful: strength * sat(3 |d(focus) - d|), where
+// d = sat(z / f), faithfully 2n / (f + n - zw (f - n)) with window depth zw = f (z - n) / (z (f - n)) in 0..1. With
+// z' = z clamped to n..f that is 2 z' / (z' + f), which does not cancel. n = 1 and f = 100 n but for the clip planes of
+// the depth. Given a range, a lens or radii: strength * max(n, f) of the gather's near and far CoC.
+#include <math.h>
+
+#include "pass/cells.h"
+#include "engine/gaussian/kernels.h"
+#include "pass/check.h"
+#include "pixel/limits.h"
+
+// Sweep 2 has no passes, but its cells are the tiles. With sigma, whole columns and then whole rows are blurred in
+// between.
+enum { WIDE_COLUMNS = 3, WIDE_ROWS, TILES };
+
+enum { MAX_ITERATIONS = 64 };
+static const float MAX_SIGMA = 256;  // pixels
+
+#define B(name) (1u << HF_GAUSSIAN_##name)
+
+// Reach of the iterations down the columns; and a pixel.
+enum { HALO_COLUMNS = 1, HALO_UPSAMPLE };
+
+static const struct hf_pass passes[] = {
+    {"Depth", .sweep = 1, .ns = 1.7f},
+    {"Horizontal blur", .writes = B(ROWS), .sweep = 1, .ns = 6.5f},
+    {"Wide vertical blur", .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_COLUMNS, .ns = 15},
+    {"Wide horizontal blur", .reads = B(ROWS), .writes = B(ROWS), .sweep = WIDE_ROWS, .ns = 14},
+    {"Vertical blur", .around = B(ROWS), .writes = B(BLUR), .halo = HALO_COLUMNS, .sweep = TILES, .ns = 5.5f},
+    {"Merge", .around = B(BLUR), .halo = HALO_UPSAMPLE, .sweep = TILES, .ns = 8},
+};
+
+static const struct hf_buf_def bufs[HF_GAUSSIAN_BUFS] = {
+    [HF_GAUSSIAN_ROWS] = {"rows", .frame = 1, .x = 1, .y = 1, .shrinks = 1},
+    [HF_GAUSSIAN_BLUR] = {"blur", .x = 1, .y = 1, .shrinks = 1},
+};
+
+static int channels(const struct hf_setup *s, int buf)
+{
+    (void)buf;
+    return s->channels;
+}
+
+static struct hf_reach halo(const struct hf_setup *s, int halo)
+{
+    const int one = s->resolution;  // a pixel of a smaller buffer, in half-resolution pixels
+    switch (halo) {
+    case HALO_COLUMNS:
+        return (struct hf_reach){0, hf_gaussian_halo(s)};
+    case HALO_UPSAMPLE:
+        return (struct hf_reach){one, one};
+    default:
+        return (struct hf_reach){0, 0};
+    }
+}
+
+// The blend is each pixel's own affair.
+static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p, unsigned field)
+{
+    (void)s;
+    (void)p;
+    (void)field;
+    return (struct hf_reach){0, 0};
+}
+
+// The same buffers for near and far.
+static unsigned reads(const struct hf_setup *s, unsigned needs)
+{
+    (void)s;
+    return needs ? HF_FIELDS : 0;
+}
+
+static int runs(const struct hf_setup *s, int pass)
+{
+    return hf_gaussian(s)->sigma > 0 || (passes[pass].sweep != WIDE_COLUMNS && passes[pass].sweep != WIDE_ROWS);
+}
+
+// Strips of 32 columns of the working buffer, and of 16 rows.
+static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
+{
+    if (sweep == WIDE_COLUMNS) {
+        *width = 16 << s->resolution;
+        *height = s->half_height;
+    } else if (sweep == WIDE_ROWS) {
+        *width = (s->half_width + 15) & ~15;
+        *height = HF_WIDE_LANES / 2 << s->resolution;
+    }
+}
+
+static size_t work(const struct hf_setup *s, const struct hf_cells *p)
+{
+    const size_t rows = HF_GAUSSIAN_LINES * hf_gaussian_line_floats(s, p->width[1]);
+    const size_t columns = (2 * (size_t)p->height[2] + 2 * (size_t)hf_gaussian_reach(s) + 16) * HF_GAUSSIAN_STRIP;
+    const size_t wide = hf_gaussian(s)->sigma > 0 ? hf_wide_floats(hf_max(s->width, s->height)) : 0;
+    const size_t most = rows > columns ? rows : columns;
+    return most > wide ? most : wide;
+}
+
+// The planes that bound its depths: those of the depth, else 1 and 100.
+static void depth_planes(const struct hf_depth *depth, float *near, float *far)
+{
+    *near = depth->near_plane > 0 ? depth->near_plane : 1;
+    *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
+}
+
+// Is nothing but a focus given, so that it blends by the distance in depth as its source does?
+static int only_focus(const struct hf_params *asked)
+{
+    const struct hf_range_params *g = &asked->range;
+    return asked->model == HF_MODEL_RANGE && g->distance == HF_DERIVE && g->near_begin == HF_DERIVE &&
+           g->near_end == HF_DERIVE && g->far_begin == HF_DERIVE && g->far_end == HF_DERIVE;
+}
+
+static float sigma(const struct hf_gaussian_params *g)
+{
+    return g->sigma == HF_DERIVE ? sqrtf((float)g->iterations) * (float)(1 << g->resolution) : g->sigma;
+}
+
+// A disc of radius r spreads light as far as a gaussian of standard deviation r / 2 does.
+static float farthest(const struct hf_params *p)
+{
+    return 2 * sigma(&p->gaussian);
+}
+
+static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+{
+    struct hf_gaussian_params *g = &r->params.gaussian;
+    int err = hf_check_resolution("gaussian", g->resolution, HF_RESOLUTION_QUARTER, message);
+    if (err)
+        return err;
+    if (g->iterations < 0 || g->iterations > MAX_ITERATIONS)
+        return hf_bad(message, "gaussian.iterations is %d; it must be 0 to %d", g->iterations, MAX_ITERATIONS);
+    if (g->sigma == HF_DERIVE) {
+        g->sigma = sigma(g);
+    } else {
+        g->iterations = 0;
+        err = hf_check_between("gaussian.sigma", g->sigma, 0, MAX_SIGMA, message);
+    }
+    if (r->limit != HF_LIMIT_GIVEN) {
+        r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
+        r->params.max_radius = g->faithful ? 12 : hf_model_radius(r->params.view.display_height);
+    }
+    if (g->by_depth == HF_DERIVE)
+        g->by_depth = g->faithful || only_focus(asked);
+    g->by_depth = g->by_depth && depth->type != HF_DEPTH_COC;
+    if (!err && g->by_depth)  // whose strength is this, with a lens too
+        err = hf_check_between("range.strength", r->params.range.strength, 0, 1, message);
+    if (g->by_depth)
+        r->sharp = r->params.max_radius == 0 || r->params.range.strength == 0;
+    r->sharp |= g->resolution == HF_RESOLUTION_FULL && g->sigma == 0;
+    float near, far;
+    depth_planes(depth, &near, &far);
+    if (!err && g->by_depth && !(near < far))
+        return hf_bad(message, "depth.near_plane is %g and far_plane %g; near must be less than far", near, far);
+    return err;
+}
+
+static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p)
+{
+    const struct hf_gaussian_params *from = &p->gaussian;
+    struct hf_gaussian *g = own;
+    *g = (struct hf_gaussian){.iterations = from->iterations, .sigma = from->iterations ? 0 : from->sigma};
+    s->resolution = from->resolution;
+    s->faithful = from->faithful;
+    g->by_depth = from->by_depth;
+    if (!g->by_depth) {
+        hf_gaussian_limits(s, g);
+        return;
+    }
+    s->lens = 0;
+    s->near_0 = s->far_0 = s->radius_0 = s->radius_k = 0;
+    s->near_i = s->far_i = 1;  // there is blur
+    s->strength = p->range.strength;
+    depth_planes(depth, &g->plane_near, &g->plane_far);
+    if (!s->faithful)
+        g->plane_near = 0;  // nothing but the far plane counts
+    g->focus_d = hf_gaussian_depth(g, s->faithful, p->focus);
+}
+
+static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
+{
+    numbers[0] = (int)s->resolution;
+    numbers[1] = hf_gaussian(s)->iterations;
+    numbers[2] = hf_gaussian(s)->sigma > 0;
+    *reach = 0;
+    return 3;
+}
+
+HF_CHOOSE_KERNELS(hf_gaussian_kernels)
+
+void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
+{
+    *k = (struct hf_gaussian_kernels){
+        .passes = {{hf_gaussian_depth_pass, hf_gaussian_rows_pass, hf_wide_columns_pass, hf_wide_rows_pass,
+                    hf_gaussian_columns_pass, hf_gaussian_merge_pass}},
+        .blend_row = hf_blend_row_c,
+        .count_row = hf_gaussian_count_c,
+        .lerp_row = hf_lerp_row_c,
+        .line = hf_gaussian_line_c,
+        .columns = hf_gaussian_columns_c,
+        .up = hf_gaussian_up_c,
+        .shrink = hf_gaussian_shrink_c,
+        .merge = hf_gaussian_merge_c,
+        .wide_block = hf_wide_block_c,
+    };
+}
+
+const struct hf_engine_def hf_gaussian_engine = {
+    .name = "gaussian",
+    .width = "its iterations or sigma",
+    .focus_anywhere = 1,
+    .check = check,
+    .farthest = farthest,
+    .passes = passes,
+    .pass_count = sizeof passes / sizeof *passes,
+    .sweeps = TILES,
+    .across = 1 << WIDE_COLUMNS | 1 << WIDE_ROWS,
+    .bufs = bufs,
+    .buf_count = HF_GAUSSIAN_BUFS,
+    .kernels_bytes = sizeof(struct hf_gaussian_kernels),
+    .kernels = hf_gaussian_kernels_init,
+    .own_bytes = sizeof(struct hf_gaussian),
+    .resolve = resolve,
+    .channels = channels,
+    .halo = halo,
+    .spread = spread,
+    .reads = reads,
+    .work = work,
+    .runs = runs,
+    .cell = cell,
+    .cost = cost,
+};

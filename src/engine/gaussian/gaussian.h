@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gaussian engine's buffers and rows of work.
+#ifndef HF_PASS_GAUSSIAN_H
+#define HF_PASS_GAUSSIAN_H
+
+#include "pass/frame.h"
+
+enum {
+    HF_GAUSSIAN_ROWS,  // colour blurred along the rows, or as it was read: the whole frame, working resolution
+    HF_GAUSSIAN_BLUR,  // and down the columns: a tile
+    HF_GAUSSIAN_BUFS
+};
+
+// Columns of a strip that is taken through all iterations while it is in the first-level cache.
+enum { HF_GAUSSIAN_STRIP = 32 };
+
+struct hf_gaussian {
+    int iterations;
+    float sigma;                           // full-resolution pixels; 0: iterations
+    int by_depth;                          // blend by the distance in depth from the focus
+    float plane_near, plane_far, focus_d;  // see hf_gaussian_depth
+    // There is near CoC where z <= near_last, far CoC where z >= far_first (limits.c); if by_limits.
+    int by_limits;
+    float near_last, far_first;
+};
+
+static inline const struct hf_gaussian *hf_gaussian(const struct hf_setup *s)
+{
+    return s->own;
+}
+
+// What is compared: z over the far plane, or as the source has it.
+static inline float hf_gaussian_depth(const struct hf_gaussian *g, int faithful, float z)
+{
+    z = z > g->plane_near ? z : g->plane_near;
+    z = z < g->plane_far ? z : g->plane_far;
+    return faithful ? (2 * z) / (z + g->plane_far) : z / g->plane_far;
+}
+
+// Near and far CoC of a depth z, and the limits of where there is any: for depth that is z as it stands.
+float hf_gaussian_near(const struct hf_setup *s, float z);
+float hf_gaussian_far(const struct hf_setup *s, float z);
+void hf_gaussian_limits(const struct hf_setup *s, struct hf_gaussian *g);
+
+// Pixels that the iterations reach to either side in the working buffer.
+static inline int hf_gaussian_reach(const struct hf_setup *s)
+{
+    return 2 * hf_gaussian(s)->iterations;
+}
+
+// The same in half-resolution pixels.
+static inline int hf_gaussian_halo(const struct hf_setup *s)
+{
+    return hf_gaussian(s)->iterations << s->resolution;
+}
+
+// Floats of one line of scratch of the first sweep: a chunk's row and the reach to either side.
+static inline size_t hf_gaussian_line_floats(const struct hf_setup *s, int chunk_width)
+{
+    return (((size_t)chunk_width + 2 * (size_t)hf_gaussian_halo(s) + 15) & ~(size_t)15) + 2 * HF_PAD;
+}
+
+// How many of them there are: even and odd pixels and their sums, and two lines in working resolution, twice as long.
+enum { HF_GAUSSIAN_LINES = 20 };
+
+// Size of the working resolution, and an area of it: half-resolution pixels in, inside the frame.
+static inline int hf_gaussian_size(const struct hf_setup *s, int full, int half)
+{
+    return s->resolution == HF_RESOLUTION_FULL ? full : (half + (int)s->resolution - 1) / (int)s->resolution;
+}
+
+static inline struct hf_rect hf_gaussian_working(const struct hf_setup *s, struct hf_rect r)
+{
+    const int log2 = (int)s->resolution;
+    return (struct hf_rect){2 * r.x0 >> log2, 2 * r.y0 >> log2,
+                            hf_min(((2 * r.x1 - 1) >> log2) + 1, hf_gaussian_size(s, s->width, s->half_width)),
+                            hf_min(((2 * r.y1 - 1) >> log2) + 1, hf_gaussian_size(s, s->height, s->half_height))};
+}
+
+#endif

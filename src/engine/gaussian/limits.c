@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where there is near or far CoC at all. Both rise or fall with depth throughout, rounding included, so one comparison
+// answers it, and the first sweep, which asks nothing else, need not make the CoC.
+#include <math.h>
+#include <string.h>
+
+#include "engine/gaussian/kernels.h"
+#include "pixel/pass_c.h"
+
+// The depth of no surface is infinite, surfaces end here.
+static const float no_surface = 1e10f;
+
+static float variable(const struct hf_setup *s, float z)
+{
+    return s->lens ? -1 / z : z;
+}
+
+float hf_gaussian_near(const struct hf_setup *s, float z)
+{
+    return hf_round_coc(s->storage, hf_ramp(s, (s->near_0 - variable(s, z)) * s->near_i));
+}
+
+float hf_gaussian_far(const struct hf_setup *s, float z)
+{
+    return hf_round_coc(s->storage, hf_ramp(s, (variable(s, z) - s->far_0) * s->far_i));
+}
+
+static float of_bits(uint32_t bits)
+{
+    float v;
+    memcpy(&v, &bits, sizeof v);
+    return v;
+}
+
+static uint32_t bits_of(float v)
+{
+    uint32_t bits;
+    memcpy(&bits, &v, sizeof bits);
+    return bits;
+}
+
+// The first depth of a surface at which near CoC has ended, or far CoC has begun; no_surface if none is. The bits of
+// positive floats rise with them.
+static float turn(const struct hf_setup *s, int near)
+{
+    uint32_t a = 0, b = bits_of(no_surface);  // not yet at a, or a is 0; at b
+    while (b - a > 1) {
+        const uint32_t middle = a + (b - a) / 2;
+        const float z = of_bits(middle);
+        if (near ? !(hf_gaussian_near(s, z) > 0) : hf_gaussian_far(s, z) > 0)
+            b = middle;
+        else
+            a = middle;
+    }
+    return of_bits(b);
+}
+
+void hf_gaussian_limits(const struct hf_setup *s, struct hf_gaussian *g)
+{
+    // Smoothstep rounds to either side of its slope, so that its largest value need not be that of the end.
+    if (g->by_depth || s->form != HF_FORM_Z || s->smoothstep)
+        return;
+    const float near_end = turn(s, 1), far_begin = turn(s, 0);
+    g->near_last = hf_gaussian_near(s, INFINITY) > 0 ? INFINITY : of_bits(bits_of(near_end) - 1);
+    g->far_first = far_begin < no_surface ? far_begin : hf_gaussian_far(s, INFINITY) > 0 ? INFINITY : NAN;
+    g->by_limits = !(g->far_first <= g->near_last);
+}

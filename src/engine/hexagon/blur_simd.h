@@ -1,0 +1,626 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hexagon engine on vectors.
+//
+// A line's taps are the same for all pixels, so each is a load at a fixed offset, and most of these are not aligned.
+// A line that is not steep meets a column of pixels in two taps: rows are taken together, as many as the
+// registers have room for the sums of, and a sample is loaded once for all that meet it (hf_hexagon_step).
+//
+// What a tap costs beyond that is asking how much of a sample counts, so the radii around each block of pixels are
+// looked at first: no tap is read that none of them reaches, and those that all of them reach are plain products, four
+// where there would be ten operations. Skipped taps would add nothing and full ones have the same weight either way,
+// and each pixel's sums keep their order, so no bit depends on where a block lies.
+#ifndef HF_HEXAGON_BLUR_SIMD_H
+#define HF_HEXAGON_BLUR_SIMD_H
+
+#include "engine/hexagon/kernels.h"
+#include "pixel/coc_vf.h"
+
+#if defined __aarch64__
+enum { HEX_REGISTERS = 32 };
+#else
+enum { HEX_REGISTERS = VF_N == 16 ? 32 : 16 };
+#endif
+
+// Rows at once; a block's size.
+enum { HEX_ROWS = HEX_REGISTERS == 32 ? 4 : 2, HEX_WIDTH = 128, HEX_HEIGHT = 16 };
+
+struct hex_range {
+    float least, most;
+};
+
+// Least and most radius in a block and all that a line reaches from it; of samples that hold 0 without a radius, the
+// least above 0. Lanes past its end may hold anything: that widens the range, and NaN does not count.
+HF_INLINE struct hex_range hex_range(const struct hf_hexagon_field *in, const struct hf_hexagon_line *l,
+                                     struct hf_rect b)
+{
+    vf least = vf_set1(FLT_MAX), most = vf_set1(-FLT_MAX);
+    const vf sign = vf_set1(in->sign);
+    for (int y = b.y0 + l->y0; y < b.y1 + l->y1; y++)
+        for (int x = b.x0 + l->x0; x < b.x1 + l->x1; x += VF_N) {
+            const vf q = vf_mul(sign, vf_load(hf_at(in->radius, in->q, x, y)));
+            const vf lower = vf_min(q, least);
+            least = in->alone ? vf_select(vf_gt(q, vf_zero()), lower, least) : lower;
+            most = vf_max(q, most);
+        }
+    float lanes[2][VF_N];
+    vf_store(lanes[0], least);
+    vf_store(lanes[1], most);
+    struct hex_range r = {lanes[0][0], lanes[1][0]};
+    for (int i = 1; i < VF_N; i++) {
+        r.least = lanes[0][i] < r.least ? lanes[0][i] : r.least;
+        r.most = lanes[1][i] > r.most ? lanes[1][i] : r.most;
+    }
+    return r;
+}
+
+// Least radius above 0 of a block's own pixels.
+HF_INLINE float hex_least_far(const struct hf_hexagon_field *in, struct hf_rect b)
+{
+    vf least = vf_set1(FLT_MAX);
+    for (int y = b.y0; y < b.y1; y++)
+        for (int x = b.x0; x < b.x1; x += VF_N) {
+            const vf q = vf_load(hf_at(in->radius, in->q, x, y));
+            least = vf_select(vf_gt(q, vf_zero()), vf_min(q, least), least);
+        }
+    float lane[VF_N], r = FLT_MAX;
+    vf_store(lane, least);
+    for (int i = 0; i < VF_N; i++)
+        r = lane[i] < r ? lane[i] : r;
+    return r;
+}
+
+// A line's steps that some sample in a block reaches, the first of them up to `full` by all samples in full.
+struct hex_run {
+    const struct hf_hexagon_step *step, *full, *end;
+};
+
+// Are a step's taps reached in full from this radius on?
+HF_INLINE int hex_is_full(const struct hf_hexagon_step *p, float least)
+{
+    for (int i = 0; i < HEX_ROWS; i++)
+        if ((p->rows >> i & 1) && !(least - p->c[i] >= p->b[i]))
+            return 0;
+    return 1;
+}
+
+HF_INLINE struct hex_run hex_run(const struct hf_hexagon_line *l, const int rows, struct hex_range r)
+{
+    const struct hf_hexagon_steps *s = rows == 1 ? &l->one : rows == 2 ? &l->two : &l->four;
+    struct hex_run run = {s->step, s->step, s->step + s->count};
+    while (run.end > run.step && !(r.most > run.end[-1].least))
+        run.end--;
+    while (run.full < run.end && hex_is_full(run.full, r.least))
+        run.full++;
+    return run;
+}
+
+struct hex_sums {
+    vf colour[4], a, w;
+};
+
+struct hex_limit {
+    vf limit, slope;  // the slope is negative
+};
+
+// Sums along a line for a vector of pixels from (x, y) in each of some rows; first: pass 1, radii are asked for; limit
+// NULL: none.
+HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run *run, const int channels,
+                        const int first, const int rows, int x, int y, const struct hex_limit *limit,
+                        struct hex_sums s[HEX_ROWS])
+{
+    const ptrdiff_t stride = in->colour->stride, weight_stride = in->weight->stride;
+    const float *colour[4], *a = hf_at(in->weight, in->a, x, y), *radius = hf_at(in->radius, in->q, x, y);
+    const float *mean = first ? hf_at(in->weight, in->mean, x, y) : NULL;
+    for (int c = 0; c < channels; c++)
+        colour[c] = hf_at(in->colour, c, x, y);
+#pragma GCC unroll 4
+    for (int i = 0; i < rows; i++) {
+        for (int c = 0; c < channels; c++)
+            s[i].colour[c] = vf_zero();
+        s[i].a = vf_zero();
+        s[i].w = vf_zero();
+    }
+    const struct hf_hexagon_step *p = run->step;
+    for (; p < run->full && !limit; p++) {
+        const ptrdiff_t at = p->dy * stride + p->dx, weight_at = p->dy * weight_stride + p->dx;
+        vf v[4], over = vf_zero();
+        for (int c = 0; c < channels; c++)
+            v[c] = vf_once(vf_load(colour[c] + at));
+        const vf weight = vf_once(vf_load(a + weight_at));
+        if (first)
+            over = vf_once(vf_load(mean + weight_at));
+#pragma GCC unroll 4
+        for (int i = 0; i < rows; i++)
+            if (p->rows >> i & 1) {
+                const vf b = vf_set1(p->whole[i]);
+                for (int c = 0; c < channels; c++)
+                    s[i].colour[c] = vf_fma(b, v[c], s[i].colour[c]);
+                s[i].a = vf_fma(b, weight, s[i].a);
+                if (first)
+                    s[i].w = vf_fma(b, over, s[i].w);
+            }
+    }
+    const vf sign = vf_set1(in->sign);
+    for (; p < run->end; p++) {
+        const ptrdiff_t at = p->dy * stride + p->dx, weight_at = p->dy * weight_stride + p->dx;
+        vf v[4], over = vf_zero();
+        const vf q = vf_once(vf_mul(sign, vf_load(radius + weight_at)));
+        if (!vm_any(vf_gt(q, vf_set1(p->least))))
+            continue;
+        for (int c = 0; c < channels; c++)
+            v[c] = vf_once(vf_load(colour[c] + at));
+        const vf weight = vf_once(vf_load(a + weight_at));
+        if (first)
+            over = vf_once(vf_load(mean + weight_at));
+#pragma GCC unroll 4
+        for (int i = 0; i < rows; i++)
+            if (p->rows >> i & 1) {
+                vf w = vf_sub(q, vf_set1(p->c[i]));
+                if (limit)
+                    w = vf_min(w, vf_mul(vf_set1(p->b[i]), vf_fma(limit[i].slope, q, limit[i].limit)));
+                w = vf_mul(vf_max(vf_min(w, vf_set1(p->b[i])), vf_zero()), vf_set1(p->part[i]));
+                for (int c = 0; c < channels; c++)
+                    s[i].colour[c] = vf_fma(w, v[c], s[i].colour[c]);
+                s[i].a = vf_fma(w, weight, s[i].a);
+                if (first)
+                    s[i].w = vf_fma(w, over, s[i].w);
+            }
+    }
+}
+
+// A block is walked in groups of rows. The last of them overlaps the one before where rows are left over, and a row's
+// second vector its first: from there on they are aligned.
+#define HEX_EACH(b, rows, x, y)                                                                                        \
+    for (int y = (b).y0; y < (b).y1; y = y + rows < (b).y1 ? hf_min(y + rows, (b).y1 - rows) : (b).y1)                 \
+        for (int x = (b).x0; x < (b).x1; x = (x + VF_N) & ~(VF_N - 1))
+
+// Fetch the samples under a vector that the block below will be the first to read: from here to there they lie too far
+// apart for the hardware to foresee.
+HF_INLINE void hex_fetch(const struct hf_hexagon_field *in, const int channels, const int rows, int x, int y)
+{
+    for (int i = 0; i < rows; i++) {
+        for (int c = 0; c < channels; c++)
+            __builtin_prefetch(hf_at(in->colour, c, x, y + i), 0, 2);
+        __builtin_prefetch(hf_at(in->weight, in->a, x, y + i), 0, 2);
+        __builtin_prefetch(hf_at(in->radius, in->q, x, y + i), 0, 2);
+    }
+}
+
+// ---- near ----
+
+HF_INLINE void hex_store_near(const struct hf_frame *f, const struct hex_sums *s, const int channels,
+                              enum hf_hexagon_made colour, int weight, int x, int y)
+{
+    const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
+    const vm any = vf_gt(s->a, vf_zero());
+    const vf root = vf_keep(any, vf_div(s->a, s->w)), share = vf_mul(root, root);
+    const vf mean = vf_keep(any, vf_div(s->w, s->a));
+    for (int c = 0; c < channels; c++)
+        vf_store(hf_at(out, c, x, y), vf_mul(s->colour[c], share));
+    vf_store(hf_at(weights, weight, x, y), vf_mul(s->a, share));
+    vf_store(hf_at(weights, weight + 1, x, y), vf_mul(mean, mean));
+}
+
+HF_INLINE void hex_add(struct hex_sums *u, const struct hex_sums *v, const int channels)
+{
+    for (int c = 0; c < channels; c++)
+        u->colour[c] = vf_add(u->colour[c], v->colour[c]);
+    u->a = vf_add(u->a, v->a);
+    u->w = vf_add(u->w, v->w);
+}
+
+// Nothing of a field in a block: it shows nothing.
+HF_INLINE void hex_clear(const struct hf_buf *out, struct hf_rect b, const int channels)
+{
+    for (int c = 0; c < channels; c++)
+        for (int y = b.y0; y < b.y1; y++)
+            for (int x = b.x0; x < b.x1; x += VF_N)
+                vf_store(hf_at(out, c, x, y), vf_zero());
+}
+
+HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
+{
+    const struct hf_hexagon *h = hf_hexagon(f->s);
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_NEAR);
+    const int below = hf_max(h->line[0].y1, h->line[1].y1);
+    const struct hex_run up = hex_run(&h->line[0], rows, hex_range(&in, &h->line[0], b));
+    const struct hex_run left = hex_run(&h->line[1], rows, hex_range(&in, &h->line[1], b));
+    if (up.end == up.step && left.end == left.step) {
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_NEAR_U), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_NEAR_B), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), b, 4);
+        return;
+    }
+    HEX_EACH(b, rows, x, y)
+    {
+        struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
+        hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
+        hex_line(&in, &up, channels, 1, rows, x, y, NULL, u);
+        for (int i = 0; i < rows; i++)
+            hex_store_near(f, &u[i], channels, HF_HEXAGON_NEAR_U, 0, x, y + i);
+        hex_line(&in, &left, channels, 1, rows, x, y, NULL, v);
+        for (int i = 0; i < rows; i++) {
+            hex_add(&u[i], &v[i], channels);
+            hex_store_near(f, &u[i], channels, HF_HEXAGON_NEAR_B, 2, x, y + i);
+        }
+    }
+}
+
+HF_INLINE void hex_near_2(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
+{
+    const struct hf_hexagon *h = hf_hexagon(f->s);
+    const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(f, HF_NEAR, 0), hf_hexagon_field_2(f, HF_NEAR, 1)};
+    const struct hex_run left = hex_run(&h->line[1], rows, hex_range(&in[0], &h->line[1], b));
+    const struct hex_run right = hex_run(&h->line[2], rows, hex_range(&in[1], &h->line[2], b));
+    const struct hf_buf *out = hf_hexagon_made(f, HF_HEXAGON_NEAR), *a = hf_hexagon_made(f, HF_HEXAGON_COVERAGE);
+    const vf third = vf_set1(1 / 3.0f);
+    if (left.end == left.step && right.end == right.step) {
+        hex_clear(out, b, channels);
+        hex_clear(a, b, 1);
+        return;
+    }
+    HEX_EACH(b, rows, x, y)
+    {
+        struct hex_sums v[HEX_ROWS], w[HEX_ROWS];
+        hex_line(&in[0], &left, channels, 0, rows, x, y, NULL, v);
+        hex_line(&in[1], &right, channels, 0, rows, x, y, NULL, w);
+        for (int i = 0; i < rows; i++) {
+            for (int c = 0; c < channels; c++)
+                vf_store(hf_at(out, c, x, y + i), vf_mul(vf_add(v[i].colour[c], w[i].colour[c]), third));
+            vf_store(hf_at(a, 0, x, y + i), vf_mul(vf_add(v[i].a, w[i].a), third));
+        }
+    }
+}
+
+// ---- far ----
+
+HF_INLINE vf hex_own(vf found, vf p)
+{
+    const vf least = vf_sub(vf_set1(HEXAGON_LEAST), found);
+    vf o = vf_mul(vf_sub(vf_set1(1), found), coc_saturate(vf_sub(vf_set1(HEXAGON_ALL), p)));
+    o = vf_max(o, least);
+    return vf_max(o, vf_zero());
+}
+
+// A line of the far field in a block: its taps, and whether some pixel may find a sample too far behind it.
+struct hex_far {
+    struct hf_hexagon_field in;
+    struct hex_run run;
+    int limited;
+};
+
+HF_INLINE struct hex_far hex_far(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, float least,
+                                 struct hf_rect b, const int rows)
+{
+    const struct hf_hexagon_line *l = &hf_hexagon(f->s)->line[line];
+    const struct hex_range r = hex_range(in, l, b);
+    // Clearly below 2p, where limit - slope q is not less than 1 however it is rounded.
+    return (struct hex_far){*in, hex_run(l, rows, r), !(r.most <= 1.9999f * least)};
+}
+
+HF_INLINE struct hex_limit hex_limit(vf p)
+{
+    const vf slope = vf_div(vf_set1(1), vf_min(p, vf_set1(1)));
+    return (struct hex_limit){vf_add(vf_mul(vf_mul(vf_set1(2), p), slope), vf_set1(1)), vf_sub(vf_zero(), slope)};
+}
+
+// See hf_hexagon_light.
+HF_INLINE vf hex_light(const vf colour[3])
+{
+    const vf low = vf_min(colour[0], colour[1]), high = vf_max(colour[0], colour[1]), b = colour[2];
+    const vf most = vf_max(high, b), other = vf_min(high, b), least = vf_min(low, b), middle = vf_max(low, other);
+    return vf_abs(vf_add(vf_add(most, least), middle));
+}
+
+// The sums of a line at pixels of radius p as colours, all that was found, and in pass 1 light over radii; with the
+// pixel's own where it is too little.
+HF_INLINE struct hex_sums hex_found(const struct hf_hexagon_field *in, const struct hex_sums *s, const int channels,
+                                    const int first, int x, int y, vf p)
+{
+    const vf o = hex_own(s->a, p), all = vf_add(s->a, o), scale = vf_div(vf_set1(1), all);
+    const vf mine = vf_div(o, vf_load(hf_at(in->weight, in->a, x, y)));
+    const vm is = vf_gt(p, vf_zero());
+    struct hex_sums found = {.a = vf_keep(is, all), .w = vf_zero()};
+    if (first) {
+        const vf own = vf_load(hf_at(in->weight, in->mean, x, y));
+        found.w = vf_keep(is, vf_mul(vf_fma(mine, own, s->w), scale));
+    }
+    for (int c = 0; c < 3; c++) {
+        const vf own = vf_load(hf_at(in->colour, c, x, y));
+        found.colour[c] = vf_keep(is, vf_mul(vf_fma(mine, own, s->colour[c]), scale));
+    }
+    if (channels == 4) {
+        const vf own = vf_div(vf_load(hf_at(in->colour, 3, x, y)), vf_load(hf_at(in->weight, in->a, x, y)));
+        found.colour[3] = vf_keep(is, vf_div(vf_fma(o, own, s->colour[3]), all));
+    }
+    return found;
+}
+
+// The sums alone, without the pixel's own.
+HF_INLINE void hex_far_sums(const struct hex_far *l, const int channels, const int first, const int rows, int x, int y,
+                            const vf p[HEX_ROWS], struct hex_sums s[HEX_ROWS])
+{
+    if (l->limited) {
+        struct hex_limit limit[HEX_ROWS];
+        for (int i = 0; i < rows; i++)
+            limit[i] = hex_limit(p[i]);
+        hex_line(&l->in, &l->run, channels, first, rows, x, y, limit, s);
+    } else {
+        hex_line(&l->in, &l->run, channels, first, rows, x, y, NULL, s);
+    }
+}
+
+HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const int first, const int rows, int x, int y,
+                            const vf p[HEX_ROWS], struct hex_sums out[HEX_ROWS])
+{
+    struct hex_sums s[HEX_ROWS];
+    hex_far_sums(l, channels, first, rows, x, y, p, s);
+    for (int i = 0; i < rows; i++)
+        out[i] = hex_found(&l->in, &s[i], channels, first, x, y + i, p[i]);
+}
+
+HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels, vf p, vf part,
+                             vf whole, enum hf_hexagon_made colour, int weight, int x, int y)
+{
+    const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_FAR_W);
+    const vf one = vf_set1(1);
+    const vm any = vf_gt(s->a, vf_zero());
+    const vf mean = vf_select(vf_gt(s->w, vf_zero()), vf_div(hex_light(s->colour), s->w), p);
+    const vf q = vf_keep(any, vf_max(mean, vf_set1(HEXAGON_LEAST_MEAN)));
+    const vf a = vf_keep(any, vf_div(part, vf_max(q, one)));
+    for (int c = 0; c < channels; c++)
+        vf_store(hf_at(out, c, x, y), vf_mul(s->colour[c], a));
+    vf_store(hf_at(weights, weight, x, y), vf_mul(whole, a));
+    vf_store(hf_at(weights, weight + 1, x, y), q);
+}
+
+// See hf_hexagon_along.
+HF_INLINE vf hex_beside(float side, int size, vf at, vf by)
+{
+    const vf inside = side > 0 ? vf_sub(vf_sub(vf_set1((float)size), at), by) : vf_add(at, by);
+    return vf_max(inside, vf_set1(0x1p-10f));
+}
+
+HF_INLINE vf hex_along(int width, int height, const float side[2], const vf at[2], const vf by[2], vf i)
+{
+    const vf right = hex_beside(side[0], width, at[0], by[0]), down = hex_beside(side[1], height, at[1], by[1]);
+    const vf d = vf_min(vf_mul(vf_mul(right, vf_set1(__builtin_fabsf(side[0]))), i),
+                        vf_mul(vf_mul(down, vf_set1(__builtin_fabsf(side[1]))), i));
+    return vf_min(d, vf_set1(1));
+}
+
+HF_INLINE vf hex_across(int x)
+{
+    static const float steps[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return vf_add(vf_set1((float)x + 0.5f), vf_load(steps));
+}
+
+// What a line of pixels of radius p found counts as much of it as lies within the frame; returns that.
+HF_INLINE vf hex_keep_within(const struct hf_frame *f, struct hex_sums *s, const int channels, int line, int x, int y,
+                             vf p)
+{
+    const vf here[2] = {vf_zero(), vf_zero()}, at[2] = {hex_across(x), vf_set1((float)y + 0.5f)};
+    const vf i = vf_div(vf_set1(1), vf_select(vf_gt(p, vf_zero()), p, vf_set1(1)));
+    const vf part =
+        hex_along(hf_hexagon_width(f->s), hf_hexagon_height(f->s), hf_hexagon(f->s)->side[line], at, here, i);
+    for (int c = 0; c < channels; c++)
+        s->colour[c] = vf_mul(s->colour[c], part);
+    s->w = vf_mul(s->w, part);
+    return part;
+}
+
+// May a line of some pixel in a block leave the frame? If not, all of each lies within it. A line's length reaches less
+// than 2 pixels beyond its last place.
+HF_INLINE int hex_leaves(const struct hf_frame *f, struct hf_rect b)
+{
+    const struct hf_hexagon_line *u = &hf_hexagon(f->s)->line[0], *v = &hf_hexagon(f->s)->line[1];
+    return b.x0 + hf_min(u->x0, v->x0) < 2 || b.x1 + hf_max(u->x1, v->x1) > hf_hexagon_width(f->s) - 2 ||
+           b.y0 + hf_min(u->y0, v->y0) < 2 || b.y1 + hf_max(u->y1, v->y1) > hf_hexagon_height(f->s) - 2;
+}
+
+HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    const struct hf_hexagon *h = hf_hexagon(f->s);
+    const int below = hf_max(h->line[0].y1, h->line[1].y1);
+    const float least = hex_least_far(&in, b);
+    if (least == FLT_MAX) {
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_U), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_B), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_W), b, 4);
+        return;
+    }
+    const struct hex_far up = hex_far(f, &in, 0, least, b, rows), left = hex_far(f, &in, 1, least, b, rows);
+    const int leaves = hex_leaves(f, b);
+    HEX_EACH(b, rows, x, y)
+    {
+        vf p[HEX_ROWS], part[HEX_ROWS], all[HEX_ROWS];
+        struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
+        hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
+        for (int i = 0; i < rows; i++) {
+            p[i] = vf_load(hf_at(in.radius, in.q, x, y + i));
+            part[i] = vf_mul(vf_load(hf_at(in.weight, in.a, x, y + i)), vf_max(p[i], vf_set1(1)));
+        }
+        hex_far_line(&up, channels, 1, rows, x, y, p, u);
+        for (int i = 0; i < rows; i++) {
+            all[i] = leaves ? hex_keep_within(f, &u[i], channels, 0, x, y + i, p[i]) : vf_set1(1);
+            hex_store_far(f, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_U, 0, x, y + i);
+        }
+        hex_far_line(&left, channels, 1, rows, x, y, p, v);
+        for (int i = 0; i < rows; i++) {
+            if (leaves)
+                all[i] = vf_mul(vf_set1(0.5f), vf_add(all[i], hex_keep_within(f, &v[i], channels, 1, x, y + i, p[i])));
+            hex_add(&u[i], &v[i], channels);
+            hex_store_far(f, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_B, 2, x, y + i);
+        }
+    }
+}
+
+// ---- far, beyond the frame ----
+
+// Of the frame's nearest pixels, for those of a block; a vector past a row's end is 0.
+struct hex_nearest {
+    float p[HEX_HEIGHT][HEX_WIDTH + VF_N], part[HEX_HEIGHT][HEX_WIDTH + VF_N];
+    float least;  // radius above 0
+};
+
+static void hex_nearest(const struct hf_frame *f, const struct hf_hexagon_field *in, struct hf_rect b,
+                        struct hex_nearest *n)
+{
+    n->least = FLT_MAX;
+    for (int y = b.y0; y < b.y1; y++)
+        for (int x = b.x0; x < b.x1 + VF_N; x++) {
+            int u = x, v = y;
+            const int is = hf_hexagon_nearest(f->s, &u, &v) && x < b.x1;
+            const float q = is ? *hf_at(in->radius, in->q, u, v) : 0;
+            n->p[y - b.y0][x - b.x0] = q;
+            n->part[y - b.y0][x - b.x0] = is ? *hf_at(in->weight, in->a, u, v) * (q > 1 ? q : 1) : 0;
+            if (q > 0 && q < n->least)
+                n->least = q;
+        }
+}
+
+// What is found from there, of no more than there is to find.
+HF_INLINE void hex_beyond_line(const struct hex_far *l, const int channels, const int rows, int x, int y,
+                               const vf p[HEX_ROWS], struct hex_sums s[HEX_ROWS])
+{
+    const vf one = vf_set1(1);
+    hex_far_sums(l, channels, 1, rows, x, y, p, s);
+    for (int i = 0; i < rows; i++) {
+        const vm is = vf_gt(p[i], vf_zero());
+        const vf scale = vf_div(one, vf_max(s[i].a, one));
+        s[i].a = vf_keep(is, vf_mul(s[i].a, scale));
+        s[i].w = vf_keep(is, vf_mul(s[i].w, scale));
+        for (int c = 0; c < channels; c++)
+            s[i].colour[c] = vf_keep(is, vf_mul(s[i].colour[c], scale));
+    }
+}
+
+HF_INLINE void hex_far_beyond(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    struct hex_nearest n;
+    hex_nearest(f, &in, b, &n);
+    const struct hex_far up = hex_far(f, &in, 0, n.least, b, rows), left = hex_far(f, &in, 1, n.least, b, rows);
+    if (n.least == FLT_MAX || (up.run.end == up.run.step && left.run.end == left.run.step)) {
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_U), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_B), b, channels);
+        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_W), b, 4);
+        return;
+    }
+    HEX_EACH(b, rows, x, y)
+    {
+        vf p[HEX_ROWS], part[HEX_ROWS];
+        struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
+        for (int i = 0; i < rows; i++) {
+            p[i] = vf_load(&n.p[y + i - b.y0][x - b.x0]);
+            part[i] = vf_load(&n.part[y + i - b.y0][x - b.x0]);
+        }
+        hex_beyond_line(&up, channels, rows, x, y, p, u);
+        for (int i = 0; i < rows; i++)
+            hex_store_far(f, &u[i], channels, p[i], part[i], u[i].a, HF_HEXAGON_FAR_U, 0, x, y + i);
+        hex_beyond_line(&left, channels, rows, x, y, p, v);
+        for (int i = 0; i < rows; i++) {
+            hex_add(&u[i], &v[i], channels);
+            hex_store_far(f, &u[i], channels, p[i], part[i], vf_mul(vf_set1(0.5f), u[i].a), HF_HEXAGON_FAR_B, 2, x,
+                          y + i);
+        }
+    }
+}
+
+HF_INLINE void hex_far_2(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
+{
+    const struct hf_hexagon_field pixel = hf_hexagon_field(f, HF_FAR);
+    const struct hf_hexagon_field in[2] = {hf_hexagon_field_2(f, HF_FAR, 0), hf_hexagon_field_2(f, HF_FAR, 1)};
+    const struct hf_buf *out = hf_hexagon_made(f, HF_HEXAGON_FAR);
+    const float least = hex_least_far(&pixel, b);
+    if (least == FLT_MAX) {
+        hex_clear(out, b, channels);
+        return;
+    }
+    const struct hex_far left = hex_far(f, &in[0], 1, least, b, rows), right = hex_far(f, &in[1], 2, least, b, rows);
+    HEX_EACH(b, rows, x, y)
+    {
+        vf p[HEX_ROWS];
+        struct hex_sums v[HEX_ROWS], w[HEX_ROWS];
+        for (int i = 0; i < rows; i++)
+            p[i] = vf_load(hf_at(pixel.radius, pixel.q, x, y + i));
+        hex_far_line(&left, channels, 0, rows, x, y, p, v);
+        hex_far_line(&right, channels, 0, rows, x, y, p, w);
+        for (int i = 0; i < rows; i++)
+            for (int c = 0; c < channels; c++)
+                vf_store(hf_at(out, c, x, y + i), vf_mul(vf_add(v[i].colour[c], w[i].colour[c]), vf_set1(1 / 3.0f)));
+    }
+}
+
+// ---- the passes ----
+
+enum { HEX_FIRST, HEX_SECOND, HEX_BEYOND };
+
+HF_INLINE void hex_block(const struct hf_frame *f, struct hf_rect b, const int which, const int channels,
+                         const int rows)
+{
+    if (which == HEX_BEYOND) {
+        hex_far_beyond(f, b, channels, rows);
+        return;
+    }
+    if (f->near && which == HEX_SECOND)
+        hex_near_2(f, b, channels, rows);
+    else if (f->near)
+        hex_near_1(f, b, channels, rows);
+    if (f->far && which == HEX_SECOND)
+        hex_far_2(f, b, channels, rows);
+    else if (f->far)
+        hex_far_1(f, b, channels, rows);
+}
+
+// Can rows be taken together?
+HF_INLINE int hex_is_shared(const struct hf_hexagon *h)
+{
+    for (int i = 0; i < 3; i++)
+        if (!(HEX_ROWS == 4 ? h->line[i].four : h->line[i].two).count)
+            return 0;
+    return 1;
+}
+
+HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect p, const int which, const int channels)
+{
+    const int shared = hex_is_shared(hf_hexagon(f->s));
+    for (int y = p.y0; y < p.y1; y += HEX_HEIGHT)
+        for (int x = p.x0; x < p.x1; x = (x + HEX_WIDTH) & ~(HEX_WIDTH - 1)) {
+            const struct hf_rect b = {x, y, hf_min((x + HEX_WIDTH) & ~(HEX_WIDTH - 1), p.x1),
+                                      hf_min(y + HEX_HEIGHT, p.y1)};
+            if (shared && b.y1 - b.y0 >= HEX_ROWS)
+                hex_block(f, b, which, channels, HEX_ROWS);
+            else
+                hex_block(f, b, which, channels, 1);
+        }
+}
+
+static void hexagon_1_simd(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
+    if (f->s->channels == 4)
+        hex_pass(f, p, HEX_FIRST, 4);
+    else
+        hex_pass(f, p, HEX_FIRST, 3);
+}
+
+static void hexagon_2_simd(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_rect p = hf_hexagon_rect(f->s, r);
+    if (f->s->channels == 4)
+        hex_pass(f, p, HEX_SECOND, 4);
+    else
+        hex_pass(f, p, HEX_SECOND, 3);
+}
+
+static void hexagon_beyond_simd(const struct hf_frame *f, struct hf_rect p)
+{
+    if (f->s->channels == 4)
+        hex_pass(f, p, HEX_BEYOND, 4);
+    else
+        hex_pass(f, p, HEX_BEYOND, 3);
+}
+
+#endif

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A slice of a cell: its sources, and their discs.
+#include <string.h>
+
+#include "engine/layers/parts.h"
+
+// Zero what the slice's blur reaches and what is read around that.
+static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
+                          int first, int channels)
+{
+    const int margin = level ? MARGIN : 0, height = c->rows * (TILE >> level), around = level ? 2 : 0;
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, m, level, ty, &s);) {
+            const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT;
+            // A level that is refined is read farther by vectors that are not whole.
+            const int more = level > 2 ? 32 : 16;
+            const int right = (c->columns * (TILE >> level)) + RIGHT, x1 = s.x1 + more < right ? s.x1 + more : right;
+            int y0, y1;
+            hf_layers_clip_rows(c, level, ty, &y0, &y1);
+            y0 = y0 - around > -margin ? y0 - around : -margin;
+            y1 = y1 + around < height + margin ? y1 + around : height + margin;
+            for (int y = y0; y < y1; y++)
+                for (int i = first; i < channels; i++)
+                    memset(w->at + y * w->row + i * w->channel + x0, 0, sizeof(float) * (size_t)(x1 - x0));
+        }
+}
+
+void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *set, const float *weight, int x, int y,
+                         const float *in[6])
+{
+    const ptrdiff_t at = (ptrdiff_t)y * set->stride + x;
+    for (int i = 0; i < l->channels; i++)
+        in[i] = set->colour[i] + at;
+    in[4] = weight + at;
+    in[5] = set->radius + at;
+}
+
+// Where a channel's row of sources begins: channel `channels` is the weight.
+static float *source_at(const struct hf_cell *c, int i, int x, int y)
+{
+    return c->source.at + y * c->source.row + i * c->source.channel + x;
+}
+
+// A row of samples of quads as samples of pixels: of each, the part that lies before it.
+static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int px, int py, int n, const float *in[6])
+{
+    const struct hf_layers_set *before[2] = {&c->samples->seen, &c->samples->mixed};
+    const float *of[6] = {NULL}, *radius[4], *weight[4];
+    hf_layers_planes_at(c->l, set, set->weight, px >> 1, py >> 1, of);
+    for (int i = 0; i < 4; i++) {
+        weight[i] = hf_layers_at(before[i / 2], before[i / 2]->weight, px, (py & ~1) + i % 2);
+        radius[i] = hf_layers_at(before[i / 2], before[i / 2]->radius, px, (py & ~1) + i % 2);
+    }
+    c->k->spread(of, radius, weight, py & 1, c->l->channels, n / 2, c->line);
+    for (int i = 0; i < 6; i++)
+        in[i] = c->line[i];
+}
+
+// What is seen, of tiles that have the same in common at once: weights of 1 and shares of nothing are not read.
+static void weigh_seen(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
+                       float *const out[5])
+{
+    const ptrdiff_t stride = b->set->stride;
+    for (int from = tx, to; from < end; from = to) {
+        const int plain = *hf_layers_map_at(&c->plain, from, ty), lead = (from - tx) * TILE;
+        const float *in[6] = {NULL}, *share = b->share ? b->share + (ptrdiff_t)py * stride + px + lead : NULL;
+        float *part[5];
+        for (to = from + 1; to < end && *hf_layers_map_at(&c->plain, to, ty) == plain;)
+            to++;
+        for (int i = 0; i < 5; i++)
+            part[i] = out[i] + lead;
+        hf_layers_planes_at(c->l, b->set, b->weight, px + lead, py, in);
+        in[4] = plain & WHOLE ? NULL : in[4];
+        c->k->weigh(b->s, in, plain & DULL ? NULL : share, stride, 1 << b->s->level, c->l->channels, (to - from) * TILE,
+                    0, part, c->any + lead / 16);
+    }
+}
+
+// Samples of a row of a run of tiles, the first of which is (px, py); notes in `any` of which 16 there are some.
+static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
+                      float *const out[5])
+{
+    const struct hf_layers *l = c->l;
+    const int size = TILE >> b->finest, n = (end - tx) * size, rows = 1 << (b->s->level - b->finest);
+    const float *in[6] = {NULL};
+    if (b->spread)
+        spread(c, b->set, px, py, n, in);
+    else
+        hf_layers_planes_at(l, b->set, b->weight, px, py, in);
+    if (b->weight == c->samples->seen.weight)
+        weigh_seen(c, b, tx, end, ty, px, py, out);
+    else
+        c->k->weigh(b->s, in, NULL, b->set->stride, rows, l->channels, n, 0, out, c->any);
+    for (int from = tx, to; b->more && (to = hf_layers_next_run(&c->used, &from, ty, end, MORE)) > from; from = to) {
+        // What is noted of 16 samples lies as it does in the run: a tile that has none of these may come first.
+        const int lead = (from - tx) * size & ~15, at = px + lead, count = (to - tx) * size - lead;
+        float *more[5];
+        for (int i = 0; i < 5; i++)
+            more[i] = out[i] + lead;
+        if (b->spread)
+            spread(c, b->more, at, py, count, in);
+        else
+            hf_layers_planes_at(l, b->more, b->more->weight, at, py, in);
+        c->k->weigh(b->s, in, NULL, b->more->stride, rows, l->channels, count, 1, more, c->any + lead / 16);
+    }
+}
+
+// The sources of one row of a run of tiles; notes where there are any. The row is that of tile row `from`.
+static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int from, int y)
+{
+    const struct hf_layers *l = c->l;
+    const int level = b->s->level - b->finest, size = TILE >> b->finest, n = (end - tx) * size;
+    const int px = (c->x0 >> b->finest) + tx * size, py = (c->y0 >> b->finest) + from * size + (y << level);
+    float *out[5];
+    int some = 0;
+    memset(c->any, 0, (size_t)(n + 15) / 16);
+    for (int i = 0; i < 5; i++)
+        out[i] = level ? c->line[i] : source_at(c, i < 4 ? i : l->channels, tx * size, y);
+    weigh_run(c, b, tx, end, ty, px, py, out);
+    for (int i = tx; i < end; i++) {
+        const int any = c->any[(i - tx) * size / 16];
+        *hf_layers_map_at(&c->filled, i, y / 2) |= (uint8_t)any;
+        some |= any;
+    }
+    for (int i = b->first; some && i < b->channels; i++) {
+        float *line = out[i < l->channels ? i : 4], *to = source_at(c, i, tx * (TILE >> b->s->level), y);
+        for (int j = level; j > 0; j--)
+            c->k->fold(line, n >> (level - j + 1), j > 1 ? line : to);
+    }
+}
+
+// Tiles beyond the frame, as far as there are samples of them: one on each side. Those farther out are like it.
+struct around {
+    int first, last;
+};
+
+static struct around around_of(int first, int tiles)
+{
+    return (struct around){-first / TILE - 1, tiles - first / TILE};
+}
+
+static int within(int t, struct around a)
+{
+    return t < a.first ? a.first : t > a.last ? a.last : t;
+}
+
+// Tiles beyond the frame become what tile `like` is: each of its rows is of one colour.
+static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int like, int tx, int end, int y)
+{
+    const int size = TILE >> b->s->level;
+    if (tx >= end)
+        return;
+    const uint8_t any = *hf_layers_map_at(&c->filled, like, y / 2);
+    for (int i = tx; i < end; i++)
+        *hf_layers_map_at(&c->filled, i, y / 2) |= any;
+    for (int i = b->first; any && i < b->channels; i++) {
+        const float v = *source_at(c, i, like * size, y);
+        float *to = source_at(c, i, tx * size, y);
+        for (int x = 0; x < (end - tx) * size; x++)
+            to[x] = v;
+    }
+}
+
+static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int from, int y0, int y1)
+{
+    const int size = TILE >> b->s->level;
+    const struct around wide = around_of(c->x0, c->l->columns);
+    for (int i = 0; i < size / 2; i++)
+        memset(hf_layers_map_at(&c->filled, c->box.x0, i), 0, (size_t)(c->box.x1 - c->box.x0));
+    for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0)) > tx; tx = end) {
+        const int first = within(tx, wide), last = within(end - 1, wide);
+        for (int y = y0; y < y1; y++) {
+            build_run(c, b, first, last + 1, ty, from, y);
+            repeat_tile(c, b, first, tx, first, y);
+            repeat_tile(c, b, last, last + 1, end, y);
+        }
+    }
+}
+
+// Also what vectors have written past the last tile.
+static void clear_row(const struct hf_cell *c, const struct hf_build *b, int y0, int y1)
+{
+    const int size = TILE >> b->s->level;
+    for (int y = y0; y < y1; y += 2)
+        for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end)
+            for (int i = 0; i <= 2 * c->l->channels + 1; i++)
+                memset(source_at(c, i / 2, tx * size, y + i % 2), 0, sizeof(float) * (size_t)((end - tx) * size + 16));
+}
+
+// Draw columns x0 to x1 of two rows of a row of tiles' sources.
+static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at, int y, int x0, int x1,
+                      const struct hf_window *to)
+{
+    const struct hf_slice *s = b->s;
+    const int margin = s->level ? MARGIN : 0, height = c->rows * (TILE >> s->level);
+    for (int i = 0; s->shape && i < 2; i++)
+        hf_layers_draw_shape(c, b, source_at(c, 0, x0, y + i), at + i, x0, x1, to);
+    for (int i = b->first; !s->shape && i < b->channels; i++)
+        c->k->disc(s, source_at(c, i, x0, y), source_at(c, i, x0, y + 1), x1 - x0, -margin - at, height + margin - at,
+                   to->at + at * to->row + i * to->channel + x0, to->row);
+}
+
+// Draw two rows of a row of tiles' sources into the window. Spans lie on vectors, and what is between two is 0 in both.
+static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty, int y, const struct hf_window *to)
+{
+    const struct hf_slice *s = b->s;
+    const int size = TILE >> s->level, margin = s->level ? MARGIN : 0;
+    const int last = c->columns * size + margin, at = ty * size + y;
+    int x0 = 0, x1 = 0;
+    for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end) {
+        int a = tx * size - s->reach, z = end * size + s->reach;
+        a = a > -margin ? a : -margin;
+        z = z < last ? z : last;
+        if (a >= z)
+            continue;
+        hf_layers_align_span(&a, &z);
+        if (x1 > x0 && a > x1) {
+            draw_span(c, b, at, y, x0, x1, to);
+            x0 = a;
+        } else if (x1 <= x0) {
+            x0 = a;
+        }
+        x1 = z;
+    }
+    if (x1 > x0)
+        draw_span(c, b, at, y, x0, x1, to);
+}
+
+// Rows of sources that are held, of a row of tiles.
+struct held {
+    int from, y0, y1;
+};
+
+void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
+                          const struct hf_window *to)
+{
+    const int size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
+    const struct around high = around_of(c->y0, c->l->rows);
+    struct held held = {0};
+    clear_touched(c, touched, to, b->s->level, b->first, b->channels);
+    if (b->s->shape)
+        hf_layers_begin_shape(c, b->s);
+    for (int ty = c->box.y0; ty < c->box.y1; ty++) {
+        int tx = c->box.x0;
+        if (hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0) == tx || (ty + 1) * size + b->s->rows <= -margin ||
+            ty * size - b->s->rows >= c->rows * size + margin)
+            continue;
+        // The pairs of rows whose blur reaches what is made.
+        const int least = -margin - b->s->rows - ty * size, most = c->rows * size + margin + b->s->rows - ty * size;
+        const int y0 = least > 0 ? least & ~1 : 0, y1 = most < size ? (most + 1) & ~1 : size;
+        const int from = within(ty, high), beyond = from == high.first || from == high.last;
+        // All rows of tiles beyond the frame are the same.
+        if (!beyond || held.y0 == held.y1 || held.from != from) {
+            clear_row(c, b, held.y0, held.y1);
+            held = beyond ? (struct held){from, 0, size} : (struct held){from, y0, y1};
+            build_row(c, b, ty, from, held.y0, held.y1);
+        }
+        for (int y = y0; y < y1; y += 2)
+            draw_pair(c, b, ty, y, to);
+    }
+    clear_row(c, b, held.y0, held.y1);
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Highlights: what of a sample is so much brighter than what lies around it that the edge of its disc would show the
+// pixels of a coarser resolution. What they do to it then stays below LEAST of its surroundings, whatever the exposure;
+// what is less than PLAIN times as bright as these does not count, or every pattern would be made of highlights. These are
+// the darkest of what lies at the sample and next to it on four sides: a disc's rim lies before that, and a lamp of some
+// pixels must not hide itself in its own mean. Nothing at all counts as bright as the sample: alpha, which has no shares,
+// would otherwise not go with the colour.
+#include "engine/layers/highlights.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "pixel/pass_c.h"
+
+// Half-resolution pixels: of a mean on either side of its middle, from one mean to the next, and beside a row of scratch.
+enum { MEAN = 4, APART = 2 * MEAN + 1, REACH = HF_LAYERS_BRIGHT_REACH, PAD = 32 };
+_Static_assert(MEAN + APART <= REACH && REACH + 16 <= PAD, "what means read and vectors write");
+
+#define LEAST 0.001f
+#define PLAIN 2
+
+static float root(float v)
+{
+    return v > 0 ? sqrtf(v) : 0;
+}
+
+void hf_layers_roots_c(const float *const above[3], const float *const below[3], int n, float *out)
+{
+    for (int x = 0; x < n; x++) {
+        float v[4];
+        for (int i = 0; i < 2; i++) {
+            v[i] = root(above[0][2 * x + i] + above[1][2 * x + i] + above[2][2 * x + i]);
+            v[2 + i] = root(below[0][2 * x + i] + below[1][2 * x + i] + below[2][2 * x + i]);
+        }
+        out[x] = ((v[0] + v[2]) + (v[1] + v[3])) * 0.25f;
+    }
+}
+
+void hf_layers_nine_c(const float *const in[9], int n, float *out)
+{
+    for (int x = 0; x < n; x++) {
+        float sum = in[4][x];
+        for (int i = 1; i <= 4; i++)
+            sum = sum + (in[4 - i][x] + in[4 + i][x]);
+        out[x] = sum * (1.0f / 9);
+    }
+}
+
+void hf_layers_shares_c(const float *const in[6], const float *const around[5], const float *const covered[5], int n,
+                        float *out)
+{
+    for (int x = 0; x < n; x++) {
+        const float r = in[5][x], light = in[0][x] + in[1][x] + in[2][x];
+        float m = HUGE_VALF;
+        for (int i = 0; i < 5; i++) {
+            const float at = i ? around[i][x / 2] * HF_LAYERS_BESIDE : around[i][x / 2];
+            const float v = covered ? at + (1 - covered[i][x / 2]) * root(light) : at;
+            m = v < m ? v : m;
+        }
+        const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));
+        out[x] = fabsf(r) > HF_LAYERS_FINE && light > cap ? in[4][x] * (1 - cap / light) : 0;
+    }
+}
+
+// Rows of means, and of roots above them and below; one row more, and two of nothing.
+size_t hf_layers_highlight_floats(int width, int height)
+{
+    return ((size_t)width + 2 * PAD) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
+}
+
+// Means around a cell: of roots of sums of three channels, of which those below 0 are nothing.
+static void make_means(const struct hf_frame *f, struct hf_rect r, const int channel[3], float *scratch, float *mean)
+{
+    const struct hf_layers_kernels *k = hf_layers_kernels(f);
+    const int width = r.x1 - r.x0, height = r.y1 - r.y0;
+    const ptrdiff_t stride = width + 2 * PAD;
+    float *down = scratch + PAD, *none = scratch + stride, *roots = scratch + (3 + REACH) * stride + PAD;
+    const float *in[9];
+    memset(none, 0, sizeof(float) * 2 * (size_t)stride);
+    for (int y = -REACH; y < height + REACH; y++) {
+        const float *row[2][3];
+        for (int i = 0; i < 6; i++)
+            row[i / 3][i % 3] = channel[i % 3] < 0 ? none
+                                                   : hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], channel[i % 3],
+                                                           2 * (r.x0 - REACH), 2 * (r.y0 + y) + i / 3);
+        k->roots(row[0], row[1], width + 2 * REACH, roots + y * stride - REACH);
+    }
+    for (int y = -APART; y < height + APART; y++) {
+        for (int i = 0; i < 9; i++)
+            in[i] = roots + (y + i - MEAN) * stride - REACH;
+        k->nine(in, width + 2 * REACH, down - REACH);
+        for (int i = 0; i < 9; i++)
+            in[i] = down + i - MEAN - APART;
+        k->nine(in, width + 2 * APART, mean + y * stride - APART);
+    }
+}
+
+// Means of colours and of alphas, one after the other: where the cell's first pixel is in the former.
+static ptrdiff_t stride_of(struct hf_rect cell)
+{
+    return cell.x1 - cell.x0 + 2 * PAD;
+}
+
+static ptrdiff_t cover_from(struct hf_rect cell)
+{
+    return (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
+}
+
+void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch)
+{
+    float *mean = scratch + APART * stride_of(cell) + PAD, *cover = mean + cover_from(cell);
+    scratch = cover + (cell.y1 - cell.y0 + APART) * stride_of(cell) - PAD;
+    make_means(f, cell, (const int[]){0, 1, 2}, scratch, mean);
+    if (hf_layers(f->s)->channels == 4)
+        make_means(f, cell, (const int[]){3, -1, -1}, scratch, cover);
+}
+
+void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch)
+{
+    const int n = hf_min(2 * cell.x1, f->s->width) - 2 * cell.x0, channels = hf_layers(f->s)->channels;
+    const ptrdiff_t stride = stride_of(cell), apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
+    const float *mean = scratch + APART * stride + PAD, *cover = mean + cover_from(cell);
+    for (int py = 2 * rows.y0; py < hf_min(2 * rows.y1, f->s->height); py++) {
+        const float *around[5], *covered[5], *in[6];
+        for (int i = 0; i < 5; i++) {
+            around[i] = mean + (py / 2 - cell.y0) * stride + apart[i];
+            covered[i] = cover + (py / 2 - cell.y0) * stride + apart[i];
+        }
+        for (int i = 0; i < 3; i++)
+            in[i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN], i, 2 * cell.x0, py);
+        for (int i = 0; i < 2; i++)
+            in[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, 2 * cell.x0, py);
+        hf_layers_kernels(f)->shares(in, around, channels == 4 ? covered : NULL, n,
+                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * cell.x0, py));
+    }
+}

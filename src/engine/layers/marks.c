@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which radii and slices there are in each tile of the frame: noted where samples are made, while they are in the cache.
+#include <math.h>
+#include <string.h>
+
+#include "engine/layers/kernels.h"
+#include "pixel/pass_c.h"
+
+enum { TILE = HF_LAYERS_TILE };
+
+// Samples of a tile.
+struct tile {
+    const float *radius, *weight;
+    ptrdiff_t stride;
+    int n, rows;
+};
+
+static struct tile tile_of(const struct hf_buf *at, int weight, int x, int y, int n, int rows)
+{
+    return (struct tile){hf_at(at, 1, x, y), hf_at(at, weight, x, y), at->stride, n, rows};
+}
+
+// Which of some slices have samples of a tile whose radii lie in a range.
+static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, int slices, struct tile t,
+                        struct hf_layers_range range, uint64_t *bits)
+{
+    memset(bits, 0, sizeof *bits * (size_t)((slices + 63) / 64));
+    for (int i = 0; range.low <= range.high && i < slices && slice[i].before < range.high; i++) {
+        const float before = slice[i].before, after = slice[i].after;
+        if (after > range.low && !slice[i].empty &&
+            ((before < range.low && range.high < after) ||
+             hf_layers_kernels(f)->inside(t.radius, t.weight, t.stride, t.n, t.rows, before, after)))
+            bits[i / 64] |= (uint64_t)1 << i % 64;
+    }
+}
+
+static const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
+
+// Note the slices of a tile's samples; returns the range of their radii.
+static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct hf_slice *slice, struct tile t,
+                                        uint64_t *bits)
+{
+    struct hf_layers_range range = none;
+    hf_layers_kernels(f)->extremes(t.radius, t.weight, NULL, t.stride, t.n, t.rows, &range);
+    mark_slices(f, slice, hf_layers(f->s)->slices, t, range, bits);
+    return range;
+}
+
+void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    const struct hf_layers_kernels *k = hf_layers_kernels(f);
+    const struct hf_buf *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT], *mixed = &f->buf[HF_LAYERS_BUF_MIXED_AT];
+    for (int ty = 2 * r.y0 / TILE; ty * TILE < hf_min(2 * r.y1, f->s->height); ty++)
+        for (int tx = 2 * r.x0 / TILE; tx * TILE < hf_min(2 * r.x1, f->s->width); tx++) {
+            const int x = tx * TILE, y = ty * TILE, at = ty * l->columns + tx, mark = at * l->words;
+            const int n = hf_min(TILE, f->s->width - x), rows = hf_min(TILE, f->s->height - y);
+            const struct tile s = tile_of(seen, 0, x, y, n, rows), m = tile_of(mixed, 0, x, y, n, rows);
+            const float *share = l->set.highlights ? hf_at(seen, 2, x, y) : NULL;
+            l->seen_range[at] = none;
+            const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
+            mark_slices(f, l->slice, l->slices, s, l->seen_range[at], &l->seen_marks[mark]);
+            l->mixed_range[at] = mark_tile(f, l->slice, m, &l->mixed_marks[mark]);
+            mark_slices(f, l->shine, l->shines, tile_of(seen, share ? 2 : 0, x, y, n, rows),
+                        bright ? l->seen_range[at] : none, &l->share_marks[at * l->share_words]);
+        }
+}
+
+void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    const struct hf_buf *hidden = &f->buf[HF_LAYERS_BUF_HIDDEN_AT], *beyond = &f->buf[HF_LAYERS_BUF_BEYOND_AT];
+    const int size = TILE / 2;
+    for (int ty = r.y0 / size; ty * size < r.y1; ty++)
+        for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
+            const int x = tx * size, y = ty * size, mark = (ty * l->columns + tx) * l->words;
+            const int n = hf_min(size, f->s->half_width - x), rows = hf_min(size, f->s->half_height - y);
+            mark_tile(f, l->behind, tile_of(hidden, 0, x, y, n, rows), &l->hidden_marks[mark]);
+            mark_tile(f, l->behind, tile_of(beyond, 0, x, y, n, rows), &l->beyond_marks[mark]);
+        }
+}

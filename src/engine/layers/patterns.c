@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Patterns: what is hidden goes on like what is around it. For each place places elsewhere are looked for around which the
+// same surface looks alike, and the hidden sample takes the colour that is found there: edges go on behind a rod, and so do
+// checks. Only what is known of the surface is compared. What is chosen may jump where two choices are as good. Coarse
+// shifts are searched at an eighth of the frame's resolution, then made exact at a quarter and at half of it. A place between
+// four of an eighth takes from the choices of all of them.
+#include "engine/layers/patterns.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/layers/hidden.h"
+#include "pixel/pass_c.h"
+
+enum {
+    LEVELS = 3,
+    COARSE = 1 << (LEVELS - 1),  // half-resolution pixels of a sample of the last level
+    REACH = 48,                  // half-resolution pixels that are read around a band
+    PAD = 32,                    // samples beside a row that vectors may read
+    WINDOW = 4,                  // samples compared on either side
+    MOST = (2 * WINDOW + 1) * (2 * WINDOW + 1),
+    SHIFT = 7,  // the largest that are searched, eighths of the resolution
+    CHOICES = 6,
+    LANES = 32  // shifts side by side that are compared at once, with those of a whole vector
+};
+
+// Mean square differences of roots of colours that nobody sees, of all channels.
+#define UNSEEN 0.0005f
+// A share of the variance of what is known around a place: a pattern that is off by as much is none, and one that is off by
+// less than the best by so much counts.
+#define ALIKE 0.5f
+#define EQUAL 0.4f
+// By how much of it shifts are apart that are alike: of many that fit, a pattern that repeats has them, always the same are
+// taken, and not what a rounding or a focus pull prefers.
+#define ORDER 0.01f
+
+struct level {
+    struct hf_layers_set set;
+    float *place, *nearest;  // radius of what is hidden, and of what is before it; nothing is hidden: HUGE_VALF
+};
+
+struct choices {
+    int count;
+    int x[CHOICES], y[CHOICES];
+    float off[CHOICES], variance, trust;
+};
+
+struct band {
+    const struct hf_frame *f;
+    int channels;
+    struct hf_rect region;
+    struct level level[LEVELS];
+    struct choices *choices;  // of an eighth of the resolution
+};
+
+// What is known around sample (x, y) of a level.
+struct patch {
+    const struct level *level;
+    int x, y;
+    struct hf_pattern_place place;
+    int count;
+    float sum, variance;
+    struct hf_pattern_tap tap[MOST];
+};
+
+int hf_layers_patterns_reach(const struct hf_layers *l)
+{
+    return l->levels && l->set.patterns ? REACH : 0;
+}
+
+static struct hf_rect region_of(struct hf_rect r)
+{
+    return (struct hf_rect){r.x0 - REACH, r.y0 - REACH, (r.x1 + 3) / 4 * 4 + REACH, (r.y1 + 3) / 4 * 4 + REACH};
+}
+
+static size_t place(struct band *b, float *memory)
+{
+    size_t used = 0;
+    for (int j = 0; j < LEVELS; j++) {
+        struct level *v = &b->level[j];
+        const struct hf_rect r = b->region;
+        const ptrdiff_t stride = (r.x1 - r.x0) / (1 << j) + 2 * PAD;
+        const size_t plane = (size_t)stride * (size_t)((r.y1 - r.y0) / (1 << j));
+        float **const planes[] = {&v->set.colour[0], &v->set.colour[1], &v->set.colour[2], &v->set.weight,
+                                  &v->set.radius,    &v->place,         &v->nearest,       &v->set.colour[3]};
+        v->set.stride = stride;
+        for (int i = 0; i < b->channels + 4; i++, used += plane)
+            *planes[i] = memory ? memory + used - r.y0 / (1 << j) * stride - r.x0 / (1 << j) + PAD : NULL;
+    }
+    b->choices = memory ? (struct choices *)(memory + used) : NULL;
+    used += (size_t)((b->region.x1 - b->region.x0) / COARSE) * (size_t)((b->region.y1 - b->region.y0) / COARSE) *
+            sizeof(struct choices) / sizeof(float);
+    return used;
+}
+
+size_t hf_layers_patterns_floats(const struct hf_layers *l, int width, int height)
+{
+    struct band b = {.channels = l->channels, .region = region_of((struct hf_rect){0, 0, width, height})};
+    return hf_layers_patterns_reach(l) ? place(&b, NULL) : 0;
+}
+
+static struct choices *choices_at(const struct band *b, int x, int y)
+{
+    const struct hf_rect r = b->region;
+    return b->choices + (ptrdiff_t)(y - r.y0 / COARSE) * ((r.x1 - r.x0) / COARSE) + x - r.x0 / COARSE;
+}
+
+// ---- levels ----
+
+// Beyond the frame there is nothing.
+static void clear_row(const struct band *b, int y)
+{
+    const struct level *v = &b->level[0];
+    const int x0 = b->region.x0, n = b->region.x1 - x0;
+    const ptrdiff_t at = y * v->set.stride + x0;
+    float *const planes[] = {v->set.colour[0], v->set.colour[1], v->set.colour[2],
+                             v->set.weight,    v->place,         v->set.colour[3]};
+    for (int i = 0; i < b->channels + 2; i++)
+        memset(planes[i] + at, 0, sizeof(float) * (size_t)n);
+    for (int x = 0; x < n; x++) {
+        v->set.radius[at + x] = HF_LAYERS_NOTHING;
+        v->nearest[at + x] = HUGE_VALF;
+    }
+}
+
+// What is seen in a row, and the places behind it. Returns whether there are any.
+static int begin_row(const struct band *b, int y)
+{
+    const struct hf_frame *f = b->f;
+    const struct level *v = &b->level[0];
+    const struct hf_buf *quads = &f->buf[HF_LAYERS_BUF_QUADS_AT], *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT];
+    const int n = f->s->half_width;
+    const size_t bytes = sizeof(float) * (size_t)n;
+    const ptrdiff_t at = y * v->set.stride;
+    float nearest[LANES];
+    int any = 0;
+    for (int c = 0; c < b->channels; c++)
+        memcpy(v->set.colour[c] + at, hf_at(&f->buf[HF_LAYERS_BUF_QUADS], c, 0, y), bytes);
+    memcpy(v->set.weight + at, hf_at(quads, 0, 0, y), bytes);
+    memcpy(v->set.radius + at, hf_at(quads, 1, 0, y), bytes);
+    const float *hidden = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, 0, y),
+                *radius = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, 0, y);
+    for (int x = 0; x < n; x += LANES) {
+        const int count = hf_min(n - x, LANES);
+        hf_layers_kernels(f)->nearest(hf_at(seen, 1, 2 * x, 2 * y), hf_at(seen, 1, 2 * x, 2 * y + 1), count, nearest);
+        for (int i = 0; i < count; i++) {
+            const int some = hidden[x + i] > 0;
+            v->place[at + x + i] = some ? radius[x + i] : 0;
+            v->nearest[at + x + i] = some ? nearest[i] : HUGE_VALF;
+            any |= some;
+        }
+    }
+    return any;
+}
+
+static int begin_levels(const struct band *b)
+{
+    int any = 0;
+    for (int y = b->region.y0; y < b->region.y1; y++) {
+        clear_row(b, y);
+        if (y >= 0 && y < b->f->s->half_height)
+            any |= begin_row(b, y);
+    }
+    return any;
+}
+
+// The farthest of four samples, and the mean of the places among them.
+static void halve(const struct level *from, const struct level *to, int channels, int x, int y)
+{
+    float farthest = HF_LAYERS_NOTHING, sum = 0, radius = 0, place = 0, count = 0, nearest = HUGE_VALF, colour[4] = {0};
+    const ptrdiff_t first = 2 * y * from->set.stride + 2 * x, at = y * to->set.stride + x;
+    for (int i = 0; i < 4; i++) {
+        const ptrdiff_t in = first + i / 2 * from->set.stride + i % 2;
+        farthest = from->set.weight[in] > 0 ? fmaxf(from->set.radius[in], farthest) : farthest;
+    }
+    for (int i = 0; i < 4; i++) {
+        const ptrdiff_t in = first + i / 2 * from->set.stride + i % 2;
+        const float near = 1 - (farthest - from->set.radius[in]) * 0.25f;
+        const float g = from->set.weight[in] > 0 && near > 0 ? from->set.weight[in] * near : 0;
+        sum += g;
+        radius += g > 0 ? g * from->set.radius[in] : 0;
+        for (int c = 0; c < channels; c++)
+            colour[c] += g * from->set.colour[c][in];
+        if (from->nearest[in] < HUGE_VALF) {
+            count += 1;
+            place += from->place[in];
+            nearest = fminf(from->nearest[in], nearest);
+        }
+    }
+    to->set.weight[at] = sum * 0.25f;
+    to->set.radius[at] = sum > 0 ? radius / sum : HF_LAYERS_NOTHING;
+    for (int c = 0; c < channels; c++)
+        to->set.colour[c][at] = sum > 0 ? colour[c] / sum : 0;
+    to->place[at] = count > 0 ? place / count : 0;
+    to->nearest[at] = nearest;
+}
+
+// Beside each row there is nothing.
+static void clear_pads(const struct level *v, int channels, int x0, int x1, int y)
+{
+    float *const planes[] = {v->set.colour[0], v->set.colour[1], v->set.colour[2], v->set.weight, v->set.colour[3]};
+    for (int side = 0; side < 2; side++) {
+        const ptrdiff_t at = y * v->set.stride + (side ? x1 : x0 - PAD);
+        for (int i = 0; i < channels + 1; i++)
+            memset(planes[i] + at, 0, sizeof(float) * PAD);
+        for (int i = 0; i < PAD; i++)
+            v->set.radius[at + i] = HF_LAYERS_NOTHING;
+    }
+}
+
+// Returns whether anything is hidden.
+static int make_levels(const struct band *b)
+{
+    if (!begin_levels(b))
+        return 0;
+    for (int j = 0; j < LEVELS; j++) {
+        const int x0 = b->region.x0 / (1 << j), x1 = b->region.x1 / (1 << j);
+        for (int y = b->region.y0 / (1 << j); y < b->region.y1 / (1 << j); y++) {
+            for (int x = x0; j > 0 && x < x1; x++)
+                halve(&b->level[j - 1], &b->level[j], b->channels, x, y);
+            clear_pads(&b->level[j], b->channels, x0, x1, y);
+        }
+    }
+    return 1;
+}
+
+// ---- what is alike ----
+
+void hf_layers_alike_c(const struct hf_pattern_place *place, const struct hf_pattern_tap *tap, int count,
+                       const float *const in[6], int channels, int n, float *sum, float *off)
+{
+    for (int x = 0; x < n; x++) {
+        float s = 0, e = 0;
+        for (int i = 0; i < count; i++) {
+            const ptrdiff_t at = tap[i].at + x;
+            const float k = hf_pattern_known(*place, in[4][at], in[5][at]) * tap[i].weight;
+            float d = 0;
+            for (int c = 0; c < channels; c++) {
+                const float v = in[c][at] - tap[i].colour[c];
+                d = d + v * v;
+            }
+            s = s + k;
+            e = e + k * d;
+        }
+        sum[x] = s;
+        off[x] = e;
+    }
+}
+
+// The surface of a place: radii within a quarter of how far it lies behind what hides it are its own, from half of that on
+// they are others.
+static struct hf_pattern_place surface_of(float radius, float nearest)
+{
+    const float apart = radius - nearest;
+    return (struct hf_pattern_place){radius, 4 / (apart > 1 ? apart : 1)};
+}
+
+static struct hf_pattern_place place_at(const struct level *v, int x, int y)
+{
+    const ptrdiff_t at = y * v->set.stride + x;
+    return surface_of(v->place[at], v->nearest[at]);
+}
+
+// What is known of the patch's place around sample (x, y) of a level.
+static void look_around(const struct band *b, const struct level *v, int x, int y, struct patch *p)
+{
+    float mean[4] = {0}, square = 0, all = 0;
+    p->level = v;
+    p->x = x;
+    p->y = y;
+    p->count = 0;
+    p->sum = p->variance = 0;
+    for (int dy = -WINDOW; dy <= WINDOW; dy++)
+        for (int dx = -WINDOW; dx <= WINDOW; dx++) {
+            const ptrdiff_t apart = dy * v->set.stride + dx, at = y * v->set.stride + x + apart;
+            const float away = (float)(dx * dx + dy * dy), near = 1 / (1 + away * 0.25f);
+            if (dx * dx + dy * dy > WINDOW * WINDOW + WINDOW - 1)
+                continue;
+            all += near;
+            const float w = hf_pattern_known(p->place, v->set.weight[at], v->set.radius[at]) * near;
+            if (!(w > 0))
+                continue;
+            struct hf_pattern_tap *tap = &p->tap[p->count++];
+            *tap = (struct hf_pattern_tap){.at = apart, .weight = w};
+            p->sum += w;
+            for (int c = 0; c < b->channels; c++) {
+                const float colour = tap->colour[c] = v->set.colour[c][at];
+                mean[c] += w * colour;
+                square += w * colour * colour;
+            }
+        }
+    for (int c = 0; c < b->channels && p->sum > 0; c++)
+        square -= mean[c] * mean[c] / p->sum;
+    p->variance = p->sum > 0 && square > 0 ? square / p->sum : 0;
+    // A tenth of what is around must be known.
+    if (p->sum < all * 0.1f)
+        p->count = 0;
+}
+
+// Add a choice, unless one next to it is better. Those that are less off come first.
+static void choose(struct choices *c, int x, int y, float off)
+{
+    int i = 0;
+    if (c->count == CHOICES && off >= c->off[CHOICES - 1])
+        return;
+    while (i < c->count && (c->x[i] - x > 1 || x - c->x[i] > 1 || c->y[i] - y > 1 || y - c->y[i] > 1))
+        i++;
+    if (i < c->count && off >= c->off[i])
+        return;
+    if (i == c->count) {
+        if (i == CHOICES && off >= c->off[CHOICES - 1])
+            return;
+        i = i < CHOICES ? c->count++ : CHOICES - 1;
+    }
+    for (; i > 0 && c->off[i - 1] > off; i--) {
+        c->x[i] = c->x[i - 1];
+        c->y[i] = c->y[i - 1];
+        c->off[i] = c->off[i - 1];
+    }
+    c->x[i] = x;
+    c->y[i] = y;
+    c->off[i] = off;
+}
+
+// What a shift by pixels of level j has before others: up to 1.
+static float order_of(int j, int sx, int sy)
+{
+    const float scale = 1 / (float)(1 << (2 - j)), y = (float)sy * scale, x = (float)sx * scale;
+    return (y + x * 0.0625f + 10) * 0.05f;
+}
+
+// Compare a patch with those shifted by (sx, sy) and n - 1 more to the right. At first no shift at all is no choice.
+static void compare(const struct band *b, const struct patch *p, int sx, int sy, int n, struct choices *c)
+{
+    const struct level *v = p->level;
+    const int j = (int)(v - b->level);
+    const ptrdiff_t at = (p->y + sy) * v->set.stride + p->x + sx;
+    const float *in[6] = {NULL};
+    float sum[LANES], off[LANES], known[LANES], most = 0;
+    for (int i = 0; i < b->channels; i++)
+        in[i] = v->set.colour[i] + at;
+    in[4] = v->set.weight + at;
+    in[5] = v->set.radius + at;
+    for (int i = 0; i < n; i++) {
+        known[i] = hf_pattern_known(p->place, in[4][i], in[5][i]);
+        most = known[i] > most ? known[i] : most;
+    }
+    if (!(most > 0))
+        return;
+    hf_layers_kernels(b->f)->alike(&p->place, p->tap, p->count, in, b->channels, n, sum, off);
+    for (int i = 0; i < n; i++) {
+        const float missing = p->sum - sum[i];
+        // What is not known there is as far off as anything.
+        if (known[i] > 0 && !(j == LEVELS - 1 && sx + i == 0 && sy == 0))
+            choose(c, sx + i, sy,
+                   (off[i] + (missing > 0 ? missing : 0) * p->variance) / p->sum +
+                       (1 - known[i] + ORDER * order_of(j, sx + i, sy)) * p->variance);
+    }
+}
+
+static void end_choices(struct choices *c, const struct patch *p)
+{
+    c->variance = p->variance;
+    c->trust = 0;
+    if (c->count > 0) {
+        const float trust = 1 - c->off[0] / (ALIKE * p->variance + UNSEEN);
+        c->trust = trust > 0 ? trust : 0;
+    }
+}
+
+// All shifts at an eighth of the resolution.
+static void search(const struct band *b, int x, int y)
+{
+    const struct level *v = &b->level[LEVELS - 1];
+    struct choices *c = choices_at(b, x, y);
+    struct patch p;
+    memset(c, 0, sizeof *c);
+    if (!(v->nearest[y * v->set.stride + x] < HUGE_VALF))
+        return;
+    p.place = place_at(v, x, y);
+    look_around(b, v, x, y, &p);
+    for (int sy = -SHIFT; sy <= SHIFT && p.count; sy++)
+        compare(b, &p, -SHIFT, sy, 2 * SHIFT + 1, c);
+    end_choices(c, &p);
+}
+
+// Choices for a patch at twice the resolution of those given.
+static void refine(const struct band *b, const struct patch *p, const struct choices *from, struct choices *c)
+{
+    for (int i = 0; i < from->count; i++)
+        for (int dy = -1; dy <= 1; dy++)
+            compare(b, p, 2 * from->x[i] - 1, 2 * from->y[i] + dy, 3, c);
+}
+
+static void double_choices(struct choices *c)
+{
+    for (int i = 0; i < c->count; i++) {
+        c->x[i] *= 2;
+        c->y[i] *= 2;
+    }
+}
+
+// What was chosen at an eighth of the resolution, in half-resolution pixels.
+static void search_fine(const struct band *b, int x, int y)
+{
+    struct choices *c = choices_at(b, x, y);
+    struct patch p = {.place = place_at(&b->level[LEVELS - 1], x, y)};
+    for (int j = LEVELS - 2; j >= 0 && c->count; j--) {
+        const int middle = COARSE >> j;  // of the sample, in those of level j, rounded
+        struct choices finer = {0};
+        look_around(b, &b->level[j], x * middle + (j == 0 ? middle / 2 : 0), y * middle + (j == 0 ? middle / 2 : 0),
+                    &p);
+        if (p.count) {
+            refine(b, &p, c, &finer);
+            end_choices(&finer, &p);
+            *c = finer;
+        } else {
+            double_choices(c);
+        }
+    }
+}
+
+// Sums of what four samples of an eighth of the resolution choose for a place.
+struct found {
+    float colour[4], weight, smooth;
+};
+
+static void add_choices(const struct band *b, const struct choices *c, struct hf_pattern_place place, int x, int y,
+                        float part, struct found *found)
+{
+    const struct level *v = &b->level[0];
+    const float scale = 1 / (EQUAL * c->variance + 4 * UNSEEN);
+    float sum = 0, colour[4] = {0};
+    for (int i = 0; i < c->count; i++) {
+        const ptrdiff_t at = (y + c->y[i]) * v->set.stride + x + c->x[i];
+        const float worse = 1 - (c->off[i] - c->off[0]) * scale, near = worse > 0 ? worse * worse : 0;
+        const float g = hf_pattern_known(place, v->set.weight[at], v->set.radius[at]) * near * near;
+        sum += g;
+        for (int k = 0; k < b->channels; k++)
+            colour[k] += g * v->set.colour[k][at];
+    }
+    const float use = part * c->trust * (sum < 1 ? sum : 1);
+    found->smooth += part - use;
+    found->weight += use;
+    for (int k = 0; k < b->channels && use > 0; k++)
+        found->colour[k] += use * (colour[k] / sum);
+}
+
+static void fill(const struct band *b, int x, int y)
+{
+    const struct hf_frame *f = b->f;
+    struct found found = {.weight = 0};
+    const struct hf_pattern_place place = place_at(&b->level[0], x, y);
+    const float fx = ((float)((x + COARSE / 2) % COARSE) + 0.5f) / COARSE,
+                fy = ((float)((y + COARSE / 2) % COARSE) + 0.5f) / COARSE;
+    for (int i = 0; i < 4; i++) {
+        const int right = i & 1, low = i >> 1;
+        const struct choices *c =
+            choices_at(b, (x + COARSE / 2) / COARSE - 1 + right, (y + COARSE / 2) / COARSE - 1 + low);
+        if (c->count > 0)
+            add_choices(b, c, place, x, y, (right ? fx : 1 - fx) * (low ? fy : 1 - fy), &found);
+    }
+    if (!(found.weight > 0))
+        return;
+    for (int c = 0; c < b->channels; c++) {
+        float *colour = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN], c, x, y);
+        const float now = (found.colour[c] + found.smooth * hf_layers_root(*colour)) / (found.weight + found.smooth);
+        *colour = now * fabsf(now);
+    }
+}
+
+void hf_layers_patterns_pass(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    struct band b = {.f = f, .channels = l->channels, .region = region_of(r)};
+    place(&b, f->work);
+    if (!make_levels(&b))
+        return;
+    for (int y = r.y0 / COARSE - 1; y <= (r.y1 + COARSE - 1) / COARSE; y++)
+        for (int x = r.x0 / COARSE - 1; x <= (r.x1 + COARSE - 1) / COARSE; x++) {
+            search(&b, x, y);
+            search_fine(&b, x, y);
+        }
+    for (int y = r.y0; y < hf_min(r.y1, f->s->half_height); y++)
+        for (int x = r.x0; x < hf_min(r.x1, f->s->half_width); x++)
+            if (b.level[0].nearest[y * b.level[0].set.stride + x] < HUGE_VALF)
+                fill(&b, x, y);
+}

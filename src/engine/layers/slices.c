@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/layers/slices.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// The radius after r >= 0. Far out, slices lie a share of their radius apart, which nobody sees. There is none between 0 and
+// 1: a disc that covers no more than its own pixel would be as sharp as that, and a mixture of these two is not.
+static float next_radius(const struct hf_layers_settings *set, float r)
+{
+    const float far_out = r / 32;
+    if (r < 1)
+        return r + 1;
+    if (set->fine > 1)
+        return r + fminf(fmaxf(0.5f, r / 4), fmaxf(1, r / 16)) * set->spacing / 2;
+    // A mixture of two discs is seen where one is much larger than the other: small radii lie closer.
+    return r + fmaxf(fminf(fmaxf(1, floorf(r / (float)(2 + set->fine))), set->spacing), far_out);
+}
+
+static int level_of(const struct hf_layers_settings *set, float radius)
+{
+    const float r = fabsf(radius);
+    return r < set->half ? 0 : r < set->quarter ? 1 : r < set->eighth ? 2 : 3;
+}
+
+// What is hidden is a guess: of its slices every other one is left out where its neighbours are so coarse and lie within an
+// eighth of its radius. n: its number from the focus on.
+static int is_left_out(const struct hf_layers_settings *set, int n, float before, float r)
+{
+    return n % 2 && level_of(set, before) > 1 && next_radius(set, r) - before <= r / 8;
+}
+
+// How much of a sample is left to a cover's slice where that counts most.
+#define HF_LAYERS_COVER 0.75f
+
+// Rows on one side of a disc, the middle one counted.
+static int disc_rows(double r)
+{
+    return r > 0 ? (int)ceil(r - 0.5) + 1 : 1;
+}
+
+// A disc of radius r, wide times as wide. r 0: the pixel itself.
+static void make_disc(struct hf_slice *s, double r, double wide, struct hf_disc_row *row)
+{
+    const double pi = 3.14159265358979323846;
+    s->rows = disc_rows(r);
+    s->row = row;
+    s->scale = 1;
+    s->reach = 0;
+    double sum = 0;
+    for (int d = 0; d < s->rows; d++) {
+        const double h = r > 0 ? (hf_half_disc(r, d + 0.5) - hf_half_disc(r, d - 0.5)) * wide : 0.5;
+        const double whole = floor(h - 0.5);
+        row[d].n = h < 0.5 ? -1 : (int)whole;
+        row[d].f = (float)(h < 0.5 ? h : h - 0.5 - whole);
+        sum += (d ? 4 : 2) * h;
+        s->reach = row[d].n + 1 > s->reach ? row[d].n + 1 : s->reach;
+    }
+    if (r > 0)
+        s->scale = (float)(1 / (sum > 0 ? sum : pi * r * r * wide));
+    s->reach = s->rows - 1 > s->reach ? s->rows - 1 : s->reach;
+}
+
+static void set_neighbours(struct hf_slice *slice, int count)
+{
+    for (int i = 0; i < count; i++) {
+        struct hf_slice *s = &slice[i];
+        int a = i - 1, z = i + 1;
+        while (a >= 0 && slice[a].empty)
+            a--;
+        while (z < count && slice[z].empty)
+            z++;
+        const float before = a >= 0 ? slice[a].radius : 0, after = z < count ? slice[z].radius : 0;
+        s->square = s->radius * s->radius;
+        s->before = a >= 0 ? before : -HUGE_VALF;
+        s->after = z < count ? after : HUGE_VALF;
+        s->before_square = before * before;
+        s->before_scale = a >= 0 ? 1 / (s->square - before * before) : 0;
+        s->after_scale = z < count ? 1 / (after * after - s->square) : 0;
+    }
+}
+
+// Slices and rows of discs on one side, the one at 0 not counted. The last is none that is left out, or hidden samples next
+// to it would jump as the next is needed.
+static int count_slices(const struct hf_layers *l, float limit, size_t *rows)
+{
+    int n = 0;
+    for (float r = 0, before = 0; r < limit || is_left_out(&l->set, n, before, r); n++) {
+        before = r;
+        r = next_radius(&l->set, r);
+        *rows += (size_t)(2 + l->parts) * (size_t)disc_rows(r * (1 + fabsf(l->chromatic)));
+    }
+    return n;
+}
+
+size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit)
+{
+    size_t rows = 3 + 2 * (size_t)disc_rows(limit);
+    const size_t side = (size_t)count_slices(l, limit, &rows), n = 2 * side + 1;
+    const size_t group =
+        ((size_t)(2 + l->parts) * n + 2) * sizeof(struct hf_slice) + 2 * rows * sizeof(struct hf_disc_row);
+    return (size_t)l->groups * group + side * sizeof(struct hf_shape_size);
+}
+
+// By how much a group's discs are larger: red ones are behind the focus, and smaller before it, blue ones the other way.
+static float shift_of(const struct hf_layers *l, int group, float radius)
+{
+    const float shift = group == 0 ? l->chromatic : group == 2 ? -l->chromatic : 0;
+    return radius < 0 ? -shift : shift;
+}
+
+// A slice of one radius, the number'th from 0; which: as in hf_shapes, of which 0 and 2 have samples of single pixels.
+static struct hf_disc_row *make_slice(struct hf_layers *l, struct hf_slice *s, int group, float radius, int number,
+                                      int which, struct hf_disc_row *row)
+{
+    const int finest = which == 1, level = which == 2 ? 0 : hf_max(level_of(&l->set, radius), finest);
+    const float shift = shift_of(l, group, radius);
+    *s = (struct hf_slice){.radius = radius, .level = level, .sparse = which == 2};
+    if (l->shaped && number > 0) {
+        const struct hf_shapes *shapes = &l->shapes[shift > 0 ? 1 : shift < 0 ? 2 : 0];
+        s->shape = &shapes->shape[number - 1][shapes->planes == 3 ? group : 0][which];
+        s->rows = 1 - s->shape->top;
+        s->reach = hf_max(s->shape->reach + 1, s->rows);
+        s->scale = (float)(1 / s->shape->sum);
+    } else {
+        make_disc(s, fabs((double)radius) * (1 + shift) / (1 << level), l->wide, row);
+        row += s->rows;
+    }
+    s->scale /= (float)(1 << 2 * (level - finest));
+    return row;
+}
+
+// The radii of one slice in both tables; before: how large that of the one towards the focus is.
+static struct hf_disc_row *make_both(struct hf_layers *l, int group, int i, float radius, int number, float before,
+                                     struct hf_disc_row *row)
+{
+    struct hf_slice *s = l->group[group] + i;
+    row = make_slice(l, s, group, radius, number, 0, row);
+    row = make_slice(l, s + l->slices, group, radius, number, 1, row);
+    s[l->slices].empty = is_left_out(&l->set, number, before, fabsf(radius));
+    return row;
+}
+
+// Those of a group's shares: at its slices, and between two that are coarser than their pixels.
+static struct hf_disc_row *make_shines(struct hf_layers *l, int group, int middle, struct hf_disc_row *row)
+{
+    struct hf_slice *of = l->group[group], *s = of + 2 * l->slices;
+    l->shines = 0;
+    for (int i = 0; i < l->slices; i++) {
+        const int last = i + 1 == l->slices, parts = !last && of[i].level && of[i + 1].level ? l->parts : 1;
+        const float apart = last ? 0 : of[i + 1].radius - of[i].radius;
+        of[i].shine = l->shines;
+        for (int k = 0; k < parts; k++) {
+            const float r = of[i].radius + apart * (float)k / (float)parts;
+            row = make_slice(l, &s[l->shines++], group, r, abs(i - middle), 2, row);
+        }
+    }
+    return row;
+}
+
+// The last slice of full resolution before the far ones, again at half of it: of samples between the two slices, what the
+// former has of them. It begins with none of those at the former's radius, or they would cover at once.
+static struct hf_disc_row *make_covers(struct hf_layers *l, int group, int middle, struct hf_disc_row *row)
+{
+    const struct hf_slice *s = l->group[group];
+    int i = middle;
+    while (i + 1 < l->slices && s[i + 1].level == 0)
+        i++;
+    l->last = i + 1 < l->slices ? i : -1;
+    for (int t = 0; t < 2 && l->last >= 0; t++) {
+        struct hf_slice *c = l->group[group] + (2 + l->parts) * l->slices + t;
+        const float from = s[i].radius * s[i].radius, to = s[i + 1].radius * s[i + 1].radius;
+        row = make_slice(l, c, group, s[i].radius, i - middle, 1, row);
+        c->scale *= t ? HF_LAYERS_COVER : HF_LAYERS_COVER / 4;
+        c->before = s[i].radius;
+        c->after = s[i + 1].radius;
+        c->before_square = from;
+        c->square = HF_LAYERS_COVER * from + (1 - HF_LAYERS_COVER) * to;
+        c->radius = sqrtf(c->square);
+        c->before_scale = 1 / (c->square - from);
+        c->after_scale = 1 / (to - c->square);
+    }
+    return row;
+}
+
+static int slices_of(const struct hf_layers *l, float limit)
+{
+    size_t unused = 0;
+    return count_slices(l, limit, &unused);
+}
+
+int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem)
+{
+    struct hf_shape_size *size = l->tables.data;
+    struct hf_shape_key key = l->key;
+    float r = 0;
+    key.count = hf_max(slices_of(l, -l->nearest), slices_of(l, l->farthest));
+    for (int i = 0; i < key.count; i++) {
+        size[i].radius = r = next_radius(&l->set, r);
+        size[i].level = level_of(&l->set, r);
+    }
+    l->most_windows = l->most_rows = 0;
+    for (int i = 0; i < (l->chromatic != 0 ? 3 : 1); i++) {
+        struct hf_shapes *s = &l->shapes[i];
+        key.factor = 1 + (i == 1 ? fabsf(l->chromatic) : i == 2 ? -fabsf(l->chromatic) : 0);
+        const int err = hf_shapes_build(s, &key, size, picture, mem);
+        if (err)
+            return err;
+        for (int j = 0; j < key.count; j++)
+            for (int k = 0; k < 3 * s->planes; k++) {
+                l->most_windows = hf_max(l->most_windows, s->shape[j][k / 3][k % 3].windows);
+                l->most_rows = hf_max(l->most_rows, s->shape[j][k / 3][k % 3].rows);
+            }
+    }
+    return HF_OK;
+}
+
+// No sum of samples may pass the largest float: the weights of some are up to 7 together, and a source counts as much as
+// its shape is small, which a narrow ring or a dark picture is.
+static float largest_sample(const struct hf_layers *l)
+{
+    float scale = 4;
+    for (int g = 0; g < l->groups; g++)
+        for (int i = 0; i < 2 * l->slices + l->shines; i++)
+            scale = fmaxf(scale, l->group[g][i].scale);
+    return 1.7014118e38f / scale;  // 2^127: 2^125 for discs
+}
+
+void hf_layers_make_slices(struct hf_layers *l)
+{
+    const int near = slices_of(l, -l->nearest), far = slices_of(l, l->farthest);
+    l->slices = near + 1 + far;
+    struct hf_slice *at = l->tables.data;
+    for (int g = 0; g < l->groups; g++, at += (2 + l->parts) * l->slices + 2)
+        l->group[g] = at;
+    struct hf_disc_row *row = (struct hf_disc_row *)at;
+    l->most_tiles = 0;
+    for (int g = 0; g < l->groups; g++) {
+        row = make_both(l, g, near, 0, 0, 0, row);
+        for (int side = -1; side <= 1; side += 2) {
+            float before = 0, r;
+            for (int i = 1; i <= (side < 0 ? near : far); i++, before = r) {
+                r = next_radius(&l->set, before);
+                row = make_both(l, g, near + side * i, (float)side * r, i, before, row);
+            }
+        }
+        row = make_shines(l, g, near, row);
+        for (int t = 0; t < 3; t++)
+            set_neighbours(l->group[g] + t * l->slices, t < 2 ? l->slices : l->shines);
+        row = make_covers(l, g, near, row);
+        for (int i = 0; i < 2 * l->slices + l->shines; i++)
+            l->most_tiles = hf_max(l->most_tiles, hf_layers_tiles_around(l->group[g] + i));
+    }
+    l->largest = largest_sample(l);
+    hf_layers_use_group(l, 0);
+}
+
+void hf_layers_use_group(struct hf_layers *l, int group)
+{
+    l->slice = l->group[group];
+    l->behind = l->slice + l->slices;
+    l->shine = l->behind + l->slices;
+    l->cover = l->slice + (2 + l->parts) * l->slices;
+}
+
+int hf_layers_tiles_around(const struct hf_slice *s)
+{
+    return (((s->reach + 3 + HF_LAYERS_MARGIN) << s->level) + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
+}

@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The slices of a cell put together: what lies before the focus and behind it at half resolution, what is near the focus
+// at full resolution, and these three at the end.
+#include <math.h>
+#include <string.h>
+
+#include "engine/layers/parts.h"
+
+// Bring what a level holds of touched tiles to the next finer one.
+static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int level)
+{
+    const struct hf_window *from = &c->sum[level], *to = &c->sum[level - 1];
+    const int height = c->rows * (TILE >> (level - 1)) + MARGIN, right = c->columns * (TILE >> (level - 1)) + LEFT;
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, touched, level - 1, ty, &s);) {
+            // One more on every side: what comes next reads that.
+            const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT, x1 = s.x1 + 16 < right ? s.x1 + 16 : right;
+            int y0, y1;
+            hf_layers_clip_rows(c, level - 1, ty, &y0, &y1);
+            y0 = y0 - 1 > -MARGIN ? y0 - 1 : -MARGIN;
+            y1 = y1 + 1 < height ? y1 + 1 : height;
+            for (int y = y0; y < y1; y++)
+                for (int i = 0; i <= c->l->channels; i++) {
+                    const float *a = from->at + (y >> 1) * from->row + i * from->channel + x0 / 2;
+                    c->k->up(a, a + (y & 1 ? from->row : -from->row), (x1 - x0) / 2,
+                             to->at + y * to->row + i * to->channel + x0);
+                }
+        }
+}
+
+// Put the sums of a slice under what a stack holds.
+static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_sums sums, int keep_part)
+{
+    const int finest = stack == MIDDLE ? 0 : 1, channels = c->l->channels;
+    while (level > finest + 1)
+        refine(c, &c->touched, level--);
+    const struct hf_window *from = &c->sum[level];
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, &c->touched, finest, ty, &s);) {
+            int y0, y1;
+            hf_layers_clip_rows(c, finest, ty, &y0, &y1);
+            for (int y = y0; y < y1; y++) {
+                const struct hf_stack_row to = hf_layers_stack_at(c, stack, s.x0, y);
+                const float *in[5];
+                for (int i = 0; i <= channels; i++) {
+                    const float *a = from->at + (y >> (level - finest)) * from->row + i * from->channel;
+                    const int as = i < channels ? i : 4;
+                    in[as] = level > finest ? c->row[as] : a + s.x0;
+                    if (level > finest)
+                        c->k->up(a + s.x0 / 2, a + s.x0 / 2 + (y & 1 ? from->row : -from->row), (s.x1 - s.x0) / 2,
+                                 c->row[as]);
+                }
+                c->k->blend(&to, channels, in, sums, s.x1 - s.x0, keep_part ? c->part + y * c->part_row + s.x0 : NULL);
+                if (keep_part && stack == FAR && c->covering)
+                    for (int x = s.x0; x < s.x1; x++)
+                        c->part[y * c->part_row + x] *= c->lift[y * c->part_row + x];
+            }
+        }
+}
+
+static void mark(const struct hf_cell *c, const struct hf_tile_map *from, struct hf_tile_map *to)
+{
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (int tx = -1; tx <= c->columns; tx++)
+            *hf_layers_map_at(to, tx, ty) |= *hf_layers_map_at(from, tx, ty);
+}
+
+// Fill a row of a tile of a window's channel.
+static void fill_tile(const struct hf_window *w, int channel, int tx, int y, float value)
+{
+    float *p = w->at + y * w->row + channel * w->channel + tx * TILE;
+    for (int x = 0; x < TILE; x++)
+        p[x] = value;
+}
+
+#define LEAST_OPEN (1.0f / 16)
+
+// Of light: alpha goes with the coverage, or what is opaque would not be.
+enum { LIT = 3 };
+
+// No light where there is none yet.
+static void begin_light(const struct hf_cell *c, int stack, const struct hf_tile_map *shone)
+{
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++) {
+            uint8_t *lit = hf_layers_map_at(&c->lit[stack], tx, ty);
+            if (*lit || !*hf_layers_map_at(shone, tx, ty))
+                continue;
+            *lit = 1;
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
+                for (int i = 0; i < LIT; i++)
+                    fill_tile(&c->light[stack], i, tx, y, 0);
+        }
+}
+
+// Nothing in the tiles of the middle that a slice is the first to touch.
+static void begin_tiles(const struct hf_cell *c)
+{
+    const int channels = c->l->channels;
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++) {
+            uint8_t *begun = hf_layers_map_at(&c->begun, tx, ty);
+            if (*begun || !*hf_layers_map_at(&c->touched, tx, ty))
+                continue;
+            *begun = 1;
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
+                for (int i = 0; i <= channels + 3; i++)
+                    fill_tile(&c->stack[MIDDLE], i, tx, y, i == channels + 1 || i == channels + 2);
+        }
+}
+
+// An empty stack at half resolution.
+static void begin_stack(struct hf_cell *c, int stack)
+{
+    const int channels = c->l->channels, n = c->columns * TILE / 2 + 2 * MARGIN;
+    if (c->opened[stack])
+        return;
+    c->opened[stack] = 1;
+    for (int y = -MARGIN; y < c->rows * TILE / 2 + MARGIN; y++) {
+        const struct hf_stack_row r = hf_layers_stack_at(c, stack, -MARGIN, y);
+        for (int i = 0; i < channels; i++)
+            memset(r.colour[i], 0, sizeof(float) * (size_t)n);
+        memset(r.weight, 0, sizeof(float) * (size_t)n);
+        for (int x = 0; x < n; x++)
+            r.open[x] = r.behind[x] = 1;
+        for (int x = 0; stack == FAR && x < n; x++)
+            c->lift[y * c->part_row - MARGIN + x] = 1;
+    }
+}
+
+static void begin(struct hf_cell *c, int stack)
+{
+    if (stack == MIDDLE)
+        begin_tiles(c);
+    else
+        begin_stack(c, stack);
+}
+
+// How much of a sample of radius r belongs to a slice.
+static float part_of(const struct hf_slice *s, float r)
+{
+    const float square = r * r;
+    return r <= s->before || r >= s->after ? 0
+           : r < s->radius                 ? (square - s->before_square) * s->before_scale
+                                           : 1 - (square - s->square) * s->after_scale;
+}
+
+// Draw shares of highlights of one radius, at full resolution, unless the slice before has.
+static void draw_light(struct hf_cell *c, int number, struct hf_shine *shine)
+{
+    const struct hf_slice *wide = &c->l->shine[number];
+    const struct hf_build b = {.s = wide, .set = &c->samples->seen, .weight = c->samples->share, .channels = LIT};
+    if (shine->number == number + 1)
+        return;
+    shine->number = number + 1;
+    shine->any = hf_layers_mark_used(c, number, HF_KIND_SHARES) && hf_layers_mark_touched(c, wide, &shine->shone);
+    if (shine->any)
+        hf_layers_draw_slice(c, &b, &shine->shone, &shine->sum);
+}
+
+// Put them where the slice shows.
+static void put_light(struct hf_cell *c, int stack, const struct hf_shine *shine, float amount)
+{
+    const struct hf_window *to = &c->light[stack];
+    begin_light(c, stack, &shine->shone);
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0, end; (end = hf_layers_next_run(&shine->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
+                const int x0 = tx * TILE, n = (end - tx) * TILE;
+                const float *a = c->part + (y >> 1) * c->part_row + (x0 >> 1);
+                c->k->up(a, a + (y & 1 ? c->part_row : -c->part_row), n / 2, c->row[0]);
+                for (int i = 0; i < LIT; i++) {
+                    const float *in = shine->sum.at + y * shine->sum.row + i * shine->sum.channel + x0;
+                    float *out = to->at + y * to->row + i * to->channel + x0;
+                    c->k->light(c->row[0], amount, in, n, out);
+                }
+            }
+}
+
+// All shares that belong to a slice: between its neighbours.
+static void put_lights(struct hf_cell *c, int stack, int slice)
+{
+    const struct hf_layers *l = c->l;
+    const int before = slice > 0 ? l->slice[slice - 1].shine : -1, own = l->slice[slice].shine,
+              end = slice + 1 < l->slices ? l->slice[slice + 1].shine : l->shines;
+    for (int i = before + 1; i < end; i++) {
+        struct hf_shine *shine = &c->shine[i - (i < own ? before : own)];
+        draw_light(c, i, shine);
+        if (shine->any)
+            put_light(c, stack, shine, part_of(&l->slice[slice], l->shine[i].radius));
+    }
+}
+
+// Before the first slice behind the focus: what is near has covered so much, of which a part is held back.
+static void hold_back(const struct hf_cell *c)
+{
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++)
+            for (int y = ty * TILE; *hf_layers_map_at(&c->begun, tx, ty) && y < (ty + 1) * TILE; y++) {
+                const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
+                for (int x = 0; x < TILE; x++)
+                    r.held[x] = c->l->held * (1 - r.open[x]);
+            }
+}
+
+// How what is seen of a slice is put under a stack.
+static enum hf_layers_sums sums_of(const struct hf_layers *l, const struct hf_slice *s, int stack)
+{
+    return stack == NEAR                                                  ? HF_SUMS_HIDING
+           : stack == MIDDLE && s->radius > 0 && l->levels && l->held > 0 ? HF_SUMS_HELD
+                                                                          : HF_SUMS_SEEN;
+}
+
+void hf_layers_put_slice(struct hf_cell *c, int i)
+{
+    const struct hf_layers *l = c->l;
+    const struct hf_slice *s = &l->slice[i], *behind = &l->behind[i];
+    const int stack = s->level == 0 ? MIDDLE : s->radius < 0 ? NEAR : FAR;
+    struct hf_tile_map *reached = stack == NEAR ? &c->near : stack == FAR ? &c->far : &c->middle;
+    if (s->radius == 0)
+        hold_back(c);
+    if (hf_layers_mark_used(c, i, HF_KIND_SEEN) && hf_layers_mark_touched(c, s, &c->touched)) {
+        const int shares = l->set.highlights && s->level > 0;
+        const struct hf_build b = {.s = s,
+                                   .set = &c->samples->seen,
+                                   .weight = c->samples->seen.weight,
+                                   .share = shares ? c->samples->share : NULL,
+                                   .channels = l->channels + 1,
+                                   .more = &c->samples->mixed};
+        hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
+        begin(c, stack);
+        put_under(c, stack, s->level, sums_of(l, s, stack), shares);
+        if (s->radius != 0)
+            mark(c, &c->touched, reached);
+        if (shares)
+            put_lights(c, stack, i);
+    }
+    // Next to the focus the border between what is seen and what is hidden is as fine as the picture: quads would leave a
+    // line open.
+    const int pixels = s->level == 0 && fabsf(s->radius) < 2;
+    behind = pixels ? s : behind;
+    if (l->levels && hf_layers_mark_used(c, i, HF_KIND_HIDDEN) && hf_layers_mark_touched(c, behind, &c->touched)) {
+        const struct hf_build b = {.s = behind,
+                                   .set = &c->samples->hidden,
+                                   .weight = c->samples->hidden.weight,
+                                   .finest = !pixels,
+                                   .spread = pixels,
+                                   .channels = l->channels + 1,
+                                   .more = &c->samples->beyond};
+        hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
+        begin(c, stack);
+        put_under(c, stack, behind->level, HF_SUMS_HIDDEN, 0);
+        mark(c, &c->touched, reached);
+    }
+}
+
+// What a cover leaves open of the far stack.
+static void cover_with(struct hf_cell *c, enum hf_kind kind)
+{
+    const struct hf_layers *l = c->l;
+    const int hidden = kind == HF_KIND_HIDDEN;
+    const struct hf_slice *s = &l->cover[hidden];
+    const struct hf_layers_set *set = hidden ? &c->samples->hidden : &c->samples->seen;
+    const struct hf_build b = {.s = s,
+                               .set = set,
+                               .weight = set->weight,
+                               .finest = hidden,
+                               .first = l->channels,
+                               .channels = l->channels + 1,
+                               .more = hidden ? &c->samples->beyond : &c->samples->mixed};
+    if (!hf_layers_mark_used(c, l->last + 1, kind) || !hf_layers_mark_touched(c, s, &c->touched))
+        return;
+    const struct hf_window *from = &c->sum[1];
+    hf_layers_draw_slice(c, &b, &c->touched, from);
+    begin_stack(c, FAR);
+    c->covering = 1;
+    mark(c, &c->touched, &c->covered);
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span span = {.tx = -1}; hf_layers_next_span(c, &c->touched, 1, ty, &span);) {
+            int y0, y1;
+            hf_layers_clip_rows(c, 1, ty, &y0, &y1);
+            for (int y = y0; y < y1; y++) {
+                const struct hf_stack_row to = hf_layers_stack_at(c, FAR, span.x0, y);
+                const float *v = from->at + y * from->row + l->channels * from->channel + span.x0;
+                for (int x = 0; x < span.x1 - span.x0; x++) {
+                    const float left = v[x] < 1 ? 1 - v[x] : 0;
+                    to.open[x] *= left;
+                    to.behind[x] *= hidden ? left : 1;
+                }
+            }
+        }
+}
+
+// By what of the far stack was open at first its sums are divided: an edge of what covers it leaves a part of 1, and only
+// where hardly anything is open less is made of it.
+static void lift(const struct hf_cell *c, int whole)
+{
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, &c->covered, 1, ty, &s);) {
+            int y0, y1;
+            hf_layers_clip_rows(c, 1, ty, &y0, &y1);
+            for (int y = y0; y < y1; y++) {
+                const struct hf_stack_row r = hf_layers_stack_at(c, FAR, s.x0, y);
+                float *by = c->lift + y * c->part_row + s.x0;
+                for (int x = 0; !whole && x < s.x1 - s.x0; x++)
+                    by[x] = 1 / (r.open[x] > LEAST_OPEN ? r.open[x] : LEAST_OPEN);
+                for (int i = 0; whole && i < c->l->channels; i++)
+                    for (int x = 0; x < s.x1 - s.x0; x++)
+                        r.colour[i][x] *= by[x];
+                for (int x = 0; whole && x < s.x1 - s.x0; x++)
+                    r.weight[x] *= by[x];
+            }
+        }
+}
+
+void hf_layers_cover(struct hf_cell *c)
+{
+    cover_with(c, HF_KIND_SEEN);
+    if (c->l->levels)
+        cover_with(c, HF_KIND_HIDDEN);
+    lift(c, 0);
+}
+
+// Is a tile nothing but sharp pixels that nothing else reaches?
+static int is_sharp(const struct hf_cell *c, int tx, int ty)
+{
+    const struct hf_layers_range r = hf_layers_range_at(c, c->l->seen_range, tx, ty),
+                                 m = hf_layers_range_at(c, c->l->mixed_range, tx, ty);
+    return r.low == 0 && r.high == 0 && m.low > m.high && !*hf_layers_map_at(&c->near, tx, ty) &&
+           !*hf_layers_map_at(&c->far, tx, ty) && !*hf_layers_map_at(&c->middle, tx, ty);
+}
+
+// The pixels themselves.
+static void copy_tile(const struct hf_cell *c, int tx, int ty, float *const out[4], ptrdiff_t stride)
+{
+    const struct hf_layers_set *s = &c->samples->seen;
+    for (int i = 0; i < c->l->channels; i++)
+        for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
+            memcpy(out[i] + y * stride + tx * TILE, s->colour[i] + (c->y0 + y) * s->stride + c->x0 + tx * TILE,
+                   sizeof(float) * TILE);
+}
+
+// A row of a plane of a stack at full resolution.
+static void raise_plane(const struct hf_cell *c, int stack, int plane, int x, int n, int y, float *out)
+{
+    const struct hf_window *w = &c->stack[stack];
+    const float *a = w->at + (y >> 1) * w->row + plane * w->channel + (x >> 1);
+    c->k->up(a, a + (y & 1 ? w->row : -w->row), n / 2, out);
+}
+
+// Its colours and weight.
+static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float *const out[5])
+{
+    const struct hf_window *light = &c->light[stack];
+    for (int i = 0; i <= c->l->channels; i++)
+        raise_plane(c, stack, i, x, n, y, out[i < c->l->channels ? i : 4]);
+    for (int tx = x / TILE, end; (end = hf_layers_next_run(&c->lit[stack], &tx, y / TILE, (x + n) / TILE, 1)) > tx;
+         tx = end)
+        for (int i = 0; i < LIT; i++) {
+            const float *in = light->at + y * light->row + i * light->channel + tx * TILE;
+            float *to = out[i] + tx * TILE - x;
+            for (int j = 0; j < (end - tx) * TILE; j++)
+                to[j] += in[j];
+        }
+}
+
+void hf_layers_begin_middle(const struct hf_cell *c)
+{
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0, end; (end = hf_layers_next_run(&c->near, &tx, ty, c->columns, 1)) > tx; tx = end)
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
+                const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
+                float *const out[5] = {r.colour[0], r.colour[1], r.colour[2], r.colour[3], r.weight};
+                raise(c, NEAR, tx * TILE, (end - tx) * TILE, y, out);
+                for (int x = 0; x < (end - tx) * TILE; x++)
+                    r.open[x] = r.weight[x] < 1 ? 1 - r.weight[x] : 0;
+                raise_plane(c, NEAR, c->l->channels + 2, tx * TILE, (end - tx) * TILE, y, r.behind);
+                memset(hf_layers_map_at(&c->begun, tx, ty), 1, (size_t)(end - tx));
+            }
+}
+
+// What tiles that are put together alike have in common.
+static int state_of(const struct hf_cell *c, int tx, int ty)
+{
+    return *hf_layers_map_at(&c->far, tx, ty) | *hf_layers_map_at(&c->begun, tx, ty) << 1;
+}
+
+// A row of a run of tiles.
+static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, float *const out[4])
+{
+    const int far = state & 1, channels = c->l->channels;
+    struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, x, y);
+    const float *own[6] = {NULL};
+    hf_layers_planes_at(c->l, &c->samples->seen, c->samples->seen.weight, c->x0 + x, c->y0 + y, own);
+    if (!(state >> 1)) {
+        for (int i = 0; i < channels; i++)
+            r.colour[i] = c->none;
+        r.weight = c->none;
+    }
+    if (far)
+        raise(c, FAR, x, n, y, c->row);
+    c->k->finish(&r, far ? (const float *const *)c->row : NULL, own, channels,
+                 c->l->set.hidden ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, n, out);
+}
+
+void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)
+{
+    lift(c, 1);
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0, end; tx < c->columns; tx = end) {
+            const int state = state_of(c, tx, ty);
+            for (end = tx + 1; end < c->columns && state_of(c, end, ty) == state;)
+                end++;
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
+                float *to[4] = {NULL};
+                for (int i = 0; i < c->l->channels; i++)
+                    to[i] = out[i] + y * stride + tx * TILE;
+                finish_row(c, state, tx * TILE, y, (end - tx) * TILE, to);
+            }
+        }
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++)
+            if (is_sharp(c, tx, ty))
+                copy_tile(c, tx, ty, out, stride);
+}

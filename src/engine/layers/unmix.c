@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mixed pixels. The colour of an anti-aliased edge is a mixture of two surfaces while its depth is that of one; each of
+// them becomes a sample of its own, so that none is blurred by the other's radius.
+//
+// Nothing of this begins at once: how mixed a pixel is grows with how far the radii around it differ, and a radius midway
+// between front and back is of both, so that a focus or a lens that moves a little changes little.
+#include "engine/layers/unmix.h"
+
+#include <math.h>
+
+#include "pixel/pass_c.h"
+
+const float hf_unmix_weights[7][7] = {
+#define W(x, y) (x) || (y) ? 1.0f / (((x) * (x) + (y) * (y)) * ((x) * (x) + (y) * (y))) : 0
+#define ROW(y)                                                                                                         \
+    {                                                                                                                  \
+        W(-3, y), W(-2, y), W(-1, y), W(0, y), W(1, y), W(2, y), W(3, y)                                               \
+    }
+    ROW(-3), ROW(-2), ROW(-1), ROW(0),
+    ROW(1),  ROW(2),  ROW(3)
+#undef ROW
+#undef W
+};
+
+enum { SIDE = 5 };  // pixels each way
+
+// The mean of the pixels of 5 x 5 on one side, the farther from `other` in colour the more of it, by the eighth power of
+// the distance: nearly the farthest alone, but where two are as far a picture that moves does not jump from one to the other.
+static void farthest(const struct hf_unmix_row *u, int x, int front, const float *other, float *colour, float *radius)
+{
+    float share[SIDE * SIDE], distance[SIDE * SIDE], most = 0, sum = 0;
+    int pixel[SIDE * SIDE], count = 0;
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const int y = 1 + k / SIDE, i = x - 2 + k % SIDE;
+        const float of_front = hf_saturate((u->middle[x] - u->radius[y][i]) * u->slope[x] + 0.5f);
+        share[count] = front ? of_front : 1 - of_front;
+        pixel[count] = k;
+        count += share[count] > 0;  // mostly few are
+    }
+    for (int j = 0; j < count; j++) {
+        const int y = 1 + pixel[j] / SIDE, i = x - 2 + pixel[j] % SIDE;
+        float d = 0;
+        for (int c = 0; c < u->channels; c++)
+            d = d + fabsf(u->colour[y][c][i] - other[c]) * 0.125f;  // of the largest samples, too, it is finite
+        distance[j] = d;
+        most = d > most ? d : most;
+    }
+    for (int j = 0; j < count; j++) {
+        const int y = 1 + pixel[j] / SIDE, i = x - 2 + pixel[j] % SIDE;
+        const float far = most > 0 ? distance[j] / most : 1, square = far * far;
+        const float w = share[j] * ((square * square) * (square * square)) * 0.03125f;  // sums of 25 are finite
+        if (!(w > 0))
+            continue;
+        sum = sum + w;
+        *radius = *radius + w * u->radius[y][i];
+        for (int c = 0; c < u->channels; c++)
+            colour[c] = colour[c] + w * u->colour[y][c][i];
+    }
+    *radius = sum > 0 ? *radius / sum : 0;
+    for (int c = 0; c < u->channels; c++)
+        colour[c] = sum > 0 ? colour[c] / sum : 0;
+}
+
+int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], float mean[2][5], float spread[2])
+{
+    if (weight[0] == 0 && weight[1] == 0)
+        return 0;
+    const int side = weight[0] < weight[1] ? 0 : 1;
+    const float little = HF_UNMIX_LEAN * (weight[0] + weight[1]);
+    float colour[4] = {0}, radius = 0;
+    if (!(weight[side] < little))
+        return 1;
+    const float known = weight[side] / little;
+    spread[side] = spread[side] * known;
+    farthest(u, x, !side, mean[!side], colour, &radius);
+    for (int c = 0; c < u->channels; c++)
+        mean[side][c] = known > 0 ? colour[c] + known * (mean[side][c] - colour[c]) : colour[c];
+    mean[side][4] = known > 0 ? radius + known * (mean[side][4] - radius) : radius;
+    return 1;
+}
+
+static void keep(const struct hf_unmix_row *u, int x)
+{
+    for (int c = 0; c < u->channels; c++)
+        u->seen[c][x] = u->colour[3][c][x];
+    u->seen[4][x] = 1;
+    u->mixed[4][x] = 0;
+    u->seen[5][x] = u->radius[3][x];
+}
+
+// How much of the pixel the front is: colours of front and back, and how far those of both spread, are given. The pixel's
+// own surface is nearly all of it where its own colours spread too far to tell.
+static float share(const struct hf_unmix_row *u, int x, float a0, const float *f, const float *b, const float *spread)
+{
+    float along = 0, apart = 0, size = 0, off = 0;
+    for (int c = 0; c < u->channels; c++) {
+        const float d = f[c] - b[c];
+        along = along + (u->colour[3][c][x] - b[c]) * d;
+        apart = apart + d * d;
+        size = size + (f[c] * f[c] + b[c] * b[c]);
+    }
+    const float own = a0 * a0 * spread[0] + (1 - a0) * (1 - a0) * spread[1];
+    const float es = HF_UNMIX_SPREAD * own + 1e-3f * size;
+    float a = (along + es * a0) / (apart + es);
+    a = a > 0 ? a < 1 ? a : 1 : a <= 0 ? 0 : a0;
+    for (int c = 0; c < u->channels; c++) {
+        const float rest = u->colour[3][c][x] - a * f[c] - (1 - a) * b[c];
+        off = off + rest * rest;
+    }
+    const float trust = apart / (apart + off);
+    return trust >= 0 ? a0 + (a - a0) * trust : a0;
+}
+
+// Within what there is: a misfit must not make colours that nobody has seen.
+static float between(float v, float a, float b)
+{
+    const float low = a < b ? a : b, high = a > b ? a : b;
+    v = v > low ? v : low;
+    return v < high ? v : high;
+}
+
+// An eighth of how bright a colour is: of the largest samples, too, it is finite.
+static float eighth_light(float red, float green, float blue)
+{
+    return (fabsf(red) + fabsf(green) + fabsf(blue)) * 0.125f;
+}
+
+static float light_of(const struct hf_unmix_row *u, int y, int x)
+{
+    return eighth_light(u->colour[y][0][x], u->colour[y][1][x], u->colour[y][2][x]);
+}
+
+// Sums of a side become its mean. Returns its colours' variance.
+static float finish(int channels, float counted, float squares, float *mean)
+{
+    float square = 0;
+    for (int c = 0; c < 5; c++)
+        mean[c] = counted > 0 ? mean[c] / counted : 0;
+    for (int c = 0; c < channels; c++)
+        square = square + mean[c] * mean[c];
+    const float spread = (counted > 0 ? squares / counted : 0) - square;
+    return spread > 0 ? spread : 0;
+}
+
+float hf_unmix_lamp(const struct hf_unmix_row *u, int x, float most, float alpha)
+{
+    const float own = light_of(u, 3, x), least = most > 1e-30f ? most : 1e-30f;
+    const float over = own - most, scale = 4 / (over > 1e-30f ? over : 1e-30f);
+    float count = 0;
+    for (int i = 0; i < 49; i++)
+        count = count + hf_saturate((light_of(u, i / 7, x + i % 7 - 3) - most) * scale - 1);
+    const float lamp = hf_saturate((own / least - HF_UNMIX_LAMP) * 2) * hf_saturate(HF_UNMIX_PIXELS - count);
+    if (u->channels < 4)
+        return lamp;
+    return lamp * hf_saturate((HF_UNMIX_LAMP - u->colour[3][3][x] / (alpha > 1e-30f ? alpha : 1e-30f)) * 4);
+}
+
+// How far the pixel is of a lamp behind the edge.
+static float lit(const struct hf_unmix_row *u, int x, float mean[2][5])
+{
+    const float front = eighth_light(mean[0][0], mean[0][1], mean[0][2]),
+                back = eighth_light(mean[1][0], mean[1][1], mean[1][2]);
+    const float most = front > back ? front : back, wider = fabsf(mean[1][4]) - fabsf(mean[0][4]);
+    const float alpha = mean[0][3] > mean[1][3] ? mean[0][3] : mean[1][3];
+    return light_of(u, 3, x) > most * HF_UNMIX_LAMP && wider > 0 ? hf_saturate(wider) * hf_unmix_lamp(u, x, most, alpha)
+                                                                 : 0;
+}
+
+static void unmix_pixel(const struct hf_unmix_row *u, int x)
+{
+    float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}}, spread[2] = {0};
+    const float plain = light_of(u, 3, x) * HF_UNMIX_PLAIN;
+    const float middle = u->middle[x], slope = u->slope[x], own = u->radius[3][x];
+    const float a0 = hf_saturate((middle - own) * slope + 0.5f);
+    for (int y = 0; y < 7; y++)
+        for (int i = 0; i < 7; i++) {
+            const int at = x + i - 3;
+            if (y == 3 && i == 3)
+                continue;
+            const float w = u->sure[y][at] * hf_unmix_weights[y][i];
+            const float front = w * hf_saturate((middle - u->radius[y][at]) * slope + 0.5f), of[2] = {front, w - front};
+            const float counts = hf_layers_dimmed(light_of(u, y, at), plain);
+            float square = 0;
+            for (int c = 0; c < u->channels; c++)
+                square = square + u->colour[y][c][at] * u->colour[y][c][at];
+            for (int side = 0; side < 2; side++) {
+                const float g = of[side] * counts;
+                weight[side] += of[side];
+                counted[side] += g;
+                spread[side] = spread[side] + g * square;
+                for (int c = 0; c < u->channels; c++)
+                    mean[side][c] = mean[side][c] + g * u->colour[y][c][at];
+                mean[side][4] = mean[side][4] + g * u->radius[y][at];
+            }
+        }
+    for (int side = 0; side < 2; side++)
+        spread[side] = finish(u->channels, counted[side], spread[side], mean[side]);
+    if (!hf_unmix_complete(u, x, weight, mean, spread)) {
+        keep(u, x);
+        return;
+    }
+    const float known = hf_saturate((weight[0] + weight[1]) * (1 / HF_UNMIX_FAINT));
+    const float own_share = share(u, x, a0, mean[0], mean[1], spread), by = (1 - u->sure[3][x]) * known;
+    const float lamp = lit(u, x, mean), less = own_share < HF_UNMIX_RIM ? own_share : HF_UNMIX_RIM;
+    const float a = lamp * (less - own_share) + own_share;
+    // What is not taken apart goes with the front.
+    const float seen = by * (a - 1) + 1, whole = seen > 0 ? (1 - by) / seen : 0;
+    for (int c = 0; c < u->channels; c++) {
+        const float v = u->colour[3][c][x], rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
+        const float more = rest > 0 && c < 3 ? rest : 0;
+        const float front = between(rest - lamp * more + mean[0][c], mean[0][c], v);
+        u->seen[c][x] = whole * (v - front) + front;
+        u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], v);
+    }
+    const float front = (1 - a0) * (mean[0][4] - own) + own;
+    u->seen[4][x] = seen;  // at most 1, and 1 where the other is 0: slices do not read the weights of such tiles
+    u->mixed[4][x] = 1 - seen;
+    u->seen[5][x] = whole * (own - front) + front;
+    u->mixed[5][x] = a0 * (mean[1][4] - own) + own;
+}
+
+void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)
+{
+    for (int x = 0; x < n; x++)
+        if (!(u->sure[3][x] < 1))
+            keep(u, x);
+        else
+            unmix_pixel(u, x);
+}
+
+enum { AROUND = 16 };  // floats on either side of a row of scratch
+
+size_t hf_layers_unmix_floats(int width)
+{
+    return 24 * ((size_t)width + 2 * AROUND) + HF_PAD;
+}
+
+// Which pixels of a row are not mixed, into its row of the ring.
+static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring, ptrdiff_t stride)
+{
+    const struct hf_buf *b = &f->buf[HF_LAYERS_BUF_RADIUS];
+    const float *radius[3];
+    float *sure = ring + (y & 7) * stride;
+    for (int i = 0; i < 3; i++)
+        radius[i] = hf_at(b, 0, x - AROUND, y + i - 1);
+    // Whole vectors, though only three pixels on either side are read.
+    f->k->edges.sure(radius, n + 2 * AROUND, sure - AROUND, sure + 8 * stride - AROUND, sure + 16 * stride - AROUND);
+}
+
+void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
+    const ptrdiff_t stride = n + 2 * AROUND;
+    float *ring = f->work + AROUND;
+    for (int y = y0 - 3; begin && l->edges && y < y0 + 3; y++)
+        sure_row(f, x, n, y, ring, stride);
+    for (int i = 0; begin && !l->edges && i < 8 * stride; i++)
+        f->work[i] = 1;
+    for (int y = y0; y < y1; y++) {
+        struct hf_unmix_row u = {
+            .channels = l->channels, .middle = ring + (8 + (y & 7)) * stride, .slope = ring + (16 + (y & 7)) * stride};
+        if (l->edges)
+            sure_row(f, x, n, y + 3, ring, stride);
+        for (int i = 0; i < 7; i++) {
+            u.radius[i] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x, y + i - 3);
+            u.sure[i] = ring + ((y + i - 3) & 7) * stride;
+            for (int c = 0; c < l->channels; c++)
+                u.colour[i][c] = hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], c, x, y + i - 3);
+        }
+        hf_row(&f->buf[HF_LAYERS_BUF_SEEN], l->channels, x, y, u.seen);
+        hf_row(&f->buf[HF_LAYERS_BUF_MIXED], l->channels, x, y, u.mixed);
+        for (int i = 0; i < 2; i++) {
+            u.seen[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, x, y);
+            u.mixed[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], i, x, y);
+        }
+        hf_layers_kernels(f)->unmix(&u, n);
+    }
+}

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mixed pixels on vectors: in the order of operations of unmix.c.
+#include "engine/layers/dimmed_vf.h"
+#include "engine/layers/unmix.h"
+#include "simd/simd.h"
+
+HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channels)
+{
+    for (int c = 0; c < channels; c++)
+        vf_store(u->seen[c] + x, vf_load(u->colour[3][c] + x));
+    layers_leave(u->seen[4] + x, vf_set1(1));
+    layers_leave(u->mixed[4] + x, vf_zero());
+    vf_store(u->seen[5] + x, vf_load(u->radius[3] + x));
+}
+
+// How far a radius is of the front.
+HF_INLINE vf layers_front(vf middle, vf slope, vf r)
+{
+    const vf s = vf_fma(vf_sub(middle, r), slope, vf_set1(0.5f));
+    return vf_min(vf_max(s, vf_zero()), vf_set1(1));
+}
+
+// An eighth of how bright a colour is: of the largest samples, too, it is finite.
+HF_INLINE vf layers_eighth_light(vf red, vf green, vf blue)
+{
+    return vf_mul(vf_add(vf_add(vf_abs(red), vf_abs(green)), vf_abs(blue)), vf_set1(0.125f));
+}
+
+HF_INLINE vf layers_light_of(const struct hf_unmix_row *u, int y, int x)
+{
+    return layers_eighth_light(vf_load(u->colour[y][0] + x), vf_load(u->colour[y][1] + x),
+                               vf_load(u->colour[y][2] + x));
+}
+
+// Sums of a side become its mean. Returns its colours' variance.
+HF_INLINE vf layers_finish(const int channels, vf counted, vf squares, vf *mean)
+{
+    const vm some = vf_gt(counted, vf_zero());
+    vf square = vf_zero();
+    for (int c = 0; c < 5; c++)
+        mean[c] = vf_keep(some, vf_div(mean[c], counted));
+    for (int c = 0; c < channels; c++)
+        square = vf_fma(mean[c], mean[c], square);
+    const vf spread = vf_sub(vf_keep(some, vf_div(squares, counted)), square);
+    return vf_keep(vf_gt(spread, vf_zero()), spread);
+}
+
+// Means and variances of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
+HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5],
+                          vf spread[2], vf *known)
+{
+    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x);
+    const vf plain = vf_mul(layers_light_of(u, 3, x), vf_set1(HF_UNMIX_PLAIN));
+    vf weight[2] = {vf_zero(), vf_zero()}, counted[2] = {vf_zero(), vf_zero()};
+    for (int i = 0; i < 2; i++) {
+        spread[i] = vf_zero();
+        for (int c = 0; c < 5; c++)
+            mean[i][c] = vf_zero();
+    }
+    for (int y = 0; y < 7; y++)
+        for (int i = 0; i < 7; i++) {
+            const int at = x + i - 3;
+            if (y == 3 && i == 3)
+                continue;
+            const vf w = vf_mul(vf_load(u->sure[y] + at), vf_set1(hf_unmix_weights[y][i]));
+            const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
+            weight[0] = vf_add(weight[0], f);
+            weight[1] = vf_add(weight[1], b);
+            const vf counts = layers_dimmed(layers_light_of(u, y, at), plain);
+            const vf front = vf_mul(f, counts), back = vf_mul(b, counts);
+            counted[0] = vf_add(counted[0], front);
+            counted[1] = vf_add(counted[1], back);
+            vf square = vf_zero();
+            for (int c = 0; c < channels; c++) {
+                const vf v = vf_load(u->colour[y][c] + at);
+                square = vf_fma(v, v, square);
+                mean[0][c] = vf_fma(front, v, mean[0][c]);
+                mean[1][c] = vf_fma(back, v, mean[1][c]);
+            }
+            spread[0] = vf_fma(front, square, spread[0]);
+            spread[1] = vf_fma(back, square, spread[1]);
+            mean[0][4] = vf_fma(front, r, mean[0][4]);
+            mean[1][4] = vf_fma(back, r, mean[1][4]);
+        }
+    for (int i = 0; i < 2; i++)
+        spread[i] = layers_finish(channels, counted[i], spread[i], mean[i]);
+    const vf both_weigh = vf_add(weight[0], weight[1]), little = vf_mul(vf_set1(HF_UNMIX_LEAN), both_weigh);
+    *known = vf_min(vf_mul(both_weigh, vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
+    const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], little), vf_gt(weight[1], little))));
+    if (!vm_any(missing))
+        return mixed;
+    float w[2][VF_N], m[2][5][VF_N], s[2][VF_N], both[VF_N];
+    vf_store(both, vf_keep(mixed, vf_set1(1)));
+    for (int i = 0; i < 2; i++) {
+        vf_store(w[i], weight[i]);
+        vf_store(s[i], spread[i]);
+        for (int c = 0; c < 5; c++)
+            vf_store(m[i][c], mean[i][c]);
+    }
+    for (int lane = 0; lane < VF_N; lane++) {
+        float one[2] = {w[0][lane], w[1][lane]}, of[2][5], spreads[2] = {s[0][lane], s[1][lane]};
+        if (both[lane] == 0)
+            continue;
+        for (int i = 0; i < 10; i++)
+            of[i / 5][i % 5] = m[i / 5][i % 5][lane];
+        both[lane] = (float)hf_unmix_complete(u, x + lane, one, of, spreads);
+        s[0][lane] = spreads[0];
+        s[1][lane] = spreads[1];
+        for (int i = 0; i < 10; i++)
+            m[i / 5][i % 5][lane] = of[i / 5][i % 5];
+    }
+    for (int i = 0; i < 10; i++)
+        mean[i / 5][i % 5] = vf_load(m[i / 5][i % 5]);
+    for (int i = 0; i < 2; i++)
+        spread[i] = vf_load(s[i]);
+    return vf_gt(vf_load(both), vf_zero());
+}
+
+HF_INLINE vf layers_rest(const struct hf_unmix_row *u, int x, int c, vf a, vf mean[2][5])
+{
+    return vf_fnma(vf_sub(vf_set1(1), a), mean[1][c], vf_fnma(a, mean[0][c], vf_load(u->colour[3][c] + x)));
+}
+
+HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channels, vf a0, vf mean[2][5],
+                          const vf spread[2])
+{
+    vf along = vf_zero(), apart = vf_zero(), size = vf_zero(), off = vf_zero();
+    for (int c = 0; c < channels; c++) {
+        const vf f = mean[0][c], b = mean[1][c], d = vf_sub(f, b);
+        along = vf_fma(vf_sub(vf_load(u->colour[3][c] + x), b), d, along);
+        apart = vf_fma(d, d, apart);
+        size = vf_add(size, vf_fma(f, f, vf_mul(b, b)));
+    }
+    const vf zero = vf_zero(), one = vf_set1(1), b0 = vf_sub(one, a0);
+    const vf own = vf_fma(vf_mul(a0, a0), spread[0], vf_mul(vf_mul(b0, b0), spread[1]));
+    const vf es = vf_fma(vf_set1(HF_UNMIX_SPREAD), own, vf_mul(vf_set1(1e-3f), size));
+    vf a = vf_div(vf_fma(es, a0, along), vf_add(apart, es));
+    a = vf_select(vf_gt(a, zero), vf_select(vf_lt(a, one), a, one), vf_select(vf_le(a, zero), zero, a0));
+    for (int c = 0; c < channels; c++) {
+        const vf rest = layers_rest(u, x, c, a, mean);
+        off = vf_fma(rest, rest, off);
+    }
+    const vf trust = vf_div(apart, vf_add(apart, off));
+    return vf_select(vf_le(zero, trust), vf_fma(vf_sub(a, a0), trust, a0), a0);
+}
+
+HF_INLINE vf layers_between(vf v, vf a, vf b)
+{
+    return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
+}
+
+// How far pixels are of lamps behind the edge: there are few.
+HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2][5])
+{
+    vf light[2];
+    for (int i = 0; i < 2; i++)
+        light[i] = layers_eighth_light(mean[i][0], mean[i][1], mean[i][2]);
+    const vf most = vf_max(light[0], light[1]), wider = vf_sub(vf_abs(mean[1][4]), vf_abs(mean[0][4]));
+    const vm bright = vm_and(vf_gt(layers_light_of(u, 3, x), vf_mul(most, vf_set1(HF_UNMIX_LAMP))),
+                             vm_and(mixed, vf_gt(wider, vf_zero())));
+    if (!vm_any(bright))
+        return vf_zero();
+    float lamp[VF_N], limit[VF_N], alpha[VF_N];
+    vf_store(lamp, vf_keep(bright, vf_min(wider, vf_set1(1))));
+    vf_store(limit, most);
+    vf_store(alpha, vf_max(mean[0][3], mean[1][3]));
+    for (int lane = 0; lane < VF_N; lane++)
+        if (lamp[lane] > 0)
+            lamp[lane] = lamp[lane] * hf_unmix_lamp(u, x + lane, limit[lane], alpha[lane]);
+    return vf_load(lamp);
+}
+
+HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const int channels, vm mixed)
+{
+    vf mean[2][5], spread[2], known;
+    mixed = layers_sides(u, x, channels, mixed, mean, spread, &known);
+    const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
+    const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
+    const vf by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known), lamp = layers_lit(u, x, mixed, mean);
+    vf a = layers_share(u, x, channels, a0, mean, spread);
+    a = vf_fma(lamp, vf_sub(vf_min(a, vf_set1(HF_UNMIX_RIM)), a), a);
+    const vf seen = vf_fma(by, vf_sub(a, one), one);
+    const vf whole = vf_keep(vf_gt(seen, zero), vf_div(vf_sub(one, by), seen));
+    for (int c = 0; c < channels; c++) {
+        const vf rest = layers_rest(u, x, c, a, mean);
+        const vf v = vf_load(u->colour[3][c] + x);
+        const vf more = c < 3 ? vf_max(rest, zero) : zero;
+        const vf front = layers_between(vf_add(vf_fnma(lamp, more, rest), mean[0][c]), mean[0][c], v);
+        const vf back = layers_between(vf_add(mean[1][c], rest), mean[1][c], v);
+        vf_store(u->seen[c] + x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
+        vf_store(u->mixed[c] + x, vf_keep(mixed, back));
+    }
+    const vf front = vf_fma(vf_sub(one, a0), vf_sub(mean[0][4], own), own);
+    vf_store(u->seen[4] + x, vf_select(mixed, seen, one));
+    vf_store(u->mixed[4] + x, vf_keep(mixed, vf_sub(one, seen)));
+    vf_store(u->seen[5] + x, vf_select(mixed, vf_fma(whole, vf_sub(own, front), front), own));
+    vf_store(u->mixed[5] + x, vf_select(mixed, vf_fma(a0, vf_sub(mean[1][4], own), own), own));
+}
+
+HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int channels)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vm mixed = vf_lt(vf_load(u->sure[3] + x), vf_set1(1));
+        if (vm_any(mixed))
+            layers_unmix_vector(u, x, channels, mixed);
+        else
+            layers_keep(u, x, channels);
+    }
+}
+
+static void layers_unmix_simd(const struct hf_unmix_row *u, int n)
+{
+    if (u->channels == 3)
+        layers_unmix_of(u, n, 3);
+    else
+        layers_unmix_of(u, n, 4);
+}

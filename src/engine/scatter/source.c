@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatter: from pixels to lists of pictures (walk.c), and shapes that are each source's own.
+#include <math.h>
+
+#include "engine/scatter/walk.h"
+
+void hf_source_weights_c(const struct hf_scatter *t, float sign, const float *radius, const float *const colour[3],
+                         int channels, int n, float *const out[4])
+{
+    for (int i = 0; i < n; i++) {
+        const float weight = hf_field_weight(t, sign * radius[i]) * (1 - hf_half_part(t, sign * radius[i]));
+        out[3][i] = weight;
+        for (int c = 0; c < channels; c++)
+            out[c][i] = colour[c][i] * (weight * t->dim);
+    }
+}
+
+void hf_source_pictures_c(const float *radius, const float *weight, float scale, int n, int32_t *out)
+{
+    for (int i = 0; i < n; i++) {
+        const float r = radius[i] * scale;
+        out[i] = r > 0 && weight[i] > 0 ? hf_picture_number(r) : -1;
+    }
+}
+
+// What of a source is drawn: 1 / its picture's area, and of a hole how much of that, negative; 1: no hole.
+struct part {
+    float share, hole;
+};
+
+// A hole's share is a whole number of the units of its outline's: however faint, it is not cut by those of a bin.
+static float hole_share(float share, float hole)
+{
+    const float t = 4 * share, part = __builtin_fabsf(hole), whole = part < 1 ? (t + share * part) - t : share;
+    return hole < 0 ? -whole : whole;
+}
+
+// Bits of the lanes that bin b holds of a source, 0 for none: channels by their own brightness, and with the first of
+// them the weight (bit 3); of black the first bin has that.
+static int lanes_of(const struct hf_bins *bins, int b, const float colour[3])
+{
+    int held = 0, before = 0, black = 1;
+    for (int c = 0; c < 3; c++) {
+        const float v = __builtin_fabsf(colour[c]);
+        black &= v == 0;
+        held |= (v > 0 && v >= bins->least[b] && (!b || v < bins->least[b - 1])) << c;
+        before |= b && v >= bins->least[b - 1];
+    }
+    return held | (!before && (held || (black && !b))) << 3;
+}
+
+// What each lane of a source adds to bin b for 1 unit of weight. part: 1 / the picture's area.
+static void set_share(const struct hf_bins *bins, int b, int lanes, const float colour[3], float weight,
+                      struct part part, int64_t share[4])
+{
+    for (int c = 0; c < 4; c++) {
+        const float v = hf_share((c == 3 ? weight : colour[c]) * part.share);
+        share[c] = lanes >> c & 1 ? (int64_t)((double)hole_share(v, part.hole) * bins->scale[b][c]) : 0;
+    }
+}
+
+void hf_list_row_c(struct hf_splats list[HF_BINS], const struct hf_source_row *row, int from, int to,
+                   const float *inverse, const struct hf_bins *bins)
+{
+    for (int i = from; i < to; i++)
+        for (int b = 0; b < bins->count && row->picture[i] >= 0; b++) {
+            const float v[3] = {row->colour[0][i], row->colour[1][i], row->colour[2][i]};
+            const int lanes = lanes_of(bins, b, v);
+            if (!lanes)
+                continue;
+            const int k = list[b].count++;
+            list[b].x[k] = row->x + i;
+            list[b].y[k] = row->y;
+            list[b].picture[k] = row->picture[i];
+            set_share(bins, b, lanes, v, row->weight[i], (struct part){inverse[row->picture[i]], 1}, list[b].share[k]);
+        }
+}
+
+// The pictures of a group's channel.
+static const struct hf_picture *pictures(const struct walk *w)
+{
+    const struct hf_aperture *a = &w->t->aperture;
+    const int plane = a->planes == 3 && w->group->channel[0] < 3 ? w->group->channel[0] : a->planes == 3;
+    return a->picture + plane * a->count;
+}
+
+void hf_flush_sources(struct walk *w)
+{
+    const struct hf_aperture *a = &w->t->aperture;
+    for (int b = 0; b < w->bins->count; b++) {
+        struct hf_splats *l = &w->list[b];
+        if (!l->count)
+            continue;
+        const struct hf_sums sums = hf_draw_bin(w, b);
+        if (a->symmetric)
+            hf_scatter_kernels(w->f)->splat(&sums, a, l);
+        for (int i = 0; !a->symmetric && i < l->count; i++) {
+            const struct hf_picture *p = &pictures(w)[l->picture[i]];
+            if (a->tap)
+                hf_scatter_kernels(w->f)->splat_taps(&sums, l->x[i] - p->reach_x, l->y[i] + p->top, a->tap + p->first,
+                                                     p->columns, p->rows, l->share[i]);
+            else
+                hf_scatter_kernels(w->f)->splat_runs(&sums, l->x[i], l->y[i] + p->top, a->run + p->first, p->rows,
+                                                     l->share[i]);
+        }
+        l->count = 0;
+    }
+}
+
+static void add_picture(struct walk *w, int x, int y, int number, const float colour[3], float weight, struct part part)
+{
+    for (int b = 0; b < w->bins->count; b++) {
+        struct hf_splats *l = &w->list[b];
+        const int lanes = lanes_of(w->bins, b, colour);
+        if (!lanes)
+            continue;
+        l->x[l->count] = x;
+        l->y[l->count] = y;
+        l->picture[l->count] = number;
+        set_share(w->bins, b, lanes, colour, weight, part, l->share[l->count]);
+        if (++l->count == HF_SPLATS)
+            hf_flush_sources(w);
+    }
+}
+
+// A row of the second circle of a cat's eye, dy rows off its centre: half its width in 1/256 pixel, and its weight. Of a
+// disc's that are between two of its rows, so that a circle that has not moved cuts nothing.
+struct circle_row {
+    float half, weight;
+};
+
+static struct circle_row circle_row(const struct hf_aperture *a, const struct hf_picture *disc, float r, float dy)
+{
+    if (a->key.blades) {
+        const float q = r * r - dy * dy;
+        return (struct circle_row){q > 0 ? 256 * a->key.scale_x * sqrtf(q) : 0, HF_WHOLE_ROW};
+    }
+    static const struct hf_run none = {128, 128, 0};
+    const float first = floorf(dy), t = dy - first;
+    const int row = (int)first - disc->top;
+    const struct hf_run *run = a->run + disc->first;
+    const struct hf_run *over = row >= 0 && row < disc->rows ? &run[row] : &none;
+    const struct hf_run *under = row >= -1 && row < disc->rows - 1 ? &run[row + 1] : &none;
+    return (struct circle_row){hf_lerp((float)over->b, (float)under->b, t) - 128,
+                               hf_lerp((float)over->weight, (float)under->weight, t)};
+}
+
+// A picture cut by the second circle of a cat's eye, of radius r around (cx, cy) and of the shape `disc`: its rows go to
+// w->runs. Returns the sum of their weights.
+static float cut_picture(struct walk *w, const struct hf_picture *p, const struct hf_picture *disc, float r, float cx,
+                         float cy)
+{
+    const struct hf_aperture *a = &w->t->aperture;
+    const float scale = 256 * a->key.scale_x;
+    float area = 0;
+    for (int i = 0; i < p->rows; i++) {
+        const struct hf_run *run = &a->run[p->first + i];
+        const struct circle_row c = circle_row(a, disc, r, (float)(p->top + i) - cy);
+        const int32_t from = 128 + (int32_t)lrintf(cx * scale - c.half);
+        const int32_t to = 128 + (int32_t)lrintf(cx * scale + c.half);
+        struct hf_run cut = {hf_max(run->a, from), hf_min(run->b, to), hf_min(run->weight, (int)lrintf(c.weight))};
+        if (cut.b <= cut.a)
+            cut = (struct hf_run){0};
+        area += (float)cut.weight * (float)(cut.b - cut.a);
+        w->runs[i] = cut;
+    }
+    return area;
+}
+
+// The same with what is to be drawn of it.
+static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, const float colour[3], float weight,
+                     struct part part)
+{
+    for (int b = 0; b < w->bins->count; b++) {
+        const int lanes = lanes_of(w->bins, b, colour);
+        if (!lanes)
+            continue;
+        const struct hf_sums sums = hf_draw_bin(w, b);
+        int64_t share[4];
+        set_share(w->bins, b, lanes, colour, weight, part, share);
+        hf_scatter_kernels(w->f)->splat_runs(&sums, x, y + p->top, w->runs, p->rows, share);
+    }
+}
+
+// The second circle moves off the lens's axis, towards the corner that the source is near.
+static void add_cat_eye(struct walk *w, int x, int y, float r, const float colour[3], float weight)
+{
+    const struct hf_setup *s = w->f->s;
+    const struct hf_picture *picture = w->t->aperture.picture, *p = &picture[hf_picture_number(r)];
+    const float step = w->level ? 2 : 1, toward = (w->field ? 1 : -1) * w->t->cat_eye * r;
+    const float cx = toward * (2 * (((float)x + 0.5f) * step) - (float)s->width) * w->t->corner;
+    const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
+    const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    const struct hf_picture *inside = &picture[hf_picture_number(inner)];
+    const float hidden = hole > 0 ? hole * cut_picture(w, inside, p, r, cx, cy) : 0;
+    float area = cut_picture(w, p, p, r, cx, cy) - hidden;
+    if (area <= 0) {
+        w->runs[-p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
+        area = 2 * HF_WHOLE_ROW;
+    }
+    draw_cut(w, x, y, p, colour, weight, (struct part){1 / area, 1});
+    if (hidden > 0) {
+        cut_picture(w, inside, p, r, cx, cy);
+        draw_cut(w, x, y, inside, colour, weight, (struct part){1 / area, -hole});
+    }
+}
+
+// A ring is its outline less its hole, which is the same shape.
+void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight)
+{
+    const struct hf_aperture *a = &w->t->aperture;
+    const struct hf_picture *picture = pictures(w);
+    const int number = a->tap ? (hf_picture_number(r) + a->steps / 2) / a->steps : hf_picture_number(r);
+    if (w->t->cat_eye > 0) {
+        add_cat_eye(w, x, y, r, colour, weight);
+        return;
+    }
+    if (w->t->ring <= 0) {
+        add_picture(w, x, y, number, colour, weight, (struct part){1 / picture[number].area, 1});
+        return;
+    }
+    // A hole too small for a picture of its own is a faint one.
+    const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    const int inside = hf_picture_number(inner);
+    const float part = 1 / (picture[number].area - hole * picture[inside].area);
+    add_picture(w, x, y, number, colour, weight, (struct part){part, 1});
+    add_picture(w, x, y, inside, colour, weight, (struct part){part, -hole});
+}
+
+void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to)
+{
+    const struct hf_scatter *t = w->t;
+    if (!t->aperture.tap && t->ring <= 0 && t->cat_eye <= 0) {
+        for (int at = from; at < to; at += HF_SPLATS) {
+            const int end = hf_min(at + HF_SPLATS, to);
+            for (int b = 0; b < w->bins->count; b++)
+                if (w->list[b].count + end - at > HF_SPLATS)
+                    hf_flush_sources(w);
+            hf_scatter_kernels(w->f)->list_row(w->list, row, at, end, t->aperture.inverse, w->bins);
+        }
+        return;
+    }
+    for (int i = from; i < to; i++) {
+        const float v[3] = {row->colour[0][i], row->colour[1][i], row->colour[2][i]};
+        if (row->picture[i] >= 0)
+            hf_add_source(w, row->x + i, row->y, row->radius[i] * row->scale, v, row->weight[i]);
+    }
+}

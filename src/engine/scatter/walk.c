@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatter: the sources that reach a cell, row by row, and the sums that they make (splat.c).
+//
+// Radii of half_to and more go to sums of half the resolution (tent.c), between half_from and half_to to both.
+#include <string.h>
+
+#include "engine/scatter/walk.h"
+
+const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n)
+{
+    const float *share = hf_scatter(f->s)->mixed ? hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) : NULL;
+    return hf_edges_next(share, 0, n) < n ? share : NULL;
+}
+
+// Weights, colours and pictures of full-resolution row y, in the walk's rows. share: of the backs.
+static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, const float *share)
+{
+    const struct hf_frame *f = w->f;
+    const float sign = w->field ? 1 : -1, *colour[3] = {NULL};
+    float **row = w->source[y % TOGETHER];
+    struct hf_source_row r = {.x = x0,
+                              .y = y,
+                              .weight = row[3],
+                              .scale = sign * w->group->factor[w->field],
+                              .radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y),
+                              .picture = (int32_t *)row[4]};
+    for (int c = 0; c < 3; c++) {
+        r.colour[c] = c < w->group->channels ? row[c] : w->nothing;
+        if (c < w->group->channels)
+            colour[c] = hf_at(&f->buf[HF_BUF_SOURCE], w->group->channel[c], x0, y);
+    }
+    hf_scatter_kernels(f)->source_weights(w->t, sign, r.radius, colour, w->group->channels, x1 - x0, row);
+    for (int x = hf_edges_next(share, 0, x1 - x0); x < x1 - x0; x = hf_edges_next(share, x + 1, x1 - x0))
+        for (int c = 0; c < 4; c++)
+            if (c == 3 || c < w->group->channels)
+                row[c][x] *= 1 - share[x];
+    for (int c = 0; c < 4 && !w->slice.whole; c++)
+        if (c == 3 || c < w->group->channels)
+            hf_slice_row(&w->slice, sign, r.radius, x1 - x0, row[c]);
+    hf_scatter_kernels(f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
+    return r;
+}
+
+struct hf_sums hf_draw_bin(struct walk *w, int b)
+{
+    struct hf_sums s = w->sums;
+    s.lane += b * w->bin_lanes;
+    if (w->drawn[b] < 0)
+        memset(s.lane, 0, sizeof *s.lane * (size_t)w->bin_lanes);
+    w->drawn[b] = w->reached;
+    return s;
+}
+
+void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
+{
+    const struct hf_frame *f = w->f;
+    const float size = (w->field ? 1 : -1) * *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y), half = hf_half_part(w->t, size);
+    const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) *
+                         (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part) * hf_slice_part(&w->slice, size);
+    float v[3] = {0};
+    if (!(weight > 0))
+        return;
+    for (int c = 0; c < w->group->channels; c++)
+        v[c] = *hf_at(&f->buf[HF_BUF_BACK], w->group->channel[c], x, y) * (weight * w->t->dim);
+    hf_add_source(w, to_x, to_y, size * (w->level ? 0.5f : 1) * w->group->factor[w->field], v, weight);
+}
+
+// Sources of full-resolution rows y0 to y1, four columns at a time: all rows of these draw on nearly the same lines of
+// the cache, which come from its second level and go back there once for all of them. Then the backs of mixed pixels.
+static void list_full(struct walk *w, int y0, int y1)
+{
+    struct hf_source_row row[TOGETHER];
+    const float *share[TOGETHER];
+    int x0, x1;
+    hf_walk_columns(w, &x0, &x1);
+    for (int y = y0; y < y1; y++) {
+        share[y - y0] = hf_back_shares(w->f, x0, y, x1 - x0);
+        row[y - y0] = prepare_row(w, x0, x1, y, share[y - y0]);
+    }
+    for (int x = 0; x < x1 - x0; x += 4)
+        for (int i = 0; i < y1 - y0; i++)
+            hf_list_sources(w, &row[i], x, hf_min(x + 4, x1 - x0));
+    hf_flush_sources(w);
+    for (int i = 0, n = x1 - x0; i < y1 - y0; i++)
+        for (int x = hf_edges_next(share[i], 0, n); x < n; x = hf_edges_next(share[i], x + 1, n))
+            hf_add_back(w, x0 + x, y0 + i, x0 + x, y0 + i, 1);
+    hf_flush_sources(w);
+}
+
+// Widths and heights of what a pass keeps while it draws on a rectangle of half-resolution pixels.
+struct layout {
+    int width[2], height[2], ring[2], stride[2];  // of the sums, each level; stride in lanes
+    int line[2];                                  // floats of a row of sources, and its padding
+    size_t sums, rows, list, runs, half, lines;   // floats of each part
+};
+
+static size_t whole_lines(size_t floats)
+{
+    return (floats + 15) & ~(size_t)15;
+}
+
+// Lanes of a row of sums. Rows lie 9 lines of the cache further on each, so that the ends of a picture's do not share
+// its sets.
+static int stride_of(int width)
+{
+    enum { PAGE = 4096 / sizeof(int64_t), STEP = 9 * 64 / sizeof(int64_t) };
+    const int lanes = 4 * (width + 2 * HF_SUMS_MARGIN);
+    return lanes + (int)((unsigned)(STEP - lanes) % PAGE);
+}
+
+static struct layout layout_of(const struct hf_scatter *t, int field, int cell_width, int cell_height)
+{
+    struct layout l = {0};
+    int longest = 0;
+    for (int level = 0; level < 2; level++) {
+        if (t->reach_x[field][level] < 0)
+            continue;
+        l.width[level] = level ? cell_width + 2 : 2 * cell_width;
+        l.height[level] = level ? cell_height + 2 : 2 * cell_height;
+        l.ring[level] = hf_min(2 * t->reach_y[field][level] + TOGETHER, l.height[level]);
+        l.stride[level] = stride_of(l.width[level]);
+        const int columns = level ? hf_tent_columns(t, field, l.width[1]) : l.width[0] + 2 * t->reach_x[field][0];
+        l.line[level] = (int)whole_lines((size_t)columns) + 2 * HF_PAD;
+        const size_t sums = 2 * HF_BINS * (size_t)l.stride[level] * (size_t)l.ring[level];
+        const size_t lines = (level ? HF_TENT_LINES : 5 * TOGETHER) * (size_t)l.line[level];
+        l.sums = sums > l.sums ? sums : l.sums;
+        l.lines = lines > l.lines ? lines : l.lines;
+        l.rows = (size_t)hf_max((int)l.rows, l.height[level]);
+        longest = hf_max(longest, t->reach_y[field][level]);
+    }
+    if (t->reach_x[field][1] >= 0)
+        l.half = 4 * (size_t)(l.width[1] + HF_PAD) * (size_t)l.height[1];
+    l.sums = whole_lines(l.sums);
+    l.rows = whole_lines(l.rows * sizeof(ptrdiff_t) / sizeof(float));
+    l.runs = whole_lines((size_t)(2 * longest + 3) * sizeof(struct hf_run) / sizeof(float));
+    l.list = whole_lines(HF_BINS * sizeof(struct hf_splats) / sizeof(float));
+    l.lines += (size_t)hf_max(l.line[0], l.line[1]);  // and one of zeros
+    return l;
+}
+
+size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height)
+{
+    size_t most = 0;
+    for (int field = 0; field < 2; field++) {
+        const struct layout l = layout_of(t, field, cell_width, cell_height);
+        const size_t part = field && t->slices > 1 ? 16 * (size_t)(cell_width + HF_PAD) * (size_t)cell_height : 0;
+        const size_t all = l.sums + l.rows + l.list + l.runs + l.half + l.lines + part;
+        most = all > most ? all : most;
+    }
+    return most;
+}
+
+static void settle(struct walk *w, const struct hf_target *to, int y)
+{
+    float *out[4];
+    for (int c = 0; c < 4; c++)
+        out[c] = to->ch[c] ? to->ch[c] + (ptrdiff_t)(y - w->sums.y0) * to->stride : NULL;
+    // Those bins of which something has been drawn here.
+    int64_t *lane[HF_BINS];
+    double unscale[HF_BINS][4];
+    int n = 0;
+    for (int b = 0; b < w->bins->count; b++)
+        if (y <= w->drawn[b]) {
+            lane[n] = w->sums.lane + b * w->bin_lanes + w->sums.row[y - w->sums.y0];
+            memcpy(unscale[n++], w->bins->unscale[b], sizeof *unscale);
+        }
+    if (n)
+        hf_scatter_kernels(w->f)->settle(lane, n, w->sums.x1 - w->sums.x0, w->group->channels,
+                                         (const double(*)[4])unscale, out);
+    for (int c = 0; c < 4 && !n; c++)
+        if (out[c])
+            memset(out[c], 0, sizeof *out[c] * (size_t)(w->sums.x1 - w->sums.x0));
+}
+
+// All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
+static void walk_level(struct walk *w, const struct layout *l, const struct hf_target *to)
+{
+    const struct hf_setup *s = w->f->s;
+    const int reach = w->t->reach_y[w->field][w->level], height = w->level ? s->half_height : s->height;
+    for (int y = 0; y < w->sums.y1 - w->sums.y0; y++)
+        w->sums.row[y] = (ptrdiff_t)(y % l->ring[w->level]) * l->stride[w->level] + 4 * HF_SUMS_MARGIN;
+    w->bins = &w->t->bins[w->level][w->group->channel[0] == 3];
+    w->bin_lanes = (ptrdiff_t)l->stride[w->level] * l->ring[w->level];
+    for (int b = 0; b < HF_BINS; b++)
+        w->drawn[b] = -1;
+    int settled = w->sums.y0;
+    const int end = hf_min(w->sums.y1 + reach, height), step = w->level ? 1 : TOGETHER;
+    for (int y = hf_max(w->sums.y0 - reach, 0); y < end; y += step) {
+        while (settled < hf_min(y - reach, w->sums.y1))
+            settle(w, to, settled++);
+        w->reached = y + step - 1 + reach;
+        if (w->level)
+            hf_list_half(w, y);
+        else
+            list_full(w, y, hf_min(y + step, end));
+    }
+    while (settled < w->sums.y1)
+        settle(w, to, settled++);
+}
+
+// Half-resolution sums of a window, one plane of them.
+struct half_sums {
+    const float *plane;
+    ptrdiff_t stride;
+    struct hf_rect r;
+};
+
+// Bilinearly at the frame's left or right edge, beyond which it goes on as it is.
+static float at_edge(float own, float over)
+{
+    const float v = 0.75f * own + 0.25f * over;
+    return 0.75f * v + 0.25f * v;
+}
+
+// Add them, bilinearly, to pixels x0 (even) to x1 of row y.
+static void add_half(const struct hf_frame *f, const struct half_sums *h, int x0, int x1, int y, float *out)
+{
+    const float *a = h->plane + (ptrdiff_t)((y >> 1) - h->r.y0) * h->stride + ((x0 >> 1) - h->r.x0);
+    const float *b = a + (ptrdiff_t)(hf_beside(y, f->s->half_height) - (y >> 1)) * h->stride;
+    const int n = x1 - x0, last = (n - 1) >> 1;
+    float *up = hf_line(f, 0);
+    f->k->behind.up_row(a, b, last + 1, up);
+    if (x0 == 0)
+        up[0] = at_edge(a[0], b[0]);
+    if (x1 == f->s->width && !(n & 1))
+        up[n - 1] = at_edge(a[last], b[last]);
+    for (int x = 0; x < n; x++)
+        out[x] += up[x];
+}
+
+// The rows of full-resolution sources.
+static void place_rows(struct walk *w, float *memory, int length)
+{
+    memory += HF_PAD;
+    for (int i = 0; i < 5 * TOGETHER; i++, memory += length)
+        w->source[i / 5][i % 5] = memory;
+}
+
+// One group's sums of a field on r, of the walk's slice.
+static void splat_slice(struct walk *w, struct hf_rect r, const struct hf_target *to)
+{
+    const struct hf_frame *f = w->f;
+    const struct hf_setup *s = f->s;
+    const struct layout l = layout_of(w->t, w->field, r.x1 - r.x0, r.y1 - r.y0);
+    float *memory = f->work;
+    w->sums.lane = (int64_t *)memory;
+    w->sums.row = (ptrdiff_t *)(memory += l.sums);
+    w->list = (struct hf_splats *)(memory += l.rows);
+    for (int b = 0; b < HF_BINS; b++)
+        w->list[b].count = 0;
+    w->runs = (struct hf_run *)(memory += l.list);
+    float *half = memory += l.runs;
+    w->nothing = memory += l.half;
+    memory += hf_max(l.line[0], l.line[1]);
+    memset(w->nothing, 0, sizeof *memory * (size_t)hf_max(l.line[0], l.line[1]));
+    const int x0 = 2 * r.x0, x1 = hf_min(2 * r.x1, s->width), y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, s->height);
+    const struct hf_rect h = {hf_max(r.x0 - 1, 0), hf_max(r.y0 - 1, 0), hf_min(r.x1 + 1, s->half_width),
+                              hf_min(r.y1 + 1, s->half_height)};
+    const ptrdiff_t half_stride = h.x1 - h.x0 + HF_PAD, half_plane = half_stride * (h.y1 - h.y0);
+    if (w->t->reach_x[w->field][1] >= 0) {
+        w->level = 1;
+        w->sums.x0 = h.x0, w->sums.x1 = h.x1, w->sums.y0 = h.y0, w->sums.y1 = h.y1;
+        hf_tent_start(w, memory, l.line[1]);
+        const struct hf_target sums = {{half, half + half_plane, half + 2 * half_plane, half + 3 * half_plane},
+                                       half_stride};
+        walk_level(w, &l, &sums);
+    }
+    if (w->t->reach_x[w->field][0] >= 0) {
+        w->level = 0;
+        w->sums.x0 = x0, w->sums.x1 = x1, w->sums.y0 = y0, w->sums.y1 = y1;
+        place_rows(w, memory, l.line[0]);
+        walk_level(w, &l, to);
+    }
+    for (int c = 0; c < 4; c++)
+        for (int y = y0; y < y1 && to->ch[c]; y++) {
+            float *row = to->ch[c] + (ptrdiff_t)(y - y0) * to->stride;
+            if (w->t->reach_x[w->field][0] < 0)
+                memset(row, 0, sizeof *row * (size_t)(x1 - x0));
+            if (w->t->reach_x[w->field][1] >= 0)
+                add_half(f, &(struct half_sums){half + c * half_plane, half_stride, h}, x0, x1, y, row);
+        }
+}
+
+static void clear(const struct hf_setup *s, struct hf_rect r, const struct hf_target *to)
+{
+    const int n = hf_min(2 * r.x1, s->width) - 2 * r.x0, rows = hf_min(2 * r.y1, s->height) - 2 * r.y0;
+    for (int c = 0; c < 4; c++)
+        for (int y = 0; y < rows && to->ch[c]; y++)
+            memset(to->ch[c] + y * to->stride, 0, sizeof(float) * (size_t)n);
+}
+
+// The far field's slices that reach r, from front to back.
+static void splat_slices(struct walk *w, struct hf_rect r, const struct hf_target *to, float least, float most)
+{
+    const struct layout l = layout_of(w->t, w->field, r.x1 - r.x0, r.y1 - r.y0);
+    const ptrdiff_t stride = 2 * (r.x1 - r.x0) + HF_PAD, plane = stride * 2 * (r.y1 - r.y0);
+    float *memory = (float *)w->f->work + l.sums + l.rows + l.list + l.runs + l.half + l.lines;
+    struct hf_target part = {.stride = stride};
+    for (int c = 0; c < 4; c++)
+        part.ch[c] = to->ch[c] ? memory + c * plane : NULL;
+    for (int k = 0; k < w->t->slices; k++) {
+        w->slice = hf_slice_make(w->t, k);
+        const int none = most <= w->slice.begin[0] || least >= w->slice.end[1];
+        w->slice.whole = least >= w->slice.begin[1] && most <= w->slice.end[0];
+        if (k == 0 && none)
+            clear(w->f->s, r, to);
+        else if (!none) {
+            splat_slice(w, r, k ? &part : to);
+            if (k)
+                hf_slice_behind(w->f, r, to, &part);
+        }
+    }
+}
+
+static void splat_field(const struct hf_frame *f, struct hf_rect r, int field, int sum, int weight)
+{
+    struct walk w = {.f = f, .t = hf_scatter(f->s), .field = field, .slice = {.whole = 1}};
+    const int sliced = field && w.t->slices > 1;
+    float least, most;
+    if (sliced)
+        hf_slice_range(f, r, &least, &most);
+    for (int group = 0; group < w.t->groups; group++) {
+        struct hf_target to = {.stride = f->buf[sum].stride};
+        w.group = &w.t->group[group];
+        for (int c = 0; c < w.group->channels; c++)
+            to.ch[c] = hf_at(&f->buf[sum], w.group->channel[c], 2 * r.x0, 2 * r.y0);
+        to.ch[3] = hf_at(&f->buf[weight], group, 2 * r.x0, 2 * r.y0);
+        if (sliced)
+            splat_slices(&w, r, &to, least, most);
+        else
+            splat_slice(&w, r, &to);
+    }
+}
+
+void hf_splat_far(const struct hf_frame *f, struct hf_rect r)
+{
+    splat_field(f, r, 1, HF_BUF_FAR_SUM, HF_BUF_FAR_WEIGHT);
+}
+
+void hf_splat_near(const struct hf_frame *f, struct hf_rect r)
+{
+    splat_field(f, r, 0, HF_BUF_NEAR_SUM, HF_BUF_NEAR_WEIGHT);
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks of what a caller gives: images, depth.
+#ifndef HF_FRAME_CHECK_H
+#define HF_FRAME_CHECK_H
+
+#include "pass/check.h"
+
+// Return HF_OK, or HF_ERR_ARG with one sentence in message that names argument and value.
+int hf_check_image(const struct hf_image *image, const char *name, char *message);
+int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message);
+int hf_check_depth(const struct hf_depth *d, int width, char *message);
+// What its numbers mean alone, whether there are some yet or not.
+int hf_check_depth_type(const struct hf_depth *d, char *message);
+
+#endif

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the arguments of a render call to the numbers that the passes need.
+#ifndef HF_RESOLVE_H
+#define HF_RESOLVE_H
+
+#include "pass/frame.h"
+
+// hf_resolve for an engine's and the library's own use: params must not be NULL.
+int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct hf_depth *depth,
+                      const struct hf_params *params, char *message);
+
+// Fill *s from resolved parameters, to which it will point, and the engine's own numbers, whose memory own is; its tables
+// are its prepare's.
+void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
+                   const struct hf_depth *depth, const struct hf_resolved *r, void *own);
+
+#endif

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of hyperfocal.
+#ifndef HF_CLI_ARGS_H
+#define HF_CLI_ARGS_H
+
+#include <limits.h>
+
+#include "hyperfocal/hyperfocal.h"
+#include "tools/io/io.h"
+#include "tools/common/options.h"
+
+enum { CLI_DONE = 0, CLI_BAD_ARGUMENTS = 1, CLI_SOME_FAILED = 2, CLI_ALL_FAILED = 3 };
+
+enum cli_focus {
+    CLI_FOCUS_HEADER,    // not on the command line
+    CLI_FOCUS_DISTANCE,  // --focus D
+    CLI_FOCUS_CENTER,    // --focus center
+    CLI_FOCUS_AT,        // --focus-at X,Y
+};
+
+enum { CLI_CENTRED = INT_MIN };  // a place in args->display
+
+enum cli_keys_blend { CLI_KEYS_LINEAR, CLI_KEYS_SMOOTH };
+
+// What was asked for. Numbers that were not given are NAN, texts NULL.
+struct cli_args {
+    const char **inputs;  // as given; input: of the frame at hand
+    int input_count;
+    const char *input, *output;
+    int help, version, dry_run;  // help: see tool_parser
+    int verbose, quiet;
+
+    // Fields that the command line sets as they are: engine, storage, max_radius, the flags, fill, blend, blades.
+    // The model and what belongs to it depend on the file, see setup.h.
+    struct hf_params params;
+
+    int engine, quality;  // as given; -1: not given
+    float max_error;      // NAN: not given
+
+    enum cli_focus focus_by;
+    int focus_given, focus_at_given;  // --focus in either form, --focus-at
+    float focus;                      // scene units
+    int focus_x, focus_y;             // EXR pixel coordinates
+
+    float range, depth_of_field, strength, near_begin, near_end, far_begin, far_end;
+    float fstop, focal_length, sensor_width, world_unit;
+    int metric;  // some distance was given in metres
+
+    const char *depth_channel, *depth_file;
+    enum hf_depth_type depth_type;  // as the library sees it, once cli_depth_prepare was there
+    int normalized;                 // 1: a map from 0 at near_plane to 1 at far_plane; -1: the other way; else 0
+    enum hf_io_edges depth_edges;
+    float near_plane, far_plane;      // scene units
+    float depth_scale, depth_offset;  // of the numbers as they are stored, before all else
+
+    const char *aperture;       // as given
+    const char *aperture_file;  // NULL: the shape in params
+
+    // A shot: see shot.h, keys.h, track.h, batch.h.
+    const char *frames, *chunk, *keys, *log_file;
+    enum cli_keys_blend keys_blend;
+    int focus_smooth;        // frames to each side; -1: not given
+    int focus_per_view;      // each eye its own
+    const char *focus_from;  // whence the focus of a frame; NULL: --focus
+    int print_focus, resume, stop_on_error;
+    float memory_limit;  // GiB
+    char *settings;      // the options that change pixels, as they were given
+
+    const char *views;  // NULL: all, else names with commas
+    const char *layer;  // likewise; NULL: the main one
+    const char *compression;
+    int grow;        // the data window, by the reach of the blur
+    int display[4];  // width, height, and where in it the picture lies; [0] 0: the file's
+    const char *dump_dir;
+    int explain;
+    const char *explain_image, *focus_image;
+    int json;
+    const char *json_file;  // NULL: stdout
+    const char *json_word;  // the same if it was a word of its own, which may turn out to be INPUT
+    int threads;
+    enum hf_isa isa;
+};
+
+// All options, and what else is said of the program.
+extern const struct tool_program cli_program;
+
+// Parsers of values that only this program has.
+tool_parse cli_parse_depth_type, cli_parse_display, cli_parse_focus, cli_parse_focus_at, cli_parse_aperture,
+    cli_parse_json, cli_parse_version;
+
+// Do the planes that were given mean something to the engine? Returns 0, or CLI_BAD_ARGUMENTS with one sentence in *error.
+// cli_parse_args asks for an engine that was given, cli_setup_view for one that a quality chose.
+int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error);
+// Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
+// --version the rest of the line is not looked at.
+int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_error *error);
+void cli_free_args(struct cli_args *args);
+
+// 1 if a name ends in .exr, whatever its case.
+int cli_is_exr(const char *path);
+
+#endif

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cli/frame.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/cli/coc.h"
+#include "tools/cli/dump.h"
+#include "tools/cli/explain.h"
+#include "tools/cli/target.h"
+#include "tools/cli/views.h"
+#include "tools/cli/window.h"
+#include "tools/io/depth_edges.h"
+#include "tools/common/luminance.h"
+#include "tools/common/machine.h"
+
+const char *cli_in_options(const char *message, char buf[CLI_SENTENCE])
+{
+    static const char *const words[][2] = {{"layers.quarter_from", "--quarter-from"},
+                                           {"layers.half_from", "--half-from"},
+                                           {"run.budget_ms", "--budget-ms"},
+                                           {"max_radius", "--max-radius"}};
+    size_t used = 0;
+    while (*message && used + 32 < CLI_SENTENCE) {
+        size_t i = 0;
+        while (i < 4 && strncmp(message, words[i][0], strlen(words[i][0])))
+            i++;
+        used +=
+            (size_t)snprintf(buf + used, CLI_SENTENCE - used, "%.*s", i < 4 ? 31 : 1, i < 4 ? words[i][1] : message);
+        message += i < 4 ? strlen(words[i][0]) : 1;
+    }
+    buf[used] = '\0';
+    return buf;
+}
+
+static void keep_warning(struct cli_session *session, const char *message)
+{
+    char *said = NULL;
+    session->warnings++;
+    if (asprintf(&said, "%s%s\n", session->said ? session->said : "", message) < 0)
+        return;
+    free(session->said);
+    session->said = said;
+}
+
+// The library says why before it returns an error; that is the sentence to show.
+static void on_log(void *cookie, enum hf_log_level level, const char *message)
+{
+    struct cli_session *session = cookie;
+    char sentence[CLI_SENTENCE];
+    message = cli_in_options(message, sentence);
+    if (level == HF_LOG_ERROR)
+        tool_fail(&session->log, 0, "%s", message);
+    else if (level == HF_LOG_WARNING)
+        keep_warning(session, message);
+    if (level == HF_LOG_WARNING)
+        tool_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", message);
+}
+
+const char *const cli_stage_names[CLI_STAGES] = {"read", "decode", "defocus", "encode", "write"};
+
+void cli_session_close(struct cli_session *session)
+{
+    hf_close(&session->context);
+    free(session->said);
+    session->said = NULL;
+    hf_io_threads_close(&session->run);
+}
+
+int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct tool_error *error)
+{
+    *session = (struct cli_session){0};
+    if (!hf_isa_available(args->isa))
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
+                         hf_isa_name(args->isa));
+    const struct hf_config config = {.threads = threads, .isa = args->isa, .log = on_log, .log_cookie = session};
+    const int status = hf_open(&session->context, &config);
+    // Without threads of their own files are read and written on this one.
+    if (status == HF_OK)
+        hf_io_threads_open(&session->run, hf_context_threads(session->context));
+    if (status == HF_OK)
+        return 0;
+    const char *why = session->log.text[0] ? session->log.text : hf_error_string(status);
+    // AUTO is only unavailable when the environment variable says so.
+    if (status == HF_ERR_ISA && args->isa == HF_ISA_AUTO)
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s", why);
+    return tool_fail(error, status == HF_ERR_MEMORY || status == HF_ERR_THREAD ? CLI_ALL_FAILED : CLI_BAD_ARGUMENTS,
+                     "--threads %d, --isa %s: %s", args->threads, hf_isa_name(args->isa), why);
+}
+
+// Of a file that could not be opened: was it for the layer that the command line names?
+static int lacks_layer(const struct cli_args *args)
+{
+    struct hf_io_file *file;
+    if (!args->layer || hf_io_open(&file, args->input, &(struct hf_io_choice){NULL, "all"}, NULL))
+        return 0;
+    hf_io_close(&file);
+    return 1;
+}
+
+int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
+                   struct tool_error *error)
+{
+    struct hf_io_error io;
+    *frame = (struct cli_frame){.args = args, .run = run};
+    const double start = tool_now_ms();
+    // With a depth file the channel's name is meant for that one.
+    const struct hf_io_choice choice = {args->depth_file ? NULL : args->depth_channel, args->layer};
+    if (hf_io_open(&frame->file, args->input, &choice, &io))
+        return tool_fail(error, lacks_layer(args) ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s", io.message);
+    frame->ms[CLI_READ] += tool_now_ms() - start;
+    frame->in_place = args->output && cli_is_in_place(args);
+    return cli_select_views(frame, error);
+}
+
+static int new_plane(const struct cli_view *v, float **plane, struct tool_error *error)
+{
+    *plane = hf_io_alloc((size_t)v->view->width * (size_t)v->view->height * sizeof(float));
+    return *plane ? 0
+                  : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory for %d x %d pixels", v->label, v->view->width,
+                              v->view->height);
+}
+
+static int read_depth_file(const struct cli_args *args, const struct hf_io_run *run, struct cli_view *v,
+                           struct tool_error *error)
+{
+    struct hf_io_error io;
+    struct hf_io_map map;
+    if (hf_io_read_depth_file(args->depth_file, args->depth_channel, args->depth_edges, v->view, run, v->depth, &map,
+                              &io))
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    const int scaled = map.width != v->view->width || map.height != v->view->height;
+    v->map_size[0] = scaled ? map.width : 0;
+    v->map_size[1] = scaled ? map.height : 0;
+    v->scaled_to[0] = v->view->width;
+    v->scaled_to[1] = v->view->height;
+    v->map_bits = map.bits;
+    v->sharpened = map.sharpened;
+    v->smoothed = map.smoothed;
+    if (map.bits && args->depth_type == HF_DEPTH_INVERSE && isnan(args->near_plane) && isnan(args->depth_scale))
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "%s: whole numbers of %d bits count as 0 to 1, so --depth-type inverse needs --near, the "
+                         "distance of what is white, or --depth-scale",
+                         args->depth_file, map.bits);
+    return 0;
+}
+
+// Depth in INPUT itself, rows of it.
+static int sharpen(const struct cli_args *args, const struct hf_io_run *run, struct cli_view *v, float *depth,
+                   int height, struct tool_error *error)
+{
+    if (args->depth_file || args->depth_edges != HF_IO_EDGES_SHARPEN)
+        return 0;
+    if (hf_io_sharpen_depth(depth, v->view->width, height, run, &v->sharpened))
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+    return 0;
+}
+
+static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct tool_error *error)
+{
+    const struct cli_args *args = frame->args;
+    struct hf_io_error io;
+    const double start = tool_now_ms();
+    if (hf_io_fetch(frame->file, wants, frame->view_count, &io))
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    const double fetched = tool_now_ms();
+    if (hf_io_decode(frame->file, wants, frame->view_count, frame->run, &io))
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    for (int i = 0; i < frame->view_count && args->depth_file; i++) {
+        const int status = read_depth_file(args, frame->run, &frame->views[i], error);
+        if (status)
+            return status;
+    }
+    for (int i = 0; i < frame->view_count; i++) {
+        struct cli_view *v = &frame->views[i];
+        const int status = sharpen(args, frame->run, v, v->depth, v->view->height, error);
+        if (status)
+            return status;
+        cli_depth_prepare(args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
+    }
+    frame->ms[CLI_READ] += fetched - start;
+    frame->ms[CLI_DECODE] += tool_now_ms() - fetched;
+    return 0;
+}
+
+// The pixels of all views, if they are not there yet.
+static int load(struct cli_frame *frame, struct tool_error *error)
+{
+    if (frame->loaded)
+        return 0;
+    struct hf_io_want *wants = calloc((size_t)frame->view_count, sizeof(*wants));
+    int status = wants ? 0 : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->input);
+    for (int i = 0; i < frame->view_count && !status; i++) {
+        struct cli_view *v = &frame->views[i];
+        wants[i].view = v->index;
+        for (int c = 0; c < 4 && !status; c++)
+            if (c < 3 || v->view->colour[3][0])
+                status = new_plane(v, &v->planes[c], error);
+        if (!status)
+            status = new_plane(v, &v->depth, error);
+        memcpy(wants[i].planes, v->planes, sizeof(v->planes));
+        wants[i].depth = frame->args->depth_file ? NULL : v->depth;
+    }
+    if (!status)
+        status = read_files(frame, wants, error);
+    free(wants);
+    frame->loaded = !status;
+    return status;
+}
+
+// Rows around the pixel in focus: that which is read, and its neighbours, which count where it is no number.
+static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, struct tool_error *error)
+{
+    struct hf_io_error io;
+    const struct cli_args *args = frame->args;
+    const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
+    const int at = args->focus_by == CLI_FOCUS_AT ? args->focus_y : display->y0 + (display->y1 - display->y0) / 2;
+    const int reach = 1 + (args->depth_edges == HF_IO_EDGES_SHARPEN ? HF_IO_EDGE_REACH : 0);
+    int from = at - reach > data->y0 ? at - reach : data->y0, status = 0;
+    int to = at + reach + 1 < data->y1 ? at + reach + 1 : data->y1;
+    if (args->depth_file) {
+        from = data->y0;
+        to = data->y1;
+        status = read_depth_file(args, frame->run, v, error);
+    } else if (from < to && hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, &io)) {
+        status = tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    }
+    if (status || from >= to)
+        return status;
+    float *rows = v->depth + (size_t)(from - data->y0) * (size_t)v->view->width;
+    status = sharpen(args, frame->run, v, rows, to - from, error);
+    if (!status)
+        cli_depth_prepare(args, rows, (size_t)(to - from) * (size_t)v->view->width, &v->found);
+    return status;
+}
+
+int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error)
+{
+    struct cli_view *v = &frame->views[0];
+    int status = 0;
+    if (cli_focus_needs_depth(frame->args)) {
+        status = new_plane(v, &v->depth, error);
+        if (!status)
+            status = read_focus_rows(frame, v, error);
+    }
+    if (!status)
+        status = cli_setup_view(&v->setup, frame->args, v->view, v->depth, v->label, error);
+    if (!status)
+        *focus = v->setup.params.focus;
+    return status;
+}
+
+// Where the focus is read from the picture, all views share that of the first: what one eye sees sharp, the other has
+// to see sharp too.
+static void share_focus(struct cli_frame *frame, struct cli_args *args)
+{
+    const struct cli_setup *first = &frame->views[0].setup;
+    if (!cli_focus_needs_depth(frame->args) || frame->args->focus_per_view)
+        return;
+    args->focus_by = CLI_FOCUS_DISTANCE;
+    args->focus = first->params.focus;
+    args->focus_from = first->focus_from;
+}
+
+static int set_up(struct cli_frame *frame, struct tool_error *error)
+{
+    struct cli_args args = *frame->args;
+    int status = cli_focus_needs_depth(&args) ? load(frame, error) : 0;
+    for (int i = 0; i < frame->view_count && !status; i++) {
+        struct cli_view *v = &frame->views[i];
+        status = cli_setup_view(&v->setup, &args, v->view, v->depth, v->label, error);
+        if (!status && i == 0)
+            share_focus(frame, &args);
+    }
+    return status;
+}
+
+int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
+{
+    int status = set_up(frame, error);
+    // How far blur reaches is known when the picture is; places in it are others then.
+    if (!status && frame->args->grow) {
+        status = load(frame, error);
+        if (!status)
+            status = cli_window_grow(frame, error);
+        if (!status)
+            status = set_up(frame, error);
+    }
+    return status;
+}
+
+// Pixels whose highlights will be raised: by the luminance of what is above 0, as the library has it.
+static uint64_t count_highlights(const struct cli_view *v)
+{
+    const struct hf_highlight_params *p = &v->setup.params.highlight;
+    const size_t n = p->gain > 1 ? (size_t)v->view->width * (size_t)v->view->height : 0;
+    uint64_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += tool_luminance(fmaxf(v->planes[0][i], 0), fmaxf(v->planes[1][i], 0), fmaxf(v->planes[2][i], 0)) >
+                 p->threshold;
+    return count;
+}
+
+// Alpha is 1 everywhere. Blurred it would be as well, so it is left as it is: the engines have a quarter less to do.
+static int is_opaque(const struct cli_view *v)
+{
+    const size_t n = (size_t)v->view->width * (size_t)v->view->height;
+    size_t i = 0;
+    while (i < n && v->planes[3] && v->planes[3][i] == 1)
+        i++;
+    return i == n;
+}
+
+// All that is needed to render a view; *image is its colour.
+static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
+                     struct tool_error *error)
+{
+    const int status = load(frame, error);
+    if (status)
+        return status;
+    *image = (struct hf_image){.width = v->view->width, .height = v->view->height, .format = HF_FORMAT_PLANAR32F};
+    // Who looks at the passes sees all of their channels.
+    const int channels = !frame->args->dump_dir && is_opaque(v) ? 3 : 4;
+    for (int c = 0; c < channels; c++) {
+        image->data[c] = v->planes[c];
+        image->stride[c] = (ptrdiff_t)v->view->width * (ptrdiff_t)sizeof(float);
+    }
+    v->setup.depth.data = v->depth;
+    session->label = v->label;
+    session->log.text[0] = '\0';
+    session->warnings = 0;
+    free(session->said);
+    session->said = NULL;
+    const int looked = cli_coc_look(v, frame->args, error);
+    v->cut = !looked && v->radii ? cli_window_cut(v) : 0;
+    v->highlights = count_highlights(v);
+    return looked;
+}
+
+// After the library has seen the view: what went wrong, or what to keep.
+static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, int status,
+                       struct tool_error *error)
+{
+    if (status != HF_OK) {
+        hf_set_dump(session->context, NULL, NULL);
+        return tool_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
+                         session->log.text[0] ? session->log.text : hf_error_string(status));
+    }
+    hf_get_report(session->context, &v->report);
+    v->warned = session->warnings;
+    free(v->said);
+    v->said = session->said;
+    session->said = NULL;
+    cli_coc_measure(v);
+    free(v->depth);
+    v->depth = NULL;
+    const struct cli_args *args = frame->args;
+    return args->explain || args->explain_image || args->json ? cli_explain_keep(v, session->context, error) : 0;
+}
+
+static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
+                       struct tool_error *error)
+{
+    struct hf_image image;
+    struct cli_dump dump;
+    int status = load_view(frame, v, session, &image, error);
+    if (status)
+        return status;
+    if (frame->args->dump_dir)
+        cli_dump_begin(&dump, session->context, frame, v);
+    v->setup.params.run.colour_stats = frame->args->explain;
+    const double start = tool_now_ms();
+    status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
+    frame->ms[CLI_DEFOCUS] += tool_now_ms() - start;
+    status = finish_view(frame, v, session, status, error);
+    return !status && frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : status;
+}
+
+static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct tool_error *error)
+{
+    struct hf_image image;
+    int status = load_view(frame, v, session, &image, error);
+    if (status)
+        return status;
+    v->setup.params.run.colour_stats = frame->args->explain;
+    status = hf_plan(session->context, &image, &image, &v->setup.depth, &v->setup.params, NULL);
+    return finish_view(frame, v, session, status, error);
+}
+
+typedef int view_step(struct cli_frame *frame, struct cli_view *v, struct cli_session *session,
+                      struct tool_error *error);
+
+static int each_view(struct cli_frame *frame, struct cli_session *session, view_step *step, struct tool_error *error)
+{
+    for (int i = 0; i < frame->view_count; i++) {
+        const int status = step(frame, &frame->views[i], session, error);
+        if (status)
+            return status;
+    }
+    return 0;
+}
+
+int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct tool_error *error)
+{
+    return each_view(frame, session, plan_view, error);
+}
+
+int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct tool_error *error)
+{
+    return each_view(frame, session, render_view, error);
+}
+
+int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct tool_error *error)
+{
+    struct hf_io_error io;
+    struct hf_io_result *results = calloc((size_t)frame->view_count, sizeof(*results));
+    if (!results)
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->output);
+    for (int i = 0; i < frame->view_count; i++) {
+        results[i].view = frame->views[i].index;
+        for (int c = 0; c < 4; c++)
+            results[i].planes[c] = frame->views[i].planes[c];
+    }
+    const double start = tool_now_ms();
+    const struct hf_io_job job = {.path = frame->args->output,
+                                  .results = results,
+                                  .result_count = frame->view_count,
+                                  .compression = frame->args->compression,
+                                  .texts = texts,
+                                  .text_count = text_count,
+                                  .run = frame->run};
+    const int status = hf_io_encode(&frame->output, frame->file, &job, &frame->written, &io);
+    frame->ms[CLI_ENCODE] += tool_now_ms() - start;
+    free(results);
+    return status ? tool_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
+}
+
+int cli_frame_save(struct cli_frame *frame, struct tool_error *error)
+{
+    struct hf_io_error io;
+    const double start = tool_now_ms();
+    const int status = hf_io_save(frame->output, &frame->written, &io);
+    frame->ms[CLI_WRITE] += tool_now_ms() - start;
+    return status ? tool_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
+}
+
+void cli_frame_close(struct cli_frame *frame)
+{
+    for (int i = 0; i < frame->view_count; i++) {
+        struct cli_view *v = &frame->views[i];
+        for (int c = 0; c < 4; c++)
+            free(v->planes[c]);
+        free(v->depth);
+        free(v->label);
+        free(v->tag);
+        free(v->radii);
+        free(v->tiles);
+        free(v->said);
+    }
+    free(frame->views);
+    hf_io_output_free(&frame->output);
+    hf_io_close(&frame->file);
+    *frame = (struct cli_frame){0};
+}

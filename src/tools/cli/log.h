@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// --log: what happened, one JSON object a line: a first that says what was begun, one for each frame, a last that sums up.
+#ifndef HF_CLI_LOG_H
+#define HF_CLI_LOG_H
+
+#include <stdio.h>
+
+#include "tools/cli/progress.h"
+#include "tools/cli/resume.h"
+
+enum cli_frame_status { CLI_FRAME_DONE, CLI_FRAME_SKIPPED, CLI_FRAME_FAILED };
+
+struct cli_log {
+    FILE *out;  // NULL: no log
+    const char *path;
+    int error;  // errno of the first line that was lost
+};
+
+// What became of a frame.
+struct cli_record {
+    enum cli_frame_status status;
+    const struct cli_job *job;
+    const struct cli_frame *frame;
+    const struct cli_stamp *stamp;
+    const struct hf_report *report;  // of the last view; NULL unless done
+    const char *why;                 // of a failure
+    long long memory;                // bytes kept free for it
+    double ms, waited_ms;            // from beginning to end; of that until others left it memory
+};
+
+// path NULL: no log. Returns 0, or an exit code with *error filled.
+int cli_log_open(struct cli_log *log, const char *path, int argc, char **argv, int frames, struct tool_error *error);
+void cli_log_frame(struct cli_log *log, const struct cli_record *record);
+void cli_log_end(struct cli_log *log, const struct cli_progress *progress, int at_once, int budget_missed,
+                 double peak_memory);
+// Returns 0, or an exit code with *error filled if not all of it could be written.
+int cli_log_close(struct cli_log *log, struct tool_error *error);
+
+#endif

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command's own options; those of the library's parameters are in tool/params.c. Order is that of the help text.
+#include "tools/cli/args.h"
+
+#include <float.h>
+#include <stddef.h>
+
+// A choice is stored as an int.
+_Static_assert(sizeof(enum hf_isa) == sizeof(int) && sizeof(enum hf_engine) == sizeof(int), "size of an enum");
+
+// clang-format off
+#define FIELD(f) .offset = offsetof(struct cli_args, f)
+#define FLAG(f) .parse = tool_parse_flag, FIELD(f)
+#define TEXT(f) .parse = tool_parse_text, FIELD(f)
+#define NAME(f, of) .parse = tool_parse_name, FIELD(f), .names = HF_NAMES_##of
+#define CHOICE(f) .parse = tool_parse_choice, FIELD(f)
+#define COUNT(f, least, most) .parse = tool_parse_count, FIELD(f), .min = (least), .max = (most)
+#define NUMBER(f, least, most) .parse = tool_parse_number, FIELD(f), .min = (least), .max = (most)
+#define POSITIVE(f) NUMBER(f, 0, FLT_MAX), .above_min = 1
+
+static const struct tool_option options[] = {
+    {"output", 'o', TOOL_FILES, "OUTPUT", "Picture to write: a copy of INPUT with its colours defocused. A name other "
+     "than .exr keeps the colour of one view only.", TEXT(output)},
+    {"frames", 0, TOOL_FILES, "LIST", "Frames of an INPUT with a place for the number: 1-100, 1-100x2 (every second), "
+     "10-1 (backwards), 1,5,9-20x3, -5--1, 1-100:3 (every third first, then those between). Default: those that there "
+     "are.", TEXT(frames)},
+    {"chunk", 0, TOOL_FILES, "auto|I/N", "Only part I of N of the frames, for farms. auto: this task's part in a Slurm "
+     "array.", TEXT(chunk)},
+    {"views", 0, TOOL_FILES, "all|NAME,...", "Views to defocus, each by its own depth; the others are kept as they "
+     "are. Default all.", TEXT(views)},
+    {"layer", 0, TOOL_FILES, "all|NAME,...", "Layers to defocus, each by its own depth: ViewLayer.Combined, or just "
+     "ViewLayer. all: every layer of colour, but masks, normals and the like. Default: the main one.", TEXT(layer)},
+    {"grow", 0, TOOL_FILES, NULL, "Let the data window grow by the reach of the blur, up to the display window. What is "
+     "new is black and transparent, 0 in other channels, and far away in depth. Default: what reaches beyond is cut, "
+     "with a warning.", FLAG(grow)},
+    {"display", 0, TOOL_FILES, "WxH[+X+Y]", "The picture is a crop of a frame of this size, pixels, at X,Y from its top "
+     "left corner (default: in its middle), whatever the file says: the lens is that of the whole frame.",
+     .parse = cli_parse_display},
+    {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
+     "Default: that of INPUT.", .parse = tool_parse_choice_text, FIELD(compression)},
+
+    {"focus", 0, TOOL_FOCUS, "D|center", "Distance in perfect focus, scene units, more than 0, or inf with a lens; or "
+     "center: what the middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,
+     FIELD(focus), .unit = TOOL_UNIT_DISTANCE, .max = FLT_MAX, .above_min = 1, .inf = 1},
+    {"focus-at", 0, TOOL_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates.",
+     .parse = cli_parse_focus_at},
+    {"focus-smooth", 0, TOOL_FOCUS, "N", "A focus that is read from the pictures of a shot follows the mean of N frames "
+     "before and after, so that it does not jump, 0 to 1000. Default 6.", COUNT(focus_smooth, 0, 1000)},
+    {"focus-per-view", 0, TOOL_FOCUS, NULL, "A focus that is read from the picture is each view's own. Default: all "
+     "have that of the first.", FLAG(focus_per_view)},
+    {"print-focus", 0, TOOL_FOCUS, NULL, "Print the focus of each frame, as a file for --keys, and do nothing else.",
+     FLAG(print_focus)},
+    {"keys", 0, TOOL_FOCUS, "FILE", "Values that change over a shot, as CSV: a column frame and any of focus, range, "
+     "strength, fstop, focal-length, max-radius, focus-at (X:Y). They go before the options.", TEXT(keys)},
+    {"keys-blend", 0, TOOL_FOCUS, "linear|smooth", "How values go from key to key. Default linear.",
+     CHOICE(keys_blend)},
+    {"range", 0, TOOL_FOCUS, "D", "Distance from the focus to full blur, scene units, 0 or more, or inf. Default: "
+     "half the focus distance.", NUMBER(range, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE, .inf = 1},
+    {"depth-of-field", 0, TOOL_FOCUS, "D", "What lies within half of this before and behind the focus is sharp, scene "
+     "units; blur grows from there on over the range. Default 0.", NUMBER(depth_of_field, 0, FLT_MAX),
+     .unit = TOOL_UNIT_DISTANCE},
+    {"strength", 0, TOOL_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1)},
+    {"near-begin", 0, TOOL_FOCUS, "D", "Near blur is full up to here, scene units. Default: focus - range.",
+     NUMBER(near_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+    {"near-end", 0, TOOL_FOCUS, "D", "Near blur ends here, scene units, not beyond --far-begin. Default: the focus.",
+     NUMBER(near_end, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+    {"far-begin", 0, TOOL_FOCUS, "D", "Far blur begins here, scene units. Default: the focus.",
+     NUMBER(far_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+    {"far-end", 0, TOOL_FOCUS, "D", "Far blur is full from here on, scene units. Default: focus + range.",
+     NUMBER(far_end, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+    {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 (none) to 2048. Default: with a lens that "
+     "of the lens, else 12 at 1080 lines, in proportion to the height.", NUMBER(params.max_radius, 0, 2048)},
+
+    {"fstop", 0, TOOL_LENS, "N", "f-number, more than 0, or inf (no blur). Default: the header's aperture.",
+     POSITIVE(fstop), .unit = TOOL_UNIT_FSTOP, .inf = 1},
+    {"focal-length", 0, TOOL_LENS, "MM", "Focal length, millimetres. Default: the header's pinholeFocalLength, else its "
+     "nominalFocalLength.",
+     POSITIVE(focal_length), .unit = TOOL_UNIT_MM},
+    {"sensor-width", 0, TOOL_LENS, "MM", "Width of the sensor, millimetres. Default: the header's "
+     "sensorOverallDimensions, else 36.", POSITIVE(sensor_width), .unit = TOOL_UNIT_MM},
+    {"world-unit", 0, TOOL_LENS, "M", "Metres in one scene unit. Default 1.", POSITIVE(world_unit), .unit = TOOL_UNIT_M},
+
+    {"depth-channel", 0, TOOL_DEPTH, "NAME", "Full name of the depth channel. Default: the view's Z or depth.Z, else "
+     "the only channel with depth in its name.", TEXT(depth_channel)},
+    {"depth-file", 0, TOOL_DEPTH, "FILE", "Take depth from this file. One of another size than the view is scaled to it by the "
+     "nearest sample, if its width / height is the same within 1 %.", TEXT(depth_file)},
+    {"depth-type", 0, TOOL_DEPTH, "view|ray|ndc-d3d|ndc-gl|ndc-reversed|inverse|normalized|normalized-inverted|coc",
+     "What depth holds. view (default): distance along the camera's axis; ray: along the ray; ndc-d3d, ndc-gl, "
+     "ndc-reversed: a depth buffer from 0 to 1, -1 to 1, 1 to 0; inverse: 1/distance, as depth estimators give it; "
+     "normalized, normalized-inverted: a map from black at --near to white at --far, or the other way; coc: signed blur "
+     "radii in pixels, near ones negative, which need no focus.", .parse = cli_parse_depth_type, FIELD(depth_type),
+     .names = HF_NAMES_DEPTH_TYPE},
+    {"near", 0, TOOL_DEPTH, "D", "Distance of an ndc or normalized depth's near end, scene units; with inverse that of "
+     "1, in place of a scale; with gaussian of any.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE},
+    {"far", 0, TOOL_DEPTH, "D", "The same of its far end, or inf; with inverse that of 0.", POSITIVE(far_plane),
+     .unit = TOOL_UNIT_DISTANCE, .inf = 1},
+    {"depth-scale", 0, TOOL_DEPTH, "S", "What the numbers of the depth are multiplied with first, not 0. Whole numbers "
+     "of a picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
+    {"depth-offset", 0, TOOL_DEPTH, "D", "What is added to them then. Default 0.",
+     NUMBER(depth_offset, -FLT_MAX, FLT_MAX)},
+    {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers between the two sides of an outline, at which "
+     "there is nothing, go to the nearer side: for depth that was filtered, smoothed or made smaller. auto (default): "
+     "sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, unless keep is "
+     "given.", CHOICE(depth_edges)},
+
+    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. layers (default): edges un-mixed, "
+     "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "
+     "half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. gaussian: soft, with "
+     "autofocus.", NAME(engine, ENGINE)},
+    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings from those "
+     "it was measured with: the cheapest that blurs as far as any lens (the gather); the cheapest within 1 dB "
+     "of the most accurate; within 0.25 dB; the most accurate. --explain says why, and what that costs and errs.", NAME(quality, QUALITY)},
+    {"max-error", 0, TOOL_LOOK, "E", "The same by the error that is acceptable: root mean square distance from what a "
+     "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1},
+    {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
+     "(default), or a polygon with 3 to 16 sides, straight (0) to round (1), turned by some degrees: ngon:6:0.5:15. Of "
+     "one number alone, up to 1 is the roundness and more the degrees: ngon:6:15. Only layers and scatter draw round "
+     "sides, a ring whose hole has R of the radius, 0 to 0.95, or the picture in FILE. hexagon: ngon:6 and the degrees.",
+     .parse = cli_parse_aperture},
+
+    {"threads", 0, TOOL_RUN, "N", "Threads to work on, up to 256; 0 (default): one per processor.",
+     COUNT(threads, 0, 256)},
+    {"memory-limit", 0, TOOL_RUN, "GIB", "Memory to keep within, GiB: as many frames are worked on at once as fit. "
+     "Default: 2, or half of what there is if that is less.", POSITIVE(memory_limit)},
+    {"resume", 0, TOOL_RUN, NULL, "Skip frames whose OUTPUT is whole and was made with the same settings from the same "
+     "INPUT, make the others, and remove what killed processes left.", FLAG(resume)},
+    {"stop-on-error", 0, TOOL_RUN, NULL, "Stop at the first frame that fails. Default: go on with the others.",
+     FLAG(stop_on_error)},
+    {"log", 0, TOOL_RUN, "FILE", "Append what happens to each frame to FILE, one JSON object a line.",
+     TEXT(log_file)},
+    {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
+     "this CPU.", NAME(isa, ISA)},
+    {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. When the frames before took longer, cheaper "
+     "settings are chosen, those from which --quality chooses that blur as far as is asked for. Default: any time.",
+     POSITIVE(params.run.budget_ms)},
+    {"explain", 0, TOOL_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
+     "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
+    {"explain-image", 0, TOOL_RUN, "FILE", "Write the picture with its tiles painted over: near red, far blue, both "
+     "violet, sharp as it is. Of several views each has its own: out.png is out.left.png and out.right.png.", TEXT(explain_image)},
+    {"focus-image", 0, TOOL_RUN, "FILE", "Write the picture painted by what each pixel is: near red, in focus green, "
+     "far blue. Of several views each has its own: out.png is out.left.png and out.right.png.", TEXT(focus_image)},
+    {"json", 0, TOOL_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
+     "FILE unless there is no other INPUT.", .parse = cli_parse_json},
+    {"dump-passes", 0, TOOL_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},
+    {"dry-run", 0, TOOL_RUN, NULL, "Say what would be done, write no OUTPUT. What --json, --explain-image and "
+     "--focus-image name is written.", FLAG(dry_run)},
+    {"verbose", 0, TOOL_RUN, NULL, "Say in a line what was done with each frame, as on a terminal.", FLAG(verbose)},
+    {"quiet", 0, TOOL_RUN, NULL, "Do not, on a terminal either, nor how far a shot is: warnings and errors alone.", FLAG(quiet)},
+    {"help", 'h', TOOL_RUN, "[all|man]", "Print the usual options; --help=all: all of them; --help=man: the man page.",
+     .parse = tool_parse_help},
+    {"version", 0, TOOL_RUN, NULL, "Print the version.", .parse = cli_parse_version},
+    {.name = NULL},
+};
+
+static const char *const groups[TOOL_GROUPS] = {
+    [TOOL_FILES] = "Files",
+    [TOOL_FOCUS] = "Focus and range (in scene units, those of the depth; 1.2m or 80cm will do)",
+    [TOOL_LENS] = "Lens",
+    [TOOL_DEPTH] = "Depth",
+    [TOOL_LOOK] = "Look",
+    [TOOL_RUN] = "Running",
+};
+
+// clang-format on
+
+// What most people need; the rest is told by --help=all.
+static const char *const usual[] = {"output",   "focus",        "focus-at",   "range",      "max-radius",
+                                    "fstop",    "focal-length", "depth-file", "depth-type", "engine",
+                                    "aperture", "dry-run",      "help",       NULL};
+
+const struct tool_program cli_program = {
+    .name = "hyperfocal",
+    .subject = "depth of field for rendered pictures",
+    .usage = "INPUT -o OUTPUT [options]",
+    .intro = "INPUT holds linear colour and depth, as EXR does. OUTPUT is a copy of it with "
+             "the colours defocused. A value follows its option as the next word or after =. "
+             "A shot: INPUT and OUTPUT with a place for the frame number, shot.####.exr (also "
+             "#, @@@, %04d, $F4; %V for the view), or several INPUT.",
+    .groups = groups,
+    .sections = (const struct tool_section[]){{options, 0}, {tool_params_options, offsetof(struct cli_args, params)}},
+    .section_count = 2,
+    .usual = usual,
+    .more_title = "How much blur",
+    .more = "--range, --strength and --near-begin to --far-end choose the range model: blur "
+            "grows over a distance of your choice, whatever lens the header has. --fstop, "
+            "--focal-length or a lens in the header (aperture and pinholeFocalLength or "
+            "nominalFocalLength) choose the lens: blur as a camera has it. With neither, "
+            "the range is half the focus distance. --focus goes before the header's.",
+    .examples =
+        (const char *const[]){"hyperfocal shot.exr -o dof.exr --focus 4.2 --range 3",
+                              "hyperfocal shot.exr -o dof.exr --focus-at 960,540 --fstop 2 --focal-length 50",
+                              "hyperfocal shot.####.exr -o dof.####.exr --focus center --frames 1-9 --resume", NULL},
+    .outro = "Exit codes: 0 done; 1 the command line is wrong, or names what is not there: no use to "
+             "try again; 2 some frames failed; 3 all failed.",
+};

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// File names with places for a frame number and a view's name.
+//
+//     #            the number, as many digits as the files have
+//     ####, @@@    at least so many digits; @: as many as the number has
+//     %04d, %d     as printf writes it
+//     $F4, $F      as Houdini writes it
+//     %V, %v       the view's name, its first letter
+//
+// Any of them may come more than once. The minus sign of a negative number counts as a digit, as for printf.
+#ifndef HF_CLI_PATTERN_H
+#define HF_CLI_PATTERN_H
+
+#include <stddef.h>
+
+#include "tools/common/error.h"
+#include "tools/cli/frames.h"
+
+// 1 if a name has a place for the frame number, or for the view.
+int cli_pattern_has_frame(const char *pattern);
+int cli_pattern_has_view(const char *pattern);
+
+// The pattern with the places of the number, or of the view, filled in: to be freed; NULL without memory. digits: for #
+// alone.
+char *cli_pattern_fill(const char *pattern, int frame, int digits);
+char *cli_pattern_view(const char *pattern, const char *view);
+
+// The frames that there are, sorted. *digits: how many those of # have at least, 4
+// when there are none. Returns 0, or an exit code with *error filled: an unreadable directory, or a place for the number
+// in a directory's name, which is not searched.
+int cli_pattern_scan(const char *pattern, struct cli_frames *found, int *digits, struct tool_error *error);
+
+// The last number in a file's name, "shot.0007.exr": 1 and *frame, *digits; 0 if there is none.
+int cli_name_number(const char *path, int *frame, int *digits);
+
+#endif

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the command line and a view's header to what the library is told: which model, which focus, what depth means.
+#ifndef HF_CLI_SETUP_H
+#define HF_CLI_SETUP_H
+
+#include "hyperfocal/hyperfocal.h"
+
+#include "tools/cli/args.h"
+#include "tools/common/error.h"
+#include "tools/io/io.h"
+
+enum cli_model { CLI_MODEL_RANGE, CLI_MODEL_LENS, CLI_MODEL_COC };
+
+// "range", "lens", "coc".
+const char *cli_model_name(enum cli_model model);
+
+// Render settings of one view.
+struct cli_setup {
+    enum cli_model model;
+    // "--focus", "--focus-at", "--focus center", "header", "the picture's centre"; NULL: none needed (coc).
+    const char *focus_from;
+    struct hf_params params;
+    struct hf_choice choice;  // of --quality or --max-error; options is NULL without them
+    bool missed;              // no setting errs as little as --max-error asks for
+    struct hf_depth depth;    // data is the caller's to set
+};
+
+// 1 if the focus is to be read from the depth, so that cli_setup_view needs its pixels.
+int cli_focus_needs_depth(const struct cli_args *args);
+
+// Fill *setup for a view. depth: its pixels, width * height, or NULL when they are not needed. label names file and
+// view in messages. Returns 0, or an exit code with *error filled.
+int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
+                   const float *depth, const char *label, struct tool_error *error);
+
+#endif

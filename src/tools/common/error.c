@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/common/error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+const char *tool_program = "hyperfocal";
+atomic_int tool_bar_shown;
+
+int tool_fail(struct tool_error *error, int code, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    vsnprintf(error->text, sizeof(error->text), format, list);
+    va_end(list);
+    return code;
+}
+
+static void hide_controls(char *text)
+{
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+}
+
+const char *tool_shown(const char *text, char buf[TOOL_SHOWN])
+{
+    snprintf(buf, TOOL_SHOWN, "%s", text);
+    hide_controls(buf);
+    return buf;
+}
+
+void tool_print_line(const char *format, ...)
+{
+    char line[sizeof(((struct tool_error *)0)->text)];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(line, sizeof(line), format, list);
+    va_end(list);
+    hide_controls(line);
+    fprintf(stderr, "%s%s: %s\n", atomic_exchange(&tool_bar_shown, 0) ? "\r\033[K" : "", tool_program, line);
+}

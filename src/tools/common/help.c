@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The same table as a help text and as a man page.
+#include <ctype.h>
+#include <string.h>
+
+#include "tools/common/options.h"
+
+enum { INDENT = 10, COLUMN = 26, WIDTH = 80 };
+
+// Print text, breaking lines between words, indented by column; at: where the cursor is.
+static void print_wrapped(const char *text, int column, int at)
+{
+    if (at > 0 && at >= column - 1) {
+        putchar('\n');
+        at = 0;
+    }
+    int here = column;
+    printf("%*s", column - at, "");
+    while (*text) {
+        const int n = (int)strcspn(text, " ");
+        if (here > column && here + 1 + n > WIDTH) {
+            printf("\n%*s", column, "");
+            here = column;
+        }
+        here += printf("%s%.*s", here > column ? " " : "", n, text);
+        text += n + (text[n] == ' ');
+    }
+    putchar('\n');
+}
+
+// The help of an option, or its first sentence, behind the engines or commands that it is for.
+static const char *words_of(const struct tool_option *o, int all, char text[1024])
+{
+    const char *end = all ? NULL : strstr(o->help, ". ");
+    const int length = end ? (int)(end - o->help) + 1 : (int)strlen(o->help);
+    char engines[256];
+    const char *only = o->engines ? o->engines : o->commands;
+    if (!only) {
+        snprintf(text, 1024, "%.*s", length, o->help);
+        return text;
+    }
+    const int n = snprintf(text, 1024, "%s: %.*s", tool_and(only, engines), length, o->help);
+    char *first = text + n - length;
+    if (length > 1 && islower((unsigned char)first[1]))
+        *first = (char)tolower((unsigned char)*first);
+    return text;
+}
+
+// The whole help, or its first sentence.
+static void print_option(const struct tool_option *o, int all)
+{
+    int at = o->letter ? printf("  -%c, ", o->letter) : printf("      ");
+    at += printf("--%s", o->name);
+    // A long list of words is broken behind a bar.
+    for (const char *word = o->placeholder; word && *word;) {
+        const int n = (int)strcspn(word, "|"), bar = word[n] == '|';
+        if (at + 1 + n + bar > WIDTH) {
+            printf("\n%*s", INDENT, "");
+            at = INDENT;
+        }
+        at += printf("%s%.*s", word == o->placeholder ? " " : "", n + bar, word);
+        word += n + bar;
+    }
+    char text[1024];
+    print_wrapped(words_of(o, all, text), COLUMN, at);
+}
+
+static int is_usual(const struct tool_program *program, const struct tool_option *o)
+{
+    for (int i = 0; program->usual && program->usual[i]; i++)
+        if (!strcmp(o->name, program->usual[i]))
+            return 1;
+    return !program->usual;
+}
+
+// Each option of a group, in order.
+static void each_option(const struct tool_program *program, int group,
+                        void (*print)(const struct tool_option *option, int all), int all)
+{
+    for (int s = 0; s < program->section_count; s++)
+        for (const struct tool_option *o = program->sections[s].options; o->name; o++)
+            if ((int)o->group == group && (all || is_usual(program, o)))
+                print(o, all);
+}
+
+void tool_print_help(const struct tool_program *program, int all)
+{
+    all |= !program->usual;
+    printf("%s %s: %s\n\n    %s %s\n\n", program->name, hf_version(), program->subject, program->name, program->usage);
+    print_wrapped(program->intro, 0, 0);
+    for (int i = 0; program->commands && program->commands[i][0]; i++)
+        print_wrapped(program->commands[i][1], COLUMN, printf("%s  %s", i ? "" : "\n", program->commands[i][0]) - !i);
+    if (!all)
+        printf("\n");
+    for (int group = 0; group < TOOL_GROUPS; group++) {
+        if (all && program->groups[group])
+            printf("\n%s\n", program->groups[group]);
+        each_option(program, group, print_option, all);
+    }
+    if (all && program->more) {
+        printf("\n%s\n", program->more_title);
+        print_wrapped(program->more, 2, 0);
+    }
+    printf("\nExamples\n");
+    for (int i = 0; program->examples[i]; i++)
+        printf("  %s\n", program->examples[i]);
+    printf("\n");
+    print_wrapped(program->outro, 0, 0);
+}
+
+// Text in roff: a backslash and a hyphen have meanings of their own, and so have ' and . at the start of a line.
+static void put_roff(const char *text)
+{
+    if (*text == '\'' || *text == '.')
+        fputs("\\&", stdout);
+    for (; *text; text++)
+        switch (*text) {
+        case '\\':
+            fputs("\\e", stdout);
+            break;
+        case '-':
+            fputs("\\-", stdout);
+            break;
+        default:
+            putchar(*text);
+        }
+}
+
+static void man_option(const struct tool_option *o, int all)
+{
+    (void)all;
+    fputs(".TP\n.B ", stdout);
+    if (o->letter)
+        printf("\\-%c, ", o->letter);
+    fputs("\\-\\-", stdout);
+    put_roff(o->name);
+    if (o->placeholder) {
+        fputs(" \\fR", stdout);
+        put_roff(o->placeholder);
+    }
+    putchar('\n');
+    char text[1024];
+    put_roff(words_of(o, 1, text));
+    putchar('\n');
+}
+
+void tool_print_man(const struct tool_program *program)
+{
+    printf(".TH %s 1 \"\" \"hyperfocal %s\"\n.SH NAME\n%s \\- %s\n.SH SYNOPSIS\n.B %s\n", program->name, hf_version(),
+           program->name, program->subject, program->name);
+    put_roff(program->usage);
+    fputs("\n.SH DESCRIPTION\n", stdout);
+    put_roff(program->intro);
+    putchar('\n');
+    for (int i = 0; program->commands && program->commands[i][0]; i++) {
+        printf("%s.TP\n.B %s\n", i ? "" : ".SH COMMANDS\n", program->commands[i][0]);
+        put_roff(program->commands[i][1]);
+        putchar('\n');
+    }
+    fputs(".SH OPTIONS\n", stdout);
+    for (int group = 0; group < TOOL_GROUPS; group++) {
+        if (program->groups[group]) {
+            fputs(".SS \"", stdout);
+            put_roff(program->groups[group]);
+            fputs("\"\n", stdout);
+        }
+        each_option(program, group, man_option, 1);
+    }
+    if (program->more) {
+        fputs(".SH \"", stdout);
+        put_roff(program->more_title);
+        fputs("\"\n", stdout);
+        put_roff(program->more);
+        putchar('\n');
+    }
+    fputs(".SH EXAMPLES\n.nf\n", stdout);
+    for (int i = 0; program->examples[i]; i++) {
+        put_roff(program->examples[i]);
+        putchar('\n');
+    }
+    fputs(".fi\n.SH \"EXIT STATUS\"\n", stdout);
+    put_roff(program->outro);
+    putchar('\n');
+}

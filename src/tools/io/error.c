@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/io/error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+int hf_io_fail(struct hf_io_error *err, const char *format, ...)
+{
+    va_list args;
+    if (!err)
+        return -1;
+    va_start(args, format);
+    vsnprintf(err->message, sizeof(err->message), format, args);
+    va_end(args);
+    for (char *p = err->message; *p; p++)
+        if (*p == '\n' || *p == '\r')  // libraries end their messages with one now and then
+            *p = p[1] ? ' ' : 0;
+        else if ((unsigned char)*p < 0x20 || *p == 0x7f)
+            *p = '?';
+    return -1;
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// EXR files, read and written with OpenEXRCore. Core parses headers, and decodes and encodes chunks; the layout of a
+// written file (header bytes, chunk tables, chunk order) is copied from the source by exr_write.c, which is how
+// everything that is not replaced stays as it was, attributes nobody knows included.
+#ifndef HF_IO_EXR_H
+#define HF_IO_EXR_H
+
+#include <openexr.h>
+
+#include "tools/io/out.h"
+#include "tools/io/picture.h"
+#include "tools/io/run.h"
+
+struct hf_exr_channel {
+    const char *name;
+    exr_pixel_type_t type;
+    int bytes;
+    int x_sampling, y_sampling;
+};
+
+// Where a part's samples lie when its chunks, decoded, follow each other in the order of their table: in a chunk row
+// after row, in a row channel after channel.
+struct hf_exr_layout {
+    size_t *row;      // of scan lines: height + 1 offsets; NULL for tiles
+    size_t *channel;  // bytes per pixel before each channel; NULL when channels are subsampled, so that rows differ
+    size_t pixel_bytes, bytes;
+};
+
+struct hf_exr_part {
+    const char *name, *view;  // "" when the header has none
+    exr_storage_t storage;
+    exr_compression_t compression;
+    exr_lineorder_t line_order;
+    exr_attr_box2i_t window;
+    bool window_ok;  // width and height are set: 1 .. HF_IO_MAX_SIDE
+    int width, height;
+    int chunk_lines;  // scan lines per chunk; 0 for tiles
+    int tile_width, tile_height;
+    bool one_level;  // not mipmapped
+    int chunk_count;
+    uint64_t table;           // file offsets: of the chunk table,
+    uint64_t compression_at;  // of the byte that names the compression,
+    uint64_t chunk_count_at;  // of the chunkCount attribute's value; 0 when there is none
+    uint64_t window_at;       // of the dataWindow attribute's value
+    bool grown;               // window, width, height, layout and samples are no longer the file's: see grow.c
+    int channel_count;
+    struct hf_exr_channel *channels;
+    const exr_attr_chlist_t *list;
+    struct hf_exr_layout layout;  // once hf_exr_lay_out was called
+    uint8_t *samples;             // all decoded chunks, or NULL
+};
+
+// Of all parts together: names are looked for one by one.
+enum { HF_EXR_MOST_CHANNELS = 4096 };
+
+// Who reads and writes the samples of parts whose compression Core does not know (DWA). Both return 0, or -1 with *err
+// filled.
+struct hf_exr_codec {
+    int (*read)(const char *path, int part, struct hf_io_samples *s, struct hf_io_error *err);
+    // A new single-part EXR. level: the quality, 0 for the default.
+    int (*write)(struct hf_io_bytes *made, const char *path, const struct hf_io_samples *s, const char *compression,
+                 float level, struct hf_io_error *err);
+};
+
+// Bytes of the file that are in memory: ranges, sorted, of a buffer as long as the file, in which no other page is used.
+struct hf_exr_fetched {
+    uint8_t *bytes;
+    int count;
+    struct hf_exr_range {
+        uint64_t from, to;
+    } * range;
+};
+
+struct hf_exr {
+    const char *path;  // not owned
+    const struct hf_exr_codec *dwa;
+    int fd;
+    const uint8_t *memory;  // all of the file; NULL: fd is read. Not owned
+    struct hf_exr_fetched fetched;
+    uint64_t size;
+    uint64_t header_size;
+    bool multipart;
+    exr_context_t core;
+    int part_count;
+    struct hf_exr_part *parts;
+};
+
+// Takes fd over, also on failure. path and dwa must outlive the file.
+int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_exr_codec *dwa, struct hf_io_error *err);
+// A file in memory, which must outlive it.
+int hf_exr_open_memory(struct hf_exr **out, const char *path, const struct hf_io_bytes *bytes, struct hf_io_error *err);
+void hf_exr_close(struct hf_exr *e);
+int hf_exr_read_at(const struct hf_exr *e, void *data, size_t size, uint64_t offset);  // 0 or -1
+// The bytes at offset if they are in memory, else NULL.
+const uint8_t *hf_exr_bytes(const struct hf_exr *e, size_t size, uint64_t offset);
+// Forget what Core said on this thread; the first thing it said since, or what the code it returned means.
+void hf_exr_quiet(void);
+const char *hf_exr_said(exr_result_t code);
+int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *err);
+// Core contexts with our memory and message functions; user_data is handed to the functions that read and write.
+void hf_exr_context_init(void *user_data, exr_context_initializer_t *init);
+
+bool hf_exr_is_deep(const struct hf_exr_part *part);
+bool hf_exr_is_dwa(exr_compression_t compression);
+int hf_exr_find_channel(const struct hf_exr_part *part, const char *name);  // index, or -1
+const char *hf_exr_compression_name(exr_compression_t compression);
+int hf_exr_compression(const char *name);  // enum exr_compression_t, or -1
+int hf_exr_compression_lines(exr_compression_t compression);
+// Samples of channel c in a row of the part's window (its pixels x with x % x_sampling == 0).
+int hf_exr_row_samples(const struct hf_exr_part *part, int c);
+bool hf_exr_row_has(const struct hf_exr_part *part, int c, int y);
+
+// Is the part fit to be decoded: sizes, levels, a file long enough for what the header promises?
+int hf_exr_check_part(const struct hf_exr *e, int part, struct hf_io_error *err);
+
+// views.c
+int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const struct hf_io_choice *choice,
+                      struct hf_io_error *err);
+// Part and channel of the depth for a view called name, in a file that may have no colour.
+int hf_exr_find_depth_only(const struct hf_exr *e, const char *depth_channel, const char *name, int *channel);
+void hf_exr_channels(const struct hf_exr *e, char *buf, size_t size);
+void hf_exr_layers(const struct hf_exr *e, char *buf, size_t size);
+// Layers with depths that none of the views has; see hf_io_other_layers.
+int hf_exr_other_layers(const struct hf_exr *e, const struct hf_io_views *views, char *buf, size_t size);
+
+// layout.c
+struct hf_exr_chunk {
+    int index;                  // in table order
+    int x0, y0, width, height;  // counted from the corner of the data window
+    size_t at, size;            // in the part's samples
+};
+int hf_exr_lay_out(const struct hf_exr *e, int part, struct hf_io_error *err);
+void hf_exr_free_layout(struct hf_exr_part *part);
+// Chunks when scan lines come `lines` at a time (of no meaning for tiles), and the one with this number.
+int hf_exr_count_chunks(const struct hf_exr_part *part, int lines);
+struct hf_exr_chunk hf_exr_chunk_at(const struct hf_exr_part *part, int lines, int index);
+// Where in a chunk channel c of row y begins.
+size_t hf_exr_row_at(const struct hf_exr_part *part, const struct hf_exr_chunk *chunk, int c, int y);
+
+// decode.c: a channel that is wanted as floats, on a grid of pixels given in EXR coordinates. Pixels outside of the
+// part's window are left alone.
+struct hf_exr_plane {
+    int part, channel;
+    bool keep;  // keep the part's samples: they are written again
+    struct hf_io_box grid;
+    float *to;
+};
+int hf_exr_decode(struct hf_exr *e, const struct hf_exr_plane *planes, int count, const struct hf_io_run *run,
+                  struct hf_io_error *err);
+// Have parts[part].samples, decoding what was not yet.
+int hf_exr_load_samples(struct hf_exr *e, int part, const struct hf_io_run *run, struct hf_io_error *err);
+// What hf_exr_decode of these would read, into memory.
+int hf_exr_fetch(struct hf_exr *e, const struct hf_exr_plane *planes, int count, struct hf_io_error *err);
+
+// grow.c: give a part a data window that holds its own. What is new is 0, or in some channels another value.
+struct hf_exr_fill {
+    int channel;
+    float value;
+};
+int hf_exr_grow(struct hf_exr *e, int part, struct hf_io_box box, const struct hf_exr_fill *fills, int fill_count,
+                const struct hf_io_run *run, struct hf_io_error *err);
+
+// codec.c: a part that only the codec can read or write, whole. The samples lie as the layout says.
+int hf_exr_codec_read(struct hf_exr *e, int part, uint8_t *samples, int threads, struct hf_io_error *err);
+int hf_exr_codec_write(struct hf_exr *e, int part, exr_compression_t compression, const uint8_t *samples, int threads,
+                       struct hf_io_bytes *made, struct hf_io_error *err);
+
+// encode.c: compresses chunks of a part; one per thread.
+struct libdeflate_compressor;
+struct hf_exr_encoder {
+    struct hf_exr *e;
+    const struct hf_exr_part *part;
+    exr_compression_t compression;
+    int lines;
+    exr_context_t core;  // RLE, PIZ, PXR24, B44
+    exr_encode_pipeline_t pipe;
+    bool started;
+    const uint8_t *raw;
+    size_t raw_size;
+    struct libdeflate_compressor *deflate;
+    uint8_t *scratch, *packed;
+    size_t scratch_size;
+};
+int hf_exr_encoder_open(struct hf_exr_encoder *en, struct hf_exr *e, const struct hf_exr_part *part,
+                        exr_compression_t compression, struct hf_io_error *err);
+// raw: the chunk's samples. *data is valid until the next call; it is raw when that does not shrink.
+int hf_exr_encode(struct hf_exr_encoder *en, const struct hf_exr_chunk *chunk, const uint8_t *raw, const uint8_t **data,
+                  size_t *size, struct hf_io_error *err);
+void hf_exr_encoder_close(struct hf_exr_encoder *en);
+
+// write.c: a new file as a list of pieces, in memory or of the source.
+struct hf_exr_job {
+    const struct hf_io_views *views;
+    const struct hf_io_result *results;
+    int n_results;
+    int compression;  // -1: as it was
+    const struct hf_io_text *texts;
+    int text_count;
+};
+struct hf_exr_made;
+int hf_exr_encode_file(struct hf_exr_made **out, struct hf_exr *e, const struct hf_exr_job *job,
+                       const struct hf_io_run *run, struct hf_io_written *written, struct hf_io_error *err);
+int hf_exr_put_file(const struct hf_exr_made *made, struct hf_out *out, struct hf_io_error *err);
+void hf_exr_free_file(struct hf_exr_made *made);
+
+// stamp.c: a copy of a file's first bytes, up to the chunk tables, with texts put into the first part's header in place of
+// those that have the same names. To be freed; NULL without memory.
+uint8_t *hf_exr_stamp(const uint8_t *header, size_t *size, const struct hf_io_text *texts, int count);
+
+// new.c
+struct hf_exr_new {
+    struct hf_io_box data_window, display_window;
+    float pixel_aspect, screen_center_x, screen_center_y, screen_width;
+    exr_compression_t compression;
+    int channel_count;
+    const char *const *names;
+    const float *const *planes;
+    ptrdiff_t stride;  // floats from row to row
+    const struct hf_io_text *texts;
+    int text_count;
+};
+int hf_exr_make_new(struct hf_io_bytes *made, const char *path, const struct hf_exr_new *picture,
+                    struct hf_io_error *err);
+
+#endif

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The top of this folder: an open file, whoever handles it.
+#ifndef HF_IO_FILE_H
+#define HF_IO_FILE_H
+
+#include "tools/io/io.h"
+
+struct hf_exr;
+struct hf_oiio;
+
+struct hf_io_file {
+    char *path;
+    struct hf_exr *exr;  // one of these two is set
+    struct hf_oiio *oiio;
+    struct hf_io_views views;
+};
+
+// As hf_io_open, but a file without colour (a depth map) is fine and has no views.
+int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
+                   struct hf_io_error *err);
+
+// Are all parts of it deep? And the sentence for who cannot use such a file; returns -1.
+bool hf_io_is_deep(const struct hf_io_file *file);
+int hf_io_fail_deep(const char *path, struct hf_io_error *err);
+
+#endif

@@ -1,0 +1,632 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything OpenImageIO does for us, behind a C interface that no exception leaves. Part of the helper program.
+#include "tools/io/oiio/oiio.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <strings.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+using OIIO::ImageInput;
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+struct hf_oiio {
+    const char *path;
+    ImageSpec spec;
+    int colour[4];  // channel indices; -1
+    int depth;
+};
+
+namespace
+{
+
+// Runs body, which returns 0 or -1; exceptions become an error like any other.
+template <class Body> int guarded(const char *path, hf_io_error *err, Body body) noexcept
+{
+    try {
+        return body();
+    } catch (const std::bad_alloc &) {
+        return hf_io_fail(err, "%s: out of memory", path);
+    } catch (const std::exception &e) {
+        return hf_io_fail(err, "%s: %s", path, e.what());
+    } catch (...) {
+        return hf_io_fail(err, "%s: OpenImageIO failed", path);
+    }
+}
+
+std::string why(std::string message)
+{
+    while (!message.empty() && std::isspace((unsigned char)message.back()))
+        message.pop_back();
+    return message.empty() ? "OpenImageIO gives no reason" : message;
+}
+
+// OpenImageIO prints errors that nobody asked for when the reader goes, so every reader goes through here.
+struct Input {
+    std::unique_ptr<ImageInput> in;
+
+    ~Input()
+    {
+        if (in)
+            in->geterror();
+        OIIO::geterror();
+    }
+
+    int fail(const char *path, hf_io_error *err)
+    {
+        const std::string message = in && in->has_error() ? in->geterror() : OIIO::geterror();
+        if (message.find("could not find a format reader") != std::string::npos)
+            return hf_io_fail(err, "%s: not a picture of any kind that can be read here", path);
+        return hf_io_fail(err, "%s: truncated or corrupt, or no picture: %s", path, why(message).c_str());
+    }
+};
+
+// A writer into memory: what goes wrong on a disk is then the program's business, who looks at what write() returns.
+// Formats that insist on a file of their own get one in memory, and are read back, as they do not look either.
+struct Output {
+    const char *path;
+    hf_io_error *err;
+    OIIO::Filesystem::IOVecOutput memory;
+    std::unique_ptr<ImageOutput> out;
+    int file = -1;
+    char name[64] = "";
+
+    Output(const char *p, hf_io_error *e, const std::string &format) : path(p), err(e), out(ImageOutput::create(format))
+    {
+    }
+
+    ~Output()
+    {
+        if (out)
+            out->geterror();
+        OIIO::geterror();
+        if (file >= 0)
+            ::close(file);
+    }
+
+    int fail()
+    {
+        const std::string message = out && out->has_error() ? out->geterror() : OIIO::geterror();
+        return hf_io_fail(err, "%s: cannot write: %s", path, why(message).c_str());
+    }
+
+    int open(const ImageSpec &spec)
+    {
+        if (!out)
+            return fail();
+        if (out->supports("ioproxy")) {
+            out->set_ioproxy(&memory);
+        } else {
+            file = memfd_create("picture", MFD_CLOEXEC);
+            snprintf(name, sizeof(name), "/proc/self/fd/%d", file);
+        }
+        return out->open(file >= 0 ? name : path, spec) ? 0 : fail();
+    }
+
+    int read_back(const ImageSpec &spec)
+    {
+        Input input;
+        input.in = ImageInput::create(out->format_name());
+        ImageSpec found;
+        if (!input.in || !input.in->open(name, found))
+            return input.fail(path, err);
+        std::vector<float> pixels((size_t)found.width * (size_t)found.height * (size_t)found.nchannels);
+        if (found.width != spec.width || found.height != spec.height || found.nchannels != spec.nchannels)
+            return hf_io_fail(err, "%s: cannot write: the format holds another picture than it was given", path);
+        return input.in->read_image(0, 0, 0, found.nchannels, TypeDesc::FLOAT, pixels.data()) ? 0
+                                                                                              : input.fail(path, err);
+    }
+
+    int write(TypeDesc type, const void *pixels, hf_io_bytes *made)
+    {
+        const ImageSpec spec = out->spec();
+        struct stat st;
+        if (!out->write_image(type, pixels) || !out->close())
+            return fail();
+        if (file >= 0 && (read_back(spec) || fstat(file, &st)))
+            return -1;
+        made->size = file >= 0 ? (size_t)st.st_size : memory.buffer().size();
+        made->data = made->size ? (uint8_t *)malloc(made->size) : nullptr;
+        if (!made->data)
+            return hf_io_fail(err, "%s: cannot write: %s", path, made->size ? "out of memory" : "nothing was written");
+        if (file < 0)
+            memcpy(made->data, memory.buffer().data(), made->size);
+        else if (pread(file, made->data, made->size, 0) != (ssize_t)made->size)
+            return hf_io_fail(err, "%s: cannot write: the format's writer lost its file", path);
+        return 0;
+    }
+};
+
+int open_input(Input &input, const char *path, hf_io_error *err)
+{
+    // Alpha as the file has it: what is not premultiplied must be multiplied in linear light, which is our business.
+    ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    input.in = ImageInput::open(path, &config);
+    if (!input.in)
+        return input.fail(path, err);
+    // No pictures, or read by code that writes past its buffers.
+    static const char *const refused[] = {"ico", "null", "ffmpeg", "openvdb", "dicom"};
+    for (const char *name : refused)
+        if (!strcmp(input.in->format_name(), name))
+            return hf_io_fail(err, "%s: files of this kind (%s) are not supported", path, name);
+    return 0;
+}
+
+int find_channel(const ImageSpec &spec, const char *name)
+{
+    for (int c = 0; c < spec.nchannels; c++)
+        if (spec.channel_name(c) == name)
+            return c;
+    return -1;
+}
+
+// The given channel; or Z, depth.Z, any single channel with "depth" in its name. -1: none.
+int find_depth(const ImageSpec &spec, const char *given)
+{
+    if (given)
+        return find_channel(spec, given);
+    int c = find_channel(spec, "Z"), hits = 0;
+    if (c < 0)
+        c = find_channel(spec, "depth.Z");
+    for (int i = 0, last = -1; i < spec.nchannels && c < 0; i++) {
+        if (strcasestr(std::string(spec.channel_name(i)).c_str(), "depth")) {
+            hits++;
+            last = i;
+        }
+        if (i == spec.nchannels - 1 && hits == 1)
+            return last;
+    }
+    return c;
+}
+
+void find_colour(const ImageSpec &spec, int colour[4])
+{
+    static const char *const names[4] = {"R", "G", "B", "A"};
+    for (int k = 0; k < 4; k++)
+        colour[k] = find_channel(spec, names[k]);
+    if (colour[0] >= 0 && colour[1] >= 0 && colour[2] >= 0)
+        return;
+    const int y = find_channel(spec, "Y");
+    for (int k = 0; k < 3; k++)
+        colour[k] = y >= 0 ? y : spec.nchannels == 1 && spec.z_channel != 0 ? 0 : -1;
+    // Formats without channel names number them.
+    if (colour[0] < 0 && spec.nchannels >= 3 && spec.channel_name(0).find("channel") == 0)
+        for (int k = 0; k < 3; k++)
+            colour[k] = k;
+}
+
+bool is_integer(TypeDesc t)
+{
+    return t.basetype >= TypeDesc::UINT8 && t.basetype <= TypeDesc::INT64;
+}
+
+double from_srgb(double v)
+{
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+float to_srgb(float v)
+{
+    v = std::isnan(v) ? 0.0f : std::min(std::max(v, 0.0f), 1.0f);
+    return v <= 0.0031308f ? v * 12.92f : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+}
+
+int check_spec(const ImageSpec &spec, const char *path, hf_io_error *err)
+{
+    const hf_io_box window = {spec.x, spec.y, (int)std::min<int64_t>((int64_t)spec.x + spec.width, INT32_MAX),
+                              (int)std::min<int64_t>((int64_t)spec.y + spec.height, INT32_MAX)};
+    struct stat st;
+    if (spec.deep || spec.depth > 1)
+        return hf_io_fail(err, "%s: deep pictures and volumes are not supported", path);
+    if (hf_io_check_window(path, "picture", window, err))
+        return -1;
+    if (spec.nchannels < 1 || spec.nchannels > 1024)
+        return hf_io_fail(err, "%s: %d channels are not supported", path, spec.nchannels);
+    // Some formats pack a plain colour very well, but nothing justifies gigabytes for a few bytes.
+    const uint64_t samples = (uint64_t)spec.width * (uint64_t)spec.height * (uint64_t)spec.nchannels;
+    if (stat(path, &st) == 0 && samples > 1 << 25 && samples / 4096 > (uint64_t)st.st_size)
+        return hf_io_fail(err, "%s: truncated or corrupt: %lld bytes cannot hold %d x %d pixels", path,
+                          (long long)st.st_size, spec.width, spec.height);
+    return 0;
+}
+
+void fill_view(struct hf_io_view *v, const hf_oiio *o)
+{
+    const ImageSpec &spec = o->spec;
+    const float unknown = NAN;
+    v->depth_part = o->depth >= 0 ? 0 : -1;
+    for (int k = 0; k < 4; k++)
+        if (o->colour[k] >= 0)
+            snprintf(v->colour[k], sizeof(v->colour[k]), "%s", spec.channelnames[(size_t)o->colour[k]].c_str());
+    if (o->depth >= 0)
+        snprintf(v->depth, sizeof(v->depth), "%s", spec.channelnames[(size_t)o->depth].c_str());
+    v->width = spec.width;
+    v->height = spec.height;
+    v->data_window = {spec.x, spec.y, spec.x + spec.width, spec.y + spec.height};
+    v->display_window = {spec.full_x, spec.full_y, spec.full_x + spec.full_width, spec.full_y + spec.full_height};
+    if (hf_io_check_window("", "", v->display_window, nullptr))
+        v->display_window = v->data_window;
+    v->pixel_aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
+    v->screen_width = 1;
+    v->camera = {unknown, unknown, unknown, unknown, unknown};
+    v->orientation = spec.get_int_attribute("Orientation");
+    v->profile = spec.find_attribute("ICCProfile") &&
+                 spec.get_string_attribute("ICCProfile:profile_description").find("sRGB") == std::string::npos;
+}
+
+// Channel c of all pixels as floats: integers become 0 .. 1.
+int read_channel(Input &input, const hf_oiio *o, int c, float *plane, hf_io_error *err)
+{
+    if (!input.in->read_image(0, 0, c, c + 1, TypeDesc::FLOAT, plane))
+        return input.fail(o->path, err);
+    // Half a picture counts as read for some readers (JPEG, TIFF, IFF), who only leave a message.
+    const std::string message = input.in->geterror();
+    return message.empty() ? 0 : hf_io_fail(err, "%s: truncated or corrupt: %s", o->path, why(message).c_str());
+}
+
+void premultiply(float *plane, const float *alpha, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        plane[i] *= alpha[i];
+}
+
+int read_colour(const hf_oiio *o, float *const planes[4], hf_io_error *err)
+{
+    const size_t n = (size_t)o->spec.width * (size_t)o->spec.height;
+    const bool curve = is_integer(o->spec.format);
+    const bool straight = o->colour[3] >= 0 && o->spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
+    std::vector<float> alpha;
+    Input input;
+    if (open_input(input, o->path, err))
+        return -1;
+    if (o->colour[3] >= 0 && (straight || planes[3])) {
+        alpha.resize(n);
+        if (read_channel(input, o, o->colour[3], alpha.data(), err))
+            return -1;
+        if (planes[3])
+            std::copy(alpha.begin(), alpha.end(), planes[3]);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (!planes[k])
+            continue;
+        if (k && o->colour[k] == o->colour[0] && planes[0]) {
+            std::copy(planes[0], planes[0] + n, planes[k]);
+            continue;
+        }
+        if (read_channel(input, o, o->colour[k], planes[k], err))
+            return -1;
+        if (curve)
+            for (size_t i = 0; i < n; i++)
+                planes[k][i] = (float)from_srgb(planes[k][i]);
+        if (straight)
+            premultiply(planes[k], alpha.data(), n);
+    }
+    return 0;
+}
+
+// The pixel type to ask a format for. Those that hold floats get them, unless the source itself had integers.
+TypeDesc output_type(const char *path, int bits)
+{
+    const char *ext = hf_io_extension(path);
+    if (!strcasecmp(ext, "hdr") || !strcasecmp(ext, "rgbe") || !strcasecmp(ext, "pfm") || !strcasecmp(ext, "exr"))
+        return TypeDesc::FLOAT;
+    if (!strcasecmp(ext, "tif") || !strcasecmp(ext, "tiff"))
+        return bits == 8 ? TypeDesc::UINT8 : bits == 16 ? TypeDesc::UINT16 : TypeDesc::FLOAT;
+    return bits == 16 ? TypeDesc::UINT16 : TypeDesc::UINT8;
+}
+
+// Interleave the planes as the format wants them: with the sRGB curve and straight alpha for integers.
+std::vector<float> interleave(const struct hf_io_view *v, const float *const planes[4], const ImageSpec &spec,
+                              bool alpha)
+{
+    const size_t n = (size_t)v->width * (size_t)v->height, channels = (size_t)spec.nchannels;
+    const size_t colours = channels - (alpha ? 1 : 0);
+    const bool curve = is_integer(spec.format);
+    std::vector<float> pixels(n * channels);
+    for (size_t c = 0; c < colours; c++) {
+        for (size_t i = 0; i < n; i++) {
+            float f = planes[c][i];
+            if (curve && alpha && planes[3][i] > 0)
+                f /= planes[3][i];
+            pixels[i * channels + c] = curve ? to_srgb(f) : std::isnan(f) ? 0.0f : f;
+        }
+    }
+    for (size_t i = 0; i < n && alpha; i++)
+        pixels[i * channels + colours] = planes[3][i];
+    return pixels;
+}
+
+// Can the format that path's extension says hold a picture?
+int check_format(ImageOutput *out, const char *path, hf_io_error *err)
+{
+    static const char *const trusted[] = {"bmp",     "dpx", "fits", "gif", "hdr", "heif",  "iff",  "jpeg", "jpeg2000",
+                                          "openexr", "png", "pnm",  "rla", "sgi", "targa", "tiff", "webp"};
+    OIIO::geterror();
+    if (!out && !hf_io_extension(path)[0])
+        return hf_io_fail(err, "%s: cannot write: nothing in the name says the format, such as .exr or .png", path);
+    if (!out)
+        return hf_io_fail(err, "%s: cannot write: OpenImageIO does not know the format \"%s\"", path,
+                          hf_io_extension(path));
+    for (const char *name : trusted)
+        if (!strcmp(name, out->format_name()))
+            return 0;
+    return hf_io_fail(err, "%s: cannot write: the format \"%s\" holds no whole picture", path, hf_io_extension(path));
+}
+
+// What a photograph says of itself goes along: camera, place, time, texts, orientation, colour profile. What says how the
+// source's samples are stored does not, nor a small picture of it, which would show what is no longer there.
+void take_along(ImageSpec &spec, const char *source, const char *format)
+{
+    static const char *const stay[] = {"oiio:",         "compression",
+                                       "planarconfig",  "thumbnail",
+                                       "tiff:",         "png:",
+                                       "jpeg:",         "pnm:",
+                                       "dpx:",          "ICCProfile:",
+                                       "textureformat", "PixelAspectRatio",
+                                       "openexr:",      "Exif:ColorSpace",
+                                       "Exif:Pixel"};
+    // In TIFF they make an EXIF directory, which OpenImageIO 2.4 then links in place of the picture's.
+    static const char *const not_in_tiff[] = {"Exif:", "GPS:"};
+    const auto begins = [](const std::string &name, const char *with) {
+        return !strncasecmp(name.c_str(), with, strlen(with));
+    };
+    Input input;
+    hf_io_error ignored;  // the pixels are at hand: that the source has gone since costs no more than its texts
+    if (open_input(input, source, &ignored))
+        return;
+    for (const OIIO::ParamValue &p : input.in->spec().extra_attribs) {
+        const std::string name = p.name().string();
+        bool keep = name != "ICCProfile" || is_integer(spec.format);
+        for (const char *with : stay)
+            keep = keep && !begins(name, with);
+        for (const char *with : not_in_tiff)
+            keep = keep && !(begins(name, with) && !strcmp(format, "tiff"));
+        if (keep)
+            spec.extra_attribs.add_or_replace(p);
+    }
+}
+
+int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
+{
+    const char *path = picture->path;
+    const hf_io_view *v = picture->view;
+    const float *const *planes = picture->planes;
+    Output output(path, err, path);
+    if (check_format(output.out.get(), path, err))
+        return -1;
+    const bool grey = !strcmp(v->colour[0], v->colour[1]);
+    const bool alpha = planes[3] && output.out->supports("alpha");
+    ImageSpec spec(v->width, v->height, (grey ? 1 : 3) + (alpha ? 1 : 0), output_type(path, picture->bits));
+    spec.channelnames.clear();
+    for (int c = 0; c < (grey ? 1 : 3); c++)
+        spec.channelnames.push_back(grey ? "Y" : std::string(1, "RGB"[c]));
+    if (alpha)
+        spec.channelnames.push_back("A");
+    spec.alpha_channel = alpha ? spec.nchannels - 1 : -1;
+    if (picture->source)
+        take_along(spec, picture->source, output.out->format_name());
+    spec.attribute("PixelAspectRatio", v->pixel_aspect);
+    if (alpha && is_integer(spec.format))
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+    // Not in TIFF: there it makes an EXIF directory, which OpenImageIO 2.4 then links in place of the picture's.
+    if (is_integer(spec.format) && strcmp(output.out->format_name(), "tiff"))
+        spec.attribute("oiio:ColorSpace", "sRGB");
+    if (picture->compression)
+        spec.attribute("compression", picture->compression);
+    if (hf_io_is_exr_name(path)) {
+        spec.x = v->data_window.x0;
+        spec.y = v->data_window.y0;
+        spec.full_x = v->display_window.x0;
+        spec.full_y = v->display_window.y0;
+        spec.full_width = v->display_window.x1 - v->display_window.x0;
+        spec.full_height = v->display_window.y1 - v->display_window.y0;
+    }
+    if (output.open(spec))
+        return -1;
+    // The writer may have settled for another type.
+    ImageSpec actual = output.out->spec();
+    actual.nchannels = spec.nchannels;
+    const std::vector<float> pixels = interleave(v, planes, actual, alpha);
+    return output.write(TypeDesc::FLOAT, pixels.data(), made);
+}
+
+const TypeDesc exr_types[3] = {TypeDesc::UINT32, TypeDesc::HALF, TypeDesc::FLOAT};
+
+size_t type_bytes(int type)
+{
+    return type == 1 ? 2 : 4;
+}
+
+// Between OpenEXR's rows of channels and OpenImageIO's pixels of channels: one channel of one row.
+void copy_strided(uint8_t *to, size_t to_step, const uint8_t *from, size_t from_step, size_t bytes, int n)
+{
+    for (int i = 0; i < n; i++)
+        memcpy(to + (size_t)i * to_step, from + (size_t)i * from_step, bytes);
+}
+
+void set_threads(const hf_io_samples *s)
+{
+    OIIO::attribute("threads", s->threads);
+    OIIO::attribute("exr_threads", s->threads > 1 ? s->threads : s->threads == 1 ? -1 : 0);
+}
+
+int read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
+{
+    set_threads(s);
+    Input input;
+    input.in = ImageInput::create("openexr");
+    ImageSpec spec;
+    if (!input.in || !input.in->open(path, spec) || !input.in->seek_subimage(part, 0))
+        return input.fail(path, err);
+    spec = input.in->spec();
+    if (spec.width != s->width || spec.height != s->height || spec.deep)
+        return hf_io_fail(err, "%s: truncated or corrupt: OpenImageIO finds %d x %d pixels in part %d, not %d x %d",
+                          path, spec.width, spec.height, part, s->width, s->height);
+    const size_t step = spec.pixel_bytes(true);
+    std::vector<uint8_t> pixels(step * (size_t)s->width * (size_t)s->height);
+    if (!input.in->read_image(part, 0, 0, spec.nchannels, TypeDesc::UNKNOWN, pixels.data()))
+        return input.fail(path, err);
+    size_t at = 0;
+    for (int c = 0; c < s->channel_count; c++) {
+        const int from = find_channel(spec, s->names[c]);
+        const size_t bytes = type_bytes(s->types[c]);
+        if (from < 0 || spec.channelformat(from) != exr_types[s->types[c]])
+            return hf_io_fail(err, "%s: OpenImageIO does not give channel %s of part %d as it is", path, s->names[c],
+                              part);
+        const size_t offset = spec.pixel_bytes(0, from, true);
+        for (int y = 0; y < s->height; y++)
+            copy_strided(s->data + (size_t)y * s->row_bytes + at, bytes,
+                         pixels.data() + (size_t)y * (size_t)s->width * step + offset, step, bytes, s->width);
+        at += bytes * (size_t)s->width;
+    }
+    return 0;
+}
+
+ImageSpec samples_spec(const hf_io_samples *s, const char *compression, float level)
+{
+    ImageSpec spec(s->width, s->height, s->channel_count, exr_types[s->types[0]]);
+    spec.x = spec.full_x = s->x;
+    spec.y = spec.full_y = s->y;
+    spec.channelnames.assign(s->names, s->names + s->channel_count);
+    for (int c = 0; c < s->channel_count; c++)
+        spec.channelformats.push_back(exr_types[s->types[c]]);
+    spec.tile_width = s->tile_width;
+    spec.tile_height = s->tile_height;
+    spec.tile_depth = s->tile_width ? 1 : 0;
+    spec.attribute("compression", level > 0 ? compression + (":" + std::to_string(level)) : std::string(compression));
+    return spec;
+}
+
+int write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, const char *compression, float level,
+                  hf_io_error *err)
+{
+    set_threads(s);
+    Output output(path, err, "openexr");
+    const ImageSpec spec = samples_spec(s, compression, level);
+    size_t step = 0, at = 0, offset = 0;
+    for (int c = 0; c < s->channel_count; c++)
+        step += type_bytes(s->types[c]);
+    std::vector<uint8_t> pixels(step * (size_t)s->width * (size_t)s->height);
+    for (int c = 0; c < s->channel_count; c++) {
+        const size_t bytes = type_bytes(s->types[c]);
+        for (int y = 0; y < s->height; y++)
+            copy_strided(pixels.data() + (size_t)y * (size_t)s->width * step + offset, step,
+                         s->data + (size_t)y * s->row_bytes + at, bytes, bytes, s->width);
+        offset += bytes;
+        at += bytes * (size_t)s->width;
+    }
+    return output.open(spec) ? -1 : output.write(TypeDesc::UNKNOWN, pixels.data(), made);
+}
+
+}  // namespace
+
+int hf_oiio_bits(const hf_oiio *o)
+{
+    const TypeDesc type = o->spec.format;
+    return is_integer(type) ? (int)type.basesize() * 8 : 0;
+}
+
+void hf_oiio_size(const hf_oiio *o, int *width, int *height)
+{
+    *width = o->spec.width;
+    *height = o->spec.height;
+}
+
+int hf_oiio_open(hf_oiio **out, const char *path, const char *depth_channel, hf_io_views *views, hf_io_error *err)
+{
+    return guarded(path, err, [&] {
+        Input input;
+        if (open_input(input, path, err) || check_spec(input.in->spec(), path, err))
+            return -1;
+        OIIO::attribute("threads", 1);
+        hf_oiio *o = *out = new hf_oiio{path, input.in->spec(), {-1, -1, -1, -1}, -1};
+        find_colour(o->spec, o->colour);
+        o->depth = find_depth(o->spec, depth_channel);
+        if (o->colour[0] < 0)
+            return 0;
+        struct hf_io_view *v = hf_io_add_view(views);
+        if (!v)
+            return hf_io_fail(err, "%s: out of memory", path);
+        fill_view(v, o);
+        return 0;
+    });
+}
+
+void hf_oiio_close(hf_oiio *oiio)
+{
+    delete oiio;
+}
+
+void hf_oiio_channels(const hf_oiio *oiio, char *buf, size_t size)
+{
+    for (const std::string &name : oiio->spec.channelnames)
+        hf_io_list(buf, size, nullptr, name.c_str(), "");
+}
+
+int hf_oiio_read_colour(hf_oiio *o, float *const planes[4], hf_io_error *err)
+{
+    return guarded(o->path, err, [&] { return read_colour(o, planes, err); });
+}
+
+int hf_oiio_read_depth(hf_oiio *o, float *depth, hf_io_error *err)
+{
+    return guarded(o->path, err, [&] {
+        Input input;
+        return open_input(input, o->path, err) ? -1 : read_channel(input, o, o->depth, depth, err);
+    });
+}
+
+int hf_oiio_read_depth_only(hf_oiio *o, const char *depth_channel, const struct hf_io_view *view, float *depth,
+                            hf_io_error *err)
+{
+    return guarded(o->path, err, [&] {
+        const ImageSpec &spec = o->spec;
+        int c = find_depth(spec, depth_channel);
+        if (c < 0 && !depth_channel)
+            c = spec.nchannels == 1 ? 0 : o->colour[0];
+        if (c < 0)
+            return hf_io_fail(err, "%s: no depth channel %s", o->path, depth_channel ? depth_channel : "Z, *depth*, R");
+        if (spec.width != view->width || spec.height != view->height)
+            return hf_io_fail(err, "%s: %d x %d pixels, and %d x %d were asked for", o->path, spec.width, spec.height,
+                              view->width, view->height);
+        Input input;
+        return open_input(input, o->path, err) ? -1 : read_channel(input, o, c, depth, err);
+    });
+}
+
+int hf_oiio_check_format(const char *path, hf_io_error *err)
+{
+    return guarded(path, err, [&] { return check_format(ImageOutput::create(path).get(), path, err); });
+}
+
+int hf_oiio_write(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
+{
+    return guarded(picture->path, err, [&] { return write_picture(made, picture, err); });
+}
+
+int hf_oiio_read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
+{
+    return guarded(path, err, [&] { return read_samples(path, part, s, err); });
+}
+
+int hf_oiio_write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, const char *compression,
+                          float level, hf_io_error *err)
+{
+    return guarded(path, err, [&] { return write_samples(made, path, s, compression, level, err); });
+}

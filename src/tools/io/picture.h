@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a picture file holds, whatever its format: windows, camera, views.
+#ifndef HF_IO_PICTURE_H
+#define HF_IO_PICTURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "tools/io/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    HF_IO_MAX_SIDE = 65536,          // widest and tallest picture
+    HF_IO_MAX_COORDINATE = 1 << 30,  // windows stay within +- this, so that no difference of two overflows
+};
+
+// Camera attributes of a header; NAN where the header has none. Names are those of the EXR attributes.
+struct hf_io_camera {
+    float focus;              // metres
+    float f_number;           // "aperture"
+    float focal_length_mm;    // "pinholeFocalLength"
+    float sensor_width_mm;    // "sensorOverallDimensions".x
+    float nominal_length_mm;  // "nominalFocalLength": what is written on the lens
+};
+
+struct hf_io_box {
+    int x0, y0, x1, y1;  // x1, y1 exclusive
+};
+
+// One picture that can be defocused: a set of colour channels and their depth. A stereo file has one per view.
+struct hf_io_view {
+    char name[64];        // view name ("left"), or "" when the file names none
+    char layer[256];      // layer of its colours ("ViewLayer.Combined"), or "" for one without a name
+    int part;             // part that holds the colour
+    int depth_part;       // part that holds the depth; -1: no depth channel found
+    char colour[4][256];  // full channel names of R, G, B, A in the part; "" when there is no such channel
+    char depth[256];      // full channel name of the depth; ""
+    int width, height;    // of the colour's data window
+    struct hf_io_box data_window, display_window;
+    float pixel_aspect;
+    float screen_center_x, screen_center_y;  // screenWindowCenter
+    float screen_width;                      // screenWindowWidth
+    struct hf_io_camera camera;
+    // Of a photograph: how to turn it to see it upright, as EXIF counts, 1 upright; 0 not known. Pixels are never turned.
+    int orientation;
+    bool profile;  // it brings a colour profile other than that of sRGB
+};
+
+// The views of a file, a growing list.
+struct hf_io_views {
+    int count;
+    struct hf_io_view *view;
+};
+
+// What a file's pictures are looked for by. NULL: as searched.
+struct hf_io_choice {
+    const char *depth_channel;  // full name of the depth channel of every view
+    const char *layer;          // names of layers with commas between, or "all"; NULL: the main one
+};
+
+// What to put in the place of a view's colour. planes[c] NULL: channel kept as it was. Greyscale files take the Rec. 709
+// luminance of the three.
+struct hf_io_result {
+    int view;
+    const float *planes[4];
+};
+
+// A text in a file's header: an EXR attribute of type string, with a name of at most 31 characters.
+struct hf_io_text {
+    const char *name, *value;
+};
+
+// What became of a picture that was written.
+struct hf_io_written {
+    uint64_t clamped;          // samples that did not fit a half channel and became +-65504
+    char note[HF_IO_MESSAGE];  // a sentence about what could not be kept as it was, or ""
+};
+
+// Append a view, all zero. NULL when there is no memory.
+struct hf_io_view *hf_io_add_view(struct hf_io_views *views);
+
+// What follows the last dot of the file's name, or "".
+const char *hf_io_extension(const char *path);
+bool hf_io_is_exr_name(const char *path);
+
+// 0, or -1 with *err filled when the window is empty, too large, or too far away.
+int hf_io_check_window(const char *path, const char *which, struct hf_io_box box, struct hf_io_error *err);
+
+// Append name and what is said of it to a list "a, b, c" in buf; what does not fit is cut off.
+void hf_io_list(char *buf, size_t size, const char *part, const char *name, const char *said);
+
+// The name in such a list that somebody may have meant who wrote another, or one of its pieces, Fg of Fg.Combined; 0 if
+// none is near.
+int hf_io_nearest(const char *list, const char *wanted, char nearest[256]);
+
+// Memory for pixels, on large pages where there are: a fault of the page table for each 2 MiB instead of each 4 KiB. To be
+// freed with free(); NULL when there is none.
+void *hf_io_alloc(size_t size);
+
+// A file in memory; data is to be freed.
+struct hf_io_bytes {
+    uint8_t *data;
+    size_t size;
+};
+
+// Samples as OpenEXR stores them: row after row, in a row channel after channel, in alphabetical order, little endian.
+// All channels have full resolution.
+struct hf_io_samples {
+    int x, y, width, height;  // the data window
+    int channel_count;
+    const char *const *names;
+    const uint8_t *types;         // 0 uint, 1 half, 2 float
+    int tile_width, tile_height;  // 0: scan lines
+    size_t row_bytes;
+    uint8_t *data;  // height * row_bytes
+    int threads;    // that may work on them; 0: as many as there are processors
+};
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
