@@ -76,18 +76,18 @@ done
     cat <<'MARKDOWN'
 # The engines beside the truth
 
-Three scenes, traced once with a pinhole and once with an open lens, and what each engine makes of the first. The camera is
-that of the EXR header. The inputs are EXR files in linear light that nothing clips; the figures do not hold for a clipped
-picture of 8 bits. `sh images/page.sh` makes this page, its pictures and its figures.
+Three scenes, each ray-traced twice: with a pinhole, which is the engines' input, and with an open lens, which is the truth.
+The camera is that of the EXR header. The inputs are EXR files in linear light that nothing clips; the figures do not hold for
+a clipped 8-bit picture. `sh images/page.sh` makes this page, its pictures and its figures.
 
 Which one:
 
-- **layers** where the picture counts. It takes edges apart, fills in what objects hide and is the closest to the truth; the
-  command does it by default.
+- **layers** where the picture counts. It un-mixes anti-aliased edges, fills in what objects hide and is the closest to the
+  truth. It is the command's default.
 - **scatter** for the same bits on every machine.
-- **gather** for a renderer with a budget in milliseconds, and for a draft. Half resolution, and two kernels for each pixel
-  in place of its own, cost it some sharpness on `lights`.
-- **hexagon** for its look.
+- **gather** for a renderer with a budget in milliseconds, and for a draft. It works at half resolution and blends two kernels
+  instead of drawing each pixel's own; that costs some sharpness on `lights`.
+- **hexagon** for hexagonal highlights.
 - **gaussian** for a soft preview: its blur is equally wide everywhere, so it does not follow a lens.
 
 Look at the rims of near bars before the sharp box (`fence`), at leaves before leaves (`foliage`), and at discs beside the
@@ -120,7 +120,7 @@ MARKDOWN
         cell "$scene-input" "the input"
         printf '</tr></table>\n\n'
     done
-    printf '## Before and after\n\nWhat was wrong in commit 38b9469, of which the left pictures are, and the same now.\n\n'
+    printf '## Before and after\n\nThe left pictures show faults of commit 38b9469, the middle ones the same places now.\n\n'
     # The range model of the demo: the subject between 3.5 and 6, full blur before 1.5 and behind 10.
     range='--focus 5 --near-begin 1.5 --near-end 3.5 --far-begin 6 --far-end 10'
     # shellcheck disable=SC2086
