@@ -262,7 +262,7 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     char message[HF_MESSAGE];
     struct hf_resolved r;
     c->report = (struct hf_report){0};
-    if (c->pool && c->pid != (int)getpid()) {
+    if (c->pool && c->threads > 1 && c->pid != (int)getpid()) {
         say(&c->config, HF_LOG_ERROR, "the context was opened before fork(): its threads are in the parent process");
         return HF_ERR_THREAD;
     }

@@ -36,6 +36,16 @@ static int row_finite(const struct hf_frame *f, int x, int y, int n, const struc
     return 1;
 }
 
+// Bytes without meaning become 255, in sharp tiles as in others: what is written must not depend on the tiles.
+static void fill_x(const struct hf_image *m, int x, int y, int n)
+{
+    if (m->format != HF_FORMAT_RGBX8 && m->format != HF_FORMAT_BGRX8)
+        return;
+    uint8_t *row = pixels_at(m, 0, x, y);
+    for (int i = 0; i < n; i++)
+        row[4 * i + 3] = 255;
+}
+
 void hf_copy_scan(struct hf_worker *w, struct hf_rect r)
 {
     const struct hf_setup *s = w->frame.s;
@@ -55,10 +65,11 @@ void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_re
         odd[c] = hf_line(f, 4 + c);
     }
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
-        if (copy->raw && copy->in_place)
-            continue;  // checked, and repaired if need be, after the first sweep
-        if (copy->raw && row_finite(f, x, y, n, f->dst))
+        // In place the pixels have been checked, and repaired if need be, after the first sweep.
+        if (copy->raw && (copy->in_place || row_finite(f, x, y, n, f->dst))) {
+            fill_x(f->dst, x, y, n);
             continue;
+        }
         float *const *alpha = hf_image_channels(f->src) == 4 ? even : NULL;
         hf_read_given(f, r.x0, y, r.x1 - r.x0, even, odd, &w->counts);
         const float *const e[4] = {even[0], even[1], even[2], alpha ? even[3] : NULL};

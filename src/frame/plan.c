@@ -82,10 +82,12 @@ static void choose_tile(const struct hf_plan *p, int threads, int *width, int *h
     }
 }
 
+// Cells of this size, or of the frame's where that is smaller: buffers are made for whole cells.
 static void set_cells(struct hf_plan *p, int sweep, int width, int height, int whole)
 {
-    p->cells.width[sweep] = whole ? (p->width + 15) & ~15 : width;
-    p->cells.height[sweep] = whole ? p->height : height;
+    const int most = (p->width + 15) & ~15;
+    p->cells.width[sweep] = whole ? most : hf_min(width, most);
+    p->cells.height[sweep] = whole ? p->height : hf_min(height, p->height);
     p->columns[sweep] = ceil_div(p->width, p->cells.width[sweep]);
     p->rows[sweep] = ceil_div(p->height, p->cells.height[sweep]);
 }

@@ -83,6 +83,34 @@ static struct hf_params rich_params(void)
     return p;
 }
 
+// Tiles larger than the frame hold no more than one of the frame's size.
+static void large_tiles(void)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, SCENE_BLOCKS, 60, 40, 4);
+    struct picture out = picture_new(60, 40, 4);
+    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+        size_t held[2];
+        struct hf_params p = scene_params();
+        p.engine = (enum hf_engine)e;
+        for (int i = 0; i < 2; i++) {
+            struct counter n = counter_new();
+            struct hf_config config = counted(&n);
+            struct hf_context *c;
+            config.tile_width = i ? 65536 : 32;
+            config.tile_height = i ? 65536 : 32;
+            CHECK_INT(hf_open(&c, &config), HF_OK);
+            CHECK_INT(try_scene(c, &out, &s, &p), HF_OK);
+            held[i] = n.most;
+            hf_close(&c);
+        }
+        CHECK_MSG(held[1] <= 2 * held[0], "engine %d: %zu bytes with tiles of 65536, %zu with those of 32", e, held[1],
+                  held[0]);
+    }
+    picture_free(&out);
+    scene_free(&s);
+}
+
 static void memory(void)
 {
     struct rng rng = rng_seed(seed);
@@ -409,6 +437,7 @@ int main(int argc, char **argv)
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
     printf("seed %u\n", seed);
     memory();
+    large_tiles();
     failing_memory(0);
     failing_memory(1);
     host_threads();

@@ -123,6 +123,17 @@ static struct hf_params blurred(void)
     return p;
 }
 
+// A byte without meaning is written as 255, whether a tile is sharp or blurred.
+static void check_meaningless(const uint8_t *codes, int f, const char *what)
+{
+    int others = 0;
+    if (formats[f].format != HF_FORMAT_RGBX8 && formats[f].format != HF_FORMAT_BGRX8)
+        return;
+    for (int i = 0; i < PIXELS; i++)
+        others += codes[4 * i + 3] != 255;
+    CHECK_MSG(!others, "format %d, %s: %d bytes without meaning are not 255", f, what, others);
+}
+
 // A frame out of place and in place against the same frame in floats, with highlights given back or not.
 static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer, float gain)
 {
@@ -143,7 +154,10 @@ static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer, 
     p.highlight.gain = gain;
     CHECK(hf_render(c, &floats, &in, &sharp, &p) == HF_OK);  // only to floats
     CHECK(hf_render(c, &blur, &floats, &z, &p) == HF_OK);
+    CHECK(hf_render(c, &copy, &in, &sharp, &p) == HF_OK);
+    check_meaningless(out, f, "all sharp");
     CHECK(hf_render(c, &copy, &in, &z, &p) == HF_OK);
+    check_meaningless(out, f, "blurred");
     CHECK(hf_render(c, &in, &in, &z, &p) == HF_OK);
     CHECK(!memcmp(codes, out, (size_t)PIXELS * (size_t)formats[f].bytes));
     double worst = 0;
