@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A slice's sources and its disc.
+// The sources of a slice, and its disc.
 #include "engine/layers/kernels.h"
 
 void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
@@ -13,7 +13,7 @@ void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const
             const float before = (r2 - s->before_square) * s->before_scale,
                         after = 1 - (r2 - s->square) * s->after_scale;
             const float part = r < s->radius ? before : after;
-            // What has no weight has no radius and no colour either.
+            // A sample without weight has no defined radius and colour.
             if (!(weight > 0 && r > s->before && r < s->after))
                 continue;
             const float shown = part * s->scale;
@@ -35,7 +35,7 @@ void hf_layers_fold_c(const float *in, int n, float *out)
         out[x] = in[2 * x] + in[2 * x + 1];
 }
 
-// What a row adds to a row of the disc: sum holds the samples up to `have` pixels away.
+// A row of sources' part of one row of the disc. sum holds the samples up to `have` pixels from x; it grows as needed.
 static float disc_row(const float *in, int x, struct hf_disc_row row, int *have, float *sum)
 {
     for (; *have < row.n; ++*have)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A slice's sources and its disc on vectors: in the order of operations of blur.c.
+// The sources of a slice and its disc on vectors. The order of operations is that of blur.c.
 #include "engine/layers/kernels.h"
 #include "simd/simd.h"
 
 enum { LAYERS_SIDE = 2 };  // vectors of a disc side by side
 
-// A vector's samples: runs of tiles are too short for the processor to see what comes next.
+// Prefetch the next row's samples. Runs of tiles are too short for the processor's own prefetchers.
 HF_INLINE void layers_ask_for(const float *const in[6], const float *share, ptrdiff_t at, const int channels)
 {
     for (int c = 0; c < 6; c++)
@@ -71,7 +71,7 @@ static void layers_weigh_simd(const struct hf_slice *s, const float *const in[6]
         layers_weigh_rows(s, in, share, stride, rows, 4, n, add, out, any);
 }
 
-// Reads and writes whole vectors only where they are its own: n may be less than one.
+// Reads and writes whole vectors only inside its arrays: n may be less than a vector.
 static void layers_fold_simd(const float *in, int n, float *out)
 {
     int x = 0;
@@ -83,12 +83,12 @@ static void layers_fold_simd(const float *in, int n, float *out)
     hf_layers_fold_c(in + 2 * x, n - x, out + x);
 }
 
-// Two rows at once: what they add to a row of the result is added in registers. `side` vectors side by side.
-// Most of what a sparse slice adds is nothing, which is not read and written.
+// Draws two rows of sources at once, `side` vectors side by side: their contributions to a row of the result are added
+// in registers. Where a sparse slice adds nothing, the result is neither read nor written.
 HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, const float *lower, const int side,
                               const int sparse, int from, int to, float *out, ptrdiff_t stride)
 {
-    // Of the upper row and the lower one; pair: what comes next on either side of what the sums hold.
+    // Index 0 is the upper row, 1 the lower one. pair: the sum of the next pixel on either side of those in sum.
     vf sum[2][LAYERS_SIDE], last[2][LAYERS_SIDE], pair[2][LAYERS_SIDE];
     const float *const row[2] = {upper, lower};
     for (int i = 0; i < 2; i++)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One cell of the result: slice by slice from front to back.
+// One cell of the result, slice by slice from front to back.
 #include <string.h>
 
 #include "engine/layers/parts.h"
 
-// Scratch; without memory, only how much of it would be taken.
+// Scratch. With memory NULL it only counts how much would be taken.
 struct scratch {
     float *memory;
     size_t used;
@@ -34,7 +34,7 @@ static struct hf_tile_map take_map(struct scratch *m, int columns, int rows, int
     return map;
 }
 
-// Place a cell's scratch; returns how much it is.
+// Place a cell's scratch in memory; returns how many floats it takes.
 static size_t place(struct hf_cell *c, float *memory)
 {
     struct scratch m = {.memory = memory};
@@ -96,7 +96,7 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     hf_layers_find_present(&c);
     hf_layers_mark_plain(&c);
     memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
-    // Where a slice does not reach, its light is 0 whatever part of it shows.
+    // Where a slice does not reach, its highlights are 0, so any visible part will do.
     memset(c.part - MARGIN * c.part_row - LEFT, 0,
            sizeof(float) * (size_t)c.part_row * (size_t)(c.rows * TILE / 2 + 2 * MARGIN));
     struct hf_tile_map *const maps[] = {&c.near, &c.far, &c.middle, &c.begun, &c.lit[0], &c.lit[1], &c.covered};

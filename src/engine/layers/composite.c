@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slices put together from front to back.
+// Slices composited from front to back.
 #include <math.h>
 
 #include "engine/layers/kernels.h"
@@ -53,7 +53,7 @@ void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[
         const float sum = w + g * a;
         for (int c = 0; c < channels; c++) {
             const float top = far ? near->colour[c][x] + g * far[c][x] : near->colour[c][x];
-            // What nothing reaches, where nothing is filled in behind it, stays as it was.
+            // A pixel that nothing covers, with nothing filled in behind it, stays as it was.
             float v = sum > 1e-30f ? top / sum : own[c][x];
             if (c == 3)
                 v = fabsf(v - 1) < HF_LAYERS_OPAQUE ? 1 : v;

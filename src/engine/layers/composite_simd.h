@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slices put together on vectors: in the order of operations of composite.c.
+// Slices composited on vectors. The order of operations is that of composite.c.
 #include "engine/layers/kernels.h"
 #include "simd/simd.h"
 
@@ -18,7 +18,7 @@ static void layers_up_simd(const float *a, const float *b, int n, float *out)
     }
 }
 
-// Is any of these something?
+// Whether any sum or weight of a vector is not 0.
 HF_INLINE int layers_is_any(const float *const in[5], const int channels, int x)
 {
     vm any = vf_ne(vf_load(in[4] + x), vf_zero());
@@ -27,7 +27,7 @@ HF_INLINE int layers_is_any(const float *const in[5], const int channels, int x)
     return vm_any(any);
 }
 
-// Most of a slice's discs is nothing, which is not put under anything, but for how much would show.
+// Most of a slice's plane is 0. Such vectors are skipped unless the caller wants the visible part.
 HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5],
                                const enum hf_layers_sums sums, int n, float *part)
 {
@@ -76,7 +76,7 @@ static void layers_blend_simd(const struct hf_stack_row *to, int channels, const
         layers_blend_sums(to, 4, in, sums, n, part);
 }
 
-// The sum is no fused one, whatever the others are.
+// The last addition is never fused, as in the plain C.
 static void layers_light_simd(const float *part, float amount, const float *in, int n, float *out)
 {
     const vf much = vf_set1(amount);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A slice of a cell: its sources, and their discs.
+// One slice of a cell: gather its sources, and draw their discs.
 #include <string.h>
 
 #include "engine/layers/parts.h"
 
-// Zero what the slice's blur reaches and what is read around that.
+// Clear the tiles that the slice's blur reaches, and what is read around them.
 static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
                           int first, int channels)
 {
@@ -12,7 +12,7 @@ static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, 
     for (int ty = -1; ty <= c->rows; ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, m, level, ty, &s);) {
             const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT;
-            // A level that is refined is read farther by vectors that are not whole.
+            // When such a level is refined, partial vectors read farther.
             const int more = level > 2 ? 32 : 16;
             const int right = (c->columns * (TILE >> level)) + RIGHT, x1 = s.x1 + more < right ? s.x1 + more : right;
             int y0, y1;
@@ -35,13 +35,14 @@ void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *
     in[5] = set->radius + at;
 }
 
-// Where a channel's row of sources begins: channel `channels` is the weight.
+// Where a channel's row of sources begins; channel `channels` is the weight.
 static float *source_at(const struct hf_cell *c, int i, int x, int y)
 {
     return c->source.at + y * c->source.row + i * c->source.channel + x;
 }
 
-// A row of samples of quads as samples of pixels: of each, the part that lies before it.
+// Turn a row of quads' samples into a row of pixels' samples: each pixel gets the part that lies before the quad's
+// sample.
 static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int px, int py, int n, const float *in[6])
 {
     const struct hf_layers_set *before[2] = {&c->samples->seen, &c->samples->mixed};
@@ -56,7 +57,8 @@ static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int
         in[i] = c->line[i];
 }
 
-// What is seen, of tiles that have the same in common at once: weights of 1 and shares of nothing are not read.
+// Weigh visible samples, one run of tiles with equal `plain` bits at a time: weights that are all 1 and shares that are
+// all 0 are not read.
 static void weigh_seen(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
                        float *const out[5])
 {
@@ -76,7 +78,8 @@ static void weigh_seen(const struct hf_cell *c, const struct hf_build *b, int tx
     }
 }
 
-// Samples of a row of a run of tiles, the first of which is (px, py); notes in `any` of which 16 there are some.
+// Weigh the samples of one row of a run of tiles; (px, py) is its first sample. Sets c->any for each 16 samples with
+// some.
 static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
                       float *const out[5])
 {
@@ -92,7 +95,8 @@ static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     else
         c->k->weigh(b->s, in, NULL, b->set->stride, rows, l->channels, n, 0, out, c->any);
     for (int from = tx, to; b->more && (to = hf_layers_next_run(&c->used, &from, ty, end, MORE)) > from; from = to) {
-        // What is noted of 16 samples lies as it does in the run: a tile that has none of these may come first.
+        // c->any counts from the start of the run in steps of 16 samples, so an 8-sample tile without these may come
+        // first.
         const int lead = (from - tx) * size & ~15, at = px + lead, count = (to - tx) * size - lead;
         float *more[5];
         for (int i = 0; i < 5; i++)
@@ -105,7 +109,8 @@ static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     }
 }
 
-// The sources of one row of a run of tiles; notes where there are any. The row is that of tile row `from`.
+// Make the sources of row y of a run of tiles, and note where there are any. Their samples are those of tile row
+// `from`.
 static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int from, int y)
 {
     const struct hf_layers *l = c->l;
@@ -129,7 +134,7 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     }
 }
 
-// Tiles beyond the frame, as far as there are samples of them: one on each side. Those farther out are like it.
+// The tile columns or rows beyond the frame that have samples: one on each side. Those farther out repeat them.
 struct around {
     int first, last;
 };
@@ -144,7 +149,7 @@ static int within(int t, struct around a)
     return t < a.first ? a.first : t > a.last ? a.last : t;
 }
 
-// Tiles beyond the frame become what tile `like` is: each of its rows is of one colour.
+// Fill tiles beyond the frame with tile `like`: each of its rows has one colour.
 static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int like, int tx, int end, int y)
 {
     const int size = TILE >> b->s->level;
@@ -177,7 +182,7 @@ static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty,
     }
 }
 
-// Also what vectors have written past the last tile.
+// Also clears what vectors wrote past the last tile.
 static void clear_row(const struct hf_cell *c, const struct hf_build *b, int y0, int y1)
 {
     const int size = TILE >> b->s->level;
@@ -187,7 +192,7 @@ static void clear_row(const struct hf_cell *c, const struct hf_build *b, int y0,
                 memset(source_at(c, i / 2, tx * size, y + i % 2), 0, sizeof(float) * (size_t)((end - tx) * size + 16));
 }
 
-// Draw columns x0 to x1 of two rows of a row of tiles' sources.
+// Draw columns x0 to x1 of two rows of sources in a row of tiles.
 static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at, int y, int x0, int x1,
                       const struct hf_window *to)
 {
@@ -200,7 +205,7 @@ static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at,
                    to->at + at * to->row + i * to->channel + x0, to->row);
 }
 
-// Draw two rows of a row of tiles' sources into the window. Spans lie on vectors, and what is between two is 0 in both.
+// Draw two rows of sources of a row of tiles. Spans are aligned to vectors; between two spans all sources are 0.
 static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty, int y, const struct hf_window *to)
 {
     const struct hf_slice *s = b->s;
@@ -226,7 +231,7 @@ static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty,
         draw_span(c, b, at, y, x0, x1, to);
 }
 
-// Rows of sources that are held, of a row of tiles.
+// The rows of sources that scratch holds: rows y0 to y1 of tile row `from`.
 struct held {
     int from, y0, y1;
 };
@@ -245,11 +250,11 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
         if (hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0) == tx || (ty + 1) * size + b->s->rows <= -margin ||
             ty * size - b->s->rows >= c->rows * size + margin)
             continue;
-        // The pairs of rows whose blur reaches what is made.
+        // The pairs of rows whose blur reaches the cell.
         const int least = -margin - b->s->rows - ty * size, most = c->rows * size + margin + b->s->rows - ty * size;
         const int y0 = least > 0 ? least & ~1 : 0, y1 = most < size ? (most + 1) & ~1 : size;
         const int from = within(ty, high), beyond = from == high.first || from == high.last;
-        // All rows of tiles beyond the frame are the same.
+        // All rows of tiles beyond the frame are equal, so their sources are built once.
         if (!beyond || held.y0 == held.y1 || held.from != from) {
             clear_row(c, b, held.y0, held.y1);
             held = beyond ? (struct held){from, 0, size} : (struct held){from, y0, y1};

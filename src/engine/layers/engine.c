@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers: the most accurate of the engines. Edges are un-mixed before they are blurred, what objects hide is filled in
-// before it is needed, and samples are put together in order of depth with coverage that saturates.
+// Layers, the most accurate engine. It un-mixes edges before they are blurred, fills in what objects hide before it is
+// needed, and composites samples in order of depth with coverage that saturates.
 //
-// A pixel of the result costs, apart from un-mixing and hidden samples, which are the same for all radii: twice the rows
-// of the discs of the slices between which its samples lie, a sixteenth of them from a quarter of the resolution on.
-// Of a whole frame (lights.exr, CPU time of one thread, AVX-512) a polygon costs 1.1 times what a disc does, a ring 1.3, a
-// picture of radius 22 1.4, channels of their own sizes 1.5 and a cat's eye 1.8 times.
+// Un-mixing and hidden samples cost the same for all radii. Beside them, a pixel of the result costs twice the rows of
+// the discs of the two slices around its sample, and a sixteenth of that from a quarter of the resolution on. Against a
+// disc, a whole frame (lights.exr, CPU time of one thread, AVX-512) takes 1.1 times as long with a polygon, 1.3 with a
+// ring, 1.4 with a picture of radius 22, 1.5 with chromatic aberration and 1.8 with a cat's eye.
 #include <math.h>
 #include <string.h>
 
@@ -105,7 +105,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->spacing = given->spacing;
     set->half = given->half_from;
     set->quarter = given->quarter_from;
-    // All pixels of a picture cost the square of its radius: sooner at an eighth of the resolution.
+    // A picture costs the square of its radius, so it drops to an eighth of the resolution earlier.
     set->eighth = set->quarter * (p->aperture.picture ? 2 : 4);
     set->unmix &= !given->no_unmix;
     set->hidden &= !given->no_hidden;
@@ -118,7 +118,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     s->sharp_radius = 0;
 }
 
-// The shape, but for its sizes; and how many groups of channels have sizes of their own.
+// Set the shape, without its sizes, and the number of groups of channels with sizes of their own.
 static void set_shape(struct hf_layers *l, const struct hf_params *p)
 {
     const struct hf_aperture_params *a = &p->aperture;
@@ -144,7 +144,7 @@ static void set_shape(struct hf_layers *l, const struct hf_params *p)
     k->cat_eye = a->cat_eye;
 }
 
-// The ranges of the tiles, in one block.
+// Place the ranges of the tiles in their block.
 static void place_tiles(struct hf_layers *l)
 {
     const size_t n = (size_t)l->columns * (size_t)l->rows;
@@ -262,8 +262,8 @@ static int runs(const struct hf_setup *s, int pass)
 static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
     const struct hf_layers *l = hf_layers(s);
-    // Planes of one set of samples have one stride: whoever reads some of them reads as far around as the others do. A
-    // cell's tiles beyond the frame's border are all like those next to it.
+    // All planes of a set of samples have one stride, so every reader must read equally far around. A cell's tiles
+    // beyond the frame all equal those next to the frame.
     const int border = hf_min(l->around, HF_LAYERS_BORDER) / 2;
     const int n = halo == HALO_EDGE     ? (l->set.highlights ? HF_LAYERS_BRIGHT_REACH : 6)
                   : halo == HALO_LEVELS ? hf_layers_hidden_reach(l)
@@ -279,7 +279,7 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
     return (struct hf_reach){l->around / 2, l->around / 2};
 }
 
-// All of a sample is made at once, whatever field it is for.
+// All of a sample is made at once, for either field.
 static unsigned reads(const struct hf_setup *s, unsigned needs)
 {
     (void)s;
@@ -289,7 +289,7 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     if (sweep == 2) {
-        // What is around a cell is weighed again for each: the more there is of it, the larger the cell.
+        // Each cell weighs the samples around it again. With a larger border a larger cell is cheaper.
         const int n = hf_layers(s)->around < 13 * HF_LAYERS_TILE ? 1 : 2;
         *width = hf_min(160 * n, (s->half_width + 15) & ~15);
         *height =

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hidden samples: what lies behind a silhouette, where a lens that is larger than a point sees past it. They come from
-// the farthest of what is around, at distances that double from level to level.
+// Hidden samples: what lies behind a silhouette, where a lens, being larger than a point, sees past it. They come from
+// the farthest of the surroundings, at distances that double from level to level.
 #include "engine/layers/hidden.h"
 
 #include <math.h>
 
 #include "pixel/pass_c.h"
 
-// What a pixel is to others: the surface behind its edge where it is mixed, and itself where it is not. A pixel of which
-// hardly anything is of what is behind is in between, or a quad would jump from one to the other.
+// What others see in a pixel: the back of a mixed one, else the pixel itself. share is the back's part. A pixel with a
+// tiny back is partly itself, or its quad would jump from one surface to the other.
 static float behind_of(const float *const seen[6], const float *const mixed[6], int at, float *weight)
 {
     const float m = mixed[4][at], own = m > 0 ? seen[4][at] * hf_saturate(1 - HF_LAYERS_EDGE * m) : seen[4][at];
@@ -48,7 +48,7 @@ void hf_layers_quads_c(const float *const seen[2][6], const float *const mixed[2
     }
 }
 
-// A row of samples and their places.
+// A row of samples: colour, weight (4), radius (5).
 static void row_of(const struct hf_frame *f, int colour, int at, int x, int y, float *row[6])
 {
     hf_row(&f->buf[colour], hf_layers(f->s)->channels, x, y, row);
@@ -70,7 +70,7 @@ void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r)
         hf_layers_kernels(f)->quads((const float *const(*)[6])seen, (const float *const(*)[6])mixed, channels, n, out);
         if (r.x0 + n == r.x1)
             continue;
-        // An odd width: the last pixel is its own neighbour.
+        // At an odd width the last pixel is paired with itself.
         float pair[2][2][6][2];
         const float *one[2][2][6];
         for (int i = 0; i < 24; i++) {
@@ -127,8 +127,8 @@ void hf_layers_taps_c(const struct hf_hidden_tap *tap, int count, int channels, 
         add_tap(&tap[i], channels, nearest, n, sum);
 }
 
-// The first on one side of a line that lies behind `nearest`, if need be of several in part: sums of colour, radius (4) and
-// distance (5); returns the parts' sum.
+// The first surface behind `nearest` on one side of a line; several samples may make it up. end: weighted sums of
+// colour, radius (4) and distance (5). Returns the sum of the weights.
 static float side_of(const struct hf_hidden_line *line, int side, int channels, int x, float nearest, float end[6])
 {
     float open = 1, whole = 0;
@@ -181,7 +181,7 @@ void hf_layers_nearest_c(const float *above, const float *below, int n, float *o
     }
 }
 
-// How much of a quad's pixel i lies before a radius: of what is seen there, and of what is behind a mixed edge.
+// How much of pixel i of a quad lies before a radius: its visible sample, and the back of a mixed one.
 static float before_of(const float *const radius[4], const float *const weight[4], int x, int i, float limit)
 {
     const int row = i >> 1, at = 2 * x + (i & 1);
@@ -229,7 +229,8 @@ static float roots_of(const float *const in[6], int x)
     return fabsf(in[0][x]) + fabsf(in[1][x]) + fabsf(in[2][x]);
 }
 
-// How much a sample counts in the mean of one of radius r, some places away in its line; and for which part it is as far.
+// Splits a sample's weight in a mean around radius r, i being its place in the line: *of is the part that is as far as
+// r; returns the rest.
 static float in_line(float weight, float radius, float r, int i, float *of)
 {
     const float line = weight > 0 ? hf_layers_line(i) * hf_saturate(HF_LAYERS_WHOLE * weight) : 0;
@@ -238,7 +239,7 @@ static float in_line(float weight, float radius, float r, int i, float *of)
     return line - *of;
 }
 
-// Weights of what is as far and of what is not, and of the latter times how large their radii are.
+// Weights of samples that are as far and of others, and the others' weights times their absolute radii.
 struct company {
     float like, others, size;
 };
@@ -255,7 +256,7 @@ static float lonely(const struct company *c, float r)
     return hf_layers_lonely(r, c->like, c->others, c->size);
 }
 
-// How far a sample has the colour of the middle one.
+// How close a sample's colour is to that of the middle one.
 static float shade(const float *const in[6], const float *const middle[6], int x, float apart)
 {
     const float off = fabsf(in[0][x] - middle[0][x]) + fabsf(in[1][x] - middle[1][x]) + fabsf(in[2][x] - middle[2][x]);

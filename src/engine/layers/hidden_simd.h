@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hidden samples on vectors: in the order of operations of hidden.c.
+// Hidden samples on vectors. The order of operations is that of hidden.c.
 #include "engine/layers/dimmed_vf.h"
 #include "engine/layers/hidden.h"
 #include "pixel/coc_vf.h"
@@ -11,13 +11,13 @@ HF_INLINE vf layers_signed_root(vf v)
     return vf_select(vf_lt(v, vf_zero()), vf_sub(vf_zero(), s), s);
 }
 
-// A row of pairs, and for which part each is what lies behind it.
+// A row of pixel pairs: which are mixed, and the part that their back is of them.
 struct layers_pairs {
     vm mixed[2];
     vf share[2];
 };
 
-// Their weights: what is hardly mixed is in part what it is by itself.
+// Loads such a row, and its weights: a pixel with a tiny back counts partly as itself.
 HF_INLINE struct layers_pairs layers_pairs_at(const float *const seen[6], const float *const mixed[6], int x, vf *even,
                                               vf *odd)
 {
@@ -183,7 +183,7 @@ static void layers_taps_simd(const struct hf_hidden_tap *tap, int count, int cha
 HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, const int channels, int x, vf nearest,
                             vf end[6])
 {
-    // Nothing lies behind what is infinitely far.
+    // Nothing lies behind an infinitely far surface.
     vf open = vf_keep(vf_lt(nearest, vf_set1(HUGE_VALF)), vf_set1(1)), whole = vf_zero();
     for (int i = 0; i < 6; i++)
         end[i] = vf_zero();
@@ -259,7 +259,7 @@ static void layers_nearest_simd(const float *above, const float *below, int n, f
     }
 }
 
-// How much of pixels from `at` on lies before a radius: of what is seen there, and of what is behind mixed edges.
+// How much of the pixels from `at` on lies before a radius: visible samples, and backs of mixed ones.
 HF_INLINE vf layers_before(const float *const radius[4], const float *const weight[4], int row, int at, vf limit)
 {
     const vf seen = vf_mul(vf_load(weight[row] + at), layers_hides(vf_sub(limit, vf_load(radius[row] + at))));
@@ -340,8 +340,8 @@ HF_INLINE vf layers_roots_of(const float *const in[6], int x)
     return vf_add(vf_add(vf_abs(vf_load(in[0] + x)), vf_abs(vf_load(in[1] + x))), vf_abs(vf_load(in[2] + x)));
 }
 
-// How much samples count in the mean of those of radius r, and for which part they are as far; adds to both, and to the
-// weights of what is not, times how large their radii are.
+// Splits samples' weight in the mean around radius r: *of is the part that is as far as r; returns the rest. company
+// adds up both parts, and the rest times the absolute radii.
 HF_INLINE vf layers_in_line(const float *weight, const float *radius, vf r, int i, vf *of, vf company[3])
 {
     const vf w = vf_load(weight);
@@ -357,7 +357,7 @@ HF_INLINE vf layers_in_line(const float *weight, const float *radius, vf r, int 
     return rest;
 }
 
-// How far a sample has the colour of the middle one.
+// How close a sample's colour is to that of the middle one.
 HF_INLINE vf layers_shade(const float *const in[6], const float *const middle[6], int x, vf apart)
 {
     vf off = vf_abs(vf_sub(vf_load(in[0] + x), vf_load(middle[0] + x)));
@@ -430,7 +430,7 @@ static void layers_smooth_simd(const float *const in[13][6], const float *const 
         layers_smooth_of(in, along, 4, n, out);
 }
 
-// Which of a vector's lanes are among the first n.
+// A mask of a vector's first n lanes.
 HF_INLINE vm layers_first(int n)
 {
     static const float lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Highlights: what of a sample is so much brighter than what lies around it that the edge of its disc would show the
-// pixels of a coarser resolution. What they do to it then stays below LEAST of its surroundings, whatever the exposure;
-// what is less than PLAIN times as bright as these does not count, or every pattern would be made of highlights. These are
-// the darkest of what lies at the sample and next to it on four sides: a disc's rim lies before that, and a lamp of some
-// pixels must not hide itself in its own mean. Nothing at all counts as bright as the sample: alpha, which has no shares,
-// would otherwise not go with the colour.
+// Highlights: the part of a sample that is so bright against its surroundings that its disc's rim would show a coarser
+// resolution's pixels. What stays in the slice is below LEAST of the surroundings, at any exposure. A sample less than
+// PLAIN times as bright as they are has no highlight, or every pattern would be full of them. The surroundings are the
+// darkest of five means: around the sample, and next to it on four sides. A disc's rim lies before those, and a lamp of
+// several pixels must not hide itself in its own mean. Where a mean's pixels are transparent they count as bright as
+// the sample: alpha has no shares, so it could not follow the colour there.
 #include "engine/layers/highlights.h"
 
 #include <math.h>
@@ -12,7 +12,8 @@
 
 #include "pixel/pass_c.h"
 
-// Half-resolution pixels: of a mean on either side of its middle, from one mean to the next, and beside a row of scratch.
+// In half-resolution pixels: a mean's reach on either side of its middle, the distance of two means, the padding of a
+// row.
 enum { MEAN = 4, APART = 2 * MEAN + 1, REACH = HF_LAYERS_BRIGHT_REACH, PAD = 32 };
 _Static_assert(MEAN + APART <= REACH && REACH + 16 <= PAD, "what means read and vectors write");
 
@@ -62,13 +63,13 @@ void hf_layers_shares_c(const float *const in[6], const float *const around[5], 
     }
 }
 
-// Rows of means, and of roots above them and below; one row more, and two of nothing.
+// One row of means is extra, and two rows are zeros; roots have rows above and below.
 size_t hf_layers_highlight_floats(int width, int height)
 {
     return ((size_t)width + 2 * PAD) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
 }
 
-// Means around a cell: of roots of sums of three channels, of which those below 0 are nothing.
+// Means around a cell of the square roots of three channels' sums. A channel below 0 is taken as zeros.
 static void make_means(const struct hf_frame *f, struct hf_rect r, const int channel[3], float *scratch, float *mean)
 {
     const struct hf_layers_kernels *k = hf_layers_kernels(f);
@@ -95,7 +96,7 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
     }
 }
 
-// Means of colours and of alphas, one after the other: where the cell's first pixel is in the former.
+// Scratch holds means of colours, then means of alphas. mean and cover point to the cell's first pixel in each.
 static ptrdiff_t stride_of(struct hf_rect cell)
 {
     return cell.x1 - cell.x0 + 2 * PAD;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Highlights on vectors: in the order of operations of highlights.c.
+// Highlights on vectors. The order of operations is that of highlights.c.
 #include <math.h>
 
 #include "engine/layers/dimmed_vf.h"

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The levels of hidden samples, and what is found in them.
+// The levels of hidden samples, and the search in them.
 #include <math.h>
 #include <string.h>
 
 #include "engine/layers/hidden.h"
 #include "pixel/pass_c.h"
 
-// Samples that are looked for at once; floats around a row; blocks of samples of which it is known whether they need any.
+// Samples searched at once; floats around a row; size of the blocks that are known to need a search or not.
 enum { STEP = 128, PAD = 32, BLOCK = 16 };
-#define ROUNDED 0.01f  // by less than this means of radii are beyond the largest of them
+#define ROUNDED 0.01f  // rounding may put a mean of radii this far above the largest of them
 
 int hf_layers_hidden_reach(const struct hf_layers *l)
 {
     return l->levels ? (1 << l->levels) + HF_LAYERS_SMOOTH : 0;
 }
 
-// A band's levels: rows from above it to below.
+// The levels of a band, with the rows that it reads above and below.
 struct band {
     const struct hf_frame *f;
     const struct hf_layers *l;
@@ -23,10 +23,10 @@ struct band {
     int reach;
     struct hf_layers_set level[HF_LAYERS_LEVELS], across, found;
     struct hf_hidden_line line[HF_LAYERS_LINES];
-    float *nearest;  // least radius of what is seen in each quad, width in a row
+    float *nearest;  // least visible radius in each quad; `width` quads per row
     int width;
-    // Blocks, those around the band included: (0, 0) is its first. Farthest radius in one, and within the search's reach;
-    // whether a search is made, and whether each level is.
+    // Blocks; (0, 0) is the band's first, and there are more around it. farthest: largest radius in a block; within:
+    // largest radius within the search's reach; needed: whether a search is made; made: whether each level is.
     int columns, rows, around, stride;
     float *farthest, *within;
     uint8_t *needed, *wide, *made[HF_LAYERS_LEVELS];  // wide: scratch
@@ -98,7 +98,7 @@ static void planes_of(const struct hf_layers_set *s, int channels, int x, int y,
     out[5] = s->radius + at;
 }
 
-// Radii of quads in a block; without weights all of them count.
+// The range of the radii in a block; without weights all samples count.
 static struct hf_layers_range range_of(const struct band *b, const float *radius, const float *weight, ptrdiff_t stride,
                                        int n, int rows)
 {
@@ -107,7 +107,7 @@ static struct hf_layers_range range_of(const struct band *b, const float *radius
     return range;
 }
 
-// Whether a block within so many is marked: along rows, then along columns.
+// Mark the blocks that have a marked one at most `by` blocks away: along rows, then along columns.
 static void spread(const struct band *b, const uint8_t *in, int by, uint8_t *out)
 {
     for (int y = 0; y < b->rows; y++)
@@ -126,7 +126,7 @@ static void spread(const struct band *b, const uint8_t *in, int by, uint8_t *out
         }
 }
 
-// The nearest of what is seen, and the farthest that is within a block's reach.
+// Find the nearest visible radius of each quad, and the farthest radius within each block's reach.
 static void find_farthest(struct band *b)
 {
     const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
@@ -142,7 +142,7 @@ static void find_farthest(struct band *b)
             b->farthest[y * b->stride + x] =
                 range_of(b, hf_at(at, 1, x0, y0), hf_at(at, 0, x0, y0), at->stride, x1 - x0, y1 - y0).high;
         }
-    // Along rows, then along columns, in place: what is found takes a row that is not read any more.
+    // Along rows, then along columns in place: each result goes to a row that is no longer read.
     for (int y = -b->around; y < b->rows + b->around; y++)
         for (int x = 0; x < b->columns; x++) {
             float high = -HUGE_VALF;
@@ -160,7 +160,7 @@ static void find_farthest(struct band *b)
     b->within -= b->around * b->stride;
 }
 
-// Which blocks may find something: what is a pixel of radius behind their nearest.
+// Mark the blocks that may find something: a surface at least a pixel of radius behind their nearest.
 static void find_needed(struct band *b)
 {
     for (int y = 0; y < b->rows; y++)
@@ -168,21 +168,21 @@ static void find_needed(struct band *b)
             const int n = hf_min(b->r.x1 - b->r.x0 - x * BLOCK, BLOCK),
                       rows = hf_min(b->r.y1 - b->r.y0 - y * BLOCK, BLOCK);
             const float *nearest = b->nearest + y * BLOCK * b->width + x * BLOCK;
-            // Means of radii are rounded.
+            // Rounding of the means is allowed for.
             const float low = range_of(b, nearest, NULL, b->width, n, rows).low;
             b->needed[y * b->stride + x] = b->within[y * b->stride + x] - low > 0.99f;
         }
 }
 
-// Beyond the frame all is like its border, so that of a level nothing changes farther out than its samples come from: rows
-// there are not made.
+// Beyond the frame everything equals its border. So beyond a level's reach its rows are all alike, and only the last of
+// them is made.
 static int row_of(const struct band *b, int level, int y)
 {
     const int reach = (1 << level) - 1, last = b->f->s->half_height - 1 + reach;
     return y < -reach ? -reach : y < last ? y : last;
 }
 
-// Columns of a level that are made: from x0 to before x1.
+// The columns of a level that are made: x0 to before x1.
 static void columns_of(const struct band *b, int level, int *x0, int *x1)
 {
     const int around = (1 << b->l->levels) - (1 << level), reach = (1 << level) - 1;
@@ -190,15 +190,15 @@ static void columns_of(const struct band *b, int level, int *x0, int *x1)
     *x1 = hf_min(b->r.x1 + around, b->f->s->half_width + reach);
 }
 
-// How a level's samples are merged: of three along a row, and of what these have become in three rows.
+// How a level's samples are merged: three along a row, and then the results of three rows.
 struct merge {
     const struct hf_layers_set *from, *to;
-    int row[3], dx;  // of the former: rows, and columns apart
-    int x0, x1;      // columns
+    int row[3], dx;  // in `from`: the rows, and the distance of columns
+    int x0, x1;      // columns that are made
     float slope;
 };
 
-// Merge what becomes row y of a level, into row `to`, where its blocks are marked.
+// Merge three rows or columns into row `to`, which stands for row y of a level, where its blocks are marked.
 static void merge_row(const struct band *b, const struct merge *m, const uint8_t *marks, int y, int to)
 {
     const int channels = b->l->channels;
@@ -217,7 +217,7 @@ static void merge_row(const struct band *b, const struct merge *m, const uint8_t
     }
 }
 
-// What is read of a level's row beyond the columns that are made, where its blocks are marked: like the last of these.
+// Repeat the first and last columns that are made into those that are read beyond them, where blocks are marked.
 static void repeat_ends(const struct band *b, int level, const uint8_t *marks, int x0, int x1, int y)
 {
     const int first = b->r.x0 - b->around * BLOCK, more = 3 << level, around = (1 << b->l->levels) - (1 << level);
@@ -235,15 +235,15 @@ static void repeat_ends(const struct band *b, int level, const uint8_t *marks, i
     }
 }
 
-// Where level j keeps what rows have become: as many as it merges, and those between.
+// The row in which level j keeps the merged row y. The ring holds as many rows as level j merges, and those between.
 static int ring_row(const struct band *b, int j, int y)
 {
     const int first = b->r.y0 - b->reach, before = (1 << j) - 2 + j - 1;
     return first + before + (y - first) % ((1 << j) + 1);
 }
 
-// Level j is made where the later ones and the search read it. Row by row all levels at once: what the one before has just
-// made is still in the cache.
+// Make level j where later levels and the search read it. All levels advance together, row by row, so what the level
+// before has just made is still in the cache.
 static void make_levels(struct band *b)
 {
     const int levels = b->l->levels, top = b->r.y0, low = b->r.y1, most = (1 << levels) - 1;
@@ -273,7 +273,7 @@ static void make_levels(struct band *b)
         }
 }
 
-// Lines through a sample of level 0: rows, columns and both diagonals, no farther than the levels read.
+// The lines through a sample of level 0: row, column and both diagonals, no longer than the levels' reach.
 static void make_lines(struct band *b)
 {
     static const int step[HF_LAYERS_STEPS] = {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16},
@@ -290,7 +290,7 @@ static void make_lines(struct band *b)
     }
 }
 
-// No more than how far behind its nearest a run of a row may find anything. Means of radii are rounded.
+// An upper bound of how far behind its nearest surface a run of a row may find anything, rounding allowed for.
 static float farthest_behind(const struct band *b, const float *nearest, int x, int n, int y)
 {
     const float *within = b->within + (y - b->r.y0) / BLOCK * b->stride;
@@ -300,7 +300,7 @@ static float farthest_behind(const struct band *b, const float *nearest, int x, 
     return high - range_of(b, nearest, NULL, 0, n, 1).low + ROUNDED;
 }
 
-// Add what goes on between opposite sides, no farther away than what is so far behind is seen.
+// Add surfaces that continue between opposite sides. Steps beyond the reach of that bound are left out.
 static void find_between(const struct band *b, const float *nearest, float behind, int x, int n, int y,
                          float *const sum[6])
 {
@@ -325,7 +325,7 @@ static void find(const struct band *b, int x, int n, int y)
     float *sum[6], *out[6] = {NULL}, part = 1;
     for (int i = 0; i < 6; i++) {
         sum[i] = memory[i];
-        memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // and the rest of the last vector
+        memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // clears the rest of the last vector too
     }
     const float behind = farthest_behind(b, nearest, x, n, y);
     struct hf_hidden_tap taps[9 * HF_LAYERS_LEVELS];
@@ -350,12 +350,12 @@ static void find(const struct band *b, int x, int n, int y)
         radius[i] = hf_at(of, 1, 2 * x, 2 * y + i % 2);
     }
     planes_of(&b->found, channels, x, y, out);
-    // A level that is new counts for nothing yet, and what the one before finds is as much as it was.
+    // A new level counts for nothing yet; the level before it counts as much as it did.
     const float whole = HF_LAYERS_REACHED / 256.0f * (1 + 255 * b->l->reached);
     k->found((const float *const *)sum, radius, weight, channels, ldexpf(whole, 8 * (b->l->levels - 1)), n, out);
 }
 
-// The next run of blocks of a row that need a search, or do not, at most STEP samples.
+// The next run of blocks in a row that need a search, or that do not; at most STEP samples.
 struct run {
     int x, n, needed, end;
 };
@@ -374,7 +374,7 @@ static int next_run(const struct band *b, int y, struct run *run)
     return 1;
 }
 
-// A row of the band: what lies behind, where anything may. Beyond the frame nothing does.
+// Search a row of the band where a block needs it. Beyond the frame nothing is hidden.
 static void find_row(const struct band *b, int y)
 {
     float *weight = b->found.weight + y * b->found.stride;
@@ -387,8 +387,7 @@ static void find_row(const struct band *b, int y)
     memset(weight + b->r.x1, 0, sizeof(float) * HF_LAYERS_SMOOTH);
 }
 
-// What was found in places next to each other comes from levels that begin and end there: means along rows, then along
-// columns, hide that.
+// Neighbouring samples may come from different levels. Means along rows, then along columns, hide those steps.
 static void smooth_along(const struct band *b, int y)
 {
     const int channels = b->l->channels;
@@ -429,9 +428,9 @@ static void smooth_down(const struct band *b, int colour, int at, int y)
     }
 }
 
-// What was found and is near takes the place of what is seen: the next search looks behind it, for what is less than half as
-// near, because nothing is looked for behind that: of three blades before a wall it has to find the wall. What is in focus or
-// far need not be seen past, as its blur is that of a far field, which fills what is open.
+// A near sample that was found takes the place of the visible one, and the next search looks behind it. That search
+// accepts only what is less than half as near, because it is the last: of three blades before a wall it must find the
+// wall. A found sample in focus or far needs none behind it; the far field's blur fills what is open there.
 static void look_behind(const struct band *b, int y)
 {
     const float *weight = b->found.weight + y * b->found.stride, *radius = b->found.radius + y * b->found.stride;
@@ -440,7 +439,7 @@ static void look_behind(const struct band *b, int y)
         nearest[x] = weight[x] > 0 && radius[x] < -1 ? radius[x] * 0.5f : HUGE_VALF;
 }
 
-// What lies behind something that is hardly near counts less, so that nothing appears at once when that comes nearer.
+// A sample behind one that is hardly near counts less, so nothing appears at once when the latter comes nearer.
 static void begin_softly(const struct band *b, int y)
 {
     float *weight = b->found.weight + y * b->found.stride;
@@ -449,7 +448,7 @@ static void begin_softly(const struct band *b, int y)
         weight[x] = weight[x] * hf_saturate(-1 - nearest[x]);
 }
 
-// Samples of rows r, smoothed, into two buffers; again: another search looks behind them.
+// Search and smooth rows r into two buffers. again: another search will look behind what was found.
 static void search(const struct band *b, struct hf_rect r, int colour, int at, int again)
 {
     for (int y = b->r.y0; y < b->r.y1; y++) {
@@ -464,7 +463,7 @@ static void search(const struct band *b, struct hf_rect r, int colour, int at, i
         smooth_down(b, colour, at, y);
 }
 
-// Alpha that nothing was looked for of, for whoever looks at the samples.
+// Set alpha to 1 where no alpha was searched, for readers of the samples.
 static void fill_alpha(const struct hf_frame *f, struct hf_rect r, int colour)
 {
     for (int y = r.y0; y < r.y1; y++) {
@@ -474,7 +473,7 @@ static void fill_alpha(const struct hf_frame *f, struct hf_rect r, int colour)
     }
 }
 
-// The hidden samples of a band.
+// Find the hidden samples of a band.
 static void find_hidden(const struct hf_frame *f, struct hf_rect r)
 {
     struct hf_layers l = *hf_layers(f->s);

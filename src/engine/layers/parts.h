@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the files that make a cell share: its scratch, maps of its tiles, and their spans.
+// What the files that composite a cell share: its scratch, maps of its tiles, and their spans.
 #ifndef HF_LAYERS_PARTS_H
 #define HF_LAYERS_PARTS_H
 
@@ -8,36 +8,37 @@
 
 enum { TILE = HF_LAYERS_TILE, MARGIN = HF_LAYERS_MARGIN, LEFT = 16, RIGHT = 32, AROUND = 64 };
 
-// Planes around a cell: at is channel 0 of its first pixel.
+// Planes around a cell; `at` points to channel 0 of the cell's first pixel.
 struct hf_window {
     float *at;
     ptrdiff_t channel, row;
 };
 
-// A map of tiles: those of the cell from (0, 0) on, and some on every side.
+// A map of tiles. (0, 0) is the cell's first tile; the map continues beyond the cell on every side.
 struct hf_tile_map {
     uint8_t *at;
     int stride;
 };
 
-// Tiles that have samples of a set, and of the set behind it.
+// Bits of a tile in `used`: it has samples of the set itself, and of the set behind that one.
 enum { SEEN = 1, MORE = 2 };
 
-// Of what is seen in a tile: nothing is mixed, so that all weigh 1; there are no shares.
+// Bits of a tile in `plain`: WHOLE, no pixel is mixed, so all visible samples weigh 1; DULL, no sample has a share.
 enum { WHOLE = 1, DULL = 2 };
 
-// What of a slice is drawn: samples that are seen with those behind mixed edges, hidden ones, shares at full resolution.
+// What of a slice is drawn: visible samples with those behind mixed edges, hidden samples, or shares at full
+// resolution.
 enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
 
-// Sets of samples in whose tiles slices are marked.
+// The sets of samples for which each tile marks its slices.
 enum hf_marks { HF_MARKS_SEEN, HF_MARKS_MIXED, HF_MARKS_HIDDEN, HF_MARKS_BEYOND, HF_MARKS_SHARES };
 
 enum { NEAR, FAR, MIDDLE };
 
-// Shares of one radius, drawn. Those between two slices are a part of both: the second finds them here.
+// The blurred shares of one radius. Shares between two slices belong to both; the second slice finds them here.
 struct hf_shine {
-    int number, any;           // of what: from 1 on; whether there are any
-    struct hf_tile_map shone;  // tiles that their blur reaches
+    int number, any;           // index of the radius plus 1, 0 at first; whether there are any shares
+    struct hf_tile_map shone;  // tiles that the blur reaches
     struct hf_window sum;
 };
 
@@ -46,44 +47,44 @@ struct hf_cell {
     const struct hf_samples *samples;
     const struct hf_layers_kernels *k;
     int x0, y0, columns, rows;             // of tiles
-    struct hf_tile_map used;               // tiles that have samples of the slice
-    uint64_t *present;                     // slices in each row of tiles that may reach the cell, a bit for each
-    struct hf_rect box;                    // those around which there are none
-    struct hf_tile_map plain;              // what the samples that are seen have in common, see below
-    struct hf_tile_map filled;             // pairs of rows of a row of tiles: where there are any
-    struct hf_tile_map touched;            // tiles that its blur reaches, one more around the cell
-    struct hf_tile_map near, far, middle;  // where the slices of a stack reach, but for what is in focus
-    struct hf_tile_map begun, lit[2];      // tiles of the middle, and of the lights, that hold something
-    int opened[2];                         // near and far stack hold something
-    int covering;                          // the far stack is not open wholly somewhere
+    struct hf_tile_map used;               // tiles with samples of the slice
+    uint64_t *present;                     // per row of tiles, one bit for each slice whose samples may reach the cell
+    struct hf_rect box;                    // all used tiles lie in this box
+    struct hf_tile_map plain;              // what a tile's visible samples have in common: WHOLE, DULL
+    struct hf_tile_map filled;             // for each pair of rows in a row of tiles: where there are sources
+    struct hf_tile_map touched;            // tiles that the slice's blur reaches, one more around the cell
+    struct hf_tile_map near, far, middle;  // tiles that a stack's slices reach, the slice in focus left out
+    struct hf_tile_map begun, lit[2];      // tiles of the middle stack, and of the lights, that hold something
+    int opened[2];                         // the near and the far stack hold something
+    int covering;                          // the far stack is somewhere not fully open at its start
     struct hf_window source, sum[HF_LAYERS_COARSEST + 1];
     struct hf_shine shine[HF_LAYERS_PARTS];
-    struct hf_window stack[3], light[2];  // near, far, middle; what shines of near and far
-    float *line[6];                       // sums at full resolution, on their way to the source's
+    struct hf_window stack[3], light[2];  // near, far and middle; highlights of near and far
+    float *line[6];                       // sums at full resolution before they are folded to the slice's
     float *row[5];                        // upsampled
     float *none;                          // a row of zeros
-    uint8_t *any;                         // where a row of a run has samples of the slice, 16 at once
-    float *part;                          // how much of a slice shows, half resolution
-    struct hf_tile_map covered;           // where the far stack is not open wholly at first ...
-    float *lift;                          // ... and by what its sums are multiplied for that, with the rows of part
+    uint8_t *any;                         // for each 16 pixels of a run: whether the slice has samples there
+    float *part;                          // how much of a slice is visible, half resolution
+    struct hf_tile_map covered;           // tiles where the far stack is not fully open at its start
+    float *lift;  // 1 / that openness, by which the far stack's sums are multiplied; rows as those of part
     ptrdiff_t part_row;
     float *shape;  // scratch of shapes
 };
 
-// Pixels of a level.
+// A span of columns of a level.
 struct hf_span {
-    int x0, x1, tx;  // tx: where to look for the next; -1 at first
+    int x0, x1, tx;  // tx: the tile from which to look for the next span; -1 at first
 };
 
 struct hf_build {
     const struct hf_slice *s;
     const struct hf_layers_set *set;
     const float *weight, *share;
-    int finest;  // log2 of the pixels of its samples
+    int finest;  // log2 of the pixel size of its samples
     int channels;
-    const struct hf_layers_set *more;  // samples behind those that belong to it, or NULL
-    int spread;                        // samples of quads, each of its pixels
-    int first;                         // of the channels that are drawn
+    const struct hf_layers_set *more;  // samples behind those of `set`, or NULL
+    int spread;                        // each pixel of a quad gets the quad's sample
+    int first;                         // index of the first channel that is drawn
 };
 
 static inline uint8_t *hf_layers_map_at(const struct hf_tile_map *m, int tx, int ty)
@@ -111,43 +112,46 @@ static inline const struct hf_slice *hf_layers_table(const struct hf_layers *l, 
 
 // tiles.c
 struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct hf_layers_range *map, int tx, int ty);
-// What the samples of the tiles around the cell have in common.
+// Note for each tile around the cell what its visible samples have in common.
 void hf_layers_mark_plain(const struct hf_cell *c);
-// Which slices have samples that may reach the cell at all.
+// Find the slices whose samples may reach the cell at all.
 void hf_layers_find_present(struct hf_cell *c);
 // Mark the tiles around the cell that have samples of the slice. Returns 0 if there are none.
 int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind);
-// Tiles of the cell, and one around it, that the blur of what is used reaches.
+// Mark the tiles that the blur of the used tiles reaches, in the cell and one tile around it.
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to);
-// The next run of set tiles from *tx on, up to `end`; returns its end, or *tx if there is none.
+// The next run of tiles with any of the bits, from *tx up to `end`. Moves *tx to its first tile and returns its end;
+// *tx if there is none.
 int hf_layers_next_run(const struct hf_tile_map *m, int *tx, int ty, int end, int bits);
-// Rows of a level that belong to a row of tiles, one of those around the cell included.
+// The rows of a level in a row of tiles, clipped to the rows around the cell that are computed.
 void hf_layers_clip_rows(const struct hf_cell *c, int level, int ty, int *y0, int *y1);
-// Grow columns to whole vectors, so that no lane lies in two spans.
+// Widen a span to whole vectors, so that no lane lies in two spans.
 void hf_layers_align_span(int *x0, int *x1);
-// The next columns that runs of tiles cover. 0: there are none.
+// The next span of columns that runs of tiles cover. Returns 0 if there is none.
 int hf_layers_next_span(const struct hf_cell *c, const struct hf_tile_map *m, int level, int ty, struct hf_span *s);
 
 // draw.c
-// Samples and their planes from a pixel on.
+// Pointers to a set's planes at a pixel.
 void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *set, const float *weight, int x, int y,
                          const float *in[6]);
 void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
                           const struct hf_window *to);
 
 // shape_draw.c
-// Scratch for a cell of so many tiles.
+// Floats of scratch for a cell of that many tiles.
 size_t hf_layers_shape_floats(const struct hf_layers *l, int columns, int rows);
-// Before a slice, and for a row of its sources: row y, columns x0 to x1, the first of which is in[0] of its first channel.
+// begin_shape: call before a slice. draw_shape: draw a row of its sources, row y, columns x0 to x1; in[0] is column x0
+// of the first channel.
 void hf_layers_begin_shape(const struct hf_cell *c, const struct hf_slice *s);
 void hf_layers_draw_shape(const struct hf_cell *c, const struct hf_build *b, const float *in, int y, int x0, int x1,
                           const struct hf_window *to);
 
 // together.c
 void hf_layers_put_slice(struct hf_cell *c, int i);
-// Before the first slice of the far stack: what the middle holds of the samples that lie between them covers there, too.
+// Call before the first slice of the far stack: the part of shared samples that the middle stack holds closes the far
+// one.
 void hf_layers_cover(struct hf_cell *c);
-// The near stack lies before what is near the focus.
+// The near stack goes into the middle stack, in front of all else.
 void hf_layers_begin_middle(const struct hf_cell *c);
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride);
 
