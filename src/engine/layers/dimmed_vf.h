@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much bright samples count in a mean, and weights that seldom change.
+// How much bright samples count in a mean; and stores that skip unchanged values.
 #ifndef HF_LAYERS_DIMMED_VF_H
 #define HF_LAYERS_DIMMED_VF_H
 
 #include "engine/layers/kernels.h"
 #include "simd/simd.h"
 
-// Store what is mostly there already, from the frame before: what is not written need not go back to memory.
+// Store a vector unless its values are there already, as they mostly are from the frame before: then no line is written
+// back.
 HF_INLINE void layers_leave(float *p, vf v)
 {
     if (vi_any(vi_xor(vi_load(p), vf_as_vi(v))))
         vf_store(p, v);
 }
 
-// hf_layers_dimmed. There is hardly ever a lamp.
+// As hf_layers_dimmed. Bright lanes are rare.
 HF_INLINE vf layers_dimmed(vf light, vf plain)
 {
     const vm bright = vf_gt(light, plain);

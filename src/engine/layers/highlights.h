@@ -4,17 +4,17 @@
 
 #include "engine/layers/kernels.h"
 
-enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample that are looked at
+enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample that are read
 
-// By how much more roots of brightness must differ from what lies beside a sample than from what is around it: edges of
-// patterns, up to eighteen times as bright as what is next to them, are none.
+// Square roots of brightness must exceed the mean beside a sample this much more than the mean around it. So edges of
+// patterns up to eighteen times as bright as what is next to them have no highlights.
 #define HF_LAYERS_BESIDE 3
 
 // Floats of scratch for a cell of half-resolution pixels.
 size_t hf_layers_highlight_floats(int width, int height);
-// What is around a cell's pixels, into scratch.
+// Fill scratch with the means around a cell's pixels.
 void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch);
-// The shares of rows of its pixels, from their samples.
+// Compute the shares of some of its rows, from their samples.
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch);
 
 #endif

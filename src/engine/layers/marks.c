@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which radii and slices there are in each tile of the frame: noted where samples are made, while they are in the cache.
+// Notes for each tile of the frame which radii and slices it has, when samples are made and still in the cache.
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 
 enum { TILE = HF_LAYERS_TILE };
 
-// Samples of a tile.
+// The samples of a tile.
 struct tile {
     const float *radius, *weight;
     ptrdiff_t stride;
@@ -20,7 +20,7 @@ static struct tile tile_of(const struct hf_buf *at, int weight, int x, int y, in
     return (struct tile){hf_at(at, 1, x, y), hf_at(at, weight, x, y), at->stride, n, rows};
 }
 
-// Which of some slices have samples of a tile whose radii lie in a range.
+// Set the bits of those slices that have samples of a tile; `range` holds the tile's radii.
 static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, int slices, struct tile t,
                         struct hf_layers_range range, uint64_t *bits)
 {
@@ -36,7 +36,7 @@ static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, 
 
 static const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
 
-// Note the slices of a tile's samples; returns the range of their radii.
+// Set the bits of the slices of a tile's samples; returns the range of their radii.
 static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct hf_slice *slice, struct tile t,
                                         uint64_t *bits)
 {

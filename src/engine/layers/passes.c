@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The passes of layers over a frame's buffers.
+// The passes of layers, over the frame's buffers.
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@
 
 enum { TILE = HF_LAYERS_TILE };
 
-// Is any of n beyond it? By their bits, a comparison of integers, which costs next to nothing.
+// Whether any of n numbers is beyond `largest` in size. It compares bits as integers, which costs next to nothing.
 static int has_larger(const float *v, int n, float largest)
 {
     uint32_t most, any = 0;
@@ -33,7 +33,7 @@ static int has_other_than_one(const float *v, int n)
     return any;
 }
 
-// Returns how many there were.
+// Clamps n numbers; returns how many it changed.
 static int limit(float *v, int n, float largest)
 {
     int count = 0;
@@ -65,7 +65,7 @@ void hf_layers_load_pass(const struct hf_frame *f, struct hf_rect r)
         atomic_store_explicit(hf_layers(f->s)->transparent, 1, memory_order_relaxed);
 }
 
-// Samples are counted where they show: a cell loads some of its neighbours' too.
+// Clamped samples are counted here, where they show, because cells also load their neighbours' samples.
 static void count_row(const struct hf_frame *f, struct hf_rect r, int y)
 {
     float *was[4];
@@ -77,7 +77,7 @@ static void count_row(const struct hf_frame *f, struct hf_rect r, int y)
             (uint64_t)limit(was[c], hf_min(2 * r.x1, f->s->width) - 2 * r.x0, hf_layers(f->s)->largest);
 }
 
-// A row of tiles at a time: what one step makes is still in the cache for the next.
+// All steps run on a row of tiles before the next row, so what one step makes is still in the cache for the next.
 void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
@@ -108,7 +108,8 @@ size_t hf_layers_composite_floats(const struct hf_layers *l, int width, int heig
     return hf_layers_cell_floats(l, width, height) + planes * (size_t)width * (size_t)height + HF_PAD;
 }
 
-// The channels of a group: all are made, as they share their weight.
+// Make the channels of one group. All channels are computed, because they share their weight; only the group's are
+// kept.
 static void make_group(const struct hf_frame *f, const struct hf_layers *l, const struct hf_samples *samples,
                        struct hf_rect tiles, int group, float *memory, float *const out[4])
 {

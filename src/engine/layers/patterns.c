@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Patterns: what is hidden goes on like what is around it. For each place places elsewhere are looked for around which the
-// same surface looks alike, and the hidden sample takes the colour that is found there: edges go on behind a rod, and so do
-// checks. Only what is known of the surface is compared. What is chosen may jump where two choices are as good. Coarse
-// shifts are searched at an eighth of the frame's resolution, then made exact at a quarter and at half of it. A place between
-// four of an eighth takes from the choices of all of them.
+// Patterns: a hidden surface continues like its visible part. For each hidden place the search looks for other places
+// around which the same surface looks alike, and the hidden sample takes the colour found there. So edges and checks go
+// on behind a rod. Only visible parts of the surface are compared. Coarse shifts are searched at an eighth of the
+// frame's resolution, then refined at a quarter and at half of it. A place takes from the choices of the four eighths
+// around it. Where two choices are equally good, the result may jump.
 #include "engine/layers/patterns.h"
 
 #include <math.h>
@@ -14,29 +14,29 @@
 
 enum {
     LEVELS = 3,
-    COARSE = 1 << (LEVELS - 1),  // half-resolution pixels of a sample of the last level
-    REACH = 48,                  // half-resolution pixels that are read around a band
+    COARSE = 1 << (LEVELS - 1),  // size of a sample of the last level, half-resolution pixels
+    REACH = 48,                  // around a band, half-resolution pixels that are read
     PAD = 32,                    // samples beside a row that vectors may read
-    WINDOW = 4,                  // samples compared on either side
+    WINDOW = 4,                  // samples compared on either side of the place
     MOST = (2 * WINDOW + 1) * (2 * WINDOW + 1),
-    SHIFT = 7,  // the largest that are searched, eighths of the resolution
+    SHIFT = 7,  // the largest shift searched, in samples of the last level
     CHOICES = 6,
-    LANES = 32  // shifts side by side that are compared at once, with those of a whole vector
+    LANES = 32  // shifts compared at once, and room for a whole vector
 };
 
-// Mean square differences of roots of colours that nobody sees, of all channels.
+// A mean square difference of the roots of colours, over all channels, that nobody sees.
 #define UNSEEN 0.0005f
-// A share of the variance of what is known around a place: a pattern that is off by as much is none, and one that is off by
-// less than the best by so much counts.
+// Parts of the variance around a place. A pattern whose error is ALIKE of it is not trusted. A choice counts in the
+// mean if its error exceeds the best one's by less than EQUAL of it.
 #define ALIKE 0.5f
 #define EQUAL 0.4f
-// By how much of it shifts are apart that are alike: of many that fit, a pattern that repeats has them, always the same are
-// taken, and not what a rounding or a focus pull prefers.
+// The part of the variance by which equally good shifts are told apart. A repeating pattern offers many; the order
+// makes the search take the same one each time, not the one that rounding or a focus pull prefers.
 #define ORDER 0.01f
 
 struct level {
     struct hf_layers_set set;
-    float *place, *nearest;  // radius of what is hidden, and of what is before it; nothing is hidden: HUGE_VALF
+    float *place, *nearest;  // radii of the hidden sample and of what hides it; HUGE_VALF: nothing is hidden
 };
 
 struct choices {
@@ -50,10 +50,10 @@ struct band {
     int channels;
     struct hf_rect region;
     struct level level[LEVELS];
-    struct choices *choices;  // of an eighth of the resolution
+    struct choices *choices;  // one for each sample of the last level
 };
 
-// What is known around sample (x, y) of a level.
+// The visible parts of the surface around sample (x, y) of a level.
 struct patch {
     const struct level *level;
     int x, y;
@@ -107,7 +107,7 @@ static struct choices *choices_at(const struct band *b, int x, int y)
 
 // ---- levels ----
 
-// Beyond the frame there is nothing.
+// Clear a row: beyond the frame there is nothing.
 static void clear_row(const struct band *b, int y)
 {
     const struct level *v = &b->level[0];
@@ -123,7 +123,7 @@ static void clear_row(const struct band *b, int y)
     }
 }
 
-// What is seen in a row, and the places behind it. Returns whether there are any.
+// Load a row's farthest samples, and the hidden places behind it. Returns whether there are any.
 static int begin_row(const struct band *b, int y)
 {
     const struct hf_frame *f = b->f;
@@ -164,7 +164,7 @@ static int begin_levels(const struct band *b)
     return any;
 }
 
-// The farthest of four samples, and the mean of the places among them.
+// Halve the resolution: the farthest of four samples, and the mean of their hidden places.
 static void halve(const struct level *from, const struct level *to, int channels, int x, int y)
 {
     float farthest = HF_LAYERS_NOTHING, sum = 0, radius = 0, place = 0, count = 0, nearest = HUGE_VALF, colour[4] = {0};
@@ -195,7 +195,7 @@ static void halve(const struct level *from, const struct level *to, int channels
     to->nearest[at] = nearest;
 }
 
-// Beside each row there is nothing.
+// Clear both ends of a row.
 static void clear_pads(const struct level *v, int channels, int x0, int x1, int y)
 {
     float *const planes[] = {v->set.colour[0], v->set.colour[1], v->set.colour[2], v->set.weight, v->set.colour[3]};
@@ -224,7 +224,7 @@ static int make_levels(const struct band *b)
     return 1;
 }
 
-// ---- what is alike ----
+// ---- comparison ----
 
 void hf_layers_alike_c(const struct hf_pattern_place *place, const struct hf_pattern_tap *tap, int count,
                        const float *const in[6], int channels, int n, float *sum, float *off)
@@ -247,8 +247,8 @@ void hf_layers_alike_c(const struct hf_pattern_place *place, const struct hf_pat
     }
 }
 
-// The surface of a place: radii within a quarter of how far it lies behind what hides it are its own, from half of that on
-// they are others.
+// The surface of a place: radii closer to its own than a quarter of its distance behind what hides it belong to it,
+// those beyond half of that do not.
 static struct hf_pattern_place surface_of(float radius, float nearest)
 {
     const float apart = radius - nearest;
@@ -261,7 +261,7 @@ static struct hf_pattern_place place_at(const struct level *v, int x, int y)
     return surface_of(v->place[at], v->nearest[at]);
 }
 
-// What is known of the patch's place around sample (x, y) of a level.
+// Collect the visible samples of the patch's surface around sample (x, y) of a level.
 static void look_around(const struct band *b, const struct level *v, int x, int y, struct patch *p)
 {
     float mean[4] = {0}, square = 0, all = 0;
@@ -292,12 +292,12 @@ static void look_around(const struct band *b, const struct level *v, int x, int 
     for (int c = 0; c < b->channels && p->sum > 0; c++)
         square -= mean[c] * mean[c] / p->sum;
     p->variance = p->sum > 0 && square > 0 ? square / p->sum : 0;
-    // A tenth of what is around must be known.
+    // At least a tenth of the window must be visible.
     if (p->sum < all * 0.1f)
         p->count = 0;
 }
 
-// Add a choice, unless one next to it is better. Those that are less off come first.
+// Add a choice, sorted by error. Of two choices next to each other only the better one stays.
 static void choose(struct choices *c, int x, int y, float off)
 {
     int i = 0;
@@ -322,14 +322,15 @@ static void choose(struct choices *c, int x, int y, float off)
     c->off[i] = off;
 }
 
-// What a shift by pixels of level j has before others: up to 1.
+// The rank of a shift at level j, from 0 to 1; lower ranks are preferred.
 static float order_of(int j, int sx, int sy)
 {
     const float scale = 1 / (float)(1 << (2 - j)), y = (float)sy * scale, x = (float)sx * scale;
     return (y + x * 0.0625f + 10) * 0.05f;
 }
 
-// Compare a patch with those shifted by (sx, sy) and n - 1 more to the right. At first no shift at all is no choice.
+// Compare a patch with those shifted by (sx, sy) and the n - 1 shifts to the right. At the coarsest level, no shift is
+// not a choice.
 static void compare(const struct band *b, const struct patch *p, int sx, int sy, int n, struct choices *c)
 {
     const struct level *v = p->level;
@@ -350,7 +351,7 @@ static void compare(const struct band *b, const struct patch *p, int sx, int sy,
     hf_layers_kernels(b->f)->alike(&p->place, p->tap, p->count, in, b->channels, n, sum, off);
     for (int i = 0; i < n; i++) {
         const float missing = p->sum - sum[i];
-        // What is not known there is as far off as anything.
+        // Samples that are not visible at the shifted place count as the variance.
         if (known[i] > 0 && !(j == LEVELS - 1 && sx + i == 0 && sy == 0))
             choose(c, sx + i, sy,
                    (off[i] + (missing > 0 ? missing : 0) * p->variance) / p->sum +
@@ -368,7 +369,7 @@ static void end_choices(struct choices *c, const struct patch *p)
     }
 }
 
-// All shifts at an eighth of the resolution.
+// Search all shifts at an eighth of the resolution.
 static void search(const struct band *b, int x, int y)
 {
     const struct level *v = &b->level[LEVELS - 1];
@@ -384,7 +385,7 @@ static void search(const struct band *b, int x, int y)
     end_choices(c, &p);
 }
 
-// Choices for a patch at twice the resolution of those given.
+// Refine choices for a patch at twice their resolution.
 static void refine(const struct band *b, const struct patch *p, const struct choices *from, struct choices *c)
 {
     for (int i = 0; i < from->count; i++)
@@ -400,13 +401,13 @@ static void double_choices(struct choices *c)
     }
 }
 
-// What was chosen at an eighth of the resolution, in half-resolution pixels.
+// Refine the choices of an eighth of the resolution to half-resolution pixels.
 static void search_fine(const struct band *b, int x, int y)
 {
     struct choices *c = choices_at(b, x, y);
     struct patch p = {.place = place_at(&b->level[LEVELS - 1], x, y)};
     for (int j = LEVELS - 2; j >= 0 && c->count; j--) {
-        const int middle = COARSE >> j;  // of the sample, in those of level j, rounded
+        const int middle = COARSE >> j;  // samples of level j from the place's corner to its middle, rounded
         struct choices finer = {0};
         look_around(b, &b->level[j], x * middle + (j == 0 ? middle / 2 : 0), y * middle + (j == 0 ? middle / 2 : 0),
                     &p);
@@ -420,7 +421,7 @@ static void search_fine(const struct band *b, int x, int y)
     }
 }
 
-// Sums of what four samples of an eighth of the resolution choose for a place.
+// Sums of what the four samples around a place choose for it; smooth: weight of the colour that is there already.
 struct found {
     float colour[4], weight, smooth;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Patterns compared on vectors: in the order of operations of patterns.c.
+// Patterns compared on vectors. The order of operations is that of patterns.c.
 #include "engine/layers/patterns.h"
 #include "simd/simd.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of shapes. A run is a sum of windows, which are sums of 1, 2, 4 ... pixels: no difference of sums is taken, so
-// nothing drifts and what is not there leaves nothing behind.
+// Rows of shapes. A run is a sum of windows of 1, 2, 4, ... pixels. No sums are subtracted, so nothing drifts, and
+// sources of 0 leave exactly 0.
 #include "engine/layers/kernels.h"
 
 void hf_layers_pairs_c(const float *in, int apart, int n, float *out)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of shapes on vectors: in the order of operations of runs.c.
+// Rows of shapes on vectors. The order of operations is that of runs.c.
 #include <string.h>
 
 #include "engine/layers/kernels.h"
@@ -13,7 +13,7 @@ static void layers_pairs_simd(const float *in, int apart, int n, float *out)
     hf_layers_pairs_c(in + x, apart, n - x, out + x);
 }
 
-// `side` vectors side by side.
+// Computes `side` vectors side by side.
 HF_INLINE void layers_runs_of(const struct hf_shape_run *run, int count, const float *window, ptrdiff_t plane,
                               const float *part, const int side, float *out)
 {
@@ -75,7 +75,7 @@ static void layers_weights_simd(const float *weight, int count, const float *in,
         layers_weights_of(weight, count, in + x, 1, out + x);
 }
 
-// The last ones as a vector too: fused or not is the same for all.
+// The remainder is a vector too, so all numbers are fused, or none.
 static void layers_stamp_simd(const float *weight, int n, float v, float *out)
 {
     const vf value = vf_set1(v);

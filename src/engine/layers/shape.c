@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Apertures that are no disc: which rows they have at the sizes of the slices.
+// Apertures other than discs: their rows at the sizes of the slices.
 //
-// A row's run is as long as the shape's mean width over what it covers of the row's height, and weighs as much as that:
-// so its area is exact. The ends of polygons are integrated side by side, from corner to corner.
+// A run covers the part of its row's height that the shape has, and that part is its weight. Its length is the shape's
+// mean width over that part. So its area is exact. Sides of polygons are integrated one by one, from corner to corner.
 #include "engine/layers/shape.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ struct maker {
     const struct hf_shape_key *key;
     struct hf_side side[HF_SIDES];
     int sides;
-    double corner[3 * HF_SIDES];  // heights at which a side ends or turns
+    double corner[3 * HF_SIDES];  // heights at which a side ends or turns back
     int corners;
 };
 
@@ -45,7 +45,7 @@ double hf_half_disc(double r, double t)
     return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
 }
 
-// Integral over heights u to v of where a side lies; right: it ends runs.
+// Integral of a side's x over heights u to v. right: the side ends runs (else it begins them).
 static double along(const struct hf_side *s, double u, double v, int right)
 {
     if (s->radius <= 0)
@@ -54,7 +54,7 @@ static double along(const struct hf_side *s, double u, double v, int right)
     return s->cx * (v - u) + (right ? w : -w);
 }
 
-// A row of a shape of radius 1 from height u to v: where it lies, and its weight; 0: there is none.
+// One row of a shape of radius 1, from height u to v: its ends, and returns its weight, 0 if the row is empty.
 static double polygon_row(const struct maker *m, double u, double v, double *a, double *b)
 {
     double hit = 0, from = u;
@@ -79,7 +79,7 @@ static double polygon_row(const struct maker *m, double u, double v, double *a, 
     return hit / (v - u);
 }
 
-// Row dy of an outline of radius r. Discs are as those of slices.c are.
+// Row dy of an outline of radius r. Discs have the same rows as in slices.c.
 static struct hf_shape_end outline(const struct maker *m, double r, int dy)
 {
     const double wide = m->key->wide;
@@ -99,8 +99,8 @@ static int put(struct hf_shape_end *out, int n, float a, float b, float weight)
     return n;
 }
 
-// Row dy of a shape; returns how many runs it has. A ring has none where its hole is, or a lighter one where that covers
-// a part of the row's height.
+// The runs of row dy of a shape; returns how many. A ring's hole takes the middle run away, or makes it lighter where
+// the hole covers only a part of the row's height.
 static int make_row(const struct maker *m, double r, int dy, struct hf_shape_end out[HF_SHAPE_RUNS])
 {
     const struct hf_shape_end o = outline(m, r, dy);
@@ -120,7 +120,7 @@ struct hf_shape_run hf_shape_run_of(float a, float b, float weight)
 {
     const float from = a + 0.5f, to = b + 0.5f;
     const int first = (int)ceilf(from), last = (int)floorf(to);
-    if (last < first)  // within a pixel
+    if (last < first)  // the run begins and ends within one pixel
         return (struct hf_shape_run){-last, 0, 0, to - from, weight};
     return (struct hf_shape_run){1 - last, last - first, to - (float)last, (float)first - from, weight};
 }
@@ -133,7 +133,7 @@ static int log2_of(int n)
     return k;
 }
 
-// Rows, of which none holds anything but the middle one if the shape is too small.
+// Make all rows of a shape.
 static void make_shape(struct hf_shape *s, const struct maker *m, struct hf_shape_row *row, struct hf_shape_end *end,
                        struct hf_shape_run *run)
 {
@@ -155,7 +155,7 @@ static void make_shape(struct hf_shape *s, const struct maker *m, struct hf_shap
     }
 }
 
-// One shape in memory; returns how many bytes it takes there.
+// Make one shape in memory; returns how many bytes it takes there. With memory NULL it only counts.
 static size_t build_one(struct hf_shape *s, const struct maker *m, const struct hf_area *area, uint8_t *memory)
 {
     s->rows = 2 * (int)ceil(s->radius - 0.5) + 1;
@@ -176,7 +176,7 @@ static size_t build_one(struct hf_shape *s, const struct maker *m, const struct 
     return rows + runs * (sizeof(struct hf_shape_end) + sizeof(struct hf_shape_run));
 }
 
-// Places the shapes in memory; without, returns how many bytes they take.
+// Make all shapes in memory; returns how many bytes they take. With memory NULL it only counts.
 static size_t build(struct hf_shapes *s, const struct hf_shape_size *size, const struct hf_area *area, uint8_t *memory)
 {
     const struct maker m = maker_of(&s->key);

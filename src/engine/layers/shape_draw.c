@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A row of sources drawn as shapes.
+// Draws a row of sources as shapes.
 //
-// A cat's eye is another shape at every place. Its second circle is that of the pixel drawn to, as it is in a lens, so
-// what is opaque stays so; along columns that is so exactly, along rows the shapes of nodes are blended, which lie so
-// close that from one to the next the circle moves by no more than STEP pixels.
+// A cat's eye has another shape at each place: the aperture cut by a second circle. That circle is the one at the pixel
+// drawn to, as in a lens, so opaque surfaces stay opaque. Along columns this is exact. Along rows the shapes of nodes
+// are blended; from one node to the next the circle moves by at most STEP pixels.
 #include <math.h>
 #include <string.h>
 
@@ -11,11 +11,11 @@
 #include "engine/layers/shape.h"
 
 static const double STEP = 1.5;
-enum { CLOSEST = 4, FARTHEST = 256 };  // nodes
-enum { MOST_CHORDS = 1 << 23 };        // that are kept; of more than these each is made where it is read
+enum { CLOSEST = 4, FARTHEST = 256 };  // pixels from one node to the next
+enum { MOST_CHORDS = 1 << 23 };        // kept; with more than these, each is computed where it is read
 
-// Scratch of a cell: windows of a row; and for a cat's eye how much of a node shows, runs of a shape, and for every node
-// the circle's rows and what they leave of the shape.
+// Scratch of a cell: the windows of a row. For a cat's eye also the visible part of a node, the runs of a shape, and
+// for each node the circle's rows and the sum that they leave of the shape.
 struct places {
     float *window, *part, *sum, *chord;
     struct hf_shape_run *run;
@@ -39,7 +39,7 @@ static int node_apart(const struct hf_layers *l, const struct hf_slice *s)
     return n;
 }
 
-// In a row, and all of a cell of so many tiles.
+// Nodes in a row, and in a whole cell of that many tiles.
 static int nodes_across(const struct hf_layers *l, const struct hf_slice *s, int columns)
 {
     return (columns * (TILE >> s->level) + 2 * AROUND) / node_apart(l, s) + 3;
@@ -50,14 +50,14 @@ static size_t nodes_of(const struct hf_layers *l, const struct hf_slice *s, int 
     return (size_t)nodes_across(l, s, columns) * (size_t)(rows * (TILE >> s->level) + 2 * MARGIN);
 }
 
-// Of so many nodes; 0: none are kept.
+// How many chords that many nodes have; 0: too many to keep.
 static size_t chords_of(const struct hf_shape *s, size_t nodes)
 {
     const size_t n = nodes * (size_t)s->rows;
     return n <= MOST_CHORDS ? n : 0;
 }
 
-// Without the nodes, which are a slice's own.
+// Places everything except the nodes, which are made for each slice; returns the floats used.
 static size_t place(const struct hf_layers *l, int columns, float *memory, struct places *p)
 {
     const int around = HF_LAYERS_TILE * l->most_tiles, width = columns * TILE;
@@ -92,7 +92,7 @@ size_t hf_layers_shape_floats(const struct hf_layers *l, int columns, int rows)
     return place(l, columns, NULL, &p) + most;
 }
 
-// What is drawn: sources of row y, columns x0 on, whose first channel is `in`.
+// A drawing job: row y of sources from column x0 on; `in` points to its first channel.
 struct draw {
     const struct hf_cell *c;
     const struct hf_build *b;
@@ -102,7 +102,7 @@ struct draw {
     const struct hf_window *to;
     int from, end;  // rows that are wanted
     struct places at;
-    int across;     // nodes
+    int across;     // nodes in a row
     double corner;  // 1 / the frame's diagonal
 };
 
@@ -147,7 +147,7 @@ static void draw_weights(const struct draw *d)
         }
 }
 
-// Highlights are few: one by one.
+// Draw highlights one by one, because they are few.
 static void stamp(const struct draw *d, const float *in, int channel, int x)
 {
     const struct hf_shape *s = d->shape;
@@ -172,7 +172,7 @@ static void draw_stamps(const struct draw *d)
 
 // ---- the cat's eye ----
 
-// The second circle of a pixel of the level.
+// The second circle at a pixel of the level, relative to the shape's middle.
 struct circle {
     double x, y, r;
 };
@@ -187,7 +187,7 @@ static struct circle circle_at(const struct draw *d, int x, int y)
                            toward * (2 * py - l->height) * d->corner, d->shape->radius};
 }
 
-// Half the circle's width in a row of the shape, exact as a disc's.
+// Half the circle's width in a row of the shape, from its exact area as for a disc.
 static float chord_of(const struct hf_shape *s, const struct circle *c, double wide, int row)
 {
     const double from = hf_half_disc(c->r, s->top + row - 0.5 - c->y),
@@ -195,7 +195,7 @@ static float chord_of(const struct hf_shape *s, const struct circle *c, double w
     return (float)((to - from) * wide);
 }
 
-// What the circle leaves of a run; 0: nothing.
+// Cut a run by the circle; returns 0 if nothing is left.
 static int cut(const struct hf_shape_end *e, float middle, float half, float *a, float *b)
 {
     *a = fmaxf(e->a, middle - half);
@@ -203,8 +203,8 @@ static int cut(const struct hf_shape_end *e, float middle, float half, float *a,
     return *b > *a;
 }
 
-// The node at pixel (x, y) of the cell's level: the rows of its circle, and the sum of what they leave, which are kept
-// until the next slice.
+// The sum of what the circle leaves of the shape at a node. It also keeps the circle's rows. Both stay until the next
+// slice.
 static float sum_at(const struct draw *d, const struct circle *c, size_t node)
 {
     const struct hf_shape *s = d->shape;
@@ -225,8 +225,8 @@ static float sum_at(const struct draw *d, const struct circle *c, size_t node)
     return d->at.sum[node] = (float)sum;
 }
 
-// Of the shape around pixel (x, y) the row in which the sources lie: returns its runs. Where nothing is left of a shape it
-// is the pixel itself.
+// Of the shape around pixel (x, y), cut the row that contains the sources; returns its number of runs. If the circle
+// leaves nothing of the shape, the shape is the pixel itself.
 static int cut_row(const struct draw *d, int column, int x, int y, struct hf_shape_run *run)
 {
     const struct hf_shape *s = d->shape;

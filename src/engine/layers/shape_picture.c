@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of an aperture: what falls on each pixel of a size.
+// Aperture pictures: the light that falls on each pixel of a given size.
 #include <math.h>
 
 #include "engine/layers/shape.h"
 
-enum { LONGEST = 2 };  // what is more than so many times as long as wide is cut off
+enum { LONGEST = 2 };  // parts beyond this ratio of length to width are cut off
 
 static double shorter_of(const struct hf_area *a)
 {
@@ -30,7 +30,7 @@ static void draw_row(const struct hf_shape *s, const struct hf_area *t, double w
     for (int x = 0; x <= 2 * s->reach + 1; x++) {
         const double at = t->width / 2.0 + (x - s->reach - 0.5) * step;
         const double to = hf_area_at(t, at, y1) - hf_area_at(t, at, y0);
-        // Differences of integrals: what is left of rounding is nothing.
+        // Differences of integrals leave rounding errors where there is nothing.
         const double v = (to - from) / (unit * step);
         if (x)
             out[x - 1] = v > 1e-9 ? (float)v : 0;
@@ -58,7 +58,7 @@ void hf_shape_draw(struct hf_shape *s, const struct hf_area *area, double wide, 
     }
     if (s->sum > 0)
         return;
-    // A black one: the pixel itself.
+    // A black picture is drawn as the pixel itself.
     struct hf_shape_row *middle = &row[-s->top];
     *middle = (struct hf_shape_row){-s->top * stride, 1, 0};
     weight[middle->first] = 1;

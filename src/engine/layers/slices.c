@@ -4,8 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The radius after r >= 0. Far out, slices lie a share of their radius apart, which nobody sees. There is none between 0 and
-// 1: a disc that covers no more than its own pixel would be as sharp as that, and a mixture of these two is not.
+// The radius of the slice after r >= 0. Large radii lie a fixed part of their radius apart, which nobody sees. There is
+// no slice between 0 and 1: a disc no larger than its pixel would be as sharp as the pixel, while a mixture of 0 and 1
+// is not.
 static float next_radius(const struct hf_layers_settings *set, float r)
 {
     const float far_out = r / 32;
@@ -13,7 +14,7 @@ static float next_radius(const struct hf_layers_settings *set, float r)
         return r + 1;
     if (set->fine > 1)
         return r + fminf(fmaxf(0.5f, r / 4), fmaxf(1, r / 16)) * set->spacing / 2;
-    // A mixture of two discs is seen where one is much larger than the other: small radii lie closer.
+    // A mixture of two discs shows where one is much larger than the other, so small radii lie closer.
     return r + fmaxf(fminf(fmaxf(1, floorf(r / (float)(2 + set->fine))), set->spacing), far_out);
 }
 
@@ -23,23 +24,23 @@ static int level_of(const struct hf_layers_settings *set, float radius)
     return r < set->half ? 0 : r < set->quarter ? 1 : r < set->eighth ? 2 : 3;
 }
 
-// What is hidden is a guess: of its slices every other one is left out where its neighbours are so coarse and lie within an
-// eighth of its radius. n: its number from the focus on.
+// Hidden samples are guesses, so every other slice of theirs is left out, if its neighbours have at most a quarter of
+// the resolution and lie within an eighth of its radius of each other. n: the slice's number, counted from the focus.
 static int is_left_out(const struct hf_layers_settings *set, int n, float before, float r)
 {
     return n % 2 && level_of(set, before) > 1 && next_radius(set, r) - before <= r / 8;
 }
 
-// How much of a sample is left to a cover's slice where that counts most.
+// The largest part of a sample that a cover draws: that of the slice it stands for, at the cover's radius.
 #define HF_LAYERS_COVER 0.75f
 
-// Rows on one side of a disc, the middle one counted.
+// Rows on one side of a disc, including the middle one.
 static int disc_rows(double r)
 {
     return r > 0 ? (int)ceil(r - 0.5) + 1 : 1;
 }
 
-// A disc of radius r, wide times as wide. r 0: the pixel itself.
+// A disc of radius r, `wide` times as wide as high. r 0: the pixel itself.
 static void make_disc(struct hf_slice *s, double r, double wide, struct hf_disc_row *row)
 {
     const double pi = 3.14159265358979323846;
@@ -80,8 +81,8 @@ static void set_neighbours(struct hf_slice *slice, int count)
     }
 }
 
-// Slices and rows of discs on one side, the one at 0 not counted. The last is none that is left out, or hidden samples next
-// to it would jump as the next is needed.
+// Count the slices and rows of discs on one side, without the slice at 0. The last one is never left out, or hidden
+// samples next to it would jump when the range of radii needs the following slice.
 static int count_slices(const struct hf_layers *l, float limit, size_t *rows)
 {
     int n = 0;
@@ -102,14 +103,15 @@ size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit)
     return (size_t)l->groups * group + side * sizeof(struct hf_shape_size);
 }
 
-// By how much a group's discs are larger: red ones are behind the focus, and smaller before it, blue ones the other way.
+// The relative change of a group's radius: red discs are larger behind the focus and smaller before it, blue ones the
+// other way.
 static float shift_of(const struct hf_layers *l, int group, float radius)
 {
     const float shift = group == 0 ? l->chromatic : group == 2 ? -l->chromatic : 0;
     return radius < 0 ? -shift : shift;
 }
 
-// A slice of one radius, the number'th from 0; which: as in hf_shapes, of which 0 and 2 have samples of single pixels.
+// Make the slice of a radius, the number'th from 0. which: index in hf_shapes; 0 and 2 draw samples of single pixels.
 static struct hf_disc_row *make_slice(struct hf_layers *l, struct hf_slice *s, int group, float radius, int number,
                                       int which, struct hf_disc_row *row)
 {
@@ -130,7 +132,7 @@ static struct hf_disc_row *make_slice(struct hf_layers *l, struct hf_slice *s, i
     return row;
 }
 
-// The radii of one slice in both tables; before: how large that of the one towards the focus is.
+// Make the slices of one radius for visible and for hidden samples. before: size of the radius towards the focus.
 static struct hf_disc_row *make_both(struct hf_layers *l, int group, int i, float radius, int number, float before,
                                      struct hf_disc_row *row)
 {
@@ -141,7 +143,7 @@ static struct hf_disc_row *make_both(struct hf_layers *l, int group, int i, floa
     return row;
 }
 
-// Those of a group's shares: at its slices, and between two that are coarser than their pixels.
+// Make a group's slices of shares: one at each slice's radius, and more between two slices of lower resolution.
 static struct hf_disc_row *make_shines(struct hf_layers *l, int group, int middle, struct hf_disc_row *row)
 {
     struct hf_slice *of = l->group[group], *s = of + 2 * l->slices;
@@ -158,8 +160,9 @@ static struct hf_disc_row *make_shines(struct hf_layers *l, int group, int middl
     return row;
 }
 
-// The last slice of full resolution before the far ones, again at half of it: of samples between the two slices, what the
-// former has of them. It begins with none of those at the former's radius, or they would cover at once.
+// Make the covers: the last full-resolution slice before the far ones, again at half the resolution, for samples that
+// it shares with the next slice. A cover's part of a sample starts at 0 at the slice's own radius, or it would cover
+// abruptly.
 static struct hf_disc_row *make_covers(struct hf_layers *l, int group, int middle, struct hf_disc_row *row)
 {
     const struct hf_slice *s = l->group[group];
@@ -215,8 +218,8 @@ int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, c
     return HF_OK;
 }
 
-// No sum of samples may pass the largest float: the weights of some are up to 7 together, and a source counts as much as
-// its shape is small, which a narrow ring or a dark picture is.
+// The largest sample for which no sum exceeds the largest float. Weights of samples add up to 7 at most, and a source's
+// scale is large where its shape has little area, as a narrow ring or a dark picture has.
 static float largest_sample(const struct hf_layers *l)
 {
     float scale = 4;

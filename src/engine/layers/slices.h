@@ -5,16 +5,16 @@
 
 #include "engine/layers/layers.h"
 
-enum { HF_LAYERS_MARGIN = 2 };  // pixels of a slice's own that are made around a cell
+enum { HF_LAYERS_MARGIN = 2 };  // pixels of a slice's own resolution that are made around a cell
 
-// Bytes of the slices of radii up to a limit, on both sides.
+// Bytes for the slices of radii up to a limit, on both sides of the focus.
 size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit);
-// The shapes of those that the frame's radii lie between, if the aperture is no disc. Returns HF_ERR_MEMORY.
+// Make the shapes of the frame's slices, if the aperture is not a disc. May return HF_ERR_MEMORY.
 int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem);
-// These slices, in l->tables. The first group's are in use.
+// Make the frame's slices in l->tables, and use those of the first group.
 void hf_layers_make_slices(struct hf_layers *l);
 void hf_layers_use_group(struct hf_layers *l, int group);
-// Tiles around a cell whose samples a slice's blur may bring into it.
+// How many tiles beyond a cell a slice's blur may bring samples from.
 int hf_layers_tiles_around(const struct hf_slice *s);
 
 #endif

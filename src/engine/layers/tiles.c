@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which tiles of a cell a slice has samples in, and which its blur reaches.
+// Which tiles a slice has samples in, and which its blur reaches.
 #include <string.h>
 
 #include "engine/layers/parts.h"
 #include "pixel/pass_c.h"
 
-// The number of a tile in the frame's tables; tiles beyond it hold the samples of its border.
+// The index of a tile in the frame's tables. A tile beyond the frame has that of the nearest tile, whose border it
+// holds.
 static int tile_number(const struct hf_cell *c, int tx, int ty)
 {
     const struct hf_layers *l = c->l;
@@ -20,7 +21,7 @@ struct hf_layers_range hf_layers_range_at(const struct hf_cell *c, const struct 
     return map[tile_number(c, tx, ty)];
 }
 
-// The bits of a slice in a row of tiles, with n more to either side.
+// Set `bit` for the tiles of a row, and n more on either side, that have samples of the slice.
 static void mark_row(const struct hf_cell *c, const uint64_t *marks, int words, int slice, int n, int ty, int bit)
 {
     const struct hf_layers *l = c->l;
@@ -55,7 +56,7 @@ void hf_layers_mark_plain(const struct hf_cell *c)
         }
 }
 
-// Rows of tiles that may reach the cell, those of the frame.
+// The rows of the frame's tiles that may reach the cell.
 static struct hf_rect rows_of(const struct hf_cell *c)
 {
     const int n = c->l->most_tiles, y = c->y0 / TILE;
@@ -104,7 +105,7 @@ static int is_present(const struct hf_cell *c, enum hf_marks of, int slice, int 
     return present_in(c, of, y)[slice / 64] >> slice % 64 & 1;
 }
 
-// Mark a row's tiles of a set. Returns 0 if there are none.
+// Mark the tiles of a row that have samples of a set. Returns 0 if there are none.
 static int mark_set(const struct hf_cell *c, enum hf_marks of, int slice, int n, int ty, int bit)
 {
     const int y = c->y0 / TILE + ty, inside = y < 0 ? 0 : y < c->l->rows ? y : c->l->rows - 1;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The slices of a cell put together: what lies before the focus and behind it at half resolution, what is near the focus
-// at full resolution, and these three at the end.
+// Composites the slices of a cell. The near and the far stack have half resolution, the middle stack around the focus
+// has full resolution. At the end the three are combined.
 #include <math.h>
 #include <string.h>
 
 #include "engine/layers/parts.h"
 
-// Bring what a level holds of touched tiles to the next finer one.
+// Upsample the touched tiles of a level to the next finer one.
 static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int level)
 {
     const struct hf_window *from = &c->sum[level], *to = &c->sum[level - 1];
     const int height = c->rows * (TILE >> (level - 1)) + MARGIN, right = c->columns * (TILE >> (level - 1)) + LEFT;
     for (int ty = -1; ty <= c->rows; ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, touched, level - 1, ty, &s);) {
-            // One more on every side: what comes next reads that.
+            // One more on every side, which the next step reads.
             const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT, x1 = s.x1 + 16 < right ? s.x1 + 16 : right;
             int y0, y1;
             hf_layers_clip_rows(c, level - 1, ty, &y0, &y1);
@@ -65,7 +65,7 @@ static void mark(const struct hf_cell *c, const struct hf_tile_map *from, struct
             *hf_layers_map_at(to, tx, ty) |= *hf_layers_map_at(from, tx, ty);
 }
 
-// Fill a row of a tile of a window's channel.
+// Fill one row of a tile in a window's channel.
 static void fill_tile(const struct hf_window *w, int channel, int tx, int y, float value)
 {
     float *p = w->at + y * w->row + channel * w->channel + tx * TILE;
@@ -75,10 +75,10 @@ static void fill_tile(const struct hf_window *w, int channel, int tx, int y, flo
 
 #define LEAST_OPEN (1.0f / 16)
 
-// Of light: alpha goes with the coverage, or what is opaque would not be.
+// Channels of light. Alpha has none: it goes with the coverage, or opaque surfaces would not stay opaque.
 enum { LIT = 3 };
 
-// No light where there is none yet.
+// Clear the light of tiles that have none yet.
 static void begin_light(const struct hf_cell *c, int stack, const struct hf_tile_map *shone)
 {
     for (int ty = 0; ty < c->rows; ty++)
@@ -93,7 +93,7 @@ static void begin_light(const struct hf_cell *c, int stack, const struct hf_tile
         }
 }
 
-// Nothing in the tiles of the middle that a slice is the first to touch.
+// Clear the tiles of the middle stack that a slice is the first to touch.
 static void begin_tiles(const struct hf_cell *c)
 {
     const int channels = c->l->channels;
@@ -109,7 +109,7 @@ static void begin_tiles(const struct hf_cell *c)
         }
 }
 
-// An empty stack at half resolution.
+// Clear a stack at half resolution.
 static void begin_stack(struct hf_cell *c, int stack)
 {
     const int channels = c->l->channels, n = c->columns * TILE / 2 + 2 * MARGIN;
@@ -136,7 +136,7 @@ static void begin(struct hf_cell *c, int stack)
         begin_stack(c, stack);
 }
 
-// How much of a sample of radius r belongs to a slice.
+// The part of a sample of radius r that belongs to a slice.
 static float part_of(const struct hf_slice *s, float r)
 {
     const float square = r * r;
@@ -145,7 +145,7 @@ static float part_of(const struct hf_slice *s, float r)
                                            : 1 - (square - s->square) * s->after_scale;
 }
 
-// Draw shares of highlights of one radius, at full resolution, unless the slice before has.
+// Draw the shares of one radius at full resolution, unless the slice before has done so.
 static void draw_light(struct hf_cell *c, int number, struct hf_shine *shine)
 {
     const struct hf_slice *wide = &c->l->shine[number];
@@ -158,7 +158,7 @@ static void draw_light(struct hf_cell *c, int number, struct hf_shine *shine)
         hf_layers_draw_slice(c, &b, &shine->shone, &shine->sum);
 }
 
-// Put them where the slice shows.
+// Add shares of one radius to a stack's light where their slice is visible.
 static void put_light(struct hf_cell *c, int stack, const struct hf_shine *shine, float amount)
 {
     const struct hf_window *to = &c->light[stack];
@@ -177,7 +177,7 @@ static void put_light(struct hf_cell *c, int stack, const struct hf_shine *shine
             }
 }
 
-// All shares that belong to a slice: between its neighbours.
+// Add all shares that belong to a slice: those with radii between its neighbours.
 static void put_lights(struct hf_cell *c, int stack, int slice)
 {
     const struct hf_layers *l = c->l;
@@ -191,7 +191,7 @@ static void put_lights(struct hf_cell *c, int stack, int slice)
     }
 }
 
-// Before the first slice behind the focus: what is near has covered so much, of which a part is held back.
+// At the slice in focus: set the visible coverage to withhold, a part of what the near slices cover.
 static void hold_back(const struct hf_cell *c)
 {
     for (int ty = 0; ty < c->rows; ty++)
@@ -203,7 +203,7 @@ static void hold_back(const struct hf_cell *c)
             }
 }
 
-// How what is seen of a slice is put under a stack.
+// How a slice's visible samples go under a stack.
 static enum hf_layers_sums sums_of(const struct hf_layers *l, const struct hf_slice *s, int stack)
 {
     return stack == NEAR                                                  ? HF_SUMS_HIDING
@@ -235,8 +235,8 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
         if (shares)
             put_lights(c, stack, i);
     }
-    // Next to the focus the border between what is seen and what is hidden is as fine as the picture: quads would leave a
-    // line open.
+    // Next to the focus, the border between visible and hidden samples must be as fine as the picture; at quads'
+    // resolution a line would stay open.
     const int pixels = s->level == 0 && fabsf(s->radius) < 2;
     behind = pixels ? s : behind;
     if (l->levels && hf_layers_mark_used(c, i, HF_KIND_HIDDEN) && hf_layers_mark_touched(c, behind, &c->touched)) {
@@ -254,7 +254,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
     }
 }
 
-// What a cover leaves open of the far stack.
+// Reduce the far stack's openness by a cover.
 static void cover_with(struct hf_cell *c, enum hf_kind kind)
 {
     const struct hf_layers *l = c->l;
@@ -291,8 +291,8 @@ static void cover_with(struct hf_cell *c, enum hf_kind kind)
         }
 }
 
-// By what of the far stack was open at first its sums are divided: an edge of what covers it leaves a part of 1, and only
-// where hardly anything is open less is made of it.
+// Divide the far stack by its initial openness, so that partly covered edges sum to 1. The divisor is at least
+// LEAST_OPEN, so where almost nothing is open, less is added. whole 0: compute the factors; 1: apply them.
 static void lift(const struct hf_cell *c, int whole)
 {
     for (int ty = -1; ty <= c->rows; ty++)
@@ -321,7 +321,7 @@ void hf_layers_cover(struct hf_cell *c)
     lift(c, 0);
 }
 
-// Is a tile nothing but sharp pixels that nothing else reaches?
+// Whether a tile has only sharp pixels and nothing else reaches it.
 static int is_sharp(const struct hf_cell *c, int tx, int ty)
 {
     const struct hf_layers_range r = hf_layers_range_at(c, c->l->seen_range, tx, ty),
@@ -330,7 +330,7 @@ static int is_sharp(const struct hf_cell *c, int tx, int ty)
            !*hf_layers_map_at(&c->far, tx, ty) && !*hf_layers_map_at(&c->middle, tx, ty);
 }
 
-// The pixels themselves.
+// Copy a tile of pixels.
 static void copy_tile(const struct hf_cell *c, int tx, int ty, float *const out[4], ptrdiff_t stride)
 {
     const struct hf_layers_set *s = &c->samples->seen;
@@ -340,7 +340,7 @@ static void copy_tile(const struct hf_cell *c, int tx, int ty, float *const out[
                    sizeof(float) * TILE);
 }
 
-// A row of a plane of a stack at full resolution.
+// Upsample a row of one plane of a stack to full resolution.
 static void raise_plane(const struct hf_cell *c, int stack, int plane, int x, int n, int y, float *out)
 {
     const struct hf_window *w = &c->stack[stack];
@@ -348,7 +348,7 @@ static void raise_plane(const struct hf_cell *c, int stack, int plane, int x, in
     c->k->up(a, a + (y & 1 ? w->row : -w->row), n / 2, out);
 }
 
-// Its colours and weight.
+// Upsample a row of a stack's colours and weight, and add its light.
 static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float *const out[5])
 {
     const struct hf_window *light = &c->light[stack];
@@ -379,13 +379,13 @@ void hf_layers_begin_middle(const struct hf_cell *c)
             }
 }
 
-// What tiles that are put together alike have in common.
+// Tiles with the same state are finished together.
 static int state_of(const struct hf_cell *c, int tx, int ty)
 {
     return *hf_layers_map_at(&c->far, tx, ty) | *hf_layers_map_at(&c->begun, tx, ty) << 1;
 }
 
-// A row of a run of tiles.
+// Finish one row of a run of tiles.
 static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, float *const out[4])
 {
     const int far = state & 1, channels = c->l->channels;
