@@ -194,8 +194,6 @@ static int run_resolved(struct hf_context *c, const struct hf_image *dst, const 
 {
     struct hf_setup s;
     hf_setup_make(&s, src, dst, depth, r, c->engine[r->params.engine].own);
-    if (c->dump)
-        s.no_skip = 1;
     return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, task});
 }
 
@@ -228,9 +226,9 @@ static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
     if (p->model != HF_MODEL_LENS && depth->type != HF_DEPTH_COC)
         return;
     const struct hf_engine_def *engine = hf_engine_def(p->engine);
-    if (engine->width)
+    if (engine->limits.width)
         say(&c->config, HF_LOG_WARNING, "the %s engine blurs by %s, not by how much the lens or the radii ask for",
-            engine->name, engine->width);
+            engine->name, engine->limits.width);
     else if (fmaxf(r->near_radius, r->far_radius) >= p->max_radius)
         say(&c->config, limit == HF_LIMIT_GIVEN ? HF_LOG_INFO : HF_LOG_WARNING,
             "blur is cut to %g pixels where it would be larger%s", p->max_radius, why[limit]);

@@ -20,17 +20,6 @@ static int offset(int n, int log2)
     return log2 >= 0 ? n * (1 << log2) : n >> 1;
 }
 
-// log2 of a buffer's pixels per half-resolution pixel, in x and y.
-static int log2_x(const struct hf_setup *s, const struct hf_buf_def *def)
-{
-    return def->x - (def->shrinks ? (int)s->resolution : 0);
-}
-
-static int log2_y(const struct hf_setup *s, const struct hf_buf_def *def)
-{
-    return def->y - (def->shrinks ? (int)s->resolution : 0);
-}
-
 static int bytes_of(const struct hf_setup *s, const struct hf_buf_def *def)
 {
     return def->narrow ? hf_narrow_bytes(s->storage) : (int)sizeof(float);
@@ -40,7 +29,7 @@ static int bytes_of(const struct hf_setup *s, const struct hf_buf_def *def)
 static struct window window_of(const struct hf_plan *p, const struct hf_setup *s, int b, int width, int height)
 {
     const struct hf_buf_def *def = &p->engine->bufs[b];
-    const int lx = log2_x(s, def), ly = log2_y(s, def);
+    const int lx = def->x, ly = def->y;
     struct window w = {.bytes = bytes_of(s, def)};
     const int mask = 64 / w.bytes - 1;  // rows begin on a cache line
     if (!def->bare) {
@@ -96,7 +85,7 @@ static size_t sweep_floats(const struct hf_context *c, const struct hf_setup *s,
     size_t floats = 0;
     for (int b = 0; b < e->buf_count; b++)
         if (bufs >> b & 1)
-            floats += (size_t)e->channels(s, b) *
+            floats += (size_t)hf_engine_channels(e, s, b) *
                       window_floats(window_of(&c->plan, s, b, c->plan.cells.width[sweep], c->plan.cells.height[sweep]));
     return floats;
 }
@@ -115,7 +104,7 @@ static size_t scratch_floats(const struct hf_context *c, const struct hf_setup *
 
 static size_t work_floats(const struct hf_context *c, const struct hf_setup *s)
 {
-    const size_t n = c->plan.engine->work ? c->plan.engine->work(s, &c->plan.cells) : 0;
+    const size_t n = c->plan.engine->plan.work ? c->plan.engine->plan.work(s, &c->plan.cells) : 0;
     return (n + 15) & ~(size_t)15;
 }
 
@@ -131,8 +120,8 @@ static size_t frame_floats(const struct hf_context *c, const struct hf_setup *s,
     size_t floats = 0;
     for (int b = 0; b < e->buf_count; b++)
         if (e->bufs[b].frame && is_wanted(&e->bufs[b], fields))
-            floats +=
-                (size_t)e->channels(s, b) * window_floats(window_of(&c->plan, s, b, s->half_width, s->half_height));
+            floats += (size_t)hf_engine_channels(e, s, b) *
+                      window_floats(window_of(&c->plan, s, b, s->half_width, s->half_height));
     return floats;
 }
 
@@ -153,8 +142,8 @@ int hf_buffers_allocate(struct hf_context *c, const struct hf_setup *s, unsigned
     struct hf_buf planes[HF_MAX_BUFS] = {0};
     for (int b = 0; b < e->buf_count; b++)
         if (e->bufs[b].frame && is_wanted(&e->bufs[b], fields))
-            memory = place(&planes[b], window_of(&c->plan, s, b, s->half_width, s->half_height), e->channels(s, b),
-                           memory, 0, 0);
+            memory = place(&planes[b], window_of(&c->plan, s, b, s->half_width, s->half_height),
+                           hf_engine_channels(e, s, b), memory, 0, 0);
     for (int i = 0; i < c->threads; i++) {
         struct hf_frame *f = &c->workers[i].frame;
         memcpy(f->buf, planes, sizeof planes);
@@ -174,15 +163,14 @@ void hf_buffers_place(const struct hf_context *c, const struct hf_setup *s, stru
     float *memory = f->work + work_floats(c, s) + (c->dump ? scratch_floats(c, s, sweep - 1) : 0);
     for (int b = 0; b < e->buf_count; b++)
         if (bufs >> b & 1)
-            memory =
-                place(&f->buf[b], window_of(&c->plan, s, b, c->plan.cells.width[sweep], c->plan.cells.height[sweep]),
-                      e->channels(s, b), memory, offset(cell.x0, log2_x(s, &e->bufs[b])),
-                      offset(cell.y0, log2_y(s, &e->bufs[b])));
+            memory = place(
+                &f->buf[b], window_of(&c->plan, s, b, c->plan.cells.width[sweep], c->plan.cells.height[sweep]),
+                hf_engine_channels(e, s, b), memory, offset(cell.x0, e->bufs[b].x), offset(cell.y0, e->bufs[b].y));
 }
 
 struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def *def, struct hf_rect r)
 {
-    const int lx = log2_x(s, def), ly = log2_y(s, def);
+    const int lx = def->x, ly = def->y;
     const int width = lx > 0 ? s->width : scaled(s->half_width, lx);
     const int height = ly > 0 ? s->height : scaled(s->half_height, ly);
     return (struct hf_rect){hf_max(offset(r.x0, lx), 0), hf_max(offset(r.y0, ly), 0), hf_min(scaled(r.x1, lx), width),
@@ -233,7 +221,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
 {
     const struct hf_engine_def *e = c->plan.engine;
     const struct hf_buf_def *def = &e->bufs[b];
-    const int lx = log2_x(s, def), ly = log2_y(s, def);
+    const int lx = def->x, ly = def->y;
     const struct hf_reach reach = {scaled(c->plan.cells.buf[b].x, lx), scaled(c->plan.cells.buf[b].y, ly)};
     if (!f->buf[b].ch[0] || def->bare || (reach.x == 0 && reach.y == 0))
         return;
@@ -250,7 +238,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
     if (!def->frame || r.y1 == s->half_height)
         want.y1 = y1 + reach.y;
     if (def->frame && s->zero_beyond)
-        clear_beyond(&f->buf[b], e->channels(s, b), bytes_of(s, def), have, want);
+        clear_beyond(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want);
     else
-        extend(&f->buf[b], e->channels(s, b), bytes_of(s, def), have, want);
+        extend(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want);
 }

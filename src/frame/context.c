@@ -13,7 +13,7 @@ int hf_engines_open(struct hf_context *c)
     size_t bytes = 0;
     for (int i = 0; i < HF_ENGINE_COUNT; i++) {
         const struct hf_engine_def *e = hf_engine_def((enum hf_engine)i);
-        bytes += e ? aligned(e->own_bytes) + 2 * aligned(e->kernels_bytes) : 0;
+        bytes += e ? aligned(e->own.bytes) + 2 * aligned(e->kernels.bytes) : 0;
     }
     const int err = hf_block_grow(&c->engines, bytes, &c->mem);
     if (err)
@@ -24,10 +24,10 @@ int hf_engines_open(struct hf_context *c)
         if (!e)
             continue;
         c->engine[i].own = p;
-        p += aligned(e->own_bytes);
-        for (int fused = 0; fused < 2; fused++, p += aligned(e->kernels_bytes)) {
+        p += aligned(e->own.bytes);
+        for (int fused = 0; fused < 2; fused++, p += aligned(e->kernels.bytes)) {
             c->engine[i].kernels[fused] = p;
-            e->kernels(p, c->isa, fused);
+            e->kernels.make(p, c->isa, fused);
         }
     }
     for (int fused = 0; fused < 2; fused++)
@@ -38,8 +38,8 @@ int hf_engines_open(struct hf_context *c)
 void hf_engines_close(struct hf_context *c)
 {
     for (int i = 0; i < HF_ENGINE_COUNT; i++)
-        if (c->engine[i].own && hf_engine_def((enum hf_engine)i)->release)
-            hf_engine_def((enum hf_engine)i)->release(c->engine[i].own, &c->mem);
+        if (c->engine[i].own && hf_engine_def((enum hf_engine)i)->own.release)
+            hf_engine_def((enum hf_engine)i)->own.release(c->engine[i].own, &c->mem);
     hf_block_free(&c->engines, &c->mem);
 }
 
@@ -47,7 +47,7 @@ size_t hf_engines_bytes(const struct hf_context *c)
 {
     size_t bytes = c->engines.size;
     for (int i = 0; i < HF_ENGINE_COUNT; i++)
-        if (c->engine[i].own && hf_engine_def((enum hf_engine)i)->bytes)
-            bytes += hf_engine_def((enum hf_engine)i)->bytes(c->engine[i].own);
+        if (c->engine[i].own && hf_engine_def((enum hf_engine)i)->own.held)
+            bytes += hf_engine_def((enum hf_engine)i)->own.held(c->engine[i].own);
     return bytes;
 }

@@ -15,7 +15,8 @@ static uint64_t key_of(const struct hf_setup *s, enum hf_isa isa)
     const int common[] = {(int)s->engine, s->channels,  (int)s->storage, s->faithful,
                           s->smoothstep,  (int)s->form, s->lens,         (int)isa};
     int own[HF_COST_NUMBERS], reach = 0;
-    const int count = hf_engine_def(s->engine)->cost(s, own, &reach);
+    const struct hf_engine_cost *cost = &hf_engine_def(s->engine)->cost;
+    const int count = cost->numbers ? cost->numbers(s, own, &reach) : 0;
     uint64_t hash = 1;
     for (size_t i = 0; i < sizeof common / sizeof *common; i++)
         hash = mix(hash, (uint64_t)common[i]);
@@ -53,7 +54,7 @@ static double table_ns(const struct hf_plan *p, const struct hf_setup *s, int pa
 {
     const struct hf_pass *row = &p->engine->passes[pass];
     const float own = radius[field == HF_FAR], most = radius[0] > radius[1] ? radius[0] : radius[1];
-    const float times = p->engine->times ? p->engine->times(s, pass, field, own) : 1;
+    const float times = p->engine->cost.times ? p->engine->cost.times(s, pass, field, own) : 1;
     return (row->ns + row->ns_radius * (row->field ? own : most)) * times;
 }
 

@@ -48,13 +48,13 @@ int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s)
     const struct hf_rect all = {0, 0, s->half_width, s->half_height};
     for (int b = 0; b < e->buf_count; b++) {
         const struct hf_buf_def *def = &e->bufs[b];
-        if (!def->name || !e->channels(s, b))
+        if (!def->name || !hf_engine_channels(e, s, b))
             continue;
         const struct hf_rect r = hf_buffers_rect(s, def, all);
         struct hf_buffer out = {.name = def->name,
                                 .width = r.x1,
                                 .height = r.y1,
-                                .channels = e->channels(s, b),
+                                .channels = hf_engine_channels(e, s, b),
                                 .stride = f->buf[b].stride * (ptrdiff_t)sizeof(float)};
         for (int ch = 0; ch < out.channels; ch++)
             out.data[ch] = f->buf[b].ch[ch];

@@ -120,7 +120,7 @@ uint64_t hf_ladder_hash(const struct hf_params *p)
 
 void hf_ladder_reshape(struct hf_params *p)
 {
-    const unsigned drawn = hf_engine_def(p->engine)->aperture;
+    const unsigned drawn = hf_engine_def(p->engine)->limits.aperture;
     const struct hf_aperture_params *disc = &hf_default_params.aperture;
     struct hf_aperture_params *a = &p->aperture;
     if (!(drawn & HF_APERTURE_BLADES))
@@ -151,7 +151,7 @@ int hf_ladder_can_draw(const struct hf_params *p)
 float hf_ladder_farthest(const struct hf_params *p)
 {
     const struct hf_engine_def *e = hf_engine_def(p->engine);
-    return e->farthest ? e->farthest(p) : INFINITY;
+    return e->limits.farthest ? e->limits.farthest(p) : INFINITY;
 }
 
 // The step that params are, or -1.
@@ -172,5 +172,7 @@ static int step_of(const struct hf_params *p)
 float hf_ladder_ms(const struct hf_params *p)
 {
     const int step = step_of(p);
-    return step >= 0 ? hf_ladder[step].ms : hf_ladder_engine_ms[p->engine];
+    return step >= 0                            ? hf_ladder[step].ms
+           : hf_ladder_engine_ms[p->engine] > 0 ? hf_ladder_engine_ms[p->engine]
+                                                : INFINITY;
 }

@@ -16,7 +16,7 @@ extern const struct hf_ladder_step hf_ladder[];
 extern const int hf_ladder_steps;
 extern const int hf_ladder_quality[];    // the step of each enum hf_quality
 extern const char hf_ladder_measured[];  // when and on what machine
-// Milliseconds of a megapixel of each engine as it is, likewise.
+// Milliseconds of a megapixel of each engine as it is, likewise; 0: not measured.
 extern const float hf_ladder_engine_ms[HF_ENGINE_COUNT];
 
 // Make params those of a step, as far as steps differ: the engine and its knobs.
@@ -31,7 +31,8 @@ int hf_ladder_can_draw(const struct hf_params *params);
 float hf_ladder_farthest(const struct hf_params *params);
 // Take from params->aperture what params->engine does not draw.
 void hf_ladder_reshape(struct hf_params *params);
-// What a megapixel with params is expected to take: that of the step that they are, else of their engine.
+// What a megapixel with params is expected to take: that of the step that they are, else of their engine; INFINITY if that
+// is not measured.
 float hf_ladder_ms(const struct hf_params *params);
 
 #endif

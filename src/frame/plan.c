@@ -21,13 +21,24 @@ static struct hf_reach reach_max(struct hf_reach a, struct hf_reach b)
 
 int hf_plan_is_tiled(const struct hf_plan *p, int sweep)
 {
-    return sweep > 1 && !(p->engine->across >> sweep & 1) && p->columns[sweep] == p->columns[2] &&
+    return sweep > 1 && !(p->engine->plan.across >> sweep & 1) && p->columns[sweep] == p->columns[2] &&
            p->rows[sweep] == p->rows[2];
+}
+
+static struct hf_reach spread_of(const struct hf_plan *p, const struct hf_setup *s, unsigned field)
+{
+    return p->engine->plan.spread ? p->engine->plan.spread(s, &p->cells, field) : (struct hf_reach){0, 0};
+}
+
+// Fields of the first sweep's buffers that are read for these needs.
+static unsigned reads_of(const struct hf_plan *p, const struct hf_setup *s, unsigned needs)
+{
+    return !needs ? 0 : p->engine->plan.reads ? p->engine->plan.reads(s, needs) : HF_FIELDS;
 }
 
 int hf_plan_pass_runs(const struct hf_plan *p, const struct hf_setup *s, int pass)
 {
-    return !p->engine->runs || p->engine->runs(s, pass);
+    return !p->engine->plan.runs || p->engine->plan.runs(s, pass);
 }
 
 int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sweep)
@@ -45,7 +56,7 @@ static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
     memset(p->cells.buf, 0, sizeof p->cells.buf);
     for (int i = e->pass_count - 1; i >= 0; i--) {
         const struct hf_pass *pass = &e->passes[i];
-        const struct hf_reach halo = pass->halo ? e->halo(s, pass->halo) : (struct hf_reach){0, 0};
+        const struct hf_reach halo = pass->halo ? e->plan.halo(s, pass->halo) : (struct hf_reach){0, 0};
         struct hf_reach out = {0, 0};
         // A buffer of the whole frame is made once, without rims.
         for (int b = 0; b < e->buf_count; b++)
@@ -97,6 +108,7 @@ void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const
 {
     int width = CHUNK_WIDTH;
     p->engine = engine;
+    p->no_skip = whole || s->resolved->params.run.no_skip;
     p->width = s->half_width;
     p->height = s->half_height;
     while (width > MIN_WIDTH &&
@@ -117,16 +129,17 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
             width = p->cells.width[2];
             height = p->cells.height[2];
         }
-        if (e->cell)
-            e->cell(s, sweep, &width, &height);
+        if (e->plan.cell)
+            e->plan.cell(s, sweep, &width, &height);
         if (tile_height && sweep == 2)
-            height = e->grain ? ceil_div(tile_height, e->grain) * e->grain : tile_height;
+            height = e->plan.grain ? ceil_div(tile_height, e->plan.grain) * e->plan.grain : tile_height;
         set_cells(p, sweep, tile_width && sweep == 2 ? tile_width : width, height, whole);
     }
     find_reaches(p, s);
     int longest = 0;
     for (int i = 0; i < e->pass_count; i++) {
         const int sweep = e->passes[i].sweep;
+        longest = hf_max(longest, 2 * hf_min(p->cells.width[sweep], (p->width + 15) & ~15));
         for (int b = 0; hf_plan_pass_runs(p, s, i) && b < e->buf_count; b++) {
             const int touched = (e->passes[i].reads | e->passes[i].around | e->passes[i].writes) >> b & 1;
             const int length = (p->cells.width[sweep] + 2 * p->cells.buf[b].x) << hf_max(e->bufs[b].x, 0);
@@ -209,7 +222,7 @@ static int reads_all(const struct hf_plan *p, const struct hf_setup *s)
 {
     for (int sweep = 3; sweep <= p->engine->sweeps; sweep++)
         if (hf_plan_sweep_runs(p, s, sweep) &&
-            (p->engine->across >> sweep & 1 || p->cells.width[sweep] != p->cells.width[2] ||
+            (p->engine->plan.across >> sweep & 1 || p->cells.width[sweep] != p->cells.width[2] ||
              p->cells.height[sweep] != p->cells.height[2]))
             return 1;
     return 0;
@@ -257,8 +270,7 @@ static int is_whole(struct hf_rect active, struct hf_rect tile)
 // What a tile needs, and in which part of it: a tile is much larger than what a thin thing in front of it blurs.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
 {
-    const struct hf_reach near = p->engine->spread(s, &p->cells, HF_NEAR),
-                          far = p->engine->spread(s, &p->cells, HF_FAR);
+    const struct hf_reach near = spread_of(p, s, HF_NEAR), far = spread_of(p, s, HF_FAR);
     const struct hf_rect tile = hf_plan_cell(p, 2, i), c = chunks_around(p, tile, reach_max(near, far));
     struct hf_rect active = {tile.x1, tile.y1, tile.x0, tile.y0};
     unsigned needs = 0;
@@ -271,8 +283,8 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
             needs |= spread_chunk(&p->near[at], chunk, near, tile, &active) ? HF_NEAR : 0u;
             needs |= spread_chunk(&p->far[at], chunk, far, tile, &active) ? HF_FAR : 0u;
         }
-    p->tile_needs[i] = (uint8_t)(s->no_skip ? HF_FIELDS : needs);
-    p->tile_active[i] = s->no_skip ? tile : active;
+    p->tile_needs[i] = (uint8_t)(p->no_skip ? HF_FIELDS : needs);
+    p->tile_active[i] = p->no_skip ? tile : active;
 }
 
 unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *counts)
@@ -288,8 +300,7 @@ unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *cou
 unsigned hf_plan_foreseen(const struct hf_plan *p, const struct hf_setup *s, int chunk)
 {
     const int columns = p->columns[1], y0 = chunk / columns * p->cells.height[1], reads = read_reach(p).y;
-    const int near = p->engine->spread(s, &p->cells, HF_NEAR).y + reads,
-              far = p->engine->spread(s, &p->cells, HF_FAR).y + reads;
+    const int near = spread_of(p, s, HF_NEAR).y + reads, far = spread_of(p, s, HF_FAR).y + reads;
     unsigned needs = 0;
     for (int i = chunk - columns; i >= 0 && needs != HF_FIELDS; i -= columns) {
         if (y0 - (i / columns + 1) * p->cells.height[1] >= hf_max(near, far))
@@ -299,16 +310,16 @@ unsigned hf_plan_foreseen(const struct hf_plan *p, const struct hf_setup *s, int
         needs |= p->near[i].groups && y0 - p->near[i].y1 < near ? HF_NEAR : 0u;
         needs |= p->far[i].groups && y0 - p->far[i].y1 < far ? HF_FAR : 0u;
     }
-    return needs ? p->engine->reads(s, needs) : 0;
+    return reads_of(p, s, needs);
 }
 
 // The chunks, as a rectangle of chunk numbers, that a tile reads; returns which of their fields.
-static unsigned reads_of(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks)
+static unsigned tile_reads(const struct hf_plan *p, const struct hf_setup *s, int tile, struct hf_rect *chunks)
 {
     if (!p->tile_needs[tile])
         return 0;
     *chunks = chunks_around(p, hf_plan_active(p, tile), read_reach(p));
-    return p->engine->reads(s, p->tile_needs[tile]);
+    return reads_of(p, s, p->tile_needs[tile]);
 }
 
 int hf_plan_makes_chunks(const struct hf_plan *p)
@@ -335,13 +346,13 @@ void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan)
     p->needs = 0;
     for (int i = 0; i < tiles; i++) {
         struct hf_rect c = {0};
-        const unsigned reads = reads_of(p, s, i, &c);
+        const unsigned reads = tile_reads(p, s, i, &c);
         p->needs |= p->tile_needs[i];
         for (int y = c.y0; reads && y < c.y1; y++)
             for (int x = c.x0; x < c.x1; x++)
                 p->chunk_reads[y * p->columns[1] + x] |= (uint8_t)reads;
     }
-    p->reads = p->needs ? p->engine->reads(s, p->needs) : 0;
+    p->reads = reads_of(p, s, p->needs);
     if (p->needs && reads_all(p, s))
         memset(p->chunk_reads, (int)p->reads, (size_t)chunks);
     list_rest(p, scan);

@@ -11,6 +11,7 @@
 struct hf_plan {
     const struct hf_engine_def *engine;
     int width, height;  // of the frame, half-resolution pixels
+    int no_skip;        // every tile needs everything
     struct hf_cells cells;
     int columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 

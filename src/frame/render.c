@@ -84,7 +84,7 @@ static int make_plan(struct hf_render *r, struct hf_setup *s, enum hf_task task)
     struct hf_plan *p = &c->plan;
     if (s->measured) {
         const struct hf_counts found = hf_report_counts(c);
-        int err = p->engine->measure(c->engine[s->engine].own, s, &found, &c->mem);
+        int err = p->engine->own.measure(c->engine[s->engine].own, s, &found, &c->mem);
         if (!err)
             err = lay_out_cells(r, 0);
         if (err)
@@ -105,9 +105,9 @@ static void finish_chunks(struct hf_render *r)
 {
     struct hf_context *c = r->c;
     parallel(r, c->plan.rest_count, hf_sweep_rest);
-    if (c->plan.engine->made) {
+    if (c->plan.engine->own.made) {
         const struct hf_counts found = hf_report_counts(c);
-        c->plan.engine->made(c->engine[r->s->engine].own, r->s, &found);
+        c->plan.engine->own.made(c->engine[r->s->engine].own, r->s, &found);
     }
 }
 
@@ -180,7 +180,8 @@ static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
 {
     struct hf_context *c = r->c;
     const struct hf_engine_def *engine = hf_engine_def(s->engine);
-    int err = engine->prepare ? engine->prepare(c->engine[s->engine].own, s, &s->resolved->params, &c->mem) : HF_OK;
+    int err =
+        engine->own.prepare ? engine->own.prepare(c->engine[s->engine].own, s, &s->resolved->params, &c->mem) : HF_OK;
     const int64_t start = hf_now_ns();
     if (!err)
         err = lay_out(r, s->measured || task != HF_TASK_RENDER ? 0 : HF_FIELDS);
@@ -192,7 +193,7 @@ static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
     if (err)
         return err;
     report_plan(r, hf_now_ns() - looked);
-    if (s->colour_stats)
+    if (s->resolved->params.run.colour_stats)
         look_at_colour(r);
     if (task != HF_TASK_RENDER)
         return task == HF_TASK_PREPARE ? take_memory(r) : HF_OK;

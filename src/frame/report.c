@@ -98,7 +98,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     start_report(c, s);
     for (int i = 0; i < hf_plan_count(p, 2); i++)
         r->tile_count[p->tile_needs[i]]++;
-    if (e->measured) {
+    if (found->radius_min <= found->radius_max) {
         r->near_radius = found->radius_min < 0 ? -found->radius_min : 0;
         r->far_radius = found->radius_max > 0 ? found->radius_max : 0;
     } else {
@@ -115,8 +115,8 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
             row->skipped = reason(p, s, i);
         r->predicted_ms += ms[i];
     }
-    if (e->tell)
-        e->tell(s->own, r);
+    if (e->own.tell)
+        e->own.tell(s->own, r);
     r->memory = hf_buffers_bytes(c, s, p->reads);
     r->memory_saved = hf_buffers_bytes(c, s, HF_FIELDS) - r->memory;
 }

@@ -91,14 +91,14 @@ static int check_aperture(const struct hf_aperture_params *p, const struct hf_en
         snprintf(name, sizeof name, "aperture.%s", rows[i].name);
         if (hf_check_between(name, rows[i].value, rows[i].least, rows[i].most, message))
             return HF_ERR_ARG;
-        if (rows[i].value != rows[i].neutral && !(e->aperture & rows[i].bit))
+        if (rows[i].value != rows[i].neutral && !(e->limits.aperture & rows[i].bit))
             return hf_bad(message, "%s is %g; the %s engine cannot draw that", name, rows[i].value, e->name);
         if (rows[i].value != rows[i].neutral && p->picture && (rows[i].bit & SHAPES))
             return hf_bad(message, "%s is %g with aperture.picture, which is the whole shape", name, rows[i].value);
     }
     if (!p->picture)
         return HF_OK;
-    if (!(e->aperture & HF_APERTURE_PICTURE))
+    if (!(e->limits.aperture & HF_APERTURE_PICTURE))
         return hf_bad(message, "aperture.picture is given; the %s engine cannot draw it", e->name);
     return hf_check_image(p->picture, "aperture.picture", message);
 }
@@ -129,7 +129,7 @@ static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, cons
         hf_setup_depth(&s, depth, p->view.pixel_aspect);
         const float z = hf_depth_surface(&s, depth, r->width / 2, r->height / 2, &repaired);
         p->focus = z > 0 && z < 1e10f ? z : INFINITY;  // a ray's may come to 0
-        if (p->focus == INFINITY && !e->focus_anywhere) {
+        if (p->focus == INFINITY && !e->limits.focus_anywhere) {
             hf_bad(message, "focus is to be that of pixel (%d, %d), where there is no surface", r->width / 2,
                    r->height / 2);
             return HF_ERR_FOCUS;
@@ -251,7 +251,7 @@ int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct
     struct hf_setup s = {.width = width, .height = height};
     set_coc(&s, r, depth);
     r->sharp = s.max_radius == 0 || s.strength == 0 || (s.near_i == 0 && s.far_i == 0);
-    return e->check ? e->check(r, params, depth, message) : HF_OK;
+    return e->limits.check ? e->limits.check(r, params, depth, message) : HF_OK;
 }
 
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
@@ -264,8 +264,6 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
                            .half_height = (src->height + 1) / 2,
                            .engine = p->engine,
                            .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
-                           .colour_stats = p->run.colour_stats,
-                           .no_skip = p->run.no_skip,
                            .smoothstep = p->range.blend == HF_BLEND_SMOOTHSTEP,
                            .pixel_aspect = p->view.pixel_aspect,
                            .highlight = hf_highlight_of(&p->highlight),
@@ -273,7 +271,7 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
                            .own = own};
     set_coc(s, r, depth);
     const struct hf_engine_def *e = hf_engine_def(p->engine);
-    s->measured = e->measured;
-    if (e->resolve)
-        e->resolve(own, s, depth, p);
+    s->measured = e->own.measure != NULL;
+    if (e->own.resolve)
+        e->own.resolve(own, s, depth, p);
 }

@@ -64,7 +64,7 @@ void hf_sweep_look(void *arg, int i, int worker)
     struct hf_worker *w = &r->c->workers[worker];
     const struct hf_rect cell = hf_plan_cell(p, 1, i);
     // Fields that will be read here for what the chunks above have shown.
-    const unsigned wanted = r->s->no_skip ? HF_FIELDS : hf_plan_foreseen(p, r->s, i);
+    const unsigned wanted = p->no_skip ? HF_FIELDS : hf_plan_foreseen(p, r->s, i);
     int64_t clock = hf_now_ns();
     hf_buffers_place(r->c, r->s, &w->frame, 1, cell);
     w->counts.near = w->counts.far = (struct hf_found){0};

@@ -43,36 +43,41 @@ struct hf_highlight {
     float from, span, scale;  // the threshold, what lies between it and 1, and 1 over that
 };
 
-// What follows from the arguments of a render call: const once it is made.
+// What follows from the arguments of a render call, the same for all engines. frame/resolve.c makes it, and the engine may
+// change it twice: when its parameters are resolved, and once the first pass has looked at the depth (engine.h: measure).
+// Other passes see what it is then.
 struct hf_setup {
     int width, height, half_width, half_height;
     enum hf_engine engine;
-    int channels;  // blurred: 3, or 4 with alpha
-    enum hf_storage storage;
-    enum hf_resolution resolution;
-    int colour_stats, no_skip;
-    int faithful, smoothstep;
-    int measured;     // see struct hf_engine_def
-    int zero_beyond;  // the frame's buffers are 0 beyond it, not like its edge
+    int channels;             // blurred: 3, or 4 with alpha
+    enum hf_storage storage;  // of colour between passes, and of CoC
+    int faithful;             // the gather's
+    int zero_beyond;          // the frame's buffers are 0 beyond it, not like its edge
+    // The blur radius is known only after the depth pass; nothing else runs before it.
+    int measured;
 
+    // From a depth sample to the variable v.
     enum hf_depth_form form;
     int lens;                    // v is -1/z rather than z
     float e_a, e_b, iz_a, iz_b;  // HF_FORM_IZ
     float ray_cx, ray_cy;        // HF_FORM_RAY: optical axis, pixels
     float ray_sx, ray_sy;        // 1 / focal length squared, per axis
-    float near_0, near_i;        // n = sat((near_0 - v) * near_i)
-    float far_0, far_i;          // f = sat((v - far_0) * far_i)
+
+    // From v to near and far CoC, 0..1.
+    float near_0, near_i;  // n = sat((near_0 - v) * near_i)
+    float far_0, far_i;    // f = sat((v - far_0) * far_i)
+    int smoothstep;        // of n and f
 
     float max_radius;  // rho, full-resolution pixels
     float strength;    // 1 outside the range model
     float pixel_aspect;
     struct hf_highlight highlight;
 
-    // Signed CoC radius in full-resolution pixels, see hf_radius_row.
+    // From v to a signed radius in full-resolution pixels, see hf_radius_row.
     float radius_0, radius_k;  // linear: r = (v - radius_0) * radius_k, within +-max_radius; radius_k 0: by range,
                                // r = strength * max_radius * (f - n)
+    int uniform;               // instead r is max_radius, whatever v is
     float sharp_radius;        // up to here a pixel counts as sharp, and its radius as 0
-    int uniform;               // the radius is max_radius everywhere
 
     const struct hf_resolved *resolved;  // what the frame is rendered with
     const void *own;                     // what the engine made of its parameters, and found in the depth

@@ -28,8 +28,8 @@ static void slices(enum hf_layers_quality quality)
     p.layers.quality = quality;
     CHECK_INT(hf_params_resolve(&r, 64, 48, &depth, &p, message), HF_OK);
     hf_setup_make(&s, &image, &image, &depth, &r, &l);
-    CHECK_INT(hf_layers_engine.prepare(&l, &s, &r.params, &hf_mem_default), HF_OK);
-    CHECK_INT(hf_layers_engine.measure(&l, &s, &found, &hf_mem_default), HF_OK);
+    CHECK_INT(hf_layers_engine.own.prepare(&l, &s, &r.params, &hf_mem_default), HF_OK);
+    CHECK_INT(hf_layers_engine.own.measure(&l, &s, &found, &hf_mem_default), HF_OK);
     CHECK(l.slices > 20 && l.slice[0].radius <= -150 && l.slice[l.slices - 1].radius >= 333);
     for (int i = 1; i < l.slices; i++) {
         const float a = l.slice[i - 1].radius, b = l.slice[i].radius, inner = fminf(fabsf(a), fabsf(b));
@@ -38,7 +38,7 @@ static void slices(enum hf_layers_quality quality)
         CHECK_MSG(b > a && b - a <= (inner < 1 ? 1 : widest) + FLT_EPSILON * fmaxf(fabsf(a), fabsf(b)),
                   "quality %d: slices at %g and %g", (int)quality, a, b);
     }
-    hf_layers_engine.release(&l, &hf_mem_default);
+    hf_layers_engine.own.release(&l, &hf_mem_default);
     picture_free(&colour);
     picture_free(&radii);
 }

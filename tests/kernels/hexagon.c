@@ -10,7 +10,7 @@
 
 static int is_half(const struct world *w)
 {
-    return w->setup.resolution == HF_RESOLUTION_HALF;
+    return w->hexagon.half;
 }
 
 // Buffer number of what the passes make, at the setup's resolution.
@@ -212,8 +212,8 @@ static void start(struct world *w)
     w->engine = &hf_hexagon_engine;
     const float most = w->setup.max_radius * (w->bench || rng_one_in(r, 4) ? 1 : rng_float(r, 0, 1));
     const struct hf_counts found = {.radius_min = -most, .radius_max = most / 2};
-    if (w->engine->prepare(&w->hexagon, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK ||
-        w->engine->measure(&w->hexagon, &w->setup, &found, &hf_mem_default) != HF_OK)
+    if (w->engine->own.prepare(&w->hexagon, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK ||
+        w->engine->own.measure(&w->hexagon, &w->setup, &found, &hf_mem_default) != HF_OK)
         abort();
     w->hexagon.mixed = 0;  // tests/engines/hexagon.c
     choose_radii(w, is_half(w) ? most / 2 : most);

@@ -106,7 +106,7 @@ void make_setup(struct world *w, int half_width, int half_height)
         }
         world_setup(w, &w->gather);
         if (!w->resolved.sharp &&
-            hf_gather_engine.prepare(&w->gather, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK)
+            hf_gather_engine.own.prepare(&w->gather, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK)
             abort();
     } while (w->resolved.sharp);
     w->colours = (enum colours)(w->bench ? COLOURS_PLAIN : rng_int(r, 0, COLOURS_COUNT - 1));

@@ -306,7 +306,7 @@ int main(int argc, char **argv)
     const int failed = run_tests(&world, &o, levels, level_count);
     if (!failed && o.bench)
         bench_run(&world, levels, level_count, o.kernel);
-    hf_gather_engine.release(&world.gather, &hf_mem_default);
-    hf_hexagon_engine.release(&world.hexagon, &hf_mem_default);
+    hf_gather_engine.own.release(&world.gather, &hf_mem_default);
+    hf_hexagon_engine.own.release(&world.hexagon, &hf_mem_default);
     return failed != 0;
 }

@@ -102,7 +102,7 @@ struct region *world_region(struct world *w, enum region_kind kind, int slot, co
 
 int buf_channels(const struct world *w, int b)
 {
-    return w->engine->channels(&w->setup, b);
+    return hf_engine_channels(w->engine, &w->setup, b);
 }
 
 static int round_down(int x, int to)

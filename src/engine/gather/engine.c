@@ -395,7 +395,7 @@ static void release(void *own, const struct hf_mem *mem)
     hf_taps_free(&((struct hf_gather *)own)->far_taps, mem);
 }
 
-static size_t bytes(const void *own)
+static size_t held(const void *own)
 {
     const struct hf_gather *g = own;
     size_t sum = g->taps.block.size + g->far_taps.block.size;
@@ -456,28 +456,21 @@ void hf_gather_kernels_c(struct hf_gather_kernels *k)
 
 const struct hf_engine_def hf_gather_engine = {
     .name = "gather",
-    .aperture = HF_APERTURE_BLADES,
-    .check = check,
     .passes = passes,
     .pass_count = HF_GATHER_PASSES,
     .sweeps = 2,
     .bufs = bufs,
     .buf_count = HF_BUF_COUNT,
-    .kernels_bytes = sizeof(struct hf_gather_kernels),
-    .kernels = hf_gather_kernels_init,
-    .own_bytes = sizeof(struct hf_gather),
-    .resolve = resolve,
-    .prepare = prepare,
-    .release = release,
-    .bytes = bytes,
-    .measure = measure,
-    .channels = channels,
-    .halo = hf_gather_halo,
-    .spread = spread,
-    .reads = reads,
-    .runs = runs,
-    .cell = cell,
-    .work = work,
-    .times = times,
-    .cost = cost,
+    .limits = {.aperture = HF_APERTURE_BLADES, .check = check},
+    .kernels = {sizeof(struct hf_gather_kernels), hf_gather_kernels_init},
+    .own = {sizeof(struct hf_gather), .resolve = resolve, .prepare = prepare, .measure = measure, .release = release,
+            .held = held},
+    .plan = {.channels = channels,
+             .runs = runs,
+             .halo = hf_gather_halo,
+             .spread = spread,
+             .reads = reads,
+             .cell = cell,
+             .work = work},
+    .cost = {.times = times, .numbers = cost},
 };

@@ -59,7 +59,7 @@ static float shape(const struct hf_setup *s, float t)
 
 static float blend_of(const struct hf_setup *s, float z)
 {
-    const float t = 3 * __builtin_fabsf(hf_gaussian_depth(hf_gaussian(s), s->faithful, z) - hf_gaussian(s)->focus_d);
+    const float t = 3 * __builtin_fabsf(hf_gaussian_depth(hf_gaussian(s), z) - hf_gaussian(s)->focus_d);
     return s->strength * shape(s, t < 1 ? t : 1);
 }
 
@@ -129,7 +129,7 @@ void hf_gaussian_up_c(const struct hf_buf *b, int c, int quarter, int x, int y, 
 void hf_gaussian_shrink_c(const struct hf_frame *f, int x, int y, int n, float *const lines[16])
 {
     const struct hf_setup *s = f->s;
-    const int rows = 1 << s->resolution;
+    const int rows = 1 << hf_gaussian(s)->resolution;
     const float share = 1.0f / (float)(rows * rows);
     for (int i = 0; i < rows; i++) {
         hf_read_colour(f, x, hf_min(y * rows + i, s->height - 1), n, lines + 8, lines + 12, f->seen);
@@ -143,7 +143,7 @@ void hf_gaussian_shrink_c(const struct hf_frame *f, int x, int y, int n, float *
     for (int c = 0; c < s->channels; c++) {
         for (int k = 0; k < n; k++)
             lines[c][k] += lines[4 + c][k];
-        for (int k = 0; 2 * k < n && s->resolution == HF_RESOLUTION_QUARTER; k++)
+        for (int k = 0; 2 * k < n && hf_gaussian(s)->resolution == HF_RESOLUTION_QUARTER; k++)
             lines[c][k] = lines[c][2 * k] + lines[c][hf_min(2 * k + 1, n - 1)];
     }
 }
@@ -151,7 +151,7 @@ void hf_gaussian_shrink_c(const struct hf_frame *f, int x, int y, int n, float *
 void hf_gaussian_merge_c(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const struct hf_buf *blur = &f->buf[HF_GAUSSIAN_BLUR];
+    const struct hf_buf *blur = hf_gaussian_buf(f, HF_GAUSSIAN_BLUR);
     const int n = r.x1 - r.x0;
     float *lane[2][4], *blend[4], *even = hf_line(f, 12), *odd = hf_line(f, 13);
     for (int i = 0; i < 4; i++) {
@@ -162,10 +162,11 @@ void hf_gaussian_merge_c(const struct hf_frame *f, int y, struct hf_rect r)
     hf_gaussian_kernels(f)->blend_row(f, r.x0, y, n, blend, NULL);
     hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
     for (int c = 0; c < s->channels; c++) {
-        if (s->resolution == HF_RESOLUTION_FULL)
+        if (hf_gaussian(s)->resolution == HF_RESOLUTION_FULL)
             f->k->unzip(hf_at(blur, c, 2 * r.x0, y), n, even, odd);
         else
-            hf_gaussian_kernels(f)->up(blur, c, s->resolution == HF_RESOLUTION_QUARTER, r.x0, y, n, even, odd);
+            hf_gaussian_kernels(f)->up(blur, c, hf_gaussian(s)->resolution == HF_RESOLUTION_QUARTER, r.x0, y, n, even,
+                                       odd);
         hf_gaussian_kernels(f)->lerp_row(lane[0][c], even, blend[0], n);
         hf_gaussian_kernels(f)->lerp_row(lane[1][c], odd, blend[1], n);
     }
@@ -203,7 +204,7 @@ static struct lines lines_of(const struct hf_frame *f, size_t floats)
 // A channel of a row of the working resolution as a line of n pixels: as it was read, or shrunk.
 static void make_line(const struct hf_frame *f, const struct lines *l, int c, int lanes, int n, float *line)
 {
-    if (f->s->resolution == HF_RESOLUTION_FULL)
+    if (hf_gaussian(f->s)->resolution == HF_RESOLUTION_FULL)
         f->k->zip(l->colour[c], l->colour[4 + c], lanes, line);
     else
         memcpy(line, l->colour[c], (size_t)n * sizeof *line);
@@ -214,15 +215,15 @@ static void blur_line(const struct hf_frame *f, const struct lines *l, int n, in
 {
     const int iterations = hf_gaussian(f->s)->iterations;
     // The last iteration writes whole vectors, and a quarter of a chunk is not one.
-    const int direct = iterations > 0 && f->s->resolution != HF_RESOLUTION_QUARTER;
+    const int direct = iterations > 0 && hf_gaussian(f->s)->resolution != HF_RESOLUTION_QUARTER;
     for (int i = 0; i < iterations; i++) {
         float *line = l->line[i % 2];
         line[-2] = line[-1] = line[0];
         line[n] = line[n + 1] = line[n - 1];
         if (direct && i == iterations - 1)
-            hf_gaussian_kernels(f)->line(line + first, count, out, f->s->faithful);
+            hf_gaussian_kernels(f)->line(line + first, count, out, hf_gaussian(f->s)->faithful);
         else
-            hf_gaussian_kernels(f)->line(line, n, l->line[(i + 1) % 2], f->s->faithful);
+            hf_gaussian_kernels(f)->line(line, n, l->line[(i + 1) % 2], hf_gaussian(f->s)->faithful);
     }
     if (!direct)
         memcpy(out, l->line[iterations % 2] + first, (size_t)count * sizeof(float));
@@ -238,13 +239,14 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
     const int lanes = read.x1 - read.x0, n = in.x1 - in.x0;
     struct lines l = lines_of(f, hf_gaussian_line_floats(s, r.x1 - r.x0));
     for (int y = out.y0; y < out.y1; y++) {
-        if (s->resolution == HF_RESOLUTION_FULL)
+        if (hf_gaussian(s)->resolution == HF_RESOLUTION_FULL)
             hf_read_colour(f, read.x0, y, lanes, l.colour, l.colour + 4, f->seen);
         else
             hf_gaussian_kernels(f)->shrink(f, read.x0, y, lanes, l.colour);
         for (int c = 0; c < s->channels; c++) {
             make_line(f, &l, c, lanes, n, l.line[0]);
-            blur_line(f, &l, n, out.x0 - in.x0, out.x1 - out.x0, hf_at(&f->buf[HF_GAUSSIAN_ROWS], c, out.x0, y));
+            blur_line(f, &l, n, out.x0 - in.x0, out.x1 - out.x0,
+                      hf_at(hf_gaussian_buf(f, HF_GAUSSIAN_ROWS), c, out.x0, y));
         }
     }
 }
@@ -253,7 +255,7 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
 static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const struct hf_buf *in = &f->buf[HF_GAUSSIAN_ROWS], *out = &f->buf[HF_GAUSSIAN_BLUR];
+    const struct hf_buf *in = hf_gaussian_buf(f, HF_GAUSSIAN_ROWS), *out = hf_gaussian_buf(f, HF_GAUSSIAN_BLUR);
     const int columns = r.x1 - r.x0, n = hf_gaussian(s)->iterations,
               height = hf_gaussian_size(s, s->height, s->half_height);
     const int top = hf_max(r.y0 - hf_gaussian_reach(s), 0);
@@ -267,7 +269,7 @@ static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
         const int a = hf_max(r.y0 - 2 * (n - i), 0), b = hf_min(r.y1 + 2 * (n - i), height);
         float *to = i == n ? hf_at(out, c, r.x0, a) : f->work + (ptrdiff_t)(a - top) * HF_GAUSSIAN_STRIP;
         const ptrdiff_t to_stride = i == n ? out->stride : HF_GAUSSIAN_STRIP;
-        hf_gaussian_kernels(f)->columns(from, stride, height, a, b, to, to_stride, columns, s->faithful);
+        hf_gaussian_kernels(f)->columns(from, stride, height, a, b, to, to_stride, columns, hf_gaussian(s)->faithful);
         from = f->work - (ptrdiff_t)top * HF_GAUSSIAN_STRIP;
         stride = HF_GAUSSIAN_STRIP;
     }

@@ -209,7 +209,7 @@ static void blend_row_simd(const struct hf_frame *f, int x, int y, int n, float 
     }
     const int whole = hf_min(n, (f->s->width - 2 * x) / 2) / VF_N * VF_N;
     struct blend_sums sums = {vi_set1(0), vi_set1(0), vf_gt(vf_zero(), vf_zero())};
-    if (f->s->faithful)
+    if (hf_gaussian(f->s)->faithful)
         blend_forms(f, 1, x, y, whole, out, &sums);
     else
         blend_forms(f, 0, x, y, whole, out, &sums);

@@ -27,7 +27,7 @@ enum { WIDE_COLUMNS = 3, WIDE_ROWS, TILES };
 enum { MAX_ITERATIONS = 64 };
 static const float MAX_SIGMA = 256;  // pixels
 
-#define B(name) (1u << HF_GAUSSIAN_##name)
+#define B(name) (7u << HF_GAUSSIAN_##name)
 
 // Reach of the iterations down the columns; and a pixel.
 enum { HALO_COLUMNS = 1, HALO_UPSAMPLE };
@@ -41,20 +41,24 @@ static const struct hf_pass passes[] = {
     {"Merge", .around = B(BLUR), .halo = HALO_UPSAMPLE, .sweep = TILES, .ns = 8},
 };
 
+// One of each size; only those of the resolution in use have channels.
+#define SIZES(b, ...)                                                                                                  \
+    [HF_GAUSSIAN_##b] = {__VA_ARGS__, .x = 1, .y = 1}, [HF_GAUSSIAN_##b + 1] = {__VA_ARGS__},                          \
+    [HF_GAUSSIAN_##b + 2] = {__VA_ARGS__, .x = -1, .y = -1}
+
 static const struct hf_buf_def bufs[HF_GAUSSIAN_BUFS] = {
-    [HF_GAUSSIAN_ROWS] = {"rows", .frame = 1, .x = 1, .y = 1, .shrinks = 1},
-    [HF_GAUSSIAN_BLUR] = {"blur", .x = 1, .y = 1, .shrinks = 1},
+    SIZES(ROWS, "rows", .frame = 1),
+    SIZES(BLUR, "blur"),
 };
 
 static int channels(const struct hf_setup *s, int buf)
 {
-    (void)buf;
-    return s->channels;
+    return buf % 3 == (int)hf_gaussian(s)->resolution ? s->channels : 0;
 }
 
 static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
-    const int one = s->resolution;  // a pixel of a smaller buffer, in half-resolution pixels
+    const int one = hf_gaussian(s)->resolution;  // a pixel of a smaller buffer, in half-resolution pixels
     switch (halo) {
     case HALO_COLUMNS:
         return (struct hf_reach){0, hf_gaussian_halo(s)};
@@ -63,22 +67,6 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     default:
         return (struct hf_reach){0, 0};
     }
-}
-
-// The blend is each pixel's own affair.
-static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p, unsigned field)
-{
-    (void)s;
-    (void)p;
-    (void)field;
-    return (struct hf_reach){0, 0};
-}
-
-// The same buffers for near and far.
-static unsigned reads(const struct hf_setup *s, unsigned needs)
-{
-    (void)s;
-    return needs ? HF_FIELDS : 0;
 }
 
 static int runs(const struct hf_setup *s, int pass)
@@ -90,11 +78,11 @@ static int runs(const struct hf_setup *s, int pass)
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     if (sweep == WIDE_COLUMNS) {
-        *width = 16 << s->resolution;
+        *width = 16 << hf_gaussian(s)->resolution;
         *height = s->half_height;
     } else if (sweep == WIDE_ROWS) {
         *width = (s->half_width + 15) & ~15;
-        *height = HF_WIDE_LANES / 2 << s->resolution;
+        *height = HF_WIDE_LANES / 2 << hf_gaussian(s)->resolution;
     }
 }
 
@@ -170,9 +158,10 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 {
     const struct hf_gaussian_params *from = &p->gaussian;
     struct hf_gaussian *g = own;
-    *g = (struct hf_gaussian){.iterations = from->iterations, .sigma = from->iterations ? 0 : from->sigma};
-    s->resolution = from->resolution;
-    s->faithful = from->faithful;
+    *g = (struct hf_gaussian){.resolution = from->resolution,
+                              .faithful = from->faithful,
+                              .iterations = from->iterations,
+                              .sigma = from->iterations ? 0 : from->sigma};
     g->by_depth = from->by_depth;
     if (!g->by_depth) {
         hf_gaussian_limits(s, g);
@@ -183,14 +172,14 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     s->near_i = s->far_i = 1;  // there is blur
     s->strength = p->range.strength;
     depth_planes(depth, &g->plane_near, &g->plane_far);
-    if (!s->faithful)
+    if (!g->faithful)
         g->plane_near = 0;  // nothing but the far plane counts
-    g->focus_d = hf_gaussian_depth(g, s->faithful, p->focus);
+    g->focus_d = hf_gaussian_depth(g, p->focus);
 }
 
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
 {
-    numbers[0] = (int)s->resolution;
+    numbers[0] = (int)hf_gaussian(s)->resolution;
     numbers[1] = hf_gaussian(s)->iterations;
     numbers[2] = hf_gaussian(s)->sigma > 0;
     *reach = 0;
@@ -218,26 +207,19 @@ void hf_gaussian_kernels_c(struct hf_gaussian_kernels *k)
 
 const struct hf_engine_def hf_gaussian_engine = {
     .name = "gaussian",
-    .width = "its iterations or sigma",
-    .focus_anywhere = 1,
-    .check = check,
-    .farthest = farthest,
     .passes = passes,
     .pass_count = sizeof passes / sizeof *passes,
     .sweeps = TILES,
-    .across = 1 << WIDE_COLUMNS | 1 << WIDE_ROWS,
     .bufs = bufs,
     .buf_count = HF_GAUSSIAN_BUFS,
-    .kernels_bytes = sizeof(struct hf_gaussian_kernels),
-    .kernels = hf_gaussian_kernels_init,
-    .own_bytes = sizeof(struct hf_gaussian),
-    .resolve = resolve,
-    .channels = channels,
-    .halo = halo,
-    .spread = spread,
-    .reads = reads,
-    .work = work,
-    .runs = runs,
-    .cell = cell,
-    .cost = cost,
+    .limits = {.focus_anywhere = 1, .width = "its iterations or sigma", .check = check, .farthest = farthest},
+    .kernels = {sizeof(struct hf_gaussian_kernels), hf_gaussian_kernels_init},
+    .own = {sizeof(struct hf_gaussian), .resolve = resolve},
+    .plan = {.across = 1 << WIDE_COLUMNS | 1 << WIDE_ROWS,
+             .channels = channels,
+             .runs = runs,
+             .halo = halo,
+             .cell = cell,
+             .work = work},
+    .cost = {.numbers = cost},
 };

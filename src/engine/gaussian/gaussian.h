@@ -6,15 +6,18 @@
 #include "pass/frame.h"
 
 enum {
-    HF_GAUSSIAN_ROWS,  // colour blurred along the rows, or as it was read: the whole frame, working resolution
-    HF_GAUSSIAN_BLUR,  // and down the columns: a tile
-    HF_GAUSSIAN_BUFS
+    // Each once for every resolution, in their order:
+    HF_GAUSSIAN_ROWS = 0,  // colour blurred along the rows, or as it was read: the whole frame
+    HF_GAUSSIAN_BLUR = 3,  // and down the columns: a tile
+    HF_GAUSSIAN_BUFS = 6
 };
 
 // Columns of a strip that is taken through all iterations while it is in the first-level cache.
 enum { HF_GAUSSIAN_STRIP = 32 };
 
 struct hf_gaussian {
+    enum hf_resolution resolution;  // the working one, of the blur
+    int faithful;
     int iterations;
     float sigma;                           // full-resolution pixels; 0: iterations
     int by_depth;                          // blend by the distance in depth from the focus
@@ -29,12 +32,17 @@ static inline const struct hf_gaussian *hf_gaussian(const struct hf_setup *s)
     return s->own;
 }
 
+static inline const struct hf_buf *hf_gaussian_buf(const struct hf_frame *f, int buf)
+{
+    return &f->buf[buf + (int)hf_gaussian(f->s)->resolution];
+}
+
 // What is compared: z over the far plane, or as the source has it.
-static inline float hf_gaussian_depth(const struct hf_gaussian *g, int faithful, float z)
+static inline float hf_gaussian_depth(const struct hf_gaussian *g, float z)
 {
     z = z > g->plane_near ? z : g->plane_near;
     z = z < g->plane_far ? z : g->plane_far;
-    return faithful ? (2 * z) / (z + g->plane_far) : z / g->plane_far;
+    return g->faithful ? (2 * z) / (z + g->plane_far) : z / g->plane_far;
 }
 
 // Near and far CoC of a depth z, and the limits of where there is any: for depth that is z as it stands.
@@ -51,7 +59,7 @@ static inline int hf_gaussian_reach(const struct hf_setup *s)
 // The same in half-resolution pixels.
 static inline int hf_gaussian_halo(const struct hf_setup *s)
 {
-    return hf_gaussian(s)->iterations << s->resolution;
+    return hf_gaussian(s)->iterations << hf_gaussian(s)->resolution;
 }
 
 // Floats of one line of scratch of the first sweep: a chunk's row and the reach to either side.
@@ -66,12 +74,14 @@ enum { HF_GAUSSIAN_LINES = 20 };
 // Size of the working resolution, and an area of it: half-resolution pixels in, inside the frame.
 static inline int hf_gaussian_size(const struct hf_setup *s, int full, int half)
 {
-    return s->resolution == HF_RESOLUTION_FULL ? full : (half + (int)s->resolution - 1) / (int)s->resolution;
+    return hf_gaussian(s)->resolution == HF_RESOLUTION_FULL
+               ? full
+               : (half + (int)hf_gaussian(s)->resolution - 1) / (int)hf_gaussian(s)->resolution;
 }
 
 static inline struct hf_rect hf_gaussian_working(const struct hf_setup *s, struct hf_rect r)
 {
-    const int log2 = (int)s->resolution;
+    const int log2 = (int)hf_gaussian(s)->resolution;
     return (struct hf_rect){2 * r.x0 >> log2, 2 * r.y0 >> log2,
                             hf_min(((2 * r.x1 - 1) >> log2) + 1, hf_gaussian_size(s, s->width, s->half_width)),
                             hf_min(((2 * r.y1 - 1) >> log2) + 1, hf_gaussian_size(s, s->height, s->half_height))};

@@ -21,7 +21,7 @@ struct merge_rows {
 // n lanes from lane x of row y of the frame on. Uses scratch rows 0 to 2.
 HF_INLINE struct merge_rows merge_rows_at(const struct hf_frame *f, const int scale, int x, int y, int n)
 {
-    const struct hf_buf *b = &f->buf[HF_GAUSSIAN_BLUR];
+    const struct hf_buf *b = hf_gaussian_buf(f, HF_GAUSSIAN_BLUR);
     const int row = y / scale, phase = y % scale, column = 2 * x / scale, columns = 2 * n / scale;
     const float w = scale == 2 ? 0.25f : phase == 0 || phase == 3 ? 0.375f : 0.125f;
     struct merge_rows r;
@@ -134,7 +134,7 @@ HF_INLINE int merge_lanes(const struct hf_frame *f, const int format, const int 
 HF_INLINE int merge_scales(const struct hf_frame *f, const int format, const int bpp, int y, struct hf_rect r, int n,
                            float *const *lines, vi *clamped)
 {
-    switch (f->s->resolution) {
+    switch (hf_gaussian(f->s)->resolution) {
     case HF_RESOLUTION_QUARTER:
         return r.x0 % 2 ? 0 : merge_lanes(f, format, bpp, 4, y, r, n, lines, clamped);
     case HF_RESOLUTION_HALF:

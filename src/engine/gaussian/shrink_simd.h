@@ -138,7 +138,7 @@ HF_INLINE int shrink_format(const struct hf_frame *f, const int rows, int x, int
 
 static void shrink_simd(const struct hf_frame *f, int x, int y, int n, float *const lines[16])
 {
-    const int quarter = f->s->resolution == HF_RESOLUTION_QUARTER, whole = 2 * VF_N;
+    const int quarter = hf_gaussian(f->s)->resolution == HF_RESOLUTION_QUARTER, whole = 2 * VF_N;
     const int inside = f->s->highlight.on ? 0 : hf_min(n, (f->s->width - 2 * x) / 2) / whole * whole;
     const int finite = quarter ? shrink_format(f, 4, x, y, inside, lines) : shrink_format(f, 2, x, y, inside, lines);
     const int done = finite ? inside : 0;

@@ -60,7 +60,7 @@ void hf_wide_block_c(float *block, int n, const struct hf_wide *w, float *work)
 // square pixels for m = 2 and 4, which counts.
 static struct hf_wide wide_along(const struct hf_setup *s, double sigma)
 {
-    const double m = 1 << s->resolution, resampling = s->resolution ? m * m / 4 : 0;
+    const double m = 1 << hf_gaussian(s)->resolution, resampling = hf_gaussian(s)->resolution ? m * m / 4 : 0;
     return hf_wide_of(fmax(sigma * sigma - resampling, 0) / (m * m));
 }
 
@@ -69,7 +69,7 @@ void hf_wide_columns_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_wide wide = wide_along(f->s, hf_gaussian(f->s)->sigma);
     const struct hf_rect w = hf_gaussian_working(f->s, r);
-    const struct hf_buf *b = &f->buf[HF_GAUSSIAN_ROWS];
+    const struct hf_buf *b = hf_gaussian_buf(f, HF_GAUSSIAN_ROWS);
     const int n = w.y1;
     float *block = f->work, *work = block + HF_WIDE_LANES * (size_t)n;
     for (int c = 0; c < f->s->channels; c++)
@@ -89,7 +89,7 @@ void hf_wide_rows_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_wide wide = wide_along(f->s, hf_gaussian(f->s)->sigma / f->s->pixel_aspect);
     const struct hf_rect w = hf_gaussian_working(f->s, r);
-    const struct hf_buf *b = &f->buf[HF_GAUSSIAN_ROWS];
+    const struct hf_buf *b = hf_gaussian_buf(f, HF_GAUSSIAN_ROWS);
     const int n = w.x1;
     float *block = f->work, *work = block + HF_WIDE_LANES * (size_t)n;
     for (int c = 0; c < f->s->channels; c++)

@@ -15,7 +15,7 @@ struct band {
 
 static int scale_of(const struct hf_setup *s)
 {
-    return s->resolution == HF_RESOLUTION_HALF ? 1 : 2;
+    return hf_hexagon(s)->half ? 1 : 2;
 }
 
 static struct band band_of(const struct hf_setup *s, int width)

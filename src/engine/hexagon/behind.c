@@ -79,7 +79,7 @@ static void put(const struct hf_frame *f, const struct hf_behind *h, int p, cons
                 struct hf_rect block)
 {
     const struct hf_rect r = hf_hexagon_rect(f->s, block);
-    const int n = r.x1 - r.x0, half = f->s->resolution == HF_RESOLUTION_HALF;
+    const int n = r.x1 - r.x0, half = hf_hexagon(f->s)->half;
     for (int y = r.y0; y < r.y1; y++) {
         float *row = hf_at(out, c, r.x0, y);
         if (!h)
@@ -94,7 +94,7 @@ static void put(const struct hf_frame *f, const struct hf_behind *h, int p, cons
 void hf_hexagon_behind_pass(const struct hf_frame *f, struct hf_rect r)
 {
     static const struct hf_behind_source full = {near_full, seen_full}, half = {near_half, seen_half};
-    const struct hf_behind_source *source = f->s->resolution == HF_RESOLUTION_HALF ? &half : &full;
+    const struct hf_behind_source *source = hf_hexagon(f->s)->half ? &half : &full;
     const int levels = hf_hexagon(f->s)->behind, channels = f->s->channels;
     for (int y = r.y0; y < r.y1; y += HF_BEHIND_BLOCK)
         for (int x = r.x0; x < r.x1; x += HF_BEHIND_BLOCK) {

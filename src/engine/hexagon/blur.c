@@ -100,7 +100,7 @@ static void load_half_row(const struct hf_frame *f, int y, struct hf_rect r, str
 
 void hf_hexagon_load_c(const struct hf_frame *f, struct hf_rect r)
 {
-    hf_hexagon_load_rows(f, r, f->s->resolution == HF_RESOLUTION_HALF ? load_half_row : load_full_row);
+    hf_hexagon_load_rows(f, r, hf_hexagon(f->s)->half ? load_half_row : load_full_row);
 }
 
 // ---- the passes ----

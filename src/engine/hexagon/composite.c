@@ -100,7 +100,7 @@ static float far_full(const struct fields *v, int c, float own)
 
 static void composite_pixel(const struct hf_frame *f, int x, int y, float p, float *const colour[4], int i)
 {
-    const int half = f->s->resolution == HF_RESOLUTION_HALF;
+    const int half = hf_hexagon(f->s)->half;
     struct fields v;
     (half ? fields_half : fields_full)(f, x, y, &v);
     const float cover = v.near[4], left = left_over(f->s, cover, p, x, y), all = cover + left;
@@ -127,7 +127,7 @@ void hf_hexagon_composite_c(const struct hf_frame *f, struct hf_rect r)
         colour[c] = hf_line(f, 8 + c);
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->counts);
-        if (f->s->resolution == HF_RESOLUTION_HALF)
+        if (hf_hexagon(f->s)->half)
             f->k->radius_row(f, x0, y, n, radius, NULL);
         else
             memcpy(radius, hf_at(&f->buf[HF_HEXAGON_WEIGHT], 1, x0, y), sizeof *radius * (size_t)n);

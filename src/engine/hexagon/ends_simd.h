@@ -134,7 +134,7 @@ static void hex_load_half_row(const struct hf_frame *f, int y, struct hf_rect r,
 
 static void hexagon_load_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    hf_hexagon_load_rows(f, r, f->s->resolution == HF_RESOLUTION_HALF ? hex_load_half_row : hex_load_full_row);
+    hf_hexagon_load_rows(f, r, hf_hexagon(f->s)->half ? hex_load_half_row : hex_load_full_row);
     vf_stream_end();
 }
 
@@ -355,7 +355,7 @@ static void hex_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 static void hexagon_composite_simd(const struct hf_frame *f, struct hf_rect r)
 {
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
-        if (f->s->resolution == HF_RESOLUTION_HALF)
+        if (hf_hexagon(f->s)->half)
             hex_half_row(f, y, r);
         else
             hex_full_row(f, y, r);

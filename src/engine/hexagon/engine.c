@@ -55,7 +55,7 @@ static const struct hf_buf_def bufs[HF_HEXAGON_BUF_COUNT] = {
 
 static int channels(const struct hf_setup *s, int b)
 {
-    const int half = s->resolution == HF_RESOLUTION_HALF;
+    const int half = hf_hexagon(s)->half;
     if (half !=
         (b >= HF_HEXAGON_MADE + HF_HEXAGON_MADE_COUNT || (b >= HF_HEXAGON_NEAR_COLOUR_2 && b < HF_HEXAGON_MADE)))
         return 0;
@@ -76,7 +76,7 @@ static int channels(const struct hf_setup *s, int b)
 // How far lines go, in working pixels: what is near by less than a pixel is spread over one, thinly.
 static float working(const struct hf_setup *s, float radius)
 {
-    return fmaxf(s->resolution == HF_RESOLUTION_HALF ? radius / 2 : radius, 1);
+    return fmaxf(hf_hexagon(s)->half ? radius / 2 : radius, 1);
 }
 
 // The most places that a line has: they are no nearer than columns of narrow pixels.
@@ -103,7 +103,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     (void)depth;
     h->ready = h->reach_x = h->reach_y = h->behind = h->mixed = 0;
     h->rotation = p->aperture.rotation;
-    s->resolution = p->hexagon.resolution;
+    h->half = p->hexagon.resolution == HF_RESOLUTION_HALF;
     s->uniform = p->hexagon.uniform;
     s->zero_beyond = 1;
     // Below this, weights and colours times radii would be denormal, and a pixel's soft edge has no slope.
@@ -135,7 +135,7 @@ static void release(void *own, const struct hf_mem *mem)
     hf_block_free(&((struct hf_hexagon *)own)->block, mem);
 }
 
-static size_t bytes(const void *own)
+static size_t held(const void *own)
 {
     return ((const struct hf_hexagon *)own)->block.size;
 }
@@ -195,7 +195,7 @@ static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, const
 {
     const float reach = working(s, radius);
     // The way back from half resolution widens what is drawn: places lie nearer by what the truth scenes ask for.
-    const double nearer = s->resolution == HF_RESOLUTION_HALF ? 0.05 : 0;
+    const double nearer = hf_hexagon(s)->half ? 0.05 : 0;
     float c = 0;
     l->count = l->x0 = l->y0 = l->x1 = l->y1 = 0;
     for (int k = 0; c < reach; k++) {
@@ -268,7 +268,7 @@ static int keep_inside(const struct hf_setup *s, struct hf_hexagon_line *l)
 
 static int half_resolution(const struct hf_setup *s, int working)
 {
-    return s->resolution == HF_RESOLUTION_HALF ? working : (working + 1) / 2;
+    return hf_hexagon(s)->half ? working : (working + 1) / 2;
 }
 
 static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
@@ -280,7 +280,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     double u[3][2];
     directions(h->rotation, u);
     const double step = spacing(s, u);
-    h->mixed = s->resolution == HF_RESOLUTION_FULL && found->radius_max - found->radius_min > HF_EDGES_FROM;
+    h->mixed = !h->half && found->radius_max - found->radius_min > HF_EDGES_FROM;
     h->behind = hf_behind_levels(fmaxf(-found->radius_min, 0));
     for (int i = 0; i < 3; i++) {
         struct hf_hexagon_line *l = &h->line[i];
@@ -310,7 +310,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
 
 static struct hf_reach halo(const struct hf_setup *s, int halo)
 {
-    const int behind = hf_behind_halo(hf_hexagon(s)->behind), upsample = s->resolution == HF_RESOLUTION_HALF;
+    const int behind = hf_behind_halo(hf_hexagon(s)->behind), upsample = hf_hexagon(s)->half;
     if (halo == HALO_RADIUS)
         return (struct hf_reach){2 * hf_hexagon(s)->reach_x, 2 * hf_hexagon(s)->reach_y};
     return halo == HALO_BEHIND ? (struct hf_reach){behind, behind} : (struct hf_reach){upsample, upsample};
@@ -322,12 +322,6 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
     const struct hf_reach made = p->pass[HF_HEXAGON_BLUR], around = halo(s, HALO_RADIUS);
     const int mixed = hf_hexagon(s)->mixed;
     return field == HF_FAR ? (struct hf_reach){mixed, mixed} : (struct hf_reach){made.x + around.x, made.y + around.y};
-}
-
-static unsigned reads(const struct hf_setup *s, unsigned needs)
-{
-    (void)s;
-    return needs ? HF_FIELDS : 0;
 }
 
 // A row of radii, or a band. What is made is a pixel wider on either side where it is sampled up.
@@ -351,7 +345,7 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
 {
-    numbers[0] = (int)s->resolution;
+    numbers[0] = hf_hexagon(s)->half;
     numbers[1] = s->uniform;
     *reach = hf_max(hf_hexagon(s)->reach_x, hf_hexagon(s)->reach_y);
     return 2;
@@ -372,27 +366,15 @@ void hf_hexagon_kernels_c(struct hf_hexagon_kernels *k)
 
 const struct hf_engine_def hf_hexagon_engine = {
     .name = "hexagon",
-    .aperture = HF_APERTURE_BLADES,
-    .check = check,
     .passes = passes,
     .pass_count = HF_HEXAGON_PASSES,
     .sweeps = 2,
     .bufs = bufs,
     .buf_count = HF_HEXAGON_BUF_COUNT,
-    .measured = 1,
-    .kernels_bytes = sizeof(struct hf_hexagon_kernels),
-    .kernels = hf_hexagon_kernels_init,
-    .own_bytes = sizeof(struct hf_hexagon),
-    .resolve = resolve,
-    .prepare = prepare,
-    .release = release,
-    .bytes = bytes,
-    .measure = measure,
-    .channels = channels,
-    .halo = halo,
-    .spread = spread,
-    .reads = reads,
-    .cell = cell,
-    .work = work,
-    .cost = cost,
+    .limits = {.aperture = HF_APERTURE_BLADES, .check = check},
+    .kernels = {sizeof(struct hf_hexagon_kernels), hf_hexagon_kernels_init},
+    .own = {sizeof(struct hf_hexagon), .resolve = resolve, .prepare = prepare, .measure = measure, .release = release,
+            .held = held},
+    .plan = {.channels = channels, .halo = halo, .spread = spread, .cell = cell, .work = work},
+    .cost = {.numbers = cost},
 };

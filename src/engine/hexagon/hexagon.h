@@ -111,6 +111,7 @@ struct hf_hexagon_line {
 // Lines u, v, w, and how far pass 2 reads around a pixel what pass 1 made, half-resolution pixels.
 struct hf_hexagon {
     int ready;       // prepared: the rest is valid
+    int half;        // at half resolution
     float rotation;  // degrees
     struct hf_hexagon_line line[3];
     int left, right, above, below;
@@ -147,12 +148,12 @@ struct hf_hexagon_field {
 // Where things are at the setup's resolution.
 static inline const struct hf_buf *hf_hexagon_made(const struct hf_frame *f, enum hf_hexagon_made b)
 {
-    return &f->buf[HF_HEXAGON_MADE + (f->s->resolution == HF_RESOLUTION_HALF ? HF_HEXAGON_MADE_COUNT : 0) + b];
+    return &f->buf[HF_HEXAGON_MADE + (hf_hexagon(f->s)->half ? HF_HEXAGON_MADE_COUNT : 0) + b];
 }
 
 static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f, unsigned field)
 {
-    const int half = f->s->resolution == HF_RESOLUTION_HALF;
+    const int half = hf_hexagon(f->s)->half;
     const int colour = !half              ? HF_HEXAGON_COLOUR
                        : field == HF_NEAR ? HF_HEXAGON_NEAR_COLOUR_2
                                           : HF_HEXAGON_FAR_COLOUR_2;
@@ -180,12 +181,12 @@ static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *
 // The frame's size at the working resolution.
 static inline int hf_hexagon_width(const struct hf_setup *s)
 {
-    return s->resolution == HF_RESOLUTION_HALF ? s->half_width : s->width;
+    return hf_hexagon(s)->half ? s->half_width : s->width;
 }
 
 static inline int hf_hexagon_height(const struct hf_setup *s)
 {
-    return s->resolution == HF_RESOLUTION_HALF ? s->half_height : s->height;
+    return hf_hexagon(s)->half ? s->half_height : s->height;
 }
 
 // The frame's pixel that is nearest to one beyond its edges. Returns 0 if that is more than the frame's own size away:
@@ -216,7 +217,7 @@ static inline float hf_hexagon_along(int width, int height, const float side[2],
 // r in pixels of the working resolution.
 static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf_rect r)
 {
-    if (s->resolution == HF_RESOLUTION_HALF)
+    if (hf_hexagon(s)->half)
         return r;
     return (struct hf_rect){2 * r.x0, 2 * r.y0, hf_min(2 * r.x1, s->width), hf_min(2 * r.y1, s->height)};
 }

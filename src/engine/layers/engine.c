@@ -183,7 +183,7 @@ static void release(void *own, const struct hf_mem *mem)
         hf_block_free(&l->shapes[i].block, mem);
 }
 
-static size_t bytes(const void *own)
+static size_t held(const void *own)
 {
     const struct hf_layers *l = own;
     return l->tables.size + l->tiles.size + l->marks.size + l->shapes[0].block.size + l->shapes[1].block.size +
@@ -279,13 +279,6 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
     return (struct hf_reach){l->around / 2, l->around / 2};
 }
 
-// All of a sample is made at once, for either field.
-static unsigned reads(const struct hf_setup *s, unsigned needs)
-{
-    (void)s;
-    return needs ? HF_FIELDS : 0;
-}
-
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     if (sweep == 2) {
@@ -365,32 +358,22 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
 
 const struct hf_engine_def hf_layers_engine = {
     .name = "layers",
-    .aperture = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE |
-                HF_APERTURE_SQUEEZE | HF_APERTURE_CHROMATIC | HF_APERTURE_PICTURE,
-    .check = check,
     .passes = passes,
     .pass_count = PASSES,
     .sweeps = 5,
     .bufs = bufs,
     .buf_count = HF_LAYERS_BUFS,
-    .across = 1u << 2 | 1u << 3 | 1u << 4,
-    .grain = HF_LAYERS_TILE / 2,
-    .measured = 1,
-    .kernels_bytes = sizeof(struct hf_layers_kernels),
-    .kernels = hf_layers_kernels_init,
-    .own_bytes = sizeof(struct hf_layers),
-    .resolve = resolve,
-    .prepare = prepare,
-    .release = release,
-    .bytes = bytes,
-    .measure = measure,
-    .tell = tell,
-    .channels = channels,
-    .runs = runs,
-    .halo = halo,
-    .spread = spread,
-    .reads = reads,
-    .cell = cell,
-    .work = work,
-    .cost = cost,
+    .limits = {.aperture = HF_APERTURE_ALL, .check = check},
+    .kernels = {sizeof(struct hf_layers_kernels), hf_layers_kernels_init},
+    .own = {sizeof(struct hf_layers), .resolve = resolve, .prepare = prepare, .measure = measure, .tell = tell,
+            .release = release, .held = held},
+    .plan = {.across = 1u << 2 | 1u << 3 | 1u << 4,
+             .grain = HF_LAYERS_TILE / 2,
+             .channels = channels,
+             .runs = runs,
+             .halo = halo,
+             .spread = spread,
+             .cell = cell,
+             .work = work},
+    .cost = {.numbers = cost},
 };

@@ -92,7 +92,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 {
     struct hf_scatter *t = own;
     (void)depth;
-    s->resolution = p->scatter.resolution;
+    (void)p;
     t->ready = t->around_x = t->around_y = t->mixed = 0;
     s->sharp_radius = 0.5f;
 }
@@ -103,7 +103,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     struct hf_aperture *aperture = &t->aperture;
     const struct hf_aperture_params *a = &p->aperture;
     *t = (struct hf_scatter){.aperture = *aperture, .half_from = 24, .half_to = 28, .fade = 1.5f};
-    if (s->resolution == HF_RESOLUTION_HALF) {
+    if (p->scatter.resolution == HF_RESOLUTION_HALF) {
         t->half_from = -1;
         t->half_to = 0;
         t->fade = 2.5f;
@@ -139,7 +139,7 @@ static void release(void *own, const struct hf_mem *mem)
     hf_block_free(&((struct hf_scatter *)own)->aperture.block, mem);
 }
 
-static size_t bytes(const void *own)
+static size_t held(const void *own)
 {
     return ((const struct hf_scatter *)own)->aperture.block.size;
 }
@@ -284,13 +284,6 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
     return (struct hf_reach){t->around_x, t->around_y};
 }
 
-// All of a source is made at once, whatever field it is for.
-static unsigned reads(const struct hf_setup *s, unsigned needs)
-{
-    (void)s;
-    return needs ? HF_FIELDS : 0;
-}
-
 // Cells large against the reach, for what lies around a cell is looked at twice; and narrow enough for the rows of sums
 // that are being drawn on, 32 bytes a pixel, to stay in the second level of the cache.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
@@ -321,7 +314,7 @@ static size_t work(const struct hf_setup *s, const struct hf_cells *p)
 static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *reach)
 {
     const struct hf_scatter *t = hf_scatter(s);
-    numbers[0] = (int)s->resolution;
+    numbers[0] = t->half_to <= 0;
     *reach = hf_max(t->around_x, t->around_y);
     return 1;
 }
@@ -353,29 +346,15 @@ void hf_scatter_kernels_c(struct hf_scatter_kernels *k)
 
 const struct hf_engine_def hf_scatter_engine = {
     .name = "scatter",
-    .aperture = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE |
-                HF_APERTURE_SQUEEZE | HF_APERTURE_CHROMATIC | HF_APERTURE_PICTURE,
-    .check = check,
     .passes = passes,
     .pass_count = PASSES,
     .sweeps = 2,
     .bufs = bufs,
     .buf_count = HF_SCATTER_BUFS,
-    .measured = 1,
-    .kernels_bytes = sizeof(struct hf_scatter_kernels),
-    .kernels = hf_scatter_kernels_init,
-    .own_bytes = sizeof(struct hf_scatter),
-    .resolve = resolve,
-    .prepare = prepare,
-    .release = release,
-    .bytes = bytes,
-    .measure = measure,
-    .made = made,
-    .channels = channels,
-    .halo = halo,
-    .spread = spread,
-    .reads = reads,
-    .cell = cell,
-    .work = work,
-    .cost = cost,
+    .limits = {.aperture = HF_APERTURE_ALL, .check = check},
+    .kernels = {sizeof(struct hf_scatter_kernels), hf_scatter_kernels_init},
+    .own = {sizeof(struct hf_scatter), .resolve = resolve, .prepare = prepare, .measure = measure, .made = made,
+            .release = release, .held = held},
+    .plan = {.channels = channels, .halo = halo, .spread = spread, .cell = cell, .work = work},
+    .cost = {.numbers = cost},
 };
