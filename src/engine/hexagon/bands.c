@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon's two passes in turn on bands of rows of a tile, for one field and then the other. What pass 1 makes of a
-// band is read by pass 2 while it is in the cache; rows that the next band reads too are moved up to its own, so that
-// none is made twice.
+// Runs the hexagon's two passes alternately on bands of rows of a tile, for one field and then the other. Pass 2 reads
+// what pass 1 made of a band while it is in the cache. Rows that the next band reads too are moved into its place, so
+// no row is made twice.
 #include <string.h>
 
 #include "engine/hexagon/kernels.h"
 
-// What pass 1 makes for a band: planes of rows, as far around the band's own as pass 2 reads.
+// The results of pass 1 for a band: planes of rows, with the rows above and below that pass 2 reads.
 struct band {
     float *memory;
     ptrdiff_t stride;
@@ -33,7 +33,7 @@ size_t hf_hexagon_band_floats(const struct hf_setup *s, int width)
     return (2 * (size_t)s->channels + 4) * (size_t)b.rows * (size_t)b.stride + HF_PAD;
 }
 
-// The field's buffers as planes of the band whose first pixel is (x, y), half-resolution pixels.
+// Let the field's buffers point into the band; (x, y) is its first half-resolution pixel.
 static void place(struct hf_frame *f, struct band *b, int x, int y)
 {
     static const enum hf_hexagon_made made[2][3] = {{HF_HEXAGON_NEAR_U, HF_HEXAGON_NEAR_B, HF_HEXAGON_NEAR_W},
@@ -50,7 +50,7 @@ static void place(struct hf_frame *f, struct band *b, int x, int y)
     }
 }
 
-// A part beyond the frame, working pixels: far light, nothing near.
+// Pass 1 of a part beyond the frame, in working pixels: far light continues there, and nothing is near.
 static void beyond(const struct hf_frame *f, const struct band *b, struct hf_rect r)
 {
     if (r.x0 >= r.x1 || r.y0 >= r.y1)
@@ -65,8 +65,8 @@ static void beyond(const struct hf_frame *f, const struct band *b, struct hf_rec
             memset(hf_at(first, 0, r.x0, y) + i * b->rows * b->stride, 0, (size_t)(r.x1 - r.x0) * sizeof(float));
 }
 
-// Pass 1 of some rows, half-resolution pixels, in the frame and around it. From left to right, as vectors write more to the
-// right than they are asked for.
+// Pass 1 of some rows (half-resolution pixels), inside the frame and around it. It goes from left to right, because
+// vectors write beyond the right end of what they are asked for.
 static void make_rows(const struct hf_frame *f, const struct band *b, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon's pass of what lies behind near pixels (pixel/behind.c): all that is seen around them, sharp or far, alike.
-// A quad's mean is premultiplied by how much of it is seen.
+// The hexagon's disocclusion fill (pixel/behind.c): what lies behind near pixels is averaged from all that is visible
+// around them, sharp or far. A quad's mean is premultiplied by its visible part.
 #include <string.h>
 
 #include "engine/hexagon/kernels.h"
@@ -13,7 +13,7 @@ static void near_full(const struct hf_frame *f, int q, int from, int to, float *
     hf_behind_near(f, &f->buf[HF_HEXAGON_WEIGHT], 1, q, from, to, out);
 }
 
-// Colours lie there divided by radii of more than a pixel: weights take that back.
+// Stored colours are divided by radii above a pixel; the weights multiply them back.
 static unsigned seen_full(const struct hf_frame *f, int q, int from, int to, const float *widest, float *line,
                           float *const plane[HF_BEHIND_PLANES])
 {
@@ -38,7 +38,7 @@ static unsigned seen_full(const struct hf_frame *f, int q, int from, int to, con
     return seen;
 }
 
-// ---- half resolution ----
+// Adds the stored visible part of each quad, and the near part of quads that are less near than others around.
 
 static void near_half(const struct hf_frame *f, int q, int from, int to, float *out)
 {
@@ -74,7 +74,7 @@ static unsigned seen_half(const struct hf_frame *f, int q, int from, int to, con
 
 // ---- the pass ----
 
-// Plane p of a block to a buffer's channel, at the working resolution; h NULL: nothing is seen.
+// Copy plane p of a block to a buffer's channel, at the working resolution. h NULL: nothing is visible.
 static void put(const struct hf_frame *f, const struct hf_behind *h, int p, const struct hf_buf *out, int c,
                 struct hf_rect block)
 {

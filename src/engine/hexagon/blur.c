@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels of the hexagon engine in plain C; what they compute is said in hexagon.h.
+// The kernels of the hexagon engine in plain C. hexagon.h says what they compute.
 #include <math.h>
 
 #include "engine/hexagon/kernels.h"
 
 // ---- Load ----
 
-// What a far sample's mean radius is made of.
+// What the mean radius of far samples is summed from.
 static float light_over(float r, float g, float b, float q)
 {
     return hf_hexagon_light(r, g, b) / (q > HEXAGON_LEAST_MEAN ? q : HEXAGON_LEAST_MEAN);
@@ -29,7 +29,7 @@ static void load_full_row(const struct hf_frame *f, int y, struct hf_rect r, str
     }
 }
 
-// The sum of a quad's colours by weights w, times scale.
+// The sum of a quad's colours with weights w, times scale.
 static void quad_colour(const struct hf_frame *f, float w[4], float scale, float *const lane[2][2][4], int i,
                         float *const to[4])
 {
@@ -41,8 +41,8 @@ static void quad_colour(const struct hf_frame *f, float w[4], float scale, float
                  scale;
 }
 
-// A field's part of a quad of radii: its mean radius in half-resolution pixels, and of its area how much it is. A
-// pixel of less than half a pixel of radius counts less, so that none comes or goes at once.
+// One field's part of a quad: its mean radius in half-resolution pixels, and its part of the area. Pixels with a radius
+// below half a pixel count less, so that none comes or goes abruptly.
 static void load_quad(const struct hf_frame *f, int colour, int x, int y, const float radius[4],
                       float *const lane[2][2][4], int i)
 {
@@ -52,7 +52,7 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
         w[t] = 2 * m < 1 ? 2 * m : 1;
         q = q + w[t] * m;
     }
-    sum = (w[0] + w[1]) + (w[2] + w[3]);  // as colours are: alpha of 1 is what weights are
+    sum = (w[0] + w[1]) + (w[2] + w[3]);  // in the same order as the colours, so that an alpha of 1 gives the weights
     q = sum > 0 ? 0.5f * (q / sum) : 0;
     const float spread = q > 1 ? q : 1, scale = 0.25f / spread;
     *hf_at(&f->buf[colour + 1], 0, x, y) = sum * scale;
@@ -64,7 +64,7 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
         colour == HF_HEXAGON_NEAR_COLOUR_2 ? (sum * scale) * sqrtf(spread) : light_over(*to[0], *to[1], *to[2], q);
 }
 
-// What of a quad is seen behind what is near around it: all that is not near itself, or hardly.
+// The visible part of a quad for near pixels around it: all pixels that are not near themselves, or hardly.
 static void load_seen(const struct hf_frame *f, int x, int y, const float radius[4], float *const lane[2][2][4], int i)
 {
     float w[4];
@@ -105,13 +105,13 @@ void hf_hexagon_load_c(const struct hf_frame *f, struct hf_rect r)
 
 // ---- the passes ----
 
-// Sums along a line: of colour x weight, of the weights a, and of what their mean radius is made of.
+// Sums along a line: of colour x weight, of the weights a, and of what their mean radius is summed from.
 struct sums {
     float colour[4], a, w;
 };
 
-// A far pixel of radius p takes samples up to 2p, and less and less up to a pixel (p, where that is smaller) beyond:
-// limit - slope q, between 0 and 1.
+// A far pixel of radius p takes samples up to a radius of 2p. Beyond, they fade out over one pixel (p, where that is
+// smaller): the factor is limit - slope q, between 0 and 1.
 struct limit {
     float limit, slope;
 };
@@ -146,7 +146,7 @@ static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_fi
     return sum;
 }
 
-// Near: coverage a, and as all that covers it spreads a / w far, each line pixel gets w / a of it.
+// Near: store the coverage a. What covers the line spreads a / w far, so each of its pixels gets w / a of it.
 static void store_near(const struct hf_frame *f, const struct sums *s, enum hf_hexagon_made colour, int weight, int x,
                        int y)
 {
@@ -179,7 +179,7 @@ static void near_2(const struct hf_frame *f, int x, int y)
     *hf_at(hf_hexagon_made(f, HF_HEXAGON_COVERAGE), 0, x, y) = (v.a + w.a) * (1 / 3.0f);
 }
 
-// How much of its own colour a pixel of radius p > 0 adds to what it has found.
+// How much of its own colour a pixel of radius p > 0 adds to what it found.
 static float own(float found, float p)
 {
     float o = (1 - found) * hf_saturate(HEXAGON_ALL - p);
@@ -188,8 +188,8 @@ static float own(float found, float p)
     return o > 0 ? o : 0;
 }
 
-// A blur of the far field at a far pixel: colours of the samples that count, in proportion, all that is found, and in
-// pass 1 light over radii, in proportion.
+// A blur of the far field at a far pixel: mean colour, the total weight that was found, and in pass 1 the mean light
+// over radius.
 struct found {
     float colour[4], a, w;
 };
@@ -206,14 +206,14 @@ static struct found far_line(const struct hf_frame *f, const struct hf_hexagon_f
         all.w = (s.w + mine * *hf_at(in->weight, in->mean, x, y)) * i;
     for (int c = 0; c < 3; c++)
         all.colour[c] = (s.colour[c] + mine * *hf_at(in->colour, c, x, y)) * i;
-    // Divided by what they were multiplied with, sums of 1 are 1.
+    // Dividing by the factor of the multiplication makes sums of 1 exactly 1.
     if (f->s->channels == 4)
         all.colour[3] = (s.colour[3] + o * (*hf_at(in->colour, 3, x, y) / *hf_at(in->weight, in->a, x, y))) / all.a;
     return all;
 }
 
-// Colours that were found, with a weight and the mean radius: without light, that of the pixel itself. What is found at a
-// pixel that is far in part counts as much less. whole: of what weighs 1, how much was found.
+// Store the colours found, with a weight and the mean radius; without light the pixel's own radius. A pixel that is
+// only partly far gets a smaller weight. whole: how much was found of a full weight.
 static void store_far(const struct hf_frame *f, const struct found *all, float p, float part, float whole,
                       enum hf_hexagon_made colour, int weight, int x, int y)
 {
@@ -235,7 +235,7 @@ static void add(struct found *u, const struct found *v, int channels)
     u->w = u->w + v->w;
 }
 
-// What a line found counts as much of it as lies within the frame; returns that.
+// Scale what a line found by the part of the line within the frame; returns that part.
 static float keep_within(const struct hf_frame *f, struct found *s, int line, int x, int y, float p)
 {
     static const float here[2] = {0, 0};
@@ -265,7 +265,7 @@ static void far_1(const struct hf_frame *f, int x, int y)
     store_far(f, &u, p, part, 0.5f * (up + left), HF_HEXAGON_FAR_B, 2, x, y);
 }
 
-// What is found from beyond the frame, of no more than there is to find.
+// What a line finds beyond the frame. It is normalised only where more than a full weight was found.
 static struct found beyond_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y,
                                 float p)
 {

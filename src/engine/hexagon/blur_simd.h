@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hexagon engine on vectors.
 //
-// A line's taps are the same for all pixels, so each is a load at a fixed offset, and most of these are not aligned.
-// A line that is not steep meets a column of pixels in two taps: rows are taken together, as many as the
-// registers have room for the sums of, and a sample is loaded once for all that meet it (hf_hexagon_step).
+// A line's taps are the same for all pixels, so each is a load at a fixed offset, and most loads are not aligned. A
+// line that is not steep meets a column of pixels in two taps. So as many rows are computed together as there are
+// registers for their sums, and a sample is loaded once for all rows that meet it (hf_hexagon_step).
 //
-// What a tap costs beyond that is asking how much of a sample counts, so the radii around each block of pixels are
-// looked at first: no tap is read that none of them reaches, and those that all of them reach are plain products, four
-// where there would be ten operations. Skipped taps would add nothing and full ones have the same weight either way,
-// and each pixel's sums keep their order, so no bit depends on where a block lies.
+// The remaining cost of a tap is to find how much of a sample counts. So the range of radii around each block of pixels
+// is found first. Taps that no sample reaches are skipped, and taps that all samples reach are plain products: four
+// operations instead of ten. Skipped taps would add nothing, and full ones have the same weight either way. Each
+// pixel's sums keep their order, so no bit depends on where a block lies.
 #ifndef HF_HEXAGON_BLUR_SIMD_H
 #define HF_HEXAGON_BLUR_SIMD_H
 
@@ -21,15 +21,15 @@ enum { HEX_REGISTERS = 32 };
 enum { HEX_REGISTERS = VF_N == 16 ? 32 : 16 };
 #endif
 
-// Rows at once; a block's size.
+// Rows computed together, and a block's size.
 enum { HEX_ROWS = HEX_REGISTERS == 32 ? 4 : 2, HEX_WIDTH = 128, HEX_HEIGHT = 16 };
 
 struct hex_range {
     float least, most;
 };
 
-// Least and most radius in a block and all that a line reaches from it; of samples that hold 0 without a radius, the
-// least above 0. Lanes past its end may hold anything: that widens the range, and NaN does not count.
+// The least and largest radius in a block and wherever a line reaches from it. Where samples without a radius hold 0,
+// the least radius above 0. Lanes past the block's end may hold anything: that widens the range, and NaN is ignored.
 HF_INLINE struct hex_range hex_range(const struct hf_hexagon_field *in, const struct hf_hexagon_line *l,
                                      struct hf_rect b)
 {
@@ -53,7 +53,7 @@ HF_INLINE struct hex_range hex_range(const struct hf_hexagon_field *in, const st
     return r;
 }
 
-// Least radius above 0 of a block's own pixels.
+// The least radius above 0 of a block's own pixels.
 HF_INLINE float hex_least_far(const struct hf_hexagon_field *in, struct hf_rect b)
 {
     vf least = vf_set1(FLT_MAX);
@@ -69,12 +69,12 @@ HF_INLINE float hex_least_far(const struct hf_hexagon_field *in, struct hf_rect 
     return r;
 }
 
-// A line's steps that some sample in a block reaches, the first of them up to `full` by all samples in full.
+// The steps of a line that some sample in a block reaches. Those before `full` are reached by all samples in full.
 struct hex_run {
     const struct hf_hexagon_step *step, *full, *end;
 };
 
-// Are a step's taps reached in full from this radius on?
+// Whether a sample of this radius reaches all taps of a step in full.
 HF_INLINE int hex_is_full(const struct hf_hexagon_step *p, float least)
 {
     for (int i = 0; i < HEX_ROWS; i++)
@@ -102,8 +102,8 @@ struct hex_limit {
     vf limit, slope;  // the slope is negative
 };
 
-// Sums along a line for a vector of pixels from (x, y) in each of some rows; first: pass 1, radii are asked for; limit
-// NULL: none.
+// Sum along a line for a vector of pixels from (x, y) in each of some rows. first: pass 1, so radii are summed. limit
+// NULL: no limit.
 HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run *run, const int channels,
                         const int first, const int rows, int x, int y, const struct hex_limit *limit,
                         struct hex_sums s[HEX_ROWS])
@@ -168,14 +168,14 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
     }
 }
 
-// A block is walked in groups of rows. The last of them overlaps the one before where rows are left over, and a row's
-// second vector its first: from there on they are aligned.
+// Walk a block in groups of rows. Where rows are left over, the last group overlaps the one before. In a row, the
+// second vector overlaps the first; from there on vectors are aligned.
 #define HEX_EACH(b, rows, x, y)                                                                                        \
     for (int y = (b).y0; y < (b).y1; y = y + rows < (b).y1 ? hf_min(y + rows, (b).y1 - rows) : (b).y1)                 \
         for (int x = (b).x0; x < (b).x1; x = (x + VF_N) & ~(VF_N - 1))
 
-// Fetch the samples under a vector that the block below will be the first to read: from here to there they lie too far
-// apart for the hardware to foresee.
+// Prefetch the samples under a vector that the block below will be the first to read. They lie too far apart for the
+// hardware's prefetchers.
 HF_INLINE void hex_fetch(const struct hf_hexagon_field *in, const int channels, const int rows, int x, int y)
 {
     for (int i = 0; i < rows; i++) {
@@ -209,7 +209,7 @@ HF_INLINE void hex_add(struct hex_sums *u, const struct hex_sums *v, const int c
     u->w = vf_add(u->w, v->w);
 }
 
-// Nothing of a field in a block: it shows nothing.
+// Clear a block where the field has nothing.
 HF_INLINE void hex_clear(const struct hf_buf *out, struct hf_rect b, const int channels)
 {
     for (int c = 0; c < channels; c++)
@@ -282,7 +282,7 @@ HF_INLINE vf hex_own(vf found, vf p)
     return vf_max(o, vf_zero());
 }
 
-// A line of the far field in a block: its taps, and whether some pixel may find a sample too far behind it.
+// A line of the far field in a block: its taps, and whether some pixel may meet a sample too far behind it.
 struct hex_far {
     struct hf_hexagon_field in;
     struct hex_run run;
@@ -294,7 +294,7 @@ HF_INLINE struct hex_far hex_far(const struct hf_frame *f, const struct hf_hexag
 {
     const struct hf_hexagon_line *l = &hf_hexagon(f->s)->line[line];
     const struct hex_range r = hex_range(in, l, b);
-    // Clearly below 2p, where limit - slope q is not less than 1 however it is rounded.
+    // Clearly below 2p, limit - slope q is at least 1, however it is rounded.
     return (struct hex_far){*in, hex_run(l, rows, r), !(r.most <= 1.9999f * least)};
 }
 
@@ -304,7 +304,7 @@ HF_INLINE struct hex_limit hex_limit(vf p)
     return (struct hex_limit){vf_add(vf_mul(vf_mul(vf_set1(2), p), slope), vf_set1(1)), vf_sub(vf_zero(), slope)};
 }
 
-// See hf_hexagon_light.
+// As hf_hexagon_light.
 HF_INLINE vf hex_light(const vf colour[3])
 {
     const vf low = vf_min(colour[0], colour[1]), high = vf_max(colour[0], colour[1]), b = colour[2];
@@ -312,8 +312,8 @@ HF_INLINE vf hex_light(const vf colour[3])
     return vf_abs(vf_add(vf_add(most, least), middle));
 }
 
-// The sums of a line at pixels of radius p as colours, all that was found, and in pass 1 light over radii; with the
-// pixel's own where it is too little.
+// Turn a line's sums at pixels of radius p into mean colours, the weight found, and in pass 1 the mean light over
+// radius. The pixel's own colour is added where too little was found.
 HF_INLINE struct hex_sums hex_found(const struct hf_hexagon_field *in, const struct hex_sums *s, const int channels,
                                     const int first, int x, int y, vf p)
 {
@@ -336,7 +336,7 @@ HF_INLINE struct hex_sums hex_found(const struct hf_hexagon_field *in, const str
     return found;
 }
 
-// The sums alone, without the pixel's own.
+// The sums without the pixel's own colour.
 HF_INLINE void hex_far_sums(const struct hex_far *l, const int channels, const int first, const int rows, int x, int y,
                             const vf p[HEX_ROWS], struct hex_sums s[HEX_ROWS])
 {
@@ -374,7 +374,7 @@ HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s,
     vf_store(hf_at(weights, weight + 1, x, y), q);
 }
 
-// See hf_hexagon_along.
+// As hf_hexagon_along.
 HF_INLINE vf hex_beside(float side, int size, vf at, vf by)
 {
     const vf inside = side > 0 ? vf_sub(vf_sub(vf_set1((float)size), at), by) : vf_add(at, by);
@@ -395,7 +395,7 @@ HF_INLINE vf hex_across(int x)
     return vf_add(vf_set1((float)x + 0.5f), vf_load(steps));
 }
 
-// What a line of pixels of radius p found counts as much of it as lies within the frame; returns that.
+// Scale what a line of pixels of radius p found by its part within the frame; returns that part.
 HF_INLINE vf hex_keep_within(const struct hf_frame *f, struct hex_sums *s, const int channels, int line, int x, int y,
                              vf p)
 {
@@ -409,7 +409,7 @@ HF_INLINE vf hex_keep_within(const struct hf_frame *f, struct hex_sums *s, const
     return part;
 }
 
-// May a line of some pixel in a block leave the frame? If not, all of each lies within it. A line's length reaches less
+// Whether a line of some pixel in a block may leave the frame. If not, all lines lie within it. A line reaches less
 // than 2 pixels beyond its last place.
 HF_INLINE int hex_leaves(const struct hf_frame *f, struct hf_rect b)
 {
@@ -458,10 +458,10 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
 
 // ---- far, beyond the frame ----
 
-// Of the frame's nearest pixels, for those of a block; a vector past a row's end is 0.
+// For the pixels of a block, the frame's nearest pixels; a vector past a row's end is 0.
 struct hex_nearest {
     float p[HEX_HEIGHT][HEX_WIDTH + VF_N], part[HEX_HEIGHT][HEX_WIDTH + VF_N];
-    float least;  // radius above 0
+    float least;  // the least radius above 0
 };
 
 static void hex_nearest(const struct hf_frame *f, const struct hf_hexagon_field *in, struct hf_rect b,
@@ -480,7 +480,7 @@ static void hex_nearest(const struct hf_frame *f, const struct hf_hexagon_field 
         }
 }
 
-// What is found from there, of no more than there is to find.
+// What a line finds beyond the frame. It is normalised only where more than a full weight was found.
 HF_INLINE void hex_beyond_line(const struct hex_far *l, const int channels, const int rows, int x, int y,
                                const vf p[HEX_ROWS], struct hex_sums s[HEX_ROWS])
 {
@@ -574,7 +574,7 @@ HF_INLINE void hex_block(const struct hf_frame *f, struct hf_rect b, const int w
         hex_far_1(f, b, channels, rows);
 }
 
-// Can rows be taken together?
+// Whether rows can be computed together.
 HF_INLINE int hex_is_shared(const struct hf_hexagon *h)
 {
     for (int i = 0; i < 3; i++)

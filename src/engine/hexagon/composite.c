@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon's last pass in plain C: the near field over the far one, over what is sharp, and over what lies behind it.
+// The hexagon's last pass in plain C. The near field goes over the far field, over sharp pixels, and over what lies
+// behind.
 #include <string.h>
 
 #include "engine/hexagon/kernels.h"
 #include "pixel/behind.h"
 
-// The fields at a pixel: the near one with its coverage, the far one with its weight, what lies behind with its own.
+// The fields at a pixel: near with its coverage, far with its weight, and what lies behind with its weight.
 struct fields {
     float near[5], far[5], behind[5];
-    float source[4], part;  // of a far pixel, or of what is far in a mixed one
+    float source[4], part;  // the blurred part of a far or mixed pixel: colour, and how much of the pixel it is
 };
 
 static void fields_full(const struct hf_frame *f, int x, int y, struct fields *v)
@@ -27,7 +28,7 @@ static void fields_full(const struct hf_frame *f, int x, int y, struct fields *v
         v->source[c] = *hf_at(&f->buf[HF_HEXAGON_COLOUR], c, x, y) * size;
 }
 
-// Bilinear between half-resolution pixels; far ones count as far as they are far.
+// Bilinear between half-resolution pixels; far ones are weighted by how far they are.
 static void fields_half(const struct hf_frame *f, int x, int y, struct fields *v)
 {
     for (int c = 0; c < 5; c++)
@@ -52,8 +53,8 @@ static void fields_half(const struct hf_frame *f, int x, int y, struct fields *v
     }
 }
 
-// What lies behind a near pixel of radius -p with that colour, in one channel: the colour itself where it hardly is near,
-// and where nothing else is seen around it what the near field shows.
+// One channel of what lies behind a near pixel of radius p < 0: its own colour where it is hardly near; where nothing
+// else is visible around it, the near field's colour.
 static float background(const struct fields *v, int c, float own, float p)
 {
     const float front = v->near[4] > 0 ? v->near[c] / v->near[4] : own, some = v->behind[4];
@@ -62,8 +63,9 @@ static float background(const struct fields *v, int c, float own, float p)
     return hf_lerp(seen, own, hf_saturate(HEXAGON_ALL + p));
 }
 
-// What two blurs find of a near field that covers the whole frame, as nothing near is made beyond it: the first along side a,
-// and b if it is one, the second along c. By Simpson's rule, as the first is linear but for its corners.
+// The sum that two blurs find of a near field that covers the whole frame, given that pass 1 makes nothing near beyond
+// the frame: the first along side a, and b unless it is -1, the second along c. It is integrated by Simpson's rule,
+// because the first blur is linear except at its corners.
 static float two_sides(const struct hf_setup *s, int a, int b, int c, const float at[2], float p)
 {
     static const float here[2] = {0, 0};
@@ -80,7 +82,7 @@ static float two_sides(const struct hf_setup *s, int a, int b, int c, const floa
     return d * sum;
 }
 
-// What near coverage leaves of the background: near a frame's edge not what lies beyond it.
+// The part that near coverage leaves open. Near a frame's edge the missing coverage from beyond is not counted as open.
 static float left_over(const struct hf_setup *s, float coverage, float p, int x, int y)
 {
     float most = 1;
@@ -92,7 +94,7 @@ static float left_over(const struct hf_setup *s, float coverage, float p, int x,
     return o > 0 ? o : 0;
 }
 
-// A far pixel; of a mixed one what is far in it.
+// The colour of a far pixel. In a mixed pixel only its far part is replaced.
 static float far_full(const struct fields *v, int c, float own)
 {
     return v->part < HEXAGON_WHOLE ? own + (v->part * v->far[c] - v->source[c]) : v->far[c];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon engine on vectors: what comes before its two passes, and after.
+// The hexagon engine on vectors: Load and Composite.
 #include "engine/hexagon/blur_simd.h"
 #include "engine/hexagon/kernels.h"
 #include "pixel/behind.h"
@@ -7,8 +7,8 @@
 
 // ---- Load ----
 
-// Are the planes of a frame larger than a cache, and a row's place in them aligned? Then they are written past it: each
-// line would be fetched to be overwritten.
+// Whether the planes of a frame are larger than a cache, and a row is aligned. Then stores go past the cache: otherwise
+// each line would be fetched only to be overwritten.
 static int hex_streams(const struct hf_frame *f, const float *row)
 {
     enum { LARGE = 12 << 20 };
@@ -16,7 +16,7 @@ static int hex_streams(const struct hf_frame *f, const float *row)
     return planes * stride * (size_t)f->s->height * sizeof(float) > LARGE && (uintptr_t)row % sizeof(vf) == 0;
 }
 
-// What a far sample's mean radius is made of.
+// What the mean radius of far samples is summed from.
 HF_INLINE vf hex_light_over(const vf colour[3], vf q)
 {
     return vf_div(hex_light(colour), vf_max(q, vf_set1(HEXAGON_LEAST_MEAN)));
@@ -31,7 +31,7 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r,
     float *const colour[4] = {hf_line(f, 13), hf_line(f, 14), hf_line(f, 15), hf_line(f, 16)}, *radius = hf_line(f, 17);
     hf_row(&f->buf[HF_HEXAGON_COLOUR], s->channels, x0, y, out);
     const float *whole = hf_hexagon_row(e, f, y, r, colour, radius);
-    // What lies at the frame's edges is read at once, to be repeated outwards.
+    // Pixels at the frame's edges are read soon, to be repeated outwards, so they stay in the cache.
     const int inner = y > 0 && y < s->height - 1 && hex_streams(f, a);
     for (int x = 0; x < n; x += VF_N) {
         const int stream = inner && x0 + x > 0 && x0 + x + VF_N < s->width;
@@ -50,7 +50,7 @@ static void hex_load_full_row(const struct hf_frame *f, int y, struct hf_rect r,
     }
 }
 
-// The sums of quads' colours by weights w, times scale.
+// The sums of quads' colours with weights w, times scale.
 HF_INLINE void hex_quad_colours(const struct hf_frame *f, int colour, int x, int y, vf w[4], vf scale,
                                 float *const lane[2][2][4], int i, vf out[4])
 {
@@ -96,7 +96,7 @@ HF_INLINE void hex_load_seen(const struct hf_frame *f, int x, int y, const vf ra
     hex_quad_colours(f, HF_HEXAGON_SEEN_COLOUR_2, x, y, w, quarter, lane, i, v);
 }
 
-// Radii of n pairs of pixels of row y, even and odd ones.
+// The radii of n pairs of pixels of row y, split into even and odd ones.
 static void hex_radius_lanes(const struct hf_frame *f, int x, int y, int n, float *line, float *even, float *odd)
 {
     const int pixels = hf_min(2 * n, f->s->width - 2 * x);
@@ -140,13 +140,13 @@ static void hexagon_load_simd(const struct hf_frame *f, struct hf_rect r)
 
 // ---- Composite ----
 
-// The near field over a background.
+// Composite the near field over a background.
 HF_INLINE vf hex_over(vf near, vf coverage, vf left, vf all, vf b)
 {
     return vf_select(vf_eq(coverage, vf_zero()), b, vf_div(vf_fma(left, b, near), all));
 }
 
-// Where a field shows, the blend in full brightness.
+// Where a field shows, store the blend at full brightness.
 HF_INLINE void hex_store_blend(vm shows, vf blend, float *colour)
 {
     const vf most = vf_set1(HEXAGON_MOST), least = vf_set1(-HEXAGON_MOST);
@@ -154,7 +154,7 @@ HF_INLINE void hex_store_blend(vm shows, vf blend, float *colour)
     vf_store(colour, vf_select(shows, v, vf_load(colour)));
 }
 
-// See composite.c.
+// As two_sides in composite.c.
 HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, const vf at[2], vf p)
 {
     const struct hf_hexagon *h = hf_hexagon(s);
@@ -172,7 +172,7 @@ HF_INLINE vf hex_two_sides(const struct hf_setup *s, int a, int b, int c, const 
     return vf_mul(d, sum);
 }
 
-// Whether hexagons of radii q around (u, v) may lie partly outside the frame; elsewhere all sums below are 18 exactly.
+// Whether hexagons of radii q around (u, v) may leave the frame. Elsewhere the sums of two_sides are exactly 18.
 HF_INLINE vm hex_at_edge(const struct hf_setup *s, vf u, vf v, vf q)
 {
     const float *clear = hf_hexagon(s)->clear;
@@ -181,7 +181,7 @@ HF_INLINE vm hex_at_edge(const struct hf_setup *s, vf u, vf v, vf q)
     return vm_or(vm_or(vf_lt(u, x), vf_lt(v, y)), vm_or(vf_lt(vf_sub(width, u), x), vf_lt(vf_sub(height, v), y)));
 }
 
-// Pixels from column x of row y on, `step` apart; p: their radii.
+// The open part of pixels from column x of row y on, `step` apart; p: their radii.
 HF_INLINE vf hex_left_over(const struct hf_setup *s, vf coverage, vf p, int x, int step, int y)
 {
     static const float steps[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -199,7 +199,7 @@ HF_INLINE vf hex_left_over(const struct hf_setup *s, vf coverage, vf p, int x, i
     return vf_max(vf_sub(most, coverage), vf_zero());
 }
 
-// What lies behind near pixels: channels that are sampled, and their weight.
+// What lies behind near pixels: sampled channels and their weight.
 struct hex_behind {
     vf colour[4], weight;
 };
@@ -213,7 +213,7 @@ HF_INLINE vf hex_background(const struct hex_behind *v, int c, vf near, vf cover
     return vf_lerp(seen, own, coc_saturate(vf_add(vf_set1(HEXAGON_ALL), p)));
 }
 
-// A far pixel; of a mixed one what is far in it.
+// The colour of a far pixel. In a mixed pixel only its far part is replaced.
 HF_INLINE vf hex_far_colour(vf far, vf source, vf own, vf part, vf size, vm is_far)
 {
     const vf mixed = vf_add(own, vf_sub(vf_mul(part, far), vf_mul(source, size)));
@@ -272,7 +272,7 @@ static void hex_full_row(const struct hf_frame *f, int y, struct hf_rect r)
     hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)colour, f->s->channels == 4);
 }
 
-// Where the four half-resolution neighbours of a row's even or odd pixels are, and their weights.
+// Offsets of the four half-resolution neighbours of a row's even or odd pixels, and their weights.
 struct hex_corner {
     int x, y;
     float weight;
@@ -287,7 +287,7 @@ HF_INLINE vf hex_bilinear(const struct hf_buf *b, int channel, int x, const stru
     return sum;
 }
 
-// The even or odd pixels of row y.
+// Composite the even or odd pixels of row y.
 HF_INLINE void hex_composite_half(const struct hf_frame *f, struct hf_rect r, int y, int odd, const float *radius,
                                   float *const colour[4])
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon: two passes of blurs along lines, see hexagon.h. A pixel costs O(largest radius around it) taps, and
-// with one radius everywhere (uniform) O(radius): four lines of two taps every 1.15 pixels.
+// The hexagon: two passes of blurs along lines, see hexagon.h. A pixel costs O(largest radius around it) taps. With one
+// radius everywhere (uniform) that is O(radius): four lines with two taps every 1.15 pixels.
 #include <math.h>
 
 #include "pass/cells.h"
@@ -19,7 +19,7 @@
 #define SEEN ((INPUT & ~FAR_2) | FRAME(SEEN_COLOUR_2) | FRAME(SEEN_WEIGHT_2))
 #define BEHIND (MADE(BEHIND) | MADE(BEHIND_W))
 
-// The largest CoC radius, twice; what is seen around near pixels; and a pixel.
+// Halos: twice the largest CoC radius; the neighbourhoods around near pixels; and a pixel.
 enum { HALO_RADIUS = 1, HALO_BEHIND, HALO_UPSAMPLE };
 
 static const struct hf_pass passes[HF_HEXAGON_PASSES] = {
@@ -73,13 +73,13 @@ static int channels(const struct hf_setup *s, int b)
     }
 }
 
-// How far lines go, in working pixels: what is near by less than a pixel is spread over one, thinly.
+// How far lines go, in working pixels. A sample that is near by less than a pixel is spread thinly over one.
 static float working(const struct hf_setup *s, float radius)
 {
     return fmaxf(hf_hexagon(s)->half ? radius / 2 : radius, 1);
 }
 
-// The most places that a line has: they are no nearer than columns of narrow pixels.
+// The most places that a line can have. They are at least as far apart as columns of narrow pixels.
 static int place_count(const struct hf_setup *s, float radius)
 {
     return (int)ceil((working(s, radius) + 4) / fmin(s->pixel_aspect, 1));
@@ -91,7 +91,7 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     (void)asked;
     if (p->aperture.blades && p->aperture.blades != 6)
         return hf_bad(message, "aperture.blades is %d; the hexagon engine has six sides", p->aperture.blades);
-    if (p->hexagon.uniform)  // whatever the depth
+    if (p->hexagon.uniform)  // at any depth
         r->sharp =
             p->max_radius == 0 || (depth->type != HF_DEPTH_COC && p->model == HF_MODEL_RANGE && p->range.strength == 0);
     return hf_check_resolution("hexagon", p->hexagon.resolution, HF_RESOLUTION_HALF, message);
@@ -106,7 +106,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     h->half = p->hexagon.resolution == HF_RESOLUTION_HALF;
     s->uniform = p->hexagon.uniform;
     s->zero_beyond = 1;
-    // Below this, weights and colours times radii would be denormal, and a pixel's soft edge has no slope.
+    // Below this radius weights and colours times radii would be denormal, and a pixel's soft edge would have no slope.
     s->sharp_radius = 0x1p-40f;
 }
 
@@ -114,7 +114,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
 {
     struct hf_hexagon *h = own;
     (void)p;
-    // A place is 2 x 2 taps, two and four rows of them 2 x 3 and 2 x 5; and a step to end with.
+    // A place has 2 x 2 taps; for two and four rows together they are 2 x 3 and 2 x 5. One more step ends the list.
     const size_t n = (size_t)place_count(s, s->max_radius), taps = 4 * n + 1, two = 6 * n + 1, four = 10 * n + 1;
     const size_t line = taps * sizeof(struct hf_hexagon_tap) + (taps + two + four) * sizeof(struct hf_hexagon_step);
     const int err = hf_block_grow(&h->block, 3 * line, mem);
@@ -140,20 +140,20 @@ static size_t held(const void *own)
     return ((const struct hf_hexagon *)own)->block.size;
 }
 
-// A line's direction in 2^-40 of a pixel: distances along it are exact, so that what comes first is the same from
-// everywhere.
+// A line's direction in units of 2^-40 pixel. Distances along it are exact, so their order is the same from every
+// pixel.
 struct direction {
     int64_t x, y;
 };
 
-// Does (ax, ay) come before (bx, by)?
+// Whether (ax, ay) comes before (bx, by) on the line.
 static int comes_before(const struct direction *d, int ax, int ay, int bx, int by)
 {
     const int64_t t = (ax - bx) * d->x + (ay - by) * d->y;
     return t != 0 ? t < 0 : ax != bx ? ax < bx : ay < by;
 }
 
-// Add a tap where its distance belongs: the pixels of a place follow each other closely, and so do their distances.
+// Insert a tap by its distance. The pixels of a place are close to each other, so it moves past few.
 static void add_tap(struct hf_hexagon_line *l, const struct direction *d, const struct hf_hexagon_tap *tap)
 {
     int i = l->count++;
@@ -166,7 +166,7 @@ static void add_tap(struct hf_hexagon_line *l, const struct direction *d, const 
     l->y1 = hf_max(l->y1, tap->dy);
 }
 
-// Unit vectors of the three sides, x and y in pixels' heights.
+// Unit vectors of the three sides, x and y in units of a pixel's height.
 static void directions(float rotation, double u[3][2])
 {
     for (int i = 0; i < 3; i++) {
@@ -176,8 +176,8 @@ static void directions(float rotation, double u[3][2])
     }
 }
 
-// From one place of the lines to the next. The places of the line that is farthest from the axes lie on every column or row;
-// where pixels are far from square, those of the others would lie too far apart.
+// The distance of a line's places. The line farthest from both axes has a place on every column or row. Where pixels
+// are far from square, that would put the other lines' places too far apart, so it is limited.
 static double spacing(const struct hf_setup *s, const double u[3][2])
 {
     double most = 0, least = INFINITY;
@@ -189,17 +189,18 @@ static double spacing(const struct hf_setup *s, const double u[3][2])
     return fmin(most, 1.16 * least);
 }
 
-// Taps of a line in direction u, pixels of height 1, as far as a sample of this radius reaches.
+// Make the taps of a line in direction u (pixels of height 1), as far as a sample of this radius reaches.
 static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, const struct direction *d, const double u[2],
                       double step, float radius)
 {
     const float reach = working(s, radius);
-    // The way back from half resolution widens what is drawn: places lie nearer by what the truth scenes ask for.
+    // Upsampling from half resolution widens what is drawn. Places therefore lie a little nearer; the ray-traced scenes
+    // gave the value.
     const double nearer = hf_hexagon(s)->half ? 0.05 : 0;
     float c = 0;
     l->count = l->x0 = l->y0 = l->x1 = l->y1 = 0;
     for (int k = 0; c < reach; k++) {
-        // Whole 4096ths of a pixel: what lies on a row or column stays on it.
+        // Rounded to 4096ths of a pixel, so that a place on a row or column stays on it.
         const double t = k ? k * step - nearer : 0;
         const double x = round(t * u[0] / s->pixel_aspect * 4096) / 4096, y = round(t * u[1] * 4096) / 4096;
         const int ix = (int)floor(x), iy = (int)floor(y);
@@ -214,8 +215,8 @@ static void make_line(const struct hf_setup *s, struct hf_hexagon_line *l, const
     }
 }
 
-// Rows taken together meet each of their samples once, in the order of its distance from the first row, which is that
-// of the distances from each of them.
+// Make the steps for rows computed together. They meet each sample once, in the order of its distance from the first
+// row, which is also the order for each other row.
 static void make_steps(const struct hf_hexagon_line *l, const struct direction *d, int rows, struct hf_hexagon_steps *s)
 {
     int next[HF_HEXAGON_ROWS] = {0};
@@ -248,8 +249,8 @@ static void make_steps(const struct hf_hexagon_line *l, const struct direction *
     }
 }
 
-// From anywhere in the picture and its own size around it (hf_hexagon_nearest), that far and farther there is nothing.
-// Returns whether there is such a tap.
+// Limit a line's taps to twice the frame's size. From any pixel, taps that far away find nothing (hf_hexagon_nearest).
+// Returns whether there were such taps.
 static int keep_inside(const struct hf_setup *s, struct hf_hexagon_line *l)
 {
     const int x = 2 * s->width, y = 2 * s->height, outside = l->x0 < -x || l->x1 > x || l->y0 < -y || l->y1 > y;
@@ -316,7 +317,8 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     return halo == HALO_BEHIND ? (struct hf_reach){behind, behind} : (struct hf_reach){upsample, upsample};
 }
 
-// A far pixel changes itself alone, and those that are mixed with it, and so does what lies behind a near one.
+// A far pixel changes only itself and the pixels that are mixed with it; what lies behind a near pixel changes
+// likewise.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p, unsigned field)
 {
     const struct hf_reach made = p->pass[HF_HEXAGON_BLUR], around = halo(s, HALO_RADIUS);
@@ -324,7 +326,7 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
     return field == HF_FAR ? (struct hf_reach){mixed, mixed} : (struct hf_reach){made.x + around.x, made.y + around.y};
 }
 
-// A row of radii, or a band. What is made is a pixel wider on either side where it is sampled up.
+// Scratch for a row of radii, or for a band. Where results are upsampled, a band is a pixel wider on either side.
 static size_t work(const struct hf_setup *s, const struct hf_cells *p)
 {
     const size_t band = hf_hexagon(s)->ready ? hf_hexagon_band_floats(s, p->width[2] + 2) : 0;
@@ -335,7 +337,7 @@ static size_t work(const struct hf_setup *s, const struct hf_cells *p)
     return all > p->line_floats ? all : p->line_floats;
 }
 
-// Narrow enough that a band stays in the second-level cache, but wider than the rim that is made of it twice.
+// Narrow enough that a band stays in the second-level cache, but wider than its rim, which is computed twice.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     (void)sweep;

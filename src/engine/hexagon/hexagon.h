@@ -4,28 +4,32 @@
 // J. White and C. Barre-Brisebois, "More Performance! Five Rendering Ideas from Battlefield 3 and Need For Speed: The
 // Run", SIGGRAPH 2011: a hexagon is three rhombi, a rhombus is two blurs along its sides, and the three share blurs.
 // With u up, v down left, w down right, each a mean over a side's length:
-//     pass 1    U = u(c),  B = u(c) + v(c)
-//     pass 2    (v(U) + w(B)) / 3
+//    pass 1    U = u(c),  B = u(c) + v(c)
+//    pass 2    (v(U) + w(B)) / 3
 //
-// CoC differs from pixel to pixel, so each blur asks every sample whether it reaches: a sample of radius q spreads
-// its colour over the first q pixels of the line, 1/q on each. Near samples (in front of the focus) do so whatever
-// they reach; far ones only into far pixels, and only if q <= 2p, p being the radius there, with a soft edge of one
-// pixel (of p where p is smaller). The near field is therefore kept premultiplied by its coverage, with the mean
-// radius of what covers a pixel, so that pass 2 carries it as far as pass 1 did over pixels that are sharp
-// themselves; the far field is divided by what was found, and stays behind the edges of sharper things. It too keeps the
-// mean radius of what was found: light that pass 1 has spread over something else is spread as far by pass 2.
-// The mean radius is the near field's by its square root, each sample by its share of what is found: what covers little
-// changes it little, however large its radius. The far field's is by 1 / radius, each sample by the light that it brings:
-// that of a light before a dark wall goes as far as its own radius, not the wall's.
+// The CoC differs from pixel to pixel, so each blur checks whether a sample reaches the pixel: a sample of radius q
+// spreads its colour over the first q pixels of the line, 1/q on each. Near samples (in front of the focus) do so over
+// any pixel. Far samples do so only over far pixels, and only if q <= 2p, p being the pixel's radius, with a soft edge
+// of one pixel (of p where p is smaller).
 //
-// Beyond the frame's edges far light of pass 1 goes on, or pass 2 would miss what it brings back: hexagons beside an edge
-// would be cut. There a pixel is as far behind the focus as the frame's nearest, has no colour of its own, and weighs as
-// much as it finds; before the edge, what a line makes weighs as much of it as lies within the frame. (What covers near pixels beyond the edge is not made: how much of a hexagon that leaves is known.)
+// The near field is kept premultiplied by its coverage, together with the mean radius of what covers a pixel. So pass 2
+// carries it as far as pass 1 did, also over pixels that are sharp themselves. The far field is divided by the weight
+// that was found, and stays behind the edges of sharper surfaces. It keeps the mean radius of what was found, too:
+// light that pass 1 spread over another surface is spread equally far by pass 2.
 //
-// What near coverage leaves of a sharp or far pixel shows that pixel; of a near one, which is what covers, it shows what
-// is seen around it (behind.c), and the pixel itself only up to a radius of 2. A far pixel that finds less than a quarter
-// of its samples makes up a quarter with its own colour. All weights are continuous in every radius and vanish with it,
-// so nothing pops.
+// The near mean is the square of the mean root radius, each sample weighted by its share of what is found: a sample
+// that covers little changes it little, however large its radius. The far mean is 1 / the mean of 1 / radius, each
+// sample weighted by its light: a light before a dark wall is spread by its own radius, not by the wall's.
+//
+// Far light of pass 1 continues beyond the frame's edges; otherwise pass 2 would miss what it brings back, and hexagons
+// beside an edge would be cut. A pixel out there has the radius of the frame's nearest pixel, no colour of its own, and
+// the weight of what it finds. Inside, a line's result has as much weight as the part of the line within the frame.
+// Near coverage beyond the edge is not made, because how much of a hexagon that leaves is known.
+//
+// The near coverage leaves a part of each pixel open. In a sharp or far pixel that part shows the pixel itself. In a
+// near pixel, which is what covers, it shows what is visible around it (behind.c), and the pixel itself only up to a
+// radius of 2. A far pixel that finds less than a quarter of its samples takes the rest of that quarter from its own
+// colour. All weights are continuous in every radius and vanish with it, so nothing pops.
 #ifndef HF_PASS_HEXAGON_H
 #define HF_PASS_HEXAGON_H
 
@@ -43,18 +47,18 @@ enum hf_hexagon_pass {
     HF_HEXAGON_PASSES
 };
 
-// At full resolution both fields read the same colours and signed radii; at half resolution a quad may belong to
-// both, and each has its own. COLOUR is premultiplied by the weight a of a sample, 1 / max(|q|, 1).
+// At full resolution both fields read the same colours and signed radii. At half resolution a quad may belong to both
+// fields, and each has its own. COLOUR is premultiplied by a sample's weight a = 1 / max(|q|, 1).
 enum hf_hexagon_buf {
-    HF_HEXAGON_COLOUR,         // full resolution: colour x a
-    HF_HEXAGON_WEIGHT,         // a, the signed radius, and what its mean is made of: near a sqrt(1 / a), far light / q
+    HF_HEXAGON_COLOUR,  // full resolution: colour x a
+    HF_HEXAGON_WEIGHT,  // a; the signed radius; what mean radii are summed from: near a sqrt(1 / a), far light / q
     HF_HEXAGON_NEAR_COLOUR_2,  // half resolution: radii are not negative, and in half-resolution pixels
-    HF_HEXAGON_NEAR_WEIGHT_2,  // a times how much of the quad is near, radius, and the same for its mean
+    HF_HEXAGON_NEAR_WEIGHT_2,  // a times the near part of the quad; radius; the same for its mean
     HF_HEXAGON_FAR_COLOUR_2,
     HF_HEXAGON_FAR_WEIGHT_2,
-    HF_HEXAGON_SEEN_COLOUR_2,  // what of a quad is not near: colour x how much that is
-    HF_HEXAGON_SEEN_WEIGHT_2,  // and how much
-    HF_HEXAGON_MADE,           // what the two passes make: full resolution, then the same again at half
+    HF_HEXAGON_SEEN_COLOUR_2,  // the part of a quad that is not near, premultiplied
+    HF_HEXAGON_SEEN_WEIGHT_2,  // how large that part is
+    HF_HEXAGON_MADE,           // results of the two passes: at full resolution, then again at half
 };
 
 enum hf_hexagon_made {
@@ -63,7 +67,7 @@ enum hf_hexagon_made {
     HF_HEXAGON_NEAR_W,  // coverage x weight and mean radius, of U and of B
     HF_HEXAGON_FAR_U,   // colour x weight
     HF_HEXAGON_FAR_B,
-    HF_HEXAGON_FAR_W,  // weight, of what is far of a pixel, and mean radius, of U and of B
+    HF_HEXAGON_FAR_W,  // weight times the far part of a pixel, and mean radius, of U and of B
     HF_HEXAGON_NEAR,   // coverage x colour
     HF_HEXAGON_COVERAGE,
     HF_HEXAGON_FAR,
@@ -73,53 +77,55 @@ enum hf_hexagon_made {
 };
 enum { HF_HEXAGON_BUF_COUNT = HF_HEXAGON_MADE + 2 * HF_HEXAGON_MADE_COUNT };
 
-// The line of a blur: places equally far apart along it, from the pixel itself on, each for the length b of the line that is
-// nearest to it; c is how long the line is before that. A sample of radius q at a place counts min(b, q - c), not less than
-// 0: the weights of a line of one radius sum to q for any q, and every weight grows from 0 as q does. Places lie between
-// pixels, so each is some of these, by bilinear parts. All lines have the same c and b: what the places of one put too near
-// or too far, those of the others do, and as the directions of three sides add up to nothing, so do these errors.
+// A place of a blur's line. Places lie equally far apart, from the pixel itself on. Each stands for the length b of the
+// line that is nearest to it; c is the line's length before that part. A sample of radius q counts max(0, min(b, q -
+// c)) at a place. So with one radius everywhere the weights of a line sum to q, and each weight grows from 0 as q does.
+// A place lies between pixels; each of these is a tap with a bilinear part. All three lines have the same c and b: the
+// position error of one line's places recurs in the others, and because the directions of the three sides sum to 0, so
+// do these errors.
 struct hf_hexagon_tap {
     int dx, dy;
     float b, c, part;
 };
 
-// The same for some rows of pixels at once: a sample (dx, dy) from the first of them, and what each row's own tap there
-// weighs. A line that is not steep meets a column in two taps, so that neighbouring rows share their samples. Each row
-// meets its taps in their order.
+// The same for several rows of pixels at once: a sample at (dx, dy) from the first row, and the weight of each row's
+// own tap there. A line that is not steep meets a column in two taps, so neighbouring rows share samples. Each row
+// still meets its taps in their order.
 enum { HF_HEXAGON_ROWS = 4 };
 
 struct hf_hexagon_step {
     int dx, dy;
-    unsigned rows;  // bit i: row i has a tap there
-    float least;    // the least c of them
+    unsigned rows;  // bit i: row i has a tap at this sample
+    float least;    // the least c of those rows
     float b[HF_HEXAGON_ROWS], c[HF_HEXAGON_ROWS], part[HF_HEXAGON_ROWS];
     float whole[HF_HEXAGON_ROWS];  // part times b
 };
 
 struct hf_hexagon_steps {
     struct hf_hexagon_step *step;
-    int count;  // 0: rows cannot be taken together, as a line's end lies beyond the picture
+    int count;  // 0: rows cannot be computed together, because a line ends beyond the picture
 };
 
 struct hf_hexagon_line {
     struct hf_hexagon_tap *taps;
     int count;
-    int x0, y0, x1, y1;                      // the largest offsets, both included
-    struct hf_hexagon_steps one, two, four;  // rows at once
+    int x0, y0, x1, y1;                      // the extreme offsets, both included
+    struct hf_hexagon_steps one, two, four;  // for that many rows at once
 };
 
-// Lines u, v, w, and how far pass 2 reads around a pixel what pass 1 made, half-resolution pixels.
+// Lines u, v, w, and how far around a pixel pass 2 reads the results of pass 1, half-resolution pixels.
 struct hf_hexagon {
-    int ready;       // prepared: the rest is valid
+    int ready;       // prepared: the other members are valid
     int half;        // at half resolution
     float rotation;  // degrees
     struct hf_hexagon_line line[3];
     int left, right, above, below;
-    float side[3][2];  // 1 / what the sides' directions go along x and y, in pixels for 1 pixel of radius
-    float clear[2];    // farther from the frame's edges than this times its radius a hexagon lies inside; and a pixel
-    int mixed;         // there may be mixed pixels
-    int behind;        // neighbourhoods that near radii ask for (pixel/behind.h)
-    int reach_x, reach_y;  // of one blur in this frame, half-resolution pixels, once its depth has been looked at
+    float side[3][2];  // 1 / the sides' extent along x and y, in pixels per pixel of radius
+    float
+        clear[2];  // a hexagon lies inside the frame if it is farther from the edges than this times its radius, plus 1
+    int mixed;     // there may be mixed pixels
+    int behind;    // levels of neighbourhoods that the near radii need (pixel/behind.h)
+    int reach_x, reach_y;  // of one blur, half-resolution pixels; valid once the frame's depth is known
     struct hf_block block;
 };
 
@@ -128,12 +134,12 @@ static inline const struct hf_hexagon *hf_hexagon(const struct hf_setup *s)
     return s->own;
 }
 
-// Rows of a band, half-resolution pixels (hexagon_bands.c), and floats of scratch for bands of that width.
+// Rows of a band, half-resolution pixels (bands.c), and floats of scratch for bands of that width.
 enum { HF_HEXAGON_BAND = 8 };
 size_t hf_hexagon_band_floats(const struct hf_setup *s, int width);
 
-// Samples of one field: planes of colour x weight, of weight, and of radius x sign. At half resolution a sample may be
-// there in part, and its weight is that much smaller.
+// Samples of one field: planes of colour x weight, of weight, and of radius x sign. At half resolution only a part of a
+// quad may belong to the field, and its weight is smaller in proportion.
 struct hf_hexagon_field {
     const struct hf_buf *colour;
     const struct hf_buf *weight;
@@ -141,11 +147,11 @@ struct hf_hexagon_field {
     const struct hf_buf *radius;
     int q;  // channel of radius
     float sign;
-    int mean;   // channel of weight: what mean radii are made of, -1: not wanted
+    int mean;   // channel of weight that mean radii are summed from; -1: not wanted
     int alone;  // colour and weight are 0 where the radius is not above 0
 };
 
-// Where things are at the setup's resolution.
+// The buffer of a result at the setup's resolution.
 static inline const struct hf_buf *hf_hexagon_made(const struct hf_frame *f, enum hf_hexagon_made b)
 {
     return &f->buf[HF_HEXAGON_MADE + (hf_hexagon(f->s)->half ? HF_HEXAGON_MADE_COUNT : 0) + b];
@@ -162,7 +168,7 @@ static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f,
         &f->buf[colour], weight, 0, weight, 1, !half && field == HF_NEAR ? -1.0f : 1.0f, 2, half};
 }
 
-// The samples that pass 2 reads: what pass 1 made along line v (0) or w (1).
+// The samples that pass 2 reads: the results of pass 1 along line v (0) or w (1).
 static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *f, unsigned field, int second)
 {
     const int near = field == HF_NEAR;
@@ -189,8 +195,8 @@ static inline int hf_hexagon_height(const struct hf_setup *s)
     return hf_hexagon(s)->half ? s->half_height : s->height;
 }
 
-// The frame's pixel that is nearest to one beyond its edges. Returns 0 if that is more than the frame's own size away:
-// nothing is made there.
+// Moves (x, y) to the frame's nearest pixel. Returns 0 if that is farther away than the frame's own size: nothing is
+// made there.
 static inline int hf_hexagon_nearest(const struct hf_setup *s, int *x, int *y)
 {
     const int width = hf_hexagon_width(s), height = hf_hexagon_height(s);
@@ -200,9 +206,9 @@ static inline int hf_hexagon_nearest(const struct hf_setup *s, int *x, int *y)
     return is;
 }
 
-// How much of a side of length 1 / i lies within a frame, from a place on that lies `by` beside a pixel's centre (at).
-// What rounding has put on the edge is 2^-10 inside, for a side along it. A pixel's distance from an edge is exact, so a
-// part of the frame with that edge has the same bits.
+// The part within the frame of a side of length 1 / i that begins `by` away from a pixel's centre `at`. A side along an
+// edge that rounding has put on the edge counts as 2^-10 inside. A pixel's distance from an edge is exact, so a crop of
+// the frame with that edge has the same bits.
 static inline float hf_hexagon_along(int width, int height, const float side[2], const float at[2], const float by[2],
                                      float i)
 {
@@ -222,22 +228,24 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
     return (struct hf_rect){2 * r.x0, 2 * r.y0, hf_min(2 * r.x1, s->width), hf_min(2 * r.y1, s->height)};
 }
 
-// Of what a pixel of radius p finds, how little is too little, and from which p on it need not be all.
+// A far pixel of radius p that finds less than LEAST takes the rest from its own colour; below a radius of ALL it fills
+// up more of what is missing.
 #define HEXAGON_LEAST 0.25f
 #define HEXAGON_ALL 2.0f
-// Far mean radii are not below this, which reaches no other pixel.
+// The least far mean radius. It reaches no other pixel.
 #define HEXAGON_LEAST_MEAN 0.25f
-// A sample of this weight is whole.
+// A sample of at least this weight counts as a whole pixel.
 #define HEXAGON_WHOLE (1 - 0x1p-20f)
 
-// Colours are summed up this much darker, so that no sum overflows where none of its samples does: a line's weights add
-// up to at most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times
-// their sum. A power of two, so that no bit changes. What rounds up beyond the largest number is that number.
+// Colours are summed this much darker, so that no sum overflows unless a sample does. A line's weights add up to at
+// most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times their
+// sum. The factor is a power of two, so no bit changes. A result that rounds up beyond the largest number becomes that
+// number.
 #define HEXAGON_SCALE 0x1p-10f
 #define HEXAGON_MOST (FLT_MAX * HEXAGON_SCALE)
 
-// How much light a colour is: the sum of its channels, the same in whatever order they are. What is darker than nothing
-// counts as light, but not beside what is brighter: then less, so that no mean radius is larger than all that it is of.
+// The light of a colour: the sum of its channels, the same for any order of them. Negative channels count as light, but
+// they reduce that of positive ones beside them, so no mean radius exceeds the radii it is made of.
 static inline float hf_hexagon_light(float r, float g, float b)
 {
     const float low = r < g ? r : g, high = r > g ? r : g;

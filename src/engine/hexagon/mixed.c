@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mixed pixels of a sharp front before a far back (pixel/edges.h): what is blurred is the back alone, by its share, and
-// the composite puts what the far field shows in its place. So the front smears over nothing, and its edge stays smooth.
+// Mixed pixels of a sharp front before a far back (pixel/edges.h). Only the back is blurred, by its share, and the
+// composite replaces it by what the far field shows there. So the front smears over nothing, and its edge stays smooth.
 #include "engine/hexagon/kernels.h"
 #include "pixel/edges.h"
 
-// Fronts of up to this radius are sharp, and of a pixel more not at all.
+// Fronts with radii up to this count as sharp, and a pixel above it not at all.
 #define SHARP 1.0f
-// From this share on the sample lies as far behind as the back. No sample weighs less than half of it: colours are divided
-// by weights.
+// From this share on, the sample has the back's radius. No sample weighs less than half of it, because colours are
+// divided by weights.
 #define ALL (1 / 16.0f)
 
 static struct hf_sides sides_of(const struct hf_frame *f)
@@ -20,15 +20,15 @@ static struct hf_sides sides_of(const struct hf_frame *f)
     return s;
 }
 
-// The nearer to 0 of two numbers, 0 if they are on either side of it.
+// The number nearer to 0, or 0 if the two have different signs.
 static float nearest(float a, float b)
 {
     const float low = a < b ? a : b, high = a > b ? a : b;
     return low > 0 ? low : high < 0 ? high : 0;
 }
 
-// Where both sides are far, a mixed pixel lies as far behind as the light that it has of both: of a light's edges before a
-// dark wall that of the light.
+// The radius of a mixed pixel whose sides are both far: their mean by light. At a light's edge before a dark wall that
+// is the light's radius.
 static float by_light(const struct hf_sides *s, int x, float own)
 {
     float light[2] = {0, 0};
@@ -43,9 +43,9 @@ static float by_light(const struct hf_sides *s, int x, float own)
     return light[1] > 0 ? hf_lerp(s->radius[0][x], s->radius[1][x], light[1] / sum) : s->radius[0][x];
 }
 
-// A pixel becomes what of it is blurred, of a weight, and the rest, which composite.c shows as it is. Their sum is the pixel,
-// and neither has colours that are not between its own and its sides'. The less is of the back, the nearer lies the sample,
-// so that nothing jumps where an edge comes or goes.
+// Split a pixel into a blurred part with a weight, and a rest that composite.c shows as it is. They sum to the pixel,
+// and neither has a colour outside the range of the pixel's own and its sides'. The smaller the back's share, the
+// closer the sample lies, so that nothing jumps where an edge comes or goes.
 static void take(const struct hf_sides *s, int channels, int x, float *const colour[4], float *radius, float *whole)
 {
     const float own = *radius, front = s->radius[0][x], back = s->radius[1][x];
