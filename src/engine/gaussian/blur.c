@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gaussian engine's passes (engine.c says what they compute), and their rows in plain C. Nothing is fused
-// that fusing would change: the bits are the same on every machine, deterministic or not.
+// The gaussian engine's passes, and their rows in plain C; engine.c says what they compute. Multiply and add are fused
+// only where that changes no bit, so the bits are the same on every machine, deterministic or not.
 #include "engine/gaussian/kernels.h"
 
 #include <float.h>
@@ -8,8 +8,8 @@
 
 #include "pixel/pass_c.h"
 
-// 1 4 6 4 1 / 16 as 1 2 1 twice: a constant stays what it is, bit for bit, mirrored samples give mirrored bits, and
-// since doubling is exact a fused multiply-add changes nothing. Divided first, so that nothing overflows.
+// 1 4 6 4 1 / 16 is 1 2 1 applied twice. A constant keeps its bits, and mirrored samples give mirrored bits. Doubling
+// is exact, so a fused multiply-add changes nothing. Samples are divided first, so nothing overflows.
 static float smooth(float a, float b, float c)
 {
     return (a + c) + 2 * b;
@@ -21,7 +21,7 @@ static float five(const float v[5])
     return smooth(smooth(a, b, c), smooth(b, c, d), smooth(c, d, e));
 }
 
-// As printed; halves first, so that nothing overflows, and the weights' sum is 1 only within rounding.
+// The printed weights. Halves come first, so that nothing overflows; the weights sum to 1 only within rounding.
 static float five_faithful(const float v[5])
 {
     const float outer = (v[0] * 0.5f + v[4] * 0.5f) * (2 * 0.3f), inner = (v[1] * 0.5f + v[3] * 0.5f) * (2 * 0.15f);
@@ -45,7 +45,7 @@ void hf_gaussian_columns_c(const float *in, ptrdiff_t in_stride, int rows, int f
         for (int y = from; y < to; y++) {
             for (int i = 0; i < 4; i++)
                 v[i] = v[i + 1];
-            // The last row may have been overwritten when it is repeated; v[3] still holds it.
+            // At the last row v[3] repeats; in memory that row may be overwritten already.
             v[4] = y + 2 < rows ? in[(y + 2) * in_stride + x] : v[3];
             out[(y - from) * out_stride + x] = faithful ? five_faithful(v) : five(v);
         }
@@ -99,17 +99,17 @@ void hf_gaussian_count_c(const struct hf_frame *f, int x, int y, int n, struct h
 void hf_lerp_row_c(float *a, const float *b, const float *t, int n)
 {
     for (int i = 0; i < n; i++)
-        // The largest floats of either sign lie farther apart than there are floats.
+        // The difference of the largest floats of opposite sign is no finite float.
         a[i] = fabsf(b[i] - a[i]) <= FLT_MAX ? hf_lerp(a[i], b[i], t[i]) : (1 - t[i]) * a[i] + t[i] * b[i];
 }
 
-// a + w (b - a), of halves: the largest floats of either sign lie farther apart than there are floats.
+// a + w (b - a), computed from halves, because the difference of the largest floats of opposite sign is not finite.
 static float between(float a, float b, float w)
 {
     return a + 2 * w * (0.5f * b - 0.5f * a);
 }
 
-// The pixels of row y of the frame from a smaller buffer: bilinear, even and odd ones.
+// The even and odd pixels of row y of the frame, bilinearly from a smaller buffer.
 void hf_gaussian_up_c(const struct hf_buf *b, int c, int quarter, int x, int y, int n, float *even, float *odd)
 {
     const int scale = quarter ? 4 : 2, row = y / scale, phase = y % scale;
@@ -125,7 +125,8 @@ void hf_gaussian_up_c(const struct hf_buf *b, int c, int quarter, int x, int y, 
         }
 }
 
-// Down the rows first, then across. lines: sums, which become the means, those of odd pixels, and what is read.
+// Sums down the rows first, then across. lines: sums, which become the means; sums of odd pixels; and the pixels that
+// are read.
 void hf_gaussian_shrink_c(const struct hf_frame *f, int x, int y, int n, float *const lines[16])
 {
     const struct hf_setup *s = f->s;
@@ -188,7 +189,7 @@ void hf_gaussian_depth_pass(const struct hf_frame *f, struct hf_rect r)
 // Scratch of the first sweep.
 struct lines {
     float *colour[16];  // see hf_gaussian_shrink
-    float *line[2];     // working resolution, HF_PAD floats before them
+    float *line[2];     // at the working resolution, with HF_PAD floats before them
 };
 
 static struct lines lines_of(const struct hf_frame *f, size_t floats)
@@ -201,7 +202,7 @@ static struct lines lines_of(const struct hf_frame *f, size_t floats)
     return l;
 }
 
-// A channel of a row of the working resolution as a line of n pixels: as it was read, or shrunk.
+// Make a line of n pixels from a channel of a row at the working resolution: as it was read, or shrunk.
 static void make_line(const struct hf_frame *f, const struct lines *l, int c, int lanes, int n, float *line)
 {
     if (hf_gaussian(f->s)->resolution == HF_RESOLUTION_FULL)
@@ -210,11 +211,11 @@ static void make_line(const struct hf_frame *f, const struct lines *l, int c, in
         memcpy(line, l->colour[c], (size_t)n * sizeof *line);
 }
 
-// All iterations on the line of n pixels in l->line[0]; the `count` pixels from `first` on to out.
+// Run all iterations on the line of n pixels in l->line[0]; out receives `count` pixels from `first` on.
 static void blur_line(const struct hf_frame *f, const struct lines *l, int n, int first, int count, float *out)
 {
     const int iterations = hf_gaussian(f->s)->iterations;
-    // The last iteration writes whole vectors, and a quarter of a chunk is not one.
+    // The last iteration writes whole vectors, but a quarter of a chunk need not be whole vectors.
     const int direct = iterations > 0 && hf_gaussian(f->s)->resolution != HF_RESOLUTION_QUARTER;
     for (int i = 0; i < iterations; i++) {
         float *line = l->line[i % 2];
@@ -229,7 +230,7 @@ static void blur_line(const struct hf_frame *f, const struct lines *l, int n, in
         memcpy(out, l->line[iterations % 2] + first, (size_t)count * sizeof(float));
 }
 
-// The picture in the working resolution, through all iterations along its rows.
+// Run all iterations along the rows of the picture, at the working resolution.
 void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
@@ -251,7 +252,7 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
     }
 }
 
-// All iterations on a strip of columns of channel c, rows r.y0 to r.y1.
+// Run all iterations down a strip of columns of channel c, rows r.y0 to r.y1.
 static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
@@ -265,7 +266,7 @@ static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
         for (int y = r.y0; y < r.y1; y++)
             memcpy(hf_at(out, c, r.x0, y), from + y * stride, (size_t)columns * sizeof(float));
     for (int i = 1; i <= n; i++) {
-        // Of each iteration the rows that the rest of them read.
+        // Each iteration makes only the rows that the later ones read.
         const int a = hf_max(r.y0 - 2 * (n - i), 0), b = hf_min(r.y1 + 2 * (n - i), height);
         float *to = i == n ? hf_at(out, c, r.x0, a) : f->work + (ptrdiff_t)(a - top) * HF_GAUSSIAN_STRIP;
         const ptrdiff_t to_stride = i == n ? out->stride : HF_GAUSSIAN_STRIP;
@@ -275,7 +276,7 @@ static void blur_strip(const struct hf_frame *f, int c, struct hf_rect r)
     }
 }
 
-// All iterations down the columns.
+// Run all iterations down the columns.
 void hf_gaussian_columns_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_rect w = hf_gaussian_working(f->s, r);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of the gaussian engine on vectors. Nothing is fused that fusing would change: the same bits everywhere, fast or
-// deterministic.
+// Rows of the gaussian engine on vectors. Multiply and add are fused only where that changes no bit, so the bits are
+// the same everywhere, fast or deterministic.
 #ifndef HF_GAUSSIAN_BLUR_SIMD_H
 #define HF_GAUSSIAN_BLUR_SIMD_H
 
@@ -10,19 +10,19 @@
 #include "engine/gaussian/kernels.h"
 #include "pixel/coc_vf.h"
 
-// 1 2 1. Doubling is exact, so that fusing changes no bit, and may be done where bits are promised.
+// 1 2 1. Doubling is exact, so fusing changes no bit.
 HF_INLINE vf smooth_vf(vf a, vf b, vf c)
 {
     return vf_muladd_fused(vf_set1(2), b, vf_add(a, c));
 }
 
-// The 5-tap kernel is that twice, down a column one sample at a time: the last two samples and their last two sums are
-// all that the next one needs, so a sample costs one load.
+// The 5-tap kernel is 1 2 1 twice, applied down a column one sample at a time. It keeps the last two samples and their
+// last two sums, so a sample costs one load.
 struct column {
     vf v[2], q[2];
 };
 
-// The next sample of a column; returns the result two samples back.
+// Take the next sample of a column; returns the result two samples back.
 HF_INLINE vf smooth_down(struct column *p, vf sample)
 {
     const vf v = vf_mul(sample, vf_set1(0.0625f));
@@ -56,9 +56,9 @@ static void gaussian_line_simd(const float *in, int n, float *out, int faithful)
         }
         return;
     }
-    // Neighbours of pixels are loaded, those of their sums shifted: on Zen 4 shifts share a unit with additions, and
-    // four of them were a third slower. Sums lie one pixel ahead, and before the first vector only the last two of them
-    // count.
+    // Neighbours of pixels are loaded, neighbours of sums are shifted from registers: on Zen 4 shifts share a unit with
+    // additions, and four of them were a third slower. Sums are one pixel ahead; before the first vector only the last
+    // two of them matter.
     vf ahead = line_sums(in + 1 - VF_N), own = vf_back(ahead, ahead);
     for (int i = 0; i < n; i += VF_N) {
         const vf next = line_sums(in + i + 1), middle = vf_back(ahead, next);
@@ -68,14 +68,14 @@ static void gaussian_line_simd(const float *in, int n, float *out, int faithful)
     }
 }
 
-// Two vectors of columns: enough additions in flight, and few enough registers.
+// Two vectors of columns keep enough additions in flight and need few registers.
 HF_INLINE void columns_pair(const float *in, ptrdiff_t in_stride, int rows, int from, int to, float *out,
                             ptrdiff_t out_stride)
 {
     struct column p = {{vf_zero(), vf_zero()}, {vf_zero(), vf_zero()}}, q = p;
     vf a = vf_zero(), b = a;
     for (int y = from - 2; y < to + 2; y++) {
-        if (y < rows) {  // past the end the last row repeats, which may have been overwritten
+        if (y < rows) {  // past the end the last row repeats, though it may be overwritten in memory
             const float *row = in + hf_max(y, 0) * in_stride;
             a = vf_load(row);
             b = vf_load(row + VF_N);
@@ -213,7 +213,7 @@ static void blend_row_simd(const struct hf_frame *f, int x, int y, int n, float 
         blend_forms(f, 1, x, y, whole, out, &sums);
     else
         blend_forms(f, 0, x, y, whole, out, &sums);
-    // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
+    // A NaN needs its neighbours, so the plain C does the row again; elsewhere its bits are the same.
     const int from = vm_any(sums.nan) ? 0 : whole;
     float *const rest[4] = {out[0] + from, out[1] + from, NULL, NULL};
     if (from < n)
@@ -232,14 +232,14 @@ static void blend_row_simd(const struct hf_frame *f, int x, int y, int n, float 
 
 // ---- upsampling ----
 
-// a + w (b - a), of halves as in the C.
+// a + w (b - a), computed from halves as in the C.
 HF_INLINE vf between_vf(vf a, vf b, float w)
 {
     const vf half = vf_set1(0.5f);
     return vf_add(a, vf_mul(vf_set1(2 * w), vf_sub(vf_mul(half, b), vf_mul(half, a))));
 }
 
-// A vector interpolated in y, from column x on.
+// Interpolate a vector in y, from column x on.
 HF_INLINE vf up_column(const float *own, const float *next, int x, float w)
 {
     return between_vf(vf_load(own + x), vf_load(next + x), w);
@@ -263,7 +263,7 @@ static void gaussian_up_simd(const struct hf_buf *b, int c, int quarter, int x, 
         hf_gaussian_up_c(b, c, quarter, x, y, n, even, odd);
         return;
     }
-    // Of the four pixels of one the first and third are even ones.
+    // Each sample makes four pixels; the first and third are even ones.
     for (int i = 0; i < n; i += 2 * VF_N) {
         const vf v = up_column(own, next, i / 2, w), left = up_column(own, next, i / 2 - 1, w);
         const vf right = up_column(own, next, i / 2 + 1, w);

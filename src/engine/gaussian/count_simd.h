@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which pixels have near or far CoC, on vectors: by the limits of depth (limits.c).
+// Count the pixels with near or far CoC, on vectors, by the limits of depth (limits.c).
 #ifndef HF_GAUSSIAN_COUNT_SIMD_H
 #define HF_GAUSSIAN_COUNT_SIMD_H
 
@@ -9,7 +9,7 @@
 
 struct limit_sums {
     vi near, far, none;
-    vf first, last;  // the nearest and the farthest depth, infinite where there is no surface
+    vf first, last;  // the nearest and the farthest depth, infinite if there is no surface
     vm is_near, is_far, nan;
 };
 
@@ -30,12 +30,12 @@ HF_INLINE void count_block(vf d, vf near_last, vf far_first, struct limit_sums *
     sums->last = vf_max(d, sums->last);
 }
 
-// n lanes, a multiple of VF_N, all of them inside the picture.
+// Count n lanes, a multiple of VF_N, all inside the picture.
 HF_INLINE struct limit_sums count_lanes(const struct hf_frame *f, int x, int y, int n, struct hf_counts *c)
 {
     const vm no = vf_gt(vf_zero(), vf_zero());
     const vf near_last = vf_set1(hf_gaussian(f->s)->near_last), far_first = vf_set1(hf_gaussian(f->s)->far_first);
-    const ptrdiff_t ahead = 2 * f->depth->stride;  // the row after next: chunks are low
+    const ptrdiff_t ahead = 2 * f->depth->stride;  // two rows ahead, because chunks have few rows
     struct limit_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_set1(__builtin_inff()), vf_set1(-__builtin_inff()),
                               no,         no,         no};
     const uint8_t *row = hf_depth_row(f, 2 * x, y, 2 * n, 0);
@@ -63,7 +63,7 @@ static void count_row_simd(const struct hf_frame *f, int x, int y, int n, struct
     }
     struct hf_counts c = {0};
     const struct limit_sums sums = count_lanes(f, x, y, whole, &c);
-    // A NaN needs its neighbours.
+    // A NaN needs its neighbours, so the plain C does the row.
     if (vm_any(sums.nan)) {
         hf_gaussian_count_c(f, x, y, n, counts);
         return;

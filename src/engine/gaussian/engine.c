@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gaussian engine: a blurred copy of the picture, blended with it by depth. After a shader of 2010 for a GTX 470,
-// which focuses on what the picture's centre shows.
+// The gaussian engine blends the picture with a blurred copy, by depth. It follows a shader of 2010 for a GTX 470,
+// which focuses on the depth in the picture's centre.
 //
-// Blur. n iterations of a 5-tap kernel along the rows and down the columns, 1 4 6 4 1 / 16, faithfully .3 .15 .1 .15 .3
-// (the printed weights, which are upside down). Each iteration clamps to the frame's edge. Along the rows and down the
-// columns are linear and independent, clamping included, so all iterations along the rows come first: from the picture
-// itself, chunk by chunk, which is why the engine works in place. Cost: n times 2 x 4 additions a sample, or with sigma
-// (wide.c) 2 x 4 boxes of three. Half and quarter buffers: mean of 2 x 2 or 4 x 4 pixels, bilinear back.
+// Blur: n iterations of a 5-tap kernel along the rows and down the columns, 1 4 6 4 1 / 16; faithfully .3 .15 .1 .15 .3
+// (the printed weights, which are upside down). Each iteration clamps to the frame's edge. Filtering rows and filtering
+// columns are linear and independent, clamping included. So all iterations along the rows come first, from the picture
+// itself, chunk by chunk; that lets the engine work in place. Cost: n times 2 x 4 additions a sample, or with sigma
+// (wide.c) 2 x 4 boxes of three. Half and quarter buffers hold means of 2 x 2 or 4 x 4 pixels, and are upsampled
+// bilinearly.
 //
-// Blend, per pixel at full resolution whatever the buffer's size. With nothing but a focus given (range model, all of
-// range and near_begin to far_end derived), and always when faithful: strength * sat(3 |d(focus) - d|), where
-// d = sat(z / f), faithfully 2n / (f + n - zw (f - n)) with window depth zw = f (z - n) / (z (f - n)) in 0..1. With
-// z' = z clamped to n..f that is 2 z' / (z' + f), which does not cancel. n = 1 and f = 100 n but for the clip planes of
-// the depth. Given a range, a lens or radii: strength * max(n, f) of the gather's near and far CoC.
+// Blend: per pixel at full resolution, whatever the buffer's size. If only a focus is given (range model, all of range
+// and near_begin to far_end derived), and always when faithful, the factor is strength * sat(3 |d(focus) - d|). There d
+// = sat(z / f); faithfully d = 2n / (f + n - zw (f - n)) with window depth zw = f (z - n) / (z (f - n)) in 0..1. With
+// z' = z clamped to n..f the latter is 2 z' / (z' + f), which does not cancel. n = 1 and f = 100 n, unless the depth
+// has clip planes. If a range, a lens or radii are given, the factor is strength * max(n, f) of the gather's near and
+// far CoC.
 #include <math.h>
 
 #include "pass/cells.h"
@@ -20,8 +22,8 @@
 #include "pass/check.h"
 #include "pixel/limits.h"
 
-// Sweep 2 has no passes, but its cells are the tiles. With sigma, whole columns and then whole rows are blurred in
-// between.
+// Sweep 2 has no passes, but its cells are the tiles. With sigma, whole columns and then whole rows are blurred between
+// the sweeps.
 enum { WIDE_COLUMNS = 3, WIDE_ROWS, TILES };
 
 enum { MAX_ITERATIONS = 64 };
@@ -29,7 +31,7 @@ static const float MAX_SIGMA = 256;  // pixels
 
 #define B(name) (7u << HF_GAUSSIAN_##name)
 
-// Reach of the iterations down the columns; and a pixel.
+// Halos: the reach of the iterations down the columns; and a pixel.
 enum { HALO_COLUMNS = 1, HALO_UPSAMPLE };
 
 static const struct hf_pass passes[] = {
@@ -74,7 +76,7 @@ static int runs(const struct hf_setup *s, int pass)
     return hf_gaussian(s)->sigma > 0 || (passes[pass].sweep != WIDE_COLUMNS && passes[pass].sweep != WIDE_ROWS);
 }
 
-// Strips of 32 columns of the working buffer, and of 16 rows.
+// Cells are strips of 32 columns of the working buffer, then strips of 16 rows.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     if (sweep == WIDE_COLUMNS) {
@@ -95,14 +97,14 @@ static size_t work(const struct hf_setup *s, const struct hf_cells *p)
     return most > wide ? most : wide;
 }
 
-// The planes that bound its depths: those of the depth, else 1 and 100.
+// The clip planes of the depth, or 1 and 100.
 static void depth_planes(const struct hf_depth *depth, float *near, float *far)
 {
     *near = depth->near_plane > 0 ? depth->near_plane : 1;
     *far = depth->far_plane > 0 && depth->far_plane < INFINITY ? depth->far_plane : 100 * *near;
 }
 
-// Is nothing but a focus given, so that it blends by the distance in depth as its source does?
+// Whether only a focus is given. Then the engine blends by the distance in depth, as the original shader does.
 static int only_focus(const struct hf_params *asked)
 {
     const struct hf_range_params *g = &asked->range;
@@ -115,7 +117,7 @@ static float sigma(const struct hf_gaussian_params *g)
     return g->sigma == HF_DERIVE ? sqrtf((float)g->iterations) * (float)(1 << g->resolution) : g->sigma;
 }
 
-// A disc of radius r spreads light as far as a gaussian of standard deviation r / 2 does.
+// A gaussian of standard deviation r / 2 spreads light as far as a disc of radius r.
 static float farthest(const struct hf_params *p)
 {
     return 2 * sigma(&p->gaussian);
@@ -142,7 +144,7 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     if (g->by_depth == HF_DERIVE)
         g->by_depth = g->faithful || only_focus(asked);
     g->by_depth = g->by_depth && depth->type != HF_DEPTH_COC;
-    if (!err && g->by_depth)  // whose strength is this, with a lens too
+    if (!err && g->by_depth)  // it uses this strength, with a lens too
         err = hf_check_between("range.strength", r->params.range.strength, 0, 1, message);
     if (g->by_depth)
         r->sharp = r->params.max_radius == 0 || r->params.range.strength == 0;
@@ -173,7 +175,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     s->strength = p->range.strength;
     depth_planes(depth, &g->plane_near, &g->plane_far);
     if (!g->faithful)
-        g->plane_near = 0;  // nothing but the far plane counts
+        g->plane_near = 0;  // only the far plane matters
     g->focus_d = hf_gaussian_depth(g, p->focus);
 }
 

@@ -6,24 +6,24 @@
 #include "pass/engine.h"
 #include "engine/gaussian/wide.h"
 
-// Blend factors of the n lanes from lane x of row y into out[0], even, and out[1], odd; out[2] and out[3] are
+// Blend factors of the n lanes from lane x of row y: even ones to out[0], odd ones to out[1]; out[2] and out[3] are
 // scratch. counts NULL: nothing is counted.
 typedef void hf_blend_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
-// What blend_row counts, of lanes from x on, a multiple of 16. Uses scratch rows 0 to 3.
+// The counting part of blend_row, for lanes from x on, a multiple of 16. Uses scratch rows 0 to 3.
 typedef void hf_gaussian_count(const struct hf_frame *f, int x, int y, int n, struct hf_counts *counts);
-// a + t (b - a), a's own bits for t = 0.
+// a + t (b - a); exactly a's bits for t = 0.
 typedef void hf_lerp_row(float *a, const float *b, const float *t, int n);
 // One iteration of the 5-tap kernel along a line of n pixels with two more at either end. May read HF_PAD floats before
 // and after them.
 typedef void hf_gaussian_line(const float *in, int n, float *out, int faithful);
-// One down n columns, at most HF_GAUSSIAN_STRIP: from rows of in, of which there are `rows` and which repeat at their ends,
-// rows from to to. out is row `from` of the result, and may be that of in itself.
+// One iteration down n columns, at most HF_GAUSSIAN_STRIP. `in` has `rows` rows, of which the first and last repeat
+// outwards; the kernel makes rows `from` to `to`. out is row `from`, and may be that row of `in`.
 typedef void hf_gaussian_columns(const float *in, ptrdiff_t in_stride, int rows, int from, int to, float *out,
                                  ptrdiff_t out_stride, int n, int faithful);
 // n lanes from lane x of row y of the frame, bilinearly from a buffer of half or a quarter of its size.
 typedef void hf_gaussian_up(const struct hf_buf *b, int c, int quarter, int x, int y, int n, float *even, float *odd);
-// Row y of a working resolution of half or a quarter, the means of 4 or 16 pixels, from n lanes of the picture from lane x
-// on, which is a multiple of 16: channel c into lines[c]. The other lines are scratch.
+// Row y at half or a quarter of the resolution: means of 4 or 16 pixels, from n lanes of the picture from lane x on, a
+// multiple of 16. Channel c goes to lines[c]; the other lines are scratch.
 typedef void hf_gaussian_shrink(const struct hf_frame *f, int x, int y, int n, float *const lines[16]);
 // Row y of the result, lanes r.x0 to r.x1. Uses scratch rows 0 to 13.
 typedef void hf_gaussian_merge(const struct hf_frame *f, int y, struct hf_rect r);

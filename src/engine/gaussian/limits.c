@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where there is near or far CoC at all. Both rise or fall with depth throughout, rounding included, so one comparison
-// answers it, and the first sweep, which asks nothing else, need not make the CoC.
+// The depths at which near CoC ends and far CoC begins. Both are monotone in depth, rounding included, so one
+// comparison says whether a pixel has any. The first sweep asks only that, and need not compute the CoC.
 #include <math.h>
 #include <string.h>
 
 #include "engine/gaussian/kernels.h"
 #include "pixel/pass_c.h"
 
-// The depth of no surface is infinite, surfaces end here.
+// Surfaces end at this depth; pixels without a surface have infinite depth.
 static const float no_surface = 1e10f;
 
 static float variable(const struct hf_setup *s, float z)
@@ -39,11 +39,11 @@ static uint32_t bits_of(float v)
     return bits;
 }
 
-// The first depth of a surface at which near CoC has ended, or far CoC has begun; no_surface if none is. The bits of
-// positive floats rise with them.
+// The first depth of a surface at which near CoC has ended, or far CoC has begun; no_surface if there is none. A
+// bisection over the bits of positive floats, which increase with the floats.
 static float turn(const struct hf_setup *s, int near)
 {
-    uint32_t a = 0, b = bits_of(no_surface);  // not yet at a, or a is 0; at b
+    uint32_t a = 0, b = bits_of(no_surface);  // at a nothing has changed yet, or a is 0; at b it has
     while (b - a > 1) {
         const uint32_t middle = a + (b - a) / 2;
         const float z = of_bits(middle);
@@ -57,7 +57,7 @@ static float turn(const struct hf_setup *s, int near)
 
 void hf_gaussian_limits(const struct hf_setup *s, struct hf_gaussian *g)
 {
-    // Smoothstep rounds to either side of its slope, so that its largest value need not be that of the end.
+    // Smoothstep rounds up or down along its slope, so its largest value need not be at the end.
     if (g->by_depth || s->form != HF_FORM_Z || s->smoothstep)
         return;
     const float near_end = turn(s, 1), far_begin = turn(s, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Merging the blur into the picture, a block of 4 VF_N pixels at a time from the picture to the picture. Nothing is fused,
-// as in blur_simd.h.
+// Blends the blur into the picture, 4 VF_N pixels at a time, from picture to picture. Nothing is fused, as in
+// blur_simd.h.
 #ifndef HF_GAUSSIAN_MERGE_SIMD_H
 #define HF_GAUSSIAN_MERGE_SIMD_H
 
@@ -11,9 +11,9 @@
 #include "pixel/depth_rows.h"
 #include "pixel/format_vf.h"
 
-// ---- merging ----
+// ---- the blend ----
 
-// A row of the blur at full resolution down, and still small across: of a smaller blur, interpolated in y.
+// A row of the blur, interpolated in y to full resolution but not yet in x.
 struct merge_rows {
     const float *channel[3];
 };
@@ -41,7 +41,8 @@ HF_INLINE struct merge_rows merge_rows_at(const struct hf_frame *f, const int sc
     return r;
 }
 
-// A channel of the blur at 4 VF_N pixels from lane i on: even and odd ones of both halves. As gaussian_up_simd.
+// Upsample a channel of the blur to 4 VF_N pixels from lane i on: even and odd ones of both halves. As
+// gaussian_up_simd.
 HF_INLINE void merge_up(const float *line, const int scale, int i, vf even[2], vf odd[2])
 {
     if (scale == 4) {
@@ -64,15 +65,16 @@ HF_INLINE void merge_up(const float *line, const int scale, int i, vf even[2], v
     }
 }
 
-// As lerp_row_simd. A colour of the small floats is never -0, and finite: a sum with nothing is the colour itself.
+// As lerp_row_simd. Colours of the small float formats are finite and never -0, so with t = 0 the sum is the colour
+// itself.
 HF_INLINE vf merge_mix(const int format, vf a, vf b, vf t)
 {
     const vf mixed = vf_add(a, vf_mul(t, vf_sub(b, a)));
     return format == HF_FORMAT_R11G11B10F ? mixed : vf_select(vf_eq(t, vf_zero()), a, mixed);
 }
 
-// Blend factors of 2 VF_N pixels from their distances, as blend_coc makes them of the plainest kind: by range, linear and
-// unrounded. The larger of two numbers cut to 0..1 is the larger one, cut. Returns lanes that are no number.
+// Blend factors of 2 VF_N pixels from their depth, as blend_coc makes them in the simplest case: by range, linear and
+// unrounded. Clamping the larger of two numbers to 0..1 gives the larger of both clamped. Returns the NaN lanes.
 HF_INLINE vm merge_blend(const struct hf_setup *s, const uint8_t *depth, vf t[2])
 {
     const vf infinity = vf_set1(__builtin_inff());
@@ -87,12 +89,13 @@ HF_INLINE vm merge_blend(const struct hf_setup *s, const uint8_t *depth, vf t[2]
     return vf_unordered(d[0], d[1]);
 }
 
-// Lanes from r.x0 on, a multiple of 2 VF_N. lines: even and odd blend factors, NULL: made here, of depth. Returns how many
-// were done: n, or those before a block with a sample that is not finite, or farther from its blur than the largest float.
+// Blend lanes from r.x0 on, a multiple of 2 VF_N. lines: even and odd blend factors; NULL: computed here from depth.
+// Returns how many were done: n, or those before a block that has a sample that is not finite or too far from its blur
+// for a float.
 HF_INLINE int merge_lanes(const struct hf_frame *f, const int format, const int bpp, const int scale, int y,
                           struct hf_rect r, int n, float *const *lines, vi *clamped)
 {
-    const struct hf_setup s = *f->s;  // stores cannot change it, so that it stays in registers
+    const struct hf_setup s = *f->s;  // a copy, which stores cannot change, so it stays in registers
     const uint8_t *depth = lines ? NULL : hf_depth_row(f, 2 * r.x0, y, 2 * n, 0);
     const struct merge_rows rows = merge_rows_at(f, scale, r.x0, y, n);
     const uint8_t *from = plane_at(f->src, 0, bpp, r.x0, y);
@@ -163,7 +166,7 @@ static void merge_simd(const struct hf_frame *f, int y, struct hf_rect r)
     const int pixels = hf_min(2 * r.x1, f->s->width) - 2 * r.x0;
     const int direct = f->dst->format == format && !f->s->highlight.on;
     const int n = direct ? pixels / 2 / (2 * VF_N) * (2 * VF_N) : 0;
-    // In place, a sample that is not finite wants neighbours that have not been overwritten.
+    // Repairing a sample needs its neighbours, which in place may be overwritten already.
     const int in_place = f->src->data[0] == f->dst->data[0] && !f->repaired;
     vi clamped = vi_set1(0);
     int done = 0;

@@ -6,12 +6,12 @@
 #include "engine/gaussian/kernels.h"
 #include "pixel/format_vf.h"
 
-// A block of a row further on: a tile's rows are too short for hardware prefetchers to catch on.
+// Prefetch a block some rows ahead: a tile's rows are too short for hardware prefetchers.
 #define GAUSSIAN_FETCH(p, stride, rows, bytes, write)                                                                  \
     for (int k_ = 0; k_ < (bytes); k_ += 64)                                                                           \
     __builtin_prefetch((const uint8_t *)((uintptr_t)(p) + (uintptr_t)((rows) * (stride))) + k_, write)
 
-// Sums of neighbours: of 2 VF_N numbers, VF_N.
+// Sums of neighbouring pairs: of 2 VF_N numbers, VF_N.
 HF_INLINE vf shrink_pairs(vf a, vf b)
 {
     vf even, odd;
@@ -19,7 +19,7 @@ HF_INLINE vf shrink_pairs(vf a, vf b)
     return vf_add(even, odd);
 }
 
-// VF_N lanes: sums down all rows, each pixel weighed by share, and of pairs. Returns lanes that are not finite.
+// For VF_N lanes: sum down all rows, each pixel times share, and sum pairs. Returns the lanes that are not finite.
 HF_INLINE vm shrink_block(const int format, const int bpp, const int channels, const uint8_t *const row[4],
                           const int rows, ptrdiff_t stride, vf share, vf sum[4])
 {
@@ -40,8 +40,8 @@ HF_INLINE vm shrink_block(const int format, const int bpp, const int channels, c
     return bad;
 }
 
-// n lanes, all of them inside the picture: a multiple of VF_N, of 2 VF_N for quarters. Returns 0 if there may be a sample
-// that is not finite.
+// Shrink n lanes inside the picture, a multiple of VF_N, of 2 VF_N for quarters. Returns 0 if a sample may not be
+// finite.
 HF_INLINE int shrink_lanes(const struct hf_frame *f, const int format, const int bpp, const int channels,
                            const int rows, const uint8_t *row[4], int n, float *const sum[4])
 {
@@ -68,8 +68,8 @@ HF_INLINE int shrink_lanes(const struct hf_frame *f, const int format, const int
     return !vm_any(bad);
 }
 
-// VF_N pixels of R11G11B10F of all rows, summed down, as the numbers are before r11_channel puts them right: powers of
-// two and what is added stays exact, so that one product at the end will do.
+// Sum VF_N pixels of R11G11B10F down all rows, as the numbers are before r11_channel scales them: these are powers of
+// two times exact values, and their sums stay exact, so one product at the end corrects them.
 HF_INLINE void shrink_small_block(const uint8_t *const row[4], const int rows, size_t at, vf sum[3])
 {
     for (int i = 0; i < rows; i++) {
@@ -82,14 +82,14 @@ HF_INLINE void shrink_small_block(const uint8_t *const row[4], const int rows, s
     }
 }
 
-// As shrink_lanes. What is not finite has the largest exponent, and is 65536 at least if that is taken for one: a mean
-// that may hold one is not below a share of that. Very bright pictures look like that too.
+// As shrink_lanes. A sample that is not finite has the largest exponent; read as a number it is at least 65536. So a
+// mean that may contain one is at least a share of that. Very bright pictures look the same and take the slow path.
 HF_INLINE int shrink_small(const struct hf_frame *f, const int rows, const uint8_t *const row[4], int n,
                            float *const sum[4])
 {
     const float share = 1.0f / (float)(rows * rows);
     const vf scale = vf_set1(0x1p112f * share);
-    const int blocks = rows;  // of VF_N pixels make VF_N sums
+    const int blocks = rows;  // blocks of VF_N pixels that make VF_N sums
     vf most = vf_zero();
     for (int k = 0; k < n; k += blocks * VF_N / 2) {
         vf v[4][3];

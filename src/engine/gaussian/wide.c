@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A gaussian whose cost does not depend on its size: four boxes with fractional ends, so that the variance is exact
-// (Gwosdek, Grewenig, Bruhn and Weickert, "Theoretical foundations of gaussian convolution by extended box filtering",
-// 2011).
+// A gaussian blur whose cost does not depend on its size: four boxes with fractional ends, so that the variance is
+// exact (Gwosdek, Grewenig, Bruhn and Weickert, "Theoretical foundations of gaussian convolution by extended box
+// filtering", 2011).
 //
-// A box sum of 2l + 1 samples is one suffix and one prefix of blocks that long, three additions whatever the length,
-// and never a subtraction, so that nothing drifts, and nothing of a highlight stays behind when it leaves the window.
-// In double: the sums of floats are exact there while the samples under the window lie within a factor of 2^(29 -
-// log2(2l + 1)) of each other, and then shifts, crops and flips of a picture give the same bits; beyond, the last bit
-// of one in many millions of samples may differ. What the boxes hand on is float.
+// The sum of a box of 2l + 1 samples is a suffix of one block and a prefix of the next, with blocks of that length:
+// three additions for any length, and no subtraction. So nothing drifts, and a highlight leaves no trace when it leaves
+// the window. Sums are in double. They are exact while the samples in the window lie within a factor of 2^(29 - log2(2l
+// + 1)) of each other; then shifts, crops and flips of a picture give the same bits. Beyond that, the last bit of one
+// in many millions of samples may differ. Each box's result is a float.
 #include <math.h>
 
 #include "pixel/pass_c.h"
@@ -30,13 +30,13 @@ static void box_c(const float *in, float *out, int n, const struct hf_wide *w, d
         const double v = in[i * HF_WIDE_LANES];
         suffix[i] = i == n - 1 || (i + 1) % width == 0 ? v : v + suffix[i + 1];
     }
-    double prefix = 0;  // of the block that the window ends in
+    double prefix = 0;  // of the block in which the window ends
     int end = -1;
     for (int i = 0; i < n; i++) {
         const int a = i - l, b = hf_min(i + l, n - 1), block = a > 0 ? (a + width - 1) / width * width : 0;
         for (; end < b; end++)
             prefix = (end + 1) % width == 0 ? in[(end + 1) * HF_WIDE_LANES] : prefix + in[(end + 1) * HF_WIDE_LANES];
-        // The window's whole blocks are none or one.
+        // The window contains one whole block or none.
         double sum = a <= 0 ? prefix : block == a ? suffix[a] : block <= b ? suffix[a] + prefix : suffix[a];
         if (a < 0)
             sum = -a * first + sum;
@@ -56,15 +56,15 @@ void hf_wide_block_c(float *block, int n, const struct hf_wide *w, float *work)
             box_c((i % 2 ? other : block) + x, (i % 2 ? block : other) + x, n, w, (double *)(void *)work);
 }
 
-// Variance of the boxes along an axis, working pixels. Averaging m x m pixels and interpolating them again adds m^2 / 4
-// square pixels for m = 2 and 4, which counts.
+// The boxes along an axis, in working pixels. Their variance is that of sigma less m^2 / 4 pixels for m = 2 and 4,
+// which averaging m x m pixels and interpolating them again adds.
 static struct hf_wide wide_along(const struct hf_setup *s, double sigma)
 {
     const double m = 1 << hf_gaussian(s)->resolution, resampling = hf_gaussian(s)->resolution ? m * m / 4 : 0;
     return hf_wide_of(fmax(sigma * sigma - resampling, 0) / (m * m));
 }
 
-// Whole columns.
+// Blur whole columns.
 void hf_wide_columns_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_wide wide = wide_along(f->s, hf_gaussian(f->s)->sigma);
@@ -84,7 +84,7 @@ void hf_wide_columns_pass(const struct hf_frame *f, struct hf_rect r)
         }
 }
 
-// Whole rows, turned into columns.
+// Blur whole rows, turned into columns.
 void hf_wide_rows_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_wide wide = wide_along(f->s, hf_gaussian(f->s)->sigma / f->s->pixel_aspect);

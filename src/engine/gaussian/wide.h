@@ -5,11 +5,11 @@
 
 #include "engine/gaussian/gaussian.h"
 
-// Columns that are filtered at a time, and how often. A larger number of boxes is closer to a gaussian: see
-// tests/gaussian.c.
+// Columns filtered at a time, and the number of boxes. More boxes are closer to a gaussian, see
+// tests/engines/gaussian.c.
 enum { HF_WIDE_LANES = 16, HF_WIDE_BOXES = 4 };
 
-// A box of 2l + 1 samples, and alpha of one more at either end; scale is 1 over the sum.
+// A box of 2l + 1 samples, plus alpha times one more at either end; scale is 1 / the sum.
 struct hf_wide {
     int l;
     double alpha, scale;
@@ -17,7 +17,7 @@ struct hf_wide {
 
 struct hf_wide hf_wide_of(double variance);
 
-// Floats of scratch for lines of n samples: the block, its sums in double, another block.
+// Floats of scratch for lines of n samples: the block, its sums in double, and another block.
 static inline size_t hf_wide_floats(int n)
 {
     return 3 * HF_WIDE_LANES * (size_t)n;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boxes of any size on vectors of doubles, one column a lane. Nothing is fused, and the order is that of the C.
+// Boxes of any size on vectors of doubles, one column per lane. Nothing is fused, and the order of operations is that
+// of the C.
 #include "engine/gaussian/kernels.h"
 #include "simd/simd.h"
 
@@ -20,8 +21,8 @@ static void wide_box_simd(const float *in, float *out, int n, const struct hf_wi
     const vd alpha = vd_set1(w->alpha), scale = vd_set1(w->scale);
     wide_suffixes(in, n, width, suffix);
     vd prefix = vd_set1(0);
-    int end = -1, place = -1;  // the last sample in prefix, and where it lies in its block
-    int block = 0;             // where the first block begins that does so inside the window
+    int end = -1, place = -1;  // the last sample in prefix, and its position in its block
+    int block = 0;             // start of the first block that begins inside the window
     for (int i = 0; i < n; i++) {
         const int a = i - l, b = hf_min(i + l, n - 1);
         if (a > block)
