@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: what lies behind near pixels (pixel/behind.c). Far pixels reach there with their own pictures, sharp ones do
-// not: so they are averaged apart.
+// Scatter's disocclusion fill (pixel/behind.c). Far pixels reach behind near ones with their own sprites, sharp pixels
+// do not. So sharp and far pixels are averaged separately.
 #include "engine/scatter/behind.h"
 
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 #include "engine/scatter/walk.h"
 
-// Planes: sharp colours x weight, far colours x weight, weights of both. Alpha that is 1 everywhere has none.
+// Planes: sharp colours x weight, far colours x weight, and both weights. An alpha that is 1 everywhere has no plane.
 static int channels_of(const struct hf_setup *s)
 {
     return hf_scatter(s)->opaque ? 3 : s->channels;
@@ -23,8 +23,8 @@ static void near_quads(const struct hf_frame *f, int q, int from, int to, float 
     hf_behind_near(f, &f->buf[HF_BUF_RADIUS], 0, q, from, to, out);
 }
 
-// What of a quad's two backs is seen is added to planes: the nearest to what lies behind their fronts, it counts in full,
-// but grows from nothing.
+// Add the visible part of a quad's two backs to the planes. A back is the sample closest to what its front hides, so it
+// counts fully, but its weight starts at 0.
 static unsigned add_backs(const struct hf_frame *f, int x, int y, float widest, int quad,
                           float *const plane[HF_BEHIND_PLANES])
 {
@@ -129,8 +129,8 @@ static float mix(float a, float b, float t)
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
-// Far pictures say what lies there by how much of them reaches it: with little of it they are the rim of what lies on one side
-// of an object, and in its middle another side's begins at once.
+// The far sprites are trusted by how much of them reaches the pixel. With little, they are the rim of what lies on one
+// side of an object, and in the object's middle another side's rim would begin abruptly.
 void hf_behind_blend_c(const struct hf_scatter_row *row, const float *const weight[2], const float *const colour[2],
                        const float *own, float *out)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: what lies behind near pixels, on vectors. Nothing is fused: this engine has the same bits everywhere.
+// Scatter's disocclusion fill on vectors. Nothing is fused: this engine has the same bits everywhere.
 #include "pixel/coc_vf.h"
 #include "engine/scatter/behind.h"
 #include "engine/scatter/composite_simd.h"

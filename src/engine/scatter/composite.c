@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: what happens before and after the splats (splat.c).
+// Scatter: the steps before and after the splats (splat.c).
 #include "pixel/edges.h"
 #include "pixel/pass_c.h"
 #include "engine/scatter/behind.h"
 #include "engine/scatter/kernels.h"
 #include "engine/scatter/walk.h"
 
-// Bit of the exponent of v > 0: eight to a bit, the highest sixteen to the last.
+// The bit for the exponent of v > 0: each bit stands for eight exponents, the highest for sixteen.
 static uint32_t exponent_bit(float v)
 {
     const union {
@@ -30,7 +30,7 @@ void hf_scatter_note_c(const float *radius, float *const colour[4], int channels
     }
 }
 
-// How bright the backs of a row are.
+// Note the brightness of a row's backs.
 static void note_backs(const struct hf_frame *f, const struct hf_sides *row, int n)
 {
     float *colour[4], *radius = hf_line(f, 12);
@@ -46,8 +46,8 @@ static void note_backs(const struct hf_frame *f, const struct hf_sides *row, int
     hf_scatter_kernels(f)->note(radius, colour, f->s->channels, count, f->counts);
 }
 
-// Colour and radius of every pixel that some tile reads, of mixed ones those of their two sides, and how bright those that
-// will be drawn can be.
+// Load the colour and radius of each pixel that a tile reads; for mixed pixels those of both sides. Note how bright the
+// pixels that will be drawn can be.
 void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0, may_mix = hf_scatter(f->s)->mixed;
@@ -71,7 +71,7 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
     }
 }
 
-// How much of a disc's area lies on this side of a line d radii off its centre, 0..1: within 0.002, and exact at the
+// The part, 0 to 1, of a disc's area on this side of a line d radii from its centre: within 0.002, and exact at the
 // ends.
 static float segment(float d)
 {
@@ -79,7 +79,7 @@ static float segment(float d)
     return 0.5f + t * (0.63662f + q * (-0.10610f - q * 0.03052f));
 }
 
-// How much of the picture around a near pixel lies inside the frame: its sum of weights cannot be more.
+// The part of the sprite around a near pixel that lies inside the frame. Its sum of weights cannot be larger.
 static float inside(const struct hf_setup *s, float reach_x, float reach_y, int x, int y)
 {
     const float ix = 1 / reach_x, iy = 1 / reach_y;
@@ -88,14 +88,15 @@ static float inside(const struct hf_setup *s, float reach_x, float reach_y, int 
     return ((segment(left) + segment(right)) - 1) * ((segment(above) + segment(below)) - 1);
 }
 
-// a + t (b - a), for t of 1 and more b's own bits, as a's for 0: next to a highlight b would lose them.
+// a + t (b - a), but exactly b's bits from t = 1 on and a's at 0: beside a highlight b would lose them.
 static float mix(float a, float b, float t)
 {
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
-// Far, the pixel itself, near. What still shows of a near pixel is a part of what covers it: what is behind shows
-// through neither. What lies there nobody has seen: where far ones hardly reach, near hides it.
+// Composite one sample: far field, then the pixel itself, then the near field. The visible part of a near pixel belongs
+// to what covers, so the background shows through neither. Nobody has seen that background; where far sprites hardly
+// reach, the near field hides it.
 static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2],
                               const float *behind)
 {
@@ -124,12 +125,12 @@ void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
             composite_sample(own, hf_own_part(t, size), cover, r < 0, far, near, row->behind ? &row->behind[x] : NULL);
         v = v < t->most ? v : t->most;
         v = v > -t->most ? v : -t->most;
-        // What is denormal may have lost bits.
+        // Denormal values may have lost bits.
         out[x] = v == own ? out[x] : v * t->undim;
     }
 }
 
-// What a row's fields hold of channel c, and where.
+// Set a row's pointers to channel c of the fields.
 static void set_fields(const struct hf_frame *f, int c, struct hf_scatter_row *row)
 {
     const struct hf_scatter *t = hf_scatter(f->s);
@@ -144,7 +145,7 @@ static void set_fields(const struct hf_frame *f, int c, struct hf_scatter_row *r
     }
 }
 
-// The mixed pixels of a row: their columns, and a row of nothing else.
+// The mixed pixels of a row: their columns, and a compact row of only these.
 struct backs {
     const float *share;  // of the row's pixels; NULL: none is mixed
     int count;
@@ -166,7 +167,7 @@ static struct backs find_backs(const struct hf_frame *f, int x0, int y, int n)
     return b;
 }
 
-// Those columns of a row, in line i.
+// Copy those columns of a row to line i.
 static const float *pick(const struct hf_frame *f, const struct backs *b, const float *row, int i)
 {
     float *out = hf_line(f, i);
@@ -175,7 +176,7 @@ static const float *pick(const struct hf_frame *f, const struct backs *b, const 
     return row ? out : NULL;
 }
 
-// What backs show in one channel, put to their shares.
+// Add what shows in the mixed pixels' backs, by their shares, in one channel.
 static void add_backs(const struct hf_frame *f, const struct hf_scatter_row *pixels, const struct backs *b, int c,
                       const struct hf_scatter_behind *behind, float *out)
 {
@@ -202,7 +203,7 @@ static void add_backs(const struct hf_frame *f, const struct hf_scatter_row *pix
     }
 }
 
-// behind: NULL if there is nothing but what far pixels say.
+// behind: NULL if only far sprites show behind near pixels.
 static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, const struct hf_behind *behind)
 {
     const struct hf_setup *s = f->s;
@@ -220,7 +221,7 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, con
                                            .colour = {hf_line(f, 16), hf_line(f, 17)}};
     if (behind && !hf_scatter_behind_begin(&line, &pixels, backs.radius, backs.count))
         behind = NULL;
-    // Alpha that is 1 all over stays so.
+    // An alpha that is 1 everywhere stays 1.
     for (int c = 0; c < channels; c++) {
         const float *front = hf_at(&f->buf[HF_BUF_SOURCE], c, x0, y);
         struct hf_scatter_row row = pixels;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter's ends on vectors. Nothing is fused: this engine has the same bits everywhere.
+// Scatter's first and last steps on vectors. Nothing is fused: this engine has the same bits everywhere.
 #ifndef HF_SCATTER_COMPOSITE_SIMD_H
 #define HF_SCATTER_COMPOSITE_SIMD_H
 
@@ -7,7 +7,8 @@
 #include "engine/scatter/kernels.h"
 #include "simd/simd.h"
 
-// Bits of the exponents of v >= 0, 0 for 0; see exponent_bit() in composite.c. 1 << k is an integer made of 2^k.
+// Bits of the exponents of v >= 0, 0 for 0, as exponent_bit() in composite.c. 1 << k is computed by converting 2^k to
+// an integer.
 HF_INLINE vi scatter_exponent_bits(vf v)
 {
     const vi bits = vf_as_vi(vf_min(v, vf_set1(0x1p120f)));
@@ -60,7 +61,7 @@ HF_INLINE vf scatter_segment(vf d)
     return vf_add(vf_set1(0.5f), vf_mul(t, vf_add(vf_set1(0.63662f), vf_mul(q, inner))));
 }
 
-// See inside() in scatter.c.
+// As inside() in composite.c.
 HF_INLINE vf scatter_inside(const struct hf_setup *s, vf reach_x, vf reach_y, vf px, int y)
 {
     const vf ix = vf_div(vf_set1(1), reach_x), iy = vf_div(vf_set1(1), reach_y), half = vf_set1(0.5f);

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scatter: B. Wronski, "Bokeh depth of field - going insane! part 1", 2014. Every blurred pixel becomes the picture
-// of the aperture. Near and far are summed apart, each is divided by its weights, and they are put together back to
-// front: far, the pixels in focus, near. The near one's sum of weights, 1 inside a large object and less across its
-// silhouette, is its coverage: so it melts into what is behind, which is made up from what is seen around it (behind.c).
+// The scatter engine: B. Wronski, "Bokeh depth of field - going insane! part 1", 2014. Every blurred pixel draws a
+// sprite, the picture of the aperture. Near and far are summed separately, and each is divided by its weights. They are
+// composited back to front: far field, pixels in focus, near field. The near sum of weights is its coverage, 1 inside a
+// large object and less across its silhouette. So a near object melts into its background, which is guessed from what
+// is visible around it (behind.c).
 //
-// Cost of a blurred pixel of radius r, in additions of four 64-bit lanes (docs/how-it-works.md has the times):
-//     disc         4 (2 r + 1); 2.5 (2 r + 1) where four side by side have rows equally long to a pixel
-//     polygon      4 (2 r + 1), and three products a row for one
-//     ring of R    1 + R times its outline
-//     cat's eye    as a polygon, and a square root and two conversions a row
-//     file         4 r^2, for each channel if it is coloured
-// From radius 24 to 28 on (8 to 12 for files) at half the resolution, where neighbours have like radii: a quarter of
-// the sources and half the rows of each, an eighth in all (a sixteenth for files). Alpha that is not 1 doubles all of
-// it, chromatic aberration takes it three times. What lies far off a cell is looked at, not drawn.
+// Cost of a blurred pixel of radius r, in additions of four 64-bit lanes:
+//    disc         4 (2 r + 1); 2.5 (2 r + 1) where four side by side have rows equally long to a pixel
+//    polygon      4 (2 r + 1), with three products per row instead of one
+//    ring of R    1 + R times its outline
+//    cat's eye    as a polygon, with a square root and two conversions per row
+//    file         4 r^2, for each channel if it is coloured
+// From radius 24 to 28 on (8 to 12 for files) sprites are drawn at half the resolution, where neighbours have similar
+// radii: a quarter of the sources and half the rows of each, an eighth in all (a sixteenth for files). An alpha that is
+// not 1 doubles the cost, chromatic aberration triples it. Sources far away from a cell are checked but not drawn.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -30,7 +31,7 @@
 
 enum {
     HALO_RADIUS = 1,  // the largest CoC radius
-    HALO_BEHIND,      // what is seen around near pixels
+    HALO_BEHIND,      // what is visible around near pixels
 };
 
 enum { COC, PREPARE, FAR, NEAR, COMPOSITE, PASSES };
@@ -57,12 +58,12 @@ static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
     [HF_BUF_NEAR_WEIGHT] = {"nearweight", .x = 1, .y = 1, .field = HF_NEAR},
 };
 
-// Until the frame has been looked at, alpha may be anything: then it is a group of its own.
+// Until the whole frame is loaded, alpha may be anything, so it has a group of its own.
 static void set_groups(struct hf_scatter *t, const struct hf_setup *s, float chromatic)
 {
     t->groups = 0;
     for (int c = 0; c < s->channels; c++) {
-        // Red is larger and blue smaller behind the focus, the other way in front of it.
+        // Behind the focus red sprites are larger and blue ones smaller; in front of it the other way round.
         const float shift = c == 0 ? chromatic : c == 2 ? -chromatic : 0;
         struct hf_splat_group *g = &t->group[t->groups];
         if (c == 0 || c == 3 || chromatic != 0 || t->aperture.planes == 3) {
@@ -108,7 +109,7 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
         t->half_to = 0;
         t->fade = 2.5f;
     }
-    // Every pixel of an image is drawn: sooner at half the resolution.
+    // Drawing a file costs every pixel of the image, so it drops to half the resolution earlier.
     if (a->picture && t->half_to > 0)
         t->half_from = 8, t->half_to = 12;
     t->half_slope = 1 / (t->half_to - t->half_from);
@@ -144,7 +145,7 @@ static size_t held(const void *own)
     return ((const struct hf_scatter *)own)->aperture.block.size;
 }
 
-// How far the largest pictures of a field reach on each level.
+// How far the largest sprites of a field reach at each level.
 static void set_reach(struct hf_scatter *t, int field)
 {
     for (int level = 0; level < 2; level++)
@@ -177,20 +178,20 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
         set_reach(t, field);
-        // A level's own pixels, and one around it for the upsampling, one for the tent and one for its radii.
+        // The level's own pixels, one more for upsampling, one for the tent and one for its radii.
         t->around_x = hf_max(t->around_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
         t->around_y = hf_max(t->around_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
     }
     return HF_OK;
 }
 
-// A sample that is drawn is at least 2^-25 of its pixel's, at radius 0.5, of which a share can be 2^-20 and a tent's corner
-// 2^-6, and as much what is like its neighbours; and where a mean's add up to next to nothing, what is left is 2^-24 of the
-// least at least.
+// How many exponents below the brightest sample a drawn share can be. A share is at least 2^-25 of its pixel at radius
+// 0.5; the back's share can be 2^-20, a tent's corner 2^-6, and the part that belongs to means 2^-HF_ALIKE_LOG2; where
+// a mean's shares nearly cancel, 2^-24 of the least remains.
 enum { FADE = 25 + 20 + 6 + HF_ALIKE_LOG2 + 24, LEAST_EXPONENT = -149 };
 
-// Bits from which a bin takes samples down to which their shares are whole numbers: all that its units have but those of
-// a share and of the largest picture's area. Larger pictures than that cut what is darkest in a bin.
+// How many exponents a bin takes so that the shares of its samples are whole numbers: all bits of its units, less those
+// of a share and of the largest sprite's area. Larger sprites lose the darkest samples of a bin.
 static int bin_bits(const struct hf_scatter *t, int level, int room)
 {
     enum { SHARE = 22 };
@@ -206,11 +207,11 @@ static int bin_bits(const struct hf_scatter *t, int level, int room)
     return hf_max(room - SHARE + 1 - (int)ceil(log2((double)area)), HF_BIN_BITS);
 }
 
-// Bins from the brightest exponent down. top: samples are below 2^top. Alpha of 1 has the units of weights: where it is 1
-// all over, its sum is theirs.
+// Make bins from the brightest exponent downwards. top: samples are below 2^top. An alpha of 1 uses the units of
+// weights, so where it is 1 everywhere its sum equals theirs.
 static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits, int room, int dim, int alpha)
 {
-    int faded = top;  // what has been seen may have faded down to here
+    int faded = top;  // shares of the samples seen so far can be as small as this
     for (bins->count = 0; bins->count < HF_BINS && (exponents || top > faded || !bins->count); bins->count++) {
         const int b = bins->count, bottom = alpha && top > 1 ? hf_max(top - bits, 1) : top - bits;
         for (int c = 0; c < 4; c++) {
@@ -218,7 +219,7 @@ static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits
             bins->scale[b][c] = ldexp(1, unit);
             bins->unscale[b][c] = ldexp(1, -unit);
         }
-        // Bit k is exponents of 8 k - 127 to 8 k - 120, the last of up to 127: that one is not parted.
+        // Bit k stands for the exponents 8 k - 127 to 8 k - 120, the last bit for those up to 127, which are not split.
         int next = 0, k = 0;
         for (; exponents && !next; exponents &= next ? ~0u : ~(1u << k)) {
             k = 31 - __builtin_clz(exponents);
@@ -226,7 +227,7 @@ static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits
             if (8 * k - 119 > bottom)
                 faded = hf_max(8 * k - 127 - FADE, LEAST_EXPONENT);
         }
-        // Where nothing is, not even what has faded, whole bins are left out.
+        // Leave out whole bins where no sample lies, and no share of one either.
         const int unused = exponents && bottom <= faded ? hf_max(bottom - (8 * k - 119), 0) : 0;
         top = bottom - (alpha ? unused : unused / bits * bits);
         bins->least[b] = ldexpf(1, top + dim);
@@ -234,7 +235,7 @@ static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits
     bins->least[bins->count - 1] = 0;
 }
 
-// The sums' fixed point: shares of the brightest sample still leave room for all that may come together in a pixel.
+// Choose the sums' fixed point, so that shares of the brightest sample leave room for all that can meet in one pixel.
 static void made(void *own, const struct hf_setup *s, const struct hf_counts *found)
 {
     struct hf_scatter *t = own;
@@ -250,7 +251,7 @@ static void made(void *own, const struct hf_setup *s, const struct hf_counts *fo
             frexpf(found->largest[alpha], &top);
             set_bins(&t->bins[level][alpha], found->exponents[alpha], top, bin_bits(t, level, room), room, dim, alpha);
         }
-    // With alpha 1 everywhere its sum is that of the weights.
+    // With an alpha of 1 everywhere, its sum is that of the weights.
     t->opaque = s->channels == 4 && !found->transparent && t->groups == 2;
     if (t->opaque)
         t->groups = 1;
@@ -273,8 +274,8 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     return halo == HALO_RADIUS ? (struct hf_reach){t->around_x, t->around_y} : (struct hf_reach){behind, behind};
 }
 
-// A far field shows only on pixels that are blurred themselves, or mixed with such: far ones, or near ones that it shines
-// through.
+// The far field shows only in pixels that are blurred themselves, or mixed with such pixels: far ones, and near ones
+// that it shines through.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p, unsigned field)
 {
     const struct hf_scatter *t = hf_scatter(s);
@@ -284,8 +285,8 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
     return (struct hf_reach){t->around_x, t->around_y};
 }
 
-// Cells large against the reach, for what lies around a cell is looked at twice; and narrow enough for the rows of sums
-// that are being drawn on, 32 bytes a pixel, to stay in the second level of the cache.
+// Cells are large compared with the reach, because the surroundings of each cell are read again. They are narrow enough
+// for the rows of sums in use, 32 bytes a pixel, to stay in the second-level cache.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     const struct hf_scatter *t = hf_scatter(s);
@@ -293,7 +294,7 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     (void)sweep;
     *height = hf_max(*height, hf_min(enough, 512));
     for (int field = 0; t->ready && field < 2; field++) {
-        const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8);  // bytes, of a half-resolution one
+        const int column = 2 * 32 * (2 * hf_max(t->reach_y[field][0], 0) + 8);  // bytes per half-resolution column
         if (t->reach_x[field][1] < 0)
             *width = hf_min(*width, hf_max(hf_max(400000 / column, 4 * t->around_x) & ~15, 64));
     }

@@ -7,48 +7,50 @@
 #include "engine/scatter/scatter.h"
 
 struct hf_run;
-// Draw a list of pictures into the sums (scatter/splat.c).
+// Draw a list of sprites into the sums (splat.c).
 typedef void hf_splat(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list);
-// One outline's rows from row y on, around column x.
+// Draw an outline's rows from row y on, around column x.
 typedef void hf_splat_runs(const struct hf_sums *s, int x, int y, const struct hf_run *run, int rows,
                            const int64_t share[4]);
-// An image's rows from (x, y) on, as differences.
+// Draw an image's rows from (x, y) on, as differences.
 typedef void hf_splat_taps(const struct hf_sums *s, int x, int y, const int16_t *tap, int columns, int rows,
                            const int64_t share[4]);
-// Weights of n pixels in a field at full resolution, out[3], and their weighted colours. sign: of its radii.
+// The weights of n pixels in a field at full resolution (out[3]), and their weighted colours. sign: of the field's
+// radii.
 typedef void hf_source_weights(const struct hf_scatter *t, float sign, const float *radius,
                                const float *const colour[3], int channels, int n, float *const out[4]);
-// Numbers of the pictures of n sources, -1 where weight or radius is not positive.
+// The sprite numbers of n sources, -1 where weight or radius is not positive.
 typedef void hf_source_pictures(const float *radius, const float *weight, float scale, int n, int32_t *out);
-// Sources `from` to `to` of a row go to the lists of their bins, which have room. inverse: 1 / area of each picture.
+// Add sources `from` to `to` of a row to the lists of their bins, which have room. inverse: 1 / area of each sprite.
 typedef void hf_list_row(struct hf_splats list[HF_BINS], const struct hf_source_row *row, int from, int to,
                          const float *inverse, const struct hf_bins *bins);
-// A finished row of n pixels of each bin's sums, and its margins: integrated, scaled, added up, split into planes (lane 3,
-// the weight, to out[3]), and zeroed.
+// Settle a finished row of n pixels and its margins: integrate each bin's sums, scale them, add the bins up, split them
+// into planes (lane 3, the weight, to out[3]), and clear the sums.
 typedef void hf_settle(int64_t *const lane[HF_BINS], int bins, int n, int channels, const double (*unscale)[4],
                        float *const out[4]);
-// What is counted of n blurred pixels' samples.
+// Count what n blurred pixels' samples contain.
 typedef void hf_scatter_note(const float *radius, float *const colour[4], int channels, int n,
                              struct hf_counts *counts);
-// Put the fields over and under a row of pixels.
+// Composite the fields with a row of pixels.
 typedef void hf_scatter_blend(const struct hf_scatter_row *row, float *out);
-// What n half-resolution pixels weigh in a field, and the same times their radii, from two rows of 2n radii.
+// The weights of n half-resolution pixels in a field, and these times their radii, from two rows of 2n radii.
 typedef void hf_quad_row(const struct hf_scatter *t, const float *above, const float *below, int n, float sign,
                          float *const out[2]);
-// Radii of n half-resolution sources, 0 for none, from three rows of quads; these from -1 to n.
+// The radii of n half-resolution sources, 0 for none, from three rows of quads with one more on either side.
 typedef void hf_site_row(const float *const weight[3], const float *const moment[3], int n, float *out);
-// Weights and weighted colours of a row's pixels from column `first` on; returns whether some are not wholly part of a mean.
+// Weights and weighted colours of a row's pixels from column `first` on. Returns whether some belong to no mean or only
+// in part.
 typedef int hf_tent_weights(const struct hf_tent_row *t, int first);
-// Means over 1 3 3 1 in eighths, of even and odd pixels; even up to n and odd from -1 on.
+// Means with weights 1 3 3 1 in eighths, of even and odd pixels; reads even up to n, odd from -1 on.
 typedef void hf_tent(const float *even, const float *odd, int n, float *out);
 // Half the weighted sum of four rows.
 typedef void hf_mean_row(const float *const tent[4], const float part[4], int n, float *out);
 
-// What of pixels `first` (even) to n is seen, sharp and far, in quarters of a quad; widest: the largest near radius around
-// each quad. Returns bit 0 if some is sharp, bit 1 if some is far.
+// The visible parts of pixels `first` (even) to n, sharp and far, in quarters of a quad. widest: the largest near
+// radius around each quad. Returns bit 0 if some is sharp, bit 1 if some is far.
 typedef int hf_seen_weights(const struct hf_scatter *t, const float *radius, const float *widest, int first, int n,
                             float *const out[2]);
-// Put together what is seen around pixels, sharp and far, and what the fields hold there.
+// Blend what is visible around pixels, sharp and far, with what the fields hold there.
 typedef void hf_behind_blend(const struct hf_scatter_row *row, const float *const weight[2],
                              const float *const colour[2], const float *own, float *out);
 

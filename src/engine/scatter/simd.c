@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scatter's kernels of an instruction set.
+// The scatter's kernels for one instruction set.
 #include "engine/scatter/behind_simd.h"
 #include "engine/scatter/source_simd.h"
 #include "engine/scatter/splat_simd.h"

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: slices of the far field. What is farther is blurred more, and its pictures reach over what is nearer. That
-// covers it: so radii are drawn in slices, each three times as far as the last, and behind a slice there is room only for
-// what its weights, and what still shows of a sharp pixel, leave of 1. Where weights add up to 1, that is their sum.
+// Scatter: slices of the far field. Farther pixels have larger sprites, which reach over nearer pixels, but those
+// occlude them. So radii are drawn in slices, each three times as far as the one before. A slice gets only the coverage
+// that the nearer slices, and the visible part of a sharp pixel, leave of 1. Where weights add up to 1, the slices' sum
+// does too.
 #include <float.h>
 #include <math.h>
 
 #include "engine/scatter/walk.h"
 
-// Where the second slice begins, how much farther each next one does, and where it has all of a source.
+// Radius where the second slice begins; ratio of one slice's radius to the next; ratio over which a source fades in.
 static const float first = 4, step = 3, soft = 1.25f;
 
 int hf_slice_count(float largest)
@@ -61,7 +62,7 @@ void hf_slice_row(const struct hf_slice *s, float sign, const float *radius, int
         row[x] *= hf_slice_part(s, sign * radius[x]);
 }
 
-// How much of a pixel far pictures can show: of its two sides, by their shares.
+// The part of a pixel in which far sprites can show, from its two sides by their shares.
 static float room_at(const struct hf_frame *f, int x, int y)
 {
     const struct hf_scatter *t = hf_scatter(f->s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: from pixels to lists of pictures (walk.c), and shapes that are each source's own.
+// Scatter: from pixels to lists of sprites (walk.c), and shapes that depend on the source.
 #include <math.h>
 
 #include "engine/scatter/walk.h"
@@ -23,20 +23,22 @@ void hf_source_pictures_c(const float *radius, const float *weight, float scale,
     }
 }
 
-// What of a source is drawn: 1 / its picture's area, and of a hole how much of that, negative; 1: no hole.
+// What of a source is drawn: share is 1 / its sprite's area, hole the part of it that a hole takes away, negative; 1:
+// no hole.
 struct part {
     float share, hole;
 };
 
-// A hole's share is a whole number of the units of its outline's: however faint, it is not cut by those of a bin.
+// A hole's share is a whole number of the units of its outline's share, so a faint hole is not rounded away by its
+// bin's units.
 static float hole_share(float share, float hole)
 {
     const float t = 4 * share, part = __builtin_fabsf(hole), whole = part < 1 ? (t + share * part) - t : share;
     return hole < 0 ? -whole : whole;
 }
 
-// Bits of the lanes that bin b holds of a source, 0 for none: channels by their own brightness, and with the first of
-// them the weight (bit 3); of black the first bin has that.
+// The lanes that bin b holds of a source, one bit each, 0 for none. A channel goes to the bin of its own brightness.
+// The weight (bit 3) goes with the first channel; for a black source with the first bin.
 static int lanes_of(const struct hf_bins *bins, int b, const float colour[3])
 {
     int held = 0, before = 0, black = 1;
@@ -49,7 +51,7 @@ static int lanes_of(const struct hf_bins *bins, int b, const float colour[3])
     return held | (!before && (held || (black && !b))) << 3;
 }
 
-// What each lane of a source adds to bin b for 1 unit of weight. part: 1 / the picture's area.
+// What each lane of a source adds to bin b per unit of weight. part: 1 / the sprite's area.
 static void set_share(const struct hf_bins *bins, int b, int lanes, const float colour[3], float weight,
                       struct part part, int64_t share[4])
 {
@@ -76,7 +78,7 @@ void hf_list_row_c(struct hf_splats list[HF_BINS], const struct hf_source_row *r
         }
 }
 
-// The pictures of a group's channel.
+// The sprites of a group's channel.
 static const struct hf_picture *pictures(const struct walk *w)
 {
     const struct hf_aperture *a = &w->t->aperture;
@@ -123,8 +125,8 @@ static void add_picture(struct walk *w, int x, int y, int number, const float co
     }
 }
 
-// A row of the second circle of a cat's eye, dy rows off its centre: half its width in 1/256 pixel, and its weight. Of a
-// disc's that are between two of its rows, so that a circle that has not moved cuts nothing.
+// A row of the cat's eye's second circle, dy rows from its centre: half its width in 1/256 pixel, and its weight. It is
+// interpolated from two rows of a disc's sprite, so that a circle that has not moved cuts nothing.
 struct circle_row {
     float half, weight;
 };
@@ -145,7 +147,7 @@ static struct circle_row circle_row(const struct hf_aperture *a, const struct hf
                                hf_lerp((float)over->weight, (float)under->weight, t)};
 }
 
-// A picture cut by the second circle of a cat's eye, of radius r around (cx, cy) and of the shape `disc`: its rows go to
+// Cut a sprite by the cat's eye's second circle, of radius r around (cx, cy), with the shape `disc`. The rows go to
 // w->runs. Returns the sum of their weights.
 static float cut_picture(struct walk *w, const struct hf_picture *p, const struct hf_picture *disc, float r, float cx,
                          float cy)
@@ -167,7 +169,7 @@ static float cut_picture(struct walk *w, const struct hf_picture *p, const struc
     return area;
 }
 
-// The same with what is to be drawn of it.
+// Cut a sprite and draw the rest.
 static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, const float colour[3], float weight,
                      struct part part)
 {
@@ -182,7 +184,7 @@ static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, c
     }
 }
 
-// The second circle moves off the lens's axis, towards the corner that the source is near.
+// The second circle moves from the lens's axis towards the corner that is nearest to the source.
 static void add_cat_eye(struct walk *w, int x, int y, float r, const float colour[3], float weight)
 {
     const struct hf_setup *s = w->f->s;
@@ -205,7 +207,7 @@ static void add_cat_eye(struct walk *w, int x, int y, float r, const float colou
     }
 }
 
-// A ring is its outline less its hole, which is the same shape.
+// A ring is its outline minus its hole, which has the same shape.
 void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight)
 {
     const struct hf_aperture *a = &w->t->aperture;
@@ -219,7 +221,7 @@ void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3],
         add_picture(w, x, y, number, colour, weight, (struct part){1 / picture[number].area, 1});
         return;
     }
-    // A hole too small for a picture of its own is a faint one.
+    // A hole too small for a sprite of its own is drawn as a fainter one.
     const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
     const int inside = hf_picture_number(inner);
     const float part = 1 / (picture[number].area - hole * picture[inside].area);

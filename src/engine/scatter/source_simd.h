@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: lists of sources on vectors. Nothing is fused: what is drawn has one answer everywhere.
+// Scatter: lists of sources on vectors. Nothing is fused: the drawn shares are the same everywhere.
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 #include "simd/simd.h"
@@ -51,7 +51,7 @@ HF_INLINE int source_bin(const struct hf_source_row *row, int i, const struct hf
     }
     while (b < bins->count - 1 && !(least >= bins->least[b]))
         b++;
-    // Black takes its weight to the first bin.
+    // A black source puts its weight into the first bin.
     return (b == 0 || most < bins->least[b - 1]) && (!black || b == 0) ? b : -1;
 }
 
@@ -61,7 +61,7 @@ HF_INLINE v4 source_share(v4 v, v4 part)
     return v4_sub(t, v4_sub(t, s));
 }
 
-// Four sources side by side: their colours become rows of lanes.
+// The shares of four sources side by side: colours are transposed to lanes.
 HF_INLINE void source_shares(const struct hf_source_row *row, int i, const float *inverse, const double scale[4],
                              vl share[4])
 {
@@ -79,7 +79,7 @@ HF_INLINE void source_shares(const struct hf_source_row *row, int i, const float
 static void list_row_simd(struct hf_splats lists[HF_BINS], const struct hf_source_row *row, int from, int to,
                           const float *inverse, const struct hf_bins *bins)
 {
-    // Past the row there is whatever memory holds, which is no picture's number.
+    // Past the row memory holds arbitrary values, which are no valid sprite numbers.
     const int whole = from + (to - from) / 4 * 4;
     for (int i = from; i < whole; i += 4) {
         const int32_t *p = row->picture + i;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: adding pictures to the sums, and making values of them. Which pictures where: walk.c.
+// Scatter: add sprites to the sums, and turn sums into values. walk.c decides which sprites go where.
 //
-// Sums are 64-bit integers, so that no order of additions gives other bits and nothing drifts. A picture is a run of
-// pixels in each row; adding one means adding its share where it begins and taking it away where it ends: two pixels
-// each, for ends lie between pixels. One running sum along each row then turns these differences into the picture.
+// Sums are 64-bit integers, so no order of additions changes a bit and nothing drifts. A sprite has one span in each
+// row. Adding it means adding its share where the span begins and subtracting it where the span ends: two pixels each,
+// because ends lie between pixels. One running sum along each row then turns these differences into the picture.
 #include <string.h>
 
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 
-// Share of a run's end: j units of u where it begins and 256 - j one pixel on.
+// Add one end of a span: j units of u at the first pixel and 256 - j at the next.
 static void add_end(int64_t *row, int x, int width, const uint64_t u[4], uint64_t first, uint64_t second)
 {
     int64_t *p = row + 4 * (ptrdiff_t)hf_max(hf_min(x, width), 0);

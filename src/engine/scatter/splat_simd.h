@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splats on vectors of four 64-bit integers: additions are exact, so these are the bits of the C in any order. Rows
-// above and below a source have the same run: each product serves both.
+// Splats on vectors of four 64-bit integers. Additions are exact, so any order gives the bits of the C. The rows above
+// and below a source have the same span, so each product serves both.
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 #include "simd/simd.h"
 
-// Column of a run's end, in lanes. clip: it may lie outside the window; then it comes to lie in the margins, with
-// `more` pixels after it.
+// The column of a span's end, in lanes. clip: it may lie outside the window; then it is moved into the margin, with
+// room for `more` pixels after it.
 HF_INLINE ptrdiff_t splat_column(int x, int width, int more, const int clip)
 {
     return 4 * (ptrdiff_t)(clip ? hf_max(hf_min(x, width), -1 - more) : x);
@@ -22,14 +22,14 @@ HF_INLINE void splat_take(int64_t *p, vl a)
     vl_store(p, vl_sub(vl_load(p), a));
 }
 
-// Is row y of the frame in the window?
+// Whether row y of the frame is in the window.
 HF_INLINE int splat_has(const struct hf_sums *s, int y)
 {
     return y >= s->y0 && y < s->y1;
 }
 
-// Rows `first` to `last` above and below one source, one: a unit of it times a row's weight. clip: the window may not
-// hold all of them.
+// Draw rows `first` to `last` above and below one source. one: a unit of it times a row's weight. clip: the window may
+// not contain all of them.
 HF_INLINE void splat_rows(const struct hf_sums *s, const int32_t *half, int x, int y, vl one, int first, int last,
                           const int clip)
 {
@@ -52,7 +52,7 @@ HF_INLINE void splat_rows(const struct hf_sums *s, const int32_t *half, int x, i
     }
 }
 
-// A source's rows from `first` on.
+// Draw a source's rows from `first` on.
 HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, const int32_t *half, int x, int y,
                          const int64_t *share, int first, const int clip)
 {
@@ -61,7 +61,7 @@ HF_INLINE void splat_one(const struct hf_sums *s, const struct hf_picture *p, co
     splat_rows(s, half, x, y, vl_product(unit, vl_set1(p->cap)), p->rows - 1, p->rows - 1, clip);
 }
 
-// The ends of four sources' runs that lie side by side: five additions do for eight.
+// Add the ends of four sources' spans that lie side by side: five additions instead of eight.
 HF_INLINE void splat_four_row(int64_t *begin, int64_t *end, const vl part[4], const vl rest[4])
 {
     splat_add(begin, part[0]);
@@ -74,8 +74,8 @@ HF_INLINE void splat_four_row(int64_t *begin, int64_t *end, const vl part[4], co
     splat_take(end + 16, part[3]);
 }
 
-// Rows dy above and below four sources side by side, of weight one[]. Where runs are not as long, but for what lies
-// within a pixel, they are drawn one by one.
+// Draw the rows dy above and below four sources side by side, of weight one[]. If their spans differ by more than a
+// fraction of a pixel, they are drawn one by one.
 HF_INLINE void splat_four_rows(const struct hf_sums *s, const int32_t *const half[4], int x, int y, int dy,
                                const vl one[4], const int clip)
 {
@@ -126,7 +126,7 @@ HF_INLINE void splat_four(const struct hf_sums *s, const struct hf_aperture *a, 
         splat_one(s, p[k], half[k], x + k, y, list->share[i + k], rows - 1, clip);
 }
 
-// How many sources side by side begin with source i, 4 or 1; *picture is the largest of theirs.
+// How many sources side by side begin with source i, 4 or 1; *picture is their largest sprite.
 HF_INLINE int splat_together(const struct hf_aperture *a, const struct hf_splats *list, int i,
                              const struct hf_picture **picture)
 {
@@ -182,7 +182,7 @@ static void splat_runs_simd(const struct hf_sums *s, int x, int y, const struct 
     }
 }
 
-// Differences of weights, which are made positive: products want that.
+// Differences of weights, made positive because the products need that.
 HF_INLINE void splat_tap(int64_t *p, vl one, vl offset, int weight)
 {
     splat_add(p, vl_sub(vl_product(one, vl_set1(weight + 65536)), offset));
@@ -194,7 +194,7 @@ static void splat_taps_simd(const struct hf_sums *s, int x, int y, const int16_t
     const vl one = vl_load(share), offset = vl_shl8(vl_shl8(one));
     const int width = s->x1 - s->x0, end = hf_min(s->y1 - y, rows);
     x -= s->x0;
-    // Columns left of the window come together in its first, those right of it are of no use.
+    // Columns left of the window are summed into its first column; those right of it are not needed.
     const int first = hf_max(hf_min(-x, columns), 0), last = hf_max(hf_min(columns, width - x), first);
     for (int j = hf_max(s->y0 - y, 0); j < end; j++) {
         const int16_t *t = tap + (ptrdiff_t)j * columns;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: sources of half resolution. Each is the tent-weighted mean of 4x4 pixels (1 3 3 1), which keeps centroids,
-// where those have like radii; else pixels are drawn one by one, each on the four nearest. What is nearly unlike is drawn
-// in part so and in part so: no radius that moves makes a picture jump.
+// Scatter: sources of half resolution. Where pixels have similar radii, a source is the tent-weighted mean of 4x4
+// pixels (1 3 3 1), which keeps centroids. Elsewhere pixels are drawn one by one, each on the four nearest
+// half-resolution pixels. Between both cases a pixel is drawn partly each way, so a changing radius makes no picture
+// jump.
 #include <math.h>
 #include <string.h>
 
 #include "engine/scatter/walk.h"
 
-// What a pixel of radius r is drawn with at half resolution.
+// The weight with which a pixel of radius r is drawn at half resolution.
 static float half_weight(const struct hf_scatter *t, float r)
 {
     return hf_field_weight(t, r) * hf_half_part(t, r);
@@ -26,7 +27,7 @@ void hf_quad_row_c(const struct hf_scatter *t, const float *above, const float *
     }
 }
 
-// A row of quads, and nothing beyond the frame.
+// Make a row of quads; beyond the frame they are empty.
 static void quad_row(struct walk *w, int q)
 {
     const struct hf_setup *s = w->f->s;
@@ -49,7 +50,7 @@ static void quad_row(struct walk *w, int q)
     }
 }
 
-// The sum of three by three, mirrored ones together.
+// The sum of three by three values, mirrored pairs first.
 static float sum_around(const float *const row[3], int i)
 {
     float v[3];
@@ -66,8 +67,8 @@ void hf_site_row_c(const float *const weight[3], const float *const moment[3], i
     }
 }
 
-// Radii of a row of half-resolution sources: the mean of its quad, or where next to nothing of it is in the field, as just
-// beside an object, that of the quads around.
+// The radii of a row of half-resolution sources: the mean of the quad. If almost none of the quad is in the field, as
+// just beside an object, it is the mean of the quads around.
 static void site_row(struct walk *w, int q)
 {
     const int n = w->tent_x1 - w->tent_x0;
@@ -89,7 +90,8 @@ static float farther(float a, float b, float r)
     return a > b ? a : b;
 }
 
-// Weight of pixel `odd` of half-resolution column i in the half-resolution sums; *merged: how much of it is a part of means.
+// The weight of pixel `odd` of half-resolution column i in the half-resolution sums; *merged: its part that belongs to
+// means.
 static float tent_weight(const struct hf_tent_row *t, int i, int odd, float *merged)
 {
     const float r = t->sign * t->radius[2 * i + odd], weight = half_weight(t->scatter, r);
@@ -118,7 +120,7 @@ void hf_tent_c(const float *even, const float *odd, int n, float *out)
         out[i] = 0.375f * (even[i] + odd[i]) + 0.125f * (odd[i - 1] + even[i + 1]);
 }
 
-// What the walk knows of row y for its means.
+// What the means need of row y.
 static struct hf_tent_row tent_row_of(const struct walk *w, int y)
 {
     const struct hf_frame *f = w->f;
@@ -135,7 +137,7 @@ static struct hf_tent_row tent_row_of(const struct walk *w, int y)
     return t;
 }
 
-// What of a row's pixels is in the walk's slice.
+// Scale a row's pixels by their part in the walk's slice.
 static void slice_pixels(const struct walk *w, const struct hf_tent_row *t)
 {
     for (int odd = 0; odd < 2; odd++) {
@@ -148,7 +150,7 @@ static void slice_pixels(const struct walk *w, const struct hf_tent_row *t)
     }
 }
 
-// One full-resolution row's pixels that are parts of means, weighted, and their tent along x. Lanes 0..2 are the
+// Weight the pixels of a full-resolution row that belong to means, and apply the tent along x. Lanes 0 to 2 are the
 // channels, 3 the weight. What the tent would put outside the frame stays at its edge.
 static void tent_row(struct walk *w, int y)
 {
@@ -176,7 +178,7 @@ static void tent_row(struct walk *w, int y)
     }
 }
 
-// The half-resolution column that one of a pixel's two sides goes to, -1 if it is none of the window's.
+// The half-resolution column that one of a pixel's two sides goes to, -1 if it is outside the window.
 static int column_of(const struct walk *w, int x, int side)
 {
     const int column = side ? hf_beside(x, w->f->s->half_width) : x >> 1;
@@ -185,7 +187,7 @@ static int column_of(const struct walk *w, int x, int side)
     return column >= x0 && column < x1 ? column : -1;
 }
 
-// Draw what of the pixels of row y has no like neighbours on half-resolution row q, with a share of `part`.
+// Draw the parts of row y's pixels that have no similar neighbours on half-resolution row q, times `part`.
 static void list_lone(struct walk *w, int y, int q, float part)
 {
     const struct hf_frame *f = w->f;
@@ -216,7 +218,7 @@ static void list_lone(struct walk *w, int y, int q, float part)
     hf_flush_sources(w);
 }
 
-// The same of the backs of mixed pixels.
+// The same for the backs of mixed pixels.
 static void list_backs(struct walk *w, int y, int q, float part)
 {
     const int x0 = 2 * w->tent_x0, n = hf_min(2 * w->tent_x1, w->f->s->width) - x0;
@@ -230,7 +232,7 @@ static void list_backs(struct walk *w, int y, int q, float part)
     hf_flush_sources(w);
 }
 
-// Rows of sources up to q + 2 and of tents up to 2 q + 2.
+// Make the rows of sources up to q + 2 and of tents up to 2 q + 2.
 static void prepare_tents(struct walk *w, int q)
 {
     const struct hf_setup *s = w->f->s;
@@ -252,8 +254,8 @@ void hf_mean_row_c(const float *const tent[4], const float part[4], int n, float
         out[i] = 0.5f * ((part[0] * tent[0][i] + part[3] * tent[3][i]) + (part[1] * tent[1][i] + part[2] * tent[2][i]));
 }
 
-// What of full-resolution rows 2q - 1 .. 2q + 2 goes to row q; what a tent would put outside the frame stays in its
-// last row.
+// The parts of full-resolution rows 2q - 1 to 2q + 2 that go to row q. What the tent would put outside the frame stays
+// in its last row.
 static void set_parts(const struct hf_setup *s, int q, int row[4], float part[4])
 {
     static const float parts[4] = {0.25f, 0.75f, 0.75f, 0.25f};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: the half-resolution means on vectors. Nothing is fused: what is alike has one answer everywhere.
+// Scatter: the half-resolution means on vectors. Nothing is fused: which pixels are alike is the same everywhere.
 #include "pixel/pass_c.h"
 #include "pixel/coc_vf.h"
 #include "engine/scatter/kernels.h"
@@ -49,13 +49,13 @@ static void site_row_simd(const float *const weight[3], const float *const momen
     }
 }
 
-// How far r is from two sites.
+// The larger distance of r from the radii of two sources.
 HF_INLINE vf tent_apart(const float *site, int i, int next, vf r)
 {
     return vf_max(vf_abs(vf_sub(vf_load(site + i), r)), vf_abs(vf_sub(vf_load(site + next), r)));
 }
 
-// See hf_alike().
+// As hf_alike().
 HF_INLINE vf tent_alike(vf r, vf apart)
 {
     const vf most = vf_add(vf_set1(0.25f), vf_mul(r, vf_set1(1 / 32.0f))), steps = vf_set1(1 << HF_ALIKE_LOG2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatter: the sources that reach a cell, row by row, and the sums that they make (splat.c).
+// Scatter: find the sources that reach a cell, row by row, and draw their sums (splat.c).
 //
-// Radii of half_to and more go to sums of half the resolution (tent.c), between half_from and half_to to both.
+// Radii from half_to on go to sums of half the resolution (tent.c), those between half_from and half_to to both.
 #include <string.h>
 
 #include "engine/scatter/walk.h"
@@ -12,7 +12,7 @@ const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n)
     return hf_edges_next(share, 0, n) < n ? share : NULL;
 }
 
-// Weights, colours and pictures of full-resolution row y, in the walk's rows. share: of the backs.
+// Prepare full-resolution row y in the walk's rows: weights, colours and sprites. share: of the backs.
 static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, const float *share)
 {
     const struct hf_frame *f = w->f;
@@ -65,8 +65,8 @@ void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
     hf_add_source(w, to_x, to_y, size * (w->level ? 0.5f : 1) * w->group->factor[w->field], v, weight);
 }
 
-// Sources of full-resolution rows y0 to y1, four columns at a time: all rows of these draw on nearly the same lines of
-// the cache, which come from its second level and go back there once for all of them. Then the backs of mixed pixels.
+// Draw the sources of full-resolution rows y0 to y1, four columns at a time: all these rows write to nearly the same
+// cache lines, which are fetched from the second level and written back only once. Then draw the backs of mixed pixels.
 static void list_full(struct walk *w, int y0, int y1)
 {
     struct hf_source_row row[TOGETHER];
@@ -87,7 +87,7 @@ static void list_full(struct walk *w, int y0, int y1)
     hf_flush_sources(w);
 }
 
-// Widths and heights of what a pass keeps while it draws on a rectangle of half-resolution pixels.
+// The sizes of the scratch that a pass needs for a rectangle of half-resolution pixels.
 struct layout {
     int width[2], height[2], ring[2], stride[2];  // of the sums, each level; stride in lanes
     int line[2];                                  // floats of a row of sources, and its padding
@@ -99,8 +99,8 @@ static size_t whole_lines(size_t floats)
     return (floats + 15) & ~(size_t)15;
 }
 
-// Lanes of a row of sums. Rows lie 9 lines of the cache further on each, so that the ends of a picture's do not share
-// its sets.
+// Lanes in a row of sums. Each row lies 9 cache lines further within a page, so that the rows of one sprite do not
+// compete for the same cache sets.
 static int stride_of(int width)
 {
     enum { PAGE = 4096 / sizeof(int64_t), STEP = 9 * 64 / sizeof(int64_t) };
@@ -134,7 +134,7 @@ static struct layout layout_of(const struct hf_scatter *t, int field, int cell_w
     l.rows = whole_lines(l.rows * sizeof(ptrdiff_t) / sizeof(float));
     l.runs = whole_lines((size_t)(2 * longest + 3) * sizeof(struct hf_run) / sizeof(float));
     l.list = whole_lines(HF_BINS * sizeof(struct hf_splats) / sizeof(float));
-    l.lines += (size_t)hf_max(l.line[0], l.line[1]);  // and one of zeros
+    l.lines += (size_t)hf_max(l.line[0], l.line[1]);  // plus one of zeros
     return l;
 }
 
@@ -155,7 +155,7 @@ static void settle(struct walk *w, const struct hf_target *to, int y)
     float *out[4];
     for (int c = 0; c < 4; c++)
         out[c] = to->ch[c] ? to->ch[c] + (ptrdiff_t)(y - w->sums.y0) * to->stride : NULL;
-    // Those bins of which something has been drawn here.
+    // The bins in which something has been drawn on this row.
     int64_t *lane[HF_BINS];
     double unscale[HF_BINS][4];
     int n = 0;
@@ -172,7 +172,8 @@ static void settle(struct walk *w, const struct hf_target *to, int y)
             memset(out[c], 0, sizeof *out[c] * (size_t)(w->sums.x1 - w->sums.x0));
 }
 
-// All sources of a level that reach the window, row by row; each row of sums is settled when the last has passed.
+// Draw all sources of a level that reach the window, row by row. A row of sums is settled once no later source reaches
+// it.
 static void walk_level(struct walk *w, const struct layout *l, const struct hf_target *to)
 {
     const struct hf_setup *s = w->f->s;
@@ -198,21 +199,21 @@ static void walk_level(struct walk *w, const struct layout *l, const struct hf_t
         settle(w, to, settled++);
 }
 
-// Half-resolution sums of a window, one plane of them.
+// One plane of a window's half-resolution sums.
 struct half_sums {
     const float *plane;
     ptrdiff_t stride;
     struct hf_rect r;
 };
 
-// Bilinearly at the frame's left or right edge, beyond which it goes on as it is.
+// Bilinear at the frame's left or right edge, where the plane continues as it is.
 static float at_edge(float own, float over)
 {
     const float v = 0.75f * own + 0.25f * over;
     return 0.75f * v + 0.25f * v;
 }
 
-// Add them, bilinearly, to pixels x0 (even) to x1 of row y.
+// Upsample them bilinearly and add them to pixels x0 (even) to x1 of row y.
 static void add_half(const struct hf_frame *f, const struct half_sums *h, int x0, int x1, int y, float *out)
 {
     const float *a = h->plane + (ptrdiff_t)((y >> 1) - h->r.y0) * h->stride + ((x0 >> 1) - h->r.x0);
@@ -228,7 +229,7 @@ static void add_half(const struct hf_frame *f, const struct half_sums *h, int x0
         out[x] += up[x];
 }
 
-// The rows of full-resolution sources.
+// Place the rows of full-resolution sources in memory.
 static void place_rows(struct walk *w, float *memory, int length)
 {
     memory += HF_PAD;
@@ -236,7 +237,7 @@ static void place_rows(struct walk *w, float *memory, int length)
         w->source[i / 5][i % 5] = memory;
 }
 
-// One group's sums of a field on r, of the walk's slice.
+// Draw one group's sums of a field on r, for the walk's slice.
 static void splat_slice(struct walk *w, struct hf_rect r, const struct hf_target *to)
 {
     const struct hf_frame *f = w->f;
@@ -289,7 +290,7 @@ static void clear(const struct hf_setup *s, struct hf_rect r, const struct hf_ta
             memset(to->ch[c] + y * to->stride, 0, sizeof(float) * (size_t)n);
 }
 
-// The far field's slices that reach r, from front to back.
+// Draw the far field's slices that reach r, from front to back.
 static void splat_slices(struct walk *w, struct hf_rect r, const struct hf_target *to, float least, float most)
 {
     const struct layout l = layout_of(w->t, w->field, r.x1 - r.x0, r.y1 - r.y0);

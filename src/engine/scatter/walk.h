@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the parts of the scatter's walk share: walk.c goes over a window, tent.c makes the half-resolution sources,
+// What the parts of the scatter's walk share: walk.c goes over a window, tent.c makes the half-resolution sources, and
 // source.c draws what they list.
 #ifndef HF_WALK_H
 #define HF_WALK_H
@@ -8,11 +8,11 @@
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 
-enum { TOGETHER = 4 };  // rows of full-resolution sources that are drawn at once
+enum { TOGETHER = 4 };  // rows of full-resolution sources drawn together
 
-// Sources of a range of radii: all of each from begin[1] to end[0], less of those from begin[0] and up to end[1].
+// A slice of radii: sources from begin[1] to end[0] belong to it fully, those from begin[0] and up to end[1] in part.
 struct hf_slice {
-    int whole;  // there are no others: the rest means nothing
+    int whole;  // all radii belong to it; the other members are unset
     float begin[2], end[2];
 };
 
@@ -22,7 +22,7 @@ struct hf_target {
     ptrdiff_t stride;
 };
 
-// The walk over a window: one field's sums of one group and level.
+// A walk over a window: the sums of one field, group and level.
 struct walk {
     const struct hf_frame *f;
     const struct hf_scatter *t;
@@ -31,20 +31,20 @@ struct walk {
     int level;                    // 1: half resolution
     struct hf_sums sums;          // of the first bin
     const struct hf_bins *bins;   // of the group and level
-    ptrdiff_t bin_lanes;          // from a bin's sums to the next one's
+    ptrdiff_t bin_lanes;          // distance from one bin's sums to the next
     struct hf_splats *list;       // of each bin
-    int reached, drawn[HF_BINS];  // the last row that sources at hand reach, and on which each bin has been drawn
-    struct hf_run *runs;          // of a picture that is its source's own
-    struct hf_slice slice;        // of the radii that are drawn
-    float *source[TOGETHER][5];   // level 0: channels, weight, and numbers of pictures
-    // level 1: of the last rows, quads' weights and these times radii, source radii and pixels; see hf_list_half
+    int reached, drawn[HF_BINS];  // the last row that the sources at hand reach; the last row drawn in each bin
+    struct hf_run *runs;          // scratch for a sprite that belongs to one source only
+    struct hf_slice slice;        // the radii that are drawn
+    float *source[TOGETHER][5];   // level 0: channels, weight, sprite numbers
+    // Level 1, for the last rows: quads' weights, these times radii, source radii, and pixels; see hf_list_half.
     float *quad[2][4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *part[2], *nothing;
     int lone[4];
     int tent_x0, tent_x1, quads_done, sites_done,
         tents_done;  // half-resolution columns; rows up to which they are made
 };
 
-// How much of a source of radius r > 0 is in the slice.
+// How much of a source of radius r > 0 belongs to the slice.
 static inline float hf_slice_part(const struct hf_slice *s, float r)
 {
     if (s->whole)
@@ -53,7 +53,7 @@ static inline float hf_slice_part(const struct hf_slice *s, float r)
            (1 - hf_saturate((r - s->end[0]) / (s->end[1] - s->end[0])));
 }
 
-// Sources of columns x0 to x1 that reach the window.
+// The columns x0 to x1 of sources that reach the window.
 static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
 {
     const int reach = w->t->reach_x[w->field][w->level];
@@ -61,42 +61,43 @@ static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
     *x1 = hf_min(w->sums.x1 + reach, w->level ? w->f->s->half_width : w->f->s->width);
 }
 
-// A bin's sums, to be drawn on; zeroed first if nothing has been drawn on them.
+// A bin's sums, ready to be drawn on; cleared first if nothing has been drawn there.
 struct hf_sums hf_draw_bin(struct walk *w, int b);
 
-// The neighbour of a pixel's half-resolution one that its tent reaches, on one axis.
+// The neighbour, on one axis, of a pixel's half-resolution pixel that its tent reaches.
 static inline int hf_beside(int pixel, int count)
 {
     const int q = (pixel >> 1) + (pixel & 1 ? 1 : -1);
     return q < 0 ? 0 : q >= count ? count - 1 : q;
 }
 
-// Shares of the backs of n pixels from (x, y) on; NULL: there are none.
+// Shares of the backs of n pixels from (x, y) on; NULL if there are none.
 const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n);
-// Add sources `from` to `to` of a row to the list, which is drawn when it is full.
+// Add sources `from` to `to` of a row to the list; a full list is drawn.
 void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to);
-// One source, its colour already weighted. r: of its picture.
+// Add one source, its colour already weighted. r: radius of its sprite.
 void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight);
-// A part of the back of full-resolution pixel (x, y), if it is in the walk's field and level, drawn on a pixel of the level.
+// Draw a part of the back of full-resolution pixel (x, y) on pixel (to_x, to_y) of the level, if it belongs to the
+// walk's field.
 void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part);
 // Draw the list.
 void hf_flush_sources(struct walk *w);
 
-// Slice k of the far field, and least and largest of its radii that reach the window r.
+// Slice k of the far field, and the range of far radii that reach the window r.
 struct hf_slice hf_slice_make(const struct hf_scatter *t, int k);
 void hf_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, float *most);
-// Multiply a row of n pixels by how much of each is in a slice.
+// Multiply a row of n pixels by their part in a slice.
 void hf_slice_row(const struct hf_slice *s, float sign, const float *radius, int n, float *row);
-// Put a slice behind what there is of those in front of it.
+// Composite a slice behind the slices in front of it.
 void hf_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
                      const struct hf_target *slice);
 
-// Columns of means, and floats of each line and how many there are, that a window so wide needs.
+// For a window of that width: columns of means, floats of a line, and number of lines.
 int hf_tent_columns(const struct hf_scatter *t, int field, int width);
 enum { HF_TENT_LINES = 8 + 4 + 16 + 8 + 5 + 2 };
-// Lay out its lines, each with HF_PAD floats before and after it. Before the first hf_list_half of a window.
+// Place those lines, each with HF_PAD floats before and after it. Call before the first hf_list_half of a window.
 void hf_tent_start(struct walk *w, float *memory, int length);
-// Sources of half-resolution row q.
+// Add the sources of half-resolution row q.
 void hf_list_half(struct walk *w, int q);
 
 #endif
