@@ -3,14 +3,13 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "frame/buffers.h"
 #include "frame/report.h"
 #include "frame/check.h"
 #include "base/cpu.h"
+#include "base/system.h"
 #include "pixel/depth.h"
 #include "pixel/depth_rows.h"
 #include "pixel/limits.h"
@@ -45,8 +44,7 @@ const char *hf_error_string(int error)
     }
 }
 
-__attribute__((format(printf, 3, 4))) static void say(const struct hf_config *config, enum hf_log_level level,
-                                                      const char *format, ...)
+HF_PRINTF(3, 4) static void say(const struct hf_config *config, enum hf_log_level level, const char *format, ...)
 {
     if (!config->log)
         return;
@@ -86,7 +84,7 @@ static int check_config(const struct hf_config *g)
 // What is wrong with the environment variable.
 static void say_variable(const struct hf_config *g)
 {
-    const char *name = getenv("HYPERFOCAL_ISA");
+    const char *name = hf_cpu_variable();
     int isa;
     if (hf_value(HF_NAMES_ISA, name, &isa))
         say(g, HF_LOG_ERROR,
@@ -121,8 +119,8 @@ int hf_open(struct hf_context **out, const struct hf_config *config)
     c->config = *g;
     c->mem = mem;
     c->isa = isa;
-    c->pid = (int)getpid();
-    c->threads = g->threads ? g->threads : hf_min(hf_cpu_count(), MAX_THREADS);
+    c->pid = hf_process();
+    c->threads = g->threads ? g->threads : hf_min(hf_system_processors(), MAX_THREADS);
     const size_t bytes = (size_t)c->threads * sizeof *c->workers;
     c->workers = mem.alloc(mem.cookie, bytes, HF_ALIGN);
     if (!c->workers) {
@@ -148,7 +146,7 @@ void hf_close(struct hf_context **context)
     if (!c)
         return;
     *context = NULL;
-    if (c->pid == (int)getpid())
+    if (c->pid == hf_process())
         hf_pool_close(&c->pool);
     else
         hf_pool_abandon(&c->pool);
@@ -260,7 +258,7 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     char message[HF_MESSAGE];
     struct hf_resolved r;
     c->report = (struct hf_report){0};
-    if (c->pool && c->threads > 1 && c->pid != (int)getpid()) {
+    if (c->pool && c->threads > 1 && c->pid != hf_process()) {
         say(&c->config, HF_LOG_ERROR, "the context was opened before fork(): its threads are in the parent process");
         return HF_ERR_THREAD;
     }

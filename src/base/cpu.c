@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/cpu.h"
 
-#include <sched.h>
 #include <stdatomic.h>
 #if HF_SIMD && HF_X86 && !HF_NARROW
 #include <cpuid.h>
 #endif
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+
+#include "base/system.h"
 
 static const char *const isa_names[] = {"auto", "scalar", "sse4.1", "avx2", "avx512", "neon"};
 enum { ISA_COUNT = sizeof isa_names / sizeof *isa_names };
@@ -56,9 +56,14 @@ int hf_isa_available(enum hf_isa isa)
     }
 }
 
+const char *hf_cpu_variable(void)
+{
+    return getenv("HYPERFOCAL_ISA");
+}
+
 enum hf_isa hf_cpu_choose(enum hf_isa wanted)
 {
-    const char *name = getenv("HYPERFOCAL_ISA");
+    const char *name = hf_cpu_variable();
     if (wanted == HF_ISA_AUTO && name && *name) {
         for (int i = HF_ISA_AUTO; i < ISA_COUNT; i++)
             if (!strcmp(name, isa_names[i]))
@@ -81,19 +86,7 @@ size_t hf_cpu_cache(void)
     size_t bytes = atomic_load_explicit(&known, memory_order_relaxed);
     if (bytes)
         return bytes - 1;
-#ifdef _SC_LEVEL3_CACHE_SIZE
-    const long told = sysconf(_SC_LEVEL3_CACHE_SIZE);  // slow: asks the processor, which a virtual machine intercepts
-    bytes = told > 0 ? (size_t)told : 0;
-#endif
+    bytes = hf_system_cache();
     atomic_store_explicit(&known, bytes + 1, memory_order_relaxed);
     return bytes;
-}
-
-int hf_cpu_count(void)
-{
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set))
-        return 1;
-    const int n = CPU_COUNT(&set);
-    return n < 1 ? 1 : n;
 }

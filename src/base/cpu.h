@@ -7,8 +7,8 @@
 
 // The set to use: `wanted`, for AUTO what HYPERFOCAL_ISA names, else the best. AUTO: that is not available or no name.
 enum hf_isa hf_cpu_choose(enum hf_isa wanted);
-// Processors this process may run on, at least 1.
-int hf_cpu_count(void);
+// The variable's value, or NULL.
+const char *hf_cpu_variable(void);
 // Bytes of the third-level cache, 0 where the system does not tell. It is asked once.
 size_t hf_cpu_cache(void);
 

@@ -1,35 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/mem.h"
 
-#include <stdlib.h>
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
+#include "base/system.h"
 #include "hyperfocal/hyperfocal.h"
-
-// Linux's pages of memory that is asked for in one piece: one fault instead of 512, and fewer misses of the table of pages
-// where a loop reads many rows at once.
-enum { LARGE_PAGE = 1 << 21 };
 
 static void *default_alloc(void *cookie, size_t size, size_t align)
 {
     (void)cookie;
-    void *ptr = NULL;
-    const int large = size >= 2 * (size_t)LARGE_PAGE;
-    if (posix_memalign(&ptr, large ? LARGE_PAGE : align, size))
-        return NULL;
-#ifdef MADV_HUGEPAGE
-    if (large)
-        madvise(ptr, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);  // a wish
-#endif
-    return ptr;
+    return hf_system_alloc(size, align);
 }
 
 static void default_free(void *cookie, void *ptr)
 {
     (void)cookie;
-    free(ptr);
+    hf_system_free(ptr);
 }
 
 const struct hf_mem hf_mem_default = {default_alloc, default_free, NULL};

@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The only file that knows pthreads.
-//
 // A frame is two short runs, so a worker that slept at once would cost a wake-up (tens of microseconds) each: idle
 // workers spin for a moment before they sleep, and so does the caller before it waits for the last of them.
 #include "base/pool.h"
 
-#include <pthread.h>
-#include <sched.h>
 #include <stdatomic.h>
 #include <stdint.h>
-#include <time.h>
 
+#include "base/system.h"
+#include "base/thread.h"
 #include "hyperfocal/hyperfocal.h"
 
 enum { SPIN_NS = 200000 };
 
 struct worker {
     struct hf_pool *pool;
-    pthread_t thread;
+    struct hf_thread thread;
     int index;
 };
 
@@ -25,8 +22,8 @@ struct hf_pool {
     const struct hf_mem *mem;
     int threads, started;
 
-    pthread_mutex_t lock;
-    pthread_cond_t wake, done;
+    struct hf_lock lock;
+    struct hf_condition wake, done;
     atomic_uint generation;  // counts runs; a change is the signal to work
     atomic_int busy;         // started workers that have not finished this run
     int quit, sleepers;      // under the lock
@@ -48,13 +45,6 @@ static void cpu_pause(void)
 #endif
 }
 
-static int64_t now_ns(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
-}
-
 static void work(struct hf_pool *p, int worker)
 {
     for (int i; (i = atomic_fetch_add_explicit(&p->next, 1, memory_order_relaxed)) < p->n;)
@@ -64,7 +54,7 @@ static void work(struct hf_pool *p, int worker)
 // Wait until the generation is no longer `seen`; returns the new one.
 static unsigned await_generation(struct hf_pool *p, unsigned seen)
 {
-    for (int64_t end = now_ns() + SPIN_NS; now_ns() < end;) {
+    for (int64_t end = hf_now_ns() + SPIN_NS; hf_now_ns() < end;) {
         for (int i = 0; i < 64; i++) {
             const unsigned g = atomic_load_explicit(&p->generation, memory_order_acquire);
             if (g != seen)
@@ -72,17 +62,17 @@ static unsigned await_generation(struct hf_pool *p, unsigned seen)
             cpu_pause();
         }
     }
-    pthread_mutex_lock(&p->lock);
+    hf_lock_take(&p->lock);
     p->sleepers++;
     while (atomic_load_explicit(&p->generation, memory_order_acquire) == seen)
-        pthread_cond_wait(&p->wake, &p->lock);
+        hf_condition_wait(&p->wake, &p->lock);
     p->sleepers--;
     const unsigned g = atomic_load_explicit(&p->generation, memory_order_acquire);
-    pthread_mutex_unlock(&p->lock);
+    hf_lock_release(&p->lock);
     return g;
 }
 
-static void *worker_main(void *arg)
+static void worker_main(void *arg)
 {
     struct worker *w = arg;
     struct hf_pool *p = w->pool;
@@ -90,12 +80,12 @@ static void *worker_main(void *arg)
     for (;;) {
         seen = await_generation(p, seen);
         if (p->quit)  // written before the generation was
-            return NULL;
+            return;
         work(p, w->index);
         if (atomic_fetch_sub_explicit(&p->busy, 1, memory_order_acq_rel) == 1) {
-            pthread_mutex_lock(&p->lock);
-            pthread_cond_signal(&p->done);
-            pthread_mutex_unlock(&p->lock);
+            hf_lock_take(&p->lock);
+            hf_condition_wake(&p->done);
+            hf_lock_release(&p->lock);
         }
     }
 }
@@ -103,12 +93,12 @@ static void *worker_main(void *arg)
 // Publish a run (or the order to quit) to the workers.
 static void release_workers(struct hf_pool *p)
 {
-    pthread_mutex_lock(&p->lock);
+    hf_lock_take(&p->lock);
     atomic_fetch_add_explicit(&p->generation, 1, memory_order_release);
     const int sleepers = p->sleepers;
-    pthread_mutex_unlock(&p->lock);
+    hf_lock_release(&p->lock);
     if (sleepers)
-        pthread_cond_broadcast(&p->wake);
+        hf_condition_wake_all(&p->wake);
 }
 
 void hf_pool_run(struct hf_pool *p, int n, void (*fn)(void *arg, int i, int worker), void *arg)
@@ -123,23 +113,23 @@ void hf_pool_run(struct hf_pool *p, int n, void (*fn)(void *arg, int i, int work
     work(p, 0);
     if (!p->started)
         return;
-    for (int64_t end = now_ns() + SPIN_NS; now_ns() < end;) {
+    for (int64_t end = hf_now_ns() + SPIN_NS; hf_now_ns() < end;) {
         for (int i = 0; i < 64; i++) {
             if (!atomic_load_explicit(&p->busy, memory_order_acquire))
                 return;
             cpu_pause();
         }
     }
-    pthread_mutex_lock(&p->lock);
+    hf_lock_take(&p->lock);
     while (atomic_load_explicit(&p->busy, memory_order_acquire))
-        pthread_cond_wait(&p->done, &p->lock);
-    pthread_mutex_unlock(&p->lock);
+        hf_condition_wait(&p->done, &p->lock);
+    hf_lock_release(&p->lock);
 }
 
 void hf_pool_relax(int n)
 {
     if (n % 256 == 255)
-        sched_yield();
+        hf_thread_yield();
     else
         cpu_pause();
 }
@@ -156,13 +146,13 @@ int hf_pool_open(struct hf_pool **out, int threads, const struct hf_mem *mem)
     if (!p)
         return HF_ERR_MEMORY;
     *p = (struct hf_pool){.mem = mem, .threads = threads};
-    pthread_mutex_init(&p->lock, NULL);
-    pthread_cond_init(&p->wake, NULL);
-    pthread_cond_init(&p->done, NULL);
+    hf_lock_open(&p->lock);
+    hf_condition_open(&p->wake);
+    hf_condition_open(&p->done);
     for (int i = 1; i < threads; i++) {
         struct worker *w = &p->workers[i];
         *w = (struct worker){.pool = p, .index = i};
-        if (pthread_create(&w->thread, NULL, worker_main, w)) {
+        if (hf_thread_start(&w->thread, worker_main, w)) {
             hf_pool_close(&p);
             return HF_ERR_THREAD;
         }
@@ -181,10 +171,10 @@ void hf_pool_close(struct hf_pool **pool)
     p->quit = 1;
     release_workers(p);
     for (int i = 1; i <= p->started; i++)
-        pthread_join(p->workers[i].thread, NULL);
-    pthread_cond_destroy(&p->done);
-    pthread_cond_destroy(&p->wake);
-    pthread_mutex_destroy(&p->lock);
+        hf_thread_join(&p->workers[i].thread);
+    hf_condition_close(&p->done);
+    hf_condition_close(&p->wake);
+    hf_lock_close(&p->lock);
     p->mem->free(p->mem->cookie, p);
 }
 

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/system.h"
 #include "frame/buffers.h"
 #include "frame/dump.h"
 #include "frame/report.h"

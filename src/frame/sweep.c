@@ -3,17 +3,10 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/system.h"
 #include "frame/buffers.h"
 #include "pixel/pass_c.h"
-
-int64_t hf_now_ns(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
-}
 
 static struct hf_rect grown_in_frame(const struct hf_plan *p, struct hf_rect r, struct hf_reach by)
 {

@@ -17,8 +17,6 @@ struct hf_render {
     const struct hf_block *touched;  // what hf_sweep_touch writes to
 };
 
-int64_t hf_now_ns(void);
-
 // Tasks for the pool; arg is a struct hf_render.
 // Look at the depth of a chunk, and make its first buffers where that already says that they will be read.
 void hf_sweep_look(void *arg, int chunk, int worker);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The pool alone: each index once, in order and on one worker number at a time; no tasks, one, many; more threads than
-// cores; a task that fails; threads that cannot be made. Linked with --wrap=pthread_create, so that any of them can
+// cores; a task that fails; threads that cannot be made. Linked with --wrap=hf_thread_start, so that any of them can
 // fail.
 #include "base/pool.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/system.h"
+#include "base/thread.h"
 #include "hyperfocal/hyperfocal.h"
 #include "support/check.h"
 
@@ -22,8 +22,8 @@ static int live_blocks, refuse_memory;
 static void *take(void *cookie, size_t size, size_t align)
 {
     (void)cookie;
-    void *p = NULL;
-    if (refuse_memory || posix_memalign(&p, align, size))
+    void *p = refuse_memory ? NULL : hf_system_alloc(size, align);
+    if (!p)
         return NULL;
     memset(p, 0xff, size);  // nothing may count on zeros
     live_blocks++;
@@ -34,7 +34,7 @@ static void give(void *cookie, void *p)
 {
     (void)cookie;
     live_blocks--;
-    free(p);
+    hf_system_free(p);
 }
 
 static const struct hf_mem memory = {take, give, NULL};
@@ -43,30 +43,29 @@ static int create_calls, create_fails_at = -1;  // this call fails, counted from
 static atomic_int running;                      // threads made that have not returned
 
 struct start {
-    void *(*fn)(void *arg);
+    void (*run)(void *arg);
     void *arg;
 };
 
-static void *counted_start(void *arg)
+static void counted_start(void *arg)
 {
     const struct start s = *(struct start *)arg;
     free(arg);
-    void *result = s.fn(s.arg);
+    s.run(s.arg);
     atomic_fetch_sub(&running, 1);
-    return result;
 }
 
-int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attr, void *(*fn)(void *), void *arg);
-int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr, void *(*fn)(void *), void *arg);
+int __real_hf_thread_start(struct hf_thread *thread, void (*run)(void *arg), void *arg);
+int __wrap_hf_thread_start(struct hf_thread *thread, void (*run)(void *arg), void *arg);
 
-int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr, void *(*fn)(void *), void *arg)
+int __wrap_hf_thread_start(struct hf_thread *thread, void (*run)(void *arg), void *arg)
 {
     if (create_calls++ == create_fails_at)
-        return 11;  // EAGAIN
+        return -1;
     struct start *s = malloc(sizeof *s);
-    *s = (struct start){fn, arg};
+    *s = (struct start){run, arg};
     atomic_fetch_add(&running, 1);
-    return __real_pthread_create(thread, attr, counted_start, s);
+    return __real_hf_thread_start(thread, counted_start, s);
 }
 
 // ---- runs ----
@@ -139,7 +138,9 @@ static void runs(int threads)
     check_run(p, threads, 100, -1);
     for (int i = 0; i < 100; i++)  // one after the other, so that workers are caught between two runs
         check_run(p, threads, i % 5, -1);
-    usleep(3000);  // longer than idle workers spin: they sleep now, and are woken
+    const int64_t later = hf_now_ns() + 3000000;
+    while (hf_now_ns() < later)  // longer than idle workers spin: they sleep now, and are woken
+        hf_thread_yield();
     check_run(p, threads, 1000, -1);
     hf_pool_close(&p);
     CHECK(p == NULL);
@@ -233,7 +234,7 @@ static void memory_refused(void)
 
 int main(void)
 {
-    const int cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    const int cores = hf_system_processors();
     for (int threads = 1; threads <= 8; threads++)
         runs(threads);
     runs(4 * cores < MAX_THREADS ? 4 * cores + 1 : MAX_THREADS);

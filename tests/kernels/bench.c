@@ -2,17 +2,15 @@
 // Times the calls that the tests make, on a typical tile: 128 x 64 half-resolution pixels, radius 12.
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "base/system.h"
 #include "harness.h"
 
 enum { SAMPLES = 41, SAMPLE_NS = 300000 };
 
 static double now_ns(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
+    return (double)hf_now_ns();
 }
 
 // Cycles of the clock that never changes its speed; 0 where there is none to read.
