@@ -33,8 +33,13 @@
 extern "C" {
 #endif
 
-#if defined(_WIN32)
+// On Windows define HF_STATIC before the include where the static library is linked.
+#if defined(_WIN32) && defined(HF_STATIC)
 #define HF_API
+#elif defined(_WIN32) && defined(HF_BUILDING)
+#define HF_API __declspec(dllexport)
+#elif defined(_WIN32)
+#define HF_API __declspec(dllimport)
 #else
 #define HF_API __attribute__((visibility("default")))
 #endif

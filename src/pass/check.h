@@ -7,8 +7,16 @@
 
 enum { HF_MESSAGE = 256, HF_MAX_SIZE = 65536 };  // bytes of a sentence, pixels of a side
 
+// The compiler checks formats as those of C11's printf. mingw's has that since _GNU_SOURCE asks for it, but gcc there takes
+// the name for Microsoft's.
+#ifdef __MINGW32__
+#define HF_PRINTF(format_at, first) __attribute__((format(gnu_printf, format_at, first)))
+#else
+#define HF_PRINTF(format_at, first) __attribute__((format(printf, format_at, first)))
+#endif
+
 // Put a sentence into message, which holds HF_MESSAGE bytes as all of these do. Returns HF_ERR_ARG.
-int hf_bad(char *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int hf_bad(char *message, const char *format, ...) HF_PRINTF(2, 3);
 
 // Return HF_OK, or HF_ERR_ARG with one sentence that names argument and value.
 int hf_check_between(const char *name, float value, float least, float most, char *message);

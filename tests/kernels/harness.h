@@ -330,12 +330,16 @@ double bound_largest_sample(const struct world *w, int c, int x0, int y0, int x1
 double bound_quotient(double error, double divisor_error, double divisor, double value);
 double bound_pixel(const struct world *w, int c, int x, int y, float want, float got);
 
-// crash.c. A crash ends the program, as a failed test that names what it was at, ...
+// host_posix.c, host_windows.c. A crash ends the program, as a failed test that names its step. On POSIX one in guarded does
+// not: guarded returns the number of the signal, else 0, and crash_name gives its words.
 void crash_handlers(void);
 extern const char *volatile crash_step;
-// ... but not one in here: it returns the number of the signal, else 0.
 int guarded(void (*call)(struct world *, const struct kernels *, enum arena, int), struct world *w,
             const struct kernels *k, enum arena a, int index);
+const char *crash_name(int number);
+// Addresses whose use is a crash, and leave to use some of them, whole pages. Ends the program if the system refuses.
+void *memory_reserve(size_t bytes);
+void memory_allow(void *p, size_t bytes);
 
 // bench.c
 void bench_run(struct world *w, const struct level *levels, int level_count, const char *name);

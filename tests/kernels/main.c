@@ -174,7 +174,7 @@ static int run_level(struct world *w, const struct test *t, const struct level *
     memset(&w->result[ARENA_TEST], 0, sizeof w->result[ARENA_TEST]);
     const int number = guarded(t->call, w, &l->k, ARENA_TEST, t->index);
     if (number) {
-        snprintf(message, 256, "%s", strsignal(number));
+        snprintf(message, 256, "%s", crash_name(number));
         return 0;
     }
     return t->check(w, l, message);
@@ -185,7 +185,7 @@ static int run_reference(struct world *w, const struct test *t, const struct lev
     world_reset(w, ARENA_REFERENCE);
     const int number = guarded(t->call, w, &c->k, ARENA_REFERENCE, t->index);
     if (number) {
-        snprintf(message, 256, "%s", strsignal(number));
+        snprintf(message, 256, "%s", crash_name(number));
         return 0;
     }
     return reference_check(w, message);
@@ -197,6 +197,7 @@ static void run_case(struct world *w, const struct test *t, int number, const st
 {
     char message[256];
     w->rng = rng_from(o->seed, (uint64_t)(t - tests) * 1000000 + (uint64_t)number);
+    crash_step = t->name;
     t->make(w, t->index);
     for (int i = 0; i < level_count && !outcomes[0].failed; i++) {
         if (outcomes[i].failed)
@@ -282,7 +283,7 @@ int main(int argc, char **argv)
     struct options o = parse(argc, argv);
     static struct level levels[MAX_LEVELS];
     static struct world world;
-    setvbuf(stdout, NULL, _IOLBF, 0);
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
     crash_handlers();
     const int level_count = levels_make(levels, o.isa, !o.brief);
     if (o.isa && level_count == 1) {

@@ -331,7 +331,7 @@ int main(int argc, char **argv)
     const int level_count = levels_make(levels, isa, !brief);
     if (isa && level_count == 1)
         return 77;
-    setvbuf(stdout, NULL, _IOLBF, 0);
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
     arenas_open();
     for (int i = first; i < SPECIALS + frames; i++)
         run_frame(&w, levels, level_count, seed ? strtoull(seed, NULL, 0) : 1, i);

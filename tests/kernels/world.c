@@ -2,7 +2,6 @@
 // Memory of the cases, and frames in it.
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 
 #include "harness.h"
 
@@ -12,25 +11,12 @@ static const size_t NOWHERE_BYTES = 1 << 26;
 
 static uint8_t *base, *nowhere;
 
-static void *reserve(size_t bytes)
-{
-    void *p = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (p == MAP_FAILED) {
-        perror("mmap");
-        exit(1);
-    }
-    return p;
-}
-
 void arenas_open(void)
 {
-    nowhere = reserve(NOWHERE_BYTES);
-    base = reserve((size_t)ARENA_COUNT * SLOT_COUNT * SLOT_STEP);
+    nowhere = memory_reserve(NOWHERE_BYTES);
+    base = memory_reserve((size_t)ARENA_COUNT * SLOT_COUNT * SLOT_STEP);
     for (int i = 0; i < ARENA_COUNT * SLOT_COUNT; i++)
-        if (mprotect(base + (size_t)i * SLOT_STEP, SLOT_BYTES, PROT_READ | PROT_WRITE)) {
-            perror("mprotect");
-            exit(1);
-        }
+        memory_allow(base + (size_t)i * SLOT_STEP, SLOT_BYTES);
 }
 
 void *in_arena(enum arena a, const void *made)

@@ -3,6 +3,8 @@
 #include <setjmp.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "harness.h"
@@ -38,4 +40,27 @@ int guarded(void (*call)(struct world *, const struct kernels *, enum arena, int
     }
     calling = 0;
     return number;
+}
+
+const char *crash_name(int number)
+{
+    return strsignal(number);
+}
+
+void *memory_reserve(size_t bytes)
+{
+    void *p = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (p == MAP_FAILED) {
+        perror("mmap");
+        exit(1);
+    }
+    return p;
+}
+
+void memory_allow(void *p, size_t bytes)
+{
+    if (mprotect(p, bytes, PROT_READ | PROT_WRITE)) {
+        perror("mprotect");
+        exit(1);
+    }
 }
