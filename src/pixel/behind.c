@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies behind near pixels. Nobody has seen it; the best that a flat picture tells is what is seen around them:
-// averages over ever wider neighbourhoods, of which the nearest that holds anything counts most, up to about the near
-// pixel's own radius: farther in its picture hides all.
+// Disocclusion fill: what lies behind near pixels. One flat picture does not show that; the best guess is what is
+// visible around them. Averages are taken over ever wider neighbourhoods, and the smallest that holds anything counts
+// most. They extend to about the near pixel's own radius, because beyond it the pixel's sprite covers everything.
 //
-// Half resolution, every other quad kept (no decimation): so that a shift by a quad moves the result and no more.
+// The planes have half resolution. Wider levels keep all quads (no decimation), so a shift by a quad shifts the result
+// and changes nothing else.
 #include "pixel/behind.h"
 
 #include <string.h>
@@ -22,7 +23,7 @@ int hf_behind_levels(float largest)
 
 static int reach_of(int levels)
 {
-    return levels ? 1 << (levels - 1) : 0;  // and one more, for the upsampling
+    return levels ? 1 << (levels - 1) : 0;  // one more for upsampling
 }
 
 int hf_behind_halo(int levels)
@@ -30,7 +31,7 @@ int hf_behind_halo(int levels)
     return levels ? reach_of(levels) + WIDE : 0;
 }
 
-// And room for a vector that begins within a row.
+// With room for a vector that begins inside a row.
 static int stride_of(int reach)
 {
     return ((HF_BEHIND_BLOCK + 2 * reach + 15) & ~15) + HF_PAD;
@@ -44,7 +45,7 @@ size_t hf_behind_floats(int levels, int planes)
     return levels ? (size_t)(2 * planes + 2) * plane + 3 * wide + 3 * line : 0;
 }
 
-// Whether some quad of the block, or one of those around it, is near. line: scratch.
+// Whether a quad of the block, or one next to it, is near. line: scratch.
 static int has_near(const struct hf_behind_source *source, const struct hf_frame *f, struct hf_rect r, float *line)
 {
     const int from = hf_max(r.x0 - 1, 0), to = hf_min(r.x1 + 1, f->s->half_width);
@@ -57,7 +58,7 @@ static int has_near(const struct hf_behind_source *source, const struct hf_frame
     return 0;
 }
 
-// The largest near radius of each quad, of the planes and WIDE around; 0 beyond the frame.
+// Load the largest near radius of each quad of the planes and WIDE quads around; 0 beyond the frame.
 static void load_near(const struct hf_behind *h, const struct hf_behind_source *source, const struct hf_frame *f,
                       float *near)
 {
@@ -69,7 +70,7 @@ static void load_near(const struct hf_behind *h, const struct hf_behind_source *
         source->near(f, y, from, to, near + (ptrdiff_t)(y - y0) * h->near_stride + from - x0);
 }
 
-// The largest of each quad's neighbours up to WIDE = 1 + 2 + 4 away, each way. work: as large.
+// The largest near radius within WIDE = 1 + 2 + 4 quads in each direction. work is as large as near.
 static void spread_near(const struct hf_behind *h, const struct hf_frame *f, const float *near, float *work, float *out)
 {
     const ptrdiff_t stride = h->near_stride, all = stride * (h->rows + 2 * WIDE);
@@ -90,7 +91,7 @@ void hf_behind_near(const struct hf_frame *f, const struct hf_buf *radii, int c,
     for (int y = 2 * q; y < hf_min(2 * q + 2, f->s->height); y++) {
         const float *radius = hf_at(radii, c, 0, y);
         f->k->behind.near_row(radius + 2 * from, even - from, out);
-        // The odd width's last pixel is half a quad.
+        // At an odd width the last quad has one column.
         if (even < to && -radius[2 * even] > out[even - from])
             out[even - from] = -radius[2 * even];
     }
@@ -103,7 +104,7 @@ void hf_behind_add(const struct hf_frame *f, const float *v, const float *weight
         out[n / 2] += v[n - 1] * (weight[n - 1] * scale);
 }
 
-// Quads of the block and all around it that is read; 0 beyond the frame.
+// Load the quads of the block and all around it that is read; 0 beyond the frame.
 static void load(struct hf_behind *h, const struct hf_behind_source *source, const struct hf_frame *f, float *line)
 {
     const int from = hf_max(h->x0, 0), to = hf_min(h->x0 + h->columns, f->s->half_width);
@@ -119,7 +120,7 @@ static void load(struct hf_behind *h, const struct hf_behind_source *source, con
     }
 }
 
-// The mean of three by three, `step` apart, of what lies `rim` or more inside the planes.
+// Replace each quad by the mean of 3 x 3 quads, `step` apart, at least `rim` inside the planes.
 static void widen(const struct hf_behind *h, const struct hf_frame *f, float *level, float *line, int step, int rim)
 {
     const ptrdiff_t stride = h->stride, down = step * stride;
@@ -134,7 +135,7 @@ static void widen(const struct hf_behind *h, const struct hf_frame *f, float *le
     }
 }
 
-// Add a level to the result, where a quad's largest near radius asks for it.
+// Add a level to the result, by the part that each quad's largest near radius gives it.
 static void add_level(const struct hf_behind *h, const struct hf_frame *f, int j, const float *part)
 {
     const int rim = h->reach - 1, n = h->columns - 2 * rim;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of what lies behind near pixels. Which rows, and why: behind.c.
+// Row kernels of the disocclusion fill; behind.c says which rows, and why.
 #include "pixel/behind.h"
 #include "pixel/kernels.h"
 

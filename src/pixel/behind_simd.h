@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of what lies behind near pixels, on vectors. Nothing is fused: the scatter has the same bits everywhere.
-// What adds to a row, or ends at the frame's edge, leaves the rest of it alone: behind_rows.c finishes it.
+// Row kernels of the disocclusion fill on vectors. Nothing is fused: the scatter has the same bits everywhere. Rows
+// that are added to, or that end at the frame's edge, must not be written past their end; behind_rows.c does their last
+// pixels.
 #ifndef HF_BEHIND_SIMD_H
 #define HF_BEHIND_SIMD_H
 

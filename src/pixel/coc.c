@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CoC generation: normalised near and far circle of confusion of every pixel, from depth.
+// CoC generation: the normalised near and far circle of confusion of each pixel, from its depth.
 #include <math.h>
 
 #include "pixel/depth_rows.h"
 #include "pixel/pass_c.h"
 
-// The rounding of a storage's CoC.
+// Round a CoC as a storage does.
 float hf_round_coc(enum hf_storage storage, float t)
 {
     if (storage == HF_STORAGE_PACKED)

@@ -10,13 +10,13 @@ struct coc_sums {
     vm nan;
 };
 
-// One vector of depth to near and far CoC. whole: near and the statistics too, not just far.
+// Near and far CoC of one vector of depth. whole: near CoC and statistics too, not only far.
 HF_INLINE void coc_block(const struct hf_setup *s, const enum hf_depth_form form, const int whole, vf d, vf px, vf py,
                          float *near, float *far, struct coc_sums *sums)
 {
     vm none;
     const vf v = coc_variable(s, form, d, px, py, &none), f = coc_far(s, v);
-    // A NaN is no surface, and mostly there is one.
+    // A NaN counts as no surface here, so it is looked for only where surfaces are missing.
     if (vm_any(none)) {
         sums->nan = vm_or(sums->nan, vf_ne(d, d));
         if (whole)
@@ -37,7 +37,7 @@ HF_INLINE void coc_block(const struct hf_setup *s, const enum hf_depth_form form
     sums->far_max = vf_max(f, sums->far_max);
 }
 
-// Note which groups of lanes have CoC: lane x is the last of one, or of the row.
+// Note whether the current group of lanes has CoC; lane x is the last of a group or of the row.
 HF_INLINE void coc_end_group(struct coc_sums *sums, int x)
 {
     sums->near_groups |= (uint64_t)vm_any(sums->group_near) << hf_group(x);
@@ -48,7 +48,7 @@ HF_INLINE void coc_end_group(struct coc_sums *sums, int x)
 HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, const int whole, int x, int y, int n,
                        float *const out[4], struct coc_sums *sums)
 {
-    // Copies: a store through a float pointer cannot change them, so that they stay in registers.
+    // Copies: stores through a float pointer cannot change them, so they stay in registers.
     const struct hf_setup local = *f->s, *s = &local;
     float *const near[2] = {out[0], out[1]}, *const far[2] = {out[2], out[3]};
     struct coc_sums local_sums = *sums;
@@ -58,10 +58,10 @@ HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, 
     const vf py = vf_set1((float)y + 0.5f - s->ray_cy), step = vf_load(steps);
     for (int i = 0; i < n; i += VF_N, row += 8 * VF_N) {
         vf even, odd;
-        for (int k = 0; k < 8 * VF_N; k += 64)  // the row after next: see load_plane
+        for (int k = 0; k < 8 * VF_N; k += 64)  // two rows ahead, as in load_plane
             __builtin_prefetch((const uint8_t *)((uintptr_t)row + (uintptr_t)(2 * stride)) + k);
         vf_unzip(vf_load(row), vf_load(row + 4 * VF_N), &even, &odd);
-        // (2x + 1/2) - axis: exact additions first, as in the C.
+        // (2x + 1/2) - axis: the exact additions come first, as in the C.
         const vf px = vf_add(vf_set1((float)(2 * (x + i))), step);
         const vf px_even = vf_sub(vf_add(px, vf_set1(0.5f)), vf_set1(s->ray_cx));
         const vf px_odd = vf_sub(vf_add(px, vf_set1(1.5f)), vf_set1(s->ray_cx));
@@ -92,8 +92,8 @@ HF_INLINE void coc_row_form(const struct hf_frame *f, const int whole, int x, in
     }
 }
 
-// CoC rises or falls with depth throughout, so the nearest and the farthest pixel of a row speak for all of it. AVX-512,
-// a frame that is sharp: 0.42 ms to make its CoC, 0.2 to see that there is none.
+// CoC is monotone in depth, so the nearest and the farthest pixel of a row decide for all of it. With AVX-512, a sharp
+// frame takes 0.42 ms to compute its CoC, and 0.2 ms to find that there is none.
 static int sharp_row_simd(const struct hf_frame *f, int x, int y, int n)
 {
     const struct hf_setup *s = f->s;
@@ -146,7 +146,7 @@ static void coc_row_simd(const struct hf_frame *f, int x, int y, int n, float *c
                           .far_max = vf_most(sums.far_max),
                           .near_groups = sums.near_groups,
                           .far_groups = sums.far_groups};
-    // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
+    // A NaN needs its neighbours, so the plain C does the row again; elsewhere its bits are the same.
     const int from = vm_any(sums.nan) ? 0 : whole;
     if (from == 0)
         c = (struct hf_counts){0};

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CoC of a vector of depth. Nothing is fused here, so that "is there any CoC" has one answer on every machine.
+// CoC of a vector of depth. Nothing is fused, so whether a pixel has any CoC is the same on every machine.
 #ifndef HF_COC_VF_H
 #define HF_COC_VF_H
 
 #include "pixel/depth_rows.h"
 #include "pixel/format_vf.h"
 
-// 0..1; NaN becomes 0.
+// Clamps to 0..1; NaN becomes 0.
 HF_INLINE vf coc_saturate(vf v)
 {
     return vf_min(vf_max(v, vf_zero()), vf_set1(1));
@@ -19,7 +19,7 @@ HF_INLINE vf coc_shape(vf t)
 
 HF_INLINE vf coc_round_unorm(vf t)
 {
-    // The sum is positive: truncation is floor.
+    // The sum is positive, so truncation is floor.
     const vf k = vi_to_vf(vf_to_vi(vf_add(vf_mul(t, vf_set1(255)), vf_set1(0.5f))));
     return vf_mul(k, vf_set1(1 / 255.0f));
 }
@@ -31,8 +31,8 @@ HF_INLINE vf coc_round(enum hf_storage storage, vf t)
     return storage == HF_STORAGE_HALF ? round_half_vf(t) : t;
 }
 
-// Depth samples d to the variable that CoC is linear in. none: lanes without a surface. py: y + 1/2 - axis; px: pixel
-// centres likewise.
+// The variable that CoC is linear in, from depth samples d. none: lanes without a surface. px, py: pixel centres
+// relative to the optical axis.
 HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form form, vf d, vf px, vf py, vm *none)
 {
     const vf infinity = vf_set1(__builtin_inff()), minus_one = vf_set1(-1);
@@ -59,7 +59,7 @@ HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form for
     return s->lens ? vf_div(minus_one, z) : z;
 }
 
-// From 0 to 1, of the shape that was asked for.
+// The CoC from 0 to 1, linear or smoothstep.
 HF_INLINE vf coc_ramp(const struct hf_setup *s, vf t)
 {
     t = coc_saturate(t);

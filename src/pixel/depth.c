@@ -23,8 +23,8 @@ void hf_setup_depth(struct hf_setup *s, const struct hf_depth *d, float pixel_as
         break;
     case HF_DEPTH_NDC_D3D:
     case HF_DEPTH_NDC_GL:
-        // 1/z = 1/f + e (1/n - 1/f) with e = 1 - d: that difference is exact where depth is most crowded, while
-        // 1/n - d (1/n - 1/f) would cancel there.
+        // 1/z = 1/f + e (1/n - 1/f) with e = 1 - d. That difference is exact where depth values are densest; 1/n - d
+        // (1/n - 1/f) would cancel there.
         s->form = HF_FORM_IZ;
         s->e_a = d->type == HF_DEPTH_NDC_GL ? 0.5f : 1;
         s->e_b = d->type == HF_DEPTH_NDC_GL ? -0.5f : -1;
@@ -71,7 +71,7 @@ float hf_depth_decode(const struct hf_setup *s, float d, int x, int y)
     }
 }
 
-// The largest finite depth among the 8 neighbours, else no surface.
+// The largest finite depth among the 8 neighbours; without one, no surface.
 static float repair_depth(const struct hf_setup *s, const struct hf_depth *depth, int x, int y)
 {
     float best = -INFINITY;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth samples as floats, whatever they are stored as.
+// Depth samples as floats, from every format.
 #ifndef HF_DEPTH_ROWS_H
 #define HF_DEPTH_ROWS_H
 
@@ -13,12 +13,12 @@
 size_t hf_depth_bytes(enum hf_depth_format format);
 // The sample of pixel (x, y).
 float hf_depth_sample(const struct hf_depth *depth, int x, int y);
-// n samples from p on.
+// Convert n samples from p on.
 void hf_widen_depth_c(enum hf_depth_format format, const void *p, int n, float *out);
 void hf_depth_rows_c(struct hf_pixel_kernels *k);
 
-// n samples of row y from pixel x on: the caller's own if they are floats, else floats in one of the frame's scratch
-// rows for depth, `row` 0 or 1. Not aligned.
+// n samples of row y from pixel x on, as floats: the caller's own buffer if it holds floats, else one of the frame's
+// scratch rows for depth, `row` 0 or 1. Not aligned.
 const uint8_t *hf_depth_row(const struct hf_frame *f, int x, int y, int n, int row);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth of other formats than float32 to floats, on vectors.
+// Depth of formats other than float32 converted to floats, on vectors.
 #ifndef HF_DEPTH_ROWS_SIMD_H
 #define HF_DEPTH_ROWS_SIMD_H
 
@@ -18,7 +18,7 @@ HF_INLINE vf widen_word(const enum hf_depth_format format, vi u)
     return vf_mul(vf_add(vf_mul(high, vf_set1(65536)), low), vf_set1(HF_DEPTH_UNIT_32));
 }
 
-// Whole vectors alone are read: the C does what is left.
+// Only whole vectors are read; the C does the rest.
 HF_INLINE void widen_words(const enum hf_depth_format format, const uint8_t *p, int n, float *out)
 {
     int i = 0;
@@ -42,7 +42,7 @@ static void widen_unorm32_simd(const void *p, int n, float *out)
     widen_words(HF_DEPTH_FORMAT_UNORM32, p, n, out);
 }
 
-// Two samples a word.
+// Each word holds two samples.
 static void widen_unorm16_simd(const void *p, int n, float *out)
 {
     const uint8_t *from = p;
@@ -59,7 +59,8 @@ static void widen_unorm16_simd(const void *p, int n, float *out)
     hf_widen_depth_c(HF_DEPTH_FORMAT_UNORM16, from + (size_t)i * 2, n - i, out + i);
 }
 
-// Infinity and NaN as floats have them; vf_load_half may turn them into large numbers, so the C does such rows.
+// Infinity and NaN stay what they are. vf_load_half may turn them into large numbers, so the C does rows that have
+// some.
 static void widen_float16_simd(const void *p, int n, float *out)
 {
     const uint8_t *from = p;

@@ -124,7 +124,7 @@ void hf_put_sample(const struct hf_image *m, int c, int x, int y, float v)
     }
 }
 
-// All formats alike; the vector versions differ.
+// One loop for all formats; the vector versions have one each.
 static int load_row_c(const struct hf_image *m, int x, int y, int n, float *const even[4], float *const odd[4])
 {
     const int channels = hf_image_channels(m), last = m->width - 1;
@@ -138,7 +138,7 @@ static int load_row_c(const struct hf_image *m, int x, int y, int n, float *cons
     return bad;
 }
 
-// The benchmark's format, with the switch taken out of the loop.
+// The benchmark's format, with the switch outside the loop.
 static int load_r11_c(const struct hf_image *m, int x, int y, int n, float *const even[4], float *const odd[4])
 {
     const uint8_t *row = row_of(m, 0, y);
@@ -170,7 +170,7 @@ static uint64_t store_r11_c(const struct hf_image *m, int x, int y, int n, const
     return clamped;
 }
 
-// Does v fit channel c of a format?
+// Whether v fits channel c of a format.
 static int fits(enum hf_format format, int c, float v)
 {
     if (format == HF_FORMAT_RGBA16F)
@@ -222,7 +222,7 @@ static int finite_f16_c(const void *words, size_t n, void *copy)
     return 1;
 }
 
-// Whole numbers are finite, whatever they are.
+// Integers are always finite.
 static int finite_any_c(const void *words, size_t n, void *copy)
 {
     (void)words;

@@ -11,7 +11,7 @@
 
 enum { HF_FORMAT_COUNT = HF_FORMAT_RGBA16 + 1, HF_DEPTH_FORMAT_COUNT = HF_DEPTH_FORMAT_X8D24 + 1 };
 
-// A sample of a narrow buffer (frame.h), 0..1: a float that the storage holds exactly.
+// A sample of a narrow buffer (frame.h), 0..1, as a float that the storage holds exactly.
 static inline float hf_narrow_load(enum hf_storage storage, const void *p)
 {
     float v;
@@ -26,7 +26,7 @@ static inline float hf_narrow_load(enum hf_storage storage, const void *p)
     return v;
 }
 
-// Rounded to nearest.
+// Store v, rounded to nearest.
 static inline void hf_narrow_store(enum hf_storage storage, void *p, float v)
 {
     if (storage == HF_STORAGE_PACKED) {
@@ -39,10 +39,10 @@ static inline void hf_narrow_store(enum hf_storage storage, void *p, float v)
     }
 }
 
-// One sample as the file formats' rows give it: channel c (0..3) of pixel (x, y); 1 for an alpha that is not there.
-// Not finite stays not finite.
+// Channel c (0..3) of pixel (x, y), as the row kernels read it; a missing alpha is 1. A value that is not finite stays
+// so.
 float hf_sample(const struct hf_image *image, int c, int x, int y);
-// Overwrite it, rounded to the format.
+// Overwrite that sample, rounded to the format.
 void hf_put_sample(const struct hf_image *image, int c, int x, int y, float v);
 // v rounded to what the format holds in channel c.
 float hf_round_to_format(enum hf_format format, int c, float v);

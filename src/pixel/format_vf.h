@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors in and out of the formats. The small floats share one trick: shifted so
-// that their exponent lies where a float's does, they are floats too small by 2^112, denormals included, and one
-// multiplication puts that right.
+// Load and store vectors in every format. The small floats share one trick: shifted so that their exponent is where a
+// float's is, they are floats too small by 2^112, denormals included, and one multiplication corrects that.
 #ifndef HF_FORMAT_VF_H
 #define HF_FORMAT_VF_H
 
@@ -14,7 +13,8 @@ HF_INLINE vf clamp_unsigned(vf v, float max)
     return vf_min(vf_max(v, vf_zero()), vf_set1(max));
 }
 
-// Unsigned, m mantissa bits, to nearest even; 0 <= v <= the largest finite. hf_encode_small says how.
+// Encode an unsigned float with m mantissa bits, to nearest even; 0 <= v <= the largest finite. hf_encode_small
+// explains how.
 HF_INLINE vi encode_normal(vf v, const int m)
 {
     const vi u = vf_as_vi(v), odd = vi_and(vi_shr(u, 23 - m), vi_set1(1));
@@ -30,22 +30,22 @@ HF_INLINE vi encode_small(vf v, const int m)
     return vf_as_vi(vf_select(vf_lt(v, vf_set1(0x1p-14f)), vi_as_vf(denormal), vi_as_vf(normal)));
 }
 
-// v as a float 2^112 times too small, so that the small format's exponent and m mantissa bits are its upper ones; what
-// is below them may be anything. As v is cut before the product, that is exact where it counts.
+// v as a float 2^112 times too small, so that the small format's exponent and m mantissa bits are its upper bits; the
+// bits below may be anything. v is cut before the product, so the product is exact in the bits that count.
 HF_INLINE vi small_bits(vf v, const int m)
 {
     const vi cut = vi_and(vf_as_vi(v), vi_set1((int32_t)(0xffffffffu << (23 - m))));
     return vf_as_vi(vf_mul(vi_as_vf(cut), vf_set1(0x1p-112f)));
 }
 
-// Float holding v truncated to m mantissa bits and 5 exponent bits.
+// A float with the value of v truncated to m mantissa bits and 5 exponent bits.
 HF_INLINE vf truncate_small(vf v, const int m)
 {
     const vi bits = vi_and(small_bits(v, m), vi_set1((int32_t)(0xffffffffu << (23 - m))));
     return vf_mul(vi_as_vf(bits), vf_set1(0x1p112f));
 }
 
-// Channel c of R11G11B10F words. *most: the bits of the largest so far, before it is put right; none is negative.
+// Channel c of R11G11B10F words. *most: the largest bits so far, before the multiplication; none is negative.
 HF_INLINE vf r11_channel(vi u, const int c, vi *most)
 {
     const vi v = c == 0   ? vi_and(vi_shl(u, 17), vi_set1(0x7ff << 17))
@@ -61,8 +61,8 @@ HF_INLINE void r11_unpack(vi u, vf out[3], vi *most)
         out[c] = r11_channel(u, c, most);
 }
 
-// The bits of v above 2^-14, which count from 0, to be cut off after rounding to m mantissa bits. Smaller numbers come
-// out huge, unless they round to 2^-14.
+// The bits of v relative to those of 2^-14, to be cut after rounding to m mantissa bits. Smaller numbers give huge
+// results, unless they round to 2^-14.
 HF_INLINE vi r11_from_smallest(vf v, const int m)
 {
     return vi_add(vf_as_vi(v), vi_set1((int32_t)((1u << (22 - m)) - 1 - (113u << 23))));
@@ -73,7 +73,8 @@ HF_INLINE vi r11_odd(vf v, const int m)
     return vi_and(vi_shr(vf_as_vi(v), 23 - m), vi_set1(1));
 }
 
-// Out of line, and its arguments in registers: rare as it is, it shall not take them from those who do without it.
+// Kept out of line and called with arguments in registers: this case is rare, and inlined it would take registers from
+// the common one.
 HF_INLINE vi r11_pack_any(vf red, vf green, vf blue, vi *clamped)
 {
     static const float max[3] = {HF_R11_MAX, HF_R11_MAX, HF_R10_MAX};
@@ -86,8 +87,8 @@ HF_INLINE vi r11_pack_any(vf red, vf green, vf blue, vi *clamped)
     return vi_or(vi_or(encode_small(v[0], 6), vi_shl(encode_small(v[1], 6), 11)), vi_shl(encode_small(v[2], 5), 22));
 }
 
-// Two vectors. Mostly nothing has to be clamped and nothing is denormal, zero included: half the work. As unsigned
-// numbers, counted from the smallest normal one, all that is small, negative or no number is large.
+// Pack two vectors. Usually nothing needs clamping and nothing is denormal or zero, which halves the work. As unsigned
+// numbers relative to the smallest normal one, small, negative and NaN values are all large.
 HF_INLINE void r11_pack(const vf in[2][4], vi out[2], vi *clamped)
 {
     vi v[2][3], most = vi_set1(0);
@@ -112,7 +113,7 @@ HF_INLINE void r11_pack(const vf in[2][4], vi out[2], vi *clamped)
     }
 }
 
-// Truncated instead: nothing to round, no denormals to look for.
+// Pack by truncation: no rounding, and denormals need no care.
 HF_INLINE vi r11_pack_cut(const vf in[3])
 {
     const vi r = small_bits(clamp_unsigned(in[0], HF_R11_MAX), 6), g = small_bits(clamp_unsigned(in[1], HF_R11_MAX), 6);
@@ -129,7 +130,7 @@ HF_INLINE vf vf_load_half(const void *p)
     return vi_as_vf(vi_or(vf_as_vi(v), vi_shl(vi_and(u, vi_set1(0x8000)), 16)));
 }
 
-// v is finite and within +-65504.
+// v must be finite and within +-65504.
 HF_INLINE void vf_store_half(void *p, vf v)
 {
     vi_store_u16(p, vi_or(encode_small(vf_abs(v), 10), vi_and(vi_shr(vf_as_vi(v), 16), vi_set1(0x8000))));
@@ -150,7 +151,7 @@ HF_INLINE vf round_half_vf(vf v)
 }
 
 #ifndef VF_OWN_INTERLEAVE
-// 4 pixels a 128-bit lane.
+// 4 pixels per 128-bit lane.
 HF_INLINE void vf_load_rgba(const float *p, vf out[4])
 {
     vf row[4];
@@ -174,7 +175,7 @@ HF_INLINE void vf_store_rgba(float *p, const vf in[4])
     vf_store_lanes(p + 12, 16, vf_shuffle(b, d, 0xdd));
 }
 
-// r g b r | g b r g | b r g b: three registers hold 4 pixels a lane.
+// r g b r | g b r g | b r g b: three registers hold 4 pixels per lane.
 HF_INLINE void vf_load_rgb(const float *p, vf out[3])
 {
     const vf x0 = vf_load_lanes(p, 12), x1 = vf_load_lanes(p + 4, 12), x2 = vf_load_lanes(p + 8, 12);
@@ -199,7 +200,7 @@ HF_INLINE vf truncate_channel(vf v, const int c)
     return truncate_small(clamp_unsigned(v, c == 2 ? HF_R10_MAX : HF_R11_MAX), c == 2 ? 5 : 6);
 }
 
-// Channel c as the storage of buffers holds it. On the way out of a pass: a second run over its rows took 0.1 ms of a
+// Round channel c to what a buffer's storage holds, as a pass writes it. A second run over the rows took 0.1 ms of a
 // frame of 1920x1080, in Computation and Fill each.
 HF_INLINE vf round_stored(enum hf_storage storage, vf v, const int c)
 {
@@ -215,7 +216,7 @@ HF_INLINE uint8_t *plane_at(const struct hf_image *m, int plane, int bpp, int x,
 
 // ---- blocks of 2 VF_N pixels ----
 
-// Both return lanes that are not finite.
+// Both return the lanes that are not finite.
 HF_INLINE vm not_small(vf v)
 {
     return vm_not(vf_lt(vf_abs(v), vf_set1(65536.0f)));
@@ -241,7 +242,7 @@ HF_INLINE vm load_block(const int format, const uint8_t *p, vf even[4], vf odd[4
         r11_unpack(vf_as_vi(e), even, &most);
         r11_unpack(vf_as_vi(o), odd, &most);
         return vm_not(vi_le(most, vi_set1((31 << 23) - 1)));
-    } else if (format == HF_FORMAT_PLANAR32F) {  // one plane a call
+    } else if (format == HF_FORMAT_PLANAR32F) {  // one plane per call
         vf_unzip(vf_load(p), vf_load(p + 4 * VF_N), &even[0], &odd[0]);
     } else {
         if (format == HF_FORMAT_RGBA32F) {

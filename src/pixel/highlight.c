@@ -30,7 +30,7 @@ void hf_raise_row_c(const struct hf_highlight *h, float *r, float *g, float *b, 
     }
 }
 
-// (-span + sqrt(span^2 + 4 more d)) / (2 more), written so that nothing is taken away from what is as large.
+// (-span + sqrt(span^2 + 4 more d)) / (2 more), written without a subtraction of nearly equal numbers.
 void hf_lower_row_c(const struct hf_highlight *h, float *r, float *g, float *b, int n)
 {
     float *const rgb[3] = {r, g, b};
@@ -48,11 +48,11 @@ void hf_lower_row_c(const struct hf_highlight *h, float *r, float *g, float *b, 
     }
 }
 
-// ---- from the engines' rows to the picture ----
+// ---- storing an engine's rows ----
 
 enum { LANES = 64 };
 
-// Of both rows, even and odd, all channels.
+// Both rows, even and odd pixels, all channels.
 struct block {
     _Alignas(64) float row[2][4][LANES + HF_PAD];
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Highlights of clipped pictures on vectors, as highlight.c has them: nothing is fused.
+// Highlights of clipped pictures on vectors, as in highlight.c. Nothing is fused.
 #include <float.h>
 
 #include "pixel/highlight.h"

@@ -5,17 +5,18 @@
 
 #include "hyperfocal/hyperfocal.h"
 
-// No circle of confusion is drawn with a larger radius.
+// The largest radius of a circle of confusion that is drawn.
 #define HF_MAX_RADIUS 2048.0f
 
-// The radius that the range model has unless told otherwise, the chapter's reach: 12 pixels at 1080 lines.
+// The range model's default radius, the chapter's reach: 12 pixels at 1080 lines.
 float hf_model_radius(int display_height);
 
-// The largest radius of an aperture's picture, every pixel of which is drawn: one much wider than high has no more of them.
+// The largest radius of an aperture picture. All its pixels are drawn, and this bounds their number for wide pictures
+// too.
 float hf_most_picture_radius(const struct hf_params *p);
 
-// The radius that parameters ask for, whatever engine makes it: max_radius if it is given, else that of the range model at
-// this height of the display, or for a lens and radii of one's own the largest that there can be.
+// The radius that parameters ask for, independent of the engine: max_radius if given; else the range model's at this
+// display height; for a lens, or the caller's own radii, the largest possible one.
 float hf_asked_radius(const struct hf_params *p, enum hf_depth_type type, int display_height);
 
 #endif

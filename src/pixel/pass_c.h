@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the passes in plain C share. They are the specification: a vector version gives the same bits, or with fused
-// multiply-add less rounding. So the order of operations here is deliberate where it looks odd; the usual reason is
-// that a mirrored picture must give the mirrored result, bit for bit.
+// multiply-add fewer roundings. So an order of operations that looks odd is deliberate. The usual reason: a mirrored
+// picture must give the mirrored result, bit for bit.
 #ifndef HF_PASS_C_H
 #define HF_PASS_C_H
 
@@ -18,7 +18,7 @@ hf_unzip_row hf_unzip_row_c;
 // The variable that CoC is linear in at a pixel: z, -1/z with a lens, or the radius itself.
 float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *counts);
 
-// CoC from 0 to 1, of the shape that was asked for; NaN becomes 0.
+// The CoC from 0 to 1, linear or smoothstep; NaN becomes 0.
 static inline float hf_ramp(const struct hf_setup *s, float t)
 {
     t = hf_saturate(t);
@@ -27,24 +27,24 @@ static inline float hf_ramp(const struct hf_setup *s, float t)
 
 float hf_round_coc(enum hf_storage storage, float t);
 
-// Load a row of the frame's colour for an engine: loaded, repaired where not finite, highlights raised if that is asked for,
-// in chapter storage truncated. Returns nothing; repaired samples are counted in counts when it is not NULL.
+// Read a row of the frame's colour for an engine. Samples that are not finite are repaired, highlights are raised if
+// asked for, and chapter storage truncates. Repaired samples are counted in counts, unless it is NULL.
 void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
                     struct hf_counts *counts);
-// The same but for highlights, which stay as they are.
+// The same without raising highlights.
 void hf_read_given(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
                    struct hf_counts *counts);
-// The way back, as an engine stores its rows: highlights lowered, and a sample that has the bits that hf_read_colour gave is
-// the one in the picture. even[3] and odd[3] NULL: alpha 1 if the format has one. What is clamped is counted.
+// Store an engine's rows: highlights are lowered, and a sample that still has the bits that hf_read_colour gave takes
+// the picture's own bits. even[3] and odd[3] NULL: alpha is 1 if the format has one. Clamped samples are counted.
 void hf_store_colour(const struct hf_frame *f, int x, int y, int n, const float *const even[4],
                      const float *const odd[4]);
-// The same for 2n pixels in order from pixel 2x on. Uses scratch rows 0 to 7.
+// Read 2n pixels in order from pixel 2x on. Uses scratch rows 0 to 7.
 void hf_read_pixels(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
-// Store 2n pixels in order from pixel 2x of row y on, as the target's format wants them; what it clamps is counted.
-// alpha 0: in[3] is not there, and is 1 if the format has one. Uses scratch rows 0 to 7.
+// Store 2n pixels in order from pixel 2x of row y on, converted to the target's format; clamped samples are counted.
+// alpha 0: in[3] is missing, and alpha is 1 if the format has one. Uses scratch rows 0 to 7.
 void hf_write_pixels(const struct hf_frame *f, int x, int y, int n, const float *const in[4], int alpha);
 
-// Round n colours to what the storage holds when a pass writes them: channel 3 is alpha.
+// Round n colours to what the storage holds, as a pass writes them; channel 3 is alpha.
 static inline void hf_store_rgb(const struct hf_frame *f, float *const ch[4], int n)
 {
     if (f->s->storage == HF_STORAGE_PACKED)
@@ -54,14 +54,14 @@ static inline void hf_store_rgb(const struct hf_frame *f, float *const ch[4], in
             f->k->round_half(ch[c], n);
 }
 
-// Row y of a buffer's channels, from x; NULL of a buffer that the frame does without.
+// Pointers to a buffer's channels at (x, y); NULL for a buffer that the frame does not have.
 static inline void hf_row(const struct hf_buf *b, int channels, int x, int y, float *ch[4])
 {
     for (int c = 0; c < channels; c++)
         ch[c] = b->ch[c] ? hf_at(b, c, x, y) : NULL;
 }
 
-// a + t (b - a), and a's own bits for t = 0: what is not blended must not change -0.0 or overflow.
+// a + t (b - a), but exactly a's bits for t = 0: a pixel that is not blended must not change -0.0 or overflow.
 static inline float hf_lerp(float a, float b, float t)
 {
     return t == 0 ? a : a + t * (b - a);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CoC as a signed radius in full-resolution pixels, for all engines but the gather: negative in front of the focus.
+// CoC as a signed radius in full-resolution pixels, negative in front of the focus, for all engines except the gather.
 #include <math.h>
 
 #include "pixel/pass_c.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signed CoC radii on vectors. As in CoC generation nothing is fused, so that what is sharp has one answer everywhere.
+// Signed CoC radii on vectors. As in CoC generation nothing is fused, so which pixels are sharp is the same everywhere.
 #include <math.h>
 
 #include "pixel/depth_rows.h"
@@ -79,7 +79,7 @@ static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float
         radius_form(f, HF_FORM_COC, x, y, whole, out, &sums);
         break;
     }
-    // A NaN needs its neighbours: the C does the row over, to the same bits everywhere else.
+    // A NaN needs its neighbours, so the plain C does the row again; elsewhere its bits are the same.
     const int from = vm_any(sums.nan) ? 0 : whole;
     if (from < n)
         hf_radius_row_c(f, x + from, y, n - from, out + from, counts);

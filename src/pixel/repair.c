@@ -5,7 +5,7 @@
 
 static float repaired(const struct hf_image *m, int c, int x, int y)
 {
-    double sum = 0;  // eight floats cannot overflow it
+    double sum = 0;  // the sum of eight floats cannot overflow it
     int n = 0;
     for (int v = hf_max(y - 1, 0); v <= hf_min(y + 1, m->height - 1); v++)
         for (int u = hf_max(x - 1, 0); u <= hf_min(x + 1, m->width - 1); u++) {
@@ -18,7 +18,7 @@ static float repaired(const struct hf_image *m, int c, int x, int y)
     return hf_round_to_format(m->format, c, n ? (float)(sum / n) : 0);
 }
 
-// Repair n lanes that were loaded from lane x of row y. Returns how many samples there were.
+// Repair n lanes that were loaded from lane x of row y. Returns the number of repaired samples.
 static uint64_t repair_row(const struct hf_image *m, int x, int y, int n, float *const even[4], float *const odd[4])
 {
     uint64_t count = 0;
@@ -27,7 +27,7 @@ static uint64_t repair_row(const struct hf_image *m, int x, int y, int n, float 
             for (int o = 0; o < 2; o++) {
                 float *v = o ? &odd[c][i] : &even[c][i];
                 const int px = hf_min(2 * (x + i) + o, m->width - 1);
-                // The vector loaders may give what was not finite as any number beyond the small formats' range.
+                // Vector loaders may return a sample that is not finite as any number beyond the small formats' range.
                 const float t = hf_sample(m, c, px, y);
                 if (hf_is_finite(t))
                     continue;
@@ -62,7 +62,7 @@ static void load_row(const struct hf_frame *f, int x, int y, int n, float *const
     }
 }
 
-// To what the storage holds.
+// Round to what the storage holds.
 static void round_row(const struct hf_frame *f, int n, float *const even[4], float *const odd[4])
 {
     if (f->s->storage == HF_STORAGE_PACKED && f->src->format != HF_FORMAT_R11G11B10F) {

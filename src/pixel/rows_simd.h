@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of images on vectors: loaded, stored, checked, rounded.
+// Rows of images on vectors: load, store, check, round.
 #include "pixel/format_vf.h"
 
-// One row of one plane, from its first byte; bpp: bytes a pixel; pixels: how many of the 2 n there are. A tile's rows
-// are too short for hardware prefetchers to catch on, so each fetches the one after next.
+// Load one row of one plane from its first byte. bpp: bytes per pixel. pixels: how many of the 2n pixels exist. A
+// tile's rows are too short for hardware prefetchers, so each row prefetches the one after next.
 HF_INLINE int load_plane(const int format, const int bpp, const int channels, const uint8_t *p, ptrdiff_t stride, int n,
                          int pixels, float *const even[4], float *const odd[4])
 {
@@ -15,7 +15,7 @@ HF_INLINE int load_plane(const int format, const int bpp, const int channels, co
         for (int k = 0; k < 2 * VF_N * bpp; k += 64)
             __builtin_prefetch((const uint8_t *)((uintptr_t)from + (uintptr_t)(2 * stride)) + k);
         if (left < 2 * VF_N) {
-            // The row's end: what lies behind it is not ours to read. Repeat its last pixel.
+            // At the row's end, memory behind it must not be read. Its last pixel is repeated.
             memcpy(rest, from, (size_t)left * bpp);
             for (int k = left; k < 2 * VF_N; k++)
                 memcpy(rest + k * bpp, rest + (left - 1) * bpp, bpp);
@@ -48,7 +48,7 @@ HF_INLINE uint32_t store_plane(const int format, const int bpp, const int channe
             store_block(format, p + (size_t)i * 2 * bpp, e, o, &clamped);
             continue;
         }
-        // The row's end: only what is inside the image may be counted or written.
+        // At the row's end, only pixels inside the image may be counted or written.
         uint8_t rest[2 * VF_N * FORMAT_MAX_BYTES];
         for (int c = 0; c < channels; c++) {
             float lane[2][VF_N];
@@ -84,7 +84,7 @@ HF_FORMAT_ROWS(rgb32f, HF_FORMAT_RGB32F, 12, 3)
 HF_FORMAT_ROWS(rgba16f, HF_FORMAT_RGBA16F, 8, 4)
 HF_FORMAT_ROWS(r11, HF_FORMAT_R11G11B10F, 4, 3)
 
-// Whole numbers: each transfer is a loop of its own.
+// Integer formats: each transfer curve has a loop of its own.
 #define HF_UNORM_ROWS(name, format, bpp, channels)                                                                     \
     HF_FORMAT_ROWS(name##_linear, format, bpp, channels)                                                               \
     HF_FORMAT_ROWS(name##_srgb, format | UNORM_SRGB, bpp, channels)                                                    \
@@ -126,11 +126,11 @@ static uint64_t store_planar_simd(const struct hf_image *m, int x, int y, int n,
     return 0;
 }
 
-// ---- checks and roundings ----
+// ---- checks and rounding ----
 
 enum copy_how { COPY_NOT, COPY_PLAIN, COPY_STREAM };
 
-// Whole vectors of words: are they finite? masks select a word's exponents; words of 16 bits are looked at in pairs.
+// Whether whole vectors of words are finite. masks select the exponents in a word; 16-bit words are checked in pairs.
 HF_INLINE int finite_vectors(const uint8_t *p, size_t bytes, const uint32_t masks[3], const int count, uint8_t *to,
                              const enum copy_how how)
 {
@@ -151,7 +151,7 @@ HF_INLINE int finite_vectors(const uint8_t *p, size_t bytes, const uint32_t mask
     return !vm_any(bad);
 }
 
-// Copies go past the caches if they are aligned: nobody here reads them again.
+// Aligned copies go past the caches, because nothing here reads them again.
 HF_INLINE int finite_words(const uint8_t *p, size_t bytes, const uint32_t masks[3], const int count, uint8_t *to)
 {
     const int finite = !to                          ? finite_vectors(p, bytes, masks, count, to, COPY_NOT)

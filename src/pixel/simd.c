@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The shared kernels of an instruction set.
+// The shared kernels for one instruction set.
 #include "pixel/rows_simd.h"
 #include "pixel/behind_simd.h"
 #include "pixel/coc_simd.h"

@@ -23,7 +23,7 @@ static uint8_t *pixel_at(const struct hf_image *m, const struct hf_unorm *u, int
     return (uint8_t *)m->data[0] + (ptrdiff_t)y * m->stride[0] + (size_t)x * u->bytes;
 }
 
-// Little-endian machines alone: the only ones there are kernels for.
+// For little-endian machines only; there are kernels for no others.
 float hf_unorm_sample(const struct hf_image *m, int c, int x, int y)
 {
     const struct hf_unorm *u = hf_unorm(m->format);
@@ -41,7 +41,7 @@ void hf_unorm_put(const struct hf_image *m, int c, int x, int y, float v)
     const uint64_t max = ((uint64_t)1 << u->bits[c]) - 1;
     uint8_t *p = pixel_at(m, u, x, y);
     uint64_t word = 0;
-    v = v > 0 ? v : 0;  // NaN too
+    v = v > 0 ? v : 0;  // NaN becomes 0 too
     v = v < 1 ? v : 1;
     if (c < 3 && m->transfer == HF_TRANSFER_SRGB)
         v = hf_srgb_encode(v);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole numbers as colour: 0 to 2^bits - 1 stand for 0 to 1, as they are (linear) or by the sRGB curve (IEC 61966-2-1).
-// Alpha is always linear. A code comes back as itself after decoding and encoding, for every format and transfer.
+// Integer colour: 0 to 2^bits - 1 stand for 0 to 1, linear or by the sRGB curve (IEC 61966-2-1). Alpha is always
+// linear. Decoding and encoding a code gives the code again, for every format and transfer.
 #ifndef HF_UNORM_H
 #define HF_UNORM_H
 
@@ -9,24 +9,24 @@
 
 #include "hyperfocal/hyperfocal.h"
 
-// How a format packs its channels; bits[c] at shift[c] of a pixel of so many bytes, the least significant bit first.
+// How a format packs its channels: bits[c] at shift[c] of a pixel of that many bytes, least significant bit first.
 struct hf_unorm {
     uint8_t bytes, channels;
     uint8_t bits[4], shift[4];
 };
 
-// NULL for a format that is not of whole numbers.
+// NULL for a format that is not of integers.
 const struct hf_unorm *hf_unorm(enum hf_format format);
 
-// Channel c (0..3) of pixel (x, y), 0..1, linear; and the other way, v clamped to 0..1 and rounded to nearest.
+// Read channel c (0..3) of pixel (x, y), 0..1, linear. put: clamp v to 0..1, round it to nearest, and write it.
 float hf_unorm_sample(const struct hf_image *image, int c, int x, int y);
 void hf_unorm_put(const struct hf_image *image, int c, int x, int y, float v);
 
 // The 256 values of 8-bit sRGB.
 extern const float hf_srgb8[256];
 
-// v^(5/12) is q^(5/3) with q the fourth root of v: a polynomial in q, wrong by 5e-7 at most where it is used, from
-// 0.0031308 to 1. That is 0.03 of a 16-bit code.
+// v^(5/12) is q^(5/3) with q the fourth root of v: a polynomial in q with an error of at most 5e-7 where it is used,
+// from 0.0031308 to 1. That is 0.03 of a 16-bit code.
 #define HF_SRGB_ENCODE                                                                                                 \
     {                                                                                                                  \
         -0.064447642f, 0.34023353f, -0.79031898f, 1.0867441f, -1.0624164f, 1.3746371f, 0.11896311f, -0.003394958f      \

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole numbers as colour on vectors: as unorm.h has it, nothing fused, so that bits are the same everywhere.
-// A pixel is one word of 32 bits, or two for RGBA16. Words are split into even and odd pixels first and into channels then.
+// Integer colour on vectors, as in unorm.h. Nothing is fused, so bits are the same everywhere. A pixel is one 32-bit
+// word, or two for RGBA16. Words are split first into even and odd pixels, then into channels.
 #ifndef HF_UNORM_SIMD_H
 #define HF_UNORM_SIMD_H
 
 #include "pixel/unorm.h"
 #include "simd/simd.h"
 
-enum { UNORM_SRGB = 0x100 };  // added to a format: its transfer
+enum { UNORM_SRGB = 0x100 };  // added to a format: the sRGB transfer
 
 HF_INLINE int unorm_bits(const int format, const int c)
 {
     return format == HF_FORMAT_RGBA16 ? 16 : format != HF_FORMAT_RGB10A2 ? 8 : c == 3 ? 2 : 10;
 }
 
-// With 8 lanes and fewer, loads are as fast as a gather, and emulators get them right.
+// With up to 8 lanes, loads are as fast as a gather, and emulators get them right.
 HF_INLINE vf unorm_lookup(vi code)
 {
 #if defined __AVX512F__
@@ -60,7 +60,7 @@ HF_INLINE vi unorm_encode(vf in, const int bits, const int srgb, vi *clamped)
     return vf_to_vi(vf_add(vf_mul(v, vf_set1((float)((1 << bits) - 1))), vf_set1(0.5f)));
 }
 
-// Shifts are instructions' own numbers.
+// Shift counts must be literals.
 HF_INLINE vi unorm_shift_down(vi u, const int n)
 {
     return n == 0    ? u
@@ -93,7 +93,7 @@ HF_INLINE int unorm_place(const int format, const int c)
     return c < 3 && (format == HF_FORMAT_BGRA8 || format == HF_FORMAT_BGRX8) ? 16 - 8 * c : 8 * c;
 }
 
-// Words of VF_N pixels, one vector, or two for RGBA16: R and G, B and A.
+// The words of VF_N pixels: one vector, or two for RGBA16 (R and G, B and A).
 HF_INLINE void unorm_unpack(const int format, const int srgb, const vi words[2], vf out[4])
 {
     for (int c = 0; c < 4; c++) {

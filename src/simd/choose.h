@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A table of kernels for an instruction set: all in C first, then overwritten by what vectors do better. The files simd.c
-// are compiled once for each instruction set, with and without fused multiply-add: src/meson.build.
+// A table of kernels for an instruction set. It is filled with the C kernels, then overwritten by vector kernels. Each
+// simd.c is compiled once per instruction set, with and without fused multiply-add: src/meson.build.
 #ifndef HF_CHOOSE_H
 #define HF_CHOOSE_H
 
 #include "hyperfocal/hyperfocal.h"
 
-// For struct NAME, functions of the same name: NAME_c fills it; NAME_avx2_exact and the like overwrite it, exact ones with
-// kernels that give the bits of the C; NAME_init makes the table of an instruction set. SSE4.1 has nothing to fuse.
+// For struct NAME, functions of the same name. NAME_c fills it. NAME_avx2_exact and similar ones overwrite it; exact
+// ones have the bits of the C. NAME_init makes the table of an instruction set. SSE4.1 cannot fuse, so it has only an
+// exact one.
 #define HF_DECLARE_KERNELS(name)                                                                                       \
     void name##_c(struct name *k);                                                                                     \
     void name##_sse41_exact(struct name *k);                                                                           \
@@ -62,7 +63,7 @@
     }
 #endif
 
-// The name of a simd.c's own function. HF_SUFFIX: avx2_fused ...
+// The name of a simd.c's own function. HF_SUFFIX is avx2_fused, for example.
 #define HF_SIMD_NAME(name) HF_JOIN_(name, HF_SUFFIX)
 #define HF_JOIN_(name, suffix) HF_JOIN__(name, suffix)
 #define HF_JOIN__(name, suffix) name##_##suffix

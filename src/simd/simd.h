@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the vector bodies share. This file and the *_simd.h bodies are compiled once per instruction set, over one of
-// the vec_*.h, which HF_VEC names; HF_FUSED says whether multiply-add may be fused. Loops run in steps of VF_N lanes and
-// may compute and write past the end of a row: rows are padded by HF_PAD floats.
+// What the vector bodies share. This file and the *_simd.h bodies are compiled once per instruction set, over the
+// vec_*.h that HF_VEC names. HF_FUSED says whether multiply-add may be fused. Loops run in steps of VF_N lanes and may
+// compute and write past the end of a row: rows are padded by HF_PAD floats.
 #ifndef HF_SIMD_H
 #define HF_SIMD_H
 
@@ -33,10 +33,10 @@ HF_INLINE vf vf_fnma(vf a, vf b, vf c)
 #endif
 }
 
-// The vector that begins n numbers into consecutive vectors v[0], v[1] ...; n is a literal.
+// The vector from lane n on across consecutive vectors v[0], v[1] ...; n is a literal.
 #define vf_shift(v, n) vf_align((v)[(n) / VF_N], (v)[(n) / VF_N + 1], (n) % VF_N)
 
-// A value that is used twice, and shall be loaded once: left alone, gcc takes it from memory each time.
+// Marks a value that is used twice and must be loaded once. Otherwise gcc loads it from memory each time.
 HF_INLINE vf vf_once(vf a)
 {
 #if defined __AVX512F__
@@ -49,7 +49,7 @@ HF_INLINE vf vf_once(vf a)
     return a;
 }
 
-// Sum of the lanes of a count.
+// The sum of a count's lanes.
 HF_INLINE uint32_t vi_sum(vi a)
 {
     uint32_t lane[VF_N], sum = 0;
@@ -59,7 +59,7 @@ HF_INLINE uint32_t vi_sum(vi a)
     return sum;
 }
 
-// Largest of the lanes, none of them NaN.
+// The largest lane; none may be NaN.
 HF_INLINE float vf_most(vf a)
 {
     float lane[VF_N], most;
@@ -70,7 +70,7 @@ HF_INLINE float vf_most(vf a)
     return most;
 }
 
-// Stored, or past the caches: then p is aligned, and vf_stream_end follows.
+// Store, or with stream store past the caches: then p is aligned, and vf_stream_end must follow.
 HF_INLINE void vf_put(float *p, vf v, const int stream)
 {
     if (stream)
@@ -79,7 +79,7 @@ HF_INLINE void vf_put(float *p, vf v, const int stream)
         vf_store(p, v);
 }
 
-// a + t (b - a), a's own bits for t = 0.
+// a + t (b - a), but exactly a's bits for t = 0.
 HF_INLINE vf vf_lerp(vf a, vf b, vf t)
 {
     const vm m = vf_ne(t, vf_zero());

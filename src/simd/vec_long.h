@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Four 64-bit integers in 256 bits, for AVX2 and AVX-512 alike.
+// Vectors of four 64-bit integers in 256 bits, for AVX2 and AVX-512.
 #ifndef HF_VEC_LONG_H
 #define HF_VEC_LONG_H
 
@@ -40,7 +40,7 @@ static inline vl vl_shl8(vl a)
 {
     return _mm256_slli_epi64(a, 8);
 }
-// a * b for any a and b of 0 to 2^32 - 1, low 64 bits.
+// a * b for a and b from 0 to 2^32 - 1; the low 64 bits.
 static inline vl vl_product(vl a, vl b)
 {
 #if defined __AVX512DQ__ && defined __AVX512VL__
@@ -71,7 +71,7 @@ static inline v4 v4_set1(float a)
 {
     return _mm_set1_ps(a);
 }
-// Times a scale, cut to integers.
+// a times scale, truncated to integers.
 static inline vl vl_from(v4 a, const double scale[4])
 {
     const __m256d d = _mm256_mul_pd(_mm256_cvtps_pd(a), _mm256_loadu_pd(scale));
@@ -84,8 +84,8 @@ static inline vl vl_from(v4 a, const double scale[4])
 #endif
 }
 
-// The integer's upper part, made a double by its exponent's bits, and its lower 48 bits
-// are both exact: one rounding, as that of a conversion.
+// The integer's upper part becomes a double through the exponent bits, and so do its lower 48 bits. Both are exact, so
+// their sum rounds once, as a conversion does.
 static inline __m256d vl_double(vl a)
 {
     const __m256d magic = _mm256_set1_pd(442721857769029238784.0), all = _mm256_set1_pd(442726361368656609280.0);
@@ -94,7 +94,7 @@ static inline __m256d vl_double(vl a)
     const __m256d d = _mm256_sub_pd(_mm256_castsi256_pd(_mm256_add_epi64(upper, _mm256_castpd_si256(magic))), all);
     return _mm256_add_pd(d, _mm256_castsi256_pd(lower));
 }
-// The sum of n, each times its scale, as floats; from the last on.
+// The sum of n vectors, each times its scale, as floats, from the last one on.
 static inline v4 vl_scaled(const vl *a, int n, const double (*scale)[4])
 {
     __m256d sum = _mm256_setzero_pd();

@@ -11,10 +11,10 @@ typedef uint32x4_t vi;
 typedef uint32x4_t vm;  // lanes all ones or all zeros
 enum { VF_N = 4 };
 
-// memcpy-like loads: rows of images need not be aligned to floats.
+// Loads that need no alignment: rows of images need not be aligned to floats.
 static inline vf vf_load(const void *p) { return vreinterpretq_f32_u8(vld1q_u8((const uint8_t *)p)); }
 static inline void vf_store(void *p, vf a) { vst1q_u8((uint8_t *)p, vreinterpretq_u8_f32(a)); }
-// Past the caches on other machines; there is no intrinsic for it here.
+// On other machines this stores past the caches; here there is no intrinsic for it.
 static inline void vf_stream(void *p, vf a) { vf_store(p, a); }
 static inline void vf_stream_end(void) {}
 static inline vf vf_set1(float a) { return vdupq_n_f32(a); }
@@ -27,7 +27,7 @@ static inline vf vf_reciprocal(vf a) { return vrecpeq_f32(a); }  // 8 bits
 static inline vf vf_sqrt(vf a) { return vsqrtq_f32(a); }
 static inline vf vf_floor(vf a) { return vrndmq_f32(a); }
 static inline vf vf_abs(vf a) { return vabsq_f32(a); }
-// a > b ? a : b and a < b ? a : b: b when either is NaN. NEON's own max and min would return the NaN.
+// a > b ? a : b and a < b ? a : b, so b if either is NaN. NEON's own max and min would return the NaN.
 static inline vf vf_max(vf a, vf b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 static inline vf vf_min(vf a, vf b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
 static inline vf vf_muladd_fused(vf a, vf b, vf c) { return vfmaq_f32(c, a, b); }
@@ -45,10 +45,10 @@ static inline vm vm_not(vm a) { return vmvnq_u32(a); }
 static inline int vm_any(vm a) { return vmaxvq_u32(a) != 0; }
 static inline vf vf_select(vm m, vf a, vf b) { return vbslq_f32(m, a, b); }
 static inline vf vf_keep(vm m, vf a) { return vreinterpretq_f32_u32(vandq_u32(m, vreinterpretq_u32_f32(a))); }
-// c, and where m a + c or a * b + c.
+// Lanes of m get a + c or a * b + c, the others c.
 static inline vf vf_add_where(vm m, vf a, vf c) { return vf_select(m, vf_add(a, c), c); }
 static inline vf vf_muladd_where_fused(vm m, vf a, vf b, vf c) { return vf_select(m, vf_muladd_fused(a, b, c), c); }
-// count + 1 where m.
+// Adds 1 to the lanes of m.
 static inline vi vi_count(vi count, vm m) { return vsubq_u32(count, m); }
 
 static inline vi vi_load(const void *p) { return vreinterpretq_u32_u8(vld1q_u8((const uint8_t *)p)); }
@@ -72,7 +72,7 @@ static inline vf vi_as_vf(vi a) { return vreinterpretq_f32_u32(a); }
 static inline vi vf_to_vi(vf a) { return vreinterpretq_u32_s32(vcvtq_s32_f32(a)); }
 static inline vf vi_to_vf(vi a) { return vcvtq_f32_s32(vreinterpretq_s32_u32(a)); }
 
-// 16 bytes and 8 words, unsigned.
+// As 16 bytes and as 8 words, unsigned.
 #define VI_8(a) vreinterpretq_u8_u32(a)
 #define VI_16(a) vreinterpretq_u16_u32(a)
 static inline vi vi_max8(vi a, vi b) { return vreinterpretq_u32_u8(vmaxq_u8(VI_8(a), VI_8(b))); }
@@ -88,9 +88,9 @@ static inline vi vi_mulhi16(vi a, vi b)
 }
 #define vi_shl16(a, n) vreinterpretq_u32_u16(vshlq_n_u16(VI_16(a), n))
 #define vi_shr16(a, n) vreinterpretq_u32_u16(vshrq_n_u16(VI_16(a), n))
-// 16 bytes of a and b, one after the other, from byte n on; 0 <= n < 16.
+// 16 bytes from byte n on of a followed by b; 0 <= n < 16.
 #define vi_align(a, b, n) vreinterpretq_u32_u8(vextq_u8(VI_8(a), VI_8(b), n))
-// 4 bytes as numbers, and back.
+// Load 4 bytes as numbers, and store them.
 static inline vi vi_load_u8(const void *p)
 {
     uint32_t u;
@@ -105,7 +105,7 @@ static inline void vi_store_u8(void *p, vi a)
     __builtin_memcpy(p, &u, 4);
 }
 
-// 8 numbers in memory order to even and odd ones, and back.
+// Split 8 numbers into even and odd ones, and join them.
 static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
 {
     *even = vuzp1q_f32(a, b);
@@ -118,10 +118,10 @@ static inline void vf_zip(vf even, vf odd, vf *a, vf *b)
     *b = vzip2q_f32(even, odd);
 }
 
-// 4 numbers of a and b, one after the other, from number n on; 0 <= n < 4.
+// 4 numbers from number n on of a followed by b; 0 <= n < 4.
 #define vf_align(a, b, n) vextq_f32(a, b, n)
 
-// Interleaved pixels have instructions of their own.
+// NEON has instructions for interleaved pixels.
 #define VF_OWN_INTERLEAVE 1
 static inline void vf_load_rgba(const float *p, vf out[4])
 {
@@ -157,10 +157,10 @@ static inline void vf_store_half(void *p, vf a)
     vst1_u8((uint8_t *)p, vreinterpret_u8_f16(vcvt_f16_f32(a)));
 }
 
-// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+// Shift by one lane: the last lane of prev, then all lanes of cur except the last.
 static inline vf vf_back(vf prev, vf cur) { return vextq_f32(prev, cur, 3); }
 
-// p[index], index counted in floats.
+// p[index] in each lane.
 static inline vf vf_gather(const float *p, vi index)
 {
     const float v[4] = {p[(int32_t)vgetq_lane_u32(index, 0)], p[(int32_t)vgetq_lane_u32(index, 1)],
@@ -168,7 +168,7 @@ static inline vf vf_gather(const float *p, vi index)
     return vld1q_f32(v);
 }
 
-// Vectors of half as many doubles: from floats and back, and as they are.
+// Vectors of half as many doubles: conversion from floats and back, loads and stores.
 typedef float64x2_t vd;
 enum { VD_N = 2 };
 static inline vd vd_load(const float *p) { return vcvt_f64_f32(vld1_f32(p)); }
@@ -179,7 +179,7 @@ static inline vd vd_set1(double a) { return vdupq_n_f64(a); }
 static inline vd vd_add(vd a, vd b) { return vaddq_f64(a, b); }
 static inline vd vd_mul(vd a, vd b) { return vmulq_f64(a, b); }
 
-// Four 64-bit integers, and four floats: of 128 bits whatever the rest.
+// Four 64-bit integers, and four floats, whatever the vector size.
 typedef struct { int64x2_t a, b; } vl;
 typedef float32x4_t v4;
 static inline void v4_store(float *p, v4 a) { vst1q_f32(p, a); }
@@ -212,7 +212,7 @@ static inline int64x2_t vl_product_half(int64x2_t a, int64x2_t b)
     return vreinterpretq_s64_u64(vaddq_u64(vmull_u32(vmovn_u64(u), m), vshlq_n_u64(high, 32)));
 }
 
-// a * b for any a and b of 0 to 2^32 - 1, low 64 bits.
+// a * b for a and b from 0 to 2^32 - 1; the low 64 bits.
 static inline vl vl_product(vl a, vl b) { return (vl){vl_product_half(a.a, b.a), vl_product_half(a.b, b.b)}; }
 // The low 8 bits of *p, in every lane.
 static inline vl vl_low8(const int32_t *p) { return vl_set1(*p & 255); }
@@ -221,14 +221,14 @@ static inline v4 v4_mul(v4 a, v4 b) { return vmulq_f32(a, b); }
 static inline v4 v4_sub(v4 a, v4 b) { return vsubq_f32(a, b); }
 static inline v4 v4_set1(float a) { return vdupq_n_f32(a); }
 
-// Times a scale, cut to integers.
+// a times scale, truncated to integers.
 static inline vl vl_from(v4 a, const double scale[4])
 {
     return (vl){vcvtq_s64_f64(vmulq_f64(vcvt_f64_f32(vget_low_f32(a)), vld1q_f64(scale))),
                 vcvtq_s64_f64(vmulq_f64(vcvt_high_f64_f32(a), vld1q_f64(scale + 2)))};
 }
 
-// The sum of n, each times its scale, as floats; from the last on.
+// The sum of n vectors, each times its scale, as floats, from the last one on.
 static inline v4 vl_scaled(const vl *a, int n, const double (*scale)[4])
 {
     float64x2_t low = vdupq_n_f64(0), high = low;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vector operations of 4 floats: SSE4.1. No fused multiply-add and no half floats: both are made from what there is.
+// Vector operations of 4 floats: SSE4.1. It has no fused multiply-add and no half floats; both are emulated.
 #ifndef HF_VEC_SSE41_H
 #define HF_VEC_SSE41_H
 
@@ -14,7 +14,7 @@ enum { VF_N = 4 };
 
 static inline vf vf_load(const void *p) { return _mm_loadu_ps((const float *)p); }
 static inline void vf_store(void *p, vf a) { _mm_storeu_ps((float *)p, a); }
-// Past the caches; p is aligned to the vector. Ended by vf_stream_end.
+// Store past the caches; p is aligned to the vector. vf_stream_end must follow.
 static inline void vf_stream(void *p, vf a) { _mm_stream_ps((float *)p, a); }
 static inline void vf_stream_end(void) { _mm_sfence(); }
 static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
@@ -27,7 +27,7 @@ static inline vf vf_reciprocal(vf a) { return _mm_rcp_ps(a); }  // about 12 bits
 static inline vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
 static inline vf vf_floor(vf a) { return _mm_floor_ps(a); }
 static inline vf vf_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
-// a > b ? a : b and a < b ? a : b: b when either is NaN.
+// a > b ? a : b and a < b ? a : b, so b if either is NaN.
 static inline vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
 static inline vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
 static inline vf vf_muladd_fused(vf a, vf b, vf c) { return _mm_add_ps(_mm_mul_ps(a, b), c); }
@@ -45,10 +45,10 @@ static inline vm vm_not(vm a) { return _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_e
 static inline int vm_any(vm a) { return _mm_movemask_ps(a) != 0; }
 static inline vf vf_select(vm m, vf a, vf b) { return _mm_blendv_ps(b, a, m); }
 static inline vf vf_keep(vm m, vf a) { return _mm_and_ps(m, a); }  // 0 where not
-// c, and where m a + c or a * b + c.
+// Lanes of m get a + c or a * b + c, the others c.
 static inline vf vf_add_where(vm m, vf a, vf c) { return vf_select(m, vf_add(a, c), c); }
 static inline vf vf_muladd_where_fused(vm m, vf a, vf b, vf c) { return vf_select(m, vf_muladd_fused(a, b, c), c); }
-// count + 1 where m.
+// Adds 1 to the lanes of m.
 static inline vi vi_count(vi count, vm m) { return _mm_sub_epi32(count, _mm_castps_si128(m)); }
 
 static inline vi vi_load(const void *p) { return _mm_loadu_si128((const __m128i *)p); }
@@ -72,7 +72,7 @@ static inline vf vi_as_vf(vi a) { return _mm_castsi128_ps(a); }
 static inline vi vf_to_vi(vf a) { return _mm_cvttps_epi32(a); }
 static inline vf vi_to_vf(vi a) { return _mm_cvtepi32_ps(a); }
 
-// 16 bytes and 8 words, unsigned.
+// As 16 bytes and as 8 words, unsigned.
 static inline vi vi_max8(vi a, vi b) { return _mm_max_epu8(a, b); }
 static inline vi vi_max16(vi a, vi b) { return _mm_max_epu16(a, b); }
 static inline vi vi_set16(uint16_t a) { return _mm_set1_epi16((short)a); }
@@ -81,9 +81,9 @@ static inline vi vi_sub16(vi a, vi b) { return _mm_sub_epi16(a, b); }
 static inline vi vi_mulhi16(vi a, vi b) { return _mm_mulhi_epu16(a, b); }
 #define vi_shl16(a, n) _mm_slli_epi16(a, n)
 #define vi_shr16(a, n) _mm_srli_epi16(a, n)
-// 16 bytes of a and b, one after the other, from byte n on; 0 <= n < 16.
+// 16 bytes from byte n on of a followed by b; 0 <= n < 16.
 #define vi_align(a, b, n) _mm_alignr_epi8(b, a, n)
-// 4 bytes as numbers, and back.
+// Load 4 bytes as numbers, and store them.
 static inline vi vi_load_u8(const void *p)
 {
     int32_t u;
@@ -98,7 +98,7 @@ static inline void vi_store_u8(void *p, vi a)
     __builtin_memcpy(p, &u, 4);
 }
 
-// 8 numbers in memory order to even and odd ones, and back.
+// Split 8 numbers into even and odd ones, and join them.
 static inline void vf_unzip(vf a, vf b, vf *even, vf *odd)
 {
     *even = _mm_shuffle_ps(a, b, 0x88);
@@ -123,7 +123,7 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p, a);
 }
 
-// 4 numbers of a and b, one after the other, from number n on; 0 <= n < 4.
+// 4 numbers from number n on of a followed by b; 0 <= n < 4.
 #define vf_align(a, b, n) vi_as_vf(vi_align(vf_as_vi(a), vf_as_vi(b), 4 * (n)))
 
 #define vf_shuffle(a, b, imm) _mm_shuffle_ps(a, b, imm)
@@ -132,13 +132,13 @@ static inline void vf_store_lanes(float *p, int step, vf a)
 static inline vi vi_load_u16(const void *p) { return _mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)p)); }
 static inline void vi_store_u16(void *p, vi a) { _mm_storel_epi64((__m128i *)p, _mm_packus_epi32(a, a)); }
 
-// The lanes of prev and cur in one row, one back: prev's last, then all of cur but its last.
+// Shift by one lane: the last lane of prev, then all lanes of cur except the last.
 static inline vf vf_back(vf prev, vf cur)
 {
     return _mm_castsi128_ps(_mm_alignr_epi8(_mm_castps_si128(cur), _mm_castps_si128(prev), 12));
 }
 
-// p[index], index counted in floats.
+// p[index] in each lane.
 static inline vf vf_gather(const float *p, vi index)
 {
     int32_t i[4];
@@ -146,7 +146,7 @@ static inline vf vf_gather(const float *p, vi index)
     return _mm_setr_ps(p[i[0]], p[i[1]], p[i[2]], p[i[3]]);
 }
 
-// Vectors of half as many doubles: from floats and back, and as they are.
+// Vectors of half as many doubles: conversion from floats and back, loads and stores.
 typedef __m128d vd;
 enum { VD_N = 2 };
 static inline vd vd_load(const float *p)
@@ -165,7 +165,7 @@ static inline vd vd_set1(double a) { return _mm_set1_pd(a); }
 static inline vd vd_add(vd a, vd b) { return _mm_add_pd(a, b); }
 static inline vd vd_mul(vd a, vd b) { return _mm_mul_pd(a, b); }
 
-// Four 64-bit integers, and four floats: of 128 bits whatever the rest.
+// Four 64-bit integers, and four floats, whatever the vector size.
 typedef struct { __m128i a, b; } vl;
 typedef __m128 v4;
 static inline void v4_store(float *p, v4 a) { _mm_storeu_ps(p, a); }
@@ -191,7 +191,7 @@ static inline __m128i vl_product_half(__m128i a, __m128i m)
     return _mm_add_epi64(_mm_mul_epu32(a, m), _mm_slli_epi64(_mm_mul_epu32(_mm_srli_epi64(a, 32), m), 32));
 }
 
-// a * b for any a and b of 0 to 2^32 - 1, low 64 bits.
+// a * b for a and b from 0 to 2^32 - 1; the low 64 bits.
 static inline vl vl_product(vl a, vl b) { return (vl){vl_product_half(a.a, b.a), vl_product_half(a.b, b.b)}; }
 // The low 8 bits of *p, in every lane.
 static inline vl vl_low8(const int32_t *p) { return vl_set1(*p & 255); }
@@ -205,15 +205,15 @@ static inline __m128i vl_from_half(__m128d d)
     return _mm_set_epi64x(_mm_cvttsd_si64(_mm_unpackhi_pd(d, d)), _mm_cvttsd_si64(d));
 }
 
-// Times a scale, cut to integers.
+// a times scale, truncated to integers.
 static inline vl vl_from(v4 a, const double scale[4])
 {
     return (vl){vl_from_half(_mm_mul_pd(_mm_cvtps_pd(a), _mm_loadu_pd(scale))),
                 vl_from_half(_mm_mul_pd(_mm_cvtps_pd(_mm_movehl_ps(a, a)), _mm_loadu_pd(scale + 2)))};
 }
 
-// The integer's upper part, made a double by its exponent's bits, and its lower 48 bits are both exact: one rounding, as
-// that of a conversion.
+// The integer's upper part becomes a double through the exponent bits, and so do its lower 48 bits. Both are exact, so
+// their sum rounds once, as a conversion does.
 static inline __m128d vl_scaled_half(__m128i a, __m128d scale)
 {
     const __m128d magic = _mm_set1_pd(442721857769029238784.0), all = _mm_set1_pd(442726361368656609280.0);
@@ -223,7 +223,7 @@ static inline __m128d vl_scaled_half(__m128i a, __m128d scale)
     return _mm_mul_pd(_mm_add_pd(d, _mm_castsi128_pd(lower)), scale);
 }
 
-// The sum of n, each times its scale, as floats; from the last on.
+// The sum of n vectors, each times its scale, as floats, from the last one on.
 static inline v4 vl_scaled(const vl *a, int n, const double (*scale)[4])
 {
     __m128d low = _mm_setzero_pd(), high = low;
