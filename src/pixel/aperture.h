@@ -72,19 +72,19 @@ int hf_aperture_sides(struct hf_side side[HF_SIDES], int blades, double rotation
 int hf_aperture_run(const struct hf_side *side, int sides, double y, double *a, double *b, int of[2]);
 
 // A picture's transmission as its integral over [0, x) x [0, y).
-struct hf_area {
+struct hf_integral {
     const double *sum;  // (width + 1) x (height + 1)
     int width, height;
 };
 
-size_t hf_area_bytes(const struct hf_image *image);
-// The integral of a channel, in memory of hf_area_bytes.
-struct hf_area hf_area_make(double *memory, const struct hf_image *image, int channel);
+size_t hf_integral_bytes(const struct hf_image *image);
+// The integral of a channel, in memory of hf_integral_bytes.
+struct hf_integral hf_integral_make(double *memory, const struct hf_image *image, int channel);
 // Its value at a place that may lie between pixels or outside.
-double hf_area_at(const struct hf_area *t, double x, double y);
+double hf_integral_at(const struct hf_integral *t, double x, double y);
 // What tells one image from the next; and is it one of colours?
-uint64_t hf_area_hash(const struct hf_image *image);
-int hf_area_coloured(const struct hf_image *image);
+uint64_t hf_aperture_hash(const struct hf_image *image);
+int hf_aperture_coloured(const struct hf_image *image);
 
 // Number of the picture for a radius; smaller ones than 0.5 count as that. radius is finite.
 static inline int hf_picture_number(float radius)

@@ -17,7 +17,7 @@ static float transmission(const struct hf_image *m, int c, int x, int y)
     return v > 0 && v < INFINITY ? v : 0;
 }
 
-uint64_t hf_area_hash(const struct hf_image *m)
+uint64_t hf_aperture_hash(const struct hf_image *m)
 {
     uint64_t h = 0xcbf29ce484222325u;
     for (int y = 0; y < m->height; y++)
@@ -31,7 +31,7 @@ uint64_t hf_area_hash(const struct hf_image *m)
     return h;
 }
 
-int hf_area_coloured(const struct hf_image *m)
+int hf_aperture_coloured(const struct hf_image *m)
 {
     for (int y = 0; y < m->height; y++)
         for (int x = 0; x < m->width; x++)
@@ -40,7 +40,7 @@ int hf_area_coloured(const struct hf_image *m)
     return 0;
 }
 
-double hf_area_at(const struct hf_area *t, double x, double y)
+double hf_integral_at(const struct hf_integral *t, double x, double y)
 {
     x = fmin(fmax(x, 0), t->width);
     y = fmin(fmax(y, 0), t->height);
@@ -50,12 +50,12 @@ double hf_area_at(const struct hf_area *t, double x, double y)
     return (a[0] * (1 - fx) + a[1] * fx) * (1 - fy) + (b[0] * (1 - fx) + b[1] * fx) * fy;
 }
 
-size_t hf_area_bytes(const struct hf_image *m)
+size_t hf_integral_bytes(const struct hf_image *m)
 {
     return ((size_t)m->width + 1) * ((size_t)m->height + 1) * sizeof(double);
 }
 
-struct hf_area hf_area_make(double *sum, const struct hf_image *m, int c)
+struct hf_integral hf_integral_make(double *sum, const struct hf_image *m, int c)
 {
     const size_t row = (size_t)m->width + 1;
     memset(sum, 0, row * sizeof *sum);
@@ -67,7 +67,7 @@ struct hf_area hf_area_make(double *sum, const struct hf_image *m, int c)
             out[x + 1] = out[x - (ptrdiff_t)row + 1] + line;
         }
     }
-    return (struct hf_area){sum, m->width, m->height};
+    return (struct hf_integral){sum, m->width, m->height};
 }
 
 // Pixels of a picture of radius r to either side of its centre.
@@ -83,7 +83,7 @@ static struct hf_picture frame_of(const struct hf_image *m, double r, double sca
 }
 
 // Weights of one size, as differences along x. Returns their sum.
-static double draw(struct hf_aperture *a, const struct hf_picture *p, const struct hf_area *t, double r)
+static double draw(struct hf_aperture *a, const struct hf_picture *p, const struct hf_integral *t, double r)
 {
     const double shorter = t->width < t->height ? t->width : t->height, unit = shorter / 2 / r,
                  step_x = unit / a->key.scale_x;
@@ -95,8 +95,8 @@ static double draw(struct hf_aperture *a, const struct hf_picture *p, const stru
             int last = 0;
             for (int i = 0; i < p->columns; i++) {
                 const double x0 = t->width / 2.0 + (i - p->reach_x - 0.5) * step_x, x1 = x0 + step_x;
-                const double v = i + 1 < p->columns ? hf_area_at(t, x1, y1) - hf_area_at(t, x0, y1) -
-                                                          hf_area_at(t, x1, y0) + hf_area_at(t, x0, y0)
+                const double v = i + 1 < p->columns ? hf_integral_at(t, x1, y1) - hf_integral_at(t, x0, y1) -
+                                                          hf_integral_at(t, x1, y0) + hf_integral_at(t, x0, y0)
                                                     : 0;
                 if (pass == 0) {
                     most = v > most ? v : most;
@@ -116,19 +116,19 @@ int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key 
                             const struct hf_mem *mem)
 {
     struct hf_aperture_key with = *key;
-    with.image = hf_area_hash(image);
+    with.image = hf_aperture_hash(image);
     with.width = image->width;
     with.height = image->height;
     if (a->count && !memcmp(&a->key, &with, sizeof with))
         return HF_OK;
     a->key = with;
     a->symmetric = 0;
-    a->planes = hf_area_coloured(image) ? 3 : 1;
+    a->planes = hf_aperture_coloured(image) ? 3 : 1;
     a->headroom = 12;
     a->steps = STEPS;
     a->count = (hf_picture_number(key->largest) + STEPS / 2) / STEPS + 2;
     const size_t pictures = (size_t)(a->count * a->planes) * sizeof *a->picture;
-    const size_t table = hf_area_bytes(image);
+    const size_t table = hf_integral_bytes(image);
     size_t taps = 0;
     for (int i = 0; i < a->count; i++) {
         const struct hf_picture p = frame_of(image, hf_picture_radius(i * STEPS), key->scale_x);
@@ -144,7 +144,7 @@ int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key 
     a->tap = (int16_t *)((char *)a->picture + pictures);
     int first = 0;
     for (int c = 0; c < a->planes; c++) {
-        const struct hf_area t = hf_area_make(sum, image, c);
+        const struct hf_integral t = hf_integral_make(sum, image, c);
         for (int i = 0; i < a->count; i++) {
             struct hf_picture *p = &a->picture[c * a->count + i];
             const double r = hf_picture_radius(i * STEPS);

@@ -125,7 +125,7 @@ static void set_shape(struct hf_layers *l, const struct hf_params *p)
     struct hf_shape_key *k = &l->key;
     memset(k, 0, sizeof *k);
     l->shaped = a->picture || a->blades || a->ring > 0 || a->cat_eye > 0;
-    l->groups = l->chromatic != 0 || (a->picture && hf_area_coloured(a->picture)) ? 3 : 1;
+    l->groups = l->chromatic != 0 || (a->picture && hf_aperture_coloured(a->picture)) ? 3 : 1;
     k->wide = l->wide;
     k->spacing = l->set.spacing;
     k->half = l->set.half;
@@ -134,7 +134,7 @@ static void set_shape(struct hf_layers *l, const struct hf_params *p)
     if (a->picture) {
         k->width = a->picture->width;
         k->height = a->picture->height;
-        k->picture = hf_area_hash(a->picture);
+        k->picture = hf_aperture_hash(a->picture);
         return;
     }
     k->blades = a->blades;

@@ -156,7 +156,7 @@ static void make_shape(struct hf_shape *s, const struct maker *m, struct hf_shap
 }
 
 // Make one shape in memory; returns how many bytes it takes there. With memory NULL it only counts.
-static size_t build_one(struct hf_shape *s, const struct maker *m, const struct hf_area *area, uint8_t *memory)
+static size_t build_one(struct hf_shape *s, const struct maker *m, const struct hf_integral *area, uint8_t *memory)
 {
     s->rows = 2 * (int)ceil(s->radius - 0.5) + 1;
     s->top = -(s->rows / 2);
@@ -177,7 +177,8 @@ static size_t build_one(struct hf_shape *s, const struct maker *m, const struct 
 }
 
 // Make all shapes in memory; returns how many bytes they take. With memory NULL it only counts.
-static size_t build(struct hf_shapes *s, const struct hf_shape_size *size, const struct hf_area *area, uint8_t *memory)
+static size_t build(struct hf_shapes *s, const struct hf_shape_size *size, const struct hf_integral *area,
+                    uint8_t *memory)
 {
     const struct maker m = maker_of(&s->key);
     size_t used = 0;
@@ -206,19 +207,19 @@ int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const s
     same.count = hf_max(s->key.count, key->count);
     if (s->block.data && !memcmp(&s->key, &same, sizeof same))
         return HF_OK;
-    struct hf_area area[3];
+    struct hf_integral area[3];
     struct hf_block integrals = {0};
     s->key = *key;
-    s->planes = picture && hf_area_coloured(picture) ? 3 : 1;
+    s->planes = picture && hf_aperture_coloured(picture) ? 3 : 1;
     if (picture) {
-        const size_t bytes = hf_area_bytes(picture);
+        const size_t bytes = hf_integral_bytes(picture);
         const int err = hf_block_grow(&integrals, bytes * (size_t)s->planes, mem);
         if (err) {
             s->key.count = -1;
             return err;
         }
         for (int p = 0; p < s->planes; p++)
-            area[p] = hf_area_make((double *)integrals.data + bytes / sizeof(double) * (size_t)p, picture, p);
+            area[p] = hf_integral_make((double *)integrals.data + bytes / sizeof(double) * (size_t)p, picture, p);
     }
     const size_t table = ((size_t)key->count * sizeof *s->shape + 63) & ~(size_t)63;
     const size_t bytes = table + build(s, size, picture ? area : NULL, NULL);

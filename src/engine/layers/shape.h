@@ -65,8 +65,8 @@ struct hf_shape_size {
 int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const struct hf_shape_size *size,
                     const struct hf_image *picture, const struct hf_mem *mem);
 // The weights of an aperture picture (shape_picture.c): find its rows and reach, and draw it.
-void hf_shape_frame(struct hf_shape *s, const struct hf_area *area, double wide);
-void hf_shape_draw(struct hf_shape *s, const struct hf_area *area, double wide, struct hf_shape_row *row,
+void hf_shape_frame(struct hf_shape *s, const struct hf_integral *area, double wide);
+void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wide, struct hf_shape_row *row,
                    float *weight);
 // Integral from 0 to t of the half-width of the rows of a disc of radius r.
 double hf_half_disc(double r, double t);

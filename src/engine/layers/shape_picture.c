@@ -6,12 +6,12 @@
 
 enum { LONGEST = 2 };  // parts beyond this ratio of length to width are cut off
 
-static double shorter_of(const struct hf_area *a)
+static double shorter_of(const struct hf_integral *a)
 {
     return a->width < a->height ? a->width : a->height;
 }
 
-void hf_shape_frame(struct hf_shape *s, const struct hf_area *area, double wide)
+void hf_shape_frame(struct hf_shape *s, const struct hf_integral *area, double wide)
 {
     const double shorter = shorter_of(area);
     const int high = (int)ceil(s->radius * fmin(area->height / shorter, LONGEST) - 0.5);
@@ -22,14 +22,14 @@ void hf_shape_frame(struct hf_shape *s, const struct hf_area *area, double wide)
 }
 
 // Row i of the weights.
-static void draw_row(const struct hf_shape *s, const struct hf_area *t, double wide, int i, float *out)
+static void draw_row(const struct hf_shape *s, const struct hf_integral *t, double wide, int i, float *out)
 {
     const double unit = shorter_of(t) / 2 / s->radius, step = unit / wide;
     const double y0 = t->height / 2.0 + (s->top + i - 0.5) * unit, y1 = y0 + unit;
     double from = 0;
     for (int x = 0; x <= 2 * s->reach + 1; x++) {
         const double at = t->width / 2.0 + (x - s->reach - 0.5) * step;
-        const double to = hf_area_at(t, at, y1) - hf_area_at(t, at, y0);
+        const double to = hf_integral_at(t, at, y1) - hf_integral_at(t, at, y0);
         // Differences of integrals leave rounding errors where there is nothing.
         const double v = (to - from) / (unit * step);
         if (x)
@@ -38,7 +38,8 @@ static void draw_row(const struct hf_shape *s, const struct hf_area *t, double w
     }
 }
 
-void hf_shape_draw(struct hf_shape *s, const struct hf_area *area, double wide, struct hf_shape_row *row, float *weight)
+void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wide, struct hf_shape_row *row,
+                   float *weight)
 {
     const int columns = 2 * s->reach + 1, stride = (columns + 15) / 16 * 16;
     s->row = row;

@@ -174,7 +174,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     t->largest[1] = fmaxf(found->radius_max, 0);
     t->mixed = found->radius_max - found->radius_min > HF_EDGES_FROM;
     t->behind = hf_behind_levels(t->largest[0]);
-    t->slices = hf_slice_count(t->largest[1]);
+    t->slices = hf_scatter_slice_count(t->largest[1]);
     t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
         set_reach(t, field);

@@ -108,7 +108,7 @@ static inline float hf_alike(float r, float apart)
 
 // The number of slices of a far field with radii up to this.
 enum { HF_SLICES = 8 };
-int hf_slice_count(float largest);
+int hf_scatter_slice_count(float largest);
 
 // Floats of scratch that the splats of a cell need; its size is in half-resolution pixels.
 size_t hf_splat_work(const struct hf_scatter *t, int cell_width, int cell_height);

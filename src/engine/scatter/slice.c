@@ -11,7 +11,7 @@
 // Radius where the second slice begins; ratio of one slice's radius to the next; ratio over which a source fades in.
 static const float first = 4, step = 3, soft = 1.25f;
 
-int hf_slice_count(float largest)
+int hf_scatter_slice_count(float largest)
 {
     int count = 1;
     for (float from = first; from < largest && count < HF_SLICES; from *= step)
@@ -19,13 +19,13 @@ int hf_slice_count(float largest)
     return count;
 }
 
-struct hf_slice hf_slice_make(const struct hf_scatter *t, int k)
+struct hf_scatter_slice hf_scatter_slice_make(const struct hf_scatter *t, int k)
 {
     float from = first / step;
     for (int i = 0; i < k; i++)
         from *= step;
     const float to = from * step;
-    struct hf_slice s = {.begin = {from, from * soft}, .end = {to, to * soft}};
+    struct hf_scatter_slice s = {.begin = {from, from * soft}, .end = {to, to * soft}};
     if (k == 0)
         s.begin[0] = -2, s.begin[1] = -1;
     if (k == t->slices - 1)
@@ -33,7 +33,7 @@ struct hf_slice hf_slice_make(const struct hf_scatter *t, int k)
     return s;
 }
 
-void hf_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, float *most)
+void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, float *most)
 {
     const struct hf_scatter *t = hf_scatter(f->s);
     const int x0 = hf_max(2 * (r.x0 - t->around_x), 0), x1 = hf_min(2 * (r.x1 + t->around_x), f->s->width);
@@ -56,10 +56,10 @@ void hf_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, fl
     *most = high;
 }
 
-void hf_slice_row(const struct hf_slice *s, float sign, const float *radius, int n, float *row)
+void hf_scatter_slice_row(const struct hf_scatter_slice *s, float sign, const float *radius, int n, float *row)
 {
     for (int x = 0; x < n; x++)
-        row[x] *= hf_slice_part(s, sign * radius[x]);
+        row[x] *= hf_scatter_slice_part(s, sign * radius[x]);
 }
 
 // The part of a pixel in which far sprites can show, from its two sides by their shares.
@@ -73,8 +73,8 @@ static float room_at(const struct hf_frame *f, int x, int y)
     return hf_lerp(front, 1 - hf_own_part(t, fabsf(*hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y))), share);
 }
 
-void hf_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
-                     const struct hf_target *slice)
+void hf_scatter_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
+                             const struct hf_target *slice)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
     for (int y = y0; y < y1; y++) {

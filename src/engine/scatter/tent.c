@@ -143,7 +143,7 @@ static void slice_pixels(const struct walk *w, const struct hf_tent_row *t)
     for (int odd = 0; odd < 2; odd++) {
         float *part = w->part[odd];
         for (int i = 0; i < t->n; i++)
-            part[i] = hf_slice_part(&w->slice, t->sign * t->radius[2 * i + odd]);
+            part[i] = hf_scatter_slice_part(&w->slice, t->sign * t->radius[2 * i + odd]);
         for (int c = 0; c < 4; c++)
             for (int i = 0; i < t->n && (c == 3 || c < t->channels); i++)
                 t->pixel[odd][c][i] *= part[i];
@@ -201,7 +201,7 @@ static void list_lone(struct walk *w, int y, int q, float part)
         float weight = tent_weight(&t, (x >> 1) - w->tent_x0, x & 1, &merged);
         if (!(weight > merged))
             continue;
-        weight = (weight - merged) * hf_slice_part(&w->slice, r);
+        weight = (weight - merged) * hf_scatter_slice_part(&w->slice, r);
         if (w->t->mixed)
             weight *= 1 - *hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y);
         for (int side = 0; side < 2; side++) {

@@ -36,7 +36,7 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
                 row[c][x] *= 1 - share[x];
     for (int c = 0; c < 4 && !w->slice.whole; c++)
         if (c == 3 || c < w->group->channels)
-            hf_slice_row(&w->slice, sign, r.radius, x1 - x0, row[c]);
+            hf_scatter_slice_row(&w->slice, sign, r.radius, x1 - x0, row[c]);
     hf_scatter_kernels(f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
     return r;
 }
@@ -56,7 +56,7 @@ void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
     const struct hf_frame *f = w->f;
     const float size = (w->field ? 1 : -1) * *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y), half = hf_half_part(w->t, size);
     const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) *
-                         (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part) * hf_slice_part(&w->slice, size);
+                         (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part) * hf_scatter_slice_part(&w->slice, size);
     float v[3] = {0};
     if (!(weight > 0))
         return;
@@ -300,7 +300,7 @@ static void splat_slices(struct walk *w, struct hf_rect r, const struct hf_targe
     for (int c = 0; c < 4; c++)
         part.ch[c] = to->ch[c] ? memory + c * plane : NULL;
     for (int k = 0; k < w->t->slices; k++) {
-        w->slice = hf_slice_make(w->t, k);
+        w->slice = hf_scatter_slice_make(w->t, k);
         const int none = most <= w->slice.begin[0] || least >= w->slice.end[1];
         w->slice.whole = least >= w->slice.begin[1] && most <= w->slice.end[0];
         if (k == 0 && none)
@@ -308,7 +308,7 @@ static void splat_slices(struct walk *w, struct hf_rect r, const struct hf_targe
         else if (!none) {
             splat_slice(w, r, k ? &part : to);
             if (k)
-                hf_slice_behind(w->f, r, to, &part);
+                hf_scatter_slice_behind(w->f, r, to, &part);
         }
     }
 }
@@ -319,7 +319,7 @@ static void splat_field(const struct hf_frame *f, struct hf_rect r, int field, i
     const int sliced = field && w.t->slices > 1;
     float least, most;
     if (sliced)
-        hf_slice_range(f, r, &least, &most);
+        hf_scatter_slice_range(f, r, &least, &most);
     for (int group = 0; group < w.t->groups; group++) {
         struct hf_target to = {.stride = f->buf[sum].stride};
         w.group = &w.t->group[group];

@@ -11,7 +11,7 @@
 enum { TOGETHER = 4 };  // rows of full-resolution sources drawn together
 
 // A slice of radii: sources from begin[1] to end[0] belong to it fully, those from begin[0] and up to end[1] in part.
-struct hf_slice {
+struct hf_scatter_slice {
     int whole;  // all radii belong to it; the other members are unset
     float begin[2], end[2];
 };
@@ -27,16 +27,16 @@ struct walk {
     const struct hf_frame *f;
     const struct hf_scatter *t;
     const struct hf_splat_group *group;
-    int field;                    // 0 near, 1 far
-    int level;                    // 1: half resolution
-    struct hf_sums sums;          // of the first bin
-    const struct hf_bins *bins;   // of the group and level
-    ptrdiff_t bin_lanes;          // distance from one bin's sums to the next
-    struct hf_splats *list;       // of each bin
-    int reached, drawn[HF_BINS];  // the last row that the sources at hand reach; the last row drawn in each bin
-    struct hf_run *runs;          // scratch for a sprite that belongs to one source only
-    struct hf_slice slice;        // the radii that are drawn
-    float *source[TOGETHER][5];   // level 0: channels, weight, sprite numbers
+    int field;                      // 0 near, 1 far
+    int level;                      // 1: half resolution
+    struct hf_sums sums;            // of the first bin
+    const struct hf_bins *bins;     // of the group and level
+    ptrdiff_t bin_lanes;            // distance from one bin's sums to the next
+    struct hf_splats *list;         // of each bin
+    int reached, drawn[HF_BINS];    // the last row that the sources at hand reach; the last row drawn in each bin
+    struct hf_run *runs;            // scratch for a sprite that belongs to one source only
+    struct hf_scatter_slice slice;  // the radii that are drawn
+    float *source[TOGETHER][5];     // level 0: channels, weight, sprite numbers
     // Level 1, for the last rows: quads' weights, these times radii, source radii, and pixels; see hf_list_half.
     float *quad[2][4], *site[4], *tent[4][4], *pixel[2][4], *mean[5], *part[2], *nothing;
     int lone[4];
@@ -45,7 +45,7 @@ struct walk {
 };
 
 // How much of a source of radius r > 0 belongs to the slice.
-static inline float hf_slice_part(const struct hf_slice *s, float r)
+static inline float hf_scatter_slice_part(const struct hf_scatter_slice *s, float r)
 {
     if (s->whole)
         return 1;
@@ -84,13 +84,13 @@ void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part);
 void hf_flush_sources(struct walk *w);
 
 // Slice k of the far field, and the range of far radii that reach the window r.
-struct hf_slice hf_slice_make(const struct hf_scatter *t, int k);
-void hf_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, float *most);
+struct hf_scatter_slice hf_scatter_slice_make(const struct hf_scatter *t, int k);
+void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, float *most);
 // Multiply a row of n pixels by their part in a slice.
-void hf_slice_row(const struct hf_slice *s, float sign, const float *radius, int n, float *row);
+void hf_scatter_slice_row(const struct hf_scatter_slice *s, float sign, const float *radius, int n, float *row);
 // Composite a slice behind the slices in front of it.
-void hf_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
-                     const struct hf_target *slice);
+void hf_scatter_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
+                             const struct hf_target *slice);
 
 // For a window of that width: columns of means, floats of a line, and number of lines.
 int hf_tent_columns(const struct hf_scatter *t, int field, int width);
