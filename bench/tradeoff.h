@@ -61,6 +61,7 @@ enum trade_rank { TRADE_BEATEN, TRADE_TIED, TRADE_FRONT };
 struct trade_result {
     const struct trade_setting *setting;
     enum hf_engine engine;
+    struct hf_params params;  // what its options come to
     float farthest;  // the largest radius that it blurs by, pixels; INFINITY: any
     struct trade_point at[TRADE_SCENES];
     struct trade_time both;  // 1920x1080, scene `both`, radius 12: what `passes` measures

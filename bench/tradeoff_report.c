@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tradeoff.h"
 #include "write.h"
+#include "frame/ladder_fields.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -377,30 +379,65 @@ static double of_engine(const struct trade *t, int engine)
     return r ? r->ms.median : 0;
 }
 
+static void initialiser(FILE *out, const char *field, double value)
+{
+    fprintf(out, ", .%s = ", field);
+    if (strcmp(field, "engine")) {
+        fprintf(out, "%.9g", value);
+        return;
+    }
+    fputs("HF_ENGINE_", out);
+    for (const char *c = hf_engine_name((enum hf_engine)(int)value); *c; c++)
+        fputc(toupper((unsigned char)*c), out);
+}
+
+// A setting's parameters, as C: those that are not the defaults.
+static void initialisers(FILE *out, const struct trade_result *r)
+{
+    const struct hf_params *p = &r->params, *plain = &hf_default_params;
+    struct hf_params written = *plain;
+    fputs("{HF_PARAMS_DEFAULTS", out);
+#define WRITE(field)                                                                                                   \
+    if (p->field != plain->field)                                                                                      \
+        initialiser(out, #field, p->field);                                                                            \
+    written.field = p->field;
+    HF_LADDER_FIELDS(WRITE)
+#undef WRITE
+    fputc('}', out);
+    if (memcmp(&written, p, sizeof written))
+        fprintf(out, "\n#error \"%s sets a field that src/frame/ladder_fields.h does not list\"\n",
+                r->setting->options);
+}
+
 void trade_ladder_table(FILE *out, const struct trade *t)
 {
     const double size = megapixels(t);
     int place[TRADE_QUALITIES];
-    fprintf(
-        out,
-        "// SPDX-License-Identifier: BSD-3-Clause\n"
-        "// Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.\n"
-        "//\n"
-        "// Settings worth having, cheapest first. Each takes longer than the one before and errs less, and on no "
-        "scene "
-        "where\n"
-        "// either may be chosen by 0.1 dB more. Those of the gaussian engine are for blur that is no wider than "
-        "theirs; "
-        "for a\n"
-        "// lens the list begins below them.\n"
-        "// clang-format off\n"
-        "#define HF_LADDER_MEASURED \"%s, %s, %s, %d thread%s\"\n// options; display-encoded root mean square error, "
-        "geometric mean of the scenes and of the worst; milliseconds of a\n// megapixel\n#define HF_LADDER_STEPS",
-        t->date, t->cpu, hf_isa_name(t->isa), t->threads, t->threads == 1 ? "" : "s");
+    fprintf(out,
+            "// SPDX-License-Identifier: BSD-3-Clause\n"
+            "// Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.\n"
+            "//\n"
+            "// Settings worth having, cheapest first. Each takes longer than the one before and errs less, and on no "
+            "scene "
+            "where\n"
+            "// either may be chosen by 0.1 dB more. Those of the gaussian engine are for blur that is no wider than "
+            "theirs; "
+            "for a\n"
+            "// lens the list begins below them.\n"
+            "// clang-format off\n"
+            "#define HF_LADDER_MEASURED \"%s, %s, %s, %d thread%s\"\n// The command's words; display-encoded root mean "
+            "square "
+            "error, geometric mean of the scenes and of the worst;\n// milliseconds of a megapixel; the parameters "
+            "that the "
+            "words stand for.\n#define HF_LADDER_STEPS",
+            t->date, t->cpu, hf_isa_name(t->isa), t->threads, t->threads == 1 ? "" : "s");
     const struct trade_result *r;
-    for (int step = 1; (r = at_step(t, step)); step++)
-        fprintf(out, "%s \\\n    {\"%s\", %.6ff, %.6ff, %#.4gf}", step > 1 ? "," : "", r->setting->options, r->error,
-                r->worst, r->ms.median / size);
+    for (int step = 1; (r = at_step(t, step)); step++) {
+        fprintf(out, "%s \\\n    {\"%s\", %.6ff, %.6ff, %#.4gf, \\\n     ", step > 1 ? "," : "", r->setting->options,
+                r->error, r->worst, r->ms.median / size);
+        initialisers(out, r);
+        fputc('}', out);
+    }
     fputs("\n// steps of draft, standard, high and best\n#define HF_LADDER_QUALITIES", out);
     for (int q = 0; q < TRADE_QUALITIES && !trade_qualities(t, place); q++)
         fprintf(out, "%s %d", q ? "," : "", t->result[place[q]].step - 1);

@@ -98,6 +98,7 @@ int trade_run_parse(struct trade_run *run, struct tool_error *error)
         if (parse_job(run, &run->job[kept], t->result[i].setting->options, error))
             return -1;
         t->result[kept] = t->result[i];
+        t->result[kept].params = run->job[kept].args.params;
         t->result[kept].engine = run->job[kept].args.params.engine;
         t->result[kept].farthest = farthest(&run->job[kept].args.params);
         kept++;

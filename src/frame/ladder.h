@@ -7,9 +7,10 @@
 #include "hyperfocal/hyperfocal.h"
 
 struct hf_ladder_step {
-    const char *options;  // the command's words for it
-    float error, worst;   // from the truth, display-encoded: geometric mean over the scenes, and of the worst
-    float ms;             // of a megapixel
+    const char *options;      // the command's words for it
+    float error, worst;       // from the truth, display-encoded: geometric mean over the scenes, and of the worst
+    float ms;                 // of a megapixel
+    struct hf_params params;  // the defaults in all but the fields of ladder_fields.h
 };
 
 extern const struct hf_ladder_step hf_ladder[];
@@ -21,8 +22,6 @@ extern const float hf_ladder_engine_ms[HF_ENGINE_COUNT];
 
 // Make params those of a step, as far as steps differ: the engine and its knobs.
 void hf_ladder_apply(struct hf_params *params, int step);
-// 1 if all words of a step's options are understood.
-int hf_ladder_understands(int step);
 // Of what steps differ in.
 uint64_t hf_ladder_hash(const struct hf_params *params);
 // 1 if params->engine draws params->aperture.

@@ -325,8 +325,17 @@ static void choices(void)
         CHECK_MSG(hf_ladder[i].ms > hf_ladder[i - 1].ms && hf_ladder[i].error < hf_ladder[i - 1].error &&
                       (starts_to_reach(i) || hf_ladder[i].worst <= same * hf_ladder[i - 1].worst),
                   "step %d", i);
-    for (int i = 0; i < hf_ladder_steps; i++)
-        CHECK_MSG(hf_ladder_understands(i), "%s: add the option to ladder.c", hf_ladder[i].options);
+    for (int i = 0; i < hf_ladder_steps; i++) {
+        const char *name = hf_engine_name(hf_ladder[i].params.engine),
+                   *words = hf_ladder[i].options + strlen("--engine ");
+        CHECK_MSG(!strncmp(words, name, strlen(name)), "%s has parameters of the %s engine", hf_ladder[i].options,
+                  name);
+        hf_ladder_apply(&p, i);
+        CHECK_MSG(hf_ladder_hash(&p) == hf_ladder_hash(&hf_ladder[i].params), "%s", hf_ladder[i].options);
+        CHECK_MSG(hf_ladder_ms(&p) == hf_ladder[i].ms, "%s is another step", hf_ladder[i].options);
+    }
+    p = hf_default_params;
+    p.max_radius = 0;
     for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {
         CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)q, &c), HF_OK);
         CHECK(c.step >= last.step && c.steps == hf_ladder_steps && c.options == hf_ladder[c.step].options);
