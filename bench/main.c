@@ -4,6 +4,7 @@
 
 #include "tools/common/nearest.h"
 #include "tools/common/options.h"
+#include "tools/common/standard.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -56,6 +57,7 @@ static int run(int argc, char **argv, struct tool_error *error)
 
 int main(int argc, char **argv)
 {
+    tool_open_standard();
     struct tool_error error = {""};
     tool_program = "hyperfocal-bench";
     if (!run(argc, argv, &error))

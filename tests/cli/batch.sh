@@ -164,19 +164,19 @@ rm a/shot.0002.exr
 head -c 300000 good/shot.0003.exr >a/shot.0003.exr
 cp in/shot.0005.exr a/shot.0005.exr
 : >a/shot.0006.exr
-sleep 30 &
-alive=$!
-host=$(uname -n | cut -c 1-32 | sed 's/[^A-Za-z0-9.]/_/g')
-: >"a/.hyperfocal-$host-999999999-0.exr"
-: >"a/.hyperfocal-$host-$alive-0.exr"
 : >"a/.hyperfocal-elsewhere-1-0.exr"
 : >"a/.hyperfocal-elsewhere-2-0.exr"
-touch -d '2 hours ago' "a/.hyperfocal-elsewhere-2-0.exr"
+: >"a/.hyperfocal-elsewhere-3-0.exr"
+touch -d '2 hours ago' a/.hyperfocal-elsewhere-[23]-0.exr
+# As a writer holds its file.
+flock a/.hyperfocal-elsewhere-3-0.exr sleep 30 &
+alive=$!
+sleep 0.2
 run in/shot.####.exr -o a/shot.####.exr $quick --resume
 check "what is missing, cut off, empty or not ours is made" says "4 done, 2 there already"
-check "what dead processes left is removed" says "files left by killed processes: 2 removed"
-check "what living ones may still write is kept" test -e "a/.hyperfocal-$host-$alive-0.exr" -a \
-    -e "a/.hyperfocal-elsewhere-1-0.exr"
+check "what dead processes left is removed" says "files left by killed processes: 1 removed"
+check "what living ones may still write is kept" test -e a/.hyperfocal-elsewhere-1-0.exr -a \
+    -e a/.hyperfocal-elsewhere-3-0.exr
 kill $alive 2>/dev/null
 rm -f a/.hyper*
 check "all as if undisturbed" same good a

@@ -185,7 +185,7 @@ static int is_sentence(const char *said)
 static int is_whole(const char *path)
 {
     struct hf_io_file *f;
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     if (hf_io_open(&f, path, NULL, &err))
         return 0;
     int ok = hf_io_view_count(f) > 0;

@@ -12,7 +12,7 @@ static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
 static void read_view(struct hf_io_file *file, int v)
 {
     const struct hf_io_view *view = hf_io_view(file, v);
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     MUST(view->width > 0 && view->height > 0);
     const size_t n = (size_t)view->width * (size_t)view->height;
     if (n > 1u << 21)
@@ -55,7 +55,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     MUST(fwrite(data, 1, size, f) == size);
     fclose(f);
     struct hf_io_file *file = NULL;
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     const int opened = hf_io_open(&file, path, NULL, &err);
     MUST(opened == 0 || (opened == -1 && err.message[0] && !file));
     if (!opened) {

@@ -12,7 +12,7 @@
 static const char *note_of(const char *path, const char *compression)
 {
     static struct hf_io_written written;
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_file *f;
     int ignored = 0;
     if (!CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))

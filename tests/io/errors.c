@@ -13,7 +13,7 @@
 void test_unsupported(void)
 {
     const char *path = in_folder("odd.exr"), *target = in_folder("none.exr");
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct part parts[MAX_PARTS] = {usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};
     parts[0].x = parts[0].y = 0;
     parts[0].width = parts[0].height = 40;
@@ -41,7 +41,7 @@ void test_errors(void)
     const char *path = in_folder("a.exr");
     const struct part parts[MAX_PARTS] = {
         usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     CHECK(!make_exr(path, parts, NULL));
     expect_error(rewrite(in_folder("missing.exr"), path, &err), &err, "missing.exr: cannot open: No such file");
     expect_error(rewrite(folder, path, &err), &err, "not a regular file");
@@ -65,7 +65,7 @@ void test_errors(void)
 
 void full_disk(const char *source, const char *target)
 {
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct rlimit was, low;
     const int files = files_in(folder);
     getrlimit(RLIMIT_FSIZE, &was);

@@ -17,7 +17,7 @@ void test_planes(void)
     float buf[3][7 * 16], got[5 * 7];
     const float *data[3] = {buf[0], buf[1], buf[2]};
     const struct hf_io_planes planes = {5, 7, 3, names, data, 16};
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_view v = {.width = 5, .height = 7};
     struct hf_io_map found;
     for (int i = 0; i < 3 * 7 * 16; i++)
@@ -57,7 +57,7 @@ void test_depth_file_sizes(void)
     } cases[] = {{8, 4, 4, 2}, {9, 6, 6, 4}, {4, 2, 16, 8}, {200, 100, 150, 75}, {5, 5, 1, 1}};
     float map[200 * 100], got[200 * 100];
     const float *data[1] = {map};
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_map found;
     for (int i = 0; i < 200 * 100; i++)
         map[i] = (float)(i + 1);
@@ -106,7 +106,7 @@ static void new_files(void)
                                            .stride = w};
         const struct hf_io_view v = {.width = w, .height = h};
         struct hf_io_bytes made;
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         struct hf_io_map found;
         // Mantissas of few bits compress, those of many do not.
         for (int k = 0; k < w * h; k++)
@@ -128,7 +128,7 @@ static void format_trip(const char *name, float bound, bool alpha)
     const float *data[4] = {buf[0], buf[1], buf[2], buf[3]};
     const struct hf_io_planes planes = {N, 2, alpha ? 4 : 3, names, data, N};
     float *to[4] = {got[0], got[1], got[2], got[3]};
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_file *f = NULL;
     for (int i = 0; i < 2 * N; i++) {
         buf[3][i] = alpha ? 0.25f + 0.75f * (float)(i % N) / N : 1;
@@ -164,7 +164,7 @@ static void format_trip(const char *name, float bound, bool alpha)
 static void test_damaged(const char *name)
 {
     const char *path = in_folder("bad"), *target = in_folder("out.exr");
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     size_t size;
     CHECK_MSG(!rewrite(in_folder("ramp.exr"), in_folder(name), &err), "%s", err.message);
     uint8_t *data = slurp(in_folder(name), &size), *copy = allocate(size);
@@ -185,7 +185,7 @@ static void test_damaged(const char *name)
 void test_formats(void)
 {
     new_files();
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_file *f;
     if (!hf_io_has_oiio()) {
         spill(in_folder("a.png"), "\x89PNG\r\n\x1a\n", 8);

@@ -37,7 +37,7 @@ static void grow_one(const struct part *parts, const char *compression)
 {
     static const int grow[4] = {5, 3, 40, 2};
     const char *path = in_folder("small.exr"), *target = in_folder("grown.exr");
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_file *f;
     CHECK(!make_exr(path, parts, NULL));
     if (!CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))
@@ -118,7 +118,7 @@ void test_grow(void)
     odd[0].width = odd[0].height = 40;
     odd[0].channels[6].sampling = 2;
     const char *path = in_folder("small.exr");
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_file *f = NULL;
     CHECK(!make_exr(path, odd, NULL));
     if (CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))

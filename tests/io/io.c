@@ -42,6 +42,8 @@ int main(void)
     test_depth_edges();
     test_formats();
     test_signals();
+    test_strays();
+    test_buffer();
     test_rubbish(in_folder("views.exr"));
     test_rubbish(in_folder("parts.exr"));
     test_rubbish(in_folder("odd.exr"));

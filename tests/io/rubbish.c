@@ -11,7 +11,7 @@
 // Reads and writes all of a file; whatever is in it, nothing may crash. Returns whether all went well.
 bool survive(const char *path, const char *target)
 {
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_file *f;
     bool ok = true;
     if (hf_io_open(&f, path, NULL, &err)) {
@@ -72,7 +72,7 @@ void test_huge_header(void)
     const struct part parts[MAX_PARTS] = {
         usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};
     const char *path = in_folder("huge.exr");
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     size_t size;
     CHECK(!make_exr(path, parts, NULL));
     uint8_t *data = slurp(path, &size);
@@ -94,7 +94,7 @@ void test_swapped_chunks(void)
     const struct part parts[MAX_PARTS] = {
         usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIPS, EXR_LINEORDER_INCREASING_Y)};
     const char *path = in_folder("swapped.exr");
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     size_t size, at = 0;
     CHECK(!make_exr(path, parts, NULL));
     uint8_t *data = slurp(path, &size);
@@ -127,7 +127,7 @@ void test_growing(void)
     uint8_t *data = slurp(path, &size);
     for (size_t n = 64; n < size; n += 64) {
         struct hf_io_file *f;
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         spill(path, data, n);
         if (hf_io_open(&f, path, NULL, &err))
             continue;  // not even the header and the tables
@@ -150,7 +150,7 @@ void test_claims(void)
     const char *path = in_folder("claim.exr"), *target = in_folder("none.exr");
     static const char *const types[] = {"compression\0compression", "lineOrder\0lineOrder", "dataWindow\0box2i"};
     static const size_t lengths[] = {23, 19, 16};
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     size_t size;
     CHECK(!make_exr(path, parts, NULL));
     uint8_t *data = slurp(path, &size);

@@ -130,7 +130,7 @@ void test_stages(void)
     const char *path = in_folder("stages.exr"), *target = in_folder("out.exr");
     for (int c = EXR_COMPRESSION_NONE; c <= EXR_COMPRESSION_PIZ; c++) {
         struct hf_io_file *f = NULL;
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         struct part parts[MAX_PARTS] = {usual_part(c % 2 ? EXR_STORAGE_TILED : EXR_STORAGE_SCANLINE,
                                                    (exr_compression_t)c, EXR_LINEORDER_INCREASING_Y)};
         float planes[5][37 * 41], own[5][37 * 41];

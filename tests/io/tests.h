@@ -31,6 +31,8 @@ void test_half_rows(void);
 void test_zip(void);
 void test_stages(void);
 void test_signals(void);
+void test_strays(void);
+void test_buffer(void);
 void test_shared(void);
 
 #endif

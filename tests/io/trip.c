@@ -43,7 +43,7 @@ static void check_written(const char *path, const struct hf_io_file *source, con
                           bool half)
 {
     struct hf_io_file *f;
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     if (!CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))
         return;
     CHECK_INT(hf_io_view_count(f), hf_io_view_count(source));
@@ -72,7 +72,7 @@ void round_trip(const char *path, const char *compression, bool half, bool exact
     struct hf_io_result results[4];
     struct planes planes[4];
     struct hf_io_file *f;
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_written written;
     int too_large = 0;
     if (!CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))
@@ -117,7 +117,7 @@ struct part usual_part(exr_storage_t storage, exr_compression_t compression, exr
 struct hf_io_file *open_or_complain(const char *path, const char *depth, int views)
 {
     struct hf_io_file *f = NULL;
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     CHECK_MSG(!hf_io_open(&f, path, &(struct hf_io_choice){.depth_channel = depth}, &err), "%s", err.message);
     if (f && !CHECK_INT(hf_io_view_count(f), views))
         hf_io_close(&f);

@@ -46,7 +46,7 @@ void test_single_part_views(void)
     hf_io_close(&f);
     f = open_or_complain(path, "nothing", 2);
     if (f) {
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         float depth[45];
         CHECK_INT(hf_io_view(f, 0)->depth_part, -1);
         CHECK(hf_io_read_depth(f, 0, depth, &err) == -1 && strstr(err.message, "forward.left.u"));
@@ -56,7 +56,7 @@ void test_single_part_views(void)
     // The same depth as a file of its own.
     f = open_or_complain(path, NULL, 2);
     for (int i = 0; i < 2 && f; i++) {
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         float depth[45], own[45];
         struct hf_io_map found;
         CHECK_MSG(!hf_io_read_depth(f, i, depth, &err), "%s", err.message);
@@ -113,7 +113,7 @@ void test_parts(void)
     CHECK(!make_exr(path, parts, NULL));
     struct hf_io_file *f = open_or_complain(path, NULL, 2);
     if (f) {
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         float depth[380];
         check_view(f, 0, "right", 0, "R", 4, "Z");
         check_view(f, 1, "left", 3, "R", 1, "Z");
@@ -179,7 +179,7 @@ void test_names(void)
                                            {"Vl.Combined.R", "Vl.Depth.Z"},
                                            {"Ci.r", "zfiltered"}};
     for (size_t i = 0; i < sizeof(found) / sizeof(found[0]); i++) {
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         struct hf_io_file *f = try_names(tries[i], 1, &err);
         if (f)
             check_view(f, 0, "", 0, found[i][0], found[i][1][0] ? 0 : -1, found[i][1]);
@@ -189,7 +189,7 @@ void test_names(void)
     }
     static const char *const none[][8] = {{"G", "R", "Z", 0}, {"a.R", "a.G", "a.B", "b.R", "b.G", "b.B", 0}};
     for (size_t i = 0; i < 2; i++) {
-        struct hf_io_error err = {""};
+        struct hf_io_error err = {.message = ""};
         struct hf_io_file *f = try_names(none[i], 0, &err);
         CHECK_MSG(strstr(err.message, i ? "choose with --layer: a, b" : "G, R, Z"), "%s", err.message);
         hf_io_close(&f);
@@ -199,7 +199,7 @@ void test_names(void)
 // What a choice of layers finds, as "view:layer:red:depth" with blanks between; or the error.
 static void expect_layers(const char *path, const char *wanted, const char *want)
 {
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     struct hf_io_file *f = NULL;
     char got[1024] = "";
     const struct hf_io_choice choice = {.layer = wanted};
@@ -289,7 +289,7 @@ void test_layers(void)
     };
     CHECK(!make_exr(path, parts, NULL));
     struct hf_io_file *f = NULL;
-    struct hf_io_error err = {""};
+    struct hf_io_error err = {.message = ""};
     if (CHECK_MSG(!hf_io_open(&f, path, &(struct hf_io_choice){.layer = "all"}, &err), "%s", err.message) &&
         CHECK_INT(hf_io_view_count(f), 3)) {
         CHECK_INT(hf_io_view(f, 0)->depth_part, 1);

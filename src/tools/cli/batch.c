@@ -93,6 +93,8 @@ static void watch_signals(int quiet)
         sigaddset(&ours.sa_mask, numbers[i]);
     stop_signal = 0;
     told_nothing = quiet;
+    // Whoever read our messages and went is no reason to end the shot.
+    signal(SIGPIPE, SIG_IGN);
     for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++)
         // Who starts us with a signal ignored means it.
         if (!sigaction(numbers[i], NULL, &was) && was.sa_handler != SIG_IGN)

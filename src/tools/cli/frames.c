@@ -33,67 +33,79 @@ int cli_frames_add(struct cli_frames *frames, int frame)
     return 0;
 }
 
-static int read_frame(const char **text, int *frame)
+// Why a list of frames is refused.
+enum fault { NO_FAULT, NO_RANGE, TOO_HIGH, TOO_MANY, NO_MEMORY };
+
+static enum fault read_frame(const char **text, int *frame)
 {
     const char *c = *text;
     char *end;
     if (!isdigit((unsigned char)c[c[0] == '-']))
-        return -1;
+        return NO_RANGE;
     errno = 0;
     const long v = strtol(c, &end, 10);
     if (errno || v < -CLI_MAX_FRAME || v > CLI_MAX_FRAME)
-        return -1;
+        return TOO_HIGH;
     *frame = (int)v;
     *text = end;
-    return 0;
+    return NO_FAULT;
 }
 
-static int read_range(const char **text, struct range *r)
+static enum fault read_range(const char **text, struct range *r)
 {
     *r = (struct range){.step = 1, .by = 'x'};
-    if (read_frame(text, &r->from))
-        return -1;
+    enum fault fault = read_frame(text, &r->from);
     r->to = r->from;
-    if (**text != '-')
-        return 0;
+    if (fault || **text != '-')
+        return fault;
     ++*text;
-    if (read_frame(text, &r->to))
-        return -1;
-    if (**text != 'x' && **text != 'y' && **text != ':')
-        return 0;
+    fault = read_frame(text, &r->to);
+    if (fault || (**text != 'x' && **text != 'y' && **text != ':'))
+        return fault;
     r->by = *(*text)++;
     // A minus sign before the step says what the order of the ends says already.
-    if (read_frame(text, &r->step) || r->step == 0)
-        return -1;
+    fault = read_frame(text, &r->step);
     r->step = abs(r->step);
-    return 0;
+    return fault || r->step ? fault : NO_RANGE;
 }
 
-// Frames by the step; those that it leaves out when others is set.
-static int add_steps(struct cli_frames *frames, const struct range *r, int step, int others)
+static enum fault add(struct cli_frames *frames, int frame)
 {
-    const int sign = r->to < r->from ? -1 : 1, last = abs(r->to - r->from);
-    for (int i = 0; i <= last; i += others ? 1 : step) {
-        if (others && i % step == 0)
-            continue;
-        if (frames->count >= CLI_MAX_FRAMES || cli_frames_add(frames, r->from + sign * i))
-            return -1;
-        if (i > last - step && !others)
-            break;
+    return frames->count >= CLI_MAX_FRAMES ? TOO_MANY : cli_frames_add(frames, frame) ? NO_MEMORY : NO_FAULT;
+}
+
+// Every step-th first, then those that every (step - 1)-th adds, and so on.
+static enum fault add_in_turns(struct cli_frames *frames, const struct range *r, int sign, int span)
+{
+    char *there = calloc((size_t)span, 1);
+    enum fault fault = there ? NO_FAULT : NO_MEMORY;
+    for (int step = r->step < span ? r->step : span; step > 0 && !fault; step--)
+        for (int i = 0; i < span && !fault; i += step)
+            if (!there[i]) {
+                there[i] = 1;
+                fault = add(frames, r->from + sign * i);
+            }
+    free(there);
+    return fault;
+}
+
+// The frames of a range, each once.
+static enum fault add_range(struct cli_frames *frames, const struct range *r)
+{
+    const int sign = r->to < r->from ? -1 : 1, span = abs(r->to - r->from) + 1, every = (span - 1) / r->step + 1;
+    const int count = r->by == 'x' ? every : r->by == 'y' ? span - every : span;
+    enum fault fault = count > CLI_MAX_FRAMES - frames->count ? TOO_MANY : NO_FAULT;
+    if (!count || fault)
+        return fault;
+    if (r->by == ':')
+        return add_in_turns(frames, r, sign, span);
+    for (int i = 0; i < every && !fault; i++) {
+        const int first = r->by == 'x' ? i * r->step : i * r->step + 1,
+                  last = r->by == 'x' ? first : first + r->step - 2;
+        for (int k = first; k <= last && k < span && !fault; k++)
+            fault = add(frames, r->from + sign * k);
     }
-    return 0;
-}
-
-// Every step-th first, then every (step - 1)-th ...: what comes again is removed with all other repetitions.
-static int add_range(struct cli_frames *frames, const struct range *r)
-{
-    if (r->by != ':')
-        return add_steps(frames, r, r->step, r->by == 'y');
-    const int span = abs(r->to - r->from) + 1;
-    for (int step = r->step < span ? r->step : span; step > 0; step--)
-        if (add_steps(frames, r, step, 0))
-            return -1;
-    return 0;
+    return fault;
 }
 
 struct numbered {
@@ -132,6 +144,27 @@ static int remove_repeated(struct cli_frames *frames)
     return 0;
 }
 
+static int refuse(struct cli_frames *frames, enum fault fault, const char *item, const char *text,
+                  struct tool_error *error)
+{
+    const int whole = (int)strcspn(item, ","), length = whole < 100 ? whole : 100;
+    cli_frames_free(frames);
+    switch (fault) {
+    case TOO_HIGH:
+        return tool_fail(error, -1, "--frames: '%.*s' of '%.200s': frames are numbered from %d to %d", length, item,
+                         text, -CLI_MAX_FRAME, CLI_MAX_FRAME);
+    case TOO_MANY:
+        return tool_fail(error, -1, "--frames: '%.200s' has more than %d frames", text, CLI_MAX_FRAMES);
+    case NO_MEMORY:
+        return tool_fail(error, -1, "--frames: '%.200s': out of memory", text);
+    default:
+        return tool_fail(error, -1,
+                         "--frames: '%.*s' of '%.200s' is not a range of frames such as 7, 1-100, 1-100x2, 10-1 or "
+                         "1-100:3",
+                         length, item, text);
+    }
+}
+
 int cli_frames_parse(struct cli_frames *frames, const char *text, struct tool_error *error)
 {
     const char *c = text;
@@ -139,27 +172,18 @@ int cli_frames_parse(struct cli_frames *frames, const char *text, struct tool_er
     for (;;) {
         const char *item = c;
         struct range r;
-        if (read_range(&c, &r) || (*c && *c != ',')) {
-            cli_frames_free(frames);
-            return tool_fail(error, -1,
-                             "--frames: '%.*s' of '%s' is not a range of frames such as 7, 1-100, 1-100x2, 10-1 or "
-                             "1-100:3",
-                             (int)strcspn(item, ","), item, text);
-        }
-        if (add_range(frames, &r)) {
-            cli_frames_free(frames);
-            return tool_fail(error, -1, "--frames: '%s' has more than %d frames", text, CLI_MAX_FRAMES);
-        }
+        enum fault fault = read_range(&c, &r);
+        if (!fault)
+            fault = *c && *c != ',' ? NO_RANGE : add_range(frames, &r);
+        if (fault)
+            return refuse(frames, fault, item, text, error);
         if (!*c)
             break;
         c++;
     }
-    if (frames->count == 0 || remove_repeated(frames)) {
-        const int none = frames->count == 0;
-        cli_frames_free(frames);
-        return tool_fail(error, -1, none ? "--frames: '%s' has no frame" : "--frames: '%s': out of memory", text);
-    }
-    return 0;
+    if (frames->count == 0)
+        return tool_fail(error, -1, "--frames: '%.200s' has no frame", text);
+    return remove_repeated(frames) ? refuse(frames, NO_MEMORY, text, text, error) : 0;
 }
 
 // "4, 7-9", cut off at size.

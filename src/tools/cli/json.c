@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -237,11 +238,23 @@ int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, co
     struct stat st;
     if (!stat(frame->args->json_file, &st) && !S_ISREG(st.st_mode))
         return write_device(argc, argv, frame, context, error);
-    int status = hf_out_open(&out, frame->args->json_file, &io);
-    if (!status) {
-        cli_write_json(out.f, argc, argv, frame, context);
-        status = hf_out_commit(&out, &io);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *memory = open_memstream(&text, &size);
+    int failed = !memory;
+    if (memory) {
+        cli_write_json(memory, argc, argv, frame, context);
+        failed = ferror(memory);
+        failed |= fclose(memory);
     }
+    int status = hf_out_open(&out, frame->args->json_file, &io);
+    if (!status && failed)
+        status = hf_io_fail(&io, "%s: out of memory", frame->args->json_file);
+    if (!status)
+        status = hf_out_write(&out, text, size, &io);
+    if (!status)
+        status = hf_out_commit(&out, &io);
     hf_out_abort(&out);
+    free(text);
     return status ? tool_fail(error, CLI_ALL_FAILED, "--json %s", io.message) : 0;
 }

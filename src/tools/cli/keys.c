@@ -12,6 +12,7 @@
 #include <string.h>
 
 enum { MAX_COLUMNS = 16, FRAME_COLUMN = CLI_KEY_COUNT };
+enum { MAX_LINE = 4096, MAX_LINES = 10000000 };  // more is no table that somebody keeps
 
 // Names of the columns and what a value may be, inclusive.
 static const struct {
@@ -193,29 +194,49 @@ static int sort_keys(struct reader *r)
     return any ? 0 : tool_fail(r->error, CLI_BAD_ARGUMENTS, "%s: there is no value in it", r->path);
 }
 
+enum { END_OF_FILE = -1 };
+
+// The next line, without its end. Returns 0, END_OF_FILE, or an exit code.
+static int read_line(struct reader *r, FILE *in, char line[MAX_LINE])
+{
+    int n = 0, c;
+    r->line++;
+    while ((c = getc_unlocked(in)) != EOF && c != '\n') {
+        if (!c)
+            return tool_fail(r->error, CLI_BAD_ARGUMENTS, "--keys %s, line %d: a zero byte, so this is no text",
+                             r->path, r->line);
+        if (n == MAX_LINE - 1)
+            return tool_fail(r->error, CLI_BAD_ARGUMENTS, "--keys %s, line %d is longer than %d bytes", r->path,
+                             r->line, MAX_LINE - 1);
+        line[n++] = (char)c;
+    }
+    if (c == EOF && ferror(in))
+        return tool_fail(r->error, CLI_BAD_ARGUMENTS, "--keys %s cannot be read: %s", r->path, strerror(errno));
+    if (r->line > MAX_LINES)
+        return tool_fail(r->error, CLI_BAD_ARGUMENTS, "--keys %s has more than %d lines", r->path, MAX_LINES);
+    line[n] = '\0';
+    line[strcspn(line, "\r")] = '\0';
+    return c == EOF && !n ? END_OF_FILE : 0;
+}
+
 int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct tool_error *error)
 {
     struct reader r = {.keys = keys, .path = path, .error = error};
-    char *line = NULL;
-    size_t room = 0;
+    char line[MAX_LINE];
     *keys = (struct cli_keys){.smooth = smooth};
-    FILE *in = fopen(path, "r");
+    FILE *in = fopen(path, "re");
     if (!in)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "--keys %s: %s", path, strerror(errno));
     int status = 0;
-    while (!status && getline(&line, &room, in) >= 0) {
-        char *text = line + (r.line++ == 0 && !strncmp(line, "\xef\xbb\xbf", 3) ? 3 : 0);  // a byte order mark
-        text[strcspn(text, "\r\n")] = '\0';
+    while (!status && !(status = read_line(&r, in, line))) {
+        char *text = line + (r.line == 1 && !strncmp(line, "\xef\xbb\xbf", 3) ? 3 : 0);  // a byte order mark
         if (text[0] == '#' || !text[strspn(text, " \t,;")])
             continue;
         status = r.count ? read_row(&r, text) : read_names(&r, text);
     }
-    if (!status && ferror(in))
-        status = tool_fail(error, CLI_BAD_ARGUMENTS, "--keys %s cannot be read", path);
-    if (!status)
+    if (status == END_OF_FILE)
         status = sort_keys(&r);
     fclose(in);
-    free(line);
     if (status)
         cli_keys_free(keys);
     return status;

@@ -2,6 +2,7 @@
 #include "tools/cli/log.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +16,8 @@
 #include "tools/common/json.h"
 #include "tools/common/machine.h"
 
-// A line is put together first and written in one piece: several threads, and several processes, may share the file.
+// A line is put together first and written by one write(), whatever its length: several threads, and several processes,
+// may append to the file.
 struct line {
     struct tool_json json;
     char *text;
@@ -25,7 +27,7 @@ struct line {
 static int begin(const struct cli_log *log, struct line *line, const char *event)
 {
     *line = (struct line){.text = NULL};
-    FILE *out = log->out ? open_memstream(&line->text, &line->size) : NULL;
+    FILE *out = log->path ? open_memstream(&line->text, &line->size) : NULL;
     const time_t now = time(NULL);
     struct tm utc;
     char text[32];
@@ -38,15 +40,37 @@ static int begin(const struct cli_log *log, struct line *line, const char *event
     return 0;
 }
 
+static void lose(struct cli_log *log, int code)
+{
+    int none = 0;
+    atomic_compare_exchange_strong(&log->error, &none, code);
+}
+
+static void put_line(struct cli_log *log, const struct line *line)
+{
+    if (atomic_exchange(&log->torn, 0) && write(log->fd, "\n", 1) != 1)
+        lose(log, errno);
+    ssize_t n;
+    do {
+        n = write(log->fd, line->text, line->size);
+    } while (n < 0 && errno == EINTR);
+    if (n < 0)
+        lose(log, errno);
+    // A rest that followed in a write of its own could stand behind another process's line.
+    if (n >= 0 && (size_t)n < line->size) {
+        lose(log, ENOSPC);
+        atomic_store(&log->torn, n > 0);
+    }
+}
+
 static void end(struct cli_log *log, struct line *line)
 {
     tool_json_end(&line->json);
     const int failed = ferror(line->json.out);
     if (!fclose(line->json.out) && !failed)
-        fwrite(line->text, 1, line->size, log->out);
-    if (fflush(log->out) && !log->error)
-        log->error = errno;
-    clearerr(log->out);
+        put_line(log, line);
+    else
+        lose(log, ENOMEM);
     free(line->text);
 }
 
@@ -57,9 +81,11 @@ int cli_log_open(struct cli_log *log, const char *path, int argc, char **argv, i
     *log = (struct cli_log){.path = path};
     if (!path)
         return 0;
-    log->out = fopen(path, "ae");
-    if (!log->out)
+    log->fd = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (log->fd < 0) {
+        log->path = NULL;
         return tool_fail(error, CLI_BAD_ARGUMENTS, "--log %s cannot be written: %s", path, strerror(errno));
+    }
     if (begin(log, &line, "begin"))
         return 0;
     gethostname(host, sizeof(host) - 1);
@@ -164,9 +190,10 @@ void cli_log_end(struct cli_log *log, const struct cli_progress *p, int at_once,
 
 int cli_log_close(struct cli_log *log, struct tool_error *error)
 {
-    if (log->out && fclose(log->out) && !log->error)
-        log->error = errno;
-    log->out = NULL;
-    return log->error ? tool_fail(error, CLI_ALL_FAILED, "--log %s: cannot write: %s", log->path, strerror(log->error))
-                      : 0;
+    if (log->path && close(log->fd))
+        lose(log, errno);
+    const char *path = log->path;
+    log->path = NULL;
+    const int code = atomic_load(&log->error);
+    return code ? tool_fail(error, CLI_ALL_FAILED, "--log %s: cannot write: %s", path, strerror(code)) : 0;
 }

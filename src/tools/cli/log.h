@@ -3,7 +3,7 @@
 #ifndef HF_CLI_LOG_H
 #define HF_CLI_LOG_H
 
-#include <stdio.h>
+#include <stdatomic.h>
 
 #include "tools/cli/progress.h"
 #include "tools/cli/resume.h"
@@ -11,9 +11,10 @@
 enum cli_frame_status { CLI_FRAME_DONE, CLI_FRAME_SKIPPED, CLI_FRAME_FAILED };
 
 struct cli_log {
-    FILE *out;  // NULL: no log
-    const char *path;
-    int error;  // errno of the first line that was lost
+    int fd;            // meaningless without a path
+    const char *path;  // NULL: no log
+    atomic_int error;  // errno of the first line that was lost
+    atomic_int torn;   // the last line is there in part: the next begins on a line of its own
 };
 
 // What became of a frame.

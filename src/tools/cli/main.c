@@ -11,6 +11,7 @@
 #include "tools/cli/summary.h"
 #include "tools/cli/target.h"
 #include "tools/cli/warn.h"
+#include "tools/common/standard.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -174,7 +175,7 @@ static int run_alone(int argc, char **argv, struct cli_args *args, const struct 
 static int run_args(int argc, char **argv, struct cli_args *args, struct tool_error *error)
 {
     const struct cli_shot_request request = {args->inputs, args->input_count, args->output, args->depth_file,
-                                             args->frames, args->chunk,       args->views};
+                                             args->frames, args->chunk,       args->views,  args->log_file};
     struct cli_shot shot;
     struct cli_aperture aperture = {0};
     int status = cli_shot_make(&shot, &request, error);
@@ -221,6 +222,7 @@ static int run(int argc, char **argv, struct tool_error *error)
 
 int main(int argc, char **argv)
 {
+    tool_open_standard();
     // A file that grows too large for the system's limit is an error like a full disk, not the end of the process.
     signal(SIGXFSZ, SIG_IGN);
     hf_io_catch_signals();

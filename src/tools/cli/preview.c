@@ -21,15 +21,17 @@ static void print_jobs(const struct cli_plan *plan, int *left)
     for (int i = 0; i < shot->jobs.count; i++) {
         struct cli_args args;
         struct cli_stamp stamp;
+        char name[TOOL_SHOWN], other[TOOL_SHOWN];
         cli_plan_args(plan, i, &args);
         const int skip =
             args.resume && args.output && !cli_stamp_make(&stamp, &args) ? cli_stamp_fits(&stamp, args.output) : 0;
         if (args.resume && args.output)
             cli_stamp_free(&stamp);
         *left += !skip;
-        printf("%s -> %s", args.input, args.output ? args.output : "nothing, as there is no -o");
+        printf("%s -> %s", tool_shown(args.input, name),
+               args.output ? tool_shown(args.output, other) : "nothing, as there is no -o");
         if (args.depth_file)
-            printf(", depth from %s", args.depth_file);
+            printf(", depth from %s", tool_shown(args.depth_file, name));
         if (args.focus_by == CLI_FOCUS_DISTANCE)
             printf(", focus %.4g", args.focus);
         printf("%s\n", skip ? ", is there already" : "");

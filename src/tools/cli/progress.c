@@ -37,7 +37,7 @@ static const char *clock_text(double seconds, char *buf, size_t size)
 
 static void draw(const struct cli_progress *p, int finished, const char *name)
 {
-    char bar[BAR + 1], left[32] = "?";
+    char bar[BAR + 1], left[32] = "?", shown[TOOL_SHOWN];
     const int rendered = atomic_load(&p->rendered);
     const double seconds = (tool_now_ms() - p->start) / 1000, rate = seconds > 0 ? rendered / seconds : 0;
     const int filled = p->total ? (int)((long long)BAR * finished / p->total) : BAR;
@@ -48,20 +48,22 @@ static void draw(const struct cli_progress *p, int finished, const char *name)
     if (rate > 0)
         clock_text((p->total - finished) / rate, left, sizeof(left));
     fprintf(stderr, "\r\033[K[%s] %d/%d  %.2f frames/s  %s left  %s  (%s)", bar, finished, p->total, rate, left,
-            slash ? slash + 1 : name, limit(p));
+            tool_shown(slash ? slash + 1 : name, shown), limit(p));
     fflush(stderr);
     atomic_store(&tool_bar_shown, 1);
 }
 
 void cli_progress_frame(struct cli_progress *p, const char *name, const char *text)
 {
+    char shown[TOOL_SHOWN], about[TOOL_SHOWN];
     const int finished = atomic_load(&p->done) + atomic_load(&p->skipped) + atomic_load(&p->failed);
     // The stream's own lock keeps the lines of two threads apart.
     flockfile(stderr);
     if (p->bar)
         draw(p, finished, name);
     else if (!p->quiet)
-        fprintf(stderr, "hyperfocal: %d/%d %s: %s\n", finished, p->total, name, text);
+        fprintf(stderr, "hyperfocal: %d/%d %s: %s\n", finished, p->total, tool_shown(name, shown),
+                tool_shown(text, about));
     funlockfile(stderr);
 }
 

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cli/resume.h"
 
-#include <dirent.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "tools/io/out.h"
-
-enum { FOREIGN_AGE = 3600 };  // seconds
+#include "tools/io/temp.h"
 
 // FNV-1a of 64 bits: against accidents, not against enemies.
 static uint64_t mix(uint64_t hash, const void *data, size_t size)
@@ -107,31 +100,6 @@ int cli_stamp_fits(const struct cli_stamp *stamp, const char *path)
     return fits;
 }
 
-static int is_stray(int dir, const char *name)
-{
-    struct stat st;
-    long pid;
-    const enum hf_out_owner owner = hf_out_owner_of(name, &pid);
-    if (owner == HF_OUT_NOT_OURS || fstatat(dir, name, &st, AT_SYMLINK_NOFOLLOW) || !S_ISREG(st.st_mode))
-        return 0;
-    if (owner == HF_OUT_THIS_HOST)
-        return kill((pid_t)pid, 0) && errno == ESRCH;
-    return time(NULL) - st.st_mtime > FOREIGN_AGE;
-}
-
-static int clean(const char *path)
-{
-    int removed = 0;
-    DIR *dir = opendir(path);
-    const struct dirent *entry;
-    while (dir && (entry = readdir(dir)))
-        if (is_stray(dirfd(dir), entry->d_name))
-            removed += !unlinkat(dirfd(dir), entry->d_name, 0);
-    if (dir)
-        closedir(dir);
-    return removed;
-}
-
 int cli_remove_strays(const struct cli_shot *shot)
 {
     char *last = NULL;
@@ -142,7 +110,7 @@ int cli_remove_strays(const struct cli_shot *shot)
         char *folder = !output ? NULL : slash ? strndup(output, (size_t)(slash - output) + 1) : strdup(".");
         // Frames mostly lie in one folder.
         if (folder && (!last || strcmp(folder, last)))
-            removed += clean(folder);
+            removed += hf_temp_remove_strays(folder);
         free(last);
         last = folder;
     }

@@ -25,8 +25,7 @@ void cli_stamp_free(struct cli_stamp *stamp);
 // 1 if the file is whole and has this stamp.
 int cli_stamp_fits(const struct cli_stamp *stamp, const char *path);
 
-// Remove temporary files beside the outputs whose process is no more: one of this machine that has ended, or of another
-// whose file has not grown for an hour. Returns how many.
+// Remove the temporary files beside the outputs whose writers have died, see hf_temp_remove_strays. Returns how many.
 int cli_remove_strays(const struct cli_shot *shot);
 
 #endif

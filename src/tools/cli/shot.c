@@ -2,13 +2,13 @@
 #include "tools/cli/shot.h"
 
 #include "tools/cli/args.h"
+#include "tools/cli/clash.h"
 #include "tools/cli/farm.h"
 #include "tools/cli/pattern.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 struct maker {
@@ -219,37 +219,6 @@ static int by_place(const void *a, const void *b)
     return x->place != y->place ? (x->place > y->place) - (x->place < y->place) : x->view - y->view;
 }
 
-static int by_output(const void *a, const void *b)
-{
-    return strcmp((*(const struct cli_job *const *)a)->output, (*(const struct cli_job *const *)b)->output);
-}
-
-// No two frames may be one file, and none of a sequence its own input: when that is stopped and begun again, nobody knows
-// which frames are done.
-static int check_outputs(const struct maker *m)
-{
-    const struct cli_jobs *jobs = &m->shot->jobs;
-    const struct cli_job **sorted = malloc(((size_t)jobs->count + 1) * sizeof(*sorted));
-    struct stat in, out;
-    if (!sorted)
-        return no_memory(m);
-    int status = 0;
-    for (int i = 0; i < jobs->count; i++)
-        sorted[i] = &jobs->list[i];
-    qsort(sorted, (size_t)jobs->count, sizeof(*sorted), by_output);
-    for (int i = 1; i < jobs->count && !status; i++)
-        if (!strcmp(sorted[i - 1]->output, sorted[i]->output))
-            status = tool_fail(m->error, CLI_BAD_ARGUMENTS, "%s and %s would both be written to %s",
-                               sorted[i - 1]->input, sorted[i]->input, sorted[i]->output);
-    for (int i = 0; i < jobs->count && !status; i++)
-        if (m->shot->sequence && !stat(jobs->list[i].input, &in) && !stat(jobs->list[i].output, &out) &&
-            in.st_dev == out.st_dev && in.st_ino == out.st_ino)
-            status = tool_fail(m->error, CLI_BAD_ARGUMENTS,
-                               "%s would be written over INPUT, give a sequence another OUTPUT", jobs->list[i].output);
-    free(sorted);
-    return status;
-}
-
 // Keep the frames of this process.
 static int cut(struct maker *m)
 {
@@ -293,7 +262,7 @@ int cli_shot_make(struct cli_shot *shot, const struct cli_shot_request *request,
     }
     if (!status && shot->jobs.count)
         qsort(shot->jobs.list, (size_t)shot->jobs.count, sizeof(*shot->jobs.list), by_place);
-    if (!status && request->output)
-        status = check_outputs(&m);
+    if (!status && request->output && shot->sequence)
+        status = cli_check_clashes(shot, request->log_file, error);
     return status ? status : cut(&m);
 }

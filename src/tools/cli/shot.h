@@ -11,7 +11,8 @@ struct cli_shot_request {
     const char *const *inputs;
     int input_count;
     const char *output, *depth_file, *frames, *chunk;
-    const char *views;  // names with commas, for %V
+    const char *views;     // names with commas, for %V
+    const char *log_file;  // which is to be none of the shot's files
 };
 
 // One frame, or one view of it where views are files of their own.

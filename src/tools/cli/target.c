@@ -134,7 +134,8 @@ int cli_check_targets(const struct cli_args *args, struct tool_error *error)
         if (!status)
             status = check_file(f->path, f->option, !json, error);
         if (!status && !json && hf_io_check_format(f->path, &io))
-            status = tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", f->option, io.message);
+            status =
+                tool_fail(error, io.may_pass ? CLI_ALL_FAILED : CLI_BAD_ARGUMENTS, "%s: %s", f->option, io.message);
     }
     if (!status && args->dump_dir)
         status = check_dump_dir(args->dump_dir, error);

@@ -16,11 +16,15 @@ int tool_fail(struct tool_error *error, int code, const char *format, ...)
     return code;
 }
 
+// Those of ASCII, and U+0080 to U+009F in UTF-8, which some terminals obey too.
 static void hide_controls(char *text)
 {
-    for (char *c = text; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+    for (unsigned char *c = (unsigned char *)text; *c; c++) {
+        if (*c < 0x20 || *c == 0x7f)
             *c = '?';
+        if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)
+            c[0] = c[1] = '?';
+    }
 }
 
 const char *tool_shown(const char *text, char buf[TOOL_SHOWN])

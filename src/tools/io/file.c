@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -11,6 +12,7 @@
 #include "tools/io/exr/chunks.h"
 #include "tools/io/file.h"
 #include "tools/io/oiio/oiio.h"
+#include "tools/io/temp.h"
 
 static const struct hf_exr_codec dwa = {hf_oiio_read_samples, hf_oiio_write_samples};
 
@@ -405,12 +407,12 @@ int hf_io_same_file(const char *a, const char *b)
 
 void hf_io_catch_signals(void)
 {
-    hf_out_catch_signals();
+    hf_temp_catch_signals();
 }
 
 void hf_io_end_by_signal(int number)
 {
-    hf_out_end_by_signal(number);
+    hf_temp_end_by_signal(number);
 }
 
 int hf_io_has_oiio(void)

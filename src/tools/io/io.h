@@ -137,7 +137,7 @@ struct hf_io_output;
 // written (which is set to zero first) and err may be NULL.
 int hf_io_encode(struct hf_io_output **out, struct hf_io_file *file, const struct hf_io_job *job,
                  struct hf_io_written *written, struct hf_io_error *err);
-// Write it to a temporary file beside path (.hyperfocal-HOST-PID-N.ext), then rename; on error nothing is left. path may be
+// Write it to a temporary file beside path (.hyperfocal-MACHINE-PID-N.ext), then rename; on error nothing is left. path may be
 // the source's own. A note may be added to *written, which may be NULL.
 int hf_io_save(struct hf_io_output *out, struct hf_io_written *written, struct hf_io_error *err);
 void hf_io_output_free(struct hf_io_output **out);
@@ -161,7 +161,7 @@ int hf_io_check_format(const char *path, struct hf_io_error *err);
 // 1 if both names are of one file, or would be if something were written: other spellings and links are looked through.
 int hf_io_same_file(const char *a, const char *b);
 
-// SIGTERM, SIGINT and SIGHUP remove the temporary files of this process, then do what they do.
+// SIGTERM, SIGINT, SIGHUP, SIGPIPE and SIGXCPU remove the temporary files of this process, then do what they do.
 void hf_io_catch_signals(void);
 // The same at once, from a signal's handler.
 void hf_io_end_by_signal(int number);

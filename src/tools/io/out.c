@@ -1,172 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/io/out.h"
 
-#include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
-#include <signal.h>
-#include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "tools/io/picture.h"
+#include "tools/io/temp.h"
+
+enum { HF_OUT_BUFFER = 1 << 18 };
 
 static int write_error(const struct hf_out *o, struct hf_io_error *err)
 {
     return hf_io_fail(err, "%s: cannot write: %s", o->path, strerror(errno));
 }
 
-// ---- temporary files, which a signal must find
-
-enum { LIVE = 64 };  // more than are ever written at a time; those beyond are not known to the handler
-
-static _Atomic(char *) live[LIVE];
-static atomic_int creating;  // files that are known, and may or may not be there yet
-static atomic_int ending;  // a signal has come: no more are made, and no name is freed that its handler may be reading
-
-static void enter(char *name)
+static void free_all(struct hf_out *o)
 {
-    for (int i = 0; i < LIVE; i++) {
-        char *none = NULL;
-        if (atomic_compare_exchange_strong(&live[i], &none, name))
-            return;
-    }
-}
-
-static void leave(char *name)
-{
-    for (int i = 0; i < LIVE; i++) {
-        char *own = name;
-        if (name && atomic_compare_exchange_strong(&live[i], &own, NULL))
-            break;
-    }
-    if (!atomic_load(&ending))
-        free(name);
-}
-
-// A new file that a signal finds from its first moment on: none comes to this thread in between, and one that comes to
-// another thread waits. Fails like open().
-static int open_known(char *name, mode_t mode)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    atomic_fetch_add(&creating, 1);
-    int fd = -1, code = EINTR;
-    if (!atomic_load(&ending)) {
-        enter(name);
-        // O_EXCL: never follows or overwrites what somebody else put there.
-        fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-        code = errno;
-    }
-    atomic_fetch_sub(&creating, 1);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    errno = code;
-    return fd;
-}
-
-void hf_out_end_by_signal(int number)
-{
-    const struct timespec pause = {.tv_nsec = 1000000};
-    atomic_store(&ending, 1);
-    for (int i = 0; i < 1000 && atomic_load(&creating); i++)  // a second at most, should a disk hang
-        nanosleep(&pause, NULL);
-    for (int i = 0; i < LIVE; i++) {
-        const char *name = atomic_load(&live[i]);
-        if (name)
-            unlink(name);
-    }
-    signal(number, SIG_DFL);
-    raise(number);
-}
-
-void hf_out_catch_signals(void)
-{
-    static const int numbers[] = {SIGTERM, SIGINT, SIGHUP};
-    for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++) {
-        struct sigaction was, ours = {.sa_handler = hf_out_end_by_signal};
-        // Who starts us with a signal ignored (nohup) means it.
-        if (!sigaction(numbers[i], NULL, &was) && was.sa_handler == SIG_DFL)
-            sigaction(numbers[i], &ours, NULL);
-    }
-}
-
-enum { HOST_LENGTH = 32 };
-#define TEMP_PREFIX ".hyperfocal-"
-
-// This machine's name, as far as it can stand in a file's name between dashes.
-static const char *host_name(char buf[HOST_LENGTH + 1])
-{
-    if (gethostname(buf, HOST_LENGTH + 1))
-        buf[0] = 0;
-    buf[HOST_LENGTH] = 0;
-    for (char *c = buf; *c; c++)
-        if (!isalnum((unsigned char)*c) && *c != '.')
-            *c = '_';
-    return buf[0] ? buf : "_";
-}
-
-// A fresh name beside the target: short, because the target's own may already be as long as names get. Machine and
-// process are in it, so that two that write to one folder do not meet, and what a dead one left is known.
-static char *temp_name(const char *target)
-{
-    static atomic_uint counter;
-    char host[HOST_LENGTH + 1];
-    const char *slash = strrchr(target, '/');
-    const char *ext = hf_io_extension(target);
-    const int folder = slash ? (int)(slash - target + 1) : 0;
-    char *name;
-    if (strlen(ext) > 16)
-        ext = "";
-    if (asprintf(&name, "%.*s" TEMP_PREFIX "%s-%ld-%u%s%s", folder, target, host_name(host), (long)getpid(),
-                 atomic_fetch_add(&counter, 1), *ext ? "." : "", ext) < 0)
-        return NULL;
-    return name;
-}
-
-enum hf_out_owner hf_out_owner_of(const char *name, long *pid)
-{
-    char host[HOST_LENGTH + 1], *end;
-    if (strncmp(name, TEMP_PREFIX, strlen(TEMP_PREFIX)))
-        return HF_OUT_NOT_OURS;
-    const char *theirs = name + strlen(TEMP_PREFIX), *dash = strchr(theirs, '-');
-    if (!dash || !isdigit((unsigned char)dash[1]))
-        return HF_OUT_NOT_OURS;
-    errno = 0;
-    *pid = strtol(dash + 1, &end, 10);
-    if (errno || *pid < 1 || *end != '-' || !isdigit((unsigned char)end[1]))
-        return HF_OUT_NOT_OURS;
-    const char *own = host_name(host);
-    return strlen(own) == (size_t)(dash - theirs) && !memcmp(own, theirs, strlen(own)) ? HF_OUT_THIS_HOST
-                                                                                       : HF_OUT_OTHER_HOST;
-}
-
-static void forget_temp(struct hf_out *o)
-{
-    leave(o->temp);
-    o->temp = NULL;
-}
-
-static int create_temp(struct hf_out *o, mode_t mode)
-{
-    for (int i = 0; i < 1000; i++) {
-        o->temp = temp_name(o->target);
-        if (!o->temp)
-            return -1;
-        const int fd = open_known(o->temp, mode);
-        if (fd >= 0)
-            return fd;
-        const int code = errno;
-        forget_temp(o);  // not ours to remove
-        errno = code;
-        if (code != EEXIST)
-            return -1;
-    }
-    return -1;
+    hf_temp_forget(o->temp);
+    free(o->target);
+    free(o->buffer);
+    o->temp = o->target = NULL;
+    o->buffer = NULL;
 }
 
 // What a symbolic link says, relative to the folder it lies in. To be freed; NULL: no link.
@@ -241,6 +99,7 @@ int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
 {
     struct stat st;
     memset(o, 0, sizeof(*o));
+    o->fd = -1;
     o->path = path;
     const bool there = stat(path, &st) == 0;
     if (hf_out_check(path, err))
@@ -248,26 +107,62 @@ int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
     o->target = hf_out_resolve(path);
     if (!o->target)
         return hf_io_fail(err, "%s: cannot write: out of memory, or its links go round", path);
+    o->buffer = malloc(HF_OUT_BUFFER);
+    if (!o->buffer)
+        return hf_io_fail(err, "%s: out of memory", path);
     // What was private is never readable by others, not even while it grows.
-    const int fd = create_temp(o, there ? st.st_mode & 0600 : 0666);
-    if (fd < 0)
+    o->fd = hf_temp_create(o->target, there ? st.st_mode & 0600 : 0666, &o->temp);
+    if (o->fd < 0)
         return hf_io_fail(err, "%s: cannot create a file there: %s", path, strerror(errno));
     if (there)
-        keep_owner(o, fd, &st);
-    o->f = fdopen(fd, "wb");
-    if (!o->f) {
-        close(fd);
-        return hf_io_fail(err, "%s: out of memory", path);
-    }
-    setvbuf(o->f, NULL, _IOFBF, 1 << 18);
+        keep_owner(o, o->fd, &st);
     return 0;
+}
+
+// All of it, at a place in the file or, where at is -1, at its end.
+static int write_fd(int fd, const uint8_t *data, size_t size, off_t at)
+{
+    while (size) {
+        const ssize_t n = at < 0 ? write(fd, data, size) : pwrite(fd, data, size, at);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return -1;
+        data += n;
+        size -= (size_t)n;
+        at += at < 0 ? 0 : n;
+    }
+    return 0;
+}
+
+static int flush(struct hf_out *o)
+{
+    const size_t used = o->used;
+    o->used = 0;
+    return write_fd(o->fd, o->buffer, used, -1);
 }
 
 int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_error *err)
 {
-    if (size && fwrite(data, 1, size, o->f) != size)
-        return write_error(o, err);
+    const uint8_t *from = data;
+    while (size) {
+        const size_t room = HF_OUT_BUFFER - o->used, n = size < room ? size : room;
+        // What fills the buffer alone is not copied into it first.
+        if (!o->used && size >= HF_OUT_BUFFER)
+            return write_fd(o->fd, from, size, -1) ? write_error(o, err) : 0;
+        memcpy(o->buffer + o->used, from, n);
+        o->used += n;
+        from += n;
+        size -= n;
+        if (o->used == HF_OUT_BUFFER && flush(o))
+            return write_error(o, err);
+    }
     return 0;
+}
+
+int hf_out_patch(struct hf_out *o, uint64_t at, const void *data, size_t size, struct hf_io_error *err)
+{
+    return flush(o) || write_fd(o->fd, data, size, (off_t)at) ? write_error(o, err) : 0;
 }
 
 // Some file systems cannot sync and say so; that is no failure to write.
@@ -276,37 +171,33 @@ static int sync_fd(int fd)
     return fsync(fd) && errno != EINVAL && errno != ENOTSUP ? -1 : 0;
 }
 
-static int finish(struct hf_out *o)
+// What close() would report, while the file stays open and so locked: network disks look for errors only then.
+static int close_copy(int fd)
 {
-    const bool bad = fflush(o->f) || (!o->unsynced && sync_fd(fileno(o->f)));
-    const int code = errno;
-    FILE *f = o->f;
-    o->f = NULL;
-    if (fclose(f))
-        return -1;
-    errno = code;
-    return bad ? -1 : 0;
+    const int copy = dup(fd);
+    return copy < 0 || close(copy) ? -1 : 0;
 }
 
 int hf_out_commit(struct hf_out *o, struct hf_io_error *err)
 {
-    if (finish(o))
+    if (flush(o) || (!o->unsynced && sync_fd(o->fd)) || close_copy(o->fd))
         return write_error(o, err);
+    // The lock is still held, so that nobody takes the file for one whose writer has died.
     if (rename(o->temp, o->target))
         return hf_io_fail(err, "%s: cannot rename the finished file: %s", o->path, strerror(errno));
-    forget_temp(o);
-    free(o->target);
-    o->target = NULL;
+    close(o->fd);
+    o->fd = -1;
+    free_all(o);
     return 0;
 }
 
 void hf_out_abort(struct hf_out *o)
 {
-    if (o->f)
-        fclose(o->f);
     if (o->temp)
         unlink(o->temp);
-    forget_temp(o);
-    free(o->target);
+    if (o->fd >= 0)
+        close(o->fd);
+    free_all(o);
     memset(o, 0, sizeof(*o));
+    o->fd = -1;
 }

@@ -8,7 +8,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 #include "tools/io/error.h"
 
@@ -20,20 +19,20 @@ struct hf_out {
     const char *path;  // as the user wrote it, for messages; not owned
     char *target;      // path with symbolic links resolved
     char *temp;        // same folder and extension as target
-    FILE *f;
+    int fd;            // of temp; -1: not open
+    uint8_t *buffer;   // what is not written yet
+    size_t used;
     bool unsynced;             // do not wait for the disk in hf_out_commit
     char note[HF_IO_MESSAGE];  // what could not be kept of the old target, or ""
 };
-
-// Whose a file of that name (without folder) is, if it is a temporary one of ours; *pid is the process that made it.
-enum hf_out_owner { HF_OUT_NOT_OURS, HF_OUT_THIS_HOST, HF_OUT_OTHER_HOST };
-enum hf_out_owner hf_out_owner_of(const char *name, long *pid);
 
 // 0, or -1 with *err filled when path names something that is no plain file.
 int hf_out_check(const char *path, struct hf_io_error *err);
 // All return 0, or -1 with *err filled; then hf_out_abort must be called (it may always be called).
 int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err);
 int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_error *err);
+// Replace bytes that were written before.
+int hf_out_patch(struct hf_out *o, uint64_t at, const void *data, size_t size, struct hf_io_error *err);
 // Flush to the disk and take the target's place.
 int hf_out_commit(struct hf_out *o, struct hf_io_error *err);
 // Close and remove what was not committed.
@@ -42,11 +41,6 @@ void hf_out_abort(struct hf_out *o);
 // The file that writing to path would change: links followed to their end, also where nothing is there yet. To be freed;
 // NULL when there is no memory, or links go round.
 char *hf_out_resolve(const char *path);
-
-// SIGTERM, SIGINT and SIGHUP remove the temporary files, then do what they do.
-void hf_out_catch_signals(void);
-// The same at once, from a signal's handler: remove them, then do what the signal does.
-void hf_out_end_by_signal(int number);
 
 #ifdef __cplusplus
 }

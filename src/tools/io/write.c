@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hf_io_encode: an EXR made from an EXR is a copy with new colours; anything else is a new picture of one view.
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

@@ -3,6 +3,7 @@
 // the source where nothing changes, and new chunks where the new colours, put between the samples of the other channels
 // as stored, differ from the old.
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,11 +3,13 @@
 // further than what a file says: it may have been taken over by one.
 #include <math.h>
 #include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 
 #include "tools/io/oiio/wire.h"
 
@@ -51,6 +53,7 @@ int hf_oiio_available(void)
 
 static atomic_flag starting = ATOMIC_FLAG_INIT;
 static int control = -1;
+static pid_t helper;               // its process, 0: none; under `starting`
 static char other[HF_WIRE_HELLO];  // what a helper of another build said, under `starting`
 
 // Is the helper of our build? Loading its libraries may take long on a busy machine or from a slow disk, so it is asked:
@@ -78,13 +81,26 @@ static int greet(int fd)
     return -1;
 }
 
+// Let go of a helper that ended or does not answer: it does not stay as a zombie.
+static void end_helper(void)
+{
+    if (control >= 0)
+        close(control);
+    control = -1;
+    if (helper > 0) {
+        kill(helper, SIGKILL);
+        while (waitpid(helper, NULL, 0) < 0 && errno == EINTR) {
+        }
+    }
+    helper = 0;
+}
+
 static int start_helper(void)
 {
     extern char **environ;
     char path[HF_WIRE_PATH + 64], *argv[] = {HELPER, NULL};
     posix_spawn_file_actions_t actions;
     int pair[2], failed;
-    pid_t pid;
     if (find_helper(path, sizeof(path)) || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair))
         return -1;
     failed = posix_spawn_file_actions_init(&actions);
@@ -92,15 +108,16 @@ static int start_helper(void)
         failed = posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0) ||
                  posix_spawn_file_actions_adddup2(&actions, 0, 2) || posix_spawn_file_actions_adddup2(&actions, 0, 1) ||
                  posix_spawn_file_actions_adddup2(&actions, pair[1], HF_WIRE_CONTROL) ||
-                 posix_spawn(&pid, path, &actions, NULL, argv, environ);
+                 posix_spawn(&helper, path, &actions, NULL, argv, environ);
         posix_spawn_file_actions_destroy(&actions);
     }
     close(pair[1]);
-    if (failed || greet(pair[0])) {
-        close(pair[0]);
-        return -1;
-    }
-    return pair[0];
+    control = pair[0];
+    helper = failed ? 0 : helper;
+    if (!failed && !greet(pair[0]))
+        return 0;
+    end_helper();
+    return -1;
 }
 
 static int send_socket(int fd)
@@ -116,47 +133,67 @@ static int send_socket(int fd)
     return control >= 0 && sendmsg(control, &m, MSG_NOSIGNAL) == 1 ? 0 : -1;
 }
 
-// A socket to a fresh child of the helper's, which is started if it does not run.
-static int new_job(const char *path, struct hf_io_error *err)
+// Hand the helper, which is started if it does not run, a socket. 0 or -1; version is what one of another build said.
+static int give_socket(int fd, char version[HF_WIRE_HELLO])
 {
-    int pair[2];
-    if (!hf_oiio_available())
-        return hf_io_fail(err,
-                          "%s: only EXR without DWA compression can be read and written here (" HELPER
-                          ", which does the rest, is not there: built without OpenImageIO)",
-                          path);
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair))
-        return hf_io_fail(err, "%s: cannot talk to " HELPER ": %s", path, strerror(errno));
     while (atomic_flag_test_and_set(&starting))
         usleep(100);
-    int status = send_socket(pair[1]);
+    int status = send_socket(fd);
     if (status) {
-        if (control >= 0)
-            close(control);
-        control = start_helper();
-        status = send_socket(pair[1]);
+        end_helper();
+        other[0] = 0;
+        status = start_helper() ? -1 : send_socket(fd);
     }
-    char own[HF_WIRE_HELLO], version[HF_WIRE_HELLO];
-    memcpy(version, other, sizeof(version));
+    memcpy(version, other, HF_WIRE_HELLO);
     atomic_flag_clear(&starting);
-    close(pair[1]);
-    if (!status)
-        return pair[0];
-    close(pair[0]);
+    return status;
+}
+
+static int fail_start(const char *path, const char *version, struct hf_io_error *err)
+{
+    char own[HF_WIRE_HELLO];
     hf_wire_hello(own);
     if (version[0])
         return hf_io_fail(err,
                           "%s: " HELPER " is of version %s, but this program of %s: install both from the same build",
                           path, version, own);
-    return hf_io_fail(err, "%s: cannot start " HELPER ", or it is of another build", path);
+    hf_io_fail(err, "%s: cannot start " HELPER ", which reads and writes this format", path);
+    return hf_io_may_pass(err);
+}
+
+// A socket to a fresh child of the helper's. The child says one byte; without it the helper ended before it had made the
+// child, no file was touched, and another helper is tried.
+static int new_job(const char *path, struct hf_io_error *err)
+{
+    char version[HF_WIRE_HELLO] = "", byte;
+    if (!hf_oiio_available())
+        return hf_io_fail(err,
+                          "%s: only EXR without DWA compression can be read and written here (" HELPER
+                          ", which does the rest, is not there: built without OpenImageIO)",
+                          path);
+    for (int tries = 0; tries < 3; tries++) {
+        int pair[2];
+        if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair)) {
+            hf_io_fail(err, "%s: cannot talk to " HELPER ": %s", path, strerror(errno));
+            return hf_io_may_pass(err);
+        }
+        const int status = give_socket(pair[1], version);
+        close(pair[1]);
+        if (!status && !hf_wire_get(pair[0], &byte, 1))
+            return pair[0];
+        close(pair[0]);
+        if (status)
+            break;
+    }
+    return fail_start(path, version, err);
 }
 
 // ---- asking
 
 static int gone(const char *path, struct hf_io_error *err)
 {
-    return hf_io_fail(err, "%s: truncated or corrupt, or far too large: its reader crashed or ran out of its limits",
-                      path);
+    hf_io_fail(err, "%s: truncated or corrupt, or far too large: its reader crashed or ran out of its limits", path);
+    return hf_io_may_pass(err);
 }
 
 static void set_name(struct hf_wire_request *q, const char *name)

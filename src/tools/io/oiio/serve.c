@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include "tools/common/standard.h"
 #include "tools/io/oiio/wire.h"
 
 struct job {
@@ -207,7 +208,7 @@ static void serve(int fd)
 {
     static struct job job;
     static struct hf_wire_request q;
-    int status = 0;
+    int status = hf_wire_put(fd, "", 1);  // the job has a process: what ends from here on is the file's fault
     job.fd = fd;
     while (!status && !hf_wire_get(fd, &q, sizeof(q))) {
         switch ((enum hf_wire_op)q.op) {
@@ -254,6 +255,7 @@ static int next_job(void)
 
 int main(void)
 {
+    tool_open_standard();
     // A terminal's Ctrl-C goes to the program, which decides; when it ends, so do we. SIGXFSZ kills: a writer that
     // does not look at what write() returns must not succeed.
     signal(SIGINT, SIG_IGN);
