@@ -102,7 +102,7 @@ void bench_args_default(struct bench_args *args)
     args->params.max_radius = 12;
 }
 
-// The truth scenes: beside the one who calls, in the source that this was built in, where they are installed.
+// Find the truth scenes: in the caller's folder, in the source tree of this build, or where they are installed.
 static void find_images(struct bench_args *args)
 {
     static const char *const places[] = {"../../images", "../share/hyperfocal/images"};
@@ -131,7 +131,7 @@ int bench_args_parse(struct bench_args *args, const char *command, int count, ch
     args->help = p.help;
     if (p.help)
         return 0;
-    // Commands that measure one engine say what it does not do; the others have all of them.
+    // Commands that measure one engine refuse options that it does not have; the others accept all engines' options.
     const int one =
         !command || !strcmp(command, "passes") || !strcmp(command, "scaling") || !strcmp(command, "formats");
     const struct tool_option *misfit = one ? tool_misfit(&p, args->params.engine) : NULL;

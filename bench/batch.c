@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a shot costs: the command itself on a shot made of one of the project's pictures, beside copying its files and
-// beside oiiotool reading and writing them, for each compression, in turns.
+// What a shot costs. It runs the command on a shot made of one of the project's pictures, a copy of the shot's files,
+// and oiiotool reading and writing them, alternately and for each compression.
 #include "commands.h"
 #include "statistics.h"
 #include "tools/common/machine.h"
@@ -23,7 +23,7 @@ static const char *const compressions[] = {"none", "rle", "zips", "zip", "piz", 
 enum { COMPRESSIONS = sizeof(compressions) / sizeof(compressions[0]) };
 static const char *const stage_names[STAGES] = {"read", "decode", "defocus", "encode", "write", "wait"};
 
-// One compression: seconds, medians; shares of the threads' time.
+// Results for one compression: seconds are medians, shares are of the threads' time.
 struct row {
     const char *compression;
     double batch, copy, oiiotool;
@@ -40,7 +40,8 @@ struct bench {
     int count;
 };
 
-// Run a program with what follows its name, up to NULL. Returns seconds, or -1 with *error filled. Its output goes away.
+// Run a program with the words that follow its name, up to NULL; its output is discarded. Returns seconds, or -1 with
+// *error filled.
 static double run(const struct bench *b, const char *const words[])
 {
     posix_spawn_file_actions_t quiet;
@@ -62,7 +63,7 @@ static double run(const struct bench *b, const char *const words[])
     return seconds;
 }
 
-// The command of this build, else the installed one.
+// Find the command of this build, else the installed one.
 static void find_program(struct bench *b)
 {
     static const char *const places[] = {"../src/tools/cli/hyperfocal", "hyperfocal"};
@@ -84,7 +85,7 @@ static char *name(const struct bench *b, const char *file, char buf[PATH_MAX])
     return buf;
 }
 
-// Each frame is the picture moved on by some pixels, in half floats, depth too.
+// Make the shot: each frame is the picture moved by some pixels, in half floats, depth included.
 static int make_shot(const struct bench *b, const char *compression)
 {
     char source[PATH_MAX], file[64], target[PATH_MAX], shift[32];
@@ -135,7 +136,7 @@ static double run_batch(const struct bench *b, const char *log)
     return run(b, words);
 }
 
-// A number of the log's last line; 0 when it is not there.
+// A number of the log's last line, 0 if it is missing.
 static double logged(const char *line, const char *key)
 {
     char quoted[64];
@@ -222,7 +223,7 @@ static void json(FILE *out, const void *what)
     tool_json_end(&j);
 }
 
-// Rows are printed as they come.
+// Rows are printed as soon as they are measured, so there is no table at the end.
 static void no_table(FILE *out, const void *what)
 {
     (void)out;

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { SPAN = 1024 };  // pixels of a row that are filtered at a time
+enum { SPAN = 1024 };  // pixels of a row that are filtered together
 
 struct bench_kernel bench_gaussian(int radius, double sigma)
 {

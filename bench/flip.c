@@ -7,10 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Section and symbol are the paper's.
-static const float qc = 0.7f, pc = 0.4f, pt = 0.95f;  // 4.1.3: exponent; where the compression bends, and to what
-static const double w = 0.082;                        // 4.2: width of the features looked for, degrees
-static const double csf_b[4] = {0.0047, 0.0053, 0.04, 0.025};  // table 1: A, RG and BY, whose filter has two parts
+// Each comment gives the paper's section; the names are the paper's symbols.
+static const float qc = 0.7f, pc = 0.4f,
+                   pt = 0.95f;  // 4.1.3: the exponent; where the compression bends, and to which value
+static const double w = 0.082;  // 4.2: width of the features that are detected, degrees
+static const double csf_b[4] = {0.0047, 0.0053, 0.04, 0.025};  // table 1: A, RG, and BY, whose filter has two parts
 static const double csf_a[4] = {1, 1, 34.1, 13.5};
 
 // Linear sRGB to XYZ, D65.
@@ -30,11 +31,11 @@ struct bench_flip {
     int width, height;
     size_t pixels;
     float largest;               // HyAB of green and blue, to the power of qc
-    struct bench_kernel csf[4];  // sums 1, but for the last two, whose parts make 1 together
-    float share[4];              // of a part in its filter
+    struct bench_kernel csf[4];  // each sums to 1, except the last two, which sum to 1 together
+    float share[4];              // of each part in its filter
     struct bench_kernel smooth, edge, point;
     float *memory;
-    float *lab[3];  // of the picture compared with
+    float *lab[3];  // of the reference picture
     struct features want, got;
     float *plane[3], *grey, *scratch, *part;
 };
@@ -79,7 +80,7 @@ double bench_flip_largest(void)
     return pow(hyab(green, blue), qc);
 }
 
-// A derivative of the gaussian, its positive weights summing to 1 and its negative ones to -1.
+// A derivative of the gaussian, scaled so that its positive weights sum to 1 and its negative ones to -1.
 static struct bench_kernel feature_kernel(int radius, double sigma, int order)
 {
     struct bench_kernel k = {.radius = radius};
@@ -95,7 +96,7 @@ static struct bench_kernel feature_kernel(int radius, double sigma, int order)
     return k;
 }
 
-// Table 1's filters are sums of gaussians a sqrt(pi / b) exp(-pi^2 d^2 / b), d in degrees; each is separable.
+// The filters of table 1 are sums of gaussians a sqrt(pi / b) exp(-pi^2 d^2 / b), d in degrees; each is separable.
 static void make_kernels(struct bench_flip *f, double ppd, int radius, int feature_radius)
 {
     const double pi = 3.14159265358979323846;
@@ -138,7 +139,7 @@ static void filter(struct bench_flip *f, const float *in, float *out, const stru
     bench_convolve(out, in, f->scratch, f->width, f->height, kx, ky);
 }
 
-// What the eye resolves of plane[], in place.
+// Filter plane[] in place by what the eye resolves.
 static void soften(struct bench_flip *f)
 {
     filter(f, f->plane[0], f->plane[0], &f->csf[0], &f->csf[0]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `hyperfocal-bench formats`: what each format of colour and of depth costs to read and to store, and in a whole frame.
-// A frame in which nothing is blurred, from one format to another, is read and stored and no more; both ways between two
-// formats are the reading and storing of both. Three formats between each other give that of one of them,
-// (ab + ac - bc) / 2, and with that one every other's.
+// `hyperfocal-bench formats`: the time to read and to store each format of colour and of depth, and that of a whole
+// frame. A frame in which nothing is blurred is only read and stored. Converting between two formats in both directions
+// costs the reading and storing of both. Three formats converted among each other give the cost of one, (ab + ac - bc)
+// / 2, and with that every other format's.
 #include "commands.h"
 #include "statistics.h"
 #include "subject.h"
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// On a shared machine others come and go: of a time the least of the rounds' medians counts, as noise only adds.
+// On a shared machine other programs only add time, so the least of the rounds' medians counts.
 enum { ROUNDS = 3, REPEATS = 7, COLOURS = 17, DEPTHS = 7, PARTNER = 0 };
 
 static const struct {
@@ -42,17 +42,17 @@ static const struct {
     {HF_DEPTH_FORMAT_UNORM32, HF_DEPTH_NDC_D3D, 4}, {HF_DEPTH_FORMAT_D24S8, HF_DEPTH_NDC_D3D, 4},
     {HF_DEPTH_FORMAT_X8D24, HF_DEPTH_NDC_D3D, 4},
 };
-static const float NEAR = 0.5f, FAR = 1000;  // planes that these depths are made with
+static const float NEAR = 0.5f, FAR = 1000;  // clip planes of these depths
 
 struct colour_cost {
-    size_t bytes;       // of a picture
-    double to, from;    // milliseconds, into the partner and out of it
+    size_t bytes;       // size of a picture
+    double to, from;    // milliseconds, to the partner format and from it
     double read_store;  // of this format alone
-    double frame;       // from this format to itself, blurred
+    double frame;       // from this format to itself, with blur
 };
 
 struct depth_cost {
-    double plan, frame;  // looked at once, for the plan; and a whole frame of the partner's format
+    double plan, frame;  // reading it once for the plan; and a whole frame in the partner's format
 };
 
 struct formats {
@@ -61,7 +61,7 @@ struct formats {
     enum hf_isa isa;
     struct colour_cost colour[COLOURS];
     struct depth_cost depth[DEPTHS];
-    double third[2];  // there and back between the two formats that stand in for the partner
+    double third[2];  // both directions between the two formats that stand in for the partner
 };
 
 static int open_image(struct bench_image *m, const struct bench_scene *scene, int row)
@@ -81,7 +81,7 @@ struct job {
     int plan;
 };
 
-// The middle of REPEATS, after one that is not counted; *ms stays if it is less.
+// The median of REPEATS runs after a warm-up. *ms keeps its value if that is less.
 static int measure(const struct job *j, double *ms, struct tool_error *error)
 {
     double times[REPEATS];
@@ -99,7 +99,7 @@ static int measure(const struct job *j, double *ms, struct tool_error *error)
     return 0;
 }
 
-// Both ways between two formats, with nothing blurred.
+// Both directions between two formats, with nothing blurred.
 static int convert(const struct bench_subject *s, const struct bench_image *a, const struct bench_image *b, double *to,
                    double *from, struct tool_error *error)
 {
@@ -154,7 +154,7 @@ static void take_partner_out(struct formats *r)
         r->colour[i].read_store = r->colour[i].to + r->colour[i].from - partner;
 }
 
-// A distance as the format has it.
+// A distance as the depth format stores it.
 static uint32_t word_of(int row, float z)
 {
     const double n = NEAR, f = FAR, d = fmin(fmax(f * (z - n) / (z * (f - n)), 0), 1);

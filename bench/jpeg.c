@@ -12,11 +12,11 @@
 enum { QUALITY = 82 };
 
 struct failing {
-    struct jpeg_error_mgr base;  // first, as libjpeg hands it back
+    struct jpeg_error_mgr base;  // first, because libjpeg hands back a pointer to it
     jmp_buf jump;
 };
 
-// libjpeg's own would print and exit.
+// libjpeg's own handler would print and exit.
 static void give_up(j_common_ptr info)
 {
     longjmp(((struct failing *)info->err)->jump, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a report says of the build and the day.
+// What a report says about the build and the date.
 #ifndef HF_BENCH_MACHINE_H
 #define HF_BENCH_MACHINE_H
 
@@ -7,7 +7,7 @@
 
 // "2026-11-21"
 void bench_machine_date(char *date, size_t size);
-// The commit that was built, with -dirty if the sources were not as committed; "unknown" outside a repository.
+// The commit that was built, with -dirty if the sources differed from it; "unknown" outside a repository.
 const char *bench_machine_commit(void);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hyperfocal-bench: measures whole frames. Single kernels are the business of tests/kernels.
+// hyperfocal-bench measures whole frames. tests/kernels measures single kernels.
 #include "commands.h"
 
 #include "tools/common/nearest.h"
@@ -32,7 +32,7 @@ static int run(int argc, char **argv, struct tool_error *error)
     while (bench_command_words[c][0] && strcmp(argv[1], bench_command_words[c][0]))
         c++;
     bench_args_default(&args);
-    // Without a command there may be --help.
+    // The first word may be an option such as --help instead of a command.
     const int known = bench_command_words[c][0] != NULL;
     if (!known && argv[1][0] != '-') {
         struct tool_nearest nearest = {NULL, 0, 0};

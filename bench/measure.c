@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames are measured in rounds, and the yardsticks between them, so that both see the machine in the same state: on a
-// shared one, speed drifts within seconds. A frame and a copy are taken by their median, as noise only adds, and adds
-// often; the peak is the best of many short bursts, as it stands for what the machine can do.
+// Frames are measured in rounds, with the yardsticks between them, so that both meet the machine in the same state: on
+// a shared one, speed drifts within seconds. Frames and copies count by their median, because other programs often add
+// time. The peak is the best of many short bursts, because it stands for what the machine can do.
 #include "measure.h"
 
 #include "peak.h"
@@ -15,13 +15,13 @@
 
 enum {
     ROUNDS = 7,
-    COPIES = 5,  // timed ones a round
-    BURSTS = 4,  // a round; short ones, as one that is interrupted is lost
+    COPIES = 5,  // timed copies per round
+    BURSTS = 4,  // per round; short ones, because an interrupted one is lost
     MIN_FRAMES = 11,
     MAX_FRAMES = 1001,
     MIN_WARM_UP = 3,
 };
-// Of a machine of one's own the median is 2 to 10 % above the least.
+// On an otherwise idle machine the median is 2 to 10 % above the least.
 static const double BUSY = 1.3;
 static const double warm_up_s = 0.3, run_s = 3.0, burst_s = 0.003;
 
@@ -43,7 +43,7 @@ static int by_all(const void *a, const void *b)
     return (x->all_ms > y->all_ms) - (x->all_ms < y->all_ms);
 }
 
-// To whole nanoseconds: then rows and overhead add up in print as they do in memory.
+// Round to whole nanoseconds, so that the printed rows and the overhead add up exactly.
 static double round_ms(double ms)
 {
     return rint(ms * 1e6) * 1e-6;
@@ -80,7 +80,7 @@ int bench_measure_frame(const struct bench_subject *s, struct hf_context *c, con
     return err;
 }
 
-// Part i of n of a block, in whole cache lines.
+// Copy part i of n of a block, in whole cache lines.
 static void copy_part(void *to, const void *from, size_t bytes, int i, int n)
 {
     const size_t lines = (bytes + 63) / 64;
@@ -93,7 +93,7 @@ static void copy(void *arg, int i, int n)
 {
     const struct bench_subject *s = arg;
     const size_t plane = (size_t)s->in.image.width * (size_t)s->in.image.height * sizeof(float);
-    // Formats of different sizes: what fits.
+    // If the formats differ in size, copy as much as fits.
     copy_part(s->out.memory, s->in.memory, s->in.bytes < s->out.bytes ? s->in.bytes : s->out.bytes, i, n);
     copy_part(s->scratch, s->depth.data, plane, i, n);
 }
@@ -116,7 +116,7 @@ static void measure_yardsticks(const struct bench_subject *s, struct yardsticks 
 {
     for (int i = 0; i <= COPIES; i++) {
         const double seconds = bench_workers_run(s->workers, copy, (void *)s);
-        if (i > 0)  // the first finds the caches full of something else
+        if (i > 0)  // the first copy finds other data in the caches
             y->copy_s[y->copies++] = seconds;
     }
     struct burst b = {bench_peak_widest(), y->burst ? y->burst : 10000};
@@ -131,7 +131,7 @@ static void measure_yardsticks(const struct bench_subject *s, struct yardsticks 
         y->gflops = fmax(y->gflops, flops / bench_workers_run(s->workers, peak_part, &b) * 1e-9);
 }
 
-// Run until memory is paged in and clocks are up. *frame_s receives the seconds of a frame.
+// Render until memory is paged in and clock speeds have risen. *frame_s receives the seconds of a frame.
 static int warm_up(const struct bench_subject *s, double *frame_s, struct tool_error *error)
 {
     *frame_s = INFINITY;
@@ -151,7 +151,7 @@ static int by_planning(const void *a, const void *b)
     return (x->planning_ms > y->planning_ms) - (x->planning_ms < y->planning_ms);
 }
 
-// An odd number, so that there is a frame in the middle.
+// The number of frames is odd, so one of them is the median.
 static int choose_frames(double frame_s)
 {
     const double n = run_s / frame_s;
@@ -174,8 +174,8 @@ static int measure_frames(const struct bench_subject *s, struct frame *frames, i
     return 0;
 }
 
-// The pass whose time holds that of pass p, which ran but has no time of its own: the nearest before it in the table
-// that has, else the nearest after it.
+// The pass whose time includes that of pass p, which ran but has no time of its own: the nearest one before it in the
+// table that has some, else the nearest after it.
 static int fused_into(const struct bench_result *r, int p)
 {
     if (r->pass[p].max_ms > 0 || r->stats.pass[p].ran == 0)
@@ -189,7 +189,7 @@ static int fused_into(const struct bench_result *r, int p)
     return -1;
 }
 
-// frames get sorted.
+// Sorts frames.
 static void summarise(struct frame *frames, int n, struct bench_result *r)
 {
     qsort(frames, (size_t)n, sizeof *frames, by_all);
@@ -232,7 +232,7 @@ int bench_measure_all(const struct bench_subject *s, double seconds, int least, 
 {
     enum { MOST = 401 };
     struct frame frames[MOST];
-    for (int i = 0; i < 2; i++)  // the first knows nothing of the scene, and pays for memory
+    for (int i = 0; i < 2; i++)  // the first frame knows nothing of the scene, and pays for memory
         if (render(s, &frames[0], error))
             return -1;
     int n = 0;

@@ -17,8 +17,8 @@ struct bench_metrics {
     struct bench_flip *flip;
     float *memory;
     float *want_shown;                   // display-encoded, packed
-    float *want_luma, *got_luma;         // of the display-encoded
-    float *shown, *ssim_map, *flip_map;  // squared display error of a pixel, mean of its samples; and the maps
+    float *want_luma, *got_luma;         // of the display-encoded picture
+    float *shown, *ssim_map, *flip_map;  // mean squared display error of a pixel's samples; and the other two maps
 };
 
 const char *bench_region_name(enum bench_region region)
@@ -33,7 +33,7 @@ float bench_display(float v)
     return v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
 }
 
-// Adds a disc of ones around (x, y), as the ends of its rows: marks is one wider than the picture.
+// Add a disc of ones around (x, y), as the ends of its rows; marks is one column wider than the picture.
 static void mark_disc(int *marks, int x, int y, float radius, int width, int height)
 {
     const int reach = (int)ceilf(radius);
@@ -85,7 +85,7 @@ void bench_regions(uint8_t *out, const float *rgb, const float *radius, int widt
         for (int x = 0; x < width; x++) {
             float least, most;
             around(radius, x, y, width, height, &least, &most);
-            if (most - least > 1)  // a surface that tilts more folds under the lens
+            if (most - least > 1)  // a steeper surface folds under the lens
                 mark_disc(marks, x, y, fmaxf(1, fmaxf(-least, most)), width, height);
         }
     mark_region(out, marks, BENCH_SILHOUETTES, width, height);
@@ -149,7 +149,7 @@ static void show(struct bench_metrics *m, const float *got)
     }
 }
 
-// Means over a region.
+// Average over a region.
 static void pool(const struct bench_metrics *m, const float *got, enum bench_region region, struct bench_distance *out)
 {
     const size_t pixels = (size_t)m->width * (size_t)m->height;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What other programs reach on the scenes in images/, measured elsewhere on two threads, each given the exact radius.
+// What other programs reach on the scenes in images/, measured elsewhere on two threads with the exact radius given to
+// each.
 #ifndef HF_BENCH_OTHERS_H
 #define HF_BENCH_OTHERS_H
 
 struct bench_other {
     const char *scene;
-    double none;                // PSNR of the picture as it is, dB
+    double none;                // PSNR of the input itself, dB
     double blender, blender_s;  // Blender 3.4's Defocus, dB and seconds
     double gegl, gegl_s;        // GEGL 0.4.42's lens-blur
 };

@@ -16,7 +16,7 @@ static const struct {
     [HF_FORMAT_RGB10A2] = {4, 1},    [HF_FORMAT_RGBA16] = {8, 1},
 };
 
-// 8 bits are sRGB, as frame buffers have them; more are linear.
+// 8-bit formats are sRGB, as in frame buffers; formats with more bits are linear.
 static int is_srgb(enum hf_format format)
 {
     return format == HF_FORMAT_RGBA8 || format == HF_FORMAT_BGRA8 || format == HF_FORMAT_RGBX8 ||
@@ -86,7 +86,7 @@ static uint64_t to_unorm(float v, unsigned max, int srgb)
     return (uint64_t)lrintf(v * (float)max);
 }
 
-// A pixel of whole numbers, opaque.
+// A pixel of an integer format, opaque.
 static void pack_unorm(const struct bench_image *image, size_t i, const float rgb[3])
 {
     const enum hf_format format = image->image.format;
@@ -99,7 +99,7 @@ static void pack_unorm(const struct bench_image *image, size_t i, const float rg
     memcpy((char *)image->memory + i * formats[format].pixel, &word, formats[format].pixel);
 }
 
-// Pixel i of a picture, counted in reading order.
+// Write pixel i of a picture, counted in reading order.
 static void pack_pixel(const struct bench_image *image, size_t i, const float rgb[3])
 {
     switch (image->image.format) {

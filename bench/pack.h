@@ -7,7 +7,7 @@
 
 #include "hyperfocal/hyperfocal.h"
 
-// A picture with the memory that holds it: rows packed tightly, 64-byte aligned, planes one after another.
+// A picture with its memory: rows packed tightly, 64-byte aligned, planes one after another.
 struct bench_image {
     struct hf_image image;
     void *memory;
@@ -19,11 +19,11 @@ struct bench_image {
 int bench_image_alloc(struct bench_image *image, int width, int height, enum hf_format format);
 void bench_image_free(struct bench_image *image);
 
-// Fill a picture from packed RGB floats, rounding to nearest, ties to even. What a format cannot hold becomes the
-// closest finite value that it can; NaN and infinity stay. Alpha is 1.
+// Fill a picture from packed RGB floats, rounding to nearest, ties to even. A value that a format cannot hold becomes
+// its closest finite value; NaN and infinity stay. Alpha is 1.
 void bench_image_pack(const struct bench_image *image, const float *rgb);
 
-// One number: to IEEE half, and to the unsigned floats with 5 exponent and 6 or 5 mantissa bits of R11G11B10F.
+// Convert one number to IEEE half, or to the unsigned floats with 5 exponent and 6 or 5 mantissa bits of R11G11B10F.
 unsigned bench_to_half(float x);
 unsigned bench_to_small(float x, int mantissa_bits);
 

@@ -199,7 +199,7 @@ static void others(FILE *out, const struct trade *t)
     fputs("</tbody></table></div>\n", out);
 }
 
-// The same window of every scene, from every setting and from the truth.
+// The same window of every scene, from each setting and from the truth.
 static int crop(FILE *out, const struct trade_scene *s, const float *rgb, struct tool_error *error)
 {
     const int w = s->picture.width < TRADE_CROP_WIDTH ? s->picture.width : TRADE_CROP_WIDTH;
@@ -268,7 +268,7 @@ int bench_page_write(struct trade_run *run, const char *path, struct tool_error 
     return err;
 }
 
-// Returns the exit status of a program that is looked for in PATH, or 127 if it is not there.
+// Run a program from PATH. Returns its exit status, or 127 if it is not installed.
 static int run_program(char *const words[])
 {
     pid_t child;

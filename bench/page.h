@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page: one file that opens from disk, with charts, crops and passes of every setting.
+// The page: one HTML file that opens from disk, with charts, and crops and passes of each setting.
 #ifndef HF_BENCH_PAGE_H
 #define HF_BENCH_PAGE_H
 
 #include "tradeoff_run.h"
 
-// Renders every setting once more for its crops. Returns 0, or -1 with *error filled.
+// Renders each setting once more for its crops. Returns 0, or -1 with *error filled.
 int bench_page_write(struct trade_run *run, const char *path, struct tool_error *error);
-// The page's first chart as a picture, drawn by a browser or by rsvg-convert, whichever is installed.
+// Write the page's first chart as a PNG, drawn by a browser or by rsvg-convert, whichever is installed.
 int bench_page_png(const struct trade *t, const char *path, struct tool_error *error);
 
 #endif

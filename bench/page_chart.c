@@ -15,7 +15,7 @@ enum { LEFT = 52, RIGHT = 46, TOP = 26, BOTTOM = 42, LABELS = 64 };
 
 // One point of a chart.
 struct mark {
-    int result;  // place in the results; -1: another program
+    int result;  // index in the results; -1: another program
     const char *name;
     enum hf_engine engine;
     double x, low, high, y;
@@ -38,7 +38,7 @@ struct view {
     int boxes;
 };
 
-// ---- what is drawn ----
+// ---- the data of a chart ----
 
 static double region_error(const struct trade *t, const struct trade_result *r, enum bench_region region)
 {
@@ -133,7 +133,7 @@ int chart_points(const struct trade *t, const struct chart *c)
     return n;
 }
 
-// Means over the scenes, if they are those that others were measured on.
+// Add other programs' means over the scenes, if these are the scenes that the programs were measured on.
 static void add_others(struct view *v)
 {
     double blender = 0, blender_ms = 0, gegl = 0, gegl_ms = 0;
@@ -162,7 +162,8 @@ static int by_time(const void *a, const void *b)
     return (x->x > y->x) - (x->x < y->x);
 }
 
-// The front of what this chart shows: faster than all that err less. Tied: not so, but all that err no more overlap its time.
+// Find the front of this chart: settings faster than all that err less. A setting is tied if it is not, but its time
+// overlaps with that of each setting that errs no more.
 static void find_front(struct view *v)
 {
     double least = INFINITY;
@@ -198,7 +199,7 @@ static int collect(struct view *v)
     return 0;
 }
 
-// ---- where it is drawn ----
+// ---- positions ----
 
 static double at_x(const struct view *v, double x)
 {
@@ -259,7 +260,7 @@ static void escaped(FILE *out, const char *text)
             fputc(*text, out);
 }
 
-// Ticks at round numbers, as many of a decade as there is room for.
+// The next tick: at round numbers, as many per decade as there is room for.
 static void next_tick(double *tick, double log_range, double pixels)
 {
     static const double few[] = {2, 5, 10}, many[] = {1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10}, none[] = {10};
@@ -277,7 +278,7 @@ static void number(char *text, size_t size, double v)
         snprintf(text, size, "%.*f", v >= 1 ? 0 : v >= 0.0999 ? 2 : v >= 0.00999 ? 3 : 4, v);
     else
         snprintf(text, size, "%.0e", v);
-    // Zeros at the end say nothing.
+    // Remove zeros at the end of a fraction.
     for (size_t n = strlen(text);
          strchr(text, '.') && !strchr(text, 'e') && (text[n - 1] == '0' || text[n - 1] == '.');) {
         const int point = text[--n] == '.';
@@ -318,7 +319,7 @@ static void axes(struct view *v)
         v->width > 600 ? " (both axes are logarithmic)" : "");
 }
 
-// A line across the chart at a time, its name along it from the bottom up, where nothing is both fast and accurate.
+// Draw a vertical line at a time. Its name runs upwards from the bottom, where no setting is both fast and accurate.
 static void time_line(struct view *v, double ms, const char *name)
 {
     const double x = at_x(v, ms), bottom = v->height - BOTTOM, length = 6.4 * (double)strlen(name);
@@ -350,7 +351,7 @@ static void front_line(struct view *v)
     fputs("\"/>\n", v->out);
 }
 
-// One shape for each engine, so that colour is not all that tells them apart.
+// Each engine has its own shape, so that colour is not the only difference.
 static void shape(FILE *out, int engine, double x, double y)
 {
     static const char *const paths[] = {
@@ -392,11 +393,11 @@ static void draw_mark(struct view *v, const struct mark *m)
     fprintf(v->out, "<circle class=\"hit\" cx=\"%.1f\" cy=\"%.1f\" r=\"9\"/></g>\n", x, y);
 }
 
-// A name beside a point where there is room, else none.
+// Write a name beside a point, if there is room.
 static void label(struct view *v, const struct mark *m)
 {
     const double x = at_x(v, m->x), y = at_y(v, m->y), w = 6.3 * (double)strlen(m->name), h = 13;
-    // Below and to the left there is nothing better, so that is where there is most room.
+    // No setting is better, so the space below and to the left is usually free.
     const struct box tries[] = {{x - 9 - w, y + 4, x - 9, y + 4 + h},     {x - 9 - w, y - h + 6, x - 9, y + 6},
                                 {x - w - 4, y + 9, x - 4, y + 9 + h},     {x + 7, y + 5, x + 7 + w, y + 5 + h},
                                 {x + 9, y - h + 6, x + 9 + w, y + 6},     {x + 7, y - h - 5, x + 7 + w, y - 5},
@@ -471,7 +472,7 @@ void chart_write(FILE *out, const struct trade *t, const struct chart *c, int wi
         fprintf(out, "<style>%s</style><rect class=\"paper\" width=\"%d\" height=\"%d\"/>\n", chart_style, width,
                 height);
     draw(&v);
-    if (alone) {  // on the page the title stands above
+    if (alone) {  // on the page the title stands above the chart
         fprintf(out, "<text class=\"end\" x=\"%d\" y=\"16\">", width - 4);
         escaped(out, c->title);
         fputs("</text>\n", out);

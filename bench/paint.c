@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A house at night, seen over a railing: leaves and the railing are near, the house and its wall in focus, street,
-// skyline and lights far. Layers are asked front to back; the first that covers the point is what is seen.
+// A house at night, seen over a railing. Leaves and the railing are near, the house and its wall are in focus, street,
+// skyline and lights are far. Painting asks the layers from front to back; the first that covers the point is visible.
 #include "paint.h"
 
 #include <math.h>
@@ -61,13 +61,14 @@ static float noise(float x, float y, uint32_t seed)
                mix(bench_hash(ix, iy + 1, seed), bench_hash(ix + 1, iy + 1, seed), sa), sb);
 }
 
-// Near things shrink with the width in pictures narrower than 16:9, so that the house keeps its share.
+// Near objects shrink with the width in pictures narrower than 16:9, so that the house keeps its share.
 static float near_size(float aspect)
 {
     return fminf(1, aspect * 9 / 16);
 }
 
-// How far inside the foliage a point is, in picture heights: it hangs in from the left and from the upper right.
+// How far a point lies inside the foliage, in picture heights. The foliage hangs in from the left and from the upper
+// right.
 static float foliage_depth(float u, float v, float aspect)
 {
     const float edge = 0.14f * noise(v * 4.5f, 0, LEAF_EDGE) * near_size(aspect);
@@ -110,7 +111,7 @@ static bool foliage(float u, float v, float aspect, surface *out)
                 return true;
     if (depth < 0.3f * cell)
         return false;
-    // No sky shows through the middle of it.
+    // The middle of the foliage lets no sky through.
     out->t = -0.6f;
     out->colour = scale((colour){0.010f, 0.025f, 0.008f}, 0.5f + noise(u * 40, v * 40, LEAF_EDGE));
     return true;
@@ -125,7 +126,8 @@ static bool ball(float u, float v, float aspect, surface *out)
         return false;
     const float z = sqrtf(1 - d2);
     const float lit = fmaxf(0, -0.47f * x - 0.62f * y + 0.63f * z);
-    // Half-way vector between that light and the eye, to the 64th: a highlight of about 1/15 of the ball.
+    // The half-way vector between that light and the eye, to the 64th power: a highlight about 1/15 as large as the
+    // ball.
     float gloss = fmaxf(0, -0.26f * x - 0.34f * y + 0.90f * z);
     for (int i = 0; i < 6; i++)
         gloss *= gloss;
@@ -143,7 +145,7 @@ static bool railing(float u, float v, float aspect, surface *out)
     if (v < top)
         return false;
     const float p = (v - top) / (1 - top);
-    // Planks run away from the eye: their seams meet above the picture's middle.
+    // Planks run away from the eye, and their seams meet above the middle of the picture.
     const float plank = (u - 0.5f * aspect) / (0.5f + p) * 9;
     const float seam = plank - floorf(plank);
     const float grain = noise(plank * 6, v * 30, WOOD) * 0.5f + noise(plank * 40, v * 9, WOOD) * 0.5f;
@@ -164,7 +166,7 @@ static bool house_covers(float s, float v)
     return s > 0.395f && s < 0.515f && v > (notch ? 0.11f : 0.08f);
 }
 
-// Light that the two lanterns throw on the bricks, and the lanterns themselves.
+// The two lanterns, and their light on the bricks.
 static float lanterns(float u, float v, float aspect)
 {
     float light = 0;
@@ -219,7 +221,7 @@ static bool house(float u, float v, float aspect, surface *out)
     return true;
 }
 
-// Lights of the far town: one in four cells has one, a few reach 200.
+// Lights of the far town: one cell in four has one, and a few reach a brightness of 200.
 static bool light(float u, float v, surface *out)
 {
     const float cell = 0.038f;
@@ -240,7 +242,7 @@ static bool light(float u, float v, surface *out)
     return true;
 }
 
-// A row of houses: blocks of a width, whose tops lie between high and low, with lit windows.
+// A row of houses: blocks of equal width with tops between high and low, and lit windows.
 static bool skyline(float u, float v, float block, float high, float low, float t, int seed, surface *out)
 {
     const float x = u / block;
@@ -262,7 +264,7 @@ static bool skyline(float u, float v, float block, float high, float low, float 
 static surface far_away(float u, float v)
 {
     surface out;
-    // The street leads from just behind the wall to the town: f grows from 0.1 to 0.6 over it.
+    // The street leads from just behind the wall to the town. Along it, f grows from 0.1 to 0.6.
     const float kerb = 0.585f;
     if (v > kerb) {
         const float p = (v - kerb) / (0.66f - kerb);

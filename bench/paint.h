@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture behind the built-in scenes, as a function of position.
+// The picture of the built-in scenes, as a function of position.
 #ifndef HF_BENCH_PAINT_H
 #define HF_BENCH_PAINT_H
 
@@ -9,7 +9,7 @@ struct bench_colour {
     float r, g, b;
 };
 
-// What is seen at a point.
+// The surface that is visible at a point.
 struct bench_surface {
     float t;  // distance from the focus in ranges: -1.7..-0.3 near, 0 sharp, 0.1..3 far
     struct bench_colour colour;
@@ -18,7 +18,7 @@ struct bench_surface {
 // Point (u, v), in picture heights from the top left corner; aspect is width / height.
 struct bench_surface bench_paint(float u, float v, float aspect);
 
-// A number in [0, 1) that depends on nothing but its arguments.
+// A pseudo-random number in [0, 1) that depends only on its arguments.
 float bench_hash(int x, int y, uint32_t seed);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-// Two pipes of latency 4 or 5 need 8 or 10 chains; 12 and the two constants fit the 16 registers.
+// Two pipes with a latency of 4 or 5 need 8 or 10 chains. 12 chains and two constants fit the 16 registers.
 enum { CHAINS = 12, LANES = 8 };
 
 static float run(long n)

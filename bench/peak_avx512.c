@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-// Two pipes of latency 4 need 8 chains; there are 32 registers.
+// Two pipes with a latency of 4 need 8 chains. There are 32 registers.
 enum { CHAINS = 16, LANES = 16 };
 
 static float run(long n)

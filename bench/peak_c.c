@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "peak.h"
 
-// Vectors of four, which the compiler maps to what every CPU of the architecture has; without a fused instruction a
-// multiplication and an addition count as the two operations that they are.
+// Vectors of four, which the compiler maps to instructions that every CPU of the architecture has. Without a fused
+// instruction, a multiplication and an addition are two operations and count as such.
 typedef float vec4 __attribute__((vector_size(16)));
 enum { CHAINS = 12, LANES = 4 };
 

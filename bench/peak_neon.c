@@ -3,7 +3,7 @@
 
 #include <arm_neon.h>
 
-// Up to four pipes of latency 4 need 16 chains; there are 32 registers.
+// Up to four pipes with a latency of 4 need 16 chains. There are 32 registers.
 enum { CHAINS = 20, LANES = 4 };
 
 static float run(long n)
@@ -12,7 +12,7 @@ static float run(long n)
     float32x4_t x[CHAINS];
     for (int i = 0; i < CHAINS; i++)
         x[i] = vdupq_n_f32(1 + (float)i);
-    // NEON's instruction adds to its first operand: x grows by a millionth a step, far from overflow.
+    // NEON's instruction adds to its first operand, so x grows by a millionth per step, far from overflow.
     for (; n > 0; n--) {
 #pragma GCC unroll 20
         for (int i = 0; i < CHAINS; i++)

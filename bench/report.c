@@ -19,7 +19,8 @@ static const char compiler[] = "gcc " __VERSION__;
 static const char compiler[] = "unknown";
 #endif
 
-// What All would be in arithmetic at the machine's peak, MFLOP: compares machines of different speed.
+// The arithmetic that the machine at its peak could do in the time of All, MFLOP. It compares machines of different
+// speed.
 static double cost_mflop(const struct bench_result *r)
 {
     return r->all.median_ms * r->fma_gflops;
@@ -54,7 +55,7 @@ static void table_machine(FILE *out, const struct bench_run *run)
             r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
 }
 
-// The chapter timed the gather alone, at one size.
+// The chapter timed only the gather, at one size.
 static int has_gtx660(const struct bench_run *run)
 {
     return run->result->stats.used.params.engine == HF_ENGINE_GATHER && run->width == 1920 && run->height == 1080;

@@ -7,12 +7,12 @@
 
 #include <stdio.h>
 
-// What a report says besides the numbers.
+// What a report states besides the numbers.
 struct bench_run {
     const char *command;  // "passes"
     const struct bench_args *args;
     int width, height;  // of the scene
-    int threads;        // that were used
+    int threads;        // used for the run
     enum hf_isa isa;
     const struct bench_result *result;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `hyperfocal-bench scaling`: what a frame costs as more of it is blurred, and as it grows.
+// `hyperfocal-bench scaling`: how the time of a frame grows with its blurred part, and with its size.
 #include "commands.h"
 #include "subject.h"
 #include "write.h"
@@ -15,17 +15,18 @@ enum {
     SIZES = sizeof sizes / sizeof *sizes,
     SHARES = sizeof shares / sizeof *shares,
     KINDS = sizeof kinds / sizeof *kinds,
-    HD = 2,  // place of 1920x1080
-    // A point is measured in so many rounds over all of a size, as other work on the machine comes and goes: ratios are
-    // of what was measured within seconds. Its time is the middle of its rounds' medians.
+    HD = 2,  // index of 1920x1080
+    // All points of a size are measured together in each of that many rounds, because other work on the machine comes
+    // and goes: so ratios compare measurements a few seconds apart. A point's time is the median over the rounds of
+    // their medians.
     ROUNDS = 5,
-    LEAST = 2,  // frames of a point in a round
+    LEAST = 2,  // least frames of a point in a round
 };
-static const double seconds = 0.06;  // of a point in a round
+static const double seconds = 0.06;  // per point and round
 
 struct point {
     struct bench_row all;
-    size_t memory;  // that the context held
+    size_t memory;  // held by the context
 };
 
 struct size_result {
@@ -47,13 +48,13 @@ static double megapixels(const struct size_result *s)
     return (double)s->width * s->height * 1e-6;
 }
 
-// Of the frame all blurred, the time at 10 %.
+// The time with 10 % of the frame blurred, relative to that of the frame fully blurred.
 static double tenth(const struct size_result *s, int kind)
 {
     return s->point[kind][1].all.median_ms / s->point[kind][SHARES - 1].all.median_ms;
 }
 
-// Milliseconds a megapixel, all of it near and far, over those at 1920x1080; 0: that was not measured.
+// Milliseconds per megapixel with near and far everywhere, relative to those at 1920x1080; 0: not measured.
 static double growth(const struct scaling *r, int i)
 {
     const struct size_result *s = &r->size[i], *hd = &r->size[HD];
@@ -63,14 +64,14 @@ static double growth(const struct scaling *r, int i)
            (hd->point[KINDS - 1][SHARES - 1].all.median_ms / megapixels(hd));
 }
 
-// Most memory that the process had at a time, bytes.
+// The most memory that the process has held, bytes.
 static double peak_memory(void)
 {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) ? 0 : (double)usage.ru_maxrss * 1024;
 }
 
-// Points of which the median is far above the least.
+// How many points have a median far above their least time.
 static int busy_points(const struct scaling *r)
 {
     int n = 0;
@@ -166,7 +167,7 @@ static int by_median(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Rounds get sorted.
+// Sorts the rounds.
 static struct bench_row summary(struct bench_row rounds[ROUNDS])
 {
     struct bench_row all = rounds[0];
@@ -179,7 +180,7 @@ static struct bench_row summary(struct bench_row rounds[ROUNDS])
     return all;
 }
 
-// All points of a size, once. depth is the subject's, to paint on.
+// Measure all points of a size once. depth is the subject's; the scenes' depths are painted into it.
 static int measure_round(struct size_result *s, struct scaling *r, const struct bench_scene *scene,
                          const struct bench_subject *subject, float *depth, int round,
                          struct bench_row rows[KINDS][SHARES][ROUNDS], struct tool_error *error)
@@ -234,7 +235,7 @@ int bench_scaling(struct bench_args *args, struct tool_error *error)
 {
     struct scaling r = {.args = args};
     struct tool_error log = {""};
-    // With --size: only up to there.
+    // With --size, sizes up to that one.
     for (int i = 0; i < SIZES && (!args->size_given || sizes[i][0] <= args->width); i++) {
         r.size[i] = (struct size_result){.width = sizes[i][0], .height = sizes[i][1]};
         if (measure_size(&r.size[i], &r, &log, error))

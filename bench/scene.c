@@ -40,9 +40,10 @@ int bench_scene_builtin(const char *name, float *band)
     return builtin;
 }
 
-// 1 if a pixel lies on one of the near discs of `both`: one in each square of `pitch` pixels, jittered by a quarter
-// of it. The reach of the near field (maximum and box, 2 * max_radius pixels) closes the gaps between them. CoC is
-// sampled at every other pixel of every other row: no disc is so small that it falls between the samples.
+// Returns 1 if a pixel lies on a near disc of `both`. There is one disc in each square of `pitch` pixels, displaced at
+// random by a quarter of it. The near field reaches 2 * max_radius pixels (maximum and box), which closes the gaps
+// between discs. CoC is sampled at every other pixel of every other row, so no disc is so small that it falls between
+// the samples.
 static int on_disc(int x, int y, int pitch)
 {
     const int cx = x / pitch, cy = y / pitch;
@@ -61,10 +62,10 @@ struct painter {
     float focus, range;  // scene units
 };
 
-// Distance from the focus, in ranges, of a pixel that shows a surface at t in `mixed`.
+// The distance from the focus, in ranges, of a pixel whose surface lies at t in `mixed`.
 static float depth_of_kind(const struct painter *p, int x, int y, float t)
 {
-    const float order = (t + 2) / 5;  // 0..1, nearest to farthest
+    const float order = (t + 2) / 5;  // 0..1, from the nearest to the farthest
     if (p->kind >= BAND && (y < p->band0 || y >= p->band1))
         return 0;
     switch (p->kind) {
@@ -88,13 +89,13 @@ static float depth_of_kind(const struct painter *p, int x, int y, float t)
     }
 }
 
-// A range wider than the focus distance would put near surfaces behind the camera, which means none.
+// With a range wider than the focus distance, near surfaces would lie behind the camera, so the depth is limited.
 static float scene_depth(const struct painter *p, int x, int y, float t)
 {
     return fmaxf(p->focus + p->range * depth_of_kind(p, x, y, t), 0.05f * p->focus);
 }
 
-// Colours at the corners of pixels: one row of width + 1 points.
+// The colours at pixels' corners: one row of width + 1 points.
 static void paint_corners(const struct painter *p, int y, struct bench_colour *corners)
 {
     const float pixel = 1 / (float)p->height, aspect = (float)p->width / (float)p->height;
@@ -102,8 +103,8 @@ static void paint_corners(const struct painter *p, int y, struct bench_colour *c
         corners[x] = bench_paint((float)x * pixel, (float)y * pixel, aspect).colour;
 }
 
-// Colour is half that of the centre and an eighth of each corner, so that edges are smoothed as renderers do; depth is
-// that of the centre, as they do too.
+// A pixel's colour is half that of its centre and an eighth of each corner, which smooths edges as renderers do. Its
+// depth is that of the centre, also as renderers do.
 static void paint_row(const struct painter *p, int y, const struct bench_colour *above,
                       const struct bench_colour *below, float *rgb, float *depth)
 {
@@ -114,7 +115,7 @@ static void paint_row(const struct painter *p, int y, const struct bench_colour 
         rgb[0] = 0.5f * s.colour.r + 0.125f * (a[0].r + a[1].r + b[0].r + b[1].r);
         rgb[1] = 0.5f * s.colour.g + 0.125f * (a[0].g + a[1].g + b[0].g + b[1].g);
         rgb[2] = 0.5f * s.colour.b + 0.125f * (a[0].b + a[1].b + b[0].b + b[1].b);
-        if (p->kind == BOTH && on_disc(x, y, p->pitch)) {  // drops of rain in front of the town
+        if (p->kind == BOTH && on_disc(x, y, p->pitch)) {  // raindrops in front of the town
             rgb[0] = 0.25f * rgb[0] + 0.05f;
             rgb[1] = 0.25f * rgb[1] + 0.06f;
             rgb[2] = 0.25f * rgb[2] + 0.08f;
@@ -123,7 +124,7 @@ static void paint_row(const struct painter *p, int y, const struct bench_colour 
     }
 }
 
-// Needs scene->rgb and depth. Returns 0, or -1 without memory.
+// scene->rgb and depth must be allocated. Returns 0, or -1 without memory.
 static int paint_all(const struct painter *p, const struct bench_scene *scene)
 {
     const size_t width = (size_t)p->width;

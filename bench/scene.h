@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures to measure on: built-in scenes, painted at any size without a file, and picture files.
 //
-// The built-in scenes show one picture, a house at night behind a railing, and differ in depth alone, so that what
-// differs in time is what the depth asks for. Painting uses an integer hash and no function of libm that rounds
-// differently elsewhere: the same size gives the same bits on every run and machine.
+// The built-in scenes show one picture, a house at night behind a railing, and differ only in depth. So differences in
+// time come from the depth. Painting uses an integer hash, and no function of libm that rounds differently elsewhere:
+// the same size gives the same bits on every run and machine.
 #ifndef HF_BENCH_SCENE_H
 #define HF_BENCH_SCENE_H
 
@@ -16,22 +16,22 @@ struct bench_scene {
     float *depth;  // view depth, scene units
 };
 
-// What the depths are made for.
+// The focus for which depths are painted.
 struct bench_optics {
     float focus;       // scene units, > 0
     float range;       // scene units, >= 0; 0 and INFINITY paint as focus / 2
-    float max_radius;  // pixels; only `both` looks at it
+    float max_radius;  // pixels; only `both` uses it
 };
 
-// Depth in ranges from the focus at every pixel: -1 and less is fully near, +1 and more fully far, 0 sharp.
+// The depth of each pixel, in ranges from the focus: -1 and less is fully near, +1 and more fully far, 0 sharp.
 //   mixed   near, sharp and far in about equal parts
 //   near    near everywhere, blurred by 0.2 to 1
 //   far     far everywhere, blurred by 0.2 to 1
-//   both    near discs all over a far background: the blurred near CoC is > 0 on every pixel, f > 0 on most
+//   both    near discs all over a far background: the blurred near CoC is > 0 on every pixel, the far CoC on most
 //   full    far everywhere, blurred by 1: one radius
 //   focus   all sharp
-//   band:P  sharp but for a band of P % of the rows, half of it near, half far; band-near:P, band-far:P and band-both:P:
-//           the band is as `near`, `far` or `both`
+//   band:P  a band of P % of the rows is blurred, its left half near, its right half far; all else is sharp. In
+//           band-near:P, band-far:P and band-both:P the band is as in `near`, `far` or `both`
 extern const char *const bench_scene_names[];  // NULL ends it; "band:P" stands for all bands
 
 // 1 if the name is that of a built-in scene. *band receives the share of a band in 0..1.

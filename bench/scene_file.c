@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The first view that has a depth, or -1.
+// The index of the first view that has a depth, or -1.
 static int view_with_depth(const struct hf_io_file *file)
 {
     for (int i = 0; i < hf_io_view_count(file); i++)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `hyperfocal-bench truth --image A --truth B`: how far any picture is from any other, by the distances of the tables.
+// `hyperfocal-bench truth --image A --truth B`: the distances of any picture from any other.
 #include "commands.h"
 #include "metrics.h"
 #include "scene.h"

@@ -12,7 +12,7 @@ struct bench_ssim {
     const float *want;
     struct bench_kernel window;
     float *memory;
-    float *mean, *square;  // of want: weighted means of it and of its square
+    float *mean, *square;  // of want: weighted means of the values and of their squares
     float *got_mean, *got_square, *product;
     float *scratch;
 };

@@ -9,9 +9,9 @@
 
 struct bench_ssim;
 
-// Makes what depends on the plane compared with, values 0..1, which must stay. NULL without memory.
+// Prepare the reference plane, values 0..1, which must stay valid. NULL without memory.
 struct bench_ssim *bench_ssim_open(const float *want, int width, int height);
-// map: -1..1 at every pixel, 1 where both are alike.
+// map: -1..1 for each pixel, 1 where both are alike.
 void bench_ssim_map(struct bench_ssim *s, const float *got, float *map);
 void bench_ssim_close(struct bench_ssim *s);
 

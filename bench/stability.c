@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numerical stability: the cases of tests/stability as a table.
+// Numerical stability: runs the cases of tests/stability and prints a table.
 #include "commands.h"
 #include "write.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The middle of some numbers.
+// Medians and quantiles.
 #ifndef HF_BENCH_STATISTICS_H
 #define HF_BENCH_STATISTICS_H
 
-// Sort n numbers, and return the middle one, of an even number the lower of the two.
+// Sort n numbers and return the median; for an even n, the lower of the two middle ones.
 double bench_median(double *numbers, int n);
 
-// The value below which the share q of n sorted numbers lies, between the numbers beside it, as n - 1 steps.
+// The q-quantile of n sorted numbers, interpolated linearly between neighbours.
 double bench_quantile(const double *sorted, int n, double q);
 
 #endif

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Keeps the sentence of the last error, which names the argument; hf_error_string only names the kind.
+// Keep the sentence of the last error, which names the argument; hf_error_string names only the kind of error.
 static void keep_message(void *cookie, enum hf_log_level level, const char *message)
 {
     if (level == HF_LOG_ERROR)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A context and the pictures that it is measured on.
+// A context, and the pictures that it is measured on.
 #ifndef HF_BENCH_SUBJECT_H
 #define HF_BENCH_SUBJECT_H
 
@@ -7,8 +7,8 @@
 #include "measure.h"
 #include "scene.h"
 
-// Open the library and pack the scene. log keeps the last sentence that the library says. Close it after an error too.
-// Returns 0, or -1 with *error filled.
+// Open the library and pack the scene. log keeps the last sentence that the library says. Close the subject even after
+// an error. Returns 0, or -1 with *error filled.
 int bench_subject_open(struct bench_subject *s, const struct bench_args *args, const struct bench_scene *scene,
                        struct tool_error *log, struct tool_error *error);
 void bench_subject_close(struct bench_subject *s);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `hyperfocal-bench tradeoff`: what every step of accuracy costs in time on this machine.
+// `hyperfocal-bench tradeoff`: the time of each setting on this machine, and its distance from the truth.
 //
-// Distances come first, once: pictures do not depend on the time of day. Times are taken in rounds over all settings, so
-// that other work on the machine falls on all alike. What was measured is kept in the cache at once.
+// Distances are measured first and once, because pictures do not depend on the time of day. Times are measured in
+// rounds over all settings, so that other work on the machine affects all alike. Each measurement goes to the cache at
+// once.
 #include "commands.h"
 #include "machine.h"
 #include "page.h"
@@ -18,7 +19,7 @@
 #include <unistd.h>
 
 enum { ROUNDS = 7, QUICK_ROUNDS = 3, SLOW_ROUNDS = 3 };
-static const double slow_ms = 100;  // frames that take longer are measured SLOW_ROUNDS times
+static const double slow_ms = 100;  // frames that take longer are measured only SLOW_ROUNDS times
 
 static void progress(const char *what, int i, int n, const char *name)
 {
@@ -127,7 +128,7 @@ static int write_file(const char *path, const char *option, const struct trade *
     return 0;
 }
 
-// The words that were typed stand in the README, but for those of this run alone.
+// The README quotes the typed words, without those that only concern this run.
 static int readme(const struct trade *t, struct tool_error *error)
 {
     char command[512] = "hyperfocal-bench tradeoff";

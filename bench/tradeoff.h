@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What accuracy costs in time: settings, what was measured of them, and which of them are worth having.
+// What accuracy costs in time: the settings, their measurements, and the selection of settings worth having.
 //
 //   tradeoff.c         the command: scenes, rounds, progress
 //   tradeoff_list.c    the settings
@@ -25,9 +25,9 @@ enum {
     TRADE_RADIUS = 12,  // of `both`, pixels
 };
 
-// A setting is what one types: the same words for both programs.
+// A setting is what a user types: the same words for both programs.
 struct trade_setting {
-    const char *knob;     // what is turned: "engine", "taps" ...
+    const char *knob;     // the option that is varied: "engine", "taps" ...
     const char *name;     // short, for a chart
     const char *options;  // "--engine scatter --resolution half"
     int quick;            // measured with --quick too
@@ -43,14 +43,14 @@ struct trade_time {
     double pass[TRADE_ROUNDS][TRADE_PASSES];
 };
 
-// Median, and the quartiles on both sides of it: where they overlap, an order would be chance.
+// Median and quartiles. If two intervals overlap, their order is chance.
 struct trade_interval {
     double low, median, high;
 };
 
 // A setting on a scene.
 struct trade_point {
-    int measured;  // what follows but the time
+    int measured;  // the members below are valid, except the time
     struct bench_distance distance[BENCH_REGIONS];
     double flicker;  // of a focus pull, display-encoded
     struct trade_time time;
@@ -61,21 +61,21 @@ enum trade_rank { TRADE_BEATEN, TRADE_TIED, TRADE_FRONT };
 struct trade_result {
     const struct trade_setting *setting;
     enum hf_engine engine;
-    struct hf_params params;  // what its options come to
-    float farthest;  // the largest radius that it blurs by, pixels; INFINITY: any
+    struct hf_params params;  // its options, parsed
+    float farthest;           // the largest radius by which it can blur, pixels; INFINITY: any
     struct trade_point at[TRADE_SCENES];
     struct trade_time both;  // 1920x1080, scene `both`, radius 12: what `passes` measures
-    int axes_measured;       // the two that follow
-    double rounding;         // linear root mean square distance from the algorithm in double; NAN: there is none
-    double faithfulness;     // display-encoded, from the published demo; NAN: another algorithm
+    int axes_measured;       // the two members below are valid
+    double rounding;      // linear root mean square distance from the algorithm in double precision; NAN: there is none
+    double faithfulness;  // display-encoded, from the published demo; NAN: another algorithm
 
-    // Made of the above by trade_rank.
+    // Computed by trade_rank:
     struct trade_interval ms;  // mean over the scenes
     struct trade_interval both_ms;
-    double error;  // geometric mean over the scenes of the whole picture's display error: the mean PSNR
+    double error;  // geometric mean over the scenes of the whole picture's display error; it belongs to the mean PSNR
     double worst;  // largest of them
     enum trade_rank rank;
-    int step;  // place on the ladder, from 1; 0: not on it
+    int step;  // position on the ladder, from 1; 0: not on it
 };
 
 struct trade_scene_name {
@@ -89,56 +89,57 @@ struct trade {
     int scenes, results;
     struct trade_scene_name scene[TRADE_SCENES];
     int width[TRADE_SCENES], height[TRADE_SCENES];
-    float largest[TRADE_SCENES];  // CoC radius that there is, pixels
+    float largest[TRADE_SCENES];  // CoC radius in each scene, pixels
     struct trade_result *result;  // of `results`
     double gflops;
     char cpu[128], date[32];
     const char *commit;
 };
 
-// From the median and quartiles of the samples.
+// The median and quartiles of samples.
 struct trade_interval trade_interval(const double *samples, int n);
 int trade_overlap(struct trade_interval a, struct trade_interval b);
 
-// Fill in what follows from the measurements. A setting is beaten if another errs no more and is surely faster, its
-// interval lying wholly below; tied if another is only faster by the median.
+// Compute what follows from the measurements. A setting is beaten if another errs no more and is surely faster: its
+// whole interval lies below. It is tied if the other is faster only by the median.
 void trade_rank(struct trade *t);
-// The longest list of settings of which each is slower than the one before, errs less, and is not worse on any scene, from
-// the cheapest such setting to the most accurate: fills in step. On a scene with radii that a setting does not reach it is
-// never chosen (hf_choose_quality), so there it need not be worse than one that does reach; but the list of those that reach
-// any radius begins with the cheapest engine as it is. Only settings that blur, with the machine's own threads and instruction
-// set, and of several that differ in nothing but their words the one with the fewest.
+// Fill in step: the longest list of settings from the cheapest to the most accurate, in which each is slower than the
+// one before, errs less, and is not worse on any scene. A setting is never chosen for a scene with radii beyond its
+// reach (hf_choose_quality), so there a setting with more reach may be worse. The part of the list that reaches any
+// radius begins with the cheapest engine with its defaults. Only settings that blur and use the machine's own threads
+// and instruction set are listed; among settings that do the same thing, the one with the fewest words.
 void trade_ladder(struct trade *t);
-// Results in the order of a table: by time.
+// The results in the order of the table: by time.
 void trade_order(const struct trade *t, int order[]);
 
-// Steps of the ladder that stand for --quality: the cheapest that reaches any radius; the cheapest within 1 dB of the last;
-// within 0.25 dB; the last. Fills results' places. Returns 0, or -1 if there is no ladder.
+// The steps of the ladder for --quality: the cheapest that reaches any radius; the cheapest within 1 dB of the last;
+// the cheapest within 0.25 dB; the last. place receives indices of results. Returns 0, or -1 if there is no ladder.
 enum { TRADE_QUALITIES = 4 };
 int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES]);
 
-// The cache: opened for a build and a machine, read whole, appended to line by line.
+// The cache: opened for a build and a machine, read completely, appended to line by line.
 struct trade_cache;
 int trade_cache_open(struct trade_cache **cache, const char *path, const char *key, struct tool_error *error);
-// Fill in what is known of the results. Returns how many lines applied.
+// Fill in what the cache has of the results. Returns how many lines applied.
 int trade_cache_load(struct trade_cache *cache, struct trade *t);
 void trade_cache_point(struct trade_cache *cache, const struct trade *t, const struct trade_result *r, int scene);
 void trade_cache_axes(struct trade_cache *cache, const struct trade_result *r);
-// The newest sample; scene -1: of `both`.
+// Append the newest sample; scene -1: of `both`.
 void trade_cache_time(struct trade_cache *cache, const struct trade *t, const struct trade_result *r, int scene);
 void trade_cache_close(struct trade_cache *cache);
-// A name for this build of program and library on this machine.
+// Make a key for this build of program and library on this machine.
 void trade_cache_key(char *key, size_t size, const char *cpu, int threads);
 
 void trade_table(FILE *out, const void *t);
-// What a person should take from it, in three sentences, each with something before and after it.
+// Write the conclusions in three sentences, each between `before` and `after`.
 void trade_sentences(FILE *out, const struct trade *t, const char *before, const char *after);
-// Qualities, what they choose, cost and err, as rows of Markdown.
+// Write the qualities as rows of Markdown: what they choose, take and err.
 void trade_qualities_table(FILE *out, const struct trade *t);
-// The same two between the marks of a file, with the command that measured. Returns 0, or -1 with *error filled.
+// Write both between the marks of a file, with the command that measured. Returns 0, or -1 with *error filled.
 int trade_readme_check(const char *path, struct tool_error *error);  // before anything is measured
 int trade_readme(const char *path, const struct trade *t, const char *command, struct tool_error *error);
-// Taps of the same reach, on `both`: milliseconds of two passes and of the frame. Returns 0 for a setting of another kind.
+// Settings with taps of the same reach, on `both`: milliseconds of two passes and of the frame. Returns 0 for other
+// settings.
 struct trade_taps {
     const char *name;
     double computation, fill, frame, db;

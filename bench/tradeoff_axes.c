@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two distances that need no truth: from the same algorithm in double precision, and from the published demo. Both on a
-// small scene with CoC radii of its own, so that every engine blurs by the same.
+// Two distances that need no ray-traced truth: from the same algorithm in double precision, and from the published
+// demo. Both use a small scene that has CoC radii instead of depth, so that every engine blurs equally.
 #include "tradeoff_run.h"
 
 #include "support/image.h"
@@ -47,7 +47,7 @@ static struct hf_params params_of(const struct trade_job *job)
     return p;
 }
 
-// The algorithm of a setting in double precision, nothing rounded for storage; an empty picture if there is none.
+// A setting's algorithm in double precision, without rounding for storage; an empty picture if there is none.
 static struct picture in_double(const struct input *in, struct hf_params p)
 {
     struct picture out = {0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A text file, one measurement a line, appended to as they are made, so that a run that is stopped goes on where it was.
-// Fields are parted by tabs: key, kind, options, scene, numbers. Lines that do not parse are passed over: the last one
-// may have been cut.
+// A text file with one measurement per line, appended as soon as it is made, so that an interrupted run can go on.
+// Fields are separated by tabs: key, kind, options, scene, numbers. Lines that do not parse are skipped: the last one
+// may be incomplete.
 #include "tradeoff.h"
 
 #include <dlfcn.h>
@@ -50,7 +50,7 @@ void trade_cache_key(char *key, size_t size, const char *cpu, int threads)
             *c = ' ';
 }
 
-// The folders of a path, as far as they are missing.
+// Create the missing folders of a path.
 static void make_folders(const char *path)
 {
     char *copy = strdup(path);
@@ -133,7 +133,7 @@ void trade_cache_time(struct trade_cache *c, const struct trade *t, const struct
     end(c);
 }
 
-// Numbers up to the word `end`. Returns how many, or -1.
+// Read numbers up to the word `end`. Returns how many, or -1.
 static int numbers(const char *text, double *out, int most)
 {
     int n = 0;

@@ -22,7 +22,7 @@ int trade_overlap(struct trade_interval a, struct trade_interval b)
     return a.low <= b.high && b.low <= a.high;
 }
 
-// Of each round the mean over the scenes, so that what the scenes cost differently is no spread.
+// For each round the mean over the scenes, so that differences between scenes do not count as spread.
 static struct trade_interval mean_time(const struct trade *t, const struct trade_result *r)
 {
     double mean[TRADE_ROUNDS];
@@ -71,7 +71,8 @@ void trade_rank(struct trade *t)
     }
 }
 
-// Not for options that change how a frame is run and not what it is; nor for a copy, nor for what is printed in books.
+// Whether the ladder may have a setting: not one whose options change only how a frame is run; not a plain copy; not
+// the published algorithms.
 static int may_be_chosen(const struct trade_setting *s)
 {
     static const char *const never[] = {"--threads", "--isa",      "--max-radius", "--deterministic",
@@ -87,7 +88,7 @@ static double error_on(const struct trade_result *r, int scene)
     return r->at[scene].distance[BENCH_WHOLE].display_rmse;
 }
 
-// By over 0.1 dB on any scene, that is, and better over all.
+// Whether a setting errs less overall, and on no scene by over 0.1 dB more.
 static int is_no_worse(const struct trade *t, const struct trade_result *better, const struct trade_result *than)
 {
     static const double same = 1.0116;  // 0.1 dB
@@ -99,7 +100,7 @@ static int is_no_worse(const struct trade *t, const struct trade_result *better,
     return better->error < than->error && better->ms.median > than->ms.median;
 }
 
-// Is there a setting with fewer words that errs as this one does and takes as long, for all that can be told?
+// Whether another setting with fewer words errs equally and takes equally long, as far as can be told.
 static int is_wordy(const struct trade *t, const struct trade_result *r)
 {
     static const double same = 1.002;  // 0.02 dB
@@ -130,7 +131,8 @@ static int is_limited(const struct trade_result *r)
     return isfinite(r->farthest);
 }
 
-// Ways up the ladder: of each setting the length of the longest to the most accurate, 0 for none, and the next one on it.
+// Paths up the ladder: for each setting the length of the longest path to the most accurate one, 0 for none, and the
+// next setting on it.
 struct ways {
     const struct trade *t;
     int order[TRADE_SETTINGS];  // by time
@@ -138,13 +140,13 @@ struct ways {
     int length[TRADE_SETTINGS], above[TRADE_SETTINGS];
 };
 
-// An engine as it is, no knob turned.
+// Whether a setting is an engine with its defaults.
 static int is_plain(const struct trade_result *r)
 {
     return !strstr(r->setting->options + 1, " --");
 }
 
-// What may be chosen, and which of it is the most accurate that reaches any radius; -1: none does.
+// Find the settings that may be chosen. Returns the most accurate one of those that reach any radius, or -1.
 static int find_candidates(struct ways *w)
 {
     int last = -1;
@@ -157,8 +159,9 @@ static int find_candidates(struct ways *w)
     return last;
 }
 
-// The longest ways of all that are limited, or not, to those that have one. Through an engine as it is before all others: that
-// is what most users get, and odd knobs that win a tenth of a dB on one scene are not to shut it out.
+// Find the longest path from each setting, among those with limited reach, or those without. Paths through engines with
+// their defaults come first: most users get these, and odd options that win a tenth of a dB on one scene must not
+// exclude them.
 static void find_ways(struct ways *w, int limited)
 {
     const struct trade *t = w->t;
@@ -177,7 +180,8 @@ static void find_ways(struct ways *w, int limited)
     }
 }
 
-// The cheapest setting that has a way; what lies between is as fine as can be. plain: of the engines as they are.
+// The cheapest setting that has a path; the steps above it are then as fine as possible. plain: only engines with their
+// defaults.
 static int cheapest(const struct ways *w, int plain)
 {
     for (int k = 0; k < w->t->results; k++) {
@@ -200,8 +204,8 @@ void trade_ladder(struct trade *t)
     w.length[last] = 1;
     w.above[last] = -1;
     find_ways(&w, 0);
-    // The first that a lens gets is an engine as it is: that look was made with care. All others that reach have no way
-    // from what does not.
+    // For a lens, the first step is an engine with its defaults, because its look was tuned with care. Other settings
+    // that reach any radius have no path from those that do not.
     int first = cheapest(&w, 1);
     if (first < 0)
         first = cheapest(&w, 0);

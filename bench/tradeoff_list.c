@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The settings that are measured: each knob alone, turned from the default of its engine, then combinations that may lie
-// on the front. Options are those of both programs.
+// The settings that are measured: each option alone, changed from its engine's default; then combinations that may lie
+// on the front. Both programs understand these options.
 #include "tradeoff.h"
 
 // clang-format off
 const struct trade_setting trade_settings[] = {
-    // The picture as it is, copied; and the engines as they are.
+    // The plain copy of the picture, and the engines with their defaults.
     {"engine", "no blur", "--engine gaussian --max-radius 0", 1},
     {"engine", "gather", "--engine gather", 1},
     {"engine", "hexagon", "--engine hexagon", 1},
@@ -18,7 +18,7 @@ const struct trade_setting trade_settings[] = {
     {"resolution", "gaussian half", "--engine gaussian --resolution half", 0},
     {"resolution", "gaussian quarter", "--engine gaussian --resolution quarter", 1},
 
-    // Taps, all with the same reach: 49 are 3 rings. Fill, downsample and division as in the chapter.
+    // Taps, all with the same reach; 49 taps are 3 rings. Fill, downsample and division as in the chapter.
     {"taps", "9 taps", "--engine gather --fill max --rings 1", 0},
     {"taps", "25 taps", "--engine gather --fill max --rings 2", 0},
     {"taps", "49 taps + fill", "--engine gather --fill max --rings 3", 1},
@@ -81,14 +81,14 @@ const struct trade_setting trade_settings[] = {
     {"gaussian", "gaussian 12 iterations", "--engine gaussian --iterations 12", 0},
     {"gaussian", "gaussian sigma 6", "--engine gaussian --sigma 6", 0},
 
-    // The grid. What is cheapest:
+    // The grid. The cheapest settings:
     {"grid", "quarter, 1 iteration", "--engine gaussian --resolution quarter --iterations 1", 1},
     {"grid", "quarter, 2 iterations", "--engine gaussian --resolution quarter --iterations 2", 1},
     {"grid", "quarter, 4 iterations", "--engine gaussian --resolution quarter --iterations 4", 1},
     {"grid", "quarter, 5 iterations", "--engine gaussian --resolution quarter --iterations 5", 0},
     {"grid", "quarter, sigma 6", "--engine gaussian --resolution quarter --sigma 6", 0},
     {"grid", "half, 8 iterations", "--engine gaussian --resolution half --iterations 8", 0},
-    // The gather's default look, whose apertures are areas: taps and fill are no knobs of it.
+    // The gather's default look, whose apertures are areas: options for taps and fill have no effect on it.
     {"grid", "gather, half, bicubic", "--engine gather --storage half --bicubic", 0},
     {"grid", "gather, Karis, bicubic", "--engine gather --karis --bicubic", 0},
     {"grid", "gather, linear downsample", "--engine gather --downsample linear", 0},
@@ -106,7 +106,7 @@ const struct trade_setting trade_settings[] = {
     {"grid", "every 0.5, half from 3", "--engine layers --spacing 0.5 --half-from 3", 0},
     {"grid", "high, half from 4", "--engine layers --layers-quality high --half-from 4", 0},
     {"grid", "high, every 1, half from 4", "--engine layers --layers-quality high --spacing 1 --half-from 4", 0},
-    // What is most accurate: best looks for patterns, whatever the slices are.
+    // The most accurate settings: best looks for patterns at any spacing of slices.
     {"grid", "best, no patterns", "--engine layers --layers-quality best --no-patterns", 0},
     {"grid", "best, every 4", "--engine layers --layers-quality best --spacing 4", 0},
     {"grid", "best, every 1, half from 4", "--engine layers --layers-quality best --spacing 1 --half-from 4", 0},

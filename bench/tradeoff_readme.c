@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a person should take from the measurements, between two marks of a file that is otherwise written by hand.
+// Writes the conclusions of the measurements between two marks of a file that is otherwise written by hand.
 #include "tradeoff.h"
 
 #include <errno.h>
@@ -10,7 +10,7 @@ static const char begins[] = "<!-- tradeoff: made by hyperfocal-bench, do not ed
                   ends[] = "<!-- /tradeoff -->";
 enum { COLUMNS = 118 };
 
-// Words with a number before them, broken into lines that begin where the first word does.
+// Write words after a number, broken into lines that begin below the first word.
 static void paragraph(FILE *out, int number, const char *text)
 {
     int at = number ? fprintf(out, "%d. ", number) : 0;
@@ -28,7 +28,7 @@ static void paragraph(FILE *out, int number, const char *text)
     fputc('\n', out);
 }
 
-// Returns whether it is not written.
+// Returns non-zero if writing failed.
 static int write_part(FILE *out, const struct trade *t, const char *command)
 {
     char *text = NULL, *save = NULL, last[512];
@@ -51,7 +51,7 @@ static int write_part(FILE *out, const struct trade *t, const char *command)
     return 0;
 }
 
-// A whole file; NULL if it cannot be read. The caller frees it.
+// A whole file, to be freed by the caller; NULL if it cannot be read.
 static char *read_all(const char *path)
 {
     FILE *f = fopen(path, "r"), *to;
@@ -73,7 +73,7 @@ static char *read_all(const char *path)
     return text;
 }
 
-// The file's text, where the part begins and where what follows it; the caller frees text.
+// The file's text, to be freed by the caller, and where the part between the marks begins and ends.
 static int find_part(const char *path, char **text, char **from, char **to, struct tool_error *error)
 {
     *from = *to = NULL;

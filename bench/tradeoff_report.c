@@ -13,7 +13,7 @@ static double db(double error)
     return -20 * log10(error);
 }
 
-// Mean over the scenes in which the region is; NAN where it is in none.
+// The mean over the scenes that have the region; NAN if none has.
 static double mean_of(const struct trade *t, const struct trade_result *r, enum bench_region region, size_t field)
 {
     double sum = 0;
@@ -86,7 +86,7 @@ static const struct trade_result *at_step(const struct trade *t, int step)
     return NULL;
 }
 
-// What stands for a quality.
+// The setting that a quality stands for.
 static const struct trade_result *of_quality(const struct trade *t, int quality)
 {
     int place[TRADE_QUALITIES];

@@ -12,7 +12,7 @@ enum {
     BOTH_HEIGHT = 1080,
     PULL = 5,
     FEW = 3,
-    MOST = 15,  // frames whose median is a sample, where they are fast
+    MOST = 15,  // frames whose median is one sample, for fast settings
 };
 static const double fast_ms = 40, sample_ms = 60;
 static const float pull_step = 0.25f;  // pixels of radius between the frames of a focus pull
@@ -44,7 +44,7 @@ static int get_context(struct trade_run *run, struct trade_job *job, struct tool
     return 0;
 }
 
-// Words of a line, parted by blanks; text is cut up.
+// Split a line into words at blanks; text is changed.
 static int split(char *text, char *words[], int most)
 {
     int n = 0;
@@ -68,7 +68,7 @@ static int parse_job(struct trade_run *run, struct trade_job *job, const char *o
     return get_context(run, job, error);
 }
 
-// A gaussian spreads light as far as a disc of twice its standard deviation, whatever the depth says.
+// A gaussian spreads light as far as a disc of twice its standard deviation, at any depth.
 static float farthest(const struct hf_params *p)
 {
     static const struct hf_depth depth = {.type = HF_DEPTH_VIEW};
@@ -168,7 +168,7 @@ void trade_run_close(struct trade_run *run)
     free(run->job);
 }
 
-// Parameters of a setting on a scene; scene -1: on `both`.
+// The parameters of a setting on a scene; scene -1: on `both`.
 static struct hf_params params_of(const struct trade_run *run, int result, int scene)
 {
     const struct bench_args *args = &run->job[result].args;
@@ -224,13 +224,13 @@ static void encode_part(void *arg, int i, int threads)
         e->to[k] = bench_display(e->from[k]);
 }
 
-// A focus pull around the scene's focus, and how unsteadily the picture changes in it.
+// Render a focus pull around the scene's focus, and measure how unsteadily the picture changes.
 static int measure_flicker(struct trade_run *run, int result, int scene, double *flicker, struct tool_error *error)
 {
     const struct trade_scene *s = &run->scene[scene];
     const struct bench_scene *p = &s->picture;
     const size_t samples = 3 * (size_t)p->width * (size_t)p->height;
-    // Radius of the infinitely far per 1 / focus.
+    // The radius of an infinitely far point times the focus distance.
     const float k = trade_radius(&s->camera, p->width, 0) * s->camera.focus;
     for (int i = 0; i < PULL; i++) {
         struct hf_params params = params_of(run, result, scene);
@@ -296,7 +296,7 @@ int trade_run_time(struct trade_run *run, int result, int scene, struct tool_err
     struct trade_result *r = &run->t->result[result];
     struct trade_time *time = scene < 0 ? &r->both : &r->at[scene].time;
     double ms[MOST], pass[MOST][TRADE_PASSES];
-    // The first frame after another setting's arranges its memory anew.
+    // The first frame after another setting's frame rearranges the memory, so it is not counted.
     if (timed(run, result, scene, &ms[0], pass[0], error) || timed(run, result, scene, &ms[0], pass[0], error))
         return -1;
     int n = 1, middle = 0;

@@ -17,7 +17,7 @@ float trade_radius(const struct bench_camera *c, int width, float z)
     return aperture * focal_px * (1 / c->focus - inverse);
 }
 
-// The window with the most silhouettes, on a grid of half its size.
+// Find the window with the most silhouettes, on a grid of half its size.
 static void choose_crop(struct trade_scene *s)
 {
     long most = -1;

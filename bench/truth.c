@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `hyperfocal-bench truth`: how far each engine is from what a ray-traced thin lens sees, and what it costs.
+// `hyperfocal-bench truth`: how close each engine comes to the picture of a ray-traced thin lens, and its time.
 #include "commands.h"
 #include "metrics.h"
 #include "others.h"
@@ -15,19 +15,20 @@ enum { SCENES = BENCH_OTHERS, LEAST = 3 };
 
 struct truth {
     const struct bench_args *args;
-    int threads, busy;  // busy: of how many measurements that was said
+    int threads, busy;  // busy: how many measurements met a busy machine
     struct {
         double psnr, rmse, ms;
     } at[SCENES][HF_ENGINE_COUNT];
 };
 
-// --engine: that one alone.
+// Whether an engine is measured; with --engine only that one is.
 static int wanted(const struct truth *t, int engine)
 {
     return !t->args->engine_given || (int)t->args->params.engine == engine;
 }
 
-// Of the picture clamped to 0..1 with the sRGB curve: peak signal to noise; and root mean square error of the linear.
+// Peak signal-to-noise ratio of the pictures clamped to 0..1 with the sRGB curve, and root mean square error of the
+// linear ones.
 static void distance(const float *a, const float *b, size_t n, double *psnr, double *rmse)
 {
     double shown = 0, linear = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame in place beside one out of place, and the first frame of a context, with and without hf_prepare.
+// Times a frame in place and one out of place, and the first frame of a context with and without hf_prepare.
 #include "measure.h"
 #include "statistics.h"
 
@@ -10,9 +10,9 @@
 enum { PAIRS = 41, FIRSTS = 11, LATER = 3 };
 static const size_t LARGE_PAGE = 1 << 21;
 
-// Memory that nobody has touched, as a program's first context finds it: what another one gave back to malloc has its
-// pages already, and they are most of what a first frame pays for. On large pages, as the library's own. Its size and how
-// far into it the caller's part begins stand before that.
+// Memory that nobody has touched, as a program's first context finds it. Memory that another context gave back to
+// malloc has its pages already, and pages are most of the cost of a first frame. It lies on large pages, as the
+// library's own does. The mapping's size and start are stored before the caller's part.
 static void *fresh_alloc(void *cookie, size_t size, size_t align)
 {
     (void)cookie;
@@ -47,14 +47,14 @@ static struct bench_row row_of(double ms[PAIRS])
     return (struct bench_row){median, ms[0], ms[PAIRS - 1], -1};
 }
 
-// In place what is drawn is blurred, so each frame begins with the picture as it was.
+// A frame in place overwrites its input, so each one starts from a fresh copy of the picture.
 static int in_place(const struct bench_subject *s, struct hf_context *c, double *ms, struct tool_error *error)
 {
     memcpy(s->out.memory, s->in.memory, s->in.bytes);
     return bench_measure_frame(s, c, &s->out, ms, error);
 }
 
-// ms: of the first frame of a context. later: of the one after LATER more, whose memory is the same.
+// ms: the first frame of a context. later: a frame after LATER more, in the same memory.
 static int first(const struct bench_subject *s, int prepare, double *ms, double *later, struct tool_error *error)
 {
     const struct hf_config config = {.threads = hf_context_threads(s->context),

@@ -17,21 +17,21 @@ struct worker {
 
 struct bench_workers {
     int threads, started;
-    struct worker *workers;  // [0] is the caller, it has no thread
+    struct worker *workers;  // [0] is the caller, which has no thread here
 
     pthread_mutex_t mutex;
     pthread_cond_t wake;
-    unsigned run;  // number of the run; a change wakes the workers. Guarded by mutex, like quit
+    unsigned run;  // number of the run; a change wakes the workers. Guarded by mutex, as is quit
     int quit;
 
     void (*fn)(void *arg, int i, int threads);
     void *arg;
-    atomic_int ready, done;  // workers that wait for go, that have finished
+    atomic_int ready, done;  // workers that wait for go; workers that have finished
     atomic_int go;
 };
 
-// Busy, as a run lasts less than it takes to wake a thread; but with more threads than processors, the one waited for
-// needs this processor.
+// Spins, because a run is shorter than waking a thread. With more threads than processors it yields, because the thread
+// that it waits for needs this processor.
 static void wait_for(atomic_int *value, int wanted)
 {
     for (int spins = 0; atomic_load_explicit(value, memory_order_acquire) != wanted; spins++)
@@ -56,7 +56,7 @@ static void *worker_main(void *arg)
         atomic_fetch_add(&w->ready, 1);
         wait_for(&w->go, 1);
         w->fn(w->arg, me->index, w->threads);
-        atomic_fetch_add(&w->done, 1);  // nothing of the run is touched after this
+        atomic_fetch_add(&w->done, 1);  // after this the run's data are not touched
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads for the yardsticks, which start together: the library's own are not ours to run copies on. Between runs
-// they sleep, so that they take nothing from a frame.
+// Threads for the yardsticks, which start together. The library's own threads cannot run copies for the benchmark.
+// Between runs they sleep, so they take no time from a frame.
 #ifndef HF_BENCH_WORKERS_H
 #define HF_BENCH_WORKERS_H
 
@@ -10,7 +10,8 @@ struct bench_workers;
 int bench_workers_open(struct bench_workers **out, int threads);
 
 // Calls fn(arg, i, threads) once for each i in [0, threads), each on a thread of its own, 0 on the caller. Returns the
-// seconds from when all were awake and waiting to when the last was done: neither waking nor falling asleep counts.
+// seconds from the moment when all threads are awake and waiting to the moment when the last is done: waking and
+// falling asleep do not count.
 double bench_workers_run(struct bench_workers *w, void (*fn)(void *arg, int i, int threads), void *arg);
 
 int bench_workers_threads(const struct bench_workers *w);
