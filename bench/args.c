@@ -27,7 +27,7 @@ static const struct tool_option options[] = {
     {"images", 0, TOOL_FILES, "DIR", "Folder of NAME.exr and NAME.truth.exr. Default: images "
      "here, in the source, or where it is installed.", TEXT(images), .commands = "truth|batch|tradeoff"},
     {"image", 0, TOOL_FILES, "FILE", "Compare this picture with --truth, in place of the scenes.", TEXT(image), .commands = "truth"},
-    {"truth", 0, TOOL_FILES, "FILE", "What --image should be.", TEXT(truth), .commands = "truth"},
+    {"truth", 0, TOOL_FILES, "FILE", "The reference for --image.", TEXT(truth), .commands = "truth"},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Only this one. Default "
      "all.", .parse = tool_parse_choice_text, FIELD(compression), .commands = "batch"},
     {"in", 0, TOOL_FILES, FORMATS, "Format of the colour read. Default r11g11b10f.", NAME(in, FORMAT), .commands = "passes|scaling"},
@@ -48,7 +48,7 @@ static const struct tool_option options[] = {
      COUNT(frames, 1, 1000000), .commands = "passes|batch"},
     {"threads", 0, TOOL_RUN, "N", "Threads, up to 256; 0 (default): one per processor.", COUNT(threads, 0, 256)},
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set. Default auto.", NAME(isa, ISA)},
-    {"full", 0, TOOL_RUN, NULL, "Every case there is, some minutes.", FLAG(full), .commands = "stability"},
+    {"full", 0, TOOL_RUN, NULL, "Run every case, some minutes.", FLAG(full), .commands = "stability"},
     {"json", 0, TOOL_RUN, "FILE|-", "Write the numbers as JSON; -: to stdout, instead of the table.", TEXT(json)},
     {"quick", 0, TOOL_RUN, NULL, "Fewer settings and rounds, within a minute.", FLAG(quick), .commands = "tradeoff"},
     {"setting", 0, TOOL_RUN, "OPTIONS", "Only the setting that these options make, in quotes.",
@@ -57,7 +57,7 @@ static const struct tool_option options[] = {
     {"png", 0, TOOL_RUN, "FILE", "Write the first chart as a picture.", TEXT(png), .commands = "tradeoff"},
     {"csv", 0, TOOL_RUN, "FILE", "Write the numbers as CSV.", TEXT(csv), .commands = "tradeoff"},
     {"ladder", 0, TOOL_RUN, "FILE", "Write the library's table of settings.", TEXT(ladder), .commands = "tradeoff"},
-    {"readme", 0, TOOL_RUN, "FILE", "Write what a person should take from it between two marks of this file.",
+    {"readme", 0, TOOL_RUN, "FILE", "Write the conclusions between two marks of this file.",
      TEXT(readme), .commands = "tradeoff"},
     {"cache", 0, TOOL_RUN, "FILE|none", "Where measurements are kept. Default tradeoff.txt in the user's "
      "cache folder.", TEXT(cache), .commands = "tradeoff"},

@@ -226,10 +226,9 @@ static void table(FILE *out, const void *what)
                 hf_name(HF_NAMES_DEPTH_TYPE, (int)depths[i].type),
                 1e-6 * r->args->width * r->args->height * depths[i].bytes, r->depth[i].plan, "", "", r->depth[i].frame);
     fprintf(out,
-            "\nmilliseconds, best of %d rounds of %d; only read: and stored as %s, only stored: from that; frame: as "
-            "passes, in "
-            "and out\n"
-            "of the format. %s, %d threads, %dx%d, engine %s, scene %s\n",
+            "\nmilliseconds, best of %d rounds of %d; only read: stored as %s; only stored: read from that; frame: as "
+            "passes,\n"
+            "read and stored in the format. %s, %d threads, %dx%d, engine %s, scene %s\n",
             ROUNDS, REPEATS, partner, hf_isa_name(r->isa), r->threads, r->args->width, r->args->height,
             hf_engine_name(r->args->params.engine), r->args->scene);
 }

@@ -13,10 +13,10 @@ const char *const bench_command_words[][2] = {
     {"passes", "time of each pass of a frame, beside table 3.1 of the chapter"},
     {"batch", "the command on a shot, beside copying its files and beside oiiotool, which must be there"},
     {"truth", "distance of each engine from ray-traced pictures, and its time"},
-    {"tradeoff", "what every step of accuracy costs in time, and which settings are worth it"},
+    {"tradeoff", "time and error of every setting, and which settings are worth having"},
     {"scaling", "time of a frame as its blurred part and its size grow; --size: up to that width"},
-    {"formats", "what each format of colour and of depth costs to read and to store, and in a frame"},
-    {"stability", "hard cases: what was tried, the bound, the worst value seen; of all engines or one"},
+    {"formats", "time to read and to store each format of colour and of depth, and of a frame"},
+    {"stability", "hard cases of all engines or one: the case, its bound, the worst value seen"},
     {NULL, NULL},
 };
 // In the same order.

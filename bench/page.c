@@ -38,11 +38,10 @@ static void text(FILE *out, const char *s)
 static void heading(FILE *out, const struct trade *t)
 {
     fputs(
-        "<header><h1>What accuracy costs</h1>\n<p>Every point is a setting: what a frame takes with it, and how far "
-        "its "
-        "picture is from what a ray-traced lens sees. Down and to the left is better. The line is the front: for less "
-        "error than there one has to wait longer. Point at a setting, or reach it with the Tab and arrow keys, to see "
-        "its picture, its passes and the commands that give it.</p>\n<p class=\"soft\">",
+        "<header><h1>What accuracy costs</h1>\n<p>Every point is a setting: the time of a frame with it, and the "
+        "distance of its picture from what a ray-traced lens sees. Down and to the left is better. The line is the "
+        "front: a smaller error than there takes longer. Point at a setting, or reach it with the Tab and arrow keys, "
+        "to see its picture, its passes and the commands that make it.</p>\n<p class=\"soft\">",
         out);
     text(out, t->cpu);
     fprintf(out, ", %s, %d thread%s; %s; hyperfocal %s, commit ", hf_isa_name(t->isa), t->threads,
@@ -83,11 +82,10 @@ static void charts(FILE *out, const struct trade *t)
         chart_write(out, t, c, NARROW, NARROW_HEIGHT, 0);
         fputs("</div></section>\n", out);
     }
-    fputs("<p class=\"soft\">Filled: on the front. Pale: on it but for chance, as the times overlap. Hollow: another "
-          "setting is "
-          "surely faster and errs no more. Crosses were measured elsewhere: Blender 3.4's Defocus and GEGL 0.4.42's "
-          "lens-blur, each "
-          "given the exact radius, on two threads. GTX 660: the chapter's figure for 1920 x 1080.</p></div>\n"
+    fputs("<p class=\"soft\">Filled: on the front. Pale: perhaps on it, because times overlap. Hollow: another setting "
+          "is surely faster and errs no more. Crosses were measured elsewhere: Blender 3.4's Defocus and GEGL "
+          "0.4.42's lens-blur, each given the exact radius, on two threads. GTX 660: the chapter's figure for "
+          "1920 x 1080.</p></div>\n"
           "<aside class=\"detail\" id=\"detail\" aria-live=\"polite\"></aside></div>\n",
           out);
 }
@@ -134,9 +132,8 @@ static void table(FILE *out, const struct trade *t)
     int order[TRADE_SETTINGS];
     trade_order(t, order);
     fputs(
-        "<h2>All settings</h2>\n<p class=\"soft\">By time; &asymp; overlaps the row above, so that their order is "
-        "chance. "
-        "The step is that of the ladder by which <code>--quality</code>, <code>--max-error</code> and "
+        "<h2>All settings</h2>\n<p class=\"soft\">By time; &asymp; overlaps the row above: their order is chance. "
+        "The step is that of the ladder from which <code>--quality</code>, <code>--max-error</code> and "
         "<code>--budget-ms</code> choose.</p>\n<div class=\"scroll\" tabindex=\"0\"><table><thead><tr><th>setting</th>"
         "<th></th><th>step</th><th>ms</th><th>1080p ms</th>",
         out);

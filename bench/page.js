@@ -64,7 +64,7 @@
     return box;
   }
 
-  const ranks = { front: "On the front.", tied: "On the front but for times that overlap.", beaten: "Another setting is faster and no worse." };
+  const ranks = { front: "On the front.", tied: "Perhaps on the front: the times overlap.", beaten: "Another setting is faster and no worse." };
 
   function show(i) {
     if (i === now) return;

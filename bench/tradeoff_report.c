@@ -218,10 +218,11 @@ void trade_table(FILE *out, const void *what)
     fprintf(
         out,
         "\nms: mean over the scenes, median of the rounds, half the distance of the quartiles; 1080p: scene `both`, "
-        "radius 12.\n= overlaps the row above: their order is chance. * on the front, ~ on it but for such a chance; "
-        "the number is the step of the ladder.\nDistances from the truth: PSNR in dB, display-encoded, by region; "
-        "FLIP; SSIM; linear RMSE; energy over the truth's.\nrounding: linear RMSE from double precision; demo: "
-        "display RMSE from the published demo; flicker: of a focus pull.\n");
+        "radius 12.\n= overlaps the row above: their order is chance. * on the front, ~ perhaps on it: the times "
+        "overlap; the number is the step of the ladder.\nDistances from the truth: PSNR in dB, display-encoded, by "
+        "region; "
+        "FLIP; SSIM; linear RMSE; energy relative to the truth.\nrounding: linear RMSE from double precision; demo: "
+        "display RMSE from the published demo; flicker: in a focus pull.\n");
     taps_table(out, t);
     qualities(out, t);
     fputc('\n', out);
@@ -413,24 +414,23 @@ void trade_ladder_table(FILE *out, const struct trade *t)
 {
     const double size = megapixels(t);
     int place[TRADE_QUALITIES];
-    fprintf(out,
-            "// SPDX-License-Identifier: BSD-3-Clause\n"
-            "// Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.\n"
-            "//\n"
-            "// Settings worth having, cheapest first. Each takes longer than the one before and errs less, and on no "
-            "scene "
-            "where\n"
-            "// either may be chosen by 0.1 dB more. Those of the gaussian engine are for blur that is no wider than "
-            "theirs; "
-            "for a\n"
-            "// lens the list begins below them.\n"
-            "// clang-format off\n"
-            "#define HF_LADDER_MEASURED \"%s, %s, %s, %d thread%s\"\n// The command's words; display-encoded root mean "
-            "square "
-            "error, geometric mean of the scenes and of the worst;\n// milliseconds of a megapixel; the parameters "
-            "that the "
-            "words stand for.\n#define HF_LADDER_STEPS",
-            t->date, t->cpu, hf_isa_name(t->isa), t->threads, t->threads == 1 ? "" : "s");
+    fprintf(
+        out,
+        "// SPDX-License-Identifier: BSD-3-Clause\n"
+        "// Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.\n"
+        "//\n"
+        "// Settings worth having, cheapest first. Each takes longer than the one before and errs less on average; "
+        "on no scene\n"
+        "// where both may be chosen does it err by 0.1 dB more. Those of the gaussian engine are for blur no wider "
+        "than theirs;\n"
+        "// for a lens the list begins below them.\n"
+        "// clang-format off\n"
+        "#define HF_LADDER_MEASURED \"%s, %s, %s, %d thread%s\"\n// The command's words; display-encoded root mean "
+        "square "
+        "error, geometric mean of the scenes and of the worst;\n// milliseconds of a megapixel; the parameters "
+        "that the "
+        "words stand for.\n#define HF_LADDER_STEPS",
+        t->date, t->cpu, hf_isa_name(t->isa), t->threads, t->threads == 1 ? "" : "s");
     const struct trade_result *r;
     for (int step = 1; (r = at_step(t, step)); step++) {
         fprintf(out, "%s \\\n    {\"%s\", %.6ff, %.6ff, %#.4gf, \\\n     ", step > 1 ? "," : "", r->setting->options,
@@ -441,7 +441,7 @@ void trade_ladder_table(FILE *out, const struct trade *t)
     fputs("\n// steps of draft, standard, high and best\n#define HF_LADDER_QUALITIES", out);
     for (int q = 0; q < TRADE_QUALITIES && !trade_qualities(t, place); q++)
         fprintf(out, "%s %d", q ? "," : "", t->result[place[q]].step - 1);
-    fputs("\n// milliseconds of a megapixel of each engine as it is\n#define HF_LADDER_ENGINES", out);
+    fputs("\n// milliseconds of a megapixel, of each engine with its defaults\n#define HF_LADDER_ENGINES", out);
     for (int e = 0; e < HF_ENGINE_COUNT; e++)
         fprintf(out, "%s %#.4gf", e ? "," : "", of_engine(t, e) / size);
     fputs("\n// clang-format on\n", out);

@@ -117,7 +117,7 @@ static void table(FILE *out, const void *what)
     fprintf(out, "\n%-16s", "GEGL lens-blur");
     for (int i = 0; i < SCENES; i++)
         fprintf(out, " %9.2f %10s", scenes[i].gegl, "");
-    fprintf(out, "\n\n%d threads; the last three as measured by others on two threads, GEGL in about 300 ms\n",
+    fprintf(out, "\n\n%d threads; the last three rows were measured elsewhere, on two threads, GEGL in about 300 ms\n",
             t->threads);
     if (t->busy)
         fprintf(out, "The machine is busy: %d of %d medians are far above the least.\n", t->busy,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.
 //
-// Settings worth having, cheapest first. Each takes longer than the one before and errs less, and on no scene where
-// either may be chosen by 0.1 dB more. Those of the gaussian engine are for blur that is no wider than theirs; for a
-// lens the list begins below them.
+// Settings worth having, cheapest first. Each takes longer than the one before and errs less on average; on no scene
+// where both may be chosen does it err by 0.1 dB more. Those of the gaussian engine are for blur no wider than theirs;
+// for a lens the list begins below them.
 // clang-format off
 #define HF_LADDER_MEASURED "2026-11-23, AMD EPYC, avx512, 2 threads"
 // The command's words; display-encoded root mean square error, geometric mean of the scenes and of the worst;
@@ -29,6 +29,6 @@
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.spacing = 4}}
 // steps of draft, standard, high and best
 #define HF_LADDER_QUALITIES 1, 2, 8, 8
-// milliseconds of a megapixel of each engine as it is
+// milliseconds of a megapixel, of each engine with its defaults
 #define HF_LADDER_ENGINES 28.84f, 50.33f, 136.6f, 5.351f, 51.34f
 // clang-format on
