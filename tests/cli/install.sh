@@ -23,6 +23,10 @@ check() {  # NAME COMMAND...
     echo "skipped: not all is built"
     exit 77
 }
+check "the command alone is installed" "$meson" install -C "$build" --no-rebuild --destdir "$dir/alone" --tags runtime,devel,man
+check "it is there" test -n "$(find "$dir/alone" -path '*/bin/hyperfocal')"
+check "and its man page" test -n "$(find "$dir/alone" -name 'hyperfocal.1')"
+check "and nothing of the bench" test -z "$(find "$dir/alone" -name '*.exr' -o -name 'hyperfocal-bench*')"
 program=$(find "$dir/dest" -path '*/bin/hyperfocal' -type f)
 # Another prefix than it was made for.
 mv "$(dirname "$(dirname "$program")")" "$dir/elsewhere" || exit 1

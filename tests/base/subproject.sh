@@ -1,0 +1,92 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Another project has hyperfocal as a meson subproject, then finds by pkg-config what that installs: the library alone,
+# shared and static, and only the headers of include/. It is built as plain C without optimisation, to be quick.
+# Usage: subproject.sh MESON SOURCE_ROOT VERSION C-COMPILER...
+meson=$1 source_root=$2 version=$3
+shift 3
+case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+trap 'exit 1' HUP INT TERM
+passed=0 failed=0
+check() {  # NAME COMMAND...
+    name=$1
+    shift
+    if "$@" >"$dir/out" 2>&1; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAILED: $name"
+        tail -n 20 "$dir/out" | sed 's/^/  /'
+    fi
+}
+refused() {
+    ! "$@"
+}
+
+mkdir -p "$dir/parent/subprojects"
+ln -s "$source_root" "$dir/parent/subprojects/hyperfocal"
+cd "$dir/parent" || exit 1
+cat >meson.build <<'END'
+project('parent', 'c', default_options: ['default_library=both', 'optimization=0'])
+hyperfocal = dependency('hyperfocal', version: '>=0.1', fallback: 'hyperfocal')
+message('version ' + hyperfocal.version())
+executable('app', 'app.c', dependencies: hyperfocal)
+executable('peeks', 'peeks.c', dependencies: hyperfocal, build_by_default: false)
+END
+cat >app.c <<'END'
+#include <hyperfocal/hyperfocal.h>
+#include <stdio.h>
+int main(void)
+{
+    static float colour[8 * 8 * 4], z[8 * 8];
+    const struct hf_image picture = {8, 8, HF_FORMAT_RGBA32F, {colour}, {sizeof colour / 8}, HF_TRANSFER_LINEAR};
+    const struct hf_depth depth = {.data = z, .stride = sizeof z / 8};
+    struct hf_context *c;
+    for (int i = 0; i < 64; i++)
+        z[i] = 1 + i, colour[4 * i] = colour[4 * i + 3] = 1;
+    int err = hf_open(&c, NULL);
+    if (!err)
+        err = hf_render(c, &picture, &picture, &depth, &hf_default_params);
+    hf_close(&c);
+    printf("%s: %s, %g\n", hf_version(), hf_error_string(err), colour[0]);
+    return err != HF_OK;
+}
+END
+printf '#include "base/mem.h"\nint main(void)\n{\n    return 0;\n}\n' >peeks.c
+
+# The wrap mode: a hyperfocal that is installed here does not count.
+check "a parent project is set up" env PKG_CONFIG_PATH= "$meson" setup build --prefix "$dir/dest" \
+    --wrap-mode=forcefallback -Dhyperfocal:simd=false
+cp "$dir/out" log
+check "it is told the version" grep -q "version $version\$" log
+check "it builds" "$meson" compile -C build
+check "its program runs" build/app
+cp "$dir/out" said
+check "with the library of this version, and a picture" grep -q "^$version: no error, 1\$" said
+check "its programs cannot include what is not public" refused ninja -C build peeks
+check "the library is built" grep -q "^build subprojects/hyperfocal/src/" build/build.ninja
+for folder in tests bench examples src/tools/cli; do
+    check "nothing of $folder is built" refused grep -q "^build subprojects/hyperfocal/$folder/" build/build.ninja
+done
+
+check "it installs" "$meson" install -C build --no-rebuild
+check "nothing that runs" test ! -e "$dir/dest/bin"
+pc=$(find "$dir/dest" -name hyperfocal.pc)
+if command -v pkg-config >/dev/null && [ -n "$pc" ]; then
+    PKG_CONFIG_PATH=${pc%/*}
+    export PKG_CONFIG_PATH
+    libdir=$(pkg-config --variable=libdir hyperfocal)
+    check "pkg-config tells the version" test "$(pkg-config --modversion hyperfocal)" = "$version"
+    # shellcheck disable=SC2046
+    check "a program is linked as pkg-config says" "$@" app.c -o shared $(pkg-config --cflags --libs hyperfocal)
+    check "to the shared library" env LD_LIBRARY_PATH="$libdir" ./shared
+    check "which it needs" refused ./shared
+    rm "$libdir"/libhyperfocal.so*
+    # shellcheck disable=SC2046
+    check "without one as pkg-config --static says" "$@" app.c -o static $(pkg-config --cflags --static --libs hyperfocal)
+    check "to the static library" ./static
+fi
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
