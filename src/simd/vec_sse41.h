@@ -10,7 +10,7 @@ typedef __m128 vf;
 typedef __m128i vi;
 typedef __m128 vm;  // lanes all ones or all zeros
 enum { VF_N = 4 };
-#define VF_SOFT_HALF 1  // vf_load_half and vf_store_half are those of half_simd.h
+#define VF_SOFT_HALF 1  // vf_load_half and vf_store_half are those of pixel/format_vf.h
 
 static inline vf vf_load(const void *p) { return _mm_loadu_ps((const float *)p); }
 static inline void vf_store(void *p, vf a) { _mm_storeu_ps((float *)p, a); }

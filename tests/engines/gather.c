@@ -331,7 +331,7 @@ static struct hf_params merge(const struct hf_params *set)
 {
     struct hf_params p = scene_params();
     static const struct hf_params zero;
-    p.gather.fill = HF_FILL_MAX;  // the default has no taps: gather_area.c
+    p.gather.fill = HF_FILL_MAX;  // the default has no taps: tests/engines/gather_lens.c
     // All fields are 4 bytes wide: enum, int or float.
     for (size_t i = 0; i < sizeof p / 4; i++)
         if (memcmp((const char *)set + 4 * i, (const char *)&zero + 4 * i, 4) != 0)

@@ -41,7 +41,7 @@ struct own {
     struct pixel pixels[7];
 };
 
-// Numbers from tests/reference.c in double precision, by `golden print`.
+// Numbers from tests/support/reference.c in double precision, by `golden print`.
 static const struct own owns[] = {
     {"maximum",
      {0},

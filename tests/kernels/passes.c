@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nine passes, each alone: random input buffers, only as large as pass.c's table says that it reads.
+// The nine passes, each alone: random input buffers, only as large as engine.c's table says that it reads.
 #include <math.h>
 #include <stdio.h>
 

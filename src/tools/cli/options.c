@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command's own options; those of the library's parameters are in tool/params.c. Order is that of the help text.
+// The command's own options; those of the library's parameters are in src/tools/common/params.c. Order is that of the help text.
 #include "tools/cli/args.h"
 
 #include <float.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for the compiler's <immintrin.h> where src/x86/avx512.c is compiled for a CPU without AVX-512: SIMDe does
+// Stands in for the compiler's <immintrin.h> where src/simd/vec_avx512.h is compiled for a CPU without AVX-512: SIMDe does
 // each intrinsic in plain C. Only intrinsics, none of the kernels, are written over here: what SIMDe 0.7.4 does not
 // have, and what it does with other bits than the instruction.
 #ifndef HF_EMULATED_IMMINTRIN_H

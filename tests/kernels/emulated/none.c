@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In place of avx512_emulated.c where SIMDe is not installed, and on other architectures.
+// In place of avx512.c where SIMDe is not installed, and on other architectures.
 #include "harness.h"
 
 int emulated_kernels(struct kernels *k, int fused)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // EXR files, read and written with OpenEXRCore. Core parses headers, and decodes and encodes chunks; the layout of a
-// written file (header bytes, chunk tables, chunk order) is copied from the source by exr_write.c, which is how
+// written file (header bytes, chunk tables, chunk order) is copied from the source by write.c, which is how
 // everything that is not replaced stays as it was, attributes nobody knows included.
 #ifndef HF_IO_EXR_H
 #define HF_IO_EXR_H
