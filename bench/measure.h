@@ -65,7 +65,7 @@ int bench_measure_frame(const struct bench_subject *subject, struct hf_context *
 // Returns 0, or -1 with *error filled.
 int bench_measure_uses(const struct bench_subject *subject, struct bench_uses *uses, struct tool_error *error);
 
-// frames 0: as many as take about three seconds. Returns 0, or -1 with *error filled.
+// All of the result but its uses. frames 0: as many as take about three seconds. Returns 0, or -1 with *error filled.
 int bench_measure(const struct bench_subject *subject, int frames, struct bench_result *result,
                   struct tool_error *error);
 

@@ -47,6 +47,7 @@ int bench_passes(struct bench_args *args, struct tool_error *error)
         err = bench_subject_open(&subject, args, &scene, &log, error);
     if (!err) {
         err = bench_measure(&subject, args->frames, &result, error);
+        err = err ? err : bench_measure_uses(&subject, &result.uses, error);
         if (err && *log.text)
             tool_fail(error, -1, "%s", log.text);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: from pixels to lists of sprites (walk.c), and shapes that depend on the source.
 #include <math.h>
+#include <string.h>
 
 #include "engine/scatter/walk.h"
 
@@ -86,6 +87,23 @@ static const struct hf_picture *pictures(const struct walk *w)
     return a->picture + plane * a->count;
 }
 
+const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n)
+{
+    const float *share = hf_scatter(f->s)->mixed ? hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) : NULL;
+    return hf_edges_next(share, 0, n) < n ? share : NULL;
+}
+
+// A bin's sums, ready to be drawn on; cleared first if nothing has been drawn there.
+static struct hf_sums draw_bin(struct walk *w, int b)
+{
+    struct hf_sums s = w->sums;
+    s.lane += b * w->bin_lanes;
+    if (w->drawn[b] < 0)
+        memset(s.lane, 0, sizeof *s.lane * (size_t)w->bin_lanes);
+    w->drawn[b] = w->reached;
+    return s;
+}
+
 void hf_flush_sources(struct walk *w)
 {
     const struct hf_aperture *a = &w->t->aperture;
@@ -93,7 +111,7 @@ void hf_flush_sources(struct walk *w)
         struct hf_splats *l = &w->list[b];
         if (!l->count)
             continue;
-        const struct hf_sums sums = hf_draw_bin(w, b);
+        const struct hf_sums sums = draw_bin(w, b);
         if (a->symmetric)
             hf_scatter_kernels(w->f)->splat(&sums, a, l);
         for (int i = 0; !a->symmetric && i < l->count; i++) {
@@ -177,7 +195,7 @@ static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, c
         const int lanes = lanes_of(w->bins, b, colour);
         if (!lanes)
             continue;
-        const struct hf_sums sums = hf_draw_bin(w, b);
+        const struct hf_sums sums = draw_bin(w, b);
         int64_t share[4];
         set_share(w->bins, b, lanes, colour, weight, part, share);
         hf_scatter_kernels(w->f)->splat_runs(&sums, x, y + p->top, w->runs, p->rows, share);
@@ -247,4 +265,18 @@ void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, 
         if (row->picture[i] >= 0)
             hf_add_source(w, row->x + i, row->y, row->radius[i] * row->scale, v, row->weight[i]);
     }
+}
+
+void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
+{
+    const struct hf_frame *f = w->f;
+    const float size = (w->field ? 1 : -1) * *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y), half = hf_half_part(w->t, size);
+    const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) *
+                         (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part) * hf_scatter_slice_part(&w->slice, size);
+    float v[3] = {0};
+    if (!(weight > 0))
+        return;
+    for (int c = 0; c < w->group->channels; c++)
+        v[c] = *hf_at(&f->buf[HF_BUF_BACK], w->group->channel[c], x, y) * (weight * w->t->dim);
+    hf_add_source(w, to_x, to_y, size * (w->level ? 0.5f : 1) * w->group->factor[w->field], v, weight);
 }

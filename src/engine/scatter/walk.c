@@ -2,15 +2,7 @@
 // Scatter: find the sources that reach a cell, row by row, and draw their sums (splat.c).
 //
 // Radii from half_to on go to sums of half the resolution (tent.c), those between half_from and half_to to both.
-#include <string.h>
-
 #include "engine/scatter/walk.h"
-
-const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n)
-{
-    const float *share = hf_scatter(f->s)->mixed ? hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) : NULL;
-    return hf_edges_next(share, 0, n) < n ? share : NULL;
-}
 
 // Prepare full-resolution row y in the walk's rows: weights, colours and sprites. share: of the backs.
 static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, const float *share)
@@ -39,30 +31,6 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
             hf_scatter_slice_row(&w->slice, sign, r.radius, x1 - x0, row[c]);
     hf_scatter_kernels(f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
     return r;
-}
-
-struct hf_sums hf_draw_bin(struct walk *w, int b)
-{
-    struct hf_sums s = w->sums;
-    s.lane += b * w->bin_lanes;
-    if (w->drawn[b] < 0)
-        memset(s.lane, 0, sizeof *s.lane * (size_t)w->bin_lanes);
-    w->drawn[b] = w->reached;
-    return s;
-}
-
-void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
-{
-    const struct hf_frame *f = w->f;
-    const float size = (w->field ? 1 : -1) * *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y), half = hf_half_part(w->t, size);
-    const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) *
-                         (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part) * hf_scatter_slice_part(&w->slice, size);
-    float v[3] = {0};
-    if (!(weight > 0))
-        return;
-    for (int c = 0; c < w->group->channels; c++)
-        v[c] = *hf_at(&f->buf[HF_BUF_BACK], w->group->channel[c], x, y) * (weight * w->t->dim);
-    hf_add_source(w, to_x, to_y, size * (w->level ? 0.5f : 1) * w->group->factor[w->field], v, weight);
 }
 
 // Draw the sources of full-resolution rows y0 to y1, four columns at a time: all these rows write to nearly the same

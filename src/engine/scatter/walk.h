@@ -61,9 +61,6 @@ static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
     *x1 = hf_min(w->sums.x1 + reach, w->level ? w->f->s->half_width : w->f->s->width);
 }
 
-// A bin's sums, ready to be drawn on; cleared first if nothing has been drawn there.
-struct hf_sums hf_draw_bin(struct walk *w, int b);
-
 // The neighbour, on one axis, of a pixel's half-resolution pixel that its tent reaches.
 static inline int hf_beside(int pixel, int count)
 {

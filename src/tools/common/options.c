@@ -42,17 +42,6 @@ int tool_given(const struct tool_parser *p, const char *name)
     return i >= 0 && p->state[i].given;
 }
 
-void *tool_field(const struct tool_parser *p, const struct tool_option *option)
-{
-    for (int s = 0; s < p->program->section_count; s++) {
-        const struct tool_section *section = &p->program->sections[s];
-        for (const struct tool_option *o = section->options; o->name; o++)
-            if (o == option)
-                return (char *)p->args + section->base + option->offset;
-    }
-    return NULL;
-}
-
 const struct tool_option *tool_misfit(const struct tool_parser *p, enum hf_engine engine)
 {
     const struct tool_option *o;

@@ -11,6 +11,17 @@
 #include "tools/common/nearest.h"
 #include "tools/common/options.h"
 
+void *tool_field(const struct tool_parser *p, const struct tool_option *option)
+{
+    for (int s = 0; s < p->program->section_count; s++) {
+        const struct tool_section *section = &p->program->sections[s];
+        for (const struct tool_option *o = section->options; o->name; o++)
+            if (o == option)
+                return (char *)p->args + section->base + option->offset;
+    }
+    return NULL;
+}
+
 // What a number may be: "more than 0", "0 to 1024", "0 or more, or inf".
 static void describe_limits(const struct tool_option *option, char *buf, size_t size)
 {
