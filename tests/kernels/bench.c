@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times the calls that the tests make, on a typical tile: 128 x 64 half-resolution pixels, radius 12.
+// Times the calls of the tests on a typical tile: 128 x 64 half-resolution pixels, radius 12.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -13,7 +13,7 @@ static double now_ns(void)
     return (double)hf_now_ns();
 }
 
-// Cycles of the clock that never changes its speed; 0 where there is none to read.
+// Cycles of the clock that never changes its speed; 0 if there is none.
 static double now_cycles(void)
 {
 #if defined(__x86_64__)
@@ -42,7 +42,7 @@ static void repeat(struct world *w, const struct test *t, const struct kernels *
 static struct timing time_kernel(struct world *w, const struct test *t, const struct kernels *k)
 {
     world_reset(w, ARENA_TEST);
-    // As many calls a sample as the clock needs to be exact; this is the warming up too.
+    // As many calls per sample as the clock's resolution needs. These calls also warm up.
     int calls = 1;
     for (double ns = 0; ns < SAMPLE_NS && calls < 1 << 20; calls *= 2) {
         const double start = now_ns();

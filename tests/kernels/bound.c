@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far fused arithmetic may be from the C. Both round, in other places: with k roundings of half an FLT_EPSILON each
-// on the way to a result, each is within k / 2 FLT_EPSILON of the exact one, and the two within k FLT_EPSILON of each
-// other - times the sum of the magnitudes of what was added up. The counts below are of the longer of the two ways.
-// Where storage rounds the results, they may end up one step apart.
+// How far fused arithmetic may be from the C. Both round, at different places. With k roundings of half an FLT_EPSILON
+// each on the way to a result, each is within k / 2 FLT_EPSILON of the exact result, and the two are within k
+// FLT_EPSILON of each other, times the sum of the magnitudes of the terms. The counts below are those of the longer of
+// the two ways. Where storage rounds the results, they may differ by one step.
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ static float reference_at(const struct world *w, int b, int c, int x, int y)
     return *hf_at(&w->reference.buf[b], c, x, y);
 }
 
-// Distance of neighbouring numbers of a small format at v.
+// The distance of neighbouring numbers of a small format at v.
 static double half_step(double v)
 {
     return fmax(fabs(v) * 0x1p-10, 0x1p-24);
@@ -34,7 +34,7 @@ static double storage_step(const struct world *w, int c, float want, float got)
     return w->setup.storage == HF_STORAGE_PACKED && c < 3 ? r11_step(c, v) : 0;
 }
 
-// The sRGB curve is steepest at its end, 2.4 / 1.055.
+// The sRGB curve is steepest at 1: 2.4 / 1.055.
 static double unorm_step(const struct hf_image *m, int c)
 {
     return (m->transfer == HF_TRANSFER_SRGB ? 2.4 / 1.055 : 1) / ((1 << hf_unorm(m->format)->bits[c]) - 1);
@@ -50,7 +50,7 @@ static double format_step(const struct world *w, int c, float want, float got)
     return w->dst.format == HF_FORMAT_R11G11B10F ? r11_step(c, v) : 0;
 }
 
-// Largest sample of the picture in a rectangle of pixels, and around it where one has to be repaired.
+// The largest sample of the picture in a rectangle of pixels, and around it where one has to be repaired.
 double bound_largest_sample(const struct world *w, int c, int x0, int y0, int x1, int y1)
 {
     double most = 0;
@@ -63,15 +63,15 @@ double bound_largest_sample(const struct world *w, int c, int x0, int y0, int x1
     return most;
 }
 
-// Downsample, colour x far: d is within 2 roundings, d1 (d2 d3) within 8, the sum of four within 10, its inverse 11,
-// a weight 20, the sum of weighted colours 23, times CoC 24.
+// Downsample, colour x far. Roundings: d within 2, d1 (d2 d3) within 8, the sum of four within 10, its inverse 11, a
+// weight 20, the sum of weighted colours 23, times CoC 24.
 static double bound_down(const struct world *w, int c, int x, int y)
 {
     const double most = bound_largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
     return 25 * FLT_EPSILON * most * reference_at(w, HF_BUF_COC, 2, x, 2 * y);
 }
 
-// The values at (x +- dx, y +- dy), each of them once.
+// The values at (x +- dx, y +- dy), each counted once.
 static double mirrored(const struct world *w, enum hf_gather_buf b, int c, int x, int y, int dx, int dy)
 {
     double sum = 0;
@@ -94,7 +94,7 @@ static double lattice_sum(const struct world *w, enum hf_gather_buf b, int c, in
     return sum;
 }
 
-// Sum of the magnitudes of all four neighbours of all taps of the per-pixel kernel.
+// The sum of the magnitudes of all four neighbours of all taps of the per-pixel kernel.
 static double taps_sum(const struct world *w, enum hf_gather_buf b, int c, int x, int y)
 {
     const struct hf_taps *t = &w->gather.taps;
@@ -108,24 +108,25 @@ static double taps_sum(const struct world *w, enum hf_gather_buf b, int c, int x
     return sum;
 }
 
-// Roundings on the way to a sum of the gather. A row's sum: the pair, the product, an addition per column; then an
-// addition per row. Karis: luminance 3, the weight 5, times the value 6 more.
+// Roundings on the way to a sum of the gather. In a row: the pair, the product, one addition per column; then one
+// addition per row. Karis: luminance 3, the weight 5, and 6 more for its product with the value.
 static double gather_roundings(const struct world *w)
 {
     const struct hf_taps *t = &w->gather.taps;
     return 2 * t->rx + 2 * t->ry + 4 + (w->gather.karis ? 6 : 0);
 }
 
-// A quotient of sums: errors of both, and those of the division or of the inverse and the product with it.
+// A quotient of sums has the errors of both, and those of the division, or of the inverse and the product with it.
 double bound_quotient(double error, double divisor_error, double divisor, double value)
 {
     divisor = fmax(divisor, FLT_MIN);
     if (divisor_error > divisor / 2)
-        return INFINITY;  // says nothing any more
+        return INFINITY;  // no bound
     return (error + value * divisor_error) / (divisor - divisor_error) + 2 * value * FLT_EPSILON;
 }
 
-// What is mixed with the pixel's own colour has four roundings more; the part of the mean in it is no larger than it and that.
+// Mixing with the pixel's own colour adds four roundings. The mean's part in the result is at most the result plus the
+// own colour's part.
 static double bound_near(const struct world *w, int c, int x, int y, float want)
 {
     const double k = gather_roundings(w) * FLT_EPSILON, blur = reference_at(w, HF_BUF_BLUR, 0, x, y);
@@ -148,14 +149,14 @@ static double bound_far(const struct world *w, int c, int x, int y, float want)
     const enum hf_gather_buf weight = w->gather.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
     if (!(reference_at(w, HF_BUF_COC4, 1, x, y) > 0))
         return 0;
-    // Products of denormals are off by their own step.
+    // Products of denormals may be off by one denormal step.
     const int n = w->gather.per_pixel_kernel ? 4 * w->gather.taps.count
                                              : (2 * w->gather.taps.rx + 1) * (2 * w->gather.taps.ry + 1);
     const double denormal = n * 0x1p-149;
     double k = gather_roundings(w) * FLT_EPSILON, sum, divisor, divisor_sum;
     if (w->gather.per_pixel_kernel) {
-        // Three interpolations of 3 roundings each, the last of which sees the others' magnitudes: 6 of all four
-        // neighbours. Then an addition per tap.
+        // Three interpolations with 3 roundings each; the last one sees the others' magnitudes: 6 of all four
+        // neighbours. Then one addition per tap.
         k = (6 + w->gather.taps.count + (w->gather.karis ? 6 : 0)) * FLT_EPSILON;
         sum = taps_sum(w, colour, c, x, y);
         divisor_sum = taps_sum(w, weight, 1, x, y);
@@ -167,7 +168,7 @@ static double bound_far(const struct world *w, int c, int x, int y, float want)
     return bound_quotient(k * sum + denormal, k * divisor_sum + denormal, divisor, fabs((double)want));
 }
 
-// ---- by area: every kernel's weights are positive and sum to 1, so that what is added up is no larger than the largest ----
+// ---- by area: weights of every kernel are positive and sum to 1, so no sum exceeds the largest sample ----
 
 static double largest_near(const struct world *w, int b, int c, int x, int y)
 {
@@ -179,18 +180,18 @@ static double largest_near(const struct world *w, int b, int c, int x, int y)
     return most;
 }
 
-// Of a level: its planes 8 (12 with Karis), the pairs and their sums 2 rx, products and sums along a row 2 rx, rows 2 ry;
-// the scale 1; a level is added by 3. Then quotients and blends: 16.
+// Roundings of a level: its planes 8 (12 with Karis), pairs and their sums 2 rx, products and sums along a row 2 rx,
+// rows 2 ry, the scale 1; adding a level 3. Then quotients and blends: 16.
 static double area_roundings(const struct world *w)
 {
     const struct hf_taps *t = world_taps(w);
     return (w->gather.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 17;
 }
 
-// What is hidden is divided by the part of the kernel that lies in the frame, or by all that counts: the weight of a
-// pixel of its own smallest kernel at least, a hundredth and less of 1 with one large level. With levels what is behind
-// counts by what the near field leaves free, whose error it multiplies: by its mean, which is no larger than the largest
-// sample in a frame, but may be anything in buffers of noise.
+// What near pixels occlude is divided by the part of the kernel that lies in the frame, or by all weight that counts.
+// That is at least a pixel's weight in its own smallest kernel, a hundredth of 1 or less with one large level. With
+// several levels the background counts by what the near field leaves open, so the near field's error is multiplied by
+// the background's mean. In a frame that is at most the largest sample, but in buffers of noise it may be anything.
 static double area_near_bound(const struct world *w, int c, int x, int y)
 {
     const struct hf_taps *t = world_taps(w);
@@ -208,8 +209,8 @@ static double area_near_bound(const struct world *w, int c, int x, int y)
     return area_roundings(w) * FLT_EPSILON * (most * 2 / part + behind);
 }
 
-// A quotient: of the sum's magnitudes over the weight, twice; of the smallest level, of that and the next, and so on.
-// Denormal products are off by their own step.
+// The error of a quotient: twice the sum's magnitudes over the weight; of the smallest level, of that and the next, and
+// so on. Products of denormals may be off by one denormal step.
 static double area_far_bound(const struct world *w, int c, int x, int y)
 {
     const struct hf_levels *l = &w->gather.levels[1];
@@ -251,7 +252,7 @@ double bound_buffer(const struct world *w, int b, int c, int x, int y, float wan
     if (w->engine == &hf_hexagon_engine)
         return hexagon_bound_buffer(w, b, c, x, y, want);
     double bound = 0;
-    // Luminance of colours of both signs can cancel, and then means nothing.
+    // Luminance of colours of both signs can cancel, and then no bound holds.
     const int cancels = w->gather.karis && w->colours == COLOURS_MIXED;
     if (w->gather.area)
         bound = area_bound(w, b, c, x, y);
@@ -264,9 +265,9 @@ double bound_buffer(const struct world *w, int b, int c, int x, int y, float wan
     return bound > 0 ? bound + 0x1p-140 + storage_step(w, b == HF_BUF_COVER ? 3 : c, want, got) : 0;
 }
 
-// Composite. A far weight: d 2, products 8, their sum 10, inverse 11, together 20; what is left of the colour 25, the
-// blend 3 more. The near field: bilinear 3, its weight 4 of a difference of up to twice the largest colour, blend 5:
-// 16. The cubic: 10, 11 twice, 5.
+// Composite. Far weights: d 2, products 8, their sum 10, inverse 11, together 20; the rest of the colour 25, the blend
+// 3 more. The near field: bilinear 3, its weight 4 of a difference of up to twice the largest colour, blend 5: 16. The
+// cubic: 10, 11 twice, 5.
 double bound_pixel(const struct world *w, int c, int x, int y, float want, float got)
 {
     if (w->engine == &hf_hexagon_engine)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares what a kernel left with what the C left, and makes sure that it left everything else alone.
+// Compares what a kernel wrote with what the C wrote, and checks that it changed nothing else.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ static const uint8_t *region_row(const struct world *w, enum arena a, const stru
     return slot_start(w, a, g->slot) + g->offset + row * g->stride;
 }
 
-// Equal bits, or with fused arithmetic close enough. NaN matches only NaN.
+// Equal bits, or with fused arithmetic a difference within the bound. NaN matches only NaN.
 static int close_enough(float want, float got, double bound)
 {
     if (want != want || got != got)
@@ -115,7 +115,7 @@ static int compare_bytes(const struct world *w, const struct region *g, char mes
     return 1;
 }
 
-// Everything outside the regions is as it was made.
+// Check that everything outside the regions is as it was made.
 static int untouched(const struct world *w, enum arena a, char message[256])
 {
     static uint8_t *expected;

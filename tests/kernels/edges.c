@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Kernels of mixed pixels (pixel/edges.h): nothing of them is fused, so every level has the bits of the C.
+// Kernels of mixed pixels (pixel/edges.h). Nothing is fused, so every level has the bits of the C.
 #include "harness.h"
 
-// Rows of radii, sure, colours, then middle, slope, the row's own radii; and what is made of them.
+// Rows of radii, sure, colours, then middle, slope, the row's own radii; and the results.
 enum { RADIUS, SURE = 5, COLOUR = 10, MIDDLE = 30, SLOPE, OWN, IN, OUT = 11, LINES = IN + OUT };
 
 static int channels;
@@ -12,7 +12,7 @@ static float *line(const struct world *w, enum arena a, int i)
     return (float *)(void *)slot_start(w, a, SLOT_LINES) + (size_t)i * w->line_floats + HF_PAD;
 }
 
-// Radii that change seldom, as surfaces have them; of no more than 40, or their products would round to other sides.
+// Radii that change seldom, as on surfaces; at most 40, or their products would round differently.
 static void fill_surfaces(struct world *w, int i)
 {
     struct rng *r = &w->rng;
@@ -39,7 +39,7 @@ void edges_make(struct world *w, int which)
     for (int j = 0; j < 5; j++)
         fill_surfaces(w, RADIUS + j);
     if (which == EDGES_SURE) {
-        for (int i = IN; i < IN + 3; i++) {  // the first and the last mean nothing
+        for (int i = IN; i < IN + 3; i++) {  // the first and the last pixel are undefined
             put(w, i, 0, w->n);
             w->regions[w->region_count - 1].kind = REGION_SCRATCH;
             put(w, i, 1, w->n - 1);
@@ -81,7 +81,7 @@ void edges_call(struct world *w, const struct kernels *k, enum arena a, int whic
     for (int i = 0; i < 8; i++)
         out.colour[i / 4][i % 4] = line(w, a, IN + i);
     k->pixel.edges.take(&row, w->n, &out);
-    // What has no share means nothing, and a fourth channel is there only if asked for.
+    // Without a share the other values are undefined. The fourth channel exists only if asked for.
     for (int x = 0; x < w->n; x++) {
         for (int c = 0; c < 4 && !(out.share[x] > 0); c++)
             out.colour[1][c][x] = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of the gaussian engine. None of them fuses anything: the bits are those of the C on every level.
+// Rows of the gaussian engine. None of them fuses anything: every level has the bits of the C.
 #include "harness.h"
 #include "engine/gaussian/wide.h"
 
 enum { LINE, LINE_FAITHFUL, COLUMNS, COLUMNS_FAITHFUL, COLUMNS_IN_PLACE, UP_HALF, UP_QUARTER };
 
-// What a case of columns, upsampling or boxes is about; the world has no room for it.
+// The data of a case of columns, upsampling or boxes that do not fit the world.
 static struct {
     int rows, from, to, in_stride, out_stride, left;
     struct hf_wide wide;
@@ -31,7 +31,7 @@ static void start(struct world *w)
     w->colours = w->bench ? COLOURS_PLAIN : COLOURS_MIXED;
 }
 
-// count: nothing is wanted but what is counted.
+// count: only the counts are wanted.
 void blend_row_make(struct world *w, int count)
 {
     start(w);

@@ -3,7 +3,7 @@
 //
 // A case is a "world": a frame's parameters, buffers and images, small and random. It exists three times in memory, at
 // the same offsets: as it was made, as the C reference left it, and as the kernel under test left it. A test makes a
-// case, calls the kernel on the latter two, and compares everything there is.
+// case, calls the kernel on the latter two, and compares all of both.
 #ifndef HF_TESTS_HARNESS_H
 #define HF_TESTS_HARNESS_H
 
@@ -13,7 +13,7 @@
 #include "engine/layers/kernels.h"
 #include "engine/scatter/kernels.h"
 
-// ---- random numbers: one seed, one sequence, so never two draws where C leaves the order open ----
+// ---- random numbers: one seed gives one sequence, so no expression draws twice in an order that C leaves open ----
 
 struct rng {
     uint64_t state;
@@ -28,18 +28,18 @@ float rng_float(struct rng *r, float low, float high);
 enum colours {
     COLOURS_PLAIN,     // 0..1
     COLOURS_POSITIVE,  // 1 in 8 near zero or denormal, 1 in 8 huge
-    COLOURS_MIXED,     // and negative, and -0
+    COLOURS_MIXED,     // also negative and -0
     COLOURS_COUNT
 };
 float random_colour(struct rng *r, enum colours kind);
-// 0, 1, tiny, denormal or anything between, as a storage holds it.
+// 0, 1, tiny, denormal or anything between, in a value that the storage holds.
 float random_coc(struct rng *r, enum hf_storage storage);
-// For encoders: ties, the ends of ranges, negative, infinite, NaN.
+// Values for encoders: ties, ends of ranges, negative, infinite, NaN.
 float random_store_value(struct rng *r);
 
 // ---- instruction sets ----
 
-// All tables of an instruction set.
+// All tables of kernels of an instruction set.
 struct kernels {
     struct hf_pixel_kernels pixel;
     struct hf_gather_kernels gather;
@@ -57,19 +57,19 @@ struct level {
 };
 
 enum { MAX_LEVELS = 12 };
-// Every table this CPU can run, the C first; filter: NULL, or part of a name; emulated: with what needs no CPU of its own.
-// Returns how many.
+// Make every table that this CPU can run, the C first. filter: NULL, or part of a name. emulated: also the tables that
+// need no CPU of their own. Returns how many.
 int levels_make(struct level levels[MAX_LEVELS], const char *filter, int emulated);
 // AVX-512 in plain C (emulated/). Returns 0 if this build has none.
 int emulated_kernels(struct kernels *k, int fused);
-// Does the emulation do what the instructions do? Returns the number of operations that do not.
+// Check that the emulation does what the instructions do. Returns the number of operations that differ.
 int emulated_check(void);
 
 // ---- worlds ----
 
 enum arena { ARENA_MADE, ARENA_REFERENCE, ARENA_TEST, ARENA_COUNT };
 
-// Blocks of memory. Each ends at a page that cannot be touched, so that reading past the last row is a crash.
+// Blocks of memory. Each ends at a forbidden page, so that reading past the last row crashes.
 enum {
     SLOT_BUF = 0,  // + 4 * buffer + channel
     SLOT_SRC = 4 * HF_MAX_BUFS,
@@ -83,13 +83,13 @@ enum {
 
 enum region_kind {
     REGION_FLOATS,   // compared, with tolerance where the kernel may fuse
-    REGION_PIXELS,   // of dst, likewise
-    REGION_NARROW,   // CoC as the storage has it: compared without tolerance
+    REGION_PIXELS,   // of dst, compared in the same way
+    REGION_NARROW,   // CoC in the storage's format: compared without tolerance
     REGION_BYTES,    // compared bit by bit
-    REGION_SCRATCH,  // may be written, is not looked at
+    REGION_SCRATCH,  // may be written, is not compared
 };
 
-// What a kernel may write: rows of a slot. Nothing else may change.
+// Rows of a slot that a kernel may write. Nothing else may change.
 struct region {
     enum region_kind kind;
     int slot;
@@ -110,7 +110,7 @@ struct result {
 
 struct world {
     struct rng rng;
-    int bench;  // typical input instead of random one
+    int bench;  // typical input instead of random input
     struct hf_params params;
     struct hf_resolved resolved;
     struct hf_setup setup;
@@ -122,16 +122,15 @@ struct world {
     enum colours colours;
     struct hf_image src, dst;  // in ARENA_MADE
     struct hf_depth depth;
-    const struct hf_engine_def *engine;  // whose buffers they are
+    const struct hf_engine_def *engine;  // the engine whose buffers these are
     struct hf_buf buf[HF_MAX_BUFS];
     struct hf_rect r;
     int near, far;
-    int is_pass;  // may use scratch, and with fused arithmetic round otherwise
+    int is_pass;  // may use scratch, and may round differently with fused arithmetic
     size_t line_floats;
     size_t bytes[SLOT_COUNT];  // in use, at the end of the slot
 
-    // Rows: n lanes from lane x of row y; words for the finiteness checks, of what kind, and where
-    // a copy goes.
+    // Rows: n lanes from lane x of row y. For the finiteness checks: words, their kind, and where a copy goes.
     int x, y, n, with_counts, no_alpha;
     const uint8_t *words;
     uint8_t *copy;
@@ -148,26 +147,26 @@ void arenas_open(void);
 // The same byte in another arena.
 void *in_arena(enum arena a, const void *made);
 uint8_t *slot_start(const struct world *w, enum arena a, int slot);
-// Give a slot `bytes` bytes filled with `fill`, and a new case no slots at all.
+// Fill the first `bytes` bytes of a slot with `fill`. A new case has no slots.
 uint8_t *slot_use(struct world *w, int slot, size_t bytes, int fill);
 void world_clear(struct world *w);
-// Bring an arena back to what was made.
+// Restore an arena to what was made.
 void world_reset(const struct world *w, enum arena a);
 struct region *world_region(struct world *w, enum region_kind kind, int slot, const void *first, size_t row_bytes,
                             size_t spare, int rows, ptrdiff_t stride);
 
-// From w->params to w->setup.
+// Compute w->setup from w->params.
 void world_setup(struct world *w, void *own);
-// Random parameters of a picture of some size, formats and depth type; returns when setup has something to blur.
+// Random parameters of a picture of some size, formats and depth type; repeated until the setup has something to blur.
 void make_setup(struct world *w, int half_width, int half_height);
 void make_image(struct world *w, struct hf_image *m, int slot, int bad);
 void make_depth(struct world *w, int bad);
 // Scratch rows, filled with NaN.
 void make_lines(struct world *w, int lines, size_t floats);
-// Buffer b may be read in r; random means that it holds something there.
+// Make buffer b readable in r, with random contents.
 void make_buf(struct world *w, int b, struct hf_rect r);
 float *world_at(const struct world *w, enum arena a, int b, int c, int x, int y);
-// A sample of a buffer: how many bytes it has, and made the nearest to v that they hold.
+// Bytes of a sample of a buffer; and the value nearest to v that the buffer can hold.
 int buf_bytes(const struct world *w, int b);
 void world_put(struct world *w, int b, int c, int x, int y, float v);
 struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena a);
@@ -180,9 +179,9 @@ struct test {
     int index;  // pass or format
     int cases;
     void (*make)(struct world *w, int index);
-    // Call the kernel, nothing else: this is what the benchmark times too.
+    // Calls the kernel and does nothing else: the benchmark times this too.
     void (*call)(struct world *w, const struct kernels *k, enum arena a, int index);
-    // Compares what the call returned. Returns 0 and says why if it is wrong.
+    // Checks what the call returned. Returns 0 with a message if it is wrong.
     int (*check)(const struct world *w, const struct level *l, char message[256]);
     // Half-resolution pixels of the typical case, for the benchmark.
     int (*pixels)(const struct world *w);
@@ -198,10 +197,10 @@ void pass_make(struct world *w, int pass);
 void pass_call(struct world *w, const struct kernels *k, enum arena a, int pass);
 int pass_check(const struct world *w, const struct level *l, char message[256]);
 int pass_pixels(const struct world *w);
-// A random part of the frame to compute, half-resolution pixels.
+// Choose a random part of the frame to compute, half-resolution pixels.
 void random_area(struct world *w);
 struct hf_rect rect_grown(struct hf_rect r, struct hf_reach by);
-// A buffer that the pass may write in r; and the target's pixels of w->r.
+// Allow the pass to write a buffer in r, or the target's pixels of w->r.
 void make_output(struct world *w, enum region_kind kind, int b, struct hf_rect r);
 void make_dst(struct world *w);
 
@@ -316,17 +315,17 @@ void layers_make(struct world *w, int which);
 void layers_call(struct world *w, const struct kernels *k, enum arena a, int which);
 int layers_check(const struct world *w, const struct level *l, char message[256]);
 
-// compare.c: all regions, and everything outside them.
+// compare.c: compares all regions, and everything outside them.
 int world_compare(const struct world *w, const struct level *l, char message[256]);
-// Did the reference itself keep to its area, and make only finite numbers?
+// Check that the reference itself stayed in its area and made only finite numbers.
 int reference_check(const struct world *w, char message[256]);
 
-// bound.c: by how much a fused kernel may differ at a pixel where the C gives `want` and it gives `got`; 0 where
+// bound.c: by how much a fused kernel may differ at a pixel where the C gives `want` and the kernel `got`; 0 where
 // nothing may be fused.
 double bound_buffer(const struct world *w, int b, int c, int x, int y, float want, float got);
 // The largest sample of the picture in pixels x0..x1, y0..y1, all included.
 double bound_largest_sample(const struct world *w, int c, int x0, int y0, int x1, int y1);
-// Of a quotient's errors; value: its magnitude.
+// Bound of the error of a quotient; value: its magnitude.
 double bound_quotient(double error, double divisor_error, double divisor, double value);
 double bound_pixel(const struct world *w, int c, int x, int y, float want, float got);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon's kernels one by one: loading, the two passes of blurs, putting together. Inputs are such as the kernel
-// before would make them, and only as large as the lines reach.
+// The hexagon's kernels one by one: load, the two passes of blurs, composite. Inputs are as the kernel before would
+// make them, and only as large as the lines reach.
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ static int is_half(const struct world *w)
     return w->hexagon.half;
 }
 
-// Buffer number of what the passes make, at the setup's resolution.
+// The buffer of a result at the setup's resolution.
 static int made(const struct world *w, enum hf_hexagon_made b)
 {
     return HF_HEXAGON_MADE + (is_half(w) ? HF_HEXAGON_MADE_COUNT : 0) + (int)b;
@@ -29,7 +29,7 @@ static struct hf_rect working_rect(const struct world *w)
     return hf_hexagon_rect(&w->setup, w->r);
 }
 
-// What two lines reach from there.
+// The rectangle that two lines reach.
 static struct hf_rect reached(const struct world *w, int line_a, int line_b)
 {
     const struct hf_hexagon_line *a = &w->hexagon.line[line_a], *b = &w->hexagon.line[line_b];
@@ -40,7 +40,7 @@ static struct hf_rect reached(const struct world *w, int line_a, int line_b)
 
 // ---- inputs ----
 
-// Radii everywhere alike, so that whole lines count in full; in patches, some of them sharp; anything anywhere.
+// Equal radii everywhere, so that whole lines count in full; radii in patches, some sharp; random radii.
 enum { RADII_ALIKE, RADII_PATCHES, RADII_ANY };
 
 static struct {
@@ -59,7 +59,7 @@ static void choose_radii(struct world *w, float most)
     radii.alike = rng_float(r, 0, most);
 }
 
-// >= 0; at least what counts as not sharp, if it is not 0.
+// A radius >= 0: 0, or at least the sharp limit.
 static float radius_at(struct world *w, int x, int y)
 {
     static const float tiny[] = {0x1p-40f, 0x1p-20f, 1e-3f, 0.25f};
@@ -96,7 +96,7 @@ static void put_colour(struct world *w, int b, int x, int y, float weight)
     for (int y = (r).y0; y < (r).y1; y++)                                                                              \
         for (int x = (r).x0; x < (r).x1; x++)
 
-// As the load leaves them. A side of the focus for each block of pixels, so that both are there.
+// As Load leaves them. Each block of pixels lies on one side of the focus, so that both sides occur.
 static void make_samples(struct world *w, struct hf_rect r)
 {
     const int half = is_half(w);
@@ -139,7 +139,7 @@ static void make_first(struct world *w, struct hf_rect r)
             put(w, weights, 2 * b, x, y, a);
             put(w, weights, 2 * b + 1, x, y, q);
             put_colour(w, near, x, y, a);
-            // Where the pixel itself is far, something has been found.
+            // If the pixel itself is far, something was found.
             const int weight = colour_buf(w, HF_FAR) + 1;
             const float own = *world_at(w, ARENA_MADE, weight, 1, x, y);
             const float found = own > 0 ? fmaxf(radius_at(w, x, y), 0.01f) : 0,
@@ -173,11 +173,11 @@ static void make_second(struct world *w, const struct hf_frame *f)
         put(w, cover, 0, x, y, a);
         put_colour(w, near, x, y, a);
         put_colour(w, far, x, y, 1);
-        // Nothing, or more than there is no edge to.
+        // Either no weight, or a weight well above the smallest that counts.
         const float seen = rng_one_in(&w->rng, 3) ? 0 : rng_float(&w->rng, 0.01f, 2);
         put(w, behind_weight, 0, x, y, seen);
         put_colour(w, behind, x, y, seen);
-        // A whole sample, or of a mixed pixel.
+        // A whole sample, or that of a mixed pixel.
         const float part = rng_one_in(&w->rng, 3) ? rng_float(&w->rng, 0.03f, 1) : 1;
         put(w, weight, 0, x, y, part);
         put_colour(w, colour_buf(w, HF_FAR), x, y, part);
@@ -277,12 +277,12 @@ void hexagon_call(struct world *w, const struct kernels *k, enum arena a, int wh
 
 // ---- how far fused arithmetic may be from the C: see bound.c for what is counted ----
 
-// A line's sums in double precision; magnitudes of what was added up; additions.
+// A line's sums in double precision; the terms' magnitudes; the number of additions.
 struct line_sums {
     double colour, colour_size, a, a_size, w, w_size, n;
 };
 
-// p: the far pixel's radius; 0: near, nothing is limited.
+// p: the far pixel's radius; 0: near, without a limit.
 static struct line_sums sum_line(const struct world *w, const struct hf_hexagon_field *in, int line, int c, int x,
                                  int y, float p)
 {

@@ -33,7 +33,7 @@ static void random_options(struct rng *r, struct hf_params *p)
 {
     // Half-resolution reaches of 1 to 20, small ones more often.
     const int most = rng_one_in(r, 6) ? 40 : 14;
-    // The gather has code of its own for 8, 12 and 16.
+    // The gather has separate code for 8, 12 and 16.
     p->max_radius = rng_one_in(r, 3) ? (float)(4 * rng_int(r, 2, 4)) : rng_float(r, 0.1f, (float)most);
     if (rng_one_in(r, 2))
         p->max_radius = ceilf(p->max_radius);
@@ -94,7 +94,7 @@ void make_setup(struct world *w, int half_width, int half_height)
         w->depth = (struct hf_depth){0};
         random_format(w, &w->src, width, height);
         random_format(w, &w->dst, width, height);
-        if (!w->bench && rng_one_in(r, 4)) {  // what goes from picture to picture in registers has code of its own
+        if (!w->bench && rng_one_in(r, 4)) {  // formats that go from picture to picture in registers have separate code
             w->dst.format = rng_one_in(r, 2) ? HF_FORMAT_R11G11B10F : HF_FORMAT_RGB32F;
             w->dst.transfer = HF_TRANSFER_LINEAR;
             w->src = w->dst;
@@ -145,7 +145,7 @@ static void fill_image(struct world *w, const struct hf_image *m, int bad)
     }
 }
 
-// One plane of rows with junk between them, of any alignment, perhaps from the bottom up. Returns its first row.
+// One plane of rows with junk between them, at any alignment, sometimes from the bottom up. Returns its first row.
 static void *random_rows(struct world *w, int slot, size_t row_bytes, int height, ptrdiff_t *stride)
 {
     struct rng *r = &w->rng;
@@ -193,7 +193,7 @@ static float random_depth(struct world *w)
     }
 }
 
-// v, or what is nearest to it that the format holds.
+// Write v, or the nearest value that the format holds.
 static void put_depth(const struct hf_depth *d, uint8_t *row, int x, float v)
 {
     const double unit = v > 0 ? v < 1 ? (double)v : 1 : 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels of layers one by one. Lines of samples: colour, weight, radius, with room around for what a kernel reads
-// beside them. Exact levels give the bits of the C. Fused ones keep to their lines too; where all terms of a sum are
-// positive, it is as exact as the number of its roundings, half a unit each.
+// The kernels of layers one by one. Lines of samples hold colour, weight, radius, with room around for what a kernel
+// reads beside them. Exact levels give the bits of the C. Fused ones must also stay within their lines. Where all terms
+// of a sum are positive, the sum's error is at most half a unit per rounding.
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -57,7 +57,7 @@ static void fill(struct world *w, int i, int from, int to, enum kind kind)
         line(w, ARENA_MADE, i)[x] = sample(w, kind);
 }
 
-// Radii that change seldom, as surfaces have them.
+// Radii that change seldom, as on surfaces.
 static void fill_surfaces(struct world *w, int i, int from, int to)
 {
     for (int x = from; x < to; x++)
@@ -74,7 +74,7 @@ static void fill_set(struct world *w, int i, int from, int to)
     fill_surfaces(w, i + 5, from, to);
 }
 
-// spare: samples beyond the last that may be written.
+// spare: samples beyond the last one that may be written.
 static void put(struct world *w, int i, int n, int spare)
 {
     world_region(w, REGION_FLOATS, SLOT_LINES, line(w, ARENA_MADE, i), (size_t)n * 4, (size_t)spare * 4, 1, 0);
@@ -122,7 +122,7 @@ static void unmix_call(const struct world *w, const struct kernels *k, enum aren
     set_of(w, a, IN, u.seen);
     set_of(w, a, IN + 6, u.mixed);
     k->layers.unmix(&u, w->n);
-    // What has no weight means nothing.
+    // Without weight the other values are undefined.
     for (int x = 0; x < w->n; x++)
         for (int c = 0; c < 6; c++)
             if (u.mixed[4][x] == 0 && (c < now.channels || c == 5))
@@ -147,7 +147,7 @@ static void merge_call(const struct world *w, const struct kernels *k, enum aren
     k->layers.merge((const float *const(*)[6])set, now.channels, now.scale, w->n, out);
 }
 
-// Up to three taps of samples of their own.
+// Up to three taps, each with samples of its own.
 static void taps_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     struct hf_hidden_tap tap[3];
@@ -171,7 +171,7 @@ static void sums_make(struct world *w)
     put_set(w, IN, 6, w->n);
 }
 
-// Four steps to either side, where surfaces often go on; what is nearest; sums.
+// Four steps on either side, where surfaces often continue; the nearest radii; sums.
 static void between_make(struct world *w)
 {
     for (int i = 0; i < 8; i++)
@@ -225,7 +225,7 @@ static void spread_call(const struct world *w, const struct kernels *k, enum are
     k->layers.spread((const float *const *)in, radius, weight, now.rows & 1, now.channels, w->n, out);
 }
 
-// Nine lines, some of which are read more than once.
+// Nine lines, some of which are passed more than once.
 static void smooth_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     float *set[HF_LAYERS_TAPS][6], *out[6];
@@ -277,7 +277,7 @@ static void weigh_call(const struct world *w, const struct kernels *k, enum aren
                     out, slot_start(w, a, SLOT_WORK));
 }
 
-// Rows of any lengths that grow inwards.
+// Rows of any lengths that decrease from the middle outwards.
 static void disc_make(struct world *w)
 {
     struct rng *r = &w->rng;
@@ -291,7 +291,7 @@ static void disc_make(struct world *w)
     now.to = rng_int(r, now.from, DISC_ROWS + 1);
     for (int i = 0; i < 2; i++)
         fill(w, i, -MOST - 2, w->n + MOST + 2, COLOUR);
-    // Few sources, and sums that began with 0, so that none is -0.
+    // Few sources; sums begin with 0, so none is -0.
     now.slice.sparse = rng_one_in(r, 2);
     for (int i = 0; now.slice.sparse && i < 2; i++)
         for (int x = -MOST - 2; x < w->n + MOST + 2; x++)
@@ -318,7 +318,7 @@ static void runs_make(struct world *w)
         now.run[i] = (struct hf_shape_run){start, rng_int(r, 0, MOST - hf_max(start, 0)), rng_float(r, 0, 1),
                                            rng_float(r, 0, 1), rng_one_in(r, 2) ? 1 : rng_float(r, 0, 1)};
     }
-    for (int x = 0; x < w->n + 32; x++)  // nothing where a node does not reach
+    for (int x = 0; x < w->n + 32; x++)  // 0 where a node does not reach
         line(w, ARENA_MADE, 6)[x] = x >= w->n || rng_one_in(r, 4) ? 0 : rng_float(r, 0, 1);
     now.roundings = 3 * (6 + 4) + 4;
 }
@@ -616,7 +616,7 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
     }
 }
 
-// Fused sums of positive terms; of others nothing but where they were written.
+// Checks fused sums of positive terms; of other kernels only that they stay in their lines.
 static int fused_check(const struct world *w, const struct level *l, char message[256])
 {
     static struct world other;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests every kernel of every instruction set against the C, and times them.
-// --quick: a sixth of the cases; --brief: a quarter of these, and nothing that would be emulated twice where the CPU is
-// emulated. With HF_LONG in the environment all cases all the same.
+// Tests every kernel of every instruction set against the C, and times them. --quick: a sixth of the cases. --brief: a
+// quarter of these, without kernels that an emulated CPU would emulate twice. With HF_LONG in the environment all cases
+// run anyway.
 //
 //     kernels [--seed N] [--quick | --brief] [--isa NAME] [--kernel NAME] [--case N] [--list] [--bench [NAME]]
 #include <stdio.h>
@@ -144,12 +144,12 @@ const int test_count = sizeof tests / sizeof *tests;
 
 struct options {
     uint64_t seed;
-    int share, brief, list, bench, only_case;  // share: 1 of so many cases
+    int share, brief, list, bench, only_case;  // share: one case out of that many
     const char *isa, *kernel;
 };
 
-// One kernel on one instruction set over all its cases. Ends with the first failure; without the C there is nothing to
-// compare with.
+// Run one kernel on one instruction set over all its cases. It ends with the first failure; without the C there is
+// nothing to compare with.
 struct outcome {
     int cases, failed;
 };
@@ -191,7 +191,7 @@ static int run_reference(struct world *w, const struct test *t, const struct lev
     return reference_check(w, message);
 }
 
-// One case on every level.
+// Run one case on every level.
 static void run_case(struct world *w, const struct test *t, int number, const struct options *o,
                      const struct level *levels, int level_count, struct outcome *outcomes)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nine passes, each alone: random input buffers, only as large as engine.c's table says that it reads.
+// The nine passes one by one: random input buffers, only as large as engine.c's table says that they are read.
 #include <math.h>
 #include <stdio.h>
 
@@ -12,7 +12,7 @@ struct hf_rect rect_grown(struct hf_rect r, struct hf_reach by)
     return (struct hf_rect){r.x0 - by.x, r.y0 - by.y, r.x1 + by.x, r.y1 + by.y};
 }
 
-// Rows of the full resolution for HF_BUF_COC.
+// Rows at full resolution for HF_BUF_COC.
 static struct hf_rect rows_of(const struct world *w, int b, struct hf_rect r)
 {
     if (b != HF_BUF_COC)
@@ -20,8 +20,8 @@ static struct hf_rect rows_of(const struct world *w, int b, struct hf_rect r)
     return (struct hf_rect){r.x0, 2 * r.y0, r.x1, hf_min(2 * r.y1, w->setup.height)};
 }
 
-// Fields and what they come from are consistent with the CoC, as the passes before make them: a quotient of the two then is
-// a colour, and what covers nothing is nothing.
+// Fields and their sources are consistent with the CoC, as the passes before make them: so their quotient is a colour,
+// and where nothing covers, the field is 0.
 static float buffer_value(struct world *w, int b, int x, int y)
 {
     const int is_far = b == HF_BUF_COLORFAR4 || b == HF_BUF_FAR || b == HF_BUF_FAR_FILL;
@@ -56,7 +56,7 @@ static float coc_value(struct world *w, int mode, int patch)
     return mode == COC_PATCHES && patch ? 0 : mode == COC_EVERYWHERE && v == 0 ? 1 : v;
 }
 
-// By area, near and far parts of a quad are 1 together at most.
+// With area kernels, the near and far parts of a quad sum to at most 1.
 static float part_at_most(const struct world *w, int b, int c, int x, int y, float v)
 {
     if (b != HF_BUF_COC4 || c != HF_AREA_FAR || !w->gather.area)
@@ -79,7 +79,7 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
             }
 }
 
-// A buffer that the flags leave out is there, but nobody has written it.
+// A buffer that the flags exclude exists, but nobody has written it.
 static int wanted(const struct world *w, int b)
 {
     const unsigned near = BIT(NEAR) | BIT(NEAR_FILL) | BIT(BLUR) | BIT(COLOR4) | BIT(COLORNEAR4) | BIT(COVER);
@@ -93,12 +93,12 @@ static void make_inputs(struct world *w, int pass)
     const struct hf_reach halo = hf_gather_halo(&w->setup, p->halo);
     const unsigned all = p->reads | p->around;
     for (int i = -2; i < HF_BUF_COUNT; i++) {
-        const int b = i == -2 ? HF_BUF_COVER : i < 0 ? HF_BUF_COC4 : i;  // first: others depend on them
+        const int b = i == -2 ? HF_BUF_COVER : i < 0 ? HF_BUF_COC4 : i;  // first, because others depend on them
         if (!(all >> b & 1) || i == HF_BUF_COC4 || i == HF_BUF_COVER || !buf_channels(w, b))
             continue;
         const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? rect_grown(w->r, halo) : w->r);
         make_buf(w, b, r);
-        // Karis weights come from the colour, whatever the field; what near pixels hide in part from what is far.
+        // Karis weights come from the colour, for either field; what near pixels occlude comes partly from far samples.
         if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->gather.karis) ||
             (b == HF_BUF_COLORFAR4 && w->gather.area && hf_gather_leaves(&w->setup)))
             fill_buf(w, b, r);
@@ -182,7 +182,7 @@ const struct hf_taps *world_taps(const struct world *w)
     return w->gather.area ? &w->gather.levels[0].level[0].taps : &w->gather.taps;
 }
 
-// Longer than render.c makes them: whether those are long enough is for whole_frame.c to say.
+// Scratch is longer than render.c makes it; whole_frame.c tests that render.c's is long enough.
 static void make_scratch(struct world *w)
 {
     const struct hf_taps *t = world_taps(w);
@@ -216,7 +216,7 @@ void pass_make(struct world *w, int pass)
         make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
     while (pass == HF_GATHER_FILL && w->gather.area && !w->bench);
     random_area(w);
-    // Any width and height; of the gather such a reach would be too much.
+    // Any width and height, except for the gather's passes with such a reach.
     if (!w->bench && pass >= HF_GATHER_MAX_X && pass <= HF_GATHER_BLUR_Y && rng_one_in(&w->rng, 4)) {
         w->gather.max_x = w->gather.blur_x = rng_int(&w->rng, 1, 140);
         w->gather.max_y = w->gather.blur_y = rng_int(&w->rng, 1, 140);
@@ -224,7 +224,7 @@ void pass_make(struct world *w, int pass)
         w->gather.edge_y = rng_one_in(&w->rng, 2) ? 1 : rng_float(&w->rng, 0, 1);
     }
     if (pass == HF_GATHER_COC)
-        w->r.x0 &= ~15;  // as cells are
+        w->r.x0 &= ~15;  // as cells have it
     w->is_pass = 1;
     w->near = w->far = 1;
     if (!w->bench && (pass == HF_GATHER_DOWN || pass >= HF_GATHER_COMPUTATION) && rng_one_in(&w->rng, 3))
@@ -246,7 +246,7 @@ int pass_check(const struct world *w, const struct level *l, char message[256])
 {
     struct hf_counts want = w->result[ARENA_REFERENCE].counts, got = w->result[ARENA_TEST].counts;
     if (!l->exact)
-        want.clamped = got.clamped = 0;  // a colour just beside the end of its range
+        want.clamped = got.clamped = 0;  // a colour at the end of its range may be clamped in one of them only
     if (memcmp(&want, &got, sizeof want) ||
         memcmp(&w->result[ARENA_REFERENCE].seen, &w->result[ARENA_TEST].seen, sizeof want)) {
         snprintf(message, 256, "other counts than the C: clamped %llu, not %llu", (unsigned long long)got.clamped,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows that hexagon and scatter share: signed CoC radii, and pixels in order or even and odd apart. Nothing is fused in
-// them: the bits are those of the C on every level.
+// Rows that hexagon and scatter share: signed CoC radii, and pixels in order or split into even and odd ones. Nothing
+// is fused: every level has the bits of the C.
 #include "harness.h"
 
 enum { RADIUS, ZIP, UNZIP };
@@ -21,7 +21,8 @@ static void start(struct world *w)
     make_setup(w, w->bench ? 128 : rng_int(&w->rng, 1, 70), w->bench ? 1 : rng_int(&w->rng, 1, 3));
 }
 
-// Radii by a lens, by ranges or as given; sharp below something or not; where rows are counted, cells begin at 32.
+// Radii by a lens, by ranges, or given; with or without a sharp limit. Where rows are counted, cells begin at multiples
+// of 32.
 static void make_radii(struct world *w)
 {
     struct rng *r = &w->rng;
@@ -47,7 +48,7 @@ void radius_make(struct world *w, int index)
         make_radii(w);
         return;
     }
-    // Rows 0 and 1: even and odd; from row 2 on, two lines long: in order.
+    // Rows 0 and 1: even and odd pixels. From row 2 on, two lines long: pixels in order.
     w->n = w->setup.half_width;
     const size_t length = (size_t)((w->n + 15) & ~15) + HF_PAD;
     float *p = (float *)(void *)slot_use(w, SLOT_LINES, 4 * length * sizeof(float), 0xff);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random numbers (splitmix64), and the values that floats are known to go wrong on.
+// Random numbers (splitmix64), and values on which floats are known to fail.
 #include <math.h>
 
 #include "harness.h"

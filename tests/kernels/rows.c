@@ -15,7 +15,7 @@ static float *lane(const struct world *w, enum arena a, int i)
     return (float *)(void *)slot_start(w, a, SLOT_LINES) + (size_t)i * w->line_floats;
 }
 
-// Where the row lies: n lanes from lane x of row y.
+// Choose a row: n lanes from lane x of row y.
 static void random_row(struct world *w)
 {
     struct rng *r = &w->rng;
@@ -48,7 +48,7 @@ void coc_row_make(struct world *w, int index)
     make_depth(w, rng_one_in(&w->rng, 2));
     w->with_counts = !rng_one_in(&w->rng, 3);
     w->x &= w->with_counts ? ~15 : ~0;
-    // Near is for who counts.
+    // The near rows are compared only if counts are wanted.
     for (int i = 0; i < 4; i++)
         lane_region(w, i < 2 && !w->with_counts ? REGION_SCRATCH : REGION_FLOATS, i);
 }
@@ -61,7 +61,7 @@ void coc_row_call(struct world *w, const struct kernels *k, enum arena a, int in
     k->pixel.coc_row(&f, w->x, w->y, w->n, out, w->with_counts ? &w->result[a].counts : NULL);
 }
 
-// In half of the cases the picture is sharp, but for one pixel in half of these.
+// Half of the cases are sharp pictures; half of these have one blurred pixel.
 void sharp_row_make(struct world *w, int index)
 {
     (void)index;
@@ -88,7 +88,7 @@ void sharp_row_call(struct world *w, const struct kernels *k, enum arena a, int 
 
 // ---- depth of other formats ----
 
-// Any bits at all.
+// Random bits.
 void widen_make(struct world *w, int format)
 {
     make_size(w);
@@ -127,7 +127,7 @@ void load_make(struct world *w, int format)
     make_row_format(w, &w->src, format);
     w->colours = rng_one_in(&w->rng, 2) ? COLOURS_MIXED : COLOURS_POSITIVE;
     make_image(w, &w->src, SLOT_SRC, rng_one_in(&w->rng, 3));
-    // Any bits at all, now and then.
+    // Sometimes random bits.
     if (!w->bench && rng_one_in(&w->rng, 3))
         for (int i = 0; i < hf_plane_count(&w->src); i++) {
             uint8_t *p = (uint8_t *)w->src.data[i] + w->y * w->src.stride[i];
@@ -148,7 +148,7 @@ void load_call(struct world *w, const struct kernels *k, enum arena a, int forma
     w->result[a].returned = k->pixel.load[format](f.src, w->x, w->y, w->n, even, odd) != 0;
 }
 
-// A false alarm is allowed if there is something to repair in the row at all: it only costs time.
+// A false alarm is allowed if the row has something to repair: it only costs time.
 static int alarm_is_right(const struct world *w)
 {
     if (w->result[ARENA_REFERENCE].returned)
@@ -162,8 +162,8 @@ static int alarm_is_right(const struct world *w)
     return 0;
 }
 
-// What is not finite may come out as anything that is recognised as such: repair.c overwrites it. For the comparison
-// put the reference's bits there.
+// A sample that is not finite may come out as anything that is recognised as such, because repair.c overwrites it. For
+// the comparison the reference's bits are put there.
 int load_check(const struct world *w, const struct level *l, char message[256])
 {
     if (!alarm_is_right(w)) {
@@ -182,8 +182,8 @@ int load_check(const struct world *w, const struct level *l, char message[256])
     return world_compare(w, l, message);
 }
 
-// Rows of hard values; of ordinary ones, for which a kernel may have a shorter way; and one hard value among ordinary
-// ones, which must not go that way.
+// Rows of hard values; of ordinary ones, for which a kernel may take a shorter path; and of ordinary ones with a single
+// hard value, which must not take that path.
 static void fill_lanes(struct world *w, const int *lanes, int count)
 {
     struct rng *r = &w->rng;
@@ -230,7 +230,7 @@ void store_call(struct world *w, const struct kernels *k, enum arena a, int form
 
 enum { FINITE_F32, FINITE_F16, FINITE_R11, FINITE_ANY };
 
-// A word with its largest exponent, or the one just below.
+// A word with its largest exponent, or with the one below.
 static uint32_t extreme_word(struct rng *r, int which, int bad)
 {
     const uint32_t random = rng_next(r);
@@ -277,7 +277,7 @@ void finite_call(struct world *w, const struct kernels *k, enum arena a, int whi
     w->result[a].returned = f(in_arena(a, w->words), w->word_count, in_arena(a, w->copy)) != 0;
 }
 
-// A copy of what is not finite need not be whole.
+// If samples are not finite, their copy need not be complete.
 int finite_check(const struct world *w, const struct level *l, char message[256])
 {
     const size_t size = w->finite == FINITE_F16 ? 2 : 4;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scatter's kernels one by one: weights and pictures of sources, lists, means, sums. The sums are integers and their
-// shares are truncated, so nothing in here may be fused: the bits are those of the C on every level.
+// The scatter's kernels one by one: weights and sprites of sources, lists, means, sums. The sums are integers and their
+// shares are truncated, so nothing here may be fused: every level has the bits of the C.
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 
 enum { LINES_IN = 12, LINES_OUT = 8, LINES = LINES_IN + LINES_OUT, INVERSES = 64 };
 
-// What a case is about; the world has no room for it.
+// The data of a case that do not fit the world.
 static struct {
     int which;
     struct hf_scatter scatter;
@@ -39,7 +39,7 @@ static void put_out(struct world *w, int i, int n)
     world_region(w, REGION_FLOATS, SLOT_LINES, line(w, ARENA_MADE, i), (size_t)n * 4, HF_PAD * 4, 1, 0);
 }
 
-// A signed radius: none, on either side, some alike, some denormal.
+// A signed radius: zero, near or far, some similar, some denormal.
 static float random_radius(struct rng *r)
 {
     switch (rng_int(r, 0, 9)) {
@@ -208,7 +208,7 @@ static void tent_weights_make(struct world *w)
         fill_colours(w, 1 + c, 0, 2 * w->n);
     for (int i = 4; i < 6; i++) {
         fill_radii(w, i, -1, w->n + 1, 1);
-        // Mostly such as the pixels have, or nothing would be alike.
+        // Mostly the radii that the pixels have, so that some are alike.
         for (int x = 0; x < w->n; x++)
             if (!rng_one_in(&w->rng, 4)) {
                 const float like = now.sign * line(w, ARENA_MADE, 0)[2 * x];
@@ -281,7 +281,7 @@ static void blend_make(struct world *w)
     now.height = now.y + 1 + rng_int(r, 0, 20);
     now.scatter.aperture.key.scale_x = rng_one_in(r, 2) ? 1 : rng_float(r, 0.4f, 2);
     fill_radii(w, 0, 0, w->n, 0);
-    for (int x = 0; x < w->n; x++)  // less counts as sharp
+    for (int x = 0; x < w->n; x++)  // smaller radii count as sharp
         if (!(fabsf(line(w, ARENA_MADE, 0)[x]) > 0.5f))
             line(w, ARENA_MADE, 0)[x] = 0;
     for (int i = 1; i < 6; i++)
@@ -405,7 +405,7 @@ static int behind_rows_call(struct world *w, const struct kernels *k, enum arena
 
 // ---- sums ----
 
-// A window of sums, its rows one after the other with their margins.
+// A window of sums: its rows one after the other, with their margins.
 static int64_t *lane_of(const struct world *w, enum arena a)
 {
     return (int64_t *)(void *)slot_start(w, a, SLOT_WORK);
@@ -479,7 +479,8 @@ static void sums_call(struct world *w, const struct kernels *k, enum arena a, in
         k->scatter.splat(&s, &now.aperture, (const struct hf_splats *)(const void *)slot_start(w, a, SLOT_BUF));
 }
 
-// What begins or ends beside the window may wait in any of a row's spare pixels: what counts is the running sum inside.
+// Shares that begin or end outside the window may be in any of a row's spare pixels: only the running sum inside
+// counts.
 static int same_sums(const struct world *w, char message[256])
 {
     for (int y = 0; y < now.height; y++) {

@@ -54,7 +54,7 @@ void world_clear(struct world *w)
     w->words = w->copy = NULL;
     w->finite = 0;
     w->word_count = 0;
-    // A buffer that a kernel has no business with lies where every access is a crash.
+    // A buffer that a kernel must not use lies where every access crashes.
     for (int b = 0; b < HF_MAX_BUFS; b++) {
         w->buf[b].stride = 64;
         for (int c = 0; c < 4; c++)
@@ -101,8 +101,8 @@ int buf_bytes(const struct world *w, int b)
     return w->engine->bufs[b].narrow ? hf_narrow_bytes(w->setup.storage) : (int)sizeof(float);
 }
 
-// Laid out as render.c does it: pixels whose x is a multiple of 16, of narrow buffers of more, are aligned to 64 bytes,
-// HF_PAD floats follow the last row.
+// Laid out as render.c does it: pixels whose x is a multiple of 16 (more in narrow buffers) are aligned to 64 bytes,
+// and HF_PAD floats follow the last row.
 void make_buf(struct world *w, int b, struct hf_rect r)
 {
     enum { FRONT = 64 };  // floats before the first row
@@ -159,7 +159,7 @@ static const void *engine_kernels(const struct world *w, const struct kernels *k
     }
 }
 
-// Images and depth are pointed to: one set per arena.
+// Images and depth are passed by pointer, so each arena has its own.
 struct hf_frame world_frame(struct world *w, const struct kernels *k, enum arena a)
 {
     static struct hf_image images[ARENA_COUNT][2];
