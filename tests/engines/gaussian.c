@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gaussian engine against its formulas in double precision: blur, blend, autofocus, and that each parameter counts.
-// Its hard cases are in gaussian_hard.c.
+// The gaussian engine against its formulas in double precision: blur, blend, autofocus, and that each parameter has an
+// effect. Its hard cases are in gaussian_hard.c.
 //
 //     gaussian [seed]
 //
@@ -55,7 +55,7 @@ static void blur(struct plane *p, int dx, int dy, int faithful)
     *p = out;
 }
 
-// A gaussian of standard deviation sigma, as far as doubles see it.
+// A gaussian of standard deviation sigma, as wide as doubles can represent it.
 static void true_gaussian(struct plane *p, int dx, int dy, double sigma)
 {
     const int reach = (int)ceil(8 * sigma);
@@ -72,8 +72,8 @@ static void true_gaussian(struct plane *p, int dx, int dy, double sigma)
     *p = out;
 }
 
-// Mean of size x size pixels. At an odd edge half-resolution quads repeat their last pixel, and quarter ones their last
-// quad.
+// The mean of size x size pixels. At an odd edge half-resolution quads repeat their last pixel, and quarter-resolution
+// blocks their last quad.
 static struct plane shrunk(const struct plane *p, int size)
 {
     const int hw = (p->width + 1) / 2, hh = (p->height + 1) / 2;
@@ -171,17 +171,17 @@ static struct picture expected(const struct scene *s, const struct hf_depth *dep
 }
 
 // Roundings from the picture to the result. Each iteration has two directions of four additions (faithfully four, three
-// products and three weights that are no floats); 16 additions and a product down, 2 x 3 operations up; 3 to blend, at
-// twice the largest sample. The blend factor, times that: of z / f or 2 z / (z + f) three, at either end, and two for z
-// itself (NDC eight), times 3, and eight for the shape.
+// products and three weights that are no floats); 16 additions and a product downwards, 2 x 3 operations upwards; 3 for
+// the blend, at twice the largest sample. The blend factor, times the same: three for z / f or 2 z / (z + f), at either
+// end, and two for z itself (NDC eight), times 3, and eight for the shape.
 static double bound_of(const struct hf_params *p, const struct hf_depth *d)
 {
     const double iterations = (p->gaussian.faithful ? 20 : 8) * p->gaussian.iterations,
                  sizes = p->gaussian.resolution ? 17 + 12 : 0;
-    const double z = d->type == HF_DEPTH_VIEW ? 2 : 24;  // distances in NDC: what cancels is amplified
+    const double z = d->type == HF_DEPTH_VIEW ? 2 : 24;  // the conversion from NDC cancels, which amplifies its errors
     double t = 3 * (3 + 3 + 2 * z) + 8;
     if (!p->gaussian.faithful &&
-        !nothing_given(p))  // max(n, f): slopes times twice the roundings of the largest depth that counts
+        !nothing_given(p))  // max(n, f): slopes times twice the roundings of the largest depth that matters
         t = 16 + 8 * (p->model == HF_MODEL_LENS ? 200 : 30 / 10);
     return (iterations + sizes + 2 * (3 + t)) * U;
 }
@@ -222,14 +222,14 @@ static void against_double(struct hf_context *c, const char *isa)
     printf("%s: against double precision: %.2g of the bound\n", isa, worst);
 }
 
-// Four boxes are not quite a gaussian, but have its variance exactly. A unit line and a unit step, and random samples
-// between 0 and 1, against a true one; below sigma 1 samples of a gaussian have another variance than it has.
+// Four boxes are not quite a gaussian, but have exactly its variance. A unit line, a unit step, and random samples
+// between 0 and 1 are compared with a true gaussian. Below sigma 1 a sampled gaussian has a different variance.
 static void against_gaussian(struct hf_context *c, const char *isa)
 {
     enum { W = 301, MIDDLE = 150 };
     static const float sigmas[] = {0.2f, 0.3f, 0.7f, 1, 1.5f, 2, 3, 5, 8, 12, 20};
-    // The excess kurtosis of k boxes is -1.2 / k, which lowers the peak by an eighth of that, 0.0375, and more for few
-    // taps.
+    // The excess kurtosis of k boxes is -1.2 / k, which lowers the peak by an eighth of that, 0.0375, and by more with
+    // few taps.
     static const double bounds[3] = {0.065, 0.013, 0.03};
     double worst[3] = {0};
     for (int i = 0; i < 11; i++) {
@@ -261,7 +261,7 @@ static void against_gaussian(struct hf_context *c, const char *isa)
                 want.v[k] = s.colour.plane[ch][k];
             true_gaussian(&want, 1, 0, sigmas[i]);
             const double height = ch == 0 ? want.v[MIDDLE] : 1;
-            for (int k = MIDDLE - 60; k <= MIDDLE + 60; k++) {  // off the edges, at which each box repeats them
+            for (int k = MIDDLE - 60; k <= MIDDLE + 60; k++) {  // away from the edges, where each box repeats them
                 worst[ch] = worse(worst[ch], fabs(want.v[k] - a.plane[ch][k]) / height);
                 CHECK_MSG(a.plane[ch][k] >= 0, "%s: sigma %g: %g", isa, sigmas[i], a.plane[ch][k]);
             }
@@ -276,7 +276,7 @@ static void against_gaussian(struct hf_context *c, const char *isa)
         CHECK_MSG(worst[ch] <= bounds[ch], "%s: off by %g, bound %g", isa, worst[ch], bounds[ch]);
 }
 
-// What is read at the picture's centre.
+// The depth at the picture's centre.
 static void autofocus(struct hf_context *c, const char *isa)
 {
     for (unsigned i = 0; i < 24; i++) {
@@ -286,13 +286,13 @@ static void autofocus(struct hf_context *c, const char *isa)
         struct hf_params p = random_params(&rng);
         p.focus = HF_DERIVE;
         float want = s.depth.plane[0][centre] = 7 + (float)i;
-        if (i % 4 == 1) {  // the largest finite one around it
+        if (i % 4 == 1) {  // then the largest finite depth around it counts
             s.depth.plane[0][centre] = NAN;
             want = s.depth.plane[0][centre + 1] = 60;
         }
         if (i % 4 == 2) {
             s.depth.plane[0][centre] = i % 8 == 2 ? INFINITY : 0;
-            want = 1e9f;  // seen from the planes and through the lens: as far
+            want = 1e9f;  // for the clip planes and the lens this is as far away
             p.range.distance = HF_DERIVE;
         }
         struct picture a = render_scene(c, &s, &p);
@@ -307,7 +307,7 @@ static void autofocus(struct hf_context *c, const char *isa)
     }
 }
 
-// Each parameter changes the picture, and its default is what leaving it alone gives.
+// Each parameter changes the picture, and setting its default equals leaving it alone.
 static void effects(struct hf_context *c, const char *isa)
 {
     struct rng rng = rng_seed(seed);
@@ -333,7 +333,8 @@ static void effects(struct hf_context *c, const char *isa)
         CHECK_MSG(picture_same_bits(&a, &plain) == (i == 11), "%s: parameter %d has no effect", isa, i);
         picture_free(&a);
     }
-    // With sigma, which is in pixels' heights, their aspect counts; with a lens the radius of full blur.
+    // With sigma, which is in units of a pixel's height, the pixel aspect matters; with a lens the radius of full blur
+    // does.
     for (int i = 0; i < 4; i++) {
         struct hf_params one = base, two;
         one.gaussian.sigma = i < 2 ? 3.0f : HF_DERIVE;
@@ -347,7 +348,7 @@ static void effects(struct hf_context *c, const char *isa)
         picture_free(&a);
         picture_free(&b);
     }
-    // The near plane counts when faithful, for what lies before it; otherwise it does not.
+    // When faithful, the near plane matters for depths before it; otherwise it does not.
     struct hf_params p = base;
     struct hf_depth depth = picture_depth(&s.depth);
     p.focus = 1;

@@ -73,7 +73,8 @@ static void flips(struct hf_context *c, const char *isa)
     }
 }
 
-// By whole pixels of the working buffer: what lies farther from the crop's edge than the blur reaches is the same.
+// Crops by whole pixels of the working buffer: farther from the crop's edge than the blur reaches, the result is the
+// same.
 static void crops(struct hf_context *c, const char *isa)
 {
     for (unsigned i = 0; i < 30; i++) {
@@ -176,8 +177,8 @@ static void bad_samples(struct hf_context *c, const char *isa)
     }
 }
 
-// The largest floats of either sign side by side, which lie farther apart than there are floats: what is between them is
-// finite, in planes and in pixels, and the plain C's.
+// The largest floats of both signs side by side; their difference is not a finite float. Values between them are
+// finite, in planes and in pixels, and equal to the plain C's.
 static void largest_floats(struct hf_context *plain, struct hf_context *c, const char *isa)
 {
     for (unsigned i = 0; i < 24; i++) {
@@ -209,8 +210,8 @@ static void largest_floats(struct hf_context *plain, struct hf_context *c, const
     }
 }
 
-// A constant picture stays what it is, bit for bit; a denormal one to within a few of its steps. Faithfully the
-// weights add up to 1 but for their rounding: 20 roundings an iteration, and as many for resampling.
+// A constant picture stays the same, bit for bit; a denormal one within a few of its steps. Faithful weights add up to
+// 1 only within rounding: 20 roundings an iteration, and as many for resampling.
 static void constants(struct hf_context *c, const char *isa)
 {
     static const float values[] = {0.1f, 1, -3.3f, 65504, 1e30f, FLT_MAX, 0};
@@ -231,7 +232,7 @@ static void constants(struct hf_context *c, const char *isa)
     }
 }
 
-// Where a picture is copied, it is copied bit for bit.
+// Where nothing is blurred, the picture is copied bit for bit.
 static void copies(struct hf_context *c, const char *isa)
 {
     struct rng rng = rng_seed(seed);
@@ -253,8 +254,8 @@ static void copies(struct hf_context *c, const char *isa)
     scene_free(&s);
 }
 
-// Tiny steps of the focus are tiny steps of the picture: 3 |d(focus) - d| has slope 3 / 100 a unit, the merge at most
-// 1.
+// Tiny steps of the focus make tiny steps in the picture: 3 |d(focus) - d| has a slope of 3 / 100 per unit, the blend
+// of at most 1.
 static void focus_pull(struct hf_context *c, const char *isa)
 {
     struct rng rng = rng_seed(seed);

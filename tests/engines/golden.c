@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library against pictures that stand: what the author's own shaders gave, and pixels written down here.
+// The library against fixed pictures: those that the author's own shaders made, and pixels written down here.
 //
 //     golden own       a small scene made here, its pixels as numbers below
 //     golden print     the same, and prints them
@@ -13,7 +13,7 @@
 #include "support/reference.h"
 #include "support/render.h"
 
-// The small scene: a floor in 17 exact CoC steps, a near bar, far highlights. All numbers are exact in floats.
+// The small scene: a floor in 17 exact CoC steps, a near bar, far highlights. All its numbers are exact as floats.
 enum { WIDTH = 96, HEIGHT = 64 };
 
 static void make_own(struct picture *colour, struct picture *z)
@@ -37,11 +37,11 @@ struct pixel {
 
 struct own {
     const char *name;
-    struct hf_params set;  // taken from here: faithful, karis, bicubic, fill, blades, per_pixel_kernel
+    struct hf_params set;  // these members are used: faithful, karis, bicubic, fill, blades, per_pixel_kernel
     struct pixel pixels[7];
 };
 
-// Numbers from tests/support/reference.c in double precision, by `golden print`.
+// Numbers of the reference in double precision, printed by `golden print`.
 static const struct own owns[] = {
     {"maximum",
      {0},
@@ -95,8 +95,8 @@ static struct hf_params own_params(const struct own *own)
     return p;
 }
 
-// The whole frame against the reference, end to end: CoC is exact here, so that what is left is the roundings of
-// gather.c's passes 2, 7, 8 and 9, (32 + 2 * 129 + 12 + 11 + 102) * 2^-24 = 2.5e-5 of the largest sample near by.
+// The whole frame against the reference. CoC is exact here, so only the roundings of gather.c's passes 2, 7, 8 and 9
+// remain: (32 + 2 * 129 + 12 + 11 + 102) * 2^-24 = 2.5e-5 of the largest sample nearby.
 static void check_own(struct hf_context *c, const char *isa, int o, int print)
 {
     struct picture colour, z;
@@ -163,8 +163,8 @@ static double largest_within(const struct picture *p, int c, int x, int y, int r
     return largest;
 }
 
-// The README's fair test. Either criterion will do: no sample over 1e-3 relative and 5e-6 of the largest value within 8
-// half-resolution pixels, or at most 0.05 % of the samples over 1e-3 relative (the composite: 2e-3).
+// The test of the set's README. Either criterion suffices: no sample over 1e-3 relative and 5e-6 of the largest value
+// within 8 half-resolution pixels, or at most 0.05 % of the samples over 1e-3 relative (the composite: 2e-3).
 static void fair(const struct shared *shared, const char *name, const struct picture *got, int reach, double relative)
 {
     struct picture want;
@@ -189,7 +189,8 @@ static void fair(const struct shared *shared, const char *name, const struct pic
     picture_free(&want);
 }
 
-// CoC buffers: golden and library are both float runs, 2.4e-7 from the truth each as seen; twice that and a bit.
+// CoC buffers: golden and library are both computed in floats, each within 2.4e-7 of the truth as measured; the bound
+// is a bit over twice that.
 static void coc_close(const struct shared *shared, const struct hf_buffer *b, const struct picture *got)
 {
     struct picture want;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The layers engine: bits that hang on nothing but the input, with any aperture, constant pictures, alpha, what is not finite, a focus pull.
+// The layers engine: bits that depend only on the input, for any aperture; constant pictures, alpha, samples that are
+// not finite, a focus pull.
 //
 //     layers [seed]
 #include <float.h>
@@ -80,8 +81,8 @@ static void bits(void)
     hf_close(&plain);
 }
 
-// A sum of weights and the sums of colours are rounded apart: each is a blur of at most a few hundred terms of which the
-// errors average out, twice, and a quotient. 2e-6 is 34 half units of the last place.
+// The sums of weights and of colours are rounded separately. Each is a blur of at most a few hundred terms whose errors
+// average out, twice, and then a quotient. 2e-6 is 34 half units of the last place.
 static void constants(void)
 {
     struct rng rng = rng_seed(seed + 1);
@@ -107,7 +108,8 @@ static void constants(void)
     hf_close(&c);
 }
 
-// Colour and alpha of a picture with holes lie between those of the input; what is not finite spreads nowhere.
+// Colour and alpha of a picture with holes stay within the input's range, and a sample that is not finite does not
+// spread.
 static void ranges(void)
 {
     struct rng rng = rng_seed(seed + 2);
@@ -115,7 +117,7 @@ static void ranges(void)
     for (int n = 0; n < 6; n++) {
         struct scene s = scene_new(&rng, SCENE_BLOCKS, 150, 100, 4);
         struct hf_params p = random_params(&rng);
-        p.layers.no_highlights = 1;  // theirs are drawn finer than the coverage that they go with
+        p.layers.no_highlights = 1;  // highlights are drawn at a finer resolution than their coverage
         for (int i = 0; i < 150 * 100; i++) {
             const float a = i / 150 / 20 % 2 && i % 150 / 17 % 2 ? 0 : 1;
             for (int k = 0; k < 4; k++)
@@ -152,8 +154,8 @@ static void pull(void)
     const struct hf_depth depth = picture_radii(&s.depth);
     struct picture out[2] = {picture_new(128, 96, 3), picture_new(128, 96, 3)};
     for (int i = 0; i < 128 * 96; i++) {
-        // Differences of 1, from which on an edge is one, and radii in the middle of two others come and go with
-        // rounding: there are none.
+        // A difference of radii of 1 makes an edge, and a radius midway between two others is rounded either way. The
+        // radii avoid both.
         const float step = roundf(fminf(fmaxf(s.depth.plane[0][i] - 20, -15), 15));
         s.depth.plane[0][i] = 1.37f * step + 0.013f * step * step;
         for (int k = 0; k < 3; k++)
@@ -170,7 +172,7 @@ static void pull(void)
             for (int k = 0; k < 3; k++)
                 for (int i = 0; i < 128 * 96; i++)
                     worst = fmax(worst, fabs((double)out[0].plane[k][i] - out[1].plane[k][i]));
-            // Roundings of two pictures besides.
+            // Plus the roundings of both pictures.
             CHECK_MSG(worst <= 4 * steps[n] * 1.01 + 4e-6, "a step of %g changes a pixel by %g", steps[n], worst);
         }
     picture_free(&out[0]);
@@ -179,8 +181,8 @@ static void pull(void)
     hf_close(&c);
 }
 
-// Small cells begin their runs of tiles elsewhere: of these scenes parts were missing where a run of hidden samples behind
-// others began in the middle of one of hidden samples.
+// In small cells runs of tiles begin elsewhere. These scenes once lost parts where a run of second hidden samples began
+// in the middle of a run of hidden samples.
 static void cells(void)
 {
     static const unsigned failed[] = {140, 509, 1480, 1700, 2562};
@@ -207,7 +209,8 @@ static void cells(void)
     }
 }
 
-// What a lens sees at x of a ramp of radius 4 behind a black rod of radius -8, from x = ROD to ROD + WIDE: the mean over rays.
+// What a lens sees at x, as a mean over rays: a ramp of radius 4 behind a black rod of radius -8, from x = ROD to ROD +
+// WIDE.
 enum { ROD = 94, WIDE = 12, RAMP = 200 };
 static double ramp_at(double x)
 {
@@ -225,9 +228,9 @@ static double seen_at(double x)
     return sum / all;
 }
 
-// Rays cross between what is before the focus and what is behind it: beside a rod a lens sees what the rod hides, not what
-// lies beside it. Root mean squares as measured: 0.00358, 0.00342 and 0.00347 (standard, high, best) with nothing held back,
-// 0.00309, 0.00291 and 0.00257 with what is. The bounds, 0.00315 and 0.0027, lie between; they follow from nothing else.
+// Rays cross at the plane in focus: beside a rod a lens sees what the rod hides, not what lies beside it. The root mean
+// squares were 0.00358, 0.00342 and 0.00347 (standard, high, best) with no coverage withheld, and 0.00309, 0.00291 and
+// 0.00257 with it. The bounds, 0.00315 and 0.0027, lie between these measured values; nothing else justifies them.
 static void crossed(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
@@ -248,7 +251,7 @@ static void crossed(void)
         for (int x = ROD - 8; x < ROD + WIDE + 8; x++)
             error += pow(out.plane[0][32 * RAMP + x] - seen_at(x + 0.5), 2);
         error = sqrt(error / (WIDE + 16));
-        if (q != HF_LAYERS_DRAFT)  // which has no hidden samples
+        if (q != HF_LAYERS_DRAFT)  // it has no hidden samples
             CHECK_MSG(error < 0.0036 * (q == HF_LAYERS_BEST ? 3.0 / 4 : 7.0 / 8), "quality %d is off by %g", q, error);
         picture_free(&out);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Alpha of the layers engine: what is opaque stays so to the bit, holes melt as colours do, and no rim comes up.
+// Alpha of the layers engine: opaque stays opaque to the bit, holes melt as colours do, and no rim appears.
 //
 //     layers_alpha [seed]
 #include <float.h>
@@ -26,7 +26,7 @@ static struct hf_params random_params(struct rng *rng)
     return p;
 }
 
-// Alpha 1 everywhere is 1 everywhere, exactly.
+// An alpha of 1 everywhere is exactly 1 everywhere in the result.
 static void opaque(struct hf_context *c)
 {
     struct rng rng = rng_seed(seed);
@@ -46,9 +46,9 @@ static void opaque(struct hf_context *c)
     }
 }
 
-// Alpha of which all is 1 is not drawn, and colours do not hang on it: one hole in a corner changes nothing beyond what
-// around it is looked at. Of radii up to 8 that is 8 and 24 of upsampling, the 28 of hidden samples of three levels, 26 of
-// highlights and 6 of un-mixing, and whole tiles of 16.
+// An alpha that is 1 everywhere is not drawn, and colours do not depend on it. So one hole in a corner changes nothing
+// beyond the reach of the engine. For radii up to 8 that is 8 and 24 of upsampling, 28 of hidden samples of three
+// levels, 26 of highlights, 6 of un-mixing, and whole tiles of 16.
 static void not_drawn(struct hf_context *c)
 {
     const int width = 320, height = 64, far = 128;
@@ -74,10 +74,10 @@ static void not_drawn(struct hf_context *c)
     }
 }
 
-// Colours that are alpha times one colour stay that: no pixel is brighter or darker than what it holds of the picture.
-// Both are sums of the same weights, of samples that rounded apart by 2^-24 each, and the sums again, pairwise or of at
-// most a hundred rows of like size: 34 half units of the last place of the largest, as for constant pictures. A
-// highlight is found by its colour, but its share is taken of both.
+// If colours are alpha times one colour, so is the result: no pixel is brighter or darker than its alpha says. Both are
+// sums with the same weights, of samples whose roundings differ by 2^-24 each, and of roundings of the sums, pairwise
+// or of at most a hundred rows of similar size: 34 half units of the last place of the largest, as for constant
+// pictures. A highlight is detected by colour, but its share is taken from both.
 static void one_colour(struct hf_context *c)
 {
     struct rng rng = rng_seed(seed + 1);
@@ -109,11 +109,11 @@ static void one_colour(struct hf_context *c)
     }
 }
 
-// Half a picture is a hole: alpha across its edge is the area of the disc on that side. A row of the disc counts as a run
-// of its mean length, exact in area, so of the chord's change over a pixel's height at most half goes to the wrong side
-// of a column, on either end: together no more than the height of a column, 2 sqrt(r^2 - x^2), times that, which is below
-// 1 / r of the area. The edge lies on pixels of half and a quarter of the resolution, whose tents spread it by one of
-// theirs: size / r more, as a disc's columns hold at most 2 / (pi r) of it.
+// Half the picture is a hole. Alpha across its edge is the part of the disc's area on that side. A row of the disc
+// counts as a run of its mean length, exact in area. So at most half of the chord's change over a pixel's height goes
+// to the wrong side of a column, at either end: together at most the column's height, 2 sqrt(r^2 - x^2), times that,
+// which is below 1 / r of the area. The edge lies on pixels of half and a quarter of the resolution, whose tents spread
+// it by one such pixel: size / r more, because a disc's columns hold at most 2 / (pi r) of its area.
 static void holes(struct hf_context *c)
 {
     static const float radii[] = {4, -6, 12, -20, 40};
@@ -145,7 +145,8 @@ static void holes(struct hf_context *c)
     }
 }
 
-// Leaves with soft edges before nothing at all, as film alpha has them, put over grey: all is between the two.
+// Leaves with soft edges before nothing at all, as film alpha has them. Put over grey, the result lies between leaf and
+// grey.
 static void over_grey(struct hf_context *c)
 {
     const int width = 220, height = 160;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Apertures of the layers engine: single highlights against those of the scatter, a cat's eye that follows its place
-// without a jump, and what is opaque with it.
+// Apertures of the layers engine: single highlights compared with those of the scatter, a cat's eye that changes with
+// its place without a jump, and opaque surfaces with it.
 //
 //     layers_aperture
 #include <float.h>
@@ -13,7 +13,7 @@
 
 static const float LAMP = 1e4f, AROUND = 0.1f;
 
-// What a highlight is: its energy, where it lies, its spread, and which way it points: the mean of (x + iy)^n as far as
+// The measures of a highlight: its energy, its centre, its spread, and its orientation: the mean of (x + iy)^n within
 // `reach`.
 struct spot {
     double energy, x, y, xx, xy, yy, re, im;
@@ -71,13 +71,13 @@ struct shape {
     int n;  // of its symmetry
 };
 
-// What the engines may differ by, r pixels being the radius. Scatter's sizes are off by at most 0.2 %, of pictures by half
-// of a 32nd octave, 1.1 %; its runs' ends lie at multiples of 1/256 and its rows are sampled: 0.05 pixels of a centre.
-// Both draw rows of runs for slanted edges, which spreads a spot along x by less than a pixel, and scatter's half
-// resolution, bilinear, by another 2 / 3 of a square pixel. A spread of s square pixels along x changes the mean of
-// (x + iy)^n by n (n - 1) / 2 s r^(n-2) at most. With a cat's eye, the circle of the layers is that of the pixel drawn to
-// and scatter's that of the source: the two move apart by `apart` = 2 S r^2 / diagonal on the disc's rim, and so do edges,
-// of which at most a half turn of length pi r is cut, of an area of no less than r^2.
+// By how much the two engines may differ; r is the radius in pixels. Scatter's sizes are off by at most 0.2 %, those of
+// pictures by half of a 32nd octave, 1.1 %. Its spans end at multiples of 1/256 and its rows are sampled: 0.05 pixels
+// of a centre. Both draw slanted edges as rows of spans, which spreads a spot along x by less than a pixel; scatter's
+// bilinear half resolution adds 2 / 3 of a square pixel. A spread of s square pixels along x changes the mean of (x +
+// iy)^n by at most n (n - 1) / 2 s r^(n-2). With a cat's eye, layers takes the circle of the pixel drawn to and scatter
+// that of the source. The two are apart by `apart` = 2 S r^2 / diagonal on the disc's rim, and so are edges; at most a
+// half turn of length pi r is cut, of an area of at least r^2.
 struct bound {
     double centre, energy, spread, turn;
 };
@@ -104,7 +104,7 @@ static void compare(const struct shape *s, float radius, int channel, const stru
               b.energy);
     CHECK_MSG(spread <= b.spread, "%s of %g, channel %d: spread off by %g, bound %g", s->name, radius, channel, spread,
               b.spread);
-    // Where the bound says something.
+    // Only where the bound means something.
     if (s->n > 1 && s->aperture.cat_eye == 0 && turn < 0.3)
         CHECK_MSG(turned <= turn, "%s of %g, channel %d: points elsewhere by %g, bound %g", s->name, radius, channel,
                   turned, turn);
@@ -152,11 +152,11 @@ static void against_scatter(struct hf_context *c)
         }
 }
 
-// Lamps a pixel apart have highlights of which each pixel differs by no more than what the circle has moved, and the
-// nodes of the blend and the borders of cells and tiles are no exception. A row's half-width is the mean of the circle's
-// over a pixel's height, so when the circle moves along columns by t it changes by t times the difference of half-widths a
-// pixel apart, which is sqrt(2 r) at most, at its top; along rows by t. The sum of weights follows by less than t. Full
-// resolution: coarser pixels would make lamps differ by their place in them.
+// Highlights of lamps a pixel apart differ in each pixel by no more than the circle has moved, also across nodes of the
+// blend and borders of cells and tiles. A row's half-width is the circle's mean over a pixel's height. If the circle
+// moves by t along columns, it changes by t times the difference of half-widths a pixel apart, at most sqrt(2 r) at its
+// top; along rows it changes by t. The sum of weights changes by less than t. Full resolution, because coarser pixels
+// would make lamps differ by their place in them.
 static void continuous(struct hf_context *c)
 {
     const int width = 300, height = 200;
@@ -190,7 +190,7 @@ static void continuous(struct hf_context *c)
     }
 }
 
-// A near surface shows nothing of what is behind it, far as it is from its edge, whatever the aperture.
+// A near surface shows nothing of its background far from its edge, with any aperture.
 static void opaque(struct hf_context *c)
 {
     const int width = 260, height = 180;
@@ -225,8 +225,8 @@ static void opaque(struct hf_context *c)
     picture_free(&radii);
 }
 
-// A shape that covers little of its square counts each of its samples as much as that is little, by 20 and more: of the
-// largest floats, too, the sums are finite.
+// A shape that covers little of its square has large weights for its samples, 20 and more. Their sums are finite for
+// the largest floats too.
 static void largest_floats(struct hf_context *c)
 {
     struct picture colour = picture_new(40, 24, 4), radii = picture_new(40, 24, 1);

@@ -12,10 +12,10 @@
 
 enum { MOST = 4, PLAIN = 20, PICTURES = 24, CATS_EYES = 30, CASES = 35, PICTURE_WIDTH = 7, PICTURE_HEIGHT = 5 };
 
-// Surfaces of radii of which no two differ by about 1 and no one is the middle of two others, and far enough apart not to
-// be merged where hidden samples are looked for: what the engine decides by comparing radii does not hang on a rounding.
-// Colours of two surfaces are as far apart as they can be, with a pattern on each: how much of a mixed pixel is whose is
-// then known to a few roundings, and is seldom all or nothing.
+// Surfaces whose radii do not differ by about 1, are not midway between two others, and are too far apart to be merged
+// in the search for hidden samples: so no decision that compares radii depends on a rounding. The colours of two
+// surfaces are as far apart as possible, with a pattern on each. So the shares of a mixed pixel are known to a few
+// roundings, and are seldom 0 or 1.
 static const struct {
     int count;
     float radius[MOST];
@@ -57,26 +57,28 @@ static struct scene stage_new(struct rng *rng, int n, int width, int height, int
     return s;
 }
 
-// Roundings, half a unit each, in units of the largest sample around. Un-mixing: 48 products and sums of each mean
-// (96), how much each sample counts, the fourth power of a quotient of sums of three (4 * (3 + 3 + 1) + 2), and a share
-// of which numerator and denominator are such means' products, 6 times as large as what they leave where colours differ
-// by 0.3 or more, of 0.3 to 0.9: 6 * (96 + 30 + 20). Highlights: 18 + 18 sums of roots and squares of them, 60. Hidden:
-// what of a mixed pixel is behind, 8, three products and sums a level, twice (8 * 2 * 5), nine taps of each (9 * 5 *
-// 3), means of 13, twice (2 * (13 + 3)), and squares: 280, how much each counts in these, twice 4 * (3 + 3 + 1) + 2:
-// 60, and how far it is of the middle's colour, twice the quotient, as it is, of sums of three: 2 * 2 * (5 + 2 + 2) =
-// 36. Patterns: how far a choice is off and the variance by which that is measured, 61 products and sums each (4 * 61),
-// to the fourth power, and twice as much for the trust in the best: (4 + 2) * 4 * 61. A slice's share, its sums over 4
-// x 4 pixels: 24. Rows of runs: 10 a row and the sum of rows, 2 * 46 + 2; of a disc, twice as many columns as rows: 140
-// at the most. A cover is such sums too, and the far stack is divided by what it leaves open, a sixteenth at the least:
-// 16 * (24 + 140). Upsampling: 6 a level, 3 levels. A stack: 7 a slice, of which a sample is in two, and all that lies
-// before weighs on what is open: 7 * 40. The result: 12. Single floats for the table's weights: 4 more.
+// Roundings, half a unit each, in units of the largest sample around.
+// Un-mixing: 48 products and sums for each mean (96); the weight of each sample, the fourth power of a quotient of sums
+// of three (4 * (3 + 3 + 1) + 2); and a share whose numerator and denominator are products of such means, 6 times as
+// large as their difference where colours differ by 0.3 or more, of 0.3 to 0.9: 6 * (96 + 30 + 20).
+// Highlights: 18 + 18 sums of roots and their squares, 60.
+// Hidden samples: the back of a mixed pixel, 8; three products and sums a level, twice (8 * 2 * 5); nine taps of each
+// (9 * 5 * 3); means of 13, twice (2 * (13 + 3)), and squares: 280. Their weights in these means, twice 4 * (3 + 3 + 1)
+// + 2: 60. Their distance from the middle's colour, twice a quotient of sums of three: 2 * 2 * (5 + 2 + 2) = 36.
+// Patterns: the error of a choice and the variance that it is compared with, 61 products and sums each (4 * 61), to the
+// fourth power, and twice as much for the trust in the best one: (4 + 2) * 4 * 61.
+// Slices: a share and its sums over 4 x 4 pixels: 24. Rows of runs: 10 a row and the sum of rows, 2 * 46 + 2; of a
+// disc, twice as many columns as rows: at most 140. A cover is such a sum too, and the far stack is divided by what it
+// leaves open, at least a sixteenth: 16 * (24 + 140). Upsampling: 6 a level, 3 levels. A stack: 7 a slice, of which a
+// sample is in two, and all that lies before affects what is open: 7 * 40. The result: 12. The table's weights are
+// floats: 4 more.
 static const double ROUNDINGS =
     6 * (96 + 30 + 20) + 60 + 280 + 60 + 36 + 6 * 4 * 61 + 24 + 140 + 16 * (24 + 140) + 18 + 7 * 40 + 12 + 4;
 
 static void against_double(struct hf_context *c, struct rng *rng, int n)
 {
     const int width = 40 + rng_below(rng, 20), height = 30 + rng_below(rng, 16), lamps = n % 3 == 2 ? 3 : 0;
-    // Cat's eyes: of small radii, because the reference makes one at every pixel.
+    // Cat's eyes have small radii, because the reference makes one for every pixel.
     const int cats_eye = n >= CATS_EYES, stage = cats_eye ? 5 + n % 2 : n % STAGES;
     const int shaped = cats_eye ? n % 2 : n % 4 == 1, drawn = n >= PICTURES && !cats_eye;
     struct scene s = stage_new(rng, stage, width, height, 3 + rng_below(rng, 2), lamps);

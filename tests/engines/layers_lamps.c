@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The layers engine: lamps far behind a sharp edge that cuts their discs, beside what a lens sees of these two surfaces.
+// The layers engine: lamps far behind a sharp edge that cuts their discs, compared with what a lens sees of both
+// surfaces.
 #include <math.h>
 
 #include "support/check.h"
@@ -8,20 +9,21 @@
 enum { WIDTH = 320, HEIGHT = 96, LAMPS = 3, RADIUS = 16, PARTS = 8 };
 
 static const double PI = 3.14159265358979323846, SIZE = 2.5, BOX = 0.1, WALL = 0.25;
-// Of the lamps' middles above the edge: half of one is hidden, a corner of the next, and the last stands just above.
+// Heights of the lamps' middles above the edge: half of the first is hidden, a corner of the next; the last is just
+// above.
 static const double above[LAMPS] = {0, 2, 4};
 
 struct lamps {
     double x[LAMPS], y[LAMPS], light;
 };
 
-// The box begins below a line that is not quite level: its pixels are mixed by all shares.
+// The box begins below a line that is not quite level, so its pixels are mixed with all possible shares.
 static double edge(double x)
 {
     return 56 + 0.06 * x;
 }
 
-// What two discs have in common.
+// The area that two discs share.
 static double common(double apart, double a, double b)
 {
     const double small = fmin(a, b), large = fmax(a, b);
@@ -34,7 +36,7 @@ static double common(double apart, double a, double b)
            e * sqrt(large * large - e * e);
 }
 
-// The wall with its lamps from a point: blurred, or through a pinhole.
+// The wall with its lamps at a point: blurred, or through a pinhole.
 static double wall(const struct lamps *l, double x, double y, int blurred)
 {
     double light = 0;
@@ -55,15 +57,15 @@ static double pixel(const struct lamps *l, int x, int y, int blurred)
     return sum / (PARTS * PARTS);
 }
 
-// Is all of a lamp's light seen from all of a pixel, if nothing is before it? A pixel's half diagonal, and one of half
-// resolution on either side of which discs are upsampled.
+// Whether all of a lamp's light reaches all of a pixel if nothing is before it. The margin is a pixel's half diagonal,
+// and a half-resolution pixel on either side, from which discs are upsampled.
 static int inside(const struct lamps *l, int i, int x, int y)
 {
     return hypot(x + 0.5 - l->x[i], y + 0.5 - l->y[i]) < RADIUS - SIZE - 0.75 - 2;
 }
 
-// What is up to eight times as bright as a mixed pixel may be what lies behind it, so the part of the pixel in which that
-// is seen is found to be an eighth of what it is at the least. Of the lamp that is cut in half nobody knows more than half.
+// The back of a mixed pixel may be eight times as bright as the pixel. So the part in which the back is visible is
+// found to be at least an eighth of what it is. Of the lamp that the edge cuts in half, the picture shows only half.
 static void discs(struct hf_context *c, double light, enum hf_layers_quality quality)
 {
     struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1);
@@ -102,8 +104,8 @@ static void discs(struct hf_context *c, double light, enum hf_layers_quality qua
     picture_free(&radius);
 }
 
-// Of a lamp one pixel is left, at the rim of a sharp box and with its depth: the box's edge keeps no speck, and above it there
-// is light. A line along the rim is the box's own, lit from behind, and stays as it is.
+// One pixel of a lamp is left, at the rim of a sharp box and with the box's depth. The box's edge must not keep a
+// speck, and the light must appear above it. A line along the rim is the box's own, lit from behind, and stays.
 static void rim(struct hf_context *c, double light)
 {
     enum { TOP = 60, AT = 60, FROM = 160, TO = 280 };
@@ -119,13 +121,13 @@ static void rim(struct hf_context *c, double light)
     p.max_radius = HF_DERIVE;
     const struct hf_depth depth = picture_radii(&radius);
     struct picture out = render(c, &colour, &depth, &p);
-    // Of the pixel and of those beside it a quarter is of what is behind at the most, and there the disc is no brighter than
-    // one of as many lamps as a mean of hidden samples spreads it to: 13 quads along the rim.
+    // At most a quarter of the pixel and of those beside it belongs to the back. There the disc is no brighter than
+    // that of as many lamps as a mean of hidden samples spreads it to: 13 quads along the rim.
     const double disc = light / (PI * RADIUS * RADIUS), most = BOX + (WALL + 4 * 13 * disc) / 4;
     for (int x = AT - 2; x <= AT + 2; x++)
         CHECK_MSG(out.plane[1][TOP * WIDTH + x] <= most, "light %g: %g at %d of the rim, not %g", light,
                   out.plane[1][TOP * WIDTH + x], x, most);
-    // Half the disc of a quarter of the light.
+    // Half of the disc, with a quarter of the light.
     double sum = 0;
     for (int k = 0; k < WIDTH * TOP; k++)
         sum += k % WIDTH < AT + 2 * RADIUS ? out.plane[1][k] - WALL : 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What layers are made of, each alone: how densely slices lie, which colour stands for a side of an edge of which nothing
-// is sure, and what a lamp counts among hidden samples.
+// The parts of layers one by one: how closely slices lie, which colour a side of an edge gets if none of its pixels is
+// un-mixed, and how much a lamp counts among hidden samples.
 #include <float.h>
 #include <math.h>
 
@@ -11,8 +11,8 @@
 #include "support/check.h"
 #include "support/render.h"
 
-// Slices cover the radii, in their order, and no two are farther apart than the spacing or a 32nd of their radius, of the
-// finer qualities half of 1 or a 16th spacings; and a rounding. There is none between 0 and 1.
+// Slices cover the radii in order. No two are farther apart than the spacing or a 32nd of their radius (in the finer
+// qualities half of 1 or a 16th spacings), plus a rounding. There is none between 0 and 1.
 static void slices(enum hf_layers_quality quality)
 {
     struct picture colour = picture_new(64, 48, 3), radii = picture_new(64, 48, 1);
@@ -43,8 +43,9 @@ static void slices(enum hf_layers_quality quality)
     picture_free(&radii);
 }
 
-// In front of a grey wall of which all is sure lies an edge of which nothing is: of its pixels, mixed with the wall more
-// and less, those least like the wall stand for it, by the eighth power of how much less: one half as far counts a 256th.
+// Before a grey wall of un-mixed pixels lies an edge whose pixels are all mixed with the wall, to different degrees.
+// Those least like the wall give the edge's colour, weighted by the eighth power of the difference: one half as
+// different counts a 256th.
 static void farthest(void)
 {
     enum { N = 7, AT = 3 };
@@ -65,11 +66,12 @@ static void farthest(void)
     float weight[2] = {0, 1}, mean[2][5] = {{0}, {0.5f, 0, 0, 0, 5}}, spread[2] = {0.25f, 0.5f};
     const double all = 1 + 2.0 / 256, want = (1 + 2 * 0.75 / 256) / all, r = (-7 - (6 + 8) / 256.0) / all;
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 1);
-    // Three products, sums and a quotient of either.
+    // Three products, sums and a quotient for each.
     CHECK_MSG(fabs(mean[0][0] - want) <= 7 * FLT_EPSILON && fabs(mean[0][4] - r) <= 7 * 8 * FLT_EPSILON,
               "colour %g of radius %g, not %g of %g", mean[0][0], mean[0][4], want, r);
     CHECK(mean[1][0] == 0.5f && mean[1][4] == 5);
-    // Nothing is known of a front of no weight, nor how far its colours spread, and half of it at half of what is little.
+    // A front without weight has an unknown spread, taken as 0; at half of the weight that counts as little, half of it
+    // is known.
     CHECK(spread[0] == 0 && spread[1] == 0.5f);
     weight[0] = 1 / (2 / (double)HF_UNMIX_LEAN - 1);
     spread[0] = 0.25f;
@@ -80,8 +82,8 @@ static void farthest(void)
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 0);
 }
 
-// A lamp of 4096 among hidden samples of 1, and as far as these, counts by the fourth power of 16 / 64, a 256th, and a tenth of
-// that as it is of another colour, of its place at the end of the line, where it is one of 49 parts.
+// A lamp of 4096 among hidden samples of 1 at the same depth. It counts by the fourth power of 16 / 64, a 256th; by a
+// tenth of that for its other colour; and by its place at the end of the line, one of 49 parts.
 static void lamp_in_line(void)
 {
     float one[HF_LAYERS_TAPS][6], out[6];
@@ -95,7 +97,7 @@ static void lamp_in_line(void)
         }
     const double want = (48 + 64.0 / 2560) / (48 + 1.0 / 2560);
     hf_layers_smooth_c((const float *const(*)[6])in, NULL, 3, 1, to);
-    // Thirteen products and sums, and a quotient, of either.
+    // Thirteen products and sums, and a quotient, for each.
     CHECK_MSG(fabs(out[0] - want) <= 28 * FLT_EPSILON * want, "%g, not %g", (double)out[0], want);
     CHECK(out[4] == 1 && fabsf(out[5] - 20) <= 28 * 20 * FLT_EPSILON);
 }

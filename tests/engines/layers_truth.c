@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers beside what a ray-traced lens sees: a quality is as accurate as it says, and more is never worse.
+// Layers compared with a ray-traced lens: each quality is as accurate as promised, and a higher one is never worse.
 //
 //     layers_truth images      the folder of the ray-traced scenes
 #include <stdio.h>
@@ -47,7 +47,7 @@ static void measure(struct hf_context *c, const char *folder, const struct truth
         const double psnr = display_psnr(&out, &want);
         if (order[i] == HF_LAYERS_STANDARD)
             CHECK_MSG(psnr >= t->least, "%s: %.2f dB from the truth", t->name, psnr);
-        // What one scene loses to the luck of its pattern.
+        // A tolerance for the luck of one scene's pattern.
         CHECK_MSG(psnr > before - 0.1, "%s: quality %d of %d is %.2f dB from the truth, the one below %.2f", t->name,
                   i + 1, QUALITIES, psnr, before);
         before = psnr;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory in proportion to what a picture can see: small pictures at the largest radius, drawn with every kind of aperture.
+// Memory in proportion to what a picture can show: small pictures at the largest radius, with every kind of aperture.
 #include <stdlib.h>
 
 #include "support/check.h"
 #include "support/render.h"
 
-// What the context holds, by its own allocator.
+// The bytes that the context holds, counted by its own allocator.
 struct held {
     size_t now, largest;
 };
 
-enum { HEAD = 64 };  // bytes before a block, where its size lies
+enum { HEAD = 64 };  // bytes before a block, which hold its size
 
 static void *take(void *cookie, size_t size, size_t align)
 {
@@ -36,7 +36,7 @@ static void give(void *cookie, void *p)
 
 enum { RADIUS = 2048, THREADS = 2 };
 
-// Sources from which a picture can be reached, clamped border and all, as one plane of floats.
+// One plane of floats of all sources that can reach a picture, clamped border included.
 static double plane_bytes(int width, int height, double wide)
 {
     return sizeof(float) * (2 * RADIUS * wide + width) * (2.0 * RADIUS + height);
@@ -46,8 +46,8 @@ struct look {
     const char *name;
     enum hf_engine engine;
     struct hf_aperture_params aperture;
-    // Planes that an engine may hold. The gather has whole windows of half resolution, a quarter of a plane each: up to 16
-    // of colours, CoC and sums for each of two threads. The others have some rows and tables alone.
+    // How many planes an engine may hold. The gather has whole windows of half resolution, a quarter of a plane each:
+    // up to 16 of colours, CoC and sums for each of two threads. The others have only some rows and tables.
     int planes;
     float pixel_aspect;
 };
@@ -77,7 +77,7 @@ static void try_one(const struct look *look, int width, int height)
     const struct hf_image dst = picture_image(&out), src = picture_image(&colour);
     depth.type = HF_DEPTH_COC;
     CHECK_INT(hf_plan(c, &dst, &src, &depth, &p, &report), HF_OK);
-    // Not the width of a squeezed shape: rows of it are long, but there are no more of them.
+    // A squeezed shape's width does not count: its rows are longer, but there are no more of them.
     const double bound = look->planes * plane_bytes(width, height, 1);
     CHECK_MSG((double)held.now <= bound && (double)report.memory <= bound,
               "%s, %s, %d x %d: holds %.0f MB, needs %.0f, bound %.0f", hf_engine_name(p.engine), look->name, width,

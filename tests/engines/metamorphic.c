@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pairs of renders of which one tells the other, for any engine, options, size and instruction set: what a channel, an
-// exposure, a mirror, a crop, threads, skipping and bad samples may change. A picture of one colour stays that; opaque
-// stays opaque; no mean leaves the range of what it is of.
+// Pairs of renders whose results must be related, for any engine, options, size and instruction set: what a change of
+// channels, exposure, mirror, crop, threads, skipping or bad samples may change. A picture of one colour keeps it,
+// opaque stays opaque, and no mean leaves the range of its samples.
 //
 //     metamorphic [COUNT [SEED]]
 #include <float.h>
@@ -13,7 +13,7 @@
 
 static const double U = FLT_EPSILON / 2;
 
-// A random case: every relation is tried on it that its engine and options promise.
+// A random case: it is tried with every relation that its engine and options promise.
 struct trial {
     unsigned seed;
     enum hf_isa isa;
@@ -21,7 +21,7 @@ struct trial {
     struct scene s;
     struct hf_context *c;
     struct picture out;
-    int margin;  // from how far a pixel's result may come
+    int margin;  // how far away a pixel's result may come from
 };
 
 static struct hf_params random_params(struct rng *rng)
@@ -51,7 +51,7 @@ static struct hf_params random_params(struct rng *rng)
 }
 
 // gather: two reaches of the near CoC and that of the taps, fill and upsampling, in half-resolution pixels. hexagon and
-// scatter: a radius, and what lies behind near pixels is looked for 2 radii and 20 pixels around. gaussian: four standard
+// scatter: a radius, and the fill behind near pixels reads 2 radii and 20 pixels around. gaussian: four standard
 // deviations, or two pixels an iteration. layers: subjects.c of the stability tests counts them.
 static int margin_of(const struct hf_params *p)
 {
@@ -99,7 +99,7 @@ static struct scene copied(const struct scene *s)
 
 // ---- pairs
 
-// Other threads, other tiles, no tile left out.
+// Other threads and tiles, and no tile skipped.
 static void run_otherwise(const struct trial *t, struct rng *rng)
 {
     struct hf_context *c =
@@ -115,7 +115,7 @@ static void run_otherwise(const struct trial *t, struct rng *rng)
 static void permuted(const struct trial *t)
 {
     if (t->p.engine == HF_ENGINE_LAYERS || t->p.gather.karis)
-        return;  // what hangs on brightness adds channels up in one order
+        return;  // engines that depend on brightness add channels in a fixed order
     struct scene s = copied(&t->s);
     for (int c = 0; c < 3; c++)
         memcpy(s.colour.plane[c], t->s.colour.plane[(c + 1) % 3], samples_of(&s.colour) * sizeof(float));
@@ -148,8 +148,8 @@ static void exposed(const struct trial *t, struct rng *rng)
     scene_free(&s);
 }
 
-// Everything that goes to coarser pixels takes the same ones together in the mirror where the width is a multiple of these
-// and what decides is alike within each; an aperture has a mirror image when it has none or an even number of blades.
+// A mirrored picture groups the same pixels to coarser ones if the width is a multiple of their size, and if depth and
+// decisions are equal within each. An aperture has a mirror image if it has no blades or an even number of them.
 static void mirrored(const struct trial *t)
 {
     // A kernel of each pixel's own size takes its taps one by one, in their order.
@@ -173,7 +173,7 @@ static void mirrored(const struct trial *t)
     scene_free(&s);
 }
 
-// Roundings on the way of a constant that do not cancel, half units in the last place: subjects.c of the stability tests.
+// Roundings of a constant that do not cancel, half units in the last place; see subjects.c of the stability tests.
 static double constant_bound(const struct hf_params *p)
 {
     const double taps = 3 * (p->max_radius / fmin(p->view.pixel_aspect, 1) + 4);
@@ -206,7 +206,7 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-// Samples of a picture that differ from the trial's farther than m from these pixels.
+// How many samples differ from the trial's result farther than m from these pixels.
 static int changed_beyond(const struct trial *t, const struct picture *out, int x0, int y0, int x1, int y1, int m)
 {
     const int w = t->s.colour.width, h = t->s.colour.height;
@@ -241,7 +241,8 @@ static void bad_sample(const struct trial *t, struct rng *rng)
     scene_free(&s);
 }
 
-// A patch of what pictures hold at worst, in all channels: the same rules, but for what is finite, which is not repaired.
+// A patch of the worst values that pictures contain, in all channels. The same rules hold, except that finite values
+// are not repaired.
 static void bad_patch(const struct trial *t, struct rng *rng)
 {
     static const float values[] = {NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 1e30f, 65504, 1e-42f, -1};

@@ -24,11 +24,10 @@ static struct hf_params params_new(void)
 
 // ---- reference: discs at full resolution, radii up to 24
 
-// Roundings: two for a share and two for its weight, one each for what is settled, divided (2), and twice two for a
-// lerp,
-// three times over for a base, and 12 for what of a picture is visible, in units of the largest sample. And for a mixed
-// pixel's shares: 30 for a mean of 25 taps, 20 for what is made of two, and each counts for up to 16 where the two sides
-// are hardly apart. Shares are cut to whole 2^-20ths.
+// Roundings, in units of the largest sample: two for a share and two for its weight, one each for settling, division
+// (2), and twice two for a lerp, three times over as a base; 12 for the visible part of a sprite. For a mixed pixel's
+// shares: 30 for a mean of 25 taps, 20 for what is made of two, and each counts up to 16 times where the two sides
+// hardly differ. Shares are truncated to whole 2^-20ths.
 static void against_reference(struct hf_context *c, const char *isa)
 {
     const double bound = (40 + 16 * 50) * U + 0x1p-20;
@@ -91,7 +90,7 @@ static struct spot spot_at(struct hf_context *c, float radius, const struct hf_p
 
 static struct spot spot(struct hf_context *c, float radius, const struct hf_params *p)
 {
-    const int size = 2 * (int)(2.6f * fabsf(radius) + 8);  // its neighbours' pictures lie inside as well
+    const int size = 2 * (int)(2.6f * fabsf(radius) + 8);  // the sprites of its neighbours lie inside as well
     return spot_at(c, radius, p, size, size, size / 2, size / 2);
 }
 
@@ -106,14 +105,14 @@ static void highlights(struct hf_context *c, const char *isa)
         struct spot s = spot(c, radii[i], &p);
         const int size = s.out.width, x = size / 2;
         CHECK_MSG(fabs(s.energy[0] - 1e4) <= 0.1, "%s: radius %g: energy %.8g", isa, r, s.energy[0]);
-        // Below that a pixel is what there is.
+        // Smaller radii leave one pixel.
         if (r >= 0.56)
             CHECK_MSG(fabs(sqrt(s.area[0] / PI) - r) <= 0.5, "%s: radius %g: area %g", isa, r, s.area[0]);
         const float middle = s.out.plane[0][x * size + x];
         int wrong = 0;
         for (int j = 0; j < size * size; j++) {
             const double d = hypot(j % size - x, j / size - x);
-            // Beyond 64 a flat cap may be off by a row of the half-resolution sums more.
+            // Beyond radius 64 a flat cap may be off by another row of the half-resolution sums.
             const double off = r > 64 ? 0.75 : 0.5;
             wrong += d <= r - off && s.out.plane[0][j] < middle / 2;
             wrong += d >= r + off && d > 0 && s.out.plane[0][j] > middle / 2;
@@ -125,8 +124,9 @@ static void highlights(struct hf_context *c, const char *isa)
 
 // ---- options
 
-// A triangle, the middle of one of its sides turned by 20 degrees from +x towards +y: 80 degrees lead to a corner, 0.8 of the
-// radius off still inside, and -80 degrees to 20 beside the middle of another, where it ends at 0.53.
+// A triangle, with the middle of one side turned by 20 degrees from +x towards +y. At 80 degrees there is a corner, so
+// 0.8 of the radius is still inside. -80 degrees is 20 degrees beside the middle of another side, where the triangle
+// ends at 0.53.
 static void rotation(struct hf_context *c, const char *isa)
 {
     struct hf_params p = params_new();
@@ -181,10 +181,11 @@ static void options(struct hf_context *c, const char *isa)
     CASE("half resolution", scatter.resolution, HF_RESOLUTION_HALF, 1, 1, 1, 1);
     CASE("cat_eye in the middle", aperture.cat_eye, 1, 1, 1, 1, 1);
     for (int i = 0; i < n; i++) {
-        // A shape that is another everywhere keeps energy only as far as its area is the same. A source at q from the
-        // middle draws the disc around q within that around q (1 + k), k = 2 r over the diagonal: so those that cover a
-        // pixel p lie within r / (1 + k) of p / (1 + k). Each weighs 1 over its area, which is the disc's less 2 / PI of
-        // the second one's shift in radii, 2 k at the most, for they lie within 2 r.
+        // A shape that varies with its place keeps energy only as far as its area is the same. A source at q from the
+        // middle draws the part of the disc around q that lies within the disc around q (1 + k), k = 2 r over the
+        // diagonal. So the sources that cover a pixel p lie within r / (1 + k) of p / (1 + k). Each weighs 1 over its
+        // area, which is the disc's less 2 / PI of the second disc's shift in radii, at most 2 k, because they lie
+        // within 2 r.
         const int eye = cases[i].p.aperture.cat_eye > 0, size = eye ? 400 : 2 * x;
         const double k_eye = eye ? 2 * r / hypot(size, size) : 0, most = (1 + k_eye) * (1 + k_eye) * 1e4;
         const double least = most * (1 - 2 / PI * 2 * k_eye);
@@ -213,7 +214,8 @@ static void options(struct hf_context *c, const char *isa)
     p.aperture.ring = 0;
     picture_free(&hole.out);
 
-    // The lens of two circles one radius apart is 0.39 of one; a corner that is not the very corner has a bit more.
+    // The lens of two circles one radius apart has 0.39 of a circle's area. A place that is not the very corner has a
+    // bit more.
     p.aperture.cat_eye = 1;
     struct spot corner = spot_at(c, r, &p, 600, 600, 60, 60);
     CHECK_MSG(corner.area[0] / plain.area[0] < 0.6 && corner.area[0] / plain.area[0] > 0.3,
@@ -266,7 +268,7 @@ static struct hf_params random_params(struct rng *rng, struct hf_image *aperture
     return p;
 }
 
-// Skipping, threads, tiles, memory that was used before, fused or not.
+// Skipping, threads, tiles, reused memory, fused or not.
 static void same_bits(enum hf_isa isa, struct hf_context *scalar)
 {
     static const int tiles[][2] = {{16, 16}, {16, 33}, {48, 17}, {0, 0}};
@@ -323,7 +325,8 @@ static void moved(struct hf_context *c, const char *isa)
         scene_free(&mirror);
         picture_free(&a);
 
-        // A crop, within what sources, their means and mixed pixels reach; the cat's eye depends on where a pixel is.
+        // A crop, inside by the reach of sources, their means and mixed pixels. The cat's eye depends on a pixel's
+        // place.
         p.aperture.cat_eye = 0;
         a = render_scene(c, &s, &p);
         const int x0 = 2 * rng_below(&rng, 10), y0 = 2 * rng_below(&rng, 10);
@@ -359,7 +362,7 @@ static void moved(struct hf_context *c, const char *isa)
 
 // ---- hard cases
 
-// Constant in is constant out: 16 roundings; and nothing lies outside the range of what went in.
+// A constant stays constant, within 16 roundings, and no result leaves the input's range.
 static void constants(struct hf_context *c, const char *isa)
 {
     for (unsigned i = 0; i < 30; i++) {
@@ -453,7 +456,7 @@ static void melting(struct hf_context *c, const char *isa)
         for (int x = edge; x + 1 < w; x++)
             CHECK(row[x + 1] <= row[x]);
         CHECK(row[edge + (int)radii[i] + 3] == 0);
-        // Its other sides are those of the picture, and it stays whole there.
+        // Its other sides are the picture's edges, where it stays fully covered.
         for (int x = 0; x < edge - (int)radii[i] - 2; x++)
             CHECK_MSG(a.plane[0][x] > 0.999f, "%s: radius %g: %g at the picture's edge", isa, radii[i], a.plane[0][x]);
         picture_free(&a);
@@ -462,10 +465,11 @@ static void melting(struct hf_context *c, const char *isa)
     }
 }
 
-// An anti-aliased silhouette of something sharp stays one before what is blurred: each pixel shows of both what it covers.
-// With the radius of one of the two it would be off by up to half of what they differ by: stairs, 0.35 here. What a side's
-// mean takes from mixed neighbours it is off by: along a diagonal these weigh 2.45 sixteenths (two at 1, the rest at 1 / 4
-// and less), and the three sure ones, 1.06 of 2 / 25 + 1 / 64, 0.10; so 0.6 of the mean is, by less than half of 0.7.
+// An anti-aliased silhouette of a sharp object stays anti-aliased before a blurred background: each pixel shows of both
+// sides what they cover. With the radius of only one side it would be off by up to half of their difference: stairs,
+// 0.35 here. The error is what a side's mean takes from mixed neighbours: along a diagonal these weigh 2.45 sixteenths
+// (two at 1, the rest at 1 / 4 and less), and the three un-mixed ones, 1.06 of 2 / 25 + 1 / 64, 0.10. So 0.6 of the
+// mean is off, by less than half of 0.7.
 static void silhouette(struct hf_context *c, const char *isa)
 {
     const int w = 64, h = 64;
@@ -491,9 +495,9 @@ static void silhouette(struct hf_context *c, const char *isa)
     picture_free(&coc);
 }
 
-// A focus pull: no sample moves by more than a steady share of the largest one for each pixel of radius: all of it while a
-// pixel goes from sharp to blurred, 0.034 a step, and twice a size's 0.4 %. Where surfaces meet, how mixed a pixel is moves by
-// twice what its neighbours' radii move apart, and with it how much of it goes to another radius: 0.068 more.
+// A focus pull: per pixel of radius no sample moves by more than a steady share of the largest one: all of it while a
+// pixel goes from sharp to blurred, 0.034 a step, and twice a size's 0.4 %. Where surfaces meet, the mixed part changes
+// by twice the change of its neighbours' radii, and that part of the pixel moves to another radius: 0.068 more.
 static void focus_pull(struct hf_context *c, const char *isa)
 {
     const int w = 96, h = 80, steps = 200;
@@ -545,7 +549,7 @@ int main(int argc, char **argv)
         if (!hf_isa_available(isas[i]))
             continue;
         same_bits(isas[i], scalar);
-        // The rest has the same bits everywhere: once in C, once on the best there is.
+        // The remaining tests give the same bits everywhere: they run once in C, once on the best instruction set.
         if (isas[i] != HF_ISA_SCALAR && i + 1 < sizeof isas / sizeof *isas && hf_isa_available(isas[i + 1]))
             continue;
         struct hf_context *c = context_new(isas[i], 2, 0, 0);

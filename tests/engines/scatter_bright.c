@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scatter engine: samples of very different brightness. None of them changes a bit beyond its own reach, and each of
-// those that come together keeps its own accuracy. On one instruction set: the others have the same bits (scatter.c).
+// The scatter engine: samples of very different brightness. None changes a bit beyond its own reach, and samples that
+// meet keep their own accuracy. On one instruction set: the others have the same bits (scatter.c).
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "support/render.h"
 
 enum { WIDTH = 128, HEIGHT = 90, PIXELS = WIDTH * HEIGHT, X = 100, Y = 30, RADIUS = 9, HALVES = 2 };
-// A picture's last pixel, its mean's neighbours at half resolution, and those of the upsampling.
+// The sprite's last pixel, the neighbours of its mean at half resolution, and those of the upsampling.
 enum { REACH = RADIUS + 7 };
 
 static const double U = FLT_EPSILON / 2;
@@ -27,7 +27,7 @@ static struct scene stage(int channels)
             s.colour.plane[c][k] = powf(10, rng_range(&rng, -5, 1));
         s.depth.plane[0][k] = k % WIDTH < 40 ? -rng_range(&rng, 0.6f, RADIUS) : rng_range(&rng, 0.6f, RADIUS);
     }
-    // Lights stand on surfaces: of a mixed pixel all channels have one share.
+    // Lights stand on surfaces: in a mixed pixel all channels have the same share.
     for (int i = 0; i < 4; i++) {
         const int x = i ? 20 + 30 * (i - 1) : X, y = i ? Y + 45 : Y, at = y * WIDTH + x;
         for (int k = 0; k < PIXELS; k++)
@@ -43,7 +43,7 @@ static int is_far_off(int k)
     return dx < -REACH || dx > REACH || dy < -REACH || dy > REACH;
 }
 
-// Samples that differ away from (X, Y), in channels `from` to `to`.
+// Count the samples that differ away from (X, Y), in channels `from` to `to`.
 static int changed(const struct picture *a, const struct picture *b, int from, int to)
 {
     int n = 0;
@@ -70,7 +70,7 @@ static void far_off(struct hf_context *c, int half)
             for (int k = 0; k < 4; k++)
                 for (int j = 0; j < PIXELS; j++) {
                     bad += !isfinite(out.plane[k][j]);
-                    // Alpha has sums of its own, and other channels those of their brightness.
+                    // Alpha has sums of its own, and other channels have those of their brightness.
                     other += k != ch && memcmp(&out.plane[k][j], &calm.plane[k][j], sizeof(float));
                 }
             CHECK_MSG(!bad, "half %d, %g: %d samples are not finite", half, (double)values[i], bad);
@@ -83,7 +83,7 @@ static void far_off(struct hf_context *c, int half)
     scene_free(&s);
 }
 
-// The faintest there is to draw: holes of rings that are hardly there, and pixels that are hardly blurred.
+// The faintest samples that are drawn: barely existing holes of rings, and barely blurred pixels.
 static void faintest(struct hf_context *c, int half)
 {
     static const float rings[] = {0, 0.05f, 0.3f}, values_beside[] = {1e-42f, 65504, 1e30f, FLT_MAX};
@@ -112,7 +112,7 @@ static void faintest(struct hf_context *c, int half)
     }
 }
 
-// Lights of all kinds at once, at a distance from each other: around each there is what there would be without the others.
+// Lights of all kinds at once, far from each other: around each the result is as if it were alone.
 static void many(struct hf_context *c, int half)
 {
     struct scene s = stage(3);
@@ -134,8 +134,8 @@ static void many(struct hf_context *c, int half)
     scene_free(&s);
 }
 
-// A light beside a constant, one radius everywhere: what the light does not reach is the constant within 16 roundings, as
-// in a frame without it, and so is alpha everywhere.
+// A light beside a constant, one radius everywhere: beyond the light's reach the result is the constant within 16
+// roundings, as in a frame without the light, and so is alpha everywhere.
 static void beside_constant(struct hf_context *c, int half)
 {
     for (int i = 0; i < VALUES; i++) {
@@ -160,8 +160,8 @@ static void beside_constant(struct hf_context *c, int half)
     }
 }
 
-// A light that is hardly blurred: what of it is drawn lies anywhere between its own brightness and none, and all of its
-// energy is there.
+// A light that is barely blurred: the drawn part may have any brightness down to 0, and all of its energy is in the
+// result.
 static void faded(struct hf_context *c, int half)
 {
     static const float radii[] = {0.5001f, 0.501f, 0.51f, 0.55f, 0.7f, 1, 1.4f, -0.51f, -0.7f};
@@ -184,7 +184,7 @@ static void faded(struct hf_context *c, int half)
     }
 }
 
-// A crop knows nothing of a light that it does not hold.
+// A crop does not depend on a light outside it.
 static void crops(struct hf_context *c, int half)
 {
     struct scene s = stage(3);
@@ -205,7 +205,7 @@ static void crops(struct hf_context *c, int half)
     scene_free(&s);
 }
 
-// Everything as large as a float can be, of either sign.
+// Samples as large as a float can be, of both signs.
 static void largest(struct hf_context *c, int half)
 {
     for (int signs = 0; signs < 2; signs++) {
@@ -226,7 +226,7 @@ static void largest(struct hf_context *c, int half)
     }
 }
 
-// Alpha that is 1 all around stays 1, bit for bit, whatever it is elsewhere in the frame.
+// An alpha that is 1 all around stays 1, bit for bit, whatever it is elsewhere in the frame.
 static void opaque(struct hf_context *c, int half)
 {
     static const float elsewhere[] = {1e-42f, 0, 0.3f, 1.7f, 5, 6e4f, 1e12f, FLT_MAX};

@@ -33,7 +33,7 @@ static struct picture spot(struct hf_context *c, const struct hf_params *p, floa
     return out;
 }
 
-// Radius of the disc that holds the highlight's energy at the value of its middle.
+// The radius of a disc that has the highlight's energy at the brightness of its middle.
 static double radius_of(const struct picture *p)
 {
     double energy = 0;
@@ -42,7 +42,7 @@ static double radius_of(const struct picture *p)
     return sqrt(energy / p->plane[1][MIDDLE * SIZE + MIDDLE] / PI);
 }
 
-// r = |K (1 / P - 1 / z)|, K = aperture radius x focal length in pixels, and no more than the limit.
+// r = |K (1 / P - 1 / z)|, K = aperture radius x focal length in pixels, limited to the largest radius.
 static double expected(const struct hf_params *p, double z)
 {
     const double aperture = p->lens.focal_length_mm / 1000.0 / (2 * p->lens.f_number) / p->lens.world_unit_m;
@@ -84,7 +84,7 @@ static void camera(struct hf_context *c)
     }
 }
 
-// What belongs to an option that is not chosen, and options at their defaults, change no bit.
+// Options of a model that is not chosen, and options at their defaults, change no bit.
 static void neutral(struct hf_context *c)
 {
     const struct hf_params base = lens_params();
@@ -93,7 +93,7 @@ static void neutral(struct hf_context *c)
         cases[i] = base;
     cases[0].aperture.rotation = 30;  // of a disc
     cases[1].aperture.roundness = 0.7f;
-    cases[2].max_radius = 200;  // beyond what there is
+    cases[2].max_radius = 200;  // beyond all radii in the frame
     cases[3].aperture.ring = cases[3].aperture.chromatic = cases[3].aperture.cat_eye = 0;
     cases[4].aperture.squeeze = cases[4].view.pixel_aspect = 1;
     cases[5].scatter.resolution = HF_RESOLUTION_FULL;
@@ -103,7 +103,7 @@ static void neutral(struct hf_context *c)
         CHECK_MSG(picture_same_bits(&out, &plain), "option %d is not neutral", i);
         picture_free(&out);
     }
-    // The other way about: each has an effect once it is something else.
+    // The converse: each option has an effect once it has another value.
     struct hf_params blades = base;
     blades.aperture.blades = 5;
     struct picture five = spot(c, &blades, 4);

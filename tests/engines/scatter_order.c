@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scatter engine: what lies before what. Nothing shows through a surface, and nothing pops where one field ends and
-// the next begins. On one instruction set: the others have the same bits (scatter.c).
+// The scatter engine: occlusion. Nothing shows through a surface, and nothing pops where one field ends and the next
+// begins. On one instruction set: the others have the same bits (scatter.c).
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,9 +12,8 @@ enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 
 static const double U = FLT_EPSILON / 2;
 
-// A bright surface that is hardly in front of the focus, before black far away: inside it nothing is darker. What is
-// further in than a picture reaches is covered in full, but at the frame's edge, where what lies outside is estimated; 16
-// roundings.
+// A bright surface just in front of the focus, before black far away: inside it nothing is darker. Farther inside than
+// a sprite reaches it covers fully, except at the frame's edge, where the outside is estimated; 16 roundings.
 static void opaque_inside(struct hf_context *c)
 {
     static const float radii[] = {-0.6f, -0.75f, -1, -1.4f, -2};
@@ -57,8 +56,8 @@ static double jump(struct hf_context *c, const struct picture *colour, struct pi
     return worst;
 }
 
-// Noise of 0 to 1 beside noise far away. A picture's last rows weigh 128ths: at radius 1.25, the smallest in use here
-// where its size steps, a row is 0.3 of it. Nothing pops beyond that.
+// Noise of 0 to 1 beside noise far away. A sprite's last rows weigh 128ths: at radius 1.25, the smallest one here where
+// its size steps, a row is 0.3 of it. Nothing pops by more.
 static void thresholds(struct hf_context *c)
 {
     static const float radii[] = {-2.5f, -1.5f, -0.5f, 0, 0.5f, 1.5f, 2.5f};
@@ -79,8 +78,8 @@ static void thresholds(struct hf_context *c)
     picture_free(&radius);
 }
 
-// A bar in front of something black and sharp: it is spread over its surroundings, once. What is left of its light, of
-// what was there: all but what rounding and 16ths of a row lose.
+// A bar in front of a black, sharp background is spread over its surroundings exactly once. Of its light all is left
+// except what rounding and 16ths of a row lose.
 static void drawn_once(struct hf_context *c)
 {
     static const float radii[] = {-2, -5, -11};
@@ -106,8 +105,8 @@ static void drawn_once(struct hf_context *c)
     }
 }
 
-// Bars that cross before a flat wall far away, and one that is sharp: away from them it is as it was, and so it is behind
-// them. The bars are black, so what there is is the wall's share, nowhere less than a bar's picture leaves.
+// Crossing bars, and one sharp bar, before a flat wall far away. The wall stays the same away from the bars, and behind
+// them. The bars are black, so the result is the wall's share, nowhere less than a bar's sprite leaves.
 static void crossing_bars(struct hf_context *c)
 {
     for (int sharp = 0; sharp < 2; sharp++) {
@@ -118,11 +117,12 @@ static void crossing_bars(struct hf_context *c)
             colour.plane[0][k] = bar ? 0 : 1;
         }
         struct picture out = render_radii(c, HF_ENGINE_SCATTER, &colour, &radius, 0);
-        // Two bars 9 wide cover 18 x 24 - 81 of a disc of 452 where they cross: 0.78 at most. The old star was all black.
+        // Two bars 9 wide cover at most 18 x 24 - 81 of a disc of 452 where they cross: 0.78. The old star was fully
+        // black.
         const float middle = out.plane[0][HEIGHT / 2 * WIDTH + WIDTH / 2];
         CHECK_MSG(middle > 0.2f && middle < 0.5f, "%s wall: %g of it where bars cross", sharp ? "sharp" : "blurred",
                   (double)middle);
-        // Across a bar nothing but its own picture changes: no seam in the middle of it.
+        // Across a bar only its own sprite changes: there is no seam in the middle of it.
         for (int x = WIDTH / 2 - 6; x < WIDTH / 2 + 6; x++) {
             const float *row = out.plane[0] + 13 * WIDTH;
             CHECK_MSG(fabsf(row[x + 1] - row[x]) < 0.1f, "%s wall: from %g to %g at column %d of a bar",
@@ -134,8 +134,8 @@ static void crossing_bars(struct hf_context *c)
     }
 }
 
-// A light of radius 12 beside a nearer wall of a quarter of that. Where the wall's own blur ends it covers all that is
-// behind it: slices begin at 4 and are whole at 5, so what is left there is rounding.
+// A light of radius 12 beside a nearer wall of a quarter of that radius. Inside the wall's own blur the wall covers all
+// that is behind it: slices begin at 4 and are complete at 5, so only rounding is left there.
 static void hides_light(struct hf_context *c)
 {
     enum { W = 96, H = 64, EDGE = 48, BLUR = 3 };

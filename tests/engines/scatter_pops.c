@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scatter engine: parameters that move in tiny steps move the picture in tiny steps, beside lights too. The worst of
-// some steps is halved until nothing lies between its ends, or twenty times: what is left of the change is a jump. On one
+// The scatter engine: parameters that move in tiny steps move the picture in tiny steps, beside lights too. The worst
+// of some steps is halved until nothing lies between its ends, or twenty times: the remaining change is a jump. On one
 // instruction set: the others have the same bits (scatter.c).
 #include <math.h>
 #include <stdlib.h>
@@ -10,12 +10,12 @@
 
 enum { WIDTH = 72, HEIGHT = 56, PIXELS = WIDTH * HEIGHT, HALVINGS = 20, STEPS = 60 };
 
-// 8-bit codes. Half of one without lights, see continuity.c. A picture's radius steps by r / 1024, which moves 1 / (1024
-// pi r) of a light across its rim: of 40 at a radius of a pixel 0.012, where a code is 1 / 430 on the least colour there
-// is, 0.1: 5.3, and the half of the rest.
+// 8-bit codes. Without lights half a code, see continuity.c. A sprite's radius steps by r / 1024, which moves 1 / (1024
+// pi r) of a light across its rim: 0.012 of a light of 40 at a radius of one pixel. A code is 1 / 430 on the darkest
+// colour here, 0.1: 5.3 codes, plus that half.
 static const double NOISE = 0.5, LIGHTS = 5.8;
 
-// What moves.
+// What is moved.
 struct pull {
     const char *name;
     struct hf_params params;
@@ -32,7 +32,7 @@ static struct hf_params params_new(void)
     return p;
 }
 
-// Near on the left, far on the right, something sharp in the middle of the picture.
+// Near on the left, far on the right, a sharp object in the middle of the picture.
 static void near_and_far(struct picture *radius, struct hf_params *p, float t)
 {
     (void)p;
@@ -42,7 +42,7 @@ static void near_and_far(struct picture *radius, struct hf_params *p, float t)
     }
 }
 
-// Through the focus: near half a picture and far the other, both by little.
+// Through the focus: one half of the picture near, the other far, both only slightly.
 static void through_focus(struct picture *radius, struct hf_params *p, float t)
 {
     (void)p;
