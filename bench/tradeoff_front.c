@@ -83,13 +83,19 @@ static int may_be_chosen(const struct trade_setting *s)
     return 1;
 }
 
+double trade_gain_db(const struct trade_result *better, const struct trade_result *than)
+{
+    return 20 * log10(than->error / better->error);
+}
+
 static double error_on(const struct trade_result *r, int scene)
 {
     return r->at[scene].distance[BENCH_WHOLE].display_rmse;
 }
 
-// Whether a setting errs less overall, and on no scene by over 0.1 dB more.
-static int is_no_worse(const struct trade *t, const struct trade_result *better, const struct trade_result *than)
+// Whether a setting may be the next step: it takes longer, gains TRADE_STEP_DB overall, and loses at most 0.1 dB on any
+// scene.
+static int may_follow(const struct trade *t, const struct trade_result *better, const struct trade_result *than)
 {
     static const double same = 1.0116;  // 0.1 dB
     for (int s = 0; s < t->scenes; s++) {
@@ -97,7 +103,7 @@ static int is_no_worse(const struct trade *t, const struct trade_result *better,
         if (choosable && error_on(better, s) > same * error_on(than, s))
             return 0;
     }
-    return better->error < than->error && better->ms.median > than->ms.median;
+    return trade_gain_db(better, than) >= TRADE_STEP_DB && better->ms.median > than->ms.median;
 }
 
 // Whether another setting with fewer words errs equally and takes equally long, as far as can be told.
@@ -172,7 +178,7 @@ static void find_ways(struct ways *w, int limited)
         const int by = !limited && is_plain(&t->result[i]) ? TRADE_SETTINGS : 1;
         for (int m = k + 1; m < t->results; m++) {
             const int j = w->order[m];
-            if (w->length[j] > 0 && w->length[j] + by > w->length[i] && is_no_worse(t, &t->result[j], &t->result[i])) {
+            if (w->length[j] > 0 && w->length[j] + by > w->length[i] && may_follow(t, &t->result[j], &t->result[i])) {
                 w->length[i] = w->length[j] + by;
                 w->above[i] = j;
             }
@@ -180,8 +186,8 @@ static void find_ways(struct ways *w, int limited)
     }
 }
 
-// The cheapest setting that has a path; the steps above it are then as fine as possible. plain: only engines with their
-// defaults.
+// The cheapest setting that has a path; as many steps lie above it as TRADE_STEP_DB leaves room for. plain: only engines
+// with their defaults.
 static int cheapest(const struct ways *w, int plain)
 {
     for (int k = 0; k < w->t->results; k++) {
@@ -231,7 +237,7 @@ int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES])
         for (int k = 0; k < t->results; k++) {
             const struct trade_result *r = &t->result[order[k]];
             if (r->step > 0 && (q > 0 || r->farthest == INFINITY) &&
-                20 * log10(r->error / t->result[last].error) <= within_db[q]) {
+                trade_gain_db(&t->result[last], r) <= within_db[q]) {
                 place[q] = order[k];
                 break;
             }

@@ -93,27 +93,39 @@ static const struct trade_result *of_quality(const struct trade *t, int quality)
     return t->results < 2 || trade_qualities(t, place) ? NULL : &t->result[place[quality]];
 }
 
+// Those that choose the same step stand in one row: "high, best". Returns the first quality of the next row.
+static int row_of_qualities(const struct trade *t, int q, char names[64])
+{
+    const struct trade_result *r = of_quality(t, q);
+    for (int n = 0; q < TRADE_QUALITIES && of_quality(t, q) == r; q++)
+        n += snprintf(names + n, 64 - (size_t)n, "%s%s", n ? ", " : "", hf_name(HF_NAMES_QUALITY, q));
+    return q;
+}
+
 static void qualities(FILE *out, const struct trade *t)
 {
+    char names[64];
     if (!of_quality(t, 0))
         return;
     fputc('\n', out);
-    for (int q = 0; q < TRADE_QUALITIES; q++) {
+    for (int q = 0, next; q < TRADE_QUALITIES; q = next) {
         const struct trade_result *r = of_quality(t, q);
-        fprintf(out, "--quality %-9s %8.2f ms  %6.2f dB  %s\n", hf_name(HF_NAMES_QUALITY, q), r->ms.median,
-                db(r->error), r->setting->options);
+        next = row_of_qualities(t, q, names);
+        fprintf(out, "--quality %-16s %8.2f ms  %6.2f dB  %s\n", names, r->ms.median, db(r->error),
+                r->setting->options);
     }
 }
 
 void trade_qualities_table(FILE *out, const struct trade *t)
 {
+    char names[64];
     if (!of_quality(t, 0))
         return;
     fputs("| `--quality` | chooses | ms | dB |\n|---|---|---|---|\n", out);
-    for (int q = 0; q < TRADE_QUALITIES; q++) {
+    for (int q = 0, next; q < TRADE_QUALITIES; q = next) {
         const struct trade_result *r = of_quality(t, q);
-        fprintf(out, "| %s | `%s` | %.1f | %.1f |\n", hf_name(HF_NAMES_QUALITY, q), r->setting->options, r->ms.median,
-                db(r->error));
+        next = row_of_qualities(t, q, names);
+        fprintf(out, "| %s | `%s` | %.1f | %.1f |\n", names, r->setting->options, r->ms.median, db(r->error));
     }
 }
 
@@ -419,11 +431,11 @@ void trade_ladder_table(FILE *out, const struct trade *t)
         "// SPDX-License-Identifier: BSD-3-Clause\n"
         "// Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.\n"
         "//\n"
-        "// Settings worth having, cheapest first. Each takes longer than the one before and errs less on average; "
-        "on no scene\n"
-        "// where both may be chosen does it err by 0.1 dB more. Those of the gaussian engine are for blur no wider "
-        "than theirs;\n"
-        "// for a lens the list begins below them.\n"
+        "// Settings worth having, cheapest first. Each takes longer than the one before and errs less by 0.2 dB or "
+        "more on\n"
+        "// average; on no scene where both may be chosen does it err by 0.1 dB more. Those of the gaussian engine are "
+        "for blur\n"
+        "// no wider than theirs; for a lens the list begins below them.\n"
         "// clang-format off\n"
         "#define HF_LADDER_MEASURED \"%s, %s, %s, %d thread%s\"\n// The command's words; display-encoded root mean "
         "square "

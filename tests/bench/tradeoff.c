@@ -95,11 +95,11 @@ static void test_ladder(void)
     put(1, "b", 2, 0.01, 0.05, 0.09);
     put(2, "c", 4, 0.01, 0.04, 0.095);  // better than b on the mean, worse on scene two: cannot follow it
     put(3, "d", 8, 0.01, 0.03, 0.09);
-    put(4, "e", 16, 0.01, 0.029, 0.089);
-    put(5, "e --threads 1", 30, 0.01, 0.028, 0.088);
+    put(4, "e", 16, 0.01, 0.029, 0.088);
+    put(5, "e --threads 1", 30, 0.01, 0.025, 0.088);
     put(6, "worse", 20, 0.01, 0.2, 0.2);
     expect_steps(&t, (const int[]){1, 2, 0, 3, 4, 0, 0});
-    // Means in dB below the last: a 5.9, b 2.4, d 0.2, e 0.
+    // Means in dB below the last: a 5.9, b 2.5, d 0.2, e 0.
     int place[TRADE_QUALITIES];
     CHECK_INT(trade_qualities(&t, place), 0);
     CHECK_INT(place[0], 0);
@@ -124,6 +124,42 @@ static void test_ladder(void)
     put(3, "--engine b", 8, 0.01, 0.03, 0.05);
     put(4, "--engine b --x 3", 16, 0.01, 0.02, 0.03);
     expect_steps(&t, (const int[]){1, 0, 0, 2, 3});
+}
+
+// An error that is so many dB smaller than 0.1.
+static double below(double db)
+{
+    return 0.1 * pow(10, -db / 20);
+}
+
+// A step gains at least 0.2 dB over the one before: of settings that lie closer together, one is kept.
+static void test_steps_differ(void)
+{
+    struct trade t = empty(6);
+    int place[TRADE_QUALITIES];
+    put(0, "--engine a", 1, 0.01, 0.1, 0.1);
+    put(1, "--engine b --x 1", 2, 0.01, below(3.03), below(3.03));
+    put(2, "--engine b --x 2", 3, 0.01, below(3.06), below(3.06));
+    put(3, "--engine c", 4, 0.01, below(3.09), below(3.09));
+    put(4, "--engine b --x 3", 5, 0.01, below(3.12), below(3.12));
+    put(5, "--engine b --x 4", 20, 0.01, below(3.5), below(3.5));
+    // Of four within 0.1 dB the engine as it is, before its cheaper neighbours.
+    expect_steps(&t, (const int[]){1, 0, 0, 2, 0, 3});
+    // No step lies between the second and the last, so `high` is the last.
+    CHECK_INT(trade_qualities(&t, place), 0);
+    CHECK(place[0] == 0 && place[1] == 3 && place[2] == 5 && place[3] == 5);
+    // Where none is an engine as it is, the cheapest.
+    put(3, "--engine b --x 5", 4, 0.01, below(3.09), below(3.09));
+    expect_steps(&t, (const int[]){1, 2, 0, 0, 0, 3});
+    // What is most accurate by less than a step takes the place of the one before.
+    t = empty(3);
+    put(0, "a", 1, 0.01, 0.1, 0.1);
+    put(1, "b", 2, 0.01, below(1), below(1));
+    put(2, "c", 4, 0.01, below(1.19), below(1.19));
+    expect_steps(&t, (const int[]){1, 0, 2});
+    put(2, "c", 4, 0.01, below(1.21), below(1.21));
+    expect_steps(&t, (const int[]){1, 2, 3});
+    CHECK(fabs(trade_gain_db(&results[2], &results[1]) - 0.21) < 1e-9);
 }
 
 // What does not reach the radii of a scene is never chosen there.
@@ -213,6 +249,7 @@ int main(void)
     test_interval();
     test_rank();
     test_ladder();
+    test_steps_differ();
     test_reach();
     test_cache();
     return check_report();

@@ -109,7 +109,8 @@ static const struct tool_option options[] = {
      "autofocus.", NAME(engine, ENGINE)},
     {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings from those "
      "it was measured with: the cheapest that blurs as far as any lens (the gather); the cheapest within 1 dB "
-     "of the most accurate; within 0.25 dB; the most accurate. --explain says why, and what that costs and errs.", NAME(quality, QUALITY)},
+     "of the most accurate; within 0.25 dB; the most accurate. The last two are the same where nothing lies between, as "
+     "today. --explain says why, and what that costs and errs.", NAME(quality, QUALITY)},
     {"max-error", 0, TOOL_LOOK, "E", "The same by the error that is acceptable: root mean square distance from what a "
      "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1},
     {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
