@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What other programs reach on the scenes in images/, measured elsewhere on two threads with the exact radius given to
-// each.
+// each. GEGL on lights and foliage: against the truth of commit 38b9469, which was noisier.
 #ifndef HF_BENCH_OTHERS_H
 #define HF_BENCH_OTHERS_H
 
@@ -13,9 +13,9 @@ struct bench_other {
 
 enum { BENCH_OTHERS = 3 };
 static const struct bench_other bench_others[BENCH_OTHERS] = {
-    {"lights", 14.21, 25.85, 8.3, 25.37, 0.3},
+    {"lights", 14.20, 26.48, 8.4, 25.37, 0.3},
     {"fence", 19.85, 21.51, 2.7, 24.36, 0.3},
-    {"foliage", 22.11, 27.76, 16.9, 29.34, 0.3},
+    {"foliage", 21.66, 27.61, 16.2, 29.34, 0.3},
 };
 
 #endif

@@ -117,8 +117,11 @@ static void table(FILE *out, const void *what)
     fprintf(out, "\n%-16s", "GEGL lens-blur");
     for (int i = 0; i < SCENES; i++)
         fprintf(out, " %9.2f %10s", scenes[i].gegl, "");
-    fprintf(out, "\n\n%d threads; the last three rows were measured elsewhere, on two threads, GEGL in about 300 ms\n",
-            t->threads);
+    fprintf(
+        out,
+        "\n\n%d threads; the last three rows were measured elsewhere, on two threads, GEGL in about 300 ms; GEGL on "
+        "lights and foliage\nagainst an older truth\n",
+        t->threads);
     if (t->busy)
         fprintf(out, "The machine is busy: %d of %d medians are far above the least.\n", t->busy,
                 SCENES * (t->args->engine_given ? 1 : HF_ENGINE_COUNT));

@@ -9,13 +9,13 @@
 // The command's words; display-encoded root mean square error, geometric mean of the scenes and of the worst;
 // milliseconds of a megapixel; the parameters that the words stand for.
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 4", 0.057830f, 0.081377f, 1.945f, \
+    {"--engine gaussian --resolution quarter --iterations 4", 0.058137f, 0.078830f, 1.945f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_GAUSSIAN, .hexagon.resolution = 2, .scatter.resolution = 2, .gaussian.resolution = 2, .gaussian.iterations = 4}}, \
-    {"--engine gather", 0.036734f, 0.077205f, 28.84f, \
+    {"--engine gather", 0.036131f, 0.073274f, 28.84f, \
      {HF_PARAMS_DEFAULTS}}, \
-    {"--engine layers", 0.024426f, 0.037275f, 51.34f, \
+    {"--engine layers", 0.023636f, 0.032407f, 51.34f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS}}, \
-    {"--engine layers --layers-quality best --spacing 4", 0.023403f, 0.037456f, 134.7f, \
+    {"--engine layers --layers-quality best --spacing 4", 0.022665f, 0.032585f, 134.7f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.spacing = 4}}
 // steps of draft, standard, high and best
 #define HF_LADDER_QUALITIES 1, 2, 3, 3

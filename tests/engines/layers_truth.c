@@ -14,13 +14,16 @@ static const enum hf_layers_quality order[QUALITIES] = {HF_LAYERS_DRAFT, HF_LAYE
 struct truth {
     const char *name;
     float focus, f_number;
-    double least;  // dB that the standard quality must reach
+    double standard;  // dB that the standard quality has
 };
 
+// By that it may be worse before someone has to look: a step of the ladder. Instruction sets differ by 0.01 dB.
+static const double MARGIN = 0.2;
+
 static const struct truth scenes[] = {
-    {"lights", 5, 0.37f, 28.3},
-    {"fence", 6, 0.46f, 31.8},
-    {"foliage", 4, 0.7f, 33.9},
+    {"lights", 5, 0.37f, 29.79},
+    {"fence", 6, 0.46f, 33.75},
+    {"foliage", 4, 0.7f, 34.05},
 };
 
 static void measure(struct hf_context *c, const char *folder, const struct truth *t)
@@ -46,7 +49,8 @@ static void measure(struct hf_context *c, const char *folder, const struct truth
         struct picture out = render(c, &in, &d, &p);
         const double psnr = display_psnr(&out, &want);
         if (order[i] == HF_LAYERS_STANDARD)
-            CHECK_MSG(psnr >= t->least, "%s: %.2f dB from the truth", t->name, psnr);
+            CHECK_MSG(psnr >= t->standard - MARGIN, "%s: %.2f dB from the truth, it was %.2f", t->name, psnr,
+                      t->standard);
         // A tolerance for the luck of one scene's pattern.
         CHECK_MSG(psnr > before - 0.1, "%s: quality %d of %d is %.2f dB from the truth, the one below %.2f", t->name,
                   i + 1, QUALITIES, psnr, before);
