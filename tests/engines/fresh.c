@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What fresh memory holds: no engine's result may hang on it, at any width, resolution and instruction set. Each width has
-// one of four radii, another at each instruction set, and all of them when HF_LONG is set.
+// The contents of fresh memory: no engine's result may depend on it, at any width, resolution and instruction set. Each
+// width uses one of four radii, another one at each instruction set, and all of them if HF_LONG is set.
 //
 //     fresh [seed]
 #include <stdio.h>
@@ -18,7 +18,7 @@ static unsigned seed = 1;
 
 // ---- memory that was used before
 
-// Words of an old heap: any bits; plausible radii and colours; small integers; numbers near the largest.
+// Words of an old heap: random bits, plausible radii and colours, small integers, numbers near the largest.
 static uint32_t old_word(struct rng *rng)
 {
     const float value[2] = {rng_range(rng, -40, 40), rng_range(rng, -3e38f, 3e38f)};
@@ -37,8 +37,8 @@ static uint32_t old_word(struct rng *rng)
     }
 }
 
-// A file of such words, of which each block is a private copy: pages that nobody uses cost nothing. Blocks end where pages
-// that nobody may touch begin: what is read as an index and lies far off does not go unseen.
+// A file of such words, of which each block is a private copy, so pages that nobody uses cost nothing. Blocks end at
+// forbidden pages, so that an old word used as an index far away is noticed.
 enum { OLD_WORDS = 1 << 18, OLD_BYTES = 4 * OLD_WORDS, HEAD = 64, GUARD = 1 << 20 };
 
 static int heap_new(unsigned heap_seed)
@@ -103,7 +103,7 @@ static int heaps[SEEDS];
 
 static struct picture render_fresh(const struct scene *s, const struct hf_params *p, enum hf_isa isa, int *heap)
 {
-    // One cell: the widths decide what lies past the end of a row.
+    // One cell, so that widths decide what lies past the end of a row.
     const struct hf_config config = {
         .isa = isa, .threads = 1, .alloc = alloc_old, .free = free_old, .alloc_cookie = heap};
     const struct hf_depth depth = picture_radii(&s->depth);
@@ -114,7 +114,7 @@ static struct picture render_fresh(const struct scene *s, const struct hf_params
     return out;
 }
 
-// Renders that differ from that of the first heap.
+// Count the renders that differ from that on the first heap.
 static int others(const struct scene *s, const struct hf_params *p, enum hf_isa isa)
 {
     struct picture want = render_fresh(s, p, isa, &heaps[0]);
@@ -146,13 +146,13 @@ static void one(enum hf_engine engine, const char *name, enum hf_isa isa, int wi
 
 static void widths(enum hf_engine engine, const char *name, enum hf_isa isa)
 {
-    // The last is less than any normal number.
+    // the last is below any normal number
     static const float radii[] = {1, 8, 30, 1e-42f};
     const int resolutions = engine == HF_ENGINE_GATHER ? 1 : 2;
     for (int width = 1; width <= WIDEST; width++)
         for (int i = 0; i < 4; i++)
-            // The widths beside it, and other instruction sets, have the other radii. The scatter draws its sprites anew
-            // in each context, which takes the most time by far.
+            // The neighbouring widths, and other instruction sets, have the other radii. The scatter draws its sprites
+            // anew in each context, which takes by far the most time.
             for (int half = 0; half < resolutions; half++)
                 if (check_long() || (i + width + width / 4 + (int)isa) % (engine == HF_ENGINE_SCATTER ? 8 : 4) == 0)
                     one(engine, name, isa, width, radii[i], half);

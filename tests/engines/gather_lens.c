@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gather with radii that it finds in the depth: each field's kernel is that field's, light stays as much as it is, and
-// the picture comes nearer to what a lens sees.
+// The gather with radii that it finds in the depth: each field has its own kernels, light is conserved, and the picture
+// comes closer to what a lens sees.
 //
 //     gather_lens images      the folder of the ray-traced scenes
 #include <stdio.h>
@@ -33,14 +33,14 @@ static struct picture light_at(struct hf_context *c, const struct hf_params *p, 
     const struct picture out = render(c, &colour, &depth, p);
     struct hf_report report;
     CHECK_INT(hf_plan(c, &src, &src, &depth, p, &report), HF_OK);
-    // The radius over the largest there may be and back: two roundings.
+    // Dividing the radius by the largest possible one and multiplying back rounds twice.
     CHECK(fabsf(report.near_radius - NEAR) < 1e-5f && fabsf(report.far_radius - FAR) < 1e-5f);
     picture_free(&colour);
     picture_free(&radii);
     return out;
 }
 
-// How far from the light there is some, downwards: one row is free of the other field.
+// How far down from the light there is some. Rows below hold nothing of the other field.
 static int extent(const struct picture *p, int x)
 {
     int most = 0;
@@ -55,14 +55,14 @@ static void own_radii(struct hf_context *c)
     const struct hf_params p = lens_params();
     struct picture far = light_at(c, &p, POINT), near = light_at(c, &p, 40);
     // The lattice reaches h half-resolution pixels, the fill one more and the upsampling another: at most two pixels
-    // each, and the quad is two pixels itself.
+    // each; the quad itself is two pixels.
     const int far_reach = extent(&far, POINT), near_reach = extent(&near, 40);
     CHECK_MSG(far_reach >= (int)FAR && far_reach <= (int)FAR + 6, "far light reaches %d pixels, not %g", far_reach,
               (double)FAR);
     CHECK_MSG(near_reach >= (int)NEAR && near_reach <= (int)NEAR + 6, "near light reaches %d pixels, not %g",
               near_reach, (double)NEAR);
-    // Every step is a weighted mean with fixed weights on a quad's own grid: the light only moves. A sample is the sum of
-    // some 50 roundings of 6e-8.
+    // Every step is a weighted mean with fixed weights on a quad's own grid, so light only moves. A sample is the sum
+    // of about 50 roundings of 6e-8.
     double sum = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         sum += far.plane[1][i];
@@ -71,8 +71,8 @@ static void own_radii(struct hf_context *c)
     picture_free(&near);
 }
 
-// Without blur there is nothing near or far; radii so small that no byte would hold them next to 256 pixels stay what
-// they are in every storage.
+// Without blur nothing is near or far. Radii too small for a byte next to 256 pixels stay what they are in every
+// storage.
 static void small_radii(struct hf_context *c)
 {
     for (int storage = HF_STORAGE_FLOAT; storage <= HF_STORAGE_PACKED; storage++) {
@@ -121,7 +121,7 @@ static void truth(struct hf_context *c, const char *folder, const char *scene, f
     picture_free(&out);
 }
 
-// ---- the default look, whatever says how large the radius is ----
+// ---- the default look, for any source of the radius ----
 
 static struct picture at_radius(struct hf_context *c, const struct picture *colour, const struct picture *radii,
                                 float radius)
@@ -136,7 +136,7 @@ static struct picture at_radius(struct hf_context *c, const struct picture *colo
     return out;
 }
 
-// How far from a quad's middle half of its light's brightest pixel is reached, along (dx, dy).
+// How far from a quad's middle half of its brightest pixel's value is reached, along (dx, dy).
 static double half_reach(const struct picture *p, int x, int y, int dx, int dy)
 {
     const double most = p->plane[1][y * p->width + x];
@@ -150,8 +150,8 @@ static double half_reach(const struct picture *p, int x, int y, int dx, int dy)
     return 40;
 }
 
-// A square of half side r reaches 0.41 r farther along the diagonal. A fifth of r and a quarter of a pixel, which is what
-// linear interpolation on the half-resolution grid leaves, are less from radius 2 on.
+// A square of half side r reaches 0.41 r farther along the diagonal. The bound, a fifth of r plus a quarter of a pixel
+// for linear interpolation on the half-resolution grid, is less than that from radius 2 on.
 static void round_highlights(struct hf_context *c)
 {
     struct picture colour = picture_new(96, 96, 3), radii = picture_new(96, 96, 1);
@@ -177,7 +177,7 @@ static double energy(const struct picture *p)
     return sum;
 }
 
-// A light of 1.4 pixels that leaves the frame: half of its disc lies inside at most, and counts twice at most.
+// A light of 1.4 pixels that leaves the frame: at most half of its disc lies inside, and may count twice.
 static void leaving_light(struct hf_context *c)
 {
     struct picture colour = picture_new(96, 96, 3), radii = picture_new(96, 96, 1);
@@ -198,9 +198,9 @@ static void leaving_light(struct hf_context *c)
     picture_free(&radii);
 }
 
-// A near bar of 1.4 pixels, lit by how much of a pixel it covers, moves 0.1 pixel a frame: depth has no parts of pixels, so
-// that one or two columns are near, and colours that are mixed with the black behind belong to either. A column more or
-// less changes what is near by its mixed part, up to 0.4 of 1.4, 29 % of the light.
+// A near bar of 1.4 pixels, lit by the part of each pixel that it covers, moves 0.1 pixel a frame. Depth has no parts
+// of pixels, so one or two columns are near, and colours mixed with the black behind belong to either. One column more
+// or less changes the near light by its mixed part, up to 0.4 of 1.4, 29 % of the light.
 static void thin_bar(struct hf_context *c)
 {
     struct picture colour = picture_new(96, 96, 3), radii = picture_new(96, 96, 1);
@@ -223,8 +223,8 @@ static void thin_bar(struct hf_context *c)
     picture_free(&radii);
 }
 
-// A dark near bar before a bright wall, both out of focus by radii of their own: from its middle outwards it only gets
-// brighter. Half a display's code, 1/510, is for what upsampling makes of a slope.
+// A dark near bar before a bright wall, both out of focus by different radii: from its middle outwards it only gets
+// brighter. The tolerance of half a display code, 1/510, is for the upsampling of a slope.
 static void near_bar(struct hf_context *c)
 {
     enum { COLUMN = WIDTH / 2, END = WIDTH - 40 };
@@ -248,8 +248,8 @@ static void near_bar(struct hf_context *c)
         picture_free(made[i]);
 }
 
-// A near bar hides what lies nearest to its edge: 8 columns of black, before white. Where half of a disc of radius 30 lies
-// beyond the edge, 8 columns are a third of it; by the inverse of the distance to the fourth they are nearly all.
+// A near bar occludes what is nearest to its edge: 8 columns of black, before white. Of the half of a disc of radius 30
+// beyond the edge, 8 columns are a third; weighted by the inverse fourth power of the distance they are almost all.
 static void nearest_behind(struct hf_context *c)
 {
     struct hf_params p = lens_params();
@@ -259,8 +259,8 @@ static void nearest_behind(struct hf_context *c)
         for (int k = 0; k < 3; k++)
             colour.plane[k][i] = i % WIDTH < EDGE || i % WIDTH >= EDGE + 8;
     }
-    // Of the bar's colour half is left at its edge, and what is behind fills the rest: white beyond the 8 columns is at
-    // least twice as far from there as their middle, and counts less than half of that.
+    // Half of the bar's colour is left at its edge, and the background fills the rest. White beyond the 8 columns is at
+    // least twice as far away as their middle, and counts less than half of it.
     const struct hf_depth depth = picture_radii(&radii);
     struct picture out = render(c, &colour, &depth, &p);
     const float v = out.plane[1][MIDDLE * WIDTH + EDGE - 1];
@@ -270,9 +270,9 @@ static void nearest_behind(struct hf_context *c)
         picture_free(made[i]);
 }
 
-// A light of 4 x 4 pixels of radius 16 before a wall of radius 22: up to 7 pixels from its middle, less than its radius times
-// the step between levels, the reach of its corner and of upsampling, its disc is flat. The wall's discs are there too, with a
-// hole; every weight is the same wherever all of the light is seen, but for some 50 roundings.
+// A light of 4 x 4 pixels of radius 16 before a wall of radius 22. Its disc is flat up to 7 pixels from its middle: its
+// radius times the step between levels, less the reach of its corner and of upsampling. The wall's discs are there too,
+// with a hole. All weights are equal wherever all of the light is visible, within some 50 roundings.
 static void flat_highlight(struct hf_context *c)
 {
     enum { X = WIDTH / 2, REACH = 7 };
@@ -299,8 +299,8 @@ static void flat_highlight(struct hf_context *c)
         picture_free(made[i]);
 }
 
-// A light of 2 x 2 pixels on the frame's lowest rows: what is left of it is in its disc of radius 9, 16 of 1000, of which half
-// lies outside, so that the rest counts twice. Twice more is for upsampling.
+// A light of 2 x 2 pixels on the frame's lowest rows, in a disc of radius 9, of which half lies outside. 16 of 1000 is
+// left, and counts twice for the missing half; twice more is for upsampling.
 static void no_speck(struct hf_context *c)
 {
     struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
@@ -317,9 +317,9 @@ static void no_speck(struct hf_context *c)
         picture_free(made[i]);
 }
 
-// A bar that goes on beyond the frame covers as much at its edge as within. Of the half of a disc that is seen there the
-// middle row is 2 R of pi R^2 / 2 + R, R half the radius, and of a whole disc half as much: by R / (pi R^2 / 2 + R) counts
-// what rows differ by, at most 1. A quarter more is for discs made of pixels.
+// A bar that continues beyond the frame covers as much at its edge as inside. At the edge half of a disc is visible;
+// its middle row is 2 R of pi R^2 / 2 + R, R being half the radius, and half as much of a whole disc. So a difference
+// of rows, at most 1, counts by R / (pi R^2 / 2 + R). A quarter more is for discs made of pixels.
 static void bar_at_border(struct hf_context *c, float max_radius)
 {
     enum { LEFT = 140, RIGHT = 180, BAR_RADIUS = 24 };
@@ -343,8 +343,8 @@ static void bar_at_border(struct hf_context *c, float max_radius)
         picture_free(made[i]);
 }
 
-// A lamp beside a near bar: its own disc, of radius 6, does not reach over the bar, and what shows through from behind is
-// that of what lies around the lamp, at most 16 times as bright as without it.
+// A lamp beside a near bar: its own disc, of radius 6, does not reach over the bar. What shows through the bar comes
+// from the lamp's surroundings, and is at most 16 times as bright as without the lamp.
 static void no_ring(struct hf_context *c)
 {
     static const float WALL = 0x1p-10f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon engine: against a reference in double precision, its shape, its energy, and that neither
-// instruction sets, threads, tiles nor skipping show.
+// The hexagon engine: against a reference in double precision; its shape and energy; and that instruction sets,
+// threads, tiles and skipping change nothing.
 //
 //     hexagon [seed]
 #include <float.h>
@@ -25,16 +25,18 @@ static struct hf_params hexagon_params(void)
     return p;
 }
 
-// A line of n taps, four a place, rounds its weights' sums n times and 2 n more for what they weigh; radii and colours carry some
-// 30 more through loading, dividing, upsampling. What is divided by is not less than a quarter, in each of two passes.
+// A line of n taps, four per place, rounds its sums of weights n times, and 2 n more for the products; radii and
+// colours carry about 30 more through loading, dividing and upsampling. The divisor is at least a quarter, in each of
+// two passes.
 static double bound(const struct hf_params *p, double reach)
 {
     const double taps = 4 * (reach + 4) / fmin(p->view.pixel_aspect, 1);
     return 2 * 4 * (3 * taps + 30) * U;
 }
 
-// Shares of mixed pixels are whole 2^-20ths, of which one may be another by 16 times 50 roundings (scatter.c); a sample's weight
-// and radius go from the pixel's own to the back's within a 32nd. Below a difference of radii of 0.75 nothing is mixed.
+// Shares of mixed pixels are whole 2^-20ths, and may be off by one because of 16 times 50 roundings (scatter.c). Within
+// a 32nd, a sample's weight and radius go from the pixel's own to the back's. Where radii differ by less than 0.75
+// nothing is mixed.
 static double bound_shares(const struct hf_params *p, const struct picture *r)
 {
     float low = r->plane[0][0], high = low;
@@ -108,7 +110,7 @@ static void test_reference(struct rng *rng)
     }
 }
 
-// ---- the same bits ----
+// ---- equal bits ----
 
 static void test_same_bits(struct rng *rng)
 {
@@ -165,7 +167,7 @@ static struct picture filled(int width, int height, int channels, float value)
     return p;
 }
 
-// Is (x, y) in the hexagon of side s whose corner is up, turned by degrees?
+// Whether (x, y) is in the hexagon of side s with a corner up, turned by that many degrees.
 static int in_hexagon(double x, double y, double s, double degrees)
 {
     for (int i = 0; i < 6; i++) {
@@ -176,7 +178,7 @@ static int in_hexagon(double x, double y, double s, double degrees)
     return 1;
 }
 
-// One highlight in a picture of one radius: its energy, its area, its outline.
+// One highlight in a picture of one radius: check its energy, its area and its outline.
 static void test_highlight(float radius, float degrees, enum hf_resolution resolution, int uniform)
 {
     enum { N = 121 };
@@ -192,8 +194,9 @@ static void test_highlight(float radius, float degrees, enum hf_resolution resol
     const struct hf_depth depth = picture_radii(&r);
     struct picture out = rendered(&in, &depth, &p);
     double sum = 0, inside = 0, wrong = 0;
-    // The last place of either line lies up to 0.6 beyond its end, and the pixels around a place up to the root of 2 beside
-    // it, those of the square 0.7 beside its middle: 4.1. At half resolution all but the last twice, and upsampling 2.1.
+    // The last place of a line lies up to 0.6 beyond its end; the pixels around a place lie up to sqrt(2) beside it,
+    // those of the square 0.7 beside its middle: 4.1. At half resolution all except the last count twice, and
+    // upsampling adds 2.1.
     const double s = fabs(radius), soft = resolution == HF_RESOLUTION_HALF ? 9 : 4.1;
     const double flat = 4e4 / (1.5 * sqrt(3) * s * s);
     for (int y = 0; y < N; y++)
@@ -208,9 +211,9 @@ static void test_highlight(float radius, float degrees, enum hf_resolution resol
                           dx, dy);
             }
         }
-    // Each pixel rounds as often as bound() says, and they err apart.
+    // Each pixel rounds as often as bound() says, and their errors are independent.
     CHECK_MSG(fabs(sum / 4e4 - 1) <= 1e-5, "radius %g, %g degrees: energy %.8g of 1", radius, degrees, sum / 4e4);
-    // Of a square of 2 x 2 the rhombi's seams and bilinear taps make some unevenness.
+    // The rhombi's seams and bilinear taps make a square of 2 x 2 somewhat uneven.
     CHECK_MSG(wrong < 0.4 && inside > 0, "radius %g, %g degrees, %s: uneven by %g", radius, degrees,
               resolution ? "half" : "full", wrong);
     picture_free(&out);
@@ -268,7 +271,7 @@ static void test_invariance(struct rng *rng)
         p.hexagon.resolution = (enum hf_resolution)(i % 2);
         struct hf_depth depth = picture_depth(&s.depth);
         struct picture whole = rendered(&s.colour, &depth, &p);
-        // A part with a margin of the reach: two lines and their bilinear neighbours, and what upsampling adds.
+        // A crop with a margin of the reach: two lines, their bilinear neighbours, and upsampling.
         const int margin = 24, x0 = 2 * rng_below(rng, 20), y0 = 2 * rng_below(rng, 20);
         struct picture part = crop(&s.colour, x0, y0, 110, 96), z = crop(&s.depth, x0, y0, 110, 96);
         depth = picture_depth(&z);
@@ -296,7 +299,8 @@ static void test_invariance(struct rng *rng)
     }
 }
 
-// Radii that change by e change a sample's share by some e, on two lines: no more than a few e per pixel of radius.
+// If radii change by e, a sample's share changes by about e on each of two lines: by no more than a few e per pixel of
+// radius.
 static void test_no_popping(struct rng *rng)
 {
     for (int i = 0; i < 24; i++) {
@@ -304,7 +308,7 @@ static void test_no_popping(struct rng *rng)
         struct picture r = picture_new(60, 44, 1), moved = picture_new(60, 44, 1);
         const float e = 0x1p-10f;
         random_radii(rng, &s, &r, 6);
-        // A focus pull moves all radii alike; every other time through the focus, and to where rounding starts.
+        // A focus pull moves all radii equally; every other time through the focus, down to where rounding starts.
         for (int k = 0; k < 60 * 44; k++) {
             r.plane[0][k] += i % 2 ? rng_range(rng, -2, 2) : -e / 2;
             moved.plane[0][k] = r.plane[0][k] + e;
@@ -351,7 +355,7 @@ static void test_parameters(struct rng *rng)
         CHECK_MSG(!picture_same_bits(&out, &base), "parameter %d has no effect", i);
         picture_free(&out);
     }
-    // The limit with a lens, whose radii have none of their own; one that no radius reaches changes nothing.
+    // The limit for a lens, whose radii have no limit of their own; a limit that no radius reaches changes nothing.
     struct hf_params lens = plain;
     lens.model = HF_MODEL_LENS;
     lens.lens.f_number = 0.02f;
@@ -364,7 +368,7 @@ static void test_parameters(struct rng *rng)
     CHECK(!picture_same_bits(&open[0], &open[2]));
     for (int i = 0; i < 3; i++)
         picture_free(&open[i]);
-    // What is the default, or belongs to other engines, changes nothing.
+    // Default values, and options of other engines, change nothing.
     struct hf_params same[6];
     for (int i = 0; i < 6; i++)
         same[i] = plain;
@@ -379,7 +383,7 @@ static void test_parameters(struct rng *rng)
         CHECK_MSG(picture_same_bits(&out, &base), "parameter %d has an effect at its default", i);
         picture_free(&out);
     }
-    // Same shape after a sixth of a turn, but other sides of its bilinear taps; nothing where there is no radius.
+    // A sixth of a turn gives the same shape, but other bilinear taps; without a radius nothing changes.
     struct hf_params none = plain;
     none.range.strength = 0;
     struct picture out = rendered(&s.colour, &depth, &none);
@@ -394,7 +398,7 @@ static void test_parameters(struct rng *rng)
     scene_free(&s);
 }
 
-// Radius 0 and nothing that reaches: the input's bits, -0 too.
+// Where the radius is 0 and nothing reaches, the result has the input's bits, even -0.
 static void test_sharp(void)
 {
     struct picture in = filled(64, 48, 3, -0.0f), r = filled(64, 48, 1, 0);
@@ -418,7 +422,7 @@ static void test_sharp(void)
     picture_free(&r);
 }
 
-// The largest numbers there are, of both signs: no sum of them overflows, and a constant stays what it is.
+// The largest numbers of both signs: no sum of them overflows, and a constant stays constant.
 static void test_largest(struct rng *rng)
 {
     static const enum hf_isa isas[] = {HF_ISA_SCALAR, HF_ISA_AUTO};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hexagon engine where radii differ: what lies before something else keeps its shape, and what covers next to nothing
-// changes next to nothing. On one instruction set, and in C.
+// The hexagon engine where radii differ: a light before another surface keeps its shape, and a pixel that covers almost
+// nothing changes almost nothing. On one instruction set, and in C.
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,7 +9,7 @@
 
 enum { SIZE = 120, PIXELS = SIZE * SIZE, MIDDLE = SIZE / 2 };
 
-// Pixels that do not shine between two of their line that do; lines are `down` apart.
+// Count the dark pixels between two bright ones of their line; lines are `down` apart.
 static int gaps(const float *plane, int step, int down, float shine)
 {
     int dark = 0;
@@ -26,9 +26,9 @@ static int gaps(const float *plane, int step, int down, float shine)
     return dark;
 }
 
-// A bright light of seven pixels in front of a wall farther off: its hexagon has no notches, which were as large as
-// itself. Along rows and columns all that lies between what shines by a tenth of what it would as a disc shines as well, but
-// for a row of its own seven pixels: what lies behind it has another radius.
+// A bright light of seven pixels in front of a farther wall: its hexagon has no notches, which once were as large as
+// the light. Along rows and columns, every pixel between two that reach a tenth of the disc's brightness reaches it
+// too, except in a row of the light's own seven pixels, where the wall behind has another radius.
 static void lights(struct hf_context *c, int half)
 {
     static const float radii[][2] = {{15.6f, 22}, {12, 20}, {18, 21}, {10, 19}};
@@ -52,7 +52,7 @@ static void lights(struct hf_context *c, int half)
     }
 }
 
-// How far inside its nearest edge a pixel lies in a hexagon around the middle.
+// How far inside the nearest edge of a hexagon around the middle a pixel lies.
 static double inside_hexagon(int k, double side)
 {
     double least = side;
@@ -63,13 +63,14 @@ static double inside_hexagon(int k, double side)
     return least;
 }
 
-// A light of five pixels before a dark wall of a larger radius is a hexagon of its own radius r, corners and all.
-// Inside, but for the light's own 2.5 pixels, half a place (0.6) and a pixel's diagonal (1.4), all of it arrives, whatever
-// the direction. What is found in a blur is divided by all of it: by 1 and what the light has more than the wall that it
-// stands for, its width (and a place) times the difference of 1 / radius; twice. 0.1 is left for a disc that is made of
-// pixels. Outside, softer by 4.1 (hexagon.c), comes what is as dark as the wall W: a mean radius is e larger than the light's
-// where the wall has e / r of the light, or more. At half resolution quads and their sampling blur more: hexagon.c's 9, and a
-// light is wider by a quad and a place on either side.
+// A light of five pixels before a dark wall of a larger radius becomes a hexagon of its own radius r, corners included.
+// Inside, all of it arrives in every direction, except within the light's own 2.5 pixels, half a place (0.6) and a
+// pixel's diagonal (1.4) of the edge. Each blur divides what it finds by the total weight: by 1, plus the light's
+// excess over the wall that it replaces, its width (and a place) times the difference of 1 / radius; twice. 0.1 is for
+// a disc made of pixels.
+// Outside, softened by 4.1 (hexagon.c), the result is as dark as the wall W: a mean radius exceeds the light's by e
+// where the wall has e / r of the light or more. At half resolution quads and their sampling blur more: hexagon.c's 9,
+// and a light is wider by a quad and a place on either side.
 static void full(struct hf_context *c, int half)
 {
     static const float radii[][2] = {{15.6f, 22}, {12, 20}, {18, 21}, {10, 19}, {14, 14}, {17, 24}};
@@ -103,11 +104,11 @@ static void full(struct hf_context *c, int half)
     }
 }
 
-// Pixels before a wall that is sharp, at one radius; and one of them at a radius that goes across the picture. It covers
-// 1 / R of a line, so the root of the mean radius r moves by no more than (sqrt(R) - sqrt(r)) / R, and the radius by twice
-// that share of itself, and a line's mean by as much of what its end differs by, 0.8: in two of three rhombi. Close to it
-// others are less near than half of its radius, and so are seen behind what is: up to 7 half-resolution pixels away, from
-// where neighbourhoods of radius 4 pass them on by 3, and bilinear samples by 1.
+// Pixels before a sharp wall have one radius; one of them has a radius that reaches across the picture. It covers 1 / R
+// of a line, so the root of the mean radius r moves by at most (sqrt(R) - sqrt(r)) / R, the radius by twice that share
+// of itself, and a line's mean by as much of the difference at its end, 0.8: in two of three rhombi. Close to that
+// pixel, others are less near than half of its radius, and so are visible behind near ones: up to 7 half-resolution
+// pixels away, from where neighbourhoods of radius 4 spread them by 3, and bilinear samples by 1.
 static void one_far_reaching(struct hf_context *c, int half)
 {
     static const float reach[] = {1000, 2000};
@@ -140,8 +141,8 @@ static void one_far_reaching(struct hf_context *c, int half)
     }
 }
 
-// A light that leaves the picture takes its light with it: none of its places makes more than the one in the middle, but
-// for what pixels that find nothing beyond the edge make up, in each of two passes: less than half as much again.
+// A light that leaves the picture takes its light with it: none of its positions makes more light than the middle one,
+// apart from what pixels add that find nothing beyond the edge, in each of two passes: less than half as much again.
 static void leaving(struct hf_context *c, int half, float r, int corner)
 {
     double middle = 0, most = 0;
@@ -165,9 +166,9 @@ static void leaving(struct hf_context *c, int half, float r, int corner)
     CHECK_MSG(most <= 1.5 * middle, "half %d: a light that leaves shines by %g of its own", half, most / middle);
 }
 
-// A near bar of light before a dark wall that is sharp shows its light once: what its coverage leaves is the wall, on the bar
-// too. What is seen of the wall is dark, and makes up all but 1e-8 over its weight, which is no less than a neighbourhood's
-// of 16 pixels where 1 of 33 columns is seen: 1e-4.
+// A bright near bar before a dark, sharp wall shows its light once: what its coverage leaves open shows the wall, also
+// on the bar. The visible wall is dark, and makes up all but 1e-8 over its weight, which is at least that of a
+// neighbourhood of 16 pixels in which 1 of 33 columns is visible: 1e-4.
 static void drawn_once(struct hf_context *c, int half)
 {
     static const int widths[] = {2, 6, 12};
@@ -192,7 +193,7 @@ static void drawn_once(struct hf_context *c, int half)
     }
 }
 
-// Opaque in, opaque out, bit for bit, whatever the radii.
+// Opaque input gives opaque output, bit for bit, for any radii.
 static void opaque(struct hf_context *c, int half)
 {
     for (unsigned i = 0; i < 12; i++) {

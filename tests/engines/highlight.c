@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Highlights given back: the two formulas against double precision, there and back, and what a frame makes of them with
-// every engine, in every format, in place, on any number of threads.
+// Restored highlights: both formulas against double precision, and forwards and backwards; then whole frames with every
+// engine, in every format, in place, with any number of threads.
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,14 +14,14 @@
 static const struct hf_highlight_params cases[] = {{8, 0.9f}, {64, 0.99f}, {64, 0}, {1.01f, 0.5f}, {16, 0.8f}};
 enum { CASES = sizeof cases / sizeof *cases };
 
-// m raised, in double precision, of the floats that the parameters are.
+// m raised in double precision; the parameters are floats.
 static double raised(const struct hf_highlight_params *p, double m)
 {
     const double t = fmin(fmax((m - (double)p->threshold) / (1 - (double)p->threshold), 0), 1);
     return m + ((double)p->gain - 1) * t * t;
 }
 
-// What was raised to this, found by halving.
+// The inverse, found by bisection.
 static double lowered(const struct hf_highlight_params *p, double most)
 {
     double low = 0, high = most;
@@ -35,14 +35,14 @@ static double lowered(const struct hf_highlight_params *p, double most)
     return 0.5 * (low + high);
 }
 
-// Roundings, each of at most half a last place, 2^-24: of m - threshold 1; of the scale 2, 1 of the product; doubled by
-// the square, 1 of it; gain - 1 and the product with it 2; the quotient, the product and the sum 3: 14. Back: of d 1 and of
-// the root's argument 4, halved; of span 1, sum and quotient 2, product and sum with the threshold 2; the part and the
-// product 2: fewer than 14. One more for what a float between two halvings is.
+// Roundings, each of at most half a last place, 2^-24. Raising: m - threshold 1; the scale 2, the product 1; doubled by
+// the square, which adds 1; gain - 1 and the product with it 2; quotient, product and sum 3: 14. Lowering: d 1, the
+// root's argument 4, halved; span 1, sum and quotient 2, product and sum with the threshold 2; the part and the product
+// 2: fewer than 14. One more for the float that bisection finds.
 static const double ROUNDINGS = 15 * 0x1p-24;
 
-// Luminance rounds three times on its way, which changes what comes of it by its condition: m M'(m) / M(m) of raising; of
-// lowering M / m beyond the gain, where m grows as M does, and below that less than 1.
+// Luminance rounds three times, which changes the result by its condition number: m M'(m) / M(m) for raising; for
+// lowering M / m beyond the gain, where m grows as M does, and less than 1 below.
 static double condition(const struct hf_highlight_params *p, double m)
 {
     const double span = 1 - (double)p->threshold, t = fmin(fmax((m - (double)p->threshold) / span, 0), 1);
@@ -55,7 +55,7 @@ static double luminance(const float v[3])
            (double)HF_LUMINANCE_B * fmax(v[2], 0);
 }
 
-// How far channels that grew are off from `times` what they were, relative; one below 0 must not change.
+// How far channels that were raised are off from `times` their value, relative; a negative channel must not change.
 static double off_by(const float from[3], const float to[3], double times)
 {
     double worst = 0;
@@ -97,7 +97,7 @@ static void check_formulas(const struct hf_highlight_params *p)
     CHECK_MSG(grows, "gain %g from %g: a brighter highlight is not raised to more", p->gain, p->threshold);
     CHECK_MSG(worst[0] <= ROUNDINGS, "gain %g from %g: raised %g off", p->gain, p->threshold, worst[0]);
     CHECK_MSG(worst[1] <= ROUNDINGS, "gain %g from %g: lowered %g off", p->gain, p->threshold, worst[1]);
-    // Where nothing is to be done nothing is done, and nothing overflows.
+    // Where nothing needs to change, nothing changes, and nothing overflows.
     static const float fixed[][3] = {{0, -0.0f, -FLT_MAX}, {FLT_MAX, FLT_MAX, 0x1p-149f}, {FLT_MAX, FLT_MAX, FLT_MAX}};
     for (int i = 0; i < 6; i++) {
         float v[3] = {fixed[i / 2][0], fixed[i / 2][1], fixed[i / 2][2]};
@@ -106,7 +106,7 @@ static void check_formulas(const struct hf_highlight_params *p)
     }
 }
 
-// Paint that is full in one channel or two, but yellow, is no lamp at the threshold of 0.9, and white is one.
+// Paint that is full in one channel or two (except yellow) is not a lamp at a threshold of 0.9; white is.
 static void check_colours(void)
 {
     const struct hf_highlight h = hf_highlight_of(&cases[0]);
@@ -126,7 +126,7 @@ static void check_colours(void)
 
 enum { WIDTH = 150, HEIGHT = 61 };
 
-// A wall with clipped lamps of all sizes far behind what is in focus, which has a clipped half and sharp edges.
+// A wall with clipped lamps of all sizes, far behind a sharp surface that has a clipped half and sharp edges.
 static void make_scene(struct picture *colour, struct picture *z, int alpha)
 {
     struct rng rng = rng_seed(11);
@@ -151,7 +151,7 @@ static struct hf_params lens(enum hf_engine engine, float gain)
     p.model = HF_MODEL_LENS;
     p.focus = 5;
     p.lens.f_number = 1.4f;
-    p.lens.world_unit_m = 0.05f;  // 11 pixels behind
+    p.lens.world_unit_m = 0.05f;  // 11 pixels of radius for the wall
     p.highlight.gain = gain;
     p.highlight.threshold = 0.8f;
     p.run.deterministic = 1;
@@ -173,7 +173,7 @@ static struct picture render(struct hf_context *c, const struct picture *in, con
     return out;
 }
 
-// As the format holds it.
+// The picture as the format holds it.
 static struct picture stored(const struct picture *in, enum hf_format format)
 {
     struct packed p = packed_new(WIDTH, HEIGHT, format, in->channels == 4, 0, 0, 0, 0);
@@ -208,11 +208,11 @@ static void check_frame(struct hf_context *const contexts[2], enum hf_engine eng
     struct picture all = render(contexts[1], &colour, &z, &on, format, 0);
     CHECK_MSG(picture_same_bits(&bright, &all), "%s, format %s: it is another picture where nothing is skipped",
               hf_engine_name(engine), hf_name(HF_NAMES_FORMAT, (int)format));
-    // A threshold without a gain does nothing.
+    // A threshold without a gain has no effect.
     off.highlight.threshold = 0;
     struct picture same = render(contexts[0], &colour, &z, &off, format, 0);
     CHECK(picture_same_bits(&plain, &same));
-    // Far from the edge the sharp side, clipped as it is, is what it was; the lamps are brighter, and none is cut.
+    // Far from the edge the sharp side, clipped as it is, is unchanged. The lamps are brighter, and none is cut off.
     int kept = 1, sharp = 0;
     float most = 0;
     for (int c = 0; c < given.channels; c++)
@@ -238,10 +238,10 @@ static void check_frame(struct hf_context *const contexts[2], enum hf_engine eng
         picture_free(made[i]);
 }
 
-// A disc of radius 11 is a mean of fewer than 512 samples; each is multiplied and added, which rounds by half a last place.
+// A disc of radius 11 is a mean of fewer than 512 samples; each product and each sum rounds by half a last place.
 static const double SUMS = 2 * 512 * 0x1p-24;
 
-// What is evenly bright stays so, whatever the blur.
+// An evenly bright picture stays so under any blur.
 static void check_even(struct hf_context *c, enum hf_engine engine)
 {
     static const float values[] = {0.5f, 0.85f, 0.93f, 1, 3};
@@ -256,7 +256,7 @@ static void check_even(struct hf_context *c, enum hf_engine engine)
         double off = 0;
         for (int i = 0; i < WIDTH * HEIGHT; i++)
             off = worse(off, fabs((double)out.plane[1][i] - values[v]) / values[v]);
-        // Lowering makes a distance no larger.
+        // Lowering does not enlarge a difference.
         CHECK_MSG(off <= SUMS + 2 * ROUNDINGS, "%s: an even %g becomes %g of it another", hf_engine_name(engine),
                   values[v], off);
         picture_free(&colour);
@@ -265,7 +265,8 @@ static void check_even(struct hf_context *c, enum hf_engine engine)
     }
 }
 
-// A clipped lamp in the dark leaves a disc of gain times the light, all of it below the threshold, where nothing is lowered.
+// A clipped lamp in the dark leaves a disc with gain times the light. All of it is below the threshold, where nothing
+// is lowered.
 static void check_lamp(struct hf_context *c, enum hf_engine engine)
 {
     struct picture colour, z;
@@ -286,7 +287,7 @@ static void check_lamp(struct hf_context *c, enum hf_engine engine)
         picture_free(made[i]);
 }
 
-// Saturated paint, blurred: the same bits with a gain and without.
+// Saturated paint, blurred, has the same bits with a gain and without.
 static void check_paint(struct hf_context *c, enum hf_engine engine)
 {
     struct picture colour, z;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hard cases of the gather engine, pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths
-// around the vectors' length, a focus pull.
+// Hard cases of the gather engine, as pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths
+// around a vector's length, a focus pull.
 //
 //     invariance [seed]
 #include <float.h>
@@ -13,7 +13,7 @@
 
 static unsigned seed = 1;
 
-// Any valid options. Not the lens, whose blur is tied to the picture's width.
+// Any valid options except the lens, whose blur depends on the picture's width.
 static struct hf_params random_params(struct rng *rng)
 {
     struct hf_params p = scene_params();
@@ -35,8 +35,8 @@ static struct hf_params random_params(struct rng *rng)
     return p;
 }
 
-// A crop of whole half-resolution pixels is what the crop of the result is, but for a margin: the near CoC comes from
-// twice the reach, and one pixel more each for fill and for upsampling (two for the cubic).
+// A crop of whole half-resolution pixels gives the crop of the result, except for a margin: twice the reach for the
+// near CoC, and one pixel more each for fill and for upsampling (two for the cubic).
 static void crops(struct hf_context *c, const char *isa)
 {
     for (unsigned i = 0; i < 40; i++) {
@@ -62,8 +62,8 @@ static void crops(struct hf_context *c, const char *isa)
     }
 }
 
-// Depth constant per quad, even size, default composite, taps that mirror, no per-pixel kernel (which adds its
-// taps up in the order of their angles).
+// Depth constant per quad, even size, default composite, taps that mirror, no per-pixel kernel (it adds its taps in the
+// order of their angles).
 static struct scene quad_scene(struct rng *rng, int w, int h)
 {
     struct scene s = scene_new(rng, SCENE_BLOCKS, w, h, 4);
@@ -94,7 +94,7 @@ static void flips(struct hf_context *c, const char *isa)
     }
 }
 
-// Transposing changes the order of sums only: twice the roundings of all passes (gather.c) in units of the largest
+// Transposing changes only the order of sums: twice the roundings of all passes (gather.c) in units of the largest
 // sample, 2 * (2 * 129 lattice weights + 12 + 32 + 11 + 102) * FLT_EPSILON / 2.
 static void transposes(struct hf_context *c, const char *isa)
 {
@@ -108,7 +108,7 @@ static void transposes(struct hf_context *c, const char *isa)
         p.aperture.blades = 0;
         p.max_radius = 12;
         p.gather.storage = HF_STORAGE_FLOAT;
-        p.gather.per_pixel_kernel = 0;  // its threshold on CoC differences apart, it is in gather.c
+        p.gather.per_pixel_kernel = 0;  // gather.c tests it, apart from its threshold on CoC differences
         struct scene turned = {picture_transposed(&s.colour), picture_transposed(&s.depth)};
         struct picture a = render_scene(c, &s, &p), b = render_scene(c, &turned, &p), back = picture_transposed(&b);
         worst = worse(worst, largest_difference(&a, &back) / largest_sample(&s.colour));
@@ -192,16 +192,16 @@ static void widths(struct hf_context *c, struct hf_context *plain, const char *i
     }
 }
 
-// Pull the focus in tiny steps through a floor of random colours: the picture follows in tiny steps. The measured
-// constant is the largest change of a sample (of colours up to 1) per change of CoC.
+// Pull the focus in tiny steps through a floor of random colours: the picture follows in tiny steps. The measured value
+// is the largest change of a sample (of colours up to 1) per change of CoC.
 static void focus_pull(struct hf_context *c, const char *isa)
 {
     struct rng rng = rng_seed(seed);
     struct scene s = scene_new(&rng, SCENE_RAMP, 160, 90, 3);
-    for (int i = 0; i < 160 * 90; i++)  // straight on, unbroken
+    for (int i = 0; i < 160 * 90; i++)  // at an angle, without steps
         s.depth.plane[0][i] = 10 + 25 * (float)(i % 160 + 2 * (i / 160)) / 340;
     struct hf_params p = scene_params();
-    const float step = 1.0f / 512;  // CoC: a tenth of it
+    const float step = 1.0f / 512;  // a tenth of it in CoC
     struct picture before = render_scene(c, &s, &p);
     double worst = 0;
     for (int i = 1; i <= 60; i++) {
