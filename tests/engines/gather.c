@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The library's gather engine against the reference in double precision, pass by pass: after each pass the library's
-// buffer is compared and then put in the place of the reference's, so that each tolerance covers one pass only.
+// buffer is compared and then replaces the reference's, so that each tolerance covers only one pass.
 //
 //     gather [seed]
 //
-// Tolerances count roundings, U = 2^-24 each at most, relative to the largest value that went in. A few of them simply
-// add up. Many are taken for independent and uniform: n of them have a standard deviation of U sqrt(n / 3), and six of
+// Tolerances count roundings, at most U = 2^-24 each, relative to the largest value that went in. A few of them simply
+// add up. Many are taken as independent and uniform: n of them have a standard deviation of U sqrt(n / 3), and six of
 // those are allowed.
 #include <float.h>
 #include <math.h>
@@ -23,7 +23,7 @@ static double many(double roundings)
     return 6 * sqrt(roundings / 3) * U;
 }
 
-// What hf_set_dump gave, and the picture that came out.
+// The buffers from hf_set_dump, and the resulting picture.
 struct capture {
     struct picture buffer[REF_COUNT];
     int count;
@@ -60,8 +60,8 @@ static void on_buffer(void *cookie, const struct hf_buffer *b)
     CHECK_MSG(0, "unknown buffer %s", b->name);
 }
 
-// Largest absolute value of a channel of the full-resolution colour under the half-resolution window (x +- rx,
-// y +- ry): bounds colour4, (colour x far) / far and what is made of them.
+// The largest absolute value of a channel of the full-resolution colour in the half-resolution window (x +- rx, y +-
+// ry). It bounds colour4, (colour x far) / far, and what is made of them.
 static double colour_near(const struct reference *r, int c, int x, int y, int rx, int ry)
 {
     double largest = 0;
@@ -86,9 +86,9 @@ static double buffer_near(const struct ref_buffer *b, int c, int x, int y, int r
     return largest;
 }
 
-// Pass 9. Far: weights of products of three rounded differences (12), their sum (2), the inverse (1), both times each
-// other (28), four products and three sums (4). Near: 4 products and 3 sums for colour and for CoC (14), or for the
-// cubic 4 rounded weights with 4 roundings each and 15 sums, twice (62). Two lerps, of differences (8).
+// Pass 9. Far: weights of products of three rounded differences (12), their sum (2), the inverse (1), their product
+// (28), four products and three sums (4). Near: 4 products and 3 sums for colour and for CoC (14), or for the cubic 4
+// rounded weights with 4 roundings each and 15 sums, twice (62). Two lerps, of differences (8).
 static double composite_bound(const struct reference *r, int c, int x, int y)
 {
     const double roundings = 32 + (r->params.gather.bicubic ? 62 : 14) + 8;
@@ -97,16 +97,16 @@ static double composite_bound(const struct reference *r, int c, int x, int y)
     return many(roundings) * fmax(fabs(r->buffer[REF_COLOUR].data[c][y * r->width + x]), fields);
 }
 
-// Pass 1. (ne - z) / (ne - nb): the ends are rounded (U (F + R) each, relative to R), the distance, the quotient or a
-// product with a rounded inverse: 8 U. A depth that is converted first carries its own roundings, c U z / R:
-// ray 6 (squares, sum, root, quotient); 1/z and clip planes: 1/z = a + b (1 - d) and its inverse, 6 roundings of a
-// sum that is near/z of its largest part, so 6 z / near. The lens: 1/P - 1/z times K/rho, 6 roundings of K/(P rho).
+// Pass 1. (ne - z) / (ne - nb): the ends are rounded (U (F + R) each, relative to R), the distance, and the quotient or
+// a product with a rounded inverse: 8 U. A depth that is converted first carries the conversion's roundings, c U z / R:
+// ray 6 (squares, sum, root, quotient); 1/z and clip planes: 1/z = a + b (1 - d) and its inverse, 6 roundings of a sum
+// that is near/z of its largest part, so 6 z / near. The lens: 1/P - 1/z times K/rho, 6 roundings of K/(P rho).
 static double coc_bound(const struct reference *r, const struct job *job)
 {
     const struct hf_params *p = &r->params;
     const double lens = p->model == HF_MODEL_LENS, f = p->focus;
     const double range = p->range.distance == HF_DERIVE ? f / 2 : fmax(p->range.distance, 1e-6);
-    const double end = f + range;  // depths beyond have CoC 1
+    const double end = f + range;  // depths beyond have a CoC of 1
     double converted = 0;
     if (job->depth->type == HF_DEPTH_RAY || job->depth->type == HF_DEPTH_INVERSE)
         converted = 6 * end / range;
@@ -119,17 +119,17 @@ static double coc_bound(const struct reference *r, const struct job *job)
     return U * (p->range.blend == HF_BLEND_SMOOTHSTEP ? 1.5 * bound + 6 : bound);
 }
 
-// Pass 7. L lattice weights: L products and sums, for numerator and denominator, and the quotient: 2 L + 12 roundings of
-// the largest colour. Weights are whole numbers of U, each within one of what it is. Tap positions are rounded to float: U h per axis, and a
-// bilinear sample moves by 2 * largest sample per pixel; with the per-pixel kernel the position in the picture
-// is rounded too. All relative to the mean weight of the taps, which can be small.
+// Pass 7. L lattice weights: L products and sums, for numerator and denominator, and the quotient: 2 L + 12 roundings
+// of the largest colour. Weights are whole numbers of U, each within one U of its value. Tap positions are rounded to
+// float: U h per axis, and a bilinear sample moves by 2 * the largest sample per pixel; with the per-pixel kernel the
+// position in the picture is rounded too. All is relative to the mean weight of the taps, which can be small.
 static double gather_bound(const struct reference *r, enum ref_id id, int c, int x, int y)
 {
     const int rx = (int)ceil(r->reach_x * r->kernel_scale) + 1, ry = (int)ceil(r->reach_y * r->kernel_scale) + 1;
     const int pixel = y * r->half_width + x;
     const double mean = id == REF_NEAR ? r->near_mean[pixel] : r->far_mean[pixel];
     if (mean == 0)
-        return 2 * U * colour_near(r, c, x, y, 0, 0);  // own colour, at most divided by its CoC
+        return 2 * U * colour_near(r, c, x, y, 0, 0);  // the pixel's own colour, at most divided by its CoC
     const int per_pixel = id == REF_FAR && r->params.gather.per_pixel_kernel;
     const double points = per_pixel ? 4 * r->taps : fmin(4 * r->taps + 1, (2 * rx - 1) * (2 * ry - 1));
     const double moved = fmax(r->reach_x, r->reach_y) + 1 + (per_pixel ? r->half_width + r->half_height : 0);
@@ -137,26 +137,26 @@ static double gather_bound(const struct reference *r, enum ref_id id, int c, int
     // Karis weights w = 1 / (1 + Y): w c <= 1 / 0.0722 for every channel.
     const double sample = r->params.gather.karis ? fmin(largest, 14) : largest;
     const double units = per_pixel ? 0 : many(points);
-    // With the pixel's own colour in part: a product, a difference, a product and a sum.
+    // The partial weight of the pixel's own colour adds a product, a difference, a product and a sum.
     return many(2 * points + 12 + 4) * largest + (units + U * 4 * moved) * sample / mean;
 }
 
-// Passes 3 to 6 where the outermost values of a window count in part: that part is rounded by U times the radius, and times
-// a value of at most 1.
+// Passes 3 to 6 where the outermost values of a window count in part: that part has a rounding of U times the radius,
+// times a value of at most 1.
 static double edge_bound(const struct reference *r, double radius)
 {
     return r->params.gather.faithful || radius == ceil(radius) ? 0 : U * (ceil(radius) + 1);
 }
 
-// And a mean of such: 2 m + 1 positive terms, and the scale; less what two values do not count, of their size, over what
-// the others weigh.
+// A mean of such values: 2 m + 1 positive terms and the scale; minus the missing part of two values, over the weight of
+// the others.
 static double mean_bound(const struct reference *r, double radius, double want)
 {
     const double edge = edge_bound(r, radius);
     return U * want * (2 * ceil(radius) + 3) + (edge > 0 ? (4 * edge + 8 * U) / (2 * ceil(radius) - 1) : 0);
 }
 
-// What a sample of a buffer may differ by, storage apart.
+// By how much a sample of a buffer may differ, without storage.
 static double bound_of(const struct reference *r, const struct job *job, enum ref_id id, int c, int x, int y)
 {
     const struct ref_buffer *b = &r->buffer[id];
@@ -197,7 +197,7 @@ static double bound_of(const struct reference *r, const struct job *job, enum re
     }
 }
 
-// Compare the library's buffer with the reference's, then let the reference go on with the library's.
+// Compare the library's buffer with the reference's, then let the reference continue with the library's.
 static void compare(void *cookie, struct reference *r, enum ref_id id)
 {
     struct job *job = cookie;
@@ -217,7 +217,7 @@ static void compare(void *cookie, struct reference *r, enum ref_id id)
         for (int i = 0; i < b->width * b->height; i++) {
             const double raw = b->raw[c][i], have = got->plane[c][i];
             const double bound = bound_of(r, job, id, c, i % b->width, i / b->width);
-            // What is stored must be what a value within the bound becomes by being stored.
+            // The stored value must be what some value within the bound becomes when stored.
             const double low = ref_store(p->gather.storage, stored_as, raw - bound) - unorm;
             const double high = ref_store(p->gather.storage, stored_as, raw + bound) + unorm;
             b->data[c][i] = have;
@@ -235,7 +235,8 @@ static void compare(void *cookie, struct reference *r, enum ref_id id)
     CHECK_MSG(wrong == 0, "%s: %s: %d wrong, %s", job->label, b->name, wrong, worst);
 }
 
-// One scene, one set of parameters, one context: the dump against the reference, and the fused frame against the dump.
+// Check one scene with one set of parameters in one context: the dump against the reference, and the frame against the
+// dump.
 static void check_frame(struct hf_context *c, const struct scene *s, const struct hf_depth *depth,
                         const struct hf_params *p, const char *label)
 {
@@ -260,7 +261,7 @@ static void check_frame(struct hf_context *c, const struct scene *s, const struc
 // Variations of the parameters, one at a time and some together.
 struct option {
     const char *name;
-    struct hf_params p;  // only what differs from scene_params(): see merge
+    struct hf_params p;  // only the members that differ from scene_params(), see merge
     int big;             // 1: also on the largest size
 };
 
@@ -389,9 +390,9 @@ static void all_scenes_and_storages(struct hf_context *c, const char *isa, unsig
     }
 }
 
-// Every depth type against the same scene in view depth. Against the reference of the type itself the frame is checked
-// whole; that the type means what its name says shows in the CoC, which must be that of the view depth up to what the
-// rounding of the depth samples costs (at most U d each, and as much as the conversion back).
+// Every depth type against the same scene in view depth. The frame is checked fully against the reference of its own
+// type. That the type means what its name says shows in the CoC: it must equal that of the view depth within the
+// rounding of the depth samples (at most U d each, and as much for the conversion back).
 static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed)
 {
     static const char *const types[] = {"view", "ray", "d3d", "gl", "reversed", "inverse", "coc"};
@@ -415,7 +416,8 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
         const struct hf_depth view = picture_depth(&scene.depth);
         struct reference *r = reference_render(&scene.colour, &view, &p, NULL, NULL);
         const struct ref_buffer *coc = &r->buffer[REF_COC];
-        // Clip planes: z^2 / near * U for the sample, 6 z^2 / near * U for the way back, z <= 30, over the range of 10.
+        // Clip planes: z^2 / near * U for the sample, 6 z^2 / near * U for the conversion back, z <= 30, over the range
+        // of 10.
         const double bound = 2 * 7 * U * 30 * 30 / 10;
         double worst = 0;
         for (int k = 0; k < 2; k++)
@@ -431,10 +433,10 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
     }
 }
 
-// Estimated reciprocals are as exact as they say. One divides by the sum of a quad's weights, one by that of the far
-// field, one by that of the upsampling, each a factor of the colour; what they are multiplied by is no larger than the
-// largest sample. An estimate is within e: 1.5 / 4096 on x86, 1 / 256 on ARM; a step of Newton's leaves e squared and
-// three roundings.
+// Estimated reciprocals are as exact as promised. One divides by the sum of a quad's weights, one by that of the far
+// field, one by that of the upsampling. Each is a factor of the colour, and the other factor is at most the largest
+// sample. An estimate has an error e: 1.5 / 4096 on x86, 1 / 256 on ARM. A Newton step leaves e squared and three
+// roundings.
 static void divisions(struct hf_context *c, const char *isa, unsigned seed)
 {
     struct rng rng = rng_seed(seed + 4000);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hard cases of the gather engine, values: bad samples, exact copies, constants, energy, ranges, extreme sizes.
-// What must hold between two pictures (shifts, flips, threads, skipping) is in invariance.c.
+// invariance.c has the cases that compare two pictures (shifts, flips, threads, skipping).
 //
 //     hard [seed]
 #include <float.h>
@@ -29,7 +29,7 @@ static void bad_colours(const struct run *run, unsigned variant)
     uint64_t bad = 0;
     for (int i = 0; i < 150; i++)
         s.colour.plane[rng_below(&rng, 4)][rng_below(&rng, 61 * 45)] = strange[rng_below(&rng, 10)];
-    for (int y = 10; y < 14; y++)  // a patch that the mean cannot mend whole
+    for (int y = 10; y < 14; y++)  // a patch that no mean of neighbours can repair completely
         for (int x = 20; x < 25; x++)
             s.colour.plane[1][y * 61 + x] = NAN;
     for (int c = 0; c < 4; c++)
@@ -136,7 +136,7 @@ static void bad_depths(const struct run *run)
     }
 }
 
-// The largest floats, hardly blurred: a colour that a small CoC has made small is divided by it again.
+// The largest floats, hardly blurred: a small CoC makes a colour small, and dividing by it must restore it.
 static void giants(const struct run *run)
 {
     struct picture colour = picture_new(40, 24, 4), radii = picture_new(40, 24, 1);
@@ -160,7 +160,7 @@ static void giants(const struct run *run)
     picture_free(&radii);
 }
 
-// What "no surface" is in the other types, and what 0 is.
+// What "no surface" and 0 are in the other depth types.
 static void special_depths(const struct run *run)
 {
     static const struct {
@@ -213,7 +213,7 @@ static void special_depths(const struct run *run)
     picture_free(&depth);
 }
 
-// No blur at all: the input's bits, in every storage, whatever they are.
+// No blur at all: any input keeps its bits, in every storage.
 static void copies(const struct run *run)
 {
     struct rng rng = rng_seed(seed);
@@ -242,7 +242,7 @@ static void copies(const struct run *run)
             p.model = HF_MODEL_LENS;
             p.lens.f_number = INFINITY;
             break;
-        case 4:  // given distances that leave all in focus
+        case 4:  // given distances that put everything in focus
             p.range.near_begin = p.range.near_end = 0;
             p.range.far_begin = p.range.far_end = 2e10f;
             break;
@@ -254,7 +254,7 @@ static void copies(const struct run *run)
                     s.depth.plane[0][k] = 20;
         }
         struct picture out = render(run->c, &s.colour, &d, &p);
-        // The other storages round what they read; only a copy leaves the bits alone.
+        // The other storages round what they read; only a copy keeps the bits.
         if (i % 5 != 4 || p.gather.storage == HF_STORAGE_FLOAT)
             CHECK_MSG(picture_same_bits(&out, &s.colour), "%s: case %d, storage %d: not the input's bits", run->isa,
                       i % 5, p.gather.storage);
@@ -263,7 +263,7 @@ static void copies(const struct run *run)
     scene_free(&s);
 }
 
-// A constant picture stays constant, whatever the depth. Returns the largest error in ulps.
+// A constant picture stays constant at any depth. Returns the largest error in ulps.
 static double constant(const struct run *run, const struct hf_params *p, float value, int w, int h, unsigned number)
 {
     struct rng rng = rng_seed(seed + number);
@@ -303,11 +303,12 @@ static void constants(const struct run *run)
     }
     printf("%s: constant in, constant out: %.1f ulp, per-pixel kernel %.1f ulp\n", run->isa, worst[0], worst[1]);
     CHECK_MSG(worst[0] <= 16, "%s: a constant moves by %.1f ulp", run->isa, worst[0]);
-    // Taps are added up one by one, 2601 of them at a radius of 100: a rounding each (half an ulp) above and below.
+    // Taps are added one by one, 2601 of them at a radius of 100: one rounding each (half an ulp), in numerator and
+    // denominator.
     CHECK_MSG(worst[1] <= 2601, "%s: a constant moves by %.1f ulp with the per-pixel kernel", run->isa, worst[1]);
 }
 
-// The energy of one highlight where everything is equally out of focus, far or near.
+// The energy of one highlight, with everything equally far out of focus, far or near.
 static void energy(const struct run *run)
 {
     double max_fill = 0;
@@ -342,7 +343,7 @@ static void energy(const struct run *run)
     CHECK(max_fill > 1 && max_fill < 9);
 }
 
-// No sample outside the range of its sources, up to rounding. 60 ulp: the roundings of all passes, gather.c.
+// No sample leaves the range of its sources, up to rounding. 60 ulp: the roundings of all passes, see gather.c.
 static void ranges(const struct run *run)
 {
     for (int i = 0; i < 24; i++) {
@@ -375,7 +376,7 @@ static void ranges(const struct run *run)
     }
 }
 
-// The longest rows and columns there are: the ends are those of a short picture of the same content.
+// The longest possible rows and columns: their ends equal those of a short picture with the same content.
 static void long_pictures(const struct run *run)
 {
     for (int tall = 0; tall < 2; tall++) {

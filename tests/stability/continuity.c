@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parameters that move in tiny steps move the picture in tiny steps. The worst step is halved until nothing lies between
-// its ends, or twenty times: what is left of the change is a jump.
+// Parameters that move in tiny steps must move the picture in tiny steps. The worst step is halved until nothing lies
+// between its ends, or twenty times: the remaining change is a jump.
 #include "stability/stability.h"
 
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static const struct {
     {"a radius ramp: worst jump, 8-bit codes", 0.01, 18},
 };
 
-// A pull of a subject: depths that lie still or move, everything else the subject's.
+// A pull: some depths stay, some move; all else is the subject's.
 struct pulling {
     const struct run *r;
     const struct scene *s;
@@ -27,12 +27,13 @@ struct pulling {
     enum pull pull;
 };
 
-// The published demo does two things at once where others come in by and by. Its far maximum takes in what begins to be far,
-// and its upsampling what is beside: two quads on. And its near colour is the mean of all taps where the blurred near CoC is
-// over 0, else the quad's own: a quad that begins to be near by next to nothing does that to all quads that its maximum and
-// its blur, m each, reach. The quads beside these have (4 m + 1) / (2 m + 1)^2 of a blurred CoC at most, 25 / 169 at m = 6
-// (windows shifted by one along both axes have all but so many in common), their maximum takes the changed colour in, and
-// upsampling what is beside. How many quads up to two away are far, and how many have a blurred near CoC, marks what changes.
+// The published demo switches two things abruptly that other variants fade in. Its far maximum takes in any neighbour
+// that begins to be far, and its upsampling the neighbours: two quads in all. And its near colour is the mean of all
+// taps where the blurred near CoC is over 0, else the quad's own. So a quad that just begins to be near switches all
+// quads within reach of its maximum and its blur, m each. The quads beside those have at most (4 m + 1) / (2 m + 1)^2
+// of a blurred CoC, 25 / 169 at m = 6 (windows shifted by one along both axes have all but that many in common); their
+// maximum takes in the changed colour, and upsampling what is beside it. The marks count the far quads up to two away,
+// and those with a blurred near CoC.
 static float *demo_marks(const struct picture *depth, const struct hf_params *p)
 {
     enum { W = WIDTH / 2, H = HEIGHT / 2 };
@@ -83,9 +84,9 @@ static struct picture at(void *cookie, double t)
 
 // ---- bounds ----
 
-// A radius of 12 moves by 12 / 10 of what the focus moves, by some units in the last place of 30: 1e-5 pixels. Where a
-// sample hangs on it the most, at a radius of a pixel, it moves by four times that of a range of 1, and the sRGB curve makes
-// 12.92 * 255 codes of 1: 0.13. Half a code no one sees.
+// A radius of 12 moves by 12 / 10 of what the focus moves, by some units in the last place of 30: 1e-5 pixels. A sample
+// depends on it most at a radius of one pixel, where it moves four times as fast as with a range of 1, and the sRGB
+// curve makes 12.92 * 255 codes of 1: 0.13. Nobody sees half a code.
 static const double FLOAT_STEP = 0.5;
 
 static const char *half_a_code(const struct run *r)
@@ -96,8 +97,8 @@ static const char *half_a_code(const struct run *r)
                : "half a code: what the smallest step of a float can make, see continuity.c";
 }
 
-// Codes by which a colour of 0.05 .. 1, as calm_scene() has them, may fall when it goes so far towards another of them, and is
-// truncated so often to 5 bits and the one in front, as blue is.
+// By how many codes a colour of 0.05 .. 1, as in calm_scene(), may fall when it moves by that part towards another one
+// and is truncated that often to 5 bits after the leading one, as blue is.
 static double fall(double part, int truncations)
 {
     double most = 0;
@@ -108,25 +109,25 @@ static double fall(double part, int truncations)
     return most;
 }
 
-// What a jump from t on may be, and why.
+// The largest jump allowed from t on, and the reason.
 static double allowed(const struct run *r, enum pull pull, double t, const char **why)
 {
     const struct hf_gather_params *g = &r->subject->params.gather;
     const int is_gather = r->subject->params.engine == HF_ENGINE_GATHER, taps = is_gather && g->fill != HF_FILL_MEAN;
     const int packed = is_gather && g->storage == HF_STORAGE_PACKED, chapters = taps && g->faithful;
-    // CoC comes in bytes: one of a pixel's own far CoC, and one of the near mean. A field is truncated when it is stored, and so
-    // is the result. Where there is a maximum, far neighbours come into it by four times their CoC up to a quarter, at a pixel
-    // of no more: one byte more. Near colour, and its maximum, come in by eight times the mean's bytes up to an eighth, at a
-    // half-resolution pixel that has at most 9/16 of the picture's; means of neighbours are at most 1 / (2 h + 1) apart, the
-    // radius 2 h, and half of that and the eighth is the largest part that it has there: 8 * 9/16 * (1/8 + 1/6) = 1.32 bytes
-    // at h = 1, and less for all others, twice.
+    // CoC is stored in bytes: one step of a pixel's own far CoC, and one of the near mean. A field is truncated when it
+    // is stored, and so is the result. Where there is a maximum, far neighbours enter it by four times their CoC, up to
+    // a quarter, at a pixel of no more: one byte more. Near colour and its maximum enter by eight times the mean's
+    // bytes, up to an eighth, at a half-resolution pixel with at most 9/16 of the picture's weight. Means of neighbours
+    // differ by at most 1 / (2 h + 1), for a radius of 2 h; half of that plus the eighth is the largest part there: 8 *
+    // 9/16 * (1/8 + 1/6) = 1.32 bytes at h = 1, and less for all others, twice.
     double part = packed ? (taps ? 2 + 1 + 2 * 1.32 : 2) / 255.0 : 0;
     *why = packed ? "packed: steps of an 8-bit CoC, 2 or for a maximum 5.64, and two truncations to 5 bits"
                   : half_a_code(r);
     if (chapters && pull == PULL_RADIUS) {
-        // The near maximum and its mean are 2 m + 1 wide, m = ceil(radius / 2), as in the chapter: from a straight edge on
-        // the mean falls as 1 - d / (2 m + 1), so that the next m changes it by 2 / (2 m + 3) at most. From N to N + 1 rings,
-        // every fourth pixel, eight taps and the centre are the same: 9 of 1 + 4 (N + 1) (N + 2).
+        // The near maximum and its mean are 2 m + 1 wide, m = ceil(radius / 2), as in the chapter: from a straight edge
+        // on, the mean falls as 1 - d / (2 m + 1), so the next m changes it by at most 2 / (2 m + 3). From N to N + 1
+        // rings, every fourth pixel, eight taps and the centre stay the same: 9 of 1 + 4 (N + 1) (N + 2).
         const double m = round(t / 2), n = round(t / 4);
         *why = "faithful: the chapter's near CoC reaches whole pixels, its rings are whole; see continuity.c";
         if (fabs(t - 2 * m) < 1e-4)
@@ -170,8 +171,8 @@ static void pulled(const struct run *r, enum pull pull, const struct scene *s, c
     picture_free(&moved);
 }
 
-// Steps that 120 may pass over: where the first quad around becomes far, and where there is one level more of the gather's
-// kernels or of hidden samples.
+// Steps that 120 samples of a pull may miss: where the first quad becomes far, and where there is one more level of the
+// gather's kernels or of hidden samples.
 static void known_places(const struct run *r, const struct scene *s, const char *scene)
 {
     static const struct {
@@ -204,7 +205,7 @@ static struct scene stage(const struct run *r)
     return s;
 }
 
-// From the copy that a radius of 0 makes to the least blur that there is.
+// From the copy at radius 0 to the least blur.
 static void first_blur(const struct run *r, const struct scene *s)
 {
     struct pulling w = {r, s, NULL, PULL_RADIUS};
@@ -221,7 +222,7 @@ static void first_blur(const struct run *r, const struct scene *s)
 
 // ---- flicker ----
 
-// A square light of 1.4 pixels, by the area that it covers of each pixel.
+// Draw a square light of 1.4 pixels by the area that it covers of each pixel.
 static void draw_light(struct picture *p, double left, double top, double side, float value)
 {
     for (int y = 0; y < p->height; y++)
@@ -232,7 +233,7 @@ static void draw_light(struct picture *p, double left, double top, double side, 
         }
 }
 
-// Energy of a light that moves 0.1 pixel a frame, behind the focus: how much it varies, of its mean.
+// The energy of a light behind the focus that moves 0.1 pixel a frame: its variation relative to its mean.
 static void moving_light(const struct run *r)
 {
     double least = INFINITY, most = 0;
@@ -262,14 +263,14 @@ static void moving_light(const struct run *r)
 
 void continuity_cases(const struct run *r)
 {
-    // Instruction sets are held to the C elsewhere: here they would cost time only.
+    // Other tests compare instruction sets with the C; here they would only cost time.
     if (!r->full && !r->widest)
         return;
     struct scene s = stage(r);
     for (int pull = 0; pull < PULLS; pull++)
         pulled(r, (enum pull)pull, &s, "floor, wall and bar");
     known_places(r, &s, "floor, wall and bar");
-    // The gaussian's blur does not follow from the radius: 0 alone means a copy.
+    // The gaussian's blur does not follow from the radius; only 0 means a copy.
     if (r->subject->params.engine != HF_ENGINE_GAUSSIAN)
         first_blur(r, &s);
     scene_free(&s);

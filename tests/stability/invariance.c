@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a picture keeps when it is blurred, and pairs of pictures of which one tells the other.
+// Properties that blur must preserve, and pairs of pictures whose results must be related.
 #include "stability/stability.h"
 
 #include <float.h>
@@ -9,7 +9,7 @@
 
 static const double U = FLT_EPSILON / 2;
 
-// Relative error that a sample may have: roundings, and six times the step of the storage (read, down, gathered, filled,
+// The relative error that a sample may have: roundings, and six steps of the storage (read, down, gathered, filled,
 // merged, written).
 static double relative(const struct subject *s, double roundings)
 {
@@ -18,7 +18,7 @@ static double relative(const struct subject *s, double roundings)
 
 static const char *const from_roundings = "roundings on the way of a sample, and the storage's steps";
 
-// How far samples lie beyond 0 and a value, of that.
+// How far samples lie outside 0 to `value`, relative to it.
 static double beyond_zero(const struct picture *p, double value)
 {
     double beyond = 0;
@@ -50,15 +50,15 @@ static void constants(const struct run *r)
     }
 }
 
-// ---- one highlight, everything at one radius ----
+// ---- one highlight, one radius everywhere ----
 
 enum { SPOT = 96 };
 
-// How far a highlight is from its transpose, of its energy. A disc is made of rows. What a row holds of the outline, from 1
-// inside to 0 outside over a length l, is a step where its mean is: off by l / 2 at most, for neither is below 0 or above 1.
-// The lengths of a quarter's rows add up to the radius: 4 r / 2 of an area of pi r^2, and twice that from its transpose. At half
-// resolution r is half as large; what upsamples it makes nothing of that more. Rows are whole 128ths of a pixel high, and
-// 256ths wide: each is off by (1 / 256 + 2 / 512) of itself at most, in both.
+// How far a highlight may differ from its transpose, relative to its energy. A disc is made of rows. In a row the
+// outline falls from 1 inside to 0 outside over a length l; the engine draws a step at its mean, which is off by at
+// most l / 2. The lengths of a quarter's rows add up to the radius: 4 r / 2 of an area of pi r^2, and twice that for
+// both pictures. At half resolution r is half as large; upsampling adds nothing. Rows are whole 128ths of a pixel high
+// and 256ths wide: each is off by at most (1 / 256 + 2 / 512) of itself, in both.
 static void turned_disc(const struct run *r, const struct picture *out, float radius, int x, int y)
 {
     const double size = radius < 0 ? -radius : radius, half = r->subject->params.scatter.resolution ? 2 : 1;
@@ -109,7 +109,7 @@ static void highlight(const struct run *r, float radius, int x, int y)
 
 static void highlights(const struct run *r)
 {
-    // In the gather and the gaussian less than the largest radius is a blend with the picture.
+    // In the gather and the gaussian, radii below the largest are blends with the picture.
     static const float radii[] = {12, -12, 0.3f, -0.7f, 1, 1.9f, -3, 6.5f, 9};
     const int blends = r->subject->params.engine == HF_ENGINE_GATHER || r->subject->params.engine == HF_ENGINE_GAUSSIAN;
     for (int i = 0; i < (blends ? 2 : 9); i++)
@@ -119,7 +119,7 @@ static void highlights(const struct run *r)
 
 // ---- range and opacity ----
 
-// Does the demo upsample the far field at a pixel from a quad that is not far, by its first pixel?
+// Whether the demo upsamples the far field at a pixel from a quad whose first pixel is not far.
 static int takes_black(const struct picture *depth, int pixel)
 {
     for (int i = 0; i < 4; i++) {
@@ -170,7 +170,7 @@ static void crops(const struct run *r)
 {
     for (unsigned i = 0; i < 3; i++) {
         struct scene s = calm_scene(r->seed + i, 210, 170, 3);
-        // Something bright, of which only the whole picture knows.
+        // A bright spot outside the crop.
         for (int c = 0; c < 3; c++)
             s.colour.plane[c][2 * 210 + 200] = i ? 300 : 1;
         const int x0 = 4 * (int)(1 + i), y0 = 4 * (int)(3 + i), w = 150 - (int)i, h = 130 - (int)i,
@@ -200,7 +200,7 @@ static void quads(struct picture *depth)
             depth->plane[0][y * depth->width + x] = depth->plane[0][(y & ~1) * depth->width + (x & ~1)];
 }
 
-// Is something near at a pixel or up to two away, from where mixed ones have their sides?
+// Whether a pixel is near at most two pixels away, from where mixed pixels take their sides.
 static int near_around(const struct picture *depth, int x, int y)
 {
     for (int k = 0; k < 25; k++) {
@@ -212,7 +212,7 @@ static int near_around(const struct picture *depth, int x, int y)
     return 0;
 }
 
-// Samples of two pictures that are not the same bits, but of near pixels; *compared: how many were.
+// Count the samples of two pictures that differ in bits, near pixels left out; *compared: how many were compared.
 static int others_not_near(const struct picture *a, const struct picture *b, const struct picture *depth, int *compared)
 {
     int n = 0;
@@ -229,8 +229,8 @@ static int others_not_near(const struct picture *a, const struct picture *b, con
     return n;
 }
 
-// What lies behind near pixels is made from quads, and a crop has the bits of the whole: so quads are counted from the left,
-// and those of an odd width are others in its mirror, for near pixels that show some of it.
+// The background of near pixels is made of quads, counted from the left so that a crop has the bits of the whole. In
+// the mirror of an odd width these are other quads, so near pixels that show some background are left out.
 static void flips(const struct run *r)
 {
     const int only_quads = (r->subject->promises & FLIPS_QUADS) != 0;
@@ -257,7 +257,7 @@ static void flips(const struct run *r)
     }
 }
 
-// A round picture of an aperture that is its own transpose.
+// A round aperture picture that is its own transpose.
 static struct picture round_aperture(void)
 {
     enum { SIZE = 16 };
@@ -268,7 +268,7 @@ static struct picture round_aperture(void)
     return p;
 }
 
-// The scatter's own disc is made of rows, which is no symmetry: see turned_disc().
+// The scatter's own disc is made of rows, so it is not symmetric: see turned_disc().
 static void transposes(const struct run *r)
 {
     struct picture aperture = round_aperture();
@@ -331,8 +331,8 @@ static void exposures(const struct run *r)
     }
 }
 
-// From near to far along both axes: over 122 pixels 0.9 of the range on either side of the focus, so that radii of 3 x 3
-// pixels differ by 4 * 2 * 0.9 * 12 / 122 = 0.71, and nothing is mixed.
+// From near to far along both axes: 0.9 of the range on either side of the focus over 122 pixels. So radii of 3 x 3
+// pixels differ by 4 * 2 * 0.9 * 12 / 122 = 0.71, and no pixel is mixed.
 static void one_surface(struct scene *s)
 {
     const int w = s->depth.width, steps = w + s->depth.height;
@@ -341,7 +341,7 @@ static void one_surface(struct scene *s)
             STABILITY_FOCUS + 0.9f * STABILITY_RANGE * (2 * (float)(k % w + k / w) / (float)steps - 1);
 }
 
-// Either what is near of it, sharp where it would be far, or one far radius.
+// Either only its near part, with the far part sharp, or one far radius.
 static void one_radius(struct scene *s, int far)
 {
     one_surface(s);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cases of stability.h as a test.
+// Runs the cases of stability.h as a test.
 //
-// All of them, --full, also when HF_LONG is in the environment.
+// With --full, or with HF_LONG in the environment, all of them.
 //
 //     stability [--full] [--seed N] [--engine NAME] [--only GROUP] [--isa NAME]
 #include <stdlib.h>

@@ -11,7 +11,7 @@
 
 static const double U = FLT_EPSILON / 2;
 
-// The largest sample around a pixel, as far as its result comes from.
+// The largest sample around a pixel, within the distance that its result comes from.
 static double local_largest(const struct picture *p, int c, int x, int y, int reach)
 {
     double most = 0;
@@ -22,7 +22,7 @@ static double local_largest(const struct picture *p, int c, int x, int y, int re
     return most;
 }
 
-// 1 and the picture in double precision, or 0 if there is no such reference.
+// Returns 1 and the picture in double precision, or 0 if there is no such reference.
 static int reference_of(const struct run *r, const struct scene *s, const struct hf_depth *depth, struct picture *want)
 {
     const struct hf_params *p = &r->subject->params;
@@ -81,10 +81,11 @@ static void against_double(const struct run *r)
     }
 }
 
-// Half units that the gather's sums by area may add to a constant, its kernels as large as the radius: h half-resolution
-// pixels. A sample is rounded once beside its pair on the other side of a row, h + 1 times as pairs of the row are added, and
-// 2 h + 1 times as rows are. Samples of a constant are alike, and so are these roundings, all up or all down: they do add up.
-// The sums of weights are rounded as often at most, and not at all where samples count wholly.
+// Half units by which the gather's area sums may change a constant, with kernels as large as the radius: h
+// half-resolution pixels. A sample is rounded once with its pair on the other side of a row, h + 1 times as pairs of
+// the row are added, and 2 h + 1 times as rows are. The samples of a constant are equal, so their roundings are too,
+// all up or all down: they add up. The sums of weights are rounded at most as often, and not at all where samples count
+// fully.
 static double area_sums(const struct run *r, double radius)
 {
     const struct hf_gather_params *g = &r->subject->params.gather;
@@ -94,7 +95,7 @@ static double area_sums(const struct run *r, double radius)
     return by_area ? 2 * (1 + (h + 1) + (2 * h + 1)) : 0;
 }
 
-// A constant in a row of 16384 pixels under a radius of 500: sums that drift would show.
+// A constant in a row of 16384 pixels with a radius of 500: sums that drift would show it.
 static void long_rows(const struct run *r)
 {
     const int w = r->full ? 16384 : 4096, h = 5;

@@ -5,8 +5,8 @@
 
 #include "support/check.h"
 
-// alone: without a context, while the process has this thread alone. A thread that is starting may hold the allocator's lock
-// of a sanitizer when the process forks, and the child waits for it forever.
+// alone: runs without a context, while the process has only this thread. A starting thread may hold the lock of a
+// sanitizer's allocator when the process forks, and the child would wait for it forever.
 static const struct {
     const char *name;
     void (*alone)(const struct run *r);
@@ -43,7 +43,7 @@ static void run_subject(const struct subject *s, const struct stability_options 
 
 int stability_run(const struct stability_options *o)
 {
-    static struct subject subjects[32];  // rows keep their names
+    static struct subject subjects[32];  // rows keep pointers to their names
     int any = 0;
     stability_open_table();
     for (int i = 0; i < subject_count(); i++) {

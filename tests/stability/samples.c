@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bad samples: none of them leaves anything that is not finite, in the picture or in a buffer on the way; none changes
-// what lies beyond the reach of the blur; all are counted.
+// Bad samples: none leaves a value that is not finite in the picture or in a buffer; none changes pixels beyond the
+// reach of the blur; all are counted.
 #include "stability/stability.h"
 
 #include <float.h>
@@ -28,8 +28,7 @@ static int is_bad(enum place place, int x, int y)
     }
 }
 
-// Largest distance in x or y at which a sample changed that is not bad itself; the bad ones lie at most 2 from (X, Y) or
-// in its row.
+// The largest distance in x or y at which a good sample changed; the bad ones lie at most 2 from (X, Y) or in its row.
 static int reach_of_change(const struct picture *a, const struct picture *b, enum place place)
 {
     int reach = 0;
@@ -78,7 +77,7 @@ static void look(void *cookie, const struct hf_buffer *b)
         }
 }
 
-// What a dump shows of a buffer that no pass wrote is whatever was there: here it is zeros.
+// A dump of a buffer that no pass wrote shows whatever memory held; with this allocator it is zeros.
 static void *zeros(void *cookie, size_t size, size_t align)
 {
     (void)cookie;
@@ -108,7 +107,7 @@ static void try_buffers(const struct run *r, const struct scene *s, const char *
         "none may be", (double)found.not_finite, 0, "%s, first in %s", name, found.first);
 }
 
-// huge: sums of two samples are beyond the largest float.
+// huge: sums of two samples exceed the largest float.
 static void try_picture(const struct run *r, const struct scene *s, const struct picture *good, enum place place,
                         const char *name, uint64_t bad_colours, uint64_t bad_depths, int huge)
 {
@@ -130,7 +129,8 @@ static void try_picture(const struct run *r, const struct scene *s, const struct
     try_buffers(r, s, name, huge);
 }
 
-// Instruction sets are held to the C elsewhere: a quarter of the cases for each, another for the next; all for the widest.
+// Other tests compare instruction sets with the C. Here each set runs a different quarter of the cases, and the widest
+// runs all.
 static int chosen(const struct run *r, int number)
 {
     return r->full || r->widest || (number + (int)r->isa) % 4 == 0;
@@ -141,7 +141,7 @@ static void colours(const struct run *r, const struct scene *clean, const struct
     static const float values[] = {NAN, INFINITY, -INFINITY, 1e-42f, -3, 65504, 1e30f, FLT_MAX, -FLT_MAX};
     for (int v = 0; v < 9; v++) {
         for (int place = 0; place < PLACES; place++) {
-            // Colour or alpha; the two by turns, or both in the long run.
+            // Colour or alpha, alternately, or both in the long run.
             for (int c = 0; c < 4; c++) {
                 if (!r->full && (c != (v + place) % 4 || !chosen(r, v + place)))
                     continue;

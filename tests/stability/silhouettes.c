@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Anti-aliased silhouettes: a disc in focus before a wall of one colour. A lens changes nothing of that, as behind every mixed
-// pixel the blurred wall is as the sharp one is. Depth tells of a mixed pixel which of both it has in its middle, no more.
+// Anti-aliased silhouettes: a sharp disc before a wall of one colour. A lens changes nothing of that, because behind
+// each mixed pixel the blurred wall equals the sharp one. For a mixed pixel, depth only says which of both surfaces is
+// in its middle.
 #include "stability/stability.h"
 
 #define DISC 24.3
@@ -13,7 +14,7 @@ static double beyond(double x, double y, double middle)
     return hypot(x - middle, y - middle) - DISC;
 }
 
-// How much of a pixel the disc covers.
+// The part of a pixel that the disc covers.
 static double share_of(int x, int y, double middle)
 {
     const double d = beyond(x + 0.5, y + 0.5, middle);
@@ -25,7 +26,8 @@ static double share_of(int x, int y, double middle)
     return inside / (double)(FINE * FINE);
 }
 
-// The mean change of pixels within a pixel outside of the outline, codes; *stair: how far the worst of them is from the wall.
+// The mean change of pixels up to one pixel outside the outline, in codes; *stair: how far the worst of them is from
+// the wall.
 static double halo_of(const struct picture *out, const struct picture *in, double middle, double wall, double *stair)
 {
     double sum = 0;

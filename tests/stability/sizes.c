@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every small size, with each block of memory between pages that cannot be touched and filled with one kind of junk
-// after the other: no bit may depend on it, and what lies between rows stays. Parameters that leave nothing to blur give
-// the input's bits.
+// Every small size, with each block of memory between forbidden pages and filled with different kinds of junk: no bit
+// may depend on it, and bytes between rows must stay. Parameters without blur give the input's bits.
 #include "stability/stability.h"
 
 #include <stdlib.h>
@@ -10,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-// ---- memory: a page for notes, one that is forbidden, the block up to a page's end, one that is forbidden ----
+// ---- memory: a page for notes, a forbidden one, the block up to a page's end, a forbidden one ----
 
 enum { PAGE = 4096 };
 
@@ -64,7 +63,7 @@ static void guarded_free(void *cookie, void *block)
 }
 
 enum { AT = 120 };
-static char *at;  // what is being tried: known after a crash, too
+static char *at;  // the current case, also known after a crash
 
 // ---- pictures: rows with junk between them, the last one ending at a forbidden page ----
 
@@ -112,7 +111,7 @@ static void shot_free(struct shot *s)
     guarded_free(NULL, (void *)(uintptr_t)s->depth.data);
 }
 
-// Bytes between rows that changed.
+// Count the bytes between rows that changed.
 static int junk_written(const struct shot *s)
 {
     int n = 0;
@@ -192,11 +191,12 @@ static void small_sizes(const struct run *r)
                 listed |= h == heights[(i + w) % 4] && i < 2;
             for (int i = 0; i < 3; i++)
                 listed |= w == widths[i] && h % 2 == w % 2;
-            // Instruction sets are held to the C elsewhere: the widest has all of these, the others a quarter each.
+            // Other tests compare instruction sets with the C. The widest set runs all of these, the others a quarter
+            // each.
             if (listed && (r->full || r->widest || (w + w / 4 + h + (int)r->isa) % 4 == 0))
                 try_size(r, w, h, &p, "radius 12");
         }
-    // CoC larger than the picture, and strides of everything at once.
+    // A CoC larger than the picture, and all kinds of strides at once.
     p.max_radius = 100;
     for (int n = 1; n <= 40; n += r->full ? 1 : 6)
         try_size(r, n, 41 - n, &p, "radius 100");

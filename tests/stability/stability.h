@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numerical stability of every engine: what was tried, the bound and where it comes from, the worst value seen. The
-// cases are run by a test, which fails where a bound is exceeded, and by `hyperfocal-bench stability`, which prints the
-// table.
+// Numerical stability of every engine: each case has a bound with its reason, and the worst value found. A test runs
+// the cases and fails where a bound is exceeded; `hyperfocal-bench stability` prints them as a table.
 //
 //   subjects.c    what is tried: engines in their variants, and what each of them promises
 //   table.c       rows: findings of many pictures and instruction sets become one line
@@ -18,36 +17,36 @@
 
 #include "support/render.h"
 
-// Focus, range and largest radius of all cases, as scene_params() has them.
+// Focus, range and largest radius of all cases, as in scene_params().
 #define STABILITY_FOCUS 20.0f
 #define STABILITY_RANGE 10.0f
 #define STABILITY_RADIUS 12.0f
 
-// What a subject promises beyond what all do.
+// Properties that only some subjects promise.
 enum promise {
-    KEEPS_ENERGY = 1 << 0,      // of a highlight where everything has one CoC
+    KEEPS_ENERGY = 1 << 0,      // of a highlight, with one CoC everywhere
     ADDS = 1 << 1,              // the blur of a sum is the sum of the blurs
     EXPOSES = 1 << 2,           // a factor of 2^k passes through exactly
     FLIPS = 1 << 3,             // left to right, bit for bit
-    FLIPS_EVEN = 1 << 4,        // FLIPS, but for near pixels at odd widths
-    FLIPS_QUADS = 1 << 5,       // the same where depth is constant per quad and the size even
+    FLIPS_EVEN = 1 << 4,        // FLIPS, except near pixels at odd widths
+    FLIPS_QUADS = 1 << 5,       // FLIPS, where depth is constant per quad and the size is even
     TRANSPOSES = 1 << 6,        // within rounding
     PERMUTES = 1 << 7,          // channels, bit for bit
-    EXACT = 1 << 8,             // float storage: bounds are those of rounding alone
-    ADDS_ONE_SURFACE = 1 << 9,  // as ADDS, but for mixed pixels
-    ADDS_ONE_RADIUS = 1 << 10,  // as ADDS_ONE_SURFACE, of what is far where that has one radius
-    KEEPS_CENTRE = 1 << 11,     // a highlight's centre of gravity, far and near
-    SMOOTH = 1 << 12,           // anti-aliased silhouettes before what is blurred stay nearer to smooth than to stairs
-    UNMIXES = 1 << 13,          // and are as they were
+    EXACT = 1 << 8,             // float storage: bounds are those of rounding only
+    ADDS_ONE_SURFACE = 1 << 9,  // as ADDS, except mixed pixels
+    ADDS_ONE_RADIUS = 1 << 10,  // as ADDS_ONE_SURFACE, for far pixels that have one radius
+    KEEPS_CENTRE = 1 << 11,     // a highlight's centre of gravity stays, far and near
+    SMOOTH = 1 << 12,           // anti-aliased silhouettes before blur are closer to smooth than to stairs
+    UNMIXES = 1 << 13,          // such silhouettes stay as they were
 };
 
 struct subject {
     const char *name;
     struct hf_params params;
     unsigned promises;  // of enum promise
-    int margin;         // pixels from which a pixel's result may come, for the largest radius above
-    double constant;    // by how much a constant may move, half ulps: roundings that do not cancel
-    double roundings;   // roundings on the way of a sample, half ulps of the largest
+    int margin;         // how far a pixel's result may come from, at the largest radius above
+    double constant;    // how much a constant may move, in half ulps: roundings that do not cancel
+    double roundings;   // roundings of a sample, in half ulps of the largest one
     double step;        // relative step of the storage
 };
 
@@ -61,19 +60,19 @@ struct run {
     const char *isa_name;
     struct hf_context *c;
     int full;    // the long run: more of everything
-    int widest;  // of the instruction sets that are tried
+    int widest;  // of the instruction sets under test
     unsigned seed;
 };
 
-// One finding of a case: its value, its bound and where that comes from; the rest says where, as printf does. A NaN
-// exceeds every bound. Findings with the same subject and case are one row: that nearest to its bound, or farthest
-// beyond it, is kept.
+// Record a finding of a case: its value, its bound and the bound's reason; the other arguments say where it occurred,
+// as for printf. A NaN exceeds every bound. Findings with the same subject and case share a row, which keeps the one
+// nearest to its bound, or farthest beyond it.
 __attribute__((format(printf, 6, 7))) void see(const struct run *r, const char *what, const char *why, double value,
                                                double bound, const char *where, ...);
 
-// Before the first finding.
+// Call before the first finding.
 void stability_open_table(void);
-// All rows so far as a table; returns how many exceed their bound.
+// Print all rows so far as a table; returns how many exceed their bound.
 int stability_print(FILE *to);
 int stability_passed(void);
 // Each row.
@@ -85,32 +84,34 @@ struct stability_row {
 void stability_each(void (*fn)(void *cookie, const struct stability_row *row), void *cookie);
 
 struct stability_options {
-    const char *engine;  // only subjects whose name begins so; NULL: all
-    const char *only;    // only this file's cases, by its name without .c; NULL: all
-    enum hf_isa isa;     // AUTO: all that there are
+    const char *engine;  // only subjects whose name begins with this; NULL: all
+    const char *only;    // only the cases of this file, named without .c; NULL: all
+    enum hf_isa isa;     // AUTO: all of this machine's
     int full;
     unsigned seed;
 };
-// Run the cases. Returns 0, or -1 when there is nothing to run.
+// Run the cases. Returns 0, or -1 if no case was selected.
 int stability_run(const struct stability_options *o);
 
 void samples_cases(const struct run *r);
-void small_sizes_cases(const struct run *r);  // in a process of its own: r->c is not there
+void small_sizes_cases(const struct run *r);  // run in a process of its own, without r->c
 void sizes_cases(const struct run *r);
 void invariance_cases(const struct run *r);
 void continuity_cases(const struct run *r);
 void rounding_cases(const struct run *r);
 void silhouettes_cases(const struct run *r);
 
-// A picture of blocks with a soft pattern in each, 0.05 .. 1, alpha as asked for, and depths on both sides of the focus.
+// A picture of blocks with a soft pattern in each, 0.05 .. 1, with or without alpha, and depths on both sides of the
+// focus.
 struct scene calm_scene(unsigned seed, int width, int height, int channels);
-// In codes of 8 bits after clamping and the sRGB curve: a value, and how far two pictures are apart at the worst sample. Of
-// pictures of 3 channels a fourth plane may mark pixels: where the marks differ, they are not compared.
+// In 8-bit codes after clamping and the sRGB curve: a value; and the distance of two pictures at the worst sample. In
+// pictures of 3 channels a fourth plane may hold marks: pixels whose marks differ are not compared.
 double display_code(double v);
 double display_distance(const struct picture *a, const struct picture *b);
 
-// What is left of the step of a parameter from *from to *to, as display_distance tells, when it has been halved towards the
-// greater change until no float lies between its ends, or `halvings` times. at: the picture for a value of it.
+// The change that remains when the step of a parameter from *from to *to has been halved, each time towards the greater
+// change by display_distance, until no float lies between its ends, or `halvings` times. at: makes the picture for a
+// value of the parameter.
 double step_left(struct picture (*at)(void *cookie, double t), void *cookie, int halvings, double *from, double *to);
 
 #endif
