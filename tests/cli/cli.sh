@@ -15,8 +15,11 @@ cp "$dir/out" "$dir/short"
 run --help
 [ "$status" -eq 0 ] && cmp -s "$dir/out" "$dir/short"
 result "-h is --help" $?
-[ "$(wc -l <"$dir/short")" -le 50 ]
+[ "$(wc -l <"$dir/short")" -le 60 ]
 result "--help fits a screen" $?
+tr -s " \n" " " <"$dir/short" >"$dir/flat"
+contains "$dir/flat" "draft: --engine" && contains "$dir/flat" "Default view."
+result "--help tells what --quality chooses, and defaults" $?
 for option in output focus focus-at range strength near-begin near-end far-begin far-end fstop focal-length \
     sensor-width world-unit max-radius depth-channel depth-file depth-type near far views aperture karis \
     per-pixel-kernel bicubic fill blend threads isa no-skip json dump-passes compression dry-run version engine \

@@ -7,6 +7,12 @@
 #include <string.h>
 
 #include "support/check.h"
+#if HF_HAVE_CLI
+#include "tools/cli/choose.h"
+#endif
+#if HF_HAVE_BENCH
+#include "../bench/args.h"
+#endif
 
 struct inner {
     int count;
@@ -181,16 +187,61 @@ static void misfits(void)
     CHECK(!parse("--flag") && !tool_misfit(&parser, HF_ENGINE_LAYERS));
 }
 
-// Both programs' tables: no name twice, and a placeholder for what takes a value.
-static void tables(void)
+#if HF_HAVE_BENCH
+const char *const bench_command_words[][2] = {{NULL, NULL}};
+#endif
+
+// Options that take a value and have no default.
+static int has_no_default(const char *name)
 {
-    for (const struct tool_option *o = tool_params_options; o->name; o++) {
-        for (const struct tool_option *other = tool_params_options; other < o; other++)
+    static const char *const names[] = {"output",      "focus-at", "keys",  "max-error", "log",     "explain-image",
+                                        "focus-image", "json",     "image", "truth",     "setting", "html",
+                                        "dump-passes", "png",      "csv",   "ladder",    "readme",  "help"};
+    for (size_t i = 0; i < sizeof(names) / sizeof(*names); i++)
+        if (!strcmp(name, names[i]))
+            return 1;
+    return 0;
+}
+
+// A program's table: no name twice, help in sentences, and the default of each option that has one.
+static void table(const struct tool_option *options)
+{
+    for (const struct tool_option *o = options; o->name; o++) {
+        for (const struct tool_option *other = options; other < o; other++)
             CHECK_MSG(strcmp(o->name, other->name) != 0, "--%s is there twice", o->name);
-        CHECK_MSG(o->offset < sizeof(struct hf_params), "--%s", o->name);
-        CHECK_MSG(o->help[strlen(o->help) - 1] == '.', "--%s: %s", o->name, o->help);
+        const char last = o->help[strlen(o->help) - 1];
+        CHECK_MSG(last == '.' || (o->chooses && last == ':'), "--%s: %s", o->name, o->help);
+        if (o->placeholder)
+            CHECK_MSG((strstr(o->help, "efault") != NULL) != has_no_default(o->name), "--%s: %s", o->name, o->help);
     }
 }
+
+static void tables(void)
+{
+    table(tool_params_options);
+    for (const struct tool_option *o = tool_params_options; o->name; o++)
+        CHECK_MSG(o->offset < sizeof(struct hf_params), "--%s", o->name);
+#if HF_HAVE_CLI
+    table(cli_program.sections[0].options);
+#endif
+#if HF_HAVE_BENCH
+    table(bench_program.sections[0].options);
+#endif
+}
+
+#if HF_HAVE_CLI
+// The help of --quality tells what the library chooses.
+static void qualities(void)
+{
+    for (int i = 0; i < 4; i++) {
+        struct hf_params p = hf_default_params;
+        struct hf_choice choice;
+        CHECK_INT(hf_choose_quality(1080, NULL, &p, (enum hf_quality)i, &choice), HF_OK);
+        CHECK_MSG(!strcmp(cli_quality_words(i), choice.options), "%s", cli_quality_words(i));
+    }
+    CHECK(strstr(cli_quality_words(0), "--engine") != NULL);
+}
+#endif
 
 int main(void)
 {
@@ -200,5 +251,8 @@ int main(void)
     help();
     misfits();
     tables();
+#if HF_HAVE_CLI
+    qualities();
+#endif
     return check_report();
 }

@@ -15,6 +15,13 @@ static int by_error(const struct cli_args *args)
     return !isnan(args->max_error);
 }
 
+const char *cli_quality_words(int quality)
+{
+    struct hf_params p = hf_default_params;
+    struct hf_choice choice;
+    return hf_choose_quality(1080, NULL, &p, (enum hf_quality)quality, &choice) ? "" : choice.options;
+}
+
 int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, struct tool_error *error)
 {
     const char *option = by_error(args) ? "max-error" : "quality";

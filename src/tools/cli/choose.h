@@ -8,6 +8,8 @@
 #include "tools/cli/setup.h"
 #include "tools/common/json.h"
 
+// The options that a number of enum hf_quality chooses for blur of 12 pixels at 1080 lines, as words.
+const char *cli_quality_words(int quality);
 // What cannot be given together with them. Returns 0, or -1 with *error filled.
 int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, struct tool_error *error);
 // Choose for a view whose model, depth and size are known; does nothing if neither was given.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command's own options; those of the library's parameters are in src/tools/common/params.c. Order is that of the help text.
+// The command's own options, in the order of the help text; those of the library's parameters are in
+// src/tools/common/params.c.
 #include "tools/cli/args.h"
+#include "tools/cli/choose.h"
 
 #include <float.h>
 #include <stddef.h>
@@ -25,7 +27,7 @@ static const struct tool_option options[] = {
      "10-1 (backwards), 1,5,9-20x3, -5--1, 1-100:3 (every third first, then those between). Default: those that there "
      "are.", TEXT(frames)},
     {"chunk", 0, TOOL_FILES, "auto|I/N", "Only part I of N of the frames, for farms. auto: this task's part in a Slurm "
-     "array.", TEXT(chunk)},
+     "array. Default: all of them.", TEXT(chunk)},
     {"views", 0, TOOL_FILES, "all|NAME,...", "Views to defocus, each by its own depth; the others are kept as they "
      "are. Default all.", TEXT(views)},
     {"layer", 0, TOOL_FILES, "all|NAME,...", "Layers to defocus, each by its own depth: ViewLayer.Combined, or just "
@@ -34,7 +36,8 @@ static const struct tool_option options[] = {
      "new is black and transparent, 0 in other channels, and far away in depth. Default: what reaches beyond is cut, "
      "with a warning.", FLAG(grow)},
     {"display", 0, TOOL_FILES, "WxH[+X+Y]", "The picture is a crop of a frame of this size, pixels, at X,Y from its top "
-     "left corner (default: in its middle), whatever the file says: the lens is that of the whole frame.",
+     "left corner, else in its middle, whatever the file says: the lens is that of the whole frame. Default: the file's "
+     "display window.",
      .parse = cli_parse_display},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
      "Default: that of INPUT.", .parse = tool_parse_choice_text, FIELD(compression)},
@@ -82,17 +85,18 @@ static const struct tool_option options[] = {
 
     {"depth-channel", 0, TOOL_DEPTH, "NAME", "Full name of the depth channel. Default: the view's Z or depth.Z, else "
      "the only channel with depth in its name.", TEXT(depth_channel)},
-    {"depth-file", 0, TOOL_DEPTH, "FILE", "Take depth from this file. One of another size than the view is scaled to it by the "
+    {"depth-file", 0, TOOL_DEPTH, "FILE", "Take depth from this file. Default: from INPUT. One of another size than the view is scaled to it by the "
      "nearest sample, if its width / height is the same within 1 %.", TEXT(depth_file)},
     {"depth-type", 0, TOOL_DEPTH, "view|ray|ndc-d3d|ndc-gl|ndc-reversed|inverse|normalized|normalized-inverted|coc",
-     "What depth holds. view (default): distance along the camera's axis; ray: along the ray; ndc-d3d, ndc-gl, "
+     "What depth holds. Default view. view: distance along the camera's axis; ray: along the ray; ndc-d3d, ndc-gl, "
      "ndc-reversed: a depth buffer from 0 to 1, -1 to 1, 1 to 0; inverse: 1/distance, as depth estimators give it; "
      "normalized, normalized-inverted: a map from black at --near to white at --far, or the other way; coc: signed blur "
      "radii in pixels, near ones negative, which need no focus.", .parse = cli_parse_depth_type, FIELD(depth_type),
      .names = HF_NAMES_DEPTH_TYPE},
     {"near", 0, TOOL_DEPTH, "D", "Distance of an ndc or normalized depth's near end, scene units; with inverse that of "
-     "1, in place of a scale; with gaussian of any.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE},
-    {"far", 0, TOOL_DEPTH, "D", "The same of its far end, or inf; with inverse that of 0.", POSITIVE(far_plane),
+     "1, in place of a scale; with gaussian of any. Default with gaussian 1, else none.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE},
+    {"far", 0, TOOL_DEPTH, "D", "The same of its far end, or inf; with inverse that of 0. Default with gaussian "
+     "100 times --near, with inverse inf, else none.", POSITIVE(far_plane),
      .unit = TOOL_UNIT_DISTANCE, .inf = 1},
     {"depth-scale", 0, TOOL_DEPTH, "S", "What the numbers of the depth are multiplied with first, not 0. Whole numbers "
      "of a picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
@@ -103,14 +107,15 @@ static const struct tool_option options[] = {
      "sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, unless keep is "
      "given.", CHOICE(depth_edges)},
 
-    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. layers (default): edges un-mixed, "
+    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default layers. layers: edges un-mixed, "
      "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "
      "half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. gaussian: soft, with "
      "autofocus.", NAME(engine, ENGINE)},
-    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings from those "
-     "it was measured with: the cheapest that blurs as far as any lens (the gather); the cheapest within 1 dB "
-     "of the most accurate; within 0.25 dB; the most accurate. The last two are the same where nothing lies between, as "
-     "today. --explain says why, and what that costs and errs.", NAME(quality, QUALITY)},
+    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings. Default: "
+     "--engine and its options count. From the settings that were measured, draft chooses the cheapest that blurs as far as "
+     "a lens (the gather), best the most accurate, standard and high the cheapest within 1 dB and 0.25 dB of that. --explain "
+     "says why, what that costs, and how far from a ray tracer it is. Unless the aperture's shape or a large radius needs "
+     "another:", NAME(quality, QUALITY), .chooses = cli_quality_words},
     {"max-error", 0, TOOL_LOOK, "E", "The same by the error that is acceptable: root mean square distance from what a "
      "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1},
     {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
@@ -165,9 +170,9 @@ static const char *const groups[TOOL_GROUPS] = {
 // clang-format on
 
 // What most people need; the rest is told by --help=all.
-static const char *const usual[] = {"output",   "focus",        "focus-at",   "range",      "max-radius",
-                                    "fstop",    "focal-length", "depth-file", "depth-type", "engine",
-                                    "aperture", "dry-run",      "help",       NULL};
+static const char *const usual[] = {"output",  "focus",        "focus-at",   "range",      "max-radius",
+                                    "fstop",   "focal-length", "depth-file", "depth-type", "engine",
+                                    "quality", "aperture",     "dry-run",    "help",       NULL};
 
 const struct tool_program cli_program = {
     .name = "hyperfocal",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same table as a help text and as a man page.
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "tools/common/options.h"
@@ -28,25 +29,60 @@ static void print_wrapped(const char *text, int column, int at)
     putchar('\n');
 }
 
-// The help of an option, or its first sentence, behind the engines or commands that it is for.
-static const char *words_of(const struct tool_option *o, int all, char text[1024])
+enum { HELP = 1024 };
+
+// To the end of the text, as far as there is room.
+static void add(char text[HELP], const char *words, int count)
 {
-    const char *end = all ? NULL : strstr(o->help, ". ");
-    const int length = end ? (int)(end - o->help) + 1 : (int)strlen(o->help);
-    char engines[256];
-    const char *only = o->engines ? o->engines : o->commands;
-    if (!only) {
-        snprintf(text, 1024, "%.*s", length, o->help);
-        return text;
+    const size_t n = strlen(text);
+    snprintf(text + n, HELP - n, "%.*s", count, words);
+}
+
+// How long the sentence at text is, with its full stop.
+static int sentence(const char *text)
+{
+    const char *end = strstr(text, ". ");
+    return end ? (int)(end - text) + 1 : (int)strlen(text);
+}
+
+// " draft: --engine gather; best: --engine layers."
+static void add_choices(char text[HELP], const struct tool_option *o)
+{
+    const char *word = o->placeholder;
+    for (int i = 0; *word; i++) {
+        const int n = (int)strcspn(word, "|");
+        add(text, i ? "; " : " ", 2);
+        add(text, word, n);
+        add(text, ": ", 2);
+        add(text, o->chooses(i), HELP);
+        word += n + (word[n] == '|');
     }
-    const int n = snprintf(text, 1024, "%s: %.*s", tool_and(only, engines), length, o->help);
-    char *first = text + n - length;
-    if (length > 1 && islower((unsigned char)first[1]))
+    add(text, ".", 1);
+}
+
+// The help of an option, or its first sentence and the default, behind the engines or commands that it is for.
+static const char *words_of(const struct tool_option *o, int all, char text[HELP])
+{
+    char engines[256];
+    const char *only = o->engines ? o->engines : o->commands, *dflt = strstr(o->help, ". Default");
+    const int length = all ? (int)strlen(o->help) : sentence(o->help);
+    text[0] = '\0';
+    if (only) {
+        add(text, tool_and(only, engines), 256);
+        add(text, ": ", 2);
+    }
+    char *first = text + strlen(text);
+    add(text, o->help, length);
+    if (only && length > 1 && islower((unsigned char)first[1]))
         *first = (char)tolower((unsigned char)*first);
+    if (!all && dflt)
+        add(text, dflt + 1, 1 + sentence(dflt + 2));
+    if (o->chooses)
+        add_choices(text, o);
     return text;
 }
 
-// The whole help, or its first sentence.
+// The whole help, or the short one.
 static void print_option(const struct tool_option *o, int all)
 {
     int at = o->letter ? printf("  -%c, ", o->letter) : printf("      ");
@@ -61,7 +97,7 @@ static void print_option(const struct tool_option *o, int all)
         at += printf("%s%.*s", word == o->placeholder ? " " : "", n + bar, word);
         word += n + bar;
     }
-    char text[1024];
+    char text[HELP];
     print_wrapped(words_of(o, all, text), COLUMN, at);
 }
 
@@ -139,7 +175,7 @@ static void man_option(const struct tool_option *o, int all)
         put_roff(o->placeholder);
     }
     putchar('\n');
-    char text[1024];
+    char text[HELP];
     put_roff(words_of(o, 1, text));
     putchar('\n');
 }

@@ -26,7 +26,9 @@ struct tool_option {
     enum tool_group group;
     const char *placeholder;  // of the value; NULL: takes none; "[FILE]": may have one. Of a choice the very list
                               // of words that are accepted, "a|b"
-    const char *help;
+    const char *help;         // sentences; the short help has the first, and the one that begins with "Default"
+    // Of a choice, or NULL: what the word of this number chooses.
+    const char *(*chooses)(int number);
     tool_parse *parse;
     size_t offset;         // of what parse sets, in the section's struct
     float min, max;        // of a number, inclusive
