@@ -16,7 +16,7 @@ int tool_fail(struct tool_error *error, int code, const char *format, ...)
     return code;
 }
 
-// Those of ASCII, and U+0080 to U+009F in UTF-8, which some terminals obey too.
+// Replace control characters: those of ASCII, and U+0080 to U+009F in UTF-8, which some terminals obey too.
 static void hide_controls(char *text)
 {
     for (unsigned char *c = (unsigned char *)text; *c; c++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One error, one sentence: functions fill it, main prints it.
+// One error is one sentence: functions fill it in, main prints it.
 #ifndef HF_TOOL_ERROR_H
 #define HF_TOOL_ERROR_H
 
@@ -17,13 +17,13 @@ enum { TOOL_SHOWN = 1024 };
 // A name as it may be shown on a terminal: control characters become '?'. Returns buf.
 const char *tool_shown(const char *text, char buf[TOOL_SHOWN]);
 
-// Name of the program, as its messages begin; main may set it.
+// The program's name, with which its messages begin; main may set it.
 extern const char *tool_program;
 
 // "PROGRAM: TEXT" as one line on stderr; control characters, which names may hold, are shown as '?'.
 void tool_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-// Set while a progress bar is on the terminal's line: what is printed next takes its place.
+// Set while a progress bar stands on the terminal's line; the next message replaces the bar.
 extern atomic_int tool_bar_shown;
 
 #endif

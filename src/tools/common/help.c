@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same table as a help text and as a man page.
+// Prints the same table of options as a help text and as a man page.
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -31,7 +31,7 @@ static void print_wrapped(const char *text, int column, int at)
 
 enum { HELP = 1024 };
 
-// To the end of the text, as far as there is room.
+// Append `count` letters of words to a text, as far as there is room.
 static void add(char text[HELP], const char *words, int count)
 {
     const size_t n = strlen(text);
@@ -82,12 +82,12 @@ static const char *words_of(const struct tool_option *o, int all, char text[HELP
     return text;
 }
 
-// The whole help, or the short one.
+// Print an option with its whole help, or the short one.
 static void print_option(const struct tool_option *o, int all)
 {
     int at = o->letter ? printf("  -%c, ", o->letter) : printf("      ");
     at += printf("--%s", o->name);
-    // A long list of words is broken behind a bar.
+    // A long list of words may be broken after a bar.
     for (const char *word = o->placeholder; word && *word;) {
         const int n = (int)strcspn(word, "|"), bar = word[n] == '|';
         if (at + 1 + n + bar > WIDTH) {
@@ -109,7 +109,7 @@ static int is_usual(const struct tool_program *program, const struct tool_option
     return !program->usual;
 }
 
-// Each option of a group, in order.
+// Call a function for each option of a group, in order.
 static void each_option(const struct tool_program *program, int group,
                         void (*print)(const struct tool_option *option, int all), int all)
 {
@@ -144,7 +144,7 @@ void tool_print_help(const struct tool_program *program, int all)
     print_wrapped(program->outro, 0, 0);
 }
 
-// Text in roff: a backslash and a hyphen have meanings of their own, and so have ' and . at the start of a line.
+// Print text in roff: backslashes and hyphens are escaped, and so are ' and . at the start of a line.
 static void put_roff(const char *text)
 {
     if (*text == '\'' || *text == '.')

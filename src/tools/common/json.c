@@ -8,7 +8,7 @@
 #include "hyperfocal/hyperfocal.h"
 #include "tools/common/machine.h"
 
-// Length of the UTF-8 sequence at s, 0 when it is none: file names may be any bytes.
+// The length of the UTF-8 sequence at s, 0 if it is invalid: file names may contain any bytes.
 static int utf8_length(const unsigned char *s)
 {
     const int n = s[0] < 0x80                   ? 1
@@ -19,7 +19,7 @@ static int utf8_length(const unsigned char *s)
     for (int i = 1; i < n; i++)
         if ((s[i] & 0xc0) != 0x80)
             return 0;
-    // Overlong forms, surrogates and what lies beyond the last code point.
+    // Overlong forms, surrogates, and code points beyond the last.
     if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] >= 0xa0) || (s[0] == 0xf0 && s[1] < 0x90) ||
         (s[0] == 0xf4 && s[1] >= 0x90))
         return 0;
@@ -50,7 +50,7 @@ static void new_line(struct tool_json *j)
     fprintf(j->out, "\n%*s", 2 * j->depth, "");
 }
 
-// What stands before a member: a comma, a line break, its name.
+// Write what precedes a member: a comma, a line break, its name.
 static void begin_member(struct tool_json *j, const char *name)
 {
     const int first = j->level[j->depth].count++ == 0;
@@ -123,7 +123,7 @@ void tool_json_text(struct tool_json *j, const char *name, const char *text)
 void tool_json_number(struct tool_json *j, const char *name, double number)
 {
     begin_member(j, name);
-    // What was a float has no more digits than it takes to read it back: 0.8, not 0.800000012.
+    // A number that was a float gets only the digits needed to read it back: 0.8, not 0.800000012.
     int digits = (double)(float)number == number ? 6 : 9;
     char text[40] = "null";
     do {

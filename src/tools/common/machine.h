@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-// Name of the CPU as the kernel tells it; ARM kernels tell none.
+// The CPU's name as the kernel reports it; ARM kernels report none.
 void tool_cpu(char *name, size_t size);
 
 // Milliseconds of a clock that only goes forward.

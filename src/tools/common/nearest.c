@@ -10,10 +10,11 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-// Letters to add, leave out, change or swap with the next to make one word of the other; words of up to LONGEST.
+// The number of letters to insert, delete, change or swap with the next, to turn one word into the other; words of up
+// to LONGEST.
 static int word_distance(const char *a, int a_length, const char *b, int b_length)
 {
-    // Rows of the table for the letters of a: the one before the last, the last, this one.
+    // Rows of the distance table: that of two letters before, of the last, and of this letter of a.
     int row[3][LONGEST + 1];
     if (a_length > LONGEST || b_length > LONGEST)
         return 2 * LONGEST;
@@ -34,7 +35,7 @@ static int word_distance(const char *a, int a_length, const char *b, int b_lengt
     return row[a_length % 3][b_length];
 }
 
-// Is a word at this distance from one of some length near enough to be suggested?
+// Whether a word at this distance from one of that length is close enough to be suggested.
 static int is_near(int distance, int length)
 {
     return distance <= (length > 6 ? 3 : length > 3 ? 2 : 1) && distance < length;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The word that somebody who misspelt one may have meant.
+// Suggests the word that a misspelt one may have meant.
 #ifndef HF_TOOL_NEAREST_H
 #define HF_TOOL_NEAREST_H
 
-// The nearest of some words so far: start from zeros.
+// The nearest word so far; start with zeros.
 struct tool_nearest {
     const char *word;  // NULL: none is near
     int length, distance;

@@ -17,7 +17,7 @@ static int has_word(const char *list, const char *word)
     return 0;
 }
 
-// Option number i, counted over the sections; NULL behind the last.
+// Option number i, counted over all sections; NULL after the last.
 static const struct tool_option *option_at(const struct tool_program *program, int i)
 {
     for (int s = 0; s < program->section_count; s++)
@@ -72,7 +72,7 @@ void tool_scale_metric(struct tool_parser *p, float unit)
             *(float *)tool_field(p, o) /= unit;
 }
 
-// Place of the option that a word such as --range, --range=5 or -o names, or -1.
+// The index of the option that a word such as --range, --range=5 or -o names, or -1.
 static int find_option(const struct tool_program *program, const char *word)
 {
     const struct tool_option *o;
@@ -84,13 +84,13 @@ static int find_option(const struct tool_program *program, const char *word)
     return -1;
 }
 
-// A word that is no option: which may have been meant?
+// Refuse an unknown option, and suggest the one that may have been meant.
 static int unknown_option(const struct tool_parser *p, const char *word)
 {
     const struct tool_option *o;
     struct tool_nearest nearest = {NULL, 0, 0};
     char name[64] = "";
-    // -fstop is --fstop with a dash forgotten.
+    // -fstop is --fstop with a dash missing.
     const char *first = word + (word[1] == '-' ? 2 : 1);
     snprintf(name, sizeof(name), "%.*s", (int)strcspn(first, "="), first);
     for (int i = 0; (o = option_at(p->program, i)) && strlen(name) > 1; i++)
@@ -134,8 +134,8 @@ static int parse_option(struct tool_parser *p, int count, char **words)
     if (value)
         return set_value(p, i, value + 1, 0) ? -1 : 1;
 
-    // A number may be negative, but what looks like a long option is one: its value was forgotten. Several words in
-    // quotes are a value.
+    // A number may be negative, but a word that looks like a long option is one: the value was forgotten. Several words
+    // in quotes are a value.
     const int optional = o->placeholder[0] == '[';
     const char *next = count > 1 ? words[1] : NULL;
     if (next && (optional ? next[0] == '-' : !strncmp(next, "--", 2) && !strchr(next, ' ')))
@@ -145,7 +145,7 @@ static int parse_option(struct tool_parser *p, int count, char **words)
     return set_value(p, i, next, next != NULL) ? -1 : next ? 2 : 1;
 }
 
-// A unit that stands by itself behind the number of an option.
+// A unit that stands alone after the number of an option.
 static int lone_unit(const struct tool_parser *p, const char *word)
 {
     static const char *const names[] = {"m", "cm", "mm", "km", "ft", "feet", "in", "inch", "meter", "meters", "metres"};
@@ -166,7 +166,7 @@ static int lone_unit(const struct tool_parser *p, const char *word)
 
 int tool_parse_line(struct tool_parser *p, int count, char **words)
 {
-    int words_only = 0;  // after "--"
+    int words_only = 0;  // only words follow "--"
     assert(!option_at(p->program, TOOL_MOST_OPTIONS));
     for (int i = 0; i < count && !p->help && !p->stop;) {
         const char *word = words[i];

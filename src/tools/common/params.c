@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Options that set the library's parameters as they are, for both programs. An option of an engine goes here.
+// Options that set the library's parameters directly, for both programs. An engine's option belongs here.
 #include "tools/common/options.h"
 
 #include <stddef.h>
@@ -7,13 +7,13 @@
 // A choice is stored as an int.
 _Static_assert(sizeof(enum hf_isa) == sizeof(int) && sizeof(enum hf_engine) == sizeof(int), "size of an enum");
 
-// The option's struct.
+// The struct that contains the option's value.
 static struct hf_params *params_of(const struct tool_parser *p, const struct tool_option *option)
 {
     return (struct hf_params *)((char *)tool_field(p, option) - option->offset);
 }
 
-// Of whichever engine: before the engine is known.
+// Sets the resolution of every engine, because the engine is not known yet.
 static int parse_resolution(struct tool_parser *p, const struct tool_option *option, const char *value)
 {
     struct hf_params *params = params_of(p, option);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parsers of option values. Strict: the whole word must be the value, and in range.
+// Parsers of option values. They are strict: the whole word must be a valid value.
 #include <ctype.h>
 #include <errno.h>
 #include <float.h>
@@ -22,7 +22,7 @@ void *tool_field(const struct tool_parser *p, const struct tool_option *option)
     return NULL;
 }
 
-// What a number may be: "more than 0", "0 to 1024", "0 or more, or inf".
+// Describe the range of a number: "more than 0", "0 to 1024", "0 or more, or inf".
 static void describe_limits(const struct tool_option *option, char *buf, size_t size)
 {
     const char *inf = option->inf ? ", or inf" : "";
@@ -45,7 +45,7 @@ int tool_read_number(const char *text, double *value)
     *value = strtod(text, &end);
     if (*end != '\0' || isnan(*value))
         return -1;
-    // Too large is not what the user called infinite.
+    // A number too large for a double is not infinity: the user did not write inf.
     return isinf(*value) && errno == ERANGE ? -1 : 0;
 }
 
@@ -94,7 +94,7 @@ int tool_parse_float(struct tool_parser *p, const struct tool_option *option, co
     if (tool_read_measure(option->unit, text, &value, &metric))
         return tool_fail(p->error, -1, "--%s: '%s' is not a number, it must be %s%s", option->name, text, limits,
                          tool_units(option->unit));
-    // The library computes in float, so that is what has to be in range.
+    // The library computes in float, so the float must be in range.
     const float f = (float)value + 0.0f;
     const int is_inf = isinf(value) && value > 0 && option->inf;
     if (!is_inf && (isinf(f) || f < option->min || f > option->max || (option->above_min && f <= option->min)))
@@ -167,7 +167,7 @@ int tool_parse_text(struct tool_parser *p, const struct tool_option *option, con
     return 0;
 }
 
-// Place of a word in "a|b|c", or -1 with an error that may name the nearest.
+// The index of a word in "a|b|c", or -1 with an error that may suggest the nearest.
 static int choice(struct tool_parser *p, const struct tool_option *option, const char *value)
 {
     struct tool_nearest nearest = {NULL, 0, 0};

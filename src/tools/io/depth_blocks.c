@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { GROUP = 16 };  // rows of a task
+enum { GROUP = 16 };  // rows per task
 
 struct work {
     struct hf_io_depth d;
     hf_io_depth_block *block;
     const void *how;
-    long long *changed;  // by group
+    long long *changed;  // count for each group
 };
 
 static void change_group(void *arg, int group, int worker)

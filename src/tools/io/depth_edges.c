@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map of depth that was smoothed or made smaller has distances at the outlines of objects at which there is nothing. They
-// are told from slopes by what lies around: two plateaus that fill most of the window, and little between.
+// A depth map that was smoothed or scaled down has values at the outlines of objects that lie between the two sides,
+// where nothing is. What lies around tells an outline from a slope: two plateaus fill most of the window, with little
+// between them.
 #include "tools/io/depth_edges.h"
 
 #include <math.h>
@@ -9,16 +10,16 @@
 
 #include "tools/io/depth_blocks.h"
 
-// Pixels to each side that are looked at: an outline is found that is no wider than half of the window.
+// Pixels that are read on each side; an outline is found if it is at most half as wide as the window.
 enum { REACH = 3 };
 _Static_assert(REACH + 2 == HF_IO_EDGE_REACH, "as far as find_ends is asked for");
-// The least step that is an outline, of the larger number: below, what is behind is hardly blurred otherwise.
+// The least step that is an outline, relative to the larger value. The background's blur hardly changes below that.
 static const float LEAST_STEP = 0.05f;
-// Parts of a step. Samples within OF_PLATEAU of its end are the plateau; those within MIXED are left alone; an outline's
-// neighbours differ by STEEP.
+// Parts of a step. Samples within OF_PLATEAU of its end are the plateau; those within MIXED of it are left alone;
+// neighbours in an outline differ by at least STEEP.
 static const float OF_PLATEAU = 0.1f, MIXED = 0.05f, STEEP = 0.2f;
-// A slope is no outline: too little of the window is at either end of it; where it begins, what is at the far end is less
-// than a part LESSER of the window, and farther on it goes on by more than CLIMB of the step.
+// A slope is not an outline: both plateaus together fill less than BOTH of the window. Where a slope begins, one of them
+// fills less than LESSER of it, and a wider window exceeds that end by more than CLIMB of the step.
 static const float BOTH = 0.5f, LESSER = 0.2f, CLIMB = 0.3f;
 
 struct window {
@@ -33,7 +34,7 @@ static float at(const struct window *w, int dx, int dy)
     return w->depth[(size_t)y * (size_t)w->width + (size_t)x];
 }
 
-// The least and the largest number around; 0: some is none.
+// The least and the largest value around. Returns 0 if one is not finite.
 static int find_ends(const struct window *w, int reach, float ends[2])
 {
     ends[0] = INFINITY;
@@ -97,10 +98,10 @@ static float sharpen_one(const struct window *w)
     return plateau_at(w, d - ends[0] < ends[1] - d ? ends[0] : ends[1], OF_PLATEAU * step);
 }
 
-// A little less than what an outline's neighbours differ by at least, of the larger: the product is rounded.
+// Slightly less than the least difference of neighbours in an outline, relative to the larger; the product is rounded.
 static const float LEAST_NEAR_BY = 0.99f * 0.05f * 0.2f;
 
-// The least and the largest of three rows from x on; infinite where some is no number.
+// The least and the largest value of three rows from x on; infinite if one is not finite.
 static void ends_of_columns(const struct hf_io_depth *s, int x, int n, int y, float *least, float *largest)
 {
     const float *row[3];
@@ -117,7 +118,7 @@ static void ends_of_columns(const struct hf_io_depth *s, int x, int n, int y, fl
     }
 }
 
-// Where 3 x 3 pixels do not differ enough, most of a picture, nothing else is asked.
+// Where 3 x 3 pixels differ too little, as in most of a picture, nothing else is checked.
 static long long sharpen_block(const struct hf_io_depth *s, const void *unused, int x0, int n, int y)
 {
     float least[HF_IO_DEPTH_BLOCK + 2], largest[HF_IO_DEPTH_BLOCK + 2];
@@ -138,7 +139,7 @@ static long long sharpen_block(const struct hf_io_depth *s, const void *unused, 
             continue;
         const struct window w = {s->from, s->width, s->height, x0 + i, y};
         float *d = s->to + (size_t)y * (size_t)s->width + (size_t)(x0 + i), sharp = sharpen_one(&w);
-        changed += memcmp(&sharp, d, sizeof sharp) != 0;  // where it is no number it stays that
+        changed += memcmp(&sharp, d, sizeof sharp) != 0;  // a value that is not a number stays so
         *d = sharp;
     }
     return changed;

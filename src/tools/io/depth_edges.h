@@ -4,10 +4,10 @@
 
 #include "tools/io/run.h"
 
-enum { HF_IO_EDGE_REACH = 5 };  // pixels around a sample on which it depends what becomes of it
+enum { HF_IO_EDGE_REACH = 5 };  // pixels around a sample that affect its result
 
-// Give numbers between the two sides of an outline to the nearer side, in place; *changed: how many. The numbers may be
-// distances, their inverses or a map's. Slopes stay as they are. run NULL: on this thread. Returns 0, or -1 when memory is out.
+// Move values between the two sides of an outline to the nearer side, in place. *changed: how many. Values may be
+// distances, their inverses or a map's. Slopes stay. run NULL: on this thread. Returns 0, or -1 without memory.
 int hf_io_sharpen_depth(float *depth, int width, int height, const struct hf_io_run *run, long long *changed);
 
 #endif

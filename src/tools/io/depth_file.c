@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth from a file of its own. What a depth estimator makes of a photo is often smaller than the photo.
+// Depth from a separate file. A depth estimator's map of a photograph is often smaller than the photograph.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,9 +10,11 @@
 #include "tools/io/file.h"
 #include "tools/io/oiio/oiio.h"
 
-enum { LARGEST = 5 };  // times as wide as the picture: what a few bytes claim to hold takes no more memory than this
+enum {
+    LARGEST = 5
+};  // times the picture's width: a file of a few bytes may claim to be larger, but gets no more memory than this
 
-// Where the depth is, and of what size.
+// Where the depth is, and its size.
 struct source {
     struct hf_io_file *file;
     int part, channel;  // of an EXR
@@ -74,7 +76,7 @@ static int read_own_size(struct source *s, const char *depth_channel, const stru
     return 0;
 }
 
-// The nearest sample: a mean of two surfaces would be a distance at which there is nothing.
+// Scale by the nearest sample: a mean of two surfaces would be a distance where nothing is.
 static void resample(const float *from, const struct source *s, float *to, int width, int height)
 {
     for (int y = 0; y < height; y++) {
@@ -103,8 +105,8 @@ static int read_other_size(struct source *s, const char *depth_channel, const st
     return status;
 }
 
-// Depth is one number a pixel. The red of a picture in colours is not it: a photograph named by mistake, or a map painted
-// for people. What compression makes of grey is grey within a twentieth.
+// Depth is one number per pixel. The red channel of a coloured picture is not depth: the user named a photograph by
+// mistake, or a map coloured for people. Compression changes grey by at most a twentieth.
 static int check_grey(struct source *s, const char *depth_channel, struct hf_io_error *err)
 {
     const struct hf_io_view *v = hf_io_view(s->file, 0);

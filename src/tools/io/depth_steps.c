@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map of 8 bits shows a smooth surface as terraces, whose edges blur draws as faint contours. Where all that lies around
-// differs by no more than rounding may have made of a gentle slope, a number becomes the mean of that: no edge of an object,
-// which is more units high, is within reach.
+// An 8-bit map turns a smooth surface into terraces, and blur draws their edges as faint contours. Where all values
+// around differ by no more than rounding makes of a gentle slope, a value becomes their mean. The edge of an object,
+// which is more units high, is then not within reach.
 #include "tools/io/depth_steps.h"
 
 #include <string.h>
@@ -9,10 +9,10 @@
 #include "tools/io/depth_blocks.h"
 
 enum { REACH = 6, BLOCK = HF_IO_DEPTH_BLOCK };
-// Units that may lie between what is around a number. Half of one more: units are not exact.
+// The units by which values around a number may differ. The extra half is for units that are not exact.
 static const float MOST = 2.5f;
 
-// Of columns x - REACH to x + n + REACH, rows y - REACH to y + REACH: the least, the largest, and the sum.
+// For columns x - REACH to x + n + REACH and rows y - REACH to y + REACH: the least, the largest, and the sum.
 struct columns {
     float least[BLOCK + 2 * REACH], largest[BLOCK + 2 * REACH], sum[BLOCK + 2 * REACH];
 };

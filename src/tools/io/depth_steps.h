@@ -4,8 +4,8 @@
 
 #include "tools/io/run.h"
 
-// Make gentle slopes again of the terraces that whole numbers of this unit have made of them, in place; *changed: how many
-// numbers. Finite ones. run NULL: on this thread. Returns 0, or -1 when memory is out.
+// Smooth the terraces that integers of this unit made of gentle slopes, in place. *changed: how many values. All values
+// must be finite. run NULL: on this thread. Returns 0, or -1 without memory.
 int hf_io_smooth_steps(float *depth, int width, int height, float unit, const struct hf_io_run *run,
                        long long *changed);
 

@@ -14,7 +14,7 @@ int hf_io_fail(struct hf_io_error *err, const char *format, ...)
     vsnprintf(err->message, sizeof(err->message), format, args);
     va_end(args);
     for (char *p = err->message; *p; p++)
-        if (*p == '\n' || *p == '\r')  // libraries end their messages with one now and then
+        if (*p == '\n' || *p == '\r')  // some libraries end their messages with a line break
             *p = p[1] ? ' ' : 0;
         else if ((unsigned char)*p < 0x20 || *p == 0x7f)
             *p = '?';

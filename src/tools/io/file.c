@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opening files and choosing who handles them.
+// Opens files, and chooses what handles them.
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -16,7 +16,7 @@
 
 static const struct hf_exr_codec dwa = {hf_oiio_read_samples, hf_oiio_write_samples};
 
-// What a file that is no EXR is, by its first bytes; NULL: who knows.
+// What kind of file it is if it is no EXR, from its first bytes; NULL: unknown.
 static const char *kind_of(const unsigned char *first, size_t size)
 {
     static const struct {
@@ -46,7 +46,7 @@ static const char *kind_of(const unsigned char *first, size_t size)
     return NULL;
 }
 
-// EXR files are known by their first bytes, whatever they are called.
+// EXR files are recognised by their first bytes, whatever their names are.
 static int open_fd(const char *path, bool *exr, struct hf_io_error *err)
 {
     static const unsigned char magic[4] = {0x76, 0x2f, 0x31, 0x01};
@@ -216,7 +216,7 @@ static int check_view(const struct hf_io_file *file, int view, struct hf_io_erro
     return 0;
 }
 
-// What is wanted of a view, as planes of an EXR file. Appends to list, which has room for five more.
+// List what is wanted of a view as planes of an EXR file. Appends to list, which has room for five more.
 static int list_planes(const struct hf_io_file *file, const struct hf_io_want *w, struct hf_exr_plane *list, int *count,
                        struct hf_io_error *err)
 {
@@ -248,7 +248,7 @@ static int list_planes(const struct hf_io_file *file, const struct hf_io_want *w
     return 0;
 }
 
-// All that is wanted; to be freed. NULL with *err filled.
+// All wanted planes, to be freed; NULL with *err filled.
 static struct hf_exr_plane *all_planes(const struct hf_io_file *file, const struct hf_io_want *wants, int count,
                                        int *planes, struct hf_io_error *err)
 {
@@ -264,7 +264,7 @@ static struct hf_exr_plane *all_planes(const struct hf_io_file *file, const stru
     return list;
 }
 
-// Where the depth's own window does not reach there is no surface.
+// Fill in "no surface" where the depth's own window does not reach.
 static void clear_depth(const struct hf_io_file *file, const struct hf_io_want *w)
 {
     const struct hf_io_view *v = &file->views.view[w->view];
@@ -342,7 +342,7 @@ int hf_io_read_depth_rows(struct hf_io_file *file, int view, int first, int coun
     if (!list)
         return -1;
     const size_t width = (size_t)file->views.view[view].width;
-    list[0].keep = false;  // or all would be decoded
+    list[0].keep = false;  // otherwise all would be decoded
     list[0].grid.y0 += first;
     list[0].grid.y1 = list[0].grid.y0 + count;
     list[0].to += (size_t)first * width;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The top of this folder: an open file, whoever handles it.
+// The top floor of this folder: an open file, whatever handles it.
 #ifndef HF_IO_FILE_H
 #define HF_IO_FILE_H
 
@@ -15,11 +15,11 @@ struct hf_io_file {
     struct hf_io_views views;
 };
 
-// As hf_io_open, but a file without colour (a depth map) is fine and has no views.
+// As hf_io_open, but accepts a file without colour (a depth map), which has no views.
 int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,
                    struct hf_io_error *err);
 
-// Are all parts of it deep? And the sentence for who cannot use such a file; returns -1.
+// Whether all parts of it are deep; and the error for callers that cannot use such a file, which returns -1.
 bool hf_io_is_deep(const struct hf_io_file *file);
 int hf_io_fail_deep(const char *path, struct hf_io_error *err);
 

@@ -11,7 +11,7 @@
 
 #define HALF_TARGET __attribute__((target("avx,f16c,avx2")))
 
-// How many of the n were done: a multiple of 8.
+// Returns how many of the n were converted: a multiple of 8.
 HALF_TARGET static size_t to_floats_x86(float *to, const uint8_t *from, size_t n)
 {
     size_t i = 0;
@@ -37,7 +37,7 @@ HALF_TARGET static size_t to_halves_x86(uint8_t *to, const float *from, size_t n
     return i;
 }
 
-// Asked once: under a hypervisor cpuid leaves the guest and takes longer than converting a row does.
+// Asked only once: under a hypervisor cpuid leaves the guest and takes longer than converting a row.
 static int has_f16c(void)
 {
     static atomic_int known;  // 0: not asked yet, 1: no, 2: yes
