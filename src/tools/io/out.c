@@ -27,7 +27,7 @@ static void free_all(struct hf_out *o)
     o->buffer = NULL;
 }
 
-// What a symbolic link says, relative to the folder it lies in. To be freed; NULL: no link.
+// The target of a symbolic link, relative to the folder of the link. To be freed; NULL: not a link.
 static char *link_target(const char *path)
 {
     char text[PATH_MAX], *joined;
@@ -54,11 +54,11 @@ char *hf_out_resolve(const char *path)
         at = next;
     }
     struct stat st;
-    if (at && !lstat(at, &st) && S_ISLNK(st.st_mode)) {  // round and round
+    if (at && !lstat(at, &st) && S_ISLNK(st.st_mode)) {  // the links form a circle
         free(at);
         return NULL;
     }
-    // The folder's own links, so that two names of one file are one.
+    // Links in the folder's path are resolved too, so that two names of one file become one.
     const char *slash = at ? strrchr(at, '/') : NULL;
     char *folder = !at ? NULL : slash ? strndup(at, (size_t)(slash - at + 1)) : strdup(".");
     char *real = folder ? realpath(folder, NULL) : NULL, *joined = NULL;
@@ -71,7 +71,7 @@ char *hf_out_resolve(const char *path)
     return at;
 }
 
-// A file that is replaced keeps its mode and owner, as it would if it were written in place.
+// Give the new file the mode and owner of the replaced one, as if that had been written in place.
 static void keep_owner(struct hf_out *o, int fd, const struct stat *st)
 {
     struct stat made;
@@ -89,7 +89,7 @@ static void keep_owner(struct hf_out *o, int fd, const struct stat *st)
 int hf_out_check(const char *path, struct hf_io_error *err)
 {
     struct stat st;
-    // Renaming over a device or a pipe would replace it rather than write to it.
+    // Renaming over a device or a pipe would replace it instead of writing to it.
     if (stat(path, &st) == 0 && !S_ISREG(st.st_mode))
         return hf_io_fail(err, "%s: cannot write: not a regular file", path);
     return 0;
@@ -110,7 +110,7 @@ int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
     o->buffer = malloc(HF_OUT_BUFFER);
     if (!o->buffer)
         return hf_io_fail(err, "%s: out of memory", path);
-    // What was private is never readable by others, not even while it grows.
+    // A private file must never be readable by others, not even while it grows.
     o->fd = hf_temp_create(o->target, there ? st.st_mode & 0600 : 0666, &o->temp);
     if (o->fd < 0)
         return hf_io_fail(err, "%s: cannot create a file there: %s", path, strerror(errno));
@@ -119,7 +119,7 @@ int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err)
     return 0;
 }
 
-// All of it, at a place in the file or, where at is -1, at its end.
+// Write all of it, at a place in the file or, if at is -1, at the end.
 static int write_fd(int fd, const uint8_t *data, size_t size, off_t at)
 {
     while (size) {
@@ -147,7 +147,7 @@ int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_e
     const uint8_t *from = data;
     while (size) {
         const size_t room = HF_OUT_BUFFER - o->used, n = size < room ? size : room;
-        // What fills the buffer alone is not copied into it first.
+        // Data that would fill the buffer alone are written directly.
         if (!o->used && size >= HF_OUT_BUFFER)
             return write_fd(o->fd, from, size, -1) ? write_error(o, err) : 0;
         memcpy(o->buffer + o->used, from, n);
@@ -165,13 +165,14 @@ int hf_out_patch(struct hf_out *o, uint64_t at, const void *data, size_t size, s
     return flush(o) || write_fd(o->fd, data, size, (off_t)at) ? write_error(o, err) : 0;
 }
 
-// Some file systems cannot sync and say so; that is no failure to write.
+// Some file systems cannot sync and say so; that is not a write error.
 static int sync_fd(int fd)
 {
     return fsync(fd) && errno != EINVAL && errno != ENOTSUP ? -1 : 0;
 }
 
-// What close() would report, while the file stays open and so locked: network disks look for errors only then.
+// Get the error that close() would report while the file stays open, and therefore locked: network disks report errors
+// only then.
 static int close_copy(int fd)
 {
     const int copy = dup(fd);
@@ -182,7 +183,7 @@ int hf_out_commit(struct hf_out *o, struct hf_io_error *err)
 {
     if (flush(o) || (!o->unsynced && sync_fd(o->fd)) || close_copy(o->fd))
         return write_error(o, err);
-    // The lock is still held, so that nobody takes the file for one whose writer has died.
+    // The lock is still held, so no process takes the file for one whose writer has died.
     if (rename(o->temp, o->target))
         return hf_io_fail(err, "%s: cannot rename the finished file: %s", o->path, strerror(errno));
     close(o->fd);

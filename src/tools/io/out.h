@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file being written: it grows under another name beside its target and takes the target's name when complete, so
-// nobody ever sees half a picture, and the target may be the file that is being read. A target that was there keeps its
-// mode and owner; a symbolic link stays one, and what it points at is written.
+// A file being written: it grows under another name beside its target and takes the target's name when it is complete.
+// So nobody sees half a picture, and the target may be the file that is being read. An existing target keeps its mode
+// and owner. A symbolic link stays a link, and the file that it points to is written.
 #ifndef HF_IO_OUT_H
 #define HF_IO_OUT_H
 
@@ -20,26 +20,26 @@ struct hf_out {
     char *target;      // path with symbolic links resolved
     char *temp;        // same folder and extension as target
     int fd;            // of temp; -1: not open
-    uint8_t *buffer;   // what is not written yet
+    uint8_t *buffer;   // data that is not written yet
     size_t used;
     bool unsynced;             // do not wait for the disk in hf_out_commit
     char note[HF_IO_MESSAGE];  // what could not be kept of the old target, or ""
 };
 
-// 0, or -1 with *err filled when path names something that is no plain file.
+// Returns 0, or -1 with *err filled if path names something other than a regular file.
 int hf_out_check(const char *path, struct hf_io_error *err);
 // All return 0, or -1 with *err filled; then hf_out_abort must be called (it may always be called).
 int hf_out_open(struct hf_out *o, const char *path, struct hf_io_error *err);
 int hf_out_write(struct hf_out *o, const void *data, size_t size, struct hf_io_error *err);
-// Replace bytes that were written before.
+// Overwrite bytes that were written before.
 int hf_out_patch(struct hf_out *o, uint64_t at, const void *data, size_t size, struct hf_io_error *err);
 // Flush to the disk and take the target's place.
 int hf_out_commit(struct hf_out *o, struct hf_io_error *err);
 // Close and remove what was not committed.
 void hf_out_abort(struct hf_out *o);
 
-// The file that writing to path would change: links followed to their end, also where nothing is there yet. To be freed;
-// NULL when there is no memory, or links go round.
+// The file that writing to path would change: all links are followed, also if the file does not exist yet. To be freed;
+// NULL without memory, or if links form a circle.
 char *hf_out_resolve(const char *path);
 
 #ifdef __cplusplus

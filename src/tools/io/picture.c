@@ -11,7 +11,7 @@
 
 #include "tools/common/nearest.h"
 
-// Not aligned to such a page: rooms between blocks that are would add up over a shot.
+// The block is not aligned to such a page: the gaps between aligned blocks would add up over a shot.
 void *hf_io_alloc(size_t size)
 {
     void *ptr = malloc(size);
@@ -19,7 +19,7 @@ void *hf_io_alloc(size_t size)
     const uintptr_t page = (uintptr_t)1 << 21, from = ((uintptr_t)ptr + page - 1) / page * page;
     const uintptr_t to = ((uintptr_t)ptr + size) / page * page;
     if (ptr && from < to)
-        madvise((void *)from, to - from, MADV_HUGEPAGE);  // a wish
+        madvise((void *)from, to - from, MADV_HUGEPAGE);  // only a hint
 #endif
     return ptr;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a picture file holds, whatever its format: windows, camera, views.
+// The contents of a picture file, independent of its format: windows, camera, views.
 #ifndef HF_IO_PICTURE_H
 #define HF_IO_PICTURE_H
 
@@ -18,7 +18,7 @@ enum {
     HF_IO_MAX_COORDINATE = 1 << 30,  // windows stay within +- this, so that no difference of two overflows
 };
 
-// Camera attributes of a header; NAN where the header has none. Names are those of the EXR attributes.
+// Camera attributes of a header; NAN if the header has none. Names are those of the EXR attributes.
 struct hf_io_camera {
     float focus;              // metres
     float f_number;           // "aperture"
@@ -31,7 +31,7 @@ struct hf_io_box {
     int x0, y0, x1, y1;  // x1, y1 exclusive
 };
 
-// One picture that can be defocused: a set of colour channels and their depth. A stereo file has one per view.
+// One picture that can be defocused: a set of colour channels and their depth. A stereo file has one for each view.
 struct hf_io_view {
     char name[64];        // view name ("left"), or "" when the file names none
     char layer[256];      // layer of its colours ("ViewLayer.Combined"), or "" for one without a name
@@ -45,9 +45,9 @@ struct hf_io_view {
     float screen_center_x, screen_center_y;  // screenWindowCenter
     float screen_width;                      // screenWindowWidth
     struct hf_io_camera camera;
-    // Of a photograph: how to turn it to see it upright, as EXIF counts, 1 upright; 0 not known. Pixels are never turned.
+    // For a photograph: how to turn it upright, in EXIF's numbering, 1 upright; 0 unknown. Pixels are never turned.
     int orientation;
-    bool profile;  // it brings a colour profile other than that of sRGB
+    bool profile;  // it has a colour profile other than sRGB's
 };
 
 // The views of a file, a growing list.
@@ -56,14 +56,14 @@ struct hf_io_views {
     struct hf_io_view *view;
 };
 
-// What a file's pictures are looked for by. NULL: as searched.
+// How to look for a file's pictures. NULL members: by the usual search.
 struct hf_io_choice {
     const char *depth_channel;  // full name of the depth channel of every view
     const char *layer;          // names of layers with commas between, or "all"; NULL: the main one
 };
 
-// What to put in the place of a view's colour. planes[c] NULL: channel kept as it was. Greyscale files take the Rec. 709
-// luminance of the three.
+// New colour for a view. planes[c] NULL: the channel stays as it was. Greyscale files take the Rec. 709 luminance of
+// the three.
 struct hf_io_result {
     int view;
     const float *planes[4];
@@ -74,34 +74,34 @@ struct hf_io_text {
     const char *name, *value;
 };
 
-// What became of a picture that was written.
+// Facts about a written picture.
 struct hf_io_written {
-    uint64_t clamped;          // samples that did not fit a half channel and became +-65504
-    char note[HF_IO_MESSAGE];  // a sentence about what could not be kept as it was, or ""
+    uint64_t clamped;          // samples too large for a half channel, which became +-65504
+    char note[HF_IO_MESSAGE];  // a sentence about what could not be kept, or ""
 };
 
 // Append a view, all zero. NULL when there is no memory.
 struct hf_io_view *hf_io_add_view(struct hf_io_views *views);
 
-// What follows the last dot of the file's name, or "".
+// The part of the file's name after the last dot, or "".
 const char *hf_io_extension(const char *path);
 bool hf_io_is_exr_name(const char *path);
 
 // 0, or -1 with *err filled when the window is empty, too large, or too far away.
 int hf_io_check_window(const char *path, const char *which, struct hf_io_box box, struct hf_io_error *err);
 
-// Append name and what is said of it to a list "a, b, c" in buf; what does not fit is cut off.
+// Append a name, and a remark on it, to a list "a, b, c" in buf; text that does not fit is cut off.
 void hf_io_list(char *buf, size_t size, const char *part, const char *name, const char *said);
 
-// The name in such a list that somebody may have meant who wrote another, or one of its pieces, Fg of Fg.Combined; 0 if
-// none is near.
+// Find the name in such a list that is nearest to a misspelt one, or one of its pieces (Fg of Fg.Combined). Returns 0
+// if none is near.
 int hf_io_nearest(const char *list, const char *wanted, char nearest[256]);
 
-// Memory for pixels, on large pages where there are: a fault of the page table for each 2 MiB instead of each 4 KiB. To be
-// freed with free(); NULL when there is none.
+// Memory for pixels, on large pages if there are any: one page fault for each 2 MiB instead of 4 KiB. To be freed with
+// free(); NULL without memory.
 void *hf_io_alloc(size_t size);
 
-// A file in memory; data is to be freed.
+// The bytes of a file in memory; data is to be freed.
 struct hf_io_bytes {
     uint8_t *data;
     size_t size;
@@ -117,7 +117,7 @@ struct hf_io_samples {
     int tile_width, tile_height;  // 0: scan lines
     size_t row_bytes;
     uint8_t *data;  // height * row_bytes
-    int threads;    // that may work on them; 0: as many as there are processors
+    int threads;    // how many may work on them; 0: one per processor
 };
 
 #ifdef __cplusplus
