@@ -20,14 +20,14 @@
 
 #define TEMP_PREFIX ".hyperfocal-"
 
-// ---- the files of this process, which a signal's handler must find
+// ---- the temporary files of this process, for signal handlers
 
-enum { LIVE = 64 };  // more than are ever written at a time; the handler does not know those beyond
+enum { LIVE = 64 };  // more than are ever written at once; the handler does not know files beyond these
 
 static _Atomic(char *) live[LIVE];
 static atomic_int creating;  // files whose names are in `live` and that may or may not exist yet
 static atomic_int
-    ending;  // a signal has come: no file is created any more, and no name is freed, as its handler may read it
+    ending;  // a signal has come: no more files are created, and no name is freed, because the handler may read it
 
 static void enter(char *name)
 {
@@ -49,8 +49,8 @@ void hf_temp_forget(char *name)
         free(name);
 }
 
-// Create a file that a signal's handler can find from its first moment on: signals are blocked on this thread meanwhile, and
-// a handler on another thread waits for `creating`. Fails like open().
+// Create a file that a signal handler can find from the first moment on: signals are blocked on this thread meanwhile,
+// and a handler on another thread waits for `creating`. Fails like open().
 static int open_known(char *name, mode_t mode)
 {
     sigset_t all, before;
@@ -60,7 +60,7 @@ static int open_known(char *name, mode_t mode)
     int fd = -1, code = EINTR;
     if (!atomic_load(&ending)) {
         enter(name);
-        // O_EXCL: never follows or overwrites what somebody else put there.
+        // O_EXCL never follows or overwrites what somebody else put there.
         fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         code = errno;
     }
@@ -74,7 +74,7 @@ void hf_temp_end_by_signal(int number)
 {
     const struct timespec pause = {.tv_nsec = 1000000};
     atomic_store(&ending, 1);
-    for (int i = 0; i < 1000 && atomic_load(&creating); i++)  // a second at most, should a disk hang
+    for (int i = 0; i < 1000 && atomic_load(&creating); i++)  // at most a second, in case a disk hangs
         nanosleep(&pause, NULL);
     for (int i = 0; i < LIVE; i++) {
         const char *name = atomic_load(&live[i]);
@@ -90,7 +90,7 @@ void hf_temp_catch_signals(void)
     static const int numbers[] = {SIGTERM, SIGINT, SIGHUP, SIGPIPE, SIGXCPU};
     for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++) {
         struct sigaction was, ours = {.sa_handler = hf_temp_end_by_signal};
-        // A caller that starts us with a signal ignored (nohup) wants it ignored.
+        // A signal that the caller ignores (nohup) stays ignored.
         if (!sigaction(numbers[i], NULL, &was) && was.sa_handler == SIG_DFL)
             sigaction(numbers[i], &ours, NULL);
     }
@@ -106,11 +106,11 @@ static uint64_t mix(uint64_t hash, const char *text)
     return hash;
 }
 
-// Names the machine, or the container, in which process numbers mean something and locks are surely seen: by the boot
-// of its kernel and its name space of processes. Its host name is in it too, for copies of a virtual machine.
+// Identifies the machine or container in which process numbers are valid and locks are surely visible: by the boot id
+// of its kernel and its process namespace, and by its host name, for copies of a virtual machine.
 static uint64_t machine_id(void)
 {
-    static atomic_ullong known;  // threads that come at once find the same
+    static atomic_ullong known;  // concurrent threads compute the same
     if (atomic_load(&known))
         return atomic_load(&known);
     char text[300] = "";
@@ -130,8 +130,8 @@ static uint64_t machine_id(void)
     return id ? id : 1;
 }
 
-// A fresh name beside the target: short, because the target's own may already be as long as names get. Machine and
-// process are in it, so that no two processes that write to one folder use one name.
+// A new name beside the target. It is short, because the target's name may already have the maximal length. It contains
+// machine and process, so no two processes that write to one folder use the same name.
 static char *temp_name(const char *target)
 {
     static atomic_uint counter;
@@ -147,7 +147,7 @@ static char *temp_name(const char *target)
     return name;
 }
 
-// Whose a file of that name (without folder) is, if it is a temporary one of ours; *pid is the process that made it.
+// Whose file a name (without folder) denotes, if it is one of our temporary files; *pid is the process that made it.
 enum owner { NOT_OURS, THIS_MACHINE, OTHER_MACHINE };
 
 static enum owner owner_of(const char *name, long *pid)
@@ -166,8 +166,8 @@ static enum owner owner_of(const char *name, long *pid)
     return dash - theirs == 16 && !memcmp(own, theirs, 16) ? THIS_MACHINE : OTHER_MACHINE;
 }
 
-// Take the lock of a file that was just created. False if somebody who removes strays was faster: the file is gone then, or
-// will be. Where the file system has no locks, the file is used without.
+// Lock a file that was just created. Returns false if another process that removes strays was faster: the file is gone
+// then, or soon. On file systems without locks the file is used unlocked.
 static int lock_own(int fd, const char *name)
 {
     struct stat st;
@@ -190,7 +190,7 @@ int hf_temp_create(const char *target, mode_t mode, char **name)
         const int code = fd >= 0 ? EEXIST : errno;
         if (fd >= 0)
             close(fd);
-        hf_temp_forget(*name);  // not ours to remove
+        hf_temp_forget(*name);  // not ours to remove any more
         *name = NULL;
         errno = code;
         if (code != EEXIST)
@@ -199,18 +199,19 @@ int hf_temp_create(const char *target, mode_t mode, char **name)
     return -1;
 }
 
-// ---- strays
+// ---- strays: files whose writers have died
 
 enum { FOREIGN_AGE = 3600 };  // seconds
 
-// Has the writer of an open file died? Its lock is held from here on, until fd is closed.
+// Whether the writer of an open file has died. From here on its lock is held, until fd is closed.
 static int is_abandoned(int fd, enum owner owner, long pid)
 {
     if (!flock(fd, LOCK_EX | LOCK_NB))
         return 1;
     if (errno == EWOULDBLOCK)
         return 0;
-    // The file system has no locks: of this machine's processes we see which live, of others there is only the age.
+    // The file system has no locks: for processes of this machine we can ask whether they live, for others only the age
+    // tells.
     return owner == OTHER_MACHINE || (kill((pid_t)pid, 0) && errno == ESRCH);
 }
 
@@ -223,11 +224,11 @@ static int remove_stray(int dir, const char *name)
         return 0;
     if (owner == OTHER_MACHINE && time(NULL) - st.st_mtime <= FOREIGN_AGE)
         return 0;
-    // For writing: over NFS a lock needs it.
+    // Opened for writing, because a lock over NFS needs that.
     const int fd = openat(dir, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0)
         return 0;
-    // Whoever renames or removes a file holds its lock, so the name means this file until we let go.
+    // Whoever renames or removes a file holds its lock, so the name denotes this file until we release the lock.
     const int gone = is_abandoned(fd, owner, pid) && !fstat(fd, &opened) &&
                      !fstatat(dir, name, &st, AT_SYMLINK_NOFOLLOW) && opened.st_dev == st.st_dev &&
                      opened.st_ino == st.st_ino && !unlinkat(dir, name, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hf_io_encode: an EXR made from an EXR is a copy with new colours; anything else is a new picture of one view.
+// hf_io_encode: an EXR made from an EXR is a copy with new colours; any other output is a new picture of one view.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "tools/io/oiio/oiio.h"
 #include "tools/io/out.h"
 
-// The planes of one view as they will be: the given ones, and the file's own where none is given.
+// The planes of one view as they will be written: the given ones, else the file's own.
 struct picture {
     const float *planes[4];
     float *own[4];
@@ -41,7 +41,7 @@ static int load_picture(struct hf_io_file *file, const struct hf_io_result *r, s
     return missing ? hf_io_read_colour(file, r->view, pic->own, err) : 0;
 }
 
-// Colours alone.
+// Make an EXR with colours only.
 static int make_exr(struct hf_io_bytes *made, const struct hf_io_job *job, const struct hf_io_view *v,
                     const float *const planes[4], int compression, struct hf_io_error *err)
 {
@@ -78,7 +78,7 @@ static int make_by_oiio(struct hf_io_bytes *made, const struct hf_io_file *file,
         return 0;
     if (!picture.source)
         return -1;
-    // A damaged profile, or one that the format does not like, is no reason to lose the picture.
+    // A damaged colour profile, or one that the format rejects, is no reason to lose the picture.
     const struct hf_io_error first = *err;
     picture.source = NULL;
     if (hf_oiio_write(made, &picture, err))
@@ -89,7 +89,7 @@ static int make_by_oiio(struct hf_io_bytes *made, const struct hf_io_file *file,
     return 0;
 }
 
-// A picture with nothing but the colours of one view.
+// Make a picture with nothing but the colours of one view.
 static int make_view(struct hf_io_bytes *made, struct hf_io_file *file, const struct hf_io_job *job, int compression,
                      struct hf_io_written *written, struct hf_io_error *err)
 {
@@ -107,7 +107,7 @@ static int make_view(struct hf_io_bytes *made, struct hf_io_file *file, const st
     return status;
 }
 
-// One of the two is set.
+// Exactly one of the two members is set.
 struct hf_io_output {
     char *path;
     bool unsynced;
@@ -134,7 +134,7 @@ static bool one_of(const char *extension, const char *const *list)
     return false;
 }
 
-// What a photograph says of itself and the new file has no place for.
+// Note what a photograph's header says and the new file has no place for.
 static void note_lost(const struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_written *written)
 {
     static const char *const turned[] = {"jpg", "jpeg", "jpe", "tif", "tiff", NULL};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the chunks of a part are, without looking inside.
+// Finds the chunks of a part, without reading their contents.
 #include <stdlib.h>
 #include <string.h>
 

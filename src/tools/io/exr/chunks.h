@@ -4,13 +4,13 @@
 
 #include "tools/io/exr/exr.h"
 
-// A chunk of the table: where in the file, and its number.
+// An entry of the chunk table: its place in the file, and its number.
 struct hf_exr_slot {
     uint64_t offset;
     int index;
 };
 
-// What stands before a chunk's data: the part's number in multi-part files, where in the picture it belongs, sizes.
+// The bytes before a chunk's data: the part's number in multi-part files, the chunk's place in the picture, sizes.
 struct hf_exr_leader {
     int32_t place[4];  // y of scan lines; x, y, level x, level y of a tile
     size_t size;       // of the leader
@@ -19,11 +19,11 @@ struct hf_exr_leader {
 
 // The chunk table of a part, or NULL with *err filled; to be freed.
 uint64_t *hf_exr_table(const struct hf_exr *e, int part, struct hf_io_error *err);
-// The chunk table of a part sorted by offset; to be freed. NULL with *err filled.
+// The chunk table of a part, sorted by offset; to be freed. NULL with *err filled.
 struct hf_exr_slot *hf_exr_file_order(const struct hf_exr *e, int part, struct hf_io_error *err);
-// 0 if all chunks of a part lie within the file, as long as their leaders say.
+// Returns 0 if all chunks of a part lie inside the file with the lengths that their leaders say.
 int hf_exr_check_chunks(const struct hf_exr *e, int part, struct hf_io_error *err);
-// 0, or -1 when it or its data are not within the file, or it is another part's.
+// Returns 0, or -1 if the leader or its data is not inside the file, or belongs to another part.
 int hf_exr_read_leader(const struct hf_exr *e, int part, uint64_t offset, struct hf_exr_leader *l);
 
 #endif

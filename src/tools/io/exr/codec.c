@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts that the codec reads and writes whole, in whole rows: DWA.
+// Parts that the codec reads and writes as a whole, in complete rows: DWA.
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,7 +45,7 @@ static int describe(const struct hf_exr *e, int p, int threads, struct hf_io_sam
     return 0;
 }
 
-// Between whole rows and tiles.
+// Convert between complete rows and tiles.
 static void regroup(const struct hf_exr_part *part, uint8_t *rows, uint8_t *tiles, bool to_rows)
 {
     const size_t row_bytes = part->layout.pixel_bytes * (size_t)part->width;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decoding parts: a task per chunk, which is decompressed once and then picked apart into the planes that are wanted.
-// ZIP is libdeflate's, what else there is Core's.
+// Decodes parts: one task per chunk, which is decompressed once and then split into the wanted planes. libdeflate
+// decompresses ZIP, Core all other compressions.
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ struct buffer {
     size_t size;
 };
 
-// What one thread needs.
+// The scratch of one thread.
 struct worker {
     exr_decode_pipeline_t pipe;
     exr_result_t (*decompress)(exr_decode_pipeline_t *);
@@ -48,7 +48,7 @@ static uint8_t *grow(struct buffer *b, size_t size)
     return b->data;
 }
 
-// The first error is the one that is told.
+// Only the first error is reported.
 static bool first_error(struct decoding *d)
 {
     return !atomic_exchange(&d->failed, 1);
@@ -89,7 +89,7 @@ static int own_chunk(struct decoding *d, struct worker *w, const struct hf_exr_c
     struct hf_exr_leader l;
     if (find_chunk(d, k, &l) || (!zip && l.data_size != k->size))
         return wrong_chunk(d, k->index);
-    // What did not shrink is stored as it is.
+    // A chunk that did not shrink is stored uncompressed.
     if (l.data_size == k->size)
         return hf_exr_read_at(d->e, to, k->size, l.data) ? wrong_chunk(d, k->index) : 0;
     const uint8_t *packed = hf_exr_bytes(d->e, l.data_size, l.data);
@@ -105,7 +105,7 @@ static int own_chunk(struct decoding *d, struct worker *w, const struct hf_exr_c
     return hf_exr_unzip(w->deflate, to, k->size, packed, l.data_size, w->scratch.data) ? wrong_chunk(d, k->index) : 0;
 }
 
-// ---- by Core
+// ---- with Core
 
 static exr_result_t chunk_info(const struct decoding *d, const struct hf_exr_chunk *k, exr_chunk_info_t *info)
 {
@@ -128,7 +128,7 @@ static exr_result_t run_core(struct decoding *d, struct worker *w, const exr_chu
     } else {
         rv = exr_decoding_update(d->e->core, d->part, info, &w->pipe);
     }
-    // What did not shrink is stored as it is, whatever the compression. Core 3.1 forgets that for B44.
+    // A chunk that did not shrink is stored uncompressed with any compression. Core 3.1 forgets that for B44.
     w->pipe.decompress_fn = info->packed_size == info->unpacked_size ? NULL : w->decompress;
     return rv ? rv : exr_decoding_run(d->e->core, d->part, &w->pipe);
 }
@@ -145,7 +145,7 @@ static int core_chunk(struct decoding *d, struct worker *w, const struct hf_exr_
             hf_exr_fail(d->e, rv, d->err);
         return -1;
     }
-    // Core and we must agree on how subsampled rows round.
+    // Core and this code must round subsampled rows in the same way.
     if (!w->pipe.unpacked_buffer || info.unpacked_size != k->size)
         return wrong_chunk(d, k->index);
     memcpy(to, w->pipe.unpacked_buffer, k->size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which channel is the depth of a view.
+// Finds the depth channel of a view.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +7,8 @@
 
 #include "tools/io/exr/names.h"
 
-// How they call a depth, behind the name of its layer, whatever the case: Blender (Depth.Z, Depth.V), Arnold and most
-// others (Z), RenderMan (z, zfiltered), V-Ray (VRayZDepth), Karma (Pz, hitPz), Cinema 4D (Z Depth).
+// Names that programs give a depth, after the name of its layer, in any case: Blender (Depth.Z, Depth.V), Arnold and
+// most others (Z), RenderMan (z, zfiltered), V-Ray (VRayZDepth), Karma (Pz, hitPz), Cinema 4D (Z Depth).
 static const char *const depth_names[] = {
     "Z",           "depth.Z", "depth.V", "depth",      "depth.R",      "depth.Y",      "Pz",        "Pz.Z",
     "depth.Pz",    "hitPz",   "hitPz.Z", "ZDepth",     "ZDepth.Z",     "ZDepth.R",     "ZDepth.Y",  "zfiltered",
@@ -23,8 +23,8 @@ static bool is_depth_name(const char *name)
     return false;
 }
 
-// The depth that lies beside or above a layer of this part: <prefix>Z and the like, then the same for what is left when
-// the prefix loses its last piece. With plain, names without a prefix count too. -1: none.
+// The depth beside or above a layer of this part: <prefix>Z and similar names, then the same after removing the last
+// piece of the prefix. With plain, names without a prefix count too. Returns -1 if there is none.
 int hf_exr_layer_depth(const struct hf_exr_part *part, const char *prefix, const char *view, bool plain)
 {
     char base[HF_EXR_NAME], full[2 * HF_EXR_NAME];
@@ -55,17 +55,17 @@ int hf_exr_layer_depth(const struct hf_exr_part *part, const char *prefix, const
     }
 }
 
-// What one search for depth looks for.
+// The conditions of one search for depth.
 struct depth_search {
     const struct hf_exr *e;
     const char *view;    // "" when the file names none
-    const char *prefix;  // what stands before the R of the view's channels
-    bool unprefixed;     // plain names are this view's
+    const char *prefix;  // the part of the name before the R of the view's channels
+    bool unprefixed;     // names without a prefix belong to this view
     int colour_part;     // -1: none
-    bool any_part;       // the file has one view, so every part is about it
+    bool any_part;       // the file has only one view, so every part belongs to it
 };
 
-// Length of the first piece of a part's name: fg of fg.depth, fg_depth.
+// The length of the first piece of a part's name: fg in fg.depth, fg_depth.
 static size_t first_piece(const char *name)
 {
     return strcspn(name, "._/:");
@@ -77,7 +77,7 @@ static bool same_piece(const char *a, const char *b)
     return n && n == first_piece(b) && !strncasecmp(a, b, n);
 }
 
-// Is a part another picture's, as bg.depth is beside bg.rgba, where ours is fg.rgba?
+// Whether a part belongs to another picture, as bg.depth beside bg.rgba does if ours is fg.rgba.
 static bool is_other_picture(const struct depth_search *s, int p)
 {
     const struct hf_exr_part *parts = s->e->parts;
@@ -103,7 +103,7 @@ static bool part_is_ours(const struct depth_search *s, int p)
     return p == s->colour_part || s->any_part || !strcmp(s->e->parts[p].view, s->view);
 }
 
-// The first of the view's parts that has the channel; the part of the colour comes first.
+// The first of the view's parts that has the channel, the colour's part first.
 static int find_name(const struct depth_search *s, const char *name, int *channel)
 {
     for (int i = -1; i < s->e->part_count; i++) {
@@ -117,7 +117,7 @@ static int find_name(const struct depth_search *s, const char *name, int *channe
     return -1;
 }
 
-// Does the name, left.depth.Z, speak of another view? Only a multiView attribute makes it so.
+// Whether a name such as left.depth.Z denotes another view; only a multiView attribute makes it so.
 static bool names_other_view(const struct depth_search *s, int p, const char *channel)
 {
     const struct hf_exr_part_views names = hf_exr_views_of(s->e, p);
@@ -128,7 +128,7 @@ static bool names_other_view(const struct depth_search *s, int p, const char *ch
     return other;
 }
 
-// Does a depth belong to another layer's picture: ViewLayer.Depth.Z beside Foreground.Combined.R?
+// Whether a depth belongs to another layer's picture: ViewLayer.Depth.Z beside Foreground.Combined.R.
 static bool is_other_layers(const struct depth_search *s, int p, const char *channel)
 {
     const struct hf_exr_part *part = &s->e->parts[p];
@@ -144,7 +144,7 @@ static bool is_other_layers(const struct depth_search *s, int p, const char *cha
     return false;
 }
 
-// The only channel called something with "depth" in it, or alone in a part called so: -1 when none or several.
+// The only channel whose name contains "depth", or the only one in a part so named; -1 if there is none or several.
 static int find_any_depth(const struct depth_search *s, int *channel)
 {
     for (int i = -1; i < s->e->part_count; i++) {
@@ -167,8 +167,8 @@ static int find_any_depth(const struct depth_search *s, int *channel)
     return -1;
 }
 
-// The channel the user named: "<view>.<name>" of a view that has a name goes before "<name>", and "<part>:<name>" (as
-// hf_io_channels prints it) picks the part.
+// The channel that the user named. For a view with a name, "<view>.<name>" precedes "<name>"; "<part>:<name>" (as
+// hf_io_channels prints it) selects the part.
 static int find_given(const struct depth_search *s, const char *given, int *channel)
 {
     char full[2 * HF_EXR_NAME];
@@ -191,10 +191,10 @@ static int find_given(const struct depth_search *s, const char *given, int *chan
     return find_name(s, given, channel);
 }
 
-// The depth of the view's own layer, first in the part of its colour.
+// The depth of the view's own layer, first in the colour's part.
 static int find_beside(const struct depth_search *s, int *channel)
 {
-    // The colour's own part, those that are called as it is, the others.
+    // First the colour's own part, then parts with the same name, then the others.
     for (int turn = 0; turn < 3; turn++)
         for (int p = 0; p < s->e->part_count; p++) {
             const struct hf_exr_part *part = &s->e->parts[p];
@@ -203,7 +203,7 @@ static int find_beside(const struct depth_search *s, int *channel)
             if ((turn == 0) != own || (turn < 2 && !own && !named) || !part_is_ours(s, p))
                 continue;
             *channel = hf_exr_layer_depth(part, s->prefix, s->view, s->unprefixed);
-            // A part that is a depth, called so: Pz with the one channel Y.
+            // A part that is a depth by its own name: Pz with a single channel Y.
             if (*channel < 0 && !own && part->channel_count == 1 && is_depth_name(part->name))
                 *channel = 0;
             if (*channel >= 0)
@@ -212,7 +212,7 @@ static int find_beside(const struct depth_search *s, int *channel)
     return -1;
 }
 
-// Unreal's, which stands beside the picture and has colours, all the same: FinalImageMovieRenderQueue_WorldDepth.R.
+// Unreal's depth, a part beside the picture with three equal colours: FinalImageMovieRenderQueue_WorldDepth.R.
 static int find_unreal(const struct depth_search *s, int *channel)
 {
     static const char *const ends[] = {"WorldDepth.R", "SceneDepth.R"};
@@ -233,8 +233,9 @@ static int find_unreal(const struct depth_search *s, int *channel)
     return -1;
 }
 
-// Depth of a view: the given channel; else that of its layer (Z next to its R, and other names); for the view with plain names Z and depth.Z; <view>.Z,
-// depth.<view>.Z, <view>.depth.Z; any single channel with "depth" in its name. Returns the part, or -1.
+// Find the depth of a view: the given channel; else that of its layer (Z next to its R, and other names); for the view
+// with plain names Z and depth.Z; <view>.Z, depth.<view>.Z, <view>.depth.Z; the only channel with "depth" in its name.
+// Returns the part, or -1.
 static int find_depth(const struct depth_search *s, const char *given, int *channel)
 {
     static const char *const named[] = {"%.*s.Z", "depth.%.*s.Z", "%.*s.depth.Z"};
@@ -255,7 +256,7 @@ static int find_depth(const struct depth_search *s, const char *given, int *chan
     return p >= 0 ? p : find_any_depth(s, channel);
 }
 
-// The full name of view v: hf_io_view's may be cut off.
+// The full name of view v; that in hf_io_view may be cut off.
 static const char *full_name(const struct hf_exr *e, const struct hf_io_view *v, bool *first)
 {
     const struct hf_exr_part_views names = hf_exr_views_of(e, v->part);

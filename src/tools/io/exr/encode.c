@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compressing chunks: ZIP by libdeflate, the rest by Core. Core compresses only for a context it writes to, so there is
-// one that looks like the part and whose output goes nowhere; the compressed bytes are taken out of its pipeline.
+// Compresses chunks: libdeflate makes ZIP, Core the rest. Core compresses only for a context that it writes to. So
+// there is a context that looks like the part, whose output is discarded; the compressed bytes are taken from its
+// pipeline.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,9 +10,9 @@
 #include "tools/io/exr/exr.h"
 #include "tools/io/exr/zip.h"
 
-// Files are not to be longer than those of the C++ library (zlib, level 4). libdeflate's 4 makes blurred pictures shorter
-// by 4 % and takes two thirds of the time of its 6, which makes them shorter by another 3 to 5 %. Of noise in all
-// its bits zip.c stores the half that does not shrink.
+// Files must not be longer than those of the C++ library (zlib, level 4). libdeflate's level 4 makes blurred pictures 4
+// % shorter and takes two thirds of the time of its level 6, which would save another 3 to 5 %. For noise in all bits,
+// zip.c stores the half that does not shrink.
 enum { ZIP_LEVEL = 4 };
 
 static int64_t write_nowhere(exr_const_context_t core, void *user, const void *data, uint64_t size, uint64_t offset,
@@ -21,7 +22,7 @@ static int64_t write_nowhere(exr_const_context_t core, void *user, const void *d
     return (int64_t)size;
 }
 
-// The chunk's samples lie as Core wants them.
+// The chunk's samples already lie as Core wants them.
 static exr_result_t pack(exr_encode_pipeline_t *pipe)
 {
     const struct hf_exr_encoder *en = pipe->encoding_user_data;
@@ -102,12 +103,12 @@ static exr_result_t start_pipe(struct hf_exr_encoder *en, const exr_chunk_info_t
     rv = exr_encoding_choose_default_routines(en->core, 0, pipe);
     pipe->encoding_user_data = en;
     pipe->convert_and_pack_fn = pack;
-    pipe->yield_until_ready_fn = NULL;  // nothing is written, so no order is to be kept
+    pipe->yield_until_ready_fn = NULL;  // nothing is written, so there is no order to keep
     pipe->write_fn = NULL;
     return rv;
 }
 
-// Core wants to know where samples come from, though pack() is what fetches them.
+// Core needs addresses of samples, though pack() fetches them.
 static void point_channels(struct hf_exr_encoder *en)
 {
     for (int c = 0; c < en->pipe.channel_count; c++) {

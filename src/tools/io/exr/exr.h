@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// EXR files, read and written with OpenEXRCore. Core parses headers, and decodes and encodes chunks; the layout of a
-// written file (header bytes, chunk tables, chunk order) is copied from the source by write.c, which is how
-// everything that is not replaced stays as it was, attributes nobody knows included.
+// EXR files, read and written with OpenEXRCore. Core parses headers, and decodes and encodes chunks. write.c copies the
+// layout of a written file (header bytes, chunk tables, chunk order) from the source. So everything that is not
+// replaced stays as it was, unknown attributes included.
 #ifndef HF_IO_EXR_H
 #define HF_IO_EXR_H
 
@@ -18,16 +18,16 @@ struct hf_exr_channel {
     int x_sampling, y_sampling;
 };
 
-// Where a part's samples lie when its chunks, decoded, follow each other in the order of their table: in a chunk row
-// after row, in a row channel after channel.
+// Where a part's samples lie if its decoded chunks follow each other in the order of their table: in a chunk row after
+// row, in a row channel after channel.
 struct hf_exr_layout {
     size_t *row;      // of scan lines: height + 1 offsets; NULL for tiles
-    size_t *channel;  // bytes per pixel before each channel; NULL when channels are subsampled, so that rows differ
+    size_t *channel;  // bytes per pixel before each channel; NULL if channels are subsampled, because rows then differ
     size_t pixel_bytes, bytes;
 };
 
 struct hf_exr_part {
-    const char *name, *view;  // "" when the header has none
+    const char *name, *view;  // "" if the header has none
     exr_storage_t storage;
     exr_compression_t compression;
     exr_lineorder_t line_order;
@@ -40,29 +40,30 @@ struct hf_exr_part {
     int chunk_count;
     uint64_t table;           // file offsets: of the chunk table,
     uint64_t compression_at;  // of the byte that names the compression,
-    uint64_t chunk_count_at;  // of the chunkCount attribute's value; 0 when there is none
+    uint64_t chunk_count_at;  // of the chunkCount attribute's value; 0 if there is none
     uint64_t window_at;       // of the dataWindow attribute's value
-    bool grown;               // window, width, height, layout and samples are no longer the file's: see grow.c
+    bool grown;               // window, width, height, layout and samples differ from the file's: see grow.c
     int channel_count;
     struct hf_exr_channel *channels;
     const exr_attr_chlist_t *list;
-    struct hf_exr_layout layout;  // once hf_exr_lay_out was called
+    struct hf_exr_layout layout;  // valid once hf_exr_lay_out was called
     uint8_t *samples;             // all decoded chunks, or NULL
 };
 
-// Of all parts together: names are looked for one by one.
+// The limit for all parts together, because channels are looked up one by one.
 enum { HF_EXR_MOST_CHANNELS = 4096 };
 
-// Who reads and writes the samples of parts whose compression Core does not know (DWA). Both return 0, or -1 with *err
-// filled.
+// Reads and writes the samples of parts with a compression that Core lacks (DWA). Both functions return 0, or -1 with
+// *err filled.
 struct hf_exr_codec {
     int (*read)(const char *path, int part, struct hf_io_samples *s, struct hf_io_error *err);
-    // A new single-part EXR. level: the quality, 0 for the default.
+    // Make a new single-part EXR. level: the quality, 0 for the default.
     int (*write)(struct hf_io_bytes *made, const char *path, const struct hf_io_samples *s, const char *compression,
                  float level, struct hf_io_error *err);
 };
 
-// Bytes of the file that are in memory: ranges, sorted, of a buffer as long as the file, in which no other page is used.
+// The bytes of the file that are in memory: sorted ranges of a buffer as long as the file; other pages of the buffer
+// are never touched.
 struct hf_exr_fetched {
     uint8_t *bytes;
     int count;
@@ -75,7 +76,7 @@ struct hf_exr {
     const char *path;  // not owned
     const struct hf_exr_codec *dwa;
     int fd;
-    const uint8_t *memory;  // all of the file; NULL: fd is read. Not owned
+    const uint8_t *memory;  // the whole file; NULL: fd is read. Not owned
     struct hf_exr_fetched fetched;
     uint64_t size;
     uint64_t header_size;
@@ -85,19 +86,20 @@ struct hf_exr {
     struct hf_exr_part *parts;
 };
 
-// Takes fd over, also on failure. path and dwa must outlive the file.
+// Takes over fd, also after a failure. path and dwa must outlive the file.
 int hf_exr_open(struct hf_exr **out, const char *path, int fd, const struct hf_exr_codec *dwa, struct hf_io_error *err);
-// A file in memory, which must outlive it.
+// Open a file in memory; bytes must outlive it.
 int hf_exr_open_memory(struct hf_exr **out, const char *path, const struct hf_io_bytes *bytes, struct hf_io_error *err);
 void hf_exr_close(struct hf_exr *e);
 int hf_exr_read_at(const struct hf_exr *e, void *data, size_t size, uint64_t offset);  // 0 or -1
 // The bytes at offset if they are in memory, else NULL.
 const uint8_t *hf_exr_bytes(const struct hf_exr *e, size_t size, uint64_t offset);
-// Forget what Core said on this thread; the first thing it said since, or what the code it returned means.
+// Forget Core's messages on this thread. The second function returns Core's first message since then, or the meaning of
+// its return code.
 void hf_exr_quiet(void);
 const char *hf_exr_said(exr_result_t code);
 int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *err);
-// Core contexts with our memory and message functions; user_data is handed to the functions that read and write.
+// Prepare a Core context with our memory and message functions; user_data goes to the functions that read and write.
 void hf_exr_context_init(void *user_data, exr_context_initializer_t *init);
 
 bool hf_exr_is_deep(const struct hf_exr_part *part);
@@ -106,17 +108,17 @@ int hf_exr_find_channel(const struct hf_exr_part *part, const char *name);  // i
 const char *hf_exr_compression_name(exr_compression_t compression);
 int hf_exr_compression(const char *name);  // enum exr_compression_t, or -1
 int hf_exr_compression_lines(exr_compression_t compression);
-// Samples of channel c in a row of the part's window (its pixels x with x % x_sampling == 0).
+// The number of samples of channel c in a row of the part's window (its pixels x with x % x_sampling == 0).
 int hf_exr_row_samples(const struct hf_exr_part *part, int c);
 bool hf_exr_row_has(const struct hf_exr_part *part, int c, int y);
 
-// Is the part fit to be decoded: sizes, levels, a file long enough for what the header promises?
+// Check that the part can be decoded: sizes, levels, a file long enough for what the header promises.
 int hf_exr_check_part(const struct hf_exr *e, int part, struct hf_io_error *err);
 
 // views.c
 int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const struct hf_io_choice *choice,
                       struct hf_io_error *err);
-// Part and channel of the depth for a view called name, in a file that may have no colour.
+// Find part and channel of the depth for a view of that name, in a file that may have no colour.
 int hf_exr_find_depth_only(const struct hf_exr *e, const char *depth_channel, const char *name, int *channel);
 void hf_exr_channels(const struct hf_exr *e, char *buf, size_t size);
 void hf_exr_layers(const struct hf_exr *e, char *buf, size_t size);
@@ -131,14 +133,14 @@ struct hf_exr_chunk {
 };
 int hf_exr_lay_out(const struct hf_exr *e, int part, struct hf_io_error *err);
 void hf_exr_free_layout(struct hf_exr_part *part);
-// Chunks when scan lines come `lines` at a time (of no meaning for tiles), and the one with this number.
+// The number of chunks if each has `lines` scan lines (ignored for tiles), and the chunk with a given number.
 int hf_exr_count_chunks(const struct hf_exr_part *part, int lines);
 struct hf_exr_chunk hf_exr_chunk_at(const struct hf_exr_part *part, int lines, int index);
-// Where in a chunk channel c of row y begins.
+// Where row y of channel c begins in a chunk.
 size_t hf_exr_row_at(const struct hf_exr_part *part, const struct hf_exr_chunk *chunk, int c, int y);
 
-// decode.c: a channel that is wanted as floats, on a grid of pixels given in EXR coordinates. Pixels outside of the
-// part's window are left alone.
+// decode.c: a channel to be decoded to floats, on a grid of pixels in EXR coordinates. Pixels outside the part's window
+// are not written.
 struct hf_exr_plane {
     int part, channel;
     bool keep;  // keep the part's samples: they are written again
@@ -147,12 +149,12 @@ struct hf_exr_plane {
 };
 int hf_exr_decode(struct hf_exr *e, const struct hf_exr_plane *planes, int count, const struct hf_io_run *run,
                   struct hf_io_error *err);
-// Have parts[part].samples, decoding what was not yet.
+// Make parts[part].samples complete, decoding what is missing.
 int hf_exr_load_samples(struct hf_exr *e, int part, const struct hf_io_run *run, struct hf_io_error *err);
-// What hf_exr_decode of these would read, into memory.
+// Read the bytes that hf_exr_decode of these planes would read into memory.
 int hf_exr_fetch(struct hf_exr *e, const struct hf_exr_plane *planes, int count, struct hf_io_error *err);
 
-// grow.c: give a part a data window that holds its own. What is new is 0, or in some channels another value.
+// grow.c: enlarge a part's data window. New pixels are 0, or another value in some channels.
 struct hf_exr_fill {
     int channel;
     float value;
@@ -160,12 +162,12 @@ struct hf_exr_fill {
 int hf_exr_grow(struct hf_exr *e, int part, struct hf_io_box box, const struct hf_exr_fill *fills, int fill_count,
                 const struct hf_io_run *run, struct hf_io_error *err);
 
-// codec.c: a part that only the codec can read or write, whole. The samples lie as the layout says.
+// codec.c: read or write a part that only the codec can handle, as a whole. The samples lie as the layout says.
 int hf_exr_codec_read(struct hf_exr *e, int part, uint8_t *samples, int threads, struct hf_io_error *err);
 int hf_exr_codec_write(struct hf_exr *e, int part, exr_compression_t compression, const uint8_t *samples, int threads,
                        struct hf_io_bytes *made, struct hf_io_error *err);
 
-// encode.c: compresses chunks of a part; one per thread.
+// encode.c: compresses chunks of a part; each thread needs one.
 struct libdeflate_compressor;
 struct hf_exr_encoder {
     struct hf_exr *e;
@@ -183,12 +185,12 @@ struct hf_exr_encoder {
 };
 int hf_exr_encoder_open(struct hf_exr_encoder *en, struct hf_exr *e, const struct hf_exr_part *part,
                         exr_compression_t compression, struct hf_io_error *err);
-// raw: the chunk's samples. *data is valid until the next call; it is raw when that does not shrink.
+// raw: the chunk's samples. *data is valid until the next call; it is raw if that does not shrink.
 int hf_exr_encode(struct hf_exr_encoder *en, const struct hf_exr_chunk *chunk, const uint8_t *raw, const uint8_t **data,
                   size_t *size, struct hf_io_error *err);
 void hf_exr_encoder_close(struct hf_exr_encoder *en);
 
-// write.c: a new file as a list of pieces, in memory or of the source.
+// write.c: a new file as a list of pieces, each in memory or in the source.
 struct hf_exr_job {
     const struct hf_io_views *views;
     const struct hf_io_result *results;
@@ -203,8 +205,8 @@ int hf_exr_encode_file(struct hf_exr_made **out, struct hf_exr *e, const struct 
 int hf_exr_put_file(const struct hf_exr_made *made, struct hf_out *out, struct hf_io_error *err);
 void hf_exr_free_file(struct hf_exr_made *made);
 
-// stamp.c: a copy of a file's first bytes, up to the chunk tables, with texts put into the first part's header in place of
-// those that have the same names. To be freed; NULL without memory.
+// stamp.c: a copy of a file's first bytes, up to the chunk tables, in which texts replace those of the same names in
+// the first part's header. To be freed; NULL without memory.
 uint8_t *hf_exr_stamp(const uint8_t *header, size_t *size, const struct hf_io_text *texts, int count);
 
 // new.c

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bringing the bytes of some parts into memory, so that decoding does not wait for a disk.
+// Reads the bytes of some parts into memory, so that decoding does not wait for a disk.
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,8 @@ static bool wants_part(const struct hf_exr_plane *planes, int count, int p)
     return false;
 }
 
-// The starts of all chunks in the file, sorted, the file's end behind them: a chunk reaches at most to the next.
+// The starts of all chunks in the file, sorted, followed by the file's end. A chunk ends at the next start at the
+// latest.
 static uint64_t *all_starts(const struct hf_exr *e, size_t *count, struct hf_io_error *err)
 {
     size_t n = 0;
@@ -66,7 +67,7 @@ static int read_range(const struct hf_exr *e, uint8_t *bytes, uint64_t from, uin
     return 0;
 }
 
-// One part's chunks, as ranges that follow on each other where they can.
+// Read one part's chunks, as contiguous ranges where possible.
 static int fetch_part(struct hf_exr *e, int p, const uint64_t *starts, size_t count, struct hf_io_error *err)
 {
     struct hf_exr_fetched *f = &e->fetched;
@@ -77,9 +78,9 @@ static int fetch_part(struct hf_exr *e, int p, const uint64_t *starts, size_t co
     for (int i = 0; i < e->parts[p].chunk_count && !status; i++) {
         const uint64_t from = slots[i].offset;
         if (from < first || from >= e->size || (i && from == slots[i - 1].offset))
-            continue;  // decoding will say so
+            continue;  // decoding will report it
         const uint64_t *own = bsearch(&from, starts, count, sizeof(*starts), compare);
-        // A chunk that begins behind the end is not there: the file was cut, or is being written now and may grow yet.
+        // A chunk that begins after the end does not exist: the file was cut, or is still being written.
         const uint64_t to = !own ? from : own[1] < e->size ? own[1] : e->size;
         if (f->count && f->range[f->count - 1].to == from) {
             f->range[f->count - 1].to = to;

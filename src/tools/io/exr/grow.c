@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part gets a larger data window: its samples are laid out anew, and what was not there is filled.
+// Enlarges a part's data window: its samples are laid out again, and new places are filled.
 #include <stdlib.h>
 #include <string.h>
 
 #include "tools/io/exr/exr.h"
 #include "tools/io/half.h"
 
-// Samples of one channel in some pixels of a row, as pieces of chunks: copied from a plain row, or to it.
+// Copy samples of one channel in some pixels of a row between pieces of chunks and a plain row.
 static void move_row(const struct hf_exr_part *part, int c, int y, int x0, int n, uint8_t *row, bool to_row)
 {
     const size_t bytes = (size_t)part->channels[c].bytes;
@@ -24,7 +24,7 @@ static void move_row(const struct hf_exr_part *part, int c, int y, int x0, int n
     }
 }
 
-// A row of one value; n samples.
+// Fill a row with n samples of one value.
 static void fill_row(uint8_t *row, exr_pixel_type_t type, float value, int n)
 {
     uint64_t clamped = 0;

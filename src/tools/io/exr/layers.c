@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers of colour: which there are, which is the picture, which one a name means.
+// Layers of colour: which exist, which one is the picture, and which one a name means.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,8 @@
 
 #include "tools/io/exr/names.h"
 
-// How likely a layer is the picture: called so, with a depth of its own, in the layer that programs make by default.
+// A score of how likely a layer is the picture: by its name, a depth of its own, and being the layer that programs make
+// by default.
 static int score_layer(const struct hf_exr_part *part, const char *layer, const char *view)
 {
     static const char *const usual[] = {"combined", "rgba", "beauty", "Ci", "C"};
@@ -22,8 +23,8 @@ static int score_layer(const struct hf_exr_part *part, const char *layer, const 
     return score;
 }
 
-// The layer whose colours are the picture, or "" when it is not clear which. In a part with several views the layer's
-// name must end in the view's.
+// The layer whose colours are the picture, or "" if that is not clear. In a part with several views the layer's name
+// must end in the view's.
 void hf_exr_find_layer(const struct hf_exr_part *part, const char *view, bool multiview, char layer[HF_EXR_NAME])
 {
     int best = 0, rivals = 0;
@@ -45,7 +46,7 @@ void hf_exr_find_layer(const struct hf_exr_part *part, const char *view, bool mu
         layer[0] = 0;
 }
 
-// No picture to look at: masks, vectors, depths, and what a denoiser is fed.
+// Whether a layer is data rather than a picture: masks, vectors, depths, a denoiser's inputs.
 static bool is_data(const char *name)
 {
     static const char *const within[] = {"crypto", "normal",   "motion", "velocity",
@@ -62,7 +63,8 @@ static bool is_data(const char *name)
     return false;
 }
 
-// The view that a layer's prefix names, by its last piece, and where that begins; of a part without views its own.
+// The view that the last piece of a layer's prefix names, and where that piece begins; in a part without views, the
+// part's own.
 static const char *view_of(const struct hf_exr_part_views *views, const char *prefix, size_t *begin)
 {
     const size_t n = strlen(prefix);
@@ -113,7 +115,7 @@ int hf_exr_list_colours(const struct hf_exr *e, struct hf_exr_colours **out)
     return *out ? count : -1;
 }
 
-// Does text begin with word, up to its end or a dot?
+// Whether text begins with word, followed by its end or a dot.
 static bool begins_with(const char *text, const char *word)
 {
     const size_t n = strlen(word);

@@ -82,7 +82,7 @@ struct hf_exr_chunk hf_exr_chunk_at(const struct hf_exr_part *part, int lines, i
         c.y0 = index / nx * part->tile_height;
         c.width = least(part->tile_width, part->width - c.x0);
         c.height = least(part->tile_height, part->height - c.y0);
-        // The rows of tiles above, and in this one the tiles to the left.
+        // The rows of tiles above, and the tiles to the left in this row.
         c.at = l->pixel_bytes * ((size_t)part->width * (size_t)c.y0 + (size_t)c.x0 * (size_t)c.height);
         c.size = l->pixel_bytes * (size_t)c.width * (size_t)c.height;
     } else {

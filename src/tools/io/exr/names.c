@@ -31,7 +31,7 @@ int hf_exr_find_prefixed(const struct hf_exr_part *part, const char *prefix, con
     return hf_exr_find_channel(part, full);
 }
 
-// How programs call the channels of a colour; the first spelling that a layer has all three of is taken.
+// Names that programs give the channels of a colour; the first spelling of which a layer has all three is taken.
 static const char *const spellings[][4] = {
     {"R", "G", "B", "A"}, {"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"Red", "Green", "Blue", "Alpha"}};
 enum { SPELLINGS = sizeof(spellings) / sizeof(spellings[0]) };
@@ -46,7 +46,7 @@ const char *const *hf_exr_colour_names(const struct hf_exr_part *part, const cha
     return NULL;
 }
 
-// Is one of the dot-separated pieces of a channel name (the last, the channel itself, left out) this word?
+// Whether one of the dot-separated pieces of a channel name, except the last, is this word.
 bool hf_exr_has_component(const char *channel, const char *word)
 {
     const size_t n = strlen(word);
@@ -56,7 +56,7 @@ bool hf_exr_has_component(const char *channel, const char *word)
     return false;
 }
 
-// The layer that a channel is the red of: its name with the dot behind it. False when it is none.
+// The layer that a channel is the red of: its name including the dot. False if it is not a red.
 bool hf_exr_layer_of_red(const struct hf_exr_part *part, const char *channel, char layer[HF_EXR_NAME])
 {
     const char *dot = strrchr(channel, '.');

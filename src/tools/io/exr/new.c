@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A new EXR file of float channels, where there is no source to copy from.
+// Writes a new EXR file of float channels, without a source to copy from.
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,7 +56,7 @@ static exr_result_t describe(exr_context_t core, const struct hf_exr_new *pictur
     return rv ? rv : exr_write_header(core);
 }
 
-// The plane of a channel, by name, as Core sorts channels.
+// The plane of a channel, by name, because Core sorts channels.
 static const float *plane_of(const struct hf_exr_new *picture, const char *name)
 {
     for (int c = 0; c < picture->channel_count; c++)
@@ -67,7 +67,8 @@ static const float *plane_of(const struct hf_exr_new *picture, const char *name)
 
 typedef exr_result_t compressor(exr_encode_pipeline_t *pipe);
 
-// Core's own, but for a chunk that becomes exactly as long as it was: readers take that for one that is not compressed.
+// Core's own compressor, except for a chunk that becomes exactly as long as it was: readers take such a chunk for an
+// uncompressed one.
 static exr_result_t compress(exr_encode_pipeline_t *pipe)
 {
     compressor *const *own = pipe->encoding_user_data;

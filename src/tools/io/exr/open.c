@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opening an EXR file: Core parses the header, we note where in the file things are.
+// Opens an EXR file: Core parses the header, and this file notes where in the file things are.
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,10 +65,10 @@ static int64_t core_size(exr_const_context_t core, void *user)
     return (int64_t)((const struct hf_exr *)user)->size;
 }
 
-// Core calls some corrupt chunks (B44) a lack of memory.
+// Core reports some corrupt chunks (B44) as a lack of memory.
 static _Thread_local bool core_ran_out;
 
-// Zeroed and with room behind: Core 3.1 looks a few bytes past the end of some corrupt chunks. No honest header or
+// Zeroed, with spare bytes behind: Core 3.1 reads a few bytes past the end of some corrupt chunks. No valid header or
 // chunk needs as much as the limit.
 static void *core_alloc(size_t size)
 {
@@ -82,7 +82,7 @@ static void core_free(void *p)
     free(p);
 }
 
-// Core reports the cause first and then what that cause led to. It does so on the thread that called it.
+// Core first reports the cause, then its consequences, all on the thread that called it.
 static _Thread_local char core_message[256];
 
 static void core_error(exr_const_context_t core, exr_result_t code, const char *message)
@@ -121,7 +121,7 @@ int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *e
     return hf_io_fail(err, "%s: truncated or corrupt: %s", e->path, hf_exr_said(code));
 }
 
-// A cursor over the header bytes, for what Core does not tell: where things are.
+// A cursor over the header bytes, for what Core does not report: where things are.
 struct cursor {
     const struct hf_exr *e;
     uint64_t at;     // next byte
@@ -171,8 +171,8 @@ static int64_t next_int(struct cursor *c)
     return v;
 }
 
-// What every part has, but for tiles. Core takes these whatever type and size they claim to have, and does without some,
-// and with two of some; other readers do not, and what is written has them from here.
+// The attributes that every part needs, tiles apart. Core accepts any type and size for these, and accepts missing or
+// repeated ones; other readers do not, and written files take them from here.
 static const struct {
     const char *name, *type;
     int64_t size;  // -1: any
@@ -183,7 +183,7 @@ static const struct {
 };
 enum { NEEDED = sizeof(needed) / sizeof(needed[0]), NEEDED_BITS = (1 << (NEEDED - 1)) - 1 };
 
-// Notes which of these an attribute is. False if it cannot be.
+// Note which of these an attribute is. False if its type or size is wrong.
 static bool right_type(const char *name, const char *type, int64_t size, unsigned *seen)
 {
     for (int i = 0; i < NEEDED; i++) {
@@ -196,7 +196,7 @@ static bool right_type(const char *name, const char *type, int64_t size, unsigne
     return true;
 }
 
-// One part's attributes up to and with the zero byte behind them.
+// Scan one part's attributes, including the zero byte behind them.
 static int scan_part(struct cursor *c, struct hf_exr_part *part)
 {
     unsigned seen = 0;
@@ -216,7 +216,7 @@ static int scan_part(struct cursor *c, struct hf_exr_part *part)
             part->compression_at = at;
         if (!strcmp(name, "dataWindow"))
             part->window_at = at;
-        if (!strcmp(name, "lineOrder") && next_byte(c) > last)  // Core takes what is none for increasing
+        if (!strcmp(name, "lineOrder") && next_byte(c) > last)  // Core reads an invalid line order as increasing
             return -1;
         if (!strcmp(name, "chunkCount") && !strcmp(type, "int") && size == 4) {
             part->chunk_count_at = at;
@@ -227,7 +227,7 @@ static int scan_part(struct cursor *c, struct hf_exr_part *part)
     }
 }
 
-// Where the header ends and where each part's chunk table begins.
+// Find the end of the header and each part's chunk table.
 static int scan_header(struct hf_exr *e, struct hf_io_error *err)
 {
     struct cursor c = {.e = e, .at = 4};
@@ -253,7 +253,7 @@ static int scan_header(struct hf_exr *e, struct hf_io_error *err)
     return 0;
 }
 
-// As many as a list of channels names, up to its end or where it is broken off.
+// Count the channels that a list names, up to its end or to where it breaks off.
 static int count_channels(struct cursor *c, uint64_t end)
 {
     char name[256];
@@ -263,8 +263,8 @@ static int count_channels(struct cursor *c, uint64_t end)
     return n;
 }
 
-// Who sorts channels and looks for layers among them compares each with all others, Core too: before it sees them, too
-// many are refused. Whatever else is wrong is left to it.
+// Sorting channels and looking for layers compares each channel with all others, in Core too. So a file with too many
+// is refused before Core sees them. Any other fault is left to Core.
 static int limit_channels(const struct hf_exr *e, struct hf_io_error *err)
 {
     struct cursor c = {.e = e, .at = 4};
@@ -375,7 +375,7 @@ static int load_part(struct hf_exr *e, int p, struct hf_io_error *err)
     return load_channels(e, p, err);
 }
 
-// e holds what is to be read; it is closed on failure.
+// e says what is to be read; it is closed after a failure.
 static int open_core(struct hf_exr **out, struct hf_exr *e, struct hf_io_error *err)
 {
     exr_context_initializer_t init;
@@ -385,7 +385,8 @@ static int open_core(struct hf_exr **out, struct hf_exr *e, struct hf_io_error *
     hf_exr_context_init(e, &init);
     init.read_fn = core_read;
     init.size_fn = core_size;
-    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;  // half a picture is an error, not a puzzle
+    init.flags =
+        EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;  // half a picture is an error and must not be reconstructed
     hf_exr_quiet();
     rv = exr_start_read(&e->core, e->path, &init);
     if (!rv)

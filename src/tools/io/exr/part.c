@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small questions about a part, and whether its header can be believed.
+// Small questions about a part, and whether its header is plausible.
 #include <string.h>
 #include <strings.h>
 
@@ -71,7 +71,7 @@ bool hf_exr_row_has(const struct hf_exr_part *part, int c, int y)
     return (part->window.min.y + y) % part->channels[c].y_sampling == 0;
 }
 
-// Bytes of the part when decoded, to within the rounding of subsampled channels.
+// The size of the decoded part in bytes, except for the rounding of subsampled channels.
 static uint64_t decoded_bytes(const struct hf_exr_part *part)
 {
     uint64_t sum = 0;
@@ -108,8 +108,9 @@ int hf_exr_check_part(const struct hf_exr *e, int p, struct hf_io_error *err)
     if (part->one_level ? part->chunk_count != needed : part->chunk_count < needed)
         return hf_io_fail(err, "%s: truncated or corrupt: part %d has %d chunks but its data window needs %d", e->path,
                           p, part->chunk_count, needed);
-    // Pictures of one colour pack without end (PIZ, DWA), and black frames are honest. But believing any header would let
-    // a short file ask for any amount of memory: past half a gigabyte, no more than twice what deflate can do.
+    // Pictures of one colour compress without limit (PIZ, DWA), and black frames are legitimate. But if every header
+    // were believed, a short file could demand any amount of memory. So beyond half a gigabyte the limit is twice what
+    // deflate can reach.
     const uint64_t bytes = decoded_bytes(part);
     if (bytes > (uint64_t)1 << 29 && bytes / 2048 > e->size)
         return hf_io_fail(err, "%s: truncated or corrupt: %llu bytes cannot hold %d x %d pixels of %d channels",

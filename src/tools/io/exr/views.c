@@ -52,7 +52,7 @@ static int fill_windows(const struct hf_exr *e, struct hf_io_view *v, struct hf_
     return hf_io_check_window(e->path, "display window", v->display_window, err);
 }
 
-// Add the view with these channels to the file.
+// Add the view with these channels to the file's list.
 static int add_view(const struct hf_exr *e, struct hf_io_views *views, int p, const char *name, const char *prefix,
                     struct hf_io_error *err)
 {
@@ -124,14 +124,14 @@ static bool has_view(const struct hf_io_views *views, const struct hf_exr_colour
     return false;
 }
 
-// The layer that a name means, one for each view that has it. Returns how many were added, or -1.
+// Find the layer that a name means, once for each view that has it. Returns how many were added, or -1.
 static int add_named(const struct hf_exr *e, struct hf_io_views *views, const struct hf_exr_colours *list, int count,
                      const char *wanted, struct hf_io_error *err)
 {
     int added = 0;
     for (int i = 0; i < count; i++) {
         int best = -1, rank = 0;
-        // The first of its view looks for all of it.
+        // The first set of its view adds all of them.
         for (int k = 0; k < count; k++) {
             if (strcmp(list[k].view, list[i].view))
                 continue;
@@ -156,7 +156,7 @@ static int add_named(const struct hf_exr *e, struct hf_io_views *views, const st
     return added;
 }
 
-// Every layer that is a picture, behind those that are the main one.
+// Add every layer that is a picture, the main ones first.
 static int add_all(const struct hf_exr *e, struct hf_io_views *views, const struct hf_exr_colours *list, int count,
                    struct hf_io_error *err)
 {
@@ -176,7 +176,7 @@ static int no_layer(const struct hf_exr *e, const char *wanted, struct hf_io_err
     return hf_io_fail(err, "%s: there is no layer %s%s, the layers are: %s", e->path, wanted, meant, layers);
 }
 
-// Those that --layer names, with commas between.
+// Add the layers that --layer names, separated by commas.
 static int choose_layers(const struct hf_exr *e, struct hf_io_views *views, const char *wanted, struct hf_io_error *err)
 {
     struct hf_exr_colours *list;
@@ -200,7 +200,7 @@ static int choose_layers(const struct hf_exr *e, struct hf_io_views *views, cons
     return status;
 }
 
-// The layer that a view's colours are in.
+// Set the layer that contains a view's colours.
 static void set_layer(const struct hf_exr *e, struct hf_io_view *v)
 {
     char prefix[HF_EXR_NAME];
@@ -247,7 +247,7 @@ void hf_exr_layers(const struct hf_exr *e, char *buf, size_t size)
     const int count = hf_exr_list_colours(e, &list);
     buf[0] = 0;
     for (int i = 0; i < count; i++) {
-        bool again = false;  // of another view
+        bool again = false;  // the same layer in another view
         for (int k = 0; k < i; k++)
             again |= !strcmp(list[k].name, list[i].name);
         if (!again)
@@ -264,8 +264,8 @@ static bool has_depth(const struct hf_io_views *views, const struct hf_io_view *
     return false;
 }
 
-// The most likely picture among those layers whose depths are not in views nor found: added to found. False when there
-// is none left. What is wrong with such a layer is said when it is asked for.
+// Add to `found` the most likely picture among the layers whose depths are neither in views nor in found. False if none
+// is left. Errors of such a layer are reported when it is used.
 static bool next_other(const struct hf_exr *e, const struct hf_io_views *views, struct hf_io_views *found,
                        const struct hf_exr_colours *list, int count)
 {

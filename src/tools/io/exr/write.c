@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Making a copy of an EXR file with some colours replaced, as a list of pieces: header bytes with few changes, chunks of
-// the source where nothing changes, and new chunks where the new colours, put between the samples of the other channels
-// as stored, differ from the old.
+// Makes a copy of an EXR file with some colours replaced, as a list of pieces: header bytes with few changes, chunks of
+// the source where nothing changes, and new chunks elsewhere, which contain the new colours and the other channels as
+// stored.
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,8 +22,8 @@ struct part_plan {
     bool changed;
     exr_compression_t compression;
     int chunk_count;
-    struct piece *pieces;  // by number of chunk
-    int *order;            // in which they follow in the file
+    struct piece *pieces;  // by chunk number
+    int *order;            // the order of the chunks in the file
 };
 
 struct hf_exr_made {
@@ -83,7 +83,7 @@ static int plan_part(struct hf_exr *e, int p, const struct hf_exr_job *job, stru
     return plan->pieces && plan->order ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
 }
 
-// The source's header with what a change of compression changes, one byte and one number per part, and the texts.
+// The source's header, with the texts, and with one byte and one number per part changed where the compression changes.
 static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, struct hf_io_error *err)
 {
     const struct hf_exr *e = m->e;
@@ -121,7 +121,7 @@ static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, stru
     return 0;
 }
 
-// Where the chunks come to lie.
+// Compute the new places of the chunks.
 static void fill_tables(struct hf_exr_made *m)
 {
     uint64_t at = m->head_size;
@@ -136,8 +136,7 @@ static void fill_tables(struct hf_exr_made *m)
     }
 }
 
-// All chunks of a part as they are, in the order in which they stand in e, which may be another file than the source:
-// then they are copied.
+// Take all chunks of a part as they are, in their order in e. If e is not the source, they are copied into memory.
 static int take_chunks(struct hf_exr *e, int p, struct part_plan *plan, struct hf_io_error *err)
 {
     const struct hf_exr_part *last = &e->parts[e->part_count - 1];
@@ -146,7 +145,7 @@ static int take_chunks(struct hf_exr *e, int p, struct part_plan *plan, struct h
     int status = slots ? 0 : -1;
     for (int i = 0; i < plan->chunk_count && !status; i++) {
         struct hf_exr_leader l;
-        // Chunks do not overlap: else a short file could make a long one.
+        // Chunks must not overlap, or a short file could make a long one.
         if (slots[i].offset < end || hf_exr_read_leader(e, p, slots[i].offset, &l)) {
             status = hf_io_fail(err, "%s: truncated or corrupt: chunk %d of part %d is not where its table says",
                                 e->path, slots[i].index, p);
@@ -160,7 +159,7 @@ static int take_chunks(struct hf_exr *e, int p, struct part_plan *plan, struct h
     return status;
 }
 
-// One sample of a greyscale picture. Equal colours pass as they are.
+// One sample of a greyscale picture. Equal colours keep their value exactly.
 static float grey(const float *const planes[4], size_t i)
 {
     if (!planes[1] || !planes[2] || (planes[0][i] == planes[1][i] && planes[1][i] == planes[2][i]))
@@ -180,7 +179,7 @@ static void put_row(uint8_t *to, const float *from, int n, exr_pixel_type_t type
     }
 }
 
-// The new colours of one view, over the chunk's samples.
+// Put the new colours of one view over the chunk's samples.
 static void put_view(const struct encoding *en, struct encode_worker *w, const struct hf_exr_chunk *k,
                      const struct hf_io_result *r, uint64_t *clamped)
 {
@@ -218,7 +217,7 @@ static int prepare(struct encoding *en, struct encode_worker *w, size_t size, st
     return w->raw && w->row ? 0 : hf_io_fail(err, "%s: out of memory", en->e->path);
 }
 
-// A chunk in memory, behind its leader.
+// Keep a chunk in memory, with its leader.
 static int keep_piece(const struct encoding *en, const struct hf_exr_chunk *k, const uint8_t *data, size_t size,
                       struct hf_io_error *err)
 {
@@ -262,7 +261,7 @@ static int encode_chunk(struct encoding *en, struct encode_worker *w, int i, str
         if (en->job->views->view[en->job->results[r].view].part == en->part)
             put_view(en, w, &k, &en->job->results[r], &clamped);
     atomic_fetch_add(&en->clamped, clamped);
-    // What is as it was is copied, which is also what keeps lossy compression from losing more.
+    // Unchanged chunks are copied, which also keeps lossy compression from losing more.
     if (en->table && !memcmp(w->raw, part->samples + k.at, k.size) &&
         !hf_exr_read_leader(en->e, en->part, en->table[i], &l)) {
         en->plan->pieces[i] = (struct piece){.from = en->table[i], .size = l.size + (size_t)l.data_size};
@@ -297,7 +296,7 @@ static int encode_chunks(struct encoding *en, const struct hf_io_run *run)
     return atomic_load(&en->failed) ? -1 : 0;
 }
 
-// Have the codec make the part as a file of its own and take the chunks out of that.
+// Let the codec make the part as a file of its own, and take the chunks from that.
 static int encode_by_codec(struct encoding *en, const struct hf_io_run *run)
 {
     struct hf_exr *e = en->e, *made = NULL;
@@ -319,7 +318,7 @@ static int encode_by_codec(struct encoding *en, const struct hf_io_run *run)
                 put_view(en, &w, &k, &en->job->results[r], &clamped);
     }
     atomic_fetch_add(&en->clamped, clamped);
-    // Nothing new: then nothing is lost by compressing again.
+    // If nothing changed, nothing must be lost by compressing again.
     if (!status && !part->grown && plan->compression == part->compression &&
         !memcmp(whole, part->samples, part->layout.bytes)) {
         free(whole);
@@ -354,7 +353,7 @@ static int encode_by_codec(struct encoding *en, const struct hf_io_run *run)
     return status;
 }
 
-// In the order of the source where it has as many chunks.
+// Use the order of the source if it has the same number of chunks.
 static int order_chunks(const struct encoding *en)
 {
     struct part_plan *plan = en->plan;
@@ -387,8 +386,8 @@ static bool is_b44(exr_compression_t c)
     return c == EXR_COMPRESSION_B44 || c == EXR_COMPRESSION_B44A;
 }
 
-// Does this compression change what goes through it? DWA's by the last piece of the name alone, capitals only: masks of
-// r, g and b keep their bits.
+// Whether a compression changes the samples of a channel. DWA decides by the last piece of the name, in capitals only:
+// masks named r, g and b keep their bits.
 static bool loses(exr_compression_t compression, const struct hf_exr_channel *ch)
 {
     static const char *const lossy[] = {"R", "G", "B", "Y", "RY", "BY"};
@@ -481,7 +480,7 @@ int hf_exr_encode_file(struct hf_exr_made **out, struct hf_exr *e, const struct 
 
 enum { PIECE = 1 << 20 };
 
-// Bytes of the source, in pieces unless they are in memory anyway.
+// Copy bytes of the source, in pieces unless they are in memory.
 static int copy_range(const struct hf_exr *e, uint64_t from, uint64_t size, uint8_t *buf, struct hf_out *out,
                       struct hf_io_error *err)
 {

@@ -29,7 +29,7 @@ void hf_exr_split(uint8_t *restrict to, uint8_t *restrict scratch, const uint8_t
 static void add_up(uint8_t *p, size_t size)
 {
     size_t i = 0;
-    uint8_t last = 128;  // what makes the first byte itself
+    uint8_t last = 128;  // makes the first byte itself
 #if defined(__SSE2__)
     const __m128i bias = _mm_set1_epi8((char)128);
     __m128i sum = _mm_set1_epi8((char)last);
@@ -41,7 +41,7 @@ static void add_up(uint8_t *p, size_t size)
         v = _mm_add_epi8(v, _mm_slli_si128(v, 8));
         v = _mm_add_epi8(v, sum);
         _mm_storeu_si128((__m128i *)(p + i), v);
-        // The last byte, in all places.
+        // Copy the last byte to all places.
         const __m128i high = _mm_unpackhi_epi8(v, v);
         sum = _mm_shuffle_epi32(_mm_shufflehi_epi16(high, 0xff), 0xff);
     }
@@ -76,19 +76,19 @@ int hf_exr_unzip(struct libdeflate_decompressor *d, uint8_t *to, size_t size, co
 
 enum { STORED = 65535, STORED_HEAD = 5, ZLIB_HEAD = 2, ZLIB_TAIL = 4 };
 
-// The same with the first half of sorted bytes stored as they are: of noise those are the low bytes, which do not shrink,
-// and a block that begins among them and ends in the other half serves neither well. Returns 0 where there is no room.
+// The same with the first half of the sorted bytes stored uncompressed: in noise these are the low bytes, which do not
+// shrink, and a deflate block that spans both halves suits neither. Returns 0 if there is no room.
 static size_t zip_noise(struct libdeflate_compressor *c, uint8_t *to, size_t room, const uint8_t *sorted, size_t size)
 {
     const size_t half = (size + 1) / 2, blocks = (half + STORED - 1) / STORED;
     uint8_t *p = to;
     if (half + blocks * STORED_HEAD + ZLIB_HEAD + ZLIB_TAIL >= room)
         return 0;
-    *p++ = 0x78;  // deflate, a window of 32 KB
-    *p++ = 0x01;  // what makes both a multiple of 31
+    *p++ = 0x78;  // deflate with a window of 32 KB
+    *p++ = 0x01;  // makes both bytes a multiple of 31
     for (size_t at = 0; at < half; at += STORED) {
         const size_t n = half - at < STORED ? half - at : STORED;
-        *p++ = 0;  // stored, and not the last block
+        *p++ = 0;  // a stored block, not the last one
         *p++ = (uint8_t)n;
         *p++ = (uint8_t)(n >> 8);
         *p++ = (uint8_t)~n;
