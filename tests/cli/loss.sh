@@ -142,6 +142,105 @@ for name in "$(printf 'in/\033[31m\007.#.exr')" "$(printf 'in/\302\23331m.#.exr'
 done
 rm -rf out in
 
+# ---- two machines of one long name, which see nothing of each other's processes
+machine() {  # COMMANDS
+    unshare -u -p -f --mount-proc sh -c "hostname $(printf '%064d' 7) && $1" "$program"
+}
+if machine true 2>/dev/null; then
+    mkdir in out
+    for i in $(seq 1001 2000); do ln plain.exr in/f.$i.exr 2>/dev/null || cp plain.exr in/f.$i.exr; done
+    command="1,000 frames while another machine removes strays"
+    # shellcheck disable=SC2016
+    machine 'for i in 1 2 3 4 5 6 7 8 9; do /bin/true; done
+        "$0" "in/f.#.exr" -o "out/f.#.exr" --focus 4 --range 2 --engine gather --max-radius 4 --resume --quiet; exit' \
+        >"$dir/out" 2>"$dir/err" &
+    busy=$!
+    others=0
+    while kill -0 $busy 2>/dev/null; do
+        machine '"$0" in/f.1001.exr -o out/x.exr --focus 4 --range 2 --engine gather --resume --quiet; exit' 2>/dev/null
+        others=$((others + 1))
+    done
+    wait $busy
+    status=$?
+    [ $status -eq 0 ] && [ ! -s "$dir/err" ] && [ "$(ls out | wc -l)" = 1001 ] && [ -z "$(ls -A out | grep hyper)" ]
+    result "1,000 frames, and $others times another machine: none is lost" $?
+    rm -rf in out
+else
+    skip "two machines: no name spaces can be made"
+fi
+
+# ---- damage that --resume must see
+mkdir in good out
+python3 - <<'PYTHON'
+from exr import exr
+for i in range(1, 7):
+    exr('in/f.%d.exr' % i, {n: lambda x, y: (x * y * i) % 7 + 1 for n in 'RGBZ'}, window=(0, 0, 299, 199))
+PYTHON
+for compression in none zip; do
+    # shellcheck disable=SC2086
+    run 'in/f.#.exr' -o 'good/f.#.exr' $look --compression $compression
+    cp good/* out
+    # shellcheck disable=SC2086
+    run 'in/f.#.exr' -o 'out/f.#.exr' $look --compression $compression --resume
+    contains "$dir/err" "0 done, 6 there already"
+    result "whole files are whole, $compression" $?
+    for damage in tail block append header table leader bits nosum; do
+        for seed in 1 2 3; do
+            python3 - $damage $seed <<'PYTHON'
+import random, sys
+from exr import header
+kind = sys.argv[1]
+random.seed(kind + sys.argv[2])
+path = 'out/f.%d.exr' % random.randint(1, 6)
+end = header(path)[2] + 1
+data = bytearray(open(path, 'rb').read())
+chunk = int.from_bytes(data[end:end + 8], 'little')
+at = random.randrange(chunk, len(data) - 5000)
+if kind == 'tail':
+    data[at:] = bytes(len(data) - at)
+elif kind == 'block':
+    data[at:at + 4096] = bytes(4096)
+elif kind == 'append':
+    data += b'x' * random.randint(1, 5000)
+elif kind == 'nosum':
+    data = data.replace(b'hyperfocalSum', b'anotherString')
+else:
+    low, high = {'header': (8, end), 'table': (end, chunk), 'leader': (chunk, chunk + 4), 'bits': (chunk, len(data))}[kind]
+    data[random.randrange(low, high)] ^= 1 << random.randrange(8)
+open(path, 'wb').write(data)
+PYTHON
+            # shellcheck disable=SC2086
+            run 'in/f.#.exr' -o 'out/f.#.exr' $look --compression $compression --resume
+            [ "$status" -eq 0 ] && contains "$dir/err" "1 done, 5 there already" && diff -r good out >/dev/null
+            result "$damage $seed, $compression: that frame is made again" $?
+        done
+    done
+    rm -f out/* good/*
+done
+# Another picture of the same size and time, uncompressed, so that even the header is the same.
+# shellcheck disable=SC2086
+run 'in/f.#.exr' -o 'out/f.#.exr' $look --resume
+touch -r in/f.2.exr "$dir/time" && cp in/f.3.exr in/f.2.exr && touch -r "$dir/time" in/f.2.exr
+# shellcheck disable=SC2086
+run 'in/f.#.exr' -o 'out/f.#.exr' $look --resume
+contains "$dir/err" "1 done, 5 there already"
+result "an input with the size and the time of the old one is another" $?
+# A layer of several, and what is made from a photograph.
+# shellcheck disable=SC2086
+for i in 1 2; do run layers.exr -o out/l.exr $look --layer Foreground --resume; done
+contains "$dir/err" "0 done, 1 there already"
+result "a layer of several is there already" $?
+if [ -n "$has_helper" ]; then
+    for i in 1 2 3; do
+        [ $i -lt 3 ] || printf x >>out/p.exr
+        run photo.png -o out/p.exr --depth-file map8.png --depth-type normalized --near 1 --far 6 --focus 2 --range 2 \
+            --resume
+        contains "$dir/err" "$((i % 2)) done, $(((i + 1) % 2)) there already"
+        result "a photograph's EXR, $i" $?
+    done
+fi
+rm -rf in good out
+
 # ---- what never ends
 for list in 1-100000000 1-99999999 1-99999999999999999999 1-99999999y2 1-1000001:1000000; do
     case $list in 1-99999999y2 | 1-99999999 | 1-1000001*) words="more than 1000000 frames" ;; *) words="numbered from" ;; esac

@@ -10,7 +10,7 @@
 enum { CLI_STAMP_TEXTS = 3 };
 
 // Three texts for the header: hyperfocalVersion, hyperfocalSettings, which a person can read, and hyperfocalHash, of
-// these two and of the size and time of the input files.
+// these two and of the input files: their sizes, times and some of their bytes.
 struct cli_stamp {
     struct hf_io_text texts[CLI_STAMP_TEXTS];
     char hash[17];
@@ -22,7 +22,7 @@ struct cli_stamp {
 int cli_stamp_make(struct cli_stamp *stamp, const struct cli_args *args);
 void cli_stamp_free(struct cli_stamp *stamp);
 
-// 1 if the file is whole and has this stamp.
+// 1 if the file has this stamp, all its chunks and the right checksum.
 int cli_stamp_fits(const struct cli_stamp *stamp, const char *path);
 
 // Remove the temporary files beside the outputs whose writers have died, see hf_temp_remove_strays. Returns how many.

@@ -192,6 +192,11 @@ int hf_io_check_whole(const struct hf_io_file *file, struct hf_io_error *err)
     return 0;
 }
 
+int hf_io_check_sum(const struct hf_io_file *file, struct hf_io_error *err)
+{
+    return file->exr ? hf_exr_check_sum(file->exr, err) : hf_io_fail(err, "%s: not an EXR file", file->path);
+}
+
 void hf_io_channels(const struct hf_io_file *file, char *buf, size_t size)
 {
     if (!size)

@@ -52,9 +52,12 @@ const char *hf_io_part_name(const struct hf_io_file *file, int part);
 
 // A text attribute of an EXR file's first part, cut off at size; "" if there is none. Returns buf.
 const char *hf_io_text(const struct hf_io_file *file, const char *name, char *buf, size_t size);
-// Whether all chunks of an EXR file are complete and inside the file. Reads no pixels. Returns 0, or -1 with *err
-// filled, also for files that are not EXR.
+// Whether all chunks of an EXR file are complete, inside the file, and at the place that the table says. Reads no pixels.
+// Returns 0, or -1 with *err filled, also for files that are not EXR.
 int hf_io_check_whole(const struct hf_io_file *file, struct hf_io_error *err);
+// Whether an EXR file still has the checksum that hf_io_encode put into its header together with texts. Reads the whole
+// file. Returns 0, or -1 with *err filled, also for files without a checksum.
+int hf_io_check_sum(const struct hf_io_file *file, struct hf_io_error *err);
 
 // What to read of a view: tightly packed planes of width * height floats, owned by the caller; NULL: not wanted.
 struct hf_io_want {
@@ -118,8 +121,8 @@ struct hf_io_job {
     const char *compression;  // "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", or NULL:
                               // as it was
     const struct hf_io_text
-        *texts;  // for the header of an EXR, in place of those of the same names; DWA made from what
-                 // is no EXR goes without
+        *texts;  // for the header of an EXR, in place of those of the same names, and with them a checksum of
+                 // the file; DWA made from what is no EXR goes without
     int text_count;
     bool unsynced;                // do not wait for the disk: after a power failure the new file may be empty
     const struct hf_io_run *run;  // NULL: on this thread

@@ -76,15 +76,30 @@ int hf_exr_read_leader(const struct hf_exr *e, int p, uint64_t offset, struct hf
     return l->data_size <= e->size - l->data ? 0 : -1;
 }
 
+// Does a chunk say of itself that it belongs where the table has it? Of mipmapped parts only the table knows.
+static bool is_in_place(const struct hf_exr_part *part, int index, const struct hf_exr_leader *l)
+{
+    if (hf_exr_is_deep(part) || !part->one_level || !part->window_ok)
+        return true;
+    if (part->storage == EXR_STORAGE_SCANLINE)
+        return l->place[0] == part->window.min.y + index * part->chunk_lines;
+    const int across = (part->width - 1) / part->tile_width + 1;
+    return l->place[0] == index % across && l->place[1] == index / across && !l->place[2] && !l->place[3];
+}
+
 int hf_exr_check_chunks(const struct hf_exr *e, int p, struct hf_io_error *err)
 {
     struct hf_exr_slot *slots = hf_exr_file_order(e, p, err);
     struct hf_exr_leader l;
+    uint64_t end = e->header_size;
     int status = slots ? 0 : -1;
-    for (int i = 0; i < e->parts[p].chunk_count && !status; i++)
-        if (hf_exr_read_leader(e, p, slots[i].offset, &l))
-            status = hf_io_fail(err, "%s: truncated or corrupt: chunk %d of part %d is not whole", e->path,
-                                slots[i].index, p);
+    for (int i = 0; i < e->parts[p].chunk_count && !status; i++) {
+        if (slots[i].offset < end || hf_exr_read_leader(e, p, slots[i].offset, &l) ||
+            !is_in_place(&e->parts[p], slots[i].index, &l))
+            status = hf_io_fail(err, "%s: truncated or corrupt: chunk %d of part %d is not whole, or another's",
+                                e->path, slots[i].index, p);
+        end = status ? end : l.data + l.data_size;
+    }
     free(slots);
     return status;
 }

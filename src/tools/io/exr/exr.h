@@ -206,8 +206,17 @@ int hf_exr_put_file(const struct hf_exr_made *made, struct hf_out *out, struct h
 void hf_exr_free_file(struct hf_exr_made *made);
 
 // stamp.c: a copy of a file's first bytes, up to the chunk tables, in which texts replace those of the same names in
-// the first part's header. To be freed; NULL without memory.
+// the first part's header, and a checksum, 0 so far, follows them. To be freed; NULL without memory.
 uint8_t *hf_exr_stamp(const uint8_t *header, size_t *size, const struct hf_io_text *texts, int count);
+// Name of the checksum's attribute. Its value is the CRC-32 of the whole file, in which its own 8 digits count as zeros.
+#define HF_EXR_SUM "hyperfocalSum"
+// Where in the header the checksum's digits are; 0: there is none.
+size_t hf_exr_find_sum(const uint8_t *header, size_t size);
+// Add bytes to a checksum that begins at 0, and write its 8 digits.
+void hf_exr_add_to_sum(uint32_t *sum, const void *data, size_t size);
+void hf_exr_put_sum(uint8_t *digits, uint32_t sum);
+// Returns 0 if the file has a checksum that is right.
+int hf_exr_check_sum(const struct hf_exr *e, struct hf_io_error *err);
 
 // new.c
 struct hf_exr_new {

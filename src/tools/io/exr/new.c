@@ -51,6 +51,8 @@ static exr_result_t describe(exr_context_t core, const struct hf_exr_new *pictur
                                           picture->screen_width, EXR_LINEORDER_INCREASING_Y, picture->compression);
     for (int i = 0; i < picture->text_count && !rv; i++)
         rv = exr_attr_set_string(core, 0, picture->texts[i].name, picture->texts[i].value);
+    if (!rv && picture->text_count)
+        rv = exr_attr_set_string(core, 0, HF_EXR_SUM, "00000000");
     for (int c = 0; c < picture->channel_count && !rv; c++)
         rv = exr_add_channel(core, 0, picture->names[c], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     return rv ? rv : exr_write_header(core);
@@ -158,6 +160,12 @@ int hf_exr_make_new(struct hf_io_bytes *made, const char *path, const struct hf_
     if (rv) {
         free(n.bytes.data);
         return hf_io_fail(err, "%s: cannot write: %s", path, hf_exr_said(rv));
+    }
+    const size_t sum_at = picture->text_count ? hf_exr_find_sum(n.bytes.data, n.bytes.size) : 0;
+    uint32_t sum = 0;
+    if (sum_at) {
+        hf_exr_add_to_sum(&sum, n.bytes.data, n.bytes.size);
+        hf_exr_put_sum(n.bytes.data + sum_at, sum);
     }
     *made = n.bytes;
     return 0;

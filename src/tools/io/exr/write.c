@@ -30,6 +30,7 @@ struct hf_exr_made {
     struct hf_exr *e;
     uint8_t *head;  // header and chunk tables
     size_t header_size, head_size;
+    bool stamped;  // there are texts, and a checksum is to be filled in
     int part_count;
     struct part_plan *plans;
 };
@@ -111,6 +112,7 @@ static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, stru
         free(header);
         header = stamped;
     }
+    m->stamped = job->text_count > 0;
     m->header_size = size;
     m->head_size = size + tables;
     m->head = status ? NULL : realloc(header, m->head_size);
@@ -480,19 +482,31 @@ int hf_exr_encode_file(struct hf_exr_made **out, struct hf_exr *e, const struct 
 
 enum { PIECE = 1 << 20 };
 
+// What is written, and its checksum so far.
+struct summed {
+    struct hf_out *out;
+    uint32_t sum;
+};
+
+static int put(struct summed *to, const void *data, size_t size, struct hf_io_error *err)
+{
+    hf_exr_add_to_sum(&to->sum, data, size);
+    return hf_out_write(to->out, data, size, err);
+}
+
 // Copy bytes of the source, in pieces unless they are in memory.
-static int copy_range(const struct hf_exr *e, uint64_t from, uint64_t size, uint8_t *buf, struct hf_out *out,
+static int copy_range(const struct hf_exr *e, uint64_t from, uint64_t size, uint8_t *buf, struct summed *to,
                       struct hf_io_error *err)
 {
     const uint8_t *bytes = hf_exr_bytes(e, size, from);
     if (bytes)
-        return hf_out_write(out, bytes, size, err);
+        return put(to, bytes, size, err);
     while (size) {
         const size_t n = size < PIECE ? (size_t)size : PIECE;
         if (hf_exr_read_at(e, buf, n, from))
             return hf_io_fail(err, "%s: truncated or corrupt: cannot read at byte %llu", e->path,
                               (unsigned long long)from);
-        if (hf_out_write(out, buf, n, err))
+        if (put(to, buf, n, err))
             return -1;
         from += n;
         size -= n;
@@ -502,18 +516,21 @@ static int copy_range(const struct hf_exr *e, uint64_t from, uint64_t size, uint
 
 int hf_exr_put_file(const struct hf_exr_made *m, struct hf_out *out, struct hf_io_error *err)
 {
-    uint8_t *buf = malloc(PIECE);
-    int status = buf ? hf_out_write(out, m->head, m->head_size, err) : hf_io_fail(err, "%s: out of memory", out->path);
+    struct summed to = {.out = out};
+    const size_t sum_at = m->stamped ? hf_exr_find_sum(m->head, m->header_size) : 0;
+    uint8_t *buf = malloc(PIECE), digits[8];
+    int status = buf ? put(&to, m->head, m->head_size, err) : hf_io_fail(err, "%s: out of memory", out->path);
     for (int p = 0; p < m->part_count; p++) {
         const struct part_plan *plan = &m->plans[p];
         for (int i = 0; i < plan->chunk_count && !status; i++) {
             const struct piece *piece = &plan->pieces[plan->order[i]];
-            status = piece->data ? hf_out_write(out, piece->data, piece->size, err)
-                                 : copy_range(m->e, piece->from, piece->size, buf, out, err);
+            status = piece->data ? put(&to, piece->data, piece->size, err)
+                                 : copy_range(m->e, piece->from, piece->size, buf, &to, err);
         }
     }
     free(buf);
-    return status;
+    hf_exr_put_sum(digits, to.sum);
+    return !status && sum_at ? hf_out_patch(out, sum_at, digits, sizeof(digits), err) : status;
 }
 
 void hf_exr_free_file(struct hf_exr_made *m)
