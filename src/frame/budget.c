@@ -5,10 +5,10 @@
 
 #include <math.h>
 
-// Frames beyond the budget before a cheaper setting; frames with room before the better one again, twice as many each
-// time that it turned out too slow.
+// A cheaper setting follows after OVER frames beyond the budget. A better one follows after PATIENCE frames with room
+// for it, twice as many each time that it turned out too slow.
 enum { OVER = 2, PATIENCE = 12, MOST_PATIENCE = 192 };
-// Part of the budget that the better setting may be expected to take: what lies between is hysteresis.
+// The better setting is tried if it is expected to take at most this part of the budget. The rest is hysteresis.
 static const float ROOM = 0.8f;
 
 int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS])
@@ -28,7 +28,7 @@ int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_para
     return n;
 }
 
-// What the ladder hangs on.
+// A hash of all that the ladder depends on.
 static uint64_t hash_of(const struct hf_params *ladder, int steps)
 {
     uint64_t hash = (uint64_t)steps;
@@ -58,7 +58,7 @@ int hf_budget_choose(struct hf_budget *b, const struct hf_params *ladder, int st
 static void step_down(struct hf_budget *b)
 {
     const float above = b->ms;
-    if (b->climbed && b->frames < PATIENCE)  // in vain
+    if (b->climbed && b->frames < PATIENCE)  // the climb failed
         b->patience = 2 * b->patience < MOST_PATIENCE ? 2 * b->patience : MOST_PATIENCE;
     enter(b, b->step + 1);
     b->above = above;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A time budget: which of a ladder of settings, from what was asked for down to the cheapest, the next frame gets.
+// A time budget: chooses the next frame's setting from a ladder that goes from the caller's setting down to the
+// cheapest.
 #ifndef HF_BUDGET_H
 #define HF_BUDGET_H
 
@@ -11,10 +12,10 @@ struct hf_budget {
     uint64_t asked;                // hash of what the ladder was made for; 0: nothing yet
     int step;                      // in use
     int frames;                    // rendered at it
-    int over, calm;                // frames on end beyond the budget, and with room for the step above
+    int over, calm;                // consecutive frames beyond the budget, and with room for the step above
     int patience;                  // calm frames to wait for before going up
     int climbed;                   // this step was reached from a cheaper one
-    float told;                    // the budget of which was said that it cannot be met; 0: none
+    float told;                    // the budget that was reported as impossible; 0: none
     float ms;                      // of a frame at this step, smoothed
     float above;                   // of the step above when it was left for this one; 0: it was not
     float ratio[HF_BUDGET_STEPS];  // cost of the step above over this one's, seen then
@@ -24,13 +25,13 @@ struct hf_budget {
 // as radius, pixels, or as *asked does itself. Returns how many.
 int hf_budget_ladder(const struct hf_params *asked, float radius, struct hf_params ladder[HF_BUDGET_STEPS]);
 
-// The setting for the next frame.
+// Choose the setting for the next frame.
 int hf_budget_choose(struct hf_budget *b, const struct hf_params *ladder, int steps);
-// That frame took so long.
+// Note how long that frame took.
 void hf_budget_note(struct hf_budget *b, float budget_ms, int steps, float ms);
 // The command's words for a step of the ladder, or NULL.
 const char *hf_budget_options(const struct hf_params *asked, const struct hf_params *step);
-// Do frames take longer even at the cheapest setting? 1 once for a budget.
+// Whether frames take longer even at the cheapest setting. Returns 1 only once for a budget.
 int hf_budget_missed(struct hf_budget *b, float budget_ms, int steps);
 
 #endif

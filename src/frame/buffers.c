@@ -3,13 +3,13 @@
 
 #include <string.h>
 
-// A buffer's window: size and where its first pixel lies relative to the area it surrounds.
+// A buffer's window: its size, and the position of its first pixel relative to the area that it surrounds.
 struct window {
     int stride, rows, left, top;
     int bytes;  // of a pixel
 };
 
-// n half-resolution pixels in those of a buffer, rounded up.
+// Convert n half-resolution pixels to a buffer's pixels, rounded up.
 static int scaled(int n, int log2)
 {
     return log2 >= 0 ? n << log2 : (n + 1) >> 1;
@@ -25,7 +25,7 @@ static int bytes_of(const struct hf_setup *s, const struct hf_buf_def *def)
     return def->narrow ? hf_narrow_bytes(s->storage) : (int)sizeof(float);
 }
 
-// Of an area of width x height half-resolution pixels.
+// The window for an area of width x height half-resolution pixels.
 static struct window window_of(const struct hf_plan *p, const struct hf_setup *s, int b, int width, int height)
 {
     const struct hf_buf_def *def = &p->engine->bufs[b];
@@ -48,8 +48,8 @@ static size_t window_floats(struct window w)
     return (size_t)w.stride * w.rows;
 }
 
-// Point the channels of a buffer into memory, for an area that starts at the buffer's own pixel (x0, y0). Returns what
-// comes after it.
+// Point a buffer's channels into memory, for an area that begins at the buffer's own pixel (x0, y0). Returns the memory
+// after it.
 static float *place(struct hf_buf *buf, struct window w, int channels, float *memory, int x0, int y0)
 {
     buf->stride = w.stride;
@@ -60,7 +60,7 @@ static float *place(struct hf_buf *buf, struct window w, int channels, float *me
     return memory;
 }
 
-// Buffers that a sweep makes for each cell anew.
+// The buffers that a sweep makes again for each cell.
 static unsigned scratch_of(const struct hf_engine_def *e, int sweep)
 {
     unsigned bufs = 0;
@@ -90,7 +90,7 @@ static size_t sweep_floats(const struct hf_context *c, const struct hf_setup *s,
     return floats;
 }
 
-// Sweeps use the same scratch one after the other, unless somebody wants to look at all of it afterwards.
+// Sweeps use the same scratch one after the other, unless the caller wants a dump of all buffers.
 static size_t scratch_floats(const struct hf_context *c, const struct hf_setup *s, int sweeps)
 {
     size_t most = 0, sum = 0;
@@ -177,7 +177,7 @@ struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def
                             hf_min(scaled(r.y1, ly), height)};
 }
 
-// Zeros where `want` reaches beyond `have`.
+// Clear the part of `want` outside `have`.
 static void clear_beyond(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want)
 {
     for (int c = 0; c < channels; c++)
@@ -189,7 +189,7 @@ static void clear_beyond(const struct hf_buf *b, int channels, int bytes, struct
         }
 }
 
-// Samples of a row from x0 to x1 like the one at x.
+// Fill samples x0 to x1 of a row with the one at x.
 static void repeat(char *row, int bytes, int x, int x0, int x1)
 {
     if (bytes == 1 && x0 < x1)
@@ -228,7 +228,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
     const struct hf_rect have = hf_buffers_rect(s, def, r);
     struct hf_rect want = have;
     const int x0 = offset(cell.x0, lx), y0 = offset(cell.y0, ly), x1 = scaled(cell.x1, lx), y1 = scaled(cell.y1, ly);
-    // Inside the frame the neighbours' pixels are made like these; at its edge there are none.
+    // Inside the frame the neighbouring cells make the pixels around; at the frame's edge nobody does.
     if (!def->frame || r.x0 == 0)
         want.x0 = x0 - reach.x;
     if (!def->frame || r.y0 == 0)

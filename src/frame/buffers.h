@@ -6,20 +6,20 @@
 
 #include "frame/context.h"
 
-// Every worker gets its scratch and the frame's buffers, as far as fields are wanted. HF_ERR_MEMORY.
+// Allocate each worker's scratch, and the frame's buffers for the wanted fields. May return HF_ERR_MEMORY.
 int hf_buffers_allocate(struct hf_context *c, const struct hf_setup *s, unsigned fields);
 // Point a worker's buffers of a sweep at a cell.
 void hf_buffers_place(const struct hf_context *c, const struct hf_setup *s, struct hf_frame *f, int sweep,
                       struct hf_rect cell);
-// Bytes that hf_buffers_allocate would want for these fields.
+// The bytes that hf_buffers_allocate would need for these fields.
 size_t hf_buffers_bytes(const struct hf_context *c, const struct hf_setup *s, unsigned fields);
 
 // All sampling clamps to the edge: repeat the border of what a pass wrote in r outwards, as far as the buffer is read.
-// r and the cell it belongs to in half-resolution pixels; a buffer of the whole frame is extended at the frame's edge.
+// r and its cell are in half-resolution pixels; a buffer of the whole frame is extended at the frame's edge.
 void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, struct hf_frame *f, int buf,
                        struct hf_rect r, struct hf_rect cell);
 
-// A rectangle of half-resolution pixels in the pixels of a buffer, inside the frame.
+// Convert a rectangle from half-resolution pixels to a buffer's pixels, clipped to the frame.
 struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def *def, struct hf_rect r);
 
 #endif

@@ -7,7 +7,7 @@
 #include "pixel/format.h"
 #include "pixel/unorm.h"
 
-// Is a stride at least a row, up or down?
+// Whether a stride is at least as long as a row, upwards or downwards.
 static int strides(ptrdiff_t stride, size_t row)
 {
     return stride >= (ptrdiff_t)row || stride <= -(ptrdiff_t)row;
@@ -36,7 +36,7 @@ int hf_check_image(const struct hf_image *m, const char *name, char *message)
     return HF_OK;
 }
 
-// What its numbers mean, whether there are some yet or not.
+// Check the meaning of depth values, also if there are no values yet.
 int hf_check_depth_type(const struct hf_depth *d, char *message)
 {
     if (!d)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks of what a caller gives: images, depth.
+// Checks of the caller's images and depth.
 #ifndef HF_FRAME_CHECK_H
 #define HF_FRAME_CHECK_H
 
@@ -9,7 +9,7 @@
 int hf_check_image(const struct hf_image *image, const char *name, char *message);
 int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message);
 int hf_check_depth(const struct hf_depth *d, int width, char *message);
-// What its numbers mean alone, whether there are some yet or not.
+// Check only the meaning of depth values, also if there are no values yet.
 int hf_check_depth_type(const struct hf_depth *d, char *message);
 
 #endif

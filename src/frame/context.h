@@ -35,34 +35,34 @@ struct hf_context {
     struct hf_pixel_kernels kernels[2];  // exact, fused
     struct hf_engine_state engine[HF_ENGINE_COUNT];
     struct hf_block engines;  // owns their memory
-    int pid;                  // of the process that its threads are in
+    int pid;                  // of the process that has its threads
     struct hf_pool *pool;     // NULL: the host's parallel_for
     struct hf_worker *workers;
 
     struct hf_plan plan;
     struct hf_block planes;         // buffers of the whole frame
     struct hf_block chunks, tiles;  // the plan's
-    struct hf_block joined;         // CoC for a dump: of full resolution, or of narrow buffers
-    struct hf_block repairs;        // in place: what has to be written before a tile overwrites its neighbours
+    struct hf_block joined;         // CoC for a dump: at full resolution, or of narrow buffers
+    struct hf_block repairs;        // in place: repairs, to be written before a tile overwrites its neighbours
     struct hf_report report;
     struct hf_work work;  // of the plan
     struct hf_cost cost;
     struct hf_budget budget;
-    int depth_told;  // the kind of depth of which was last said that it is no distance; 0: none
+    int depth_told;  // the depth format for which a warning said that it is no distance; 0: none
 
     void (*dump)(void *cookie, const struct hf_buffer *buffer);
     void *dump_cookie;
 };
 
-// Make and give back what engines keep. HF_ERR_MEMORY.
+// Allocate and free what engines keep. May return HF_ERR_MEMORY.
 int hf_engines_open(struct hf_context *c);
 void hf_engines_close(struct hf_context *c);
-// Bytes of all that.
+// The bytes of all that.
 size_t hf_engines_bytes(const struct hf_context *c);
-// What is done of a frame: all of it; its plan; or its plan, and its memory taken.
+// How much of a frame is done: all of it; only its plan; or its plan, and its memory allocated.
 enum hf_task { HF_TASK_RENDER, HF_TASK_PLAN, HF_TASK_PREPARE };
 
-// What a frame is rendered from and to.
+// The input and output of a frame.
 struct hf_job {
     const struct hf_image *dst, *src;
     const struct hf_depth *depth;

@@ -15,13 +15,13 @@ struct hf_copy hf_copy_plan(const struct hf_setup *s, const struct hf_image *dst
                                              (s->storage == HF_STORAGE_HALF && src->format == HF_FORMAT_RGBA16F))};
 }
 
-// First byte of the pixels of a rectangle's row in one plane.
+// The first byte of a rectangle's row in one plane.
 static uint8_t *pixels_at(const struct hf_image *m, int plane, int x, int y)
 {
     return (uint8_t *)m->data[plane] + (ptrdiff_t)y * m->stride[plane] + hf_row_bytes(m->format, x);
 }
 
-// Is a row finite? Copied on the way to dst, if there is one.
+// Whether a row is finite; it is copied to dst if that is given.
 static int row_finite(const struct hf_frame *f, int x, int y, int n, const struct hf_image *dst)
 {
     const struct hf_image *m = f->src;
@@ -36,7 +36,7 @@ static int row_finite(const struct hf_frame *f, int x, int y, int n, const struc
     return 1;
 }
 
-// Bytes without meaning become 255, in sharp tiles as in others: what is written must not depend on the tiles.
+// Bytes without meaning become 255 in all tiles, because the output must not depend on which tiles are sharp.
 static void fill_x(const struct hf_image *m, int x, int y, int n)
 {
     if (m->format != HF_FORMAT_RGBX8 && m->format != HF_FORMAT_BGRX8)
@@ -65,7 +65,7 @@ void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_re
         odd[c] = hf_line(f, 4 + c);
     }
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
-        // In place the pixels have been checked, and repaired if need be, after the first sweep.
+        // In place, the pixels were checked, and repaired if necessary, after the first sweep.
         if (copy->raw && (copy->in_place || row_finite(f, x, y, n, f->dst))) {
             fill_x(f->dst, x, y, n);
             continue;

@@ -9,7 +9,8 @@ static uint64_t mix(uint64_t hash, uint64_t v)
     return hash ^ hash >> 29;
 }
 
-// Options that change what a unit of work costs. Reaches count in steps of about an eighth: near ones cost alike.
+// A hash of the options that change the cost of a unit of work. Reaches count in steps of about an eighth, because
+// similar ones cost the same.
 static uint64_t key_of(const struct hf_setup *s, enum hf_isa isa)
 {
     const int common[] = {(int)s->engine, s->channels,  (int)s->storage, s->faithful,
@@ -33,7 +34,7 @@ static double area(struct hf_rect r)
     return (double)(r.x1 - r.x0) * (r.y1 - r.y0);
 }
 
-// Fields for which a pass runs in a cell of a sweep.
+// The fields for which a pass runs in a cell of a sweep.
 static unsigned fields_in(const struct hf_plan *p, const struct hf_pass *pass, int cell)
 {
     const unsigned fields = pass->sweep == 1                   ? p->chunk_reads[cell]
@@ -42,13 +43,13 @@ static unsigned fields_in(const struct hf_plan *p, const struct hf_pass *pass, i
     return pass->field ? fields & pass->field : fields;
 }
 
-// The part of a cell that is worked on.
+// The active part of a cell.
 static struct hf_rect cell_of(const struct hf_plan *p, int sweep, int cell)
 {
     return hf_plan_is_tiled(p, sweep) ? hf_plan_active(p, cell) : hf_plan_cell(p, sweep, cell);
 }
 
-// What the table says of a unit of work for one field. A pass that serves both goes by the larger radius.
+// The table's cost of a unit of work for one field. For a pass that serves both, the larger radius counts.
 static double table_ns(const struct hf_plan *p, const struct hf_setup *s, int pass, unsigned field,
                        const float radius[2])
 {
@@ -89,7 +90,7 @@ static struct hf_cost_entry *find(struct hf_cost *c, uint64_t key)
     return NULL;
 }
 
-// How much slower than the table, which is of 16 floats a vector.
+// How much slower this is than the table, which is for 16 floats per vector.
 static float isa_factor(enum hf_isa isa)
 {
     switch (isa) {
@@ -131,7 +132,7 @@ void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa,
                 e = &c->entry[i];
         *e = (struct hf_cost_entry){.key = key, .used = ++c->clock};
     }
-    // The first frame pays for memory that no later one needs: it counts until there is another.
+    // The first frame also pays for memory, so it counts only until there is another.
     const float share = e->frames < 2 ? 1 : 0.25f;
     e->frames++;
     for (int i = 0; i < HF_MAX_PASSES; i++)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What passes cost, learned from frames: nanoseconds per unit of work, for each set of options that was rendered.
+// The cost of passes, learned from frames: nanoseconds per unit of work, for each set of options that was rendered.
 #ifndef HF_COST_H
 #define HF_COST_H
 
@@ -16,20 +16,21 @@ struct hf_cost {
     uint32_t clock;
 };
 
-// Work of a pass: half-resolution pixels of the cells on which it runs, counted once for each field that it makes there.
+// The work of a pass: half-resolution pixels of the cells on which it runs, counted once for each field that it makes
+// there.
 struct hf_work {
     uint32_t run[HF_MAX_PASSES], all[HF_MAX_PASSES];  // cells
     double units[HF_MAX_PASSES];
-    double ns[HF_MAX_PASSES];  // what these take by the engine's table
+    double ns[HF_MAX_PASSES];  // the time for them by the engine's table
 };
 
-// Of the plan as it stands after classification; radius: the largest near and far ones, pixels.
+// Count the work of the plan after classification; radius: the largest near and far ones, pixels.
 void hf_cost_work(struct hf_work *w, const struct hf_plan *p, const struct hf_setup *s, const float radius[2]);
 
-// Milliseconds of each pass, over the number of threads.
+// Predict the milliseconds of each pass, divided by the number of threads.
 void hf_cost_predict(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,
                      double ms[HF_MAX_PASSES]);
-// Learn from a frame: milliseconds likewise.
+// Learn from a frame's times, also in milliseconds.
 void hf_cost_learn(struct hf_cost *c, const struct hf_setup *s, enum hf_isa isa, int threads, const struct hf_work *w,
                    const double ms[HF_MAX_PASSES]);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hands a frame's buffers to whoever wants to look at them.
+// Passes a frame's buffers to the caller's dump function.
 #include "frame/dump.h"
 
 #include "frame/buffers.h"
 #include "pixel/format.h"
 
-// A full-resolution buffer of half-resolution columns holds even and odd pixels apart: put them side by side.
+// A full-resolution buffer holds even and odd pixels of a row separately; interleave them.
 static int join_lanes(struct hf_context *c, const struct hf_setup *s, const struct hf_buf *b, struct hf_buffer *out)
 {
     const int width = s->width, height = s->height;

@@ -4,7 +4,8 @@
 
 #include "frame/context.h"
 
-// Call the context's dump function with every buffer of the frame just rendered whole. HF_ERR_MEMORY.
+// Call the context's dump function with every buffer of the frame that was just rendered completely. May return
+// HF_ERR_MEMORY.
 int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s);
 
 #endif

@@ -80,7 +80,7 @@ float hf_ladder_farthest(const struct hf_params *p)
     return e->limits.farthest ? e->limits.farthest(p) : INFINITY;
 }
 
-// The step that params are, or -1.
+// The step that params equal, or -1.
 static int step_of(const struct hf_params *p)
 {
 #define SAME(field) &&p->field == of->field

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-// What measured fastest on two cores. Large tiles compute little twice at their rims and read memory in long runs;
-// smaller ones stay in the cache, and skip more. With more threads they are halved until each thread has a few. Chunks are
-// wide, for long runs again, and low enough for their CoC to stay in the cache: at 1024 x 8 it is 256 KB.
+// The sizes that were fastest on two cores. Large tiles compute few pixels twice at their rims and read memory in long
+// runs; smaller ones stay in the cache and skip more. With more threads, tiles are halved until each thread has a few.
+// Chunks are wide, also for long runs, and low enough for their CoC to stay in the cache: 256 KB at 1024 x 8.
 enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4 };
 enum { CHUNK_WIDTH = 1024, CHUNK_HEIGHT = 8 };
 
@@ -30,7 +30,7 @@ static struct hf_reach spread_of(const struct hf_plan *p, const struct hf_setup 
     return p->engine->plan.spread ? p->engine->plan.spread(s, &p->cells, field) : (struct hf_reach){0, 0};
 }
 
-// Fields of the first sweep's buffers that are read for these needs.
+// The fields of the first sweep's buffers that are read for these needs.
 static unsigned reads_of(const struct hf_plan *p, const struct hf_setup *s, unsigned needs)
 {
     return !needs ? 0 : p->engine->plan.reads ? p->engine->plan.reads(s, needs) : HF_FIELDS;
@@ -49,7 +49,7 @@ int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sw
     return 0;
 }
 
-// Walk the passes backwards from the output, and carry along how far around a cell each buffer is read.
+// Walk the passes backwards from the output, and find how far around a cell each buffer is read.
 static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
 {
     const struct hf_engine_def *e = p->engine;
@@ -77,8 +77,8 @@ static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
     }
 }
 
-// Tiles of the default size, smaller if there are many threads. Widths stay multiples of 16: kernels write whole vectors,
-// and a cell's last one must not reach into its neighbour.
+// Tiles have the default size, or a smaller one with many threads. Widths are multiples of 16: kernels write whole
+// vectors, and the last one of a cell must not reach into the next cell.
 static void choose_tile(const struct hf_plan *p, int threads, int *width, int *height)
 {
     *width = TILE_WIDTH;
@@ -93,7 +93,7 @@ static void choose_tile(const struct hf_plan *p, int threads, int *width, int *h
     }
 }
 
-// Cells of this size, or of the frame's where that is smaller: buffers are made for whole cells.
+// Set a sweep's cells: of this size, or of the frame's if that is smaller, because buffers are made for whole cells.
 static void set_cells(struct hf_plan *p, int sweep, int width, int height, int whole)
 {
     const int most = (p->width + 15) & ~15;
@@ -207,7 +207,7 @@ static struct hf_rect chunks_around(const struct hf_plan *p, struct hf_rect r, s
                             hf_min((r.y1 + reach.y - 1) / h + 1, p->rows[1])};
 }
 
-// The reach within which a tile's passes read what the first sweep made.
+// How far around a tile its passes read the buffers of the first sweep.
 static struct hf_reach read_reach(const struct hf_plan *p)
 {
     struct hf_reach reach = {0, 0};
@@ -217,7 +217,7 @@ static struct hf_reach read_reach(const struct hf_plan *p)
     return reach;
 }
 
-// A sweep with cells of its own reads across the frame: then all chunks are made.
+// A sweep with cells of its own reads across the frame, so all chunks are needed.
 static int reads_all(const struct hf_plan *p, const struct hf_setup *s)
 {
     for (int sweep = 3; sweep <= p->engine->sweeps; sweep++)
@@ -228,8 +228,8 @@ static int reads_all(const struct hf_plan *p, const struct hf_setup *s)
     return 0;
 }
 
-// Widen the active part of a tile by the blocks that a rectangle in it touches, counted from its corner: of a group's
-// width, and of four rows, which are whole ones of any buffer.
+// Widen the active part of a tile by the blocks that a rectangle in it touches. Blocks are counted from the tile's
+// corner; they are a group wide and four rows high, which are whole rows of every buffer.
 static void widen(struct hf_rect *active, struct hf_rect tile, int x0, int x1, int y0, int y1)
 {
     x0 = (x0 - tile.x0) / HF_GROUP * HF_GROUP + tile.x0;
@@ -240,12 +240,12 @@ static void widen(struct hf_rect *active, struct hf_rect tile, int x0, int x1, i
                                hf_max(active->y1, y1)};
 }
 
-// What a chunk's CoC of a kind, spread by reach, makes active of a tile. Returns whether that is anything.
+// Widen the active part of a tile by a chunk's CoC of one kind, spread by reach. Returns whether there is any.
 static int spread_chunk(const struct hf_found *found, struct hf_rect chunk, struct hf_reach reach, struct hf_rect tile,
                         struct hf_rect *active)
 {
     const int y0 = hf_max(found->y0 - reach.y, tile.y0), y1 = hf_min(found->y1 + reach.y, tile.y1);
-    const int shared = chunk.x1 - chunk.x0 > 64 * HF_GROUP;  // bits are
+    const int shared = chunk.x1 - chunk.x0 > 64 * HF_GROUP;  // several groups share a bit
     int any = 0;
     if (!found->groups || y0 >= y1)
         return 0;
@@ -267,7 +267,7 @@ static int is_whole(struct hf_rect active, struct hf_rect tile)
     return active.x0 == tile.x0 && active.y0 == tile.y0 && active.x1 == tile.x1 && active.y1 == tile.y1;
 }
 
-// What a tile needs, and in which part of it: a tile is much larger than what a thin thing in front of it blurs.
+// Find what a tile needs, and in which part of it: a thin object blurs much less than a whole tile.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
 {
     const struct hf_reach near = spread_of(p, s, HF_NEAR), far = spread_of(p, s, HF_FAR);
@@ -295,8 +295,8 @@ unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *cou
     return (counts->near.groups ? HF_NEAR : 0u) | (counts->far.groups ? HF_FAR : 0u);
 }
 
-// Near CoC makes active what lies within its spread, and tiles read beyond what is active. Only what is certain counts, so
-// that what is made early is read.
+// Near CoC makes active what lies within its spread, and tiles read beyond their active part. Only certain needs count,
+// so that every buffer made early is read.
 unsigned hf_plan_foreseen(const struct hf_plan *p, const struct hf_setup *s, int chunk)
 {
     const int columns = p->columns[1], y0 = chunk / columns * p->cells.height[1], reads = read_reach(p).y;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which cell needs what, and how large the buffers around it have to be.
+// Which cell needs what, and how large the buffers around it are.
 #ifndef HF_PLAN_H
 #define HF_PLAN_H
 
@@ -16,20 +16,20 @@ struct hf_plan {
     int columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
 
     struct hf_found *near, *far;  // in each chunk
-    atomic_uchar *chunk_known;    // its depth has been looked at
+    atomic_uchar *chunk_known;    // its depth has been read
     uint8_t *chunk_made;          // fields whose buffers the first sweep has made
     uint8_t *chunk_reads;         // fields that some tile reads there
-    int *rest;                    // chunks with more to make; in place, and with colour that nobody has looked at
+    int *rest;                    // chunks with more to make; in place also those with colour that nobody has read
     int rest_count;
     uint8_t *tile_needs;          // fields
     struct hf_rect *tile_active;  // the part of each tile that is not sharp
     unsigned needs, reads;        // of all tiles
 };
 
-// Sizes of the chunks for a number of threads; tile sizes 0: chosen. whole: one cell for all.
+// Set the sizes of the chunks for a number of threads; tile sizes 0: the planner chooses. whole: one cell for all.
 void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s, int tile_width,
                     int tile_height, int threads, int whole);
-// Reaches, and the other sweeps' cells: once the setup's reach is known.
+// Set the reaches, and the other sweeps' cells; call once the setup's reach is known.
 void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads,
                    int whole);
 size_t hf_plan_tile_bytes(const struct hf_plan *p);
@@ -37,22 +37,22 @@ void hf_plan_tile_memory(struct hf_plan *p, void *memory);
 size_t hf_plan_chunk_bytes(const struct hf_plan *p);
 void hf_plan_chunk_memory(struct hf_plan *p, void *memory);
 
-// Note what was found in a chunk; returns which fields. Once for each, by any thread.
+// Note what was found in a chunk; returns its fields. Called once for each chunk, by any thread.
 unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *counts);
-// Fields that tiles will read of a chunk, as far as chunks above it show.
+// The fields that tiles will read of a chunk, as far as the chunks above it show.
 unsigned hf_plan_foreseen(const struct hf_plan *p, const struct hf_setup *s, int chunk);
 
-// What a tile needs: once the first sweep has been around it.
+// Find what a tile needs; call when the first sweep has passed all around it.
 void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int tile);
-// When all tiles are known: what the frame needs and reads, and which chunks are left for hf_sweep_rest. scan: those too
-// whose colour nobody reads.
+// Call when all tiles are known: find what the frame needs and reads, and which chunks are left for hf_sweep_rest.
+// scan: also those whose colour nobody reads.
 void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan);
 
-// Does the first sweep make anything of chunks? Or does it only look at depth.
+// Whether the first sweep makes buffers of chunks; otherwise it only reads depth.
 int hf_plan_makes_chunks(const struct hf_plan *p);
-// Are a sweep's cells the tiles, which run as far as they need?
+// Whether a sweep's cells are the tiles, which run as far as they need.
 int hf_plan_is_tiled(const struct hf_plan *p, int sweep);
-// Does a pass, or any of a sweep, run with these options?
+// Whether a pass, or any pass of a sweep, runs with these options.
 int hf_plan_pass_runs(const struct hf_plan *p, const struct hf_setup *s, int pass);
 int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sweep);
 

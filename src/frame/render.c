@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame, in order. The first sweep looks at the depth, chunk by chunk, and makes the first buffers where it is plain that
-// they will be read; what it has found makes the plan; what the plan reads and is not there yet is made; the other sweeps
-// take each cell through its passes while its buffers are in the cache. The next step begins when the last has ended, so
-// that a frame takes the same way the first time and later, in place and not, on any number of threads.
+// One frame, step by step. The first sweep reads the depth, chunk by chunk, and makes the first buffers where they will
+// certainly be read. Its findings make the plan. Chunks that the plan reads and that are missing are made. The other
+// sweeps take each cell through its passes while its buffers are in the cache. A step begins when the last one has
+// ended, so a frame takes the same path the first time and later, in place and out of place, on any number of threads.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -58,7 +58,7 @@ static int lay_out_chunks(struct hf_render *r)
     return err;
 }
 
-// Cells, and memory for them and for the fields' buffers. Pages that no field touches cost nothing.
+// Lay out the cells, and memory for them and for the fields' buffers. Pages that no field touches cost nothing.
 static int lay_out_cells(struct hf_render *r, unsigned fields)
 {
     struct hf_context *c = r->c;
@@ -71,14 +71,14 @@ static int lay_out_cells(struct hf_render *r, unsigned fields)
     return hf_buffers_allocate(c, r->s, fields);
 }
 
-// Chunks, cells and buffers, as far as they are known before the depth is.
+// Lay out chunks, cells and buffers, as far as they are known before the depth is.
 static int lay_out(struct hf_render *r, unsigned fields)
 {
     const int err = lay_out_chunks(r);
     return err ? err : lay_out_cells(r, fields);
 }
 
-// What the depth shows decides which chunks, tiles and passes there are.
+// The depth decides which chunks, tiles and passes there are.
 static int make_plan(struct hf_render *r, struct hf_setup *s, enum hf_task task)
 {
     struct hf_context *c = r->c;
@@ -133,8 +133,8 @@ static void touch(struct hf_render *r, const struct hf_block *block)
     parallel(r, (int)((block->size + HF_TOUCH_BYTES - 1) / HF_TOUCH_BYTES), hf_sweep_touch);
 }
 
-// Memory for whatever the frame may turn out to need, written to, so that its pages are there, and by all threads, so that
-// it is in the caches, as it is in any later frame.
+// Allocate memory for all that the frame may need, and write to it: its pages then exist. All threads write, so it is
+// in their caches, as in any later frame.
 static int take_memory(struct hf_render *r)
 {
     struct hf_context *c = r->c;
@@ -152,7 +152,7 @@ static double ms_since(int64_t start)
     return (double)(hf_now_ns() - start) * 1e-6;
 }
 
-// A frame without blur: nothing looks at its depth.
+// A frame without blur: its depth is not read.
 static int copy(struct hf_render *r, enum hf_task task)
 {
     struct hf_context *c = r->c;
@@ -199,7 +199,7 @@ static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
     if (task != HF_TASK_RENDER)
         return task == HF_TASK_PREPARE ? take_memory(r) : HF_OK;
     finish_chunks(r);
-    // A tile overwrites what its neighbours' repairs are made from.
+    // A tile overwrites pixels from which its neighbours' repairs are made.
     err = r->copy.in_place ? hf_copy_repair(c) : HF_OK;
     if (err)
         return err;

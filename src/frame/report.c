@@ -6,7 +6,7 @@
 
 #include "frame/buffers.h"
 
-// Why a pass does not run everywhere.
+// The reason why a pass does not run everywhere.
 static const char *reason(const struct hf_plan *p, const struct hf_setup *s, int pass)
 {
     const struct hf_pass *def = &p->engine->passes[pass];
@@ -58,7 +58,7 @@ static size_t memory_held(const struct hf_context *c)
     return bytes;
 }
 
-// What holds for all frames.
+// Fill in what all frames have.
 static void start_report(struct hf_context *c, const struct hf_setup *s)
 {
     const struct hf_plan *p = &c->plan;
@@ -71,7 +71,7 @@ static void start_report(struct hf_context *c, const struct hf_setup *s)
                             .columns = p->columns[2],
                             .rows = p->rows[2],
                             .passes = p->engine->pass_count};
-    r->used.params.aperture.picture = NULL;  // the caller's, and he may free it
+    r->used.params.aperture.picture = NULL;  // it belongs to the caller, who may free it
     for (int i = 0; i < r->passes; i++)
         r->pass[i] = (struct hf_pass_report){.name = p->engine->passes[i].name,
                                              .all = (uint32_t)hf_plan_count(p, p->engine->passes[i].sweep)};

@@ -33,12 +33,12 @@ static int check_range_model(struct hf_resolved *r, char *message)
         return hf_bad(message, "range.strength is %g; it must be 0 to 1", p->strength);
     const float focus = r->params.focus;
     const float range = p->distance = derive(p->distance, focus / 2);
-    // Before an endless range the near blur would begin at 0 - and stay finite - otherwise.
+    // With an endless range, near blur would otherwise begin at 0 and stay finite.
     p->near_begin = derive(p->near_begin, range == INFINITY ? -INFINITY : focus - range > 0 ? focus - range : 0);
     p->near_end = derive(p->near_end, focus);
     p->far_begin = derive(p->far_begin, focus);
     p->far_end = derive(p->far_end, focus + range);
-    const int endless = focus == INFINITY;  // autofocus where there is nothing
+    const int endless = focus == INFINITY;  // autofocus where there is no surface
     const float nb = p->near_begin == -INFINITY ? 0 : p->near_begin;
     if (!(nb >= 0 && nb <= p->near_end && (p->near_end < INFINITY || endless)))
         return hf_bad(message, "range.near_begin is %g and near_end %g; they must be 0 <= begin <= end, finite", nb,
@@ -66,10 +66,10 @@ static int check_lens(const struct hf_lens_params *p, char *message)
     return HF_OK;
 }
 
-// What a picture leaves nothing of.
+// What an aperture picture makes ineffective.
 enum { SHAPES = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE };
 
-// In range, and something that the engine can draw.
+// Whether the values are in range, and the engine can draw them.
 static int check_aperture(const struct hf_aperture_params *p, const struct hf_engine_def *e, char *message)
 {
     if (p->blades != 0 && (p->blades < 3 || p->blades > MAX_BLADES))
@@ -128,7 +128,7 @@ static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, cons
             return err;
         hf_setup_depth(&s, depth, p->view.pixel_aspect);
         const float z = hf_depth_surface(&s, depth, r->width / 2, r->height / 2, &repaired);
-        p->focus = z > 0 && z < 1e10f ? z : INFINITY;  // a ray's may come to 0
+        p->focus = z > 0 && z < 1e10f ? z : INFINITY;  // along a ray it may be 0
         if (p->focus == INFINITY && !e->limits.focus_anywhere) {
             hf_bad(message, "focus is to be that of pixel (%d, %d), where there is no surface", r->width / 2,
                    r->height / 2);
@@ -142,7 +142,7 @@ static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, cons
     return hf_bad(message, "focus is %g; it must be > 0, and finite but for a lens", p->focus);
 }
 
-// The limit of the radius, before the engine has its say.
+// The limit of the radius, before the engine's own.
 static int check_radius(struct hf_resolved *r, const struct hf_depth *depth, char *message)
 {
     struct hf_params *p = &r->params;
@@ -161,15 +161,15 @@ static double lens_focal_px(const struct hf_params *p)
     return (double)p->lens.focal_length_mm / p->lens.sensor_width_mm * p->view.display_width;
 }
 
-// K in pixels of y, which are smaller than those of x where the pixels are wide: the sensor's width is the picture's.
+// K in pixels of y. These are smaller than those of x if pixels are wide, because the sensor is as wide as the picture.
 static double lens_k(const struct hf_params *p)
 {
     const double aperture = p->lens.focal_length_mm / 1000.0 / (2.0 * p->lens.f_number) / p->lens.world_unit_m;
     return aperture * lens_focal_px(p) * p->view.pixel_aspect;
 }
 
-// Slope of a CoC that grows from 0 to 1 over a distance. A zero distance is a step, which the steepest finite slope
-// is for every pair of different floats; an infinite one is no CoC at all.
+// The slope of a CoC that grows from 0 to 1 over a distance. A zero distance is a step; the steepest finite slope is
+// one for every pair of different floats. With an infinite distance there is no CoC.
 static float slope(float distance)
 {
     const float i = 1 / distance;
@@ -199,7 +199,7 @@ static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
     s->radius_k = s->near_i > 0 ? (float)fmin(k, FLT_MAX) : 0;
 }
 
-// From depth to CoC, as far as it is the same for all engines.
+// The conversion from depth to CoC, as far as all engines share it.
 static void set_coc(struct hf_setup *s, const struct hf_resolved *r, const struct hf_depth *depth)
 {
     const struct hf_params *p = &r->params;

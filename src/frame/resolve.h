@@ -9,8 +9,8 @@
 int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct hf_depth *depth,
                       const struct hf_params *params, char *message);
 
-// Fill *s from resolved parameters, to which it will point, and the engine's own numbers, whose memory own is; its tables
-// are its prepare's.
+// Fill *s from resolved parameters, to which it will point, and compute the engine's own numbers in its memory `own`;
+// the engine's tables are made by its prepare.
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
                    const struct hf_depth *depth, const struct hf_resolved *r, void *own);
 

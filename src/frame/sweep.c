@@ -19,7 +19,7 @@ static hf_kernel *kernel_of(const struct hf_frame *f, int pass)
     return ((const struct hf_passes *)f->kernels)->pass[pass];
 }
 
-// One pass on a cell, and what it costs.
+// Run one pass on a cell, and measure it.
 static void run_pass(const struct hf_render *r, struct hf_worker *w, int pass, struct hf_rect cell, int64_t *clock)
 {
     const struct hf_plan *p = &r->c->plan;
@@ -40,7 +40,7 @@ static void set_fields(struct hf_frame *f, unsigned fields)
     f->far = (fields & HF_FAR) != 0;
 }
 
-// The buffers that the first sweep makes of a chunk.
+// Make the first sweep's buffers of a chunk.
 static void make_chunk(const struct hf_render *r, struct hf_worker *w, struct hf_rect cell, unsigned fields,
                        int64_t *clock)
 {
@@ -56,7 +56,7 @@ void hf_sweep_look(void *arg, int i, int worker)
     struct hf_plan *p = &r->c->plan;
     struct hf_worker *w = &r->c->workers[worker];
     const struct hf_rect cell = hf_plan_cell(p, 1, i);
-    // Fields that will be read here for what the chunks above have shown.
+    // The fields that will certainly be read here, given what the chunks above have.
     const unsigned wanted = p->no_skip ? HF_FIELDS : hf_plan_foreseen(p, r->s, i);
     int64_t clock = hf_now_ns();
     hf_buffers_place(r->c, r->s, &w->frame, 1, cell);
@@ -85,14 +85,14 @@ void hf_sweep_rest(void *arg, int i, int worker)
         return;
     }
     hf_buffers_place(r->c, r->s, &w->frame, 1, cell);
-    if (p->engine->passes[0].writes) {  // they were in scratch that is another chunk's now
+    if (p->engine->passes[0].writes) {  // they were in scratch that another chunk has used since
         struct hf_counts twice = {0};
         w->frame.counts = &twice;
         kernel_of(&w->frame, 0)(&w->frame, cell);
         w->frame.counts = &w->counts;
     }
     make_chunk(r, w, cell, missing, &clock);
-    // A chunk whose other field was made before has been counted.
+    // If the chunk's other field was made before, the chunk has been counted.
     for (int pass = 1; p->chunk_made[chunk] && pass < p->engine->pass_count && p->engine->passes[pass].sweep == 1;
          pass++)
         w->tiles[pass]--;
@@ -107,7 +107,7 @@ void hf_sweep_classify(void *arg, int row, int worker)
         hf_plan_classify(p, r->s, row * p->columns[2] + x);
 }
 
-// What of a tile is sharp: what lies around its active part.
+// Copy the sharp part of a tile, around its active part.
 static void copy_around(const struct hf_render *r, struct hf_worker *w, struct hf_rect tile, struct hf_rect active)
 {
     const int64_t start = hf_now_ns();
@@ -187,7 +187,7 @@ void hf_sweep_colour(void *arg, int i, int worker)
     }
 }
 
-// A kilobyte at a time: memset writes longer runs past the caches.
+// A kilobyte at a time, because memset writes longer runs past the caches.
 void hf_sweep_touch(void *arg, int piece, int worker)
 {
     const struct hf_block *block = ((const struct hf_render *)arg)->touched;

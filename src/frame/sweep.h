@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is done to one cell of a frame: to a chunk of the input, to a tile of the output. Each is a task of its own, and what
-// it writes is no other task's.
+// The work on one cell of a frame: a chunk of the input, or a tile of the output. Each cell is a separate task, and no
+// two tasks write the same memory.
 #ifndef HF_SWEEP_H
 #define HF_SWEEP_H
 
@@ -14,21 +14,22 @@ struct hf_render {
     struct hf_copy copy;
     unsigned have;                   // fields whose buffers are allocated: what the first sweep makes at once
     int sweep;                       // the one that hf_sweep_cell runs
-    const struct hf_block *touched;  // what hf_sweep_touch writes to
+    const struct hf_block *touched;  // the block that hf_sweep_touch writes to
 };
 
 // Tasks for the pool; arg is a struct hf_render.
-// Look at the depth of a chunk, and make its first buffers where that already says that they will be read.
+// Read the depth of a chunk, and make its first buffers where they will certainly be read.
 void hf_sweep_look(void *arg, int chunk, int worker);
-// The i-th of the plan's chunks that are left: make what is read of it, or, in place, check the colour that nobody reads.
+// Work on the i-th remaining chunk of the plan: make what is read of it, or, in place, check the colour that nobody
+// reads.
 void hf_sweep_rest(void *arg, int i, int worker);
-// Look at a chunk's colour where it will be read: for the report alone.
+// Read a chunk's colour where it will be used, only for the report.
 void hf_sweep_colour(void *arg, int chunk, int worker);
-// What each tile of a row needs.
+// Find what each tile of a row needs.
 void hf_sweep_classify(void *arg, int row, int worker);
-// A cell of a later sweep: its passes, and in the last one the copy of what is sharp.
+// Run a cell of a later sweep: its passes, and in the last sweep the copy of its sharp part.
 void hf_sweep_cell(void *arg, int cell, int worker);
-// A tile of a frame without blur: checked, or copied.
+// Check or copy a tile of a frame without blur.
 void hf_sweep_check(void *arg, int tile, int worker);
 void hf_sweep_copy(void *arg, int tile, int worker);
 
