@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counting checks for the test programs. A failure prints where and what and lets the program go on; main ends with
-// `return check_report();`. Exit status: 0 all passed, 1 some failed or nothing was checked, 77 the test could not run
-// (meson: skipped).
+// Counting checks for the test programs. A failure prints its place and message, and the program goes on; main ends
+// with `return check_report();`. Exit status: 0 all passed; 1 some failed or nothing was checked; 77 the test could not
+// run (meson: skipped).
 #ifndef HF_TESTS_CHECK_H
 #define HF_TESTS_CHECK_H
 
@@ -12,7 +12,7 @@
 
 enum { CHECK_SKIP = 77, CHECK_PRINTED = 40 };
 
-// One pair for all files of a program, whichever of them checks.
+// One pair of counters for all files of a program.
 __attribute__((weak)) atomic_int check_passed, check_failed;
 
 // One check from any thread. The message is printed for the first CHECK_PRINTED failures only.
@@ -34,7 +34,7 @@ __attribute__((format(printf, 4, 5))) static inline int check_that(int ok, const
     return 0;
 }
 
-// The condition alone, or with a printf message that gives the values.
+// Check a condition, optionally with a printf message that gives the values.
 #define CHECK(ok) check_that((ok) != 0, __FILE__, __LINE__, "%s", #ok)
 #define CHECK_MSG(ok, ...) check_that((ok) != 0, __FILE__, __LINE__, __VA_ARGS__)
 #define CHECK_INT(got, want) check_int((long long)(got), (long long)(want), __FILE__, __LINE__, #got)
@@ -44,7 +44,7 @@ static inline int check_int(long long got, long long want, const char *file, int
     return check_that(got == want, file, line, "%s is %lld, expected %lld", what, got, want);
 }
 
-// Tests that try many cases try some of them, always the same, and all when HF_LONG is in the environment.
+// Tests with many cases usually try a fixed selection; with HF_LONG in the environment they try all.
 static inline int check_long(void)
 {
     return getenv("HF_LONG") != NULL;

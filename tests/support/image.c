@@ -115,14 +115,15 @@ double half_to_double(uint16_t bits)
     return sign * (exponent ? ldexp(1024 + mantissa, exponent - 25) : ldexp(mantissa, -24));
 }
 
-// Magnitude to exponent and mantissa bits, round to nearest even, not beyond the largest finite number.
+// Convert a magnitude to exponent and mantissa bits, rounded to nearest even, at most the largest finite number.
 static uint32_t small_float(double v, int mantissa_bits)
 {
     const uint32_t largest = (31u << mantissa_bits) - 1;
     if (v >= 65536)
         return largest;
     const int exponent = v > 0 ? (int)fmax(ilogb(v), -14) : -14;
-    // A denormal has the step of exponent -14 and the bits of exponent 0; a carry into the exponent is as it should be.
+    // A denormal has the step of exponent -14 and the bits of exponent 0. A carry into the exponent gives the right
+    // result.
     const double steps = nearbyint(ldexp(v, mantissa_bits - exponent));
     const uint32_t bits = (uint32_t)steps + ((uint32_t)(exponent + 14) << mantissa_bits);
     return bits > largest ? largest : bits;
@@ -170,7 +171,7 @@ int format_pixel_size(enum hf_format format)
     case HF_FORMAT_PLANAR32F:
         return 4;
     default:
-        return 0;  // tests/api/formats.c has the formats of whole numbers
+        return 0;  // tests/api/formats.c tests the integer formats
     }
 }
 

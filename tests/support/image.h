@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures for the tests: planes of floats, random numbers, packing into the formats of the API, distances (image.c),
-// and a small EXR reader on OpenEXRCore (image_exr.c).
+// Pictures for the tests: planes of floats, random numbers, packing into the API's formats, distances (image.c), and a
+// small EXR reader on OpenEXRCore (image_exr.c).
 #ifndef HF_TESTS_IMAGE_H
 #define HF_TESTS_IMAGE_H
 
@@ -10,21 +10,21 @@
 
 #include "hyperfocal/hyperfocal.h"
 
-// Tightly packed planes R, G, B and perhaps A, or whatever else the channels are.
+// Tightly packed planes R, G, B and perhaps A, or any other channels.
 struct picture {
     int width, height, channels;
     float *plane[4];
 };
 
-// All samples 0. Running out of memory ends the program: these are tests.
+// Make a picture of zeros. Without memory the program ends: these are tests.
 struct picture picture_new(int width, int height, int channels);
 struct picture picture_copy(const struct picture *p);
-// What lies in a picture from (x0, y0), and its mirror image, left to right.
+// The part of a picture from (x0, y0) on; and its mirror image, left to right.
 struct picture picture_cut(const struct picture *p, int x0, int y0, int w, int h);
 struct picture picture_flipped(const struct picture *p);
 void picture_free(struct picture *p);
 
-// Views of a picture for the API, format PLANAR32F; the picture keeps its memory.
+// Views of a picture for the API, format PLANAR32F; the picture owns the memory.
 struct hf_image picture_image(const struct picture *p);
 struct hf_depth picture_depth(const struct picture *z);  // plane 0, HF_DEPTH_VIEW
 
@@ -39,7 +39,7 @@ float rng_float(struct rng *r);       // [0, 1)
 float rng_range(struct rng *r, float low, float high);
 
 // An image in any format with its own memory: rows `stride` bytes apart (negative: bottom-up), first pixel `offset`
-// bytes off alignment, all bytes that are no pixels set to `junk`.
+// bytes from alignment, all bytes outside pixels set to `junk`.
 struct packed {
     struct hf_image image;
     unsigned char *memory[4];
@@ -47,21 +47,21 @@ struct packed {
 };
 
 int format_channels(enum hf_format format);    // that a pixel can hold: 3 or 4
-int format_pixel_size(enum hf_format format);  // bytes of a pixel, of a sample when planar
+int format_pixel_size(enum hf_format format);  // bytes of a pixel; of a sample in planar formats
 struct packed packed_new(int width, int height, enum hf_format format, int with_alpha, ptrdiff_t extra, int negative,
                          int offset, unsigned char junk);
 void packed_free(struct packed *p);
-// Conversions written apart from the library's: half and R11G11B10F round to nearest even, in double.
+// Conversions written independently of the library's: half and R11G11B10F round to nearest even, in double.
 void packed_write(struct packed *p, const struct picture *from);
 struct picture packed_read(const struct packed *p);
-// 1 if every byte that is no pixel still holds junk.
+// 1 if every byte outside pixels still holds junk.
 int packed_junk_intact(const struct packed *p, unsigned char junk);
 
 double half_to_double(uint16_t bits);
 uint16_t double_to_half(double v);  // nearest even; beyond 65504 clamped, NaN kept
 double uf_to_double(uint32_t bits, int mantissa_bits);
 
-// The larger of two errors; NaN is the largest of all, and stays.
+// The larger of two errors; NaN is larger than all others.
 static inline double worse(double a, double b)
 {
     return isnan(a) || b <= a ? a : b;
@@ -72,7 +72,7 @@ double display_psnr(const struct picture *a, const struct picture *b);
 // 1 if all planes hold the same bits.
 int picture_same_bits(const struct picture *a, const struct picture *b);
 
-// Read the named channels of the first part of a scanline EXR file as planes. Returns 0, or -1 when it cannot be read.
+// Read the named channels of the first part of a scanline EXR file as planes. Returns 0, or -1 if that fails.
 int exr_read(struct picture *out, const char *path, int channels, const char *const names[]);
 
 #endif

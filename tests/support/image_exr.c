@@ -13,7 +13,7 @@ static void quiet(exr_const_context_t c, exr_result_t code, const char *message)
     fprintf(stderr, "exr: %s\n", message);
 }
 
-// Point the decoder's channels at the rows of a chunk; channels nobody asked for are not decoded.
+// Point the decoder's channels to the rows of a chunk; other channels are not decoded.
 static void aim(exr_decode_pipeline_t *decoder, struct picture *out, int row, const char *const names[])
 {
     for (int i = 0; i < decoder->channel_count; i++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slices, and how these are put together.
+// The slices of the reference, and how they are composited.
 #include <string.h>
 
 #include "support/layers_reference_parts.h"
@@ -26,10 +26,11 @@ static int level_of(const struct frame *f, double r)
 
 struct slice {
     double before, own, after;
-    double hidden[2];  // before and after, of hidden samples; equal: it has none of these
+    double hidden[2];  // radii before and after for hidden samples; equal: the slice has none
 };
 
-// Number n from the focus on, all coarser than half resolution and close to each other: hidden samples do without.
+// Whether hidden samples skip slice n, counted from the focus: its neighbours are coarser than half resolution and
+// close to each other.
 static int is_left_out(const struct frame *f, int n, double before, double r)
 {
     return n % 2 && level_of(f, before) > 1 && next_radius(f, r) - before <= r / 8;
@@ -46,7 +47,8 @@ static double part_of(const struct slice *s, double r)
 
 enum kind { SEEN, BEHIND, SHINE };
 
-// A hidden sample of a quad as that of pixel (x, y): where something lies before it, no more than that covers.
+// The hidden sample of a quad as that of pixel (x, y): its weight goes to the parts that lie before it, and is at most
+// theirs.
 static void spread(const struct frame *f, const struct grid *set, int x, int y, double *out)
 {
     const int left = 2 * (int)floor(x / 2.0), top = 2 * (int)floor(y / 2.0);
@@ -60,7 +62,7 @@ static void spread(const struct frame *f, const struct grid *set, int x, int y, 
     out[WEIGHT] = before > 0 ? own * fmin(out[WEIGHT] / before, 1) : 0;
 }
 
-// Add samples of a set that belong to a slice to the sources of a level.
+// Add the samples of a set that belong to a slice to the sources of a level.
 static void add_sources(const struct frame *f, const struct slice *s, const struct grid *set, int apart, enum kind kind,
                         int light, int quads, struct grid *to)
 {
@@ -83,7 +85,7 @@ static void add_sources(const struct frame *f, const struct slice *s, const stru
         }
 }
 
-// Every source draws the shape.
+// Draw the shape of every source.
 static void scatter(const struct layers_shape *s, const struct grid *source, const struct grid *out)
 {
     const int reach = s->reach;
@@ -101,8 +103,8 @@ static void scatter(const struct layers_shape *s, const struct grid *source, con
         }
 }
 
-// Columns at which a cat's eye is made, so close that from one to the next its second circle moves by 1.5 pixels at the
-// most; between them the shapes are blended.
+// The distance of the columns at which a cat's eye is made: from one to the next its second circle moves by at most 1.5
+// pixels. Between them the shapes are blended.
 static int node_apart(const struct frame *f, double r, int level)
 {
     const double far =
@@ -113,8 +115,8 @@ static int node_apart(const struct frame *f, double r, int level)
     return n;
 }
 
-// A cat's eye is the shape within a second circle, which is that of the pixel drawn to: towards the picture's corner by
-// cat_eye radii there, before the focus the other way.
+// A cat's eye is the part of the shape in a second circle. The circle is that of the pixel drawn to: moved by cat_eye
+// radii towards the corner there, and before the focus the other way.
 static void gather_cut(const struct frame *f, struct layers_shape *s, int sign, int level, const struct grid *source,
                        const struct grid *out)
 {
@@ -138,7 +140,7 @@ static void gather_cut(const struct frame *f, struct layers_shape *s, int sign, 
         }
 }
 
-// A slice's sums of a kind at a level, its shape of some radius.
+// A slice's sums of one kind at a level, with a shape of some radius.
 static struct grid draw_at(const struct frame *f, const struct slice *s, double radius, int level, enum kind kind,
                            int light)
 {
@@ -171,7 +173,7 @@ static struct grid draw(const struct frame *f, const struct slice *s, int level,
     return draw_at(f, s, s->own, level, kind, light);
 }
 
-// A number of a grid at a place of the next finer level.
+// The value of a grid at a place of the next finer level.
 static double up(const struct grid *g, int c, int x, int y)
 {
     const int xa = x >= 0 ? x / 2 : -((1 - x) / 2), ya = y >= 0 ? y / 2 : -((1 - y) / 2);
@@ -180,7 +182,7 @@ static double up(const struct grid *g, int c, int x, int y)
            0.25 * (0.75 * edge(g, xa, yb)[c] + 0.25 * edge(g, xb, yb)[c]);
 }
 
-// To half the pixels, until they are those of level `to`.
+// Upsample a grid until it has the pixels of level `to`.
 static void refine(struct grid *g, const struct frame *f, int level, int to)
 {
     for (; level > to; level--) {
@@ -195,8 +197,8 @@ static void refine(struct grid *g, const struct frame *f, int level, int to)
     }
 }
 
-// ---- stacks: colour, weight (4), what is open (5), what hidden samples have left to cover (6),
-// and what of those seen behind the focus is held back for these (7) ----
+// ---- stacks: colour, weight (4), openness (5), what hidden samples may still cover (6), and visible coverage behind
+// the focus that is withheld for them (7) ----
 
 enum { OPEN = 5, BEHIND_OPEN, HELD, STACK };
 
@@ -210,8 +212,8 @@ static struct grid stack_new(const struct frame *f, int level)
     return g;
 }
 
-// Put sums under a stack; part receives how much of them shows. What is seen before the focus hides; behind it, it is of
-// the surfaces of which others are hidden.
+// Put sums under a stack; part receives how much of them is visible. Visible samples before the focus hide others;
+// those behind it belong to surfaces of which other parts are hidden.
 enum sums { HIDING, WITH_HIDDEN, HELD_BACK, HIDDEN };
 
 static void put_under(struct grid *stack, const struct grid *sums, enum sums kind, struct grid *part)
@@ -233,8 +235,8 @@ static void put_under(struct grid *stack, const struct grid *sums, enum sums kin
         }
 }
 
-// Shares that belong to a slice, by radii between it and its neighbours: where the slice shows, at full resolution. Between
-// slices of full resolution and others there are no more.
+// Add the shares with radii between a slice and its neighbours to the light, at full resolution, where the slice is
+// visible. Between slices of full resolution and others there are no additional radii.
 static void put_light(const struct frame *f, const struct slice *s, const struct grid *part, struct grid *light)
 {
     const struct hf_aperture_params *a = &f->aperture;
@@ -260,7 +262,7 @@ static void put_light(const struct frame *f, const struct slice *s, const struct
     }
 }
 
-// One slice into its stack; light: what shines of the stack, at full resolution, times lift if not NULL.
+// Put one slice into its stack. light: the stack's highlights at full resolution, times lift if that is not NULL.
 static void put_slice(const struct frame *f, const struct slice *s, struct grid *stack, struct grid *light,
                       const struct grid *lift)
 {
@@ -285,8 +287,9 @@ static void put_slice(const struct frame *f, const struct slice *s, struct grid 
     }
 }
 
-// What the last slice of the middle has of samples that lie between it and the first of the far stack leaves less of that
-// open, and is not there at its own radius; lift receives by what the stack's sums are multiplied for that.
+// Samples between the last slice of the middle and the first of the far stack: the middle's part reduces the far
+// stack's openness, and is 0 at the slice's own radius. lift receives the factor by which the far stack's sums are
+// multiplied for that.
 static void cover(const struct frame *f, const struct slice *last, struct grid *far, struct grid *lift)
 {
     const double from = last->own * last->own, to = last->after * last->after;
@@ -335,7 +338,7 @@ static int slices_new(const struct frame *f, struct slice **out)
         s[i].before = i ? s[i - 1].own : -INFINITY;
         s[i].after = i < near + far ? s[i + 1].own : INFINITY;
     }
-    // The ones next to one that is left out are not.
+    // The neighbours of a slice that is left out are kept.
     for (int i = 0; i <= near + far; i++) {
         s[i].hidden[0] = left_out[i] ? 0 : i && left_out[i - 1] ? s[i - 1].before : s[i].before;
         s[i].hidden[1] = left_out[i] ? 0 : i < near + far && left_out[i + 1] ? s[i + 1].after : s[i].after;
@@ -363,7 +366,7 @@ static void put_together(const struct frame *f, struct picture *out)
             m[BEHIND_OPEN] = up(&near, BEHIND_OPEN, x, y);
         }
     for (; i < count && !level_of(f, s[i].own); i++) {
-        // A part of what is near is held back of what is seen behind the focus.
+        // A part of the near coverage is withheld from visible samples behind the focus.
         const double begun = fmin(fmax(f->high - f->low - 1, 0), 1);
         const double part = f->hidden ? (f->patterns ? 0.75 : 0.25) * begun : 0;
         for (int p = 0; s[i].own == 0 && p < f->width * f->height; p++) {
@@ -419,14 +422,14 @@ struct picture layers_reference(const struct picture *colour, const float *radiu
                       .wide = 1 / ((double)params->view.pixel_aspect * params->aperture.squeeze),
                       .half = p->half_from,
                       .quarter = p->quarter_from};
-    struct picture out = picture_copy(colour);  // what nothing reaches stays
+    struct picture out = picture_copy(colour);  // pixels that nothing reaches stay
     for (int i = 0; i < f.width * f.height; i++) {
         f.low = fmin(f.low, radius[i]);
         f.high = fmax(f.high, radius[i]);
     }
     layers_reference_samples(&f);
-    // Red discs are larger behind the focus and smaller before it, blue ones the other way; alpha goes with green.
-    // A coloured picture of the aperture has a shape for each channel.
+    // Red discs are larger behind the focus and smaller before it, blue ones the other way; alpha belongs to green. A
+    // coloured aperture picture has a shape for each channel.
     const int groups = f.aperture.chromatic != 0 || f.aperture.picture ? 3 : 1;
     for (int i = 0; i < groups; i++) {
         struct picture group = picture_new(f.width, f.height, f.channels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the two files of layers_reference.h share.
+// What the files of the layers reference share.
 #ifndef HF_TESTS_LAYERS_REFERENCE_PARTS_H
 #define HF_TESTS_LAYERS_REFERENCE_PARTS_H
 
@@ -7,7 +7,7 @@
 
 #include "support/layers_reference.h"
 
-// Numbers at places from (x0, y0) up to (x1, y1): n of each.
+// n values for each place from (x0, y0) up to (x1, y1).
 struct grid {
     int x0, y0, x1, y1, n;
     double *v;
@@ -32,15 +32,15 @@ static inline int clamp(int v, int low, int high)
     return v < low ? low : v > high ? high : v;
 }
 
-// Beyond a grid of the frame its edges go on.
+// Beyond the frame its edges are repeated.
 static inline double *edge(const struct grid *g, int x, int y)
 {
     return at(g, clamp(x, g->x0, g->x1 - 1), clamp(y, g->y0, g->y1 - 1));
 }
 
-// A sample: colour, weight, radius; of what is seen the share of its weight that is a highlight.
+// A sample: colour, weight, radius; for visible samples also the share of their weight that is a highlight.
 enum { WEIGHT = 4, RADIUS, SHARE, SAMPLE };
-// Around levels' grids, so that what is upsampled has neighbours.
+// Around the levels' grids, so that upsampling has neighbours.
 enum { MARGIN = 8 };
 
 struct frame {
@@ -51,8 +51,8 @@ struct frame {
     struct hf_aperture_params aperture;
     int fine, unmix, hidden, highlights, patterns;
     double wide, half, quarter, low, high;
-    double shift;                             // by this discs are larger behind the focus
-    int plane;                                // channel of a picture of the aperture
+    double shift;                             // relative change of the radius behind the focus (chromatic aberration)
+    int plane;                                // channel of a coloured aperture picture
     struct grid seen, mixed, behind, beyond;  // samples
 };
 
@@ -66,13 +66,13 @@ static inline double radius_at(const struct frame *f, int x, int y)
     return f->radius[clamp(y, 0, f->height - 1) * f->width + clamp(x, 0, f->width - 1)];
 }
 
-// A run of a row in pixels from the middle of the pixel around which a shape lies; its weight is what it covers of the
-// row's height.
+// A run of a row, in pixels from the middle of the shape's pixel. Its weight is the part of the row's height that it
+// covers.
 struct layers_run {
     double a, b, weight;
 };
 
-// A shape of radius r: weights of (2 reach + 1)^2 pixels, which sum to 1, and the three runs of each row.
+// A shape of radius r: weights of (2 reach + 1)^2 pixels that sum to 1, and the three runs of each row.
 struct layers_shape {
     double r;
     int reach;
@@ -83,21 +83,23 @@ struct layers_shape {
 // (layers_reference_shape.c)
 struct layers_shape layers_shape_new(const struct frame *f, double r);
 void layers_shape_free(struct layers_shape *s);
-// Weights of what lies within a circle of radius r (INFINITY: all) around (x, y); of the pixel itself if nothing does.
+// Keep the weights within a circle of radius r (INFINITY: all) around (x, y); if nothing is left, only the pixel
+// itself.
 void layers_shape_cut(const struct frame *f, struct layers_shape *s, double x, double y, double r);
 
-// How far a surface hides another that is `behind` farther: not at a pixel of radius, wholly at one and a half.
+// How far a surface hides another that is `behind` farther: not at all at a pixel of radius, completely at one and a
+// half.
 static inline double layers_reference_hides(double behind)
 {
     return fmin(fmax(2 * (behind - 1), 0), 1);
 }
 
-// Fill f's samples: seen, mixed and behind (layers_reference_samples.c).
+// Fill in f's samples: visible, mixed and hidden ones (layers_reference_samples.c).
 void layers_reference_samples(struct frame *f);
-// Samples that are about as far as the farthest of them, as one.
+// Merge samples that are about as far as the farthest of them.
 void layers_reference_merge(const double *const *from, int count, double within, double part, int channels,
                             double *out);
-// Roots of colour of hidden samples, from those of quads (layers_reference_patterns.c).
+// Set the colours (roots) of hidden samples by patterns, from those of quads (layers_reference_patterns.c).
 void layers_reference_patterns(const struct frame *f, const struct grid *quads, struct grid *hidden);
 // At how many distances hidden samples are looked for.
 // How much of a pixel lies before a radius: of what is seen, and of what is behind a mixed edge.

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is hidden by what looks alike around it.
+// Hidden samples take the colour of places that look alike.
 #include <string.h>
 
 #include "support/layers_reference_parts.h"
 
 enum { WINDOW = 4, CHOICES = 6, MOST = 81, SHIFT = 7 };
 
-// What is seen at a level, a sample each, and places: radius (0) of what is hidden, and what is before it (1), INFINITY
-// where nothing is.
+// The visible samples of a level, and its places: radius (0) of the hidden sample, and that of what hides it (1),
+// INFINITY where nothing is hidden.
 struct level {
     struct grid seen, place;
-    double scale;  // of its pixels, in eighths of the resolution
+    double scale;  // size of its pixels, in eighths of the resolution
 };
 
 struct choices {
@@ -110,7 +110,7 @@ static void choose(struct choices *c, int x, int y, double off)
     c->off[i] = off;
 }
 
-// Compare with what is around (x + sx, y + sy).
+// Compare with the surroundings of (x + sx, y + sy).
 static void compare(const struct level *v, int channels, const struct patch *p, int x, int y, int sx, int sy,
                     struct choices *c)
 {
@@ -143,7 +143,7 @@ static void refine(const struct level *v, int channels, const struct patch *p, i
             compare(v, channels, p, x, y, 2 * from->x[i] + k % 3 - 1, 2 * from->y[i] + k / 3 - 1, to);
 }
 
-// The surface behind a place; 0: nothing is hidden there.
+// The hidden surface at a place; 0: nothing is hidden there.
 static int surface(const struct level *v, int x, int y, struct patch *p)
 {
     const double *place = at(&v->place, x, y);
@@ -176,7 +176,7 @@ static struct choices search(const struct level *v, int channels, int x, int y)
     return c;
 }
 
-// The choices of a sample of an eighth of the resolution, made exact at a quarter and at half of it.
+// Refine the choices of an eighth of the resolution to a quarter and to half of it.
 static struct choices search_fine(const struct level *v, int channels, int x, int y)
 {
     struct choices c = search(&v[2], channels, x, y);
@@ -197,7 +197,7 @@ static struct choices search_fine(const struct level *v, int channels, int x, in
     return c;
 }
 
-// The root of colour of place (x, y): that of four samples' choices.
+// The colour (root) of place (x, y), from the choices of the four samples around it.
 static void fill(const struct level *v, const struct choices *chosen, int channels, int x, int y, const double *was,
                  double *out)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples: mixed pixels, highlights, what is hidden.
+// The samples of the reference: mixed pixels, highlights, hidden samples.
 #include <string.h>
 
 #include "support/layers_reference_parts.h"
@@ -8,7 +8,7 @@ static const double PI = 3.14159265358979323846;
 
 // ---- mixed pixels ----
 
-// Returns how far the 3 x 3 are one surface; and the middle of their radii and how fast front becomes back around it.
+// How far 3 x 3 pixels are one surface; the middle of their radii; and how steeply front becomes back around it.
 static double sure(const struct frame *f, int x, int y, double *middle, double *slope)
 {
     double low = INFINITY, high = -INFINITY;
@@ -27,7 +27,7 @@ static double front_of(double r, double middle, double slope)
     return fmin(fmax((middle - r) * slope + 0.5, 0), 1);
 }
 
-// How much a sample of so much light counts in a mean: less from `plain` on.
+// The weight of a sample of that brightness in a mean: less from `plain` on.
 static double dimmed(double light, double plain)
 {
     return light > plain ? pow(fmax(plain / light, 1.0 / 256), 4) : 1;
@@ -38,8 +38,8 @@ static double light_of(const struct frame *f, int x, int y)
     return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
 }
 
-// Mean colour and radius of a side around a mixed pixel, and its colours' variance; returns its weight. What is more than eight times as bright as the
-// pixel counts less.
+// Mean colour and radius of one side around a mixed pixel, and its colours' variance; returns its weight. Samples more
+// than eight times as bright as the pixel count less.
 static double side_mean(const struct frame *f, int x, int y, double middle, double slope, int front, double mean[5],
                         double *spread)
 {
@@ -48,7 +48,7 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
     memset(mean, 0, 5 * sizeof *mean);
     for (int v = -3; v <= 3; v++)
         for (int u = -3; u <= 3; u++) {
-            // Samples beyond the frame are its edge's, and as sure as these are.
+            // Beyond the frame samples repeat its edge.
             const double s = front_of(radius_at(f, x + u, y + v), middle, slope), part = front ? s : 1 - s;
             if ((!u && !v) || part == 0)
                 continue;
@@ -71,7 +71,7 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
     return all;
 }
 
-// The mean of a side, by the eighth power of how far colours are from `other`.
+// The mean of a side, weighted by the eighth power of the difference of colours from `other`.
 static void side_farthest(const struct frame *f, int x, int y, double middle, double slope, int front,
                           const double other[5], double mean[5])
 {
@@ -118,8 +118,8 @@ static double light_at(const struct frame *f, int x, int y)
     return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
 }
 
-// How far a mixed pixel is of a small lamp behind the edge: one and a half times to twice as bright as either side, with fewer
-// than six to seven pixels that have a quarter to a half of what it has more than these.
+// How far a mixed pixel belongs to a small lamp behind the edge: one and a half times to twice as bright as either
+// side, with fewer than six to seven pixels that have a quarter to a half of its excess.
 static double lamp_of(const struct frame *f, int x, int y, double mean[2][5])
 {
     double most = 0, count = 0;
@@ -183,7 +183,7 @@ static double root(double v)
     return v > 0 ? sqrt(v) : v < 0 ? -sqrt(-v) : 0;
 }
 
-// Mean root of brightness, of so many channels, of the 18 x 18 pixels around the quad of (x, y).
+// The mean root of brightness, for that many channels, of the 18 x 18 pixels around the quad of (x, y).
 static double bright_mean(const struct frame *f, int from, int to, int x, int y)
 {
     double mean = 0;
@@ -231,7 +231,7 @@ void layers_reference_merge(const double *const *from, int count, double within,
     out[WEIGHT] = sum * part;
 }
 
-// The surface behind an edge where a pixel is mixed, as roots; what is mixed by less than a 64th is in part itself.
+// The surface behind a mixed pixel's edge, as roots; a pixel with less than a 64th of back counts partly as itself.
 static void quad(const struct frame *f, int x, int y, double *out)
 {
     double s[4][SAMPLE];
@@ -269,7 +269,8 @@ static void step(const struct frame *f, const struct grid *from, struct grid *to
         }
 }
 
-// The radius that a search looks behind: the nearest that is seen, or half that of what was found behind it and is near itself.
+// The radius that a search looks behind: the nearest visible one, or half that of a near sample that was found behind
+// it.
 static double look_from(const struct frame *f, const struct grid *found, int x, int y)
 {
     double nearest = INFINITY;
@@ -287,8 +288,8 @@ double layers_reference_before(const struct frame *f, int x, int y, double radiu
            (mixed[WEIGHT] > 0 ? mixed[WEIGHT] * layers_reference_hides(radius - mixed[RADIUS]) : 0);
 }
 
-// The first on one side of a line that lies behind `nearest`, of several in part: its colour, radius, distance, and how much
-// of one there is.
+// The first surface on one side of a line behind `nearest`, possibly made of several samples: its colour, radius,
+// distance, and its total weight.
 static double side_of(const struct frame *f, const struct grid *quads, const double nearest, const int from[2],
                       const int by[2], int most, double *end, double *distance)
 {
@@ -311,7 +312,7 @@ static double side_of(const struct frame *f, const struct grid *quads, const dou
     return 1 - open;
 }
 
-// What goes on between two sides on which it is alike.
+// Add a surface that is found on both sides of a line.
 static void find_between(const struct frame *f, const struct grid *quads, int levels, double nearest, int x, int y,
                          double *sum)
 {
@@ -358,7 +359,7 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
         out[c] = sum[c] / sum[WEIGHT];
     for (int i = 0; i < 4; i++)
         out[WEIGHT] += layers_reference_before(f, 2 * x + i % 2, 2 * y + i / 2, out[RADIUS]) / 4;
-    // What the farthest taps have just begun to reach covers nothing yet.
+    // A sample that the farthest taps have just reached covers nothing yet.
     out[WEIGHT] *= fmin(4 * pow(256, levels - 2) * (1 + 255 * reached) * sum[WEIGHT], 1);
 }
 
@@ -367,7 +368,7 @@ static double roots_of(const double *s)
     return fabs(s[0]) + fabs(s[1]) + fabs(s[2]);
 }
 
-// How far a sample has the colour of another.
+// How close a sample's colour is to another's.
 static double shade(const double *s, const double *other)
 {
     double off = 0;
@@ -381,7 +382,7 @@ struct company {
     const double *line[13];
 };
 
-// A hidden sample's row or column: what of it is as far, and what is not.
+// The parts of a hidden sample's row or column that are as far, and that are not.
 static struct company company_of(const struct grid *from, int x, int y, int dx, int dy)
 {
     const double *middle = at(from, x, y);
@@ -401,7 +402,7 @@ static struct company company_of(const struct grid *from, int x, int y, int dx, 
     return c;
 }
 
-// How much it is alone in it where it or the rest is sharp.
+// How lonely it is there, where it or the rest is drawn sharp.
 static double lonely(const struct company *c, double r)
 {
     const double part = c->like + c->others > 0 ? c->like / (c->like + c->others) : 1;
@@ -409,8 +410,8 @@ static double lonely(const struct company *c, double r)
     return (1 - fmin(fmax(4 * (part - 1.0 / 7), 0), 1)) * fmin(fmax(2 - fmin(fabs(r), around), 0), 1);
 }
 
-// Means of 13 in a row or column, of those that are about as far. What is alone in both becomes what the rest of its column
-// is.
+// Means of 13 in a row or column, of samples about as far. A sample that is lonely in both becomes the mean of the rest
+// of its column.
 static struct grid smooth(const struct frame *f, const struct grid *from, int down)
 {
     struct grid to = grid_new(from->x0, from->y0, from->x1, from->y1, SAMPLE);
@@ -437,7 +438,7 @@ static struct grid smooth(const struct frame *f, const struct grid *from, int do
     return to;
 }
 
-// A sample of each quad, of those behind `found` or, if that is NULL, behind what is seen: roots, not smoothed.
+// One sample for each quad, behind `found` or, if that is NULL, behind the visible surface: roots, not smoothed.
 static struct grid search(const struct frame *f, const struct grid *level, int levels, const struct grid *found)
 {
     struct grid to = grid_new(0, 0, (f->width + 1) / 2, (f->height + 1) / 2, SAMPLE);
@@ -450,7 +451,7 @@ static struct grid search(const struct frame *f, const struct grid *level, int l
     return to;
 }
 
-// Their colours, by patterns of quads unless these are NULL.
+// Smooth what was found; with quads, patterns set its colours.
 static struct grid smooth_found(const struct frame *f, const struct grid *found, const struct grid *quads)
 {
     struct grid along = smooth(f, found, 0), down = smooth(f, &along, 1);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shapes of apertures in double precision: what falls on each pixel.
+// Shapes of apertures in double precision: the weight of each pixel.
 #include <string.h>
 
 #include "support/layers_reference_parts.h"
 
 static const double PI = 3.14159265358979323846;
 
-// A side of a polygon with corners on the unit circle: the line x nx + y ny = d, or an arc of a circle around (cx, cy)
-// through the same corners, which rises by its share of what there is between the line and the unit circle.
+// A side of a polygon with corners on the unit circle: the line x nx + y ny = d, or an arc around (cx, cy) through the
+// same corners, whose height is a part of that between the line and the unit circle.
 struct side {
     double nx, ny, d, cx, cy, radius;  // radius 0: a line
 };
@@ -25,7 +25,7 @@ static struct side side_of(const struct hf_aperture_params *a, int i)
     return s;
 }
 
-// The run of height y of a polygon; 0: there is none.
+// The run at height y of a polygon; 0 if there is none.
 static int chord(const struct side *side, int sides, double y, double *left, double *right)
 {
     *left = -INFINITY;
@@ -47,8 +47,8 @@ static int chord(const struct side *side, int sides, double y, double *left, dou
     return *right > *left;
 }
 
-// Add the integrals over heights u to v of where a polygon begins and ends. Between its corners only the ends of arcs are
-// steep: Simpson's rule along the angle of a half circle over the interval has neither there.
+// Add the integrals over heights u to v of where a polygon begins and ends. Between its corners only the ends of arcs
+// are steep; Simpson's rule along the angle of a half circle over the interval avoids both.
 static void integrate(const struct side *side, int sides, double u, double v, double *left, double *right)
 {
     enum { STEPS = 400 };
@@ -67,7 +67,8 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Row dy of the outline of radius r: as long as the shape is on the mean over what it covers of the row's height.
+// Row dy of the outline of radius r: its length is the shape's mean width over the part of the row's height that it
+// covers.
 static struct layers_run outline(const struct frame *f, double r, int dy)
 {
     const struct hf_aperture_params *a = &f->aperture;
@@ -119,7 +120,7 @@ static void make_row(const struct frame *f, double r, int dy, struct layers_run 
     }
 }
 
-// Add what a run covers of the pixels of a row, their middles at whole numbers.
+// Add the part of each pixel of a row that a run covers; pixels' middles are at whole numbers.
 static double cover(double *row, int reach, double a, double b, double weight)
 {
     for (int x = -reach; x <= reach && b > a; x++)
@@ -127,7 +128,7 @@ static double cover(double *row, int reach, double a, double b, double weight)
     return b > a ? weight * (b - a) : 0;
 }
 
-// What of texels from `from` to `to` a pixel covers, times their transmission: of a picture of floats.
+// The part of texels `from` to `to` that a pixel covers, times their transmission; the picture has floats.
 static double texels(const struct hf_image *m, int channel, double x0, double x1, double y0, double y1)
 {
     double sum = 0;
@@ -140,7 +141,7 @@ static double texels(const struct hf_image *m, int channel, double x0, double x1
     return sum;
 }
 
-// The picture's shorter side is 2 r; what lies beyond twice of that is cut off.
+// The picture's shorter side is 2 r; what lies beyond twice that is cut off.
 static double picture_shape(const struct frame *f, double r, int reach, double *w)
 {
     const struct hf_image *m = f->aperture.picture;

@@ -7,7 +7,7 @@
 
 static const float focus = 20, range = 10;
 
-// A signed CoC (-1..1 near to far) that is 0 or clearly not; as a depth.
+// A signed CoC (-1..1 near to far) that is 0 or clearly not, as a depth.
 static float random_depth(struct rng *rng)
 {
     static const float levels[] = {-1, -0.831f, -0.37f, -0.102f, 0, 0, 0.102f, 0.25f, 0.37f, 0.5f, 0.831f, 1, 2};

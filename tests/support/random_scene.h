@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random small pictures with depth: CoC is 0 or clearly not, so that comparisons are clear of their threshold.
+// Random small pictures with depth. Their CoC is 0 or clearly not, so that comparisons stay away from the threshold.
 #ifndef HF_TESTS_RANDOM_SCENE_H
 #define HF_TESTS_RANDOM_SCENE_H
 
@@ -8,7 +8,7 @@
 enum scene_kind {
     SCENE_BLOCKS,      // rectangles at random depths before a random wall
     SCENE_NOISE,       // a random depth per pixel
-    SCENE_RAMP,        // a floor from near to far, straight through the focus
+    SCENE_RAMP,        // a floor from near to far, through the focus without steps
     SCENE_FAR,         // all behind the focus
     SCENE_NEAR,        // all in front
     SCENE_SHARP,       // all in focus
@@ -17,7 +17,7 @@ enum scene_kind {
     SCENE_KINDS
 };
 
-// Depths are for a focus at 20 and a range of 10; view depth. A few pixels have no surface.
+// Depths are made for a focus of 20 and a range of 10; view depth. A few pixels have no surface.
 struct scene {
     struct picture colour, depth;
 };
@@ -27,13 +27,13 @@ void scene_free(struct scene *s);
 const char *scene_name(enum scene_kind kind);
 
 // The depth of a scene as another type: near_plane 1, far_plane 100, optical axis in the middle, focal length 50
-// pixels; for HF_DEPTH_COC the radius that the range model gives for a largest radius rho. Its samples go to *samples.
+// pixels; for HF_DEPTH_COC the radius of the range model with a largest radius rho. Its samples go to *samples.
 struct hf_depth scene_depth_as(const struct scene *s, enum hf_depth_type type, float rho, struct picture *samples);
 
-// Parameters that fit: defaults with focus 20, range 10, largest radius 12.
+// Matching parameters: defaults with focus 20, range 10, largest radius 12.
 struct hf_params scene_params(void);
 
-// A configuration whose memory comes filled with NaN: no result may hang on what was there before.
+// A configuration whose memory is filled with NaN: no result may depend on its old contents.
 struct hf_config scene_config(enum hf_isa isa, int threads);
 
 #endif

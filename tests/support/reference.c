@@ -47,8 +47,8 @@ static double bicubic(const struct ref_buffer *b, int c, double x, double y)
     return sum;
 }
 
-// A finite non-negative number cut to so many mantissa bits, exponent range as in half floats. What is on a boundary
-// but for the roundings of double precision counts as on it.
+// Truncate a finite non-negative number to that many mantissa bits, with the exponent range of half floats. A value
+// within double precision's roundings of a boundary counts as on it.
 static double truncate_to(double v, int mantissa_bits, double largest)
 {
     if (!(v > 0))
@@ -140,7 +140,7 @@ static void downsample(struct reference *r)
     }
 }
 
-// Passes 3 to 6: maximum or mean over 2 * reach + 1 samples along one axis. By default the outermost of them come in as
+// Passes 3 to 6: maximum or mean over 2 * reach + 1 samples along one axis. By default the outermost samples fade in as
 // the radius reaches them.
 static void window(struct reference *r, enum ref_id from, enum ref_id to, int dx, int dy, int mean)
 {
@@ -216,7 +216,7 @@ static double lerp(double a, double b, double t)
     return t == 0 ? a : a + t * (b - a);
 }
 
-// By default the near field comes in up to an eighth of the blurred near CoC.
+// By default the near field fades in over the first eighth of the blurred near CoC.
 static double near_part(const struct reference *r, int x, int y)
 {
     const double blur = at(&r->buffer[REF_COCBLUR], 0, x, y);
@@ -241,7 +241,8 @@ static void computation(struct reference *r)
             const double far_weight = f > 0 ? gather_one(r, &p.far_weight, 0, x, y, scale) : 1;
             r->near_mean[y * r->half_width + x] = has_near ? near_weight / taps : 0;
             r->far_mean[y * r->half_width + x] = f > 0 ? far_weight / taps : 0;
-            // The dense grid has no tap on the pixel itself, and may meet nothing far at all: then its own colour.
+            // The dense grid has no tap on the pixel itself, and may meet no far sample at all; then the pixel's own
+            // colour counts.
             const int alone = far_weight < 1e-9 * f * taps;
             for (int c = 0; c < r->channels; c++) {
                 const double own = at(&r->buffer[REF_COLORMULCOC4], c, x, y) / f,
@@ -259,9 +260,9 @@ static void computation(struct reference *r)
     planes_free(&p);
 }
 
-// One sample of pass 8. coc4 is given for the far field: only neighbours that hold far colour enter a mean, and with
-// the per-pixel kernel only those of like CoC enter at all. By default a far neighbour comes in over the first quarter of
-// its CoC, and goes over a quarter of difference.
+// One sample of pass 8. coc4 is given for the far field: only neighbours with far colour enter a mean, and with the
+// per-pixel kernel only those of similar CoC enter at all. By default a far neighbour fades in over the first quarter
+// of its CoC, and fades out over a quarter of difference.
 static double fill_one(const struct reference *r, const struct ref_buffer *b, const struct ref_buffer *coc4, int c,
                        int x, int y)
 {
@@ -306,14 +307,15 @@ static void fill(struct reference *r)
     }
 }
 
-// The far field at full resolution. Returns how far the pixel is: no tap has more than 16 times its own part to give.
+// The far field at full resolution. Returns how far the pixel is blended to it: each tap gives at most 16 times its own
+// part.
 static double upsample_far(const struct reference *r, int x, int y, double out[4])
 {
     const struct ref_buffer *coc4 = &r->buffer[REF_COC4];
     const double f = at(&r->buffer[REF_COC], 1, x, y);
     const int faithful = r->params.gather.faithful;
     const double hx = (x + 0.5) / 2 - 0.5, hy = (y + 0.5) / 2 - 0.5;
-    const int cx = (int)floor(hx), cy = (int)floor(hy);  // of the CoCs: (k-1, k) for 2k, (k, k+1) for 2k+1
+    const int cx = (int)floor(hx), cy = (int)floor(hy);  // of the CoCs: (k-1, k) for pixel 2k, (k, k+1) for 2k+1
     double weights = 0, most = 0;
     for (int c = 0; c < 4; c++)
         out[c] = 0;
@@ -369,7 +371,7 @@ static void set_scales(struct reference *r, const struct hf_depth *depth)
         r->blend *= fmin(1, r->reach_y);
 }
 
-// Store the colour as the passes read it. Returns 1 if it is to be copied only.
+// Store the colour as the passes read it. Returns 1 if the picture is only copied.
 static int read_colour(struct reference *r, const struct picture *colour)
 {
     struct ref_buffer *input = new_buffer(r, REF_COLOUR);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gather engine once more: literal, slow, in double precision, sharing no code with the library, so that the two
-// can be held against each other.
+// A second implementation of the gather engine: literal, slow, in double precision, without code of the library, so
+// that the two can be compared.
 //
 //   reference_coc.c    depth types, repair of depth and colour, models, CoC generation
 //   reference_taps.c   sample positions: rings, polygons, the dense grid
@@ -19,7 +19,7 @@ struct ref_buffer {
     const char *name;
     int width, height, channels;
     double *data[4];
-    double *raw[4];  // the same before it was rounded for storage
+    double *raw[4];  // the same before rounding for storage
 };
 
 enum ref_id {
@@ -49,31 +49,31 @@ struct reference {
     double kernel_scale, blend;
     int taps;                      // without the centre
     double *tap_x, *tap_y;         // half-resolution pixels, kernel scale included
-    double *tap_share;             // what each counts: 1, but where two numbers of rings are blended
-    double centre, shares;         // the centre's, and of all
-    double *near_mean, *far_mean;  // mean weight of the taps of a half-resolution pixel; 0 where none was taken
+    double *tap_share;             // each tap's weight: 1, except where two numbers of rings are blended
+    double centre, shares;         // the weight of the centre, and of all taps
+    double *near_mean, *far_mean;  // mean weight of the taps of a half-resolution pixel; 0 if none was taken
     struct ref_buffer buffer[REF_COUNT];
 };
 
-// Called when a buffer is complete, before anything reads it: may look at it and may change it.
+// Called when a buffer is complete, before anything reads it; it may read and change the buffer.
 typedef void reference_hook(void *cookie, struct reference *r, enum ref_id id);
 
-// Run the engine. Parameters must be valid. hook may be NULL. End with reference_free. With a largest radius or a
-// strength of 0 there is only the result, a copy of the input.
+// Run the engine with valid parameters. hook may be NULL. Free the result with reference_free. With a largest radius or
+// a strength of 0 there is only the result, a copy of the input.
 struct reference *reference_render(const struct picture *colour, const struct hf_depth *depth,
                                    const struct hf_params *params, reference_hook *hook, void *cookie);
 void reference_free(struct reference *r);
 
-// By the names of hf_buffer, and "result"; NULL if there is none.
+// Find a buffer by its name in hf_buffer, or "result"; NULL if there is none.
 const struct ref_buffer *reference_find(const struct reference *r, const char *name);
 // The result rounded to float.
 struct picture reference_picture(const struct reference *r);
 
-// Internal, shared by the files named above.
+// Internal; shared by the files named above.
 
 // View depth of every pixel (for HF_DEPTH_COC: the radius), NaN repaired, "no surface" as INFINITY.
 void ref_depths(double *z, const struct hf_depth *depth, double pixel_aspect, int width, int height);
-// Copy colour with every non-finite sample replaced. Returns how many there were.
+// Copy colour, repairing samples that are not finite. Returns how many there were.
 int ref_repair(double *out, const float *in, int width, int height);
 // Normalised near and far CoC of one depth, before storage.
 void ref_coc(const struct reference *r, const struct hf_depth *depth, double z, double *n, double *f);
@@ -83,7 +83,7 @@ void ref_make_taps(struct reference *r);
 // From CoC to the result, by area.
 void ref_area(struct reference *r);
 
-// What a value becomes by being stored. channel: 0..3 for colour, -1 for CoC.
+// The value after storing it. channel: 0..3 for colour, -1 for CoC.
 double ref_store(enum hf_storage storage, int channel, double v);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reference: the gather's default look, where apertures are areas: from CoC in full resolution to the result. Discs only,
+// Reference of the gather's default look, with apertures as areas: from full-resolution CoC to the result. Discs only,
 // no Karis average, bilinear upsampling, float storage.
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "support/reference.h"
 
-// Half-resolution planes of one pixel after the other: colour, its near and its far part, near and far parts, and the
+// Half-resolution planes, interleaved by pixel: colour, its near and far parts, the sizes of these parts, and the
 // largest near and far CoC.
 enum { COLOUR, NEAR = 4, FAR = 8, NEAR_PART = 12, FAR_PART, NEAR_MOST, FAR_MOST, PLANES };
 
@@ -26,7 +26,7 @@ struct area {
     struct levels levels[2];  // near, far
 };
 
-// Area of the unit disc in x0..x1, y0..y1, slice by slice.
+// The area of the unit disc in x0..x1, y0..y1, integrated in slices.
 static double disc_area(double x0, double x1, double y0, double y1)
 {
     enum { SLICES = 2000 };
@@ -75,8 +75,8 @@ static double share(const struct levels *l, int i, double coc)
     return i + 1 < l->count && v > l->coc[i + 1] ? (v - l->coc[i + 1]) / (l->coc[i] - l->coc[i + 1]) : 0;
 }
 
-// What near pixels hide is taken from all levels up to theirs, by the inverse of their area squared; where there are more
-// than the last one, from that by how far it is from the one before, which at the most is twice it.
+// What near pixels occlude is averaged over all levels up to theirs, weighted by the inverse of their squared area. A
+// CoC beyond the last level counts in it by how far it exceeds the level before, at most twice that.
 static double share_behind(const struct levels *l, int i, double coc)
 {
     double sum = 0, before = 0;
@@ -88,7 +88,8 @@ static double share_behind(const struct levels *l, int i, double coc)
     return sum * (1 - before * again) / (l->coc[i] * l->coc[i]);
 }
 
-// A disc of an area between two levels' is so much of both that it is as bright inside the smaller one as its own would be.
+// A disc with an area between two levels' is blended from both, so that inside the smaller one it is as bright as it
+// should be.
 static double share_far(const struct levels *l, int i, double coc)
 {
     double area[MAX_LEVELS];
@@ -105,7 +106,7 @@ static double share_far(const struct levels *l, int i, double coc)
     return part * area[i] / own;
 }
 
-// Both fields' last level is the same.
+// Both fields end with the same level.
 static double smallest_part(const struct area *a, double coc)
 {
     return fmin(1, a->r->blend / a->levels[0].coc[a->levels[0].count - 1] * coc);
@@ -137,14 +138,15 @@ struct sums {
 
 enum kind { KIND_NEAR, KIND_BEHIND, KIND_FAR };
 
-// What is blurred more than twice as much as a smaller level is left to the far levels there. (Both fields' radii are the
-// same.)
+// Samples blurred more than twice as much as a smaller level are left to the far levels there. (Both fields have the
+// same radii.)
 static double left_of(const struct levels *l, int i, double coc)
 {
     return i > 0 ? 1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8) : 0;
 }
 
-// One level's mean around a pixel, of the near field over what of the disc lies within the frame; nothing beyond it.
+// One level's mean around a pixel; for the near field over the part of the disc within the frame. Beyond the frame
+// there is nothing.
 static struct sums mean(const struct area *a, int x, int y, int i, enum kind kind)
 {
     const struct levels *l = &a->levels[kind == KIND_FAR];
@@ -199,8 +201,8 @@ static double hidden(const struct area *a, int x, int y)
     return sum;
 }
 
-// What a far pixel sees: all that is spread by levels of up to 16/9 of its radius. What is not far itself is like what is
-// beside it.
+// The far field at a pixel: all that is spread by levels of up to 16/9 of its radius. A pixel that is not far itself is
+// like its neighbours.
 static void far_pixel(const struct area *a, int x, int y, double *far[4])
 {
     const struct levels *l = &a->levels[1];
@@ -228,7 +230,8 @@ static void far_pixel(const struct area *a, int x, int y, double *far[4])
     }
 }
 
-// What is left to far levels has the colour that all of them spread to the pixel, and counts as far as any is spread there.
+// What is left to the far levels gets the colour that all of them spread to the pixel, and counts by how much they
+// spread there.
 static void add_far(const struct area *a, int x, int y, struct sums *back)
 {
     struct sums far = {{0}, 0, 0};

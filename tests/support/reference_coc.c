@@ -110,7 +110,7 @@ int ref_repair(double *out, const float *in, int width, int height)
     return repaired;
 }
 
-// The range model. An infinite range is no blur.
+// The range model. With an infinite range there is no blur.
 static void coc_of_range(const struct hf_params *p, double z, double *n, double *f)
 {
     const double focus = p->focus;

@@ -17,7 +17,7 @@ struct edges {
     double sharp;
 };
 
-// Radii from what is sharp on; beyond the frame they are its edge's.
+// Radii beyond the sharp limit; outside the frame its edge is repeated.
 static double radius_at(const struct edges *e, int x, int y)
 {
     const double r = e->radius[inside(y, e->c->height) * e->c->width + inside(x, e->c->width)];
@@ -73,7 +73,7 @@ static void side_means(const struct edges *e, int x, int y, double middle, doubl
             mean[k][c] /= sum[k];
 }
 
-// By colours alone, whatever alpha is.
+// The share from colours only, not from alpha.
 static double share_of(const struct edges *e, int x, int y, const double *front, const double *back, double a0)
 {
     double along = 0, apart = 0, largest = 0, off = 0;

@@ -32,7 +32,8 @@ struct line {
     double degrees, aspect;
 };
 
-// From one place to the next: one on each column or row for the line farthest from the axes, unless others lie far apart then.
+// The distance of places: the line farthest from the axes has one on each column or row, unless the other lines' would
+// be too far apart.
 static double spacing(double degrees, double aspect)
 {
     double most = 0, least = INFINITY;
@@ -44,8 +45,8 @@ static double spacing(double degrees, double aspect)
     return fmin(most, 1.16 * least);
 }
 
-// The pixels around places along a direction, and the lengths of the line that are nearest to these. nearer: by so much at
-// half resolution, but for the pixel itself.
+// The pixels around places along a direction, and the length of the line that each place stands for. nearer: at half
+// resolution places lie that much nearer, except the pixel itself.
 static void make_line(struct line *l, double degrees, double aspect, double reach, double step, double nearer)
 {
     const double ux = sin(degrees * M_PI / 180), uy = -cos(degrees * M_PI / 180);
@@ -63,7 +64,7 @@ static void make_line(struct line *l, double degrees, double aspect, double reac
 }
 
 struct field {
-    int x0, y0, width, height, channels;  // of its first pixel, in those of the picture
+    int x0, y0, width, height, channels;  // position of its first pixel in the picture
     double *colour[4], *a, *q;
 };
 
@@ -83,7 +84,7 @@ static struct field field_new(int width, int height, int channels)
     return f;
 }
 
-// The frame of another, and as much around it as lines reach, but not more than the frame's own size.
+// A frame of a field, extended by as much as lines reach, but at most by the frame's own size.
 static struct field field_around(const struct field *in, int reach)
 {
     const int x = reach < in->width ? reach : in->width, y = reach < in->height ? reach : in->height;
@@ -172,7 +173,7 @@ static void near_field(const struct field *in, const struct line l[3], struct fi
     field_free(&b);
 }
 
-// Blur of premultiplied colours at a far pixel of radius p, to plain ones, with all that was found, and light over radii.
+// Blur premultiplied colours at a far pixel of radius p: plain colours, the total weight found, and light over radii.
 static struct sum far_blur(const struct field *in, const struct line *l, int x, int y, double p)
 {
     struct sum s = sum_of(in, l, x, y, p);
@@ -194,7 +195,7 @@ static struct sum both(const struct sum *u, const struct sum *v)
     return s;
 }
 
-// whole: how much was found of what weighs 1.
+// whole: how much was found of a full weight.
 static void put_far(struct field *out, const struct sum *s, double p, double part, double whole, int at)
 {
     if (!(s->a > 0))
@@ -205,7 +206,7 @@ static void put_far(struct field *out, const struct sum *s, double p, double par
         out->colour[c][at] = s->colour[c] * part / fmax(out->q[at], 1);
 }
 
-// Blur of premultiplied colours beyond the frame: no more than all there is to find.
+// Blur premultiplied colours beyond the frame; normalised only where more than a full weight was found.
 static struct sum beyond_blur(const struct field *in, const struct line *l, int x, int y, double p)
 {
     struct sum s = sum_of(in, l, x, y, p);
@@ -217,7 +218,7 @@ static struct sum beyond_blur(const struct field *in, const struct line *l, int 
     return s;
 }
 
-// How much of a side of length p lies within the frame.
+// The part of a side of length p that lies within the frame.
 static double along(double degrees, double aspect, int width, int height, double x, double y, double p)
 {
     const double dx = p * sin(degrees * M_PI / 180) / aspect, dy = p * -cos(degrees * M_PI / 180);
@@ -225,7 +226,7 @@ static double along(double degrees, double aspect, int width, int height, double
     return fmin(1, fmin(right / fabs(dx), down / fabs(dy)));
 }
 
-// Of what a line found, that part.
+// Scale what a line found by that part.
 static void keep_within(struct sum *s, double part, int channels)
 {
     for (int c = 0; c < channels; c++)
@@ -234,7 +235,7 @@ static void keep_within(struct sum *s, double part, int channels)
     s->a = part;
 }
 
-// Pass 1 at a pixel in the frame, or beyond: there with the radius of the frame's nearest.
+// Pass 1 at a pixel in the frame, or beyond it with the radius of the frame's nearest pixel.
 static void far_first(const struct field *in, const struct line l[3], int x, int y, struct field *u, struct field *b)
 {
     const int nearest = at_of(in, x, y), to = at_of(u, x, y);
@@ -272,7 +273,7 @@ static void far_field(const struct field *in, const struct line l[3], int reach,
     field_free(&b);
 }
 
-// What of a pixel is blurred: how much, in colours times that, and its radius.
+// The blurred part of a pixel: its size, colours times that, and its radius.
 struct sample {
     double colour[4], whole, q;
 };
@@ -282,7 +283,7 @@ static double nearer_to_0(double a, double b)
     return a * b <= 0 ? 0 : fabs(a) < fabs(b) ? a : b;
 }
 
-// Of mixed pixels with a sharp front the back.
+// For a mixed pixel with a sharp front, the back.
 static struct sample sample_of(const struct picture *c, const float *r, int at, int half)
 {
     struct sample s = {.whole = 1, .q = r[at]};
@@ -342,7 +343,7 @@ static void load_half(const struct picture *colour, const struct sample *sample,
     }
 }
 
-// Near premultiplied, its coverage, far, at a full-resolution pixel.
+// Premultiplied near field with its coverage, and far field, at a full-resolution pixel.
 static double fields_at(const struct field *near, const struct field *far, const struct field *far_in, int half, int x,
                         int y, double near_out[4], double far_out[4])
 {
@@ -367,7 +368,7 @@ static double fields_at(const struct field *near, const struct field *far, const
     return coverage;
 }
 
-// What is seen around near pixels: colours times weight, and the weight.
+// What is visible around near pixels: colours times weight, and the weight.
 static struct seen seen_of(const struct picture *c, const struct sample *from, const struct field *near, int half)
 {
     const int n = c->channels, width = (c->width + 1) / 2, height = (c->height + 1) / 2;
@@ -397,7 +398,7 @@ static struct seen seen_of(const struct picture *c, const struct sample *from, c
     return seen_around(s);
 }
 
-// Beyond the frame quads are like those at its edge where all is of half resolution.
+// Beyond the frame quads repeat its edge, at half resolution.
 static double behind_sample(const struct seen *s, int p, int x, int y, int half)
 {
     double v = 0;
@@ -408,14 +409,14 @@ static double behind_sample(const struct seen *s, int p, int x, int y, int half)
     return half ? v : seen_sample(s, p, x, y);
 }
 
-// What two blurs find of a near field that covers the whole frame, by Simpson's rule along the second.
+// The sum that two blurs find of a near field that covers the whole frame, by Simpson's rule along the second.
 static double most_coverage(const struct picture *c, const struct hf_params *par, int x, int y, double p)
 {
     const double turn = par->aperture.rotation, aspect = par->view.pixel_aspect,
                  side[3] = {turn, turn + 240, turn + 120};
     double sum = 0;
     for (int k = 0; k < 9; k++) {
-        // Upwards and down left; upwards and down right; down left and down right.
+        // First up, then down left; first up, then down right; first down left, then down right.
         const double second = side[k / 3 == 0 ? 1 : 2], first = side[k / 3 == 2];
         const double d = along(second, aspect, c->width, c->height, x + 0.5, y + 0.5, p), t = d * p * (k % 3) / 2;
         const double u = x + 0.5 + t * sin(second * M_PI / 180) / aspect, v = y + 0.5 - t * cos(second * M_PI / 180);

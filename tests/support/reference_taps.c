@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reference: where the gather samples.
+// Reference: the sample positions of the gather.
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,7 +7,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-// Sousa's polygon: what a radius shrinks to at an angle.
+// Sousa's polygon: the factor by which a radius shrinks at an angle.
 static double polygon(const struct hf_params *p, double angle)
 {
     if (p->aperture.blades == 0)

@@ -6,7 +6,7 @@
 #include "support/reference_edges.h"
 #include "support/seen.h"
 
-// A radius as the nearest of 1024 an octave, and half the width of its row dy in 1/256 pixel.
+// A radius rounded to the nearest of 1024 per octave; and half the width of its row dy in 1/256 pixel.
 static double kept_radius(float r)
 {
     int exponent;
@@ -25,7 +25,7 @@ static double row_width(double r, int dy)
     return height <= 0 ? 0 : floor(256 * (g[1] - g[0]) / height + 0.5) / 256;
 }
 
-// What the last row of a disc covers of its height, in 128ths: that is its weight, 1 for the others.
+// The part of a row's height that a disc covers, in 128ths: the last row's weight; other rows weigh 1.
 static double row_weight(double r, int dy)
 {
     const double height = fmin(1, r - (abs(dy) - 0.5));
@@ -80,14 +80,14 @@ static double own_part(double r)
     return clamp01(1.5 - fabs(r));
 }
 
-// A pixel's front or back: its radius as far as it is blurred, and its share.
+// The blurred radius of a pixel's front or back, and its share.
 static double part_of(const struct edge_reference *e, int k, double *radius)
 {
     *radius = fabs(e->radius[k]) > 0.5 ? e->radius[k] : 0;
     return k ? e->share : 1 - e->share;
 }
 
-// What is seen around near pixels: planes of sharp and far colours times weight, then both weights.
+// What is visible around near pixels: planes of sharp and far colours times weight, then both weights.
 static struct seen seen_of(const struct picture *c, const struct edge_reference *edge)
 {
     const int n = c->channels, pixels = c->width * c->height;
@@ -100,7 +100,7 @@ static struct seen seen_of(const struct picture *c, const struct edge_reference 
     for (int i = 0; i < 2 * pixels; i++) {
         const int at = i / 2, x = at % c->width / 2, y = at / c->width / 2;
         double r, part = part_of(&edge[at], i & 1, &r);
-        // What is seen of a back counts in full, but for a share of next to nothing.
+        // The visible part of a back counts fully, unless its share is almost 0.
         part = i & 1 ? clamp01(64 * part) : part;
         const double own = r > 0 ? own_part(r) : seen_part(r, seen_widest(&s, x, y)), far = r > 0 ? 1 - own : 0;
         for (int k = 0; k < n; k++) {
@@ -113,7 +113,7 @@ static struct seen seen_of(const struct picture *c, const struct edge_reference 
     return seen_around(s);
 }
 
-// What lies behind a near pixel, from what is seen around it, the far field there and the near one.
+// What lies behind a near pixel, from what is visible around it, and the far and near fields there.
 static double behind(const struct seen *s, int n, int k, int x, int y, const double *far, double front)
 {
     const double sharp = seen_sample(s, 2 * n, x, y), blurred = seen_sample(s, 2 * n + 1, x, y);
@@ -135,20 +135,21 @@ static double composite(const struct seen *seen, const struct picture *c, const 
         back = behind(seen, c->channels, k, i % c->width, i / c->width, far, front);
         cover /= visible_part(c, size, i % c->width, i / c->width);
     }
-    // What shows of a near pixel itself covers what is behind as its picture does.
+    // The visible part of a near pixel itself covers the background as its sprite does.
     const double show = radius < 0 && own < 1 - cover ? own / (1 - cover) : radius < 0 ? 1 : own;
     const double base = back + show * (v - back);
     return base + clamp01(cover) * (front - base);
 }
 
-// How much of a far radius is in slice k: they begin at 4, 12, 36 .. and have all of a source from 1.25 times that on.
+// The part of a far radius in slice k: slices begin at 4, 12, 36 .. and contain a source fully from 1.25 times that on.
 static double slice_part(int k, int slices, double r)
 {
     const double from = 4 * pow(3, k - 1), to = from * 3;
     return (k ? clamp01((r / from - 1) * 4) : 1) * (k < slices - 1 ? 1 - clamp01((r / to - 1) * 4) : 1);
 }
 
-// Far sums of pixel i: behind each slice there is room for what it leaves of 1, and of what shows of a pixel itself.
+// The far sums of pixel i: each slice gets the coverage that the slices before it, and the visible part of the pixel
+// itself, leave of 1.
 static void add_slices(double *sum[], int slices, int channels, int i, const struct edge_reference *e)
 {
     double room = 0, r, *all = sum[1] + 5 * (size_t)i;

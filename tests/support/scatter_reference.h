@@ -5,7 +5,7 @@
 
 #include "support/image.h"
 
-// radius: signed, one a pixel.
+// radius: signed, one per pixel.
 struct picture scatter_reference(const struct picture *colour, const float *radius);
 
 #endif

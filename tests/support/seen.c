@@ -50,8 +50,8 @@ static double at_or_0(const struct seen *s, int p, int x, int y)
     return x < -RIM || y < -RIM || x >= s->width + RIM || y >= s->height + RIM ? 0 : *seen_at(s, p, x, y);
 }
 
-// Neighbourhood j is j - 1's mean over three by three, 2^(j-1) apart; it weighs 4^-j, and less where 2^j is more than
-// half a quad's radius and 1.
+// Neighbourhood j is the mean of neighbourhood j - 1 over three by three, 2^(j-1) apart. It weighs 4^-j, and less where
+// 2^j exceeds half a quad's radius plus 1.
 struct seen seen_around(struct seen level)
 {
     struct seen sum = seen_new(level.width, level.height, level.planes);
