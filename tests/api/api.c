@@ -12,7 +12,7 @@
 
 static unsigned seed = 1;
 
-// A valid call, to be spoilt in one place at a time.
+// A valid call; tests spoil it in one place at a time.
 struct call {
     struct scene scene;
     struct picture out;
@@ -125,7 +125,7 @@ static void opening(void)
     hf_close(NULL);
 }
 
-// Render a spoilt call: refused, with a line in the log.
+// Render a spoilt call: it must be refused, with a line in the log.
 static void refused(struct hf_context *c, const struct call *call, const char *what)
 {
     logged = 0;
@@ -268,7 +268,7 @@ static void bad_params(struct hf_context *c)
     }
     SPOIL(params.aperture.rotation = NAN);
     SPOIL(params.aperture.rotation = INFINITY);
-    SPOIL(params.aperture.ring = 0.5f);  // not the gather's
+    SPOIL(params.aperture.ring = 0.5f);  // the gather does not have it
     SPOIL(params.aperture.squeeze = 2);
     SPOIL(params.gather.rings = 0);
     SPOIL(params.gather.rings = 65);
@@ -276,14 +276,14 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.highlight.gain = 0.5f);
     SPOIL(params.highlight.gain = 65);
     SPOIL(params.highlight.gain = NAN);
-    ALLOW(params.highlight.threshold = NAN);  // not looked at
+    ALLOW(params.highlight.threshold = NAN);  // not used
     good.params.highlight.gain = 2;
     SPOIL(params.highlight.threshold = 1);
     SPOIL(params.highlight.threshold = -0.1f);
     SPOIL(params.highlight.threshold = NAN);
     ALLOW(params.highlight.threshold = 0);
     good.params.highlight.gain = 1;
-    // A picture is the whole shape.
+    // An aperture picture is the complete shape.
     const struct hf_image aperture = good.src;
     good.params.engine = HF_ENGINE_LAYERS;
     good.params.aperture.picture = &aperture;
@@ -335,7 +335,7 @@ static void focus_reading(void)
     data[1] = 0.5e-10f;
     CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_OK);
     CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z), HF_ERR_FOCUS);
-    // A ray so far off the axis that it comes to no depth.
+    // A ray so far off the axis that its depth underflows.
     d.type = HF_DEPTH_RAY;
     d.focal_px = 1e-20f;
     data[0] = 5;
@@ -359,7 +359,7 @@ static void focus_reading(void)
     CHECK_MSG(fabsf(z - 7 / sqrtf(2)) < 1e-6f, "ray 7 is %g", z);
 }
 
-// Formats: whatever goes in and out, the bits are those of planar floats holding the same values.
+// Formats: for any input and output format, the bits are those of planar floats with the same values.
 static void format_pair(struct hf_context *c, enum hf_format from, enum hf_format to, int variant)
 {
     struct rng rng = rng_seed(seed + (unsigned)variant);
@@ -400,7 +400,7 @@ static void format_pair(struct hf_context *c, enum hf_format from, enum hf_forma
     scene_free(&scene);
 }
 
-// Put a bit pattern that is no finite number, or the largest one, into a sample.
+// Put a bit pattern that is not finite, or the largest finite number, into a sample.
 static void poke(struct packed *p, struct rng *rng, int largest)
 {
     const struct hf_image *m = &p->image;
@@ -426,7 +426,7 @@ static void poke(struct packed *p, struct rng *rng, int largest)
     }
 }
 
-// Samples that are not finite, in every format: in place and out of place give the same bits, no others are touched.
+// Samples that are not finite, in every format: in place and out of place give the same bits, and no others change.
 static void repairs(struct hf_context *c, enum hf_format format, int variant)
 {
     struct rng rng = rng_seed(seed + (unsigned)variant);
@@ -468,7 +468,7 @@ static void repairs(struct hf_context *c, enum hf_format format, int variant)
     scene_free(&scene);
 }
 
-// Depth rows at odd distances, bottom-up, junk between them: the same picture, and junk is not looked at.
+// Depth rows at odd distances, bottom-up, with junk between them: the same picture; the junk is not read.
 static void depth_strides(struct hf_context *c)
 {
     struct call good = call_new(33, 21, 3);

@@ -12,12 +12,12 @@
 
 static unsigned seed = 1;
 
-// An allocator that counts, fails on demand, and checks what it is given back.
+// An allocator that counts, fails on demand, and checks what is freed.
 struct counter {
     pthread_mutex_t lock;
     long calls, live;
     size_t bytes, most;
-    long fail_at;  // this call returns NULL, and all later ones; -1: never
+    long fail_at;  // this call and all later ones return NULL; -1: never
 };
 
 struct header {
@@ -45,7 +45,7 @@ static void *count_alloc(void *cookie, size_t size, size_t align)
     unsigned char *block = malloc(size + 2 * step + align);
     uintptr_t p = ((uintptr_t)block + step + align - 1) / align * align;
     *(struct header *)(p - sizeof(struct header)) = (struct header){block, size, 0x600d600d};
-    memset((void *)p, 0xff, size);  // NaN: nothing may count on zeros
+    memset((void *)p, 0xff, size);  // NaN: no code may rely on zeros
     return (void *)p;
 }
 
@@ -74,7 +74,7 @@ static struct hf_config counted(struct counter *n)
     return (struct hf_config){.threads = 2, .alloc = count_alloc, .free = count_free, .alloc_cookie = n};
 }
 
-// Every option on, so that every buffer there is gets allocated.
+// All options on, so that every kind of buffer is allocated.
 static struct hf_params rich_params(void)
 {
     struct hf_params p = scene_params();
@@ -83,7 +83,7 @@ static struct hf_params rich_params(void)
     return p;
 }
 
-// Tiles larger than the frame hold no more than one of the frame's size.
+// With tiles larger than the frame, a context takes no more memory than for one of the frame's size.
 static void large_tiles(void)
 {
     struct rng rng = rng_seed(seed);
@@ -148,7 +148,7 @@ static void no_dump(void *cookie, const struct hf_buffer *b)
     ++*(int *)cookie;
 }
 
-// Every allocation fails once. The context stays usable, nothing leaks.
+// Each allocation fails once. The context stays usable, and nothing leaks.
 static void failing_memory(int dump)
 {
     struct rng rng = rng_seed(seed);
@@ -189,7 +189,7 @@ static void failing_memory(int dump)
     scene_free(&s);
 }
 
-// A host's parallel_for: serial, backwards, on as many workers as were promised.
+// A host's parallel_for: serial, backwards, using as many worker numbers as promised.
 struct host {
     int threads, calls, items;
 };
@@ -204,7 +204,7 @@ static void backwards(void *cookie, int n, void (*fn)(void *arg, int i, int work
     }
 }
 
-// Another: threads made for the call.
+// Another one: threads made for each call.
 struct share {
     void (*fn)(void *arg, int i, int worker);
     void *arg;
@@ -383,7 +383,7 @@ static void statistics(void)
         CHECK_INT(stats.clamped, 0);
         CHECK(!no_skip || pass_of(&stats, "Computation")->ran == pass_of(&stats, "Computation")->all);
     }
-    // Counts do not depend on what is skipped. Negative and too large samples are clamped by the format.
+    // Counts do not depend on skipping. Negative and too large samples are clamped by the format.
     struct packed packed = packed_new(64, 48, HF_FORMAT_R11G11B10F, 0, 0, 0, 0, 0);
     scene_free(&sharp);
     sharp = scene_new(&rng, SCENE_SHARP, 64, 48, 3);
@@ -408,7 +408,7 @@ static void statistics(void)
     hf_close(&c);
 }
 
-// A lens before which everything is near, or far: buffers of the other field are not there, and nobody may reach for them.
+// A lens for which everything is near, or far: buffers of the other field do not exist, and no pass may use them.
 static void one_field(void)
 {
     for (int engine = 0; engine < HF_ENGINE_COUNT; engine++)

@@ -73,7 +73,7 @@ static uint32_t random_bits(void)
     return state >> 8 ^ state << 13;
 }
 
-// Every code of a channel of so many bits, in all channels, through a frame without blur: to floats, and back.
+// Every code of a channel with that many bits, in all channels, through a frame without blur: to floats, and back.
 static void check_codes(struct hf_context *c, int f, enum hf_transfer transfer)
 {
     const int bits = formats[f].bits[0], width = 1 << (bits < 12 ? bits : 12), height = (1 << bits) / width;
@@ -92,7 +92,8 @@ static void check_codes(struct hf_context *c, int f, enum hf_transfer transfer)
     const struct hf_depth z = {.data = depth, .stride = (ptrdiff_t)width * 4};
     CHECK(hf_render(c, &floats, &in, &z, NULL) == HF_OK);
     CHECK(hf_render(c, &out, &floats, &z, NULL) == HF_OK);
-    // The polynomial's 3e-7 and the roundings of two roots, eight products and sums: 16 half places of 2^-24 each.
+    // The polynomial's 3e-7, and the roundings of two roots and of eight products and sums: 16 half places of 2^-24
+    // each.
     const double bound = 3e-7 + 16 * 0x1p-24;
     double worst = 0;
     int same = 1;
@@ -134,7 +135,7 @@ static void check_meaningless(const uint8_t *codes, int f, const char *what)
     CHECK_MSG(!others, "format %d, %s: %d bytes without meaning are not 255", f, what, others);
 }
 
-// A frame out of place and in place against the same frame in floats, with highlights given back or not.
+// A frame out of place and in place compared with the same frame in floats, with or without restored highlights.
 static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer, float gain)
 {
     uint8_t *codes = malloc(PIXELS * 8), *out = malloc(PIXELS * 8);
@@ -167,7 +168,7 @@ static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer, 
             const double exact = max * (k < 3 && transfer == HF_TRANSFER_SRGB ? encode(v) : v);
             worst = fmax(worst, fabs(code_of(pixel_of(out, f, i), f, k) - exact) - 0.5 - 2e-6 * max);
         }
-    // Half a code of rounding, and what the encoder's polynomial (5e-7) and its roundings (24 of 2^-24) make of it.
+    // Half a code of rounding, plus the error of the encoder's polynomial (5e-7) and its roundings (24 of 2^-24).
     CHECK(worst <= 0);
     free(codes);
     free(out);
@@ -198,14 +199,14 @@ static float depth_of(int d, uint32_t word)
     }
 }
 
-// The same bits as with the floats themselves, for every engine.
+// The same bits as with float depth, for every engine.
 static void check_depth(struct hf_context *c, int d, enum hf_engine engine)
 {
     const size_t bytes = d < 2 ? 2 : 4;
     uint8_t *words = malloc(PIXELS * bytes + 1);
     float *z = malloc(PIXELS * 4), *picture = malloc(PIXELS * 16), *a = malloc(PIXELS * 16), *b = malloc(PIXELS * 16);
     for (int i = 0; i < PIXELS; i++) {
-        // Halves from 0.25 to 8; and the others near 1, where window depth is.
+        // Halves from 0.25 to 8; other formats near 1, where window depth is.
         const uint32_t word = d == 0 ? (random_bits() & 1023) | (13 + random_bits() % 5) << 10
                                      : 0xffffffffu - (random_bits() & 0x1fffffffu);
         memcpy(words + 1 + (size_t)i * bytes, &word, bytes);
@@ -261,7 +262,7 @@ static void count_warnings(void *cookie, enum hf_log_level level, const char *me
     *(int *)cookie += level == HF_LOG_WARNING && strstr(message, "set depth.type") != NULL;
 }
 
-// Whole numbers taken for distances are told once, and only where they can be none.
+// A warning about integers taken for distances comes once, and only where they cannot be distances.
 static void check_warning(void)
 {
     float pixel[4] = {0};

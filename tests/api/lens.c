@@ -55,8 +55,8 @@ static void radii_of(const struct lens *l, enum hf_depth_type type, const float 
     k.radius_row(&f, 0, 0, N, out, &counts);
 }
 
-// Rounding: d scale and bias cancel at the focus, so errors are relative to the larger of the radius and what it
-// tends to far away, bias + scale at an infinite far plane.
+// Rounding: d scale and bias cancel at the focus, so errors are relative to the larger of the radius and its limit far
+// away, which is bias + scale with an infinite far plane.
 static void test_same_curve(const struct lens *l)
 {
     static float depth[N], got[N];
@@ -80,7 +80,7 @@ static void test_same_curve(const struct lens *l)
     }
 }
 
-// By distance: 0 in focus, negative in front, positive behind, and half way to the limit at twice the distance.
+// By distance: 0 in focus, negative in front, positive behind, and half of the limit at twice the distance.
 static void test_focus(const struct lens *l)
 {
     static float depth[N], got[N];
@@ -119,7 +119,7 @@ static void test_infinite_focus(const struct lens *of)
     }
 }
 
-// Radii that are given are taken as they are.
+// Given radii are taken as they are.
 static void test_given(void)
 {
     static float radius[N], got[N];

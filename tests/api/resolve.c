@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The public API, third part: names, what parameters come to, a first frame that is prepared, what a child process may do.
+// The public API, third part: names, resolved parameters, a prepared first frame, and what a child process may do.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "support/check.h"
 #include "support/render.h"
 
-// Every value has a name, which is its own alone, and the names lead back.
+// Every value has its own name, and the names lead back to the values.
 static void names(void)
 {
     static const int counts[HF_NAMES_COUNT] = {
@@ -61,7 +61,7 @@ static struct hf_resolved resolved(int width, int height, const struct hf_depth 
     return r;
 }
 
-// Numbers by hand.
+// Numbers computed by hand.
 static void derived(void)
 {
     const struct hf_depth depth = {0};
@@ -85,7 +85,7 @@ static void derived(void)
     p.lens.f_number = 2;  // aperture radius 0.05 / (2 * 2) m; 50 / 36 * 1800 pixels
     r = resolved(1800, 1000, &depth, &p);
     CHECK(fabsf(r.focal_px - 2500) < 1e-3f && fabsf(r.lens_k - 31.25f) < 1e-4f);
-    // The sensor is as wide as the picture, whatever the shape of a pixel: in low ones a radius counts more.
+    // The sensor is as wide as the picture for any shape of pixels; with low pixels a radius covers more of them.
     p.view.pixel_aspect = 2;
     CHECK(fabsf(resolved(1800, 1000, &depth, &p).lens_k - 62.5f) < 1e-4f);
     p.view.pixel_aspect = 1;
@@ -110,7 +110,7 @@ static void derived(void)
     CHECK(fabsf(resolved(64, 64, &depth, &p).params.aperture.rotation) < 360);
 }
 
-// Nothing says HF_DERIVE any more, for any engine and model.
+// HF_DERIVE is replaced everywhere, for any engine and model.
 static void no_sentinels(void)
 {
     for (int e = 0; e < HF_ENGINE_COUNT; e++)
@@ -130,7 +130,7 @@ static void no_sentinels(void)
         }
 }
 
-// A focus that is read, where there is a surface and where not; errors leave a sentence that fits.
+// A focus read from the depth, with and without a surface; errors leave a matching sentence.
 static void focus(void)
 {
     float z[9] = {0, 0, 0, 0, 6, 0, 0, 0, 0};
@@ -159,7 +159,7 @@ static void focus(void)
     CHECK(resolved(3, 3, &depth, &p).params.focus == INFINITY);
 }
 
-// What an engine cannot draw is refused, by name.
+// Apertures that an engine cannot draw are refused by name.
 static void apertures(void)
 {
     static const struct {
@@ -204,7 +204,8 @@ static void some_free(void *cookie, void *p)
     free(p);
 }
 
-// After hf_prepare no frame of the same radii allocates, whatever parts of it are blurred; and the bits are the same.
+// After hf_prepare, no frame with the same radii allocates, whatever parts of it are blurred; and the bits are the
+// same.
 static void prepared(enum hf_engine engine)
 {
     struct rng rng = rng_seed(7);
@@ -229,7 +230,7 @@ static void prepared(enum hf_engine engine)
     struct hf_report report;
     hf_get_report(c, &report);
     CHECK(report.total_ms > 0 && report.used.params.engine == engine && report.columns > 0);
-    // A frame for which there is no memory leaves no report and no tiles.
+    // If there is no memory for a frame, it leaves no report and no tiles.
     struct scene large = scene_new(&rng, SCENE_NOISE, 500, 400, 3);
     struct picture much = picture_new(500, 400, 3);
     uint8_t tiles[4] = {9, 9, 9, 9};
@@ -251,8 +252,8 @@ static void prepared(enum hf_engine engine)
     scene_free(&s);
 }
 
-// In a child after fork the threads are missing: refused, closed, and a context of the child's own works. A context of one
-// thread has none to miss.
+// In a child after fork the threads are missing: the context refuses to render, can be closed, and a new context of the
+// child works. A context of one thread has none that could be missing.
 static void forked(int threads)
 {
     struct rng rng = rng_seed(7);

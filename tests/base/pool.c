@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pool alone: each index once, in order and on one worker number at a time; no tasks, one, many; more threads than
-// cores; a task that fails; threads that cannot be made. Linked with --wrap=hf_thread_start, so that any of them can
-// fail.
+// The pool alone: each index once, in order, and on one worker number at a time; no tasks, one, many; more threads than
+// cores; a failing task; threads that cannot be made. Linked with --wrap=hf_thread_start, so that any of them can fail.
 #include "base/pool.h"
 
 #include <stdatomic.h>
@@ -15,7 +14,7 @@
 
 enum { MAX_TASKS = 5000, MAX_THREADS = 64 };
 
-// ---- what the pool takes: memory and threads, counted, and refused on demand ----
+// ---- the pool's memory and threads: counted, and refused on demand ----
 
 static int live_blocks, refuse_memory;
 
@@ -25,7 +24,7 @@ static void *take(void *cookie, size_t size, size_t align)
     void *p = refuse_memory ? NULL : hf_system_alloc(size, align);
     if (!p)
         return NULL;
-    memset(p, 0xff, size);  // nothing may count on zeros
+    memset(p, 0xff, size);  // nothing may rely on zeros
     live_blocks++;
     return p;
 }
@@ -72,14 +71,14 @@ int __wrap_hf_thread_start(struct hf_thread *thread, void (*run)(void *arg), voi
 
 struct run {
     int threads, n;
-    int fails;  // this task stops early and says so, as a task without memory does
+    int fails;  // this task stops early and reports it, as a task without memory does
     atomic_int error;
     atomic_int done[MAX_TASKS];       // times that an index was called
     atomic_int inside[MAX_THREADS];   // calls that a worker is in
     atomic_int last[MAX_THREADS];     // the index that a worker had before
-    atomic_int bad_worker, disorder;  // worker numbers out of range or in use twice; indices that went down
+    atomic_int bad_worker, disorder;  // worker numbers out of range or used twice at once; indices that decreased
     atomic_int started;
-    unsigned plain[MAX_TASKS];  // written without atomics: after the run all of it is there to be seen
+    unsigned plain[MAX_TASKS];  // written without atomics: after the run all of it must be visible
 };
 
 static void task(void *arg, int i, int worker)
@@ -132,14 +131,14 @@ static void runs(int threads)
     CHECK_INT(atomic_load(&running), threads - 1);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         check_run(p, threads, counts[i], -1);
-    // A task that fails does not keep the others from running, nor the next run.
+    // A failing task prevents neither the others nor the next run.
     check_run(p, threads, 100, 0);
     check_run(p, threads, 100, 99);
     check_run(p, threads, 100, -1);
-    for (int i = 0; i < 100; i++)  // one after the other, so that workers are caught between two runs
+    for (int i = 0; i < 100; i++)  // in quick succession, so that workers are caught between two runs
         check_run(p, threads, i % 5, -1);
     const int64_t later = hf_now_ns() + 3000000;
-    while (hf_now_ns() < later)  // longer than idle workers spin: they sleep now, and are woken
+    while (hf_now_ns() < later)  // longer than idle workers spin: they sleep now and have to be woken
         hf_thread_yield();
     check_run(p, threads, 1000, -1);
     hf_pool_close(&p);
@@ -148,7 +147,7 @@ static void runs(int threads)
     CHECK_INT(live_blocks, 0);
 }
 
-// Tasks that wait for each other end only if as many workers as were promised are at work at once.
+// Tasks that wait for each other end only if all promised workers run at the same time.
 static void meet(void *arg, int i, int worker)
 {
     struct run *r = arg;
@@ -174,7 +173,7 @@ static void all_at_once(int threads)
     hf_pool_close(&p);
 }
 
-// Closed before any run, while its threads are still on their way.
+// Closed before any run, while its threads are still starting.
 static void closed_at_once(void)
 {
     for (int i = 0; i < 100; i++) {
@@ -187,7 +186,7 @@ static void closed_at_once(void)
     CHECK_INT(live_blocks, 0);
 }
 
-// Threads 0 .. k - 1 were made when thread k fails: they are ended, nothing leaks, and the next pool works.
+// Thread k fails after threads 0 .. k - 1 were made: they are ended, nothing leaks, and the next pool works.
 static void threads_refused(void)
 {
     enum { THREADS = 9 };
@@ -205,7 +204,7 @@ static void threads_refused(void)
     runs(THREADS);
 }
 
-// The same through the API: hf_open says so and leaves nothing behind.
+// The same through the API: hf_open reports it and leaves nothing behind.
 static void context_refused(void)
 {
     for (int k = 0; k < 4; k++) {

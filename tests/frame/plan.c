@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plan: what hf_plan foretells is what hf_render does, and what a scene does not call for is not done. The budget:
-// settings follow it, without flicker.
+// The plan: hf_render does what hf_plan predicts, and skips what a scene does not need. The budget: settings follow it,
+// without flicker.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "support/check.h"
 #include "support/render.h"
 
-// All in focus but for what `paint` puts into the depth.
+// Everything in focus, except what `paint` puts into the depth.
 static struct scene sharp(int w, int h)
 {
     struct rng rng = rng_seed(5);
@@ -50,7 +50,7 @@ static uint32_t run_of(const struct hf_report *r, const char *pass)
     return 0;
 }
 
-// The same before and after, but for the times.
+// Two reports are the same, except for times.
 static void check_same(const struct hf_report *a, const struct hf_report *b)
 {
     CHECK_INT(a->columns, b->columns);
@@ -79,11 +79,11 @@ static void planned_and_done(void)
             p.engine = (enum hf_engine)engine;
             const struct hf_report before = plan(c, &s, &p), after = report_of(c, &s, &p);
             check_same(&before, &after);
-            // What has been measured is foretold.
+            // The measured part is predicted.
             report_of(c, &s, &p);
             const struct hf_report again = plan(c, &s, &p);
             CHECK(again.tile_count[HF_TILE_SHARP] == (uint32_t)(again.columns * again.rows) || again.predicted_ms > 0);
-            // Learned: times differ from frame to frame, and so does what is made of them, in some bit.
+            // Learned costs: times differ from frame to frame, and so do predictions made from them, in some bit.
             CHECK(again.tile_count[HF_TILE_SHARP] == (uint32_t)(again.columns * again.rows) ||
                   again.predicted_ms != before.predicted_ms);
         }
@@ -92,8 +92,8 @@ static void planned_and_done(void)
     hf_close(&c);
 }
 
-// Of a frame that nothing has been learned from: the wider the lens is open, the longer an engine that follows it takes, by
-// its radii, in the gather by their levels too.
+// For a frame from which nothing was learned: the wider the lens is open, the longer an engine that follows it takes,
+// because of its radii, and in the gather also because of their levels.
 static void wider_is_dearer(void)
 {
     static const enum hf_engine engines[] = {HF_ENGINE_GATHER, HF_ENGINE_HEXAGON, HF_ENGINE_SCATTER, HF_ENGINE_LAYERS};
@@ -134,7 +134,7 @@ static void only_what_is_called_for(void)
     CHECK_INT(run_of(&r, "Composite"), 0);
     CHECK(r.near_radius == 0 && r.far_radius == 0);
 
-    // Far CoC stays in its tile; near CoC spreads by the reach of 6 and the upsampling's 1: to both sides.
+    // Far CoC stays in its tile; near CoC spreads by its reach of 6 and the upsampling's 1, to both sides.
     put(&s, 330, 210, 340, 220, 40);
     r = plan(c, &s, &p);
     CHECK_INT(r.tile_count[HF_TILE_FAR], 1);
@@ -149,7 +149,7 @@ static void only_what_is_called_for(void)
     CHECK(r.memory_saved > 0);
     put(&s, 330, 210, 340, 220, 5);
     r = plan(c, &s, &p);
-    // Known by chunks of 64 x 16 pixels: (320..384) x (208..224), and what is up to 14 pixels away from that.
+    // Known by chunks of 64 x 16 pixels: (320..384) x (208..224), and everything up to 14 pixels away from that.
     CHECK_INT(r.tile_count[HF_TILE_NEAR], 3);
     CHECK_INT(r.tile_count[HF_TILE_FAR], 0);
     CHECK_INT(run_of(&r, "Near CoC Max X"), 3);
@@ -170,7 +170,7 @@ static void only_what_is_called_for(void)
     hf_close(&c);
 }
 
-// The largest radii of either side are those of the depth, whichever engine has to find them.
+// The largest radii on either side are those of the depth, for every engine that has to find them.
 static void radii_found(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
@@ -181,7 +181,7 @@ static void radii_found(void)
     picture_fill(&s.depth, 0, 0);
     put(&s, 20, 20, 60, 60, -5);
     put(&s, 110, 30, 150, 90, 11);
-    p.max_radius = 16;  // a power of two: what is divided by it and multiplied again is as it was
+    p.max_radius = 16;  // a power of two, so that dividing by it and multiplying again is exact
     for (int engine = 0; engine < HF_ENGINE_COUNT; engine++) {
         struct hf_report r;
         if (!hf_engine_name((enum hf_engine)engine))
@@ -195,7 +195,7 @@ static void radii_found(void)
     hf_close(&c);
 }
 
-// A machine on which step i takes ms[i], times a load.
+// A machine on which step i takes ms[i] times a load.
 struct machine {
     const float *ms;
     struct hf_budget b;
@@ -229,19 +229,19 @@ static void budget(void)
     frames(&m, 50, 1, 5);
     CHECK_INT(m.b.step, 2);
     m.changes = 0;
-    frames(&m, 500, 1, 8.5f);  // 7 of 8.5 would fit, but leaves too little room: stays
+    frames(&m, 500, 1, 8.5f);  // 7 of 8.5 would fit, but with too little room, so nothing changes
     CHECK_INT(m.changes, 0);
     frames(&m, 60, 1, 12);  // 7 fits well, 10 with too little room
     CHECK_INT(m.b.step, 1);
     frames(&m, 60, 1, 13);
     CHECK_INT(m.b.step, 0);
-    frames(&m, 1, 3, 13);  // one frame that is late changes nothing
+    frames(&m, 1, 3, 13);  // a single late frame changes nothing
     CHECK_INT(m.b.step, 0);
-    frames(&m, 3, 3, 1);  // nothing fits: the cheapest
+    frames(&m, 3, 3, 1);  // nothing fits: the cheapest setting
     frames(&m, 20, 3, 1);
     CHECK_INT(m.b.step, 2);
 
-    // The first frame pays for memory that no later one needs: with it two would be late.
+    // The first frame also pays for memory; if it counted, two frames would be late.
     m.b = (struct hf_budget){0};
     frames(&m, 2, 100, 12);
     CHECK_INT(m.b.step, 0);
@@ -249,7 +249,7 @@ static void budget(void)
     CHECK_INT(m.b.step, 0);
 }
 
-// A scene whose better setting looks affordable from below and is not: tries get rarer, and rarer.
+// A scene whose better setting looks affordable from the cheaper one but is not: tries become rarer and rarer.
 static void no_flicker(void)
 {
     static const float cheap[HF_BUDGET_STEPS] = {10, 5, 5};
@@ -260,12 +260,12 @@ static void no_flicker(void)
     m.steps = 3;
     frames(&m, 20, 1, 9);
     CHECK_INT(m.b.step, 1);
-    for (int i = 0; i < 1000; i++)  // light frames while the cheap one runs, heavy ones for the other
+    for (int i = 0; i < 1000; i++)  // light frames while the cheap setting runs, heavy ones with the other
         frames(&m, 1, m.b.step == 0 ? 1 : 0.5f, 9);
     CHECK_MSG(m.changes <= 20, "%d changes in 1000 frames", m.changes);
 }
 
-// What was asked for comes first; then the steps of the ladder that cost less, dearest first.
+// The caller's setting comes first, then the steps of the ladder that cost less, most expensive first.
 static void ladders(void)
 {
     struct hf_params ladder[HF_BUDGET_STEPS], p = hf_default_params;
@@ -278,12 +278,12 @@ static void ladders(void)
         for (int i = 1; i < n; i++) {
             CHECK_MSG(hf_ladder_ms(&ladder[i]) < hf_ladder_ms(&ladder[i - 1]), "%s, step %d", hf_engine_name(p.engine),
                       i);
-            CHECK(ladder[i].lens.world_unit_m == 0.125f && ladder[i].focus == 3);  // no knobs of the ladder
+            CHECK(ladder[i].lens.world_unit_m == 0.125f && ladder[i].focus == 3);  // the ladder does not change these
         }
         if (n > 1)
             CHECK(hf_ladder_ms(&ladder[n - 1]) == hf_ladder[0].ms);
     }
-    // From a step only those below it are left, and of them those that reach as far, or as it does itself.
+    // From a step, only the steps below it remain that reach as far as asked, or as far as the step itself.
     for (int k = 1; k < hf_ladder_steps; k++)
         for (int far = 0; far <= 2048; far += 2048) {
             hf_ladder_apply(&p, k);
@@ -295,7 +295,7 @@ static void ladders(void)
             }
             CHECK_INT(hf_budget_ladder(&p, (float)far, ladder), want);
         }
-    // Shapes that the cheaper engines do not draw become those that they do.
+    // Shapes that a cheaper engine cannot draw are replaced by those that it can.
     p = hf_default_params;
     p.engine = HF_ENGINE_SCATTER;
     p.aperture.ring = 0.5f;
@@ -305,7 +305,8 @@ static void ladders(void)
         CHECK(hf_ladder_can_draw(&ladder[i]));
 }
 
-// Is a step the first that reaches any radius? On scenes that those before do not reach it follows nothing.
+// Whether a step is the first that reaches any radius. On scenes beyond the reach of the steps before, those do not
+// count.
 static int starts_to_reach(int i)
 {
     struct hf_params before = hf_default_params, p = before;
@@ -320,7 +321,7 @@ static void choices(void)
     struct hf_params p = hf_default_params;
     struct hf_choice last = {.step = -1}, c;
     p.max_radius = 0;                   // every step reaches as far
-    static const float same = 1.0116f;  // 0.1 dB, which a step may be worse by on a scene
+    static const float same = 1.0116f;  // 0.1 dB, by which a step may be worse on a scene
     // 0.2 dB, by which a step errs less at least; the table's errors are rounded to 5e-7, 2e-5 of what they are.
     static const float step = 1.0233f * (1 - 4e-5f);
     for (int i = 1; i < hf_ladder_steps; i++)

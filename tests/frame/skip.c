@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Skipping is invisible: for every engine, with random options, sizes and scenes, what is rendered where the scene calls
-// for it equals what no_skip renders, bit for bit. The skipping contexts live on from scene to scene, as those of a shot
-// do, so that what they remember of the last frame is wrong as often as right.
+// Skipping is invisible: for every engine, with random options, sizes and scenes, a render with skipping equals one
+// with no_skip, bit for bit. The skipping contexts are reused from scene to scene, as for a shot, so what they remember
+// of the last frame is often wrong.
 //
 //     skip [seed [scenes]]
 #include <float.h>
@@ -18,7 +18,7 @@ static unsigned seed = 1, scenes;
 // Half-resolution pixels; 0: the library's choice.
 static const int tile_sizes[CONTEXTS][2] = {{0, 0}, {16, 16}, {48, 16}, {32, 40}};
 
-// Sharp but for a few pixels, which lie where tiles of 32 pixels and their multiples meet: just inside, just outside.
+// All sharp except a few pixels just inside and just outside the corners of tiles of 32 pixels and their multiples.
 static struct scene corners(struct rng *rng, int w, int h, int channels)
 {
     struct scene s = scene_new(rng, SCENE_SHARP, w, h, channels);
@@ -28,7 +28,7 @@ static struct scene corners(struct rng *rng, int w, int h, int channels)
         if (x < 0 || y < 0 || x >= w || y >= h)
             continue;
         const int i = y * w + x;
-        // Full, hardly any, and so little that the smallest storage rounds it to 0.
+        // Full blur, almost none, and so little that the smallest storage rounds it to 0.
         static const float depths[] = {5, 12, 19.9999f, 19.5f, 40, 28, 20.0001f, 20.5f, 1e10f};
         s.depth.plane[0][i] = depths[rng_below(rng, 9)];
         for (int c = 0; c < channels; c++)
@@ -54,7 +54,7 @@ static struct scene random_scene(struct rng *rng, enum hf_engine engine, const c
                 if (i % w >= w / 3 || i / w >= h / 2)
                     s.depth.plane[0][i] = 20;
     }
-    // What blending with a weight of 0 would change. Sums that overflow are not for all engines.
+    // Values that blending with a weight of 0 would change. Not all engines can sum values that overflow.
     const float odd[] = {-0.0f,  -1e-3f,
                          1e-42f, engine == HF_ENGINE_GATHER || engine == HF_ENGINE_HEXAGON ? FLT_MAX : 1e30f,
                          NAN,    INFINITY};

@@ -36,7 +36,7 @@ static void add_rings(struct reference *r, int rings, double share)
     r->shares += share;
 }
 
-// Two pixels apart. Where that makes no whole number of rings: a blend of both beside it, each a mean.
+// Rings two pixels apart. If that is not a whole number of rings, the two nearest numbers are blended, each as a mean.
 static void make_rings(struct reference *r)
 {
     const double apart = fmax(1, r->reach_y / 2);
