@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The metrics of hyperfocal-bench: values that follow by hand from their definitions, the largest colour distance that
+// The metrics of hyperfocal-bench: values computed by hand from their definitions, the largest colour distance that
 // FLIP's authors publish, and on random pictures a slow implementation in double precision that shares no code.
 #include "flip.h"
 #include "metrics.h"
@@ -94,7 +94,7 @@ static void test_luminance(void)
     free(green);
 }
 
-// A region sees the error that lies in it and no other.
+// A region gets the error inside it and no other.
 static void test_pooling(void)
 {
     float *want = uniform(0.2f, 0.3f, 0.4f), *got = uniform(0.2f, 0.3f, 0.4f);
@@ -124,7 +124,8 @@ static void test_regions(void)
     rgb[3 * lamp + 2] = 5;
     bench_regions(regions, rgb, radius, W, H);
     for (int x = 0; x < W; x++) {
-        // Pixels W/2-1 and W/2 see the step, and 7 either way are within reach; likewise the step of 3 at W-4.
+        // The pixels W/2-1 and W/2 see the step, and 7 on either side are within reach; the step of 3 at W-4 has the
+        // same reach.
         const int first = x >= W / 2 - 8 && x <= W / 2 + 7, second = x >= W - 8 && x <= W - 1;
         const int want = 1 << BENCH_WHOLE | (first || second ? 1 << BENCH_SILHOUETTES
                                              : x < W / 2     ? 1 << BENCH_NEAR
@@ -139,7 +140,7 @@ static void test_regions(void)
     free(rgb);
 }
 
-// Wang's formula with every sum written out.
+// Wang's formula with all sums written out.
 static double slow_ssim(const float *a, const float *b, int x, int y)
 {
     double sum = 0, ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
@@ -163,7 +164,7 @@ static double slow_ssim(const float *a, const float *b, int x, int y)
 static void test_ssim(void)
 {
     float a[N], b[N], map[N];
-    // Of two constants only the first factor is left.
+    // For two constants only the first factor remains.
     for (int i = 0; i < N; i++) {
         a[i] = 0.25f;
         b[i] = 0.75f;
@@ -181,7 +182,8 @@ static void test_ssim(void)
     }
     s = bench_ssim_open(a, W, H);
     bench_ssim_map(s, b, map);
-    // 22 sums of rounding error 2^-24 in each mean, whose differences stand over at least 9e-4: 22 * 4 * 6e-8 / 9e-4.
+    // 22 sums with a rounding error of 2^-24 in each mean; differences of means are divided by at least 9e-4: 22 * 4 *
+    // 6e-8 / 9e-4.
     for (int i = 0; i < N; i++)
         CHECK_MSG(near_to(map[i], slow_ssim(a, b, i % W, i / W)) < 6e-3, "pixel %d: %g", i, map[i]);
     bench_ssim_close(s);
@@ -189,7 +191,7 @@ static void test_ssim(void)
     free(q);
 }
 
-// FLIP again, from the paper, in double: whole windows, no separation.
+// FLIP again, from the paper, in double: complete windows, not separated.
 struct slow {
     double p[N][3], grey[N], lab[N][3];
 };

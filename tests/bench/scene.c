@@ -219,7 +219,7 @@ static void test_formats(void)
     bench_image_free(&image);
 }
 
-// The depth alone is what painting the scene would give, but for the rounding of the way back from the depth of `mixed`.
+// The depth alone equals that of painting the scene, except for rounding when it is computed from the depth of `mixed`.
 static void test_depth(const char *name)
 {
     struct bench_scene mixed, painted;

@@ -40,7 +40,8 @@ static void linear(void)
     cli_keys_free(&keys);
 }
 
-// Through every key, monotone between two, and never beyond them: a focus between two positive ones stays positive.
+// The curve goes through every key, is monotone between two, and never exceeds them: a focus between two positive ones
+// stays positive.
 static void smooth(void)
 {
     static const double at[] = {1, 4, 5, 20, 21, 30}, want[] = {10, 1, 1, 0.5, 8, 7};
@@ -60,7 +61,8 @@ static void smooth(void)
             before = v;
         }
     }
-    // Flat where it turns: second derivatives stay below 6 x 7.5 a frame squared, so a difference over 2^-16 is below 2^-10.
+    // Flat at a turning point: second derivatives stay below 6 x 7.5 a frame squared, so a difference over 2^-16 is
+    // below 2^-10.
     const double e = 1. / 65536, turn = (cli_keys_at(&keys, CLI_KEY_FOCUS, 20 + e) - 0.5) / e;
     CHECK_MSG(fabs(turn) < 1. / 1024, "slope %g where it turns", turn);
     // No corner: the slopes from both sides agree at a key in the middle of a rise. With cubics on intervals of 10 and

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library's own functions: any parameters, formats, strides, sizes to 256, failing allocations, instruction sets. A
-// call is refused, with one sentence, or it works: what it reads stays as it was, what it makes is finite, and all memory
-// is given back. Without AddressSanitizer every block ends where a page begins that nobody may touch.
+// The library's own functions with random parameters, formats, strides, sizes up to 256, failing allocations,
+// instruction sets. A call is either refused with one sentence, or it works: its input stays unchanged, its output is
+// finite, and all memory is freed. Without AddressSanitizer every block ends at a forbidden page.
 #include <float.h>
 #include <limits.h>
 #include <math.h>
@@ -27,7 +27,7 @@ static void free_block(void *p)
 #else
 enum { PAGE = 4096 };
 
-// A page that says how long it is, the block at the end of its pages, a page that nobody may touch.
+// A page that notes the length, the block at the end of its pages, a forbidden page.
 static void *block_of(size_t size, size_t align)
 {
     const size_t whole = ((size ? size : 1) + align - 1) / align * align;
@@ -51,7 +51,7 @@ static void free_block(void *p)
 }
 #endif
 
-// Memory of an argument.
+// The memory of an argument.
 struct area {
     void *start;
     size_t bytes;
@@ -79,13 +79,13 @@ static uint64_t hash_of(const struct area *areas, int count)
 }
 
 static long live, calls, fails_at, fails_to;  // which calls fail
-static int fresh;                             // what memory holds at first: what no pass writes is dumped too
+static int fresh;                             // the initial contents of memory: dumps show buffers that no pass wrote
 
 static void *take(void *cookie, size_t size, size_t align)
 {
     (void)cookie;
     const long call = calls++;
-    // Small frames under the largest radius may want more than a machine that runs tests has to give.
+    // Small frames with the largest radius may need more memory than a test machine has.
     const int fails = (call >= fails_at && call < fails_to) || size > (size_t)1 << 31;
     void *p = fails ? NULL : block_of(size, align);
     if (!p)
@@ -120,14 +120,14 @@ static float any_float(struct bytes *b)
     return v;
 }
 
-// Mostly one of the first `most`, now and then anything.
+// Mostly one of the first `most`, sometimes any value.
 static int any_choice(struct bytes *b, unsigned most)
 {
     const unsigned v = take_byte(b);
     return v == 255 ? (int)take_word(b) : (int)(v % most);
 }
 
-// A float near a sensible one, so that whole calls work now and then.
+// A float near a sensible one, so that whole calls work sometimes.
 static void maybe(struct bytes *b, float *field)
 {
     if (take_byte(b) < 40)
@@ -198,7 +198,7 @@ static struct hf_params any_params(struct bytes *b)
     return p;
 }
 
-// Mostly 1 to `most`; now and then what is refused. Nothing that is accepted and takes gigabytes.
+// Mostly 1 to `most`, sometimes a size that is refused; never one that is accepted and takes gigabytes.
 static int any_size(struct bytes *b, unsigned most)
 {
     const unsigned v = take_byte(b);
@@ -208,7 +208,7 @@ static int any_size(struct bytes *b, unsigned most)
     return odd >= 1 && odd <= 65536 ? -odd : odd;
 }
 
-// Memory for what the descriptor says, filled with anything; if it cannot be true, none is needed.
+// Random memory for what the descriptor says; if the description is impossible, none is needed.
 static void *any_plane(struct bytes *b, size_t pixel, int w, int h, ptrdiff_t *stride, struct area *area)
 {
     const size_t row = w > 0 ? pixel * (size_t)w : 0;
@@ -221,7 +221,7 @@ static void *any_plane(struct bytes *b, size_t pixel, int w, int h, ptrdiff_t *s
     *stride = step;
     const size_t size = (step < 0 ? (size_t)-step : (size_t)step);
     if (!row || h < 1 || w > 65536 || h > 65536 || size < row)
-        return (*area = area_of(1)).start;  // to be refused
+        return (*area = area_of(1)).start;  // will be refused
     const size_t offset = kind % 7 == 6 ? 1 : 0, bytes = size * (size_t)(h - 1) + row + offset;
     unsigned char *p = (*area = area_of(bytes)).start;
     uint32_t state = take_word(b) | 1;
@@ -263,9 +263,9 @@ static struct hf_depth any_depth(struct bytes *b, int w, int h, struct area *are
     return d;
 }
 
-// ---- what came to the API later, drawn last: bytes that were kept mean what they did, and zeros change nothing
+// ---- what the API got later, drawn last: stored inputs keep their meaning, and zeros change nothing
 
-// Above what a byte of a calm input mostly is.
+// True if a byte is above the usual values of a calm input.
 static int now_and_then(struct bytes *b)
 {
     return take_byte(b) > 200;
@@ -294,7 +294,7 @@ static void any_layers(struct bytes *b, struct hf_layers_params *p)
     sensible(b, &p->quarter_from, 64);
 }
 
-// The aperture's picture lies in *picture and areas.
+// The aperture's picture lies in *picture, its memory in areas.
 static void any_more_params(struct bytes *b, struct hf_params *p, struct hf_image *picture, struct area areas[4])
 {
     any_layers(b, &p->layers);
@@ -323,10 +323,10 @@ static void any_more_params(struct bytes *b, struct hf_params *p, struct hf_imag
         const int w = 1 + (int)take_byte(b) % 40, h = 1 + (int)take_byte(b) % 40;
         *picture = any_image(b, w, h, areas);
         p->aperture.picture = picture;
-        if (take_byte(b) & 1)  // no shape besides
+        if (take_byte(b) & 1)  // without another shape
             p->aperture.blades = 0, p->aperture.roundness = p->aperture.ring = p->aperture.cat_eye = 0;
     }
-    if (now_and_then(b))  // what draws most of it
+    if (now_and_then(b))  // the engines that draw most of it
         p->engine = take_byte(b) & 1 ? HF_ENGINE_SCATTER : HF_ENGINE_LAYERS;
 }
 
@@ -345,7 +345,7 @@ static void any_more_depth(struct bytes *b, struct hf_depth *d)
 
 // ---- a host
 
-// One line, not empty, of what can be printed.
+// The log gets one line, not empty, of printable characters.
 static long errors_told;
 
 static void hear(void *cookie, enum hf_log_level level, const char *message)
@@ -359,7 +359,7 @@ static void hear(void *cookie, enum hf_log_level level, const char *message)
     errors_told += level == HF_LOG_ERROR;
 }
 
-// A host's own threads, of which there is one: backwards, and now one worker, now the other.
+// A host with a single thread: it calls backwards, and alternates between worker numbers.
 static void backwards(void *cookie, int n, void (*fn)(void *arg, int i, int worker), void *arg)
 {
     const int workers = *(const int *)cookie;
@@ -379,13 +379,13 @@ static void look(void *cookie, const struct hf_buffer *m)
         }
 }
 
-// One of those that this processor has; all calls the one that HYPERFOCAL_ISA names.
+// One of this processor's instruction sets; or always the one that HYPERFOCAL_ISA names.
 static enum hf_isa any_isa(struct bytes *b)
 {
     const unsigned first = take_byte(b);
     const char *named = getenv("HYPERFOCAL_ISA");
     if (named) {
-        // A name that is none would have every call refused and nothing tried.
+        // With an unknown name every call would be refused, and nothing tested.
         int known = 0;
         for (int i = 0; i <= HF_ISA_NEON; i++)
             known |= hf_isa_available((enum hf_isa)i) && !strcmp(hf_isa_name((enum hf_isa)i), named);
@@ -402,7 +402,7 @@ static enum hf_isa any_isa(struct bytes *b)
 
 // ---- calls
 
-// What became of the calls, by -error.
+// Counts of the calls' results, by -error.
 static long became[6];
 
 void fuzz_told(void)
@@ -411,7 +411,7 @@ void fuzz_told(void)
            became[-HF_ERR_MEMORY], became[-HF_ERR_FOCUS]);
 }
 
-// No NaN and no infinity, where there could be some.
+// Check for NaN and infinity in formats that could hold them.
 static int is_finite_image(const struct hf_image *m)
 {
     const int floats = m->format == HF_FORMAT_RGBA32F     ? 4
@@ -444,7 +444,7 @@ struct frame {
     struct area areas[16];  // 4 of src, 1 of depth, 4 of the aperture's picture, 4 of dst
 };
 
-// What takes numbers alone, or one sample.
+// Functions that take only numbers, or one sample.
 static void ask(struct bytes *b, struct frame *f)
 {
     const int w = f->src.width, h = f->src.height;
@@ -474,7 +474,7 @@ static void check_report(struct hf_context *c, int w, int h, int err)
 {
     struct hf_report report;
     hf_get_report(c, &report);
-    // A copy looks at no depth.
+    // A plain copy reads no depth.
     const uint64_t n = (uint64_t)w * (uint64_t)h,
                    counted = report.near_pixels + report.sharp_pixels + report.far_pixels;
     MUST(err || counted == 0 || counted == n);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Damaged EXR files before the command: headers, tables of chunks, chunks and their sizes, ends cut off. Whatever a file
-// holds, the command makes a picture that can be read, or says one sentence and leaves what was there; it takes memory in
-// proportion to the file and no 10 seconds.
+// Gives damaged EXR files to the command: headers, chunk tables, chunks and their sizes, cut ends. For any file the
+// command either makes a readable picture, or prints one sentence and leaves existing files alone. It takes memory in
+// proportion to the file, and at most 10 seconds.
 //
 //     fuzz-damage HYPERFOCAL [COUNT [SEED]]
 #include <fcntl.h>
@@ -13,8 +13,9 @@
 
 #include "io/files.h"
 
-// Of a file of a few kB: buffers of every engine are below 100 bytes a pixel, and a damaged window may be as many times
-// as large as a compression can make it. Seconds of processor time; a process that waits for anything has ten times them.
+// Limits for a file of a few kB: buffers of every engine are below 100 bytes a pixel, and a damaged window may be as
+// many times larger as a compression can shrink it. Seconds of processor time; a process that waits for something has
+// ten times as many.
 enum { MOST_KB = 512 * 1024, MOST_SECONDS = 10, SOURCES = 16, WORDS = 24 };
 
 struct source {
@@ -82,7 +83,7 @@ static void add_source(const char *name)
     CHECK_MSG(s->size > 200 && s->table < s->size, "%s: no file to damage", name);
 }
 
-// Core writes what it can; the command makes the rest of that.
+// Core writes the compressions that it can; the command makes the others from those.
 static void make_sources(void)
 {
     static const char *const compressions[] = {"rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
@@ -181,7 +182,7 @@ static int is_sentence(const char *said)
     return 1;
 }
 
-// Everything that a picture file holds can be read.
+// Check that everything in a picture file can be read.
 static int is_whole(const char *path)
 {
     struct hf_io_file *f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reader of picture files on bytes that say that they are an EXR: headers, every view's colour and depth, a copy in
-// memory. Files that claim more than a few million pixels are opened only.
+// The reader of picture files on bytes that claim to be an EXR: headers, every view's colour and depth, and a copy in
+// memory. Files that claim more than a few million pixels are only opened.
 #include <string.h>
 #include <unistd.h>
 
@@ -47,7 +47,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static char path[64];
     if (!path[0])
         snprintf(path, sizeof path, "/tmp/hyperfocal-fuzz-%ld.exr", (long)getpid());
-    // Other formats are OpenImageIO's business.
+    // Other formats are left to OpenImageIO.
     if (size < 4 || memcmp(data, magic, 4))
         return 0;
     FILE *f = fopen(path, "wb");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of keys. The first byte says how to go between them.
+// Tables of keys. The first byte says how to interpolate between them.
 #include <math.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -8,7 +8,7 @@
 #include "tools/cli/keys.h"
 #include "fuzz/fuzz.h"
 
-// A column is sorted, and what lies between two keys is between their values, but for roundings of the cubic.
+// A column is sorted, and values between two keys lie between theirs, except for roundings of the cubic.
 static void check_column(const struct cli_keys *keys, enum cli_key key)
 {
     const struct cli_keyed *k = keys->column[key].keys;

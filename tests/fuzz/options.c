@@ -24,7 +24,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct cli_args args;
     struct tool_error error = {""};
     const int err = cli_parse_args(&args, argc, argv, &error);
-    // One sentence when it is refused, none when it is not; never a line break or half a terminal's escape in it.
+    // A refused line gives one sentence, an accepted one none; the sentence has no line break and no terminal escape.
     MUST(err == 0 || err == -1);
     MUST(!err == !error.text[0]);
     MUST(memchr(error.text, 0, sizeof error.text) != NULL);

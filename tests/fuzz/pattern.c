@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names with places for the number and the view: a frame's number, how many digits, then the pattern. A folder has files
-// of some names to be found.
+// File names with places for the number and the view: a frame's number, the number of digits, then the pattern. A
+// folder contains files of some names that can be found.
 #include <fcntl.h>
 #include <string.h>
 #include <unistd.h>
@@ -47,7 +47,7 @@ static void make_folder(void)
     atexit(remove_folder);
 }
 
-// What is found is there: filled in, the pattern is the name of a file, with one number of digits or another.
+// What is found exists: the pattern with that number filled in, with some number of digits, is the name of a file.
 static void check_scan(const char *pattern, const char *path)
 {
     struct cli_frames found;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A target without libFuzzer: runs it on every file of the folders named, so that inputs that once broke it are tried
-// everywhere, and on bytes made up, as often as is said.
+// Runs a fuzz target without libFuzzer: on every file of the given folders, so that inputs that once broke it are tried
+// everywhere, and on random bytes, as often as asked.
 //
 //     fuzz-NAME [--random COUNT [SEED]] [FOLDER|FILE...]
 #include <dirent.h>
@@ -13,7 +13,7 @@
 #include "fuzz/fuzz.h"
 #include "support/check.h"
 
-// What is tried now: said when it crashes, or takes longer than anything may, in seconds of processor time.
+// The current input, printed if it crashes or takes longer than this, in seconds of processor time.
 enum { MOST_SECONDS = 30 };
 static char now[4200];
 
@@ -31,7 +31,7 @@ static void say_which(int signal_number)
 static void watch(void)
 {
 #ifdef ADDRESS_SANITIZER
-    static const int signals[] = {SIGABRT, SIGPROF};  // the others are its own
+    static const int signals[] = {SIGABRT, SIGPROF};  // targets have handlers of their own for the others
 #else
     static const int signals[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPROF};
 #endif
@@ -55,13 +55,13 @@ static void run_file(const char *path)
     static uint8_t data[1 << 20];
     const size_t size = fread(data, 1, sizeof data, f);
     fclose(f);
-    uint8_t *exact = malloc(size ? size : 1);  // so that reading past the end is noticed
+    uint8_t *exact = malloc(size ? size : 1);  // an exact copy, so that reading past the end is noticed
     memcpy(exact, data, size);
     CHECK_MSG(try_bytes(exact, size) == 0, "%s", path);
     free(exact);
 }
 
-// Half of them avoid the ends of a byte's range, where targets keep what is rare: then more is accepted.
+// Half of the inputs avoid the ends of a byte's range, where targets put rare choices, so that more calls are accepted.
 static void run_random(long count, uint32_t seed)
 {
     static uint8_t data[1024];

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// What is said about writing new red alone.
+// The note about a file if only red is replaced.
 static const char *note_of(const char *path, const char *compression)
 {
     static struct hf_io_written written;
@@ -59,9 +59,10 @@ void test_compressions(void)
             round_trip(path, names[c], true, c <= EXR_COMPRESSION_PXR24);
             if (c < 8)
                 continue;
-            // Channels that DWA wears out and nobody asked to change are told; those it keeps (Z, id, u) are not.
+            // The note names channels that DWA wears out and nobody asked to change, but not those that it keeps (Z,
+            // id, u).
             CHECK_MSG(!note_of(path, names[c])[0], "%s: %s", names[c], note_of(path, names[c]));
-            // From DWA to itself and back: what Core cannot read, OpenImageIO must.
+            // From DWA to itself and back: OpenImageIO must read what Core cannot.
             rename(in_folder("out.exr"), in_folder("dwa.exr"));
             round_trip(in_folder("dwa.exr"), NULL, true, false);
             round_trip(in_folder("dwa.exr"), "zip", true, true);
@@ -81,7 +82,7 @@ void test_compressions(void)
                       "tiled %d: %s", tiled, note_of(in_folder("dwa.exr"), NULL));
             CHECK(!note_of(in_folder("dwa.exr"), "zip")[0]);
         }
-        // Masks in r keep their bits, so nothing is to be said.
+        // Masks named r keep their bits, so no note is needed.
         parts[0].channels[6] = (struct channel){"x.r", EXR_PIXEL_FLOAT, 0};
         CHECK(!make_exr(path, parts, NULL));
         CHECK(!hf_io_has_oiio() || !note_of(path, "dwaa")[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What becomes of a map's outlines, and what stays.
+// What happens to a depth map's outlines and slopes.
 #include "tools/io/depth_edges.h"
 #include "tools/io/depth_steps.h"
 
@@ -18,8 +18,8 @@ static long long sharpen(float *depth)
     return changed;
 }
 
-// A disc of one distance before another, each pixel the mean of 8 x 8 samples: all that is mixed goes to the side that
-// most of its samples are of, and nothing else moves.
+// A disc at one distance before another, each pixel the mean of 8 x 8 samples: mixed values go to the side that has
+// most of their samples, and nothing else changes.
 static void disc(float near_by, float far_away)
 {
     float depth[W * H], should[W * H];
@@ -32,7 +32,8 @@ static void disc(float near_by, float far_away)
                 const float dy = (float)y + ((float)(s / 8) + 0.5f) / 8 - 19.6f;
                 inside += dx * dx + dy * dy < 14.5f * 14.5f;
             }
-            // Half is neither's; less than a twentieth of the step is left alone.
+            // A value in the middle belongs to neither side; one within a twentieth of the step from a side is left
+            // alone.
             const float cover = inside == 32 ? 31 / 64.0f : (float)inside / 64;
             depth[y * W + x] = far_away + (near_by - far_away) * cover;
             const int kept = cover < 0.05f || cover > 0.95f;
@@ -40,14 +41,14 @@ static void disc(float near_by, float far_away)
             mixed += !kept;
         }
     const long long changed = sharpen(depth);
-    // A plateau's nearest samples may be those that were left alone.
+    // The nearest samples of a plateau may be ones that were left alone.
     for (int i = 0; i < W * H; i++)
         wrong += !(fabsf(depth[i] - should[i]) <= 0.051f * fabsf(near_by - far_away));
     CHECK_MSG(changed == mixed && mixed > 60, "%lld changed of %d", changed, mixed);
     CHECK_MSG(wrong == 0, "%d are on the wrong side", wrong);
 }
 
-// Blurred over three pixels, an upright outline is where it was.
+// An upright outline that is blurred over three pixels returns to its place.
 static void soft(void)
 {
     static const float ramp[] = {0.75f, 0.5001f, 0.25f};
@@ -68,7 +69,7 @@ static void unchanged(const char *what, const float *depth)
     CHECK_MSG(sharpen(copy) == 0 && !memcmp(copy, depth, sizeof(copy)), "%s", what);
 }
 
-// Of a gentle slope in codes only what is rounded is taken back; a step of more than two codes stays, bit for bit.
+// On a gentle slope in codes only rounding is removed; a step of more than two codes stays, bit for bit.
 static void steps(void)
 {
     enum { STEP = 30 };
@@ -87,15 +88,15 @@ static void steps(void)
         const int x = i % W, y = i / W;
         const int beside = x >= STEP - 6 && x < STEP + 6;
         wrong += beside && copy[i] != depth[i];
-        // Means of a slope are its own where 13 x 13 pixels lie within the map.
+        // A mean equals the slope's own value where 13 x 13 pixels lie inside the map.
         if (beside || x < 6 || y < 6 || x >= W - 6 || y >= H - 6)
             continue;
         off[0] += (depth[i] - slope[i]) * (depth[i] - slope[i]);
         off[1] += (copy[i] - slope[i]) * (copy[i] - slope[i]);
     }
     CHECK_MSG(wrong == 0, "%lld samples beside the step changed", wrong);
-    // Along a row rounding's error has a period of 1 / 0.07 = 14.3 pixels, of which 13 leave a tenth; its squares are a
-    // hundredth, and with what rows add far less than a quarter.
+    // Along a row the rounding error has a period of 1 / 0.07 = 14.3 pixels; a mean of 13 leaves a tenth of it. Its
+    // square is a hundredth, and with what the rows add far less than a quarter.
     CHECK_MSG(off[1] < off[0] / 4, "squares of %g, before %g", (double)off[1], (double)off[0]);
     for (int i = 0; i < W * H; i++)
         depth[i] = i % W < STEP ? 0.2f : 0.2f + 3 * unit;
@@ -112,7 +113,7 @@ void test_depth_edges(void)
     disc(3, 40);
     soft();
     for (int k = 0; k < 4; k++) {
-        // Slopes in all directions, as steep as they come.
+        // Slopes in all directions, as steep as the depth allows.
         for (int i = 0; i < W * H; i++)
             depth[i] = (float)(k == 0   ? i % W
                                : k == 1 ? i / W

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is refused, and what goes wrong.
+// Refused files, and failures.
 #include "io/tests.h"
 
 #include <math.h>

@@ -109,7 +109,7 @@ static exr_result_t write_tiles(exr_context_t f, int p)
     return rv;
 }
 
-// One sample in every pixel; only ever copied, so it need not mean much.
+// One sample in every pixel. It is only copied, so its value does not matter.
 static exr_result_t write_deep(exr_context_t f, int p, const struct part *part)
 {
     int32_t counts[64];
@@ -185,7 +185,7 @@ exr_result_t make_exr(const char *path, const struct part *parts, const char *vi
             const int s = ch->sampling ? ch->sampling : 1;
             rv = exr_add_channel(f, p, ch->name, ch->type, EXR_PERCEPTUALLY_LOGARITHMIC, s, s);
         }
-        if (!rv && deep)  // Core 3.1 wants it everywhere then
+        if (!rv && deep)  // Core 3.1 then needs the version in every part
             rv = exr_set_version(f, p, 1);
         add_attributes(f, p, part, views);
     }
@@ -222,7 +222,7 @@ void spill(const char *path, const void *data, size_t size)
     }
 }
 
-// Where the header ends: names, types and sizes to an empty name, once per part, once more in multi-part files.
+// The end of the header: names, types and sizes up to an empty name, once per part, and once more in multi-part files.
 size_t header_size(const uint8_t *d, size_t size)
 {
     const bool multi = d[5] & 0x10;
@@ -255,7 +255,7 @@ bool runs_backwards(const char *path, int chunks)
     return backwards;
 }
 
-// Core 3.1 writes chunks from the top whatever the line order; turn a single-part file round.
+// Core 3.1 writes chunks from the top for any line order; this reverses a single-part file.
 void turn_round(const char *path, int chunks)
 {
     size_t size;
@@ -276,7 +276,7 @@ void turn_round(const char *path, int chunks)
     free(d);
 }
 
-// All samples of a channel, by Core's own unpacking. NULL for deep and mipmapped parts.
+// All samples of a channel, unpacked by Core. NULL for deep and mipmapped parts.
 uint8_t *load_channel(exr_context_t f, int p, int c, size_t *size)
 {
     exr_attr_box2i_t dw;
@@ -333,7 +333,7 @@ static bool replaced(const struct hf_io_file *f, const struct hf_io_result *r, i
     return false;
 }
 
-// Every channel that was not replaced has the same bits in both files.
+// Check that every channel that was not replaced has the same bits in both files.
 void compare_channels(const char *a, const char *b, const struct hf_io_file *f, const struct hf_io_result *r, int n)
 {
     exr_context_initializer_t init = context();

@@ -29,7 +29,7 @@ struct part {
     struct channel channels[MAX_CHANNELS];
 };
 
-extern const char *folder;  // where the test's files are
+extern const char *folder;  // the folder of the test's files
 extern uint64_t seed;
 
 uint32_t rnd(void);
@@ -43,15 +43,15 @@ void spill(const char *path, const void *data, size_t size);
 size_t header_size(const uint8_t *d, size_t size);
 // Whether the last chunk of the first part stands before the first.
 bool runs_backwards(const char *path, int chunks);
-// Core 3.1 writes chunks from the top whatever the line order; turn a single-part file round.
+// Core 3.1 writes chunks from the top for any line order; this reverses a single-part file.
 void turn_round(const char *path, int chunks);
 bool lossy(exr_compression_t c);
-// Every channel that was not replaced has the same bits in both files.
+// Check that every channel that was not replaced has the same bits in both files.
 void compare_channels(const char *a, const char *b, const struct hf_io_file *f, const struct hf_io_result *r, int n);
 void compare_headers(const char *a, const char *b);
 int files_in(const char *dir);
 exr_context_initializer_t context(void);
-// All samples of a channel, by Core's own unpacking. NULL for deep and mipmapped parts.
+// All samples of a channel, unpacked by Core. NULL for deep and mipmapped parts.
 uint8_t *load_channel(exr_context_t f, int p, int c, size_t *size);
 
 #endif

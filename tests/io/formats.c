@@ -48,7 +48,7 @@ void test_planes(void)
     CHECK_INT(files_in(folder), files);
 }
 
-// A depth file of another size than the picture: the sample whose place the middle of a pixel falls into.
+// A depth file of another size than the picture: the sample that contains the middle of a pixel is taken.
 void test_depth_file_sizes(void)
 {
     static const char *const names[] = {"Z"};
@@ -85,7 +85,7 @@ void test_depth_file_sizes(void)
                  &err, "less than 5 times");
 }
 
-// Chunks of all lengths around that at which compressing gains nothing.
+// Chunks of all lengths around the one at which compressing gains nothing.
 static void new_files(void)
 {
     static const char *const names[] = {"Z"}, *const kinds[] = {"none", "rle", "zips", "zip", "piz"};
@@ -160,7 +160,8 @@ static void format_trip(const char *name, float bound, bool alpha)
     hf_io_close(&f);
 }
 
-// What OpenImageIO reads: half a file is an error, and rubbish, which crashes some of its readers, is survived.
+// Reading with OpenImageIO: half a file is an error, and random bytes, which crash some of its readers, do not crash
+// the program.
 static void test_damaged(const char *name)
 {
     const char *path = in_folder("bad"), *target = in_folder("out.exr");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A data window that grows: old samples are where they were, new ones are what the header says, whatever the storage.
+// A data window that grows: old samples keep their places, new ones are what the header says, for every storage.
 #include "io/tests.h"
 
 #include <math.h>
@@ -82,7 +82,7 @@ static void grow_one(const struct part *parts, const char *compression)
     }
     exr_finish(&a);
     exr_finish(&b);
-    // It reads as any file, and its colour is the new one everywhere.
+    // It reads as any other file, and its colour is the new one everywhere.
     if (CHECK_MSG(!hf_io_open(&f, target, NULL, &err), "%s", err.message)) {
         struct planes planes = {{allocate(n * sizeof(float)), NULL, NULL, NULL}};
         CHECK_MSG(!hf_io_check_whole(f, &err), "%s", err.message);
@@ -107,7 +107,7 @@ void test_grow(void)
             grow_one(parts, NULL);
             grow_one(parts, "none");
             grow_one(parts, "piz");
-            // With another part behind it, whose chunks move.
+            // With another part after it, whose chunks move.
             parts[0].name = "colour";
             parts[1] = usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIPS, EXR_LINEORDER_INCREASING_Y);
             parts[1].name = "other";

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture files of the programs: makes small EXR files with OpenEXRCore, sends them through hf_io_write and
-// compares what comes out with what went in, channel by channel and byte by byte; then feeds it rubbish.
-// HF_SHARED=DIR also tries the stereo pictures in DIR/images/beachball; HF_SEED=N makes other rubbish.
+// The programs' picture files. The test makes small EXR files with OpenEXRCore, sends them through hf_io_write, and
+// compares output and input channel by channel and byte by byte; then it tries random bytes. With HF_SHARED=DIR it also
+// tries the stereo pictures in DIR/images/beachball; HF_SEED=N changes the random bytes.
 #include <stdlib.h>
 
 #include "io/tests.h"
 
 int main(void)
 {
-    // In memory if there is such a place: every written file is synced, which takes a disk its time.
+    // In memory if possible: every written file is synced, which takes a disk a while.
     char memory[] = "/dev/shm/hyperfocal-io-XXXXXX", disk[] = "/tmp/hyperfocal-io-XXXXXX", command[100];
     folder = mkdtemp(memory);
     if (!folder)

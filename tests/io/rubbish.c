@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Damaged files, and headers that promise what is not there.
+// Damaged files, and headers that promise data that is not there.
 #include "io/tests.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Reads and writes all of a file; whatever is in it, nothing may crash. Returns whether all went well.
+// Read and write all of a file; nothing may crash, whatever it contains. Returns whether all went well.
 bool survive(const char *path, const char *target)
 {
     struct hf_io_error err = {.message = ""};
@@ -87,8 +87,8 @@ void test_huge_header(void)
     free(data);
 }
 
-// The table of chunks lies where a number leads to the end of a table that begins there. Its first two entries change
-// places: each then leads to another row's chunk, which is whole.
+// The chunk table is found by a number that points to the end of a table beginning there. Swapping its first two
+// entries makes each point to another row's chunk, which is intact.
 void test_swapped_chunks(void)
 {
     const struct part parts[MAX_PARTS] = {
@@ -113,8 +113,8 @@ void test_swapped_chunks(void)
     free(data);
 }
 
-// A file that is opened while another program still writes it: at each length it is cut there, opened, completed, and
-// read. What was not there when it was opened counts as missing, and no memory is made for it.
+// A file that is opened while another program still writes it: it is cut at each length, opened, completed, and read.
+// What was not there when it was opened counts as missing, and gets no memory.
 void test_growing(void)
 {
     const struct part parts[MAX_PARTS] = {
@@ -143,7 +143,7 @@ void test_growing(void)
     free(data);
 }
 
-// Headers that Core believes and other readers do not, and files that are called what they are.
+// Headers that Core accepts and other readers do not, and files that are recognised as what they are.
 void test_claims(void)
 {
     struct part parts[MAX_PARTS] = {usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};

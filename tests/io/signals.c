@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A process that writes files all the time is ended by a signal: nothing half-written stays, and nobody else's file goes.
+// A signal ends a process that writes files continuously: no incomplete file stays, and no other process's file is
+// removed.
 #include <dirent.h>
 #include <signal.h>
 #include <string.h>
@@ -39,7 +40,7 @@ static void write_on(void *arg, int i, int worker)
 static void write_until_struck(void)
 {
     struct hf_io_run run;
-    // Who runs the tests may ignore one (nohup), and the program leaves it so.
+    // The test's caller may ignore a signal (nohup), and the program must leave it ignored.
     for (int i = 0; i < 3; i++)
         signal(numbers[i], SIG_DFL);
     hf_io_catch_signals();
@@ -48,7 +49,7 @@ static void write_until_struck(void)
     _exit(1);
 }
 
-// Files whose name says that they are temporary, and those that are not whole.
+// Count the files with temporary names, and those that are incomplete.
 static int left_over(void)
 {
     int n = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Halves, ZIP, the stages of a frame, files that share a helper.
+// Halves, ZIP, the stages of a frame, files that share a helper process.
 #include "io/tests.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ void test_half(void)
     }
     CHECK_INT(bad, 0);
     CHECK_INT(clamped, 0);
-    for (int i = 0; i < 200000; i++) {  // nearest, ties to even: no neighbour is nearer
+    for (int i = 0; i < 200000; i++) {  // rounded to nearest, ties to even: no other half is nearer
         const float f = ldexpf((float)(rnd() & 0xffffff) + 0.5f, (int)(rnd() % 40) - 50);
         const uint16_t h = hf_io_to_half(f, &clamped);
         const float own = fabsf(hf_io_from_half(h) - f), up = fabsf(hf_io_from_half((uint16_t)(h + 1)) - f);
@@ -40,7 +40,7 @@ void test_half(void)
     CHECK(hf_io_to_half(NAN, &clamped) == 0 && clamped == 1);
 }
 
-// Rows of halves against single ones, from any address, whatever the processor does them with.
+// Rows of halves compared with single ones, from any address, on any processor.
 void test_half_rows(void)
 {
     static float floats[65536 + 16], want;
@@ -71,8 +71,8 @@ void test_half_rows(void)
     CHECK_INT(bad, 0);
 }
 
-// Floats around 1, all noise: what is made of them is shorter than what libdeflate makes of them alone, and they come back.
-// Bytes that are all noise do not shrink.
+// Noisy floats around 1: our chunks are shorter than libdeflate's own, and decode to the same floats. Completely random
+// bytes do not shrink.
 static void noise_zipped(void)
 {
     enum { N = 160000 };
@@ -100,7 +100,7 @@ static void noise_zipped(void)
     free(back);
 }
 
-// Bytes sorted and put back; and the same as a byte at a time.
+// Bytes sorted and restored; and the same done byte by byte.
 void test_zip(void)
 {
     enum { N = 300 };
@@ -123,8 +123,9 @@ void test_zip(void)
     noise_zipped();
 }
 
-// Fetched and decoded at once on threads, each chunk once: the same as view by view; then encoded twice from one
-// decoding. What is written back unchanged is the source, byte for byte, whoever compressed it.
+// Fetched and decoded on several threads at once, each chunk once: the result equals that of view by view. Then encoded
+// twice from one decoding. What is written back unchanged equals the source, byte for byte, whichever program
+// compressed it.
 void test_stages(void)
 {
     const char *path = in_folder("stages.exr"), *target = in_folder("out.exr");

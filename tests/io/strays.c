@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Temporary files of the dead are removed, those of the living never, whatever their machines are called; and how many
-// writes a file takes.
+// Temporary files of dead processes are removed, those of living ones never, whatever their machines' names are. Also
+// counts the writes that a file takes.
 #include <fcntl.h>
 #include <sched.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 
 static const char *strays;  // the folder of this test
 
-// Begin a file and say so through the pipe, then wait to be killed or to be told to finish.
+// Begin a file, report it through the pipe, then wait to be killed or to be told to finish.
 static void write_file(int say, int told, const char *name)
 {
     struct hf_out out;
@@ -30,7 +30,7 @@ static void write_file(int say, int told, const char *name)
     _exit(0);
 }
 
-// Two machines of one long name: what a container is, where we may make one.
+// Two machines with one long name, as a container is, where we may make one.
 static bool enter_container(void)
 {
     char host[65];
@@ -43,7 +43,7 @@ struct writer {
     int say[2], tell[2];
 };
 
-// The process that holds the file, or its parent, which dies with it. False: not possible here.
+// Start a process that holds the file (or its parent, which dies with it). False if that is impossible here.
 static bool start_writer(struct writer *w, const char *name, bool contained)
 {
     char byte;
@@ -108,7 +108,7 @@ static void test_writers(void)
     CHECK_INT(files_in(strays), 0);
 }
 
-// Files by their names, ages and locks.
+// Files with various names, ages and locks.
 static void test_others(void)
 {
     const struct {
@@ -145,7 +145,7 @@ static void test_others(void)
 
 enum { RACERS = 4, RACES = 500 };
 
-// Writers and those who remove strays at once, in one folder: no file of the former is lost.
+// Writers and removers of strays at once, in one folder: no writer's file is lost.
 static void race(void *arg, int i, int worker)
 {
     char name[300];

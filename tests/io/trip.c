@@ -38,7 +38,7 @@ void free_planes(struct planes *planes)
         free(planes->p[k]);
 }
 
-// What was written is what is read: exactly for lossless floats, clamped and rounded for halves.
+// The file has the written values: exactly for lossless floats, clamped and rounded for halves.
 static void check_written(const char *path, const struct hf_io_file *source, const struct hf_io_result *r, int n,
                           bool half)
 {
@@ -65,7 +65,7 @@ static void check_written(const char *path, const struct hf_io_file *source, con
     hf_io_close(&f);
 }
 
-// Write new colours for all views of a file, then see that nothing else changed.
+// Write new colours for all views of a file, and check that nothing else changed.
 void round_trip(const char *path, const char *compression, bool half, bool exact)
 {
     const char *target = in_folder("out.exr");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which channels are a picture, and which its depth: views, parts, layers, names.
+// Which channels are a picture, and which one is its depth: views, parts, layers, names.
 #include "io/tests.h"
 
 #include <math.h>
@@ -67,7 +67,7 @@ void test_single_part_views(void)
     hf_io_close(&f);
 }
 
-// Stereo in parts, depth with windows of its own, a deep part that nobody looks into.
+// Stereo in parts, depth with its own windows, and a deep part that is not read.
 void test_parts(void)
 {
     const exr_pixel_type_t h = EXR_PIXEL_HALF, fl = EXR_PIXEL_FLOAT;
@@ -146,7 +146,7 @@ static struct hf_io_file *try_names(const char *const names[], int views, struct
 void test_names(void)
 {
     static const char *const tries[][12] = {
-        // what there is; the red channel and the depth that are to be found
+        // the channels; the expected red channel and depth
         {"Y", "Z", 0},
         {"B", "G", "R", "depth.Z", 0},
         {"B", "G", "R", "SceneDepth", 0},
@@ -196,7 +196,7 @@ void test_names(void)
     }
 }
 
-// What a choice of layers finds, as "view:layer:red:depth" with blanks between; or the error.
+// Check which layers a choice finds, as "view:layer:red:depth" separated by blanks; or the error.
 static void expect_layers(const char *path, const char *wanted, const char *want)
 {
     struct hf_io_error err = {.message = ""};

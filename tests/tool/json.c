@@ -54,12 +54,12 @@ int main(void)
     j = begin(1);
     fill(&j);
     expect(&j, "{\"a\": \"x\", \"list\": [{\"n\": -3, \"in\": [true]}, {\"f\": 0.5}, []], \"ms\": 3333.333333}\n");
-    // An end closes what is open.
+    // Ending the JSON closes what is open.
     j = begin(1);
     tool_json_open(&j, "a", '[');
     tool_json_open(&j, NULL, '{');
     expect(&j, "{\"a\": [{}]}\n");
-    // A float's shortest digits, a double's nine.
+    // The shortest digits of a float, nine of a double.
     j = begin(1);
     tool_json_number(&j, "f", 0.8f);
     tool_json_number(&j, "t", 1.0f / 3);
@@ -68,7 +68,7 @@ int main(void)
     tool_json_number(&j, "l", 123456789);
     tool_json_number(&j, "z", -0.0);
     expect(&j, "{\"f\": 0.8, \"t\": 0.33333334, \"d\": 0.123456789, \"i\": 1732123, \"l\": 123456789, \"z\": -0}\n");
-    // What JSON has no word for, and what would end a string or a page's element.
+    // Values for which JSON has no word, and characters that would end a string or a page's element.
     j = begin(1);
     tool_json_number(&j, "n", NAN);
     tool_json_ms(&j, "i", INFINITY);

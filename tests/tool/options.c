@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Command lines by a table of two sections: values, units, what is refused and how.
+// Command lines with a table of two sections: values, units, refusals and their messages.
 #include "tools/common/options.h"
 
 #include <math.h>
