@@ -322,7 +322,7 @@ static void choices(void)
     struct hf_choice last = {.step = -1}, c;
     p.max_radius = 0;                   // every step reaches as far
     static const float same = 1.0116f;  // 0.1 dB, by which a step may be worse on a scene
-    // 0.2 dB, by which a step errs less at least; the table's errors are rounded to 5e-7, 2e-5 of what they are.
+    // 0.2 dB, by which a step errs less at least; the table's errors are rounded to 5e-7, a relative 2e-5.
     static const float step = 1.0233f * (1 - 4e-5f);
     for (int i = 1; i < hf_ladder_steps; i++)
         CHECK_MSG(hf_ladder[i].ms > hf_ladder[i - 1].ms && step * hf_ladder[i].error <= hf_ladder[i - 1].error &&
@@ -353,11 +353,12 @@ static void choices(void)
         CHECK_INT(c.step, i);
         CHECK(hf_ladder_ms(&p) == hf_ladder[i].ms);
     }
-    CHECK_INT(hf_choose_error(720, NULL, &p, 1e-6f, &c), HF_OK);  // nothing errs so little: the best there is
+    CHECK_INT(hf_choose_error(720, NULL, &p, 1e-6f, &c),
+              HF_OK);  // no setting errs so little, so the best one is chosen
     CHECK_INT(c.step, hf_ladder_steps - 1);
     CHECK_INT(hf_choose_error(720, NULL, &p, 1, &c), HF_OK);
     CHECK_INT(c.step, 0);
-    // The last step draws whatever there is.
+    // The last step can draw everything.
     static const struct hf_image any;
     p.aperture = (struct hf_aperture_params){
         .blades = 7, .ring = 0.5f, .squeeze = 2, .cat_eye = 1, .roundness = 0.5f, .chromatic = 0.1f, .picture = &any};
@@ -371,7 +372,7 @@ static void choices(void)
     CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality) - 1, &c), HF_ERR_ARG);
 }
 
-// The radius of a step that must do for a picture of this height.
+// The radius that a chosen step has to reach for a picture of this height.
 static float farthest_of(struct hf_params p, int height, const struct hf_depth *depth, int *passed)
 {
     struct hf_choice c;
@@ -381,7 +382,7 @@ static float farthest_of(struct hf_params p, int height, const struct hf_depth *
     return hf_ladder_farthest(&p);
 }
 
-// A step that does not reach the blur asked for is passed over; more is never less.
+// A step that does not reach the blur asked for is skipped; a larger error limit never chooses a slower step.
 static void reaches(void)
 {
     static const struct hf_depth radii = {.type = HF_DEPTH_COC};
@@ -402,10 +403,10 @@ static void reaches(void)
     CHECK_INT(passed, lens_passed);
     CHECK(farthest_of(cut, 540, NULL, &passed) >= 4);
     CHECK_INT(passed, 0);
-    // The height that counts is the display's.
+    // The display's height counts.
     p.view.display_height = 16384;
     CHECK(farthest_of(p, 540, NULL, &passed) >= 12.f * 16384 / 1080);
-    // A draft is the first that reaches any radius, whatever is asked for.
+    // A draft is the first step that reaches any radius, for any radius asked for.
     p = hf_default_params;
     CHECK_INT(hf_choose_quality(540, NULL, &p, HF_QUALITY_DRAFT, &c), HF_OK);
     CHECK(c.step == lens_passed && c.passed == 0 && p.engine == HF_ENGINE_GATHER);
@@ -420,7 +421,7 @@ static void reaches(void)
             last = c.step;
         }
     }
-    // By error likewise: the first step that reaches and errs no more.
+    // By error too: the first step that reaches the radius and errs no more.
     for (int i = 0; i < hf_ladder_steps; i++) {
         p = lens;
         CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &c), HF_OK);
@@ -433,7 +434,7 @@ static void reaches(void)
     CHECK_INT(hf_choose_error(0, NULL, &p, 0.1f, &c), HF_ERR_ARG);
 }
 
-// Passes that settings leave out are not said to have found all sharp.
+// The report does not claim that passes found all sharp if settings leave them out.
 static void reasons(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
@@ -451,7 +452,7 @@ static void reasons(void)
             CHECK_MSG(!r.pass[i].skipped || strcmp(r.pass[i].skipped, "sharp: copied"), "%s, %s",
                       hf_engine_name(p.engine), r.pass[i].name);
         }
-        // Fill by area, the gaussian's passes of a sigma, patterns of layers.
+        // Fill with area kernels, the gaussian's passes for sigma, patterns of layers.
         CHECK_INT(left_out > 0, e == HF_ENGINE_GATHER || e == HF_ENGINE_GAUSSIAN || e == HF_ENGINE_LAYERS);
     }
     scene_free(&s);
@@ -463,7 +464,8 @@ static void count_warnings(void *cookie, enum hf_log_level level, const char *me
     *(int *)cookie += level == HF_LOG_WARNING && strstr(message, "budget_ms") != NULL;
 }
 
-// No frame fits into a microsecond: after a few, the cheapest setting; the report says so, and the log once.
+// No frame fits into a microsecond: after a few frames the cheapest setting is used; the report says so, and the log
+// once.
 static void budget_of_frames(void)
 {
     int warned = 0;
@@ -499,7 +501,7 @@ static void budget_of_frames(void)
     hf_close(&c);
 }
 
-// Looked at where it is blurred, and only there.
+// Colour is read where it is blurred, and only there.
 static void colour(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
