@@ -382,7 +382,7 @@ static float farthest_of(struct hf_params p, int height, const struct hf_depth *
     return hf_ladder_farthest(&p);
 }
 
-// A step that does not reach the blur asked for is skipped; a larger error limit never chooses a slower step.
+// A step that does not reach the blur asked for is skipped; a higher quality never chooses a lower step.
 static void reaches(void)
 {
     static const struct hf_depth radii = {.type = HF_DEPTH_COC};
