@@ -5,21 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Integral from 0 to y of the half-width of a disc's rows, radius r.
+// The integral from 0 to y of the half-width of the rows of a disc of radius r.
 static double half_disc(double r, double y)
 {
     const double t = y > r ? r : y < -r ? -r : y;
     return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
 }
 
-// What a disc covers of the height of its row dy, 1 / HF_WHOLE_ROW.
+// How much of the height of row dy a disc covers, in 1 / HF_WHOLE_ROW.
 static int row_height(double r, int dy)
 {
     const double height = r - (abs(dy) - 0.5);
     return dy == 0 || height >= 1 ? HF_WHOLE_ROW : height <= 0 ? 0 : (int)lround(HF_WHOLE_ROW * height);
 }
 
-// Half a disc's mean width over what it covers of row dy, plus half a pixel, in 1/256 pixel.
+// Half the disc's mean width over the covered part of row dy, plus half a pixel, in 1/256 pixel.
 static int32_t disc_row(double r, double scale_x, int dy)
 {
     const double height = dy ? fmin(1, r - (abs(dy) - 0.5)) : 1;
@@ -28,7 +28,7 @@ static int32_t disc_row(double r, double scale_x, int dy)
     return (int32_t)lround(256 * ((half_disc(r, dy + 0.5) - half_disc(r, dy - 0.5)) / height * scale_x + 0.5));
 }
 
-// Rows on one side of the middle one, and that.
+// The number of rows on one side, including the middle one.
 static int rows_of(double r)
 {
     return (int)ceil(r + 0.5);
@@ -44,7 +44,7 @@ static void build_disc(struct hf_aperture *a, int number, int first)
         a->half[first + dy] = disc_row(r, a->key.scale_x, dy);
         area += (dy ? 2.0 : 1.0) * (2 * a->half[first + dy] - 256) * row_height(r, dy);
     }
-    // Rows that round to nothing.
+    // Leave out rows that round to nothing.
     while (p->rows > 1 && (a->half[first + p->rows - 1] <= 128 || !row_height(r, p->rows - 1)))
         p->rows--;
     if (area <= 0) {
@@ -112,7 +112,7 @@ int hf_aperture_run(const struct hf_side *side, int sides, double y, double *a, 
     return *b > *a;
 }
 
-// Row dy: the means of what lies within it, and how much of its height that is.
+// Row dy of a polygon: the mean ends of its runs within the row, and the covered part of the row's height.
 static struct hf_run polygon_row(const struct hf_side *side, int sides, double r, double scale_x, int dy)
 {
     const int parts = r < 16 ? 16 : r < 64 ? 8 : 4;
@@ -154,7 +154,7 @@ static void build_polygon(struct hf_aperture *a, const struct hf_side *side, int
     p->area = (float)area;
 }
 
-// Discs that are cut by a cat's eye are runs like any outline.
+// Discs that a cat's eye cuts have runs like any outline.
 static void build_runs_of_disc(struct hf_aperture *a, int number, int first)
 {
     struct hf_picture *p = &a->picture[number];
@@ -185,8 +185,8 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
     a->tap = NULL;
     a->planes = a->steps = 1;
     a->symmetric = !key->blades && !key->outline;
-    // Pixels of any radii around one add up to 2 ln(r) + 6 times the brightest sample, more for smaller pictures of the
-    // same radius.
+    // Pixels of any radii around one pixel add up to at most 2 ln(r) + 6 times the brightest sample, and to more for
+    // sprites that are smaller at the same radius.
     a->headroom = key->blades ? 7 : 5;
     const size_t row = a->symmetric ? sizeof *a->half : 2 * sizeof *a->run;
     size_t rows = 0;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of the aperture from an image: box-filtered to every size, a weight for every pixel.
+// Sprites from an image of the aperture: box-filtered to every size, with a weight for every pixel.
 #include <math.h>
 #include <string.h>
 
 #include "pixel/aperture.h"
 #include "pixel/format.h"
 
-// Of the sizes 32 an octave are kept. Weight of the brightest pixel. What is more than twice as long as
-// wide is
-// cut off.
+// 32 sizes per octave are kept. FULL is the weight of the brightest pixel. Parts of an image beyond LONGEST times its
+// shorter side are cut off.
 enum { STEPS = HF_SIZES / 32, FULL = 1023, LONGEST = 2 };
 
 static float transmission(const struct hf_image *m, int c, int x, int y)
@@ -70,7 +69,7 @@ struct hf_integral hf_integral_make(double *sum, const struct hf_image *m, int c
     return (struct hf_integral){sum, m->width, m->height};
 }
 
-// Pixels of a picture of radius r to either side of its centre.
+// The pixels of a sprite of radius r on either side of its centre.
 static struct hf_picture frame_of(const struct hf_image *m, double r, double scale_x)
 {
     const double shorter = m->width < m->height ? m->width : m->height;
@@ -78,11 +77,11 @@ static struct hf_picture frame_of(const struct hf_image *m, double r, double sca
                            .reach_y = (int)ceil(r * fmin(m->height / shorter, LONGEST) + 0.5)};
     p.top = -p.reach_y;
     p.rows = 2 * p.reach_y + 1;
-    p.columns = 2 * p.reach_x + 2;  // one more, for differences
+    p.columns = 2 * p.reach_x + 2;  // one more, because differences are stored
     return p;
 }
 
-// Weights of one size, as differences along x. Returns their sum.
+// The weights of one size, as differences along x. Returns their sum.
 static double draw(struct hf_aperture *a, const struct hf_picture *p, const struct hf_integral *t, double r)
 {
     const double shorter = t->width < t->height ? t->width : t->height, unit = shorter / 2 / r,
@@ -152,7 +151,7 @@ int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key 
             p->first = first;
             first += p->rows * p->columns;
             double area = draw(a, p, &t, r);
-            if (area <= 0) {  // a black picture: the pixel itself
+            if (area <= 0) {  // a black image: the pixel itself
                 int16_t *tap = a->tap + p->first - (ptrdiff_t)p->top * p->columns + p->reach_x;
                 tap[0] = 1;
                 tap[1] = -1;

@@ -64,7 +64,7 @@ static void load_quad(const struct hf_frame *f, int colour, int x, int y, const 
         colour == HF_HEXAGON_NEAR_COLOUR_2 ? (sum * scale) * sqrtf(spread) : light_over(*to[0], *to[1], *to[2], q);
 }
 
-// The visible part of a quad for near pixels around it: all pixels that are not near themselves, or hardly.
+// The visible part of a quad for near pixels around it: all pixels that are not near, or hardly near.
 static void load_seen(const struct hf_frame *f, int x, int y, const float radius[4], float *const lane[2][2][4], int i)
 {
     float w[4];

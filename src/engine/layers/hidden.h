@@ -8,8 +8,7 @@
 
 enum { HF_LAYERS_SMOOTH = 6, HF_LAYERS_TAPS = 2 * HF_LAYERS_SMOOTH + 1 };  // hidden samples on either side in a mean
 
-// Weight of a sample in the mean of its line, by its distance from the middle, if it is as far away. It falls to 0 at
-// this difference of radius.
+// In a mean along a line a sample's weight falls with its difference of radius from the middle one, to 0 at ALIKE.
 #define HF_LAYERS_ALIKE 4
 // A sample that covers less than 1 / WHOLE of its quad counts less, so that none suddenly appears in its neighbours'
 // means.
@@ -21,17 +20,18 @@ enum { HF_LAYERS_SMOOTH = 6, HF_LAYERS_TAPS = 2 * HF_LAYERS_SMOOTH + 1 };  // hi
 // OTHER at the least. Edges behind an object stay edges, and streaks disappear.
 #define HF_LAYERS_SHADES 2
 #define HF_LAYERS_OTHER 0.1f
+// Its weight by its place in the line, i from 0 to 2 SMOOTH.
 static inline float hf_layers_line(int i)
 {
     return (float)(HF_LAYERS_SMOOTH + 1 - (i < HF_LAYERS_SMOOTH ? HF_LAYERS_SMOOTH - i : i - HF_LAYERS_SMOOTH));
 }
 
-// How far a sample of radius r belongs to no surface. Its radius is then a mean of two surfaces' radii. In slices that
-// are drawn sharp it would be a speck if it lies there itself, or a hole if its neighbours do; it takes their place
-// instead. It is lonely if, in its row and in its column, less than ALONE of the weight is as far away as itself, and
-// not at all from 1 / COMPANY above that; more in either of the two suffices, or a thin rod's samples would be lost.
-// like, others: weight of samples that are as far away and of those that are not; size: weight of the latter times
-// their absolute radii.
+// How lonely a sample of radius r is in a line, 0 to 1. The radius of a lonely sample is a mean of two surfaces' radii, so
+// it belongs to neither. In a slice that is drawn sharp it would be a speck, or a hole among its neighbours; their mean
+// replaces it. The part of the line's weight that is as far away as the sample decides: it is fully lonely up to ALONE,
+// and not at all from 1 / COMPANY above that. The caller takes the lesser result of row and column, or a thin rod's
+// samples would be lost. like, others: weight of samples that are as far away and of those that are not; size: weight of
+// the latter times their absolute radii.
 #define HF_LAYERS_ALONE (1.0f / 7)
 #define HF_LAYERS_COMPANY 4
 #define HF_LAYERS_SHARP 2

@@ -89,7 +89,7 @@ typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
 enum hf_layers_sums { HF_SUMS_HIDING, HF_SUMS_SEEN, HF_SUMS_HELD, HF_SUMS_HIDDEN };
 typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, const float *const in[5],
                              enum hf_layers_sums sums, int n, float *part);
-// Add the shares of one radius, of which a slice shows that much: out += part * amount * in.
+// Add the shares of one radius where their slice is visible: out += part * amount * in; part: its visible part.
 typedef void hf_layers_light(const float *part, float amount, const float *in, int n, float *out);
 // The final n pixels from the near sums and, if not NULL, the far ones. Where the far coverage is below `faint`, near
 // and far share the open part. A result equal to the pixel's own colour takes its bits.
