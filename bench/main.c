@@ -47,7 +47,7 @@ static int run(int argc, char **argv, struct tool_error *error)
     if (args.help > 2)
         tool_print_man(&bench_program);
     else if (args.help)
-        tool_print_help(&bench_program, 1);
+        tool_print_help(&bench_program, bench_command_words[c][0], 1);
     if (args.help)
         return fflush(stdout) ? tool_fail(error, -1, "standard output could not be written") : 0;
     if (!known)

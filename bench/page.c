@@ -6,6 +6,7 @@
 #include "page_chart.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <spawn.h>
 #include <stdlib.h>
@@ -265,14 +266,30 @@ int bench_page_write(struct trade_run *run, const char *path, struct tool_error 
     return err;
 }
 
-// Run a program from PATH. Returns its exit status, or 127 if it is not installed.
+// Run a program from PATH, without its stdout. Returns its exit status, or 127 if it is not installed.
 static int run_program(char *const words[])
 {
     pid_t child;
     int status;
-    if (posix_spawnp(&child, words[0], NULL, NULL, words, environ) || waitpid(child, &status, 0) != child)
-        return 127;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 126;
+    posix_spawn_file_actions_t quiet;
+    if (posix_spawn_file_actions_init(&quiet))
+        return 126;
+    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    const int failed =
+        posix_spawnp(&child, words[0], &quiet, NULL, words, environ) || waitpid(child, &status, 0) != child;
+    posix_spawn_file_actions_destroy(&quiet);
+    return failed ? 127 : WIFEXITED(status) ? WEXITSTATUS(status) : 126;
+}
+
+static int no_converter(struct tool_error *error)
+{
+    return tool_fail(error, -1, "--png needs the program rsvg-convert (Debian: librsvg2-bin)");
+}
+
+int bench_page_png_check(struct tool_error *error)
+{
+    char *const words[] = {"rsvg-convert", "--version", NULL};
+    return run_program(words) ? no_converter(error) : 0;
 }
 
 int bench_page_png(const struct trade *t, const char *path, struct tool_error *error)
@@ -288,6 +305,6 @@ int bench_page_png(const struct trade *t, const char *path, struct tool_error *e
     const int status = fclose(f) || failed ? 126 : run_program(words);
     unlink(svg);
     if (status == 127)
-        return tool_fail(error, -1, "--png needs the program rsvg-convert (Debian: librsvg2-bin)");
+        return no_converter(error);
     return status ? tool_fail(error, -1, "--png: cannot write %s", path) : 0;
 }

@@ -7,7 +7,9 @@
 
 // Renders each setting once more for its crops. Returns 0, or -1 with *error filled.
 int bench_page_write(struct trade_run *run, const char *path, struct tool_error *error);
-// Write the page's first chart as a PNG, drawn by a browser or by rsvg-convert, whichever is installed.
+// Check before anything is measured that rsvg-convert is installed. Returns 0, or -1 with *error filled.
+int bench_page_png_check(struct tool_error *error);
+// Write the page's first chart as a PNG, drawn by rsvg-convert. Returns 0, or -1 with *error filled.
 int bench_page_png(const struct trade *t, const char *path, struct tool_error *error);
 
 #endif

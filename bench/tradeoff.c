@@ -176,6 +176,8 @@ int bench_tradeoff(struct bench_args *args, struct tool_error *error)
         err = tool_fail(error, -1, "--ladder %s needs all settings, leave --setting away", args->ladder);
     if (!err && args->readme)
         err = trade_readme_check(args->readme, error);
+    if (!err && args->png)
+        err = bench_page_png_check(error);
     if (!err)
         err = trade_run_open(&run, &t, error);
     if (!err)

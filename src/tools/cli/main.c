@@ -211,7 +211,7 @@ static int run(int argc, char **argv, struct tool_error *error)
     if (!status && args.help > 2)
         tool_print_man(&cli_program);
     else if (!status && args.help)
-        tool_print_help(&cli_program, args.help > 1);
+        tool_print_help(&cli_program, NULL, args.help > 1);
     else if (!status && args.version)
         printf("hyperfocal %s\n", hf_version());
     else if (!status)

@@ -60,11 +60,12 @@ static void add_choices(char text[HELP], const struct tool_option *o)
     add(text, ".", 1);
 }
 
-// The help of an option, or its first sentence and the default, behind the engines or commands that it is for.
-static const char *words_of(const struct tool_option *o, int all, char text[HELP])
+// The help of an option, or its first sentence and the default, behind the engines or commands that it is for. In the
+// help of one command its name is left away.
+static const char *words_of(const struct tool_option *o, int all, const char *command, char text[HELP])
 {
     char engines[256];
-    const char *only = o->engines ? o->engines : o->commands, *dflt = strstr(o->help, ". Default");
+    const char *only = o->engines ? o->engines : command ? NULL : o->commands, *dflt = strstr(o->help, ". Default");
     const int length = all ? (int)strlen(o->help) : sentence(o->help);
     text[0] = '\0';
     if (only) {
@@ -83,7 +84,7 @@ static const char *words_of(const struct tool_option *o, int all, char text[HELP
 }
 
 // Print an option with its whole help, or the short one.
-static void print_option(const struct tool_option *o, int all)
+static void print_option(const struct tool_option *o, int all, const char *command)
 {
     int at = o->letter ? printf("  -%c, ", o->letter) : printf("      ");
     at += printf("--%s", o->name);
@@ -98,7 +99,7 @@ static void print_option(const struct tool_option *o, int all)
         word += n + bar;
     }
     char text[HELP];
-    print_wrapped(words_of(o, all, text), COLUMN, at);
+    print_wrapped(words_of(o, all, command, text), COLUMN, at);
 }
 
 static int is_usual(const struct tool_program *program, const struct tool_option *o)
@@ -109,37 +110,72 @@ static int is_usual(const struct tool_program *program, const struct tool_option
     return !program->usual;
 }
 
-// Call a function for each option of a group, in order.
-static void each_option(const struct tool_program *program, int group,
-                        void (*print)(const struct tool_option *option, int all), int all)
+static int is_of_command(const struct tool_option *o, const char *command)
 {
-    for (int s = 0; s < program->section_count; s++)
-        for (const struct tool_option *o = program->sections[s].options; o->name; o++)
-            if ((int)o->group == group && (all || is_usual(program, o)))
-                print(o, all);
+    return !command || !o->commands || tool_has_word(o->commands, command);
 }
 
-void tool_print_help(const struct tool_program *program, int all)
+// Call a function, if not NULL, for each option of a group, in order; of a command, for those that it takes. Returns how
+// many there are.
+static int each_option(const struct tool_program *program, int group, const char *command,
+                       void (*print)(const struct tool_option *option, int all, const char *command), int all)
+{
+    int count = 0;
+    for (int s = 0; s < program->section_count; s++)
+        for (const struct tool_option *o = program->sections[s].options; o->name; o++)
+            if ((int)o->group == group && (all || is_usual(program, o)) && is_of_command(o, command)) {
+                count++;
+                if (print)
+                    print(o, all, command);
+            }
+    return count;
+}
+
+// Print all commands, or the one whose help it is.
+static void print_commands(const struct tool_program *program, const char *command)
+{
+    for (int i = 0, first = 1; program->commands && program->commands[i][0]; i++)
+        if (!command || !strcmp(command, program->commands[i][0])) {
+            const char *name = program->commands[i][0];
+            print_wrapped(program->commands[i][1], COLUMN, printf("%s  %s", first ? "\n" : "", name) - first);
+            first = 0;
+        }
+}
+
+// Print all examples, or those of a command, which begin with the program's name and its own.
+static void print_examples(const struct tool_program *program, const char *command)
+{
+    char begin[128] = "";
+    int count = 0;
+    if (command)
+        snprintf(begin, sizeof begin, "%s %s ", program->name, command);
+    for (int i = 0; program->examples[i]; i++)
+        if (!strncmp(program->examples[i], begin, strlen(begin)))
+            printf("%s  %s\n", count++ ? "" : "\nExamples\n", program->examples[i]);
+}
+
+void tool_print_help(const struct tool_program *program, const char *command, int all)
 {
     all |= !program->usual;
-    printf("%s %s: %s\n\n    %s %s\n\n", program->name, hf_version(), program->subject, program->name, program->usage);
+    printf("%s %s: %s\n\n    %s ", program->name, hf_version(), program->subject, program->name);
+    if (command)
+        printf("%s [options]\n\n", command);
+    else
+        printf("%s\n\n", program->usage);
     print_wrapped(program->intro, 0, 0);
-    for (int i = 0; program->commands && program->commands[i][0]; i++)
-        print_wrapped(program->commands[i][1], COLUMN, printf("%s  %s", i ? "" : "\n", program->commands[i][0]) - !i);
+    print_commands(program, command);
     if (!all)
         printf("\n");
     for (int group = 0; group < TOOL_GROUPS; group++) {
-        if (all && program->groups[group])
+        if (all && program->groups[group] && each_option(program, group, command, NULL, all))
             printf("\n%s\n", program->groups[group]);
-        each_option(program, group, print_option, all);
+        each_option(program, group, command, print_option, all);
     }
     if (all && program->more) {
         printf("\n%s\n", program->more_title);
         print_wrapped(program->more, 2, 0);
     }
-    printf("\nExamples\n");
-    for (int i = 0; program->examples[i]; i++)
-        printf("  %s\n", program->examples[i]);
+    print_examples(program, command);
     printf("\n");
     print_wrapped(program->outro, 0, 0);
 }
@@ -162,7 +198,7 @@ static void put_roff(const char *text)
         }
 }
 
-static void man_option(const struct tool_option *o, int all)
+static void man_option(const struct tool_option *o, int all, const char *command)
 {
     (void)all;
     fputs(".TP\n.B ", stdout);
@@ -176,7 +212,7 @@ static void man_option(const struct tool_option *o, int all)
     }
     putchar('\n');
     char text[HELP];
-    put_roff(words_of(o, 1, text));
+    put_roff(words_of(o, 1, command, text));
     putchar('\n');
 }
 
@@ -200,7 +236,7 @@ void tool_print_man(const struct tool_program *program)
             put_roff(program->groups[group]);
             fputs("\"\n", stdout);
         }
-        each_option(program, group, man_option, 1);
+        each_option(program, group, NULL, man_option, 1);
     }
     if (program->more) {
         fputs(".SH \"", stdout);

@@ -6,7 +6,7 @@
 
 #include "tools/common/nearest.h"
 
-static int has_word(const char *list, const char *word)
+int tool_has_word(const char *list, const char *word)
 {
     const size_t length = strlen(word);
     for (size_t n; *list; list += n + (list[n] == '|')) {
@@ -46,7 +46,7 @@ const struct tool_option *tool_misfit(const struct tool_parser *p, enum hf_engin
 {
     const struct tool_option *o;
     for (int i = 0; (o = option_at(p->program, i)); i++)
-        if (p->state[i].given && o->engines && !has_word(o->engines, hf_engine_name(engine)))
+        if (p->state[i].given && o->engines && !tool_has_word(o->engines, hf_engine_name(engine)))
             return o;
     return NULL;
 }
@@ -104,7 +104,7 @@ static int set_value(struct tool_parser *p, int i, const char *value, int apart)
 {
     const struct tool_option *o = option_at(p->program, i);
     char commands[256];
-    if (o->commands && p->command && !has_word(o->commands, p->command))
+    if (o->commands && p->command && !tool_has_word(o->commands, p->command))
         return tool_fail(p->error, -1, "--%s is of use only with %s, not %s", o->name, tool_and(o->commands, commands),
                          p->command);
     p->metric = 0;

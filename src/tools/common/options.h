@@ -97,6 +97,8 @@ void tool_scale_metric(struct tool_parser *p, float unit);
 // b".
 const struct tool_option *tool_misfit(const struct tool_parser *p, enum hf_engine engine);
 const char *tool_and(const char *list, char buf[256]);
+// Whether a list "a|b" holds a word.
+int tool_has_word(const char *list, const char *word);
 
 // The address of an option's value.
 void *tool_field(const struct tool_parser *p, const struct tool_option *option);
@@ -115,7 +117,8 @@ const char *tool_units(enum tool_unit unit);
 int tool_read_number(const char *text, double *value);
 
 // Print the help text: the usual options, or all.
-void tool_print_help(const struct tool_program *program, int all);
+// command: one, of which it then tells alone; NULL: all.
+void tool_print_help(const struct tool_program *program, const char *command, int all);
 // The man page, in roff.
 void tool_print_man(const struct tool_program *program);
 
