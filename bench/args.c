@@ -21,11 +21,11 @@
 
 static const struct tool_option options[] = {
     {"size", 0, TOOL_FILES, "WxH", "Size of a built-in scene, pixels. Default 1920x1080.", .parse = tool_parse_size,
-     FIELD(width), .max = 65536, .commands = "passes|scaling|batch|formats"},
+     FIELD(width), .max = 65536, .commands = "passes|scaling|batch|formats|history"},
     {"scene", 0, TOOL_FILES, "NAME|FILE", "mixed (default), near, far, both, full, focus, band:PERCENT, or an EXR file.",
      TEXT(scene), .commands = "passes"},
     {"images", 0, TOOL_FILES, "DIR", "Folder of NAME.exr and NAME.truth.exr. Default: images "
-     "here, in the source, or where it is installed.", TEXT(images), .commands = "truth|batch|tradeoff"},
+     "here, in the source, or where it is installed.", TEXT(images), .commands = "truth|batch|tradeoff|history"},
     {"image", 0, TOOL_FILES, "FILE", "Compare this picture with --truth, in place of the scenes.", TEXT(image), .commands = "truth"},
     {"truth", 0, TOOL_FILES, "FILE", "The reference for --image.", TEXT(truth), .commands = "truth"},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Only this one. Default "
@@ -40,21 +40,25 @@ static const struct tool_option options[] = {
     {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 to 2048. Default 12; truth: as the lens has "
      "it.", NUMBER(params.max_radius, 0, 2048)},
 
-    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default gather; truth and stability: all.",
+    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default gather; truth, stability and history: all.",
      NAME(params.engine, ENGINE)},
     {"blades", 0, TOOL_LOOK, "N", "Sides of the aperture; 0 (default): a disc.", COUNT(params.aperture.blades, 0, 16)},
 
     {"frames", 0, TOOL_RUN, "N", "Frames to measure. Default: as many as take a few seconds.",
-     COUNT(frames, 1, 1000000), .commands = "passes|batch"},
+     COUNT(frames, 1, 1000000), .commands = "passes|batch|history"},
     {"threads", 0, TOOL_RUN, "N", "Threads, up to 256; 0 (default): one per processor.", COUNT(threads, 0, 256)},
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set. Default auto.", NAME(isa, ISA)},
     {"full", 0, TOOL_RUN, NULL, "Run every case, some minutes.", FLAG(full), .commands = "stability"},
     {"json", 0, TOOL_RUN, "FILE|-", "Write the numbers as JSON; -: to stdout, instead of the table.", TEXT(json)},
+    {"add", 0, TOOL_RUN, NULL, "Measure this commit, some minutes, and add a line to the history.",
+     FLAG(add), .commands = "history"},
+    {"file", 0, TOOL_RUN, "FILE", "The history. Default bench/history/history.jsonl.", TEXT(history), .commands = "history"},
+    {"svg", 0, TOOL_RUN, "FILE", "Where it is drawn. Default bench/history/history.svg.", TEXT(svg), .commands = "history"},
     {"quick", 0, TOOL_RUN, NULL, "Fewer settings and rounds, within a minute.", FLAG(quick), .commands = "tradeoff"},
     {"setting", 0, TOOL_RUN, "OPTIONS", "Only the setting that these options make, in quotes.",
      TEXT(setting), .commands = "tradeoff"},
     {"html", 0, TOOL_RUN, "FILE", "Write a page with charts.", TEXT(html), .commands = "tradeoff"},
-    {"png", 0, TOOL_RUN, "FILE", "Write the first chart as a picture.", TEXT(png), .commands = "tradeoff"},
+    {"png", 0, TOOL_RUN, "FILE", "Write the first chart as a picture. Needs rsvg-convert.", TEXT(png), .commands = "tradeoff"},
     {"csv", 0, TOOL_RUN, "FILE", "Write the numbers as CSV.", TEXT(csv), .commands = "tradeoff"},
     {"ladder", 0, TOOL_RUN, "FILE", "Write the library's table of settings.", TEXT(ladder), .commands = "tradeoff"},
     {"readme", 0, TOOL_RUN, "FILE", "Write the conclusions between two marks of this file.",
@@ -83,7 +87,8 @@ const struct tool_program bench_program = {
     .sections = (const struct tool_section[]){{options, 0}, {tool_params_options, offsetof(struct bench_args, params)}},
     .section_count = 2,
     .examples = (const char *const[]){"hyperfocal-bench passes --scene both", "hyperfocal-bench truth --json -",
-                                      "hyperfocal-bench truth --image dof.exr --truth traced.exr", NULL},
+                                      "hyperfocal-bench truth --image dof.exr --truth traced.exr",
+                                      "hyperfocal-bench history --add", NULL},
     .outro = "Exit codes: 0 done, 1 not.",
 };
 

@@ -28,6 +28,9 @@ struct bench_args {
     const char *setting;  // the only setting to measure, its options in one string; NULL: the list
     const char *csv, *html, *png, *ladder, *readme;  // files to write; NULL: none
     const char *cache;                               // file, "none", or NULL: the user's cache folder
+    // history
+    int add;
+    const char *history, *svg;  // files; NULL: the default
     enum hf_format in, out;
     struct hf_params params;
     int full;                                                    // for stability: the long run

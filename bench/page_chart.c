@@ -7,10 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char chart_style[] =
-#include "chart_css.h"
-    ;
-
 enum { LEFT = 52, RIGHT = 46, TOP = 26, BOTTOM = 42, LABELS = 64 };
 
 // One point of a chart.

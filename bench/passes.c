@@ -36,32 +36,39 @@ static void json(FILE *out, const void *run)
     bench_report_json(out, run);
 }
 
-int bench_passes(struct bench_args *args, struct tool_error *error)
+int bench_passes_measure(struct bench_args *args, int with_uses, struct bench_run *run, struct bench_result *result,
+                         struct tool_error *error)
 {
     struct bench_scene scene = {0};
     struct bench_subject subject = {0};
-    struct bench_result result;
     struct tool_error log = {""};
     int err = make_scene(args, &scene, error);
     if (!err)
         err = bench_subject_open(&subject, args, &scene, &log, error);
     if (!err) {
-        err = bench_measure(&subject, args->frames, &result, error);
-        err = err ? err : bench_measure_uses(&subject, &result.uses, error);
+        err = bench_measure(&subject, args->frames, result, error);
+        if (!err && with_uses)
+            err = bench_measure_uses(&subject, &result->uses, error);
         if (err && *log.text)
             tool_fail(error, -1, "%s", log.text);
     }
-    if (!err) {
-        const struct bench_run run = {"passes",
-                                      args,
-                                      scene.width,
-                                      scene.height,
-                                      hf_context_threads(subject.context),
-                                      hf_context_isa(subject.context),
-                                      &result};
-        err = bench_write_report(args, table, json, &run, error);
-    }
+    if (!err)
+        *run = (struct bench_run){"passes",
+                                  args,
+                                  scene.width,
+                                  scene.height,
+                                  hf_context_threads(subject.context),
+                                  hf_context_isa(subject.context),
+                                  result};
     bench_subject_close(&subject);
     bench_scene_free(&scene);
     return err;
+}
+
+int bench_passes(struct bench_args *args, struct tool_error *error)
+{
+    struct bench_result result;
+    struct bench_run run;
+    return bench_passes_measure(args, 1, &run, &result, error) ? -1
+                                                               : bench_write_report(args, table, json, &run, error);
 }

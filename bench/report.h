@@ -17,6 +17,11 @@ struct bench_run {
     const struct bench_result *result;
 };
 
+// Measure what the options of `passes` ask for, with_uses the other uses of the library too. Fills *result, and *run, which
+// points at it. Returns 0, or -1 with *error filled.
+int bench_passes_measure(struct bench_args *args, int with_uses, struct bench_run *run, struct bench_result *result,
+                         struct tool_error *error);
+
 // A table for people.
 void bench_report_table(FILE *out, const struct bench_run *run);
 // One JSON object.

@@ -4,6 +4,7 @@
 #include "metrics.h"
 #include "others.h"
 #include "subject.h"
+#include "truth.h"
 #include "write.h"
 
 #include <math.h>
@@ -13,16 +14,8 @@
 static const struct bench_other *const scenes = bench_others;
 enum { SCENES = BENCH_OTHERS, LEAST = 3 };
 
-struct truth {
-    const struct bench_args *args;
-    int threads, busy;  // busy: how many measurements met a busy machine
-    struct {
-        double psnr, rmse, ms;
-    } at[SCENES][HF_ENGINE_COUNT];
-};
-
 // Whether an engine is measured; with --engine only that one is.
-static int wanted(const struct truth *t, int engine)
+static int wanted(const struct bench_truth *t, int engine)
 {
     return !t->args->engine_given || (int)t->args->params.engine == engine;
 }
@@ -41,7 +34,7 @@ static void distance(const float *a, const float *b, size_t n, double *psnr, dou
     *rmse = sqrt(linear / (double)n);
 }
 
-static int measure_engine(struct truth *t, int scene, int engine, struct bench_subject *s, const float *want,
+static int measure_engine(struct bench_truth *t, int scene, int engine, struct bench_subject *s, const float *want,
                           struct tool_error *error)
 {
     struct bench_row all;
@@ -57,7 +50,7 @@ static int measure_engine(struct truth *t, int scene, int engine, struct bench_s
     return 0;
 }
 
-static int measure_scene(struct truth *t, int i, struct tool_error *log, struct tool_error *error)
+static int measure_scene(struct bench_truth *t, int i, struct tool_error *log, struct tool_error *error)
 {
     char path[4096];
     struct bench_args args = *t->args;
@@ -95,7 +88,7 @@ static int measure_scene(struct truth *t, int i, struct tool_error *log, struct 
 
 static void table(FILE *out, const void *what)
 {
-    const struct truth *t = what;
+    const struct bench_truth *t = what;
     fprintf(out, "%-16s", "dB (ms)");
     for (int i = 0; i < SCENES; i++)
         fprintf(out, " %20s", scenes[i].scene);
@@ -129,7 +122,7 @@ static void table(FILE *out, const void *what)
 
 static void json(FILE *out, const void *what)
 {
-    const struct truth *t = what;
+    const struct bench_truth *t = what;
     struct tool_json j;
     bench_json_begin(&j, out, "truth", t->args);
     tool_json_count(&j, "threads", t->threads);
@@ -150,14 +143,20 @@ static void json(FILE *out, const void *what)
     tool_json_end(&j);
 }
 
+int bench_truth_measure(struct bench_truth *t, const struct bench_args *args, struct tool_error *error)
+{
+    struct tool_error log = {""};
+    *t = (struct bench_truth){.args = args};
+    for (int i = 0; i < SCENES; i++)
+        if (measure_scene(t, i, &log, error))
+            return *log.text ? tool_fail(error, -1, "%s", log.text) : -1;
+    return 0;
+}
+
 int bench_truth(struct bench_args *args, struct tool_error *error)
 {
-    struct truth t = {.args = args};
-    struct tool_error log = {""};
+    struct bench_truth t;
     if (args->image || args->truth)
         return bench_score(args, error);
-    for (int i = 0; i < SCENES; i++)
-        if (measure_scene(&t, i, &log, error))
-            return *log.text ? tool_fail(error, -1, "%s", log.text) : -1;
-    return bench_write_report(args, table, json, &t, error);
+    return bench_truth_measure(&t, args, error) ? -1 : bench_write_report(args, table, json, &t, error);
 }

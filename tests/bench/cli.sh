@@ -51,10 +51,30 @@ bad "--ladder|--setting" tradeoff --ladder x.h --setting "--engine gaussian"
 bad "--readme|missing.md" tradeoff --readme missing.md
 echo 'no marks' >plain.md
 bad "--readme|plain.md|<!-- /tradeoff -->" tradeoff --readme plain.md
-for command in passes truth tradeoff scaling formats batch stability; do
+# Before anything is measured: a folder without programs.
+mkdir none
+printf '#!/bin/sh\nPATH=%s exec %s "$@"\n' "$dir/none" "$bench" >without
+chmod +x without
+program=$bench bench=./without
+bad "--png|rsvg-convert|librsvg2-bin" tradeoff --png x.png
+bench=$program
+bad "cannot read the history|missing.jsonl" history --file missing.jsonl
+echo '{"date": "2026-01-02"}' >wrong.jsonl
+bad "wrong.jsonl:1:|commit" history --file wrong.jsonl
+for command in passes truth tradeoff scaling formats batch stability history; do
     "$bench" --help >out 2>err && grep -q "^  $command " out
     result "--help tells of $command" $?
+    "$bench" "$command" --help >out 2>err && grep -q "^    hyperfocal-bench $command \[options\]" out &&
+        [ "$(grep -c '^  [a-z]' out)" -eq "$((1 + $(grep -c '^  hyperfocal-bench ' out)))" ] &&
+        ! grep '^  hyperfocal-bench ' out | grep -qv "^  hyperfocal-bench $command "
+    result "$command --help is of that command" $?
 done
+# It lists what the command takes, and nothing that it refuses.
+"$bench" passes --help >out 2>err && grep -q '^      --scene' out && grep -q '^      --karis' out &&
+    ! grep -qE -e '^ +--(html|image|add|full|compression)' out
+result "passes --help" $?
+"$bench" --help >out 2>err && grep -q '^      --html' out && grep -q '^      --scene' out
+result "--help has the options of all" $?
 [ "$(awk 'length($0) > 80' out | wc -l)" -eq 0 ]
 result "--help fits 80 columns" $?
 # What stands between the marks of a file is made anew, what stands around them stays.
@@ -79,6 +99,28 @@ assert colour["rgba8", "srgb"]["bytes"] == 96 * 54 * 4 and colour["rgba32f", "li
 assert {d["format"] for d in d["depth"]} == {"float32", "float16", "unorm16", "unorm32", "d24s8", "x8d24"}
 assert all(d["plan_ms"] > 0 and d["frame_ms"] > 0 for d in d["depth"])'
 result "formats" $?
+# A made-up point, and one that is measured: a line with all there is of an engine.
+echo '{"commit": "abc1234567", "date": "2026-01-02", "cpu": "X", "isa": "avx2", "threads": 2, "dB layers/lights": 27,' \
+    '"dB layers/fence": 28, "dB layers/foliage": 29.5}' >made.jsonl
+"$bench" history --file made.jsonl --svg made.svg --json made.json >out 2>err && grep -q '^abc1234567 2026-01-02 A .* 28.17$' out &&
+    grep -q '^A  X, avx2, 2 threads' out && python3 -c '
+import json, xml.dom.minidom
+xml.dom.minidom.parse("made.svg")
+d = json.load(open("made.json"))
+assert d["command"] == "history" and d["points"][0]["dB layers/fence"] == 28'
+result "history" $?
+"$bench" history --add --file made.jsonl --svg made.svg --engine gaussian --size 64x64 --frames 1 \
+    --images "$source_root/images" >out 2>err && python3 -c '
+import json, xml.dom.minidom
+first, d = [json.loads(line) for line in open("made.jsonl")]
+assert first["commit"] == "abc1234567" and d["source"] == "measured" and len(d["truth"]) == 8
+assert all(d[k] for k in "commit date cpu isa".split()) and d["threads"] >= 1
+assert all(d[k] > 0 for k in ["memcpy_ms", "fma_gflops", "ms gaussian", "MB gaussian", "pass gaussian/Merge"])
+for scene in "lights", "fence", "foliage":
+    assert 10 < d["dB gaussian/" + scene] < 30 and d["ms gaussian/" + scene] > 0
+assert not any("gather" in k for k in d)
+assert xml.dom.minidom.parse("made.svg").getElementsByTagName("circle")'
+result "history --add" $?
 # A table of the documents is what its command prints; what has no command stays.
 printf '%s\n' '`hyperfocal-bench passes --size 64x64 --frames 1`: small' '' '    old' '' '    old' '' Text '' '    kept' >tables.md
 python3 "$source_root/docs/tables.py" --build "$(dirname "$(dirname "$bench")")" "$dir/tables.md" >out 2>err &&
