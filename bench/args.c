@@ -156,6 +156,6 @@ int bench_args_parse(struct bench_args *args, const char *command, int count, ch
     if (!hf_isa_available(args->isa))
         return tool_fail(error, -1, "--isa %s is not available on this CPU and in this build", hf_isa_name(args->isa));
     if (args->size_given && !bench_scene_builtin(args->scene, NULL))
-        return tool_fail(error, -1, "--size is for built-in scenes, but '%s' is none", args->scene);
+        return tool_fail(error, -1, "--size is for built-in scenes, but '%s' is not one", args->scene);
     return 0;
 }

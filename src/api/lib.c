@@ -75,7 +75,7 @@ static int check_config(const struct hf_config *g)
         return HF_ERR_ARG;
     }
     if (!hf_isa_name(g->isa)) {
-        say(g, HF_LOG_ERROR, "config.isa is %d, which is none", (int)g->isa);
+        say(g, HF_LOG_ERROR, "config.isa is %d, which is not an instruction set", (int)g->isa);
         return HF_ERR_ARG;
     }
     return HF_OK;

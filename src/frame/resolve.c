@@ -139,7 +139,7 @@ static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, cons
     // A lens may be focused at infinity: 1 / focus is 0 then.
     if (p->focus > 0 && (hf_is_finite(p->focus) || p->model == HF_MODEL_LENS))
         return HF_OK;
-    return hf_bad(message, "focus is %g; it must be > 0, and finite but for a lens", p->focus);
+    return hf_bad(message, "focus is %g; it must be > 0, and finite except with a lens", p->focus);
 }
 
 // The limit of the radius, before the engine's own.
@@ -218,11 +218,11 @@ int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct
     if (width < 1 || height < 1 || width > HF_MAX_SIZE || height > HF_MAX_SIZE)
         return hf_bad(message, "the picture is %d x %d pixels; each side must be 1 to %d", width, height, HF_MAX_SIZE);
     if (!e)
-        return hf_bad(message, "engine is %d, which is none", (int)p->engine);
+        return hf_bad(message, "engine is %d, which is not an engine", (int)p->engine);
     if ((unsigned)p->model > HF_MODEL_LENS)
-        return hf_bad(message, "model is %d, which is none", (int)p->model);
+        return hf_bad(message, "model is %d, which is not a model", (int)p->model);
     if ((unsigned)p->range.blend > HF_BLEND_SMOOTHSTEP)
-        return hf_bad(message, "range.blend is %d, which is none", (int)p->range.blend);
+        return hf_bad(message, "range.blend is %d, which is not a blend", (int)p->range.blend);
     if (!(p->run.budget_ms >= 0))
         return hf_bad(message, "run.budget_ms is %g; it must be >= 0", p->run.budget_ms);
     int err = hf_check_depth_type(depth, message);

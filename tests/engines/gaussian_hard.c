@@ -248,7 +248,7 @@ static void copies(struct hf_context *c, const char *isa)
             p.lens.f_number = INFINITY;
         }
         struct picture a = render_scene(c, &s, &p);
-        CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: copy %d is none", isa, i);
+        CHECK_MSG(picture_same_bits(&a, &s.colour), "%s: copy %d has other bits", isa, i);
         picture_free(&a);
     }
     scene_free(&s);

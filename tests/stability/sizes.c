@@ -170,7 +170,7 @@ static void try_size(const struct run *r, int w, int h, const struct hf_params *
                  junk[i]);
         const int err = render_shot(r, &shots[i], junk[i], p);
         see(r, "sizes: errors", "none may be", -err, 0, "%s", at);
-        see(r, "sizes: samples that hang on what memory held", "none may", i ? samples_apart(&shots[0], &shots[i]) : 0,
+        see(r, "sizes: samples that depend on old contents of memory", "none may", i ? samples_apart(&shots[0], &shots[i]) : 0,
             0, "%s", at);
         see(r, "sizes: bytes between rows that changed", "none may", junk_written(&shots[i]), 0, "%s", at);
         see(r, "sizes: samples that are not finite", "none may be", shot_not_finite(&shots[i]), 0, "%s", at);

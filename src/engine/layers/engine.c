@@ -79,7 +79,7 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     (void)asked;
     (void)depth;
     if ((unsigned)p->quality > HF_LAYERS_BEST)
-        return hf_bad(message, "layers.quality is %d, which is none", (int)p->quality);
+        return hf_bad(message, "layers.quality is %d, which is not a quality", (int)p->quality);
     const struct hf_layers_settings *set = &qualities[p->quality];
     struct hf_params *all = &r->params;
     if (all->aperture.picture && all->max_radius > hf_most_picture_radius(all)) {
