@@ -6,9 +6,9 @@
 
 #include "pixel/pass_c.h"
 
-// Around a pixel 5 x 5 are looked at, and around each of these 3 x 3 radii.
+// 5 x 5 pixels are read around each pixel, and 3 x 3 radii around each of those. RIM: columns of margin in scratch.
 enum { AROUND = 2, RIM = 4 };
-// Rows of scratch, each kind of them a ring of SLOTS.
+// Kinds of scratch rows; each kind is a ring of SLOTS rows.
 enum { RADIUS, BEYOND, SURE, MIDDLE, SLOPE, KINDS, SLOTS = 8 };
 
 static ptrdiff_t stride_of(int width)
@@ -35,13 +35,13 @@ void hf_edges_start(struct hf_edges *e, const struct hf_frame *f, struct hf_rect
         e->colours[i] = -1;
 }
 
-// Where column x0 of a row is.
+// A scratch row, at column x0.
 static float *row_at(const struct hf_edges *e, int kind, int y)
 {
     return e->ring + (kind * SLOTS + (y & (SLOTS - 1))) * e->stride + RIM;
 }
 
-// Columns beyond the frame are its edge's.
+// Fill the columns beyond the frame with its edge's.
 static void repeat(const struct hf_edges *e, float *row)
 {
     for (int x = e->x0 - RIM; x < e->left; x++)
@@ -50,8 +50,8 @@ static void repeat(const struct hf_edges *e, float *row)
         row[x - e->x0] = row[e->right - 1 - e->x0];
 }
 
-// What counts as sharp has a radius of 0, and just beyond that not: sides count radii from there, so that none jumps. Rows
-// beyond the frame are its edge's.
+// Write a row's radii, and in BEYOND by how much each exceeds the sharp radius. Radii up to that one are written as 0,
+// so they jump there; BEYOND does not, and tells the sides apart. Rows beyond the frame repeat its edge's.
 static void radius_row(struct hf_edges *e, int y)
 {
     const int inside = hf_min(hf_max(y, 0), e->f->s->height - 1);
@@ -74,7 +74,7 @@ static void sure_row(struct hf_edges *e, int y)
                         row_at(e, SLOPE, y) - RIM);
 }
 
-// Not 0 if some of n numbers are not `what`; nothing of them is NaN. Without a branch, for the compiler's vectors.
+// Not 0 if any of n numbers differs from `what`; none is NaN. Without a branch, so that the compiler uses vectors.
 static uint32_t others(const float *v, int n, float what)
 {
     uint32_t bits, any = 0, all;
@@ -97,7 +97,7 @@ int hf_edges_next(const float *share, int i, int n)
     return i;
 }
 
-// Rows of colour are read where something is mixed.
+// A channel's row of colour, read on demand: only rows near mixed pixels are.
 static const float *colour_row(struct hf_edges *e, int c, int y)
 {
     const struct hf_setup *s = e->f->s;
@@ -176,7 +176,7 @@ static float front_part(float middle, float slope, float r)
     return hf_saturate((middle - r) * slope + 0.5f);
 }
 
-// What the front and the back weigh of 5 x 5. The pixel itself, which is mixed, is never sure.
+// Weights of the 5 x 5 pixels on the front's and the back's side. The middle pixel is mixed: it has the least weight.
 static void weigh(const struct hf_edge_row *row, int x, float w[2][5][5])
 {
     for (int j = 0; j < 5; j++)
@@ -189,7 +189,7 @@ static void weigh(const struct hf_edge_row *row, int x, float w[2][5][5])
         }
 }
 
-// Mirrored pairs together. v NULL: ones.
+// Add mirrored pairs first. v NULL: all are 1.
 static float sum_of(const float w[5][5], const float *const v[5], int x)
 {
     float column[5];
@@ -214,8 +214,9 @@ static float between(float v, float a, float b)
     return v < high ? v : high;
 }
 
-// How much of the pixel the front is, by how far its colours are from the back's towards the front's. Where the two do not
-// explain them, as depth has it (a0). Alpha says nothing: brightness has no unit, and alpha has.
+// The front's share of the pixel: how far its colour lies from the back's towards the front's. Where no mixture of the
+// two makes that colour, it is the share by depth, a0. Alpha is left out: it cannot be compared with colours, which
+// have no unit.
 static float share_of(const float own[4], float mean[2][4], float a0)
 {
     float along = 0, apart = 0, largest = 0, off = 0;
@@ -237,7 +238,7 @@ static float share_of(const float own[4], float mean[2][4], float a0)
     return a0 + (a - a0) * (apart / (apart + off));
 }
 
-// The means of the two sides: of colours, times SCALE, and of radii.
+// The means of the two sides, of colours times SCALE and of radii.
 static void side_means(const struct hf_edge_row *row, int x, float mean[2][4], float radius[2])
 {
     float w[2][5][5];
@@ -249,7 +250,7 @@ static void side_means(const struct hf_edge_row *row, int x, float mean[2][4], f
         for (int c = 0; c < row->channels; c++) {
             for (int j = 0; j < 5; j++)
                 v[j] = row->colour[j][c];
-            // Divided, so that the mean of ones is 1.
+            // A division, so that a mean of ones is exactly 1.
             mean[k][c] = between(sum_of(w[k], v, x) / whole, -FLT_MAX * HF_EDGES_SCALE, FLT_MAX * HF_EDGES_SCALE);
         }
     }
@@ -270,7 +271,7 @@ static void take_pixel(const struct hf_edge_row *row, int x, const struct hf_sid
     const float mixed = 1 - row->sure[2][x], given = share_of(v, mean, a0);
     const float of_front = hf_saturate((given - HF_EDGES_NOISE) * (1 / (1 - 2 * HF_EDGES_NOISE)));
     const float share = (float)(int32_t)(mixed * (1 - of_front) * HF_EDGES_PARTS) * (1.0f / HF_EDGES_PARTS);
-    // The front's share that goes with it, where the pixel is wholly mixed; what is not taken apart goes with the front.
+    // The front's share of what is taken apart, from the rounded share. The rest of the pixel goes with the front.
     const float a = 1 - share / mixed, seen = 1 - share, whole = seen > 0 ? row->sure[2][x] / seen : 0;
     for (int c = 0; c < row->channels; c++) {
         const float f = mean[0][c], b = mean[1][c], rest = v[c] - (b + a * (f - b));

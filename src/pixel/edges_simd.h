@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mixed pixels on vectors: in the order of operations of edges.c, and nothing is fused.
+// Mixed pixels on vectors, with operations in the order of edges.c and none fused.
 #include <float.h>
 
 #include "pixel/edges.h"
 #include "simd/simd.h"
 
-// Least and largest of a column of three.
+// Least and largest radius of a column of three.
 HF_INLINE void edges_column(const float *const radius[3], int x, vf *low, vf *high)
 {
     const vf a = vf_load(radius[0] + x), b = vf_load(radius[1] + x), c = vf_load(radius[2] + x);
@@ -50,7 +50,7 @@ HF_INLINE vf edges_between(vf v, vf a, vf b)
     return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
 }
 
-// Column i of 5 x 5: sums of the weights of both sides, of these times radii, and of these times colours.
+// For column i of the 5 x 5, on both sides: sums of weights, of weighted radii, and of weighted colours.
 HF_INLINE void edges_sums(const struct hf_edge_row *row, int x, int i, const int channels, vf sum[2][6])
 {
     const vf middle = vf_load(row->middle + x), slope = vf_load(row->slope + x), faint = vf_set1(HF_EDGES_FAINT);

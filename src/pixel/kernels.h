@@ -72,25 +72,25 @@ struct hf_behind_kernels {
     hf_up_row *up_row;
 };
 
-// A row of pixels to be taken apart (edges.h), and rows of its two sides; [0] the front.
+// A row of pixels to be taken apart (edges.h), and the rows of its two sides; [0] is the front.
 struct hf_edge_row {
     int channels;
-    float sharp;             // radii up to here are 0
-    const float *own;        // the row's radii
-    const float *radius[5];  // of rows from two above it on, what is beyond `sharp`
-    const float *sure[5];    // 1: not mixed
+    float sharp;             // radii up to this one are written as 0
+    const float *own;        // the row's radii, so written
+    const float *radius[5];  // by how much radii exceed `sharp`; row 0 is two above
+    const float *sure[5];    // 1: not mixed; 0: wholly
     const float *middle,
-        *slope;  // of the row: between front and back, and how fast a radius goes from one to the other
+        *slope;  // of the 3 x 3 around each pixel: hf_edges_sure
     const float *colour[5][4];
 };
 struct hf_sides {
     float *colour[2][4], *radius[2];
-    float *share;  // the back's, 0..1
+    float *share;  // of the back, 0..1
 };
-// How little the 3 x 3 radii of a pixel differ, 1 for one surface to 0 for two; the middle of these radii; and how fast
-// front becomes back around it. Of the first and the last pixel it means nothing.
+// From the 3 x 3 radii around each pixel: sure, 1 if they are of one surface to 0 if of two; their middle; and slope,
+// how fast the front becomes the back around the middle. All three are undefined at the first and the last pixel.
 typedef void hf_edges_sure(const float *const radius[3], int n, float *sure, float *middle, float *slope);
-// Reads two pixels around n; writes whole vectors.
+// Reads two pixels beyond both ends; writes whole vectors.
 typedef void hf_edges_take(const struct hf_edge_row *row, int n, const struct hf_sides *out);
 
 struct hf_edges_kernels {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mixed pixels. The colour of an anti-aliased edge is a mixture of two surfaces while its depth is that of one; each of
-// them becomes a sample of its own, so that none is blurred by the other's radius.
+// Un-mixing. The colour of an anti-aliased edge is a mixture of two surfaces, while its depth is that of one. Each
+// surface becomes a sample of its own, so that neither is blurred with the other's radius.
 //
-// Nothing of this begins at once: how mixed a pixel is grows with how far the radii around it differ, and a radius midway
-// between front and back is of both, so that a focus or a lens that moves a little changes little.
+// Un-mixing fades in: a pixel is the more mixed the more the radii around it differ, and a radius midway between front
+// and back belongs to both. So a small change of focus or lens changes the picture little.
 #include "engine/layers/unmix.h"
 
 #include <math.h>
@@ -24,8 +24,9 @@ const float hf_unmix_weights[7][7] = {
 
 enum { SIDE = 5 };  // pixels each way
 
-// The mean of the pixels of 5 x 5 on one side, the farther from `other` in colour the more of it, by the eighth power of
-// the distance: nearly the farthest alone, but where two are as far a picture that moves does not jump from one to the other.
+// The mean of those of 5 x 5 pixels that are on one side, weighted by the eighth power of their distance in colour from
+// `other`. That is nearly the farthest pixel alone; but where two are equally far, a moving picture does not jump from
+// one to the other.
 static void farthest(const struct hf_unmix_row *u, int x, int front, const float *other, float *colour, float *radius)
 {
     float share[SIDE * SIDE], distance[SIDE * SIDE], most = 0, sum = 0;
@@ -35,13 +36,13 @@ static void farthest(const struct hf_unmix_row *u, int x, int front, const float
         const float of_front = hf_saturate((u->middle[x] - u->radius[y][i]) * u->slope[x] + 0.5f);
         share[count] = front ? of_front : 1 - of_front;
         pixel[count] = k;
-        count += share[count] > 0;  // mostly few are
+        count += share[count] > 0;  // mostly few pixels
     }
     for (int j = 0; j < count; j++) {
         const int y = 1 + pixel[j] / SIDE, i = x - 2 + pixel[j] % SIDE;
         float d = 0;
         for (int c = 0; c < u->channels; c++)
-            d = d + fabsf(u->colour[y][c][i] - other[c]) * 0.125f;  // of the largest samples, too, it is finite
+            d = d + fabsf(u->colour[y][c][i] - other[c]) * 0.125f;  // finite even for the largest samples
         distance[j] = d;
         most = d > most ? d : most;
     }
@@ -88,8 +89,8 @@ static void keep(const struct hf_unmix_row *u, int x)
     u->seen[5][x] = u->radius[3][x];
 }
 
-// How much of the pixel the front is: colours of front and back, and how far those of both spread, are given. The pixel's
-// own surface is nearly all of it where its own colours spread too far to tell.
+// The front's share of the pixel, given the means of both sides and the variances of their colours. Where the colours
+// of the pixel's own surface vary too much to tell, it is the share by depth, a0.
 static float share(const struct hf_unmix_row *u, int x, float a0, const float *f, const float *b, const float *spread)
 {
     float along = 0, apart = 0, size = 0, off = 0;
@@ -111,7 +112,7 @@ static float share(const struct hf_unmix_row *u, int x, float a0, const float *f
     return trust >= 0 ? a0 + (a - a0) * trust : a0;
 }
 
-// Within what there is: a misfit must not make colours that nobody has seen.
+// Clamp between two colours that exist, so that a misfit makes no new ones.
 static float between(float v, float a, float b)
 {
     const float low = a < b ? a : b, high = a > b ? a : b;
@@ -119,7 +120,7 @@ static float between(float v, float a, float b)
     return v < high ? v : high;
 }
 
-// An eighth of how bright a colour is: of the largest samples, too, it is finite.
+// An eighth of a colour's brightness, which is finite even for the largest samples.
 static float eighth_light(float red, float green, float blue)
 {
     return (fabsf(red) + fabsf(green) + fabsf(blue)) * 0.125f;
@@ -130,7 +131,7 @@ static float light_of(const struct hf_unmix_row *u, int y, int x)
     return eighth_light(u->colour[y][0][x], u->colour[y][1][x], u->colour[y][2][x]);
 }
 
-// Sums of a side become its mean. Returns its colours' variance.
+// Turn the sums of a side into its mean. Returns the variance of its colours.
 static float finish(int channels, float counted, float squares, float *mean)
 {
     float square = 0;
@@ -155,7 +156,7 @@ float hf_unmix_lamp(const struct hf_unmix_row *u, int x, float most, float alpha
     return lamp * hf_saturate((HF_UNMIX_LAMP - u->colour[3][3][x] / (alpha > 1e-30f ? alpha : 1e-30f)) * 4);
 }
 
-// How far the pixel is of a lamp behind the edge.
+// How far the pixel shows a lamp behind the edge, 0 to 1.
 static float lit(const struct hf_unmix_row *u, int x, float mean[2][5])
 {
     const float front = eighth_light(mean[0][0], mean[0][1], mean[0][2]),
@@ -203,7 +204,7 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
     const float own_share = share(u, x, a0, mean[0], mean[1], spread), by = (1 - u->sure[3][x]) * known;
     const float lamp = lit(u, x, mean), less = own_share < HF_UNMIX_RIM ? own_share : HF_UNMIX_RIM;
     const float a = lamp * (less - own_share) + own_share;
-    // What is not taken apart goes with the front.
+    // The part of the pixel that is not un-mixed keeps its colour and goes with the front.
     const float seen = by * (a - 1) + 1, whole = seen > 0 ? (1 - by) / seen : 0;
     for (int c = 0; c < u->channels; c++) {
         const float v = u->colour[3][c][x], rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
@@ -228,14 +229,14 @@ void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)
             unmix_pixel(u, x);
 }
 
-enum { AROUND = 16 };  // floats on either side of a row of scratch
+enum { AROUND = 16 };  // margin of a row of scratch, in floats
 
 size_t hf_layers_unmix_floats(int width)
 {
     return 24 * ((size_t)width + 2 * AROUND) + HF_PAD;
 }
 
-// Which pixels of a row are not mixed, into its row of the ring.
+// How surely each pixel of a row is not mixed (1: not mixed), into the row's place in the ring.
 static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring, ptrdiff_t stride)
 {
     const struct hf_buf *b = &f->buf[HF_LAYERS_BUF_RADIUS];
@@ -243,7 +244,7 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
     float *sure = ring + (y & 7) * stride;
     for (int i = 0; i < 3; i++)
         radius[i] = hf_at(b, 0, x - AROUND, y + i - 1);
-    // Whole vectors, though only three pixels on either side are read.
+    // Widened to whole vectors; only three pixels on either side are read.
     f->k->edges.sure(radius, n + 2 * AROUND, sure - AROUND, sure + 8 * stride - AROUND, sure + 16 * stride - AROUND);
 }
 

@@ -5,42 +5,46 @@
 
 #include "engine/layers/kernels.h"
 
-// Which pixels are mixed: pixel/edges.h. FAINT: by pixels of less weight than this little is un-mixed. LEAN: the mean of a
-// side that has less than this of the weight of both leans on those pixels of that side whose colours are farthest from
-// the other's. Where a slope is hardly mixed, weights grow from 0 with its radii, ten times as fast: these two fade slowly
-// enough that the last bit of a radius shows nowhere. PLAIN: what is brighter than so many times the mixed pixel is
-// dimmed, or the mean of a lamp and the wall around it would be brighter than the mixture of the wall and what lies before
-// it, and all of that would seem to be the front; what is behind less than an eighth of a pixel may be brighter, and a share
-// that small is of little weight.
+// Which pixels are mixed: pixel/edges.h.
+// FAINT: un-mixing fades out as the weight of both sides falls below this.
+// LEAN: where one side has less than this share of that weight, its mean leans on those of its pixels whose colours are
+// farthest from the other side's mean. On a slope that is barely mixed, weights change ten times as fast as radii. FAINT
+// and LEAN fade slowly enough that the last bit of a radius is never visible.
+// PLAIN: samples more than this many times as bright as the mixed pixel are dimmed. Otherwise the mean of a lamp and
+// the wall around it would be so bright that a mixture of the wall and the front would seem to be all front. A back
+// that covers less than an eighth of the pixel may truly be that bright, but so small a share matters little.
 #define HF_UNMIX_FAINT 0.25f
 #define HF_UNMIX_LEAN 0.08f
 #define HF_UNMIX_PLAIN 8
-// A share by colours, whose variance in units of the distance between front and back is v, and that of the depth sample,
-// wrong by an eighth of a pixel or so, are weighed as 1 to 60 v.
+// The front's share is a mean of two estimates: by colour, with weight 1, and by the pixel's depth, with weight
+// SPREAD * v. v is the variance of the estimate by colour: the sides' colour variance over the squared distance between
+// front and back. The estimate by depth is wrong by about an eighth of a pixel.
 #define HF_UNMIX_SPREAD 60
 
-// A mixed pixel LAMP times as bright as front and back are is a lamp's of which the edge leaves so little that no whole pixel
-// is of it, wholly from LAMP + 1 / 2 on. Drawn with a sharp front it would be a white speck on the rim, so the light stays
-// with a back that is blurred more, and the front is no more than RIM of the pixel. The back has no more than the pixel's
-// colour: hidden samples, which repeat it behind the edge, make up for the rest of it. Edges lit from behind are as bright, so
-// that a lamp covers fewer than PIXELS of 7 x 7; a line through them does not.
+// A mixed pixel more than LAMP times as bright as its front and its back shows part of a lamp: the edge hides so much
+// of the lamp that no whole pixel shows it. From LAMP + 1 / 2 on it counts wholly as a lamp. Drawn with a sharp front
+// it would be a white speck on the rim. So the light stays with the back, which is blurred more, and the front's share
+// is at most RIM. The back gets at most the pixel's colour: hidden samples, which repeat it behind the edge, add the
+// rest. Edges lit from behind are as bright, but those are lines; a lamp covers fewer than PIXELS of 7 x 7.
 #define HF_UNMIX_LAMP 1.5f
 #define HF_UNMIX_PIXELS 7
 #define HF_UNMIX_RIM 0.75f
 
-// 1 / d^4 of the 7 x 7, 0 in its middle.
+// 1 / d^4 for 7 x 7 pixels; 0 for the middle one.
 extern const float hf_unmix_weights[7][7];
-// Fill in the mean of a side of which there is nothing or little, and take its variance for as little. 0: there are none. A
-// mean is colour, radius (4).
+// Complete the mean of the side with less weight (LEAN), and scale its variance down. mean: colour, radius (4). Returns
+// 0 if neither side has any weight.
 int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], float mean[2][5], float spread[2]);
 
-// How far a pixel is of a lamp. most: brightness of the brighter one of front and back, the sum of channels / 8; alpha: the
-// larger one of theirs, if there are any: what is brighter as it covers more is none.
+// How far a pixel shows a lamp, 0 to 1. most: brightness of the brighter of front and back, the sum of channels / 8.
+// alpha: the larger of the two sides', with four channels: a pixel whose alpha also exceeds it is bright because it
+// covers more, and is no lamp.
 float hf_unmix_lamp(const struct hf_unmix_row *row, int x, float most, float alpha);
 
-// Floats of scratch that un-mixing a row of n pixels takes.
+// Floats of scratch for un-mixing rows of `width` pixels.
 size_t hf_layers_unmix_floats(int width);
-// begin: these are the first of a cell; others follow those before them.
+// Un-mix rows. begin: r holds the first rows of a cell; later rows of that cell continue with what they left in
+// scratch.
 void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mixed pixels on vectors: in the order of operations of unmix.c.
+// Un-mixing on vectors, with operations in the order of unmix.c.
 #include "engine/layers/dimmed_vf.h"
 #include "engine/layers/unmix.h"
 #include "simd/simd.h"
@@ -13,14 +13,14 @@ HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channe
     vf_store(u->seen[5] + x, vf_load(u->radius[3] + x));
 }
 
-// How far a radius is of the front.
+// How much of a radius belongs to the front, 0 to 1.
 HF_INLINE vf layers_front(vf middle, vf slope, vf r)
 {
     const vf s = vf_fma(vf_sub(middle, r), slope, vf_set1(0.5f));
     return vf_min(vf_max(s, vf_zero()), vf_set1(1));
 }
 
-// An eighth of how bright a colour is: of the largest samples, too, it is finite.
+// An eighth of a colour's brightness, which is finite even for the largest samples.
 HF_INLINE vf layers_eighth_light(vf red, vf green, vf blue)
 {
     return vf_mul(vf_add(vf_add(vf_abs(red), vf_abs(green)), vf_abs(blue)), vf_set1(0.125f));
@@ -32,7 +32,7 @@ HF_INLINE vf layers_light_of(const struct hf_unmix_row *u, int y, int x)
                                vf_load(u->colour[y][2] + x));
 }
 
-// Sums of a side become its mean. Returns its colours' variance.
+// Turn the sums of a side into its mean. Returns the variance of its colours.
 HF_INLINE vf layers_finish(const int channels, vf counted, vf squares, vf *mean)
 {
     const vm some = vf_gt(counted, vf_zero());
@@ -45,7 +45,8 @@ HF_INLINE vf layers_finish(const int channels, vf counted, vf squares, vf *mean)
     return vf_keep(vf_gt(spread, vf_zero()), spread);
 }
 
-// Means and variances of the two sides; lanes of which one is empty are completed one by one. Returns where there are both.
+// Means and variances of the two sides. Lanes where a side has little weight are completed one by one. Returns the
+// lanes that have both sides.
 HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5],
                           vf spread[2], vf *known)
 {
@@ -149,7 +150,7 @@ HF_INLINE vf layers_between(vf v, vf a, vf b)
     return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
 }
 
-// How far pixels are of lamps behind the edge: there are few.
+// How far each pixel shows a lamp behind the edge, lane by lane: lamps are few.
 HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2][5])
 {
     vf light[2];
