@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The integral from 0 to y of the half-width of the rows of a disc of radius r.
-static double half_disc(double r, double y)
+double hf_half_disc(double r, double y)
 {
     const double t = y > r ? r : y < -r ? -r : y;
     return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
@@ -25,7 +24,7 @@ static int32_t disc_row(double r, double scale_x, int dy)
     const double height = dy ? fmin(1, r - (abs(dy) - 0.5)) : 1;
     if (height <= 0)
         return 128;
-    return (int32_t)lround(256 * ((half_disc(r, dy + 0.5) - half_disc(r, dy - 0.5)) / height * scale_x + 0.5));
+    return (int32_t)lround(256 * ((hf_half_disc(r, dy + 0.5) - hf_half_disc(r, dy - 0.5)) / height * scale_x + 0.5));
 }
 
 // The number of rows on one side, including the middle one.
@@ -134,7 +133,15 @@ static struct hf_run polygon_row(const struct hf_side *side, int sides, double r
                            (HF_WHOLE_ROW * hit + parts / 2) / parts};
 }
 
-static void build_polygon(struct hf_aperture *a, const struct hf_side *side, int sides, int number, int first)
+// Row dy of a disc that a cat's eye will cut.
+static struct hf_run disc_run(double r, double scale_x, int dy)
+{
+    const int32_t half = disc_row(r, scale_x, dy);
+    return (struct hf_run){256 - half, half, row_height(r, dy)};
+}
+
+// A picture of runs: of the sides, or of a disc if there are none.
+static void build_runs(struct hf_aperture *a, const struct hf_side *side, int sides, int number, int first)
 {
     struct hf_picture *p = &a->picture[number];
     const double r = hf_picture_radius(number);
@@ -143,31 +150,10 @@ static void build_polygon(struct hf_aperture *a, const struct hf_side *side, int
     p->reach_y = rows_of(r) - 1;
     for (int i = 0; i < p->rows; i++) {
         struct hf_run *run = &a->run[first + i];
-        *run = polygon_row(side, sides, r, a->key.scale_x, p->top + i);
+        *run =
+            sides ? polygon_row(side, sides, r, a->key.scale_x, p->top + i) : disc_run(r, a->key.scale_x, p->top + i);
         area += (double)run->weight * (run->b - run->a);
-        p->reach_x = hf_max(p->reach_x, hf_max((run->b >> 8) + 1, -(run->a >> 8)) + 1);
-    }
-    if (area <= 0) {
-        a->run[first - p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
-        area = 2 * HF_WHOLE_ROW;
-    }
-    p->area = (float)area;
-}
-
-// Discs that a cat's eye cuts have runs like any outline.
-static void build_runs_of_disc(struct hf_aperture *a, int number, int first)
-{
-    struct hf_picture *p = &a->picture[number];
-    const double r = hf_picture_radius(number);
-    double area = 0;
-    *p = (struct hf_picture){.first = first, .top = 1 - rows_of(r), .rows = 2 * rows_of(r) - 1};
-    p->reach_y = rows_of(r) - 1;
-    for (int i = 0; i < p->rows; i++) {
-        const int32_t half = disc_row(r, a->key.scale_x, p->top + i);
-        const int weight = row_height(r, p->top + i);
-        a->run[first + i] = (struct hf_run){256 - half, half, weight};
-        area += (double)weight * (2 * half - 256);
-        p->reach_x = hf_max(p->reach_x, (half >> 8) + 1);
+        p->reach_x = hf_max(p->reach_x, hf_max((run->b >> 8) + 1, -(run->a >> 8)) + (sides > 0));
     }
     if (area <= 0) {
         a->run[first - p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
@@ -207,10 +193,8 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
     for (int i = 0, first = 0; i < a->count; i++) {
         if (a->symmetric)
             build_disc(a, i, first);
-        else if (sides)
-            build_polygon(a, side, sides, i, first);
         else
-            build_runs_of_disc(a, i, first);
+            build_runs(a, side, sides, i, first);
         a->inverse[i] = 1 / a->picture[i].area;
         first += (a->symmetric ? 1 : 2) * rows_of(hf_picture_radius(i));
     }

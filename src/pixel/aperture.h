@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sprites: pictures of the aperture at every size, as spans row by row, which sources draw.
+// Sprites: pictures of the aperture at every size, as spans row by row, which sources of the scatter draw. Ends of spans
+// are whole numbers of 1/256 pixel, so that sums of them are exact. layers (shape.c) makes spans of real numbers from the
+// same sides, discs and integrals; the gather (area.c) computes how much of each pixel the aperture covers.
 #ifndef HF_APERTURE_H
 #define HF_APERTURE_H
 
@@ -58,6 +60,9 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
 // The same from an image. Its centre is the axis, its shorter side the diameter.
 int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_image *image,
                             const struct hf_mem *mem);
+
+// The integral from 0 to y of the half-width of the rows of a disc of radius r.
+double hf_half_disc(double r, double y);
 
 // A side of a polygon whose corners lie on the unit circle: the line x nx + y ny = d, or an arc through the same
 // corners, of a circle around (cx, cy), bent towards the unit circle.

@@ -171,11 +171,6 @@ const float hf_edges_weights[5][5] = {
 #undef W
 // clang-format on
 
-static float front_part(float middle, float slope, float r)
-{
-    return hf_saturate((middle - r) * slope + 0.5f);
-}
-
 // Weights of the 5 x 5 pixels on the front's and the back's side. The middle pixel is mixed: it has the least weight.
 static void weigh(const struct hf_edge_row *row, int x, float w[2][5][5])
 {
@@ -184,7 +179,7 @@ static void weigh(const struct hf_edge_row *row, int x, float w[2][5][5])
             const int at = x + i - 2;
             const float sure = i == 2 && j == 2 ? 0 : row->sure[j][at];
             const float all = (sure + HF_EDGES_FAINT) * hf_edges_weights[j][i];
-            w[0][j][i] = all * front_part(row->middle[x], row->slope[x], row->radius[j][at]);
+            w[0][j][i] = all * hf_edges_front(row->middle[x], row->slope[x], row->radius[j][at]);
             w[1][j][i] = all - w[0][j][i];
         }
 }
@@ -207,13 +202,6 @@ static float size_of(float v)
     return __builtin_fabsf(v);
 }
 
-static float between(float v, float a, float b)
-{
-    const float low = a < b ? a : b, high = a > b ? a : b;
-    v = v > low ? v : low;
-    return v < high ? v : high;
-}
-
 // The front's share of the pixel: how far its colour lies from the back's towards the front's. Where no mixture of the
 // two makes that colour, it is the share by depth, a0. Alpha is left out: it cannot be compared with colours, which
 // have no unit.
@@ -221,7 +209,8 @@ static float share_of(const float own[4], float mean[2][4], float a0)
 {
     float along = 0, apart = 0, largest = 0, off = 0;
     for (int c = 0; c < 3; c++) {
-        const float f = mean[0][c], b = mean[1][c], d = size_of(between(own[c] - b, 0, f - b)), whole = size_of(f - b);
+        const float f = mean[0][c], b = mean[1][c], d = size_of(hf_edges_between(own[c] - b, 0, f - b)),
+                    whole = size_of(f - b);
         const float most = size_of(f) > size_of(b) ? size_of(f) : size_of(b);
         along = d > along ? d : along;
         apart = whole > apart ? whole : apart;
@@ -251,7 +240,8 @@ static void side_means(const struct hf_edge_row *row, int x, float mean[2][4], f
             for (int j = 0; j < 5; j++)
                 v[j] = row->colour[j][c];
             // A division, so that a mean of ones is exactly 1.
-            mean[k][c] = between(sum_of(w[k], v, x) / whole, -FLT_MAX * HF_EDGES_SCALE, FLT_MAX * HF_EDGES_SCALE);
+            mean[k][c] =
+                hf_edges_between(sum_of(w[k], v, x) / whole, -FLT_MAX * HF_EDGES_SCALE, FLT_MAX * HF_EDGES_SCALE);
         }
     }
 }
@@ -263,7 +253,7 @@ static float with_sharp(float r, float sharp)
 
 static void take_pixel(const struct hf_edge_row *row, int x, const struct hf_sides *out)
 {
-    const float own = row->radius[2][x], a0 = front_part(row->middle[x], row->slope[x], own);
+    const float own = row->radius[2][x], a0 = hf_edges_front(row->middle[x], row->slope[x], own);
     float mean[2][4], radius[2], v[4];
     side_means(row, x, mean, radius);
     for (int c = 0; c < row->channels; c++)
@@ -275,7 +265,7 @@ static void take_pixel(const struct hf_edge_row *row, int x, const struct hf_sid
     const float a = 1 - share / mixed, seen = 1 - share, whole = seen > 0 ? row->sure[2][x] / seen : 0;
     for (int c = 0; c < row->channels; c++) {
         const float f = mean[0][c], b = mean[1][c], rest = v[c] - (b + a * (f - b));
-        const float front = between(f + rest, f, v[c]), back = between(b + rest, b, v[c]);
+        const float front = hf_edges_between(f + rest, f, v[c]), back = hf_edges_between(b + rest, b, v[c]);
         out->colour[0][c][x] = (front + whole * (v[c] - front)) * (1 / HF_EDGES_SCALE);
         out->colour[1][c][x] = back * (1 / HF_EDGES_SCALE);
     }

@@ -9,9 +9,10 @@
 //     for each full-resolution row y of r, downwards:
 //         some = hf_edges_row(&e, y, &sides);
 //
-// The layers engine un-mixes too, with more neighbours (layers/unmix.c). Here sums add mirrored pairs first, and
-// colours are compared by their largest channel difference: mirrored, permuted and scaled pictures have the bits of the
-// original.
+// The layers engine (layers/unmix.c) finds mixed pixels and their fronts by these functions, but un-mixes by other
+// formulas: means of 7 x 7 pixels in which lamps count less, variances, alpha, fused operations. Here sums add mirrored
+// pairs first, and colours are compared by their largest channel difference: mirrored, permuted and scaled pictures have
+// the bits of the original. One formula for both would lose the one or the other.
 #ifndef HF_EDGES_H
 #define HF_EDGES_H
 
@@ -45,6 +46,20 @@ void hf_edges_start(struct hf_edges *e, const struct hf_frame *f, struct hf_rect
 // the backs' colours and radii are not written. Where a back's share is 0, its colour and radius mean nothing. May
 // write HF_PAD floats beyond the row.
 int hf_edges_row(struct hf_edges *e, int y, const struct hf_sides *out);
+
+// The part of a pixel of radius r that is front: 1 half a slope nearer than the middle of both sides, 0 as much farther.
+static inline float hf_edges_front(float middle, float slope, float r)
+{
+    return hf_saturate((middle - r) * slope + 0.5f);
+}
+
+// Clamp between two colours that exist, so that a misfit makes no new ones.
+static inline float hf_edges_between(float v, float a, float b)
+{
+    const float low = a < b ? a : b, high = a > b ? a : b;
+    v = v > low ? v : low;
+    return v < high ? v : high;
+}
 
 // The first share from i on that is not 0, of n in a row; n if there is none. share NULL: all are 0.
 int hf_edges_next(const float *share, int i, int n);

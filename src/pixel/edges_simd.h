@@ -45,11 +45,6 @@ HF_INLINE vf edges_front(vf middle, vf slope, vf r)
     return edges_unit(vf_add(vf_mul(vf_sub(middle, r), slope), vf_set1(0.5f)));
 }
 
-HF_INLINE vf edges_between(vf v, vf a, vf b)
-{
-    return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
-}
-
 // For column i of the 5 x 5, on both sides: sums of weights, of weighted radii, and of weighted colours.
 HF_INLINE void edges_sums(const struct hf_edge_row *row, int x, int i, const int channels, vf sum[2][6])
 {
@@ -91,8 +86,7 @@ HF_INLINE void edges_means(const struct hf_edge_row *row, int x, const int chann
         const vf sum = vf_add(a[k][0], all[k][0]), whole = vf_mul(sum, vf_set1(1 / HF_EDGES_SCALE));
         radius[k] = vf_div(vf_add(a[k][1], all[k][1]), sum);
         for (int c = 0; c < channels; c++)
-            mean[k][c] =
-                edges_between(vf_div(vf_add(a[k][2 + c], all[k][2 + c]), whole), vf_sub(vf_zero(), most), most);
+            mean[k][c] = vf_between(vf_div(vf_add(a[k][2 + c], all[k][2 + c]), whole), vf_sub(vf_zero(), most), most);
     }
 }
 
@@ -101,7 +95,7 @@ HF_INLINE vf edges_share(const vf own[4], vf mean[2][4], vf a0)
     vf along = vf_zero(), apart = vf_zero(), largest = vf_zero(), off = vf_zero();
     for (int c = 0; c < 3; c++) {
         const vf f = mean[0][c], b = mean[1][c], d = vf_sub(f, b);
-        along = vf_max(vf_abs(edges_between(vf_sub(own[c], b), vf_zero(), d)), along);
+        along = vf_max(vf_abs(vf_between(vf_sub(own[c], b), vf_zero(), d)), along);
         apart = vf_max(vf_abs(d), apart);
         largest = vf_max(vf_max(vf_abs(f), vf_abs(b)), largest);
     }
@@ -145,7 +139,7 @@ HF_INLINE void edges_take_vector(const struct hf_edge_row *row, int x, const int
     const vf whole = vf_keep(vf_gt(seen, vf_zero()), vf_div(sure, seen));
     for (int c = 0; c < channels; c++) {
         const vf f = mean[0][c], b = mean[1][c], rest = vf_sub(v[c], edges_toward(b, f, a));
-        const vf front = edges_between(vf_add(f, rest), f, v[c]), back = edges_between(vf_add(b, rest), b, v[c]);
+        const vf front = vf_between(vf_add(f, rest), f, v[c]), back = vf_between(vf_add(b, rest), b, v[c]);
         const vf both = vf_mul(edges_toward(front, v[c], whole), unscale);
         vf_store(out->colour[0][c] + x, vf_select(is_mixed, both, vf_load(row->colour[2][c] + x)));
         vf_store(out->colour[1][c] + x, vf_mul(back, unscale));

@@ -49,6 +49,12 @@ HF_INLINE vf vf_once(vf a)
     return a;
 }
 
+// v within a and b.
+HF_INLINE vf vf_between(vf v, vf a, vf b)
+{
+    return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
+}
+
 // The sum of a count's lanes.
 HF_INLINE uint32_t vi_sum(vi a)
 {

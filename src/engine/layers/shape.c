@@ -39,12 +39,6 @@ static struct maker maker_of(const struct hf_shape_key *key)
     return m;
 }
 
-double hf_half_disc(double r, double t)
-{
-    t = t > r ? r : t < -r ? -r : t;
-    return (t * sqrt(r * r - t * t) + r * r * asin(t / r)) / 2;
-}
-
 // Integral of a side's x over heights u to v. right: the side ends runs (else it begins them).
 static double along(const struct hf_side *s, double u, double v, int right)
 {

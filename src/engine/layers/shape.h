@@ -68,8 +68,6 @@ int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const s
 void hf_shape_frame(struct hf_shape *s, const struct hf_integral *area, double wide);
 void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wide, struct hf_shape_row *row,
                    float *weight);
-// Integral from 0 to t of the half-width of the rows of a disc of radius r.
-double hf_half_disc(double r, double t);
 // Convert a run's ends to how it is read.
 struct hf_shape_run hf_shape_run_of(float a, float b, float weight);
 

@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "pixel/edges.h"
 #include "pixel/pass_c.h"
 
 const float hf_unmix_weights[7][7] = {
@@ -33,7 +34,7 @@ static void farthest(const struct hf_unmix_row *u, int x, int front, const float
     int pixel[SIDE * SIDE], count = 0;
     for (int k = 0; k < SIDE * SIDE; k++) {
         const int y = 1 + k / SIDE, i = x - 2 + k % SIDE;
-        const float of_front = hf_saturate((u->middle[x] - u->radius[y][i]) * u->slope[x] + 0.5f);
+        const float of_front = hf_edges_front(u->middle[x], u->slope[x], u->radius[y][i]);
         share[count] = front ? of_front : 1 - of_front;
         pixel[count] = k;
         count += share[count] > 0;  // mostly few pixels
@@ -112,14 +113,6 @@ static float share(const struct hf_unmix_row *u, int x, float a0, const float *f
     return trust >= 0 ? a0 + (a - a0) * trust : a0;
 }
 
-// Clamp between two colours that exist, so that a misfit makes no new ones.
-static float between(float v, float a, float b)
-{
-    const float low = a < b ? a : b, high = a > b ? a : b;
-    v = v > low ? v : low;
-    return v < high ? v : high;
-}
-
 // An eighth of a colour's brightness, which is finite even for the largest samples.
 static float eighth_light(float red, float green, float blue)
 {
@@ -172,14 +165,14 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
     float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}}, spread[2] = {0};
     const float plain = light_of(u, 3, x) * HF_UNMIX_PLAIN;
     const float middle = u->middle[x], slope = u->slope[x], own = u->radius[3][x];
-    const float a0 = hf_saturate((middle - own) * slope + 0.5f);
+    const float a0 = hf_edges_front(middle, slope, own);
     for (int y = 0; y < 7; y++)
         for (int i = 0; i < 7; i++) {
             const int at = x + i - 3;
             if (y == 3 && i == 3)
                 continue;
             const float w = u->sure[y][at] * hf_unmix_weights[y][i];
-            const float front = w * hf_saturate((middle - u->radius[y][at]) * slope + 0.5f), of[2] = {front, w - front};
+            const float front = w * hf_edges_front(middle, slope, u->radius[y][at]), of[2] = {front, w - front};
             const float counts = hf_layers_dimmed(light_of(u, y, at), plain);
             float square = 0;
             for (int c = 0; c < u->channels; c++)
@@ -209,9 +202,9 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
     for (int c = 0; c < u->channels; c++) {
         const float v = u->colour[3][c][x], rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
         const float more = rest > 0 && c < 3 ? rest : 0;
-        const float front = between(rest - lamp * more + mean[0][c], mean[0][c], v);
+        const float front = hf_edges_between(rest - lamp * more + mean[0][c], mean[0][c], v);
         u->seen[c][x] = whole * (v - front) + front;
-        u->mixed[c][x] = between(mean[1][c] + rest, mean[1][c], v);
+        u->mixed[c][x] = hf_edges_between(mean[1][c] + rest, mean[1][c], v);
     }
     const float front = (1 - a0) * (mean[0][4] - own) + own;
     u->seen[4][x] = seen;  // at most 1, and 1 where the other is 0: slices do not read the weights of such tiles

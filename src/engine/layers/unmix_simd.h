@@ -145,11 +145,6 @@ HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channel
     return vf_select(vf_le(zero, trust), vf_fma(vf_sub(a, a0), trust, a0), a0);
 }
 
-HF_INLINE vf layers_between(vf v, vf a, vf b)
-{
-    return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));
-}
-
 // How far each pixel shows a lamp behind the edge, lane by lane: lamps are few.
 HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2][5])
 {
@@ -186,8 +181,8 @@ HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const in
         const vf rest = layers_rest(u, x, c, a, mean);
         const vf v = vf_load(u->colour[3][c] + x);
         const vf more = c < 3 ? vf_max(rest, zero) : zero;
-        const vf front = layers_between(vf_add(vf_fnma(lamp, more, rest), mean[0][c]), mean[0][c], v);
-        const vf back = layers_between(vf_add(mean[1][c], rest), mean[1][c], v);
+        const vf front = vf_between(vf_add(vf_fnma(lamp, more, rest), mean[0][c]), mean[0][c], v);
+        const vf back = vf_between(vf_add(mean[1][c], rest), mean[1][c], v);
         vf_store(u->seen[c] + x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
         vf_store(u->mixed[c] + x, vf_keep(mixed, back));
     }

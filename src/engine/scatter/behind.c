@@ -124,11 +124,6 @@ int hf_seen_weights_c(const struct hf_scatter *t, const float *radius, const flo
     return some;
 }
 
-static float mix(float a, float b, float t)
-{
-    return t < 1 ? hf_lerp(a, b, t) : b;
-}
-
 // The far sprites are trusted by how much of them reaches the pixel. With little, they are the rim of what lies on one
 // side of an object, and in the object's middle another side's rim would begin abruptly.
 void hf_behind_blend_c(const struct hf_scatter_row *row, const float *const weight[2], const float *const colour[2],
@@ -140,14 +135,14 @@ void hf_behind_blend_c(const struct hf_scatter_row *row, const float *const weig
         const float front = near_weight > 0 ? row->near[i] / near_weight : mine;
         const float far = far_weight > 0 ? row->far[i] / far_weight : mine;
         const float reached = hf_saturate(16 * far_weight), sharp = weight[0][i], blurred = weight[1][i];
-        float v = mix(front, far, reached);
+        float v = hf_scatter_mix(front, far, reached);
         if (sharp + blurred > 0) {
             float seen = v;
             if (blurred > 0)
-                seen = mix(colour[1][i] / blurred, far, hf_saturate(far_weight));
+                seen = hf_scatter_mix(colour[1][i] / blurred, far, hf_saturate(far_weight));
             if (sharp > 0)
-                seen = mix(seen, colour[0][i] / sharp, sharp / (sharp + blurred));
-            v = mix(seen, v, HF_BEHIND_NOTHING / ((sharp + blurred) + HF_BEHIND_NOTHING));
+                seen = hf_scatter_mix(seen, colour[0][i] / sharp, sharp / (sharp + blurred));
+            v = hf_scatter_mix(seen, v, HF_BEHIND_NOTHING / ((sharp + blurred) + HF_BEHIND_NOTHING));
         }
         out[i] = v;
     }

@@ -88,12 +88,6 @@ static float inside(const struct hf_setup *s, float reach_x, float reach_y, int 
     return ((segment(left) + segment(right)) - 1) * ((segment(above) + segment(below)) - 1);
 }
 
-// a + t (b - a), but exactly b's bits from t = 1 on and a's at 0: beside a highlight b would lose them.
-static float mix(float a, float b, float t)
-{
-    return t < 1 ? hf_lerp(a, b, t) : b;
-}
-
 // Composite one sample: far field, then the pixel itself, then the near field. The visible part of a near pixel belongs
 // to what covers, so the background shows through neither. Nobody has seen that background; where far sprites hardly
 // reach, the near field hides it.
@@ -104,11 +98,11 @@ static float composite_sample(float own, float show, float cover, int is_near, c
     float v = far[1] > 0 ? far[0] / far[1] : own;
     if (is_near) {
         const float left = 1 - cover;
-        v = behind ? *behind : mix(front, v, hf_saturate(16 * far[1]));
+        v = behind ? *behind : hf_scatter_mix(front, v, hf_saturate(16 * far[1]));
         show = show < left ? show / left : 1;
     }
-    v = mix(own, v, 1 - show);
-    return near[1] > 0 ? mix(v, front, cover) : v;
+    v = hf_scatter_mix(own, v, 1 - show);
+    return near[1] > 0 ? hf_scatter_mix(v, front, cover) : v;
 }
 
 void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)

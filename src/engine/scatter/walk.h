@@ -61,6 +61,12 @@ static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
     *x1 = hf_min(w->sums.x1 + reach, w->level ? w->f->s->half_width : w->f->s->width);
 }
 
+// a + t (b - a), but exactly b's bits from t = 1 on and a's at 0: beside a highlight b would lose them.
+static inline float hf_scatter_mix(float a, float b, float t)
+{
+    return t < 1 ? hf_lerp(a, b, t) : b;
+}
+
 // The neighbour, on one axis, of a pixel's half-resolution pixel that its tent reaches.
 static inline int hf_beside(int pixel, int count)
 {
