@@ -5,8 +5,9 @@
 #ifndef HF_APERTURE_H
 #define HF_APERTURE_H
 
-#include "pass/frame.h"
 #include "base/mem.h"
+#include "base/small_float.h"
+#include "pass/frame.h"
 
 enum { HF_WHOLE_ROW = 128 };
 
@@ -94,21 +95,14 @@ int hf_aperture_coloured(const struct hf_image *image);
 // The number of the sprite for a finite radius; radii below 0.5 count as 0.5.
 static inline int hf_picture_number(float radius)
 {
-    union {
-        float f;
-        int32_t i;
-    } r = {radius > 0.5f ? radius : 0.5f};
-    return (r.i - 0x3f000000 + (1 << (22 - HF_SIZES_LOG2))) >> (23 - HF_SIZES_LOG2);
+    return ((int32_t)hf_bits(radius > 0.5f ? radius : 0.5f) - 0x3f000000 + (1 << (22 - HF_SIZES_LOG2))) >>
+           (23 - HF_SIZES_LOG2);
 }
 
 // The radius of that sprite.
 static inline float hf_picture_radius(int number)
 {
-    union {
-        int32_t i;
-        float f;
-    } r = {0x3f000000 + number * (1 << (23 - HF_SIZES_LOG2))};
-    return r.f;
+    return hf_from_bits((uint32_t)(0x3f000000 + number * (1 << (23 - HF_SIZES_LOG2))));
 }
 
 #endif

@@ -22,10 +22,7 @@ uint64_t hf_aperture_hash(const struct hf_image *m)
     for (int y = 0; y < m->height; y++)
         for (int x = 0; x < m->width; x++)
             for (int c = 0; c < 3; c++) {
-                const float v = transmission(m, c, x, y);
-                uint32_t bits;
-                memcpy(&bits, &v, 4);
-                h = (h ^ bits) * 0x100000001b3u;
+                h = (h ^ hf_bits(transmission(m, c, x, y))) * 0x100000001b3u;
             }
     return h;
 }

@@ -76,20 +76,7 @@ HF_INLINE void coc_row(const struct hf_frame *f, const enum hf_depth_form form, 
 HF_INLINE void coc_row_form(const struct hf_frame *f, const int whole, int x, int y, int n, float *const out[4],
                             struct coc_sums *sums)
 {
-    switch (f->s->form) {
-    case HF_FORM_Z:
-        coc_row(f, HF_FORM_Z, whole, x, y, n, out, sums);
-        break;
-    case HF_FORM_RAY:
-        coc_row(f, HF_FORM_RAY, whole, x, y, n, out, sums);
-        break;
-    case HF_FORM_IZ:
-        coc_row(f, HF_FORM_IZ, whole, x, y, n, out, sums);
-        break;
-    case HF_FORM_COC:
-        coc_row(f, HF_FORM_COC, whole, x, y, n, out, sums);
-        break;
-    }
+    HF_WITH_FORM(f->s->form, coc_row(f, (enum hf_depth_form)FORM, whole, x, y, n, out, sums))
 }
 
 // CoC is monotone in depth, so the nearest and the farthest pixel of a row decide for all of it. With AVX-512, a sharp

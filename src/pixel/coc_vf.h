@@ -6,6 +6,21 @@
 #include "pixel/depth_rows.h"
 #include "pixel/format_vf.h"
 
+// A call with FORM a constant.
+#define HF_WITH_FORM_(form, call)                                                                                      \
+    case form: {                                                                                                       \
+        enum { FORM = form };                                                                                          \
+        call;                                                                                                          \
+        break;                                                                                                         \
+    }
+#define HF_WITH_FORM(of, call)                                                                                         \
+    switch (of) {                                                                                                      \
+        HF_WITH_FORM_(HF_FORM_Z, call)                                                                                 \
+        HF_WITH_FORM_(HF_FORM_RAY, call)                                                                               \
+        HF_WITH_FORM_(HF_FORM_IZ, call)                                                                                \
+        HF_WITH_FORM_(HF_FORM_COC, call)                                                                               \
+    }
+
 // Clamps to 0..1; NaN becomes 0.
 HF_INLINE vf coc_saturate(vf v)
 {

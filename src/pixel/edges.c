@@ -77,12 +77,9 @@ static void sure_row(struct hf_edges *e, int y)
 // Not 0 if any of n numbers differs from `what`; none is NaN. Without a branch, so that the compiler uses vectors.
 static uint32_t others(const float *v, int n, float what)
 {
-    uint32_t bits, any = 0, all;
-    memcpy(&all, &what, sizeof all);
-    for (int i = 0; i < n; i++) {
-        memcpy(&bits, v + i, sizeof bits);
-        any |= bits ^ all;
-    }
+    uint32_t any = 0;
+    for (int i = 0; i < n; i++)
+        any |= hf_bits(v[i]) ^ hf_bits(what);
     return any;
 }
 

@@ -167,8 +167,5 @@ HF_INLINE void edges_take_of(const struct hf_edge_row *row, int n, const int cha
 
 static void edges_take_simd(const struct hf_edge_row *row, int n, const struct hf_sides *out)
 {
-    if (row->channels == 3)
-        edges_take_of(row, n, 3, out);
-    else
-        edges_take_of(row, n, 4, out);
+    HF_WITH_CHANNELS(row->channels, edges_take_of(row, n, CHANNELS, out));
 }

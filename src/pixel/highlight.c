@@ -67,14 +67,6 @@ static void read_block(const struct hf_frame *f, int x, int y, int n, int raised
     (raised ? hf_read_colour : hf_read_given)(f, x, y, n, even, odd, f->seen);
 }
 
-static int same_bits(float a, float b)
-{
-    uint32_t u, v;
-    memcpy(&u, &a, sizeof u);
-    memcpy(&v, &b, sizeof v);
-    return u == v;
-}
-
 static void store_block(const struct hf_frame *f, int x, int y, int n, const float *const from[2][4], int at)
 {
     struct block given, raised, out;
@@ -87,7 +79,7 @@ static void store_block(const struct hf_frame *f, int x, int y, int n, const flo
         f->k->lower(&f->s->highlight, out.row[o][0], out.row[o][1], out.row[o][2], n);
         for (int c = 0; c < 3; c++) {
             for (int i = 0; i < n; i++)
-                if (same_bits(from[o][c][at + i], raised.row[o][c][i]))
+                if (hf_bits(from[o][c][at + i]) == hf_bits(raised.row[o][c][i]))
                     out.row[o][c][i] = given.row[o][c][i];
             rows[o][c] = out.row[o][c];
         }

@@ -65,20 +65,7 @@ static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float
     const vm no = vf_gt(vf_zero(), vf_zero());
     struct radius_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_set1(HUGE_VALF), vf_set1(-HUGE_VALF), no, no,
                                no,         0,          0};
-    switch (f->s->form) {
-    case HF_FORM_Z:
-        radius_form(f, HF_FORM_Z, x, y, whole, out, &sums);
-        break;
-    case HF_FORM_RAY:
-        radius_form(f, HF_FORM_RAY, x, y, whole, out, &sums);
-        break;
-    case HF_FORM_IZ:
-        radius_form(f, HF_FORM_IZ, x, y, whole, out, &sums);
-        break;
-    case HF_FORM_COC:
-        radius_form(f, HF_FORM_COC, x, y, whole, out, &sums);
-        break;
-    }
+    HF_WITH_FORM(f->s->form, radius_form(f, (enum hf_depth_form)FORM, x, y, whole, out, &sums))
     // A NaN needs its neighbours, so the plain C does the row again; elsewhere its bits are the same.
     const int from = vm_any(sums.nan) ? 0 : whole;
     if (from < n)

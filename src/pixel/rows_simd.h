@@ -212,28 +212,21 @@ static void round_half_simd(float *v, int n)
 
 static void format_init(struct hf_pixel_kernels *k)
 {
-    k->load[HF_FORMAT_RGBA32F] = load_rgba32f_simd;
-    k->load[HF_FORMAT_RGB32F] = load_rgb32f_simd;
-    k->load[HF_FORMAT_RGBA16F] = load_rgba16f_simd;
-    k->load[HF_FORMAT_R11G11B10F] = load_r11_simd;
-    k->load[HF_FORMAT_PLANAR32F] = load_planar_simd;
-    k->load[HF_FORMAT_RGBA8] = load_rgba8_simd;
-    k->store[HF_FORMAT_RGBA8] = store_rgba8_simd;
-    k->load[HF_FORMAT_BGRA8] = load_bgra8_simd;
-    k->store[HF_FORMAT_BGRA8] = store_bgra8_simd;
-    k->load[HF_FORMAT_RGBX8] = load_rgbx8_simd;
-    k->store[HF_FORMAT_RGBX8] = store_rgbx8_simd;
-    k->load[HF_FORMAT_BGRX8] = load_bgrx8_simd;
-    k->store[HF_FORMAT_BGRX8] = store_bgrx8_simd;
-    k->load[HF_FORMAT_RGB10A2] = load_rgb10a2_simd;
-    k->store[HF_FORMAT_RGB10A2] = store_rgb10a2_simd;
-    k->load[HF_FORMAT_RGBA16] = load_rgba16_simd;
-    k->store[HF_FORMAT_RGBA16] = store_rgba16_simd;
-    k->store[HF_FORMAT_RGBA32F] = store_rgba32f_simd;
-    k->store[HF_FORMAT_RGB32F] = store_rgb32f_simd;
-    k->store[HF_FORMAT_RGBA16F] = store_rgba16f_simd;
-    k->store[HF_FORMAT_R11G11B10F] = store_r11_simd;
-    k->store[HF_FORMAT_PLANAR32F] = store_planar_simd;
+#define ROWS(format, name)                                                                                             \
+    k->load[HF_FORMAT_##format] = load_##name##_simd;                                                                  \
+    k->store[HF_FORMAT_##format] = store_##name##_simd;
+    ROWS(RGBA32F, rgba32f)
+    ROWS(RGB32F, rgb32f)
+    ROWS(RGBA16F, rgba16f)
+    ROWS(R11G11B10F, r11)
+    ROWS(PLANAR32F, planar)
+    ROWS(RGBA8, rgba8)
+    ROWS(BGRA8, bgra8)
+    ROWS(RGBX8, rgbx8)
+    ROWS(BGRX8, bgrx8)
+    ROWS(RGB10A2, rgb10a2)
+    ROWS(RGBA16, rgba16)
+#undef ROWS
     k->finite_f32 = finite_f32_simd;
     k->finite_f16 = finite_f16_simd;
     k->finite_r11 = finite_r11_simd;

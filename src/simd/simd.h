@@ -49,6 +49,18 @@ HF_INLINE vf vf_once(vf a)
     return a;
 }
 
+// A call with CHANNELS, which is 3 or 4, a constant, so that loops over channels are unrolled.
+#define HF_WITH_CHANNELS(channels, call)                                                                               \
+    do {                                                                                                               \
+        if ((channels) == 3) {                                                                                         \
+            enum { CHANNELS = 3 };                                                                                     \
+            call;                                                                                                      \
+        } else {                                                                                                       \
+            enum { CHANNELS = 4 };                                                                                     \
+            call;                                                                                                      \
+        }                                                                                                              \
+    } while (0)
+
 // v within a and b.
 HF_INLINE vf vf_between(vf v, vf a, vf b)
 {

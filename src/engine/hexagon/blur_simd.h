@@ -600,27 +600,18 @@ HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect p, const int wh
 static void hexagon_1_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_rect p = hf_hexagon_rect(f->s, r);
-    if (f->s->channels == 4)
-        hex_pass(f, p, HEX_FIRST, 4);
-    else
-        hex_pass(f, p, HEX_FIRST, 3);
+    HF_WITH_CHANNELS(f->s->channels, hex_pass(f, p, HEX_FIRST, CHANNELS));
 }
 
 static void hexagon_2_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_rect p = hf_hexagon_rect(f->s, r);
-    if (f->s->channels == 4)
-        hex_pass(f, p, HEX_SECOND, 4);
-    else
-        hex_pass(f, p, HEX_SECOND, 3);
+    HF_WITH_CHANNELS(f->s->channels, hex_pass(f, p, HEX_SECOND, CHANNELS));
 }
 
 static void hexagon_beyond_simd(const struct hf_frame *f, struct hf_rect p)
 {
-    if (f->s->channels == 4)
-        hex_pass(f, p, HEX_BEYOND, 4);
-    else
-        hex_pass(f, p, HEX_BEYOND, 3);
+    HF_WITH_CHANNELS(f->s->channels, hex_pass(f, p, HEX_BEYOND, CHANNELS));
 }
 
 #endif

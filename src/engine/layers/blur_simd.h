@@ -65,10 +65,7 @@ HF_INLINE void layers_weigh_rows(const struct hf_slice *s, const float *const in
 static void layers_weigh_simd(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                               int rows, int channels, int n, int add, float *const out[5], uint8_t *any)
 {
-    if (channels == 3)
-        layers_weigh_rows(s, in, share, stride, rows, 3, n, add, out, any);
-    else
-        layers_weigh_rows(s, in, share, stride, rows, 4, n, add, out, any);
+    HF_WITH_CHANNELS(channels, layers_weigh_rows(s, in, share, stride, rows, CHANNELS, n, add, out, any));
 }
 
 // Reads and writes whole vectors only inside its arrays: n may be less than a vector.

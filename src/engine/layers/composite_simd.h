@@ -70,10 +70,7 @@ HF_INLINE void layers_blend_sums(const struct hf_stack_row *to, const int channe
 static void layers_blend_simd(const struct hf_stack_row *to, int channels, const float *const in[5],
                               enum hf_layers_sums sums, int n, float *part)
 {
-    if (channels == 3)
-        layers_blend_sums(to, 3, in, sums, n, part);
-    else
-        layers_blend_sums(to, 4, in, sums, n, part);
+    HF_WITH_CHANNELS(channels, layers_blend_sums(to, CHANNELS, in, sums, n, part));
 }
 
 // The last addition is never fused, as in the plain C.

@@ -97,10 +97,7 @@ HF_INLINE void layers_quads_of(const float *const seen[2][6], const float *const
 static void layers_quads_simd(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
                               float *const out[6])
 {
-    if (channels == 3)
-        layers_quads_of(seen, mixed, 3, n, out);
-    else
-        layers_quads_of(seen, mixed, 4, n, out);
+    HF_WITH_CHANNELS(channels, layers_quads_of(seen, mixed, CHANNELS, n, out));
 }
 
 HF_INLINE void layers_merge_of(const float *const in[3][6], const int channels, float slope, int n, float *const out[6])
@@ -129,10 +126,7 @@ HF_INLINE void layers_merge_of(const float *const in[3][6], const int channels, 
 
 static void layers_merge_simd(const float *const in[3][6], int channels, float slope, int n, float *const out[6])
 {
-    if (channels == 3)
-        layers_merge_of(in, 3, slope, n, out);
-    else
-        layers_merge_of(in, 4, slope, n, out);
+    HF_WITH_CHANNELS(channels, layers_merge_of(in, CHANNELS, slope, n, out));
 }
 
 HF_INLINE vf layers_hides(vf more)
@@ -174,10 +168,7 @@ HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const 
 static void layers_taps_simd(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
                              float *const sum[6])
 {
-    if (channels == 3)
-        layers_taps_of(tap, count, 3, nearest, n, sum);
-    else
-        layers_taps_of(tap, count, 4, nearest, n, sum);
+    HF_WITH_CHANNELS(channels, layers_taps_of(tap, count, CHANNELS, nearest, n, sum));
 }
 
 HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, const int channels, int x, vf nearest,
@@ -242,10 +233,7 @@ HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int ch
 static void layers_between_simd(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
                                 float *const sum[6])
 {
-    if (channels == 3)
-        layers_between_of(line, 3, nearest, n, sum);
-    else
-        layers_between_of(line, 4, nearest, n, sum);
+    HF_WITH_CHANNELS(channels, layers_between_of(line, CHANNELS, nearest, n, sum));
 }
 
 static void layers_nearest_simd(const float *above, const float *below, int n, float *out)
@@ -424,10 +412,7 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
 static void layers_smooth_simd(const float *const in[13][6], const float *const along[2], int channels, int n,
                                float *const out[6])
 {
-    if (channels == 3)
-        layers_smooth_of(in, along, 3, n, out);
-    else
-        layers_smooth_of(in, along, 4, n, out);
+    HF_WITH_CHANNELS(channels, layers_smooth_of(in, along, CHANNELS, n, out));
 }
 
 // A mask of a vector's first n lanes.

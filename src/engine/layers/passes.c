@@ -15,13 +15,10 @@ enum { TILE = HF_LAYERS_TILE };
 // Whether any of n numbers is beyond `largest` in size. It compares bits as integers, which costs next to nothing.
 static int has_larger(const float *v, int n, float largest)
 {
-    uint32_t most, any = 0;
-    memcpy(&most, &largest, sizeof most);
-    for (int i = 0; i < n; i++) {
-        uint32_t bits;
-        memcpy(&bits, v + i, sizeof bits);
-        any |= (uint32_t)((bits & 0x7fffffff) > most);
-    }
+    const uint32_t most = hf_bits(largest);
+    uint32_t any = 0;
+    for (int i = 0; i < n; i++)
+        any |= (uint32_t)((hf_bits(v[i]) & 0x7fffffff) > most);
     return any != 0;
 }
 

@@ -31,8 +31,5 @@ HF_INLINE void layers_alike_of(const struct hf_pattern_place *place, const struc
 static void layers_alike_simd(const struct hf_pattern_place *place, const struct hf_pattern_tap *tap, int count,
                               const float *const in[6], int channels, int n, float *sum, float *off)
 {
-    if (channels == 3)
-        layers_alike_of(place, tap, count, in, 3, n, sum, off);
-    else
-        layers_alike_of(place, tap, count, in, 4, n, sum, off);
+    HF_WITH_CHANNELS(channels, layers_alike_of(place, tap, count, in, CHANNELS, n, sum, off));
 }

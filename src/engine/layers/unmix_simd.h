@@ -206,8 +206,5 @@ HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int ch
 
 static void layers_unmix_simd(const struct hf_unmix_row *u, int n)
 {
-    if (u->channels == 3)
-        layers_unmix_of(u, n, 3);
-    else
-        layers_unmix_of(u, n, 4);
+    HF_WITH_CHANNELS(u->channels, layers_unmix_of(u, n, CHANNELS));
 }

@@ -9,11 +9,7 @@
 // The bit for the exponent of v > 0: each bit stands for eight exponents, the highest for sixteen.
 static uint32_t exponent_bit(float v)
 {
-    const union {
-        float f;
-        uint32_t i;
-    } u = {v < 0x1p120f ? v : 0x1p120f};
-    return 1u << (u.i >> 26);
+    return 1u << (hf_bits(v < 0x1p120f ? v : 0x1p120f) >> 26);
 }
 
 void hf_scatter_note_c(const float *radius, float *const colour[4], int channels, int n, struct hf_counts *counts)
