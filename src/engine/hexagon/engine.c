@@ -104,6 +104,9 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     h->ready = h->reach_x = h->reach_y = h->behind = h->mixed = 0;
     h->rotation = p->aperture.rotation;
     h->half = p->hexagon.resolution == HF_RESOLUTION_HALF;
+    h->made = HF_HEXAGON_MADE + (h->half ? HF_HEXAGON_MADE_COUNT : 0);
+    h->width = h->half ? s->half_width : s->width;
+    h->height = h->half ? s->half_height : s->height;
     s->uniform = p->hexagon.uniform;
     s->zero_beyond = 1;
     // Below this radius weights and colours times radii would be denormal, and a pixel's soft edge would have no slope.

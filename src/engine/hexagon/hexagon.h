@@ -115,9 +115,11 @@ struct hf_hexagon_line {
 
 // Lines u, v, w, and how far around a pixel pass 2 reads the results of pass 1, half-resolution pixels.
 struct hf_hexagon {
-    int ready;       // prepared: the other members are valid
-    int half;        // at half resolution
-    float rotation;  // degrees
+    int ready;          // prepared: the other members are valid
+    int half;           // at half resolution
+    int made;           // the first buffer of results at that resolution
+    int width, height;  // of the frame at that resolution
+    float rotation;     // degrees
     struct hf_hexagon_line line[3];
     int left, right, above, below;
     float side[3][2];  // 1 / the sides' extent along x and y, in pixels per pixel of radius
@@ -154,7 +156,7 @@ struct hf_hexagon_field {
 // The buffer of a result at the setup's resolution.
 static inline const struct hf_buf *hf_hexagon_made(const struct hf_frame *f, enum hf_hexagon_made b)
 {
-    return &f->buf[HF_HEXAGON_MADE + (hf_hexagon(f->s)->half ? HF_HEXAGON_MADE_COUNT : 0) + b];
+    return &f->buf[hf_hexagon(f->s)->made + (int)b];
 }
 
 static inline struct hf_hexagon_field hf_hexagon_field(const struct hf_frame *f, unsigned field)
@@ -187,12 +189,12 @@ static inline struct hf_hexagon_field hf_hexagon_field_2(const struct hf_frame *
 // The frame's size at the working resolution.
 static inline int hf_hexagon_width(const struct hf_setup *s)
 {
-    return hf_hexagon(s)->half ? s->half_width : s->width;
+    return hf_hexagon(s)->width;
 }
 
 static inline int hf_hexagon_height(const struct hf_setup *s)
 {
-    return hf_hexagon(s)->half ? s->half_height : s->height;
+    return hf_hexagon(s)->height;
 }
 
 // Moves (x, y) to the frame's nearest pixel. Returns 0 if that is farther away than the frame's own size: nothing is
