@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/check.h"
 
-#include <math.h>
-
 #include "pixel/depth_rows.h"
 #include "pixel/format.h"
 #include "pixel/unorm.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame/cost.h"
 
-#include <string.h>
-
 static uint64_t mix(uint64_t hash, uint64_t v)
 {
     hash = (hash ^ v) * UINT64_C(0x9e3779b97f4a7c15);

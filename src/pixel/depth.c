@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the samples of a depth buffer mean.
 #include <math.h>
-#include <string.h>
 
 #include "pixel/depth_rows.h"
-#include "pixel/format.h"
 #include "pixel/depth.h"
 
 void hf_setup_depth(struct hf_setup *s, const struct hf_depth *d, float pixel_aspect)

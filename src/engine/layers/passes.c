@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The passes of layers, over the frame's buffers.
-#include <math.h>
 #include <string.h>
 
 #include "engine/layers/cell.h"

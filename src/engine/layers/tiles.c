@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "engine/layers/parts.h"
-#include "pixel/pass_c.h"
 
 // The index of a tile in the frame's tables. A tile beyond the frame has that of the nearest tile, whose border it
 // holds.

@@ -6,7 +6,6 @@
 // because ends lie between pixels. One running sum along each row then turns these differences into the picture.
 #include <string.h>
 
-#include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 
 // Add one end of a span: j units of u at the first pixel and 256 - j at the next.

@@ -3,7 +3,6 @@
 // pixels (1 3 3 1), which keeps centroids. Elsewhere pixels are drawn one by one, each on the four nearest
 // half-resolution pixels. Between both cases a pixel is drawn partly each way, so a changing radius makes no picture
 // jump.
-#include <math.h>
 #include <string.h>
 
 #include "engine/scatter/walk.h"
