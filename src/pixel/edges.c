@@ -168,7 +168,7 @@ const float hf_edges_weights[5][5] = {
 #undef W
 // clang-format on
 
-// Weights of the 5 x 5 pixels on the front's and the back's side. The middle pixel is mixed: it has the least weight.
+// Weights of the 5 x 5 pixels on the front's and the back's side. The middle pixel is mixed, so only FAINT of it counts.
 static void weigh(const struct hf_edge_row *row, int x, float w[2][5][5])
 {
     for (int j = 0; j < 5; j++)

@@ -309,9 +309,9 @@ static struct line_sums sum_line(const struct world *w, const struct hf_hexagon_
     return s;
 }
 
-// A line of the far field. Each sum: a product and an addition a tap, and the weight within 3 of its tap's, as the limit,
-// 3 less a product of less, is within 2, and its part is a product. The pixel's own part is 1 less the sum of weights, or less: within that and 4.
-// What both are divided by is not less than a quarter.
+// A line of the far field. Roundings of each sum: a product and an addition per tap, and 3 for the tap's weight (2 for
+// its limit, 3 minus a smaller product; 1 for its product with the tap's part). The pixel's own weight, 1 minus the sum
+// of weights or less, has the error of that sum and 4 roundings more. The divisor is at least a quarter.
 struct far_sums {
     double value, error, w, w_error;  // the colour; light over radii
 };
@@ -339,7 +339,7 @@ static struct far_sums far_line(const struct world *w, const struct hf_hexagon_f
     return f;
 }
 
-// What pass 1 finds along one line, or along both.
+// What pass 1 computes along one line, or along both.
 static struct far_sums far_lines(const struct world *w, int both, int c, int x, int y, float p)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_FAR);
@@ -368,7 +368,8 @@ static double bound_far_1(const struct world *w, int b, int c, int x, int y)
         size += fabs(u.value);
         light_error += u.error;
     }
-    // The mean radius, and the weight: what of the pixel is far over it, where it is not below 1.
+    // The mean radius; and the weight: the pixel's share in the far field over that radius, or over 1 if that is
+    // larger.
     const double part = *hf_at(in.weight, in.a, x, y) * fmax(p, 1);
     const struct far_sums u = far_lines(w, both, is_weight ? 0 : c, x, y, p);
     light_error += 2 * FLT_EPSILON * size;
@@ -390,8 +391,8 @@ static double bound_far_2(const struct world *w, int c, int x, int y)
     return (v.error + u.error + 2 * FLT_EPSILON * (fabs(v.value) + fabs(u.value))) / 3;
 }
 
-// Near sums are of numbers that are not negative, but for colours. A quotient of two of them is within twice the
-// additions, its square four times, and the product of that with a third five times.
+// Near sums have no negative terms, except those of colour. A quotient of two of them has at most twice the roundings
+// of their additions, its square four times, and the product of that square with a third sum five times.
 static double bound_near_1(const struct world *w, int b, int c, int x, int y)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(&w->reference, HF_NEAR);
@@ -424,7 +425,8 @@ static double bound_near_2(const struct world *w, int b, int c, int x, int y)
     return (n + 3) * FLT_EPSILON * size / 3;
 }
 
-// Load: products and two sums of four colours, times a weight; light is the sum of three of these, over a radius.
+// Load: products and two additions for a mean of four colours, then the product with a weight. Light: the sum of three
+// such means over a radius.
 static double bound_load(const struct world *w, int b, int c, int x, int y)
 {
     const int is_colour =
@@ -467,7 +469,7 @@ double hexagon_bound_buffer(const struct world *w, int b, int c, int x, int y, f
     return bound > 0 ? bound + 0x1p-140 : 0;
 }
 
-// The largest of a premultiplied buffer's channel over its weight, between two corners.
+// The largest colour in a rectangle: channel c of a premultiplied buffer over its weight.
 static double largest_colour(const struct hf_frame *f, enum hf_hexagon_made colour, enum hf_hexagon_made weight, int c,
                              struct hf_rect r)
 {
@@ -481,11 +483,12 @@ static double largest_colour(const struct hf_frame *f, enum hf_hexagon_made colo
     return most;
 }
 
-// Composite: a mean of a near colour and a background, by coverage and what that leaves. In roundings of the largest
-// colour: at half resolution coverage and what lies behind are quotients of means of four (4 and 4, 1), blended twice
-// (3 each); the far one is no worse; what is left is a difference from coverage (4 and 1), and both weights tell by how
-// much two colours count that are up to twice the largest apart; product, two sums and a quotient (4). Of a mixed pixel the sample is
-// taken off, times its radius, and as much of the far field added: two products and two sums (4) of three colours.
+// Composite: a mean of a near colour and a background, weighted by coverage and by the rest. Roundings, of the largest
+// colour. At half resolution, coverage and the background are quotients of means of four (4 and 4, 1), blended twice (3
+// each); the far colour has no more. The rest is 1 minus coverage (4 and 1). An error in both weights counts by the
+// difference of the two colours, at most twice the largest. Then a product, two additions and a quotient (4). In a
+// mixed pixel the sample times its radius is subtracted and as much of the far field added: two products and two
+// additions (4) of three colours.
 double hexagon_bound_pixel(const struct world *w, int c, int x, int y)
 {
     const struct hf_frame *f = &w->reference;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole frames through the public calls, on every instruction set: deterministic frames have the bits of the C, others
-// are within the bound that follows from the number of operations.
-// --quick: fewer frames; --brief: besides, only small ones, and nothing that would be emulated twice where the CPU is
-// emulated. With HF_LONG in the environment all frames all the same.
+// Whole frames through the public calls, on every instruction set. Deterministic frames must have the bits of the C
+// code; others must be within a bound that follows from the number of operations.
+// --quick: fewer frames. --brief: in addition only small frames, and on an emulated CPU no instruction set that would
+// be emulated twice. With HF_LONG in the environment all frames run regardless.
 //
 //     whole_frame [--seed N] [--quick | --brief] [--isa NAME]
 #include <float.h>
@@ -21,7 +21,7 @@ struct frame_case {
     float max_radius, strength, pixel_aspect;  // 0: random
 };
 
-// What random frames are too small for. Then as many random ones as there is time for.
+// Cases for which random frames are too small. After them come as many random frames as time allows.
 static const struct frame_case special[] = {
     {"the largest reach, little strength", 300, 20, 200, 0.25f, 1},
     {"the largest reach", 150, 24, 120, 1, 0.7f},
@@ -34,9 +34,9 @@ static const struct frame_case special[] = {
 enum { SPECIALS = sizeof special / sizeof *special, LARGE = 3 };  // the large ones come first
 
 static int passed, failed;
-static uint32_t hash = 2166136261u;  // of the C's pictures: the same on every machine with the same libm
+static uint32_t hash = 2166136261u;  // of the C code's pictures: the same on every machine with the same libm
 
-// The gaussian engine with the rest of the options as they are.
+// The gaussian engine, with the other options as they are.
 static void make_gaussian(struct world *w)
 {
     struct hf_params *p = &w->params;
@@ -72,7 +72,8 @@ static void make_aperture(struct rng *r, struct hf_aperture_params *a)
     a->squeeze = rng_one_in(r, 5) ? rng_float(r, 0.5f, 2) : 1;
 }
 
-// The scatter instead of the gather, with some of its options. Its frames have the bits of the C whatever is fused.
+// The scatter engine, with some of its options. Its frames always have the bits of the C code, with fused operations
+// too.
 static void make_scatter(struct world *w)
 {
     struct hf_params *p = &w->params;
@@ -82,7 +83,7 @@ static void make_scatter(struct world *w)
     make_aperture(r, &p->aperture);
 }
 
-// Layers likewise.
+// The layers engine, with some of its options.
 static void make_layers(struct world *w)
 {
     struct hf_params *p = &w->params;
@@ -99,7 +100,7 @@ static void make_case(struct world *w, const struct frame_case *c)
         w->params.max_radius = c->max_radius ? c->max_radius : w->params.max_radius;
         w->params.range.strength = c->strength ? c->strength : w->params.range.strength;
         w->params.view.pixel_aspect = c->pixel_aspect ? c->pixel_aspect : w->params.view.pixel_aspect;
-        w->params.gather.karis &= w->colours != COLOURS_MIXED;  // luminance would cancel
+        w->params.gather.karis &= w->colours != COLOURS_MIXED;  // with negative colours, luminance would cancel
     } while (c->max_radius && (w->params.model == HF_MODEL_LENS || w->params.gather.per_pixel_kernel));
     if (rng_one_in(&w->rng, 4))
         make_gaussian(w);
@@ -123,8 +124,8 @@ static int is_exact(const struct world *w, const struct level *l)
     return l->exact || w->params.engine == HF_ENGINE_SCATTER;
 }
 
-// Depth of one piece over blocks of a random size, so that there are tiles with nothing to do; and no CoC that is only
-// just not 0, of which a quotient makes anything.
+// Make depth constant over blocks of a random size, so that some tiles have nothing to do. A tiny depth becomes 0: a
+// quotient with it could be anything.
 static void smooth_depth(struct world *w)
 {
     const size_t bytes = hf_depth_bytes(w->depth.format);
@@ -163,7 +164,7 @@ static int render(struct world *w, const struct level *l, enum arena a, struct h
     int err = hf_open(&c, &config);
     if (err)
         return err;
-    if (!l->isa)  // emulated: not one that a caller could ask for
+    if (!l->isa)  // emulated: no caller could ask for it
         use_kernels(c, &l->k);
     world_reset(w, a);
     const struct hf_frame f = world_frame(w, &l->k, a);
@@ -186,14 +187,14 @@ static double largest_sample(const struct world *w, int c)
     return most;
 }
 
-// Roundings on the way through all passes, see bound.c for each: downsample 25; the gather's sums, of colour and of
-// weight, and their quotient; a mean of nine 9; composite 68.
-// Hexagon: a line's taps, for the sums of its weights and of what they weigh, and 30 more for loading and dividing; what is
-// divided by is not less than a quarter, in each of two passes.
+// Roundings through all passes (bound.c derives each): downsample 25; the gather's sums of colour and of weight, and
+// their quotient; a mean of nine 9; composite 68.
+// Hexagon: each tap of a line rounds the sums of weights and of weighted colours; loading and dividing add 30. The
+// divisor is at least a quarter, in each of two passes.
 static double frame_roundings(const struct world *w)
 {
     if (w->params.engine == HF_ENGINE_GAUSSIAN)
-        return 0;  // nothing is ever fused
+        return 0;  // no operation is ever fused
     if (w->params.engine == HF_ENGINE_HEXAGON)
         return 2 * 4 * (3 * 3 * (w->params.max_radius + 4) / fmin(w->params.view.pixel_aspect, 1) + 30);
     const float h = w->params.max_radius / 2;
@@ -201,15 +202,15 @@ static double frame_roundings(const struct world *w)
     return 25 + 2 * (2 * rx + 2 * ry + 4 + 6) + 1 + 9 + 68;
 }
 
-// Rounding to small formats between passes, and dividing by sums that cancel, leave no bound to speak of: there only
-// equality is tested. Layers put samples in order of depth: what is fused may change which comes first.
+// Where passes store small formats, or sums cancel in a divisor, no useful bound follows: only equality is tested.
+// Layers sorts samples by depth, and a fused operation may change their order.
 static int has_bound(const struct world *w)
 {
     return w->params.engine != HF_ENGINE_LAYERS && w->params.gather.storage == HF_STORAGE_FLOAT &&
            !w->params.gather.per_pixel_kernel;
 }
 
-// The sRGB curve is steepest at its end, 2.4 / 1.055.
+// The decoding sRGB curve is steepest at its upper end: 2.4 / 1.055.
 static double unorm_step(const struct hf_image *m, int c)
 {
     return (m->transfer == HF_TRANSFER_SRGB ? 2.4 / 1.055 : 1) / ((1 << hf_unorm(m->format)->bits[c]) - 1);

@@ -3,15 +3,16 @@
 
 #include <float.h>
 
-// Pixels from which a gather's pixel comes: two reaches of the near CoC, the taps, fill and upsampling, in half pixels.
+// How far a gather's pixel reads, in pixels: two radii of the near CoC, the taps, the fill and the upsampling, each in
+// half-resolution pixels.
 static int gather_margin(void)
 {
     const int h = (int)ceilf(STABILITY_RADIUS / 2);
     return 2 * (2 * h + h + 4);
 }
 
-// Lattice weights twice (forming and adding), 12 for the blurred CoC, 32 for down and fill, 11 and 102 for the composite:
-// gather.c derives them.
+// Twice the lattice's weights (making and adding them), 12 for the blurred CoC, 32 for downsampling and fill, 11 and
+// 102 for the composite: tests/engines/gather.c derives them.
 enum { GATHER_ROUNDINGS = 2 * 129 + 12 + 32 + 11 + 102 };
 
 static struct subject gather(const char *name, enum hf_fill fill, enum hf_storage storage)
@@ -43,9 +44,10 @@ static struct subject gather(const char *name, enum hf_fill fill, enum hf_storag
 
 static struct subject hexagon(const char *name, enum hf_resolution resolution)
 {
-    // A line of n taps rounds its weights' sums n times and 2 n more for what they weigh, 30 besides, divided by no less
-    // than a quarter, in each of two passes: hexagon.c derives it. Mixed pixels are as the scatter has them: what is four more
-    // around. Of far radii that differ the light chooses, so sums add up where there is one.
+    // A line of n taps rounds its sum of weights n times and its weighted sum 2 n times, and 30 times besides; the
+    // divisor is at least a quarter, in each of two passes (tests/engines/hexagon.c). Mixed pixels read 4 pixels more,
+    // as in the scatter engine. Where far radii differ, light decides which radius wins; so pictures add only if all
+    // have one radius.
     const double taps = 4 * (STABILITY_RADIUS + 4);
     struct subject s = {name,
                         scene_params(),
@@ -63,9 +65,10 @@ static struct subject hexagon(const char *name, enum hf_resolution resolution)
 
 static struct subject scatter(const char *name, enum hf_resolution resolution)
 {
-    // 40: scatter.c derives it; half resolution comes down and up again: 8 and 12 more. Shares of mixed pixels, 16 times 50
-    // and a part of 2^-20, are derived there too; they are quotients of colours, so sums add up where nothing is mixed. A
-    // mixed pixel looks two pixels around, and these one more: 4, as the frame is cut at whole quads.
+    // 40: tests/engines/scatter.c derives it. Half resolution adds 8 for downsampling and 12 for upsampling. Shares of
+    // mixed pixels add 16 times 50, and 2^-20 of a pixel. A share is a quotient of colours, so pictures add only where
+    // no pixel is mixed. A mixed pixel reads two pixels around it, and those read one more: 4, as the frame is cut at
+    // whole quads.
     const double shares = 16 * 50 + 16;
     struct subject s = {name,
                         scene_params(),
@@ -82,11 +85,12 @@ static struct subject scatter(const char *name, enum hf_resolution resolution)
     return s;
 }
 
-// A constant: layers.c derives 34. Colours of hidden samples are squares of means of roots, and sums of brightness hang on
-// the order of channels, so neither a factor nor a permutation passes through to the bit; un-mixing is no sum.
-// A pixel comes from a radius, the pixels of half resolution at its end (4), hidden samples that look 2^4 half-resolution
-// pixels far (32), un-mixing (4), the mean around a highlight (10).
-// A cat's eye is another shape at every place: that has its own test.
+// 34: tests/engines/layers.c derives it. Colours of hidden samples are squares of means of roots, and sums of
+// brightness depend on the order of channels: so pictures times a factor, or with channels exchanged, may have other
+// bits. Un-mixing is not linear, so pictures do not add.
+// Margin: a radius, 4 pixels of half resolution at its end, 32 for hidden samples, which look 2^4 half-resolution
+// pixels far, 4 for un-mixing, and the mean around a highlight.
+// A cat's eye has another shape at every place; that has its own test.
 static struct subject layers(const char *name, const struct hf_aperture_params *aperture)
 {
     struct subject s = {name,
@@ -103,7 +107,7 @@ static struct subject layers(const char *name, const struct hf_aperture_params *
 
 static struct subject gaussian(const char *name, float sigma, enum hf_resolution resolution)
 {
-    // Four boxes of about 1.73 sigma to either side in all 3.5 sigma; or two pixels an iteration.
+    // Four boxes of about 1.73 sigma reach 3.5 sigma to either side; or each iteration reaches two pixels.
     const int margin = sigma > 0 ? (int)(4 * sigma) + 8 : 2 * 3 * (resolution ? 4 : 1) + 8;
     struct subject s = {name,
                         scene_params(),
@@ -131,7 +135,7 @@ static struct subject faithful(void)
 {
     struct subject s = gather("gather faithful", HF_FILL_MAX, HF_STORAGE_FLOAT);
     s.params.gather.faithful = 1;
-    // Its taps that hold no far colour count as black, and it compares the CoC of one quad with the colour of another.
+    // Its taps without a far colour count as black, and it compares the CoC of one quad with the colour of another.
     s.promises &= ~(unsigned)(FLIPS_QUADS | TRANSPOSES);
     return s;
 }

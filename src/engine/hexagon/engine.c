@@ -320,8 +320,8 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     return halo == HALO_BEHIND ? (struct hf_reach){behind, behind} : (struct hf_reach){upsample, upsample};
 }
 
-// A far pixel changes only itself and the pixels that are mixed with it; what lies behind a near pixel changes
-// likewise.
+// A far pixel, or the background behind a near one, changes only the pixel itself and those mixed with it. A near pixel
+// changes all that its blur reaches.
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p, unsigned field)
 {
     const struct hf_reach made = p->pass[HF_HEXAGON_BLUR], around = halo(s, HALO_RADIUS);

@@ -73,7 +73,7 @@ static int wrong_roundings(void)
     return wrong;
 }
 
-// special[15] and then special again, but for its last.
+// special[15], then special without its last number.
 static int wrong_back(void)
 {
     const vf v = vf_back(vf_load(special), vf_add(vf_load(special), vf_zero()));
