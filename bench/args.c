@@ -21,7 +21,7 @@
 
 static const struct tool_option options[] = {
     {"size", 0, TOOL_FILES, "WxH", "Size of a built-in scene, pixels. Default 1920x1080.", .parse = tool_parse_size,
-     FIELD(width), .max = 65536, .commands = "passes|scaling|batch|formats|history"},
+     FIELD(width), .max = 65536, .commands = "passes|scaling|batch|formats|history|cancel"},
     {"scene", 0, TOOL_FILES, "NAME|FILE", "mixed (default), near, far, both, full, focus, band:PERCENT, or an EXR file.",
      TEXT(scene), .commands = "passes"},
     {"images", 0, TOOL_FILES, "DIR", "Folder of NAME.exr and NAME.truth.exr. Default: images "

@@ -16,13 +16,14 @@ const char *const bench_command_words[][2] = {
     {"tradeoff", "time and error of every setting, and which settings are worth having"},
     {"scaling", "time of a frame as its blurred part and its size grow; --size: up to that width"},
     {"formats", "time to read and to store each format of colour and of depth, and of a frame"},
+    {"cancel", "how long a cancelled frame takes to return, in all engines: median and worst"},
     {"stability", "hard cases of all engines or one: the case, its bound, the worst value seen"},
     {"history", "frames, memory and distances from commit to commit; --add measures this one"},
     {NULL, NULL},
 };
 // In the same order.
-static bench_command *const commands[] = {bench_passes,  bench_batch,   bench_truth,     bench_tradeoff,
-                                          bench_scaling, bench_formats, bench_stability, bench_history};
+static bench_command *const commands[] = {bench_passes,  bench_batch,  bench_truth,     bench_tradeoff, bench_scaling,
+                                          bench_formats, bench_cancel, bench_stability, bench_history};
 
 static int run(int argc, char **argv, struct tool_error *error)
 {

@@ -46,11 +46,12 @@ extern "C" {
 
 enum hf_error {
     HF_OK = 0,
-    HF_ERR_ARG = -1,     // an argument is out of its documented range; the log names it and its value
-    HF_ERR_MEMORY = -2,  // the allocator returned NULL
-    HF_ERR_THREAD = -3,  // a thread could not be started, or is not in this process (after fork)
-    HF_ERR_ISA = -4,     // the instruction set asked for is not one of this CPU or of this build
-    HF_ERR_FOCUS = -5,   // there is no surface where focus was to be read
+    HF_ERR_ARG = -1,        // an argument is out of its documented range; the log names it and its value
+    HF_ERR_MEMORY = -2,     // the allocator returned NULL
+    HF_ERR_THREAD = -3,     // a thread could not be started, or is not in this process (after fork)
+    HF_ERR_ISA = -4,        // the instruction set asked for is not one of this CPU or of this build
+    HF_ERR_FOCUS = -5,      // there is no surface where focus was to be read
+    HF_ERR_CANCELLED = -6,  // hf_cancel was called, or the progress callback asked for it
 };
 
 // One sentence for an error code; never NULL, also for numbers that are no code.
@@ -499,9 +500,26 @@ HF_API extern const struct hf_params hf_default_params;
 // pointers, strides and format; any other overlap is undefined. An output without alpha drops it; an output with
 // alpha from an input without gets alpha 1 (alpha is not blurred then). A colour sample that is NaN or infinite
 // counts as the mean of the finite ones among its 8 neighbours, else 0, and is counted in the statistics. params may
-// be NULL (defaults). On error the pixels of dst are unspecified. Errors: HF_ERR_ARG, HF_ERR_MEMORY.
+// be NULL (defaults). On error the pixels of dst are unspecified. Errors: HF_ERR_ARG, HF_ERR_MEMORY, HF_ERR_FOCUS,
+// HF_ERR_CANCELLED.
 HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params);
+
+// Cancel the call of hf_render, hf_prepare or hf_plan that runs on c now: from any thread, also from callbacks. The call
+// returns HF_ERR_CANCELLED soon: within about a millisecond of work, plus what the system takes to wake a thread. hf_cancel
+// itself does not wait. The pixels of dst are then unspecified: in place, the picture is lost. The report is all zero and the
+// log says nothing. The context is as good as before, and so is all that it holds. A call that has just finished its picture
+// returns HF_OK all the same. When none runs nothing happens, and a call that begins later is not cancelled; who cannot
+// know whether the call has begun cancels through the progress callback. c must not be closed meanwhile; NULL does nothing.
+HF_API void hf_cancel(struct hf_context *c);
+
+// From now on call fn while hf_render runs on c; fn NULL (default) ends it. done says how much of the frame is done, 0 to 1,
+// as far as earlier frames or a table tell: it never falls, and comes at most about a hundred times. If the call succeeds the
+// last one has done 1, when the picture is whole; a call that returns an error may have no such. If fn returns other than 0
+// the call is cancelled as by hf_cancel, except that what fn returns for 1 is not looked at. fn is called by the thread that
+// called hf_render; with parallel_for by any of the host's threads, never by two at a time. It may call hf_cancel, and no
+// other function with this context. hf_set_progress itself is to be called when nothing runs on c.
+HF_API void hf_set_progress(struct hf_context *c, int (*fn)(void *cookie, float done), void *cookie);
 
 // How good a picture has to be. Settings that are worth having lie on a ladder, each slower than the one before, at least
 // 0.2 dB closer to what a ray tracer sees on the mean, and on no measured scene where either can be chosen farther from it;

@@ -39,6 +39,8 @@ const char *hf_error_string(int error)
         return "the instruction set is not available on this CPU or in this build";
     case HF_ERR_FOCUS:
         return "there is no surface where focus was to be read";
+    case HF_ERR_CANCELLED:
+        return "the call was cancelled";
     default:
         return "unknown error";
     }
@@ -258,6 +260,7 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     char message[HF_MESSAGE];
     struct hf_resolved r;
     c->report = (struct hf_report){0};
+    atomic_store_explicit(&c->stop, 0, memory_order_relaxed);
     if (c->pool && c->threads > 1 && c->pid != hf_process()) {
         say(&c->config, HF_LOG_ERROR, "the context was opened before fork(): its threads are in the parent process");
         return HF_ERR_THREAD;
@@ -286,7 +289,8 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     c->report.budget_options = options;
     if (err) {
         c->report = (struct hf_report){0};
-        say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
+        if (err != HF_ERR_CANCELLED)
+            say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
     } else if (steps && task == HF_TASK_RENDER) {
         hf_budget_note(&c->budget, p->run.budget_ms, steps, (float)c->report.total_ms);
         if (hf_budget_missed(&c->budget, p->run.budget_ms, steps))
@@ -316,6 +320,18 @@ int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_im
     const int err = run(c, dst, src, depth, params, HF_TASK_PLAN);
     hf_get_report(c, report);
     return err;
+}
+
+void hf_cancel(struct hf_context *c)
+{
+    if (c)
+        atomic_store_explicit(&c->stop, 1, memory_order_relaxed);
+}
+
+void hf_set_progress(struct hf_context *c, int (*fn)(void *cookie, float done), void *cookie)
+{
+    if (c)
+        c->progress = (struct hf_progress_call){fn, cookie};
 }
 
 void hf_get_report(const struct hf_context *c, struct hf_report *report)

@@ -7,6 +7,7 @@
 #include "frame/cost.h"
 #include "pass/engine.h"
 #include "frame/plan.h"
+#include "frame/progress.h"
 #include "base/pool.h"
 #include "frame/resolve.h"
 #include "pass/check.h"
@@ -48,10 +49,12 @@ struct hf_context {
     struct hf_work work;  // of the plan
     struct hf_cost cost;
     struct hf_budget budget;
-    int depth_told;  // the depth format for which a warning said that it is no distance; 0: none
+    atomic_int stop;  // the call that runs is cancelled
+    int depth_told;   // the depth format for which a warning said that it is no distance; 0: none
 
     void (*dump)(void *cookie, const struct hf_buffer *buffer);
     void *dump_cookie;
+    struct hf_progress_call progress;
 };
 
 // Allocate and free what engines keep. May return HF_ERR_MEMORY.

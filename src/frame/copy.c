@@ -49,7 +49,7 @@ static void fill_x(const struct hf_image *m, int x, int y, int n)
 void hf_copy_scan(struct hf_worker *w, struct hf_rect r)
 {
     const struct hf_setup *s = w->frame.s;
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, s->height); y++)
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, s->height) && !hf_stopped(s->stop); y++)
         w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0, NULL);
 }
 
@@ -64,7 +64,7 @@ void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_re
         even[c] = hf_line(f, c);
         odd[c] = hf_line(f, 4 + c);
     }
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
         // In place, the pixels were checked, and repaired if necessary, after the first sweep.
         if (copy->raw && (copy->in_place || row_finite(f, x, y, n, f->dst))) {
             fill_x(f->dst, x, y, n);
@@ -86,16 +86,30 @@ static int seen_bad(const struct hf_context *c)
     return n != 0;
 }
 
+// All repairs of the picture, some rows at a time: at most max of them are written to list. Returns how many there are.
+static size_t list_repairs(const struct hf_context *c, struct hf_repair *list, size_t max)
+{
+    enum { ROWS = 4 };
+    const struct hf_frame *f = &c->workers[0].frame;
+    size_t n = 0;
+    for (int y = 0; y < f->src->height && !hf_stopped(f->s->stop); y += ROWS) {
+        const struct hf_rect rows = {0, y, f->src->width, hf_min(y + ROWS, f->src->height)};
+        n += hf_repair_list(f->src, rows, list ? list + n : NULL, list ? max - n : 0);
+    }
+    return n;
+}
+
 static int write_repairs(struct hf_context *c)
 {
     const struct hf_image *m = c->workers[0].frame.src;
-    const struct hf_rect all = {0, 0, m->width, m->height};
-    const size_t n = hf_repair_list(m, all, NULL, 0);
+    const size_t n = list_repairs(c, NULL, 0);
     const int err = hf_block_grow(&c->repairs, n * sizeof(struct hf_repair), &c->mem);
     if (err)
         return err;
     struct hf_repair *list = c->repairs.data;
-    hf_repair_list(m, all, list, n);
+    list_repairs(c, list, n);
+    if (hf_stopped(&c->stop))
+        return HF_ERR_CANCELLED;
     for (size_t i = 0; i < n; i++)
         hf_put_sample(m, list[i].channel, list[i].x, list[i].y, list[i].value);
     c->workers[0].counts.colour_repaired += n;

@@ -13,16 +13,30 @@
 #include "frame/report.h"
 #include "frame/sweep.h"
 
-// fn(r, i, worker) for i in [0, n), on the pool or on the host's threads.
-static void parallel(struct hf_render *r, int n, void (*fn)(void *arg, int i, int worker))
+static int cancelled(const struct hf_render *r)
+{
+    return hf_stopped(r->s->stop) ? HF_ERR_CANCELLED : HF_OK;
+}
+
+static void run_task(void *arg, int i, int worker)
+{
+    struct hf_render *r = arg;
+    if (!hf_stopped(r->s->stop))
+        r->task(r, i, worker);
+}
+
+// fn(r, i, worker) for i in [0, n), on the pool or on the host's threads. HF_ERR_CANCELLED.
+static int parallel(struct hf_render *r, int n, void (*fn)(void *arg, int i, int worker))
 {
     struct hf_context *c = r->c;
+    r->task = fn;
     if (n == 1)
-        fn(r, 0, 0);
+        run_task(r, 0, 0);
     else if (n > 0 && c->pool)
-        hf_pool_run(c->pool, n, fn, r);
+        hf_pool_run(c->pool, n, run_task, r);
     else if (n > 0)
-        c->config.parallel_for(c->config.parallel_cookie, n, fn, r);
+        c->config.parallel_for(c->config.parallel_cookie, n, run_task, r);
+    return cancelled(r);
 }
 
 static void start_workers(const struct hf_render *r, const struct hf_job *job)
@@ -91,33 +105,39 @@ static int make_plan(struct hf_render *r, struct hf_setup *s, enum hf_task task)
         if (err)
             return err;
     }
-    parallel(r, p->rows[2], hf_sweep_classify);
+    const int err = parallel(r, p->rows[2], hf_sweep_classify);
+    if (err)
+        return err;
     hf_plan_settle(p, r->s, r->copy.in_place);
     return task != HF_TASK_RENDER || !s->measured ? HF_OK : lay_out_cells(r, p->reads);
 }
 
-static void look_at_colour(struct hf_render *r)
+static int look_at_colour(struct hf_render *r)
 {
-    parallel(r, hf_plan_count(&r->c->plan, 1), hf_sweep_colour);
+    const int err = parallel(r, hf_plan_count(&r->c->plan, 1), hf_sweep_colour);
     hf_report_colour(r->c);
+    return err;
 }
 
-static void finish_chunks(struct hf_render *r)
+static int finish_chunks(struct hf_render *r)
 {
     struct hf_context *c = r->c;
-    parallel(r, c->plan.rest_count, hf_sweep_rest);
-    if (c->plan.engine->own.made) {
+    const int err = parallel(r, c->plan.rest_count, hf_sweep_rest);
+    if (!err && c->plan.engine->own.made) {
         const struct hf_counts found = hf_report_counts(c);
         c->plan.engine->own.made(c->engine[r->s->engine].own, r->s, &found);
     }
+    return err;
 }
 
-static void make_tiles(struct hf_render *r)
+static int make_tiles(struct hf_render *r)
 {
     const struct hf_plan *p = &r->c->plan;
-    for (r->sweep = 2; r->sweep <= p->engine->sweeps; r->sweep++)
+    int err = HF_OK;
+    for (r->sweep = 2; !err && r->sweep <= p->engine->sweeps; r->sweep++)
         if (r->sweep == p->engine->sweeps || (p->needs && hf_plan_sweep_runs(p, r->s, r->sweep)))
-            parallel(r, hf_plan_count(p, r->sweep), hf_sweep_cell);
+            err = parallel(r, hf_plan_count(p, r->sweep), hf_sweep_cell);
+    return err;
 }
 
 static void report_plan(struct hf_render *r, int64_t planning)
@@ -127,10 +147,29 @@ static void report_plan(struct hf_render *r, int64_t planning)
     r->c->report.plan_ms = (double)planning * 1e-6;
 }
 
-static void touch(struct hf_render *r, const struct hf_block *block)
+// After the first sweep: what each pass on a cell is of the work that is left. A unit is what is predicted to take a
+// nanosecond, and so is the copy of a tile.
+static void begin_progress(struct hf_render *r)
+{
+    const struct hf_context *c = r->c;
+    uint64_t all = (uint64_t)hf_plan_count(&c->plan, 2);
+    for (int i = 0; i < c->report.passes; i++) {
+        const struct hf_pass_report *pass = &c->report.pass[i];
+        uint32_t left = pass->run;
+        for (int k = 0; k < c->threads; k++)
+            left -= left > c->workers[k].tiles[i] ? c->workers[k].tiles[i] : left;
+        if (!pass->run)
+            continue;
+        r->progress.pass[i] = (uint64_t)(pass->predicted_ms * 1e6 / pass->run) + 1;
+        all += left * r->progress.pass[i];
+    }
+    hf_progress_stage(&r->progress, 100, all);
+}
+
+static int touch(struct hf_render *r, const struct hf_block *block)
 {
     r->touched = block;
-    parallel(r, (int)((block->size + HF_TOUCH_BYTES - 1) / HF_TOUCH_BYTES), hf_sweep_touch);
+    return parallel(r, (int)((block->size + HF_TOUCH_BYTES - 1) / HF_TOUCH_BYTES), hf_sweep_touch);
 }
 
 // Allocate memory for all that the frame may need, and write to it: its pages then exist. All threads write, so it is
@@ -138,13 +177,12 @@ static void touch(struct hf_render *r, const struct hf_block *block)
 static int take_memory(struct hf_render *r)
 {
     struct hf_context *c = r->c;
-    const int err = hf_buffers_allocate(c, r->s, HF_FIELDS);
-    if (err)
-        return err;
-    touch(r, &c->planes);
-    for (int i = 0; i < c->threads; i++)
-        touch(r, &c->workers[i].scratch);
-    return HF_OK;
+    int err = hf_buffers_allocate(c, r->s, HF_FIELDS);
+    if (!err)
+        err = touch(r, &c->planes);
+    for (int i = 0; i < c->threads && !err; i++)
+        err = touch(r, &c->workers[i].scratch);
+    return err;
 }
 
 static double ms_since(int64_t start)
@@ -165,17 +203,21 @@ static int copy(struct hf_render *r, enum hf_task task)
         return HF_OK;
     const int tiles = hf_plan_count(&c->plan, 2);
     r->copy.raw = r->copy.alike;
+    hf_progress_stage(&r->progress, 100, (uint64_t)tiles);
     if (r->copy.in_place) {
-        parallel(r, tiles, hf_sweep_check);
-        err = hf_copy_repair(c);
+        err = parallel(r, tiles, hf_sweep_check);
+        err = err ? err : hf_copy_repair(c);
     }
+    if (!err)
+        err = parallel(r, tiles, hf_sweep_copy);
     if (err)
         return err;
-    parallel(r, tiles, hf_sweep_copy);
     c->workers[0].counts.sharp_pixels = (uint64_t)r->s->width * (uint64_t)r->s->height;
     hf_report_frame(c, ms_since(start));
     return HF_OK;
 }
+
+enum { LOOK = 10 };  // hundredths of a frame that the first sweep counts for
 
 static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
 {
@@ -188,22 +230,29 @@ static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
         err = lay_out(r, s->measured || task != HF_TASK_RENDER ? 0 : HF_FIELDS);
     if (err)
         return err;
-    parallel(r, hf_plan_count(&c->plan, 1), hf_sweep_look);
+    hf_progress_stage(&r->progress, LOOK, (uint64_t)hf_plan_count(&c->plan, 1));
+    err = parallel(r, hf_plan_count(&c->plan, 1), hf_sweep_look);
+    if (err)
+        return err;
     const int64_t looked = hf_now_ns();
     err = make_plan(r, s, task);
     if (err)
         return err;
     report_plan(r, hf_now_ns() - looked);
-    if (s->resolved->params.run.colour_stats)
-        look_at_colour(r);
-    if (task != HF_TASK_RENDER)
-        return task == HF_TASK_PREPARE ? take_memory(r) : HF_OK;
-    finish_chunks(r);
-    // A tile overwrites pixels from which its neighbours' repairs are made.
-    err = r->copy.in_place ? hf_copy_repair(c) : HF_OK;
+    err = s->resolved->params.run.colour_stats ? look_at_colour(r) : HF_OK;
     if (err)
         return err;
-    make_tiles(r);
+    if (task != HF_TASK_RENDER)
+        return task == HF_TASK_PREPARE ? take_memory(r) : HF_OK;
+    begin_progress(r);
+    err = finish_chunks(r);
+    // A tile overwrites pixels from which its neighbours' repairs are made.
+    if (!err && r->copy.in_place)
+        err = hf_copy_repair(c);
+    if (!err)
+        err = make_tiles(r);
+    if (err)
+        return err;
     hf_report_frame(c, ms_since(start));
     hf_report_learn(c, s);
     return c->dump ? hf_dump_buffers(c, s) : HF_OK;
@@ -212,6 +261,12 @@ static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
 int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_job *job)
 {
     struct hf_render r = {.c = c, .s = s, .copy = hf_copy_plan(s, job->dst, job->src)};
+    const struct hf_progress_call nobody = {0};
+    s->stop = &c->stop;
+    hf_progress_start(&r.progress, job->task == HF_TASK_RENDER ? &c->progress : &nobody, s->stop, !c->pool);
     start_workers(&r, job);
-    return s->resolved->sharp ? copy(&r, job->task) : blur(&r, s, job->task);
+    const int err = s->resolved->sharp ? copy(&r, job->task) : blur(&r, s, job->task);
+    if (!err && job->task == HF_TASK_RENDER)
+        hf_progress_end(&r.progress);
+    return err;
 }

@@ -20,9 +20,11 @@ static hf_kernel *kernel_of(const struct hf_frame *f, int pass)
 }
 
 // Run one pass on a cell, and measure it.
-static void run_pass(const struct hf_render *r, struct hf_worker *w, int pass, struct hf_rect cell, int64_t *clock)
+static void run_pass(struct hf_render *r, struct hf_worker *w, int pass, struct hf_rect cell, int64_t *clock)
 {
     const struct hf_plan *p = &r->c->plan;
+    if (hf_stopped(r->s->stop))
+        return;
     const struct hf_rect area = grown_in_frame(p, cell, p->cells.pass[pass]);
     kernel_of(&w->frame, pass)(&w->frame, area);
     for (int b = 0; b < p->engine->buf_count; b++)
@@ -32,6 +34,7 @@ static void run_pass(const struct hf_render *r, struct hf_worker *w, int pass, s
     const int64_t now = hf_now_ns();
     w->ns[pass] += now - *clock;
     *clock = now;
+    hf_progress_add(&r->progress, (int)(w - r->c->workers), r->progress.pass[pass]);
 }
 
 static void set_fields(struct hf_frame *f, unsigned fields)
@@ -41,8 +44,7 @@ static void set_fields(struct hf_frame *f, unsigned fields)
 }
 
 // Make the first sweep's buffers of a chunk.
-static void make_chunk(const struct hf_render *r, struct hf_worker *w, struct hf_rect cell, unsigned fields,
-                       int64_t *clock)
+static void make_chunk(struct hf_render *r, struct hf_worker *w, struct hf_rect cell, unsigned fields, int64_t *clock)
 {
     const struct hf_engine_def *e = r->c->plan.engine;
     set_fields(&w->frame, fields);
@@ -52,7 +54,7 @@ static void make_chunk(const struct hf_render *r, struct hf_worker *w, struct hf
 
 void hf_sweep_look(void *arg, int i, int worker)
 {
-    const struct hf_render *r = arg;
+    struct hf_render *r = arg;
     struct hf_plan *p = &r->c->plan;
     struct hf_worker *w = &r->c->workers[worker];
     const struct hf_rect cell = hf_plan_cell(p, 1, i);
@@ -69,11 +71,12 @@ void hf_sweep_look(void *arg, int i, int worker)
     if (fields)
         make_chunk(r, w, cell, fields, &clock);
     p->chunk_made[i] = (uint8_t)fields;
+    hf_progress_add(&r->progress, worker, 1);
 }
 
 void hf_sweep_rest(void *arg, int i, int worker)
 {
-    const struct hf_render *r = arg;
+    struct hf_render *r = arg;
     const struct hf_plan *p = &r->c->plan;
     struct hf_worker *w = &r->c->workers[worker];
     const int chunk = p->rest[i];
@@ -103,7 +106,7 @@ void hf_sweep_classify(void *arg, int row, int worker)
     const struct hf_render *r = arg;
     struct hf_plan *p = &r->c->plan;
     (void)worker;
-    for (int x = 0; x < p->columns[2]; x++)
+    for (int x = 0; x < p->columns[2] && !hf_stopped(r->s->stop); x++)
         hf_plan_classify(p, r->s, row * p->columns[2] + x);
 }
 
@@ -126,16 +129,17 @@ void hf_sweep_check(void *arg, int tile, int worker)
 
 void hf_sweep_copy(void *arg, int tile, int worker)
 {
-    const struct hf_render *r = arg;
+    struct hf_render *r = arg;
     struct hf_worker *w = &r->c->workers[worker];
     const int64_t start = hf_now_ns();
     hf_copy_sharp(&r->copy, w, hf_plan_cell(&r->c->plan, 2, tile));
     w->ns[r->c->plan.engine->pass_count - 1] += hf_now_ns() - start;
+    hf_progress_add(&r->progress, worker, 1);
 }
 
 void hf_sweep_cell(void *arg, int i, int worker)
 {
-    const struct hf_render *r = arg;
+    struct hf_render *r = arg;
     const struct hf_plan *p = &r->c->plan;
     struct hf_worker *w = &r->c->workers[worker];
     struct hf_rect cell = hf_plan_cell(p, r->sweep, i);
@@ -176,7 +180,7 @@ void hf_sweep_colour(void *arg, int i, int worker)
         even[c] = hf_line(&w->frame, c);
         odd[c] = hf_line(&w->frame, 4 + c);
     }
-    for (int y = 2 * cell.y0; y < hf_min(2 * cell.y1, r->s->height); y++) {
+    for (int y = 2 * cell.y0; y < hf_min(2 * cell.y1, r->s->height) && !hf_stopped(r->s->stop); y++) {
         hf_read_given(&w->frame, cell.x0, y, n, even, odd, &w->looked);
         for (int x = 0; x < n; x++) {
             for (int c = 0; c < 3; c++)

@@ -15,6 +15,8 @@ struct hf_render {
     unsigned have;                   // fields whose buffers are allocated: what the first sweep makes at once
     int sweep;                       // the one that hf_sweep_cell runs
     const struct hf_block *touched;  // the block that hf_sweep_touch writes to
+    void (*task)(void *arg, int i, int worker);  // the stage at hand
+    struct hf_progress progress;
 };
 
 // Tasks for the pool; arg is a struct hf_render.

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/stop.h"
 #include "hyperfocal/hyperfocal.h"
 
 // Half-open, in half-resolution pixels unless said otherwise.
@@ -81,6 +82,8 @@ struct hf_setup {
 
     const struct hf_resolved *resolved;  // what the frame is rendered with
     const void *own;                     // what the engine made of its parameters, and found in the depth
+
+    atomic_int *stop;  // not 0: the frame is cancelled, and passes return as soon as they see it (base/stop.h)
 };
 
 // Where a chunk has CoC of a kind: groups of lanes, see hf_group, 0 if nowhere; and half-resolution rows.

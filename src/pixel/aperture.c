@@ -162,7 +162,8 @@ static void build_runs(struct hf_aperture *a, const struct hf_side *side, int si
     p->area = (float)area;
 }
 
-int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem)
+int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem,
+                      atomic_int *stop)
 {
     if (a->count && !memcmp(&a->key, key, sizeof *key))
         return HF_OK;
@@ -191,6 +192,10 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
     struct hf_side side[HF_SIDES];
     const int sides = key->blades ? hf_aperture_sides(side, key->blades, key->rotation, key->roundness) : 0;
     for (int i = 0, first = 0; i < a->count; i++) {
+        if (hf_stopped(stop)) {
+            a->count = 0;
+            return HF_ERR_CANCELLED;
+        }
         if (a->symmetric)
             build_disc(a, i, first);
         else

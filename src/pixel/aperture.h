@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "base/small_float.h"
+#include "base/stop.h"
 #include "pass/frame.h"
 
 enum { HF_WHOLE_ROW = 128 };
@@ -55,12 +56,14 @@ struct hf_aperture {
     struct hf_aperture_key key;
 };
 
-// Build the sprites for a key, unless it is that of the last call. Returns HF_OK or HF_ERR_MEMORY.
-int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem);
+// Build the sprites for a key, unless it is that of the last call. Returns HF_OK,
+// HF_ERR_MEMORY or HF_ERR_CANCELLED.
+int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem,
+                      atomic_int *stop);
 
 // The same from an image. Its centre is the axis, its shorter side the diameter.
 int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_image *image,
-                            const struct hf_mem *mem);
+                            const struct hf_mem *mem, atomic_int *stop);
 
 // The integral from 0 to y of the half-width of the rows of a disc of radius r.
 double hf_half_disc(double r, double y);
@@ -85,12 +88,12 @@ struct hf_integral {
 
 size_t hf_integral_bytes(const struct hf_image *image);
 // The integral of a channel, in memory of hf_integral_bytes.
-struct hf_integral hf_integral_make(double *memory, const struct hf_image *image, int channel);
+struct hf_integral hf_integral_make(double *memory, const struct hf_image *image, int channel, atomic_int *stop);
 // The integral's value at a place that may lie between pixels or outside.
 double hf_integral_at(const struct hf_integral *t, double x, double y);
 // A hash of an image; and whether its channels differ.
-uint64_t hf_aperture_hash(const struct hf_image *image);
-int hf_aperture_coloured(const struct hf_image *image);
+uint64_t hf_aperture_hash(const struct hf_image *image, atomic_int *stop);
+int hf_aperture_coloured(const struct hf_image *image, atomic_int *stop);
 
 // The number of the sprite for a finite radius; radii below 0.5 count as 0.5.
 static inline int hf_picture_number(float radius)

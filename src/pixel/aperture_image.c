@@ -16,10 +16,10 @@ static float transmission(const struct hf_image *m, int c, int x, int y)
     return v > 0 && v < INFINITY ? v : 0;
 }
 
-uint64_t hf_aperture_hash(const struct hf_image *m)
+uint64_t hf_aperture_hash(const struct hf_image *m, atomic_int *stop)
 {
     uint64_t h = 0xcbf29ce484222325u;
-    for (int y = 0; y < m->height; y++)
+    for (int y = 0; y < m->height && !hf_stopped(stop); y++)
         for (int x = 0; x < m->width; x++)
             for (int c = 0; c < 3; c++) {
                 h = (h ^ hf_bits(transmission(m, c, x, y))) * 0x100000001b3u;
@@ -27,9 +27,9 @@ uint64_t hf_aperture_hash(const struct hf_image *m)
     return h;
 }
 
-int hf_aperture_coloured(const struct hf_image *m)
+int hf_aperture_coloured(const struct hf_image *m, atomic_int *stop)
 {
-    for (int y = 0; y < m->height; y++)
+    for (int y = 0; y < m->height && !hf_stopped(stop); y++)
         for (int x = 0; x < m->width; x++)
             if (hf_sample(m, 0, x, y) != hf_sample(m, 1, x, y) || hf_sample(m, 0, x, y) != hf_sample(m, 2, x, y))
                 return 1;
@@ -51,11 +51,11 @@ size_t hf_integral_bytes(const struct hf_image *m)
     return ((size_t)m->width + 1) * ((size_t)m->height + 1) * sizeof(double);
 }
 
-struct hf_integral hf_integral_make(double *sum, const struct hf_image *m, int c)
+struct hf_integral hf_integral_make(double *sum, const struct hf_image *m, int c, atomic_int *stop)
 {
     const size_t row = (size_t)m->width + 1;
     memset(sum, 0, row * sizeof *sum);
-    for (int y = 0; y < m->height; y++) {
+    for (int y = 0; y < m->height && !hf_stopped(stop); y++) {
         double *out = sum + (size_t)(y + 1) * row, line = 0;
         out[0] = 0;
         for (int x = 0; x < m->width; x++) {
@@ -109,17 +109,19 @@ static double draw(struct hf_aperture *a, const struct hf_picture *p, const stru
 }
 
 int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_image *image,
-                            const struct hf_mem *mem)
+                            const struct hf_mem *mem, atomic_int *stop)
 {
     struct hf_aperture_key with = *key;
-    with.image = hf_aperture_hash(image);
+    with.image = hf_aperture_hash(image, stop);
     with.width = image->width;
     with.height = image->height;
+    if (hf_stopped(stop))
+        return HF_ERR_CANCELLED;
     if (a->count && !memcmp(&a->key, &with, sizeof with))
         return HF_OK;
     a->key = with;
     a->symmetric = 0;
-    a->planes = hf_aperture_coloured(image) ? 3 : 1;
+    a->planes = hf_aperture_coloured(image, stop) ? 3 : 1;
     a->headroom = 12;
     a->steps = STEPS;
     a->count = (hf_picture_number(key->largest) + STEPS / 2) / STEPS + 2;
@@ -140,8 +142,12 @@ int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key 
     a->tap = (int16_t *)((char *)a->picture + pictures);
     int first = 0;
     for (int c = 0; c < a->planes; c++) {
-        const struct hf_integral t = hf_integral_make(sum, image, c);
+        const struct hf_integral t = hf_integral_make(sum, image, c, stop);
         for (int i = 0; i < a->count; i++) {
+            if (hf_stopped(stop)) {
+                a->count = 0;
+                return HF_ERR_CANCELLED;
+            }
             struct hf_picture *p = &a->picture[c * a->count + i];
             const double r = hf_picture_radius(i * STEPS);
             *p = frame_of(image, r, key->scale_x);

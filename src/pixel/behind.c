@@ -66,7 +66,7 @@ static void load_near(const struct hf_behind *h, const struct hf_behind_source *
     const int rows = h->rows + 2 * WIDE, x0 = h->x0 - WIDE, y0 = h->y0 - WIDE;
     const int from = hf_max(x0, 0), to = hf_min(x0 + h->columns + 2 * WIDE, s->half_width);
     memset(near, 0, sizeof(float) * (size_t)(h->near_stride * rows));
-    for (int y = hf_max(y0, 0); y < hf_min(y0 + rows, s->half_height); y++)
+    for (int y = hf_max(y0, 0); y < hf_min(y0 + rows, s->half_height) && !hf_stopped(s->stop); y++)
         source->near(f, y, from, to, near + (ptrdiff_t)(y - y0) * h->near_stride + from - x0);
 }
 
@@ -75,7 +75,7 @@ static void spread_near(const struct hf_behind *h, const struct hf_frame *f, con
 {
     const ptrdiff_t stride = h->near_stride, all = stride * (h->rows + 2 * WIDE);
     const ptrdiff_t steps[] = {1, 2, 4, stride, 2 * stride, 4 * stride};
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 6 && !hf_stopped(f->s->stop); k++) {
         const float *in = k == 0 ? near : k & 1 ? work : out;
         float *to = k & 1 ? out : work;
         const ptrdiff_t step = steps[k];
@@ -111,7 +111,7 @@ static void load(struct hf_behind *h, const struct hf_behind_source *source, con
     h->seen = 0;
     for (int p = 0; p < h->planes; p++)
         memset(h->level[p], 0, sizeof(float) * (size_t)(h->stride * h->rows));
-    for (int y = hf_max(h->y0, 0); y < hf_min(h->y0 + h->rows, f->s->half_height); y++) {
+    for (int y = hf_max(h->y0, 0); y < hf_min(h->y0 + h->rows, f->s->half_height) && !hf_stopped(f->s->stop); y++) {
         float *plane[HF_BEHIND_PLANES];
         for (int p = 0; p < h->planes; p++)
             plane[p] = h->level[p] + (ptrdiff_t)(y - h->y0) * h->stride + from - h->x0;
@@ -125,11 +125,11 @@ static void widen(const struct hf_behind *h, const struct hf_frame *f, float *le
 {
     const ptrdiff_t stride = h->stride, down = step * stride;
     const int n = h->columns - 2 * rim;
-    for (int y = rim - step; y < h->rows - rim + step; y++) {
+    for (int y = rim - step; y < h->rows - rim + step && !hf_stopped(f->s->stop); y++) {
         const float *in = level + y * stride + rim;
         f->k->behind.third_row(in - step, in + step, in, n, line + y * stride + rim);
     }
-    for (int y = rim; y < h->rows - rim; y++) {
+    for (int y = rim; y < h->rows - rim && !hf_stopped(f->s->stop); y++) {
         const float *in = line + y * stride + rim;
         f->k->behind.third_row(in - down, in + down, in, n, level + y * stride + rim);
     }
@@ -139,7 +139,7 @@ static void widen(const struct hf_behind *h, const struct hf_frame *f, float *le
 static void add_level(const struct hf_behind *h, const struct hf_frame *f, int j, const float *part)
 {
     const int rim = h->reach - 1, n = h->columns - 2 * rim;
-    for (int p = 0; p < h->planes; p++)
+    for (int p = 0; p < h->planes && !hf_stopped(f->s->stop); p++)
         for (int y = rim; y < h->rows - rim && (h->seen >> p & 1); y++) {
             const ptrdiff_t at = (ptrdiff_t)y * h->stride + rim;
             if (j)
@@ -185,7 +185,7 @@ int hf_behind_make(struct hf_behind *h, const struct hf_behind_source *source, c
     if (!h->seen)
         return 0;
     add_level(h, f, 0, part);
-    for (int j = 1; j < levels; j++) {
+    for (int j = 1; j < levels && !hf_stopped(f->s->stop); j++) {
         for (int p = 0; p < planes; p++)
             if (h->seen >> p & 1)
                 widen(h, f, h->level[p], line, 1 << (j - 1), (1 << j) - 1);

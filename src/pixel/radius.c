@@ -41,7 +41,7 @@ void hf_radius_row_c(const struct hf_frame *f, int x, int y, int n, float *out, 
 void hf_radius_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const int x0 = 2 * r.x0, x1 = hf_min(2 * r.x1, f->s->width);
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
         f->k->radius_row(f, x0, y, x1 - x0, hf_line(f, 0), f->counts);
         hf_count_row(f->counts, y);
     }

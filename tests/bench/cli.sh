@@ -61,7 +61,7 @@ bench=$program
 bad "cannot read the history|missing.jsonl" history --file missing.jsonl
 echo '{"date": "2026-01-02"}' >wrong.jsonl
 bad "wrong.jsonl:1:|commit" history --file wrong.jsonl
-for command in passes truth tradeoff scaling formats batch stability history; do
+for command in passes truth tradeoff scaling formats batch cancel stability history; do
     "$bench" --help >out 2>err && grep -q "^  $command " out
     result "--help tells of $command" $?
     "$bench" "$command" --help >out 2>err && grep -q "^    hyperfocal-bench $command \[options\]" out &&

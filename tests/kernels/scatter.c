@@ -446,7 +446,7 @@ static void splat_make(struct world *w)
     window_make(w);
     if (!now.aperture.count) {
         static const struct hf_aperture_key disc = {.largest = 20, .scale_x = 1};
-        hf_aperture_build(&now.aperture, &disc, &hf_mem_default);
+        hf_aperture_build(&now.aperture, &disc, &hf_mem_default, NULL);
     }
     slot_use(w, SLOT_BUF, sizeof(struct hf_splats), 0);
     struct hf_splats *list = (struct hf_splats *)(void *)slot_start(w, ARENA_MADE, SLOT_BUF);

@@ -70,7 +70,7 @@ static double polygon_area(const struct polygon *whole, double x0, double y0, do
 // it: a triangle of radius 1 covers nothing of some of them.
 static const double LEAST = 1.0 / 1024;
 
-void hf_area_cover(double *cover, const struct hf_area *a)
+void hf_area_cover(double *cover, const struct hf_area *a, atomic_int *stop)
 {
     struct polygon p = {.n = a->blades};
     for (int i = 0; i < p.n; i++) {
@@ -80,7 +80,7 @@ void hf_area_cover(double *cover, const struct hf_area *a)
     }
     // A pixel of the lattice, seen from an aperture of radius 1.
     const double w = 1 / a->radius_x, h = 1 / a->radius_y;
-    for (int y = -a->ry; y <= a->ry; y++)
+    for (int y = -a->ry; y <= a->ry && !hf_stopped(stop); y++)
         for (int x = -a->rx; x <= a->rx; x++) {
             const double x0 = (x - 0.5) * w, x1 = (x + 0.5) * w, y0 = (y - 0.5) * h, y1 = (y + 0.5) * h;
             const double area = p.n ? polygon_area(&p, x0, y0, x1, y1) : disc_area(x0, y0, x1, y1);

@@ -3,6 +3,8 @@
 #ifndef HF_AREA_H
 #define HF_AREA_H
 
+#include "base/stop.h"
+
 struct hf_area {
     double radius_x, radius_y;  // pixels
     int rx, ry;                 // of the lattice: offsets -rx..rx, -ry..ry
@@ -14,7 +16,7 @@ struct hf_area {
 
 // Part of each pixel of the lattice that is covered, 0..1, and of polygons at least a little of the nine in the middle: rows
 // of 2 rx + 1.
-void hf_area_cover(double *cover, const struct hf_area *a);
+void hf_area_cover(double *cover, const struct hf_area *a, atomic_int *stop);
 // Weights from that, in its place: whole numbers of hf_area_unit, 1 where a pixel is covered. Returns by what sums are
 // to be multiplied: that of the weights alone then is 1, exactly, but of one that is cut, which is never met as a whole.
 float hf_area_weights(double *weight, const struct hf_area *a);

@@ -68,7 +68,7 @@ static void near_simple(const struct hf_frame *f, struct hf_rect r)
     for (int c = 0; c < s->channels; c++)
         hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLORNEAR4], c, near, c);
     hf_convolve_c(f, r, t, &f->buf[HF_BUF_COC4], HF_AREA_NEAR, cover, 0);
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         const int cut = hf_area_inside(s, t, r.x0, y, r.x1 - r.x0, inside);
         for (int c = 0; c < s->channels; c++)
             hf_convolve_c(f, (struct hf_rect){r.x0, y, r.x1, y + 1}, t, &f->buf[HF_BUF_COLOR4], c, &behind, c);
@@ -102,7 +102,7 @@ static void weigh(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_reach reach = hf_gather_halo(f->s, HF_HALO_TAPS);
     const struct hf_buf *b = &f->buf[HF_BUF_COLOR4];
-    for (int y = r.y0 - reach.y; y < r.y1 + reach.y; y++)
+    for (int y = r.y0 - reach.y; y < r.y1 + reach.y && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0 - reach.x; x < r.x1 + reach.x; x++)
             *hf_at(&f->buf[HF_BUF_WEIGHT], 0, x, y) =
                 hf_gather(f->s)->karis ? hf_karis_weight(*hf_at(b, 0, x, y), *hf_at(b, 1, x, y), *hf_at(b, 2, x, y))
@@ -123,7 +123,7 @@ static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part p
     const struct hf_rect area = grown(&l->level[i].taps, r);
     const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4];
     const struct hf_buf *from = &f->buf[part == PART_FAR ? HF_BUF_COLORFAR4 : HF_BUF_COLORNEAR4];
-    for (int y = area.y0; y < area.y1; y++)
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = area.x0; x < area.x1; x++) {
             const float w = karis(f, x, y);
             const float share = part == PART_FAR ? hf_level_spread(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y))
@@ -143,7 +143,7 @@ static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
     const struct hf_rect area = grown(&l->level[i].taps, r);
     const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4], *level = &f->buf[HF_BUF_LEVEL_WEIGHT];
     const int leaves = hf_gather_leaves(f->s);
-    for (int y = area.y0; y < area.y1; y++)
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = area.x0; x < area.x1; x++) {
             const float w = karis(f, x, y);
             const float counts = hf_gather(f->s)->lights ? *hf_at(&f->buf[HF_BUF_WEIGHT], 2, x, y) : 1;
@@ -256,7 +256,7 @@ static void add_behind(const struct hf_frame *f, const struct sums *behind, stru
     const int leaves = hf_gather_leaves(f->s);
     if (leaves)
         hf_convolve_c(f, r, &l->level[i].taps, &f->buf[HF_BUF_LEVEL_WEIGHT], 2, &f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 2);
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         const float *part = beyond(f, &l->level[i].taps, r, y);
         for (int x = r.x0; x < r.x1; x++) {
             const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
@@ -283,10 +283,10 @@ static void near_levels(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++)
             *hf_at(behind.weight[0], 2, x, y) = 0;
-    for (int i = 0; i < l->count; i++) {
+    for (int i = 0; i < l->count && !hf_stopped(f->s->stop); i++) {
         level_planes(f, r, PART_NEAR, i);
         convolve_level(f, r, &l->level[i].taps);
-        for (int y = r.y0; y < r.y1; y++) {
+        for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
             const float *part = beyond(f, &l->level[i].taps, r, y);
             for (int x = r.x0; x < r.x1; x++)
                 add(f, &near, x, y, part[x - r.x0]);
@@ -298,7 +298,7 @@ static void near_levels(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0; y < r.y1 && hf_gather_leaves(f->s); y++)
         for (int x = r.x0; x < r.x1; x++)
             add_far(f, &behind, x, y);
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         for (int x = r.x0; x < r.x1; x++)
             finish_levels(f, x, y, &near, &behind);
         store_near(f, y, r);
@@ -330,7 +330,7 @@ static void far_simple(const struct hf_frame *f, struct hf_rect r)
     const struct hf_buf *far = &f->buf[HF_BUF_FAR], sum = lines_from(f, r.x0);
     for (int c = 0; c < s->channels; c++)
         hf_convolve_c(f, r, t, &f->buf[HF_BUF_COLORFAR4], c, far, c);
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         hf_convolve_c(f, (struct hf_rect){r.x0, y, r.x1, y + 1}, t, &f->buf[HF_BUF_COC4], HF_AREA_FAR, &sum, 0);
         for (int x = r.x0; x < r.x1; x++)
             for (int c = 0; c < s->channels; c++)
@@ -376,7 +376,7 @@ static void far_levels(const struct hf_frame *f, struct hf_rect r)
     for (int i = l->count - 1; i >= 0; i--) {
         level_planes(f, r, PART_FAR, i);
         convolve_level(f, r, &l->level[i].taps);
-        for (int y = r.y0; y < r.y1; y++)
+        for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
             for (int x = r.x0; x < r.x1; x++) {
                 add(f, &all, x, y, 1);
                 if (f->far)
@@ -405,7 +405,7 @@ void hf_area_gather_c(const struct hf_frame *f, struct hf_rect r)
         near_simple(f, r);
     else if (f->near)
         near_levels(f, r);
-    for (int y = r.y0; y < r.y1 && f->far; y++) {
+    for (int y = r.y0; y < r.y1 && f->far && !hf_stopped(f->s->stop); y++) {
         float *far[4];
         hf_row(&f->buf[HF_BUF_FAR], f->s->channels, r.x0, y, far);
         hf_store_rgb(f, far, r.x1 - r.x0);

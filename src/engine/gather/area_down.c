@@ -84,6 +84,6 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_area_down_c(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         down_row(f, y, r);
 }

@@ -26,10 +26,10 @@ void hf_area_lights_c(const struct hf_frame *f, struct hf_rect r)
     const struct hf_reach reach = hf_gather_halo(f->s, HF_HALO_TAPS);
     const struct hf_buf *b = &f->buf[HF_BUF_WEIGHT];
     const int apart = hf_gather(f->s)->lights;
-    for (int y = r.y0 - reach.y; y < r.y1 + reach.y; y++)
+    for (int y = r.y0 - reach.y; y < r.y1 + reach.y && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0 - reach.x; x < r.x1 + reach.x; x++)
             *hf_at(b, LARGEST, x, y) = largest(f, x, y);
-    for (int y = r.y0 - reach.y + apart; y < r.y1 + reach.y - apart; y++)
+    for (int y = r.y0 - reach.y + apart; y < r.y1 + reach.y - apart && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0 - reach.x + apart; x < r.x1 + reach.x - apart; x++) {
             const float sides = of_pair(*hf_at(b, LARGEST, x - apart, y), *hf_at(b, LARGEST, x + apart, y));
             const float upright = of_pair(*hf_at(b, LARGEST, x, y - apart), *hf_at(b, LARGEST, x, y + apart));

@@ -5,7 +5,7 @@
 // Most of most pictures is sharp or has been looked at before: two comparisons a pixel say so.
 static int is_sharp(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
         if (!f->k->sharp_row(f, r.x0, y, r.x1 - r.x0))
             return 0;
     return 1;
@@ -20,7 +20,7 @@ void hf_gather_coc(const struct hf_frame *f, struct hf_rect r)
                                    (uint64_t)(hf_min(2 * r.y1, f->s->height) - 2 * r.y0);
         return;
     }
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
         float *const out[4] = {hf_at(b, 0, r.x0, y), hf_at(b, 1, r.x0, y), hf_at(b, 2, r.x0, y), hf_at(b, 3, r.x0, y)};
         f->k->coc_row(f, r.x0, y, r.x1 - r.x0, out, f->counts);
         hf_count_row(f->counts, y);

@@ -150,6 +150,6 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
         composite_row(f, y, r);
 }

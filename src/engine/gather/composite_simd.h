@@ -623,7 +623,7 @@ static void composite_simd(const struct hf_frame *f, struct hf_rect r)
                       f->s->storage != HF_STORAGE_HALF && !f->s->faithful && !hf_gather(f->s)->bicubic &&
                       !f->s->highlight.on;
     // Rows 2 k - 1 and 2 k lie between the half-resolution rows k - 1 and k.
-    for (int k = r.y0; 2 * k <= end; k++) {
+    for (int k = r.y0; 2 * k <= end && !hf_stopped(f->s->stop); k++) {
         const int y[2] = {k > r.y0 ? 2 * k - 1 : -1, 2 * k < end ? 2 * k : -1};
         int done = 0;
         if (packs) {

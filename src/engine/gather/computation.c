@@ -56,7 +56,7 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
 void hf_convolve_c(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, const struct hf_buf *in,
                    int c_in, const struct hf_buf *out, int c_out)
 {
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         convolve_row(t, hf_at(in, c_in, r.x0, y), in->stride, hf_at(out, c_out, r.x0, y), r.x1 - r.x0, hf_line(f, 0));
 }
 
@@ -71,7 +71,7 @@ static void weigh(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_reach taps = hf_gather_halo(f->s, HF_HALO_TAPS);
     const int rx = taps.x, ry = taps.y, n = r.x1 - r.x0 + 2 * rx;
-    for (int y = r.y0 - ry; y < r.y1 + ry; y++) {
+    for (int y = r.y0 - ry; y < r.y1 + ry && !hf_stopped(f->s->stop); y++) {
         float *colour[4], *far[4], *coc[4], *weight[4], *colour_w[4], *far_w[4];
         hf_row(&f->buf[HF_BUF_COLOR4], f->s->channels, r.x0 - rx, y, colour);
         hf_row(&f->buf[HF_BUF_COLORFAR4], f->s->channels, r.x0 - rx, y, far);
@@ -151,7 +151,7 @@ static void gather_far(const struct hf_frame *f, struct hf_rect r)
     const enum hf_gather_buf colour = hf_gather(s)->karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
     const enum hf_gather_buf weight = hf_gather(s)->karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
     if (hf_gather(s)->per_pixel_kernel) {
-        for (int y = r.y0; y < r.y1; y++)
+        for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
             for (int x = r.x0; x < r.x1; x++)
                 sample_taps(f, x, y, &f->buf[colour], &f->buf[weight]);
     } else {

@@ -104,10 +104,10 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, 
 // bottom, and stay in the first-level cache while they do.
 HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_t in_stride, float *out,
                               ptrdiff_t out_stride, int height, const int symmetric, const int s,
-                              const struct gather_term *terms, float *h)
+                              const struct gather_term *terms, float *h, atomic_int *stop)
 {
     const int ry = t->ry, step = s * VF_N;
-    for (int y = -ry; y < height + ry; y++) {
+    for (int y = -ry; y < height + ry && !hf_stopped(stop); y++) {
         prefetch_row(in + (y + GATHER_AHEAD) * in_stride - t->rx, step + 2 * t->rx);
         row_pairs(in + y * in_stride, t->rx, symmetric, t->runs, s, h);
         if (y + ry < height)  // reached for the first time
@@ -141,12 +141,14 @@ struct gather_job {
     const float *full;  // rows where gain times this is 1 throughout are not wanted after all; NULL: there are none
     ptrdiff_t full_stride;
     float gain;
+    atomic_int *stop;
 };
 
 static void gather_plane(struct gather_job *j, const struct hf_frame *f, struct hf_rect r, enum hf_gather_buf in,
                          int c_in, enum hf_gather_buf out, int c_out)
 {
     const int i = j->planes++;
+    j->stop = f->s->stop;
     j->in[i] = hf_at(&f->buf[in], c_in, r.x0, r.y0);
     j->in_stride[i] = f->buf[in].stride;
     j->out[i] = hf_at(&f->buf[out], c_out, r.x0, r.y0);
@@ -164,6 +166,7 @@ static void gather_strip_plane(struct gather_job *j, const struct hf_frame *f, s
                                int c_in, int plane)
 {
     const int i = j->planes++;
+    j->stop = f->s->stop;
     j->in[i] = hf_at(&f->buf[in], c_in, r.x0, r.y0);
     j->in_stride[i] = f->buf[in].stride;
     j->out[i] = strip_plane(f, plane, r.y1 - r.y0);
@@ -268,7 +271,8 @@ HF_INLINE void gather_strip(const struct hf_taps *t, const struct gather_job *j,
         clear_rest(j, i, x, x, height, s, y0, y1);
     for (int i = 0; i < j->planes && y0 < y1; i++)
         convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
-                       job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, symmetric, s, terms, h);
+                       job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, symmetric, s, terms, h,
+                       j->stop);
 }
 
 HF_INLINE void gather_any(const struct hf_taps *t, const struct gather_job *j, int x, int height, const int symmetric,
@@ -294,7 +298,7 @@ static void gather_columns(const struct hf_taps *t, const float *weights, const 
     for (int i = 0; i < j->planes && j->clears; i++)
         for (int v = 0; v < s; v++)
             clear_rest(j, i, x, x + v * VF_N, height, 1, y0[v], y1[v]);
-    for (int i = 0; i < j->planes; i++)
+    for (int i = 0; i < j->planes && !hf_stopped(j->stop); i++)
         for (int v = 0; v < s; v++)
             if (y0[v] < y1[v])
                 column(weights, t->scale, j->in[i] + y0[v] * j->in_stride[i] + x + v * VF_N, j->in_stride[i],
@@ -311,7 +315,7 @@ static void gather_jobs(const struct hf_frame *f, struct hf_rect r, const struct
     fixed_column *column = fixed_column_for(t);
     const float *weights = column ? fixed_weights(t, work) : NULL;
     const int most = column ? FIXED_STRIP : GATHER_S;
-    for (int x = 0, next; x < width; x = next) {
+    for (int x = 0, next; x < width && !hf_stopped(f->s->stop); x = next) {
         const int odd = (r.x0 + x) & (VF_N - 1), left = (width - x + VF_N - 1) / VF_N;
         const int strips = (left + most - 1) / most;
         const int s = odd ? 1 : (left + strips - 1) / strips;
@@ -347,7 +351,7 @@ static void weigh_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_reach taps = hf_gather_halo(f->s, HF_HALO_TAPS);
     const int rx = taps.x, ry = taps.y, n = r.x1 - r.x0 + 2 * rx, channels = f->s->channels;
-    for (int y = r.y0 - ry; y < r.y1 + ry; y++) {
+    for (int y = r.y0 - ry; y < r.y1 + ry && !hf_stopped(f->s->stop); y++) {
         float *colour[4], *far[4], *coc[4], *weight[4], *colour_w[4], *far_w[4];
         hf_row(&f->buf[HF_BUF_COLOR4], channels, r.x0 - rx, y, colour);
         hf_row(&f->buf[HF_BUF_COLORFAR4], channels, r.x0 - rx, y, far);
@@ -426,7 +430,7 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
     static const int32_t lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const struct hf_taps *t = hf_gather_taps(f->s, HF_FAR);
     const vi lane = vi_load(lanes);
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < r.x1; x += VF_N) {
             // Lanes past the row's end hold anything; within 0..1 they read nothing but the buffers.
             const vf scale = coc_saturate(vf_load(hf_at(&f->buf[HF_BUF_COC4], 1, x, y)));

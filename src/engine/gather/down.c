@@ -75,6 +75,6 @@ void hf_down_c(const struct hf_frame *f, struct hf_rect r)
         hf_area_down_c(f, r);
         return;
     }
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         down_row(f, y, r);
 }

@@ -208,7 +208,7 @@ HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far
     const enum hf_division division = hf_gather(f->s)->division;
     const int usual = how == HF_DOWNSAMPLE_BILATERAL && division == HF_DIVISION_EXACT;
     const int words = usual && f->src->format == HF_FORMAT_R11G11B10F && !f->s->highlight.on;
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         int x = r.x0;
         if (words) {
             // Up to the last vector that lies in the picture as a whole.

@@ -298,7 +298,7 @@ static int build_taps(struct hf_taps *taps, const struct hf_setup *s, const stru
                                     .rotation = p->aperture.blades ? p->aperture.rotation : 0,
                                     .dense = p->gather.fill == HF_FILL_NONE,
                                     .rings = p->gather.fill == HF_FILL_NONE ? 0 : ring_count(s, p, radius)};
-    return hf_taps_build(taps, &key, mem);
+    return hf_taps_build(taps, &key, mem, s->stop);
 }
 
 // radius: h. With levels from it down to 1, each a step smaller than the one before; the last is 1, so that a radius that
@@ -333,7 +333,7 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
         level->area_to_next = r > next ? __builtin_fminf(1 / (level->area - after * after), FLT_MAX) : 0;
         l->gain = (s->strength < 0.25f ? 4 * s->strength : 1) / level->coc;
         l->hides = many ? l->gain : l->gain * (8 / 7.0f);
-        const int err = hf_taps_build(&level->taps, &key, mem);
+        const int err = hf_taps_build(&level->taps, &key, mem, s->stop);
         if (err)
             return err;
         if (!many || r <= 1)

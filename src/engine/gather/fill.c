@@ -88,7 +88,7 @@ static float fill_far(const struct hf_frame *f, int c, int x, int y)
 
 void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         float *near[4], *far[4];
         hf_row(&f->buf[HF_BUF_NEAR_FILL], f->s->channels, r.x0, y, near);
         hf_row(&f->buf[HF_BUF_FAR_FILL], f->s->channels, r.x0, y, far);

@@ -181,7 +181,7 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
 
 static void fill_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         if (f->near)
             fill_row(f, HF_BUF_NEAR, HF_BUF_NEAR_FILL, &f->buf[HF_BUF_BLUR], 0, y, r);
         if (f->far)

@@ -48,7 +48,7 @@ void hf_blur_x_c(const struct hf_frame *f, struct hf_rect r)
     const struct hf_gather *g = hf_gather(f->s);
     const enum hf_storage storage = f->s->storage;
     const int bytes = hf_narrow_bytes(storage);
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < r.x1; x++)
             hf_narrow_store(storage, hf_narrow_at(out, 0, x, y, bytes),
                             blurred(storage, hf_narrow_at(in, 0, x, y, bytes), bytes, g->blur_x, g->edge_x));
@@ -60,7 +60,7 @@ void hf_blur_y_c(const struct hf_frame *f, struct hf_rect r)
     const struct hf_gather *g = hf_gather(f->s);
     const int bytes = hf_narrow_bytes(f->s->storage);
     const ptrdiff_t step = in->stride * (ptrdiff_t)sizeof(float);
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < r.x1; x++)
             *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y) =
                 blurred(f->s->storage, hf_narrow_at(in, 0, x, y, bytes), step, g->blur_y, g->edge_y);

@@ -12,7 +12,7 @@ void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_gather *g = hf_gather(f->s);
     const int m = g->max_x, bytes = hf_narrow_bytes(f->s->storage);
-    for (int y = r.y0; y < r.y1; y++) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         const float *in = hf_at(&f->buf[HF_BUF_COC4], g->area ? HF_AREA_NEAR_MOST : 0, 0, y);
         for (int x = r.x0; x < r.x1; x++) {
             float v = g->edge_x * larger(in[x - m], in[x + m]);
@@ -27,7 +27,7 @@ void hf_max_y_c(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_gather *g = hf_gather(f->s);
     const int m = g->max_y, bytes = hf_narrow_bytes(f->s->storage);
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < r.x1; x++) {
             float most = 0;
             for (int i = y - m; i <= y + m; i++) {

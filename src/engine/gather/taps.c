@@ -255,7 +255,7 @@ static struct hf_area area_of(const struct hf_taps_key *k)
                             .cut = rx > most_x || ry > most_y};
 }
 
-static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem)
+static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem, atomic_int *stop)
 {
     const struct hf_area a = area_of(k);
     const size_t lattice = (size_t)(2 * a.rx + 1) * (2 * a.ry + 1), sums = (size_t)(2 * a.rx + 2) * (2 * a.ry + 2);
@@ -268,7 +268,9 @@ static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const stru
     double *w = t->block.data;
     float *weight = (float *)(w + lattice);
     int *column = (int *)(weight + lattice), *first = column + lattice, *sum = first + 2 * a.ry + 2;
-    hf_area_cover(w, &a);
+    hf_area_cover(w, &a, stop);
+    if (hf_stopped(stop))
+        return HF_ERR_CANCELLED;
     t->scale = hf_area_weights(w, &a);
     t->unit = (float)hf_area_unit(&a);
     t->count = 0;
@@ -286,13 +288,13 @@ static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const stru
     return HF_OK;
 }
 
-int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem)
+int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem, atomic_int *stop)
 {
     if (!memcmp(k, &t->key, sizeof *k))
         return HF_OK;
     t->key = (struct hf_taps_key){0};
     if (k->area)
-        return build_area(t, k, mem);
+        return build_area(t, k, mem, stop);
     t->runs = 0;
     t->scale = 1;
     t->sums = NULL;

@@ -5,6 +5,7 @@
 
 #include "hyperfocal/hyperfocal.h"
 #include "base/mem.h"
+#include "base/stop.h"
 
 // What a tap set follows from. No padding: keys are compared byte by byte.
 struct hf_taps_key {
@@ -50,8 +51,8 @@ enum { HF_MAX_RINGS = 64 };
 int hf_taps_rings(float radius);
 float hf_taps_spaced(float radius);
 
-// (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK or HF_ERR_MEMORY.
-int hf_taps_build(struct hf_taps *taps, const struct hf_taps_key *key, const struct hf_mem *mem);
+// (Re)build for a key; does nothing when it is the one of the last call. Returns HF_OK, HF_ERR_MEMORY or HF_ERR_CANCELLED.
+int hf_taps_build(struct hf_taps *taps, const struct hf_taps_key *key, const struct hf_mem *mem, atomic_int *stop);
 // area: the sum of the weights of offsets x0..x1 - 1, y0..y1 - 1, cut to what there is: exact.
 float hf_taps_part(const struct hf_taps *taps, int x0, int x1, int y0, int y1);
 void hf_taps_free(struct hf_taps *taps, const struct hf_mem *mem);

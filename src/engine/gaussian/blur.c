@@ -180,7 +180,7 @@ void hf_gaussian_merge_c(const struct hf_frame *f, int y, struct hf_rect r)
 
 void hf_gaussian_depth_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
         hf_gaussian_kernels(f)->count_row(f, r.x0, y, r.x1 - r.x0, f->counts);
         hf_count_row(f->counts, y);
     }
@@ -239,7 +239,7 @@ void hf_gaussian_rows_pass(const struct hf_frame *f, struct hf_rect r)
     const struct hf_rect in = hf_gaussian_working(s, read), out = hf_gaussian_working(s, r);
     const int lanes = read.x1 - read.x0, n = in.x1 - in.x0;
     struct lines l = lines_of(f, hf_gaussian_line_floats(s, r.x1 - r.x0));
-    for (int y = out.y0; y < out.y1; y++) {
+    for (int y = out.y0; y < out.y1 && !hf_stopped(f->s->stop); y++) {
         if (hf_gaussian(s)->resolution == HF_RESOLUTION_FULL)
             hf_read_colour(f, read.x0, y, lanes, l.colour, l.colour + 4, f->seen);
         else
@@ -281,12 +281,12 @@ void hf_gaussian_columns_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_rect w = hf_gaussian_working(f->s, r);
     for (int c = 0; c < f->s->channels; c++)
-        for (int x = w.x0; x < w.x1; x += HF_GAUSSIAN_STRIP)
+        for (int x = w.x0; x < w.x1 && !hf_stopped(f->s->stop); x += HF_GAUSSIAN_STRIP)
             blur_strip(f, c, (struct hf_rect){x, w.y0, hf_min(x + HF_GAUSSIAN_STRIP, w.x1), w.y1});
 }
 
 void hf_gaussian_merge_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
         hf_gaussian_kernels(f)->merge(f, y, r);
 }

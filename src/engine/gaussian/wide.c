@@ -73,7 +73,7 @@ void hf_wide_columns_pass(const struct hf_frame *f, struct hf_rect r)
     const int n = w.y1;
     float *block = f->work, *work = block + HF_WIDE_LANES * (size_t)n;
     for (int c = 0; c < f->s->channels; c++)
-        for (int x = w.x0; x < w.x1; x += HF_WIDE_LANES) {
+        for (int x = w.x0; x < w.x1 && !hf_stopped(f->s->stop); x += HF_WIDE_LANES) {
             const size_t bytes = sizeof(float) * (size_t)hf_min(HF_WIDE_LANES, w.x1 - x);
             memset(block, 0, sizeof(float) * HF_WIDE_LANES * (size_t)n);
             for (int y = 0; y < n; y++)
@@ -93,7 +93,7 @@ void hf_wide_rows_pass(const struct hf_frame *f, struct hf_rect r)
     const int n = w.x1;
     float *block = f->work, *work = block + HF_WIDE_LANES * (size_t)n;
     for (int c = 0; c < f->s->channels; c++)
-        for (int y = w.y0; y < w.y1; y += HF_WIDE_LANES) {
+        for (int y = w.y0; y < w.y1 && !hf_stopped(f->s->stop); y += HF_WIDE_LANES) {
             const int rows = hf_min(HF_WIDE_LANES, w.y1 - y);
             for (int x = 0; x < n; x++)
                 for (int i = 0; i < HF_WIDE_LANES; i++)

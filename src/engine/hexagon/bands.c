@@ -95,7 +95,7 @@ static void blur(const struct hf_frame *frame, struct hf_rect r, unsigned field)
     f.near = field == HF_NEAR;
     f.far = field == HF_FAR;
     struct hf_rect make = {.x0 = r.x0 - h->left, .x1 = r.x1 + h->right, .y1 = r.y0 - h->above};
-    for (int y = r.y0; y < r.y1; y += HF_HEXAGON_BAND) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(s->stop); y += HF_HEXAGON_BAND) {
         const struct hf_rect out = {r.x0, y, r.x1, hf_min(y + HF_HEXAGON_BAND, r.y1)};
         make.y0 = make.y1;
         make.y1 = out.y1 + h->below;

@@ -96,8 +96,8 @@ void hf_hexagon_behind_pass(const struct hf_frame *f, struct hf_rect r)
     static const struct hf_behind_source full = {near_full, seen_full}, half = {near_half, seen_half};
     const struct hf_behind_source *source = hf_hexagon(f->s)->half ? &half : &full;
     const int levels = hf_hexagon(f->s)->behind, channels = f->s->channels;
-    for (int y = r.y0; y < r.y1; y += HF_BEHIND_BLOCK)
-        for (int x = r.x0; x < r.x1; x += HF_BEHIND_BLOCK) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y += HF_BEHIND_BLOCK)
+        for (int x = r.x0; x < r.x1 && !hf_stopped(f->s->stop); x += HF_BEHIND_BLOCK) {
             const struct hf_rect b = {x, y, hf_min(x + HF_BEHIND_BLOCK, r.x1), hf_min(y + HF_BEHIND_BLOCK, r.y1)};
             struct hf_behind h = {.planes = channels + 1};
             const int is = levels && hf_behind_make(&h, source, f, b, levels, f->work);

@@ -311,7 +311,7 @@ static void far_2(const struct hf_frame *f, int x, int y)
 
 static void each_pixel(const struct hf_frame *f, struct hf_rect p, void (*fn)(const struct hf_frame *f, int x, int y))
 {
-    for (int y = p.y0; y < p.y1; y++)
+    for (int y = p.y0; y < p.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = p.x0; x < p.x1; x++)
             fn(f, x, y);
 }

@@ -587,7 +587,7 @@ HF_INLINE void hex_pass(const struct hf_frame *f, struct hf_rect p, const int wh
 {
     const int shared = hex_is_shared(hf_hexagon(f->s));
     for (int y = p.y0; y < p.y1; y += HEX_HEIGHT)
-        for (int x = p.x0; x < p.x1; x = (x + HEX_WIDTH) & ~(HEX_WIDTH - 1)) {
+        for (int x = p.x0; x < p.x1 && !hf_stopped(f->s->stop); x = (x + HEX_WIDTH) & ~(HEX_WIDTH - 1)) {
             const struct hf_rect b = {x, y, hf_min((x + HEX_WIDTH) & ~(HEX_WIDTH - 1), p.x1),
                                       hf_min(y + HEX_HEIGHT, p.y1)};
             if (shared && b.y1 - b.y0 >= HEX_ROWS)

@@ -127,7 +127,7 @@ void hf_hexagon_composite_c(const struct hf_frame *f, struct hf_rect r)
     float *colour[4], *radius = hf_line(f, 12);
     for (int c = 0; c < 4; c++)
         colour[c] = hf_line(f, 8 + c);
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->counts);
         if (hf_hexagon(f->s)->half)
             f->k->radius_row(f, x0, y, n, radius, NULL);

@@ -354,7 +354,7 @@ static void hex_half_row(const struct hf_frame *f, int y, struct hf_rect r)
 
 static void hexagon_composite_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++)
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
         if (hf_hexagon(f->s)->half)
             hex_half_row(f, y, r);
         else

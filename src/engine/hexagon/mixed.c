@@ -95,6 +95,6 @@ void hf_hexagon_load_rows(const struct hf_frame *f, struct hf_rect r, hf_hexagon
     struct hf_edges e;
     if (mixed)
         hf_edges_start(&e, f, r, f->work);
-    for (int y = p.y0; y < p.y1; y++)
+    for (int y = p.y0; y < p.y1 && !hf_stopped(f->s->stop); y++)
         row(f, y, r, mixed ? &e : NULL);
 }

@@ -105,13 +105,14 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
             memset(hf_layers_map_at(maps[i], -1, ty), 0, (size_t)c.columns + 2);
     int i = 0;
     memset(c.none, 0, sizeof(float) * (size_t)(c.columns * TILE + AROUND));
-    while (i < l->slices && l->slice[i].level > 0 && l->slice[i].radius < 0)
+    while (i < l->slices && l->slice[i].level > 0 && l->slice[i].radius < 0 && !hf_stopped(l->stop))
         hf_layers_put_slice(&c, i++);
     hf_layers_begin_middle(&c);
-    for (; i < l->slices; i++) {
+    for (; i < l->slices && !hf_stopped(l->stop); i++) {
         hf_layers_put_slice(&c, i);
         if (i == l->last)
             hf_layers_cover(&c);
     }
-    hf_layers_finish_cell(&c, out, stride);
+    if (!hf_stopped(l->stop))
+        hf_layers_finish_cell(&c, out, stride);
 }

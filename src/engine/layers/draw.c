@@ -9,7 +9,7 @@ static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, 
                           int first, int channels)
 {
     const int margin = level ? MARGIN : 0, height = c->rows * (TILE >> level), around = level ? 2 : 0;
-    for (int ty = -1; ty <= c->rows; ty++)
+    for (int ty = -1; ty <= c->rows && !hf_stopped(c->l->stop); ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, m, level, ty, &s);) {
             const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT;
             // When such a level is refined, partial vectors read farther.
@@ -245,7 +245,7 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
     clear_touched(c, touched, to, b->s->level, b->first, b->channels);
     if (b->s->shape)
         hf_layers_begin_shape(c, b->s);
-    for (int ty = c->box.y0; ty < c->box.y1; ty++) {
+    for (int ty = c->box.y0; ty < c->box.y1 && !hf_stopped(c->l->stop); ty++) {
         int tx = c->box.x0;
         if (hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0) == tx || (ty + 1) * size + b->s->rows <= -margin ||
             ty * size - b->s->rows >= c->rows * size + margin)
@@ -260,7 +260,7 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
             held = beyond ? (struct held){from, 0, size} : (struct held){from, y0, y1};
             build_row(c, b, ty, from, held.y0, held.y1);
         }
-        for (int y = y0; y < y1; y += 2)
+        for (int y = y0; y < y1 && !hf_stopped(c->l->stop); y += 2)
             draw_pair(c, b, ty, y, to);
     }
     clear_row(c, b, held.y0, held.y1);

@@ -125,7 +125,7 @@ static void set_shape(struct hf_layers *l, const struct hf_params *p)
     struct hf_shape_key *k = &l->key;
     memset(k, 0, sizeof *k);
     l->shaped = a->picture || a->blades || a->ring > 0 || a->cat_eye > 0;
-    l->groups = l->chromatic != 0 || (a->picture && hf_aperture_coloured(a->picture)) ? 3 : 1;
+    l->groups = l->chromatic != 0 || (a->picture && hf_aperture_coloured(a->picture, l->stop)) ? 3 : 1;
     k->wide = l->wide;
     k->spacing = l->set.spacing;
     k->half = l->set.half;
@@ -134,7 +134,7 @@ static void set_shape(struct hf_layers *l, const struct hf_params *p)
     if (a->picture) {
         k->width = a->picture->width;
         k->height = a->picture->height;
-        k->picture = hf_aperture_hash(a->picture);
+        k->picture = hf_aperture_hash(a->picture, l->stop);
         return;
     }
     k->blades = a->blades;
@@ -160,9 +160,12 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     l->width = s->width;
     l->height = s->height;
     l->channels = s->channels;
+    l->stop = s->stop;
     l->columns = (s->width + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     l->rows = (s->height + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
     set_shape(l, p);
+    if (hf_stopped(s->stop))
+        return HF_ERR_CANCELLED;
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
     l->parts = l->shaped ? 1 : HF_LAYERS_PARTS;
     int err = hf_block_grow(&l->tiles, tiles * 2 * sizeof(struct hf_layers_range) + 2, mem);

@@ -78,7 +78,7 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
     float *down = scratch + PAD, *none = scratch + stride, *roots = scratch + (3 + REACH) * stride + PAD;
     const float *in[9];
     memset(none, 0, sizeof(float) * 2 * (size_t)stride);
-    for (int y = -REACH; y < height + REACH; y++) {
+    for (int y = -REACH; y < height + REACH && !hf_stopped(f->s->stop); y++) {
         const float *row[2][3];
         for (int i = 0; i < 6; i++)
             row[i / 3][i % 3] = channel[i % 3] < 0 ? none
@@ -86,7 +86,7 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
                                                            2 * (r.x0 - REACH), 2 * (r.y0 + y) + i / 3);
         k->roots(row[0], row[1], width + 2 * REACH, roots + y * stride - REACH);
     }
-    for (int y = -APART; y < height + APART; y++) {
+    for (int y = -APART; y < height + APART && !hf_stopped(f->s->stop); y++) {
         for (int i = 0; i < 9; i++)
             in[i] = roots + (y + i - MEAN) * stride - REACH;
         k->nine(in, width + 2 * REACH, down - REACH);
@@ -121,7 +121,7 @@ void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct 
     const int n = hf_min(2 * cell.x1, f->s->width) - 2 * cell.x0, channels = hf_layers(f->s)->channels;
     const ptrdiff_t stride = stride_of(cell), apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
     const float *mean = scratch + APART * stride + PAD, *cover = mean + cover_from(cell);
-    for (int py = 2 * rows.y0; py < hf_min(2 * rows.y1, f->s->height); py++) {
+    for (int py = 2 * rows.y0; py < hf_min(2 * rows.y1, f->s->height) && !hf_stopped(f->s->stop); py++) {
         const float *around[5], *covered[5], *in[6];
         for (int i = 0; i < 5; i++) {
             around[i] = mean + (py / 2 - cell.y0) * stride + apart[i];

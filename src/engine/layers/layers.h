@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "base/mem.h"
+#include "base/stop.h"
 #include "engine/layers/shape.h"
 
 enum {
@@ -98,6 +99,7 @@ struct hf_layers {
     int around;                     // a cell reads samples up to this many pixels away
 
     int width, height;                // of the frame
+    atomic_int *stop;                 // the setup's
     int channels;                     // of colour, 3 or 4 with alpha
     float largest;                    // value of a sample; larger ones are clamped to it
     int slices, levels;               // levels of the search for hidden samples; 0: none are looked for

@@ -131,11 +131,11 @@ static void find_farthest(struct band *b)
 {
     const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
     const struct hf_rect r = {b->r.x0 - b->reach, b->r.y0 - b->reach, b->r.x1 + b->reach, b->r.y1 + b->reach};
-    for (int y = b->r.y0; y < b->r.y1; y++)
+    for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++)
         hf_layers_kernels(b->f)->nearest(hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * b->r.x0, 2 * y),
                                          hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * b->r.x0, 2 * y + 1),
                                          b->r.x1 - b->r.x0, b->nearest + (y - b->r.y0) * b->width);
-    for (int y = -b->around; y < b->rows + b->around; y++)
+    for (int y = -b->around; y < b->rows + b->around && !hf_stopped(b->f->s->stop); y++)
         for (int x = -b->around; x < b->columns + b->around; x++) {
             const int x0 = hf_max(b->r.x0 + x * BLOCK, r.x0), x1 = hf_min(b->r.x0 + (x + 1) * BLOCK, r.x1);
             const int y0 = hf_max(b->r.y0 + y * BLOCK, r.y0), y1 = hf_min(b->r.y0 + (y + 1) * BLOCK, r.y1);
@@ -163,7 +163,7 @@ static void find_farthest(struct band *b)
 // Mark the blocks that may find something: a surface at least a pixel of radius behind their nearest.
 static void find_needed(struct band *b)
 {
-    for (int y = 0; y < b->rows; y++)
+    for (int y = 0; y < b->rows && !hf_stopped(b->f->s->stop); y++)
         for (int x = 0; x < b->columns; x++) {
             const int n = hf_min(b->r.x1 - b->r.x0 - x * BLOCK, BLOCK),
                       rows = hf_min(b->r.y1 - b->r.y0 - y * BLOCK, BLOCK);
@@ -249,7 +249,7 @@ static void make_levels(struct band *b)
     const int levels = b->l->levels, top = b->r.y0, low = b->r.y1, most = (1 << levels) - 1;
     for (int j = 0; j < levels; j++)
         spread(b, b->needed, blocks_of((1 << levels) - (1 << j)), b->made[j]);
-    for (int newest = top - most; newest < low + most; newest++)
+    for (int newest = top - most; newest < low + most && !hf_stopped(b->f->s->stop); newest++)
         for (int j = 1, y = newest; j < levels; j++) {
             const int step = 1 << (j - 1), reach = (1 << levels) - (1 << j);
             struct merge m = {.from = &b->level[j - 1],
@@ -378,7 +378,7 @@ static int next_run(const struct band *b, int y, struct run *run)
 static void find_row(const struct band *b, int y)
 {
     float *weight = b->found.weight + y * b->found.stride;
-    for (struct run run = {0}; next_run(b, y, &run);)
+    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, y, &run);)
         if (run.needed)
             find(b, run.x, run.n, y);
         else
@@ -451,7 +451,7 @@ static void begin_softly(const struct band *b, int y)
 // Search and smooth rows r into two buffers. again: another search will look behind what was found.
 static void search(const struct band *b, struct hf_rect r, int colour, int at, int again)
 {
-    for (int y = b->r.y0; y < b->r.y1; y++) {
+    for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
         find_row(b, y);
         if (again)
             look_behind(b, y);
@@ -459,7 +459,7 @@ static void search(const struct band *b, struct hf_rect r, int colour, int at, i
             begin_softly(b, y);
         smooth_along(b, y);
     }
-    for (int y = r.y0; y < r.y1; y++)
+    for (int y = r.y0; y < r.y1 && !hf_stopped(b->f->s->stop); y++)
         smooth_down(b, colour, at, y);
 }
 
@@ -509,5 +509,6 @@ void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
     if (!hf_layers(f->s)->levels)
         return;
     find_hidden(f, r);
-    hf_layers_mark_hidden(f, r);
+    if (!hf_stopped(f->s->stop))
+        hf_layers_mark_hidden(f, r);
 }

@@ -51,7 +51,7 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
     const struct hf_layers *l = hf_layers(f->s);
     const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const struct hf_buf *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT], *mixed = &f->buf[HF_LAYERS_BUF_MIXED_AT];
-    for (int ty = 2 * r.y0 / TILE; ty * TILE < hf_min(2 * r.y1, f->s->height); ty++)
+    for (int ty = 2 * r.y0 / TILE; ty * TILE < hf_min(2 * r.y1, f->s->height) && !hf_stopped(l->stop); ty++)
         for (int tx = 2 * r.x0 / TILE; tx * TILE < hf_min(2 * r.x1, f->s->width); tx++) {
             const int x = tx * TILE, y = ty * TILE, at = ty * l->columns + tx, mark = at * l->words;
             const int n = hf_min(TILE, f->s->width - x), rows = hf_min(TILE, f->s->height - y);
@@ -71,7 +71,7 @@ void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
     const struct hf_layers *l = hf_layers(f->s);
     const struct hf_buf *hidden = &f->buf[HF_LAYERS_BUF_HIDDEN_AT], *beyond = &f->buf[HF_LAYERS_BUF_BEYOND_AT];
     const int size = TILE / 2;
-    for (int ty = r.y0 / size; ty * size < r.y1; ty++)
+    for (int ty = r.y0 / size; ty * size < r.y1 && !hf_stopped(l->stop); ty++)
         for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
             const int x = tx * size, y = ty * size, mark = (ty * l->columns + tx) * l->words;
             const int n = hf_min(size, f->s->half_width - x), rows = hf_min(size, f->s->half_height - y);

@@ -46,7 +46,7 @@ void hf_layers_load_pass(const struct hf_frame *f, struct hf_rect r)
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
     const float largest = hf_layers(f->s)->largest;
     int large = 0, transparent = 0;
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
         float *colour[4] = {NULL};
         hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], f->s->channels, x0, y, colour);
         hf_read_pixels(f, r.x0, y, r.x1 - r.x0, colour, f->seen);
@@ -80,7 +80,7 @@ void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
     float *means = f->work + hf_layers_unmix_floats(2 * (r.x1 - r.x0));
     if (l->set.highlights)
         hf_layers_highlight_means(f, r, means);
-    for (int y = r.y0; y < r.y1; y += TILE / 2) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y += TILE / 2) {
         const struct hf_rect rows = {r.x0, y, r.x1, hf_min(y + TILE / 2, r.y1)};
         hf_layers_unmix_rows(f, rows, y == r.y0);
         if (l->set.highlights)
@@ -142,7 +142,7 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
     const int repaired = atomic_load_explicit(l.repaired, memory_order_relaxed);
     for (int g = 0; g < l.groups; g++)
         make_group(f, &l, &samples, tiles, g, memory, out);
-    for (int y = y0; y < y1; y++) {
+    for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
         float *row[4] = {NULL};
         if (repaired)
             count_row(f, r, y);

@@ -156,7 +156,7 @@ static int begin_row(const struct band *b, int y)
 static int begin_levels(const struct band *b)
 {
     int any = 0;
-    for (int y = b->region.y0; y < b->region.y1; y++) {
+    for (int y = b->region.y0; y < b->region.y1 && !hf_stopped(b->f->s->stop); y++) {
         clear_row(b, y);
         if (y >= 0 && y < b->f->s->half_height)
             any |= begin_row(b, y);
@@ -215,7 +215,7 @@ static int make_levels(const struct band *b)
         return 0;
     for (int j = 0; j < LEVELS; j++) {
         const int x0 = b->region.x0 / (1 << j), x1 = b->region.x1 / (1 << j);
-        for (int y = b->region.y0 / (1 << j); y < b->region.y1 / (1 << j); y++) {
+        for (int y = b->region.y0 / (1 << j); y < b->region.y1 / (1 << j) && !hf_stopped(b->f->s->stop); y++) {
             for (int x = x0; j > 0 && x < x1; x++)
                 halve(&b->level[j - 1], &b->level[j], b->channels, x, y);
             clear_pads(&b->level[j], b->channels, x0, x1, y);
@@ -478,11 +478,12 @@ void hf_layers_patterns_pass(const struct hf_frame *f, struct hf_rect r)
     if (!make_levels(&b))
         return;
     for (int y = r.y0 / COARSE - 1; y <= (r.y1 + COARSE - 1) / COARSE; y++)
-        for (int x = r.x0 / COARSE - 1; x <= (r.x1 + COARSE - 1) / COARSE; x++) {
+        for (int x = r.x0 / COARSE - 1; x <= (r.x1 + COARSE - 1) / COARSE && !hf_stopped(f->s->stop); x++) {
             search(&b, x, y);
             search_fine(&b, x, y);
         }
-    for (int y = r.y0; y < hf_min(r.y1, f->s->half_height); y++)
+    // What is chosen where nothing has been searched is anything.
+    for (int y = r.y0; y < hf_min(r.y1, f->s->half_height) && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < hf_min(r.x1, f->s->half_width); x++)
             if (b.level[0].nearest[y * b.level[0].set.stride + x] < HUGE_VALF)
                 fill(&b, x, y);

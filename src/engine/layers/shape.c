@@ -172,13 +172,13 @@ static size_t build_one(struct hf_shape *s, const struct maker *m, const struct 
 
 // Make all shapes in memory; returns how many bytes they take. With memory NULL it only counts.
 static size_t build(struct hf_shapes *s, const struct hf_shape_size *size, const struct hf_integral *area,
-                    uint8_t *memory)
+                    uint8_t *memory, atomic_int *stop)
 {
     const struct maker m = maker_of(&s->key);
     size_t used = 0;
     for (int i = 0; i < s->key.count; i++)
         for (int p = 0; p < s->planes; p++)
-            for (int t = 0; t < 3; t++) {
+            for (int t = 0; t < 3 && !hf_stopped(stop); t++) {
                 const int level = size[i].level, levels[3] = {level, hf_max(level, 1), 0};
                 struct hf_shape shape = {.radius = (double)size[i].radius * s->key.factor / (1 << levels[t])};
                 if (t && levels[t] == level) {
@@ -195,7 +195,7 @@ static size_t build(struct hf_shapes *s, const struct hf_shape_size *size, const
 }
 
 int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const struct hf_shape_size *size,
-                    const struct hf_image *picture, const struct hf_mem *mem)
+                    const struct hf_image *picture, const struct hf_mem *mem, atomic_int *stop)
 {
     struct hf_shape_key same = *key;
     same.count = hf_max(s->key.count, key->count);
@@ -204,7 +204,7 @@ int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const s
     struct hf_integral area[3];
     struct hf_block integrals = {0};
     s->key = *key;
-    s->planes = picture && hf_aperture_coloured(picture) ? 3 : 1;
+    s->planes = picture && hf_aperture_coloured(picture, stop) ? 3 : 1;
     if (picture) {
         const size_t bytes = hf_integral_bytes(picture);
         const int err = hf_block_grow(&integrals, bytes * (size_t)s->planes, mem);
@@ -213,18 +213,19 @@ int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const s
             return err;
         }
         for (int p = 0; p < s->planes; p++)
-            area[p] = hf_integral_make((double *)integrals.data + bytes / sizeof(double) * (size_t)p, picture, p);
+            area[p] = hf_integral_make((double *)integrals.data + bytes / sizeof(double) * (size_t)p, picture, p, stop);
     }
     const size_t table = ((size_t)key->count * sizeof *s->shape + 63) & ~(size_t)63;
-    const size_t bytes = table + build(s, size, picture ? area : NULL, NULL);
-    const int err = hf_block_grow(&s->block, bytes, mem);
+    const size_t bytes = table + build(s, size, picture ? area : NULL, NULL, stop);
+    int err = hf_block_grow(&s->block, bytes, mem);
     if (!err) {
         s->shape = s->block.data;
         if (bytes)
-            build(s, size, picture ? area : NULL, (uint8_t *)s->block.data + table);
-    } else {
-        s->key.count = -1;
+            build(s, size, picture ? area : NULL, (uint8_t *)s->block.data + table, stop);
+        err = hf_stopped(stop) ? HF_ERR_CANCELLED : HF_OK;
     }
+    if (err)
+        s->key.count = -1;
     hf_block_free(&integrals, mem);
     return err;
 }

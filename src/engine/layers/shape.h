@@ -61,9 +61,9 @@ struct hf_shape_size {
 };
 
 // Build the shapes again, unless key is that of the last call, or differs only in having fewer radii. picture: NULL for
-// a shape.
+// a shape. Returns HF_ERR_MEMORY or HF_ERR_CANCELLED.
 int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const struct hf_shape_size *size,
-                    const struct hf_image *picture, const struct hf_mem *mem);
+                    const struct hf_image *picture, const struct hf_mem *mem, atomic_int *stop);
 // The weights of an aperture picture (shape_picture.c): find its rows and reach, and draw it.
 void hf_shape_frame(struct hf_shape *s, const struct hf_integral *area, double wide);
 void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wide, struct hf_shape_row *row,

@@ -283,7 +283,7 @@ static void draw_cats_eye(const struct draw *d)
               begin = floor_to(left - LEFT, apart);
     for (int i = 0; i < d->b->channels; i++)
         make_windows(d, d->in + i * d->c->source.channel, d->at.window + i * d->at.plane * d->c->l->most_windows);
-    for (int x = floor_to(left + d->x0, apart); x - apart < left + d->x1; x += apart)
+    for (int x = floor_to(left + d->x0, apart); x - apart < left + d->x1 && !hf_stopped(d->c->l->stop); x += apart)
         draw_node(d, (x - begin) / apart, x, apart);
 }
 

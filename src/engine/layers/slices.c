@@ -206,7 +206,7 @@ int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, c
     for (int i = 0; i < (l->chromatic != 0 ? 3 : 1); i++) {
         struct hf_shapes *s = &l->shapes[i];
         key.factor = 1 + (i == 1 ? fabsf(l->chromatic) : i == 2 ? -fabsf(l->chromatic) : 0);
-        const int err = hf_shapes_build(s, &key, size, picture, mem);
+        const int err = hf_shapes_build(s, &key, size, picture, mem, l->stop);
         if (err)
             return err;
         for (int j = 0; j < key.count; j++)

@@ -9,7 +9,7 @@ enum { HF_LAYERS_MARGIN = 2 };  // pixels of a slice's own resolution that are m
 
 // Bytes for the slices of radii up to a limit, on both sides of the focus.
 size_t hf_layers_slice_bytes(const struct hf_layers *l, float limit);
-// Make the shapes of the frame's slices, if the aperture is not a disc. May return HF_ERR_MEMORY.
+// Make the shapes of the frame's slices, if the aperture is not a disc. May return HF_ERR_MEMORY or HF_ERR_CANCELLED.
 int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem);
 // Make the frame's slices in l->tables, and use those of the first group.
 void hf_layers_make_slices(struct hf_layers *l);

@@ -11,7 +11,7 @@ static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int lev
 {
     const struct hf_window *from = &c->sum[level], *to = &c->sum[level - 1];
     const int height = c->rows * (TILE >> (level - 1)) + MARGIN, right = c->columns * (TILE >> (level - 1)) + LEFT;
-    for (int ty = -1; ty <= c->rows; ty++)
+    for (int ty = -1; ty <= c->rows && !hf_stopped(c->l->stop); ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, touched, level - 1, ty, &s);) {
             // One more on every side, which the next step reads.
             const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT, x1 = s.x1 + 16 < right ? s.x1 + 16 : right;
@@ -35,7 +35,7 @@ static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_su
     while (level > finest + 1)
         refine(c, &c->touched, level--);
     const struct hf_window *from = &c->sum[level];
-    for (int ty = -1; ty <= c->rows; ty++)
+    for (int ty = -1; ty <= c->rows && !hf_stopped(c->l->stop); ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, &c->touched, finest, ty, &s);) {
             int y0, y1;
             hf_layers_clip_rows(c, finest, ty, &y0, &y1);
@@ -163,7 +163,7 @@ static void put_light(struct hf_cell *c, int stack, const struct hf_shine *shine
 {
     const struct hf_window *to = &c->light[stack];
     begin_light(c, stack, &shine->shone);
-    for (int ty = 0; ty < c->rows; ty++)
+    for (int ty = 0; ty < c->rows && !hf_stopped(c->l->stop); ty++)
         for (int tx = 0, end; (end = hf_layers_next_run(&shine->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
                 const int x0 = tx * TILE, n = (end - tx) * TILE;
@@ -183,7 +183,7 @@ static void put_lights(struct hf_cell *c, int stack, int slice)
     const struct hf_layers *l = c->l;
     const int before = slice > 0 ? l->slice[slice - 1].shine : -1, own = l->slice[slice].shine,
               end = slice + 1 < l->slices ? l->slice[slice + 1].shine : l->shines;
-    for (int i = before + 1; i < end; i++) {
+    for (int i = before + 1; i < end && !hf_stopped(l->stop); i++) {
         struct hf_shine *shine = &c->shine[i - (i < own ? before : own)];
         draw_light(c, i, shine);
         if (shine->any)
@@ -366,7 +366,7 @@ static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float
 
 void hf_layers_begin_middle(const struct hf_cell *c)
 {
-    for (int ty = 0; ty < c->rows; ty++)
+    for (int ty = 0; ty < c->rows && !hf_stopped(c->l->stop); ty++)
         for (int tx = 0, end; (end = hf_layers_next_run(&c->near, &tx, ty, c->columns, 1)) > tx; tx = end)
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
                 const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
@@ -406,7 +406,7 @@ static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, 
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)
 {
     lift(c, 1);
-    for (int ty = 0; ty < c->rows; ty++)
+    for (int ty = 0; ty < c->rows && !hf_stopped(c->l->stop); ty++)
         for (int tx = 0, end; tx < c->columns; tx = end) {
             const int state = state_of(c, tx, ty);
             for (end = tx + 1; end < c->columns && state_of(c, end, ty) == state;)

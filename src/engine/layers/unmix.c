@@ -251,7 +251,7 @@ void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)
         sure_row(f, x, n, y, ring, stride);
     for (int i = 0; begin && !l->edges && i < 8 * stride; i++)
         f->work[i] = 1;
-    for (int y = y0; y < y1; y++) {
+    for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
         struct hf_unmix_row u = {
             .channels = l->channels, .middle = ring + (8 + (y & 7)) * stride, .slope = ring + (16 + (y & 7)) * stride};
         if (l->edges)

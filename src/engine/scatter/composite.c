@@ -50,7 +50,7 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
     struct hf_edges e;
     if (may_mix)
         hf_edges_start(&e, f, r, f->work);
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
         struct hf_sides row = {.radius = {hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y)}};
         hf_row(&f->buf[HF_BUF_SOURCE], f->s->channels, x0, y, row.colour[0]);
         if (may_mix) {
@@ -232,13 +232,13 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, con
 void hf_scatter_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
     const int levels = f->near ? hf_scatter(f->s)->behind : 0;
-    for (int y = r.y0; y < r.y1; y += HF_BEHIND_BLOCK)
-        for (int x = r.x0; x < r.x1; x += HF_BEHIND_BLOCK) {
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y += HF_BEHIND_BLOCK)
+        for (int x = r.x0; x < r.x1 && !hf_stopped(f->s->stop); x += HF_BEHIND_BLOCK) {
             const struct hf_rect block = {x, y, hf_min(x + HF_BEHIND_BLOCK, r.x1), hf_min(y + HF_BEHIND_BLOCK, r.y1)};
             struct hf_behind behind = {.planes =
                                            hf_scatter_behind_planes(hf_scatter(f->s)->opaque ? 3 : f->s->channels)};
             const int is = levels && hf_behind_make(&behind, &hf_scatter_behind_source, f, block, levels, f->work);
-            for (int row = 2 * block.y0; row < hf_min(2 * block.y1, f->s->height); row++)
+            for (int row = 2 * block.y0; row < hf_min(2 * block.y1, f->s->height) && !hf_stopped(f->s->stop); row++)
                 composite_row(f, row, block, is ? &behind : NULL);
         }
 }

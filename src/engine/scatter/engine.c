@@ -128,8 +128,8 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     t->cat_eye = a->picture ? 0 : a->cat_eye;
     t->corner = 1 / hypotf((float)s->width, (float)s->height);
     key.scale_x = 1 / (s->pixel_aspect * a->squeeze);
-    const int err =
-        a->picture ? hf_aperture_build_image(aperture, &key, a->picture, mem) : hf_aperture_build(aperture, &key, mem);
+    const int err = a->picture ? hf_aperture_build_image(aperture, &key, a->picture, mem, s->stop)
+                               : hf_aperture_build(aperture, &key, mem, s->stop);
     t->ready = !err;
     set_groups(t, s, p->aperture.chromatic);
     return err;

@@ -45,7 +45,7 @@ static void list_full(struct walk *w, int y0, int y1)
         share[y - y0] = hf_back_shares(w->f, x0, y, x1 - x0);
         row[y - y0] = prepare_row(w, x0, x1, y, share[y - y0]);
     }
-    for (int x = 0; x < x1 - x0; x += 4)
+    for (int x = 0; x < x1 - x0 && !hf_stopped(w->f->s->stop); x += 4)
         for (int i = 0; i < y1 - y0; i++)
             hf_list_sources(w, &row[i], x, hf_min(x + 4, x1 - x0));
     hf_flush_sources(w);
@@ -154,7 +154,7 @@ static void walk_level(struct walk *w, const struct layout *l, const struct hf_t
         w->drawn[b] = -1;
     int settled = w->sums.y0;
     const int end = hf_min(w->sums.y1 + reach, height), step = w->level ? 1 : TOGETHER;
-    for (int y = hf_max(w->sums.y0 - reach, 0); y < end; y += step) {
+    for (int y = hf_max(w->sums.y0 - reach, 0); y < end && !hf_stopped(s->stop); y += step) {
         while (settled < hf_min(y - reach, w->sums.y1))
             settle(w, to, settled++);
         w->reached = y + step - 1 + reach;
@@ -163,7 +163,7 @@ static void walk_level(struct walk *w, const struct layout *l, const struct hf_t
         else
             list_full(w, y, hf_min(y + step, end));
     }
-    while (settled < w->sums.y1)
+    while (settled < w->sums.y1 && !hf_stopped(s->stop))
         settle(w, to, settled++);
 }
 
@@ -267,7 +267,7 @@ static void splat_slices(struct walk *w, struct hf_rect r, const struct hf_targe
     struct hf_target part = {.stride = stride};
     for (int c = 0; c < 4; c++)
         part.ch[c] = to->ch[c] ? memory + c * plane : NULL;
-    for (int k = 0; k < w->t->slices; k++) {
+    for (int k = 0; k < w->t->slices && !hf_stopped(w->f->s->stop); k++) {
         w->slice = hf_scatter_slice_make(w->t, k);
         const int none = most <= w->slice.begin[0] || least >= w->slice.end[1];
         w->slice.whole = least >= w->slice.begin[1] && most <= w->slice.end[0];
