@@ -505,6 +505,35 @@ HF_API extern const struct hf_params hf_default_params;
 HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params);
 
+// A rectangle of a picture.
+struct hf_region {
+    size_t size;              // sizeof(struct hf_region)
+    int x, y, width, height;  // pixels from the top left corner; width and height at least 1, all of it in the picture
+};
+
+// As hf_render, but of dst only the pixels of a region (NULL: all) are written: with the bits that hf_render of the whole
+// picture writes there. src, depth and dst describe whole pictures. Of dst no byte outside the region is read or written, so
+// its memory may be a tile: data then points to where pixel (0, 0) would be, and stride is the tile's. dst may be src, as for
+// hf_render. The cost grows with the region and with what is blurred into it. Some numbers are of the whole picture:
+//   - All depth is looked at, as the largest radius decides how things are blurred. The gaussian engine, and the gather with
+//     max_radius given or the range model, look at depth around the region alone.
+//   - Scatter reads all colour that is blurred, as the brightest sample decides the units of its sums.
+//   - The gaussian engine reads all colour when sigma is given, as it blurs whole columns and rows.
+// The context holds as much memory as for a whole picture. The report counts what was worked on. run.budget_ms chooses the
+// setting that hf_render would use next, but the time of a region is not counted. With hf_set_dump the whole picture is made.
+// Errors as for hf_render, and HF_ERR_ARG for a region that is not in the picture.
+HF_API int hf_render_region(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                            const struct hf_depth *depth, const struct hf_params *params,
+                            const struct hf_region *region);
+
+// What hf_render_region with the same arguments will read of the colour and of the depth: samples outside these rectangles do
+// not count. The rectangles may be larger than need be. With params->focus HF_DERIVE, the depth in the middle of the picture
+// is read as well. This call looks at the depth as hf_plan does, and not at the colour. colour and depth_read may be NULL;
+// their contents before the call are not looked at. On error they are empty. Errors as for hf_render_region.
+HF_API int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                           const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
+                           struct hf_region *colour, struct hf_region *depth_read);
+
 // Cancel the call of hf_render, hf_prepare or hf_plan that runs on c now: from any thread, also from callbacks. The call
 // returns HF_ERR_CANCELLED soon: within about a millisecond of work, plus what the system takes to wake a thread. hf_cancel
 // itself does not wait. The pixels of dst are then unspecified: in place, the picture is lost. The report is all zero and the
@@ -624,7 +653,11 @@ struct hf_report {
     int opaque;           // no alpha below 1
     uint64_t not_finite;  // samples, repaired before anything was made of them
 
-    size_t memory;        // bytes of buffers that the frame needs
+    size_t memory;  // bytes of buffers that the frame needs
+    // Bytes that the context will hold when hf_render has made this frame, from its allocator, what it holds now included: to
+    // the byte, unless hf_set_dump is in use, or the frame is made in place and has samples that are not finite. hf_plan has
+    // taken the tables and the scratch of the threads by then, but nothing as large as the frame.
+    size_t memory_needed;
     size_t memory_saved;  // bytes that it would need besides with no_skip
     double plan_ms;       // time for planning, the look at the depth not included
     double predicted_ms;  // of the whole frame

@@ -190,10 +190,14 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
 
 // A frame whose settings are known.
 static int run_resolved(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-                        const struct hf_depth *depth, const struct hf_resolved *r, enum hf_task task)
+                        const struct hf_depth *depth, const struct hf_resolved *r, const struct hf_region *region,
+                        enum hf_task task)
 {
     struct hf_setup s;
     hf_setup_make(&s, src, dst, depth, r, c->engine[r->params.engine].own);
+    if (region)
+        s.region = (struct hf_rect){region->x, region->y, region->x + region->width, region->y + region->height};
+    s.part = region && (region->width < r->width || region->height < r->height);
     return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, task});
 }
 
@@ -250,9 +254,21 @@ static void tell_depth(struct hf_context *c, const struct hf_depth *d, const str
         hf_name(HF_NAMES_DEPTH_FORMAT, (int)d->format), hf_name(HF_NAMES_DEPTH_TYPE, (int)d->type));
 }
 
+static int check_region(const struct hf_region *r, const struct hf_image *src, char *message)
+{
+    if (r->size != sizeof *r)
+        return hf_bad(message, "region.size is %zu; it must be %zu", r->size, sizeof *r);
+    if (r->x < 0 || r->y < 0 || r->width < 1 || r->height < 1 || r->x >= src->width || r->y >= src->height ||
+        r->width > src->width - r->x || r->height > src->height - r->y)
+        return hf_bad(message, "region is %d x %d pixels from (%d, %d); it must lie in the picture of %d x %d",
+                      r->width, r->height, r->x, r->y, src->width, src->height);
+    return HF_OK;
+}
+
 // Check, choose a setting that fits the budget, and go.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-               const struct hf_depth *depth, const struct hf_params *params, enum hf_task task)
+               const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
+               enum hf_task task)
 {
     if (!c)
         return HF_ERR_ARG;
@@ -265,7 +281,9 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
         say(&c->config, HF_LOG_ERROR, "the context was opened before fork(): its threads are in the parent process");
         return HF_ERR_THREAD;
     }
-    int err = hf_check_images(dst, src, message);
+    int err = hf_check_images(dst, src, region, message);
+    if (!err && region)
+        err = check_region(region, src, message);
     if (!err)
         err = hf_check_depth(depth, src->width, message);
     if (!err)
@@ -282,7 +300,7 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
         return err;
     }
     tell_depth(c, depth, &r.params);
-    err = run_resolved(c, dst, src, depth, &r, task);
+    err = run_resolved(c, dst, src, depth, &r, region, task);
     if (!err && !r.sharp)
         tell_limit(c, depth);
     c->report.budget_steps = steps;
@@ -291,7 +309,7 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
         c->report = (struct hf_report){0};
         if (err != HF_ERR_CANCELLED)
             say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
-    } else if (steps && task == HF_TASK_RENDER) {
+    } else if (steps && task == HF_TASK_RENDER && !region) {
         hf_budget_note(&c->budget, p->run.budget_ms, steps, (float)c->report.total_ms);
         if (hf_budget_missed(&c->budget, p->run.budget_ms, steps))
             say(&c->config, HF_LOG_WARNING,
@@ -305,19 +323,40 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
 int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
               const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, HF_TASK_RENDER);
+    return run(c, dst, src, depth, params, NULL, HF_TASK_RENDER);
+}
+
+int hf_render_region(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                     const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region)
+{
+    return run(c, dst, src, depth, params, region, HF_TASK_RENDER);
+}
+
+int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
+                    const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
+                    struct hf_region *colour, struct hf_region *depth_read)
+{
+    const int err = run(c, dst, src, depth, params, region, HF_TASK_PLAN);
+    struct hf_region *const out[2] = {colour, depth_read};
+    for (int i = 0; i < 2; i++) {
+        if (!out[i])
+            continue;
+        const struct hf_rect r = err ? (struct hf_rect){0} : c->reads[i];
+        *out[i] = (struct hf_region){sizeof *out[i], r.x0, r.y0, r.x1 - r.x0, r.y1 - r.y0};
+    }
+    return err;
 }
 
 int hf_prepare(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, HF_TASK_PREPARE);
+    return run(c, dst, src, depth, params, NULL, HF_TASK_PREPARE);
 }
 
 int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
             const struct hf_params *params, struct hf_report *report)
 {
-    const int err = run(c, dst, src, depth, params, HF_TASK_PLAN);
+    const int err = run(c, dst, src, depth, params, NULL, HF_TASK_PLAN);
     hf_get_report(c, report);
     return err;
 }

@@ -130,6 +130,20 @@ size_t hf_buffers_bytes(const struct hf_context *c, const struct hf_setup *s, un
     return sizeof(float) * (frame_floats(c, s, fields) + (size_t)c->threads * worker_floats(c, s));
 }
 
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+size_t hf_buffers_after(const struct hf_context *c, const struct hf_setup *s, unsigned fields)
+{
+    const size_t worker = worker_floats(c, s) * sizeof(float);
+    size_t bytes = larger(c->planes.size, frame_floats(c, s, fields) * sizeof(float));
+    for (int i = 0; i < c->threads; i++)
+        bytes += larger(c->workers[i].scratch.size, worker);
+    return bytes;
+}
+
 int hf_buffers_allocate(struct hf_context *c, const struct hf_setup *s, unsigned fields)
 {
     const struct hf_engine_def *e = c->plan.engine;

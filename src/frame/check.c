@@ -11,7 +11,8 @@ static int strides(ptrdiff_t stride, size_t row)
     return stride >= (ptrdiff_t)row || stride <= -(ptrdiff_t)row;
 }
 
-int hf_check_image(const struct hf_image *m, const char *name, char *message)
+// columns: pixels of a row that there is memory for.
+static int check_image(const struct hf_image *m, const char *name, int columns, char *message)
 {
     if (!m)
         return hf_bad(message, "%s is NULL", name);
@@ -27,11 +28,16 @@ int hf_check_image(const struct hf_image *m, const char *name, char *message)
     for (int i = 0; i < hf_plane_count(m); i++) {
         if (!m->data[i])
             return hf_bad(message, "%s.data[%d] is NULL", name, i);
-        if (!strides(m->stride[i], hf_row_bytes(m->format, m->width)) && m->height > 1)
+        if (!strides(m->stride[i], hf_row_bytes(m->format, columns)) && m->height > 1)
             return hf_bad(message, "%s.stride[%d] is %lld bytes, less than the %zu of a row", name, i,
-                          (long long)m->stride[i], hf_row_bytes(m->format, m->width));
+                          (long long)m->stride[i], hf_row_bytes(m->format, columns));
     }
     return HF_OK;
+}
+
+int hf_check_image(const struct hf_image *m, const char *name, char *message)
+{
+    return check_image(m, name, m ? m->width : 0, message);
 }
 
 // Check the meaning of depth values, also if there are no values yet.
@@ -67,9 +73,13 @@ int hf_check_depth(const struct hf_depth *d, int width, char *message)
     return HF_OK;
 }
 
-int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message)
+int hf_check_images(const struct hf_image *dst, const struct hf_image *src, const struct hf_region *region,
+                    char *message)
 {
-    if (hf_check_image(src, "src", message) || hf_check_image(dst, "dst", message))
+    // A region that is none is told of later.
+    const int part = region && dst && region->width > 0 && region->width < dst->width;
+    const int columns = part ? region->width : dst ? dst->width : 0;
+    if (hf_check_image(src, "src", message) || check_image(dst, "dst", columns, message))
         return HF_ERR_ARG;
     if (src->width != dst->width || src->height != dst->height)
         return hf_bad(message, "dst is %d x %d pixels and src %d x %d; they must be the same", dst->width, dst->height,

@@ -7,7 +7,9 @@
 
 // Return HF_OK, or HF_ERR_ARG with one sentence in message that names argument and value.
 int hf_check_image(const struct hf_image *image, const char *name, char *message);
-int hf_check_images(const struct hf_image *dst, const struct hf_image *src, char *message);
+// dst may have memory for a region alone; NULL: for all.
+int hf_check_images(const struct hf_image *dst, const struct hf_image *src, const struct hf_region *region,
+                    char *message);
 int hf_check_depth(const struct hf_depth *d, int width, char *message);
 // Check only the meaning of depth values, also if there are no values yet.
 int hf_check_depth_type(const struct hf_depth *d, char *message);

@@ -49,8 +49,9 @@ struct hf_context {
     struct hf_work work;  // of the plan
     struct hf_cost cost;
     struct hf_budget budget;
-    atomic_int stop;  // the call that runs is cancelled
-    int depth_told;   // the depth format for which a warning said that it is no distance; 0: none
+    struct hf_rect reads[2];  // of the last plan: pixels of colour and of depth
+    atomic_int stop;          // the call that runs is cancelled
+    int depth_told;           // the depth format for which a warning said that it is no distance; 0: none
 
     void (*dump)(void *cookie, const struct hf_buffer *buffer);
     void *dump_cookie;

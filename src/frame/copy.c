@@ -46,35 +46,44 @@ static void fill_x(const struct hf_image *m, int x, int y, int n)
         row[4 * i + 3] = 255;
 }
 
+// What of a rectangle of half-resolution pixels lies in the region, in pixels.
+static struct hf_rect in_region(const struct hf_setup *s, struct hf_rect r)
+{
+    return (struct hf_rect){hf_max(2 * r.x0, s->region.x0), hf_max(2 * r.y0, s->region.y0),
+                            hf_min(2 * r.x1, s->region.x1), hf_min(2 * r.y1, s->region.y1)};
+}
+
 void hf_copy_scan(struct hf_worker *w, struct hf_rect r)
 {
     const struct hf_setup *s = w->frame.s;
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, s->height) && !hf_stopped(s->stop); y++)
-        w->seen.colour_repaired += !row_finite(&w->frame, 2 * r.x0, y, hf_min(2 * r.x1, s->width) - 2 * r.x0, NULL);
+    const struct hf_rect p = in_region(s, r);
+    for (int y = p.y0; p.x0 < p.x1 && y < p.y1 && !hf_stopped(s->stop); y++)
+        w->seen.colour_repaired += !row_finite(&w->frame, p.x0, y, p.x1 - p.x0, NULL);
 }
 
 void hf_copy_sharp(const struct hf_copy *copy, struct hf_worker *w, struct hf_rect r)
 {
     const struct hf_frame *f = &w->frame;
-    const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x;
-    if (r.x0 >= r.x1)
+    const struct hf_rect p = in_region(f->s, r);
+    const int first = p.x0 / 2, lanes = (p.x1 + 1) / 2 - first;
+    if (p.x0 >= p.x1)
         return;
     float *even[4], *odd[4];
     for (int c = 0; c < 4; c++) {
         even[c] = hf_line(f, c);
         odd[c] = hf_line(f, 4 + c);
     }
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++) {
+    for (int y = p.y0; y < p.y1 && !hf_stopped(f->s->stop); y++) {
         // In place, the pixels were checked, and repaired if necessary, after the first sweep.
-        if (copy->raw && (copy->in_place || row_finite(f, x, y, n, f->dst))) {
-            fill_x(f->dst, x, y, n);
+        if (copy->raw && (copy->in_place || row_finite(f, p.x0, y, p.x1 - p.x0, f->dst))) {
+            fill_x(f->dst, p.x0, y, p.x1 - p.x0);
             continue;
         }
         float *const *alpha = hf_image_channels(f->src) == 4 ? even : NULL;
-        hf_read_given(f, r.x0, y, r.x1 - r.x0, even, odd, &w->counts);
+        hf_read_given(f, first, y, lanes, even, odd, &w->counts);
         const float *const e[4] = {even[0], even[1], even[2], alpha ? even[3] : NULL};
         const float *const o[4] = {odd[0], odd[1], odd[2], alpha ? odd[3] : NULL};
-        w->counts.clamped += f->k->store[f->dst->format](f->dst, r.x0, y, r.x1 - r.x0, e, o);
+        w->counts.clamped += hf_store_lanes(f, first, y, lanes, e, o);
     }
 }
 
@@ -86,14 +95,15 @@ static int seen_bad(const struct hf_context *c)
     return n != 0;
 }
 
-// All repairs of the picture, some rows at a time: at most max of them are written to list. Returns how many there are.
+// All repairs of the region, some rows at a time: at most max of them are written to list. Returns how many there are.
 static size_t list_repairs(const struct hf_context *c, struct hf_repair *list, size_t max)
 {
     enum { ROWS = 4 };
     const struct hf_frame *f = &c->workers[0].frame;
     size_t n = 0;
-    for (int y = 0; y < f->src->height && !hf_stopped(f->s->stop); y += ROWS) {
-        const struct hf_rect rows = {0, y, f->src->width, hf_min(y + ROWS, f->src->height)};
+    const struct hf_rect r = f->s->region;
+    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y += ROWS) {
+        const struct hf_rect rows = {r.x0, y, r.x1, hf_min(y + ROWS, r.y1)};
         n += hf_repair_list(f->src, rows, list ? list + n : NULL, list ? max - n : 0);
     }
     return n;

@@ -35,16 +35,19 @@ static double area(struct hf_rect r)
 // The fields for which a pass runs in a cell of a sweep.
 static unsigned fields_in(const struct hf_plan *p, const struct hf_pass *pass, int cell)
 {
+    const int inside = hf_rect_meets(hf_plan_cell(p, pass->sweep, cell), p->area[pass->sweep]);
     const unsigned fields = pass->sweep == 1                   ? p->chunk_reads[cell]
                             : hf_plan_is_tiled(p, pass->sweep) ? p->tile_needs[cell]
-                                                               : p->needs;
+                            : inside                           ? p->needs
+                                                               : 0;
     return pass->field ? fields & pass->field : fields;
 }
 
 // The active part of a cell.
 static struct hf_rect cell_of(const struct hf_plan *p, int sweep, int cell)
 {
-    return hf_plan_is_tiled(p, sweep) ? hf_plan_active(p, cell) : hf_plan_cell(p, sweep, cell);
+    const struct hf_rect all = hf_plan_cell(p, sweep, cell);
+    return hf_plan_is_tiled(p, sweep) ? hf_plan_active(p, cell) : sweep == 1 ? all : hf_rect_both(all, p->area[sweep]);
 }
 
 // The table's cost of a unit of work for one field. For a pass that serves both, the larger radius counts.

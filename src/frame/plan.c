@@ -106,8 +106,9 @@ static void set_cells(struct hf_plan *p, int sweep, int width, int height, int w
 void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s, int tile_width,
                     int tile_height, int threads, int whole)
 {
-    int width = CHUNK_WIDTH;
+    int width = s->part ? 2 * MIN_WIDTH : CHUNK_WIDTH;
     p->engine = engine;
+    p->part = s->part && !whole;
     p->no_skip = whole || s->resolved->params.run.no_skip;
     p->width = s->half_width;
     p->height = s->half_height;
@@ -117,6 +118,79 @@ void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const
     set_cells(p, 1, tile_width ? tile_width : width, tile_height ? hf_min(CHUNK_HEIGHT, tile_height) : CHUNK_HEIGHT,
               whole);
     p->cells.line_floats = 2 * (size_t)p->cells.width[1] + 2 * HF_PAD;
+}
+
+int hf_rect_meets(struct hf_rect a, struct hf_rect b)
+{
+    return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
+
+struct hf_rect hf_rect_both(struct hf_rect a, struct hf_rect b)
+{
+    return (struct hf_rect){hf_max(a.x0, b.x0), hf_max(a.y0, b.y0), hf_min(a.x1, b.x1), hf_min(a.y1, b.y1)};
+}
+
+static struct hf_rect rect_around(struct hf_rect a, struct hf_rect b)
+{
+    return (struct hf_rect){hf_min(a.x0, b.x0), hf_min(a.y0, b.y0), hf_max(a.x1, b.x1), hf_max(a.y1, b.y1)};
+}
+
+// A rectangle of the frame grown to whole steps.
+static struct hf_rect stepped(const struct hf_plan *p, struct hf_rect r, int width, int height)
+{
+    return (struct hf_rect){r.x0 / width * width, r.y0 / height * height,
+                            hf_min(ceil_div(r.x1, width) * width, p->width),
+                            hf_min(ceil_div(r.y1, height) * height, p->height)};
+}
+
+static struct hf_rect grown(const struct hf_plan *p, struct hf_rect r, struct hf_reach by)
+{
+    return (struct hf_rect){hf_max(r.x0 - by.x, 0), hf_max(r.y0 - by.y, 0), hf_min(r.x1 + by.x, p->width),
+                            hf_min(r.y1 + by.y, p->height)};
+}
+
+static struct hf_rect half_region(const struct hf_setup *s)
+{
+    const struct hf_rect r = s->region;
+    return (struct hf_rect){r.x0 / 2, r.y0 / 2, (r.x1 + 1) / 2, (r.y1 + 1) / 2};
+}
+
+// How far around what a sweep makes it reads buffers of the whole frame.
+static struct hf_reach sweep_reach(const struct hf_plan *p, const struct hf_setup *s, int sweep)
+{
+    const struct hf_engine_def *e = p->engine;
+    struct hf_reach reach = {0, 0};
+    if (e->plan.around)
+        return e->plan.around(s, sweep);
+    for (int i = 0; i < e->pass_count; i++) {
+        const struct hf_pass *pass = &e->passes[i];
+        const struct hf_reach halo = pass->halo ? e->plan.halo(s, pass->halo) : (struct hf_reach){0, 0};
+        if (pass->sweep == sweep && hf_plan_pass_runs(p, s, i))
+            reach = reach_max(reach, (struct hf_reach){p->cells.pass[i].x + halo.x, p->cells.pass[i].y + halo.y});
+    }
+    return reach;
+}
+
+// From the region back to the first sweep: what each has to make for the next. Active parts of tiles are whole vectors and
+// steps of four rows from the tile's corner.
+static void find_areas(struct hf_plan *p, const struct hf_setup *s)
+{
+    const struct hf_engine_def *e = p->engine;
+    const struct hf_rect all = {0, 0, p->width, p->height};
+    struct hf_rect r = p->part ? grown(p, half_region(s), (struct hf_reach){0, 4}) : all;
+    for (int sweep = e->sweeps; sweep > 1; sweep--) {
+        const int whole = e->plan.across >> sweep & 1 && !(e->plan.parts >> sweep & 1);
+        r = stepped(p, r, 16, 8);
+        if (whole && hf_plan_sweep_runs(p, s, sweep))
+            r = stepped(p, r, p->cells.width[sweep], p->cells.height[sweep]);
+        p->area[sweep] = r;
+        r = grown(p, r, sweep_reach(p, s, sweep));
+    }
+    p->area[1] = r;
+    p->looked = all;
+    if (p->part && !s->measured)
+        p->looked = grown(p, stepped(p, half_region(s), p->cells.width[2], p->cells.height[2]),
+                          reach_max(spread_of(p, s, HF_NEAR), spread_of(p, s, HF_FAR)));
 }
 
 void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, int tile_height, int threads, int whole)
@@ -136,6 +210,7 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
         set_cells(p, sweep, tile_width && sweep == 2 ? tile_width : width, height, whole);
     }
     find_reaches(p, s);
+    find_areas(p, s);
     int longest = 0;
     for (int i = 0; i < e->pass_count; i++) {
         const int sweep = e->passes[i].sweep;
@@ -274,7 +349,8 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
     const struct hf_rect tile = hf_plan_cell(p, 2, i), c = chunks_around(p, tile, reach_max(near, far));
     struct hf_rect active = {tile.x1, tile.y1, tile.x0, tile.y0};
     unsigned needs = 0;
-    for (int y = c.y0; y < c.y1; y++)
+    const int wanted = !p->part || p->engine->own.made || hf_rect_meets(tile, half_region(s));
+    for (int y = c.y0; wanted && y < c.y1; y++)
         for (int x = c.x0; x < c.x1; x++) {
             if (needs == HF_FIELDS && is_whole(active, tile))
                 break;
@@ -283,7 +359,7 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
             needs |= spread_chunk(&p->near[at], chunk, near, tile, &active) ? HF_NEAR : 0u;
             needs |= spread_chunk(&p->far[at], chunk, far, tile, &active) ? HF_FAR : 0u;
         }
-    p->tile_needs[i] = (uint8_t)(p->no_skip ? HF_FIELDS : needs);
+    p->tile_needs[i] = (uint8_t)(p->no_skip && wanted ? HF_FIELDS : needs);
     p->tile_active[i] = p->no_skip ? tile : active;
 }
 
@@ -327,33 +403,74 @@ int hf_plan_makes_chunks(const struct hf_plan *p)
     return p->engine->pass_count > 1 && p->engine->passes[1].sweep == 1;
 }
 
-static void list_rest(struct hf_plan *p, int scan)
+static void list_rest(struct hf_plan *p, const struct hf_setup *s, int scan)
 {
     const int makes = hf_plan_makes_chunks(p);
     p->rest_count = 0;
     for (int i = 0; i < hf_plan_count(p, 1); i++) {
         const int missing = makes && (p->chunk_reads[i] & ~p->chunk_made[i]);
-        const int unread = !makes || (!p->chunk_reads[i] && !p->chunk_made[i]);
+        const int inside = !p->part || hf_rect_meets(hf_plan_cell(p, 1, i), half_region(s));
+        const int unread = inside && (!makes || (!p->chunk_reads[i] && !p->chunk_made[i]));
         if (missing || (scan && unread))
             p->rest[p->rest_count++] = i;
     }
 }
 
+// What is left of a tile's active part with a region. An engine that counts what the first sweep makes is given the counts of
+// the whole frame: its tiles are cut when it is known what they read.
+static void cut_tile(struct hf_plan *p, const struct hf_setup *s, int i)
+{
+    const struct hf_rect tile = hf_plan_cell(p, 2, i), r = hf_rect_both(half_region(s), tile);
+    struct hf_rect *active = &p->tile_active[i];
+    *active = hf_rect_both(*active, (struct hf_rect){r.x0 / 16 * 16, (r.y0 - tile.y0) / 4 * 4 + tile.y0,
+                                                     hf_min((r.x1 + 15) / 16 * 16, tile.x1),
+                                                     hf_min((r.y1 - tile.y0 + 3) / 4 * 4 + tile.y0, tile.y1)});
+    if (!hf_rect_meets(tile, half_region(s)) || active->x0 >= active->x1 || active->y0 >= active->y1)
+        p->tile_needs[i] = 0;
+}
+
+// Around chunks an engine reads columns and rows of its halos, pixels beside mixed ones, and what repairs are made from.
+void hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, struct hf_rect *colour, struct hf_rect *depth)
+{
+    const struct hf_reach halo = read_reach(p);
+    const struct hf_rect all = {0, 0, s->width, s->height}, first = p->area[2];
+    struct hf_rect half = half_region(s), seen = p->looked;
+    int more = 8;
+    if (p->needs && !hf_plan_makes_chunks(p)) {
+        half = rect_around(half, grown(p, first, p->cells.pass[1]));
+    } else if (p->needs) {
+        more += hf_max(halo.x, halo.y);
+        for (int i = 0; i < hf_plan_count(p, 1); i++)
+            half = p->chunk_reads[i] ? rect_around(half, hf_plan_cell(p, 1, i)) : half;
+    }
+    half = grown(p, half, (struct hf_reach){more, more});
+    seen = rect_around(grown(p, seen, (struct hf_reach){1, 1}), half);
+    *colour = hf_rect_both(all, (struct hf_rect){2 * half.x0, 2 * half.y0, 2 * half.x1, 2 * half.y1});
+    *depth = hf_rect_both(all, (struct hf_rect){2 * seen.x0, 2 * seen.y0, 2 * seen.x1, 2 * seen.y1});
+}
+
 void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan)
 {
     const int chunks = hf_plan_count(p, 1), tiles = hf_plan_count(p, 2);
+    const int counts = p->engine->own.made != NULL;
     memset(p->chunk_reads, 0, (size_t)chunks);
     p->needs = 0;
     for (int i = 0; i < tiles; i++) {
         struct hf_rect c = {0};
+        if (p->part && !counts)
+            cut_tile(p, s, i);
         const unsigned reads = tile_reads(p, s, i, &c);
+        if (p->part && counts)
+            cut_tile(p, s, i);
         p->needs |= p->tile_needs[i];
         for (int y = c.y0; reads && y < c.y1; y++)
             for (int x = c.x0; x < c.x1; x++)
                 p->chunk_reads[y * p->columns[1] + x] |= (uint8_t)reads;
     }
     p->reads = reads_of(p, s, p->needs);
-    if (p->needs && reads_all(p, s))
-        memset(p->chunk_reads, (int)p->reads, (size_t)chunks);
-    list_rest(p, scan);
+    for (int i = 0; i < chunks && p->needs && reads_all(p, s); i++)
+        p->chunk_reads[i] = hf_rect_meets(hf_plan_cell(p, 1, i), p->area[1]) ? (uint8_t)p->reads : 0;
+    if (!p->needs)
+        memset(p->chunk_reads, 0, (size_t)chunks);
+    list_rest(p, s, scan);
 }

@@ -14,6 +14,10 @@ struct hf_plan {
     int no_skip;        // every tile needs everything
     struct hf_cells cells;
     int columns[HF_MAX_SWEEPS], rows[HF_MAX_SWEEPS];
+    // With a region: what of the frame each sweep has to make, [1] what of the first sweep's buffers is read; and where the
+    // depth is looked at. Without, all of it.
+    int part;
+    struct hf_rect area[HF_MAX_SWEEPS], looked;
 
     struct hf_found *near, *far;  // in each chunk
     atomic_uchar *chunk_known;    // its depth has been read
@@ -36,6 +40,13 @@ size_t hf_plan_tile_bytes(const struct hf_plan *p);
 void hf_plan_tile_memory(struct hf_plan *p, void *memory);
 size_t hf_plan_chunk_bytes(const struct hf_plan *p);
 void hf_plan_chunk_memory(struct hf_plan *p, void *memory);
+
+// Pixels of colour and of depth that a frame will read: once it is settled, and there is anything to blur.
+void hf_plan_reads(const struct hf_plan *p, const struct hf_setup *s, struct hf_rect *colour, struct hf_rect *depth);
+
+// Do two rectangles have a pixel in common? And what they have.
+int hf_rect_meets(struct hf_rect a, struct hf_rect b);
+struct hf_rect hf_rect_both(struct hf_rect a, struct hf_rect b);
 
 // Note what was found in a chunk; returns its fields. Called once for each chunk, by any thread.
 unsigned hf_plan_found(struct hf_plan *p, int chunk, const struct hf_counts *counts);

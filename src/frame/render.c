@@ -109,6 +109,7 @@ static int make_plan(struct hf_render *r, struct hf_setup *s, enum hf_task task)
     if (err)
         return err;
     hf_plan_settle(p, r->s, r->copy.in_place);
+    hf_plan_reads(p, r->s, &c->reads[0], &c->reads[1]);
     return task != HF_TASK_RENDER || !s->measured ? HF_OK : lay_out_cells(r, p->reads);
 }
 
@@ -263,6 +264,10 @@ int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_jo
     struct hf_render r = {.c = c, .s = s, .copy = hf_copy_plan(s, job->dst, job->src)};
     const struct hf_progress_call nobody = {0};
     s->stop = &c->stop;
+    // Of a copy: what is stored, and what is around samples that are not finite.
+    c->reads[0] = c->reads[1] =
+        (struct hf_rect){hf_max(s->region.x0 - 1, 0), hf_max(s->region.y0 - 1, 0), hf_min(s->region.x1 + 1, s->width),
+                         hf_min(s->region.y1 + 1, s->height)};
     hf_progress_start(&r.progress, job->task == HF_TASK_RENDER ? &c->progress : &nobody, s->stop, !c->pool);
     start_workers(&r, job);
     const int err = s->resolved->sharp ? copy(&r, job->task) : blur(&r, s, job->task);

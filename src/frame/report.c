@@ -49,12 +49,18 @@ struct hf_counts hf_report_counts(const struct hf_context *c)
     return sum;
 }
 
+// All but the buffers.
+static size_t memory_beside(const struct hf_context *c)
+{
+    return sizeof *c + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size + hf_engines_bytes(c) +
+           (c->pool ? hf_pool_bytes(c->threads) : 0) + (size_t)c->threads * sizeof *c->workers;
+}
+
 static size_t memory_held(const struct hf_context *c)
 {
-    size_t bytes = sizeof *c + c->planes.size + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size +
-                   hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0);
+    size_t bytes = memory_beside(c) + c->planes.size;
     for (int i = 0; i < c->threads; i++)
-        bytes += c->workers[i].scratch.size + sizeof c->workers[i];
+        bytes += c->workers[i].scratch.size;
     return bytes;
 }
 
@@ -86,6 +92,7 @@ void hf_report_copy(struct hf_context *c, const struct hf_setup *s)
         r->pass[i].skipped = "no blur at all: the picture is copied";
     memset(c->plan.tile_needs, 0, r->tile_count[HF_TILE_SHARP]);
     r->memory = hf_buffers_bytes(c, s, 0);
+    r->memory_needed = memory_beside(c) + hf_buffers_after(c, s, 0);
     r->memory_saved = hf_buffers_bytes(c, s, HF_FIELDS) - r->memory;
 }
 
@@ -118,6 +125,8 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     if (e->own.tell)
         e->own.tell(s->own, r);
     r->memory = hf_buffers_bytes(c, s, p->reads);
+    // Where the reach is known before the depth, buffers are there before it is looked at.
+    r->memory_needed = memory_beside(c) + hf_buffers_after(c, s, s->measured ? p->reads : HF_FIELDS);
     r->memory_saved = hf_buffers_bytes(c, s, HF_FIELDS) - r->memory;
 }
 

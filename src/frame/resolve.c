@@ -262,6 +262,7 @@ void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct 
                            .height = src->height,
                            .half_width = (src->width + 1) / 2,
                            .half_height = (src->height + 1) / 2,
+                           .region = {0, 0, src->width, src->height},
                            .engine = p->engine,
                            .channels = hf_min(hf_image_channels(src), hf_image_channels(dst)),
                            .smoothstep = p->range.blend == HF_BLEND_SMOOTHSTEP,

@@ -59,15 +59,19 @@ void hf_sweep_look(void *arg, int i, int worker)
     struct hf_worker *w = &r->c->workers[worker];
     const struct hf_rect cell = hf_plan_cell(p, 1, i);
     // The fields that will certainly be read here, given what the chunks above have.
-    const unsigned wanted = p->no_skip ? HF_FIELDS : hf_plan_foreseen(p, r->s, i);
+    const unsigned wanted = p->part ? 0 : p->no_skip ? HF_FIELDS : hf_plan_foreseen(p, r->s, i);
     int64_t clock = hf_now_ns();
-    hf_buffers_place(r->c, r->s, &w->frame, 1, cell);
     w->counts.near = w->counts.far = (struct hf_found){0};
+    if (!hf_rect_meets(cell, p->looked)) {
+        hf_plan_found(p, i, &w->counts);
+        return;
+    }
+    hf_buffers_place(r->c, r->s, &w->frame, 1, cell);
     set_fields(&w->frame, HF_FIELDS);
     w->frame.looking = !wanted;
     run_pass(r, w, 0, cell, &clock);
     w->frame.looking = 0;
-    const unsigned found = hf_plan_found(p, i, &w->counts), fields = (wanted | found) & r->have;
+    const unsigned found = hf_plan_found(p, i, &w->counts), fields = p->part ? 0 : (wanted | found) & r->have;
     if (fields)
         make_chunk(r, w, cell, fields, &clock);
     p->chunk_made[i] = (uint8_t)fields;
@@ -155,6 +159,10 @@ void hf_sweep_cell(void *arg, int i, int worker)
         if (last)
             copy_around(r, w, cell, active);
         cell = active;
+    } else {
+        cell = hf_rect_both(cell, p->area[r->sweep]);
+        if (cell.x0 >= cell.x1 || cell.y0 >= cell.y1)
+            return;
     }
     hf_buffers_place(r->c, r->s, &w->frame, r->sweep, cell);
     set_fields(&w->frame, needs);

@@ -124,6 +124,11 @@ struct hf_engine_plan {
     struct hf_reach (*spread)(const struct hf_setup *s, const struct hf_cells *p, unsigned field);
     // Fields of the first sweep's buffers that the passes of a tile with these needs, which are not 0, read. NULL: both.
     unsigned (*reads)(const struct hf_setup *s, unsigned needs);
+    // How far around what a later sweep makes it reads buffers of the whole frame, if not as the halos of its passes say.
+    // NULL: as they say. Bit i of parts: a sweep across may make a
+    // part of its cells, of columns and rows in steps of 16 and 8, in place of all.
+    struct hf_reach (*around)(const struct hf_setup *s, int sweep);
+    unsigned parts;
     // Size of a sweep's cells, half-resolution pixels; holds the default, widths stay multiples of 16. NULL: the default.
     void (*cell)(const struct hf_setup *s, int sweep, int *width, int *height);
     // Floats of scratch (hf_frame.work) that a pass may use. NULL: none.

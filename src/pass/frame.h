@@ -83,6 +83,9 @@ struct hf_setup {
     const struct hf_resolved *resolved;  // what the frame is rendered with
     const void *own;                     // what the engine made of its parameters, and found in the depth
 
+    // Of the result, full-resolution pixels, that is stored; part: that is not all of it.
+    struct hf_rect region;
+    int part;
     atomic_int *stop;  // not 0: the frame is cancelled, and passes return as soon as they see it (base/stop.h)
 };
 

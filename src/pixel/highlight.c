@@ -85,14 +85,14 @@ static void store_block(const struct hf_frame *f, int x, int y, int n, const flo
         }
         rows[o][3] = from[o][3] ? from[o][3] + at : NULL;
     }
-    f->counts->clamped += f->k->store[f->dst->format](f->dst, x, y, n, rows[0], rows[1]);
+    f->counts->clamped += hf_store_lanes(f, x, y, n, rows[0], rows[1]);
 }
 
 void hf_store_colour(const struct hf_frame *f, int x, int y, int n, const float *const even[4],
                      const float *const odd[4])
 {
     if (!f->s->highlight.on) {
-        f->counts->clamped += f->k->store[f->dst->format](f->dst, x, y, n, even, odd);
+        f->counts->clamped += hf_store_lanes(f, x, y, n, even, odd);
         return;
     }
     const float *const rows[2][4] = {{even[0], even[1], even[2], even[3]}, {odd[0], odd[1], odd[2], odd[3]}};

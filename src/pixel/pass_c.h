@@ -34,6 +34,9 @@ void hf_read_colour(const struct hf_frame *f, int x, int y, int n, float *const 
 // The same without raising highlights.
 void hf_read_given(const struct hf_frame *f, int x, int y, int n, float *const even[4], float *const odd[4],
                    struct hf_counts *counts);
+// Store n lanes as the target's format wants them, as far as they lie in the region. Returns how many samples were clamped.
+uint64_t hf_store_lanes(const struct hf_frame *f, int x, int y, int n, const float *const even[4],
+                        const float *const odd[4]);
 // Store an engine's rows: highlights are lowered, and a sample that still has the bits that hf_read_colour gave takes
 // the picture's own bits. even[3] and odd[3] NULL: alpha is 1 if the format has one. Clamped samples are counted.
 void hf_store_colour(const struct hf_frame *f, int x, int y, int n, const float *const even[4],

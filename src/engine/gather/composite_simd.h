@@ -621,7 +621,7 @@ static void composite_simd(const struct hf_frame *f, struct hf_rect r)
     const int end = hf_min(2 * r.y1, f->s->height);
     const int packs = f->src->format == HF_FORMAT_R11G11B10F && f->dst->format == HF_FORMAT_R11G11B10F &&
                       f->s->storage != HF_STORAGE_HALF && !f->s->faithful && !hf_gather(f->s)->bicubic &&
-                      !f->s->highlight.on;
+                      !f->s->highlight.on && !f->s->part;
     // Rows 2 k - 1 and 2 k lie between the half-resolution rows k - 1 and k.
     for (int k = r.y0; 2 * k <= end && !hf_stopped(f->s->stop); k++) {
         const int y[2] = {k > r.y0 ? 2 * k - 1 : -1, 2 * k < end ? 2 * k : -1};

@@ -164,7 +164,7 @@ static void merge_simd(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const enum hf_format format = f->src->format;
     const int pixels = hf_min(2 * r.x1, f->s->width) - 2 * r.x0;
-    const int direct = f->dst->format == format && !f->s->highlight.on;
+    const int direct = f->dst->format == format && !f->s->highlight.on && !f->s->part;
     const int n = direct ? pixels / 2 / (2 * VF_N) * (2 * VF_N) : 0;
     // Repairing a sample needs its neighbours, which in place may be overwritten already.
     const int in_place = f->src->data[0] == f->dst->data[0] && !f->repaired;

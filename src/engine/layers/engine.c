@@ -274,6 +274,24 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     return (struct hf_reach){n, n};
 }
 
+// The composite reads tiles far beyond the frame's border that the buffers have. What is hidden is smoothed along rows, for
+// which a band is as wide as it is made; the levels are read around that.
+static struct hf_reach around(const struct hf_setup *s, int sweep)
+{
+    const struct hf_layers *l = hf_layers(s);
+    const int hidden = hf_layers_hidden_reach(l);
+    switch (sweep) {
+    case 5:
+        return (struct hf_reach){l->around / 2, l->around / 2};
+    case 4:
+        return (struct hf_reach){hf_layers_patterns_reach(l) + HF_LAYERS_SMOOTH, hf_layers_patterns_reach(l)};
+    case 3:
+        return (struct hf_reach){hidden, hidden};
+    default:
+        return (struct hf_reach){0, 0};
+    }
+}
+
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p, unsigned field)
 {
     const struct hf_layers *l = hf_layers(s);
@@ -371,6 +389,8 @@ const struct hf_engine_def hf_layers_engine = {
     .own = {sizeof(struct hf_layers), .resolve = resolve, .prepare = prepare, .measure = measure, .tell = tell,
             .release = release, .held = held},
     .plan = {.across = 1u << 2 | 1u << 3 | 1u << 4,
+             .around = around,
+             .parts = 1u << 2 | 1u << 3 | 1u << 4,
              .grain = HF_LAYERS_TILE / 2,
              .channels = channels,
              .runs = runs,
