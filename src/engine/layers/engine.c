@@ -202,6 +202,8 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     if (err)
         return err;
     hf_layers_make_slices(l);
+    if (hf_stopped(s->stop))
+        return HF_ERR_CANCELLED;
     const float range = found->radius_max - found->radius_min;
     l->levels = 0;
     l->edges = l->set.unmix && range > HF_EDGES_FROM;

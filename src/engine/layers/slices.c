@@ -148,7 +148,7 @@ static struct hf_disc_row *make_shines(struct hf_layers *l, int group, int middl
 {
     struct hf_slice *of = l->group[group], *s = of + 2 * l->slices;
     l->shines = 0;
-    for (int i = 0; i < l->slices; i++) {
+    for (int i = 0; i < l->slices && !hf_stopped(l->stop); i++) {
         const int last = i + 1 == l->slices, parts = !last && of[i].level && of[i + 1].level ? l->parts : 1;
         const float apart = last ? 0 : of[i + 1].radius - of[i].radius;
         of[i].shine = l->shines;
@@ -242,12 +242,14 @@ void hf_layers_make_slices(struct hf_layers *l)
         row = make_both(l, g, near, 0, 0, 0, row);
         for (int side = -1; side <= 1; side += 2) {
             float before = 0, r;
-            for (int i = 1; i <= (side < 0 ? near : far); i++, before = r) {
+            for (int i = 1; i <= (side < 0 ? near : far) && !hf_stopped(l->stop); i++, before = r) {
                 r = next_radius(&l->set, before);
                 row = make_both(l, g, near + side * i, (float)side * r, i, before, row);
             }
         }
         row = make_shines(l, g, near, row);
+        if (hf_stopped(l->stop))
+            return;
         for (int t = 0; t < 3; t++)
             set_neighbours(l->group[g] + t * l->slices, t < 2 ? l->slices : l->shines);
         row = make_covers(l, g, near, row);
