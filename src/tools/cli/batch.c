@@ -409,6 +409,8 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         cli_progress_end(&b.progress);
         if (!args->quiet)
             print_summary(&b);
+        if (args->verbose)
+            cli_print_sandbox();
         cli_log_end(&b.log, &b.progress, b.at_once, b.missed[0], peak_memory());
         if (!status)
             status = exit_code(&b);

@@ -116,6 +116,8 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     // JSON on stdout is for programs: then people are told on the other channel.
     if (!status && args->explain)
         cli_explain_print(args->json && !args->json_file ? stderr : stdout, &frame, !args->dry_run);
+    if (args->verbose || args->explain)
+        cli_print_sandbox();
     cli_frame_close(&frame);
     return status;
 }

@@ -122,3 +122,9 @@ int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
         printf("    nothing will be blurred\n");
     return 0;
 }
+
+void cli_print_sandbox(void)
+{
+    if (hf_io_sandbox())
+        tool_print_line("%s", hf_io_sandbox());
+}

@@ -16,4 +16,7 @@ int cli_print_resolved(const struct cli_view *v, struct tool_error *error);
 // Did the view take longer than --budget-ms?
 int cli_missed_budget(const struct cli_view *v);
 
+// On stderr, in a line: what the sandbox in which formats other than EXR were read did not forbid, if anything.
+void cli_print_sandbox(void);
+
 #endif

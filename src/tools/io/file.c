@@ -424,3 +424,8 @@ int hf_io_has_oiio(void)
 {
     return hf_oiio_available();
 }
+
+const char *hf_io_sandbox(void)
+{
+    return hf_oiio_sandbox();
+}

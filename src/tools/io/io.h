@@ -173,6 +173,10 @@ void hf_io_end_by_signal(int number);
 // 1 if this build can read and write formats other than EXR.
 int hf_io_has_oiio(void);
 
+// What the sandbox in which formats other than EXR were read did not forbid, as one sentence; NULL if it was whole, or
+// nothing was read so.
+const char *hf_io_sandbox(void);
+
 #ifdef __cplusplus
 }
 #endif

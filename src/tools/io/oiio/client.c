@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program's side of the helper: starts it when the first file needs it, and asks. What it answers is not trusted
 // further than what a file says: it may have been taken over by one.
+#include <fcntl.h>
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
@@ -11,6 +12,7 @@
 #include <string.h>
 #include <sys/wait.h>
 
+#include "tools/io/oiio/sandbox.h"
 #include "tools/io/oiio/wire.h"
 
 #define HELPER "hyperfocal-oiio"
@@ -120,29 +122,32 @@ static int start_helper(void)
     return -1;
 }
 
-static int send_socket(int fd)
+// Hand the helper a job's socket and, unless it is -1, the file to read.
+static int send_socket(int fd, int file)
 {
-    char byte = 0, buf[CMSG_SPACE(sizeof(int))] = {0};
+    const int fds[2] = {fd, file};
+    const size_t size = file >= 0 ? sizeof(fds) : sizeof(int);
+    char byte = 0, buf[CMSG_SPACE(sizeof(fds))] = {0};
     struct iovec part = {&byte, 1};
-    struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1, .msg_control = buf, .msg_controllen = sizeof(buf)};
+    struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1, .msg_control = buf, .msg_controllen = CMSG_SPACE(size)};
     struct cmsghdr *c = CMSG_FIRSTHDR(&m);
     c->cmsg_level = SOL_SOCKET;
     c->cmsg_type = SCM_RIGHTS;
-    c->cmsg_len = CMSG_LEN(sizeof(int));
-    memcpy(CMSG_DATA(c), &fd, sizeof(fd));
+    c->cmsg_len = CMSG_LEN(size);
+    memcpy(CMSG_DATA(c), fds, size);
     return control >= 0 && sendmsg(control, &m, MSG_NOSIGNAL) == 1 ? 0 : -1;
 }
 
 // Hand the helper, which is started if it does not run, a socket. 0 or -1; version is what one of another build said.
-static int give_socket(int fd, char version[HF_WIRE_HELLO])
+static int give_socket(int fd, int file, char version[HF_WIRE_HELLO])
 {
     while (atomic_flag_test_and_set(&starting))
         usleep(100);
-    int status = send_socket(fd);
+    int status = send_socket(fd, file);
     if (status) {
         end_helper();
         other[0] = 0;
-        status = start_helper() ? -1 : send_socket(fd);
+        status = start_helper() ? -1 : send_socket(fd, file);
     }
     memcpy(version, other, HF_WIRE_HELLO);
     atomic_flag_clear(&starting);
@@ -161,31 +166,61 @@ static int fail_start(const char *path, const char *version, struct hf_io_error 
     return hf_io_may_pass(err);
 }
 
-// A socket to a fresh child of the helper's. The child says one byte; without it the helper ended before it had made the
-// child, no file was touched, and another helper is tried.
-static int new_job(const char *path, struct hf_io_error *err)
+static atomic_int in_force = -1;  // of the last job's sandbox; -1: there was no job
+
+const char *hf_oiio_sandbox(void)
+{
+    switch (atomic_load(&in_force)) {
+    case 0:
+        return HELPER " has no sandbox here (neither seccomp nor Landlock): a harmful file could do what you may do";
+    case HF_SANDBOX_CALLS:
+        return HELPER "'s sandbox has no Landlock here: a harmful file could read and write the files that you may";
+    case HF_SANDBOX_FILES:
+        return HELPER "'s sandbox has no seccomp here: a harmful file could reach the network and other processes";
+    default:
+        return NULL;
+    }
+}
+
+// A socket to a fresh child of the helper's, which may read `file` (-1: none). The child says one byte, what its sandbox
+// is; without it the helper ended before it had made the child, no file was touched, and another helper is tried.
+static int begin_job(const char *path, int file, struct hf_io_error *err)
 {
     char version[HF_WIRE_HELLO] = "", byte;
-    if (!hf_oiio_available())
-        return hf_io_fail(err,
-                          "%s: only EXR without DWA compression can be read and written here (" HELPER
-                          ", which does the rest, is not there: built without OpenImageIO)",
-                          path);
     for (int tries = 0; tries < 3; tries++) {
         int pair[2];
         if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair)) {
             hf_io_fail(err, "%s: cannot talk to " HELPER ": %s", path, strerror(errno));
             return hf_io_may_pass(err);
         }
-        const int status = give_socket(pair[1], version);
+        const int status = give_socket(pair[1], file, version);
         close(pair[1]);
-        if (!status && !hf_wire_get(pair[0], &byte, 1))
+        if (!status && !hf_wire_get(pair[0], &byte, 1)) {
+            atomic_store(&in_force, byte);
             return pair[0];
+        }
         close(pair[0]);
         if (status)
             break;
     }
     return fail_start(path, version, err);
+}
+
+// The socket of a job about path, which reads that file if `reads`.
+static int new_job(const char *path, bool reads, struct hf_io_error *err)
+{
+    if (!hf_oiio_available())
+        return hf_io_fail(err,
+                          "%s: only EXR without DWA compression can be read and written here (" HELPER
+                          ", which does the rest, is not there: built without OpenImageIO)",
+                          path);
+    const int file = reads ? open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK) : -1;
+    if (reads && file < 0)
+        return hf_io_fail(err, "%s: cannot open: %s", path, strerror(errno));
+    const int fd = begin_job(path, file, err);
+    if (file >= 0)
+        close(file);
+    return fd;
 }
 
 // ---- asking
@@ -263,7 +298,7 @@ int hf_oiio_open(struct hf_oiio **out, const char *path, const char *depth_chann
     int status = o && q && r ? set_path(q, path, err) : hf_io_fail(err, "%s: out of memory", path);
     if (o) {
         o->path = path;
-        o->fd = status ? -1 : new_job(path, err);
+        o->fd = status ? -1 : new_job(path, true, err);
         status = o->fd < 0 ? -1 : status;
     }
     if (!status) {
@@ -383,7 +418,7 @@ int hf_oiio_check_format(const char *path, struct hf_io_error *err)
     struct hf_wire_request *q = calloc(1, sizeof(*q));
     struct hf_wire_reply *r = calloc(1, sizeof(*r));
     int status = q && r ? set_path(q, path, err) : hf_io_fail(err, "%s: out of memory", path);
-    const int fd = status ? -1 : new_job(path, err);
+    const int fd = status ? -1 : new_job(path, false, err);
     status = fd < 0 ? -1 : status;
     if (!status) {
         q->op = HF_WIRE_FORMAT;
@@ -430,7 +465,9 @@ int hf_oiio_write(struct hf_io_bytes *made, const struct hf_oiio_picture *p, str
     int fd = -1, status = q ? set_path(q, p->path, err) : hf_io_fail(err, "%s: out of memory", p->path);
     *made = (struct hf_io_bytes){0};
     if (!status) {
-        fd = new_job(p->path, err);
+        // Without the source, which may have gone since, its texts are lost and no more.
+        const bool source = p->source && !access(p->source, R_OK);
+        fd = new_job(source ? p->source : p->path, source, err);
         status = fd < 0 ? -1 : 0;
     }
     if (!status) {
@@ -461,7 +498,7 @@ static int ask_samples(const char *path, struct hf_wire_request *q, const struct
                           path, s->channel_count, HF_WIRE_CHANNELS);
     if (set_path(q, path, err))
         return -1;
-    const int fd = new_job(path, err);
+    const int fd = new_job(path, q->op == HF_WIRE_READ, err);
     if (fd < 0)
         return -1;
     q->samples = *s;

@@ -35,6 +35,17 @@ struct hf_oiio {
 namespace
 {
 
+int source = -1;  // descriptor of the file that this process reads
+
+// By what name to open it: by its own, whose end says the format, unless that is another file's by now.
+std::string name_of(const char *path)
+{
+    struct stat named, opened;
+    const bool same = !stat(path, &named) && !fstat(source, &opened) && named.st_dev == opened.st_dev &&
+                      named.st_ino == opened.st_ino;
+    return same || source < 0 ? path : "/proc/self/fd/" + std::to_string(source);
+}
+
 // Runs body, which returns 0 or -1; exceptions become an error like any other.
 template <class Body> int guarded(const char *path, hf_io_error *err, Body body) noexcept
 {
@@ -157,7 +168,7 @@ int open_input(Input &input, const char *path, hf_io_error *err)
     // Alpha as the file has it: what is not premultiplied must be multiplied in linear light, which is our business.
     ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
-    input.in = ImageInput::open(path, &config);
+    input.in = ImageInput::open(name_of(path), &config);
     if (!input.in)
         return input.fail(path, err);
     // No pictures, or read by code that writes past its buffers.
@@ -240,7 +251,7 @@ int check_spec(const ImageSpec &spec, const char *path, hf_io_error *err)
         return hf_io_fail(err, "%s: %d channels are not supported", path, spec.nchannels);
     // Some formats pack a plain colour very well, but nothing justifies gigabytes for a few bytes.
     const uint64_t samples = (uint64_t)spec.width * (uint64_t)spec.height * (uint64_t)spec.nchannels;
-    if (stat(path, &st) == 0 && samples > 1 << 25 && samples / 4096 > (uint64_t)st.st_size)
+    if (fstat(source, &st) == 0 && samples > 1 << 25 && samples / 4096 > (uint64_t)st.st_size)
         return hf_io_fail(err, "%s: truncated or corrupt: %lld bytes cannot hold %d x %d pixels", path,
                           (long long)st.st_size, spec.width, spec.height);
     return 0;
@@ -472,7 +483,7 @@ int read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
     Input input;
     input.in = ImageInput::create("openexr");
     ImageSpec spec;
-    if (!input.in || !input.in->open(path, spec) || !input.in->seek_subimage(part, 0))
+    if (!input.in || !input.in->open(name_of(path), spec) || !input.in->seek_subimage(part, 0))
         return input.fail(path, err);
     spec = input.in->spec();
     if (spec.width != s->width || spec.height != s->height || spec.deep)
@@ -535,6 +546,16 @@ int write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, c
 }
 
 }  // namespace
+
+void hf_oiio_prepare(void)
+{
+    OIIO::get_string_attribute("format_list");
+}
+
+void hf_oiio_use_file(int fd)
+{
+    source = fd;
+}
 
 int hf_oiio_bits(const hf_oiio *o)
 {

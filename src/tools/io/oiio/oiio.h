@@ -52,6 +52,14 @@ int hf_oiio_read_samples(const char *path, int part, struct hf_io_samples *s, st
 int hf_oiio_write_samples(struct hf_io_bytes *made, const char *path, const struct hf_io_samples *s,
                           const char *compression, float level, struct hf_io_error *err);
 
+// Of the helper alone: find all readers and writers, while files can still be opened; and the file that this process
+// reads, whatever has its name meanwhile.
+void hf_oiio_prepare(void);
+void hf_oiio_use_file(int fd);
+
+// Of the program alone: what the last job's sandbox did not forbid, as one sentence, or NULL.
+const char *hf_oiio_sandbox(void);
+
 #ifdef __cplusplus
 }
 #endif

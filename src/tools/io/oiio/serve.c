@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hyperfocal-oiio, the helper program: it loads OpenImageIO once and then makes a child for every job, with limits of
-// its own. A file that crashes a reader, or makes it ask for endless memory or time, ends that child and nothing else.
+// its own, in a sandbox (sandbox.h). A file that crashes a reader, or makes it ask for endless memory or time, ends that
+// child and nothing else; one that takes the child over gains nothing by it.
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,26 +11,28 @@
 #include <sys/stat.h>
 
 #include "tools/common/standard.h"
+#include "tools/io/oiio/sandbox.h"
 #include "tools/io/oiio/wire.h"
 
 struct job {
-    int fd;
+    int fd;    // the socket
+    int file;  // the one to read; -1: none
     char path[HF_WIRE_PATH];
     struct hf_io_views views;
     struct hf_oiio *oiio;
 };
 
+// Of this process; opened before the sandbox closes.
+static int status_file = -1;
+
 static long long data_kilobytes(void)
 {
-    char line[256];
+    char text[8192];
     long long kb = 0;
-    FILE *f = fopen("/proc/self/status", "r");
-    while (f && fgets(line, sizeof(line), f))
-        if (sscanf(line, "VmData: %lld", &kb) == 1)
-            break;
-    if (f)
-        fclose(f);
-    return kb;
+    const ssize_t n = pread(status_file, text, sizeof(text) - 1, 0);
+    text[n > 0 ? n : 0] = 0;
+    const char *line = strstr(text, "VmData:");
+    return line && sscanf(line, "VmData: %lld", &kb) == 1 ? kb : 0;
 }
 
 static void lower(int what, unsigned long long to)
@@ -53,10 +57,10 @@ static void set_limits(uint64_t picture_bytes, uint64_t file_bytes)
           (unsigned long long)used.ru_utime.tv_sec + (unsigned long long)used.ru_stime.tv_sec + 4 + work / 5000000);
 }
 
-static uint64_t file_size(const char *path)
+static uint64_t file_size(const struct job *job)
 {
     struct stat st;
-    return stat(path, &st) ? 0 : (uint64_t)st.st_size;
+    return fstat(job->file, &st) ? 0 : (uint64_t)st.st_size;
 }
 
 static uint64_t plane_bytes(const struct hf_io_view *v)
@@ -75,7 +79,7 @@ static int serve_open(struct job *job, const struct hf_wire_request *q)
 {
     static struct hf_wire_reply r;
     memcpy(job->path, q->path, sizeof(job->path));
-    set_limits(0, file_size(job->path));
+    set_limits(0, file_size(job));
     r.status = job->oiio ? hf_io_fail(&r.err, "%s: opened twice", q->path)
                          : hf_oiio_open(&job->oiio, job->path, q->has_name ? q->name : NULL, &job->views, &r.err);
     if (!r.status) {
@@ -97,7 +101,7 @@ static int serve_colour(struct job *job, const struct hf_wire_request *q)
     if (job->views.count) {
         const struct hf_io_view *v = &job->views.view[0];
         const size_t size = (size_t)v->width * (size_t)v->height;
-        set_limits(12 * plane_bytes(v), file_size(job->path));
+        set_limits(12 * plane_bytes(v), file_size(job));
         for (int k = 0; k < 4; k++)
             n += (q->planes >> k & 1) && v->colour[k][0];
         memory = malloc((size_t)n * size * sizeof(float) + 1);
@@ -120,7 +124,7 @@ static int serve_depth(struct job *job, const struct hf_wire_request *q)
     const struct hf_io_view *v = !own ? &q->view : job->views.count ? &job->views.view[0] : NULL;
     float *memory = NULL;
     if (job->oiio && v) {
-        set_limits(12 * plane_bytes(v), file_size(job->path));
+        set_limits(12 * plane_bytes(v), file_size(job));
         memory = malloc(plane_bytes(v) + 1);
         r.size = plane_bytes(v);
         r.status = !memory ? hf_io_fail(&r.err, "%s: out of memory", job->path)
@@ -188,7 +192,7 @@ static int serve_samples(struct job *job, const struct hf_wire_request *q)
     s.data = malloc(size + 1);
     r.status = s.data ? 0 : hf_io_fail(&r.err, "%s: out of memory", q->path);
     if (!r.status && q->op == HF_WIRE_READ) {
-        set_limits(4 * size + ((uint64_t)256 << 20), file_size(q->path));
+        set_limits(4 * size + ((uint64_t)256 << 20), file_size(job));
         r.status = hf_oiio_read_samples(q->path, q->part, &s, &r.err);
         r.size = size;
     } else if (!r.status) {
@@ -204,12 +208,16 @@ static int serve_samples(struct job *job, const struct hf_wire_request *q)
 }
 
 // All requests of one job, until the program closes the socket.
-static void serve(int fd)
+static void serve(int fd, int file)
 {
     static struct job job;
     static struct hf_wire_request q;
-    int status = hf_wire_put(fd, "", 1);  // the job has a process: what ends from here on is the file's fault
+    status_file = open("/proc/self/status", O_RDONLY | O_CLOEXEC);
+    hf_oiio_use_file(file);
+    const char in_force = (char)hf_sandbox_enter(file);
+    int status = hf_wire_put(fd, &in_force, 1);  // the job has a process: what ends from here on is the file's fault
     job.fd = fd;
+    job.file = file;
     while (!status && !hf_wire_get(fd, &q, sizeof(q))) {
         switch ((enum hf_wire_op)q.op) {
         case HF_WIRE_OPEN:
@@ -236,10 +244,10 @@ static void serve(int fd)
     }
 }
 
-// The socket of the next job, or -1 when the program has ended.
-static int next_job(void)
+// The socket of the next job, or -1 when the program has ended; *file is the file to read, or -1.
+static int next_job(int *file)
 {
-    char byte, control[CMSG_SPACE(sizeof(int))];
+    char byte, control[CMSG_SPACE(2 * sizeof(int))];
     struct iovec part = {&byte, 1};
     struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof(control)};
     ssize_t n;
@@ -247,15 +255,18 @@ static int next_job(void)
         n = recvmsg(HF_WIRE_CONTROL, &m, MSG_CMSG_CLOEXEC);
     } while (n < 0 && errno == EINTR);
     const struct cmsghdr *c = n > 0 ? CMSG_FIRSTHDR(&m) : NULL;
-    int fd = -1;
+    int fds[2] = {-1, -1};
     if (c && c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_RIGHTS)
-        memcpy(&fd, CMSG_DATA(c), sizeof(fd));
-    return fd;
+        memcpy(fds, CMSG_DATA(c), c->cmsg_len > CMSG_LEN(sizeof(int)) ? sizeof(fds) : sizeof(int));
+    *file = fds[1];
+    return fds[0];
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     tool_open_standard();
+    if (argc == 2 && !strcmp(argv[1], "--try-sandbox"))
+        return hf_sandbox_try();
     // A terminal's Ctrl-C goes to the program, which decides; when it ends, so do we. SIGXFSZ kills: a writer that
     // does not look at what write() returns must not succeed.
     signal(SIGINT, SIG_IGN);
@@ -268,13 +279,16 @@ int main(void)
     if (recv(HF_WIRE_CONTROL, &question, 1, 0) != 1 ||
         send(HF_WIRE_CONTROL, hello, sizeof(hello), MSG_NOSIGNAL) != (ssize_t)sizeof(hello))
         return 1;
-    for (int fd; (fd = next_job()) >= 0;) {
+    hf_oiio_prepare();
+    for (int fd, file; (fd = next_job(&file)) >= 0;) {
         if (fork() == 0) {
             close(HF_WIRE_CONTROL);
-            serve(fd);
+            serve(fd, file);
             _exit(0);
         }
         close(fd);
+        if (file >= 0)
+            close(file);
     }
     return 0;
 }
