@@ -16,7 +16,7 @@ static const char default_file[] = "bench/history/history.jsonl", default_svg[] 
 
 // ---- a new point ----
 
-// To five digits: a history is read by people too.
+// Round to five digits: people read the file too.
 static double rounded(double x)
 {
     char digits[32];
@@ -40,7 +40,7 @@ static int hash_file(const char *path, uint32_t *hash, struct tool_error *error)
     return failed ? tool_fail(error, -1, "cannot read all of %s", path) : 0;
 }
 
-// Of the pictures that distances are measured on.
+// Hash the pictures that errors are measured on: two points compare only if these are the same.
 static int hash_truth(char *text, size_t size, const char *images, struct tool_error *error)
 {
     uint32_t hash = 2166136261u;
@@ -109,13 +109,13 @@ static int measure(struct history_point *p, const struct bench_args *args, struc
             history_set(p, rounded(truth.at[s][e].psnr), "dB %s/%s", engine, scene);
             history_set(p, rounded(truth.at[s][e].ms), "ms %s/%s", engine, scene);
         }
-    // The last, and the only one to look at: a point that is full has not taken it.
+    // Set last, so that only this result needs a check: a full point takes no more numbers.
     return history_set(p, busy + truth.busy, "busy")
                ? tool_fail(error, -1, "a point of the history has more than %d numbers", HISTORY_VALUES)
                : 0;
 }
 
-// ---- what there is ----
+// ---- the list of points ----
 
 static void cell(FILE *out, int decimals, double value)
 {
@@ -139,7 +139,7 @@ static char machine_of(const struct history *h, int point)
     return letter;
 }
 
-// Of all engines the mean over the ray-traced scenes of one kind of number.
+// Print for each engine the mean of one kind of number over the ray-traced scenes.
 static void mean_cells(FILE *out, const struct history_point *p, const char *kind, int decimals)
 {
     for (int e = 0; e < HF_ENGINE_COUNT; e++) {

@@ -6,7 +6,7 @@
 #include "pixel/depth_rows.h"
 #include "pixel/format_vf.h"
 
-// A call with FORM a constant.
+// Call CALL with FORM as a constant, so that the compiler makes a loop for each form.
 #define HF_WITH_FORM_(form, call)                                                                                      \
     case form: {                                                                                                       \
         enum { FORM = form };                                                                                          \

@@ -47,7 +47,7 @@ void hf_edges_start(struct hf_edges *e, const struct hf_frame *f, struct hf_rect
 // write HF_PAD floats beyond the row.
 int hf_edges_row(struct hf_edges *e, int y, const struct hf_sides *out);
 
-// The part of a pixel of radius r that is front: 1 half a slope nearer than the middle of both sides, 0 as much farther.
+// How much of radius r belongs to the front, 0 to 1: a ramp of that slope around the middle of both sides.
 static inline float hf_edges_front(float middle, float slope, float r)
 {
     return hf_saturate((middle - r) * slope + 0.5f);

@@ -61,7 +61,7 @@ HF_INLINE vf vf_once(vf a)
         }                                                                                                              \
     } while (0)
 
-// v within a and b.
+// v clamped to the range between a and b, in either order.
 HF_INLINE vf vf_between(vf v, vf a, vf b)
 {
     return vf_min(vf_max(v, vf_min(a, b)), vf_max(a, b));

@@ -51,7 +51,7 @@ static void test_round_trip(void)
         CHECK(history_same_machine(q, &h.point[0]));
     }
     history_free(&h);
-    // A point has room for so many numbers.
+    // A point that is full takes no more numbers.
     while (p.values < HISTORY_VALUES)
         history_set(&p, 1, "x");
     CHECK_INT(history_set(&p, 1, "x"), -1);
@@ -89,7 +89,7 @@ static void test_refused(void)
     history_free(&h);
 }
 
-// How often a text stands in another.
+// How often one text occurs in another.
 static int count(const char *text, const char *part)
 {
     int n = 0;
@@ -108,7 +108,7 @@ static char *draw(const struct history *h)
     return text;
 }
 
-// Of the first line in text that has a style: how often it begins and how often it goes on.
+// Count the starts and the segments of the first line with a given style.
 static void path_of(const char *text, const char *style, int *begins, int *goes_on)
 {
     char head[64];
@@ -150,12 +150,12 @@ static void test_draw(void)
     // Times: two machines with two points each.
     path_of(text, "gather", &begins, &goes_on);
     CHECK(begins == 2 && goes_on == 2);
-    // Distances go on to another machine, and not to another truth.
+    // Lines of errors go on across machines, but not across different true pictures.
     const char *lights = strstr(text, ">lights, dB<");
     path_of(lights ? lights : "", "layers", &begins, &goes_on);
     CHECK(begins == 2 && goes_on == 2);
     free(text);
-    // Values that are all the same, a lone point, none at all.
+    // Equal values, a single point, no point.
     h.points = 1;
     text = draw(&h);
     CHECK(count(text, "<circle ") == 3 && !strstr(text, "nan") && !strstr(text, "inf"));

@@ -11,7 +11,7 @@
 
 enum { WIDTH = 320, HEIGHT = 200, SETTINGS = 60, SCENES = 3, SAMPLES = 5 };
 
-// In place of rendering: a picture that differs from setting to setting.
+// Stands in for rendering: a picture that differs from setting to setting.
 int trade_run_render(struct trade_run *run, int result, int scene, struct tool_error *error)
 {
     (void)error;

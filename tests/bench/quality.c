@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ladder on the ray-traced scenes, seen by a lens, from the first step that reaches: a better step is never worse, each
-// errs as its table says, the first is better than no blur, and the best comes nearer to the truth than other programs do.
+// Steps of the ladder on the ray-traced scenes, from the first that can make their radii. A later step is never worse; each
+// has the error that its table says; the first beats no blur, and the best comes closer to the truth than other programs.
 //
 //     quality images      the folder of the scenes
 #include <math.h>
@@ -14,7 +14,7 @@
 // A step of the ladder may be worse than the one before by 0.1 dB on a scene: trade_ladder's rule. Its mean is better by
 // 0.2 dB or more (TRADE_STEP_DB): with errors in the table that are off by less than half of that, the order is right.
 static const double SLACK = 0.1, TOLD_APART = 0.1;
-// What the cheapest has to gain over no blur at all, dB.
+// How much better than no blur the cheapest step must be, dB.
 static const double WORTH = 3;
 
 enum { SCENES = 3, MOST = 32 };
@@ -49,7 +49,7 @@ static double psnr_of(struct hf_context *c, const struct truth *t, int scene, st
     return psnr;
 }
 
-// The next step after the one in *choice that reaches any radius, as the scenes ask for it; the first if there is none.
+// The step after *choice that can make any radius, as the scenes need; the first such step if *choice is empty.
 // Returns 0 when there are no more.
 static int next_step(struct hf_params *p, struct hf_choice *choice)
 {

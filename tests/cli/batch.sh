@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Shots from outside: names and frames, what is skipped and made again, what is left after a kill.
+# Shots through the command: names and frames, which frames are skipped or made again, what a kill leaves behind.
 # Usage: batch.sh PROGRAM SOURCE_ROOT. The shot is made of SOURCE_ROOT/images; the beachball shot is taken from
 # $HF_SHARED/images when it is there. HF_KILLS: how often to kill (default 8).
 program=$1
@@ -46,7 +46,7 @@ same() {  # DIRECTORY DIRECTORY: every file, bit for bit
     diff -r "$1" "$2" >/dev/null
 }
 
-# Six frames, two of each picture; settings that keep them quick.
+# Six frames, two of each picture, with settings that render quickly.
 mkdir in
 for i in 1 2 3 4 5 6; do
     case $i in 1 | 4) p=lights ;; 2 | 5) p=fence ;; *) p=foliage ;; esac
@@ -77,7 +77,7 @@ check "one at a time where there is little memory" says "one at a time"
 check "backwards" files a "shot.0002.exr shot.0004.exr shot.0006.exr"
 check "the limit changes no bit" cmp a/shot.0004.exr good/shot.0004.exr
 rm -f a/*
-# Frames after a tiny one are many times its size: where memory is short they wait for each other.
+# The frames after a tiny one are many times its size: when memory is short they wait for each other.
 mkdir grow
 cp "$source_root/tests/fuzz/corpus/exr/none.exr" grow/g.0001.exr
 for i in 2 3 4 5 6 7 8 9; do cp in/shot.0001.exr grow/g.000$i.exr; done
@@ -122,7 +122,7 @@ check "says what it would do" grep -q 'in/shot.0006.exr -> a/x.0006.exr' out
 check "and what that takes" grep -q 'MiB' out
 check "nothing was written so far" files a ""
 
-# Frames that are not there or are bad.
+# Missing and damaged frames.
 mkdir holes b
 cp in/shot.0001.exr in/shot.0004.exr in/shot.0006.exr holes
 run holes/shot.#.exr -o b/shot.#.exr $quick
@@ -168,7 +168,7 @@ cp in/shot.0005.exr a/shot.0005.exr
 : >"a/.hyperfocal-elsewhere-2-0.exr"
 : >"a/.hyperfocal-elsewhere-3-0.exr"
 touch -d '2 hours ago' a/.hyperfocal-elsewhere-[23]-0.exr
-# As a writer holds its file.
+# Lock the file as a writer does.
 flock a/.hyperfocal-elsewhere-3-0.exr sleep 30 &
 alive=$!
 sleep 0.2
@@ -192,7 +192,7 @@ check "formats that keep no record" says "--resume needs an EXR OUTPUT"
 rm -f good/* a/*
 run in/shot.####.exr -o good/shot.####.exr $quick
 
-# Signals. The shot is long enough that a signal finds it at work.
+# Signals. The shot takes long enough for a signal to arrive while it is rendered.
 list="in/shot.0001.exr"
 "$program" in/shot.####.exr -o a/shot.####.exr $quick --threads 1 >out 2>err &
 pid=$!
@@ -210,7 +210,7 @@ fi
 run in/shot.####.exr -o a/shot.####.exr $quick --resume
 check "after SIGTERM: all there" same good a
 
-# The second signal does not wait for the frames in work, which are made slow here.
+# The second signal does not wait for the frames being rendered, which are slowed down here.
 slow="--quality best --focus 5 --range .1 --max-radius 400 --threads 2 --compression none"
 rm -f a/*
 for strike in 1 2 3; do
@@ -238,7 +238,7 @@ i=0
 rm -f a/*
 while [ $i -lt "$kills" ]; do
     i=$((i + 1))
-    # Begin anew now and then, or there would be nothing left to kill.
+    # Start over now and then; otherwise all frames would be done and nothing left to kill.
     [ $((i % 3)) -eq 1 ] && rm -f a/shot.*
     "$program" in/shot.####.exr -o a/shot.####.exr $quick --resume >/dev/null 2>&1 &
     pid=$!
@@ -305,10 +305,10 @@ check "a focus that follows" awk -F, 'FNR == 1 { file++; next }
 run in/shot.####.exr --print-focus --focus center --focus-smooth 2 --frames 3-4
 check "does not depend on the part" test "$(sed 1d out | tr '\n' ' ')" = "$(sed -n '4,5p' smooth | tr '\n' ' ')"
 
-# What a frame keeps.
+# What an output keeps of its input.
 if command -v python3 >/dev/null; then
     cat >header.py <<'P'
-# The attributes of all parts of an EXR file, but those that say what made it.
+# The attributes of all parts of an EXR file, except those that say which program made it.
 import struct, sys
 def attributes(path):
     data = open(path, "rb").read()
@@ -346,13 +346,13 @@ else
     skip "channels, without oiiotool"
 fi
 
-# Over what was made before: the new record takes the place of the old one.
+# Rendering a finished shot again: the new record replaces the old one.
 rm -f a/*
 run good/shot.####.exr -o a/shot.####.exr $quick --frames 1 --range 2
 check "one record" test "$(grep -ao hyperfocalHash a/shot.0001.exr | wc -l)" = 1
 check "of what was done last" grep -qa -e '--range 3 --max-radius 6 --range 2' a/shot.0001.exr
 
-# Views as files of their own, and depth of its own.
+# Views in separate files, with depth in separate files.
 mkdir left right depth
 for i in 1 2; do
     cp "in/shot.000$i.exr" "left/l.0$i.exr"
@@ -371,7 +371,7 @@ check "depth of its own" exits 0
 check "depth of its own: the same picture" sh -c '! command -v oiiotool ||
     oiiotool v/d.0002.exr good/shot.0002.exr --fail 0 --hardfail 0 --diff'
 
-# A budget of time acts from frame to frame: nothing is that fast, so cheaper settings are chosen, and named.
+# A time budget acts from frame to frame. This one cannot be met, so cheaper settings are chosen and named.
 rm -f a/*
 run in/shot.####.exr -o a/shot.####.exr --engine scatter --focus 5 --range 3 --max-radius 6 --budget-ms 0.001
 check "a budget" exits 0

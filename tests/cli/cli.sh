@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The command from outside: what it accepts, what it refuses and how, and what it leaves behind.
+# The command, run as a user does: what it accepts, what it refuses and how, and which files it leaves behind.
 # Usage: cli.sh PROGRAM SOURCE_ROOT. Inputs are made here with python3 and taken from SOURCE_ROOT/images; tests whose
 # input cannot be had are skipped and counted.
 . "$(dirname "$0")/common.sh"
@@ -30,7 +30,7 @@ for option in output focus focus-at range strength near-begin near-end far-begin
 done
 [ "$(awk 'length($0) > 80' "$dir/help" | wc -l)" -eq 0 ]
 result "--help fits 80 columns" $?
-# The man page is made of the same table: an option has an entry each, and it is a page that man can set.
+# The man page is made from the same table: each option has an entry, and man can format the page.
 run --help=man
 grep -q '^\.TH hyperfocal 1' "$dir/out" && grep -q '^\.SH OPTIONS' "$dir/out" &&
     [ "$(grep -c '^\.B .*\\-\\-[a-z]' "$dir/out")" -eq "$(grep -Ec '^( {6}|  -., )--' "$dir/help")" ]
@@ -98,7 +98,7 @@ bad 1 "--threads|'99999999999999999999'" a.exr -o o.exr --threads 99999999999999
 for value in 3 "3," ,3 a,b 3,4,5 3.5,4 "3, 4" 99999999999,1; do
     bad 1 "--focus-at|'$value'" a.exr -o o.exr --focus-at "$value"
 done
-# Units: which there are, and what was meant.
+# Units: which ones are accepted, and the suggestion for others.
 bad 1 "--focus|'6ft'|units are m, cm and mm" a.exr -o o.exr --focus 6ft
 bad 1 "--range|'6ft'|units are m, cm and mm" a.exr -o o.exr --range 6ft
 bad 1 "--fstop|'2.8x'|f/2.8" a.exr -o o.exr --fstop 2.8x
@@ -194,7 +194,7 @@ bad 3 "missing.exr" missing.exr -o o.exr --focus 3
 bad 1 "no/such/o.exr" missing.exr -o no/such/o.exr --focus 3
 bad 1 "-o|.|directory" missing.exr -o . --focus 3
 bad 1 "-o|/dev/null" missing.exr -o /dev/null --focus 3
-# Every option of an engine is refused by the others, in words, and taken by its own: which get as far as the file.
+# Other engines refuse an engine's option and name it; its own engine accepts it, so the command gets as far as the file.
 while read -r engines option; do
     for engine in layers scatter gather hexagon gaussian; do
         # shellcheck disable=SC2086
@@ -274,7 +274,7 @@ picture_tests() {
     good lens.exr -o o.exr --blend smoothstep --range 2
     rm -f o.exr
 
-    # Which model.
+    # Which model is chosen.
     plan "model range|focus 3 from --focus|range 1.5" plain.exr --focus 3
     plan "model range|focus 4 from header|range 2" focus.exr
     plan "model range|focus 2 from header" focus.exr --world-unit 2
@@ -342,7 +342,7 @@ picture_tests() {
         grep -q '"expected_memory": [1-9]' "$dir/out"
     result "--dry-run --json" $?
 
-    # Done, and what it says about it.
+    # It succeeds, and says what it did.
     before=$(ls -A)
     good plain.exr -o o.exr --focus 3
     [ -s o.exr ] && [ ! -s "$dir/out" ]
@@ -352,7 +352,7 @@ picture_tests() {
     good plain.exr --output=o.exr --focus=3 --strength=0
     good -o o.exr --focus 3 -- plain.exr
     good plain.exr -o o.exr --focus 3 --fstop inf --focal-length 50
-    # Units, whatever their order; a depth of field; what the default is.
+    # Units in any order, depth of field, and defaults.
     plan "focus 1.2 from --focus|f/2.8|focal length 50 mm" plain.exr --focus 1.2m --fstop f/2.8 --focal-length 5cm
     for stop in f2.8 F2.8 F/2.8 f/2.8; do
         plan "f/2.8" plain.exr --focus "1.2 m" --fstop $stop --focal-length "50 mm"
@@ -363,7 +363,7 @@ picture_tests() {
     plan "focus 3 |none from 2.5; far blur none up to 3.5" plain.exr --focus 3 --depth-of-field 1
     plan "engine gather|rings of taps" plain.exr --focus 3 --engine gather --max-radius 40
     plan "--quality draft chose --engine gather, step |expected: |measured 20" plain.exr --focus 3 --quality draft --explain
-    # One blur of one width does for a range, but not for a lens, and never for a draft.
+    # One blur of one width may do for a range, but not for a lens, nor for --quality draft.
     plan "--max-error 0.9 chose --engine gaussian" plain.exr --focus 3 --max-error 0.9 --explain --near 1 --far 60
     bad 1 "--near|--depth-type" plain.exr -o o.exr --focus 3 --quality draft --near 1 --far 60
     bad 1 "--near|--depth-type" plain.exr -o o.exr --focus 3 --quality draft --fstop 2 --focal-length 50mm --near 1 --far 60
@@ -442,7 +442,7 @@ picture_tests() {
     result "inputs are as they were" $?
     rm -rf near-dir link.json link.exr hard.exr deep-map.exr o.exr
 
-    # What is replaced keeps its mode; a link stays a link, also one that points at nothing yet.
+    # A replaced file keeps its mode; a link stays a link, even one that points at no file yet.
     cp plain.exr private.exr && chmod 600 private.exr
     good plain.exr -o private.exr --focus 3
     [ "$(stat -c %a private.exr)" = 600 ]
@@ -453,7 +453,7 @@ picture_tests() {
     result "a dangling link is written through" $?
     rm -rf private.exr link.exr far-dir keep.exr
 
-    # Names go to the terminal without their control characters.
+    # File names are printed without their control characters.
     name=$(printf 'a\033[31mb.exr') && cp plain.exr "$name"
     run "$name" --dry-run --focus 3
     [ "$status" -eq 0 ] && ! grep -q "$(printf '\033')" "$dir/out"
@@ -491,7 +491,7 @@ picture_tests() {
         [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" nan.exr
     result "NaN is repaired, counted and reported" $?
 
-    # What the picture called for.
+    # What the picture required.
     good plain.exr --engine gather -o o.exr --focus 3 --explain
     contains "$dir/out" "Computation" && contains "$dir/out" "tiles of" && contains "$dir/out" "memory"
     result "--explain prints a table" $?
@@ -554,7 +554,7 @@ if [ -f "$lights" ]; then
     good "$lights" -o scene2.exr --threads 1 --no-skip
     cmp -s scene.exr scene2.exr
     result "threads and --no-skip change no byte" $?
-    # A limit on file size stands for a full disk: an error like others, nothing left behind.
+    # A limit on file size simulates a full disk: one error as usual, and no file left behind.
     run_limited() {
         command=$*
         (ulimit -f 100 && exec "$program" "$@" >"$dir/out" 2>"$dir/err" </dev/null)

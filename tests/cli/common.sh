@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# For the tests of the command, which source it with PROGRAM SOURCE_ROOT: running, checking, and small pictures.
+# Functions that the tests of the command source, with PROGRAM SOURCE_ROOT: they run, check, and make small pictures.
 # shellcheck shell=sh
 program=$1
 source_root=$2
@@ -40,7 +40,7 @@ run() {  # ARGUMENTS...
 contains() {  # FILE WORD
     grep -qF -e "$2" "$1"
 }
-# Sets ok to 1 for each of $words, separated by '|', that the file has not.
+# Sets ok to 1 if any of $words, separated by '|', is missing from the file.
 lacks() {  # FILE WHAT-IT-IS
     old_ifs=$IFS
     IFS='|'
@@ -193,7 +193,7 @@ for layer, z in {'ViewLayer': depth, 'Foreground': lambda x, y: 1 + y // 8}.item
     layers[layer + '.Depth.Z'] = z
 layers.update({'CryptoObject00.' + n: lambda x, y: x for n in 'rgba'})
 exr('layers.exr', layers)
-# Depths with colours of their own, as Cinema 4D and Unreal write them, beside others.
+# Depth channels named as colours (Depth.R), as Cinema 4D and Unreal write them, beside others.
 for name, layer in {'c4d': 'Z Depth', 'unreal': 'FinalImageMovieRenderQueue_WorldDepth', 'scene': 'X_SceneDepth'}.items():
     exr(name + '.exr', dict(colour, **{layer + '.' + n: depth for n in 'RGB'}, **{'my.depth': depth}))
 exr('final.exr', {layer + '.' + n: f for n, f in colour.items() for layer in ['FinalImage', 'FinalImageWorldDepth']})
@@ -202,7 +202,7 @@ for i in range(1, 7):
     many.update({'L%d.Combined.%s' % (i, n): f for n, f in colour.items()})
     many['L%d.Depth.Z' % i] = lambda x, y: 1 + y // 8
 exr('many.exr', many)
-# An object that does not fill the frame, and the same cropped to it.
+# An object that does not fill the frame, and the same picture cropped to the object.
 inside = lambda x, y: 24 <= x <= 43 and 12 <= y <= 27
 film = {n: (lambda f: lambda x, y: f(x, y) * inside(x, y))(f) for n, f in colour.items()}
 film.update(A=inside, Z=lambda x, y: 1 + x / 40 if inside(x, y) else 1e10, id=lambda x, y: 7)
@@ -210,7 +210,7 @@ exr('film.exr', film)
 cropped = {n: (lambda f: lambda x, y: f(x + 24, y + 12))(f) for n, f in film.items()}
 exr('crop.exr', cropped, window=(24, 12, 43, 27), display=(0, 0, 63, 39))
 exr('bare.exr', cropped, window=(0, 0, 19, 15))
-# The same depth in other words: negative, from 0 to 1 and from 1 to 0 between 1 and 9, as 1/z, in thirds less 5.
+# The same depth in other forms: negative, 0 to 1 and 1 to 0 for distances 1 to 9, 1/z, and distance / 3 - 5.
 near = lambda x, y: 2 ** (x // 16)
 exr('near.exr', dict(colour, Z=near))
 exr('filtered.exr', dict(colour, Z=lambda x, y: 2 if x < 30 else 4 if x < 31 else 8))

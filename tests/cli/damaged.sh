@@ -14,7 +14,7 @@ try() {  # INPUT OUTPUT
         --threads 2) >"$dir/out" 2>"$dir/err" </dev/null
     status=$?
 }
-# What is as it should be, or what readers agree about; all else is refused.
+# Files that are valid, or that all readers accept; the others must be refused.
 accepted='whole longer tiles tiles-random parts parts-one-name order-turned display-one display-pole display-square
 display-strip attributes-many long-name longest-name long-type no-type preview preview-negative views-many views-cut
 views-negative string-empty chromaticities keycode flags400 channels-open channels-unsorted'

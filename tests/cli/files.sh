@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# What the command makes of files: layers, depths of all kinds, windows, compressions.
+# How the command handles files: layers, depths of all kinds, windows, compressions.
 # Usage: files.sh PROGRAM SOURCE_ROOT
 . "$(dirname "$0")/common.sh"
 
@@ -38,7 +38,7 @@ good layers.exr -o o.exr --focus 3 --depth-file depth.exr
 run many.exr -o o.exr --focus 3
 contains "$dir/err" "L1.Combined, L2.Combined, L3.Combined, L4.Combined and 2 more have depths too and stay as they are"
 result "many such layers" $?
-# The layer that was not asked for is as it was, the other is the same as where both are made.
+# A layer that was not asked for is unchanged; the other one equals the result with --layer all.
 python3 - <<'PYTHON'
 from exr import read
 before, one, main, both = (read(n) for n in ['layers.exr', 'one.exr', 'main.exr', 'all.exr'])
@@ -107,7 +107,7 @@ result "a frame without any surface is a warning" $?
 run near.exr -o o.exr --focus 100 --fstop 0.05 --focal-length 50
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "nothing is in focus"
 result "a frame with nothing in focus is a warning" $?
-# A map of another size is scaled to the picture, and that is said.
+# A depth map of another size is scaled to the picture, with a message.
 good flat.exr -o steps-full.exr --focus 2 --max-radius 6 --depth-file steps.exr --json
 ! contains "$dir/out" depth_scaled_from
 result "a depth file of the picture's size is not scaled" $?
@@ -126,7 +126,7 @@ else
     result "a photograph in sRGB with an 8-bit map" $?
     rm -f o.png
     bad 1 "o.png|--layer|ViewLayer.Combined, Foreground.Combined" layers.exr -o o.png --focus 3 --layer all
-    # Whole distances at 8 and at 16 bits, black near and white near.
+    # Depth maps of 8 and 16 bits whose values are exact distances, with black near and with white near.
     for map in 'map8.png normalized' 'map16.png normalized' 'white.png normalized-inverted'; do
         # shellcheck disable=SC2086
         set -- $map
@@ -136,7 +136,7 @@ else
             result "$1, $2 at $x" $?
         done
     done
-    # A photograph that must be turned to be upright stays one, or says that it does not.
+    # A photograph with an Exif rotation keeps it, or a message says that it does not.
     run photo.png -o upright.jpg --depth-file map8.png --depth-type normalized --near 1 --far 6 --focus 2 --range 2
     python3 -c '
 data = open("upright.jpg", "rb").read()
@@ -184,7 +184,7 @@ sys.exit(not any(t in data for t in tag))'
         contains "$dir/err" "o.png holds no windows: its picture is the data window, 20 x 16 at 24,12 of the display window, 64 x 40"
     result "a window that PNG cannot hold is a warning" $?
     good bare.exr -o o.png --focus 1.5 --range 2 --max-radius 6
-    # The README's one.
+    # The photograph in the README.
     run "$source_root/images/lights-before.png" --depth-file "$source_root/images/lights-depth.png" --depth-type inverse \
         --near 1.5 --far 60 --focus 5 --fstop 0.37 --focal-length 50 -o photo-out.png --verbose
     [ "$status" -eq 0 ] && contains "$dir/err" "radius near 28.0 far 11.0" && contains "$dir/err" "0 warnings"
@@ -223,7 +223,7 @@ run dark.exr -o o.exr $lens --highlight-gain 8
 result "--highlight-gain without highlights is a warning" $?
 rm -f dark.exr o.json plain-o.exr
 
-# What a quality chose is on the line, in JSON and in a log.
+# The options that --quality chose are on the summary line, in JSON and in the log.
 run near.exr -o o.exr --focus 4 --range 2 --quality draft --verbose --json
 contains "$dir/err" "gather (--quality draft chose --engine gather" &&
     contains "$dir/out" '"options": "--engine gather'
@@ -236,7 +236,7 @@ run near.exr -o o.exr --focus 4 --range 2 --engine gather --explain
 result "--explain says why a pass does not run" $?
 rm -f o.log
 
-# ---- what is in focus, as a picture
+# ---- --focus-image: near, in-focus and far pixels, painted
 good near.exr -o o.exr --focus 4 --fstop 0.05 --focal-length 50 --focus-image painted.exr
 python3 - <<'PYTHON'
 import struct
@@ -256,8 +256,8 @@ bad 1 "--focus-image|near.exr|INPUT" near.exr -o o.exr --focus 4 --focus-image n
 bad 1 "--log|near.exr|INPUT" near.exr -o o.exr --focus 4 --log near.exr
 bad 1 "--log|o.exr" near.exr -o o.exr --focus 4 --log o.exr
 
-# ---- what is done is said, and what is ignored
-# In place, by any name: done, and said. Another hard link is another picture.
+# ---- messages about what is done and what is ignored
+# In place, by any name of the file: done, with a warning. Another hard link counts as another picture.
 for name in same.exr ./same.exr link.exr; do
     cp plain.exr same.exr && ln -sf same.exr link.exr
     run same.exr -o $name --focus 3 --json o.json
@@ -280,7 +280,7 @@ contains "$dir/err" "1 warning" && contains o.log '"warning_texts": ["hyperfocal
 result "in a shot and its log too" $?
 rm -f o.exr same.exr hard.exr link.exr made.exr o.json o.log
 
-# Options of the range model that do not name a range: the header's lens goes, and that is said.
+# Options of the range model that give no range: the header's lens is ignored, with a warning.
 for option in "--strength 0.5" "--depth-of-field 2"; do
     # shellcheck disable=SC2086
     run lens.exr -o o.exr $option --json
@@ -294,7 +294,7 @@ for option in "--strength 0.5" "--depth-of-field 2"; do
 done
 rm -f o.exr
 
-# What is of a lens alone, where there is none.
+# Options for a lens, where no lens is given.
 bad 1 "--sensor-width 36|lens|range" plain.exr -o o.exr --focus 3 --sensor-width 36
 bad 1 "--world-unit 0.1|lens|range" plain.exr -o o.exr --focus 3 --world-unit 0.1
 bad 1 "--world-unit 0.1|lens|depth says" plain.exr -o o.exr --depth-type coc --world-unit 0.1
@@ -302,7 +302,7 @@ plan "model range|focus 30 from --focus" plain.exr --focus 3m --world-unit 0.1
 plan "model range|focus 40 from header" focus.exr --world-unit 0.1
 plan "type ray" plain.exr --focus 3 --depth-type ray --focal-length 50 --fstop 2 --sensor-width 24
 plan "type ray|model range" lens.exr --range 3 --depth-type ray --sensor-width 24
-# What one picture has no use for, and the library's words in the command's.
+# Options of no use for one picture; and messages of the library name the command's options.
 run plain.exr -o o.exr --focus 3 --memory-limit 0.5
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "--memory-limit 0.5 does nothing for one"
 result "--memory-limit for one picture is a warning" $?
@@ -332,7 +332,7 @@ raise SystemExit(any(f[n] != a[n] for f in (b, c) for n in a if n.startswith("Cr
     rm -f o2.exr o3.exr
 fi
 
-# ---- a lens that is not whole
+# ---- an incomplete lens
 lens() {  # WORDS-ON-STDERR ARGUMENTS...
     words=$1
     shift
@@ -356,7 +356,7 @@ plan "model lens|f/2|focal length 50|focus 4 from header" nominal.exr
 plan "model lens|f/2|focal length 50|focus 3 from --focus" unfocused.exr --focus 3
 bad 1 "no focus distance" unfocused.exr -o o.exr
 
-# ---- what is said of a frame
+# ---- messages about a frame
 for i in 1 2; do cp near.exr shot.$i.exr; done
 good shot.#.exr -o done.#.exr --focus 4 --quiet
 run shot.#.exr -o done.#.exr --focus 4 --verbose
@@ -369,7 +369,7 @@ result "--quiet leaves warnings" $?
 run near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --engine gaussian --verbose
 [ "$status" -eq 0 ] && contains "$dir/err" "not by how much the lens" && ! contains "$dir/err" " 0 warnings"
 result "what the library warns of is counted" $?
-# As many sentences as are counted, each once.
+# As many warnings as the summary counts, each printed once.
 told() {  # WARNINGS ARGUMENTS...
     want=$1
     shift
@@ -382,7 +382,7 @@ told 0 near.exr -o o.exr --focus 4
 told 0 near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 2
 contains "$dir/err" "(cut to 2, by --max-radius)"
 result "a limit that was asked for is on the line" $?
-# Nothing in focus: what is no surface does not count, unless the focus is there; where the surfaces are, and in what unit.
+# Nothing in focus: pixels without a surface do not count unless the focus is there; the message names distances and unit.
 warns() {  # WORDS-ON-STDERR ARGUMENTS...
     words=$1
     shift
@@ -391,7 +391,7 @@ warns() {  # WORDS-ON-STDERR ARGUMENTS...
     lacks "$dir/err" warning
     result "warns: $*" "$ok"
 }
-# Depth that a renderer filtered: what lies between two surfaces goes to the nearer number, where the focus is read too.
+# Depth that a renderer filtered: sharpen moves a depth between two surfaces to the closer one, also where the focus is read.
 for edges in auto sharpen; do
     run filtered.exr -o o.exr --focus-at 30,20 --fstop 0.1 --focal-length 50 --depth-edges $edges --verbose
     [ "$status" -eq 0 ] && contains "$dir/err" "focus $([ $edges = auto ] && echo 4 || echo 2) (--focus-at)"
@@ -412,7 +412,7 @@ warns "0.01562 to 1, the focus 4|normalized, inverse or ndc-d3d" \
     ndc.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 50
 warns "inverse depth may have a scale of its own" \
     near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --depth-type inverse
-# Nothing blurred, unless that was asked for.
+# A warning if nothing is blurred, unless the options ask for that.
 warns "nothing is blurred: the largest radius is 0.00 pixels|0.05 mm: is it 50 mm?" \
     near.exr -o o.exr --focus 4 --fstop 2 --focal-length 0.05
 warns "nothing is blurred|0.00 pixels|f/800" near.exr -o o.exr --focus 4 --fstop 800 --focal-length 50
@@ -423,7 +423,7 @@ told 0 near.exr -o o.exr --focus 4 --strength 0
 told 0 near.exr -o o.exr --focus 4 --max-radius 0
 told 0 near.exr -o o.exr --focus 4 --fstop inf --focal-length 50
 told 0 near.exr -o o.exr --focus 4 --engine hexagon --uniform --max-radius 4
-# The gaussian engine has one blur, and more or less of it: 3 |4 - 8| / 100 behind the focus.
+# The gaussian engine mixes in more or less of one blur: 3 |4 - 8| / 100 behind the focus.
 told 0 near.exr -o o.exr --focus 4 --engine gaussian --sigma 3
 contains "$dir/err" "standard deviation 3.0 mixed in up to near 9 % far 12 %"
 result "how much the gaussian engine blurs" $?
@@ -444,7 +444,7 @@ fi
 rm -f shot.?.exr done.?.exr
 
 # ---- windows
-# The object of film.exr fills a part of the frame; crop.exr has that part alone, in the same display window.
+# The object of film.exr fills a part of the frame; crop.exr has only that part, in the same display window.
 lens='--focus 2 --fstop 0.1 --focal-length 50 --engine layers'
 # shellcheck disable=SC2086
 good film.exr -o film-out.exr $lens
@@ -466,7 +466,7 @@ x0, y0, x1, y1 = w = window('grown.exr')
 ok = window('cut.exr') == (24, 12, 43, 27) and window('grown.exr', 'displayWindow') == (0, 0, 63, 39)
 ok &= x0 < 24 and y0 < 12 and x1 > 43 and y1 > 27 and x0 > 0 and y0 >= 0 and x1 < 63 and y1 <= 39
 at = lambda f, w, c, x, y: struct.unpack_from('<f', f[c], 4 * ((y - w[1]) * (w[2] - w[0] + 1) + x - w[0]))[0]
-# Premultiplied colours of the frame rendered whole: sums of the same samples, in another order.
+# Premultiplied colours equal those of the whole frame, up to rounding: the same samples are added in another order.
 worst = max(abs(at(grown, w, c, x, y) - at(whole, (0, 0, 63, 39), c, x, y))
             for c in 'RGBA' for y in range(y0, y1 + 1) for x in range(x0, x1 + 1))
 outside = max(at(whole, (0, 0, 63, 39), 'A', x, y) for y in range(40) for x in range(64)
@@ -479,7 +479,7 @@ if not ok:
 raise SystemExit(not ok)
 PYTHON
 result "--grow is what the whole frame shows" $?
-# Half resolution takes the same pixels together, and what lies behind near ones is looked for as far.
+# At half resolution both use the same groups of pixels, and search as far for what lies behind near pixels.
 for engine in scatter "scatter --resolution half" hexagon "hexagon --resolution half"; do
     # shellcheck disable=SC2086
     good film.exr -o film-out.exr $lens --engine $engine
@@ -498,7 +498,7 @@ raise SystemExit(worst >= 1e-5)
 PYTHON
     result "--grow is what the whole frame shows: $engine" $?
 done
-# Two views of one part share its window, which grows once, as for one of them.
+# Two views in one part share its window, which grows once, as much as for one view.
 python3 - <<'PYTHON'
 from exr import exr
 one = {c: lambda x, y: 1 for c in 'RGB'} | {'Z': lambda x, y: 4 if x < 30 else 9}
@@ -514,7 +514,7 @@ ok = w == window('two-out.exr') and 8 < w[0] < 24 and all(one[c] == two[c] == tw
 raise SystemExit(not ok)
 PYTHON
 result "--grow of two views of one part" $?
-# A crop without windows: the lens is that of the frame it is from.
+# A crop without window attributes: --display gives the frame that the lens belongs to.
 plan "focal length 88.8889 pixels|display window -20,-10 to 43,29" bare.exr --focus 2 --fstop 2 --focal-length 50 \
     --display 64x40+20+10
 plan "display window -22,-12 to 41,27" bare.exr --focus 2 --fstop 2 --focal-length 50 --display 64x40

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Files under fire: a disk that fills up, a target that may not be written, an input replaced while it is read, two
+# Failing files: a disk that fills up, a target that may not be written, an input replaced while it is read, two
 # processes with one target, hardly any memory or file descriptors, headers that claim too much. Whatever happens, the
 # target is the old file or the whole new one, nothing else is left, and a failure is one sentence.
 # Usage: fire.sh PROGRAM SOURCE_ROOT.
@@ -23,7 +23,7 @@ for name, box in {'square': (0, 0, 65535, 65535), 'wide': (0, 0, 2 ** 30, 0), 't
     open(name + '.exr', 'wb').write(huge[:at] + struct.pack('<4i', *box) + huge[at + 16:])
 PYTHON
 
-# Was it refused with one sentence, by no signal, with the target as it was and no other file?
+# Check that it was refused with one sentence, without a signal, and that it left the target unchanged and no other file.
 refused() {  # NAME TARGET OLD
     ok=0
     { [ "$status" -ge 1 ] && [ "$status" -le 3 ]; } || { ok=1; echo "exit code $status:"; }
@@ -74,7 +74,7 @@ for name in new.exr old.exr; do
     [ "$(ls -A disk)" = old.exr ] || { echo "left: $(ls -A disk)"; exit 1; }
     [ "$(cat disk/old.exr)" = old ] || { echo "old.exr is another"; exit 1; }
 done
-# The frame is made, and that its log is not is said.
+# The frame is made, and a message says that its log is not.
 head -c 300000 /dev/zero >disk/fill 2>/dev/null
 "$1" a.exr -o logged.exr --focus 4 --range 2 --engine gather --log disk/log --quiet 2>"$2/err" >"$2/out"
 status=$?
@@ -137,7 +137,7 @@ wait $writer
 status=$broken command="in.exr, renamed over while it is read"
 [ "$broken" -eq 0 ] && [ "$whole" -eq 25 ]
 result "an input replaced by another" $?
-# Written over in place, it may be half of both, or short: a picture or a sentence, never a signal.
+# An input overwritten in place may be half old and half new, or short: the result is a picture or a sentence, never a signal.
 : >"$dir/go"
 (
     while [ -e "$dir/go" ]; do

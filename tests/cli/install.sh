@@ -28,7 +28,7 @@ check "it is there" test -n "$(find "$dir/alone" -path '*/bin/hyperfocal')"
 check "and its man page" test -n "$(find "$dir/alone" -name 'hyperfocal.1')"
 check "and nothing of the bench" test -z "$(find "$dir/alone" -name '*.exr' -o -name 'hyperfocal-bench*')"
 program=$(find "$dir/dest" -path '*/bin/hyperfocal' -type f)
-# Another prefix than it was made for.
+# A prefix other than the configured one.
 mv "$(dirname "$(dirname "$program")")" "$dir/elsewhere" || exit 1
 bin=$dir/elsewhere/bin
 cd "$dir" || exit 1
@@ -47,7 +47,7 @@ fi
 check "defocuses" "$bin/hyperfocal" "$source_root/images/lights.exr" -o dof.exr --max-radius 2 --engine gaussian
 if [ -x "$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio" ]; then
     check "finds its helper" "$bin/hyperfocal" "$source_root/images/lights.exr" -o dof.png --max-radius 2 --engine gaussian
-    # A helper of another build says so, and so do we, in one sentence.
+    # A helper of another build is refused with one sentence.
     helper=$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio
     printf '#!/bin/sh\nprintf "9.8.7 (1, 2)" >&3\nsleep 5\n' >"$helper.new"
     chmod +x "$helper.new"
@@ -57,14 +57,14 @@ if [ -x "$dir/elsewhere/libexec/hyperfocal/hyperfocal-oiio" ]; then
     check "a helper of another version is refused" test $status -eq 1 -a ! -e other.png
     check "in one sentence" grep -q "hyperfocal-oiio is of version 9.8.7 (1, 2), but this program of [0-9]" other
     check "and no more" test "$(wc -l <other)" -eq 1
-    # One that knows no such question, and ends when it hears what is no job.
+    # A helper that does not understand the question about its version, and exits.
     printf '#!/bin/sh\nhead -c 1 <&3 >/dev/null\n' >"$helper.new"
     chmod +x "$helper.new"
     mv "$helper.new" "$helper"
     "$bin/hyperfocal" "$source_root/images/lights.exr" -o other.png --max-radius 2 2>other
     check "a helper that does not answer is refused" grep -q "cannot start hyperfocal-oiio" other
 fi
-# A build directory of before keeps absolute paths.
+# Skipped in an old build directory, whose hyperfocal.pc has absolute paths.
 pc=$(find "$dir/elsewhere" -name hyperfocal.pc)
 if command -v pkg-config >/dev/null && grep -q pcfiledir "$pc"; then
     check "pkg-config finds the header" sh -c 'h=$(PKG_CONFIG_PATH=${1%/*} pkg-config --cflags hyperfocal) && \
@@ -72,7 +72,7 @@ if command -v pkg-config >/dev/null && grep -q pcfiledir "$pc"; then
     check "and the library" sh -c 'l=$(PKG_CONFIG_PATH=${1%/*} pkg-config --variable=libdir hyperfocal) && \
         test -e "$l/libhyperfocal.so"' - "$pc"
 fi
-# Not in the source, and not beside one: the scenes are those that were installed.
+# Run away from the source tree, so that the scenes are the installed ones.
 check "the bench finds its scenes" "$bin/hyperfocal-bench" tradeoff --quick --cache none \
     --setting "--engine gaussian --resolution quarter --iterations 1 --threads 1"
 check "the bench scores a picture" "$bin/hyperfocal-bench" truth --image dof.exr \

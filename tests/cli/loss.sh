@@ -28,7 +28,7 @@ ln s/s.3.exr other/h.2.exr
     bad 1 "s/s.1.exr|d/d.11.exr|--depth-file|of s/s.11.exr" 's/s.#.exr' -o 'd/d.1#.exr' $look --depth-file 'd/d.#.exr' \
         --frames 1,11
     bad 1 "s/s.1.exr|s/s.11.exr" 's/s.#.exr' -o 's/s.1#.exr' $look --chunk 1/3 --frames 1,2,11
-    # What is not there yet, but would be once it is written.
+    # An input that does not exist yet, but is another frame's output.
     bad 1 "s/s.4.exr|s/s.14.exr" 's/s.#.exr' -o 's/s.1#.exr' $look --frames 4,14
     bad 1 "--log|s/s.3.exr|INPUT" 's/s.#.exr' -o 'other/n.#.exr' $look --log other/../s/s.3.exr
 }
@@ -44,7 +44,7 @@ exr('m/f.0.exr', {n: lambda x, y: 1 + x for n in 'RGBZ'}, window=(0, 0, 3, 3))
 for i in range(1, 10000):
     os.link('m/f.0.exr', 'm/f.%d.exr' % i) if i % 5000 else None
 PYTHON
-# Calls of the system, not time: 10,000 frames take a few each. The frames are one file, as are the last two names.
+# Count system calls, not time: a few for each of 10,000 frames. All frames are links to one file, as are the last two names.
 if command -v strace >/dev/null; then
     command="10,000 frames" status=0
     strace -f -c -o "$dir/calls" "$program" 'm/f.#.exr' -o 'none/f.1#.exr' --dry-run >"$dir/out" 2>"$dir/err"

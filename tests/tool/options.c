@@ -175,7 +175,7 @@ static void help(void)
     CHECK(!parse("--help man") && parser.help == 3);
 }
 
-// What is of no use with an engine.
+// Options that an engine does not use.
 static void misfits(void)
 {
     char text[256];
@@ -203,7 +203,7 @@ static int has_no_default(const char *name)
     return 0;
 }
 
-// A program's table: no name twice, help in sentences, and the default of each option that has one.
+// A program's table: each name once, help that ends as a sentence, and a default in the help of each option that has one.
 static void table(const struct tool_option *options)
 {
     for (const struct tool_option *o = options; o->name; o++) {
@@ -230,7 +230,7 @@ static void tables(void)
 }
 
 #if HF_HAVE_CLI
-// The help of --quality tells what the library chooses.
+// The help of --quality names the options that the library chooses.
 static void qualities(void)
 {
     for (int i = 0; i < 4; i++) {
