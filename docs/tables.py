@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make the tables of the documents anew: run the command that stands above each and put what it prints in its place.
+"""Make the tables of the documents anew: run the command above each table and replace the table by its output.
 
     docs/tables.py [--build DIR] [--only WORDS] [FILE.md ...]      default: build, README.md and docs/measurements.md
 
---only: the tables whose command has these words.
+--only: only the tables whose command contains these words.
 A table is an indented block; its command is the first `hyperfocal-bench ...` in the paragraph right above it."""
 import os
 import re
@@ -18,7 +18,7 @@ def is_table(line):
     return line.startswith("    ")
 
 
-# Indices of the lines of each table, and its command.
+# Yield for each table the range of its lines, and its command.
 def find_tables(lines):
     at = 0
     while at < len(lines):

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Does an example render its frames, say how long each took, and leave a picture in which something is blurred?
+# Check that an example renders its frames, says how long each took, and leaves a picture in which something is blurred.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Make ENGINES.md and its pictures: three scenes through all engines beside the ray-traced truth, as pictures, as crops and as figures.
+# Make ENGINES.md and its pictures: three scenes rendered by all engines beside the ray-traced truth, as pictures, as
+# crops and in numbers.
 # Needs oiiotool (Debian: openimageio-tools).
 #     images/page.sh [BUILD-FOLDER]
 set -eu
@@ -14,7 +15,7 @@ trap 'rm -rf "$tmp"' EXIT
 mkdir -p images/engines images/crops
 rm -f images/engines/* images/crops/*
 
-# Crops are 80 x 60 pixels, shown at four times that, no pixel mixed with its neighbour.
+# Crops are 80 x 60 pixels, enlarged four times without interpolation.
 cut() {  # FILE X Y OUT
     oiiotool "$1" --ch R,G,B --cut "80x60+$2+$3" --resize:filter=box 320x240 -o "$4"
 }
@@ -35,7 +36,7 @@ crop() {  # NAME SCENE X Y WORDS...
     printf '**%s** (`%s`, %s, %s)\n\n![%s](images/crops/%s.jpg)\n\n' "$*" "$scene" "$x" "$y" "$*" "$name"
 }
 
-# Before is a picture kept from commit 38b9469; after and the truth, or where there is none the input, are made anew.
+# "Before" is a picture kept from commit 38b9469. "After", and the truth (or the input if there is none), are made anew.
 before() {  # NAME SCENE X Y OPTIONS 'WORDS'
     name=$1 scene=$2 x=$3 y=$4
     shift 4
@@ -61,7 +62,7 @@ before() {  # NAME SCENE X Y OPTIONS 'WORDS'
 "$hyperfocal" images/lights.exr -o images/lights-after.png
 
 for scene in lights fence foliage; do
-    # A copy, as there is no blur: the truth has no depth of its own.
+    # The truth has no depth, and nothing is to be blurred: copy it.
     "$hyperfocal" "images/$scene.truth.exr" --depth-file "images/$scene.exr" --focus 1 --range inf -o "$tmp/$scene-truth.png"
     "$hyperfocal" "images/$scene.exr" --focus 1 --range inf -o "$tmp/$scene-input.png"
     for engine in $engines; do

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Includes go down only: every #include "FLOOR/..." in src names the includer's own floor or a lower one, engines do not
-# know each other, and the programs know the library by its public headers and the floor `base` alone. The operating system
-# is known to `base` and to the programs: all else includes headers of C11 alone, and vector operations.
+# Includes go down only: every #include "FLOOR/..." in src names the includer's own floor or a lower one. Engines do not
+# include each other. Programs include only the library's public headers and the floor `base`. Only `base` and the
+# programs include headers of the operating system; the rest includes headers of C11 and of vector operations.
 # Usage: floors.sh SOURCE_ROOT
 cd "$1/src" || exit 1
 find . -name '*.[ch]' -o -name '*.inc' -o -name '*.cpp' | sed 's,^\./,,' | sort | xargs awk '

@@ -37,7 +37,7 @@ else
     exr=none
 fi
 
-# As an application includes them.
+# Include the public headers as an application does.
 stub=$(mktemp -d) || exit 1
 trap 'rm -rf "$stub"' EXIT
 for header in include/hyperfocal/*.h; do
@@ -62,7 +62,7 @@ for header in $(find src tests bench -name '*.h' | sort); do
         flags="-DHF_VEC=\"$vectors\"" isa=$family
         [ "$family" != x86_64 ] || flags="-msse4.1 $flags" ;;
     tests/kernels/emulated/*)
-        # Stands in for the compiler's own of this name.
+        # Stands in for the compiler's own header of this name.
         flags='-Itests/kernels/emulated -Wno-psabi' isa=x86_64
         echo '#include <simde/x86/avx512.h>' | "$@" -fsyntax-only -x c - 2>/dev/null || continue ;;
     src/tools/io/* | tests/io/*)

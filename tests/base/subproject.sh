@@ -56,7 +56,7 @@ int main(void)
 END
 printf '#include "base/mem.h"\nint main(void)\n{\n    return 0;\n}\n' >peeks.c
 
-# The wrap mode: a hyperfocal that is installed here does not count.
+# The wrap mode keeps meson from finding a hyperfocal installed on this machine.
 check "a parent project is set up" env PKG_CONFIG_PATH= "$meson" setup build --prefix "$dir/dest" \
     --wrap-mode=forcefallback -Dhyperfocal:simd=false
 cp "$dir/out" log

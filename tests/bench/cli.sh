@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# hyperfocal-bench from outside: what it refuses and how, and what the JSON of its commands carries. No time decides here.
+# hyperfocal-bench, run as a user does: what it refuses and how, and what the JSON of its commands contains.
+# Nothing depends on measured times.
 # Usage: cli.sh BENCH SOURCE_ROOT
 bench=$1 source_root=$2
 case $bench in /*) ;; *) bench=$PWD/$bench ;; esac
@@ -18,7 +19,7 @@ result() {  # NAME STATUS
         sed 's/^/  /' err
     fi
 }
-# Exit 1, one line that holds the words, nothing on stdout.
+# Check for exit code 1, one line on stderr with the words, and nothing on stdout.
 bad() {  # WORDS ARGUMENTS...
     words=$1
     shift
@@ -51,7 +52,7 @@ bad "--ladder|--setting" tradeoff --ladder x.h --setting "--engine gaussian"
 bad "--readme|missing.md" tradeoff --readme missing.md
 echo 'no marks' >plain.md
 bad "--readme|plain.md|<!-- /tradeoff -->" tradeoff --readme plain.md
-# Before anything is measured: a folder without programs.
+# A folder without programs is refused before anything is measured.
 mkdir none
 printf '#!/bin/sh\nPATH=%s exec %s "$@"\n' "$dir/none" "$bench" >without
 chmod +x without
@@ -69,7 +70,7 @@ for command in passes truth tradeoff scaling formats batch cancel stability hist
         ! grep '^  hyperfocal-bench ' out | grep -qv "^  hyperfocal-bench $command "
     result "$command --help is of that command" $?
 done
-# It lists what the command takes, and nothing that it refuses.
+# The help of a command lists the options it accepts, and none that it refuses.
 "$bench" passes --help >out 2>err && grep -q '^      --scene' out && grep -q '^      --karis' out &&
     ! grep -qE -e '^ +--(html|image|add|full|compression)' out
 result "passes --help" $?
@@ -77,7 +78,7 @@ result "passes --help" $?
 result "--help has the options of all" $?
 [ "$(awk 'length($0) > 80' out | wc -l)" -eq 0 ]
 result "--help fits 80 columns" $?
-# What stands between the marks of a file is made anew, what stands around them stays.
+# The text between a file's marks is replaced; the text around them stays.
 printf '%s\n' before '<!-- tradeoff: made by hyperfocal-bench, do not edit -->' old '<!-- /tradeoff -->' after >marked.md
 "$bench" tradeoff --quick --cache none --setting "--engine gaussian --max-radius 0" --readme marked.md >out 2>err &&
     [ "$(head -n 1 marked.md)$(tail -n 1 marked.md)" = beforeafter ] && ! grep -q old marked.md &&
@@ -99,7 +100,7 @@ assert colour["rgba8", "srgb"]["bytes"] == 96 * 54 * 4 and colour["rgba32f", "li
 assert {d["format"] for d in d["depth"]} == {"float32", "float16", "unorm16", "unorm32", "d24s8", "x8d24"}
 assert all(d["plan_ms"] > 0 and d["frame_ms"] > 0 for d in d["depth"])'
 result "formats" $?
-# A made-up point, and one that is measured: a line with all there is of an engine.
+# A made-up point, and then a measured one: a line with every number of one engine.
 echo '{"commit": "abc1234567", "date": "2026-01-02", "cpu": "X", "isa": "avx2", "threads": 2, "dB layers/lights": 27,' \
     '"dB layers/fence": 28, "dB layers/foliage": 29.5}' >made.jsonl
 "$bench" history --file made.jsonl --svg made.svg --json made.json >out 2>err && grep -q '^abc1234567 2026-01-02 A .* 28.17$' out &&
@@ -121,7 +122,7 @@ for scene in "lights", "fence", "foliage":
 assert not any("gather" in k for k in d)
 assert xml.dom.minidom.parse("made.svg").getElementsByTagName("circle")'
 result "history --add" $?
-# A table of the documents is what its command prints; what has no command stays.
+# A table in a document becomes what its command prints; a block without a command stays.
 printf '%s\n' '`hyperfocal-bench passes --size 64x64 --frames 1`: small' '' '    old' '' '    old' '' Text '' '    kept' >tables.md
 python3 "$source_root/docs/tables.py" --build "$(dirname "$(dirname "$bench")")" "$dir/tables.md" >out 2>err &&
     ! grep -q old tables.md && grep -q '^    All ' tables.md && [ "$(tail -n 1 tables.md)" = "    kept" ]
@@ -136,7 +137,7 @@ missing = [k for k in ['command', 'cpu', 'version', 'options'] + sys.argv[1].spl
 assert not missing, missing
 assert j['command'] == sys.argv[2] and j['options'] == sys.argv[3:] + ['--json', '-'], j['options']
 if 'passes' in j:
-    # Rows and overhead are all of the frame, to the nanosecond.
+    # Rows and overhead add up to the whole frame, to the nanosecond.
     rows = sum(p['median_ms'] for p in j['passes'])
     assert abs(rows + j['overhead_ms'] - j['all']['median_ms']) < 1e-5, rows
     assert ('gtx660_ms' in j['all']) == (j['width'] == 1920)

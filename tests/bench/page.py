@@ -71,7 +71,7 @@ class Browser:
         self.driver.wait()
 
 
-# Names of texts of the visible chart that lie on each other, or beyond the chart's edge.
+# Texts of the visible chart that overlap each other or stick out of the chart.
 OVERLAPS = """
 const svg = [...document.querySelectorAll('.view.shown svg')].find((s) => s.getClientRects().length);
 const edge = svg.getBoundingClientRect(), out = [];
@@ -87,7 +87,7 @@ texts.forEach(([a, p], i) => {
 return out;
 """
 
-# Blocks of the page that lie on each other.
+# Blocks of the page that overlap.
 BLOCKS = """
 const blocks = [...document.querySelectorAll('header, .tabs, .stage > *, h2, .scroll, .detail > *')]
     .map((e) => [e, e.getBoundingClientRect()]);
@@ -100,7 +100,7 @@ blocks.forEach(([a, p], i) => blocks.slice(0, i).forEach(([b, q]) => {
 return out;
 """
 
-# The middle and the name of the point that is the n-th from the end of those that no other covers.
+# The centre and the name of a point: the n-th from the end of those that no other point covers.
 POINT = """
 const free = [...document.querySelectorAll('.view.shown svg .pt[data-i] .hit')].filter((hit) => {
   if (!hit.getClientRects().length) return false;

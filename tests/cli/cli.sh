@@ -194,7 +194,7 @@ bad 3 "missing.exr" missing.exr -o o.exr --focus 3
 bad 1 "no/such/o.exr" missing.exr -o no/such/o.exr --focus 3
 bad 1 "-o|.|directory" missing.exr -o . --focus 3
 bad 1 "-o|/dev/null" missing.exr -o /dev/null --focus 3
-# Other engines refuse an engine's option and name it; its own engine accepts it, so the command gets as far as the file.
+# Other engines refuse an engine's option and name it. Its own engine accepts it: the command then fails at the file.
 while read -r engines option; do
     for engine in layers scatter gather hexagon gaussian; do
         # shellcheck disable=SC2086

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# EXR files each of which is wrong in one place, of the kinds that readers have broken over. Usage: damaged.py FOLDER
+# EXR files, each wrong in one place, with faults that have crashed readers. Usage: damaged.py FOLDER
 import struct
 import sys
 import zlib
@@ -21,7 +21,7 @@ def channel(name, kind=2, x=1, y=1, linear=0):
 def channels(names=NAMES):
     return b''.join(channel(n) for n in names) + b'\0'
 
-# Name -> (type, bytes), in the order in which they are written. None leaves one out.
+# Attributes: name -> (type, bytes), in the order of the file. None leaves one out.
 def header(**changes):
     h = {'channels': ('chlist', channels()), 'compression': ('compression', b'\0'),
          'dataWindow': ('box2i', ints(0, 0, WIDTH - 1, HEIGHT - 1)),
@@ -46,7 +46,7 @@ def row(y, names=NAMES, width=WIDTH):
 def chunk(y, data, size=None, part=b''):
     return part + ints(y, len(data) if size is None else size) + data
 
-# A picture of rows: chunks as they are given, tables that lead to them.
+# A picture of rows, with the given chunks and a table of their offsets.
 def file(head, chunks, offsets=None, flags=0, **more):
     begin = start(flags, **more) + head
     at = len(begin) + 8 * len(chunks if offsets is None else offsets)
@@ -92,7 +92,7 @@ def parts(heads, count=1, offsets=None, numbers=None):
 def cases():
     whole = with_header()
     yield 'whole', whole
-    # ---- where chunks lie
+    # ---- offsets of chunks
     yield 'offsets-zero', with_offsets(lambda w: [0] * len(w))
     yield 'offsets-one-zero', with_offsets(lambda w: w[:20] + [0] + w[21:])
     yield 'offsets-beyond', with_offsets(lambda w: [o + 10 ** 9 for o in w])
@@ -104,7 +104,7 @@ def cases():
     yield 'offsets-turned', with_offsets(lambda w: w[::-1])
     yield 'offsets-odd', with_offsets(lambda w: [o + 1 for o in w])
     yield 'offsets-at-end', with_offsets(lambda w: w[:-1] + [len(whole) - 4])
-    # ---- what chunks say
+    # ---- headers of chunks
     for name, size in {'negative': -1, 'zero': 0, 'smallest': -2 ** 31, 'largest': 2 ** 31 - 1, 'short': 100,
                        'long': 4 * WIDTH * 5 + 4}.items():
         chunks = rows()
@@ -208,7 +208,7 @@ def cases():
     yield 'parts-cyclic', parts([part(b'a'), part(b'b')], 2, numbers=lambda p: 1 - p)
     yield 'parts-deep', parts([part(b'a', kind=b'deepscanline')])
     yield 'parts-unended', parts([part(b'a')])[:8 + len(part(b'a'))]
-    # ---- what kind of file it says it is
+    # ---- flags of the kind of file
     yield 'magic', start(magic=20000631) + whole[8:]
     for v in (0, 1, 3, 255):
         yield 'version%d' % v, start(version=v) + whole[8:]
@@ -224,13 +224,13 @@ def cases():
     for name, c, lines in (('zip', 3, 16), ('zips', 2, 1), ('rle', 1, 1), ('piz', 4, 32), ('pxr24', 5, 16), ('b44', 6, 32),
                            ('b44a', 7, 32), ('dwaa', 8, 32), ('dwab', 9, 256)):
         n = (HEIGHT + lines - 1) // lines
-        # The size is less than that of the samples, so that they count as packed.
+        # The size is smaller than that of the samples, so a reader takes them for compressed.
         full = 4 * WIDTH * 5 * lines
         for kind, data in (('bomb', bomb[:full - 4]), ('zeros', bytes(full // 2)), ('ones', b'\xff' * (full // 2)),
                            ('runs', b'\x7f\0' * (full // 4)), ('one', b'\1'), ('none', b'')):
             yield '%s-%s' % (name, kind), with_header(chunks=[chunk(i * lines, data) for i in range(n)],
                                                      compression=bytes([c]))
-        # A header that claims all that a table of a few kB can hold.
+        # A header that claims as many chunks as a table of a few kB holds.
         tall, count = 65536, 65536 // lines
         if lines > 1:
             wide = (2 ** 29 - 1) // (tall * 20)

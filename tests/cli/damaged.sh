@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Damaged EXR files: tables of chunks, chunks, channels, attributes, windows, tiles, parts, kinds, bombs, ends. Each is a
-# picture, which can be read again, or one sentence; no file of a few kB takes 2 GiB or 10 seconds of processor time.
+# Damaged EXR files: tables of chunks, chunks, channels, attributes, windows, tiles, parts, kinds, bombs, ends. The
+# command makes a readable picture of each, or prints one sentence. No file of a few kB takes 2 GiB or 10 seconds of
+# processor time.
 # Usage: damaged.sh PROGRAM SOURCE_ROOT.
 . "$(dirname "$0")/common.sh"
 command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }

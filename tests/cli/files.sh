@@ -382,7 +382,7 @@ told 0 near.exr -o o.exr --focus 4
 told 0 near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 2
 contains "$dir/err" "(cut to 2, by --max-radius)"
 result "a limit that was asked for is on the line" $?
-# Nothing in focus: pixels without a surface do not count unless the focus is there; the message names distances and unit.
+# Nothing in focus. Pixels without a surface do not count, unless the focus is there. The message names the unit.
 warns() {  # WORDS-ON-STDERR ARGUMENTS...
     words=$1
     shift
@@ -391,7 +391,7 @@ warns() {  # WORDS-ON-STDERR ARGUMENTS...
     lacks "$dir/err" warning
     result "warns: $*" "$ok"
 }
-# Depth that a renderer filtered: sharpen moves a depth between two surfaces to the closer one, also where the focus is read.
+# Filtered depth: sharpen moves a depth between two surfaces to the closer one, also where the focus is read.
 for edges in auto sharpen; do
     run filtered.exr -o o.exr --focus-at 30,20 --fstop 0.1 --focal-length 50 --depth-edges $edges --verbose
     [ "$status" -eq 0 ] && contains "$dir/err" "focus $([ $edges = auto ] && echo 4 || echo 2) (--focus-at)"

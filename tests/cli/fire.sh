@@ -23,7 +23,7 @@ for name, box in {'square': (0, 0, 65535, 65535), 'wide': (0, 0, 2 ** 30, 0), 't
     open(name + '.exr', 'wb').write(huge[:at] + struct.pack('<4i', *box) + huge[at + 16:])
 PYTHON
 
-# Check that it was refused with one sentence, without a signal, and that it left the target unchanged and no other file.
+# Check that it was refused with one sentence, without a signal, and that no file but the unchanged target is left.
 refused() {  # NAME TARGET OLD
     ok=0
     { [ "$status" -ge 1 ] && [ "$status" -le 3 ]; } || { ok=1; echo "exit code $status:"; }
@@ -137,7 +137,7 @@ wait $writer
 status=$broken command="in.exr, renamed over while it is read"
 [ "$broken" -eq 0 ] && [ "$whole" -eq 25 ]
 result "an input replaced by another" $?
-# An input overwritten in place may be half old and half new, or short: the result is a picture or a sentence, never a signal.
+# An input overwritten in place may be a mixture, or short: the result is a picture or a sentence, never a signal.
 : >"$dir/go"
 (
     while [ -e "$dir/go" ]; do

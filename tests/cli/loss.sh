@@ -44,7 +44,7 @@ exr('m/f.0.exr', {n: lambda x, y: 1 + x for n in 'RGBZ'}, window=(0, 0, 3, 3))
 for i in range(1, 10000):
     os.link('m/f.0.exr', 'm/f.%d.exr' % i) if i % 5000 else None
 PYTHON
-# Count system calls, not time: a few for each of 10,000 frames. All frames are links to one file, as are the last two names.
+# Count system calls, not time: a few for each of 10,000 frames, which are all links to one file.
 if command -v strace >/dev/null; then
     command="10,000 frames" status=0
     strace -f -c -o "$dir/calls" "$program" 'm/f.#.exr' -o 'none/f.1#.exr' --dry-run >"$dir/out" 2>"$dir/err"

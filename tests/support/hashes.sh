@@ -10,7 +10,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# A picture as its name, then the options.
+# Arguments: the name of a picture, then options.
 render()
 {
     scene=$1
