@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Settings by how good a picture has to be.
+// Choosing settings by quality or by allowed error.
 #include "frame/ladder.h"
 #include "pixel/limits.h"
 
-// Why params as they are would not give what was asked for; NULL: they do.
+// The reason why params cannot make what was asked for; NULL: they can.
 static const char *misfit(const struct hf_params *p, float radius)
 {
     return hf_ladder_farthest(p) < radius ? "does not reach as far as the blur that is asked for"
@@ -11,7 +11,7 @@ static const char *misfit(const struct hf_params *p, float radius)
                                           : NULL;
 }
 
-// The first step from there on that gives what is asked for; the last one does always.
+// Apply the first step, from the given one on, that can make what was asked for, or else the last step.
 static void choose(struct hf_params *p, int step, float radius, struct hf_choice *choice)
 {
     struct hf_params chosen = *p;
@@ -38,7 +38,7 @@ static void choose(struct hf_params *p, int step, float radius, struct hf_choice
         };
 }
 
-// The radius asked for in a picture of this height with such a depth.
+// The radius that the parameters ask for, in a picture of this height with this kind of depth.
 static float asked_radius(int height, const struct hf_depth *depth, const struct hf_params *p)
 {
     const int display = p->view.display_height;

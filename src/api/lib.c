@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The public functions: check arguments, own memory, touch no pixel.
+// The public functions. They check arguments and own memory, but compute no pixel.
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -83,7 +83,7 @@ static int check_config(const struct hf_config *g)
     return HF_OK;
 }
 
-// What is wrong with the environment variable.
+// Log why the value of HYPERFOCAL_ISA cannot be used.
 static void say_variable(const struct hf_config *g)
 {
     const char *name = hf_cpu_variable();
@@ -188,7 +188,7 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
     return *z > 0 && *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
 }
 
-// A frame whose settings are known.
+// Render a frame with resolved settings.
 static int run_resolved(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                         const struct hf_depth *depth, const struct hf_resolved *r, const struct hf_region *region,
                         enum hf_task task)
@@ -201,8 +201,8 @@ static int run_resolved(struct hf_context *c, const struct hf_image *dst, const 
     return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, task});
 }
 
-// The cheapest settings that the budget asks for, and what they come to. Returns how many there are to choose from, or
-// an error.
+// Choose the settings that fit the time budget, and resolve them. Returns how many settings there are to choose from,
+// or an error.
 static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_params *p, const struct hf_depth *depth,
                   const char **options, char *message)
 {
@@ -214,7 +214,7 @@ static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_p
     return err ? err : steps;
 }
 
-// What keeps a picture from being the one that the camera would take.
+// Log what limits the blur, if the camera's would be larger.
 static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
 {
     static const char *const why[] = {
@@ -238,7 +238,8 @@ static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
             "blur is cut to %g pixels where it would be larger%s", p->max_radius, why[limit]);
 }
 
-// Whole numbers taken for distances, where they are surely none: those of a hardware depth buffer, or all before the focus.
+// Warn once if whole numbers are taken for distances but surely are none: those of a hardware depth buffer, or numbers
+// that would all lie before the focus.
 static void tell_depth(struct hf_context *c, const struct hf_depth *d, const struct hf_params *p)
 {
     const int hardware = d->format == HF_DEPTH_FORMAT_D24S8 || d->format == HF_DEPTH_FORMAT_X8D24;
@@ -265,7 +266,7 @@ static int check_region(const struct hf_region *r, const struct hf_image *src, c
     return HF_OK;
 }
 
-// Check, choose a setting that fits the budget, and go.
+// Check the arguments, choose a setting that fits the budget, and render.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
                enum hf_task task)

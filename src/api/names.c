@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The words for the values of public enums.
+// The names of the values of public enums.
 #include <string.h>
 
 #include "pass/engine.h"
@@ -22,7 +22,7 @@ static const char *const divisions[] = {"exact", "estimate", "newton", "newton2"
 static const char *const layers[] = {"standard", "draft", "high", "best", NULL};
 static const char *const limits[] = {"none", "given", "model", "engine", "picture", NULL};
 
-// Instruction sets and engines have their names where they are defined.
+// Names of instruction sets and engines are defined with them.
 static const char *const *const lists[HF_NAMES_COUNT] = {
     [HF_NAMES_LOG_LEVEL] = log_levels,
     [HF_NAMES_FORMAT] = formats,

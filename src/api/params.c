@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parameters: their defaults, and what they come to.
+// Parameters: the defaults, and the values that they resolve to.
 #include <stdio.h>
 
 #include "frame/defaults.h"

@@ -19,8 +19,8 @@ const char *hf_isa_name(enum hf_isa isa)
 }
 
 #if HF_SIMD && HF_X86 && !HF_NARROW
-// __builtin_cpu_supports knows f16c only in newer compilers. Bit 29 of leaf 1; that the operating system saves the
-// registers is what asking for avx2 has told.
+// __builtin_cpu_supports knows f16c only in newer compilers: read bit 29 of leaf 1. The check for avx2 has already told
+// that the operating system saves the registers.
 static int has_f16c(void)
 {
     unsigned a, b, c, d;
@@ -82,7 +82,7 @@ enum hf_isa hf_cpu_choose(enum hf_isa wanted)
 
 size_t hf_cpu_cache(void)
 {
-    static atomic_size_t known;  // and 1
+    static atomic_size_t known;  // the bytes plus 1; 0: not asked yet
     size_t bytes = atomic_load_explicit(&known, memory_order_relaxed);
     if (bytes)
         return bytes - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The context's allocator, and how much it holds.
+// The context's allocator, and how many bytes it holds.
 #ifndef HF_MEM_H
 #define HF_MEM_H
 
@@ -13,10 +13,10 @@ struct hf_mem {
     void *cookie;
 };
 
-// malloc's family.
+// Allocates with malloc's family.
 extern const struct hf_mem hf_mem_default;
 
-// A block that grows and never shrinks, so that frames after the first allocate nothing.
+// A block that grows and never shrinks, so that only the first frames allocate.
 struct hf_block {
     void *data;
     size_t size;

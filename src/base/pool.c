@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame is two short runs, so a worker that slept at once would cost a wake-up (tens of microseconds) each: idle
-// workers spin for a moment before they sleep, and so does the caller before it waits for the last of them.
+// A frame is two short runs. Waking a worker takes tens of microseconds, so idle workers spin for a moment before they
+// sleep, and so does the caller before it waits for the last of them.
 #include "base/pool.h"
 
 #include <stdatomic.h>
@@ -26,9 +26,9 @@ struct hf_pool {
     struct hf_condition wake, done;
     atomic_uint generation;  // counts runs; a change is the signal to work
     atomic_int busy;         // started workers that have not finished this run
-    int quit, sleepers;      // under the lock
+    int quit, sleepers;      // guarded by the lock
 
-    atomic_int next;  // the queue
+    atomic_int next;  // the queue: the index of the next call
     int n;
     void (*fn)(void *arg, int i, int worker);
     void *arg;
@@ -79,7 +79,7 @@ static void worker_main(void *arg)
     unsigned seen = 0;
     for (;;) {
         seen = await_generation(p, seen);
-        if (p->quit)  // written before the generation was
+        if (p->quit)  // quit is written before the generation
             return;
         work(p, w->index);
         if (atomic_fetch_sub_explicit(&p->busy, 1, memory_order_acq_rel) == 1) {
@@ -90,7 +90,7 @@ static void worker_main(void *arg)
     }
 }
 
-// Publish a run (or the order to quit) to the workers.
+// Tell the workers to start a run, or to quit.
 static void release_workers(struct hf_pool *p)
 {
     hf_lock_take(&p->lock);

@@ -9,18 +9,18 @@ struct hf_pool;
 
 // threads counts the caller: threads - 1 are started. Returns HF_OK or HF_ERR_MEMORY, HF_ERR_THREAD.
 int hf_pool_open(struct hf_pool **out, int threads, const struct hf_mem *mem);
-// What it takes from the allocator.
+// The bytes that it takes from the allocator.
 size_t hf_pool_bytes(int threads);
 void hf_pool_close(struct hf_pool **pool);
-// The same in a child after fork(), where its threads are not: frees its memory alone.
+// Close in a child process after fork(), where the threads do not exist: only free the memory.
 void hf_pool_abandon(struct hf_pool **pool);
 
-// Calls fn(arg, i, worker) for i in [0, n), each once, in this order, on all workers including the caller (worker 0).
-// Returns when all are done. worker < threads picks scratch memory.
+// Calls fn(arg, i, worker) once for each i in [0, n), in this order, on all workers including the caller (worker 0).
+// Returns when all calls have. worker, below threads, is an index for scratch memory.
 void hf_pool_run(struct hf_pool *pool, int n, void (*fn)(void *arg, int i, int worker), void *arg);
 
-// Between two looks at what another worker is about to write; n counts them. Gives up the processor now and then, as
-// there may be fewer of them than workers.
+// Call between two looks at a value that another worker will write; n counts the looks. Yields the processor now and
+// then, as there may be fewer processors than workers.
 void hf_pool_relax(int n);
 
 #endif

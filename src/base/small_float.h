@@ -25,22 +25,22 @@ static inline float hf_from_bits(uint32_t u)
     return f;
 }
 
-// Neither NaN nor infinite.
+// Whether f is neither NaN nor infinite.
 static inline int hf_is_finite(float f)
 {
     return (hf_bits(f) & 0x7f800000) != 0x7f800000;
 }
 
-// An unsigned float with 5 exponent and m mantissa bits whose exponent starts at bit 0 of u's own field: shifted so
-// that the exponents line up, it is a float 2^112 times too small, denormals included. Infinity and NaN
-// come out as 65536 and more, which no finite value reaches.
+// Decode an unsigned float with 5 exponent and m mantissa bits in the low bits of u. Shifted so that the exponents line
+// up, it is a float 2^112 times too small, denormals included. Infinity and NaN become 65536 and more, which no finite
+// value reaches.
 static inline float hf_decode_small(uint32_t u, int m)
 {
     return hf_from_bits(u << (23 - m)) * 0x1p112f;
 }
 
-// To nearest even. 0 <= v <= the largest finite. Below 2^-14 the result is denormal: adding a power of two whose last
-// place is the denormals' step makes the addition round for us.
+// Encode, rounding to nearest even. v is 0 to the largest finite value. Below 2^-14 the result is denormal: adding a
+// power of two whose last place is the denormals' step makes the addition round.
 static inline uint32_t hf_encode_small(float v, int m)
 {
     if (v < 0x1p-14f) {
@@ -51,7 +51,7 @@ static inline uint32_t hf_encode_small(float v, int m)
     return (u + (1u << (shift - 1)) - 1 + (u >> shift & 1)) >> shift;
 }
 
-// Towards zero.
+// Encode, rounding towards zero.
 static inline uint32_t hf_truncate_small(float v, int m)
 {
     if (v < 0x1p-14f)
@@ -61,7 +61,7 @@ static inline uint32_t hf_truncate_small(float v, int m)
 
 static inline float hf_clamp_unsigned(float v, float max)
 {
-    v = v > 0 ? v : 0;  // NaN too
+    v = v > 0 ? v : 0;  // NaN becomes 0, too
     return v < max ? v : max;
 }
 

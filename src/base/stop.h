@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame that is cancelled: any thread sets the flag, and whoever works on the frame looks at it about every tenth of a
-// millisecond and returns. What it has been making is then worth nothing.
+// Cancelling a frame. Any thread may set the flag. All workers of the frame read it about every tenth of a millisecond
+// and return if it is set; the picture is then unusable.
 #ifndef HF_STOP_H
 #define HF_STOP_H
 
 #include <stdatomic.h>
 
-// stop NULL: nobody can cancel.
+// stop NULL: the frame cannot be cancelled.
 static inline int hf_stopped(atomic_int *stop)
 {
     return stop && atomic_load_explicit(stop, memory_order_relaxed);

@@ -12,8 +12,8 @@
 #include <sys/sysctl.h>
 #endif
 
-// Linux's pages of memory that is asked for in one piece: one fault instead of 512, and fewer misses of the table of pages
-// where a loop reads many rows at once.
+// The size of Linux's huge pages. Memory in them takes one page fault instead of 512, and fewer misses of the page
+// table's cache where a loop reads many rows at once.
 enum { LARGE_PAGE = 1 << 21 };
 
 int64_t hf_now_ns(void)
@@ -61,7 +61,7 @@ void *hf_system_alloc(size_t size, size_t align)
     if (posix_memalign(&ptr, large ? LARGE_PAGE : align, size))
         return NULL;
     if (large)
-        madvise(ptr, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);  // a wish
+        madvise(ptr, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);  // a hint
     return ptr;
 #else
     return posix_memalign(&ptr, align, size) ? NULL : ptr;

@@ -10,7 +10,7 @@ int64_t hf_now_ns(void)
     LARGE_INTEGER ticks, per_second;
     QueryPerformanceCounter(&ticks);
     QueryPerformanceFrequency(&per_second);
-    // In two parts, or the product would overflow after some minutes.
+    // In two parts, because the product would overflow after some minutes.
     const int64_t second = INT64_C(1000000000), rate = per_second.QuadPart;
     return ticks.QuadPart / rate * second + ticks.QuadPart % rate * second / rate;
 }
@@ -20,7 +20,7 @@ int hf_process(void)
     return (int)GetCurrentProcessId();
 }
 
-// Of the process's own group of up to 64 processors.
+// Counts the processors of the process's own group, up to 64.
 int hf_system_processors(void)
 {
     DWORD_PTR ours, all;

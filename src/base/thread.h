@@ -4,7 +4,7 @@
 #define HF_THREAD_H
 
 #ifdef _WIN32
-// A SRWLOCK, a CONDITION_VARIABLE and a HANDLE, each of which is a pointer; windows.h stays out of headers.
+// A SRWLOCK, a CONDITION_VARIABLE and a HANDLE are a pointer each. Declared so, headers need not include windows.h.
 struct hf_lock {
     void *srw;
 };
@@ -40,8 +40,8 @@ void hf_condition_wait(struct hf_condition *condition, struct hf_lock *lock);
 void hf_condition_wake(struct hf_condition *condition);      // one thread that waits
 void hf_condition_wake_all(struct hf_condition *condition);  // all of them
 
-// Runs run(arg) in a thread of its own. *thread must stay where it is until hf_thread_join, which waits for the end.
-// Returns 0, or -1 if the system starts no more threads.
+// Runs run(arg) in a new thread. *thread must not move until hf_thread_join, which waits until the thread ends. Returns
+// 0, or -1 if the system starts no more threads.
 int hf_thread_start(struct hf_thread *thread, void (*run)(void *arg), void *arg);
 void hf_thread_join(struct hf_thread *thread);
 // Let another thread have the processor.

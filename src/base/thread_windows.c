@@ -23,7 +23,7 @@ void hf_lock_open(struct hf_lock *lock)
     InitializeSRWLock(srw(lock));
 }
 
-// These locks and conditions own nothing.
+// These locks and conditions own no resource, so nothing is freed.
 void hf_lock_close(struct hf_lock *lock)
 {
     (void)lock;
@@ -71,7 +71,7 @@ static unsigned __stdcall run(void *arg)
     return 0;
 }
 
-// _beginthreadex and not CreateThread: the C library then frees what it keeps for the thread.
+// _beginthreadex instead of CreateThread, so that the C library frees what it allocates for the thread.
 int hf_thread_start(struct hf_thread *thread, void (*function)(void *arg), void *arg)
 {
     thread->run = function;
