@@ -188,10 +188,10 @@ HF_INLINE void hex_fetch(const struct hf_hexagon_field *in, const int channels, 
 
 // ---- near ----
 
-HF_INLINE void hex_store_near(const struct hf_frame *f, const struct hex_sums *s, const int channels,
+HF_INLINE void hex_store_near(const struct hf_buf *made, const struct hex_sums *s, const int channels,
                               enum hf_hexagon_made colour, int weight, int x, int y)
 {
-    const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_NEAR_W);
+    const struct hf_buf *out = made + colour, *weights = made + HF_HEXAGON_NEAR_W;
     const vm any = vf_gt(s->a, vf_zero());
     const vf root = vf_keep(any, vf_div(s->a, s->w)), share = vf_mul(root, root);
     const vf mean = vf_keep(any, vf_div(s->w, s->a));
@@ -220,15 +220,16 @@ HF_INLINE void hex_clear(const struct hf_buf *out, struct hf_rect b, const int c
 
 HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
+    const struct hf_buf *made = hf_hexagon_made(f, 0);
     const struct hf_hexagon *h = hf_hexagon(f->s);
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_NEAR);
     const int below = hf_max(h->line[0].y1, h->line[1].y1);
     const struct hex_run up = hex_run(&h->line[0], rows, hex_range(&in, &h->line[0], b));
     const struct hex_run left = hex_run(&h->line[1], rows, hex_range(&in, &h->line[1], b));
     if (up.end == up.step && left.end == left.step) {
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_NEAR_U), b, channels);
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_NEAR_B), b, channels);
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_NEAR_W), b, 4);
+        hex_clear(made + HF_HEXAGON_NEAR_U, b, channels);
+        hex_clear(made + HF_HEXAGON_NEAR_B, b, channels);
+        hex_clear(made + HF_HEXAGON_NEAR_W, b, 4);
         return;
     }
     HEX_EACH(b, rows, x, y)
@@ -237,11 +238,11 @@ HF_INLINE void hex_near_1(const struct hf_frame *f, struct hf_rect b, const int 
         hex_fetch(&in, channels, rows, x, y + HEX_HEIGHT + below);
         hex_line(&in, &up, channels, 1, rows, x, y, NULL, u);
         for (int i = 0; i < rows; i++)
-            hex_store_near(f, &u[i], channels, HF_HEXAGON_NEAR_U, 0, x, y + i);
+            hex_store_near(made, &u[i], channels, HF_HEXAGON_NEAR_U, 0, x, y + i);
         hex_line(&in, &left, channels, 1, rows, x, y, NULL, v);
         for (int i = 0; i < rows; i++) {
             hex_add(&u[i], &v[i], channels);
-            hex_store_near(f, &u[i], channels, HF_HEXAGON_NEAR_B, 2, x, y + i);
+            hex_store_near(made, &u[i], channels, HF_HEXAGON_NEAR_B, 2, x, y + i);
         }
     }
 }
@@ -359,10 +360,10 @@ HF_INLINE void hex_far_line(const struct hex_far *l, const int channels, const i
         out[i] = hex_found(&l->in, &s[i], channels, first, x, y + i, p[i]);
 }
 
-HF_INLINE void hex_store_far(const struct hf_frame *f, const struct hex_sums *s, const int channels, vf p, vf part,
+HF_INLINE void hex_store_far(const struct hf_buf *made, const struct hex_sums *s, const int channels, vf p, vf part,
                              vf whole, enum hf_hexagon_made colour, int weight, int x, int y)
 {
-    const struct hf_buf *out = hf_hexagon_made(f, colour), *weights = hf_hexagon_made(f, HF_HEXAGON_FAR_W);
+    const struct hf_buf *out = made + colour, *weights = made + HF_HEXAGON_FAR_W;
     const vf one = vf_set1(1);
     const vm any = vf_gt(s->a, vf_zero());
     const vf mean = vf_select(vf_gt(s->w, vf_zero()), vf_div(hex_light(s->colour), s->w), p);
@@ -420,14 +421,15 @@ HF_INLINE int hex_leaves(const struct hf_frame *f, struct hf_rect b)
 
 HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
+    const struct hf_buf *made = hf_hexagon_made(f, 0);
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     const struct hf_hexagon *h = hf_hexagon(f->s);
     const int below = hf_max(h->line[0].y1, h->line[1].y1);
     const float least = hex_least_far(&in, b);
     if (least == FLT_MAX) {
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_U), b, channels);
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_B), b, channels);
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_W), b, 4);
+        hex_clear(made + HF_HEXAGON_FAR_U, b, channels);
+        hex_clear(made + HF_HEXAGON_FAR_B, b, channels);
+        hex_clear(made + HF_HEXAGON_FAR_W, b, 4);
         return;
     }
     const struct hex_far up = hex_far(f, &in, 0, least, b, rows), left = hex_far(f, &in, 1, least, b, rows);
@@ -444,14 +446,14 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
         hex_far_line(&up, channels, 1, rows, x, y, p, u);
         for (int i = 0; i < rows; i++) {
             all[i] = leaves ? hex_keep_within(f, &u[i], channels, 0, x, y + i, p[i]) : vf_set1(1);
-            hex_store_far(f, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_U, 0, x, y + i);
+            hex_store_far(made, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_U, 0, x, y + i);
         }
         hex_far_line(&left, channels, 1, rows, x, y, p, v);
         for (int i = 0; i < rows; i++) {
             if (leaves)
                 all[i] = vf_mul(vf_set1(0.5f), vf_add(all[i], hex_keep_within(f, &v[i], channels, 1, x, y + i, p[i])));
             hex_add(&u[i], &v[i], channels);
-            hex_store_far(f, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_B, 2, x, y + i);
+            hex_store_far(made, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_B, 2, x, y + i);
         }
     }
 }
@@ -498,14 +500,15 @@ HF_INLINE void hex_beyond_line(const struct hex_far *l, const int channels, cons
 
 HF_INLINE void hex_far_beyond(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
+    const struct hf_buf *made = hf_hexagon_made(f, 0);
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
     struct hex_nearest n;
     hex_nearest(f, &in, b, &n);
     const struct hex_far up = hex_far(f, &in, 0, n.least, b, rows), left = hex_far(f, &in, 1, n.least, b, rows);
     if (n.least == FLT_MAX || (up.run.end == up.run.step && left.run.end == left.run.step)) {
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_U), b, channels);
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_B), b, channels);
-        hex_clear(hf_hexagon_made(f, HF_HEXAGON_FAR_W), b, 4);
+        hex_clear(made + HF_HEXAGON_FAR_U, b, channels);
+        hex_clear(made + HF_HEXAGON_FAR_B, b, channels);
+        hex_clear(made + HF_HEXAGON_FAR_W, b, 4);
         return;
     }
     HEX_EACH(b, rows, x, y)
@@ -518,11 +521,11 @@ HF_INLINE void hex_far_beyond(const struct hf_frame *f, struct hf_rect b, const 
         }
         hex_beyond_line(&up, channels, rows, x, y, p, u);
         for (int i = 0; i < rows; i++)
-            hex_store_far(f, &u[i], channels, p[i], part[i], u[i].a, HF_HEXAGON_FAR_U, 0, x, y + i);
+            hex_store_far(made, &u[i], channels, p[i], part[i], u[i].a, HF_HEXAGON_FAR_U, 0, x, y + i);
         hex_beyond_line(&left, channels, rows, x, y, p, v);
         for (int i = 0; i < rows; i++) {
             hex_add(&u[i], &v[i], channels);
-            hex_store_far(f, &u[i], channels, p[i], part[i], vf_mul(vf_set1(0.5f), u[i].a), HF_HEXAGON_FAR_B, 2, x,
+            hex_store_far(made, &u[i], channels, p[i], part[i], vf_mul(vf_set1(0.5f), u[i].a), HF_HEXAGON_FAR_B, 2, x,
                           y + i);
         }
     }
