@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nine small charts over the same points: frames of each engine, memory, and distances on each ray-traced scene.
+// Nine small charts of the same points: frame times of each engine, memory, and errors on each ray-traced scene.
 #include "history.h"
 
 #include "others.h"
@@ -22,7 +22,7 @@ enum {
 
 struct panel {
     const char *title, *unit;
-    // The lines of which it is made: names with the engine, or the scene, in place of %s.
+    // Its lines: names of numbers, with the engine or the scene for %s.
     const char *line[HF_ENGINE_COUNT];
     char name[HF_ENGINE_COUNT][HISTORY_NAME];
     const char *style[HF_ENGINE_COUNT];
@@ -60,7 +60,7 @@ static void put_xml(FILE *out, const char *text)
         }
 }
 
-// The mean over the scenes of what a frame takes; NAN unless all are there.
+// The mean frame time over the ray-traced scenes; NAN unless all have one.
 static double value_of(const struct history_point *p, const char *name)
 {
     static const char mean[] = "/truth";
@@ -84,14 +84,14 @@ static double y_of(const struct view *v, double value)
     return v->y0 + TOP + (HEIGHT - TOP - BOTTOM) * (v->most - value) / (v->most - v->least);
 }
 
-// A round number at or above x / 5: what lies between two lines of the grid.
+// The distance of grid lines: a round number at or above x / 5.
 static double grid_step(double x)
 {
     const double power = pow(10, floor(log10(x / 5))), of = x / 5 / power;
     return power * (of <= 1 ? 1 : of <= 2 ? 2 : of <= 5 ? 5 : 10);
 }
 
-// Returns 0 if there is nothing to draw.
+// Returns 0 if no point has a number to draw.
 static int find_range(struct view *v)
 {
     v->least = INFINITY;
@@ -210,7 +210,7 @@ static struct panel engine_panel(const char *engine)
     return p;
 }
 
-// Of all engines: what the format makes of their names and the scene's.
+// A panel with a line for each engine; format makes the number's name from the engine's and the scene's.
 static struct panel all_panel(const char *title, const char *unit, const char *format, const char *scene)
 {
     struct panel p = {.title = title, .unit = unit, .from_zero = !*scene, .of_truth = *scene != '\0'};

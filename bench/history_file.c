@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points as lines of a file. The reader knows flat JSON objects of texts, numbers and null, which is what is written.
+// Points as lines of a file. They are flat JSON objects of texts, numbers and null; the reader knows only these.
 #include "history.h"
 
 #include <errno.h>
@@ -58,7 +58,7 @@ static const char *space(const char *s)
     return s + strspn(s, " \t\r\n");
 }
 
-// Returns what follows the text at s, NULL if there is none; out receives what fits.
+// Read a text at s into out, cut to its size. Returns where the text ends, or NULL if there is none.
 static const char *read_text(const char *s, char *out, size_t size)
 {
     size_t n = 0;
@@ -87,7 +87,7 @@ static const char *read_text(const char *s, char *out, size_t size)
     return *s ? s + 1 : NULL;
 }
 
-// One member: its name and a text, a number or null. Returns what follows it, or NULL.
+// Read one member: its name and a text, a number or null. Returns where it ends, or NULL.
 static const char *read_member(const char *s, struct history_point *p)
 {
     char name[HISTORY_NAME], text[HISTORY_TEXT], *end;

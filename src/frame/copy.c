@@ -46,7 +46,7 @@ static void fill_x(const struct hf_image *m, int x, int y, int n)
         row[4 * i + 3] = 255;
 }
 
-// What of a rectangle of half-resolution pixels lies in the region, in pixels.
+// The part of a rectangle of half-resolution pixels that lies in the region, in full-resolution pixels.
 static struct hf_rect in_region(const struct hf_setup *s, struct hf_rect r)
 {
     return (struct hf_rect){hf_max(2 * r.x0, s->region.x0), hf_max(2 * r.y0, s->region.y0),

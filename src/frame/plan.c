@@ -416,8 +416,8 @@ static void list_rest(struct hf_plan *p, const struct hf_setup *s, int scan)
     }
 }
 
-// What is left of a tile's active part with a region. An engine that counts what the first sweep makes is given the counts of
-// the whole frame: its tiles are cut when it is known what they read.
+// Cut a tile's active part to the region. Engines that count what the first sweep makes need the counts of the whole
+// frame, so their tiles are cut only when it is known what they read.
 static void cut_tile(struct hf_plan *p, const struct hf_setup *s, int i)
 {
     const struct hf_rect tile = hf_plan_cell(p, 2, i), r = hf_rect_both(half_region(s), tile);

@@ -27,7 +27,7 @@ static void tell(struct hf_progress *p)
     const uint64_t done = atomic_load_explicit(&p->done, memory_order_relaxed);
     const double part = done < p->all ? (double)done / (double)p->all : 1;
     const int now = p->from + (int)(part * (p->to - p->from));
-    // 100 is told when all is stored.
+    // 100 is reported only when everything is stored.
     if (now < p->next || now > 99)
         return;
     p->next = now + 1;

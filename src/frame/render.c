@@ -264,7 +264,7 @@ int hf_render_frame(struct hf_context *c, struct hf_setup *s, const struct hf_jo
     struct hf_render r = {.c = c, .s = s, .copy = hf_copy_plan(s, job->dst, job->src)};
     const struct hf_progress_call nobody = {0};
     s->stop = &c->stop;
-    // Of a copy: what is stored, and what is around samples that are not finite.
+    // A plain copy reads the region, and one pixel around it to repair samples that are not finite.
     c->reads[0] = c->reads[1] =
         (struct hf_rect){hf_max(s->region.x0 - 1, 0), hf_max(s->region.y0 - 1, 0), hf_min(s->region.x1 + 1, s->width),
                          hf_min(s->region.y1 + 1, s->height)};

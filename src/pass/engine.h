@@ -3,7 +3,7 @@
 // where, how large buffers are, which worker does what (frame/plan.c, frame/sweep.c).
 //
 // To add an engine, make a folder src/engine/NAME with
-//     NAME.h      numbers of its passes, buffers and halos; struct hf_NAME, which it computes from its parameters and the
+//     NAME.h      numbers of its passes, buffers and halos; struct hf_NAME, which it computes from parameters and the
 //                 depth; struct hf_NAME_kernels, whose first member is struct hf_passes
 //     engine.c    the tables below, and HF_CHOOSE_KERNELS(hf_NAME_kernels) (simd/choose.h)
 //     *.c         its passes in C, which are the specification; *_simd.h on vectors; simd.c enters these in the table

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The public API: what it refuses, formats and strides, memory, threads, statistics.
+// The public API: refused arguments, formats, strides.
 //
 //     api [seed]
 #include <math.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A call that is cancelled, from another thread and from the progress callback: what it returns, and that the next frame of
-// its context has the bits of a fresh context's; and what is told of progress. How long a cancel takes is the business of
-// `hyperfocal-bench cancel`.
+// Cancelled calls, from another thread and from the progress callback: what they return, that the next frame has the bits
+// of a fresh context's, and which progress is reported. `hyperfocal-bench cancel` measures how long a cancel takes.
 //
 //     cancel [rounds [seed]]
 #include <pthread.h>
@@ -18,9 +17,9 @@ enum { WIDTH = 180, HEIGHT = 120 };
 static int rounds = 4;
 static unsigned seed = 1;
 
-// ---- who cancels
+// ---- callers that cancel
 
-// From another thread: after some turns of an empty loop, for as long as it takes.
+// Cancel from another thread, after some turns of an empty loop, again and again until the call returns.
 struct canceller {
     struct hf_context *c;
     unsigned turns;
@@ -34,7 +33,7 @@ static void *cancel_main(void *arg)
         ;
     for (volatile unsigned i = 0; i < k->turns; i = i + 1)
         ;
-    // The call may not have begun: then it is not cancelled.
+    // If the call has not begun yet, a cancel has no effect.
     const struct timespec pause = {0, 20000};
     while (!atomic_load(&k->over)) {
         hf_cancel(k->c);
@@ -43,9 +42,9 @@ static void *cancel_main(void *arg)
     return NULL;
 }
 
-// From the callback, and what it is told.
+// Cancel from the progress callback, which also checks what it is given.
 struct listener {
-    pthread_mutex_t lock;  // only looked at: nobody may hold it
+    pthread_mutex_t lock;  // tried in the callback: no other call may hold it
     pthread_t caller;
     struct hf_context *c;
     int calls, at, refuse, own_thread;  // cancel in that call, by the return value or by hf_cancel; -1: never
@@ -91,7 +90,7 @@ static void same_as_fresh(struct hf_context *c, struct frame *f, const char *aft
               samples_other(&f->out, &f->want));
 }
 
-// What is said of a cancelled call, by what it left: a report of zeros.
+// A cancelled call returns its error and leaves a report of zeros.
 static void check_cancelled(struct hf_context *c, const struct frame *f, int err)
 {
     static const struct hf_report zero;
@@ -149,7 +148,7 @@ static void try_callback(struct rng *rng, struct frame *f)
         l.at = rng_below(rng, calls - 1);
         l.refuse = i % 2;
         const int err = try_scene(c, &f->out, &f->scene, &f->p);
-        // Which calls there are depends on who works on what: there may be fewer.
+        // How many calls come depends on how the workers share the work: there may be fewer.
         CHECK_MSG(err == (l.calls > l.at && l.last < 1 ? HF_ERR_CANCELLED : HF_OK), "%s: cancelled in call %d: %s",
                   f->look->name, l.at, hf_error_string(err));
         CHECK_MSG(err == HF_OK || l.calls == l.at + 1, "%s: %d calls after it was cancelled", f->look->name,
@@ -161,7 +160,7 @@ static void try_callback(struct rng *rng, struct frame *f)
     hf_close(&c);
 }
 
-// In place nothing is promised of the picture; of the context it is.
+// In place the picture may be anything, but the context must be usable.
 static void try_in_place(struct rng *rng, struct frame *f)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
@@ -178,7 +177,7 @@ static void try_in_place(struct rng *rng, struct frame *f)
     hf_close(&c);
 }
 
-// ---- what has nothing to cancel
+// ---- calls with nothing to cancel
 
 static void quiet(void)
 {
@@ -194,7 +193,7 @@ static void quiet(void)
     hf_cancel(c);
     CHECK_INT(try_scene(c, &f.out, &f.scene, &f.p), HF_OK);
     CHECK(picture_same_bits(&f.out, &f.scene.colour));
-    // A plain copy tells of progress as well, and is cancelled.
+    // A plain copy reports progress too, and can be cancelled.
     f.p.max_radius = 0;
     hf_set_progress(c, listen, &l);
     CHECK_INT(try_scene(c, &f.out, &f.scene, &f.p), HF_OK);
@@ -208,7 +207,7 @@ static void quiet(void)
     picture_free(&f.out);
 }
 
-// The host's threads: whichever comes by calls, but no two at a time.
+// With the host's threads any of them may call the callback, but only one at a time.
 struct host {
     int n, threads;
     void (*fn)(void *arg, int i, int worker);

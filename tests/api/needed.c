@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What hf_plan tells of the memory that a frame will make the context hold, against what the frame's allocator counts.
+// The memory that hf_plan announces for a frame, compared with what the context's allocator counts.
 //
 //     needed [seed]
 #include <stdlib.h>
@@ -28,7 +28,7 @@ static void give(void *cookie, void *p)
     free(start);
 }
 
-// One context, frames of several sizes one after the other: what it held before counts.
+// One context renders frames of several sizes: memory that it holds from earlier frames counts.
 static void try_look(struct rng *rng, int look)
 {
     static const int sizes[][2] = {{70, 50}, {640, 360}, {33, 400}, {900, 500}, {1, 1}};

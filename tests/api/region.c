@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Regions of a picture: the bits of the whole, nothing else written, nothing read beyond what is told, and little done.
+// Regions of a picture: they have the bits of the whole, write nothing else, read only the announced rectangles, and cost little.
 //
 //     region [rounds [seed]]
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static size_t bytes_of(enum hf_format f)
     return f == HF_FORMAT_PLANAR32F ? 4 : (size_t)format_pixel_size(f);
 }
 
-// Pixels of dst inside the region that are other than those of the whole, and outside other than what was there.
+// Count the pixels of dst that differ: inside the region from the whole frame, outside from what was there before.
 static void compare(const struct packed *got, const struct packed *was, const struct packed *whole,
                     const struct hf_region *r, int *inside, int *outside)
 {
@@ -83,7 +83,7 @@ static void copy_pixels(struct packed *to, const struct packed *from)
                    (size_t)from->image.width * bytes_of(from->image.format));
 }
 
-// Into a picture of its own, and in place.
+// Render the region into a separate picture, and in place.
 static void try_bits(struct hf_context *c, const struct subject *s, const struct hf_region *r)
 {
     int inside, outside;
@@ -102,7 +102,7 @@ static void try_bits(struct hf_context *c, const struct subject *s, const struct
     }
 }
 
-// Into a tile of memory, whose last byte is followed by others: pixel (0, 0) lies before it.
+// Render into memory for the region only, so that pixel (0, 0) would lie before it.
 static void try_tile(struct hf_context *c, const struct subject *s, const struct hf_region *r)
 {
     enum { GUARD = 64 };
@@ -141,7 +141,7 @@ static int is_in(const struct hf_region *r, int x, int y)
     return x >= r->x && x < r->x + r->width && y >= r->y && y < r->y + r->height;
 }
 
-// What lies outside of what is told to be read is NaN.
+// Pixels outside the rectangles that hf_region_reads announces are NaN, so reading them would show.
 static void try_reads(struct hf_context *c, const struct subject *s, const struct hf_region *r)
 {
     struct hf_region colour, depth;
@@ -179,7 +179,7 @@ static struct subject subject_new(struct rng *rng, int look, int width, int heig
     s.scene = scene_new(rng, kinds[rng_below(rng, 5)], width, height, format_channels(format));
     s.p = look_params(s.look, width, 20);
     s.depth = picture_depth(&s.scene.depth);
-    // What is not finite is repaired from what lies around it.
+    // Samples that are not finite are repaired from their neighbours.
     for (int i = rng_below(rng, 2) ? 8 : 0; i > 0; i--)
         s.scene.colour.plane[rng_below(rng, 3)][rng_below(rng, width * height)] = i % 2 ? NAN : INFINITY;
     if (rng_below(rng, 4) == 0)
@@ -211,7 +211,7 @@ static void try_look(struct rng *rng, int look)
         try_tile(c, &s, &r);
         try_reads(c, &s, &r);
     }
-    // The next whole frame is as any.
+    // A whole frame after a region is as without it.
     struct packed got = like(&s.src, JUNK);
     const struct hf_region all = {sizeof all, 0, 0, width, height};
     int inside, outside;
@@ -226,7 +226,7 @@ static void try_look(struct rng *rng, int look)
     subject_free(&s);
 }
 
-// Of a large picture a small region runs on few cells: those that it, and the blur around it, touch.
+// A small region of a large picture runs on few cells: those that it, or the blur around it, touches.
 static void try_cost(struct rng *rng, int look)
 {
     enum { WIDTH = 1024, HEIGHT = 768 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is made of the measurements of hyperfocal-bench tradeoff: intervals, the front, the ladder, and the cache.
+// How hyperfocal-bench tradeoff evaluates its measurements: intervals, the front, the ladder, and the cache.
 #include "support/check.h"
 #include "tradeoff.h"
 
@@ -143,15 +143,15 @@ static void test_steps_differ(void)
     put(3, "--engine c", 4, 0.01, below(3.09), below(3.09));
     put(4, "--engine b --x 3", 5, 0.01, below(3.12), below(3.12));
     put(5, "--engine b --x 4", 20, 0.01, below(3.5), below(3.5));
-    // Of four within 0.1 dB the engine as it is, before its cheaper neighbours.
+    // Of four within 0.1 dB, the engine with default options is chosen, even before cheaper ones.
     expect_steps(&t, (const int[]){1, 0, 0, 2, 0, 3});
     // No step lies between the second and the last, so `high` is the last.
     CHECK_INT(trade_qualities(&t, place), 0);
     CHECK(place[0] == 0 && place[1] == 3 && place[2] == 5 && place[3] == 5);
-    // Where none is an engine as it is, the cheapest.
+    // If none has default options, the cheapest is chosen.
     put(3, "--engine b --x 5", 4, 0.01, below(3.09), below(3.09));
     expect_steps(&t, (const int[]){1, 2, 0, 0, 0, 3});
-    // What is most accurate by less than a step takes the place of the one before.
+    // The most accurate setting, if better by less than a step, replaces the one before it.
     t = empty(3);
     put(0, "a", 1, 0.01, 0.1, 0.1);
     put(1, "b", 2, 0.01, below(1), below(1));
@@ -162,7 +162,7 @@ static void test_steps_differ(void)
     CHECK(fabs(trade_gain_db(&results[2], &results[1]) - 0.21) < 1e-9);
 }
 
-// What does not reach the radii of a scene is never chosen there.
+// A setting that does not reach the radii of a scene is never chosen there.
 static void test_reach(void)
 {
     struct trade t = empty(6);
@@ -181,7 +181,7 @@ static void test_reach(void)
     CHECK_INT(results[1].step, 0);
     CHECK_INT(results[2].step, 2);
     CHECK_INT(results[5].step, 3);
-    // Of two ways up for those that reach, the one that begins cheapest, not the longest.
+    // Of two ladders among settings that reach, the one with the cheapest start is chosen, not the longest.
     t = empty(5);
     put(0, "cheap", 1, 0.01, 0.1, 0.1);
     put(1, "other", 2, 0.01, 0.11, 0.08);

@@ -160,7 +160,7 @@ static void giants(const struct run *run)
     picture_free(&radii);
 }
 
-// What "no surface" and 0 are in the other depth types.
+// The values that mean "no surface" and 0 in the other depth types.
 static void special_depths(const struct run *run)
 {
     static const struct {

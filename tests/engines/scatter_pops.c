@@ -15,7 +15,7 @@ enum { WIDTH = 72, HEIGHT = 56, PIXELS = WIDTH * HEIGHT, HALVINGS = 20, STEPS = 
 // colour here, 0.1: 5.3 codes, plus that half.
 static const double NOISE = 0.5, LIGHTS = 5.8;
 
-// What is moved.
+// A parameter that is changed in small steps.
 struct pull {
     const char *name;
     struct hf_params params;

@@ -170,7 +170,7 @@ static void only_what_is_called_for(void)
     hf_close(&c);
 }
 
-// The largest radii on either side are those of the depth, for every engine that has to find them.
+// Engines that must find the largest near and far radius find those of the depth.
 static void radii_found(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);

@@ -18,9 +18,9 @@
 #endif
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-// Of inputs made up in great numbers most are to be small.
+// Set by replay.c when it makes many random inputs: most of them should be small.
 __attribute__((weak)) int fuzz_small;
-// What a target counted, printed when replay.c is done; targets may do without.
+// A target may define this to print its counts when replay.c is done.
 __attribute__((weak)) void fuzz_told(void);
 
 // Bytes as a source of choices; zeros when they are used up.
@@ -45,7 +45,7 @@ static inline uint32_t take_word(struct bytes *b)
     return v;
 }
 
-// What must hold whatever the bytes are.
+// A condition that must hold for any input.
 #define MUST(ok)                                                                                                       \
     do {                                                                                                               \
         if (!(ok)) {                                                                                                   \

@@ -47,7 +47,7 @@ static void make_folder(void)
     atexit(remove_folder);
 }
 
-// What is found exists: the pattern with that number filled in, with some number of digits, is the name of a file.
+// Every frame found exists: the pattern, with its number in some number of digits, is the name of a file.
 static void check_scan(const char *pattern, const char *path)
 {
     struct cli_frames found;

@@ -114,7 +114,7 @@ void test_swapped_chunks(void)
 }
 
 // A file that is opened while another program still writes it: it is cut at each length, opened, completed, and read.
-// What was not there when it was opened counts as missing, and gets no memory.
+// Chunks that were not there when it was opened count as missing, and take no memory.
 void test_growing(void)
 {
     const struct part parts[MAX_PARTS] = {

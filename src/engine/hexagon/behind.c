@@ -47,7 +47,7 @@ static void near_half(const struct hf_frame *f, int q, int from, int to, float *
         out[x] = 2 * radius[x] > out[x] ? 2 * radius[x] : out[x];
 }
 
-// What is seen of each quad has been kept; and what of its near part is less near than others.
+// Add to the visible part of each quad, which is kept already, the near part that is much less near than its surroundings.
 static unsigned seen_half(const struct hf_frame *f, int q, int from, int to, const float *widest, float *line,
                           float *const plane[HF_BEHIND_PLANES])
 {

@@ -265,7 +265,7 @@ static void far_1(const struct hf_frame *f, int x, int y)
     store_far(f, &u, p, part, 0.5f * (up + left), HF_HEXAGON_FAR_B, 2, x, y);
 }
 
-// What a line finds beyond the frame. It is normalised only where more than a full weight was found.
+// The sums of a line that reaches beyond the frame. They are normalised only if their weight exceeds 1.
 static struct found beyond_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y,
                                 float p)
 {

@@ -482,7 +482,7 @@ static void hex_nearest(const struct hf_frame *f, const struct hf_hexagon_field 
         }
 }
 
-// What a line finds beyond the frame. It is normalised only where more than a full weight was found.
+// The sums of a line that reaches beyond the frame. They are normalised only if their weight exceeds 1.
 HF_INLINE void hex_beyond_line(const struct hex_far *l, const int channels, const int rows, int x, int y,
                                const vf p[HEX_ROWS], struct hex_sums s[HEX_ROWS])
 {

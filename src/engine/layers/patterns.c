@@ -483,7 +483,7 @@ void hf_layers_patterns_pass(const struct hf_frame *f, struct hf_rect r)
             search(&b, x, y);
             search_fine(&b, x, y);
         }
-    // What is chosen where nothing has been searched is anything.
+    // Only places that were searched have a choice.
     for (int y = r.y0; y < hf_min(r.y1, f->s->half_height) && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < hf_min(r.x1, f->s->half_width); x++)
             if (b.level[0].nearest[y * b.level[0].set.stride + x] < HUGE_VALF)

@@ -68,7 +68,7 @@ int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const s
 void hf_shape_frame(struct hf_shape *s, const struct hf_integral *area, double wide);
 void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wide, struct hf_shape_row *row,
                    float *weight);
-// Convert a run's ends to how it is read.
+// Make a run from its ends and its weight, in the form that drawing reads.
 struct hf_shape_run hf_shape_run_of(float a, float b, float weight);
 
 #endif
