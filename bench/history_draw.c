@@ -11,12 +11,13 @@
 enum {
     COLUMNS = 3,
     WIDTH = 380,
-    HEIGHT = 230,
+    HEIGHT = 238,
     LEFT = 46,
     RIGHT = 14,
-    TOP = 44,
+    TOP = 52,
     BOTTOM = 34,
     LEGEND = 18,
+    LEGEND_ROW = 14,
     MACHINES = 26
 };
 
@@ -179,12 +180,17 @@ static void draw_panel(struct view *v, const struct panel *panel, int place)
     v->x0 = (double)(place % COLUMNS) * WIDTH;
     v->y0 = (double)(place / COLUMNS) * HEIGHT + 24;
     fprintf(v->out, "<text x=\"%.1f\" y=\"%.1f\">%s, %s</text>\n", v->x0 + LEFT, v->y0 + 14, panel->title, panel->unit);
-    double x = v->x0 + LEFT;
+    double x = v->x0 + LEFT, y = v->y0 + 31;
     for (int l = 0; l < panel->lines; l++) {
+        const double width = 18 + 6.2 * (double)strlen(panel->line[l]);
+        if (x + width > v->x0 + WIDTH) {
+            x = v->x0 + LEFT;
+            y += LEGEND_ROW;
+        }
         fprintf(v->out,
                 "<path class=\"line %s\" d=\"M%.1f %.1fh12\"/><text class=\"tick\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-                panel->style[l], x, v->y0 + 27, x + 15, v->y0 + 31, panel->line[l]);
-        x += 24 + 6.2 * (double)strlen(panel->line[l]);
+                panel->style[l], x, y - 4, x + 15, y, panel->line[l]);
+        x += width + 6;
     }
     if (!find_range(v))
         return;
