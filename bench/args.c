@@ -100,7 +100,7 @@ void bench_args_default(struct bench_args *args)
         .scene = "mixed",
         .in = HF_FORMAT_R11G11B10F,
         .out = HF_FORMAT_R11G11B10F,
-        .params = hf_default_params,
+        .params = hf_default_params(),
     };
     args->params.focus = 20;
     args->params.range.distance = 10;

@@ -111,7 +111,7 @@ static int measure(struct cancel *r, int i, struct bench_subject *s, struct benc
 {
     const struct setting *set = &settings[i];
     struct latency *l = &r->latency[i];
-    const struct hf_config config = {.threads = r->threads, .isa = r->args->isa};
+    const struct hf_config config = {.size = sizeof(config), .threads = r->threads, .isa = r->args->isa};
     s->params = r->args->params;
     s->params.engine = set->engine;
     s->params.max_radius = set->max_radius;

@@ -86,9 +86,8 @@ static int measure(const struct job *j, double *ms, struct tool_error *error)
 {
     double times[REPEATS];
     for (int i = -1; i < REPEATS; i++) {
-        struct hf_report report;
         const double start = tool_now_ms();
-        const int err = j->plan ? hf_plan(j->context, j->to, j->from, j->depth, j->params, &report)
+        const int err = j->plan ? hf_plan(j->context, j->to, j->from, j->depth, j->params, NULL)
                                 : hf_render(j->context, j->to, j->from, j->depth, j->params);
         if (err)
             return tool_fail(error, -1, "rendering failed: %s", hf_error_string(err));
@@ -189,7 +188,8 @@ static int measure_depth(struct formats *r, int row, const struct bench_subject 
         const uint32_t word = word_of(row, scene->depth[i]);
         memcpy(words + i * bytes, &word, bytes);
     }
-    const struct hf_depth depth = {.data = words,
+    const struct hf_depth depth = {.size = sizeof depth,
+                                   .data = words,
                                    .stride = scene->width * (ptrdiff_t)bytes,
                                    .type = depths[row].type,
                                    .format = depths[row].format,

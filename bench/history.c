@@ -5,6 +5,7 @@
 #include "machine.h"
 #include "report.h"
 #include "tools/common/machine.h"
+#include "tools/common/report.h"
 #include "truth.h"
 #include "write.h"
 
@@ -78,9 +79,9 @@ static int measure_engine(struct history_point *p, const struct bench_args *args
         history_set(p, rounded(r.fma_gflops), "fma_gflops");
     }
     history_set(p, rounded(r.all.median_ms), "ms %s", name);
-    history_set(p, rounded((double)r.stats.memory_held * 1e-6), "MB %s", name);
-    for (int i = 0; i < hf_pass_count(engine); i++)
-        history_set(p, rounded(r.pass[i].median_ms), "pass %s/%s", name, hf_pass_name(engine, i));
+    history_set(p, rounded((double)r.stats.all.memory_held * 1e-6), "MB %s", name);
+    for (int i = 0; i < tool_passes(engine); i++)
+        history_set(p, rounded(r.pass[i].median_ms), "pass %s/%s", name, hf_inspect_pass_name(engine, i));
     return 0;
 }
 
@@ -96,13 +97,13 @@ static int measure(struct history_point *p, const struct bench_args *args, struc
         return -1;
     if (strstr(p->commit, "dirty"))
         fprintf(stderr, "the files differ from the commit: the point's commit is %s\n", p->commit);
-    for (int e = 0; e < HF_ENGINE_COUNT; e++)
+    for (int e = 0; e < tool_engines(); e++)
         if (is_wanted(args, e) && measure_engine(p, args, (enum hf_engine)e, &busy, error))
             return -1;
     if (bench_truth_measure(&truth, args, error))
         return -1;
     for (int s = 0; s < BENCH_OTHERS; s++)
-        for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+        for (int e = 0; e < tool_engines(); e++) {
             const char *engine = hf_engine_name((enum hf_engine)e), *scene = bench_others[s].scene;
             if (!is_wanted(args, e))
                 continue;
@@ -142,7 +143,7 @@ static char machine_of(const struct history *h, int point)
 // Print for each engine the mean of one kind of number over the ray-traced scenes.
 static void mean_cells(FILE *out, const struct history_point *p, const char *kind, int decimals)
 {
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    for (int e = 0; e < tool_engines(); e++) {
         double sum = 0;
         for (int s = 0; s < BENCH_OTHERS; s++)
             sum += history_get(p, "%s %s/%s", kind, hf_engine_name((enum hf_engine)e), bench_others[s].scene);
@@ -155,7 +156,7 @@ static void table(FILE *out, const void *what)
     const struct history *h = what;
     fprintf(out, "%-10s %-10s on %8s", "commit", "date", "memcpy");
     for (int k = 0; k < 2; k++)
-        for (int e = 0; e < HF_ENGINE_COUNT; e++)
+        for (int e = 0; e < tool_engines(); e++)
             fprintf(out, " %8s", hf_engine_name((enum hf_engine)e));
     fputc('\n', out);
     for (int i = 0; i < h->points; i++) {

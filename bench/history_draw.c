@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nine small charts of the same points: frame times of each engine, memory, and errors on each ray-traced scene.
+// Nine small charts over the same points: frames of each engine, memory, and distances on each ray-traced scene.
 #include "history.h"
 
 #include "others.h"
 #include "page_chart.h"
+#include "tools/common/report.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,22 +12,21 @@
 enum {
     COLUMNS = 3,
     WIDTH = 380,
-    HEIGHT = 238,
+    HEIGHT = 230,
     LEFT = 46,
     RIGHT = 14,
-    TOP = 52,
+    TOP = 44,
     BOTTOM = 34,
     LEGEND = 18,
-    LEGEND_ROW = 14,
     MACHINES = 26
 };
 
 struct panel {
     const char *title, *unit;
-    // Its lines: names of numbers, with the engine or the scene for %s.
-    const char *line[HF_ENGINE_COUNT];
-    char name[HF_ENGINE_COUNT][HISTORY_NAME];
-    const char *style[HF_ENGINE_COUNT];
+    // The lines of which it is made: names with the engine, or the scene, in place of %s.
+    const char *line[TOOL_ENGINES];
+    char name[TOOL_ENGINES][HISTORY_NAME];
+    const char *style[TOOL_ENGINES];
     int lines;
     int from_zero;  // the axis begins at 0
     int of_truth;   // a line ends where the pictures change, not where the machine does
@@ -61,7 +61,7 @@ static void put_xml(FILE *out, const char *text)
         }
 }
 
-// The mean frame time over the ray-traced scenes; NAN unless all have one.
+// The mean over the scenes of what a frame takes; NAN unless all are there.
 static double value_of(const struct history_point *p, const char *name)
 {
     static const char mean[] = "/truth";
@@ -85,14 +85,14 @@ static double y_of(const struct view *v, double value)
     return v->y0 + TOP + (HEIGHT - TOP - BOTTOM) * (v->most - value) / (v->most - v->least);
 }
 
-// The distance of grid lines: a round number at or above x / 5.
+// A round number at or above x / 5: what lies between two lines of the grid.
 static double grid_step(double x)
 {
     const double power = pow(10, floor(log10(x / 5))), of = x / 5 / power;
     return power * (of <= 1 ? 1 : of <= 2 ? 2 : of <= 5 ? 5 : 10);
 }
 
-// Returns 0 if no point has a number to draw.
+// Returns 0 if there is nothing to draw.
 static int find_range(struct view *v)
 {
     v->least = INFINITY;
@@ -180,17 +180,12 @@ static void draw_panel(struct view *v, const struct panel *panel, int place)
     v->x0 = (double)(place % COLUMNS) * WIDTH;
     v->y0 = (double)(place / COLUMNS) * HEIGHT + 24;
     fprintf(v->out, "<text x=\"%.1f\" y=\"%.1f\">%s, %s</text>\n", v->x0 + LEFT, v->y0 + 14, panel->title, panel->unit);
-    double x = v->x0 + LEFT, y = v->y0 + 31;
+    double x = v->x0 + LEFT;
     for (int l = 0; l < panel->lines; l++) {
-        const double width = 18 + 6.2 * (double)strlen(panel->line[l]);
-        if (x + width > v->x0 + WIDTH) {
-            x = v->x0 + LEFT;
-            y += LEGEND_ROW;
-        }
         fprintf(v->out,
                 "<path class=\"line %s\" d=\"M%.1f %.1fh12\"/><text class=\"tick\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-                panel->style[l], x, y - 4, x + 15, y, panel->line[l]);
-        x += width + 6;
+                panel->style[l], x, v->y0 + 27, x + 15, v->y0 + 31, panel->line[l]);
+        x += 24 + 6.2 * (double)strlen(panel->line[l]);
     }
     if (!find_range(v))
         return;
@@ -216,11 +211,11 @@ static struct panel engine_panel(const char *engine)
     return p;
 }
 
-// A panel with a line for each engine; format makes the number's name from the engine's and the scene's.
+// Of all engines: what the format makes of their names and the scene's.
 static struct panel all_panel(const char *title, const char *unit, const char *format, const char *scene)
 {
     struct panel p = {.title = title, .unit = unit, .from_zero = !*scene, .of_truth = *scene != '\0'};
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    for (int e = 0; e < tool_engines(); e++) {
         const char *engine = hf_engine_name((enum hf_engine)e);
         add_line(&p, engine, engine, format, engine, scene);
     }
@@ -259,7 +254,7 @@ void history_draw(FILE *out, const struct history *h)
     int machines = 0, place = 0;
     for (int i = 0; i < h->points; i++)
         machines += is_first_of_machine(h, i);
-    const int panels = HF_ENGINE_COUNT + 1 + BENCH_OTHERS, rows = (panels + COLUMNS - 1) / COLUMNS;
+    const int panels = tool_engines() + 1 + BENCH_OTHERS, rows = (panels + COLUMNS - 1) / COLUMNS;
     const int width = COLUMNS * WIDTH, height = 24 + rows * HEIGHT + (machines + 2) * LEGEND;
     fprintf(
         out,
@@ -270,7 +265,7 @@ void history_draw(FILE *out, const struct history *h)
     if (h->points)
         fprintf(out, "<text x=\"%d\" y=\"16\">%d points, %s to %s</text>\n", LEFT, h->points, h->point[0].date,
                 h->point[h->points - 1].date);
-    for (int e = 0; e < HF_ENGINE_COUNT && h->points; e++) {
+    for (int e = 0; e < tool_engines() && h->points; e++) {
         const struct panel p = engine_panel(hf_engine_name((enum hf_engine)e));
         draw_panel(&v, &p, place++);
     }

@@ -7,6 +7,7 @@
 #include "peak.h"
 #include "statistics.h"
 #include "tools/common/machine.h"
+#include "tools/common/report.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -27,7 +28,7 @@ static const double warm_up_s = 0.3, run_s = 3.0, burst_s = 0.003;
 
 struct frame {
     double all_ms, planning_ms;
-    double pass_ms[HF_MAX_PASSES];
+    double pass_ms[TOOL_PASSES];
 };
 
 struct yardsticks {
@@ -57,11 +58,11 @@ static int render_with(const struct bench_subject *s, struct hf_context *c, cons
     const double end = tool_now_ms();
     if (err)
         return tool_fail(error, -1, "rendering failed: %s", hf_error_string(err));
-    struct hf_report report;
-    hf_get_report(c, &report);
-    frame->planning_ms = report.plan_ms;
+    struct tool_report report;
+    tool_report_get(c, &report);
+    frame->planning_ms = report.inner.plan_ms;
     frame->all_ms = round_ms(end - start);
-    for (int p = 0; p < HF_MAX_PASSES; p++)
+    for (int p = 0; p < TOOL_PASSES; p++)
         frame->pass_ms[p] = round_ms(report.pass[p].ms);
     return 0;
 }
@@ -183,7 +184,7 @@ static int fused_into(const struct bench_result *r, int p)
     for (int q = p - 1; q >= 0; q--)
         if (r->pass[q].max_ms > 0)
             return q;
-    for (int q = p + 1; q < HF_MAX_PASSES; q++)
+    for (int q = p + 1; q < TOOL_PASSES; q++)
         if (r->pass[q].max_ms > 0)
             return q;
     return -1;
@@ -197,7 +198,7 @@ static void summarise(struct frame *frames, int n, struct bench_result *r)
     r->frames = n;
     r->all = (struct bench_row){middle->all_ms, frames[0].all_ms, frames[n - 1].all_ms, -1};
     r->overhead_ms = middle->all_ms;
-    for (int p = 0; p < HF_MAX_PASSES; p++) {
+    for (int p = 0; p < TOOL_PASSES; p++) {
         struct bench_row *row = &r->pass[p];
         *row = (struct bench_row){middle->pass_ms[p], INFINITY, 0, -1};
         for (int i = 0; i < n; i++) {
@@ -209,7 +210,7 @@ static void summarise(struct frame *frames, int n, struct bench_result *r)
     r->overhead_ms = round_ms(r->overhead_ms);
     qsort(frames, (size_t)n, sizeof *frames, by_planning);
     r->planning_ms = round_ms(frames[(n - 1) / 2].planning_ms);
-    for (int p = 0; p < HF_MAX_PASSES; p++)
+    for (int p = 0; p < TOOL_PASSES; p++)
         r->pass[p].in = fused_into(r, p);
 }
 
@@ -228,7 +229,7 @@ double bench_measure_copy(const struct bench_subject *s)
 }
 
 int bench_measure_all(const struct bench_subject *s, double seconds, int least, struct bench_row *all,
-                      struct hf_report *stats, struct tool_error *error)
+                      struct tool_report *stats, struct tool_error *error)
 {
     enum { MOST = 401 };
     struct frame frames[MOST];
@@ -241,7 +242,7 @@ int bench_measure_all(const struct bench_subject *s, double seconds, int least, 
             return -1;
     qsort(frames, (size_t)n, sizeof *frames, by_all);
     *all = (struct bench_row){frames[(n - 1) / 2].all_ms, frames[0].all_ms, frames[n - 1].all_ms, -1};
-    hf_get_report(s->context, stats);
+    tool_report_get(s->context, stats);
     return 0;
 }
 
@@ -259,7 +260,7 @@ int bench_measure(const struct bench_subject *subject, int frames, struct bench_
     struct yardsticks y = {0};
     const int err = measure_frames(subject, list, n, &y, error);
     if (!err) {
-        hf_get_report(subject->context, &result->stats);
+        tool_report_get(subject->context, &result->stats);
         summarise(list, n, result);
         result->memcpy_ms = round_ms(bench_median(y.copy_s, y.copies) * 1e3);
         result->fma_gflops = y.gflops;

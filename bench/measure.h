@@ -7,6 +7,7 @@
 #include "hyperfocal/hyperfocal.h"
 #include "pack.h"
 #include "workers.h"
+#include "tools/common/report.h"
 
 // What is rendered, and its memory; all of it belongs to the caller.
 struct bench_subject {
@@ -38,13 +39,13 @@ struct bench_uses {
 struct bench_result {
     struct bench_uses uses;
     int frames;
-    struct bench_row pass[HF_MAX_PASSES];  // of stats.engine
-    double overhead_ms;      // all.median_ms - sum of pass[].median_ms: waiting, dispatch, work outside the passes
-    double planning_ms;      // part of the overhead: hf_report.plan_ms, median
-    struct bench_row all;    // wall time of hf_render, measured by the caller
-    double memcpy_ms;        // copying colour in to colour out and depth to scratch, same threads: median
-    double fma_gflops;       // multiply-adds in registers, same threads, widest instruction set of the machine: best
-    struct hf_report stats;  // of the last frame
+    struct bench_row pass[TOOL_PASSES];  // of stats.engine
+    double overhead_ms;        // all.median_ms - sum of pass[].median_ms: waiting, dispatch, work outside the passes
+    double planning_ms;        // part of the overhead: hf_report.plan_ms, median
+    struct bench_row all;      // wall time of hf_render, measured by the caller
+    double memcpy_ms;          // copying colour in to colour out and depth to scratch, same threads: median
+    double fma_gflops;         // multiply-adds in registers, same threads, widest instruction set of the machine: best
+    struct tool_report stats;  // of the last frame
 };
 
 // Whether other programs keep the machine busy: then the median frame takes far longer than the fastest.
@@ -56,7 +57,7 @@ double bench_measure_copy(const struct bench_subject *subject);
 // Median, least and most time of frames after a warm-up: as many as take about that many seconds, at least `least`. The
 // passes' rows stay zero. *stats receives the report of the last frame. Returns 0, or -1 with *error filled.
 int bench_measure_all(const struct bench_subject *subject, double seconds, int least, struct bench_row *all,
-                      struct hf_report *stats, struct tool_error *error);
+                      struct tool_report *stats, struct tool_error *error);
 
 // One frame of a context, from a picture to subject->out, in milliseconds. Returns 0, or -1 with *error filled.
 int bench_measure_frame(const struct bench_subject *subject, struct hf_context *context, const struct bench_image *from,

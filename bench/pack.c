@@ -27,7 +27,8 @@ int bench_image_alloc(struct bench_image *image, int width, int height, enum hf_
 {
     const size_t row = (size_t)width * formats[format].pixel, plane = row * (size_t)height;
     *image = (struct bench_image){
-        .image = {.width = width,
+        .image = {.size = sizeof(struct hf_image),
+                  .width = width,
                   .height = height,
                   .format = format,
                   .transfer = is_srgb(format) ? HF_TRANSFER_SRGB : HF_TRANSFER_LINEAR},

@@ -412,7 +412,7 @@ static void label(struct view *v, const struct mark *m)
 static void legend(struct view *v)
 {
     double x = LEFT;
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    for (int e = 0; e < tool_engines(); e++) {
         const char *name = hf_engine_name((enum hf_engine)e);
         int used = 0;
         for (int i = 0; i < v->marks; i++)

@@ -4,11 +4,12 @@
 #include "scene.h"
 #include "tools/common/machine.h"
 #include "write.h"
+#include "tools/common/report.h"
 
 #include <stdint.h>
 
 // Milliseconds at 1920x1080 on a GeForce GTX 660: table 3.1 of the chapter, in the order of its passes.
-static const double gtx660_ms[HF_MAX_PASSES] = {0.13, 0.145, 0.08, 0.08, 0.08, 0.08, 0.455, 0.122, 0.334};
+static const double gtx660_ms[TOOL_PASSES] = {0.13, 0.145, 0.08, 0.08, 0.08, 0.08, 0.455, 0.122, 0.334};
 static const double gtx660_all_ms = 1.506;
 
 #if defined(__clang__)
@@ -45,12 +46,12 @@ static void table_machine(FILE *out, const struct bench_run *run)
     tool_cpu(cpu, sizeof cpu);
     fprintf(out, "%s, %s, %d thread%s, %dx%d, scene %s (near %.0f%%, sharp %.0f%%, far %.0f%%)\n", cpu,
             hf_isa_name(run->isa), run->threads, run->threads == 1 ? "" : "s", run->width, run->height,
-            run->args->scene, 100 * share(r->stats.near_pixels, run), 100 * share(r->stats.sharp_pixels, run),
-            100 * share(r->stats.far_pixels, run));
+            run->args->scene, 100 * share(r->stats.all.near_pixels, run), 100 * share(r->stats.all.sharp_pixels, run),
+            100 * share(r->stats.all.far_pixels, run));
     fprintf(out, "%s storage, %s to %s, radius %g, %d frames, %.1f MB held; hyperfocal %s, %s\n",
             hf_name(HF_NAMES_STORAGE, (int)run->args->params.gather.storage),
             hf_name(HF_NAMES_FORMAT, (int)run->args->in), hf_name(HF_NAMES_FORMAT, (int)run->args->out),
-            r->stats.used.params.max_radius, r->frames, (double)r->stats.memory_held * 1e-6, hf_version(), compiler);
+            r->stats.params.max_radius, r->frames, (double)r->stats.all.memory_held * 1e-6, hf_version(), compiler);
     fprintf(out, "memcpy %.3f ms, peak %.1f GFLOP/s, cost %.1f MFLOP (All x peak), All / memcpy %.2f\n", r->memcpy_ms,
             r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
 }
@@ -58,7 +59,7 @@ static void table_machine(FILE *out, const struct bench_run *run)
 // The chapter timed only the gather, at one size.
 static int has_gtx660(const struct bench_run *run)
 {
-    return run->result->stats.used.params.engine == HF_ENGINE_GATHER && run->width == 1920 && run->height == 1080;
+    return run->result->stats.params.engine == HF_ENGINE_GATHER && run->width == 1920 && run->height == 1080;
 }
 
 static void table_uses(FILE *out, const struct bench_uses *u)
@@ -79,11 +80,11 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     const int gather = has_gtx660(run);
     fprintf(out, "%-16s %9s %7s%s %9s %9s\n", "Pass", "ms", "of All", gather ? "   GTX 660    ratio" : "", "min",
             "max");
-    for (int p = 0; p < hf_pass_count(r->stats.used.params.engine); p++) {
+    for (int p = 0; p < tool_passes(r->stats.params.engine); p++) {
         const struct bench_row *row = &r->pass[p];
-        table_row(out, hf_pass_name(r->stats.used.params.engine, p), row->median_ms, all, gather ? gtx660_ms[p] : 0);
+        table_row(out, hf_inspect_pass_name(r->stats.params.engine, p), row->median_ms, all, gather ? gtx660_ms[p] : 0);
         if (row->in >= 0)
-            fprintf(out, "   in %s\n", hf_pass_name(r->stats.used.params.engine, row->in));
+            fprintf(out, "   in %s\n", hf_inspect_pass_name(r->stats.params.engine, row->in));
         else
             fprintf(out, " %9.3f %9.3f\n", row->min_ms, row->max_ms);
     }
@@ -102,7 +103,7 @@ static void json_settings(struct tool_json *j, const struct bench_run *run)
 {
     const struct bench_args *a = run->args;
     const struct hf_params *p = &a->params;
-    tool_json_text(j, "engine", hf_engine_name(run->result->stats.used.params.engine));
+    tool_json_text(j, "engine", hf_engine_name(run->result->stats.params.engine));
     tool_json_count(j, "width", run->width);
     tool_json_count(j, "height", run->height);
     tool_json_count(j, "threads", run->threads);
@@ -113,7 +114,7 @@ static void json_settings(struct tool_json *j, const struct bench_run *run)
     tool_json_text(j, "out", hf_name(HF_NAMES_FORMAT, (int)a->out));
     tool_json_number(j, "focus", p->focus);
     tool_json_number(j, "range", p->range.distance);
-    tool_json_number(j, "max_radius", run->result->stats.used.params.max_radius);
+    tool_json_number(j, "max_radius", run->result->stats.params.max_radius);
     tool_json_text(j, "fill", hf_name(HF_NAMES_FILL, (int)p->gather.fill));
     tool_json_flag(j, "faithful", p->gather.faithful);
     tool_json_flag(j, "deterministic", p->run.deterministic);
@@ -127,10 +128,10 @@ static void json_machine(struct tool_json *j, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
     tool_json_text(j, "compiler", compiler);
-    tool_json_number(j, "near_share", share(r->stats.near_pixels, run));
-    tool_json_number(j, "sharp_share", share(r->stats.sharp_pixels, run));
-    tool_json_number(j, "far_share", share(r->stats.far_pixels, run));
-    tool_json_number(j, "memory_bytes", (double)r->stats.memory_held);
+    tool_json_number(j, "near_share", share(r->stats.all.near_pixels, run));
+    tool_json_number(j, "sharp_share", share(r->stats.all.sharp_pixels, run));
+    tool_json_number(j, "far_share", share(r->stats.all.far_pixels, run));
+    tool_json_number(j, "memory_bytes", (double)r->stats.all.memory_held);
     tool_json_count(j, "frames", r->frames);
     tool_json_number(j, "memcpy_ms", r->memcpy_ms);
     tool_json_number(j, "fma_gflops", r->fma_gflops);
@@ -148,21 +149,21 @@ void bench_report_json(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
     const struct bench_uses *u = &r->uses;
-    const enum hf_engine engine = r->stats.used.params.engine;
+    const enum hf_engine engine = r->stats.params.engine;
     struct tool_json j;
     bench_json_begin(&j, out, run->command, run->args);
     json_settings(&j, run);
     json_machine(&j, run);
     tool_json_open(&j, "passes", '[');
-    for (int p = 0; p < hf_pass_count(engine); p++) {
+    for (int p = 0; p < tool_passes(engine); p++) {
         const struct bench_row *row = &r->pass[p];
         tool_json_row(&j, NULL, '{');
-        tool_json_text(&j, "name", hf_pass_name(engine, p));
+        tool_json_text(&j, "name", hf_inspect_pass_name(engine, p));
         json_row(&j, row);
         if (has_gtx660(run))
             tool_json_number(&j, "gtx660_ms", gtx660_ms[p]);
         if (row->in >= 0)
-            tool_json_text(&j, "in", hf_pass_name(engine, row->in));
+            tool_json_text(&j, "in", hf_inspect_pass_name(engine, row->in));
         tool_json_close(&j);
     }
     tool_json_close(&j);

@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "subject.h"
 #include "write.h"
+#include "tools/common/report.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -190,13 +191,13 @@ static int measure_round(struct size_result *s, struct scaling *r, const struct 
     for (int k = 0; k < KINDS; k++)
         for (int j = 0; j < SHARES; j++) {
             char name[32];
-            struct hf_report stats;
+            struct tool_report stats;
             snprintf(name, sizeof name, "band-%s:%d", kinds[k], shares[j]);
             if (bench_scene_depth(scene, name, &optics, depth, error) ||
                 bench_measure_all(subject, seconds, LEAST, &rows[k][j][round], &stats, error))
                 return -1;
-            s->point[k][j].memory = stats.memory_held;
-            r->max_radius = stats.used.params.max_radius;
+            s->point[k][j].memory = stats.all.memory_held;
+            r->max_radius = stats.params.max_radius;
         }
     return 0;
 }

@@ -5,22 +5,24 @@
 #include <string.h>
 
 // Keep the sentence of the last error, which names the argument; hf_error_string names only the kind of error.
-static void keep_message(void *cookie, enum hf_log_level level, const char *message)
+static void keep_message(void *cookie, const struct hf_message *message)
 {
-    if (level == HF_LOG_ERROR)
-        snprintf(((struct tool_error *)cookie)->text, sizeof((struct tool_error *)cookie)->text, "%s", message);
+    if (message->level == HF_LOG_ERROR)
+        snprintf(((struct tool_error *)cookie)->text, sizeof((struct tool_error *)cookie)->text, "%s",
+                 message->sentence);
 }
 
 int bench_subject_open(struct bench_subject *s, const struct bench_args *args, const struct bench_scene *scene,
                        struct tool_error *log, struct tool_error *error)
 {
     const struct hf_config config = {
-        .threads = args->threads, .isa = args->isa, .log = keep_message, .log_cookie = log};
+        .size = sizeof config, .threads = args->threads, .isa = args->isa, .log = keep_message, .log_cookie = log};
     const int err = hf_open(&s->context, &config);
     if (err)
         return tool_fail(error, -1, "%s", *log->text ? log->text : hf_error_string(err));
     s->params = args->params;
-    s->depth = (struct hf_depth){.data = scene->depth, .stride = scene->width * (ptrdiff_t)sizeof(float)};
+    s->depth = (struct hf_depth){
+        .size = sizeof(struct hf_depth), .data = scene->depth, .stride = scene->width * (ptrdiff_t)sizeof(float)};
     s->scratch = calloc((size_t)scene->width * (size_t)scene->height, sizeof(float));
     if (!s->scratch || bench_image_alloc(&s->in, scene->width, scene->height, args->in) ||
         bench_image_alloc(&s->out, scene->width, scene->height, args->out))

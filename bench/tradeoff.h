@@ -14,6 +14,7 @@
 
 #include "args.h"
 #include "metrics.h"
+#include "tools/common/report.h"
 
 #include <stdio.h>
 
@@ -21,7 +22,7 @@ enum {
     TRADE_SCENES = 8,
     TRADE_SETTINGS = 160,
     TRADE_ROUNDS = 9,
-    TRADE_PASSES = HF_MAX_PASSES,
+    TRADE_PASSES = TOOL_PASSES,
     TRADE_RADIUS = 12,  // of `both`, pixels
 };
 

@@ -61,9 +61,9 @@ static struct picture in_double(const struct input *in, struct hf_params p)
     } else if (p.engine == HF_ENGINE_SCATTER && p.scatter.resolution == HF_RESOLUTION_FULL) {
         out = scatter_reference(&in->colour, in->radius.plane[0]);
     } else if (p.engine == HF_ENGINE_LAYERS) {
-        struct hf_resolved r;
-        if (hf_resolve(WIDTH, HEIGHT, &in->depth, &p, &r, NULL, 0) == HF_OK)
-            out = layers_reference(&in->colour, in->radius.plane[0], &r.params);
+        struct hf_params filled = {.size = sizeof filled};
+        if (hf_resolve(WIDTH, HEIGHT, &in->depth, &p, &filled, NULL, NULL) == HF_OK)
+            out = layers_reference(&in->colour, in->radius.plane[0], &filled);
     }
     return out;
 }
@@ -104,7 +104,7 @@ int trade_run_axes(struct trade_run *run, int result, struct tool_error *error)
     r->rounding = exact.width ? linear_distance(&got, &exact) : NAN;
     r->faithfulness = NAN;
     if (p.engine == HF_ENGINE_GATHER) {
-        struct hf_params published = hf_default_params;
+        struct hf_params published = hf_default_params();
         published.engine = HF_ENGINE_GATHER;
         published.gather.faithful = 1;
         published.max_radius = RADIUS;

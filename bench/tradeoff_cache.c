@@ -42,7 +42,7 @@ void trade_cache_key(char *key, size_t size, const char *cpu, int threads)
 {
     Dl_info library;
     uint64_t hash = hash_file(UINT64_C(0xcbf29ce484222325), "/proc/self/exe");
-    if (dladdr((const void *)&hf_default_params, &library) && library.dli_fname)
+    if (dladdr((const void *)hf_version, &library) && library.dli_fname)
         hash = hash_file(hash, library.dli_fname);
     snprintf(key, size, "%016llx %d x %s", (unsigned long long)hash, threads, cpu);
     for (char *c = key; *c; c++)

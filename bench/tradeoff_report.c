@@ -2,6 +2,7 @@
 #include "tradeoff.h"
 #include "write.h"
 #include "frame/ladder_fields.h"
+#include "tools/common/report.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -132,8 +133,8 @@ void trade_qualities_table(FILE *out, const struct trade *t)
 static double pass_of_both(const struct trade_result *r, const char *name)
 {
     double values[TRADE_ROUNDS];
-    for (int p = 0; p < hf_pass_count(r->engine); p++)
-        if (!strcmp(hf_pass_name(r->engine, p), name)) {
+    for (int p = 0; p < tool_passes(r->engine); p++)
+        if (!strcmp(hf_inspect_pass_name(r->engine, p), name)) {
             for (int i = 0; i < r->both.n; i++)
                 values[i] = r->both.pass[i][p];
             return trade_interval(values, r->both.n).median;
@@ -296,11 +297,11 @@ static void json_passes(struct tool_json *j, const struct trade_result *r, const
 {
     double values[TRADE_ROUNDS];
     tool_json_open(j, "passes", '[');
-    for (int p = 0; p < hf_pass_count(r->engine); p++) {
+    for (int p = 0; p < tool_passes(r->engine); p++) {
         for (int i = 0; i < time->n; i++)
             values[i] = time->pass[i][p];
         tool_json_open(j, NULL, '{');
-        tool_json_text(j, "name", hf_pass_name(r->engine, p));
+        tool_json_text(j, "name", hf_inspect_pass_name(r->engine, p));
         tool_json_number(j, "ms", trade_interval(values, time->n).median);
         tool_json_close(j);
     }
@@ -407,11 +408,11 @@ static void initialiser(FILE *out, const char *field, double value)
 // A setting's parameters, as C: those that are not the defaults.
 static void initialisers(FILE *out, const struct trade_result *r)
 {
-    const struct hf_params *p = &r->params, *plain = &hf_default_params;
-    struct hf_params written = *plain;
+    const struct hf_params *p = &r->params, plain = hf_default_params();
+    struct hf_params written = plain;
     fputs("{HF_PARAMS_DEFAULTS", out);
 #define WRITE(field)                                                                                                   \
-    if (p->field != plain->field)                                                                                      \
+    if (p->field != plain.field)                                                                                       \
         initialiser(out, #field, p->field);                                                                            \
     written.field = p->field;
     HF_LADDER_FIELDS(WRITE)
@@ -454,7 +455,7 @@ void trade_ladder_table(FILE *out, const struct trade *t)
     for (int q = 0; q < TRADE_QUALITIES && !trade_qualities(t, place); q++)
         fprintf(out, "%s %d", q ? "," : "", t->result[place[q]].step - 1);
     fputs("\n// milliseconds of a megapixel, of each engine with its defaults\n#define HF_LADDER_ENGINES", out);
-    for (int e = 0; e < HF_ENGINE_COUNT; e++)
+    for (int e = 0; e < tool_engines(); e++)
         fprintf(out, "%s %#.4gf", e ? "," : "", of_engine(t, e) / size);
     fputs("\n// clang-format on\n", out);
 }

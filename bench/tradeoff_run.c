@@ -2,6 +2,7 @@
 #include "tradeoff_run.h"
 
 #include "tools/common/machine.h"
+#include "tools/common/report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,10 +18,11 @@ enum {
 static const double fast_ms = 40, sample_ms = 60;
 static const float pull_step = 0.25f;  // pixels of radius between the frames of a focus pull
 
-static void keep_message(void *cookie, enum hf_log_level level, const char *message)
+static void keep_message(void *cookie, const struct hf_message *message)
 {
-    if (level == HF_LOG_ERROR)
-        snprintf(((struct tool_error *)cookie)->text, sizeof((struct tool_error *)cookie)->text, "%s", message);
+    if (message->level == HF_LOG_ERROR)
+        snprintf(((struct tool_error *)cookie)->text, sizeof((struct tool_error *)cookie)->text, "%s",
+                 message->sentence);
 }
 
 static int get_context(struct trade_run *run, struct trade_job *job, struct tool_error *error)
@@ -33,8 +35,11 @@ static int get_context(struct trade_run *run, struct trade_job *job, struct tool
         }
     if (i == TRADE_CONTEXTS)
         return tool_fail(error, -1, "there are more pairs of --threads and --isa than %d", TRADE_CONTEXTS);
-    const struct hf_config config = {
-        .threads = job->args.threads, .isa = job->args.isa, .log = keep_message, .log_cookie = &run->log};
+    const struct hf_config config = {.size = sizeof config,
+                                     .threads = job->args.threads,
+                                     .isa = job->args.isa,
+                                     .log = keep_message,
+                                     .log_cookie = &run->log};
     const int err = hf_open(&run->context[i].context, &config);
     if (err)
         return tool_fail(error, -1, "%s", *run->log.text ? run->log.text : hf_error_string(err));
@@ -59,7 +64,7 @@ static int parse_job(struct trade_run *run, struct trade_job *job, const char *o
     enum { WORDS = 64 };
     char text[1024], *words[WORDS];
     bench_args_default(&job->args);
-    job->args.params = hf_default_params;
+    job->args.params = hf_default_params();
     job->args.threads = run->t->args->threads;
     job->args.isa = run->t->args->isa;
     snprintf(text, sizeof text, "%s", options);
@@ -71,11 +76,11 @@ static int parse_job(struct trade_run *run, struct trade_job *job, const char *o
 // A gaussian spreads light as far as a disc of twice its standard deviation, at any depth.
 static float farthest(const struct hf_params *p)
 {
-    static const struct hf_depth depth = {.type = HF_DEPTH_VIEW};
-    struct hf_resolved r;
-    if (p->engine != HF_ENGINE_GAUSSIAN || hf_resolve(BOTH_WIDTH, BOTH_HEIGHT, &depth, p, &r, NULL, 0))
+    static const struct hf_depth depth = {.size = sizeof depth, .type = HF_DEPTH_VIEW};
+    struct hf_params filled = {.size = sizeof filled};
+    if (p->engine != HF_ENGINE_GAUSSIAN || hf_resolve(BOTH_WIDTH, BOTH_HEIGHT, &depth, p, &filled, NULL, NULL))
         return INFINITY;
-    return 2 * r.params.gaussian.sigma;
+    return 2 * filled.gaussian.sigma;
 }
 
 int trade_run_parse(struct trade_run *run, struct tool_error *error)
@@ -194,7 +199,8 @@ static int render(struct trade_run *run, int result, int scene, const struct hf_
     const struct bench_scene *picture = scene < 0 ? &run->both : &run->scene[scene].picture;
     const struct bench_image *in = scene < 0 ? &run->both_in : &run->in[scene];
     const struct bench_image *out = scene < 0 ? &run->both_out : &run->out[scene];
-    const struct hf_depth depth = {.data = picture->depth, .stride = picture->width * (ptrdiff_t)sizeof(float)};
+    const struct hf_depth depth = {
+        .size = sizeof depth, .data = picture->depth, .stride = picture->width * (ptrdiff_t)sizeof(float)};
     *run->log.text = '\0';
     const int err = hf_render(run->job[result].context, &out->image, &in->image, &depth, p);
     if (err)
@@ -284,10 +290,10 @@ static int timed(struct trade_run *run, int result, int scene, double *ms, doubl
     if (trade_run_render(run, result, scene, error))
         return -1;
     *ms = tool_now_ms() - start;
-    struct hf_report report;
-    hf_get_report(run->job[result].context, &report);
+    struct tool_report report;
+    tool_report_get(run->job[result].context, &report);
     for (int i = 0; i < TRADE_PASSES; i++)
-        pass[i] = i < report.passes ? report.pass[i].ms : 0;
+        pass[i] = i < report.inner.passes ? report.pass[i].ms : 0;
     return 0;
 }
 

@@ -6,6 +6,7 @@
 #include "subject.h"
 #include "truth.h"
 #include "write.h"
+#include "tools/common/report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -38,7 +39,7 @@ static int measure_engine(struct bench_truth *t, int scene, int engine, struct b
                           struct tool_error *error)
 {
     struct bench_row all;
-    struct hf_report stats;
+    struct tool_report stats;
     const size_t samples = 3 * (size_t)s->in.image.width * (size_t)s->in.image.height;
     s->params.engine = (enum hf_engine)engine;
     s->params.max_radius = t->args->max_radius_given ? t->args->params.max_radius : HF_DERIVE;
@@ -77,7 +78,7 @@ static int measure_scene(struct bench_truth *t, int i, struct tool_error *log, s
         p->lens.sensor_width_mm = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : 36;
         t->threads = hf_context_threads(subject.context);
     }
-    for (int e = 0; e < HF_ENGINE_COUNT && !err; e++)
+    for (int e = 0; e < tool_engines() && !err; e++)
         if (wanted(t, e))
             err = measure_engine(t, i, e, &subject, want.rgb, error);
     bench_subject_close(&subject);
@@ -93,7 +94,7 @@ static void table(FILE *out, const void *what)
     for (int i = 0; i < SCENES; i++)
         fprintf(out, " %20s", scenes[i].scene);
     fputc('\n', out);
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    for (int e = 0; e < tool_engines(); e++) {
         if (!wanted(t, e))
             continue;
         fprintf(out, "%-16s", hf_engine_name((enum hf_engine)e));
@@ -117,7 +118,7 @@ static void table(FILE *out, const void *what)
         t->threads);
     if (t->busy)
         fprintf(out, "The machine is busy: %d of %d medians are far above the least.\n", t->busy,
-                SCENES * (t->args->engine_given ? 1 : HF_ENGINE_COUNT));
+                SCENES * (t->args->engine_given ? 1 : tool_engines()));
 }
 
 static void json(FILE *out, const void *what)
@@ -129,7 +130,7 @@ static void json(FILE *out, const void *what)
     tool_json_count(&j, "busy", t->busy);
     tool_json_open(&j, "results", '[');
     for (int i = 0; i < SCENES; i++)
-        for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+        for (int e = 0; e < tool_engines(); e++) {
             if (!wanted(t, e))
                 continue;
             tool_json_row(&j, NULL, '{');

@@ -5,13 +5,14 @@
 
 #include "args.h"
 #include "others.h"
+#include "tools/common/report.h"
 
 struct bench_truth {
     const struct bench_args *args;
     int threads, busy;  // busy: how many measurements met a busy machine
     struct {
         double psnr, rmse, ms;
-    } at[BENCH_OTHERS][HF_ENGINE_COUNT];
+    } at[BENCH_OTHERS][TOOL_ENGINES];
 };
 
 // All engines, or with --engine that one. Returns 0, or -1 with *error filled.

@@ -57,7 +57,8 @@ static int in_place(const struct bench_subject *s, struct hf_context *c, double 
 // ms: the first frame of a context. later: a frame after LATER more, in the same memory.
 static int first(const struct bench_subject *s, int prepare, double *ms, double *later, struct tool_error *error)
 {
-    const struct hf_config config = {.threads = hf_context_threads(s->context),
+    const struct hf_config config = {.size = sizeof config,
+                                     .threads = hf_context_threads(s->context),
                                      .isa = hf_context_isa(s->context),
                                      .alloc = fresh_alloc,
                                      .free = fresh_free};

@@ -21,29 +21,31 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-static void log_line(void *cookie, enum hf_log_level level, const char *message)
+static void log_line(void *cookie, const struct hf_message *message)
 {
     (void)cookie;
-    if (level != HF_LOG_INFO)
-        fprintf(stderr, "hyperfocal: %s\n", message);
+    if (message->level != HF_LOG_INFO)
+        fprintf(stderr, "hyperfocal: %s\n", message->sentence);
 }
 
 // Defocus the frame where it lies, and say what it took.
 static int defocus(struct hf_context *c, const struct buffers *b, const struct hf_params *p, int frame)
 {
-    const struct hf_image picture = {.width = b->width,
+    const struct hf_image picture = {.size = sizeof picture,
+                                     .width = b->width,
                                      .height = b->height,
                                      .format = HF_FORMAT_RGBX8,
                                      .data = {b->colour},
                                      .stride = {(ptrdiff_t)b->width * 4},
                                      .transfer = HF_TRANSFER_SRGB};
-    const struct hf_depth depth = {.data = b->depth + (size_t)b->width * (size_t)(b->height - 1),
+    const struct hf_depth depth = {.size = sizeof depth,
+                                   .data = b->depth + (size_t)b->width * (size_t)(b->height - 1),
                                    .stride = -(ptrdiff_t)b->width * 4,
                                    .type = HF_DEPTH_NDC_D3D,
                                    .format = HF_DEPTH_FORMAT_UNORM32,
                                    .near_plane = (float)SCENE_NEAR,
                                    .far_plane = (float)SCENE_FAR};
-    struct hf_report r;
+    struct hf_report r = {.size = sizeof r};
     const int err = hf_render(c, &picture, &picture, &depth, p);
     if (err)
         return err;
@@ -67,8 +69,8 @@ static int write_ppm(const char *path, const struct buffers *b)
 
 static int render_frames(const struct buffers *b, int frames, float budget_ms)
 {
-    const struct hf_config config = {.log = log_line};
-    struct hf_params p = hf_default_params;
+    const struct hf_config config = {.size = sizeof config, .log = log_line};
+    struct hf_params p = hf_default_params();
     struct hf_context *c;
     int err = hf_open(&c, &config);
     p.model = HF_MODEL_LENS;

@@ -33,7 +33,8 @@ class Defocus
     // In place. Returns what the frame took.
     hf_report render(const hf_image &picture, const hf_depth &depth, const hf_params &params)
     {
-        hf_report report;
+        hf_report report = {};
+        report.size = sizeof report;
         check(hf_render(context_, &picture, &picture, &depth, &params));
         hf_get_report(context_, &report);
         return report;
@@ -57,6 +58,7 @@ struct FrameBuffer {
     hf_image image() const
     {
         hf_image m = {};
+        m.size = sizeof m;
         m.width = view.width;
         m.height = view.height;
         m.format = HF_FORMAT_RGBX8;
@@ -68,6 +70,7 @@ struct FrameBuffer {
     hf_depth window_depth() const
     {
         hf_depth d = {};
+        d.size = sizeof d;
         d.data = view.depth + std::size_t(view.width) * std::size_t(view.height - 1);
         d.stride = -std::ptrdiff_t(view.width) * 4;
         d.type = HF_DEPTH_NDC_D3D;
@@ -84,7 +87,7 @@ struct FrameBuffer {
 void render_frames(FrameBuffer &frame, int frames, float budget_ms)
 {
     Defocus defocus;
-    hf_params p = hf_default_params;
+    hf_params p = hf_default_params();
     p.model = HF_MODEL_LENS;
     p.focus = 6;
     p.lens.f_number = 0.7f;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Choosing settings by quality or by allowed error.
+#include "api/sized.h"
 #include "frame/ladder.h"
+#include "hyperfocal/inspect.h"
+#include "pass/check.h"
 #include "pixel/limits.h"
 
-// The reason why params cannot make what was asked for; NULL: they can.
+// Why params as they are would not give what was asked for; NULL: they do.
 static const char *misfit(const struct hf_params *p, float radius)
 {
     return hf_ladder_farthest(p) < radius ? "does not reach as far as the blur that is asked for"
@@ -11,57 +14,114 @@ static const char *misfit(const struct hf_params *p, float radius)
                                           : NULL;
 }
 
+// A step of the ladder, and why those below it that were good enough were passed over.
+struct chosen {
+    int step, passed;
+    const char *why;
+};
+
 // Apply the first step, from the given one on, that can make what was asked for, or else the last step.
-static void choose(struct hf_params *p, int step, float radius, struct hf_choice *choice)
+static struct chosen choose(struct hf_params *p, int from, float radius)
 {
-    struct hf_params chosen = *p;
-    const char *why = NULL;
-    const int from = step;
-    hf_ladder_apply(&chosen, step);
-    for (const char *here; step + 1 < hf_ladder_steps && (here = misfit(&chosen, radius));
-         hf_ladder_apply(&chosen, step)) {
-        why = why ? why : here;
-        step++;
+    struct hf_params tried = *p;
+    struct chosen c = {.step = from};
+    hf_ladder_apply(&tried, from);
+    for (const char *here; c.step + 1 < hf_ladder_steps && (here = misfit(&tried, radius));
+         hf_ladder_apply(&tried, c.step)) {
+        c.why = c.why ? c.why : here;
+        c.step++;
+        c.passed++;
     }
-    *p = chosen;
-    if (choice)
-        *choice = (struct hf_choice){
-            .step = step,
-            .steps = hf_ladder_steps,
-            .options = hf_ladder[step].options,
-            .error = hf_ladder[step].error,
-            .worst = hf_ladder[step].worst,
-            .ms = hf_ladder[step].ms,
-            .passed = step - from,
-            .why = why,
-            .measured = hf_ladder_measured,
-        };
+    *p = tried;
+    return c;
 }
 
-// The radius that the parameters ask for, in a picture of this height with this kind of depth.
-static float asked_radius(int height, const struct hf_depth *depth, const struct hf_params *p)
+static int step_of_quality(enum hf_quality quality, int *step, struct hf_message *message)
 {
-    const int display = p->view.display_height;
-    return hf_asked_radius(p, depth ? depth->type : HF_DEPTH_VIEW, display > 0 ? display : height);
+    if (hf_check_value("quality", (int)quality, 0, HF_QUALITY_BEST, message))
+        return HF_ERR_ARG;
+    *step = hf_ladder_quality[quality];
+    return HF_OK;
+}
+
+static int step_of_error(float error, int *step, struct hf_message *message)
+{
+    if (!(error > 0 && error <= 1))
+        return hf_bad(message, "error", "is %g; it must be more than 0 and at most 1", error);
+    *step = 0;
+    while (*step + 1 < hf_ladder_steps && !(hf_ladder[*step].error <= error))
+        ++*step;
+    return HF_OK;
+}
+
+// Choose for copies of what the program gave: own->params become those of the step.
+static int choose_from(int height, const struct hf_depth *depth, const struct hf_params *params, int step,
+                       struct hf_given *own, struct chosen *chosen, struct hf_message *message)
+{
+    struct hf_depth z = {.type = HF_DEPTH_VIEW};
+    if (height < 1)
+        return hf_bad(message, "height", "is %d; it must be at least 1", height);
+    if (!params)
+        return hf_bad(message, "params", "is NULL");
+    if ((depth && hf_given_depth(&z, depth, message)) || hf_given_params(own, params, message) ||
+        hf_check_value("engine", (int)own->params.engine, 0, HF_ENGINE_COUNT - 1, message))
+        return HF_ERR_ARG;
+    const int display = own->params.view.display_height;
+    *chosen = choose(&own->params, step, hf_asked_radius(&own->params, z.type, display > 0 ? display : height));
+    return HF_OK;
+}
+
+// Choose a step that is known, and tell of it.
+static int choose_step(int height, const struct hf_depth *depth, struct hf_params *params, int step,
+                       struct hf_choice *choice, struct hf_message *message)
+{
+    struct hf_given own;
+    struct chosen c;
+    if (choose_from(height, depth, params, step, &own, &c, message))
+        return HF_ERR_ARG;
+    const struct hf_choice told = {
+        .error = hf_ladder[c.step].error, .worst = hf_ladder[c.step].worst, .ms = hf_ladder[c.step].ms, .why = c.why};
+    if (hf_sized_out(choice, &told, &hf_sized_choice, "choice", message))
+        return HF_ERR_ARG;
+    own.params.aperture.picture = params->aperture.picture;  // the program's own
+    return hf_sized_out(params, &own.params, &hf_sized_params, "params", message);
 }
 
 int hf_choose_quality(int height, const struct hf_depth *depth, struct hf_params *params, enum hf_quality quality,
-                      struct hf_choice *choice)
+                      struct hf_choice *choice, struct hf_message *message)
 {
-    if (!params || height < 1 || !hf_name(HF_NAMES_QUALITY, (int)quality))
-        return HF_ERR_ARG;
-    choose(params, hf_ladder_quality[quality], asked_radius(height, depth, params), choice);
-    return HF_OK;
+    struct hf_message own = {.size = sizeof own}, lost;
+    int step = 0, err = step_of_quality(quality, &step, &own);
+    if (!err)
+        err = choose_step(height, depth, params, step, choice, &own);
+    return hf_sized_out(message, &own, &hf_sized_message, "message", &lost) ? HF_ERR_ARG : err;
 }
 
 int hf_choose_error(int height, const struct hf_depth *depth, struct hf_params *params, float error,
-                    struct hf_choice *choice)
+                    struct hf_choice *choice, struct hf_message *message)
 {
+    struct hf_message own = {.size = sizeof own}, lost;
+    int step = 0, err = step_of_error(error, &step, &own);
+    if (!err)
+        err = choose_step(height, depth, params, step, choice, &own);
+    return hf_sized_out(message, &own, &hf_sized_message, "message", &lost) ? HF_ERR_ARG : err;
+}
+
+int hf_inspect_get_choice(int height, const struct hf_depth *depth, const struct hf_params *params,
+                          enum hf_quality quality, float error, struct hf_inspect_choice *choice)
+{
+    static const struct hf_sized type = HF_SIZED(hf_inspect_choice, measured);
+    struct hf_message message;
+    struct hf_given own;
+    struct chosen c;
     int step = 0;
-    if (!params || height < 1 || !(error > 0 && error <= 1))
+    if (!choice || (error == 0 ? step_of_quality(quality, &step, &message) : step_of_error(error, &step, &message)) ||
+        choose_from(height, depth, params, step, &own, &c, &message))
         return HF_ERR_ARG;
-    while (step + 1 < hf_ladder_steps && !(hf_ladder[step].error <= error))
-        step++;
-    choose(params, step, asked_radius(height, depth, params), choice);
-    return HF_OK;
+    const struct hf_inspect_choice told = {.step = c.step,
+                                           .steps = hf_ladder_steps,
+                                           .passed = c.passed,
+                                           .options = hf_ladder[c.step].options,
+                                           .measured = hf_ladder_measured};
+    return hf_sized_out(choice, &told, &type, "choice", &message);
 }

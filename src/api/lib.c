@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The public functions. They check arguments and own memory, but compute no pixel.
+// The public functions: check arguments, own memory, touch no pixel.
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "frame/buffers.h"
-#include "frame/report.h"
-#include "frame/check.h"
+#include "api/message.h"
+#include "api/sized.h"
 #include "base/cpu.h"
 #include "base/system.h"
+#include "frame/buffers.h"
+#include "frame/check.h"
+#include "frame/report.h"
 #include "pixel/depth.h"
 #include "pixel/depth_rows.h"
 #include "pixel/limits.h"
@@ -22,6 +23,21 @@ enum { MAX_THREADS = 256 };
 const char *hf_version(void)
 {
     return STRING(HF_VERSION_MAJOR) "." STRING(HF_VERSION_MINOR) "." STRING(HF_VERSION_PATCH);
+}
+
+int hf_abi_version(void)
+{
+    return HF_ABI_VERSION;
+}
+
+const char *hf_isa_name(enum hf_isa isa)
+{
+    return hf_cpu_name(isa);
+}
+
+int hf_isa_available(enum hf_isa isa)
+{
+    return hf_cpu_has(isa);
 }
 
 const char *hf_error_string(int error)
@@ -41,76 +57,69 @@ const char *hf_error_string(int error)
         return "there is no surface where focus was to be read";
     case HF_ERR_CANCELLED:
         return "the call was cancelled";
+    case HF_ERR_ABI:
+        return "the program was compiled for another version of the library's interface";
     default:
         return "unknown error";
     }
 }
 
-HF_PRINTF(3, 4) static void say(const struct hf_config *config, enum hf_log_level level, const char *format, ...)
+static int bad_tile(int size, int step)
 {
-    if (!config->log)
-        return;
-    char message[HF_MESSAGE];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
-    config->log(config->log_cookie, level, message);
+    return size && (size < 16 || size > 65536 || size % step);
 }
 
-static int check_config(const struct hf_config *g)
+static int check_config(const struct hf_config *g, struct hf_message *message)
 {
-    if (g->threads < 0 || g->threads > MAX_THREADS) {
-        say(g, HF_LOG_ERROR, "config.threads is %d; it must be 0 to %d", g->threads, MAX_THREADS);
-        return HF_ERR_ARG;
-    }
-    if (!g->alloc != !g->free) {
-        say(g, HF_LOG_ERROR, "config.%s is NULL; give alloc and free, or neither", g->alloc ? "free" : "alloc");
-        return HF_ERR_ARG;
-    }
-    if (g->tile_width < 0 || g->tile_width > 65536 || g->tile_width % 16 || g->tile_height < 0 ||
-        g->tile_height > 65536 || (g->tile_height && g->tile_height < 16)) {
-        say(g, HF_LOG_ERROR,
-            "config.tile_width is %d and tile_height %d; they must be 0 or 16 to 65536, the width "
-            "a multiple of 16",
-            g->tile_width, g->tile_height);
-        return HF_ERR_ARG;
-    }
-    if (!hf_isa_name(g->isa)) {
-        say(g, HF_LOG_ERROR, "config.isa is %d, which is not an instruction set", (int)g->isa);
-        return HF_ERR_ARG;
-    }
-    return HF_OK;
+    if (g->threads < 0 || g->threads > MAX_THREADS)
+        return hf_bad(message, "config.threads", "is %d; it must be 0 to %d", g->threads, MAX_THREADS);
+    if (!g->alloc != !g->free)
+        return hf_bad(message, g->alloc ? "config.free" : "config.alloc", "is NULL; give alloc and free, or neither");
+    if (bad_tile(g->tile_width, 16))
+        return hf_bad(message, "config.tile_width", "is %d; it must be 0 or 16 to 65536, a multiple of 16",
+                      g->tile_width);
+    if (bad_tile(g->tile_height, 1))
+        return hf_bad(message, "config.tile_height", "is %d; it must be 0 or 16 to 65536", g->tile_height);
+    return hf_check_value("config.isa", (int)g->isa, 0, HF_ISA_NEON, message);
 }
 
-// Log why the value of HYPERFOCAL_ISA cannot be used.
-static void say_variable(const struct hf_config *g)
+// Why there is no instruction set to use.
+static void say_isa(const struct hf_config *g)
 {
     const char *name = hf_cpu_variable();
     int isa;
-    if (hf_value(HF_NAMES_ISA, name, &isa))
-        say(g, HF_LOG_ERROR,
+    if (g->isa)
+        hf_say_error(g, HF_ERR_ISA, "config.isa", "is %s, which this CPU or build does not have", hf_cpu_name(g->isa));
+    else if (hf_value(HF_NAMES_ISA, name, &isa))
+        hf_say_error(
+            g, HF_ERR_ISA, NULL,
             "HYPERFOCAL_ISA is %s, which is no instruction set; there are scalar, sse4.1, avx2, avx512 and neon", name);
     else
-        say(g, HF_LOG_ERROR, "HYPERFOCAL_ISA is %s, which this CPU or build does not have", name);
+        hf_say_error(g, HF_ERR_ISA, NULL, "HYPERFOCAL_ISA is %s, which this CPU or build does not have", name);
 }
 
-int hf_open(struct hf_context **out, const struct hf_config *config)
+// Memory, kernels and threads of a context whose config is known to be right.
+static int set_up(struct hf_context *c)
 {
-    static const struct hf_config defaults;
-    const struct hf_config *g = config ? config : &defaults;
-    if (!out)
+    const size_t bytes = (size_t)c->threads * sizeof *c->workers;
+    c->workers = c->mem.alloc(c->mem.cookie, bytes, HF_ALIGN);
+    if (!c->workers)
+        return HF_ERR_MEMORY;
+    memset(c->workers, 0, bytes);
+    const int err = hf_engines_open(c);
+    return err || c->config.parallel_for ? err : hf_pool_open(&c->pool, c->threads, &c->mem);
+}
+
+static int open_context(struct hf_context **out, const struct hf_config *g)
+{
+    struct hf_message message;
+    if (check_config(g, &message)) {
+        hf_say_error(g, HF_ERR_ARG, NULL, "%s", message.sentence);
         return HF_ERR_ARG;
-    *out = NULL;
-    int err = check_config(g);
-    if (err)
-        return err;
+    }
     const enum hf_isa isa = hf_cpu_choose(g->isa);
     if (isa == HF_ISA_AUTO) {
-        if (g->isa)
-            say(g, HF_LOG_ERROR, "config.isa is %s, which this CPU or build does not have", hf_isa_name(g->isa));
-        else
-            say_variable(g);
+        say_isa(g);
         return HF_ERR_ISA;
     }
     const struct hf_mem mem = g->alloc ? (struct hf_mem){g->alloc, g->free, g->alloc_cookie} : hf_mem_default;
@@ -123,23 +132,31 @@ int hf_open(struct hf_context **out, const struct hf_config *config)
     c->isa = isa;
     c->pid = hf_process();
     c->threads = g->threads ? g->threads : hf_min(hf_system_processors(), MAX_THREADS);
-    const size_t bytes = (size_t)c->threads * sizeof *c->workers;
-    c->workers = mem.alloc(mem.cookie, bytes, HF_ALIGN);
-    if (!c->workers) {
-        err = HF_ERR_MEMORY;
-        goto error;
+    const int err = set_up(c);
+    if (err) {
+        hf_say_error(g, err, NULL, "the context could not be made: %s", hf_error_string(err));
+        hf_close(&c);
     }
-    memset(c->workers, 0, bytes);
-    if ((err = hf_engines_open(c)))
-        goto error;
-    if (!g->parallel_for && (err = hf_pool_open(&c->pool, c->threads, &c->mem)))
-        goto error;
     *out = c;
-    return HF_OK;
-error:
-    say(g, HF_LOG_ERROR, "the context could not be made: %s", hf_error_string(err));
-    hf_close(&c);
     return err;
+}
+
+int hf_open_abi(struct hf_context **out, const struct hf_config *config, int abi)
+{
+    struct hf_config own = {.size = sizeof own};
+    struct hf_message message;
+    if (!out)
+        return HF_ERR_ARG;
+    *out = NULL;
+    if (abi != HF_ABI_VERSION)
+        return HF_ERR_ABI;
+    if (config && hf_sized_in(&own, config, &hf_sized_config, "config", &message)) {
+        // The log lies within what every release has, if the size is one at all.
+        if (config->size >= hf_sized_config.first && config->log)
+            config->log(config->log_cookie, &message);
+        return HF_ERR_ARG;
+    }
+    return open_context(out, &own);
 }
 
 void hf_close(struct hf_context **context)
@@ -176,21 +193,41 @@ int hf_context_threads(const struct hf_context *c)
     return c ? c->threads : 0;
 }
 
-int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z)
+static int depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z,
+                    struct hf_message *message)
 {
-    char message[HF_MESSAGE];
-    if (!z || width > HF_MAX_SIZE || height > HF_MAX_SIZE || x < 0 || y < 0 || x >= width || y >= height ||
-        hf_check_depth(depth, width, message) || depth->type == HF_DEPTH_COC)
+    struct hf_depth own;
+    if (!z || !depth)
+        return hf_bad(message, z ? "depth" : "z", "is NULL");
+    if (width < 1 || height < 1 || width > HF_MAX_SIZE || height > HF_MAX_SIZE)
+        return hf_bad(message, NULL, "the depth is %d x %d pixels; each side must be 1 to %d", width, height,
+                      HF_MAX_SIZE);
+    if (x < 0 || y < 0 || x >= width || y >= height)
+        return hf_bad(message, NULL, "pixel (%d, %d) is outside of the depth, %d x %d pixels", x, y, width, height);
+    if (hf_given_depth(&own, depth, message) || hf_check_depth(&own, width, message))
         return HF_ERR_ARG;
+    if (own.type == HF_DEPTH_COC)
+        return hf_bad(message, "depth.type", "is %s: it holds no distances", hf_name(HF_NAMES_DEPTH_TYPE, own.type));
     struct hf_setup s = {0};
-    hf_setup_depth(&s, depth, 1);
-    *z = hf_depth_decode(&s, hf_depth_sample(depth, x, y), x, y);
-    return *z > 0 && *z < 1e10f ? HF_OK : HF_ERR_FOCUS;
+    hf_setup_depth(&s, &own, 1);
+    *z = hf_depth_decode(&s, hf_depth_sample(&own, x, y), x, y);
+    if (*z > 0 && *z < 1e10f)
+        return HF_OK;
+    hf_bad(message, NULL, "pixel (%d, %d) shows no surface", x, y);
+    return message->error = HF_ERR_FOCUS;
 }
 
-// Render a frame with resolved settings.
+int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z, struct hf_message *message)
+{
+    struct hf_message own = {.size = sizeof own};
+    const int err = depth_at(depth, width, height, x, y, z, &own);
+    const int told = hf_sized_out(message, &own, &hf_sized_message, "message", &(struct hf_message){0});
+    return err ? err : told;
+}
+
+// A frame whose settings are known.
 static int run_resolved(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-                        const struct hf_depth *depth, const struct hf_resolved *r, const struct hf_region *region,
+                        const struct hf_depth *depth, const struct hf_settings *r, const struct hf_region *region,
                         enum hf_task task)
 {
     struct hf_setup s;
@@ -201,10 +238,10 @@ static int run_resolved(struct hf_context *c, const struct hf_image *dst, const 
     return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, task});
 }
 
-// Choose the settings that fit the time budget, and resolve them. Returns how many settings there are to choose from,
-// or an error.
-static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_params *p, const struct hf_depth *depth,
-                  const char **options, char *message)
+// Choose the settings that fit the time budget, and resolve them. Returns how many settings there are to choose from, or an
+// error.
+static int choose(struct hf_context *c, struct hf_settings *r, const struct hf_params *p, const struct hf_depth *depth,
+                  const char **options, struct hf_message *message)
 {
     struct hf_params ladder[HF_BUDGET_STEPS];
     const int steps = hf_budget_ladder(p, hf_asked_radius(p, depth->type, r->params.view.display_height), ladder);
@@ -214,32 +251,32 @@ static int choose(struct hf_context *c, struct hf_resolved *r, const struct hf_p
     return err ? err : steps;
 }
 
-// Log what limits the blur, if the camera's would be larger.
+// What keeps a picture from being the one that the camera would take.
 static void tell_limit(const struct hf_context *c, const struct hf_depth *depth)
 {
     static const char *const why[] = {
         [HF_LIMIT_NONE] = ", the most that there can be",
-        [HF_LIMIT_GIVEN] = ", as max_radius says",
+        [HF_LIMIT_GIVEN] = ", as given",
         [HF_LIMIT_MODEL] = "",
-        [HF_LIMIT_ENGINE] = ": the engine reaches no farther unless max_radius is given",
+        [HF_LIMIT_ENGINE] = ": the engine reaches no farther unless the radius is given",
         [HF_LIMIT_PICTURE] = ": the aperture's picture is drawn no larger",
     };
-    const struct hf_report *r = &c->report;
+    const struct hf_frame_report *r = &c->report;
     const struct hf_params *p = &r->used.params;
     const enum hf_limit limit = r->used.limit;
     if (p->model != HF_MODEL_LENS && depth->type != HF_DEPTH_COC)
         return;
     const struct hf_engine_def *engine = hf_engine_def(p->engine);
     if (engine->limits.width)
-        say(&c->config, HF_LOG_WARNING, "the %s engine blurs by %s, not by how much the lens or the radii ask for",
-            engine->name, engine->limits.width);
+        hf_say(&c->config, HF_LOG_WARNING, NULL,
+               "the %s engine blurs by %s, not by how much the lens or the radii ask for", engine->name,
+               engine->limits.width);
     else if (fmaxf(r->near_radius, r->far_radius) >= p->max_radius)
-        say(&c->config, limit == HF_LIMIT_GIVEN ? HF_LOG_INFO : HF_LOG_WARNING,
-            "blur is cut to %g pixels where it would be larger%s", p->max_radius, why[limit]);
+        hf_say(&c->config, limit == HF_LIMIT_GIVEN ? HF_LOG_INFO : HF_LOG_WARNING, "max_radius",
+               "is %g pixels%s: larger blur is cut to that", p->max_radius, why[limit]);
 }
 
-// Warn once if whole numbers are taken for distances but surely are none: those of a hardware depth buffer, or numbers
-// that would all lie before the focus.
+// Whole numbers taken for distances, where they are surely none: those of a hardware depth buffer, or all before the focus.
 static void tell_depth(struct hf_context *c, const struct hf_depth *d, const struct hf_params *p)
 {
     const int hardware = d->format == HF_DEPTH_FORMAT_D24S8 || d->format == HF_DEPTH_FORMAT_X8D24;
@@ -250,20 +287,77 @@ static void tell_depth(struct hf_context *c, const struct hf_depth *d, const str
         !(hardware || sharp > 1) || told == c->depth_told)
         return;
     c->depth_told = told;
-    say(&c->config, HF_LOG_WARNING,
-        "depth.format is %s and depth.type %s: whole numbers are read as distances 0 to 1; set depth.type",
-        hf_name(HF_NAMES_DEPTH_FORMAT, (int)d->format), hf_name(HF_NAMES_DEPTH_TYPE, (int)d->type));
+    hf_say(&c->config, HF_LOG_WARNING, "depth.type",
+           "is %s and the format %s: whole numbers are read as distances 0 to 1; set the type",
+           hf_name(HF_NAMES_DEPTH_TYPE, (int)d->type), hf_name(HF_NAMES_DEPTH_FORMAT, (int)d->format));
 }
 
-static int check_region(const struct hf_region *r, const struct hf_image *src, char *message)
+static int check_region(const struct hf_region *r, const struct hf_image *src, struct hf_message *message)
 {
-    if (r->size != sizeof *r)
-        return hf_bad(message, "region.size is %zu; it must be %zu", r->size, sizeof *r);
     if (r->x < 0 || r->y < 0 || r->width < 1 || r->height < 1 || r->x >= src->width || r->y >= src->height ||
         r->width > src->width - r->x || r->height > src->height - r->y)
-        return hf_bad(message, "region is %d x %d pixels from (%d, %d); it must lie in the picture of %d x %d",
+        return hf_bad(message, "region", "is %d x %d pixels from (%d, %d); it must lie in the picture of %d x %d",
                       r->width, r->height, r->x, r->y, src->width, src->height);
     return HF_OK;
+}
+
+// What a program gives to render a frame, copied.
+struct call {
+    const struct hf_region *region;  // NULL: all
+    struct hf_region own_region;
+    struct hf_image dst, src;
+    struct hf_depth depth;
+    struct hf_given given;
+};
+
+static int take(struct call *call, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
+                const struct hf_params *params, const struct hf_region *region, struct hf_message *message)
+{
+    *call = (struct call){.region = region ? &call->own_region : NULL};
+    if (!src || !dst || !depth)
+        return hf_bad(message, !src ? "src" : !dst ? "dst" : "depth", "is NULL");
+    if (hf_sized_in(&call->src, src, &hf_sized_image, "src", message) ||
+        hf_sized_in(&call->dst, dst, &hf_sized_image, "dst", message) || hf_given_depth(&call->depth, depth, message) ||
+        hf_given_params(&call->given, params, message) ||
+        (region && hf_sized_in(&call->own_region, region, &hf_sized_region, "region", message)))
+        return HF_ERR_ARG;
+    int err = hf_check_images(&call->dst, &call->src, call->region, message);
+    if (!err && region)
+        err = check_region(&call->own_region, &call->src, message);
+    return err ? err : hf_check_depth(&call->depth, call->src.width, message);
+}
+
+// Settings for the frame: those of the parameters, or what the budget leaves of them. *steps: how many it chooses from.
+static int settle(struct hf_context *c, const struct call *call, struct hf_settings *r, int *steps,
+                  const char **options, struct hf_message *message)
+{
+    const struct hf_params *p = &call->given.params;
+    const int err = hf_params_resolve(r, call->src.width, call->src.height, &call->depth, p, message);
+    const int budget = !c->dump && p->run.budget_ms > 0;
+    if (!budget)
+        c->budget.step = 0;
+    if (err || !budget)
+        return err;
+    *steps = choose(c, r, p, &call->depth, options, message);
+    return hf_min(*steps, 0);
+}
+
+// Learn from a frame whether its setting keeps the budget.
+static void note_budget(struct hf_context *c, float budget_ms, int steps)
+{
+    hf_budget_note(&c->budget, budget_ms, steps, (float)c->report.total_ms);
+    if (hf_budget_missed(&c->budget, budget_ms, steps))
+        hf_say(&c->config, HF_LOG_WARNING, "run.budget_ms",
+               "is %g, which frames miss, and nothing cheaper blurs as far as is asked for: the last took %.1f",
+               budget_ms, c->report.total_ms);
+}
+
+static int fail_by(struct hf_context *c, int error, const char *sentence)
+{
+    struct hf_message message;
+    hf_bad(&message, NULL, "%s", sentence);
+    message.error = error;
+    return hf_fail(c, &message);
 }
 
 // Check the arguments, choose a setting that fits the budget, and render.
@@ -273,52 +367,37 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
 {
     if (!c)
         return HF_ERR_ARG;
-    const struct hf_params *p = params ? params : &hf_default_params;
-    char message[HF_MESSAGE];
-    struct hf_resolved r;
-    c->report = (struct hf_report){0};
-    atomic_store_explicit(&c->stop, 0, memory_order_relaxed);
-    if (c->pool && c->threads > 1 && c->pid != hf_process()) {
-        say(&c->config, HF_LOG_ERROR, "the context was opened before fork(): its threads are in the parent process");
-        return HF_ERR_THREAD;
-    }
-    int err = hf_check_images(dst, src, region, message);
-    if (!err && region)
-        err = check_region(region, src, message);
-    if (!err)
-        err = hf_check_depth(depth, src->width, message);
-    if (!err)
-        err = hf_params_resolve(&r, src->width, src->height, depth, p, message);
+    struct hf_message message;
+    struct call call;
+    struct hf_settings r;
     int steps = 0;
     const char *options = NULL;
-    c->budget.step = c->dump || !(p->run.budget_ms > 0) ? 0 : c->budget.step;
-    if (!err && p->run.budget_ms > 0 && !c->dump) {
-        steps = choose(c, &r, p, depth, &options, message);
-        err = hf_min(steps, 0);
-    }
+    c->report = (struct hf_frame_report){0};
+    atomic_store_explicit(&c->stop, 0, memory_order_relaxed);
+    if (c->pool && c->threads > 1 && c->pid != hf_process())
+        return fail_by(c, HF_ERR_THREAD, "the context was opened before fork(): its threads are in the parent process");
+    int err = take(&call, dst, src, depth, params, region, &message);
+    if (!err)
+        err = settle(c, &call, &r, &steps, &options, &message);
+    if (err)
+        return hf_fail(c, &message);
+    tell_depth(c, &call.depth, &r.params);
+    err = run_resolved(c, &call.dst, &call.src, &call.depth, &r, call.region, task);
     if (err) {
-        say(&c->config, HF_LOG_ERROR, "%s", message);
-        return err;
+        char sentence[128];
+        c->report = (struct hf_frame_report){0};
+        if (err == HF_ERR_CANCELLED)
+            return err;
+        snprintf(sentence, sizeof sentence, "the frame could not be rendered: %s", hf_error_string(err));
+        return fail_by(c, err, sentence);
     }
-    tell_depth(c, depth, &r.params);
-    err = run_resolved(c, dst, src, depth, &r, region, task);
-    if (!err && !r.sharp)
-        tell_limit(c, depth);
+    if (!r.sharp)
+        tell_limit(c, &call.depth);
     c->report.budget_steps = steps;
     c->report.budget_options = options;
-    if (err) {
-        c->report = (struct hf_report){0};
-        if (err != HF_ERR_CANCELLED)
-            say(&c->config, HF_LOG_ERROR, "the frame could not be rendered: %s", hf_error_string(err));
-    } else if (steps && task == HF_TASK_RENDER && !region) {
-        hf_budget_note(&c->budget, p->run.budget_ms, steps, (float)c->report.total_ms);
-        if (hf_budget_missed(&c->budget, p->run.budget_ms, steps))
-            say(&c->config, HF_LOG_WARNING,
-                "run.budget_ms is %g, which frames miss, and nothing cheaper blurs as far as is asked for: the last "
-                "took %.1f",
-                p->run.budget_ms, c->report.total_ms);
-    }
-    return err;
+    if (steps && task == HF_TASK_RENDER && !region)
+        note_budget(c, call.given.params.run.budget_ms, steps);
+    return HF_OK;
 }
 
 int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
@@ -339,11 +418,12 @@ int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const stru
 {
     const int err = run(c, dst, src, depth, params, region, HF_TASK_PLAN);
     struct hf_region *const out[2] = {colour, depth_read};
-    for (int i = 0; i < 2; i++) {
-        if (!out[i])
-            continue;
+    struct hf_message message;
+    for (int i = 0; i < 2 && c; i++) {
         const struct hf_rect r = err ? (struct hf_rect){0} : c->reads[i];
-        *out[i] = (struct hf_region){sizeof *out[i], r.x0, r.y0, r.x1 - r.x0, r.y1 - r.y0};
+        const struct hf_region own = {sizeof own, r.x0, r.y0, r.x1 - r.x0, r.y1 - r.y0};
+        if (hf_sized_out(out[i], &own, &hf_sized_region, i ? "depth_read" : "colour", &message))
+            return hf_fail(c, &message);
     }
     return err;
 }
@@ -358,8 +438,8 @@ int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_im
             const struct hf_params *params, struct hf_report *report)
 {
     const int err = run(c, dst, src, depth, params, NULL, HF_TASK_PLAN);
-    hf_get_report(c, report);
-    return err;
+    const int told = c && report ? hf_get_report(c, report) : HF_OK;
+    return err ? err : told;
 }
 
 void hf_cancel(struct hf_context *c)
@@ -372,23 +452,4 @@ void hf_set_progress(struct hf_context *c, int (*fn)(void *cookie, float done), 
 {
     if (c)
         c->progress = (struct hf_progress_call){fn, cookie};
-}
-
-void hf_get_report(const struct hf_context *c, struct hf_report *report)
-{
-    if (report)
-        *report = c ? c->report : (struct hf_report){0};
-}
-
-size_t hf_get_tiles(const struct hf_context *c, uint8_t *tiles, size_t size)
-{
-    return c ? hf_report_tiles(c, tiles, size) : 0;
-}
-
-void hf_set_dump(struct hf_context *c, void (*fn)(void *cookie, const struct hf_buffer *buffer), void *cookie)
-{
-    if (!c)
-        return;
-    c->dump = fn;
-    c->dump_cookie = cookie;
 }

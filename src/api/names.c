@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The names of the values of public enums.
+// The words for the values of public enums.
 #include <string.h>
 
+#include "base/cpu.h"
 #include "pass/engine.h"
 
 static const char *const log_levels[] = {"error", "warning", "info", NULL};
@@ -15,7 +16,6 @@ static const char *const models[] = {"range", "lens", NULL};
 static const char *const storages[] = {"float", "half", "packed", NULL};
 static const char *const fills[] = {"max", "mean", "none", "open", NULL};
 static const char *const blends[] = {"linear", "smoothstep", NULL};
-static const char *const tiles[] = {"sharp", "near", "far", "both", NULL};
 static const char *const qualities[] = {"draft", "standard", "high", "best", NULL};
 static const char *const downsamples[] = {"bilateral", "linear", "point", NULL};
 static const char *const divisions[] = {"exact", "estimate", "newton", "newton2", NULL};
@@ -23,7 +23,7 @@ static const char *const layers[] = {"standard", "draft", "high", "best", NULL};
 static const char *const limits[] = {"none", "given", "model", "engine", "picture", NULL};
 
 // Names of instruction sets and engines are defined with them.
-static const char *const *const lists[HF_NAMES_COUNT] = {
+static const char *const *const lists[] = {
     [HF_NAMES_LOG_LEVEL] = log_levels,
     [HF_NAMES_FORMAT] = formats,
     [HF_NAMES_TRANSFER] = transfers,
@@ -34,7 +34,6 @@ static const char *const *const lists[HF_NAMES_COUNT] = {
     [HF_NAMES_STORAGE] = storages,
     [HF_NAMES_FILL] = fills,
     [HF_NAMES_BLEND] = blends,
-    [HF_NAMES_TILE] = tiles,
     [HF_NAMES_LIMIT] = limits,
     [HF_NAMES_QUALITY] = qualities,
     [HF_NAMES_DOWNSAMPLE] = downsamples,
@@ -44,10 +43,10 @@ static const char *const *const lists[HF_NAMES_COUNT] = {
 
 const char *hf_name(enum hf_names of, int value)
 {
-    if (value < 0 || (unsigned)of >= HF_NAMES_COUNT)
+    if (value < 0 || (unsigned)of >= sizeof lists / sizeof *lists)
         return NULL;
     if (of == HF_NAMES_ISA)
-        return hf_isa_name((enum hf_isa)value);
+        return hf_cpu_name((enum hf_isa)value);
     if (of == HF_NAMES_ENGINE)
         return hf_engine_name((enum hf_engine)value);
     for (int i = 0; lists[of][i]; i++)
@@ -76,13 +75,8 @@ const char *hf_engine_name(enum hf_engine engine)
     return e ? e->name : NULL;
 }
 
-int hf_pass_count(enum hf_engine engine)
+const char *hf_inspect_pass_name(enum hf_engine engine, int pass)
 {
     const struct hf_engine_def *e = hf_engine_def(engine);
-    return e ? e->pass_count : 0;
-}
-
-const char *hf_pass_name(enum hf_engine engine, int pass)
-{
-    return pass >= 0 && pass < hf_pass_count(engine) ? hf_engine_def(engine)->passes[pass].name : NULL;
+    return e && pass >= 0 && pass < e->pass_count ? e->passes[pass].name : NULL;
 }

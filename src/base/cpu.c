@@ -13,7 +13,7 @@
 static const char *const isa_names[] = {"auto", "scalar", "sse4.1", "avx2", "avx512", "neon"};
 enum { ISA_COUNT = sizeof isa_names / sizeof *isa_names };
 
-const char *hf_isa_name(enum hf_isa isa)
+const char *hf_cpu_name(enum hf_isa isa)
 {
     return (unsigned)isa < ISA_COUNT ? isa_names[isa] : NULL;
 }
@@ -28,7 +28,7 @@ static int has_f16c(void)
 }
 #endif
 
-int hf_isa_available(enum hf_isa isa)
+int hf_cpu_has(enum hf_isa isa)
 {
     switch (isa) {
     case HF_ISA_AUTO:
@@ -42,9 +42,8 @@ int hf_isa_available(enum hf_isa isa)
     case HF_ISA_AVX2:
         return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && has_f16c();
     case HF_ISA_AVX512:
-        return hf_isa_available(HF_ISA_AVX2) && __builtin_cpu_supports("avx512f") &&
-               __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-               __builtin_cpu_supports("avx512vl");
+        return hf_cpu_has(HF_ISA_AVX2) && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+               __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #endif
 #endif
 #if HF_SIMD && HF_ARM
@@ -72,10 +71,10 @@ enum hf_isa hf_cpu_choose(enum hf_isa wanted)
             return HF_ISA_AUTO;
     }
     if (wanted != HF_ISA_AUTO)
-        return hf_isa_available(wanted) ? wanted : HF_ISA_AUTO;
+        return hf_cpu_has(wanted) ? wanted : HF_ISA_AUTO;
     enum hf_isa best = HF_ISA_SCALAR;
     for (int i = HF_ISA_SCALAR; i < ISA_COUNT; i++)
-        if (hf_isa_available((enum hf_isa)i))
+        if (hf_cpu_has((enum hf_isa)i))
             best = (enum hf_isa)i;
     return best;
 }

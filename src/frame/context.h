@@ -43,9 +43,9 @@ struct hf_context {
     struct hf_plan plan;
     struct hf_block planes;         // buffers of the whole frame
     struct hf_block chunks, tiles;  // the plan's
-    struct hf_block joined;         // CoC for a dump: at full resolution, or of narrow buffers
-    struct hf_block repairs;        // in place: repairs, to be written before a tile overwrites its neighbours
-    struct hf_report report;
+    struct hf_block joined;         // CoC for a dump: of full resolution, or of narrow buffers
+    struct hf_block repairs;        // in place: what has to be written before a tile overwrites its neighbours
+    struct hf_frame_report report;
     struct hf_work work;  // of the plan
     struct hf_cost cost;
     struct hf_budget budget;
@@ -53,7 +53,9 @@ struct hf_context {
     atomic_int stop;          // the call that runs is cancelled
     int depth_told;           // the depth format for which a warning said that it is no distance; 0: none
 
-    void (*dump)(void *cookie, const struct hf_buffer *buffer);
+    int colour_stats;           // look at the colour, for the report
+    struct hf_message problem;  // of the last call that failed
+    void (*dump)(void *cookie, const struct hf_inspect_buffer *buffer);
     void *dump_cookie;
     struct hf_progress_call progress;
 };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Initialisers of struct hf_params that no one has changed.
+// The values of struct hf_params that no one has changed.
 #ifndef HF_DEFAULTS_H
 #define HF_DEFAULTS_H
 
 #include "hyperfocal/hyperfocal.h"
 
 #define HF_PARAMS_DEFAULTS                                                                                             \
-    .engine = HF_ENGINE_GATHER, .model = HF_MODEL_RANGE, .focus = 10,                                                  \
+    .size = sizeof(struct hf_params), .engine = HF_ENGINE_GATHER, .model = HF_MODEL_RANGE, .focus = 10,                \
     .range = {.distance = HF_DERIVE,                                                                                   \
               .strength = 1,                                                                                           \
               .near_begin = HF_DERIVE,                                                                                 \
@@ -19,5 +19,8 @@
     .gather = {.rings = HF_DERIVE, .fill = (enum hf_fill)HF_DERIVE},                                                   \
     .layers = {.spacing = HF_DERIVE, .half_from = HF_DERIVE, .quarter_from = HF_DERIVE},                               \
     .gaussian = {.iterations = 3, .sigma = HF_DERIVE, .by_depth = HF_DERIVE}
+
+// What hf_params_init fills in.
+extern const struct hf_params hf_params_defaults;
 
 #endif

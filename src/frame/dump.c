@@ -6,7 +6,8 @@
 #include "pixel/format.h"
 
 // A full-resolution buffer holds even and odd pixels of a row separately; interleave them.
-static int join_lanes(struct hf_context *c, const struct hf_setup *s, const struct hf_buf *b, struct hf_buffer *out)
+static int join_lanes(struct hf_context *c, const struct hf_setup *s, const struct hf_buf *b,
+                      struct hf_inspect_buffer *out)
 {
     const int width = s->width, height = s->height;
     const int err = hf_block_grow(&c->joined, 2 * (size_t)width * height * sizeof(float), &c->mem);
@@ -26,7 +27,7 @@ static int join_lanes(struct hf_context *c, const struct hf_setup *s, const stru
     return HF_OK;
 }
 
-static int widen(struct hf_context *c, const struct hf_setup *s, const struct hf_buf *b, struct hf_buffer *out)
+static int widen(struct hf_context *c, const struct hf_setup *s, const struct hf_buf *b, struct hf_inspect_buffer *out)
 {
     const int bytes = hf_narrow_bytes(s->storage);
     const int err = hf_block_grow(&c->joined, (size_t)out->width * out->height * sizeof(float), &c->mem);
@@ -51,11 +52,12 @@ int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s)
         if (!def->name || !hf_engine_channels(e, s, b))
             continue;
         const struct hf_rect r = hf_buffers_rect(s, def, all);
-        struct hf_buffer out = {.name = def->name,
-                                .width = r.x1,
-                                .height = r.y1,
-                                .channels = hf_engine_channels(e, s, b),
-                                .stride = f->buf[b].stride * (ptrdiff_t)sizeof(float)};
+        struct hf_inspect_buffer out = {.size = sizeof out,
+                                        .name = def->name,
+                                        .width = r.x1,
+                                        .height = r.y1,
+                                        .channels = hf_engine_channels(e, s, b),
+                                        .stride = f->buf[b].stride * (ptrdiff_t)sizeof(float)};
         for (int ch = 0; ch < out.channels; ch++)
             out.data[ch] = f->buf[b].ch[ch];
         const int err = def->y > def->x ? join_lanes(c, s, &f->buf[b], &out)

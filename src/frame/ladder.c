@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "frame/budget.h"
+#include "frame/defaults.h"
 #include "pass/engine.h"
 #include "frame/defaults.h"
 #include "frame/ladder_fields.h"
@@ -47,7 +48,7 @@ uint64_t hf_ladder_hash(const struct hf_params *p)
 void hf_ladder_reshape(struct hf_params *p)
 {
     const unsigned drawn = hf_engine_def(p->engine)->limits.aperture;
-    const struct hf_aperture_params *disc = &hf_default_params.aperture;
+    const struct hf_aperture_params *disc = &hf_params_defaults.aperture;
     struct hf_aperture_params *a = &p->aperture;
     if (!(drawn & HF_APERTURE_BLADES))
         a->blades = disc->blades;

@@ -4,7 +4,7 @@
 #ifndef HF_LADDER_H
 #define HF_LADDER_H
 
-#include "hyperfocal/hyperfocal.h"
+#include "pass/frame.h"
 
 struct hf_ladder_step {
     const char *options;      // the command's words for it

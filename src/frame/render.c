@@ -155,7 +155,7 @@ static void begin_progress(struct hf_render *r)
     const struct hf_context *c = r->c;
     uint64_t all = (uint64_t)hf_plan_count(&c->plan, 2);
     for (int i = 0; i < c->report.passes; i++) {
-        const struct hf_pass_report *pass = &c->report.pass[i];
+        const struct hf_frame_pass *pass = &c->report.pass[i];
         uint32_t left = pass->run;
         for (int k = 0; k < c->threads; k++)
             left -= left > c->workers[k].tiles[i] ? c->workers[k].tiles[i] : left;
@@ -240,7 +240,7 @@ static int blur(struct hf_render *r, struct hf_setup *s, enum hf_task task)
     if (err)
         return err;
     report_plan(r, hf_now_ns() - looked);
-    err = s->resolved->params.run.colour_stats ? look_at_colour(r) : HF_OK;
+    err = c->colour_stats ? look_at_colour(r) : HF_OK;
     if (err)
         return err;
     if (task != HF_TASK_RENDER)

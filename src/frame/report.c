@@ -68,24 +68,24 @@ static size_t memory_held(const struct hf_context *c)
 static void start_report(struct hf_context *c, const struct hf_setup *s)
 {
     const struct hf_plan *p = &c->plan;
-    struct hf_report *r = &c->report;
-    *r = (struct hf_report){.used = *s->resolved,
-                            .picture = s->resolved->params.aperture.picture != NULL,
-                            .budget_step = c->budget.step,
-                            .tile_width = 2 * p->cells.width[2],
-                            .tile_height = 2 * p->cells.height[2],
-                            .columns = p->columns[2],
-                            .rows = p->rows[2],
-                            .passes = p->engine->pass_count};
-    r->used.params.aperture.picture = NULL;  // it belongs to the caller, who may free it
+    struct hf_frame_report *r = &c->report;
+    *r = (struct hf_frame_report){.used = *s->resolved,
+                                  .picture = s->resolved->params.aperture.picture != NULL,
+                                  .budget_step = c->budget.step,
+                                  .tile_width = 2 * p->cells.width[2],
+                                  .tile_height = 2 * p->cells.height[2],
+                                  .columns = p->columns[2],
+                                  .rows = p->rows[2],
+                                  .passes = p->engine->pass_count};
+    r->used.params.aperture.picture = NULL;  // the caller's, and he may free it
     for (int i = 0; i < r->passes; i++)
-        r->pass[i] = (struct hf_pass_report){.name = p->engine->passes[i].name,
-                                             .all = (uint32_t)hf_plan_count(p, p->engine->passes[i].sweep)};
+        r->pass[i] = (struct hf_frame_pass){.name = p->engine->passes[i].name,
+                                            .all = (uint32_t)hf_plan_count(p, p->engine->passes[i].sweep)};
 }
 
 void hf_report_copy(struct hf_context *c, const struct hf_setup *s)
 {
-    struct hf_report *r = &c->report;
+    struct hf_frame_report *r = &c->report;
     start_report(c, s);
     r->tile_count[HF_TILE_SHARP] = (uint32_t)hf_plan_count(&c->plan, 2);
     for (int i = 0; i < r->passes; i++)
@@ -100,7 +100,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
 {
     const struct hf_plan *p = &c->plan;
     const struct hf_engine_def *e = p->engine;
-    struct hf_report *r = &c->report;
+    struct hf_frame_report *r = &c->report;
     double ms[HF_MAX_PASSES];
     start_report(c, s);
     for (int i = 0; i < hf_plan_count(p, 2); i++)
@@ -115,7 +115,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
     hf_cost_work(&c->work, p, s, (const float[]){r->near_radius, r->far_radius});
     hf_cost_predict(&c->cost, s, c->isa, c->threads, &c->work, ms);
     for (int i = 0; i < e->pass_count; i++) {
-        struct hf_pass_report *row = &r->pass[i];
+        struct hf_frame_pass *row = &r->pass[i];
         row->run = c->work.run[i];
         row->predicted_ms = ms[i];
         if (row->run < row->all)
@@ -132,7 +132,7 @@ void hf_report_plan(struct hf_context *c, const struct hf_setup *s, const struct
 
 void hf_report_colour(struct hf_context *c)
 {
-    struct hf_report *r = &c->report;
+    struct hf_frame_report *r = &c->report;
     r->colour_known = r->opaque = 1;
     for (int i = 0; i < c->threads; i++) {
         const struct hf_counts *seen = &c->workers[i].looked;
@@ -144,7 +144,7 @@ void hf_report_colour(struct hf_context *c)
 
 void hf_report_frame(struct hf_context *c, double total_ms)
 {
-    struct hf_report *r = &c->report;
+    struct hf_frame_report *r = &c->report;
     const struct hf_counts n = hf_report_counts(c);
     r->total_ms = total_ms;
     r->memory_held = memory_held(c);

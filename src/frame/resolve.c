@@ -24,13 +24,13 @@ static int is_lens(const struct hf_params *p, const struct hf_depth *depth)
     return p->model == HF_MODEL_LENS && depth->type != HF_DEPTH_COC;
 }
 
-static int check_range_model(struct hf_resolved *r, char *message)
+static int check_range_model(struct hf_settings *r, struct hf_message *message)
 {
     struct hf_range_params *p = &r->params.range;
     if (p->distance != HF_DERIVE && !(p->distance >= 0))
-        return hf_bad(message, "range.distance is %g; it must be >= 0", p->distance);
+        return hf_bad(message, "range.distance", "is %g; it must be >= 0", p->distance);
     if (!(p->strength >= 0 && p->strength <= 1))
-        return hf_bad(message, "range.strength is %g; it must be 0 to 1", p->strength);
+        return hf_bad(message, "range.strength", "is %g; it must be 0 to 1", p->strength);
     const float focus = r->params.focus;
     const float range = p->distance = derive(p->distance, focus / 2);
     // With an endless range, near blur would otherwise begin at 0 and stay finite.
@@ -41,28 +41,27 @@ static int check_range_model(struct hf_resolved *r, char *message)
     const int endless = focus == INFINITY;  // autofocus where there is no surface
     const float nb = p->near_begin == -INFINITY ? 0 : p->near_begin;
     if (!(nb >= 0 && nb <= p->near_end && (p->near_end < INFINITY || endless)))
-        return hf_bad(message, "range.near_begin is %g and near_end %g; they must be 0 <= begin <= end, finite", nb,
-                      p->near_end);
+        return hf_bad(message, "range.near_begin",
+                      "is %g and near blur ends at %g; they must be 0 <= begin <= end, finite", nb, p->near_end);
     if (!(p->far_begin >= 0 && p->far_begin <= p->far_end && (p->far_begin < INFINITY || endless)))
-        return hf_bad(message, "range.far_begin is %g and far_end %g; they must be 0 <= begin <= end", p->far_begin,
-                      p->far_end);
+        return hf_bad(message, "range.far_begin", "is %g and far blur is full at %g; they must be 0 <= begin <= end",
+                      p->far_begin, p->far_end);
     if (p->near_end > p->far_begin)
-        return hf_bad(message,
-                      "range.near_end is %g and far_begin %g; what lies between them would be near and far at once: "
-                      "near_end must be <= far_begin",
+        return hf_bad(message, "range.near_end",
+                      "is %g; it must be at most %g, where far blur begins: no surface is near and far at once",
                       p->near_end, p->far_begin);
     return HF_OK;
 }
 
-static int check_lens(const struct hf_lens_params *p, char *message)
+static int check_lens(const struct hf_lens_params *p, struct hf_message *message)
 {
     const float values[] = {p->focal_length_mm, p->sensor_width_mm, p->world_unit_m};
-    const char *const names[] = {"focal_length_mm", "sensor_width_mm", "world_unit_m"};
+    const char *const names[] = {"lens.focal_length_mm", "lens.sensor_width_mm", "lens.world_unit_m"};
     if (!(p->f_number > 0))
-        return hf_bad(message, "lens.f_number is %g; it must be > 0", p->f_number);
+        return hf_bad(message, "lens.f_number", "is %g; it must be > 0", p->f_number);
     for (int i = 0; i < 3; i++)
         if (!(values[i] > 0 && hf_is_finite(values[i])))
-            return hf_bad(message, "lens.%s is %g; it must be > 0 and finite", names[i], values[i]);
+            return hf_bad(message, names[i], "is %g; it must be > 0 and finite", values[i]);
     return HF_OK;
 }
 
@@ -70,54 +69,55 @@ static int check_lens(const struct hf_lens_params *p, char *message)
 enum { SHAPES = HF_APERTURE_BLADES | HF_APERTURE_ROUNDNESS | HF_APERTURE_RING | HF_APERTURE_CAT_EYE };
 
 // Whether the values are in range, and the engine can draw them.
-static int check_aperture(const struct hf_aperture_params *p, const struct hf_engine_def *e, char *message)
+static int check_aperture(const struct hf_aperture_params *p, const struct hf_engine_def *e, struct hf_message *message)
 {
     if (p->blades != 0 && (p->blades < 3 || p->blades > MAX_BLADES))
-        return hf_bad(message, "aperture.blades is %d; it must be 0 or 3 to %d", p->blades, MAX_BLADES);
+        return hf_bad(message, "aperture.blades", "is %d; it must be 0 or 3 to %d", p->blades, MAX_BLADES);
     if (!hf_is_finite(p->rotation))
-        return hf_bad(message, "aperture.rotation is %g; it must be finite", p->rotation);
+        return hf_bad(message, "aperture.rotation", "is %g; it must be finite", p->rotation);
     const struct {
         const char *name;
         float value, neutral, least, most;
         unsigned bit;
-    } rows[] = {{"blades", (float)p->blades, 0, 0, MAX_BLADES, HF_APERTURE_BLADES},
-                {"roundness", p->roundness, 0, 0, 1, HF_APERTURE_ROUNDNESS},
-                {"ring", p->ring, 0, 0, 0.95f, HF_APERTURE_RING},
-                {"cat_eye", p->cat_eye, 0, 0, 1, HF_APERTURE_CAT_EYE},
-                {"squeeze", p->squeeze, 1, 0.25f, 4, HF_APERTURE_SQUEEZE},
-                {"chromatic", p->chromatic, 0, -0.5f, 0.5f, HF_APERTURE_CHROMATIC}};
+    } rows[] = {{"aperture.blades", (float)p->blades, 0, 0, MAX_BLADES, HF_APERTURE_BLADES},
+                {"aperture.roundness", p->roundness, 0, 0, 1, HF_APERTURE_ROUNDNESS},
+                {"aperture.ring", p->ring, 0, 0, 0.95f, HF_APERTURE_RING},
+                {"aperture.cat_eye", p->cat_eye, 0, 0, 1, HF_APERTURE_CAT_EYE},
+                {"aperture.squeeze", p->squeeze, 1, 0.25f, 4, HF_APERTURE_SQUEEZE},
+                {"aperture.chromatic", p->chromatic, 0, -0.5f, 0.5f, HF_APERTURE_CHROMATIC}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "aperture.%s", rows[i].name);
+        const char *name = rows[i].name;
         if (hf_check_between(name, rows[i].value, rows[i].least, rows[i].most, message))
             return HF_ERR_ARG;
         if (rows[i].value != rows[i].neutral && !(e->limits.aperture & rows[i].bit))
-            return hf_bad(message, "%s is %g; the %s engine cannot draw that", name, rows[i].value, e->name);
+            return hf_bad(message, name, "is %g; the %s engine cannot draw that", rows[i].value, e->name);
         if (rows[i].value != rows[i].neutral && p->picture && (rows[i].bit & SHAPES))
-            return hf_bad(message, "%s is %g with aperture.picture, which is the whole shape", name, rows[i].value);
+            return hf_bad(message, name, "is %g beside a picture of the aperture, which is the whole shape",
+                          rows[i].value);
     }
     if (!p->picture)
         return HF_OK;
     if (!(e->limits.aperture & HF_APERTURE_PICTURE))
-        return hf_bad(message, "aperture.picture is given; the %s engine cannot draw it", e->name);
+        return hf_bad(message, "aperture.picture", "is given; the %s engine cannot draw it", e->name);
     return hf_check_image(p->picture, "aperture.picture", message);
 }
 
-static int check_view(struct hf_resolved *r, char *message)
+static int check_view(struct hf_settings *r, struct hf_message *message)
 {
     struct hf_view_params *v = &r->params.view;
     if (v->display_width == HF_DERIVE)
         v->display_width = r->width;
     if (v->display_height == HF_DERIVE)
         v->display_height = r->height;
-    if (v->display_width < 1 || v->display_height < 1)
-        return hf_bad(message, "the display size is %d x %d; it must be at least 1 x 1", v->display_width,
-                      v->display_height);
+    if (v->display_width < 1)
+        return hf_bad(message, "view.display_width", "is %d; it must be at least 1", v->display_width);
+    if (v->display_height < 1)
+        return hf_bad(message, "view.display_height", "is %d; it must be at least 1", v->display_height);
     return hf_check_between("view.pixel_aspect", v->pixel_aspect, 0.1f, 10, message);
 }
 
-static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, const struct hf_engine_def *e,
-                       char *message)
+static int check_focus(struct hf_settings *r, const struct hf_depth *depth, const struct hf_engine_def *e,
+                       struct hf_message *message)
 {
     struct hf_params *p = &r->params;
     if (p->focus == HF_DERIVE) {
@@ -130,20 +130,21 @@ static int check_focus(struct hf_resolved *r, const struct hf_depth *depth, cons
         const float z = hf_depth_surface(&s, depth, r->width / 2, r->height / 2, &repaired);
         p->focus = z > 0 && z < 1e10f ? z : INFINITY;  // along a ray it may be 0
         if (p->focus == INFINITY && !e->limits.focus_anywhere) {
-            hf_bad(message, "focus is to be that of pixel (%d, %d), where there is no surface", r->width / 2,
+            hf_bad(message, "focus", "is to be read at pixel (%d, %d), where there is no surface", r->width / 2,
                    r->height / 2);
-            return HF_ERR_FOCUS;
+            return message->error = HF_ERR_FOCUS;
         }
         return HF_OK;
     }
     // A lens may be focused at infinity: 1 / focus is 0 then.
     if (p->focus > 0 && (hf_is_finite(p->focus) || p->model == HF_MODEL_LENS))
         return HF_OK;
-    return hf_bad(message, "focus is %g; it must be > 0, and finite except with a lens", p->focus);
+    return hf_bad(message, "focus",
+                  p->model == HF_MODEL_LENS ? "is %g; it must be > 0" : "is %g; it must be > 0 and finite", p->focus);
 }
 
 // The limit of the radius, before the engine's own.
-static int check_radius(struct hf_resolved *r, const struct hf_depth *depth, char *message)
+static int check_radius(struct hf_settings *r, const struct hf_depth *depth, struct hf_message *message)
 {
     struct hf_params *p = &r->params;
     if (p->max_radius != HF_DERIVE) {
@@ -200,7 +201,7 @@ static void set_coc_model(struct hf_setup *s, const struct hf_params *p)
 }
 
 // The conversion from depth to CoC, as far as all engines share it.
-static void set_coc(struct hf_setup *s, const struct hf_resolved *r, const struct hf_depth *depth)
+static void set_coc(struct hf_setup *s, const struct hf_settings *r, const struct hf_depth *depth)
 {
     const struct hf_params *p = &r->params;
     s->max_radius = p->max_radius;
@@ -209,23 +210,24 @@ static void set_coc(struct hf_setup *s, const struct hf_resolved *r, const struc
     s->strength = s->form != HF_FORM_COC && p->model == HF_MODEL_RANGE ? p->range.strength : 1;
 }
 
-int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct hf_depth *depth,
-                      const struct hf_params *params, char *message)
+int hf_params_resolve(struct hf_settings *r, int width, int height, const struct hf_depth *depth,
+                      const struct hf_params *params, struct hf_message *message)
 {
-    *r = (struct hf_resolved){.params = *params, .width = width, .height = height};
+    *r = (struct hf_settings){.params = *params, .width = width, .height = height};
     struct hf_params *p = &r->params;
     const struct hf_engine_def *e = hf_engine_def(p->engine);
     if (width < 1 || height < 1 || width > HF_MAX_SIZE || height > HF_MAX_SIZE)
-        return hf_bad(message, "the picture is %d x %d pixels; each side must be 1 to %d", width, height, HF_MAX_SIZE);
-    if (!e)
-        return hf_bad(message, "engine is %d, which is not an engine", (int)p->engine);
-    if ((unsigned)p->model > HF_MODEL_LENS)
-        return hf_bad(message, "model is %d, which is not a model", (int)p->model);
-    if ((unsigned)p->range.blend > HF_BLEND_SMOOTHSTEP)
-        return hf_bad(message, "range.blend is %d, which is not a blend", (int)p->range.blend);
-    if (!(p->run.budget_ms >= 0))
-        return hf_bad(message, "run.budget_ms is %g; it must be >= 0", p->run.budget_ms);
-    int err = hf_check_depth_type(depth, message);
+        return hf_bad(message, NULL, "the picture is %d x %d pixels; each side must be 1 to %d", width, height,
+                      HF_MAX_SIZE);
+    int err = hf_check_value("engine", (int)p->engine, 0, HF_ENGINE_COUNT - 1, message);
+    if (!err)
+        err = hf_check_value("model", (int)p->model, 0, HF_MODEL_LENS, message);
+    if (!err)
+        err = hf_check_value("range.blend", (int)p->range.blend, 0, HF_BLEND_SMOOTHSTEP, message);
+    if (!err && !(p->run.budget_ms >= 0))
+        err = hf_bad(message, "run.budget_ms", "is %g; it must be >= 0", p->run.budget_ms);
+    if (!err)
+        err = hf_check_depth_type(depth, message);
     if (!err)
         err = check_view(r, message);
     if (!err && depth->type != HF_DEPTH_COC) {
@@ -255,7 +257,7 @@ int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct
 }
 
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                   const struct hf_depth *depth, const struct hf_resolved *r, void *own)
+                   const struct hf_depth *depth, const struct hf_settings *r, void *own)
 {
     const struct hf_params *p = &r->params;
     *s = (struct hf_setup){.width = src->width,

@@ -5,13 +5,13 @@
 
 #include "pass/frame.h"
 
-// hf_resolve for an engine's and the library's own use: params must not be NULL.
-int hf_params_resolve(struct hf_resolved *r, int width, int height, const struct hf_depth *depth,
-                      const struct hf_params *params, char *message);
+// hf_resolve for the library's own use: params must not be NULL.
+int hf_params_resolve(struct hf_settings *r, int width, int height, const struct hf_depth *depth,
+                      const struct hf_params *params, struct hf_message *message);
 
 // Fill *s from resolved parameters, to which it will point, and compute the engine's own numbers in its memory `own`;
 // the engine's tables are made by its prepare.
 void hf_setup_make(struct hf_setup *s, const struct hf_image *src, const struct hf_image *dst,
-                   const struct hf_depth *depth, const struct hf_resolved *r, void *own);
+                   const struct hf_depth *depth, const struct hf_settings *r, void *own);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "support/check.h"
 #include "support/random_scene.h"
+#include "tools/common/report.h"
 
 static unsigned seed = 1;
 
@@ -42,12 +43,14 @@ static void call_free(struct call *c)
 static int logged;
 static char last_log[300];
 
-static void on_log(void *cookie, enum hf_log_level level, const char *message)
+static void on_log(void *cookie, const struct hf_message *message)
 {
     CHECK(cookie == &logged);
-    CHECK(level == HF_LOG_ERROR || level == HF_LOG_WARNING || level == HF_LOG_INFO);
-    CHECK(message && !strchr(message, '\n'));
-    snprintf(last_log, sizeof last_log, "%s", message);
+    CHECK_INT(message->size, sizeof *message);
+    CHECK(message->level == HF_LOG_ERROR || message->level == HF_LOG_WARNING || message->level == HF_LOG_INFO);
+    CHECK(message->sentence[0] && !strchr(message->sentence, '\n'));
+    CHECK_MSG(!strncmp(message->sentence, message->argument, strlen(message->argument)), "%s", message->sentence);
+    snprintf(last_log, sizeof last_log, "%s", message->sentence);
     logged++;
 }
 
@@ -55,7 +58,7 @@ static void strings(void)
 {
     for (int e = -20; e < 20; e++)
         CHECK_MSG(hf_error_string(e) && hf_error_string(e)[0], "error %d has no string", e);
-    for (int e = HF_ERR_CANCELLED; e < HF_OK; e++)
+    for (int e = HF_ERR_ABI; e < HF_OK; e++)
         CHECK(strcmp(hf_error_string(e), hf_error_string(e + 1)) != 0);
     char version[32];
     snprintf(version, sizeof version, "%d.%d.", HF_VERSION_MAJOR, HF_VERSION_MINOR);
@@ -70,12 +73,12 @@ static void strings(void)
     static const char *const passes[] = {"CoC generation",  "Downsample",      "Near CoC Max X", "Near CoC Max Y",
                                          "Near CoC Blur X", "Near CoC Blur Y", "Computation",    "Fill",
                                          "Composite"};
-    const int count = hf_pass_count(HF_ENGINE_GATHER);
+    const int count = tool_passes(HF_ENGINE_GATHER);
     CHECK_INT(count, sizeof passes / sizeof *passes);
     for (int i = 0; i < count; i++)
-        CHECK(strcmp(hf_pass_name(HF_ENGINE_GATHER, i), passes[i]) == 0);
-    CHECK(!hf_pass_name(HF_ENGINE_GATHER, count) && !hf_pass_name(HF_ENGINE_GATHER, -1) &&
-          !hf_pass_name((enum hf_engine) - 1, 0));
+        CHECK(strcmp(hf_inspect_pass_name(HF_ENGINE_GATHER, i), passes[i]) == 0);
+    CHECK(!hf_inspect_pass_name(HF_ENGINE_GATHER, count) && !hf_inspect_pass_name(HF_ENGINE_GATHER, -1) &&
+          !hf_inspect_pass_name((enum hf_engine) - 1, 0));
 }
 
 static void *some_alloc(void *cookie, size_t size, size_t align)
@@ -94,19 +97,20 @@ static void opening(void)
 {
     struct hf_context *c;
     CHECK_INT(hf_open(NULL, NULL), HF_ERR_ARG);
-    const struct hf_config bad[] = {
+    struct hf_config bad[] = {
         {.threads = -1},       {.threads = 257},    {.isa = (enum hf_isa)17}, {.isa = (enum hf_isa) - 1},
         {.alloc = some_alloc}, {.free = some_free}, {.tile_width = 8},        {.tile_width = 40},
         {.tile_width = -16},   {.tile_height = 15}, {.tile_height = -1},      {.tile_width = 65552},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         c = (struct hf_context *)&c;
+        bad[i].size = sizeof bad[i];
         const int err = hf_open(&c, &bad[i]);
         CHECK_MSG(err == HF_ERR_ARG || (bad[i].isa && err == HF_ERR_ISA), "config %zu: %d", i, err);
         CHECK(c == NULL);
     }
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
-        const struct hf_config config = {.threads = 1, .isa = (enum hf_isa)isa};
+        const struct hf_config config = {.size = sizeof config, .threads = 1, .isa = (enum hf_isa)isa};
         CHECK_INT(hf_open(&c, &config), hf_isa_available((enum hf_isa)isa) ? HF_OK : HF_ERR_ISA);
         if (c)
             CHECK_INT(hf_context_isa(c), isa);
@@ -116,10 +120,10 @@ static void opening(void)
     CHECK_INT(hf_open(&c, NULL), HF_OK);
     CHECK(hf_context_threads(c) >= 1 && hf_context_threads(c) <= 256);
     CHECK(hf_context_isa(c) != HF_ISA_AUTO && hf_isa_available(hf_context_isa(c)));
-    struct hf_report stats;
+    struct tool_report stats;
     memset(&stats, 0xff, sizeof stats);
-    hf_get_report(c, &stats);
-    CHECK(stats.total_ms == 0 && stats.near_pixels == 0 && stats.pass[0].all == 0);
+    tool_report_get(c, &stats);
+    CHECK(stats.all.total_ms == 0 && stats.all.near_pixels == 0 && stats.pass[0].all == 0);
     hf_close(&c);
     hf_close(&c);
     hf_close(NULL);
@@ -309,53 +313,53 @@ static void bad_params(struct hf_context *c)
 static void focus_reading(void)
 {
     float data[12] = {5, 0, -1, 1e10f, INFINITY, NAN, 7, 0.25f, 1, 3, 4, 6};
-    struct hf_depth d = {.data = data, .stride = 16};
+    struct hf_depth d = {.size = sizeof d, .data = data, .stride = 16};
     float z = 0;
-    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_OK);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z, NULL), HF_OK);
     CHECK(z == 5);
-    CHECK_INT(hf_depth_at(&d, 4, 3, 2, 1, &z), HF_OK);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 2, 1, &z, NULL), HF_OK);
     CHECK(z == 7);
     for (int x = 1; x < 4; x++)
-        CHECK_INT(hf_depth_at(&d, 4, 3, x, 0, &z), HF_ERR_FOCUS);
-    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 1, &z), HF_ERR_FOCUS);
+        CHECK_INT(hf_depth_at(&d, 4, 3, x, 0, &z, NULL), HF_ERR_FOCUS);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 1, &z, NULL), HF_ERR_FOCUS);
     static const int outside[][2] = {{-1, 0}, {4, 0}, {0, -1}, {0, 3}};
     for (int i = 0; i < 4; i++)
-        CHECK_INT(hf_depth_at(&d, 4, 3, outside[i][0], outside[i][1], &z), HF_ERR_ARG);
-    CHECK_INT(hf_depth_at(&d, 65537, 3, 0, 0, &z), HF_ERR_ARG);
-    CHECK_INT(hf_depth_at(&d, 4, 65537, 0, 0, &z), HF_ERR_ARG);
-    CHECK_INT(hf_depth_at(NULL, 4, 3, 0, 0, &z), HF_ERR_ARG);
-    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, NULL), HF_ERR_ARG);
+        CHECK_INT(hf_depth_at(&d, 4, 3, outside[i][0], outside[i][1], &z, NULL), HF_ERR_ARG);
+    CHECK_INT(hf_depth_at(&d, 65537, 3, 0, 0, &z, NULL), HF_ERR_ARG);
+    CHECK_INT(hf_depth_at(&d, 4, 65537, 0, 0, &z, NULL), HF_ERR_ARG);
+    CHECK_INT(hf_depth_at(NULL, 4, 3, 0, 0, &z, NULL), HF_ERR_ARG);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, NULL, NULL), HF_ERR_ARG);
     d.type = HF_DEPTH_COC;
-    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_ERR_ARG);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z, NULL), HF_ERR_ARG);
     d.type = HF_DEPTH_INVERSE;
-    CHECK_INT(hf_depth_at(&d, 4, 3, 3, 1, &z), HF_OK);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 3, 1, &z, NULL), HF_OK);
     CHECK_MSG(z == 4, "inverse 0.25 is %g", z);
-    CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z), HF_ERR_FOCUS);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z, NULL), HF_ERR_FOCUS);
     data[0] = 2e-10f;
     data[1] = 0.5e-10f;
-    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_OK);
-    CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z), HF_ERR_FOCUS);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z, NULL), HF_OK);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 1, 0, &z, NULL), HF_ERR_FOCUS);
     // A ray so far off the axis that its depth underflows.
     d.type = HF_DEPTH_RAY;
     d.focal_px = 1e-20f;
     data[0] = 5;
-    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z), HF_ERR_FOCUS);
-    struct hf_params p = hf_default_params;
+    CHECK_INT(hf_depth_at(&d, 4, 3, 0, 0, &z, NULL), HF_ERR_FOCUS);
+    struct hf_params p = hf_default_params();
     p.focus = HF_DERIVE;
     p.model = HF_MODEL_LENS;
     data[6] = 7;
-    CHECK_INT(hf_resolve(4, 3, &d, &p, NULL, NULL, 0), HF_ERR_FOCUS);
+    CHECK_INT(hf_resolve(4, 3, &d, &p, NULL, NULL, NULL), HF_ERR_FOCUS);
     data[0] = 2e-10f;
     d.type = HF_DEPTH_NDC_REVERSED;
     d.near_plane = 0.5f;
     d.far_plane = INFINITY;
-    CHECK_INT(hf_depth_at(&d, 4, 3, 3, 1, &z), HF_OK);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 3, 1, &z, NULL), HF_OK);
     CHECK_MSG(fabsf(z - 2) < 1e-6f, "reversed 0.25 is %g", z);
     d.type = HF_DEPTH_RAY;
     d.focal_px = 1;
     d.center_x = 3.5f;
     d.center_y = 1.5f;
-    CHECK_INT(hf_depth_at(&d, 4, 3, 2, 1, &z), HF_OK);
+    CHECK_INT(hf_depth_at(&d, 4, 3, 2, 1, &z, NULL), HF_OK);
     CHECK_MSG(fabsf(z - 7 / sqrtf(2)) < 1e-6f, "ray 7 is %g", z);
 }
 
@@ -445,13 +449,13 @@ static void repairs(struct hf_context *c, enum hf_format format, int variant)
             bad += !isfinite(before.plane[k][i]);
     p.range.strength = (float)(variant % 2);
     p.run.no_skip = variant / 2 % 2;
-    struct hf_report stats;
+    struct tool_report stats;
     CHECK_INT(hf_render(c, &b.image, &a.image, &depth, &p), HF_OK);
-    hf_get_report(c, &stats);
-    CHECK_INT(stats.colour_repaired, bad);
+    tool_report_get(c, &stats);
+    CHECK_INT(stats.all.colour_repaired, bad);
     CHECK_INT(hf_render(c, &a.image, &a.image, &depth, &p), HF_OK);
-    hf_get_report(c, &stats);
-    CHECK_INT(stats.colour_repaired, bad);
+    tool_report_get(c, &stats);
+    CHECK_INT(stats.all.colour_repaired, bad);
     struct picture out = packed_read(&b), in_place = packed_read(&a);
     CHECK_MSG(picture_same_bits(&out, &in_place), "format %d, variant %d: repair in place differs", format, variant);
     int wrong = 0;
@@ -484,9 +488,9 @@ static void depth_strides(struct hf_context *c)
         good.depth.stride = i & 1 ? -stride : stride;
         accepted(c, &good, "depth strides");
         CHECK_MSG(picture_same_bits(&want, &good.out), "depth stride %td", good.depth.stride);
-        struct hf_report stats;
-        hf_get_report(c, &stats);
-        CHECK_INT(stats.depth_repaired, 0);
+        struct tool_report stats;
+        tool_report_get(c, &stats);
+        CHECK_INT(stats.all.depth_repaired, 0);
         free(memory);
     }
     picture_free(&want);
@@ -503,7 +507,8 @@ int main(int argc, char **argv)
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         if (!hf_isa_available((enum hf_isa)isa))
             continue;
-        const struct hf_config config = {.threads = 2, .isa = (enum hf_isa)isa, .log = on_log, .log_cookie = &logged};
+        const struct hf_config config = {
+            .size = sizeof config, .threads = 2, .isa = (enum hf_isa)isa, .log = on_log, .log_cookie = &logged};
         struct hf_context *c;
         if (!CHECK_INT(hf_open(&c, &config), HF_OK))
             continue;

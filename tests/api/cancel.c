@@ -12,6 +12,7 @@
 #include "support/check.h"
 #include "support/looks.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 enum { WIDTH = 180, HEIGHT = 120 };
 static int rounds = 4;
@@ -93,12 +94,11 @@ static void same_as_fresh(struct hf_context *c, struct frame *f, const char *aft
 // A cancelled call returns its error and leaves a report of zeros.
 static void check_cancelled(struct hf_context *c, const struct frame *f, int err)
 {
-    static const struct hf_report zero;
-    struct hf_report report;
-    hf_get_report(c, &report);
+    static struct tool_report report;
+    tool_report_get(c, &report);
     CHECK_MSG(err == HF_OK || err == HF_ERR_CANCELLED, "%s: %s", f->look->name, hf_error_string(err));
     if (err)
-        CHECK_MSG(report.columns == zero.columns && report.passes == zero.passes && report.memory == zero.memory,
+        CHECK_MSG(report.inner.columns == 0 && report.inner.passes == 0 && report.all.memory == 0,
                   "%s: the report of a cancelled call is not zero", f->look->name);
 }
 
@@ -108,7 +108,7 @@ static int from_thread(struct hf_context *c, struct frame *f, int task, unsigned
     pthread_t thread;
     const struct hf_depth depth = picture_depth(&f->scene.depth);
     const struct hf_image dst = picture_image(&f->out), src = picture_image(&f->scene.colour);
-    struct hf_report report;
+    struct hf_report report = {.size = sizeof(report)};
     CHECK_INT(pthread_create(&thread, NULL, cancel_main, &k), 0);
     atomic_store(&k.begun, 1);
     const int err = task == 0   ? hf_render(c, &dst, &src, &depth, &f->p)

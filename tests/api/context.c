@@ -9,6 +9,7 @@
 
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 static unsigned seed = 1;
 
@@ -71,7 +72,8 @@ static struct counter counter_new(void)
 
 static struct hf_config counted(struct counter *n)
 {
-    return (struct hf_config){.threads = 2, .alloc = count_alloc, .free = count_free, .alloc_cookie = n};
+    return (struct hf_config){
+        .size = sizeof(struct hf_config), .threads = 2, .alloc = count_alloc, .free = count_free, .alloc_cookie = n};
 }
 
 // All options on, so that every kind of buffer is allocated.
@@ -89,7 +91,7 @@ static void large_tiles(void)
     struct rng rng = rng_seed(seed);
     struct scene s = scene_new(&rng, SCENE_BLOCKS, 60, 40, 4);
     struct picture out = picture_new(60, 40, 4);
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    for (int e = 0; e < tool_engines(); e++) {
         size_t held[2];
         struct hf_params p = scene_params();
         p.engine = (enum hf_engine)e;
@@ -130,9 +132,10 @@ static void memory(void)
     calls = n.calls;
     CHECK_INT(try_scene(c, &big_out, &big, &p), HF_OK);
     CHECK_MSG(n.calls == calls, "%ld allocations on a second big frame", n.calls - calls);
-    struct hf_report stats;
-    hf_get_report(c, &stats);
-    CHECK_MSG(stats.memory_held == n.bytes, "statistics say %zu bytes, the allocator %zu", stats.memory_held, n.bytes);
+    struct tool_report stats;
+    tool_report_get(c, &stats);
+    CHECK_MSG(stats.all.memory_held == n.bytes, "statistics say %zu bytes, the allocator %zu", stats.all.memory_held,
+              n.bytes);
     hf_close(&c);
     CHECK_INT(n.live, 0);
     CHECK_INT(n.bytes, 0);
@@ -142,7 +145,7 @@ static void memory(void)
     scene_free(&big);
 }
 
-static void no_dump(void *cookie, const struct hf_buffer *b)
+static void no_dump(void *cookie, const struct hf_inspect_buffer *b)
 {
     (void)b;
     ++*(int *)cookie;
@@ -170,7 +173,7 @@ static void failing_memory(int dump)
             CHECK(c == NULL);
         } else {
             if (dump)
-                hf_set_dump(c, no_dump, &dumped);
+                hf_inspect_dump(c, no_dump, &dumped);
             err = try_scene(c, &out, &s, &p);
             CHECK_MSG(err == HF_OK || err == HF_ERR_MEMORY, "allocation %ld fails: error %d", k, err);
             n.fail_at = -1;
@@ -240,7 +243,7 @@ static void host_threads(void)
     struct scene s = scene_new(&rng, SCENE_BLOCKS, 301, 203, 3);
     struct picture out = picture_new(301, 203, 3), want = picture_new(301, 203, 3);
     struct hf_context *c;
-    const struct hf_config one = {.threads = 1};
+    const struct hf_config one = {.size = sizeof one, .threads = 1};
     const struct hf_params p = scene_params();
     CHECK_INT(hf_open(&c, &one), HF_OK);
     CHECK_INT(try_scene(c, &want, &s, &p), HF_OK);
@@ -248,7 +251,8 @@ static void host_threads(void)
     for (int threads = 1; threads <= 8; threads++) {
         for (int kind = 0; kind < 3; kind++) {
             struct host h = {.threads = threads};
-            const struct hf_config config = {.threads = threads,
+            const struct hf_config config = {.size = sizeof config,
+                                             .threads = threads,
                                              .parallel_for = kind == 0   ? backwards
                                                              : kind == 1 ? forwards
                                                                          : NULL,
@@ -280,7 +284,7 @@ static void *use_context(void *arg)
 {
     struct user *u = arg;
     const struct hf_params p = scene_params();
-    const struct hf_config config = {.threads = 2, .isa = u->isa};
+    const struct hf_config config = {.size = sizeof config, .threads = 2, .isa = u->isa};
     for (int round = 0; round < 3; round++) {
         struct hf_context *c;
         struct picture out = picture_new(u->want->width, u->want->height, u->want->channels);
@@ -305,7 +309,8 @@ static void many_contexts(void)
     pthread_t thread[USERS];
     const struct hf_params p = scene_params();
     for (int i = 0; i < USERS; i++) {
-        const struct hf_config config = {.threads = 1, .isa = i & 1 ? HF_ISA_SCALAR : HF_ISA_AUTO};
+        const struct hf_config config = {
+            .size = sizeof config, .threads = 1, .isa = i & 1 ? HF_ISA_SCALAR : HF_ISA_AUTO};
         struct hf_context *c;
         scene[i] = scene_new(&rng, SCENE_BLOCKS, 50 + 13 * i, 60 - 5 * i, 3 + i % 2);
         want[i] = picture_new(50 + 13 * i, 60 - 5 * i, 3 + i % 2);
@@ -324,43 +329,43 @@ static void many_contexts(void)
     }
 }
 
-static const struct hf_pass_report *pass_of(const struct hf_report *r, const char *name)
+static const struct hf_inspect_pass *pass_of(const struct tool_report *r, const char *name)
 {
     int i = 0;
-    while (i < r->passes && strcmp(r->pass[i].name, name))
+    while (i < r->inner.passes && strcmp(r->pass[i].name, name))
         i++;
-    CHECK_MSG(i < r->passes, "there is no pass %s", name);
-    return &r->pass[i % HF_MAX_PASSES];
+    CHECK_MSG(i < r->inner.passes, "there is no pass %s", name);
+    return &r->pass[i % TOOL_PASSES];
 }
 
-static void check_stats(const struct hf_report *s, int pixels)
+static void check_stats(const struct tool_report *s, int pixels)
 {
-    CHECK_INT(s->near_pixels + s->sharp_pixels + s->far_pixels, pixels);
-    CHECK(s->total_ms > 0 && s->memory_held > 0);
+    CHECK_INT(s->all.near_pixels + s->all.sharp_pixels + s->all.far_pixels, pixels);
+    CHECK(s->all.total_ms > 0 && s->all.memory_held > 0);
     double sum = 0;
-    for (int i = 0; i < s->passes; i++) {
+    for (int i = 0; i < s->inner.passes; i++) {
         CHECK(s->pass[i].ms >= 0 && s->pass[i].ran <= s->pass[i].all && s->pass[i].all > 0);
         sum += s->pass[i].ms;
     }
-    CHECK_MSG(sum <= s->total_ms * 1.05 + 0.1, "passes %g ms, frame %g ms", sum, s->total_ms);
+    CHECK_MSG(sum <= s->all.total_ms * 1.05 + 0.1, "passes %g ms, frame %g ms", sum, s->all.total_ms);
 }
 
 static void statistics(void)
 {
     struct rng rng = rng_seed(seed);
     struct hf_context *c;
-    struct hf_report stats;
+    struct tool_report stats;
     struct hf_params p = scene_params();
     struct picture out = picture_new(64, 48, 3);
     CHECK_INT(hf_open(&c, NULL), HF_OK);
     struct scene sharp = scene_new(&rng, SCENE_SHARP, 64, 48, 3);
     CHECK_INT(try_scene(c, &out, &sharp, &p), HF_OK);
-    hf_get_report(c, &stats);
+    tool_report_get(c, &stats);
     check_stats(&stats, 64 * 48);
-    CHECK_INT(stats.sharp_pixels, 64 * 48);
+    CHECK_INT(stats.all.sharp_pixels, 64 * 48);
     CHECK_INT(pass_of(&stats, "Computation")->ran, 0);
     CHECK_INT(pass_of(&stats, "Fill")->ran, 0);
-    CHECK(stats.used.params.max_radius == 12);
+    CHECK(stats.params.max_radius == 12);
     CHECK(picture_same_bits(&out, &sharp.colour));
     // One near, two far, one without surface (far), one NaN (among sharp ones: sharp); two bad colour samples.
     sharp.depth.plane[0][5] = 12;
@@ -373,14 +378,14 @@ static void statistics(void)
     for (int no_skip = 0; no_skip < 2; no_skip++) {
         p.run.no_skip = no_skip;
         CHECK_INT(try_scene(c, &out, &sharp, &p), HF_OK);
-        hf_get_report(c, &stats);
+        tool_report_get(c, &stats);
         check_stats(&stats, 64 * 48);
-        CHECK_INT(stats.near_pixels, 1);
-        CHECK_INT(stats.far_pixels, 3);
-        CHECK_INT(stats.no_surface, 1);
-        CHECK_INT(stats.depth_repaired, 1);
-        CHECK_INT(stats.colour_repaired, 2);
-        CHECK_INT(stats.clamped, 0);
+        CHECK_INT(stats.all.near_pixels, 1);
+        CHECK_INT(stats.all.far_pixels, 3);
+        CHECK_INT(stats.all.no_surface, 1);
+        CHECK_INT(stats.all.depth_repaired, 1);
+        CHECK_INT(stats.all.colour_repaired, 2);
+        CHECK_INT(stats.all.clamped, 0);
         CHECK(!no_skip || pass_of(&stats, "Computation")->ran == pass_of(&stats, "Computation")->all);
     }
     // Counts do not depend on skipping. Negative and too large samples are clamped by the format.
@@ -392,17 +397,17 @@ static void statistics(void)
     const struct hf_image src = picture_image(&sharp.colour);
     const struct hf_depth depth = picture_depth(&sharp.depth);
     CHECK_INT(hf_render(c, &packed.image, &src, &depth, &p), HF_OK);
-    hf_get_report(c, &stats);
-    CHECK_INT(stats.clamped, 2);
-    CHECK_INT(stats.colour_repaired, 0);
+    tool_report_get(c, &stats);
+    CHECK_INT(stats.all.clamped, 2);
+    CHECK_INT(stats.all.colour_repaired, 0);
     packed_free(&packed);
     scene_free(&sharp);
     p.max_radius = HF_DERIVE;
     p.view.display_height = 2160;
     struct scene blocks = scene_new(&rng, SCENE_BLOCKS, 64, 48, 3);
     CHECK_INT(try_scene(c, &out, &blocks, &p), HF_OK);
-    hf_get_report(c, &stats);
-    CHECK_MSG(stats.used.params.max_radius == 24, "max_radius %g", stats.used.params.max_radius);
+    tool_report_get(c, &stats);
+    CHECK_MSG(stats.params.max_radius == 24, "max_radius %g", stats.params.max_radius);
     scene_free(&blocks);
     picture_free(&out);
     hf_close(&c);
@@ -411,12 +416,12 @@ static void statistics(void)
 // A lens for which everything is near, or far: buffers of the other field do not exist, and no pass may use them.
 static void one_field(void)
 {
-    for (int engine = 0; engine < HF_ENGINE_COUNT; engine++)
+    for (int engine = 0; engine < tool_engines(); engine++)
         for (int far = 0; far < 2; far++) {
             struct rng rng = rng_seed(seed);
             struct scene s = scene_new(&rng, far ? SCENE_FAR : SCENE_NEAR, 40, 30, 4);
             struct hf_context *c = context_new(HF_ISA_SCALAR, 2, 0, 0);
-            struct hf_params p = hf_default_params;
+            struct hf_params p = hf_default_params();
             p.engine = (enum hf_engine)engine;
             p.model = HF_MODEL_LENS;
             p.focus = 20;

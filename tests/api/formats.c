@@ -8,6 +8,7 @@
 
 #include "hyperfocal/hyperfocal.h"
 #include "support/check.h"
+#include "tools/common/report.h"
 
 enum { WIDTH = 61, HEIGHT = 23, PIXELS = WIDTH * HEIGHT, FORMATS = 6, DEPTHS = 5 };
 
@@ -48,7 +49,8 @@ static double code_of(uint64_t word, int f, int c)
 
 static struct hf_image image_of(void *memory, int f, enum hf_transfer transfer, int width, int height)
 {
-    return (struct hf_image){.width = width,
+    return (struct hf_image){.size = sizeof(struct hf_image),
+                             .width = width,
                              .height = height,
                              .format = formats[f].format,
                              .data = {memory},
@@ -58,7 +60,8 @@ static struct hf_image image_of(void *memory, int f, enum hf_transfer transfer, 
 
 static struct hf_image floats_of(float *memory, int width, int height)
 {
-    return (struct hf_image){.width = width,
+    return (struct hf_image){.size = sizeof(struct hf_image),
+                             .width = width,
                              .height = height,
                              .format = HF_FORMAT_RGBA32F,
                              .data = {memory},
@@ -89,7 +92,7 @@ static void check_codes(struct hf_context *c, int f, enum hf_transfer transfer)
     }
     const struct hf_image in = image_of(codes, f, transfer, width, height), floats = floats_of(light, width, height);
     const struct hf_image out = image_of(back, f, transfer, width, height);
-    const struct hf_depth z = {.data = depth, .stride = (ptrdiff_t)width * 4};
+    const struct hf_depth z = {.size = sizeof z, .data = depth, .stride = (ptrdiff_t)width * 4};
     CHECK(hf_render(c, &floats, &in, &z, NULL) == HF_OK);
     CHECK(hf_render(c, &out, &floats, &z, NULL) == HF_OK);
     // The polynomial's 3e-7, and the roundings of two roots and of eight products and sums: 16 half places of 2^-24
@@ -117,7 +120,7 @@ static void check_codes(struct hf_context *c, int f, enum hf_transfer transfer)
 
 static struct hf_params blurred(void)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.focus = 10;
     p.range.distance = 4;
     p.max_radius = 6;
@@ -150,7 +153,8 @@ static void check_frame(struct hf_context *c, int f, enum hf_transfer transfer, 
     const struct hf_image in = image_of(codes, f, transfer, WIDTH, HEIGHT),
                           copy = image_of(out, f, transfer, WIDTH, HEIGHT);
     const struct hf_image floats = floats_of(light, WIDTH, HEIGHT), blur = floats_of(want, WIDTH, HEIGHT);
-    const struct hf_depth z = {.data = depth, .stride = WIDTH * 4}, sharp = {.data = far, .stride = WIDTH * 4};
+    const struct hf_depth z = {.size = sizeof z, .data = depth, .stride = WIDTH * 4},
+                          sharp = {.size = sizeof sharp, .data = far, .stride = WIDTH * 4};
     struct hf_params p = blurred();
     p.highlight.gain = gain;
     CHECK(hf_render(c, &floats, &in, &sharp, &p) == HF_OK);  // only to floats
@@ -216,7 +220,7 @@ static void check_depth(struct hf_context *c, int d, enum hf_engine engine)
     }
     const struct hf_image in = floats_of(picture, WIDTH, HEIGHT), one = floats_of(a, WIDTH, HEIGHT),
                           two = floats_of(b, WIDTH, HEIGHT);
-    struct hf_depth exact = {.data = z, .stride = WIDTH * 4, .near_plane = 0.5f, .far_plane = 50};
+    struct hf_depth exact = {.size = sizeof exact, .data = z, .stride = WIDTH * 4, .near_plane = 0.5f, .far_plane = 50};
     exact.type = d == 0 ? HF_DEPTH_VIEW : HF_DEPTH_NDC_D3D;
     struct hf_depth stored = exact;
     stored.data = words + 1;
@@ -231,7 +235,8 @@ static void check_depth(struct hf_context *c, int d, enum hf_engine engine)
     CHECK(hf_render(c, &two, &in, &stored, &p) == HF_OK);
     CHECK(!memcmp(a, b, PIXELS * 16));
     CHECK(memcmp(a, picture, PIXELS * 16) != 0);
-    CHECK(hf_depth_at(&exact, WIDTH, HEIGHT, 7, 5, &at_exact) == hf_depth_at(&stored, WIDTH, HEIGHT, 7, 5, &at_stored));
+    CHECK(hf_depth_at(&exact, WIDTH, HEIGHT, 7, 5, &at_exact, NULL) ==
+          hf_depth_at(&stored, WIDTH, HEIGHT, 7, 5, &at_stored, NULL));
     CHECK(at_exact == at_stored);
     free(words);
     free(z);
@@ -244,7 +249,7 @@ static void check_refusals(struct hf_context *c)
 {
     float pixel[4] = {0}, z = 1;
     struct hf_image image = floats_of(pixel, 1, 1);
-    struct hf_depth depth = {.data = &z, .stride = 4};
+    struct hf_depth depth = {.size = sizeof depth, .data = &z, .stride = 4};
     image.transfer = HF_TRANSFER_SRGB;
     CHECK(hf_render(c, &image, &image, &depth, NULL) == HF_ERR_ARG);
     image.transfer = (enum hf_transfer)7;
@@ -257,9 +262,9 @@ static void check_refusals(struct hf_context *c)
     CHECK(hf_render(c, &image, &image, &depth, NULL) == HF_ERR_ARG);
 }
 
-static void count_warnings(void *cookie, enum hf_log_level level, const char *message)
+static void count_warnings(void *cookie, const struct hf_message *message)
 {
-    *(int *)cookie += level == HF_LOG_WARNING && strstr(message, "set depth.type") != NULL;
+    *(int *)cookie += message->level == HF_LOG_WARNING && !strcmp(message->argument, "depth.type");
 }
 
 // A warning about integers taken for distances comes once, and only where they cannot be distances.
@@ -268,10 +273,10 @@ static void check_warning(void)
     float pixel[4] = {0};
     const uint32_t z = UINT32_MAX;
     int warned = 0;
-    const struct hf_config config = {.threads = 1, .log = count_warnings, .log_cookie = &warned};
+    const struct hf_config config = {.size = sizeof config, .threads = 1, .log = count_warnings, .log_cookie = &warned};
     struct hf_image image = floats_of(pixel, 1, 1);
-    struct hf_depth depth = {.data = &z, .stride = 4, .format = HF_DEPTH_FORMAT_UNORM16};
-    struct hf_params p = hf_default_params;
+    struct hf_depth depth = {.size = sizeof depth, .data = &z, .stride = 4, .format = HF_DEPTH_FORMAT_UNORM16};
+    struct hf_params p = hf_default_params();
     struct hf_context *c;
     CHECK(hf_open(&c, &config) == HF_OK);
     p.focus = 0.5f;  // something may be in focus
@@ -286,7 +291,7 @@ static void check_warning(void)
     depth.far_plane = 10;
     depth.type = HF_DEPTH_NDC_D3D;
     CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 2);
-    depth = (struct hf_depth){.data = &p.focus, .stride = 4};
+    depth = (struct hf_depth){.size = sizeof(struct hf_depth), .data = &p.focus, .stride = 4};
     CHECK(hf_render(c, &image, &image, &depth, &p) == HF_OK && warned == 2);
     hf_close(&c);
 }
@@ -296,7 +301,7 @@ int main(void)
     check_warning();
 
     for (enum hf_isa isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
-        const struct hf_config config = {.isa = isa, .threads = 2};
+        const struct hf_config config = {.size = sizeof config, .isa = isa, .threads = 2};
         struct hf_context *c;
         if (!hf_isa_available(isa) || hf_open(&c, &config) != HF_OK)
             continue;
@@ -307,7 +312,7 @@ int main(void)
                 check_frame(c, f, (enum hf_transfer)transfer, 8);
             }
         for (int d = 0; d < DEPTHS; d++)
-            for (int e = 0; e < HF_ENGINE_COUNT; e++)
+            for (int e = 0; e < tool_engines(); e++)
                 check_depth(c, d, (enum hf_engine)e);
         check_refusals(c);
         hf_close(&c);

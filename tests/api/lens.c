@@ -29,11 +29,19 @@ static const struct lens lenses[] = {
 static void radii_of(const struct lens *l, enum hf_depth_type type, const float *depth, float *out)
 {
     static float colour[3 * N];
-    const struct hf_image image = {
-        .width = N, .height = 1, .format = HF_FORMAT_RGB32F, .data = {colour}, .stride = {sizeof colour}};
-    const struct hf_depth d = {
-        .data = depth, .stride = N * sizeof(float), .type = type, .near_plane = l->near, .far_plane = l->far};
-    struct hf_params p = hf_default_params;
+    const struct hf_image image = {.size = sizeof image,
+                                   .width = N,
+                                   .height = 1,
+                                   .format = HF_FORMAT_RGB32F,
+                                   .data = {colour},
+                                   .stride = {sizeof colour}};
+    const struct hf_depth d = {.size = sizeof d,
+                               .data = depth,
+                               .stride = N * sizeof(float),
+                               .type = type,
+                               .near_plane = l->near,
+                               .far_plane = l->far};
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_HEXAGON;
     p.model = HF_MODEL_LENS;
     p.focus = l->focus;
@@ -42,13 +50,13 @@ static void radii_of(const struct lens *l, enum hf_depth_type type, const float 
     p.lens.sensor_width_mm = l->sensor_mm;
     p.lens.world_unit_m = l->unit;
     p.view.display_width = l->width;
-    char message[HF_MESSAGE];
+    struct hf_message message;
     struct hf_setup s;
-    struct hf_resolved r;
+    struct hf_settings r;
     struct hf_pixel_kernels k;
     struct hf_hexagon own = {0};
     struct hf_counts counts = {0};
-    CHECK_MSG(hf_resolve(N, 1, &d, &p, &r, message, sizeof message) == HF_OK, "%s", message);
+    CHECK_MSG(hf_params_resolve(&r, N, 1, &d, &p, &message) == HF_OK, "%s", message.sentence);
     hf_setup_make(&s, &image, &image, &d, &r, &own);
     hf_pixel_kernels_init(&k, HF_ISA_SCALAR, 0);
     const struct hf_frame f = {.s = &s, .k = &k, .src = &image, .dst = &image, .depth = &d, .counts = &counts};

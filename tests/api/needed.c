@@ -34,7 +34,7 @@ static void try_look(struct rng *rng, int look)
     static const int sizes[][2] = {{70, 50}, {640, 360}, {33, 400}, {900, 500}, {1, 1}};
     size_t held = 0;
     const struct hf_config config = {
-        .threads = 1 + rng_below(rng, 3), .alloc = take, .free = give, .alloc_cookie = &held};
+        .size = sizeof(config), .threads = 1 + rng_below(rng, 3), .alloc = take, .free = give, .alloc_cookie = &held};
     struct hf_context *c = NULL;
     CHECK_INT(hf_open(&c, &config), HF_OK);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
@@ -45,7 +45,7 @@ static void try_look(struct rng *rng, int look)
         const struct hf_params p = look_params(&looks[look], width, 20);
         const struct hf_depth depth = picture_depth(&s.depth);
         const struct hf_image dst = picture_image(&out), src = picture_image(&s.colour);
-        struct hf_report report;
+        struct hf_report report = {.size = sizeof(report)};
         CHECK_INT(hf_plan(c, &dst, &src, &depth, &p, &report), HF_OK);
         CHECK_INT(hf_render(c, &dst, &src, &depth, &p), HF_OK);
         CHECK_MSG(held <= report.memory_needed && report.memory_needed <= held + held / 10,

@@ -8,6 +8,7 @@
 #include "support/check.h"
 #include "support/looks.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 static int rounds = 3;
 static unsigned seed = 1;
@@ -144,9 +145,8 @@ static int is_in(const struct hf_region *r, int x, int y)
 // Pixels outside the rectangles that hf_region_reads announces are NaN, so reading them would show.
 static void try_reads(struct hf_context *c, const struct subject *s, const struct hf_region *r)
 {
-    struct hf_region colour, depth;
+    struct hf_region colour = {.size = sizeof(colour)}, depth = {.size = sizeof(depth)};
     CHECK_INT(hf_region_reads(c, &s->src.image, &s->src.image, &s->depth, &s->p, r, &colour, &depth), HF_OK);
-    CHECK(colour.size == sizeof colour && depth.size == sizeof depth);
     CHECK_MSG(is_in(&colour, r->x, r->y) && is_in(&colour, r->x + r->width - 1, r->y + r->height - 1),
               "%s: the region itself is not read", s->look->name);
     struct packed src = like(&s->src, 0xff), got = like(&s->src, JUNK), was = like(&s->src, JUNK);
@@ -237,13 +237,13 @@ static void try_cost(struct rng *rng, int look)
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 24);
     const struct hf_depth depth = picture_depth(&s.depth);
     const struct hf_image dst = picture_image(&out), src = picture_image(&s.colour);
-    struct hf_report report;
+    static struct tool_report report;
     p.max_radius = p.max_radius > 16 || p.max_radius < 0 ? 16 : p.max_radius;
     CHECK_INT(hf_render_region(c, &dst, &src, &depth, &p, &r), HF_OK);
-    hf_get_report(c, &report);
+    tool_report_get(c, &report);
     // The last pass: tiles of 64 x 48 pixels that the region meets, and no more. Engines with cells of their own have larger
     // ones, but there are at least 20 of them, and the region meets at most 4.
-    const struct hf_pass_report *last = &report.pass[report.passes - 1];
+    const struct hf_inspect_pass *last = &report.pass[report.inner.passes - 1];
     CHECK_MSG(last->ran >= 1 && last->ran <= 4 && last->all >= 20, "%s: %s ran on %u of %u tiles", looks[look].name,
               last->name, last->ran, last->all);
     // The first sweep's second pass, or the first of the tiles, does not run everywhere: but see hf_render_region.

@@ -8,31 +8,32 @@
 
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 // Every value has its own name, and the names lead back to the values.
 static void names(void)
 {
-    static const int counts[HF_NAMES_COUNT] = {
+    const int counts[] = {
         [HF_NAMES_ISA] = HF_ISA_NEON + 1,
         [HF_NAMES_LOG_LEVEL] = HF_LOG_INFO + 1,
         [HF_NAMES_FORMAT] = HF_FORMAT_RGBA16 + 1,
         [HF_NAMES_TRANSFER] = HF_TRANSFER_SRGB + 1,
         [HF_NAMES_DEPTH_FORMAT] = HF_DEPTH_FORMAT_X8D24 + 1,
         [HF_NAMES_DEPTH_TYPE] = HF_DEPTH_COC + 1,
-        [HF_NAMES_ENGINE] = HF_ENGINE_COUNT,
+        [HF_NAMES_ENGINE] = tool_engines(),
         [HF_NAMES_RESOLUTION] = HF_RESOLUTION_QUARTER + 1,
         [HF_NAMES_MODEL] = HF_MODEL_LENS + 1,
         [HF_NAMES_STORAGE] = HF_STORAGE_PACKED + 1,
         [HF_NAMES_FILL] = HF_FILL_OPEN + 1,
         [HF_NAMES_BLEND] = HF_BLEND_SMOOTHSTEP + 1,
-        [HF_NAMES_TILE] = HF_TILE_BOTH + 1,
         [HF_NAMES_LIMIT] = HF_LIMIT_PICTURE + 1,
         [HF_NAMES_QUALITY] = HF_QUALITY_BEST + 1,
         [HF_NAMES_DOWNSAMPLE] = HF_DOWNSAMPLE_POINT + 1,
         [HF_NAMES_DIVISION] = HF_DIVISION_NEWTON2 + 1,
         [HF_NAMES_LAYERS] = HF_LAYERS_BEST + 1,
     };
-    for (int of = 0; of < HF_NAMES_COUNT; of++) {
+    enum { FAMILIES = sizeof counts / sizeof *counts };
+    for (int of = 0; of < FAMILIES; of++) {
         for (int i = 0; i < counts[of]; i++) {
             const char *name = hf_name((enum hf_names)of, i);
             int value = -1;
@@ -47,62 +48,69 @@ static void names(void)
         CHECK_INT(value, 77);
     }
     int storage = -1;
-    CHECK(!hf_name(HF_NAMES_COUNT, 0));
+    CHECK(!hf_name((enum hf_names)FAMILIES, 0));
     CHECK_INT(hf_value(HF_NAMES_STORAGE, "chapter", &storage), HF_OK);
     CHECK_INT(storage, HF_STORAGE_PACKED);
     CHECK(strcmp(hf_name(HF_NAMES_STORAGE, HF_STORAGE_PACKED), "packed") == 0);
 }
 
-static struct hf_resolved resolved(int width, int height, const struct hf_depth *depth, const struct hf_params *p)
-{
+// What hf_resolve tells.
+struct told {
+    struct hf_params params;
     struct hf_resolved r;
-    char message[256];
-    CHECK_MSG(hf_resolve(width, height, depth, p, &r, message, sizeof message) == HF_OK, "%s", message);
-    return r;
+};
+
+static struct told resolved(int width, int height, const struct hf_depth *depth, const struct hf_params *p)
+{
+    struct told t = {.params = {.size = sizeof t.params}, .r = {.size = sizeof t.r}};
+    struct hf_message message = {.size = sizeof message};
+    CHECK_MSG(hf_resolve(width, height, depth, p, &t.params, &t.r, &message) == HF_OK, "%s", message.sentence);
+    return t;
 }
 
 // Numbers computed by hand.
 static void derived(void)
 {
-    const struct hf_depth depth = {0};
-    struct hf_params p = hf_default_params;
+    const struct hf_depth depth = {.size = sizeof depth};
+    struct hf_params p = hf_default_params();
     p.focus = 8;
-    struct hf_resolved r = resolved(1920, 1080, &depth, &p);
-    CHECK(r.width == 1920 && r.height == 1080 && !r.sharp && r.lens_k == 0);
+    struct told r = resolved(1920, 1080, &depth, &p);
+    CHECK(r.r.width == 1920 && r.r.height == 1080 && !r.r.sharp && r.r.lens_k == 0);
     CHECK(r.params.range.distance == 4 && r.params.range.near_begin == 4 && r.params.range.near_end == 8);
     CHECK(r.params.range.far_begin == 8 && r.params.range.far_end == 12);
-    CHECK(r.params.max_radius == 12 && r.limit == HF_LIMIT_MODEL);
+    CHECK(r.params.max_radius == 12 && r.r.limit == HF_LIMIT_MODEL);
     CHECK_INT(r.params.gather.rings, 3);  // of two half-resolution pixels up to 6
     CHECK(r.params.view.display_width == 1920 && r.params.view.display_height == 1080);
     p.view.display_height = 2160;
     CHECK(resolved(100, 100, &depth, &p).params.max_radius == 24);
     p.max_radius = 9;
-    CHECK_INT(resolved(100, 100, &depth, &p).limit, HF_LIMIT_GIVEN);
+    CHECK_INT(resolved(100, 100, &depth, &p).r.limit, HF_LIMIT_GIVEN);
     p.range.strength = 0;
-    CHECK_INT(resolved(100, 100, &depth, &p).sharp, 1);
-    p = hf_default_params;
+    CHECK_INT(resolved(100, 100, &depth, &p).r.sharp, 1);
+    p = hf_default_params();
     p.model = HF_MODEL_LENS;
     p.lens.f_number = 2;  // aperture radius 0.05 / (2 * 2) m; 50 / 36 * 1800 pixels
     r = resolved(1800, 1000, &depth, &p);
-    CHECK(fabsf(r.focal_px - 2500) < 1e-3f && fabsf(r.lens_k - 31.25f) < 1e-4f);
+    CHECK(fabsf(r.r.focal_px - 2500) < 1e-3f && fabsf(r.r.lens_k - 31.25f) < 1e-4f);
     // The sensor is as wide as the picture for any shape of pixels; with low pixels a radius covers more of them.
     p.view.pixel_aspect = 2;
-    CHECK(fabsf(resolved(1800, 1000, &depth, &p).lens_k - 62.5f) < 1e-4f);
+    CHECK(fabsf(resolved(1800, 1000, &depth, &p).r.lens_k - 62.5f) < 1e-4f);
     p.view.pixel_aspect = 1;
     p.engine = HF_ENGINE_SCATTER;
     r = resolved(1800, 1000, &depth, &p);
-    CHECK(r.limit == HF_LIMIT_NONE && r.params.max_radius == 2048);
-    const struct hf_image picture = {.width = 1, .height = 1, .format = HF_FORMAT_PLANAR32F, .data = {&p, &p, &p}};
+    CHECK(r.r.limit == HF_LIMIT_NONE && r.params.max_radius == 2048);
+    const struct hf_image picture = {
+        .size = sizeof picture, .width = 1, .height = 1, .format = HF_FORMAT_PLANAR32F, .data = {&p, &p, &p}};
     p.aperture.picture = &picture;
     r = resolved(1800, 1000, &depth, &p);
-    CHECK(r.limit == HF_LIMIT_PICTURE && r.params.max_radius == 256);
-    p = hf_default_params;
+    CHECK(r.r.limit == HF_LIMIT_PICTURE && r.params.max_radius == 256);
+    p = hf_default_params();
     p.engine = HF_ENGINE_GAUSSIAN;
     r = resolved(64, 64, &depth, &p);
     CHECK(r.params.gaussian.by_depth == 1 && fabsf(r.params.gaussian.sigma - sqrtf(3)) < 1e-6f);
     p.range.distance = 3;
     CHECK_INT(resolved(64, 64, &depth, &p).params.gaussian.by_depth, 0);
-    p = hf_default_params;  // angles that sines and cosines are still exact for
+    p = hf_default_params();  // angles that sines and cosines are still exact for
     p.aperture.blades = 6;
     p.aperture.rotation = -725;
     CHECK(resolved(64, 64, &depth, &p).params.aperture.rotation == -5);
@@ -113,13 +121,13 @@ static void derived(void)
 // HF_DERIVE is replaced everywhere, for any engine and model.
 static void no_sentinels(void)
 {
-    for (int e = 0; e < HF_ENGINE_COUNT; e++)
+    for (int e = 0; e < tool_engines(); e++)
         for (int model = 0; model < 2; model++) {
-            const struct hf_depth depth = {0};
-            struct hf_params p = hf_default_params;
+            const struct hf_depth depth = {.size = sizeof depth};
+            struct hf_params p = hf_default_params();
             p.engine = (enum hf_engine)e;
             p.model = (enum hf_model)model;
-            const struct hf_resolved r = resolved(640, 480, &depth, &p);
+            const struct told r = resolved(640, 480, &depth, &p);
             const struct hf_params *q = &r.params;
             CHECK(q->max_radius > 0 && q->view.display_width == 640 && q->view.display_height == 480);
             CHECK(e != HF_ENGINE_GATHER || q->gather.rings > 0);
@@ -130,33 +138,50 @@ static void no_sentinels(void)
         }
 }
 
+// Refused, about an argument, in a sentence that holds some words.
+static void refused(const struct hf_depth *depth, const struct hf_params *p, int error, const char *argument,
+                    const char *words)
+{
+    struct told t;
+    memset(&t, 0xff, sizeof t);
+    t.params.size = sizeof t.params;
+    t.r.size = sizeof t.r;
+    struct hf_message message = {.size = sizeof message};
+    CHECK_INT(hf_resolve(3, 3, depth, p, &t.params, &t.r, &message), error);
+    CHECK_INT(message.error, error);
+    CHECK_MSG(!strcmp(message.argument, argument), "%s", message.argument);
+    CHECK_MSG(strstr(message.sentence, words) && !strncmp(message.sentence, argument, strlen(argument)), "%s",
+              message.sentence);
+    CHECK(t.r.width == 0 && t.params.focus == 0 && t.params.size == sizeof t.params);
+    CHECK_INT(hf_resolve(3, 3, depth, p, NULL, NULL, NULL), error);
+}
+
 // A focus read from the depth, with and without a surface; errors leave a matching sentence.
 static void focus(void)
 {
     float z[9] = {0, 0, 0, 0, 6, 0, 0, 0, 0};
-    struct hf_depth depth = {.data = z, .stride = 12};
-    struct hf_params p = hf_default_params;
-    struct hf_resolved r;
-    char message[256], small[8];
+    struct hf_depth depth = {.size = sizeof depth, .data = z, .stride = 12};
+    struct hf_params p = hf_default_params();
     p.focus = HF_DERIVE;
     CHECK(resolved(3, 3, &depth, &p).params.focus == 6);
     z[4] = 0;
-    CHECK_INT(hf_resolve(3, 3, &depth, &p, &r, message, sizeof message), HF_ERR_FOCUS);
-    CHECK_MSG(strstr(message, "(1, 1)") != NULL, "%s", message);
-    CHECK_INT(hf_resolve(3, 3, &depth, &p, NULL, NULL, 0), HF_ERR_FOCUS);
+    refused(&depth, &p, HF_ERR_FOCUS, "focus", "(1, 1)");
     p.engine = HF_ENGINE_GAUSSIAN;
     CHECK(resolved(3, 3, &depth, &p).params.focus == INFINITY);
     depth.data = NULL;
-    CHECK_INT(hf_resolve(3, 3, &depth, &p, &r, small, sizeof small), HF_ERR_ARG);
-    CHECK_INT(strlen(small), sizeof small - 1);
+    refused(&depth, &p, HF_ERR_ARG, "depth.data", "is NULL");
     p.focus = -3;
-    CHECK_INT(hf_resolve(3, 3, &depth, &p, &r, message, sizeof message), HF_ERR_ARG);
-    CHECK_MSG(strstr(message, "focus is -3") != NULL, "%s", message);
+    refused(&depth, &p, HF_ERR_ARG, "focus", "is -3");
     p.focus = INFINITY;
-    CHECK_INT(hf_resolve(3, 3, &depth, &p, &r, message, sizeof message), HF_ERR_ARG);
-    CHECK_MSG(strstr(message, "focus is inf") != NULL, "%s", message);
+    refused(&depth, &p, HF_ERR_ARG, "focus", "is inf");
     p.model = HF_MODEL_LENS;
     CHECK(resolved(3, 3, &depth, &p).params.focus == INFINITY);
+    p.engine = HF_ENGINE_GATHER;
+    p.gather.fill = (enum hf_fill)9;
+    refused(&depth, &p, HF_ERR_ARG, "gather.fill", "gather.fill is 9: no such value (-1 to 3)");
+    p = hf_default_params();
+    p.range.near_end = 12;
+    refused(&depth, &p, HF_ERR_ARG, "range.near_end", "is 12; it must be at most 10");
 }
 
 // Apertures that an engine cannot draw are refused by name.
@@ -166,7 +191,7 @@ static void apertures(void)
         enum hf_engine engine;
         const char *word;
         struct hf_aperture_params aperture;
-    } refused[] = {
+    } cases[] = {
         {HF_ENGINE_GATHER, "ring", {.ring = 0.5f, .squeeze = 1}},
         {HF_ENGINE_GATHER, "roundness", {.blades = 6, .roundness = 0.5f, .squeeze = 1}},
         {HF_ENGINE_GATHER, "blades", {.blades = 2, .squeeze = 1}},
@@ -176,14 +201,14 @@ static void apertures(void)
         {HF_ENGINE_SCATTER, "blades", {.blades = 17, .squeeze = 1}},
         {HF_ENGINE_SCATTER, "cat_eye", {.cat_eye = 1.5f, .squeeze = 1}},
     };
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-        const struct hf_depth depth = {0};
-        struct hf_params p = hf_default_params;
-        char message[256] = "";
-        p.engine = refused[i].engine;
-        p.aperture = refused[i].aperture;
-        CHECK_INT(hf_resolve(64, 64, &depth, &p, NULL, message, sizeof message), HF_ERR_ARG);
-        CHECK_MSG(strstr(message, refused[i].word) != NULL, "case %zu: %s", i, message);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const struct hf_depth depth = {.size = sizeof depth};
+        struct hf_params p = hf_default_params();
+        struct hf_message message = {.size = sizeof message};
+        p.engine = cases[i].engine;
+        p.aperture = cases[i].aperture;
+        CHECK_INT(hf_resolve(64, 64, &depth, &p, NULL, NULL, &message), HF_ERR_ARG);
+        CHECK_MSG(strstr(message.sentence, cases[i].word) != NULL, "case %zu: %s", i, message.sentence);
     }
 }
 
@@ -209,7 +234,7 @@ static void some_free(void *cookie, void *p)
 static void prepared(enum hf_engine engine)
 {
     struct rng rng = rng_seed(7);
-    struct hf_config config = {.threads = 2, .alloc = some_alloc, .free = some_free};
+    struct hf_config config = {.size = sizeof config, .threads = 2, .alloc = some_alloc, .free = some_free};
     struct scene s = scene_new(&rng, SCENE_NOISE, 150, 90, 3);
     struct picture plain = picture_new(150, 90, 3), out = picture_new(150, 90, 3);
     struct hf_params p = scene_params();
@@ -227,9 +252,9 @@ static void prepared(enum hf_engine engine)
     CHECK_MSG(allocations == before, "%s: %ld allocations in a frame that was prepared", hf_engine_name(engine),
               allocations - before);
     CHECK(picture_same_bits(&plain, &out));
-    struct hf_report report;
-    hf_get_report(c, &report);
-    CHECK(report.total_ms > 0 && report.used.params.engine == engine && report.columns > 0);
+    struct tool_report report;
+    tool_report_get(c, &report);
+    CHECK(report.all.total_ms > 0 && report.params.engine == engine && report.inner.columns > 0);
     // If there is no memory for a frame, it leaves no report and no tiles.
     struct scene large = scene_new(&rng, SCENE_NOISE, 500, 400, 3);
     struct picture much = picture_new(500, 400, 3);
@@ -237,12 +262,12 @@ static void prepared(enum hf_engine engine)
     fail_from = allocations;
     CHECK_INT(try_scene(c, &much, &large, &p), HF_ERR_MEMORY);
     fail_from = -1;
-    hf_get_report(c, &report);
-    CHECK(report.columns == 0 && report.total_ms == 0);
-    CHECK_INT(hf_get_tiles(c, tiles, sizeof tiles), 0);
+    tool_report_get(c, &report);
+    CHECK(report.inner.columns == 0 && report.all.total_ms == 0);
+    CHECK_INT(hf_inspect_tiles(c, tiles, sizeof tiles), 0);
     CHECK(tiles[0] == 9);
     CHECK_INT(try_scene(c, &much, &large, &p), HF_OK);
-    CHECK(hf_get_tiles(c, tiles, 1) > 1);
+    CHECK(hf_inspect_tiles(c, tiles, 1) > 1);
     CHECK(tiles[0] <= HF_TILE_BOTH && tiles[1] == 9);
     hf_close(&c);
     picture_free(&much);
@@ -257,7 +282,7 @@ static void prepared(enum hf_engine engine)
 static void forked(int threads)
 {
     struct rng rng = rng_seed(7);
-    struct hf_config config = {.threads = threads};
+    struct hf_config config = {.size = sizeof config, .threads = threads};
     struct scene s = scene_new(&rng, SCENE_NOISE, 60, 40, 3);
     struct picture out = picture_new(60, 40, 3);
     struct hf_params p = scene_params();
@@ -289,7 +314,7 @@ int main(void)
     no_sentinels();
     focus();
     apertures();
-    for (int e = 0; e < HF_ENGINE_COUNT; e++)
+    for (int e = 0; e < tool_engines(); e++)
         prepared((enum hf_engine)e);
     forked(3);
     forked(1);

@@ -208,7 +208,7 @@ static void threads_refused(void)
 static void context_refused(void)
 {
     for (int k = 0; k < 4; k++) {
-        const struct hf_config config = {.threads = 5, .alloc = take, .free = give};
+        const struct hf_config config = {.size = sizeof config, .threads = 5, .alloc = take, .free = give};
         struct hf_context *c = (struct hf_context *)&c;
         create_calls = 0;
         create_fails_at = k;

@@ -41,14 +41,14 @@ cat >app.c <<'END'
 int main(void)
 {
     static float colour[8 * 8 * 4], z[8 * 8];
-    const struct hf_image picture = {8, 8, HF_FORMAT_RGBA32F, {colour}, {sizeof colour / 8}, HF_TRANSFER_LINEAR};
-    const struct hf_depth depth = {.data = z, .stride = sizeof z / 8};
+    const struct hf_image picture = {sizeof picture, 8, 8, HF_FORMAT_RGBA32F, HF_TRANSFER_LINEAR, {colour}, {sizeof colour / 8}};
+    const struct hf_depth depth = {.size = sizeof depth, .data = z, .stride = sizeof z / 8};
     struct hf_context *c;
     for (int i = 0; i < 64; i++)
         z[i] = 1 + i, colour[4 * i] = colour[4 * i + 3] = 1;
     int err = hf_open(&c, NULL);
     if (!err)
-        err = hf_render(c, &picture, &picture, &depth, &hf_default_params);
+        err = hf_render(c, &picture, &picture, &depth, NULL);
     hf_close(&c);
     printf("%s: %s, %g\n", hf_version(), hf_error_string(err), colour[0]);
     return err != HF_OK;

@@ -3,6 +3,7 @@
 // of each other, values that are missing. Usage: page_made_up FILE.html [FILE.png], the latter being the chart alone.
 #include "metrics.h"
 #include "page.h"
+#include "tools/common/report.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,12 +25,12 @@ int trade_run_render(struct trade_run *run, int result, int scene, struct tool_e
 static void make_up(struct trade_result *r, struct trade_setting *s, int i)
 {
     static char names[SETTINGS][64], options[SETTINGS][128];
-    const char *engine = hf_engine_name((enum hf_engine)(i % HF_ENGINE_COUNT));
+    const char *engine = hf_engine_name((enum hf_engine)(i % tool_engines()));
     snprintf(names[i], sizeof names[i], "%s, %s %d", engine, i % 7 ? "knob" : "a knob with a long name <&>", i);
     snprintf(options[i], sizeof options[i], "--engine %s --knob %d --another-knob-of-it=\"%d\"", engine, i, i / 2);
     *s = (struct trade_setting){"knob", names[i], options[i], 1};
     r->setting = s;
-    r->engine = (enum hf_engine)(i % HF_ENGINE_COUNT);
+    r->engine = (enum hf_engine)(i % tool_engines());
     r->farthest = INFINITY;
     const double ms = 0.8 * pow(1000, (double)(i - i % 3) / SETTINGS);
     for (int c = 0; c < SCENES; c++) {
@@ -48,7 +49,7 @@ static void make_up(struct trade_result *r, struct trade_setting *s, int i)
         p->time.n = SAMPLES;
         for (int k = 0; k < SAMPLES; k++) {
             p->time.sample[k] = ms * (1 + 0.05 * (1 + i % 4) * (k - 2));
-            for (int q = 0; q < hf_pass_count(r->engine); q++)
+            for (int q = 0; q < tool_passes(r->engine); q++)
                 p->time.pass[k][q] = ms / 12;
         }
     }

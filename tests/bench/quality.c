@@ -10,6 +10,7 @@
 #include "others.h"
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 // A step of the ladder may be worse than the one before by 0.1 dB on a scene: trade_ladder's rule. Its mean is better by
 // 0.2 dB or more (TRADE_STEP_DB): with errors in the table that are off by less than half of that, the order is right.
@@ -51,15 +52,17 @@ static double psnr_of(struct hf_context *c, const struct truth *t, int scene, st
 
 // The step after *choice that can make any radius, as the scenes need; the first such step if *choice is empty.
 // Returns 0 when there are no more.
-static int next_step(struct hf_params *p, struct hf_choice *choice)
+static int next_step(struct hf_params *p, struct tool_choice *choice)
 {
-    const struct hf_choice before = *choice;
-    if (before.options && before.step + 1 == before.steps)
+    const struct tool_choice before = *choice;
+    if (before.inner.options && before.inner.step + 1 == before.inner.steps)
         return 0;
-    *p = hf_default_params;
+    *p = hf_default_params();
     p->model = HF_MODEL_LENS;
-    CHECK_INT(hf_choose_error(720, NULL, p, before.options ? before.error * 0.99999f : 1, choice), HF_OK);
-    return before.options ? CHECK_INT(choice->step, before.step + 1) : CHECK(choice->step == choice->passed);
+    const float error = before.inner.options ? before.all.error * 0.99999f : 1;
+    CHECK_INT(tool_choose(720, NULL, p, HF_QUALITY_DRAFT, error, choice), HF_OK);
+    return before.inner.options ? CHECK_INT(choice->inner.step, before.inner.step + 1)
+                                : CHECK(choice->inner.step == choice->inner.passed);
 }
 
 static const struct bench_other *other(int scene)
@@ -73,7 +76,7 @@ static const struct bench_other *other(int scene)
 int main(int argc, char **argv)
 {
     struct hf_context *c = NULL;
-    struct hf_choice choice[MOST] = {{0}};
+    struct tool_choice choice[MOST] = {0};
     struct hf_params step[MOST];
     double mean[MOST] = {0};
     int steps = 0;
@@ -84,7 +87,7 @@ int main(int argc, char **argv)
             choice[steps + 1] = choice[steps];
         steps++;
     }
-    CHECK(steps > 1 && choice[0].step + steps == choice[0].steps);
+    CHECK(steps > 1 && choice[0].inner.step + steps == choice[0].inner.steps);
     for (int s = 0; s < SCENES; s++) {
         struct truth t;
         const double others = fmax(other(s)->blender, other(s)->gegl);
@@ -93,8 +96,8 @@ int main(int argc, char **argv)
             break;
         for (int i = 0; i < steps; i++) {
             const double psnr = psnr_of(c, &t, s, step[i]);
-            CHECK_MSG(psnr >= last - SLACK, "%s: %s has %.2f dB, before it %.2f", scenes[s].name, choice[i].options,
-                      psnr, last);
+            CHECK_MSG(psnr >= last - SLACK, "%s: %s has %.2f dB, before it %.2f", scenes[s].name,
+                      choice[i].inner.options, psnr, last);
             mean[i] += psnr / SCENES;
             last = psnr;
         }
@@ -104,9 +107,9 @@ int main(int argc, char **argv)
         picture_free(&t.want);
     }
     for (int i = 0; i < steps; i++)
-        CHECK_MSG(fabs(mean[i] + 20 * log10(choice[i].error)) <= TOLD_APART,
-                  "%s errs by %.2f dB, its table says %.2f: make the table anew", choice[i].options, mean[i],
-                  -20 * log10(choice[i].error));
+        CHECK_MSG(fabs(mean[i] + 20 * log10(choice[i].all.error)) <= TOLD_APART,
+                  "%s errs by %.2f dB, its table says %.2f: make the table anew", choice[i].inner.options, mean[i],
+                  -20 * log10(choice[i].all.error));
     hf_close(&c);
     return check_report();
 }

@@ -105,7 +105,7 @@ static struct picture render_fresh(const struct scene *s, const struct hf_params
 {
     // One cell, so that widths decide what lies past the end of a row.
     const struct hf_config config = {
-        .isa = isa, .threads = 1, .alloc = alloc_old, .free = free_old, .alloc_cookie = heap};
+        .size = sizeof config, .isa = isa, .threads = 1, .alloc = alloc_old, .free = free_old, .alloc_cookie = heap};
     const struct hf_depth depth = picture_radii(&s->depth);
     struct hf_context *c;
     CHECK_INT(hf_open(&c, &config), HF_OK);

@@ -15,6 +15,7 @@
 #include "support/check.h"
 #include "support/reference.h"
 #include "support/render.h"
+#include "hyperfocal/inspect.h"
 
 static const double U = FLT_EPSILON / 2;
 
@@ -23,7 +24,7 @@ static double many(double roundings)
     return 6 * sqrt(roundings / 3) * U;
 }
 
-// The buffers from hf_set_dump, and the resulting picture.
+// The buffers from hf_inspect_dump, and the resulting picture.
 struct capture {
     struct picture buffer[REF_COUNT];
     int count;
@@ -36,7 +37,7 @@ struct job {
     struct capture captured;
 };
 
-static void on_buffer(void *cookie, const struct hf_buffer *b)
+static void on_buffer(void *cookie, const struct hf_inspect_buffer *b)
 {
     static const char *const names[] = {[REF_COC] = "coc",           [REF_COC4] = "coc4",
                                         [REF_COCMAXX] = "cocmaxx",   [REF_COCMAX] = "cocmax",
@@ -242,9 +243,9 @@ static void check_frame(struct hf_context *c, const struct scene *s, const struc
 {
     struct job job = {.depth = depth};
     snprintf(job.label, sizeof job.label, "%s", label);
-    hf_set_dump(c, on_buffer, &job.captured);
+    hf_inspect_dump(c, on_buffer, &job.captured);
     struct picture out = job.captured.buffer[REF_RESULT] = render(c, &s->colour, depth, p);
-    hf_set_dump(c, NULL, NULL);
+    hf_inspect_dump(c, NULL, NULL);
     struct reference *r = reference_render(&s->colour, depth, p, compare, &job);
     reference_free(r);
     for (int no_skip = 0; no_skip < 2; no_skip++) {
@@ -410,9 +411,9 @@ static void all_depth_types(struct hf_context *c, const char *isa, unsigned seed
         check_frame(c, &scene, &depth, &wide, label);
         struct job job = {.depth = &depth};
         snprintf(job.label, sizeof job.label, "%s", label);
-        hf_set_dump(c, on_buffer, &job.captured);
+        hf_inspect_dump(c, on_buffer, &job.captured);
         struct picture out = render(c, &scene.colour, &depth, &p);
-        hf_set_dump(c, NULL, NULL);
+        hf_inspect_dump(c, NULL, NULL);
         const struct hf_depth view = picture_depth(&scene.depth);
         struct reference *r = reference_render(&scene.colour, &view, &p, NULL, NULL);
         const struct ref_buffer *coc = &r->buffer[REF_COC];

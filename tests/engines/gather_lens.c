@@ -8,13 +8,14 @@
 
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 enum { WIDTH = 320, HEIGHT = 120, MIDDLE = HEIGHT / 2, EDGE = 100, POINT = 230 };
 static const float NEAR = 30, FAR = 6;
 
 static struct hf_params lens_params(void)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_GATHER;
     p.gather.fill = HF_FILL_MEAN;
     return p;
@@ -31,10 +32,11 @@ static struct picture light_at(struct hf_context *c, const struct hf_params *p, 
     const struct hf_image src = picture_image(&colour);
     const struct hf_depth depth = picture_radii(&radii);
     const struct picture out = render(c, &colour, &depth, p);
-    struct hf_report report;
-    CHECK_INT(hf_plan(c, &src, &src, &depth, p, &report), HF_OK);
+    struct tool_report report;
+    CHECK_INT(hf_plan(c, &src, &src, &depth, p, NULL), HF_OK);
+    tool_report_get(c, &report);
     // Dividing the radius by the largest possible one and multiplying back rounds twice.
-    CHECK(fabsf(report.near_radius - NEAR) < 1e-5f && fabsf(report.far_radius - FAR) < 1e-5f);
+    CHECK(fabsf(report.all.near_radius - NEAR) < 1e-5f && fabsf(report.all.far_radius - FAR) < 1e-5f);
     picture_free(&colour);
     picture_free(&radii);
     return out;
@@ -126,7 +128,7 @@ static void truth(struct hf_context *c, const char *folder, const char *scene, f
 static struct picture at_radius(struct hf_context *c, const struct picture *colour, const struct picture *radii,
                                 float radius)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     struct picture out = picture_new(colour->width, colour->height, 3);
     const struct hf_image src = picture_image(colour), dst = picture_image(&out);
     struct hf_depth depth = picture_depth(radii);

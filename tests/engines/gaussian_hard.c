@@ -9,6 +9,7 @@
 
 #include "support/gaussian.h"
 #include "support/reference.h"
+#include "tools/common/report.h"
 
 static const double U = FLT_EPSILON / 2;
 static unsigned seed = 1;
@@ -30,10 +31,10 @@ static void same_bits(struct hf_context *plain, enum hf_isa id, const char *isa)
             for (int j = 0; j < w * h / 20; j++)
                 s.colour.plane[rng_below(&rng, 3)][rng_below(&rng, w * h)] = rng_below(&rng, 2) ? -0.0f : -1e-3f;
             struct picture a = render_scene(c, &s, &p);
-            struct hf_report stats;
-            hf_get_report(c, &stats);
-            run += stats.pass[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1].ran;
-            all += stats.pass[hf_pass_count(HF_ENGINE_GAUSSIAN) - 1].all;
+            struct tool_report stats;
+            tool_report_get(c, &stats);
+            run += stats.pass[tool_passes(HF_ENGINE_GAUSSIAN) - 1].ran;
+            all += stats.pass[tool_passes(HF_ENGINE_GAUSSIAN) - 1].all;
             p.run.no_skip = 1;
             struct picture b = render_scene(plain, &s, &p);
             CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u, %s %d x %d, setup %d: skipping gives other bits", isa,
@@ -83,7 +84,7 @@ static void crops(struct hf_context *c, const char *isa)
         struct hf_params p = random_params(&rng);
         p.focus = 20;
         p.view.display_width = 200;
-        p.gaussian.iterations = hf_default_params.gaussian.iterations;
+        p.gaussian.iterations = hf_default_params().gaussian.iterations;
         p.gaussian.sigma = i % 3 ? HF_DERIVE : fminf(p.gaussian.sigma, 2);
         p.gaussian.resolution = p.gaussian.sigma > 0 ? HF_RESOLUTION_FULL : p.gaussian.resolution;
         const int step = 2 << p.gaussian.resolution, x0 = step * rng_below(&rng, 4), y0 = step * rng_below(&rng, 4);
@@ -160,11 +161,11 @@ static void bad_samples(struct hf_context *c, const char *isa)
         struct hf_params p = random_params(&rng);
         p.run.no_skip = i % 2;
         struct picture a = render_scene(c, &s, &p);
-        struct hf_report stats;
-        hf_get_report(c, &stats);
-        CHECK_INT(stats.colour_repaired, bad);
-        CHECK_INT(stats.depth_repaired, holes);
-        CHECK_INT(stats.near_pixels + stats.sharp_pixels + stats.far_pixels, 61 * 45);
+        struct tool_report stats;
+        tool_report_get(c, &stats);
+        CHECK_INT(stats.all.colour_repaired, bad);
+        CHECK_INT(stats.all.depth_repaired, holes);
+        CHECK_INT(stats.all.near_pixels + stats.all.sharp_pixels + stats.all.far_pixels, 61 * 45);
         struct picture b = render_scene(c, &mended, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s: seed %u: mending first gives other bits", isa, seed + i);
         for (int ch = 0; ch < 4; ch++)
@@ -282,16 +283,16 @@ static void focus_pull(struct hf_context *c, const char *isa)
 static void strengths(void)
 {
     static const float odd[] = {NAN, INFINITY, -1, 1.5f};
-    const struct hf_depth depth = {.type = HF_DEPTH_VIEW};
-    struct hf_params p = hf_default_params;
+    const struct hf_depth depth = {.size = sizeof depth, .type = HF_DEPTH_VIEW};
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_GAUSSIAN;
     p.model = HF_MODEL_LENS;
     for (int i = 0; i < 4; i++) {
         p.range.strength = odd[i];
         p.gaussian.by_depth = 1;
-        CHECK_INT(hf_resolve(21, 13, &depth, &p, NULL, NULL, 0), HF_ERR_ARG);
+        CHECK_INT(hf_resolve(21, 13, &depth, &p, NULL, NULL, NULL), HF_ERR_ARG);
         p.gaussian.by_depth = 0;
-        CHECK_INT(hf_resolve(21, 13, &depth, &p, NULL, NULL, 0), HF_OK);
+        CHECK_INT(hf_resolve(21, 13, &depth, &p, NULL, NULL, NULL), HF_OK);
     }
 }
 

@@ -12,6 +12,7 @@
 #include "support/check.h"
 #include "support/reference.h"
 #include "support/render.h"
+#include "hyperfocal/inspect.h"
 
 // The small scene: a floor in 17 exact CoC steps, a near bar, far highlights. All its numbers are exact as floats.
 enum { WIDTH = 96, HEIGHT = 64 };
@@ -82,7 +83,8 @@ enum { OWNS = sizeof owns / sizeof *owns };
 static struct hf_params own_params(const struct own *own)
 {
     struct hf_params p = own->set;
-    const struct hf_params d = hf_default_params;
+    const struct hf_params d = hf_default_params();
+    p.size = sizeof p;
     p.focus = 20;
     p.range.distance = 10;
     p.range.strength = d.range.strength;
@@ -191,7 +193,7 @@ static void fair(const struct shared *shared, const char *name, const struct pic
 
 // CoC buffers: golden and library are both computed in floats, each within 2.4e-7 of the truth as measured; the bound
 // is a bit over twice that.
-static void coc_close(const struct shared *shared, const struct hf_buffer *b, const struct picture *got)
+static void coc_close(const struct shared *shared, const struct hf_inspect_buffer *b, const struct picture *got)
 {
     struct picture want;
     double worst = 0;
@@ -207,7 +209,7 @@ static void coc_close(const struct shared *shared, const struct hf_buffer *b, co
     picture_free(&want);
 }
 
-static void on_buffer(void *cookie, const struct hf_buffer *b)
+static void on_buffer(void *cookie, const struct hf_inspect_buffer *b)
 {
     struct shared *shared = cookie;
     struct picture got = picture_new(b->width, b->height, b->channels);
@@ -225,14 +227,14 @@ static void on_buffer(void *cookie, const struct hf_buffer *b)
 static void check_shared(struct hf_context *c, struct shared *shared, const struct picture *colour,
                          const struct picture *z)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.focus = 20;
     p.range.distance = 10;
     p.gather.faithful = 1;
     const struct hf_depth depth = picture_depth(z);
-    hf_set_dump(c, on_buffer, shared);
+    hf_inspect_dump(c, on_buffer, shared);
     struct picture dumped = render(c, colour, &depth, &p);
-    hf_set_dump(c, NULL, NULL);
+    hf_inspect_dump(c, NULL, NULL);
     struct picture out = render(c, colour, &depth, &p);
     CHECK_MSG(picture_same_bits(&dumped, &out), "%s: dumped and fused frames differ", shared->isa);
     fair(shared, "composite", &out, 16, 2e-3);
@@ -281,7 +283,7 @@ int main(int argc, char **argv)
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++) {
         if (!hf_isa_available((enum hf_isa)isa))
             continue;
-        const struct hf_config config = {.threads = 2, .isa = (enum hf_isa)isa};
+        const struct hf_config config = {.size = sizeof config, .threads = 2, .isa = (enum hf_isa)isa};
         struct hf_context *c;
         if (!CHECK_INT(hf_open(&c, &config), HF_OK))
             continue;

@@ -11,6 +11,7 @@
 #include "support/check.h"
 #include "support/reference.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 static unsigned seed = 1;
 
@@ -38,9 +39,9 @@ static void bad_colours(const struct run *run, unsigned variant)
     struct hf_params p = scene_params();
     p.range.strength = 0;  // a copy, repaired
     struct picture repaired = render(run->c, &s.colour, &depth, &p);
-    struct hf_report stats;
-    hf_get_report(run->c, &stats);
-    CHECK_INT(stats.colour_repaired, bad);
+    struct tool_report stats;
+    tool_report_get(run->c, &stats);
+    CHECK_INT(stats.all.colour_repaired, bad);
     double *want = malloc(sizeof *want * 61 * 45);
     for (int c = 0; c < 4; c++) {
         ref_repair(want, s.colour.plane[c], 61, 45);
@@ -61,8 +62,8 @@ static void bad_colours(const struct run *run, unsigned variant)
     for (int no_skip = 0; no_skip < 2; no_skip++) {
         p.run.no_skip = no_skip;
         struct picture a = render(run->c, &s.colour, &depth, &p);
-        hf_get_report(run->c, &stats);
-        CHECK_INT(stats.colour_repaired, bad);
+        tool_report_get(run->c, &stats);
+        CHECK_INT(stats.all.colour_repaired, bad);
         struct picture b = render(run->c, &repaired, &depth, &p);
         CHECK_MSG(all_finite(&a), "%s: bad colours spread", run->isa);
         CHECK_MSG(picture_same_bits(&a, &b), "%s: repairing first gives other bits, variant %u", run->isa, variant);
@@ -87,11 +88,11 @@ static void all_bad(const struct run *run)
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 54; i++)
             CHECK_MSG(out.plane[c][i] == 0, "%s: nothing finite gives %g", run->isa, out.plane[c][i]);
-    struct hf_report stats;
-    hf_get_report(run->c, &stats);
-    CHECK_INT(stats.colour_repaired, 3 * 54);
-    CHECK_INT(stats.depth_repaired, 54);
-    CHECK_INT(stats.no_surface, 54);
+    struct tool_report stats;
+    tool_report_get(run->c, &stats);
+    CHECK_INT(stats.all.colour_repaired, 3 * 54);
+    CHECK_INT(stats.all.depth_repaired, 54);
+    CHECK_INT(stats.all.no_surface, 54);
     picture_free(&out);
     picture_free(&colour);
     picture_free(&depth);
@@ -122,10 +123,10 @@ static void bad_depths(const struct run *run)
         p.model = i % 2 ? HF_MODEL_LENS : HF_MODEL_RANGE;
         p.lens.f_number = 0.1f;
         struct picture a = render(run->c, &s.colour, &depth, &p);
-        struct hf_report stats;
-        hf_get_report(run->c, &stats);
-        CHECK_INT(stats.depth_repaired, repaired);
-        CHECK_INT(stats.no_surface, no_surface);
+        struct tool_report stats;
+        tool_report_get(run->c, &stats);
+        CHECK_INT(stats.all.depth_repaired, repaired);
+        CHECK_INT(stats.all.no_surface, no_surface);
         struct picture b = render(run->c, &s.colour, &clean, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s: mending depth by hand gives other bits", run->isa);
         CHECK(all_finite(&a));
@@ -143,7 +144,7 @@ static void giants(const struct run *run)
     for (int k = 0; k < 4; k++)
         picture_fill(&colour, k, k == 2 ? -FLT_MAX : FLT_MAX);
     for (int i = 0; i < 12; i++) {
-        struct hf_params p = hf_default_params;
+        struct hf_params p = hf_default_params();
         p.max_radius = 16;
         p.gather.fill = (enum hf_fill)(i % 4);
         p.gather.downsample = (enum hf_downsample)(i / 4);
@@ -202,9 +203,9 @@ static void special_depths(const struct run *run)
         d.far_plane = cases[i].far_plane;
         d.focal_px = 8;
         struct picture out = render(run->c, &colour, &d, &p);
-        struct hf_report s;
-        hf_get_report(run->c, &s);
-        const int sign = s.near_pixels == 64 ? -1 : s.far_pixels == 64 ? 1 : s.sharp_pixels == 64 ? 0 : 99;
+        struct tool_report s;
+        tool_report_get(run->c, &s);
+        const int sign = s.all.near_pixels == 64 ? -1 : s.all.far_pixels == 64 ? 1 : s.all.sharp_pixels == 64 ? 0 : 99;
         CHECK_MSG(sign == cases[i].sign, "%s: depth type %d, %g: CoC sign %d, expected %d", run->isa, cases[i].type,
                   cases[i].value, sign, cases[i].sign);
         picture_free(&out);

@@ -10,8 +10,10 @@
 #include "pixel/kernels.h"
 #include "support/check.h"
 #include "support/image.h"
+#include "tools/common/report.h"
 
-static const struct hf_highlight_params cases[] = {{8, 0.9f}, {64, 0.99f}, {64, 0}, {1.01f, 0.5f}, {16, 0.8f}};
+static const struct hf_highlight_params cases[] = {
+    {8, 0.9f, {0}}, {64, 0.99f, {0}}, {64, 0, {0}}, {1.01f, 0.5f, {0}}, {16, 0.8f, {0}}};
 enum { CASES = sizeof cases / sizeof *cases };
 
 // m raised in double precision; the parameters are floats.
@@ -146,7 +148,7 @@ static void make_scene(struct picture *colour, struct picture *z, int alpha)
 
 static struct hf_params lens(enum hf_engine engine, float gain)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = engine;
     p.model = HF_MODEL_LENS;
     p.focus = 5;
@@ -312,13 +314,14 @@ static void check_paint(struct hf_context *c, enum hf_engine engine)
 int main(void)
 {
     struct hf_context *contexts[2];
-    const struct hf_config one = {.threads = 1}, three = {.threads = 3, .isa = HF_ISA_SCALAR};
+    const struct hf_config one = {.size = sizeof one, .threads = 1},
+                           three = {.size = sizeof three, .threads = 3, .isa = HF_ISA_SCALAR};
     if (hf_open(&contexts[0], &one) || hf_open(&contexts[1], &three))
         return 1;
     for (int i = 0; i < CASES; i++)
         check_formulas(&cases[i]);
     check_colours();
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    for (int e = 0; e < tool_engines(); e++) {
         check_even(contexts[0], (enum hf_engine)e);
         check_lamp(contexts[0], (enum hf_engine)e);
         check_paint(contexts[0], (enum hf_engine)e);

@@ -20,7 +20,7 @@ static void random_aperture(struct rng *rng, struct hf_aperture_params *a)
 {
     static float bright[3][9 * 7];
     static const struct hf_image picture = {
-        9, 7, HF_FORMAT_PLANAR32F, {bright[0], bright[1], bright[2]}, {36, 36, 36}, HF_TRANSFER_LINEAR};
+        sizeof picture, 9, 7, HF_FORMAT_PLANAR32F, HF_TRANSFER_LINEAR, {bright[0], bright[1], bright[2]}, {36, 36, 36}};
     a->chromatic = rng_below(rng, 3) ? 0 : rng_range(rng, -0.5f, 0.5f);
     if (rng_below(rng, 4) == 0) {
         for (int i = 0; i < 9 * 7; i++)
@@ -149,7 +149,7 @@ static void pull(void)
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
     static const float steps[] = {1e-4f, 1e-3f, 1e-2f, 0.1f};
     struct scene s = scene_new(&rng, SCENE_BLOCKS, 128, 96, 3);
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_LAYERS;
     const struct hf_depth depth = picture_radii(&s.depth);
     struct picture out[2] = {picture_new(128, 96, 3), picture_new(128, 96, 3)};
@@ -243,7 +243,7 @@ static void crossed(void)
             colour.plane[k][i] = rod ? 0 : (float)ramp_at(x + 0.5);
     }
     for (int q = HF_LAYERS_STANDARD; q <= HF_LAYERS_BEST; q++) {
-        struct hf_params p = hf_default_params;
+        struct hf_params p = hf_default_params();
         p.engine = HF_ENGINE_LAYERS;
         p.layers.quality = (enum hf_layers_quality)q;
         struct picture out = render(c, &colour, &depth, &p);

@@ -113,7 +113,8 @@ static void compare(const struct shape *s, float radius, int channel, const stru
 static void against_scatter(struct hf_context *c)
 {
     static float tee[3][48 * 48];
-    struct hf_image picture = {48, 48, HF_FORMAT_PLANAR32F, {tee[0], tee[1], tee[2]}, {192, 192, 192}, 0};
+    struct hf_image picture = {
+        sizeof picture, 48, 48, HF_FORMAT_PLANAR32F, HF_TRANSFER_LINEAR, {tee[0], tee[1], tee[2]}, {192, 192, 192}};
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 48 * 48; i++)
             tee[k][i] = (i / 48 < 16 && i % 48 > 4) || abs(i % 48 - 26) < 6 ? 1.0f - 0.25f * (float)k : 0;
@@ -230,7 +231,7 @@ static void opaque(struct hf_context *c)
 static void largest_floats(struct hf_context *c)
 {
     struct picture colour = picture_new(40, 24, 4), radii = picture_new(40, 24, 1);
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_LAYERS;
     p.aperture.blades = 3;
     p.aperture.ring = 0.95f;

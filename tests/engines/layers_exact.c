@@ -100,18 +100,18 @@ static void against_double(struct hf_context *c, struct rng *rng, int n)
     float texel[3 * PICTURE_WIDTH * PICTURE_HEIGHT];
     for (int i = 0; i < 3 * PICTURE_HEIGHT * PICTURE_WIDTH; i++)
         texel[i] = i % 3 && n % 2 ? texel[i - 1] : 0.25f * (float)(rng_below(rng, 4) + (i / 3 == PICTURE_WIDTH));
-    const struct hf_image picture = {.width = PICTURE_WIDTH,
+    const struct hf_image picture = {.size = sizeof picture,
+                                     .width = PICTURE_WIDTH,
                                      .height = PICTURE_HEIGHT,
                                      .format = HF_FORMAT_RGB32F,
                                      .data = {texel},
                                      .stride = {3 * PICTURE_WIDTH * sizeof(float)}};
     p.aperture.picture = drawn ? &picture : NULL;
     const struct hf_depth depth = picture_radii(&s.depth);
-    struct hf_resolved resolved;
-    char message[200];
-    CHECK_INT(hf_resolve(width, height, &depth, &p, &resolved, message, sizeof message), HF_OK);
+    struct hf_params filled = {.size = sizeof filled};
+    CHECK_INT(hf_resolve(width, height, &depth, &p, &filled, NULL, NULL), HF_OK);
     struct picture got = render(c, &s.colour, &depth, &p);
-    struct picture want = layers_reference(&s.colour, s.depth.plane[0], &resolved.params);
+    struct picture want = layers_reference(&s.colour, s.depth.plane[0], &filled);
     const double largest = largest_sample(&s.colour), bound = ROUNDINGS * FLT_EPSILON / 2 * largest;
     const double off = largest_difference(&got, &want);
     printf("case %d, stage %d, %d x %d, quality %d, blades %d, ring %.2f: %.3g of %.3g\n", n, stage, width, height,

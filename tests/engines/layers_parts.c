@@ -19,14 +19,14 @@ static void slices(enum hf_layers_quality quality)
     struct hf_image image = picture_image(&colour);
     const struct hf_depth depth = picture_radii(&radii);
     const struct hf_counts found = {.radius_min = -150, .radius_max = 333};
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     struct hf_layers l = {.slices = 0};
-    struct hf_resolved r;
+    struct hf_settings r;
     struct hf_setup s;
-    char message[HF_MESSAGE];
+    struct hf_message message;
     p.engine = HF_ENGINE_LAYERS;
     p.layers.quality = quality;
-    CHECK_INT(hf_params_resolve(&r, 64, 48, &depth, &p, message), HF_OK);
+    CHECK_INT(hf_params_resolve(&r, 64, 48, &depth, &p, &message), HF_OK);
     hf_setup_make(&s, &image, &image, &depth, &r, &l);
     CHECK_INT(hf_layers_engine.own.prepare(&l, &s, &r.params, &hf_mem_default), HF_OK);
     CHECK_INT(hf_layers_engine.own.measure(&l, &s, &found, &hf_mem_default), HF_OK);

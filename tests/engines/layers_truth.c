@@ -40,7 +40,7 @@ static void measure(struct hf_context *c, const char *folder, const struct truth
         return;
     const struct hf_depth d = picture_depth(&depth);
     for (int i = 0; i < QUALITIES; i++) {
-        struct hf_params p = hf_default_params;
+        struct hf_params p = hf_default_params();
         p.engine = HF_ENGINE_LAYERS;
         p.model = HF_MODEL_LENS;
         p.focus = t->focus;

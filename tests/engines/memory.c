@@ -4,6 +4,7 @@
 
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 // The bytes that the context holds, counted by its own allocator.
 struct held {
@@ -56,10 +57,11 @@ static void try_one(const struct look *look, int width, int height)
 {
     struct rng rng = rng_seed(1);
     struct held held = {0};
-    struct hf_params p = hf_default_params;
-    struct hf_config config = {.threads = THREADS, .alloc = take, .free = give, .alloc_cookie = &held};
+    struct hf_params p = hf_default_params();
+    struct hf_config config = {
+        .size = sizeof config, .threads = THREADS, .alloc = take, .free = give, .alloc_cookie = &held};
     struct hf_context *c = NULL;
-    struct hf_report report;
+    struct tool_report report;
     struct picture colour = picture_new(width, height, 3), out = picture_new(width, height, 3),
                    radius = picture_new(width, height, 1);
     for (int i = 0; i < width * height; i++) {
@@ -76,12 +78,13 @@ static void try_one(const struct look *look, int width, int height)
     struct hf_depth depth = picture_depth(&radius);
     const struct hf_image dst = picture_image(&out), src = picture_image(&colour);
     depth.type = HF_DEPTH_COC;
-    CHECK_INT(hf_plan(c, &dst, &src, &depth, &p, &report), HF_OK);
+    CHECK_INT(hf_plan(c, &dst, &src, &depth, &p, NULL), HF_OK);
+    tool_report_get(c, &report);
     // A squeezed shape's width does not count: its rows are longer, but there are no more of them.
     const double bound = look->planes * plane_bytes(width, height, 1);
-    CHECK_MSG((double)held.now <= bound && (double)report.memory <= bound,
+    CHECK_MSG((double)held.now <= bound && (double)report.all.memory <= bound,
               "%s, %s, %d x %d: holds %.0f MB, needs %.0f, bound %.0f", hf_engine_name(p.engine), look->name, width,
-              height, (double)held.now / 1e6, (double)report.memory / 1e6, bound / 1e6);
+              height, (double)held.now / 1e6, (double)report.all.memory / 1e6, bound / 1e6);
     CHECK_MSG(held.largest < (size_t)1 << 31, "%s, %s: a block of %zu bytes", hf_engine_name(p.engine), look->name,
               held.largest);
     hf_close(&c);

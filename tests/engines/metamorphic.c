@@ -10,6 +10,7 @@
 
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 static const double U = FLT_EPSILON / 2;
 
@@ -27,7 +28,7 @@ struct trial {
 static struct hf_params random_params(struct rng *rng)
 {
     struct hf_params p = scene_params();
-    p.engine = (enum hf_engine)rng_below(rng, HF_ENGINE_COUNT);
+    p.engine = (enum hf_engine)rng_below(rng, tool_engines());
     p.max_radius = rng_below(rng, 3) ? rng_range(rng, 0.3f, 12) : (float)(1 + rng_below(rng, 12));
     p.range.strength = rng_below(rng, 3) ? 1 : rng_range(rng, 0.05f, 1);
     p.range.distance = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
@@ -228,15 +229,15 @@ static void bad_sample(const struct trial *t, struct rng *rng)
     (in_depth ? s.depth.plane[0] : s.colour.plane[rng_below(rng, s.colour.channels)])[y * w + x] =
         in_depth ? NAN : values[rng_below(rng, 3)];
     struct picture out = render_scene(t->c, &s, &t->p);
-    struct hf_report report;
-    hf_get_report(t->c, &report);
+    struct tool_report report;
+    tool_report_get(t->c, &report);
     const int far = changed_beyond(t, &out, x, y, x + 1, y + 1, m);
     CHECK_MSG(all_finite(&out), "%s: a bad sample at (%d, %d) spreads", name_of(t), x, y);
     CHECK_MSG(!far || t->p.layers.quality == HF_LAYERS_BEST, "%s: a bad sample at (%d, %d) changes %d farther than %d",
               name_of(t), x, y, far, m);
-    CHECK_MSG(report.colour_repaired == (uint64_t)!in_depth && report.depth_repaired == (uint64_t)in_depth,
-              "%s: a bad sample is counted as %llu and %llu", name_of(t), (unsigned long long)report.colour_repaired,
-              (unsigned long long)report.depth_repaired);
+    CHECK_MSG(report.all.colour_repaired == (uint64_t)!in_depth && report.all.depth_repaired == (uint64_t)in_depth,
+              "%s: a bad sample is counted as %llu and %llu", name_of(t),
+              (unsigned long long)report.all.colour_repaired, (unsigned long long)report.all.depth_repaired);
     picture_free(&out);
     scene_free(&s);
 }
@@ -259,16 +260,16 @@ static void bad_patch(const struct trial *t, struct rng *rng)
                 bad += !isfinite(v);
             }
     struct picture out = render_scene(t->c, &s, &t->p);
-    struct hf_report report;
-    hf_get_report(t->c, &report);
+    struct tool_report report;
+    tool_report_get(t->c, &report);
     const int far = changed_beyond(t, &out, x0, y0, x1, y1, m);
     CHECK_MSG(all_finite(&out), "%s: a patch from %g on at (%d, %d) - (%d, %d) makes what is not finite", name_of(t),
               (double)values[first], x0, y0, x1, y1);
     CHECK_MSG(!far || t->p.layers.quality == HF_LAYERS_BEST,
               "%s: a patch from %g on at (%d, %d) - (%d, %d) changes %d samples farther than %d", name_of(t),
               (double)values[first], x0, y0, x1, y1, far, m);
-    CHECK_MSG(report.colour_repaired == bad, "%s: %llu bad samples are counted as %llu", name_of(t),
-              (unsigned long long)bad, (unsigned long long)report.colour_repaired);
+    CHECK_MSG(report.all.colour_repaired == bad, "%s: %llu bad samples are counted as %llu", name_of(t),
+              (unsigned long long)bad, (unsigned long long)report.all.colour_repaired);
     picture_free(&out);
     scene_free(&s);
 }

@@ -10,7 +10,7 @@ enum { SIZE = 120, MIDDLE = SIZE / 2 };
 
 static struct hf_params lens_params(void)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_SCATTER;
     p.model = HF_MODEL_LENS;
     p.focus = 2;

@@ -8,6 +8,7 @@
 #include "frame/ladder.h"
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 // Everything in focus, except what `paint` puts into the depth.
 static struct scene sharp(int w, int h)
@@ -23,27 +24,28 @@ static void put(struct scene *s, int x0, int y0, int x1, int y1, float z)
             s->depth.plane[0][y * s->depth.width + x] = z;
 }
 
-static struct hf_report plan(struct hf_context *c, const struct scene *s, const struct hf_params *p)
+static struct tool_report plan(struct hf_context *c, const struct scene *s, const struct hf_params *p)
 {
-    struct hf_report r;
+    struct tool_report r;
     const struct hf_image image = picture_image(&s->colour);
     const struct hf_depth depth = picture_depth(&s->depth);
-    CHECK_INT(hf_plan(c, &image, &image, &depth, p, &r), HF_OK);
+    CHECK_INT(hf_plan(c, &image, &image, &depth, p, NULL), HF_OK);
+    tool_report_get(c, &r);
     return r;
 }
 
-static struct hf_report report_of(struct hf_context *c, const struct scene *s, const struct hf_params *p)
+static struct tool_report report_of(struct hf_context *c, const struct scene *s, const struct hf_params *p)
 {
     struct picture out = render_scene(c, s, p);
-    struct hf_report r;
-    hf_get_report(c, &r);
+    struct tool_report r;
+    tool_report_get(c, &r);
     picture_free(&out);
     return r;
 }
 
-static uint32_t run_of(const struct hf_report *r, const char *pass)
+static uint32_t run_of(const struct tool_report *r, const char *pass)
 {
-    for (int i = 0; i < r->passes; i++)
+    for (int i = 0; i < r->inner.passes; i++)
         if (!strcmp(r->pass[i].name, pass))
             return r->pass[i].run;
     CHECK_MSG(0, "no pass %s", pass);
@@ -51,19 +53,19 @@ static uint32_t run_of(const struct hf_report *r, const char *pass)
 }
 
 // Two reports are the same, except for times.
-static void check_same(const struct hf_report *a, const struct hf_report *b)
+static void check_same(const struct tool_report *a, const struct tool_report *b)
 {
-    CHECK_INT(a->columns, b->columns);
-    CHECK_INT(a->rows, b->rows);
-    CHECK(!memcmp(a->tile_count, b->tile_count, sizeof a->tile_count));
-    CHECK_INT(a->memory, b->memory);
-    CHECK_INT(a->memory_saved, b->memory_saved);
-    CHECK(a->near_radius == b->near_radius && a->far_radius == b->far_radius);
-    for (int i = 0; i < a->passes; i++) {
+    CHECK_INT(a->inner.columns, b->inner.columns);
+    CHECK_INT(a->inner.rows, b->inner.rows);
+    CHECK(!memcmp(a->inner.tile_count, b->inner.tile_count, sizeof a->inner.tile_count));
+    CHECK_INT(a->all.memory, b->all.memory);
+    CHECK_INT(a->inner.memory_saved, b->inner.memory_saved);
+    CHECK(a->all.near_radius == b->all.near_radius && a->all.far_radius == b->all.far_radius);
+    for (int i = 0; i < a->inner.passes; i++) {
         CHECK_INT(a->pass[i].run, b->pass[i].run);
         CHECK_INT(a->pass[i].all, b->pass[i].all);
     }
-    CHECK(a->total_ms == 0 && b->total_ms > 0);
+    CHECK(a->all.total_ms == 0 && b->all.total_ms > 0);
 }
 
 static void planned_and_done(void)
@@ -73,19 +75,20 @@ static void planned_and_done(void)
         struct rng rng = rng_seed((unsigned)kind + 1);
         struct scene s = scene_new(&rng, (enum scene_kind)kind, 300, 200, 3);
         struct hf_params p = scene_params();
-        for (int engine = 0; engine < HF_ENGINE_COUNT; engine++) {
+        for (int engine = 0; engine < tool_engines(); engine++) {
             if (!hf_engine_name((enum hf_engine)engine))
                 continue;
             p.engine = (enum hf_engine)engine;
-            const struct hf_report before = plan(c, &s, &p), after = report_of(c, &s, &p);
+            const struct tool_report before = plan(c, &s, &p), after = report_of(c, &s, &p);
             check_same(&before, &after);
             // The measured part is predicted.
             report_of(c, &s, &p);
-            const struct hf_report again = plan(c, &s, &p);
-            CHECK(again.tile_count[HF_TILE_SHARP] == (uint32_t)(again.columns * again.rows) || again.predicted_ms > 0);
+            const struct tool_report again = plan(c, &s, &p);
+            CHECK(again.inner.tile_count[HF_TILE_SHARP] == (uint32_t)(again.inner.columns * again.inner.rows) ||
+                  again.all.predicted_ms > 0);
             // Learned costs: times differ from frame to frame, and so do predictions made from them, in some bit.
-            CHECK(again.tile_count[HF_TILE_SHARP] == (uint32_t)(again.columns * again.rows) ||
-                  again.predicted_ms != before.predicted_ms);
+            CHECK(again.inner.tile_count[HF_TILE_SHARP] == (uint32_t)(again.inner.columns * again.inner.rows) ||
+                  again.all.predicted_ms != before.all.predicted_ms);
         }
         scene_free(&s);
     }
@@ -110,11 +113,11 @@ static void wider_is_dearer(void)
         for (float f_number = 16; f_number >= 2; f_number /= 2) {
             struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
             p.lens.f_number = f_number;
-            const struct hf_report r = plan(c, &s, &p);
-            const float most = r.near_radius > r.far_radius ? r.near_radius : r.far_radius;
-            CHECK_MSG(most > radius && r.predicted_ms > before, "%s, f/%g: radius %g, %g ms; before %g, %g ms",
-                      hf_engine_name(p.engine), f_number, most, r.predicted_ms, radius, before);
-            before = r.predicted_ms;
+            const struct tool_report r = plan(c, &s, &p);
+            const float most = r.all.near_radius > r.all.far_radius ? r.all.near_radius : r.all.far_radius;
+            CHECK_MSG(most > radius && r.all.predicted_ms > before, "%s, f/%g: radius %g, %g ms; before %g, %g ms",
+                      hf_engine_name(p.engine), f_number, most, r.all.predicted_ms, radius, before);
+            before = r.all.predicted_ms;
             radius = most;
             hf_close(&c);
         }
@@ -128,44 +131,44 @@ static void only_what_is_called_for(void)
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
     struct scene s = sharp(640, 448);
     struct hf_params p = scene_params();
-    struct hf_report r = plan(c, &s, &p);
-    CHECK_INT(r.tile_count[HF_TILE_SHARP], 70);
+    struct tool_report r = plan(c, &s, &p);
+    CHECK_INT(r.inner.tile_count[HF_TILE_SHARP], 70);
     CHECK_INT(run_of(&r, "Downsample"), 0);
     CHECK_INT(run_of(&r, "Composite"), 0);
-    CHECK(r.near_radius == 0 && r.far_radius == 0);
+    CHECK(r.all.near_radius == 0 && r.all.far_radius == 0);
 
     // Far CoC stays in its tile; near CoC spreads by its reach of 6 and the upsampling's 1, to both sides.
     put(&s, 330, 210, 340, 220, 40);
     r = plan(c, &s, &p);
-    CHECK_INT(r.tile_count[HF_TILE_FAR], 1);
-    CHECK_INT(r.tile_count[HF_TILE_NEAR], 0);
+    CHECK_INT(r.inner.tile_count[HF_TILE_FAR], 1);
+    CHECK_INT(r.inner.tile_count[HF_TILE_NEAR], 0);
     CHECK_INT(run_of(&r, "Near CoC Max X"), 0);
     CHECK_INT(run_of(&r, "Computation"), 1);
     uint8_t tiles[10 * 8] = {0};
-    CHECK_INT(hf_get_tiles(c, tiles, sizeof tiles), r.columns * r.rows);
+    CHECK_INT(hf_inspect_tiles(c, tiles, sizeof tiles), r.inner.columns * r.inner.rows);
     CHECK_INT(tiles[3 * 10 + 5], HF_TILE_FAR);
-    CHECK(r.near_radius == 0 && r.far_radius == 12);
-    const size_t far_memory = r.memory;
-    CHECK(r.memory_saved > 0);
+    CHECK(r.all.near_radius == 0 && r.all.far_radius == 12);
+    const size_t far_memory = r.all.memory;
+    CHECK(r.inner.memory_saved > 0);
     put(&s, 330, 210, 340, 220, 5);
     r = plan(c, &s, &p);
     // Known by chunks of 64 x 16 pixels: (320..384) x (208..224), and everything up to 14 pixels away from that.
-    CHECK_INT(r.tile_count[HF_TILE_NEAR], 3);
-    CHECK_INT(r.tile_count[HF_TILE_FAR], 0);
+    CHECK_INT(r.inner.tile_count[HF_TILE_NEAR], 3);
+    CHECK_INT(r.inner.tile_count[HF_TILE_FAR], 0);
     CHECK_INT(run_of(&r, "Near CoC Max X"), 3);
     put(&s, 100, 100, 110, 110, 40);
     r = plan(c, &s, &p);
-    CHECK_INT(r.tile_count[HF_TILE_FAR], 1);
-    CHECK(r.memory > far_memory && r.memory_saved == 0);
+    CHECK_INT(r.inner.tile_count[HF_TILE_FAR], 1);
+    CHECK(r.all.memory > far_memory && r.inner.memory_saved == 0);
 
     p.run.no_skip = 1;
     r = plan(c, &s, &p);
-    CHECK_INT(r.tile_count[HF_TILE_BOTH], 70);
+    CHECK_INT(r.inner.tile_count[HF_TILE_BOTH], 70);
     p.run.no_skip = 0;
     p.range.strength = 0;
     r = plan(c, &s, &p);
-    CHECK_INT(r.tile_count[HF_TILE_SHARP], 70);
-    CHECK(r.memory == 0 || r.memory < far_memory);
+    CHECK_INT(r.inner.tile_count[HF_TILE_SHARP], 70);
+    CHECK(r.all.memory == 0 || r.all.memory < far_memory);
     scene_free(&s);
     hf_close(&c);
 }
@@ -175,21 +178,22 @@ static void radii_found(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 32, 32);
     struct scene s = sharp(200, 120);
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     struct hf_depth depth = picture_radii(&s.depth);
     const struct hf_image image = picture_image(&s.colour);
     picture_fill(&s.depth, 0, 0);
     put(&s, 20, 20, 60, 60, -5);
     put(&s, 110, 30, 150, 90, 11);
-    p.max_radius = 16;  // a power of two, so that dividing by it and multiplying again is exact
-    for (int engine = 0; engine < HF_ENGINE_COUNT; engine++) {
-        struct hf_report r;
+    p.max_radius = 16;  // a power of two: what is divided by it and multiplied again is as it was
+    for (int engine = 0; engine < tool_engines(); engine++) {
+        struct tool_report r;
         if (!hf_engine_name((enum hf_engine)engine))
             continue;
         p.engine = (enum hf_engine)engine;
-        CHECK_INT(hf_plan(c, &image, &image, &depth, &p, &r), HF_OK);
-        CHECK_MSG(r.near_radius == 5 && r.far_radius == 11, "%s: radii %g and %g", hf_engine_name(p.engine),
-                  r.near_radius, r.far_radius);
+        CHECK_INT(hf_plan(c, &image, &image, &depth, &p, NULL), HF_OK);
+        tool_report_get(c, &r);
+        CHECK_MSG(r.all.near_radius == 5 && r.all.far_radius == 11, "%s: radii %g and %g", hf_engine_name(p.engine),
+                  r.all.near_radius, r.all.far_radius);
     }
     scene_free(&s);
     hf_close(&c);
@@ -217,7 +221,7 @@ static void budget(void)
 {
     static const float ms[HF_BUDGET_STEPS] = {10, 7, 4};
     struct machine m = {.ms = ms};
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_SCATTER;
     CHECK(hf_budget_ladder(&p, 0, m.ladder) >= 3);
     m.steps = 3;
@@ -254,7 +258,7 @@ static void no_flicker(void)
 {
     static const float cheap[HF_BUDGET_STEPS] = {10, 5, 5};
     struct machine m = {.ms = cheap};
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_SCATTER;
     CHECK(hf_budget_ladder(&p, 0, m.ladder) >= 3);
     m.steps = 3;
@@ -268,8 +272,8 @@ static void no_flicker(void)
 // The caller's setting comes first, then the steps of the ladder that cost less, most expensive first.
 static void ladders(void)
 {
-    struct hf_params ladder[HF_BUDGET_STEPS], p = hf_default_params;
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    struct hf_params ladder[HF_BUDGET_STEPS], p = hf_default_params();
+    for (int e = 0; e < tool_engines(); e++) {
         p.engine = (enum hf_engine)e;
         p.lens.world_unit_m = 0.125f;
         p.focus = 3;
@@ -296,7 +300,7 @@ static void ladders(void)
             CHECK_INT(hf_budget_ladder(&p, (float)far, ladder), want);
         }
     // Shapes that a cheaper engine cannot draw are replaced by those that it can.
-    p = hf_default_params;
+    p = hf_default_params();
     p.engine = HF_ENGINE_SCATTER;
     p.aperture.ring = 0.5f;
     p.aperture.blades = 7;
@@ -309,7 +313,7 @@ static void ladders(void)
 // count.
 static int starts_to_reach(int i)
 {
-    struct hf_params before = hf_default_params, p = before;
+    struct hf_params before = hf_default_params(), p = before;
     hf_ladder_apply(&before, i - 1);
     hf_ladder_apply(&p, i);
     return hf_ladder_farthest(&before) < INFINITY && hf_ladder_farthest(&p) == INFINITY;
@@ -318,8 +322,8 @@ static int starts_to_reach(int i)
 // The ladder rises, and qualities choose from it.
 static void choices(void)
 {
-    struct hf_params p = hf_default_params;
-    struct hf_choice last = {.step = -1}, c;
+    struct hf_params p = hf_default_params();
+    struct tool_choice last = {.inner = {.step = -1}}, c;
     p.max_radius = 0;                   // every step reaches as far
     static const float same = 1.0116f;  // 0.1 dB, by which a step may be worse on a scene
     // 0.2 dB, by which a step errs less at least; the table's errors are rounded to 5e-7, a relative 2e-5.
@@ -337,60 +341,61 @@ static void choices(void)
         CHECK_MSG(hf_ladder_hash(&p) == hf_ladder_hash(&hf_ladder[i].params), "%s", hf_ladder[i].options);
         CHECK_MSG(hf_ladder_ms(&p) == hf_ladder[i].ms, "%s is another step", hf_ladder[i].options);
     }
-    p = hf_default_params;
+    p = hf_default_params();
     p.max_radius = 0;
     for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {
-        CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)q, &c), HF_OK);
-        CHECK(c.step >= last.step && c.steps == hf_ladder_steps && c.options == hf_ladder[c.step].options);
-        CHECK(c.error == hf_ladder[c.step].error && hf_ladder_ms(&p) == c.ms);
+        CHECK_INT(tool_choose(720, NULL, &p, (enum hf_quality)q, 0, &c), HF_OK);
+        CHECK(c.inner.step >= last.inner.step && c.inner.steps == hf_ladder_steps &&
+              c.inner.options == hf_ladder[c.inner.step].options);
+        CHECK(c.all.error == hf_ladder[c.inner.step].error && hf_ladder_ms(&p) == c.all.ms);
         last = c;
     }
-    CHECK_INT(last.step, hf_ladder_steps - 1);
-    CHECK_INT(hf_choose_quality(720, NULL, &p, HF_QUALITY_DRAFT, NULL), HF_OK);
+    CHECK_INT(last.inner.step, hf_ladder_steps - 1);
+    CHECK_INT(hf_choose_quality(720, NULL, &p, HF_QUALITY_DRAFT, NULL, NULL), HF_OK);
     CHECK(hf_ladder_farthest(&p) == INFINITY);
     for (int i = 0; i < hf_ladder_steps; i++) {
-        CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &c), HF_OK);
-        CHECK_INT(c.step, i);
+        CHECK_INT(tool_choose(720, NULL, &p, HF_QUALITY_DRAFT, hf_ladder[i].error, &c), HF_OK);
+        CHECK_INT(c.inner.step, i);
         CHECK(hf_ladder_ms(&p) == hf_ladder[i].ms);
     }
-    CHECK_INT(hf_choose_error(720, NULL, &p, 1e-6f, &c),
-              HF_OK);  // no setting errs so little, so the best one is chosen
-    CHECK_INT(c.step, hf_ladder_steps - 1);
-    CHECK_INT(hf_choose_error(720, NULL, &p, 1, &c), HF_OK);
-    CHECK_INT(c.step, 0);
+    CHECK_INT(tool_choose(720, NULL, &p, HF_QUALITY_DRAFT, 1e-6f, &c),
+              HF_OK);  // nothing errs so little: the best there is
+    CHECK_INT(c.inner.step, hf_ladder_steps - 1);
+    CHECK_INT(tool_choose(720, NULL, &p, HF_QUALITY_DRAFT, 1, &c), HF_OK);
+    CHECK_INT(c.inner.step, 0);
     // The last step can draw everything.
-    static const struct hf_image any;
+    static const struct hf_image any = {.size = sizeof any};
     p.aperture = (struct hf_aperture_params){
         .blades = 7, .ring = 0.5f, .squeeze = 2, .cat_eye = 1, .roundness = 0.5f, .chromatic = 0.1f, .picture = &any};
-    hf_choose_quality(720, NULL, &p, HF_QUALITY_DRAFT, &c);
+    tool_choose(720, NULL, &p, HF_QUALITY_DRAFT, 0, &c);
     CHECK(hf_ladder_can_draw(&p));
-    CHECK(hf_ladder_ms(&p) == hf_ladder[c.step].ms);
-    CHECK_INT(hf_choose_error(720, NULL, &p, 0, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_error(720, NULL, &p, (float)NAN, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_quality(720, NULL, NULL, HF_QUALITY_BEST, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)4, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality) - 1, &c), HF_ERR_ARG);
+    CHECK(hf_ladder_ms(&p) == hf_ladder[c.inner.step].ms);
+    CHECK_INT(hf_choose_error(720, NULL, &p, 0, NULL, NULL), HF_ERR_ARG);
+    CHECK_INT(tool_choose(720, NULL, &p, HF_QUALITY_DRAFT, (float)NAN, &c), HF_ERR_ARG);
+    CHECK_INT(hf_choose_quality(720, NULL, NULL, HF_QUALITY_BEST, NULL, NULL), HF_ERR_ARG);
+    CHECK_INT(tool_choose(720, NULL, &p, (enum hf_quality)4, 0, &c), HF_ERR_ARG);
+    CHECK_INT(tool_choose(720, NULL, &p, (enum hf_quality) - 1, 0, &c), HF_ERR_ARG);
 }
 
 // The radius that a chosen step has to reach for a picture of this height.
 static float farthest_of(struct hf_params p, int height, const struct hf_depth *depth, int *passed)
 {
-    struct hf_choice c;
-    CHECK_INT(hf_choose_error(height, depth, &p, 1, &c), HF_OK);
-    CHECK_INT(!c.why, !c.passed);
-    *passed = c.passed;
+    struct tool_choice c;
+    CHECK_INT(tool_choose(height, depth, &p, HF_QUALITY_DRAFT, 1, &c), HF_OK);
+    CHECK_INT(!c.all.why, !c.inner.passed);
+    *passed = c.inner.passed;
     return hf_ladder_farthest(&p);
 }
 
 // A step that does not reach the blur asked for is skipped; a higher quality never chooses a lower step.
 static void reaches(void)
 {
-    static const struct hf_depth radii = {.type = HF_DEPTH_COC};
-    struct hf_params p = hf_default_params, lens = p, cut = p;
+    static const struct hf_depth radii = {.size = sizeof radii, .type = HF_DEPTH_COC};
+    struct hf_params p = hf_default_params(), lens = p, cut = p;
     lens.model = cut.model = HF_MODEL_LENS;
     cut.max_radius = 4;
     int passed;
-    struct hf_choice c, all;
+    struct tool_choice c, all;
     // The cheapest step is a blur of one width, which is enough for the chapter's radii but not for a lens.
     CHECK(farthest_of(p, 540, NULL, &passed) < INFINITY);
     CHECK(farthest_of(p, 1080, NULL, &passed) >= 12);
@@ -407,31 +412,31 @@ static void reaches(void)
     p.view.display_height = 16384;
     CHECK(farthest_of(p, 540, NULL, &passed) >= 12.f * 16384 / 1080);
     // A draft is the first step that reaches any radius, for any radius asked for.
-    p = hf_default_params;
-    CHECK_INT(hf_choose_quality(540, NULL, &p, HF_QUALITY_DRAFT, &c), HF_OK);
-    CHECK(c.step == lens_passed && c.passed == 0 && p.engine == HF_ENGINE_GATHER);
+    p = hf_default_params();
+    CHECK_INT(tool_choose(540, NULL, &p, HF_QUALITY_DRAFT, 0, &c), HF_OK);
+    CHECK(c.inner.step == lens_passed && c.inner.passed == 0 && p.engine == HF_ENGINE_GATHER);
     for (float r = 0; r <= 2048; r = r < 64 ? r + 0.5f : 2 * r) {
         int last = -1;
         for (int q = 0; hf_name(HF_NAMES_QUALITY, q); q++) {
             p = lens;
             p.max_radius = r;
-            CHECK_INT(hf_choose_quality(720, NULL, &p, (enum hf_quality)q, &c), HF_OK);
+            CHECK_INT(tool_choose(720, NULL, &p, (enum hf_quality)q, 0, &c), HF_OK);
             CHECK(hf_ladder_farthest(&p) >= r);
-            CHECK(c.step >= last);
-            last = c.step;
+            CHECK(c.inner.step >= last);
+            last = c.inner.step;
         }
     }
     // By error too: the first step that reaches the radius and errs no more.
     for (int i = 0; i < hf_ladder_steps; i++) {
         p = lens;
-        CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &c), HF_OK);
-        CHECK(c.step >= i && c.error <= hf_ladder[i].error && hf_ladder_farthest(&p) == INFINITY);
+        CHECK_INT(tool_choose(720, NULL, &p, HF_QUALITY_DRAFT, hf_ladder[i].error, &c), HF_OK);
+        CHECK(c.inner.step >= i && c.all.error <= hf_ladder[i].error && hf_ladder_farthest(&p) == INFINITY);
         p = cut;
-        CHECK_INT(hf_choose_error(720, NULL, &p, hf_ladder[i].error, &all), HF_OK);
-        CHECK(all.step == i && all.step + c.passed == c.step);
+        CHECK_INT(tool_choose(720, NULL, &p, HF_QUALITY_DRAFT, hf_ladder[i].error, &all), HF_OK);
+        CHECK(all.inner.step == i && all.inner.step + c.inner.passed == c.inner.step);
     }
-    CHECK_INT(hf_choose_quality(0, NULL, &p, HF_QUALITY_DRAFT, &c), HF_ERR_ARG);
-    CHECK_INT(hf_choose_error(0, NULL, &p, 0.1f, &c), HF_ERR_ARG);
+    CHECK_INT(tool_choose(0, NULL, &p, HF_QUALITY_DRAFT, 0, &c), HF_ERR_ARG);
+    CHECK_INT(tool_choose(0, NULL, &p, HF_QUALITY_DRAFT, 0.1f, &c), HF_ERR_ARG);
 }
 
 // The report does not claim that passes found all sharp if settings leave them out.
@@ -441,12 +446,12 @@ static void reasons(void)
     struct scene s = sharp(200, 100);
     struct hf_params p = scene_params();
     put(&s, 0, 0, 200, 100, 40);
-    for (int e = 0; e < HF_ENGINE_COUNT; e++) {
+    for (int e = 0; e < tool_engines(); e++) {
         p.engine = (enum hf_engine)e;
-        const struct hf_report r = plan(c, &s, &p);
+        const struct tool_report r = plan(c, &s, &p);
         int left_out = 0;
-        CHECK_INT(r.tile_count[HF_TILE_SHARP], 0);
-        for (int i = 0; i < r.passes; i++) {
+        CHECK_INT(r.inner.tile_count[HF_TILE_SHARP], 0);
+        for (int i = 0; i < r.inner.passes; i++) {
             if (r.pass[i].run == 0)
                 left_out += r.pass[i].skipped && !strcmp(r.pass[i].skipped, "the settings do not call for it");
             CHECK_MSG(!r.pass[i].skipped || strcmp(r.pass[i].skipped, "sharp: copied"), "%s, %s",
@@ -459,9 +464,9 @@ static void reasons(void)
     hf_close(&c);
 }
 
-static void count_warnings(void *cookie, enum hf_log_level level, const char *message)
+static void count_warnings(void *cookie, const struct hf_message *message)
 {
-    *(int *)cookie += level == HF_LOG_WARNING && strstr(message, "budget_ms") != NULL;
+    *(int *)cookie += message->level == HF_LOG_WARNING && !strcmp(message->argument, "run.budget_ms");
 }
 
 // No frame fits into a microsecond: after a few frames the cheapest setting is used; the report says so, and the log
@@ -469,12 +474,12 @@ static void count_warnings(void *cookie, enum hf_log_level level, const char *me
 static void budget_of_frames(void)
 {
     int warned = 0;
-    const struct hf_config config = {.threads = 2, .log = count_warnings, .log_cookie = &warned};
+    const struct hf_config config = {.size = sizeof config, .threads = 2, .log = count_warnings, .log_cookie = &warned};
     struct hf_context *c;
     CHECK_INT(hf_open(&c, &config), HF_OK);
     struct scene s = sharp(200, 100);
     struct hf_params p = scene_params();
-    struct hf_report r = {.budget_step = -1};
+    struct tool_report r = {.all = {.budget_step = -1}};
     put(&s, 0, 0, 200, 100, 40);
     p.engine = HF_ENGINE_SCATTER;
     p.max_radius = 24;
@@ -483,20 +488,20 @@ static void budget_of_frames(void)
     const int steps = hf_budget_ladder(&p, p.max_radius, ladder);
     for (int i = 0; i < 4 * HF_BUDGET_STEPS; i++)
         r = report_of(c, &s, &p);
-    CHECK_INT(r.budget_step, steps - 1);
-    CHECK_INT(r.used.params.engine, ladder[steps - 1].engine);
-    CHECK_INT(r.budget_steps, steps);
-    CHECK(r.budget_options && strstr(r.budget_options, hf_engine_name(r.used.params.engine)));
+    CHECK_INT(r.all.budget_step, steps - 1);
+    CHECK_INT(r.params.engine, ladder[steps - 1].engine);
+    CHECK_INT(r.all.budget_steps, steps);
+    CHECK(r.inner.budget_options && strstr(r.inner.budget_options, hf_engine_name(r.params.engine)));
     CHECK_INT(warned, 1);
     p.run.budget_ms = 0;
     r = report_of(c, &s, &p);
-    CHECK_INT(r.budget_step, 0);
-    CHECK(r.budget_steps == 0 && !r.budget_options);
+    CHECK_INT(r.all.budget_step, 0);
+    CHECK(r.all.budget_steps == 0 && !r.inner.budget_options);
     p.run.budget_ms = 1e6f;
     r = report_of(c, &s, &p);
-    CHECK(r.budget_steps == steps && !r.budget_options);
+    CHECK(r.all.budget_steps == steps && !r.inner.budget_options);
     CHECK_INT(warned, 1);
-    CHECK_INT(r.used.params.engine, HF_ENGINE_SCATTER);
+    CHECK_INT(r.params.engine, HF_ENGINE_SCATTER);
     scene_free(&s);
     hf_close(&c);
 }
@@ -514,14 +519,14 @@ static void colour(void)
     s.colour.plane[1][5] = 100;              // far from the blur
     s.colour.plane[2][215 * 640 + 335] = 7;  // in it
     s.colour.plane[0][215 * 640 + 333] = NAN;
-    struct hf_report r = plan(c, &s, &p);
-    CHECK(!r.colour_known);
-    p.run.colour_stats = 1;
+    struct tool_report r = plan(c, &s, &p);
+    CHECK(!r.inner.colour_known);
+    hf_inspect_colour(c, 1);
     r = plan(c, &s, &p);
-    CHECK(r.colour_known && r.brightest == 7 && r.opaque);
-    CHECK_INT(r.not_finite, 1);
+    CHECK(r.inner.colour_known && r.inner.brightest == 7 && r.inner.opaque);
+    CHECK_INT(r.inner.not_finite, 1);
     r = report_of(c, &s, &p);
-    CHECK(r.colour_known && r.brightest == 7 && r.opaque);
+    CHECK(r.inner.colour_known && r.inner.brightest == 7 && r.inner.opaque);
     scene_free(&s);
     hf_close(&c);
 }

@@ -10,6 +10,7 @@
 
 #include "support/check.h"
 #include "support/render.h"
+#include "tools/common/report.h"
 
 enum { CONTEXTS = 4 };
 
@@ -124,19 +125,20 @@ static void check_scene(struct hf_context *skipping, struct hf_context *whole, e
     struct scene s = random_scene(&rng, engine, &name);
     struct hf_params p = random_params(&rng, engine);
     struct picture a = picture_copy(&s.colour), b = picture_copy(&s.colour);
-    struct hf_report report;
+    struct tool_report report;
     const struct hf_depth depth = picture_depth(&s.depth);
     CHECK_INT(try_render(skipping, &a, n % 3 ? &s.colour : &a, &depth, &p), HF_OK);
-    hf_get_report(skipping, &report);
-    tally->all += (uint64_t)report.columns * (uint64_t)report.rows;
-    tally->run += (uint64_t)report.columns * (uint64_t)report.rows - report.tile_count[HF_TILE_SHARP];
+    tool_report_get(skipping, &report);
+    tally->all += (uint64_t)report.inner.columns * (uint64_t)report.inner.rows;
+    tally->run += (uint64_t)report.inner.columns * (uint64_t)report.inner.rows - report.inner.tile_count[HF_TILE_SHARP];
     p.run.no_skip = 1;
     CHECK_INT(try_render(whole, &b, &s.colour, &depth, &p), HF_OK);
-    struct hf_report all;
-    hf_get_report(whole, &all);
-    CHECK_MSG(report.near_pixels == all.near_pixels && report.far_pixels == all.far_pixels &&
-                  report.sharp_pixels == all.sharp_pixels && report.depth_repaired == all.depth_repaired &&
-                  report.no_surface == all.no_surface && report.colour_repaired == all.colour_repaired,
+    struct tool_report all;
+    tool_report_get(whole, &all);
+    CHECK_MSG(report.all.near_pixels == all.all.near_pixels && report.all.far_pixels == all.all.far_pixels &&
+                  report.all.sharp_pixels == all.all.sharp_pixels &&
+                  report.all.depth_repaired == all.all.depth_repaired && report.all.no_surface == all.all.no_surface &&
+                  report.all.colour_repaired == all.all.colour_repaired,
               "%s: seed %u, scene %u (%s, %d x %d): skipping counts otherwise", hf_engine_name(engine), seed, n, name,
               a.width, a.height);
     CHECK_MSG(
@@ -169,7 +171,7 @@ int main(int argc, char **argv)
     scenes = argc > 2 ? (unsigned)strtoul(argv[2], NULL, 10) : check_long() ? 300 : 150;
     printf("seed %u\n", seed);
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++)
-        for (int engine = 0; engine < HF_ENGINE_COUNT; engine++)
+        for (int engine = 0; engine < tool_engines(); engine++)
             if (hf_isa_available((enum hf_isa)isa) && hf_engine_name((enum hf_engine)engine))
                 check_engine((enum hf_isa)isa, (enum hf_engine)engine);
     return check_report();

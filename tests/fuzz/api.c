@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 
 #include "fuzz/fuzz.h"
-#include "hyperfocal/hyperfocal.h"
+#include "tools/common/report.h"
 
 // ---- memory ----
 
@@ -142,8 +142,8 @@ static int scaled(int v, unsigned by, int plus)
 
 static struct hf_params any_params(struct bytes *b)
 {
-    struct hf_params p = hf_default_params;
-    p.engine = (enum hf_engine)any_choice(b, HF_ENGINE_COUNT);
+    struct hf_params p = hf_default_params();
+    p.engine = (enum hf_engine)any_choice(b, (unsigned)tool_engines());
     p.model = (enum hf_model)any_choice(b, 2);
     maybe(b, &p.focus);
     maybe(b, &p.range.distance);
@@ -183,7 +183,6 @@ static struct hf_params any_params(struct bytes *b)
     p.hexagon.uniform = flags >> 4 & 1;
     p.run.deterministic = flags >> 5 & 1;
     p.run.no_skip = flags >> 6 & 1;
-    p.run.colour_stats = flags >> 7;
     if (take_byte(b) < 30)
         p.gather.rings = scaled(any_choice(b, 70), 1, -1);
     p.hexagon.resolution = (enum hf_resolution)any_choice(b, 2);
@@ -238,7 +237,7 @@ static struct hf_image any_image(struct bytes *b, int w, int h, struct area area
 {
     static const size_t pixel[] = {16, 12, 8, 4, 4, 4, 4, 4, 4, 4, 8};
     enum { FORMATS = sizeof pixel / sizeof *pixel };
-    struct hf_image m = {.width = w, .height = h, .format = (enum hf_format)any_choice(b, FORMATS)};
+    struct hf_image m = {.size = sizeof m, .width = w, .height = h, .format = (enum hf_format)any_choice(b, FORMATS)};
     const int planes = m.format == HF_FORMAT_PLANAR32F ? 3 + (take_byte(b) & 1) : 1;
     const size_t bytes = (unsigned)m.format < FORMATS ? pixel[m.format] : 0;
     if (m.format >= HF_FORMAT_RGBA8 || take_byte(b) == 255)
@@ -254,7 +253,8 @@ static struct hf_depth any_depth(struct bytes *b, int w, int h, struct area *are
 {
     static const size_t sample[] = {4, 2, 2, 4, 4, 4};
     enum { FORMATS = sizeof sample / sizeof *sample };
-    struct hf_depth d = {.type = (enum hf_depth_type)any_choice(b, 7),
+    struct hf_depth d = {.size = sizeof d,
+                         .type = (enum hf_depth_type)any_choice(b, 7),
                          .format = (enum hf_depth_format)any_choice(b, FORMATS)};
     d.data = any_plane(b, (unsigned)d.format < FORMATS ? sample[d.format] : 0, w, h, &d.stride, area);
     maybe(b, &d.near_plane);
@@ -348,15 +348,22 @@ static void any_more_depth(struct bytes *b, struct hf_depth *d)
 // The log gets one line, not empty, of printable characters.
 static long errors_told;
 
-static void hear(void *cookie, enum hf_log_level level, const char *message)
+static void check_sentence(const struct hf_message *m)
 {
-    (void)cookie;
-    MUST(level >= HF_LOG_ERROR && level <= HF_LOG_INFO);
+    const char *message = m->sentence;
     const size_t n = strlen(message);
     MUST(n > 10);
     for (size_t i = 0; i < n; i++)
         MUST((unsigned char)message[i] >= 32 && message[i] != 127);
-    errors_told += level == HF_LOG_ERROR;
+    MUST(!strncmp(message, m->argument, strlen(m->argument)));
+}
+
+static void hear(void *cookie, const struct hf_message *m)
+{
+    (void)cookie;
+    MUST(m->size == sizeof *m && m->level >= HF_LOG_ERROR && m->level <= HF_LOG_INFO);
+    check_sentence(m);
+    errors_told += m->level == HF_LOG_ERROR;
 }
 
 // A host with a single thread: it calls backwards, and alternates between worker numbers.
@@ -367,7 +374,7 @@ static void backwards(void *cookie, int n, void (*fn)(void *arg, int i, int work
         fn(arg, i, i % workers);
 }
 
-static void look(void *cookie, const struct hf_buffer *m)
+static void look(void *cookie, const struct hf_inspect_buffer *m)
 {
     (void)cookie;
     MUST(m->name && m->width > 0 && m->height > 0 && m->channels >= 1 && m->channels <= 4);
@@ -403,7 +410,7 @@ static enum hf_isa any_isa(struct bytes *b)
 // ---- calls
 
 // Counts of the calls' results, by -error.
-static long became[6];
+static long became[7];
 
 void fuzz_told(void)
 {
@@ -448,59 +455,65 @@ struct frame {
 static void ask(struct bytes *b, struct frame *f)
 {
     const int w = f->src.width, h = f->src.height;
-    char message[256];
-    struct hf_resolved r;
-    const size_t size = take_byte(b) % (sizeof message + 1);
-    const int err = hf_resolve(w, h, &f->depth, &f->p, &r, message, size);
+    struct hf_message message = {.size = sizeof message};
+    struct hf_params filled = {.size = sizeof filled};
+    struct hf_resolved r = {.size = sizeof r};
+    take_byte(b);
+    const int err = hf_resolve(w, h, &f->depth, &f->p, &filled, &r, &message);
     MUST(err == HF_OK || err == HF_ERR_ARG || err == HF_ERR_FOCUS);
-    MUST(!size || memchr(message, 0, size));
-    MUST(err || (r.width == w && r.height == h && r.params.max_radius >= 0 && r.params.max_radius <= 2048));
+    MUST(message.error == err);
+    if (err)
+        check_sentence(&message);
+    MUST(err || (r.width == w && r.height == h && filled.max_radius >= 0 && filled.max_radius <= 2048));
     float z = 1;
     const int x = any_choice(b, 256), y = any_choice(b, 24);
-    const int read = hf_depth_at(&f->depth, w, h, x, y, &z);
+    const int read = hf_depth_at(&f->depth, w, h, x, y, &z, NULL);
     MUST(read == HF_ERR_ARG || (x >= 0 && y >= 0 && x < w && y < h));
     MUST(read || z > 0);
-    struct hf_choice choice;
+    struct tool_choice choice;
     struct hf_params p = f->p;
-    if (now_and_then(b) && !hf_choose_quality(h, &f->depth, &p, (enum hf_quality)any_choice(b, 4), &choice))
-        MUST(choice.step >= 0 && choice.step < choice.steps && choice.options);
-    if (now_and_then(b) && !hf_choose_error(h, &f->depth, &p, any_float(b), &choice))
-        MUST(choice.step >= 0 && choice.step < choice.steps && choice.options);
+    if (now_and_then(b) && !tool_choose(h, &f->depth, &p, (enum hf_quality)any_choice(b, 4), 0, &choice))
+        MUST(choice.inner.step >= 0 && choice.inner.step < choice.inner.steps && choice.inner.options);
+    if (now_and_then(b)) {
+        const float error = any_float(b);
+        if (error != 0 && !tool_choose(h, &f->depth, &p, HF_QUALITY_DRAFT, error, &choice))
+            MUST(choice.inner.step >= 0 && choice.inner.step < choice.inner.steps && choice.inner.options);
+    }
     if (now_and_then(b))
         f->p = p;
 }
 
 static void check_report(struct hf_context *c, int w, int h, int err)
 {
-    struct hf_report report;
-    hf_get_report(c, &report);
+    struct tool_report report;
+    tool_report_get(c, &report);
     // A plain copy reads no depth.
     const uint64_t n = (uint64_t)w * (uint64_t)h,
-                   counted = report.near_pixels + report.sharp_pixels + report.far_pixels;
+                   counted = report.all.near_pixels + report.all.sharp_pixels + report.all.far_pixels;
     MUST(err || counted == 0 || counted == n);
     uint8_t tiles[64];
-    const size_t count = hf_get_tiles(c, tiles, sizeof tiles);
-    MUST(count == (size_t)report.columns * (size_t)report.rows);
+    const size_t count = hf_inspect_tiles(c, tiles, sizeof tiles);
+    MUST(count == (size_t)report.inner.columns * (size_t)report.inner.rows);
     for (size_t i = 0; i < count && i < sizeof tiles; i++)
         MUST(tiles[i] <= HF_TILE_BOTH);
-    MUST(report.passes >= 0 && report.passes <= HF_MAX_PASSES);
+    MUST(report.inner.passes >= 0 && report.inner.passes <= TOOL_PASSES);
 }
 
 static void render(struct hf_context *c, struct bytes *b, struct frame *f, int in_place)
 {
-    struct hf_report report;
-    struct hf_resolved r;
+    struct hf_report report = {.size = sizeof report};
+    struct hf_resolved r = {.size = sizeof r};
     const uint64_t before = hash_of(in_place ? f->areas + 4 : f->areas, in_place ? 5 : 9);
     const int planned = hf_plan(c, &f->dst, &f->src, &f->depth, &f->p, &report);
     const int prepared = now_and_then(b) ? hf_prepare(c, &f->dst, &f->src, &f->depth, &f->p) : planned;
-    hf_set_dump(c, fresh ? NULL : look, NULL);
+    hf_inspect_dump(c, fresh ? NULL : look, NULL);
     const long told = errors_told;
     const int err = hf_render(c, &f->dst, &f->src, &f->depth, &f->p);
     MUST(err == HF_OK || err == HF_ERR_ARG || err == HF_ERR_MEMORY || err == HF_ERR_FOCUS);
     MUST((planned == HF_ERR_ARG) == (err == HF_ERR_ARG) && (prepared == HF_ERR_ARG) == (err == HF_ERR_ARG));
     MUST(errors_told == told + (err != 0));
     MUST(before == hash_of(in_place ? f->areas + 4 : f->areas, in_place ? 5 : 9));
-    MUST(err || hf_resolve(f->src.width, f->src.height, &f->depth, &f->p, &r, NULL, 0) || r.sharp ||
+    MUST(err || hf_resolve(f->src.width, f->src.height, &f->depth, &f->p, NULL, &r, NULL) || r.sharp ||
          is_finite_image(&f->dst));
     became[-err]++;
     check_report(c, f->src.width, f->src.height, err);
@@ -528,8 +541,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct bytes b = {data, size};
     const unsigned how = take_byte(&b);
     int workers = 1 + (how & 1);
-    struct hf_config config = {
-        .threads = workers, .isa = any_isa(&b), .alloc = take, .free = give, .log = hear, .parallel_cookie = &workers};
+    struct hf_config config = {.size = sizeof config,
+                               .threads = workers,
+                               .isa = any_isa(&b),
+                               .alloc = take,
+                               .free = give,
+                               .log = hear,
+                               .parallel_cookie = &workers};
     if (how & 4) {
         config.tile_width = scaled(any_choice(&b, 6), 16, 16);
         config.tile_height = scaled(any_choice(&b, 40), 1, 16);

@@ -112,7 +112,7 @@ struct world {
     struct rng rng;
     int bench;  // typical input instead of random input
     struct hf_params params;
-    struct hf_resolved resolved;
+    struct hf_settings resolved;
     struct hf_setup setup;
     struct hf_gather gather;
     struct hf_gaussian gaussian;

@@ -64,8 +64,10 @@ static void random_depth_type(struct rng *r, struct hf_depth *d, int width, int 
 static void random_format(struct world *w, struct hf_image *m, int width, int height)
 {
     static char there;
-    *m = (struct hf_image){
-        .width = width, .height = height, .format = (enum hf_format)rng_int(&w->rng, 0, HF_FORMAT_COUNT - 1)};
+    *m = (struct hf_image){.size = sizeof(struct hf_image),
+                           .width = width,
+                           .height = height,
+                           .format = (enum hf_format)rng_int(&w->rng, 0, HF_FORMAT_COUNT - 1)};
     if (w->bench)
         m->format = HF_FORMAT_R11G11B10F;
     m->transfer = hf_unorm(m->format) && rng_one_in(&w->rng, 2) ? HF_TRANSFER_SRGB : HF_TRANSFER_LINEAR;
@@ -75,9 +77,9 @@ static void random_format(struct world *w, struct hf_image *m, int width, int he
 
 void world_setup(struct world *w, void *own)
 {
-    char message[HF_MESSAGE];
-    if (hf_params_resolve(&w->resolved, w->src.width, w->src.height, &w->depth, &w->params, message)) {
-        fprintf(stderr, "%s\n", message);
+    struct hf_message message;
+    if (hf_params_resolve(&w->resolved, w->src.width, w->src.height, &w->depth, &w->params, &message)) {
+        fprintf(stderr, "%s\n", message.sentence);
         abort();
     }
     hf_setup_make(&w->setup, &w->src, &w->dst, &w->depth, &w->resolved, own);
@@ -89,9 +91,9 @@ void make_setup(struct world *w, int half_width, int half_height)
     do {
         const int width = 2 * half_width - (w->bench ? 0 : rng_int(r, 0, 1));
         const int height = 2 * half_height - (w->bench ? 0 : rng_int(r, 0, 1));
-        w->params = hf_default_params;
+        w->params = hf_default_params();
         w->params.max_radius = 12;
-        w->depth = (struct hf_depth){0};
+        w->depth = (struct hf_depth){.size = sizeof(struct hf_depth)};
         random_format(w, &w->src, width, height);
         random_format(w, &w->dst, width, height);
         if (!w->bench && rng_one_in(r, 4)) {  // formats that go from picture to picture in registers have separate code

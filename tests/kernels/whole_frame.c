@@ -14,6 +14,7 @@
 #include "harness.h"
 #include "pixel/depth_rows.h"
 #include "pixel/unorm.h"
+#include "tools/common/report.h"
 
 struct frame_case {
     const char *name;
@@ -154,9 +155,9 @@ static void use_kernels(struct hf_context *c, const struct kernels *k)
     }
 }
 
-static int render(struct world *w, const struct level *l, enum arena a, struct hf_report *stats)
+static int render(struct world *w, const struct level *l, enum arena a, struct tool_report *stats)
 {
-    struct hf_config config = {.isa = l->isa ? l->isa : HF_ISA_SCALAR, .threads = 2};
+    struct hf_config config = {.size = sizeof config, .isa = l->isa ? l->isa : HF_ISA_SCALAR, .threads = 2};
     config.tile_width = rng_one_in(&w->rng, 2) ? 0 : 16 * rng_int(&w->rng, 1, 4);
     config.tile_height = rng_one_in(&w->rng, 2) ? 0 : rng_int(&w->rng, 16, 40);
     struct hf_context *c;
@@ -170,7 +171,7 @@ static int render(struct world *w, const struct level *l, enum arena a, struct h
     const struct hf_frame f = world_frame(w, &l->k, a);
     w->params.run.deterministic = l->exact;
     err = hf_render(c, f.dst, f.src, f.depth, &w->params);
-    hf_get_report(c, stats);
+    tool_report_get(c, stats);
     hf_close(&c);
     return err;
 }
@@ -261,11 +262,12 @@ static void add_to_hash(const struct world *w)
                 hash = (hash ^ hf_bits(hf_sample(&m, c, x, y))) * 16777619u;
 }
 
-static int same_counts(const struct hf_report *a, const struct hf_report *b, const struct level *l)
+static int same_counts(const struct tool_report *a, const struct tool_report *b, const struct level *l)
 {
-    return a->near_pixels == b->near_pixels && a->sharp_pixels == b->sharp_pixels && a->far_pixels == b->far_pixels &&
-           a->colour_repaired == b->colour_repaired && a->depth_repaired == b->depth_repaired &&
-           a->no_surface == b->no_surface && (!l->exact || a->clamped == b->clamped);
+    return a->all.near_pixels == b->all.near_pixels && a->all.sharp_pixels == b->all.sharp_pixels &&
+           a->all.far_pixels == b->all.far_pixels && a->all.colour_repaired == b->all.colour_repaired &&
+           a->all.depth_repaired == b->all.depth_repaired && a->all.no_surface == b->all.no_surface &&
+           (!l->exact || a->all.clamped == b->all.clamped);
 }
 
 static void check(int ok, const struct world *w, const struct level *l, const char *name, uint64_t seed, int number,
@@ -294,7 +296,7 @@ static void run_frame(struct world *w, const struct level *levels, int level_cou
     random.half_width = rng_int(&w->rng, 1, 70);
     random.half_height = rng_int(&w->rng, 1, 40);
     const struct frame_case *c = number < SPECIALS ? &special[number] : &random;
-    struct hf_report want, got;
+    struct tool_report want, got;
     make_case(w, c);
     smooth_depth(w);
     const int err = render(w, &levels[0], ARENA_REFERENCE, &want);

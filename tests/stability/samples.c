@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "support/check.h"
+#include "tools/common/report.h"
 
 enum { WIDTH = 150, HEIGHT = 110, X = 31, Y = 25 };
 
@@ -63,7 +64,7 @@ struct buffers {
     char first[20];
 };
 
-static void look(void *cookie, const struct hf_buffer *b)
+static void look(void *cookie, const struct hf_inspect_buffer *b)
 {
     struct buffers *found = cookie;
     for (int c = 0; c < b->channels; c++)
@@ -93,12 +94,13 @@ static void release(void *cookie, void *p)
 
 static void try_buffers(const struct run *r, const struct scene *s, const char *name, int huge)
 {
-    const struct hf_config config = {.threads = 1, .isa = r->isa, .alloc = zeros, .free = release};
+    const struct hf_config config = {
+        .size = sizeof config, .threads = 1, .isa = r->isa, .alloc = zeros, .free = release};
     struct buffers found = {0};
     struct hf_context *c;
     if (!CHECK_INT(hf_open(&c, &config), HF_OK))
         return;
-    hf_set_dump(c, look, &found);
+    hf_inspect_dump(c, look, &found);
     struct picture out = render_scene(c, s, &r->subject->params);
     hf_close(&c);
     picture_free(&out);
@@ -112,14 +114,14 @@ static void try_picture(const struct run *r, const struct scene *s, const struct
                         const char *name, uint64_t bad_colours, uint64_t bad_depths, int huge)
 {
     static const char *const counted = "the number of samples that were made bad; 0 are counted wrong";
-    struct hf_report report;
+    struct tool_report report;
     struct picture out = render_scene(r->c, s, &r->subject->params);
-    hf_get_report(r->c, &report);
+    tool_report_get(r->c, &report);
     see(r, huge ? "largest floats: not finite in the picture" : "bad samples: not finite in the picture", "none may be",
         (double)not_finite(&out), 0, "%s", name);
     see(r, "bad samples: counted", counted,
-        fabs((double)report.colour_repaired - (double)bad_colours) +
-            fabs((double)report.depth_repaired - (double)bad_depths),
+        fabs((double)report.all.colour_repaired - (double)bad_colours) +
+            fabs((double)report.all.depth_repaired - (double)bad_depths),
         0, "%s", name);
     if (place != PLACE_ALL)
         see(r, "bad samples: distance of the farthest change, pixels",

@@ -90,7 +90,8 @@ static struct shot shot_new(const struct scene *s)
     const int w = s->colour.width, h = s->colour.height;
     struct shot shot = {.stride = w * (ptrdiff_t)sizeof(float) + JUNK_BYTES};
     shot.bytes = (size_t)(h - 1) * (size_t)shot.stride + (size_t)w * sizeof(float);
-    shot.src = shot.dst = (struct hf_image){.width = w, .height = h, .format = HF_FORMAT_PLANAR32F};
+    shot.src = shot.dst =
+        (struct hf_image){.size = sizeof(struct hf_image), .width = w, .height = h, .format = HF_FORMAT_PLANAR32F};
     for (int c = 0; c < CHANNELS; c++) {
         shot.src.data[c] = plane_new(&shot, s->colour.plane[c], w, h);
         shot.dst.data[c] = plane_new(&shot, NULL, w, h);
@@ -148,8 +149,12 @@ static int shot_not_finite(const struct shot *s)
 
 static int render_shot(const struct run *r, struct shot *s, unsigned char junk, const struct hf_params *p)
 {
-    const struct hf_config config = {
-        .threads = 1, .isa = r->isa, .alloc = guarded_alloc, .free = guarded_free, .alloc_cookie = &junk};
+    const struct hf_config config = {.size = sizeof config,
+                                     .threads = 1,
+                                     .isa = r->isa,
+                                     .alloc = guarded_alloc,
+                                     .free = guarded_free,
+                                     .alloc_cookie = &junk};
     struct hf_context *c;
     int err = hf_open(&c, &config);
     if (!err)
@@ -170,8 +175,8 @@ static void try_size(const struct run *r, int w, int h, const struct hf_params *
                  junk[i]);
         const int err = render_shot(r, &shots[i], junk[i], p);
         see(r, "sizes: errors", "none may be", -err, 0, "%s", at);
-        see(r, "sizes: samples that depend on old contents of memory", "none may", i ? samples_apart(&shots[0], &shots[i]) : 0,
-            0, "%s", at);
+        see(r, "sizes: samples that depend on old contents of memory", "none may",
+            i ? samples_apart(&shots[0], &shots[i]) : 0, 0, "%s", at);
         see(r, "sizes: bytes between rows that changed", "none may", junk_written(&shots[i]), 0, "%s", at);
         see(r, "sizes: samples that are not finite", "none may be", shot_not_finite(&shots[i]), 0, "%s", at);
     }

@@ -10,7 +10,7 @@
 
 static inline struct hf_params gaussian_params(void)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_GAUSSIAN;
     p.focus = 20;
     p.max_radius = 12;

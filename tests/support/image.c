@@ -59,7 +59,8 @@ void picture_free(struct picture *p)
 
 struct hf_image picture_image(const struct picture *p)
 {
-    struct hf_image image = {p->width, p->height, HF_FORMAT_PLANAR32F, {NULL}, {0}, HF_TRANSFER_LINEAR};
+    struct hf_image image = {
+        .size = sizeof image, .width = p->width, .height = p->height, .format = HF_FORMAT_PLANAR32F};
     for (int c = 0; c < p->channels; c++) {
         image.data[c] = p->plane[c];
         image.stride[c] = p->width * (ptrdiff_t)sizeof(float);
@@ -69,7 +70,8 @@ struct hf_image picture_image(const struct picture *p)
 
 struct hf_depth picture_depth(const struct picture *z)
 {
-    return (struct hf_depth){.data = z->plane[0], .stride = z->width * (ptrdiff_t)sizeof(float)};
+    return (struct hf_depth){
+        .size = sizeof(struct hf_depth), .data = z->plane[0], .stride = z->width * (ptrdiff_t)sizeof(float)};
 }
 
 struct rng rng_seed(uint64_t seed)
@@ -178,7 +180,7 @@ int format_pixel_size(enum hf_format format)
 struct packed packed_new(int width, int height, enum hf_format format, int with_alpha, ptrdiff_t extra, int negative,
                          int offset, unsigned char junk)
 {
-    struct packed p = {.image = {width, height, format, {NULL}, {0}}};
+    struct packed p = {.image = {.size = sizeof p.image, .width = width, .height = height, .format = format}};
     const int planes = format != HF_FORMAT_PLANAR32F ? 1 : with_alpha ? 4 : 3;
     for (int i = 0; i < planes; i++) {
         const ptrdiff_t stride = width * (ptrdiff_t)format_pixel_size(format) + extra;

@@ -42,7 +42,7 @@ enum { LOOKS = sizeof looks / sizeof *looks };
 // Radii of a lens, for depths of tests/support/random_scene.h, are up to about `reach` pixels in a picture of this width.
 static inline struct hf_params look_params(const struct look *l, int width, float reach)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.engine = l->engine;
     p.focus = 20;
     p.range.distance = 10;

@@ -136,7 +136,7 @@ struct hf_depth scene_depth_as(const struct scene *s, enum hf_depth_type type, f
 
 struct hf_params scene_params(void)
 {
-    struct hf_params p = hf_default_params;
+    struct hf_params p = hf_default_params();
     p.focus = focus;
     p.range.distance = range;
     p.max_radius = 12;
@@ -158,5 +158,6 @@ static void free_nan(void *cookie, void *p)
 
 struct hf_config scene_config(enum hf_isa isa, int threads)
 {
-    return (struct hf_config){.isa = isa, .threads = threads, .alloc = alloc_nan, .free = free_nan};
+    return (struct hf_config){
+        .size = sizeof(struct hf_config), .isa = isa, .threads = threads, .alloc = alloc_nan, .free = free_nan};
 }

@@ -234,10 +234,10 @@ static void tables(void)
 static void qualities(void)
 {
     for (int i = 0; i < 4; i++) {
-        struct hf_params p = hf_default_params;
-        struct hf_choice choice;
-        CHECK_INT(hf_choose_quality(1080, NULL, &p, (enum hf_quality)i, &choice), HF_OK);
-        CHECK_MSG(!strcmp(cli_quality_words(i), choice.options), "%s", cli_quality_words(i));
+        struct hf_params p = hf_default_params();
+        struct tool_choice choice;
+        CHECK_INT(tool_choose(1080, NULL, &p, (enum hf_quality)i, 0, &choice), HF_OK);
+        CHECK_MSG(!strcmp(cli_quality_words(i), choice.inner.options), "%s", cli_quality_words(i));
     }
     CHECK(strstr(cli_quality_words(0), "--engine") != NULL);
 }

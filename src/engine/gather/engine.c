@@ -185,28 +185,30 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 // are at most 2 apart up to a radius of 96. More of either cost more than the other engines.
 enum { MEASURED_RADIUS = 256, MEASURED_RINGS = 24 };
 
-static int is_measured(const struct hf_resolved *r)
+static int is_measured(const struct hf_settings *r)
 {
     return r->limit == HF_LIMIT_ENGINE && !r->params.gather.faithful;
 }
 
 // Faithfully it reaches 12 pixels at any size, with a lens, too.
-static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+static int check(struct hf_settings *r, const struct hf_params *asked, const struct hf_depth *depth,
+                 struct hf_message *message)
 {
     struct hf_gather_params *g = &r->params.gather;
     (void)asked;
     (void)depth;
-    if ((unsigned)g->storage > HF_STORAGE_PACKED)
-        return hf_bad(message, "gather.storage is %d, which is none", (int)g->storage);
-    if ((int)g->fill == HF_DERIVE)
+    int err = hf_check_value("gather.storage", (int)g->storage, 0, HF_STORAGE_PACKED, message);
+    if (!err)
+        err = hf_check_value("gather.fill", (int)g->fill, HF_FILL_AUTO, HF_FILL_OPEN, message);
+    if (!err)
+        err = hf_check_value("gather.downsample", (int)g->downsample, 0, HF_DOWNSAMPLE_POINT, message);
+    if (!err)
+        err = hf_check_value("gather.division", (int)g->division, 0, HF_DIVISION_NEWTON2, message);
+    if (err)
+        return err;
+    if (g->fill == HF_FILL_AUTO)
         g->fill =
             g->faithful || g->downsample || (g->division && !r->params.run.deterministic) ? HF_FILL_MAX : HF_FILL_MEAN;
-    if ((unsigned)g->fill > HF_FILL_OPEN)
-        return hf_bad(message, "gather.fill is %d, which is none", (int)g->fill);
-    if ((unsigned)g->downsample > HF_DOWNSAMPLE_POINT)
-        return hf_bad(message, "gather.downsample is %d, which is none", (int)g->downsample);
-    if ((unsigned)g->division > HF_DIVISION_NEWTON2)
-        return hf_bad(message, "gather.division is %d, which is none", (int)g->division);
     if (r->limit != HF_LIMIT_GIVEN) {
         r->limit = r->limit == HF_LIMIT_NONE || g->faithful ? HF_LIMIT_ENGINE : r->limit;
         r->params.max_radius = g->faithful                   ? 12
@@ -217,7 +219,7 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     if (!r->rings_given)
         g->rings = is_measured(r) ? MEASURED_RINGS : hf_taps_rings(r->params.max_radius / 2);
     if (g->rings < 1 || g->rings > HF_MAX_RINGS)
-        return hf_bad(message, "gather.rings is %d; it must be 1 to %d", g->rings, HF_MAX_RINGS);
+        return hf_bad(message, "gather.rings", "is %d; it must be 1 to %d", g->rings, HF_MAX_RINGS);
     return HF_OK;
 }
 

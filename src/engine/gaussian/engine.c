@@ -123,14 +123,15 @@ static float farthest(const struct hf_params *p)
     return 2 * sigma(&p->gaussian);
 }
 
-static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+static int check(struct hf_settings *r, const struct hf_params *asked, const struct hf_depth *depth,
+                 struct hf_message *message)
 {
     struct hf_gaussian_params *g = &r->params.gaussian;
     int err = hf_check_resolution("gaussian", g->resolution, HF_RESOLUTION_QUARTER, message);
     if (err)
         return err;
     if (g->iterations < 0 || g->iterations > MAX_ITERATIONS)
-        return hf_bad(message, "gaussian.iterations is %d; it must be 0 to %d", g->iterations, MAX_ITERATIONS);
+        return hf_bad(message, "gaussian.iterations", "is %d; it must be 0 to %d", g->iterations, MAX_ITERATIONS);
     if (g->sigma == HF_DERIVE) {
         g->sigma = sigma(g);
     } else {
@@ -152,7 +153,7 @@ static int check(struct hf_resolved *r, const struct hf_params *asked, const str
     float near, far;
     depth_planes(depth, &near, &far);
     if (!err && g->by_depth && !(near < far))
-        return hf_bad(message, "depth.near_plane is %g and far_plane %g; near must be less than far", near, far);
+        return hf_bad(message, "depth.near_plane", "is %g; it must be less than the far plane, %g", near, far);
     return err;
 }
 

@@ -85,12 +85,14 @@ static int place_count(const struct hf_setup *s, float radius)
     return (int)ceil((working(s, radius) + 4) / fmin(s->pixel_aspect, 1));
 }
 
-static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+static int check(struct hf_settings *r, const struct hf_params *asked, const struct hf_depth *depth,
+                 struct hf_message *message)
 {
     const struct hf_params *p = &r->params;
     (void)asked;
     if (p->aperture.blades && p->aperture.blades != 6)
-        return hf_bad(message, "aperture.blades is %d; the hexagon engine has six sides", p->aperture.blades);
+        return hf_bad(message, "aperture.blades", "is %d; the hexagon engine draws six sides (0 or 6)",
+                      p->aperture.blades);
     if (p->hexagon.uniform)  // at any depth
         r->sharp =
             p->max_radius == 0 || (depth->type != HF_DEPTH_COC && p->model == HF_MODEL_RANGE && p->range.strength == 0);

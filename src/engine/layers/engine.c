@@ -73,13 +73,14 @@ static const struct hf_layers_settings qualities[] = {
                         .quarter = 32},
 };
 
-static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+static int check(struct hf_settings *r, const struct hf_params *asked, const struct hf_depth *depth,
+                 struct hf_message *message)
 {
     struct hf_layers_params *p = &r->params.layers;
     (void)asked;
     (void)depth;
-    if ((unsigned)p->quality > HF_LAYERS_BEST)
-        return hf_bad(message, "layers.quality is %d, which is not a quality", (int)p->quality);
+    if (hf_check_value("layers.quality", (int)p->quality, 0, HF_LAYERS_BEST, message))
+        return HF_ERR_ARG;
     const struct hf_layers_settings *set = &qualities[p->quality];
     struct hf_params *all = &r->params;
     if (all->aperture.picture && all->max_radius > hf_most_picture_radius(all)) {
@@ -228,7 +229,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     return HF_OK;
 }
 
-static void tell(const void *own, struct hf_report *r)
+static void tell(const void *own, struct hf_frame_report *r)
 {
     const struct hf_layers *l = own;
     for (int i = 0; i < l->slices; i++)

@@ -77,7 +77,8 @@ static void set_groups(struct hf_scatter *t, const struct hf_setup *s, float chr
     }
 }
 
-static int check(struct hf_resolved *r, const struct hf_params *asked, const struct hf_depth *depth, char *message)
+static int check(struct hf_settings *r, const struct hf_params *asked, const struct hf_depth *depth,
+                 struct hf_message *message)
 {
     struct hf_params *p = &r->params;
     (void)asked;

@@ -27,7 +27,8 @@ static int read_file(struct cli_aperture *a, struct hf_io_file *file, const char
     if (brightest <= 0)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "--aperture %s: the picture is black, it lets no light through",
                          path);
-    a->image = (struct hf_image){.width = v->width, .height = v->height, .format = HF_FORMAT_PLANAR32F};
+    a->image = (struct hf_image){
+        .size = sizeof(struct hf_image), .width = v->width, .height = v->height, .format = HF_FORMAT_PLANAR32F};
     for (int c = 0; c < 3; c++) {
         a->image.data[c] = planes[c];
         a->image.stride[c] = (ptrdiff_t)v->width * (ptrdiff_t)sizeof(float);

@@ -18,7 +18,7 @@ int cli_is_exr(const char *path)
 static void set_defaults(struct cli_args *args)
 {
     *args = (struct cli_args){
-        .params = hf_default_params, .focus_smooth = -1, .engine = -1, .quality = -1, .max_error = NAN};
+        .params = hf_default_params(), .focus_smooth = -1, .engine = -1, .quality = -1, .max_error = NAN};
     float *const unset[] = {&args->focus,        &args->range,        &args->strength,       &args->near_begin,
                             &args->near_end,     &args->far_begin,    &args->far_end,        &args->fstop,
                             &args->focal_length, &args->sensor_width, &args->world_unit,     &args->near_plane,

@@ -24,6 +24,7 @@
 #include "tools/cli/summary.h"
 #include "tools/cli/warn.h"
 #include "tools/common/machine.h"
+#include "tools/common/report.h"
 
 enum { MAX_STEPS = 16 };
 static const double GIB = 1024. * 1024 * 1024;
@@ -152,38 +153,39 @@ static int make_frame(struct batch *b, struct cli_frame *frame, struct cli_sessi
 }
 
 // What to say of a frame that is done.
-static void describe(const struct cli_frame *frame, const struct hf_report *report, double ms, char *text, size_t size)
+static void describe(const struct cli_frame *frame, const struct tool_report *report, double ms, char *text,
+                     size_t size)
 {
     const struct cli_setup *setup = &frame->views[0].setup;
     int n = snprintf(text, size, "%.2f s", ms / 1000);
     if (setup->focus_from && setup->params.focus != HF_DERIVE)
         n += snprintf(text + n, size - (size_t)n, ", focus %.4g", setup->params.focus);
-    if (report->budget_step)
-        snprintf(text + n, size - (size_t)n, ", for the budget %s (step %d)", report->budget_options,
-                 report->budget_step);
+    if (report->all.budget_step)
+        snprintf(text + n, size - (size_t)n, ", for the budget %s (step %d)", report->inner.budget_options,
+                 report->all.budget_step);
 }
 
 static void finish(struct batch *b, struct cli_frame *frame, const struct cli_session *session, struct cli_record *r,
                    const char *why)
 {
-    struct hf_report report = {0};
+    struct tool_report report = {0};
     char text[256] = "";
     const char *shown = text;
     switch (r->status) {
     case CLI_FRAME_DONE:
-        hf_get_report(session->context, &report);
+        tool_report_get(session->context, &report);
         r->report = &report;
         // The peak of an earlier look at the shot may hide what this frame takes.
         if (b->measuring) {
-            b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.memory);
+            b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.all.memory);
             b->frame_pixels = pixels(frame);
         }
         describe(frame, &report, r->ms, text, sizeof(text));
-        atomic_fetch_add(&b->chosen[report.budget_step < MAX_STEPS ? report.budget_step : MAX_STEPS - 1], 1);
+        atomic_fetch_add(&b->chosen[report.all.budget_step < MAX_STEPS ? report.all.budget_step : MAX_STEPS - 1], 1);
         for (int i = 0; i < frame->view_count; i++)
             if (cli_missed_budget(&frame->views[i])) {
                 atomic_fetch_add(&b->missed[0], 1);
-                atomic_fetch_add(&b->missed[1], report.budget_step + 1 == report.budget_steps);
+                atomic_fetch_add(&b->missed[1], report.all.budget_step + 1 == report.all.budget_steps);
                 break;
             }
         for (int s = 0; s < CLI_STAGES; s++)

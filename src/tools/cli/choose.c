@@ -17,9 +17,9 @@ static int by_error(const struct cli_args *args)
 
 const char *cli_quality_words(int quality)
 {
-    struct hf_params p = hf_default_params;
-    struct hf_choice choice;
-    return hf_choose_quality(1080, NULL, &p, (enum hf_quality)quality, &choice) ? "" : choice.options;
+    struct hf_params p = hf_default_params();
+    struct tool_choice choice;
+    return tool_choose(1080, NULL, &p, (enum hf_quality)quality, 0, &choice) ? "" : choice.inner.options;
 }
 
 int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, struct tool_error *error)
@@ -39,17 +39,16 @@ int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, s
 
 void cli_choose(struct cli_setup *setup, const struct cli_args *args)
 {
-    static const struct hf_image any;
+    static const struct hf_image any = {.size = sizeof(any)};
     struct hf_params *p = &setup->params;
     const struct hf_image *picture = p->aperture.picture;
     // The aperture's picture may be read later; that there will be one decides who can draw it.
     if (args->aperture_file)
         p->aperture.picture = &any;
-    if (by_error(args))
-        hf_choose_error(p->view.display_height, &setup->depth, p, args->max_error, &setup->choice);
-    else if (args->quality >= 0)
-        hf_choose_quality(p->view.display_height, &setup->depth, p, (enum hf_quality)args->quality, &setup->choice);
-    setup->missed = by_error(args) && setup->choice.error > args->max_error;
+    if (by_error(args) || args->quality >= 0)
+        tool_choose(p->view.display_height, &setup->depth, p, (enum hf_quality)args->quality,
+                    by_error(args) ? args->max_error : 0, &setup->choice);
+    setup->missed = by_error(args) && setup->choice.all.error > args->max_error;
     p->aperture.picture = picture;
 }
 
@@ -65,35 +64,37 @@ struct cli_word cli_choice_option(const struct cli_args *args)
 
 void cli_choose_print(FILE *out, const struct cli_args *args, const struct cli_setup *setup, double megapixels)
 {
-    const struct hf_choice *c = &setup->choice;
-    if (!c->options)
+    const struct hf_choice *c = &setup->choice.all;
+    const struct hf_inspect_choice *s = &setup->choice.inner;
+    if (!s->options)
         return;
-    fprintf(out, "  %s chose %s, step %d of %d\n", cli_choice_option(args).text, c->options, c->step + 1, c->steps);
-    if (c->passed)
-        fprintf(out, "  %d cheaper step%s passed over, the first because it %s\n", c->passed,
-                c->passed == 1 ? " was" : "s were", c->why);
+    fprintf(out, "  %s chose %s, step %d of %d\n", cli_choice_option(args).text, s->options, s->step + 1, s->steps);
+    if (s->passed)
+        fprintf(out, "  %d cheaper step%s passed over, the first because it %s\n", s->passed,
+                s->passed == 1 ? " was" : "s were", c->why);
     if (setup->missed)
         fprintf(out, "  no setting errs as little as was asked for\n");
     fprintf(out,
             "  expected: %.1f ms (%.1f a megapixel); error %.4f of the display's range (%.1f dB), %.4f in the worst "
             "scene\n  measured %s\n",
-            c->ms * megapixels, c->ms, c->error, -20 * log10(c->error), c->worst, c->measured);
+            c->ms * megapixels, c->ms, c->error, -20 * log10(c->error), c->worst, s->measured);
 }
 
 void cli_choose_json(struct tool_json *j, const struct cli_setup *setup, double megapixels)
 {
-    const struct hf_choice *c = &setup->choice;
-    if (!c->options)
+    const struct hf_choice *c = &setup->choice.all;
+    const struct hf_inspect_choice *s = &setup->choice.inner;
+    if (!s->options)
         return;
     tool_json_open(j, "choice", '{');
-    tool_json_text(j, "options", c->options);
-    tool_json_count(j, "step", c->step + 1);
-    tool_json_count(j, "steps", c->steps);
-    tool_json_count(j, "passed_over", c->passed);
+    tool_json_text(j, "options", s->options);
+    tool_json_count(j, "step", s->step + 1);
+    tool_json_count(j, "steps", s->steps);
+    tool_json_count(j, "passed_over", s->passed);
     tool_json_text(j, "passed_over_because_it", c->why);
     tool_json_ms(j, "expected_ms", c->ms * megapixels);
     tool_json_number(j, "expected_error", c->error);
     tool_json_number(j, "worst_error", c->worst);
-    tool_json_text(j, "measured", c->measured);
+    tool_json_text(j, "measured", s->measured);
     tool_json_close(j);
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cli/coc.h"
+#include "tools/common/report.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 // What a radius follows from.
 struct model {
+    const struct hf_params *p;
     const struct hf_resolved *r;
     const struct hf_depth *depth;
     int width, height;
@@ -19,7 +21,7 @@ static float view_depth(const struct model *m, int x, int y)
         z = ((const float *)m->depth->data)[(size_t)y * (size_t)m->width + (size_t)x];
         return z > 0 && z < 1e10f ? z : INFINITY;
     }
-    return hf_depth_at(m->depth, m->width, m->height, x, y, &z) == HF_OK ? z : INFINITY;
+    return hf_depth_at(m->depth, m->width, m->height, x, y, &z, NULL) == HF_OK ? z : INFINITY;
 }
 
 // 0 up to begin, 1 from end on.
@@ -31,7 +33,7 @@ static float ramp(float v, float begin, float end)
 // Signed, pixels; negative in front of the focus.
 static float radius_of(const struct model *m, float z)
 {
-    const struct hf_params *p = &m->r->params;
+    const struct hf_params *p = m->p;
     const struct hf_range_params *range = &p->range;
     float r;
     if (p->engine == HF_ENGINE_GAUSSIAN && p->gaussian.by_depth) {
@@ -56,18 +58,19 @@ static float radius_at(const struct model *m, int x, int y, float *z)
         *z = view_depth(m, x, y);
         return radius_of(m, *z);
     }
-    const float most = m->r->params.max_radius;
+    const float most = m->p->max_radius;
     const float r = ((const float *)m->depth->data)[(size_t)y * (size_t)m->width + (size_t)x];
     return isfinite(r) ? fminf(fmaxf(r, -most), most) : 0;
 }
 
 int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_error *error)
 {
-    struct hf_resolved resolved;
+    struct hf_params filled = {.size = sizeof(filled)};
+    struct hf_resolved resolved = {.size = sizeof(resolved)};
     const int width = v->view->width, height = v->view->height;
-    const struct model m = {&resolved, &v->setup.depth, width, height};
+    const struct model m = {&filled, &resolved, &v->setup.depth, width, height};
     // What is wrong with the settings is the library's to say.
-    if (hf_resolve(width, height, &v->setup.depth, &v->setup.params, &resolved, NULL, 0))
+    if (hf_resolve(width, height, &v->setup.depth, &v->setup.params, &filled, &resolved, NULL))
         return 0;
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
     const int inside =
@@ -81,10 +84,10 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
     }
     v->far_away = m.depth->type == HF_DEPTH_COC ? 0 : fabsf(radius_of(&m, INFINITY));
     // What the gaussian engine blurs at all it blurs alike, and blends: three standard deviations far.
-    v->least_reach = resolved.params.engine == HF_ENGINE_GAUSSIAN ? 3 * resolved.params.gaussian.sigma : 0;
+    v->least_reach = filled.engine == HF_ENGINE_GAUSSIAN ? 3 * filled.gaussian.sigma : 0;
     v->least_radius = resolved.sharp ? 0 : INFINITY;
     // The sky is in focus only where somebody focused on it.
-    const int sky = m.depth->type == HF_DEPTH_COC || resolved.params.focus == INFINITY;
+    const int sky = m.depth->type == HF_DEPTH_COC || filled.focus == INFINITY;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             float z;
@@ -101,19 +104,19 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
 
 float cli_coc_largest(const struct cli_view *v)
 {
-    const struct hf_report *r = &v->report;
-    const struct hf_params *p = &r->used.params;
+    const struct tool_report *r = &v->report;
+    const struct hf_params *p = &r->params;
     if (p->engine == HF_ENGINE_GAUSSIAN)
         return 2 * p->gaussian.sigma * fmaxf(v->blend[0], v->blend[1]);
     if (p->engine == HF_ENGINE_HEXAGON && p->hexagon.uniform)
         return p->max_radius;
-    return fmaxf(r->near_radius, r->far_radius);
+    return fmaxf(r->all.near_radius, r->all.far_radius);
 }
 
 void cli_coc_measure(struct cli_view *v)
 {
-    const struct hf_params *p = &v->report.used.params;
-    const struct model m = {&v->report.used, &v->setup.depth, v->view->width, v->view->height};
+    const struct hf_params *p = &v->report.params;
+    const struct model m = {p, &v->report.used, &v->setup.depth, v->view->width, v->view->height};
     const int gaussian = p->engine == HF_ENGINE_GAUSSIAN;
     float largest[2] = {0, 0};
     v->range[0] = INFINITY;

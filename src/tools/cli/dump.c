@@ -2,6 +2,7 @@
 #include "tools/cli/dump.h"
 
 #include "tools/cli/target.h"
+#include "hyperfocal/inspect.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -9,7 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static void write_buffer(void *cookie, const struct hf_buffer *buffer)
+static void write_buffer(void *cookie, const struct hf_inspect_buffer *buffer)
 {
     static const char *const names[5][4] = {{0}, {"Y"}, {"R", "G"}, {"R", "G", "B"}, {"R", "G", "B", "A"}};
     struct cli_dump *dump = cookie;
@@ -49,13 +50,13 @@ void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const str
     for (char *c = dump->prefix; *c; c++)
         if (*c == '/')
             *c = '_';
-    hf_set_dump(context, write_buffer, dump);
+    hf_inspect_dump(context, write_buffer, dump);
 }
 
 int cli_dump_end(struct cli_dump *dump, struct hf_context *context, const struct hf_image *image,
                  struct tool_error *error)
 {
-    const struct hf_buffer composite = {
+    const struct hf_inspect_buffer composite = {
         .name = "composite",
         .width = image->width,
         .height = image->height,
@@ -63,7 +64,7 @@ int cli_dump_end(struct cli_dump *dump, struct hf_context *context, const struct
         .data = {image->data[0], image->data[1], image->data[2], image->data[3]},
         .stride = image->stride[0],
     };
-    hf_set_dump(context, NULL, NULL);
+    hf_inspect_dump(context, NULL, NULL);
     write_buffer(dump, &composite);
     return dump->failed ? tool_fail(error, CLI_ALL_FAILED, "%s", dump->error.text) : 0;
 }

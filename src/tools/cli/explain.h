@@ -8,7 +8,7 @@
 #include "tools/cli/frame.h"
 
 // Keep a context's report with its view, tiles included, which the context overwrites. 0, or an exit code.
-int cli_explain_keep(struct cli_view *v, const struct hf_context *context, struct tool_error *error);
+int cli_explain_keep(struct cli_view *v, struct hf_context *context, struct tool_error *error);
 
 // Of the engine in use; full where it has none to choose.
 enum hf_resolution cli_explain_resolution(const struct hf_params *params);

@@ -15,25 +15,7 @@
 #include "tools/io/depth_edges.h"
 #include "tools/common/luminance.h"
 #include "tools/common/machine.h"
-
-const char *cli_in_options(const char *message, char buf[CLI_SENTENCE])
-{
-    static const char *const words[][2] = {{"layers.quarter_from", "--quarter-from"},
-                                           {"layers.half_from", "--half-from"},
-                                           {"run.budget_ms", "--budget-ms"},
-                                           {"max_radius", "--max-radius"}};
-    size_t used = 0;
-    while (*message && used + 32 < CLI_SENTENCE) {
-        size_t i = 0;
-        while (i < 4 && strncmp(message, words[i][0], strlen(words[i][0])))
-            i++;
-        used +=
-            (size_t)snprintf(buf + used, CLI_SENTENCE - used, "%.*s", i < 4 ? 31 : 1, i < 4 ? words[i][1] : message);
-        message += i < 4 ? strlen(words[i][0]) : 1;
-    }
-    buf[used] = '\0';
-    return buf;
-}
+#include "hyperfocal/inspect.h"
 
 static void keep_warning(struct cli_session *session, const char *message)
 {
@@ -46,17 +28,17 @@ static void keep_warning(struct cli_session *session, const char *message)
 }
 
 // The library says why before it returns an error; that is the sentence to show.
-static void on_log(void *cookie, enum hf_log_level level, const char *message)
+static void on_log(void *cookie, const struct hf_message *message)
 {
     struct cli_session *session = cookie;
-    char sentence[CLI_SENTENCE];
-    message = cli_in_options(message, sentence);
-    if (level == HF_LOG_ERROR)
-        tool_fail(&session->log, 0, "%s", message);
-    else if (level == HF_LOG_WARNING)
-        keep_warning(session, message);
-    if (level == HF_LOG_WARNING)
-        tool_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", message);
+    char buf[TOOL_SENTENCE];
+    const char *sentence = tool_sentence(&cli_program, message, buf);
+    if (message->level == HF_LOG_ERROR)
+        tool_fail(&session->log, 0, "%s", sentence);
+    else if (message->level == HF_LOG_WARNING)
+        keep_warning(session, sentence);
+    if (message->level == HF_LOG_WARNING)
+        tool_print_line("%s%s%s", session->label ? session->label : "", session->label ? ": " : "", sentence);
 }
 
 const char *const cli_stage_names[CLI_STAGES] = {"read", "decode", "defocus", "encode", "write"};
@@ -75,7 +57,8 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, i
     if (!hf_isa_available(args->isa))
         return tool_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
                          hf_isa_name(args->isa));
-    const struct hf_config config = {.threads = threads, .isa = args->isa, .log = on_log, .log_cookie = session};
+    const struct hf_config config = {
+        .size = sizeof config, .threads = threads, .isa = args->isa, .log = on_log, .log_cookie = session};
     const int status = hf_open(&session->context, &config);
     // Without threads of their own files are read and written on this one.
     if (status == HF_OK)
@@ -320,7 +303,10 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     const int status = load(frame, error);
     if (status)
         return status;
-    *image = (struct hf_image){.width = v->view->width, .height = v->view->height, .format = HF_FORMAT_PLANAR32F};
+    *image = (struct hf_image){.size = sizeof(struct hf_image),
+                               .width = v->view->width,
+                               .height = v->view->height,
+                               .format = HF_FORMAT_PLANAR32F};
     // Who looks at the passes sees all of their channels.
     const int channels = !frame->args->dump_dir && is_opaque(v) ? 3 : 4;
     for (int c = 0; c < channels; c++) {
@@ -344,11 +330,11 @@ static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
                        struct tool_error *error)
 {
     if (status != HF_OK) {
-        hf_set_dump(session->context, NULL, NULL);
+        hf_inspect_dump(session->context, NULL, NULL);
         return tool_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
                          session->log.text[0] ? session->log.text : hf_error_string(status));
     }
-    hf_get_report(session->context, &v->report);
+    tool_report_get(session->context, &v->report);
     v->warned = session->warnings;
     free(v->said);
     v->said = session->said;
@@ -370,7 +356,7 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
         return status;
     if (frame->args->dump_dir)
         cli_dump_begin(&dump, session->context, frame, v);
-    v->setup.params.run.colour_stats = frame->args->explain;
+    hf_inspect_colour(session->context, frame->args->explain);
     const double start = tool_now_ms();
     status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
     frame->ms[CLI_DEFOCUS] += tool_now_ms() - start;
@@ -384,7 +370,7 @@ static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     int status = load_view(frame, v, session, &image, error);
     if (status)
         return status;
-    v->setup.params.run.colour_stats = frame->args->explain;
+    hf_inspect_colour(session->context, frame->args->explain);
     status = hf_plan(session->context, &image, &image, &v->setup.depth, &v->setup.params, NULL);
     return finish_view(frame, v, session, status, error);
 }

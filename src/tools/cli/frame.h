@@ -5,6 +5,7 @@
 
 #include "tools/cli/depth.h"
 #include "tools/cli/setup.h"
+#include "tools/common/report.h"
 
 // The library and threads for files, kept from frame to frame, and what the library said last.
 struct cli_session {
@@ -45,7 +46,7 @@ struct cli_view {
     uint64_t highlights;  // pixels above --highlight-threshold, if they are to be raised
     int whole;            // --grow: the data window was as large as it may get
     int cut;              // pixels by which the blur reaches beyond the data window, and is lost
-    struct hf_report report;
+    struct tool_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for
 };
 
@@ -66,10 +67,6 @@ struct cli_frame {
     double ms[CLI_STAGES];
     struct hf_io_written written;
 };
-
-// A sentence of the library in the command's words: the option's name for that of a field.
-enum { CLI_SENTENCE = 768 };
-const char *cli_in_options(const char *message, char buf[CLI_SENTENCE]);
 
 // Start the library, on some threads (0: one per processor). Returns 0, or an exit code with *error filled.
 int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct tool_error *error);

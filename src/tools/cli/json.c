@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 
 #include "tools/io/out.h"
+#include "tools/common/report.h"
 
 static void put_model(struct tool_json *j, const struct cli_setup *setup)
 {
@@ -35,23 +36,23 @@ static void put_model(struct tool_json *j, const struct cli_setup *setup)
 
 static void put_stats(struct tool_json *j, const struct cli_view *v, const struct cli_frame *frame)
 {
-    const struct hf_report *s = &v->report;
+    const struct tool_report *s = &v->report;
     const double pixels = (double)v->view->width * v->view->height;
-    tool_json_number(j, "max_radius", s->used.params.max_radius);
+    tool_json_number(j, "max_radius", s->params.max_radius);
     tool_json_text(j, "limit", hf_name(HF_NAMES_LIMIT, (int)s->used.limit));
     tool_json_flag(j, "limited", cli_is_limited(v));
-    tool_json_number(j, "near_share", (double)s->near_pixels / pixels);
-    tool_json_number(j, "sharp_share", (double)s->sharp_pixels / pixels);
-    tool_json_number(j, "far_share", (double)s->far_pixels / pixels);
-    tool_json_count(j, "colour_repaired", (long long)s->colour_repaired);
-    tool_json_count(j, "depth_repaired", (long long)s->depth_repaired);
-    tool_json_count(j, "no_surface", (long long)s->no_surface);
+    tool_json_number(j, "near_share", (double)s->all.near_pixels / pixels);
+    tool_json_number(j, "sharp_share", (double)s->all.sharp_pixels / pixels);
+    tool_json_number(j, "far_share", (double)s->all.far_pixels / pixels);
+    tool_json_count(j, "colour_repaired", (long long)s->all.colour_repaired);
+    tool_json_count(j, "depth_repaired", (long long)s->all.depth_repaired);
+    tool_json_count(j, "no_surface", (long long)s->all.no_surface);
     // The file layer counts over all views, so with several only the sum is known, which is beside them.
-    tool_json_count(j, "clamped", (long long)(s->clamped + (frame->view_count == 1 ? frame->written.clamped : 0)));
+    tool_json_count(j, "clamped", (long long)(s->all.clamped + (frame->view_count == 1 ? frame->written.clamped : 0)));
     tool_json_flag(j, "depth_negative", v->found.flipped);
     tool_json_number(j, "least_radius", v->least_radius);
-    if (s->used.params.engine == HF_ENGINE_GAUSSIAN) {
-        tool_json_number(j, "sigma", s->used.params.gaussian.sigma);
+    if (s->params.engine == HF_ENGINE_GAUSSIAN) {
+        tool_json_number(j, "sigma", s->params.gaussian.sigma);
         tool_json_number(j, "near_blend", v->blend[0]);
         tool_json_number(j, "far_blend", v->blend[1]);
     }
@@ -59,20 +60,20 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
     if (v->setup.params.highlight.gain > 1)
         tool_json_count(j, "highlights", (long long)v->highlights);
     tool_json_count(j, "warnings", cli_warnings_of(frame, v));
-    tool_json_ms(j, "total_ms", s->total_ms);
+    tool_json_ms(j, "total_ms", s->all.total_ms);
     if (v->setup.params.run.budget_ms > 0)
         tool_json_flag(j, "budget_missed", cli_missed_budget(v));
     tool_json_open(j, "passes", '[');
-    for (int i = 0; i < hf_pass_count(s->used.params.engine); i++) {
+    for (int i = 0; i < tool_passes(s->params.engine); i++) {
         tool_json_row(j, NULL, '{');
-        tool_json_text(j, "name", hf_pass_name(s->used.params.engine, i));
+        tool_json_text(j, "name", hf_inspect_pass_name(s->params.engine, i));
         tool_json_ms(j, "ms", s->pass[i].ms);
         tool_json_close(j);
     }
     tool_json_close(j);
 }
 
-static void put_pass(struct tool_json *j, const struct hf_pass_report *p)
+static void put_pass(struct tool_json *j, const struct hf_inspect_pass *p)
 {
     tool_json_row(j, NULL, '{');
     tool_json_text(j, "name", p->name);
@@ -85,45 +86,45 @@ static void put_pass(struct tool_json *j, const struct hf_pass_report *p)
     tool_json_close(j);
 }
 
-static void put_report(struct tool_json *j, const struct hf_report *r)
+static void put_report(struct tool_json *j, const struct tool_report *r)
 {
-    const struct hf_params *used = &r->used.params;
+    const struct hf_params *used = &r->params;
     tool_json_open(j, "plan", '{');
     tool_json_text(j, "engine", hf_engine_name(used->engine));
     tool_json_text(j, "resolution", hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(used)));
     tool_json_count(j, "rings", used->engine == HF_ENGINE_GATHER && !r->used.sharp ? used->gather.rings : 0);
-    tool_json_count(j, "budget_step", r->budget_step);
-    tool_json_text(j, "budget_options", r->budget_options);
+    tool_json_count(j, "budget_step", r->all.budget_step);
+    tool_json_text(j, "budget_options", r->inner.budget_options);
     tool_json_row(j, "tile_size", '[');
-    tool_json_count(j, NULL, r->tile_width);
-    tool_json_count(j, NULL, r->tile_height);
+    tool_json_count(j, NULL, r->inner.tile_width);
+    tool_json_count(j, NULL, r->inner.tile_height);
     tool_json_close(j);
     tool_json_row(j, "tiles", '{');
-    tool_json_count(j, "sharp", r->tile_count[HF_TILE_SHARP]);
-    tool_json_count(j, "near", r->tile_count[HF_TILE_NEAR]);
-    tool_json_count(j, "far", r->tile_count[HF_TILE_FAR]);
-    tool_json_count(j, "both", r->tile_count[HF_TILE_BOTH]);
+    tool_json_count(j, "sharp", r->inner.tile_count[HF_TILE_SHARP]);
+    tool_json_count(j, "near", r->inner.tile_count[HF_TILE_NEAR]);
+    tool_json_count(j, "far", r->inner.tile_count[HF_TILE_FAR]);
+    tool_json_count(j, "both", r->inner.tile_count[HF_TILE_BOTH]);
     tool_json_close(j);
-    if (r->colour_known) {
-        tool_json_number(j, "brightest", r->brightest);
-        tool_json_flag(j, "opaque", r->opaque);
-        tool_json_count(j, "not_finite", (long long)r->not_finite);
+    if (r->inner.colour_known) {
+        tool_json_number(j, "brightest", r->inner.brightest);
+        tool_json_flag(j, "opaque", r->inner.opaque);
+        tool_json_count(j, "not_finite", (long long)r->inner.not_finite);
     }
-    tool_json_number(j, "near_radius", r->near_radius);
-    tool_json_number(j, "far_radius", r->far_radius);
+    tool_json_number(j, "near_radius", r->all.near_radius);
+    tool_json_number(j, "far_radius", r->all.far_radius);
     if (used->engine == HF_ENGINE_LAYERS) {
         tool_json_row(j, "slices", '[');
         for (int i = 0; i < 4; i++)
-            tool_json_count(j, NULL, r->slices[i]);
+            tool_json_count(j, NULL, r->inner.slices[i]);
         tool_json_close(j);
-        tool_json_count(j, "hidden_levels", r->hidden_levels);
+        tool_json_count(j, "hidden_levels", r->inner.hidden_levels);
     }
-    tool_json_count(j, "memory", (long long)r->memory);
-    tool_json_count(j, "memory_saved", (long long)r->memory_saved);
-    tool_json_ms(j, "plan_ms", r->plan_ms);
-    tool_json_ms(j, "predicted_ms", r->predicted_ms);
+    tool_json_count(j, "memory", (long long)r->all.memory);
+    tool_json_count(j, "memory_saved", (long long)r->inner.memory_saved);
+    tool_json_ms(j, "plan_ms", r->inner.plan_ms);
+    tool_json_ms(j, "predicted_ms", r->all.predicted_ms);
     tool_json_open(j, "passes", '[');
-    for (int i = 0; i < r->passes; i++)
+    for (int i = 0; i < r->inner.passes; i++)
         put_pass(j, &r->pass[i]);
     tool_json_close(j);
     tool_json_close(j);
@@ -183,7 +184,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     tool_json_close(j);
 }
 
-void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context)
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, struct hf_context *context)
 {
     const struct cli_args *args = frame->args;
     struct tool_json j;
@@ -216,7 +217,7 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     tool_json_end(&j);
 }
 
-static int write_device(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
+static int write_device(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
                         struct tool_error *error)
 {
     const char *path = frame->args->json_file;
@@ -230,7 +231,7 @@ static int write_device(int argc, char **argv, const struct cli_frame *frame, co
     return 0;
 }
 
-int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
+int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
                         struct tool_error *error)
 {
     struct hf_out out;

@@ -13,10 +13,10 @@
 void cli_json_map(struct tool_json *j, const struct cli_view *v);
 
 // One JSON object about a frame: what was asked for, what was done, how long it took. Of a --dry-run the first only.
-void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context);
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, struct hf_context *context);
 
 // The same into args->json_file, through a temporary file; a device is written where it is. 0, or an exit code.
-int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
+int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
                         struct tool_error *error);
 
 #endif

@@ -119,16 +119,16 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         cli_json_map(j, v);
         tool_json_number(j, "focus", s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
         tool_json_text(j, "focus_from", s->focus_from);
-        tool_json_number(j, "max_radius", v->report.used.params.max_radius);
-        tool_json_number(j, "near_radius", v->report.near_radius);
-        tool_json_number(j, "far_radius", v->report.far_radius);
+        tool_json_number(j, "max_radius", v->report.params.max_radius);
+        tool_json_number(j, "near_radius", v->report.all.near_radius);
+        tool_json_number(j, "far_radius", v->report.all.far_radius);
         tool_json_flag(j, "limited", cli_is_limited(v));
         tool_json_count(j, "warnings", cli_warnings_of(frame, v));
         cli_choose_json(j, s, 1e-6 * v->view->width * v->view->height);
         if (s->params.run.budget_ms > 0)
             tool_json_flag(j, "budget_missed", cli_missed_budget(v));
-        tool_json_count(j, "colour_repaired", (long long)v->report.colour_repaired);
-        tool_json_count(j, "depth_repaired", (long long)v->report.depth_repaired);
+        tool_json_count(j, "colour_repaired", (long long)v->report.all.colour_repaired);
+        tool_json_count(j, "depth_repaired", (long long)v->report.all.depth_repaired);
         tool_json_close(j);
     }
     tool_json_close(j);
@@ -155,10 +155,10 @@ void cli_log_frame(struct cli_log *log, const struct cli_record *r)
         put_views(j, r->frame);
         cli_json_warnings(j, r->frame);
         tool_json_count(j, "clamped", (long long)r->frame->written.clamped);
-        tool_json_text(j, "engine", hf_engine_name(r->report->used.params.engine));
-        tool_json_count(j, "budget_step", r->report->budget_step);
-        if (r->report->budget_steps)
-            tool_json_text(j, "budget_options", r->report->budget_options);
+        tool_json_text(j, "engine", hf_engine_name(r->report->params.engine));
+        tool_json_count(j, "budget_step", r->report->all.budget_step);
+        if (r->report->all.budget_steps)
+            tool_json_text(j, "budget_options", r->report->inner.budget_options);
     }
     if (r->why)
         tool_json_text(j, "error", r->why);

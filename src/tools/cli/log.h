@@ -7,6 +7,7 @@
 
 #include "tools/cli/progress.h"
 #include "tools/cli/resume.h"
+#include "tools/common/report.h"
 
 enum cli_frame_status { CLI_FRAME_DONE, CLI_FRAME_SKIPPED, CLI_FRAME_FAILED };
 
@@ -23,10 +24,10 @@ struct cli_record {
     const struct cli_job *job;
     const struct cli_frame *frame;
     const struct cli_stamp *stamp;
-    const struct hf_report *report;  // of the last view; NULL unless done
-    const char *why;                 // of a failure
-    long long memory;                // bytes kept free for it
-    double ms, waited_ms;            // from beginning to end; of that until others left it memory
+    const struct tool_report *report;  // of the last view; NULL unless done
+    const char *why;                   // of a failure
+    long long memory;                  // bytes kept free for it
+    double ms, waited_ms;              // from beginning to end; of that until others left it memory
 };
 
 // path NULL: no log. Returns 0, or an exit code with *error filled.

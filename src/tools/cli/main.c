@@ -19,7 +19,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static int print_plan(const struct cli_frame *frame, const struct hf_context *context, struct tool_error *error)
+static int print_plan(const struct cli_frame *frame, struct hf_context *context, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
     char name[TOOL_SHOWN], other[TOOL_SHOWN], third[TOOL_SHOWN];
@@ -75,7 +75,7 @@ static int print_plan(const struct cli_frame *frame, const struct hf_context *co
     return 0;
 }
 
-static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct hf_context *context,
+static int write_json(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
                       struct tool_error *error)
 {
     if (frame->args->json_file)

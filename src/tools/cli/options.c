@@ -38,13 +38,15 @@ static const struct tool_option options[] = {
     {"display", 0, TOOL_FILES, "WxH[+X+Y]", "The picture is a crop of a frame of this size, pixels, at X,Y from its top "
      "left corner, else in its middle, whatever the file says: the lens is that of the whole frame. Default: the file's "
      "display window.",
-     .parse = cli_parse_display},
+     .parse = cli_parse_display,
+     .field = "view.display_width|view.display_height"},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
      "Default: that of INPUT.", .parse = tool_parse_choice_text, FIELD(compression)},
 
     {"focus", 0, TOOL_FOCUS, "D|center", "Distance in perfect focus, scene units, more than 0, or inf with a lens; or "
      "center: what the middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,
-     FIELD(focus), .unit = TOOL_UNIT_DISTANCE, .max = FLT_MAX, .above_min = 1, .inf = 1},
+     FIELD(focus), .unit = TOOL_UNIT_DISTANCE, .max = FLT_MAX, .above_min = 1, .inf = 1,
+     .field = "focus"},
     {"focus-at", 0, TOOL_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates.",
      .parse = cli_parse_focus_at},
     {"focus-smooth", 0, TOOL_FOCUS, "N", "A focus that is read from the pictures of a shot follows the mean of N frames "
@@ -58,30 +60,41 @@ static const struct tool_option options[] = {
     {"keys-blend", 0, TOOL_FOCUS, "linear|smooth", "How values go from key to key. Default linear.",
      CHOICE(keys_blend)},
     {"range", 0, TOOL_FOCUS, "D", "Distance from the focus to full blur, scene units, 0 or more, or inf. Default: "
-     "half the focus distance.", NUMBER(range, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE, .inf = 1},
+     "half the focus distance.", NUMBER(range, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE, .inf = 1,
+     .field = "range.distance"},
     {"depth-of-field", 0, TOOL_FOCUS, "D", "What lies within half of this before and behind the focus is sharp, scene "
      "units; blur grows from there on over the range. Default 0.", NUMBER(depth_of_field, 0, FLT_MAX),
      .unit = TOOL_UNIT_DISTANCE},
-    {"strength", 0, TOOL_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1)},
+    {"strength", 0, TOOL_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1),
+     .field = "range.strength"},
     {"near-begin", 0, TOOL_FOCUS, "D", "Near blur is full up to here, scene units. Default: focus - range.",
-     NUMBER(near_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+     NUMBER(near_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE,
+     .field = "range.near_begin"},
     {"near-end", 0, TOOL_FOCUS, "D", "Near blur ends here, scene units, not beyond --far-begin. Default: the focus.",
-     NUMBER(near_end, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+     NUMBER(near_end, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE,
+     .field = "range.near_end"},
     {"far-begin", 0, TOOL_FOCUS, "D", "Far blur begins here, scene units. Default: the focus.",
-     NUMBER(far_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+     NUMBER(far_begin, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE,
+     .field = "range.far_begin"},
     {"far-end", 0, TOOL_FOCUS, "D", "Far blur is full from here on, scene units. Default: focus + range.",
-     NUMBER(far_end, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE},
+     NUMBER(far_end, 0, FLT_MAX), .unit = TOOL_UNIT_DISTANCE,
+     .field = "range.far_end"},
     {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 (none) to 2048. Default: with a lens that "
-     "of the lens, else 12 at 1080 lines, in proportion to the height.", NUMBER(params.max_radius, 0, 2048)},
+     "of the lens, else 12 at 1080 lines, in proportion to the height.", NUMBER(params.max_radius, 0, 2048),
+     .field = "max_radius"},
 
     {"fstop", 0, TOOL_LENS, "N", "f-number, more than 0, or inf (no blur). Default: the header's aperture.",
-     POSITIVE(fstop), .unit = TOOL_UNIT_FSTOP, .inf = 1},
+     POSITIVE(fstop), .unit = TOOL_UNIT_FSTOP, .inf = 1,
+     .field = "lens.f_number"},
     {"focal-length", 0, TOOL_LENS, "MM", "Focal length, millimetres. Default: the header's pinholeFocalLength, else its "
      "nominalFocalLength.",
-     POSITIVE(focal_length), .unit = TOOL_UNIT_MM},
+     POSITIVE(focal_length), .unit = TOOL_UNIT_MM,
+     .field = "lens.focal_length_mm"},
     {"sensor-width", 0, TOOL_LENS, "MM", "Width of the sensor, millimetres. Default: the header's "
-     "sensorOverallDimensions, else 36.", POSITIVE(sensor_width), .unit = TOOL_UNIT_MM},
-    {"world-unit", 0, TOOL_LENS, "M", "Metres in one scene unit. Default 1.", POSITIVE(world_unit), .unit = TOOL_UNIT_M},
+     "sensorOverallDimensions, else 36.", POSITIVE(sensor_width), .unit = TOOL_UNIT_MM,
+     .field = "lens.sensor_width_mm"},
+    {"world-unit", 0, TOOL_LENS, "M", "Metres in one scene unit. Default 1.", POSITIVE(world_unit), .unit = TOOL_UNIT_M,
+     .field = "lens.world_unit_m"},
 
     {"depth-channel", 0, TOOL_DEPTH, "NAME", "Full name of the depth channel. Default: the view's Z or depth.Z, else "
      "the only channel with depth in its name.", TEXT(depth_channel)},
@@ -92,12 +105,15 @@ static const struct tool_option options[] = {
      "ndc-reversed: a depth buffer from 0 to 1, -1 to 1, 1 to 0; inverse: 1/distance, as depth estimators give it; "
      "normalized, normalized-inverted: a map from black at --near to white at --far, or the other way; coc: signed blur "
      "radii in pixels, near ones negative, which need no focus.", .parse = cli_parse_depth_type, FIELD(depth_type),
-     .names = HF_NAMES_DEPTH_TYPE},
+     .names = HF_NAMES_DEPTH_TYPE,
+     .field = "depth.type"},
     {"near", 0, TOOL_DEPTH, "D", "Distance of an ndc or normalized depth's near end, scene units; with inverse that of "
-     "1, in place of a scale; with gaussian of any. Default with gaussian 1, else none.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE},
+     "1, in place of a scale; with gaussian of any. Default with gaussian 1, else none.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE,
+     .field = "depth.near_plane"},
     {"far", 0, TOOL_DEPTH, "D", "The same of its far end, or inf; with inverse that of 0. Default with gaussian "
      "100 times --near, with inverse inf, else none.", POSITIVE(far_plane),
-     .unit = TOOL_UNIT_DISTANCE, .inf = 1},
+     .unit = TOOL_UNIT_DISTANCE, .inf = 1,
+     .field = "depth.far_plane"},
     {"depth-scale", 0, TOOL_DEPTH, "S", "What the numbers of the depth are multiplied with first, not 0. Whole numbers "
      "of a picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
     {"depth-offset", 0, TOOL_DEPTH, "D", "What is added to them then. Default 0.",
@@ -110,22 +126,27 @@ static const struct tool_option options[] = {
     {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default layers. layers: edges un-mixed, "
      "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "
      "half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. gaussian: soft, with "
-     "autofocus.", NAME(engine, ENGINE)},
+     "autofocus.", NAME(engine, ENGINE),
+     .field = "engine"},
     {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings. Default: "
      "--engine and its options count. From the settings that were measured, draft chooses the cheapest that blurs as far as "
      "a lens (the gather), best the most accurate, standard and high the cheapest within 1 dB and 0.25 dB of that. --explain "
      "says why, what that costs, and how far from a ray tracer it is. Unless the aperture's shape or a large radius needs "
-     "another:", NAME(quality, QUALITY), .chooses = cli_quality_words},
+     "another:", NAME(quality, QUALITY), .chooses = cli_quality_words,
+     .field = "quality"},
     {"max-error", 0, TOOL_LOOK, "E", "The same by the error that is acceptable: root mean square distance from what a "
-     "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1},
+     "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1,
+     .field = "error"},
     {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
      "(default), or a polygon with 3 to 16 sides, straight (0) to round (1), turned by some degrees: ngon:6:0.5:15. Of "
      "one number alone, up to 1 is the roundness and more the degrees: ngon:6:15. Only layers and scatter draw round "
      "sides, a ring whose hole has R of the radius, 0 to 0.95, or the picture in FILE. hexagon: ngon:6 and the degrees.",
-     .parse = cli_parse_aperture},
+     .parse = cli_parse_aperture,
+     .field = "aperture.blades|aperture.rotation|aperture.roundness|aperture.ring|aperture.picture"},
 
     {"threads", 0, TOOL_RUN, "N", "Threads to work on, up to 256; 0 (default): one per processor.",
-     COUNT(threads, 0, 256)},
+     COUNT(threads, 0, 256),
+     .field = "config.threads"},
     {"memory-limit", 0, TOOL_RUN, "GIB", "Memory to keep within, GiB: as many frames are worked on at once as fit. "
      "Default: 2, or half of what there is if that is less.", POSITIVE(memory_limit)},
     {"resume", 0, TOOL_RUN, NULL, "Skip frames whose OUTPUT is whole and was made with the same settings from the same "
@@ -135,10 +156,12 @@ static const struct tool_option options[] = {
     {"log", 0, TOOL_RUN, "FILE", "Append what happens to each frame to FILE, one JSON object a line.",
      TEXT(log_file)},
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
-     "this CPU.", NAME(isa, ISA)},
+     "this CPU.", NAME(isa, ISA),
+     .field = "config.isa"},
     {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. When the frames before took longer, cheaper "
      "settings are chosen, those from which --quality chooses that blur as far as is asked for. Default: any time.",
-     POSITIVE(params.run.budget_ms)},
+     POSITIVE(params.run.budget_ms),
+     .field = "run.budget_ms"},
     {"explain", 0, TOOL_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
      "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
     {"explain-image", 0, TOOL_RUN, "FILE", "Write the picture with its tiles painted over: near red, far blue, both "

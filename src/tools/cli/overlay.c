@@ -8,6 +8,7 @@
 
 #include "tools/cli/target.h"
 #include "tools/common/luminance.h"
+#include "tools/common/report.h"
 
 typedef void paint(const struct cli_view *v, float *const planes[3]);
 
@@ -15,12 +16,12 @@ typedef void paint(const struct cli_view *v, float *const planes[3]);
 static void paint_tiles(const struct cli_view *v, float *const planes[3])
 {
     static const float tint[4][3] = {{1, 1, 1}, {1, 0.25f, 0.2f}, {0.2f, 0.4f, 1}, {0.75f, 0.25f, 0.9f}};
-    const struct hf_report *r = &v->report;
+    const struct tool_report *r = &v->report;
     const int width = v->view->width, height = v->view->height;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
-            const uint8_t tile = v->tiles[y / r->tile_height * r->columns + x / r->tile_width];
-            const int line = x % r->tile_width == 0 || y % r->tile_height == 0;
+            const uint8_t tile = v->tiles[y / r->inner.tile_height * r->inner.columns + x / r->inner.tile_width];
+            const int line = x % r->inner.tile_width == 0 || y % r->inner.tile_height == 0;
             for (int c = 0; c < 3; c++) {
                 const size_t i = (size_t)y * (size_t)width + (size_t)x;
                 const float colour = v->planes[c][i];

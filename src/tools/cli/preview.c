@@ -11,6 +11,7 @@
 #include "tools/cli/progress.h"
 #include "tools/cli/resume.h"
 #include "tools/cli/warn.h"
+#include "tools/common/report.h"
 
 // How long encoding takes by how long decoding does, zlib at its usual level: a rough figure, said to be one.
 static const double ENCODE_BY_DECODE = 2.5;
@@ -47,13 +48,13 @@ static int first_there(const struct cli_shot *shot)
     return 0;
 }
 
-struct cli_expected cli_expect(const struct cli_frame *frame, const struct hf_context *context)
+struct cli_expected cli_expect(const struct cli_frame *frame, struct hf_context *context)
 {
-    struct hf_report report = {0};
-    hf_get_report(context, &report);
-    const double defocus = frame->view_count * report.predicted_ms;
+    struct tool_report report = {0};
+    tool_report_get(context, &report);
+    const double defocus = frame->view_count * report.all.predicted_ms;
     const double files = frame->ms[CLI_READ] + frame->ms[CLI_DECODE] * (1 + ENCODE_BY_DECODE);
-    return (struct cli_expected){cli_plan_frame_bytes(frame, (double)report.memory), files + defocus, defocus};
+    return (struct cli_expected){cli_plan_frame_bytes(frame, (double)report.all.memory), files + defocus, defocus};
 }
 
 // Look at a frame as if to render it.

@@ -12,7 +12,7 @@
 struct cli_expected {
     double bytes, ms, defocus_ms;
 };
-struct cli_expected cli_expect(const struct cli_frame *frame, const struct hf_context *context);
+struct cli_expected cli_expect(const struct cli_frame *frame, struct hf_context *context);
 
 // The frames with their files, and the memory and time that the first lets expect. Returns an exit code.
 int cli_preview(const struct cli_args *args, const struct cli_shot *shot, struct tool_error *error);

@@ -39,6 +39,7 @@ static void describe_depth(struct hf_depth *depth, const struct cli_args *args, 
                            const float *data)
 {
     *depth = (struct hf_depth){
+        .size = sizeof(struct hf_depth),
         .data = data,
         .stride = (ptrdiff_t)view->width * (ptrdiff_t)sizeof(float),
         .type = args->depth_type,
@@ -72,7 +73,7 @@ static int focus_at(struct cli_setup *setup, const struct hf_io_view *view, int 
                          "%d,%d",
                          label, option, x, y, data->x0, data->y0, data->x1 - 1, data->y1 - 1);
     const int status =
-        hf_depth_at(&setup->depth, view->width, view->height, x - data->x0, y - data->y0, &setup->params.focus);
+        hf_depth_at(&setup->depth, view->width, view->height, x - data->x0, y - data->y0, &setup->params.focus, NULL);
     if (status == HF_ERR_FOCUS)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is pixel %d,%d, where there is no surface to focus on",
                          label, option, x, y);
@@ -207,7 +208,7 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
     cli_choose(setup, args);
     if (cli_check_planes(args, p->engine, error))
         return CLI_BAD_ARGUMENTS;
-    if (args->params.range.blend != hf_default_params.range.blend && setup->model != CLI_MODEL_RANGE)
+    if (args->params.range.blend != hf_default_params().range.blend && setup->model != CLI_MODEL_RANGE)
         return tool_fail(error, CLI_BAD_ARGUMENTS,
                          "%s: --blend %s is of use only with a range, but here the %s says how "
                          "much blur there is",

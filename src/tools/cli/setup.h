@@ -7,6 +7,7 @@
 
 #include "tools/cli/args.h"
 #include "tools/common/error.h"
+#include "tools/common/report.h"
 #include "tools/io/io.h"
 
 enum cli_model { CLI_MODEL_RANGE, CLI_MODEL_LENS, CLI_MODEL_COC };
@@ -20,9 +21,9 @@ struct cli_setup {
     // "--focus", "--focus-at", "--focus center", "header", "the picture's centre"; NULL: none needed (coc).
     const char *focus_from;
     struct hf_params params;
-    struct hf_choice choice;  // of --quality or --max-error; options is NULL without them
-    bool missed;              // no setting errs as little as --max-error asks for
-    struct hf_depth depth;    // data is the caller's to set
+    struct tool_choice choice;  // of --quality or --max-error; inner.options is NULL without them
+    bool missed;                // no setting errs as little as --max-error asks for
+    struct hf_depth depth;      // data is the caller's to set
 };
 
 // 1 if the focus is to be read from the depth, so that cli_setup_view needs its pixels.

@@ -6,18 +6,19 @@
 #include <unistd.h>
 
 #include "tools/cli/choose.h"
+#include "tools/common/report.h"
 
 int cli_missed_budget(const struct cli_view *v)
 {
-    const struct hf_report *r = &v->report;
-    return v->setup.params.run.budget_ms > 0 && r->total_ms > v->setup.params.run.budget_ms;
+    const struct tool_report *r = &v->report;
+    return v->setup.params.run.budget_ms > 0 && r->all.total_ms > v->setup.params.run.budget_ms;
 }
 
 int cli_is_limited(const struct cli_view *v)
 {
-    const struct hf_report *r = &v->report;
-    const float most = r->used.params.max_radius;
-    return v->setup.model != CLI_MODEL_RANGE && (r->near_radius >= most || r->far_radius >= most);
+    const struct tool_report *r = &v->report;
+    const float most = r->params.max_radius;
+    return v->setup.model != CLI_MODEL_RANGE && (r->all.near_radius >= most || r->all.far_radius >= most);
 }
 
 // Why a radius cannot be larger.
@@ -39,8 +40,8 @@ static const char *limit_words(enum hf_limit limit)
 
 static void print_view(const struct cli_frame *frame, const struct cli_view *v, int warnings)
 {
-    const struct hf_report *r = &v->report;
-    const struct hf_params *p = &r->used.params;
+    const struct tool_report *r = &v->report;
+    const struct hf_params *p = &r->params;
     const char *depth = frame->args->depth_file ? frame->args->depth_file : v->view->depth;
     const float budget = frame->args->params.run.budget_ms;
     char text[1024];
@@ -53,9 +54,9 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     if (v->smoothed)
         n += snprintf(text + n, sizeof(text) - (size_t)n, "%lld samples of slopes smoothed, ", v->smoothed);
     n += snprintf(text + n, sizeof(text) - (size_t)n, "%s", hf_engine_name(p->engine));
-    if (v->setup.choice.options)
+    if (v->setup.choice.inner.options)
         n += snprintf(text + n, sizeof(text) - (size_t)n, " (%s chose %s)", cli_choice_option(frame->args).text,
-                      v->setup.choice.options);
+                      v->setup.choice.inner.options);
     if (v->setup.model == CLI_MODEL_LENS)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", f/%g %g mm", p->lens.f_number, p->lens.focal_length_mm);
     if (v->setup.focus_from)
@@ -65,19 +66,20 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
                       ", standard deviation %.1f mixed in up to near %.0f %% far %.0f %%", p->gaussian.sigma,
                       100 * v->blend[0], 100 * v->blend[1]);
     else
-        n += snprintf(text + n, sizeof(text) - (size_t)n, ", radius near %.1f far %.1f", r->near_radius, r->far_radius);
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", radius near %.1f far %.1f", r->all.near_radius,
+                      r->all.far_radius);
     if (cli_is_limited(v) && p->engine != HF_ENGINE_GAUSSIAN)
         n +=
             snprintf(text + n, sizeof(text) - (size_t)n, " (cut to %g, %s)", p->max_radius, limit_words(r->used.limit));
     if (p->highlight.gain > 1)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", %" PRIu64 " pixels above %g raised, 1 to %g",
                       v->highlights, p->highlight.threshold, p->highlight.gain);
-    if (r->budget_step)
+    if (r->all.budget_step)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", --budget-ms %g chose %s, %d below what was asked for",
-                      budget, r->budget_options, r->budget_step);
+                      budget, r->inner.budget_options, r->all.budget_step);
     if (cli_missed_budget(v))
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", longer than --budget-ms %g", budget);
-    snprintf(text + n, sizeof(text) - (size_t)n, ", %.0f ms, %d warning%s", r->total_ms, warnings,
+    snprintf(text + n, sizeof(text) - (size_t)n, ", %.0f ms, %d warning%s", r->all.total_ms, warnings,
              warnings == 1 ? "" : "s");
     const char *part = frame->args->depth_file ? "" : hf_io_part_name(frame->file, v->view->depth_part);
     tool_print_line("%s: %s with depth %s%s%s, %s", v->label, v->view->layer[0] ? v->view->layer : "RGB", depth,
@@ -94,30 +96,32 @@ void cli_print_summary(const struct cli_frame *frame, int warnings)
 
 int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
 {
-    struct hf_resolved r;
-    char message[512], sentence[CLI_SENTENCE];
+    struct hf_params p = {.size = sizeof(p)};
+    struct hf_resolved r = {.size = sizeof(r)};
+    struct hf_message message = {.size = sizeof(message)};
+    char sentence[TOOL_SENTENCE];
     // A focus that is the picture's own is known when the picture is read.
     if (v->setup.params.focus == HF_DERIVE && v->setup.model != CLI_MODEL_COC)
         return 0;
-    if (hf_resolve(v->view->width, v->view->height, &v->setup.depth, &v->setup.params, &r, message, sizeof(message)))
-        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", v->label, cli_in_options(message, sentence));
-    const struct hf_range_params *range = &r.params.range;
+    if (hf_resolve(v->view->width, v->view->height, &v->setup.depth, &v->setup.params, &p, &r, &message))
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", v->label, tool_sentence(&cli_program, &message, sentence));
+    const struct hf_range_params *range = &p.range;
     if (r.limit == HF_LIMIT_NONE)
-        printf("    radius not limited, but by %g pixels\n", r.params.max_radius);
+        printf("    radius not limited, but by %g pixels\n", p.max_radius);
     else
-        printf("    radius up to %g pixels, %s\n", r.params.max_radius, limit_words(r.limit));
+        printf("    radius up to %g pixels, %s\n", p.max_radius, limit_words(r.limit));
     if (v->setup.model == CLI_MODEL_RANGE)
         printf("    near blur full up to %g, none from %g; far blur none up to %g, full from %g\n",
                range->near_begin > 0 ? range->near_begin : 0, range->near_end, range->far_begin, range->far_end);
     if (v->setup.model == CLI_MODEL_LENS)
         printf("    focal length %.6g pixels; radius %.6g * (1/focus - 1/distance)\n", r.focal_px, r.lens_k);
-    if (r.params.engine == HF_ENGINE_GATHER)
-        printf("    %d ring%s of taps\n", r.params.gather.rings, r.params.gather.rings == 1 ? "" : "s");
-    if (r.params.engine == HF_ENGINE_GAUSSIAN)
-        printf("    standard deviation %.4g pixels, blend by %s\n", r.params.gaussian.sigma,
-               r.params.gaussian.by_depth ? "depth" : "radius");
-    if (r.params.highlight.gain > 1)
-        printf("    highlights above %g raised, 1 to %g\n", r.params.highlight.threshold, r.params.highlight.gain);
+    if (p.engine == HF_ENGINE_GATHER)
+        printf("    %d ring%s of taps\n", p.gather.rings, p.gather.rings == 1 ? "" : "s");
+    if (p.engine == HF_ENGINE_GAUSSIAN)
+        printf("    standard deviation %.4g pixels, blend by %s\n", p.gaussian.sigma,
+               p.gaussian.by_depth ? "depth" : "radius");
+    if (p.highlight.gain > 1)
+        printf("    highlights above %g raised, 1 to %g\n", p.highlight.threshold, p.highlight.gain);
     if (r.sharp)
         printf("    nothing will be blurred\n");
     return 0;

@@ -3,6 +3,7 @@
 
 #include "tools/cli/coc.h"
 #include "tools/cli/lens.h"
+#include "tools/common/report.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -43,7 +44,7 @@ static const char *depth_name(const struct warner *w, const struct cli_view *v)
 static int is_empty(const struct cli_view *v)
 {
     return v->setup.model != CLI_MODEL_COC &&
-           v->report.no_surface == (uint64_t)v->view->width * (uint64_t)v->view->height;
+           v->report.all.no_surface == (uint64_t)v->view->width * (uint64_t)v->view->height;
 }
 
 static int is_sharp(const struct cli_view *v)
@@ -53,11 +54,11 @@ static int is_sharp(const struct cli_view *v)
 
 static void warn_samples(struct warner *w, const struct cli_view *v)
 {
-    const struct hf_report *r = &v->report;
-    if (r->colour_repaired)
-        warn(w, "%" PRIu64 " colour samples were NaN or infinite, neighbours took their place", r->colour_repaired);
-    if (r->depth_repaired)
-        warn(w, "%" PRIu64 " depth samples were NaN, neighbours took their place", r->depth_repaired);
+    const struct tool_report *r = &v->report;
+    if (r->all.colour_repaired)
+        warn(w, "%" PRIu64 " colour samples were NaN or infinite, neighbours took their place", r->all.colour_repaired);
+    if (r->all.depth_repaired)
+        warn(w, "%" PRIu64 " depth samples were NaN, neighbours took their place", r->all.depth_repaired);
     if (v->found.flipped)
         warn(w, "depth %s is negative, so the camera looks along -z: taken without its sign", depth_name(w, v));
     if (v->found.negative)
@@ -78,14 +79,14 @@ static void tell_range(const struct cli_view *v, char *text, size_t size)
     else if (v->range[0] < v->range[1])
         snprintf(text, size, "; the depth is %.4g to %.4g", v->range[0], v->range[1]);
     if (text[0] && v->setup.model != CLI_MODEL_COC)
-        snprintf(text + strlen(text), size - strlen(text), ", the focus %.4g", v->report.used.params.focus);
+        snprintf(text + strlen(text), size - strlen(text), ", the focus %.4g", v->report.params.focus);
 }
 
 // A focus in other units than the depth: the powers of ten that bring it there.
 static void guess_unit(const struct cli_args *args, const struct cli_view *v, char *text, size_t size)
 {
     static const float factors[] = {10, 100, 1000}, SLACK = 1.5f;
-    const float nearest = v->range[0] / SLACK, farthest = v->range[1] * SLACK, focus = v->report.used.params.focus;
+    const float nearest = v->range[0] / SLACK, farthest = v->range[1] * SLACK, focus = v->report.params.focus;
     const int beyond = focus > farthest, metres = args->focus_by == CLI_FOCUS_HEADER;
     char list[64] = "";
     if (!(focus < nearest) && !beyond)
@@ -169,7 +170,7 @@ static void warn_options(struct warner *w, const struct cli_view *v)
     const struct hf_highlight_params *p = &v->setup.params.highlight;
     if (v->setup.missed)
         warn(w, "no setting errs as little as --max-error %g: the most accurate is expected to err %.3g",
-             w->args->max_error, v->setup.choice.error);
+             w->args->max_error, v->setup.choice.all.error);
     if (p->gain > 1 && v->highlights == 0)
         warn(w, "no pixel is brighter than %g, so --highlight-gain %g changes nothing: see --highlight-threshold",
              p->threshold, p->gain);
@@ -248,7 +249,7 @@ static void warn_alone(struct warner *w)
     if (!w->frame->alone)
         return;
     for (int i = 0; i < w->frame->view_count; i++)
-        cheaper |= w->frame->views[i].report.budget_step;
+        cheaper |= w->frame->views[i].report.all.budget_step;
     if (budget > 0 && !cheaper)
         warn(w, "--budget-ms %g does nothing for one picture: cheaper settings are chosen from frame to frame", budget);
     if (!isnan(args->memory_limit))

@@ -145,6 +145,28 @@ static int parse_option(struct tool_parser *p, int count, char **words)
     return set_value(p, i, next, next != NULL) ? -1 : next ? 2 : 1;
 }
 
+// Is word one of a list "a|b"?
+static int in_list(const char *list, const char *word)
+{
+    const size_t n = strlen(word);
+    for (; list && n; list = strchr(list, '|') ? strchr(list, '|') + 1 : NULL)
+        if (!strncmp(list, word, n) && (!list[n] || list[n] == '|'))
+            return 1;
+    return 0;
+}
+
+const char *tool_sentence(const struct tool_program *program, const struct hf_message *message, char buf[TOOL_SENTENCE])
+{
+    const struct tool_option *o;
+    for (int i = 0; (o = option_at(program, i)); i++)
+        if (in_list(o->field, message->argument)) {
+            snprintf(buf, TOOL_SENTENCE, "--%s%s", o->name, message->sentence + strlen(message->argument));
+            return buf;
+        }
+    snprintf(buf, TOOL_SENTENCE, "%s", message->sentence);
+    return buf;
+}
+
 // A unit that stands alone after the number of an option.
 static int lone_unit(const struct tool_parser *p, const char *word)
 {

@@ -39,6 +39,7 @@ struct tool_option {
     enum hf_names names;   // for a choice, the library's words
     const char *engines;   // engines that it works with, "a|b"; NULL: any
     const char *commands;  // in programs with commands: those that accept it
+    const char *field;     // what it sets of the library's arguments, as in hf_message, "a|b"; NULL: nothing
 };
 
 // Options whose values lie in one struct, at offset base in the arguments.
@@ -87,6 +88,11 @@ struct tool_parser {
 
 // Parse the words after the program's name. Returns 0, or -1 with one sentence in *p->error.
 int tool_parse_line(struct tool_parser *p, int count, char **words);
+
+enum { TOOL_SENTENCE = 512 };
+// A sentence of the library about an argument, in the program's words: about its option, if it has one. Returns buf.
+const char *tool_sentence(const struct tool_program *program, const struct hf_message *message,
+                          char buf[TOOL_SENTENCE]);
 
 // Whether the option was on the command line.
 int tool_given(const struct tool_parser *p, const char *name);

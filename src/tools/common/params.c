@@ -32,7 +32,7 @@ static int parse_faithful(struct tool_parser *p, const struct tool_option *optio
 }
 
 // clang-format off
-#define FIELD(f) .offset = offsetof(struct hf_params, f)
+#define FIELD(f) .offset = offsetof(struct hf_params, f), .field = #f
 #define FLAG(f) .parse = tool_parse_flag, FIELD(f)
 #define NAME(f, of) .parse = tool_parse_name, FIELD(f), .names = HF_NAMES_##of
 #define COUNT(f, least, most) .parse = tool_parse_count, FIELD(f), .min = (least), .max = (most)
@@ -62,7 +62,9 @@ const struct tool_option tool_params_options[] = {
      "to 256. Default: iterations.", NUMBER(gaussian.sigma, 0, 256),
      .engines = "gaussian"},
     {"resolution", 0, TOOL_LOOK, "full|half|quarter", "Size of the working buffers, quarter "
-     "only for gaussian. Default full.", .parse = parse_resolution, FIELD(hexagon.resolution), .names = HF_NAMES_RESOLUTION,
+     "only for gaussian. Default full.", .parse = parse_resolution,
+     .offset = offsetof(struct hf_params, hexagon.resolution),
+     .field = "hexagon.resolution|scatter.resolution|gaussian.resolution", .names = HF_NAMES_RESOLUTION,
      .engines = "hexagon|scatter|gaussian"},
     {"fill", 0, TOOL_LOOK, "max|mean|none|open", "How gaps between taps are closed: mean over the aperture's area "
      "(default), 3x3 maximum (with --faithful), by three times as many taps, or not at all.", NAME(gather.fill, FILL),
