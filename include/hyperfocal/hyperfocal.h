@@ -49,6 +49,7 @@
 extern "C" {
 #endif
 
+// What functions return.
 enum hf_error {
     HF_OK = 0,
     HF_ERR_ARG = -1,        // an argument is out of its documented range; the message names it and its value
@@ -166,9 +167,9 @@ enum hf_transfer {
 
 // A picture in the caller's memory.
 struct hf_image {
-    size_t size;        // sizeof(struct hf_image)
-    int width, height;  // pixels, 1 to 65536 each
-    enum hf_format format;
+    size_t size;            // sizeof(struct hf_image)
+    int width, height;      // pixels, 1 to 65536 each
+    enum hf_format format;  // layout of a pixel, and of the planes
     // Default HF_TRANSFER_LINEAR. HF_TRANSFER_SRGB for formats of whole numbers only, else HF_ERR_ARG.
     enum hf_transfer transfer;
     void *data[4];  // the top left pixel. PLANAR32F: of R, G, B, A (A may be NULL: no alpha). Other formats: data[0]

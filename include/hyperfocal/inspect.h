@@ -76,8 +76,8 @@ struct hf_inspect_buffer {
     int width, height;  // full, half or quarter resolution
     int channels;       // 1 to 4: near and far CoC, one CoC, or R, G, B and perhaps A
     uint32_t reserved;
-    const float *data[4];
-    ptrdiff_t stride;  // bytes from one row to the next, the same for all channels
+    const float *data[4];  // planes, one for each channel
+    ptrdiff_t stride;      // bytes from one row to the next, the same for all channels
 };
 
 // From now on call fn with every intermediate buffer of each frame, after the frame; NULL ends it. A frame then runs as with

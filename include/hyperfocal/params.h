@@ -182,6 +182,7 @@ struct hf_view_params {
 
 // One group for each engine. An engine ignores the groups of the others.
 
+// Of the gather.
 struct hf_gather_params {
     enum hf_storage storage;  // default HF_STORAGE_FLOAT
     // 1: reproduce the published demo, including the flaws of its composite. 0 (default): without those flaws.
@@ -207,6 +208,7 @@ struct hf_gather_params {
     uint32_t reserved[7];
 };
 
+// Of the hexagon.
 struct hf_hexagon_params {
     enum hf_resolution resolution;  // full (default) or half
     // 1: every pixel gets the radius max_radius, whatever its depth. This is the plain blur, whose cost does not grow with the
@@ -215,11 +217,13 @@ struct hf_hexagon_params {
     uint32_t reserved[4];
 };
 
+// Of scatter.
 struct hf_scatter_params {
     enum hf_resolution resolution;  // full (default) or half
     uint32_t reserved[5];
 };
 
+// Of the gaussian.
 struct hf_gaussian_params {
     enum hf_resolution resolution;  // full (default), half or quarter
     // Passes of the 5-tap kernel over the buffer: 0 to 64, default 3. The standard deviation is sqrt(iterations) of the
@@ -246,6 +250,7 @@ enum hf_layers_quality {
     HF_LAYERS_BEST,   // the finest slices
 };
 
+// Of layers.
 struct hf_layers_params {
     enum hf_layers_quality quality;  // default HF_LAYERS_STANDARD
     // Distance between two slices, in pixels of CoC radius: 0.25 to 32. Slices lie closer where the radius is small (at most
