@@ -81,7 +81,7 @@ int hf_check_depth(const struct hf_depth *d, int width, struct hf_message *messa
 int hf_check_images(const struct hf_image *dst, const struct hf_image *src, const struct hf_region *region,
                     struct hf_message *message)
 {
-    // A region that is none is told of later.
+    // A region that is not valid is reported later.
     const int part = region && dst && region->width > 0 && region->width < dst->width;
     const int columns = part ? region->width : dst ? dst->width : 0;
     if (hf_check_image(src, "src", message) || check_image(dst, "dst", columns, message))

@@ -26,7 +26,7 @@ void hf_ladder_apply(struct hf_params *params, int step);
 uint64_t hf_ladder_hash(const struct hf_params *params);
 // 1 if params->engine draws params->aperture.
 int hf_ladder_can_draw(const struct hf_params *params);
-// The largest radius by which params->engine blurs, pixels; INFINITY: any.
+// The largest radius that params->engine can blur by, pixels; INFINITY: any.
 float hf_ladder_farthest(const struct hf_params *params);
 // Remove from params->aperture what params->engine cannot draw.
 void hf_ladder_reshape(struct hf_params *params);

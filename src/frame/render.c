@@ -148,8 +148,8 @@ static void report_plan(struct hf_render *r, int64_t planning)
     r->c->report.plan_ms = (double)planning * 1e-6;
 }
 
-// After the first sweep: what each pass on a cell is of the work that is left. A unit is what is predicted to take a
-// nanosecond, and so is the copy of a tile.
+// After the first sweep: the units of work of each pass on a cell, and of all that is left. A unit is predicted to take a
+// nanosecond; the copy of a tile counts as one.
 static void begin_progress(struct hf_render *r)
 {
     const struct hf_context *c = r->c;

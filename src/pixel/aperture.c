@@ -140,7 +140,7 @@ static struct hf_run disc_run(double r, double scale_x, int dy)
     return (struct hf_run){256 - half, half, row_height(r, dy)};
 }
 
-// A picture of runs: of the sides, or of a disc if there are none.
+// Make a sprite of runs: of a polygon with these sides, or of a disc if there are none.
 static void build_runs(struct hf_aperture *a, const struct hf_side *side, int sides, int number, int first)
 {
     struct hf_picture *p = &a->picture[number];

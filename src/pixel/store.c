@@ -4,9 +4,9 @@
 
 #include "pixel/pass_c.h"
 
-enum { LANES = 64, PIXEL = 16 };  // at once; the most bytes of a pixel
+enum { LANES = 64, PIXEL = 16 };  // lanes in one call; the most bytes of a pixel
 
-// At most LANES lanes of a row of which a part is stored: all go to memory of this function, the part on to the picture.
+// Store part of a row, of at most LANES lanes: write all into a local buffer, and copy the part in the region.
 static uint64_t store_block(const struct hf_frame *f, int x, int y, int n, const float *const even[4],
                             const float *const odd[4])
 {

@@ -37,8 +37,8 @@ static uint32_t old_word(struct rng *rng)
     }
 }
 
-// A file of such words, of which each block is a private copy, so pages that nobody uses cost nothing. Blocks end at
-// forbidden pages, so that an old word used as an index far away is noticed.
+// A file of such words. Each block is a private mapping of it, so unused pages cost nothing. Blocks end at forbidden
+// pages, so that an old word used as a large index faults.
 enum { OLD_WORDS = 1 << 18, OLD_BYTES = 4 * OLD_WORDS, HEAD = 64, GUARD = 1 << 20 };
 
 static int heap_new(unsigned heap_seed)

@@ -250,8 +250,9 @@ static void near_bar(struct hf_context *c)
         picture_free(made[i]);
 }
 
-// A near bar occludes what is nearest to its edge: 8 columns of black, before white. Of the half of a disc of radius 30
-// beyond the edge, 8 columns are a third; weighted by the inverse fourth power of the distance they are almost all.
+// What is hidden behind a near bar continues what is visible nearest to its edge: here 8 columns of black, then white.
+// In the half disc of radius 30 beyond the edge, 8 columns are a third of the area; weighted by the inverse fourth power
+// of the distance they are almost all.
 static void nearest_behind(struct hf_context *c)
 {
     struct hf_params p = lens_params();
@@ -301,8 +302,8 @@ static void flat_highlight(struct hf_context *c)
         picture_free(made[i]);
 }
 
-// A light of 2 x 2 pixels on the frame's lowest rows, in a disc of radius 9, of which half lies outside. 16 of 1000 is
-// left, and counts twice for the missing half; twice more is for upsampling.
+// A light of 2 x 2 pixels on the frame's lowest rows, in a disc of radius 9 whose lower half lies outside. 16 of 1000
+// remains, times two for the missing half, and times two for upsampling.
 static void no_speck(struct hf_context *c)
 {
     struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);

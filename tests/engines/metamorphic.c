@@ -326,7 +326,7 @@ static void try_one(unsigned seed)
     t.s = scene_new(&rng, kind, width, height, 3 + rng_below(&rng, 2));
     t.c = context_new(t.isa, 1 + rng_below(&rng, 2), 0, 0);
     t.margin = margin_of(&t.p);
-    // Sizes that scale a blur are the display's: a crop is of the same one.
+    // The display's size scales the blur, and a crop keeps the display of the whole picture.
     t.p.view.display_width = width;
     t.p.view.display_height = height;
     t.out = render_scene(t.c, &t.s, &t.p);

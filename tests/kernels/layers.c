@@ -225,7 +225,7 @@ static void spread_call(const struct world *w, const struct kernels *k, enum are
     k->layers.spread((const float *const *)in, radius, weight, now.rows & 1, now.channels, w->n, out);
 }
 
-// Nine lines, some of which are passed more than once.
+// Nine lines; some are the same line.
 static void smooth_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     float *set[HF_LAYERS_TAPS][6], *out[6];

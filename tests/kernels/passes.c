@@ -216,7 +216,7 @@ void pass_make(struct world *w, int pass)
         make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
     while (pass == HF_GATHER_FILL && w->gather.area && !w->bench);
     random_area(w);
-    // Any width and height, except for the gather's passes with such a reach.
+    // Passes of the gather with a reach also get random reaches.
     if (!w->bench && pass >= HF_GATHER_MAX_X && pass <= HF_GATHER_BLUR_Y && rng_one_in(&w->rng, 4)) {
         w->gather.max_x = w->gather.blur_x = rng_int(&w->rng, 1, 140);
         w->gather.max_y = w->gather.blur_y = rng_int(&w->rng, 1, 140);

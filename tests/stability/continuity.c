@@ -27,12 +27,12 @@ struct pulling {
     enum pull pull;
 };
 
-// The published demo switches two things abruptly that other variants fade in. Its far maximum takes in any neighbour
-// that begins to be far, and its upsampling the neighbours: two quads in all. And its near colour is the mean of all
-// taps where the blurred near CoC is over 0, else the quad's own. So a quad that just begins to be near switches all
+// The published demo switches two things abruptly that other variants fade in. First, its far maximum includes any
+// neighbour that begins to be far, and its upsampling includes the next ones: two quads in all. Second, its near colour
+// is the mean of all taps where the blurred near CoC is over 0, and the quad's own elsewhere. So a quad that just begins to be near switches all
 // quads within reach of its maximum and its blur, m each. The quads beside those have at most (4 m + 1) / (2 m + 1)^2
 // of a blurred CoC, 25 / 169 at m = 6 (windows shifted by one along both axes have all but that many in common); their
-// maximum takes in the changed colour, and upsampling what is beside it. The marks count the far quads up to two away,
+// maximum includes the changed colour, and upsampling spreads it by one quad. The marks count the far quads up to two away,
 // and those with a blurred near CoC.
 static float *demo_marks(const struct picture *depth, const struct hf_params *p)
 {

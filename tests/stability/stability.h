@@ -2,7 +2,7 @@
 // Numerical stability of every engine: each case has a bound with its reason, and the worst value found. A test runs
 // the cases and fails where a bound is exceeded; `hyperfocal-bench stability` prints them as a table.
 //
-//   subjects.c    what is tried: engines in their variants, and what each of them promises
+//   subjects.c    the engines in their variants, and what each of them promises
 //   table.c       rows: findings of many pictures and instruction sets become one line
 //   samples.c     bad samples in colour, alpha and depth
 //   sizes.c       every small size between guard pages, memory filled with junk, copies

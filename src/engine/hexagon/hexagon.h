@@ -26,9 +26,9 @@
 // the weight of what it finds. Inside, a line's result has as much weight as the part of the line within the frame.
 // Near coverage beyond the edge is not made, because how much of a hexagon that leaves is known.
 //
-// The near coverage leaves a part of each pixel open. In a sharp or far pixel that part shows the pixel itself. In a
-// near pixel, which is what covers, it shows what is visible around it (behind.c), and the pixel itself only up to a
-// radius of 2. A far pixel that finds less than a quarter of its samples takes the rest of that quarter from its own
+// The near coverage leaves a part of each pixel open. In a sharp or far pixel that part shows the pixel itself. A
+// near pixel is itself the occluder, so there that part shows what is visible around the pixel (behind.c), and the
+// pixel itself only up to a radius of 2. A far pixel that finds less than a quarter of its samples takes the rest of that quarter from its own
 // colour. All weights are continuous in every radius and vanish with it, so nothing pops.
 #ifndef HF_PASS_HEXAGON_H
 #define HF_PASS_HEXAGON_H
@@ -230,8 +230,8 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
     return (struct hf_rect){2 * r.x0, 2 * r.y0, hf_min(2 * r.x1, s->width), hf_min(2 * r.y1, s->height)};
 }
 
-// A far pixel of radius p that finds less than LEAST takes the rest from its own colour; below a radius of ALL it fills
-// up more of what is missing.
+// A far pixel that finds a weight below LEAST takes the rest from its own colour. Below a radius of ALL it takes more,
+// and from ALL - 1 down all that is missing.
 #define HEXAGON_LEAST 0.25f
 #define HEXAGON_ALL 2.0f
 // The least far mean radius. It reaches no other pixel.

@@ -22,8 +22,8 @@ hf_kernel hf_hexagon_load_c, hf_hexagon_1_c, hf_hexagon_2_c, hf_hexagon_beyond_c
     hf_hexagon_behind_pass, hf_hexagon_composite_c;
 
 // Load row y of a rectangle of pixels; mixed pixels become the samples of their blurred part (mixed.c). e is NULL if
-// there are none. Uses the frame's scratch rows 0 to 12 and from 18 on. Returns the samples' weights, by which colours
-// are multiplied, or NULL if all are 1.
+// there are none. Uses the frame's scratch rows 0 to 12 and from 18 on. Returns the samples' weights, which colours
+// are multiplied by, or NULL if all are 1.
 struct hf_edges;
 const float *hf_hexagon_row(struct hf_edges *e, const struct hf_frame *f, int y, struct hf_rect r,
                             float *const colour[4], float *radius);

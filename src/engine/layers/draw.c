@@ -4,7 +4,7 @@
 
 #include "engine/layers/parts.h"
 
-// Clear the tiles that the slice's blur reaches, and what is read around them.
+// Clear the tiles that the slice's blur reaches, and the margin that is read around them.
 static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
                           int first, int channels)
 {
@@ -12,7 +12,7 @@ static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, 
     for (int ty = -1; ty <= c->rows && !hf_stopped(c->l->stop); ty++)
         for (struct hf_span s = {.tx = -1}; hf_layers_next_span(c, m, level, ty, &s);) {
             const int x0 = s.x0 - 16 > -LEFT ? s.x0 - 16 : -LEFT;
-            // When such a level is refined, partial vectors read farther.
+            // When a coarse level is refined, partial vectors read farther.
             const int more = level > 2 ? 32 : 16;
             const int right = (c->columns * (TILE >> level)) + RIGHT, x1 = s.x1 + more < right ? s.x1 + more : right;
             int y0, y1;

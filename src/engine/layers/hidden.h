@@ -16,8 +16,8 @@ enum { HF_LAYERS_SMOOTH = 6, HF_LAYERS_TAPS = 2 * HF_LAYERS_SMOOTH + 1 };  // hi
 // A sample whose square roots exceed GLARE times the middle one's is dimmed. Otherwise a lamp beside a silhouette would
 // light up everything that is hidden along it.
 #define HF_LAYERS_GLARE 16
-// A sample of another colour counts less, the more SHADES times its difference is of the sum of the middle's roots, and
-// OTHER at the least. Edges behind an object stay edges, and streaks disappear.
+// A sample counts less the more its colour differs from the middle's: by SHADES times their difference over the sum of
+// the middle's roots, and at least OTHER. Edges behind an object stay edges, and streaks disappear.
 #define HF_LAYERS_SHADES 2
 #define HF_LAYERS_OTHER 0.1f
 // Its weight by its place in the line, i from 0 to 2 SMOOTH.

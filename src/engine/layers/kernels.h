@@ -11,9 +11,8 @@ typedef void hf_layers_unmix(const struct hf_unmix_row *row, int n);
 typedef void hf_layers_roots(const float *const above[3], const float *const below[3], int n, float *out);
 // Means of nine numbers: along a line, or of nine lines.
 typedef void hf_layers_nine(const float *const in[9], int n, float *out);
-// The part of n pixels' weight that is a highlight. in: colour, weight (4), radius (5). around: five square roots of
-// the brightness around the pixel, one for each two pixels, of which the least counts. covered: roots of alpha at the
-// same places, or NULL.
+// The part of n pixels' weight that is a highlight. in: colour, weight (4), radius (5). around: square roots of
+// the brightness at five pairs of pixels around; the least counts. covered: roots of alpha at the same places, or NULL.
 typedef void hf_layers_shares(const float *const in[6], const float *const around[5], const float *const covered[5],
                               int n, float *out);
 // The farthest samples of n quads, from two rows of samples: colour, weight (4), radius (5).
@@ -43,8 +42,8 @@ typedef void hf_layers_spread(const float *const in[6], const float *const radiu
                               int row, int channels, int n, float *const out[6]);
 // Means over lines of thirteen hidden samples, of those about as far as the middle one. The middle one keeps its
 // weight; without any it becomes nothing. along is NULL in the first of two directions. In the second it holds weights
-// and radii of the middle samples' own row, of which six more on either side are read; a sample that is alone in both
-// directions takes the mean of its line, and colours are squared back from roots.
+// and radii of the middle samples' own row, and six more samples on either side are read. There, a sample that is alone
+// in both directions takes the mean of its line, and colours are squared back from roots.
 typedef void hf_layers_smooth(const float *const in[13][6], const float *const along[2], int channels, int n,
                               float *const out[6]);
 // Compare the surroundings of n places side by side with what is known around another place: sums of the weights of the

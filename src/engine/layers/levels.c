@@ -429,8 +429,8 @@ static void smooth_down(const struct band *b, int colour, int at, int y)
 }
 
 // A near sample that was found takes the place of the visible one, and the next search looks behind it. That search
-// accepts only what is less than half as near, because it is the last: of three blades before a wall it must find the
-// wall. A found sample in focus or far needs none behind it; the far field's blur fills what is open there.
+// accepts only samples less than half as near, because it is the last: of three blades before a wall it must find the
+// wall. A found sample that is far or in focus needs none behind it; the far field's blur fills the gap there.
 static void look_behind(const struct band *b, int y)
 {
     const float *weight = b->found.weight + y * b->found.stride, *radius = b->found.radius + y * b->found.stride;

@@ -66,7 +66,7 @@ struct hf_cell {
     uint8_t *any;                         // for each 16 pixels of a run: whether the slice has samples there
     float *part;                          // how much of a slice is visible, half resolution
     struct hf_tile_map covered;           // tiles where the far stack is not fully open at its start
-    float *lift;  // 1 / that openness, by which the far stack's sums are multiplied; rows as those of part
+    float *lift;  // 1 / that openness, the factor for the far stack's sums; rows as those of part
     ptrdiff_t part_row;
     float *shape;  // scratch of shapes
 };

@@ -4,7 +4,7 @@
 
 #include "engine/layers/kernels.h"
 
-// A visible sample around a place that lies as far away as what is hidden there.
+// A visible sample near a place, as far from the camera as the surface hidden there.
 struct hf_pattern_tap {
     ptrdiff_t at;  // offset from the place in the level's planes
     float weight;

@@ -32,7 +32,7 @@ static void source_pictures_simd(const float *radius, const float *weight, float
     }
 }
 
-// The bin that holds all lanes of four sources side by side; -1: there is none.
+// The bin that all lanes of four adjacent sources fall into; -1: they need several.
 HF_INLINE int source_bin(const struct hf_source_row *row, int i, const struct hf_bins *bins)
 {
     float least = __builtin_inff(), most = 0;

@@ -122,8 +122,7 @@ const char *tool_units(enum tool_unit unit);
 // A text that is entirely a number, without spaces; NaN is refused, infinity is left to the caller. Returns 0 or -1.
 int tool_read_number(const char *text, double *value);
 
-// Print the help text: the usual options, or all.
-// command: one, of which it then tells alone; NULL: all.
+// Print the help text with the usual options, or with all. command: only that command's; NULL: of all commands.
 void tool_print_help(const struct tool_program *program, const char *command, int all);
 // The man page, in roff.
 void tool_print_man(const struct tool_program *program);

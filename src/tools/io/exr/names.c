@@ -31,7 +31,7 @@ int hf_exr_find_prefixed(const struct hf_exr_part *part, const char *prefix, con
     return hf_exr_find_channel(part, full);
 }
 
-// Names that programs give the channels of a colour; the first spelling of which a layer has all three is taken.
+// Names that programs give the channels of a colour. The first row whose R, G and B a layer has is taken.
 static const char *const spellings[][4] = {
     {"R", "G", "B", "A"}, {"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"Red", "Green", "Blue", "Alpha"}};
 enum { SPELLINGS = sizeof(spellings) / sizeof(spellings[0]) };
