@@ -16,7 +16,7 @@ void hf_report_frame(struct hf_context *c, double total_ms);
 void hf_report_learn(struct hf_context *c, const struct hf_setup *s);
 // What all workers have counted so far.
 struct hf_counts hf_report_counts(const struct hf_context *c);
-// hf_get_tiles for the current report.
+// hf_inspect_tiles for the current report.
 size_t hf_report_tiles(const struct hf_context *c, uint8_t *tiles, size_t size);
 
 #endif

@@ -64,7 +64,7 @@ struct reference *reference_render(const struct picture *colour, const struct hf
                                    const struct hf_params *params, reference_hook *hook, void *cookie);
 void reference_free(struct reference *r);
 
-// Find a buffer by its name in hf_buffer, or "result"; NULL if there is none.
+// Find a buffer by its name in hf_inspect_buffer, or "result"; NULL if there is none.
 const struct ref_buffer *reference_find(const struct reference *r, const char *name);
 // The result rounded to float.
 struct picture reference_picture(const struct reference *r);
