@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Programs and libraries of different releases meet. The newer release's headers are made here: a field is appended to two
-# structs. Its library is built from the same sources, in plain C alone.
+# Programs and libraries of different releases meet. Older releases' headers are those that record.sh kept. The newer release's
+# headers are made here: a field is appended to two structs. Its library is built from the same sources, in plain C alone.
 # Usage: programs.sh SOURCE_ROOT LIBRARY BUILD_ROOT C-COMPILER...
 root=$1 library=$(realpath "$2") build=$3
 shift 3
@@ -56,5 +56,13 @@ meet "a newer program that uses nothing new, with an older library" "$work/newer
 meet "a newer program that uses a new field, with an older library" "$work/newer" "$library" -DLATER=1 -DWANT=HF_ERR_ARG
 meet "a newer program with a newer library" "$work/newer" "$newer" -DLATER=1
 meet "a program of another ABI" "$work/other" "$library" -DWANT=HF_ERR_ABI
+for headers in tests/abi/[0-9]*/; do
+    if grep -qx "#define HF_ABI_VERSION $version" "$headers/hyperfocal/version.h"; then
+        meet "a program of $headers with this library" "$headers" "$library"
+        meet "a program of $headers with a newer library" "$headers" "$newer"
+    else
+        meet "a program of $headers, another ABI" "$headers" "$library" -DWANT=HF_ERR_ABI
+    fi
+done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
