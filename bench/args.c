@@ -40,7 +40,7 @@ static const struct tool_option options[] = {
     {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 to 2048. Default 12; truth: as the lens has "
      "it.", NUMBER(params.max_radius, 0, 2048)},
 
-    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default gather; truth, stability and history: all.",
+    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers|chapter", "How to blur. Default gather; passes: chapter; truth, stability and history: all.",
      NAME(params.engine, ENGINE)},
     {"blades", 0, TOOL_LOOK, "N", "Sides of the aperture; 0 (default): a disc.", COUNT(params.aperture.blades, 0, 16)},
 
@@ -139,6 +139,9 @@ int bench_args_parse(struct bench_args *args, const char *command, int count, ch
     // Commands that measure one engine refuse options that it does not have; the others accept all engines' options.
     const int one =
         !command || !strcmp(command, "passes") || !strcmp(command, "scaling") || !strcmp(command, "formats");
+    if (command && !strcmp(command, "passes") && !tool_given(&p, "engine"))
+        args->params.engine = HF_ENGINE_CHAPTER;
+    tool_choose_chapter(&p, &args->params);
     const struct tool_option *misfit = one ? tool_misfit(&p, args->params.engine) : NULL;
     char engines[256];
     if (misfit)

@@ -158,7 +158,7 @@ static void taps_table(FILE *out, const struct trade *t)
             continue;
         if (!n++)
             fputs(
-                "<h2>Taps</h2>\n<p class=\"soft\">The gather with taps, all with the same reach: milliseconds of two "
+                "<h2>Taps</h2>\n<p class=\"soft\">The chapter, all taps with the same reach: milliseconds of two "
                 "passes and of the frame, 1920 x 1080 blurred everywhere by 12 pixels; dB of the scenes.</p>\n"
                 "<div class=\"scroll\" tabindex=\"0\"><table><thead><tr><th>taps</th><th>Computation</th><th>Fill</th>"
                 "<th>frame</th><th>mean dB</th><th>options</th></tr></thead><tbody>\n",

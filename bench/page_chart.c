@@ -356,6 +356,7 @@ static void shape(FILE *out, int engine, double x, double y)
         "m-4.5-4.5h9v9h-9z",                     // scatter: square
         "m0-6 6 6-6 6-6-6z",                     // gaussian: diamond
         "m0-6.5 6 11h-12z",                      // layers: triangle
+        "m-2-6h4v4h4v4h-4v4h-4v-4h-4v-4h4z",     // chapter: plus
     };
     const int n = sizeof paths / sizeof *paths;
     fprintf(out, "<path d=\"M%.1f %.1f%s\"/>", x, y, engine < 0 ? "m-5-5 10 10m0-10-10 10" : paths[engine % n]);

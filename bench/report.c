@@ -56,10 +56,10 @@ static void table_machine(FILE *out, const struct bench_run *run)
             r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
 }
 
-// The chapter timed only the gather, at one size.
+// The chapter timed only its own passes, at one size.
 static int has_gtx660(const struct bench_run *run)
 {
-    return run->result->stats.params.engine == HF_ENGINE_GATHER && run->width == 1920 && run->height == 1080;
+    return run->result->stats.params.engine == HF_ENGINE_CHAPTER && run->width == 1920 && run->height == 1080;
 }
 
 static void table_uses(FILE *out, const struct bench_uses *u)
@@ -77,12 +77,13 @@ void bench_report_table(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
     const double all = r->all.median_ms;
-    const int gather = has_gtx660(run);
-    fprintf(out, "%-16s %9s %7s%s %9s %9s\n", "Pass", "ms", "of All", gather ? "   GTX 660    ratio" : "", "min",
+    const int chapter = has_gtx660(run);
+    fprintf(out, "%-16s %9s %7s%s %9s %9s\n", "Pass", "ms", "of All", chapter ? "   GTX 660    ratio" : "", "min",
             "max");
     for (int p = 0; p < tool_passes(r->stats.params.engine); p++) {
         const struct bench_row *row = &r->pass[p];
-        table_row(out, hf_inspect_pass_name(r->stats.params.engine, p), row->median_ms, all, gather ? gtx660_ms[p] : 0);
+        table_row(out, hf_inspect_pass_name(r->stats.params.engine, p), row->median_ms, all,
+                  chapter ? gtx660_ms[p] : 0);
         if (row->in >= 0)
             fprintf(out, "   in %s\n", hf_inspect_pass_name(r->stats.params.engine, row->in));
         else
@@ -90,7 +91,7 @@ void bench_report_table(FILE *out, const struct bench_run *run)
     }
     table_row(out, "overhead", r->overhead_ms, all, 0);
     fprintf(out, "   of which planning %.3f\n", r->planning_ms);
-    table_row(out, "All", all, all, gather ? gtx660_all_ms : 0);
+    table_row(out, "All", all, all, chapter ? gtx660_all_ms : 0);
     fprintf(out, " %9.3f %9.3f\n\n", r->all.min_ms, r->all.max_ms);
     if (bench_is_busy(&r->all))
         fprintf(out, "The machine is busy: the median is %.1f times the least, which is nearer to what it can do.\n",
@@ -115,8 +116,9 @@ static void json_settings(struct tool_json *j, const struct bench_run *run)
     tool_json_number(j, "focus", p->focus);
     tool_json_number(j, "range", p->range.distance);
     tool_json_number(j, "max_radius", run->result->stats.params.max_radius);
-    tool_json_text(j, "fill", hf_name(HF_NAMES_FILL, (int)p->gather.fill));
-    tool_json_flag(j, "faithful", p->gather.faithful);
+    const int chapter = p->engine == HF_ENGINE_CHAPTER;
+    tool_json_text(j, "fill", chapter ? hf_name(HF_NAMES_FILL, (int)p->chapter.fill) : NULL);
+    tool_json_flag(j, "faithful", chapter && p->chapter.faithful);
     tool_json_flag(j, "deterministic", p->run.deterministic);
     tool_json_flag(j, "no_skip", p->run.no_skip);
     tool_json_flag(j, "karis", p->gather.karis);

@@ -51,8 +51,8 @@ static struct hf_params params_of(const struct trade_job *job)
 static struct picture in_double(const struct input *in, struct hf_params p)
 {
     struct picture out = {0};
-    p.gather.storage = HF_STORAGE_FLOAT;
-    if (p.engine == HF_ENGINE_GATHER) {
+    p.gather.storage = p.chapter.storage = HF_STORAGE_FLOAT;
+    if (p.engine == HF_ENGINE_GATHER || p.engine == HF_ENGINE_CHAPTER) {
         struct reference *r = reference_render(&in->colour, &in->depth, &p, NULL, NULL);
         out = reference_picture(r);
         reference_free(r);
@@ -103,10 +103,10 @@ int trade_run_axes(struct trade_run *run, int result, struct tool_error *error)
     const int err = hf_render(job->context, &dst, &src, &in.depth, &p);
     r->rounding = exact.width ? linear_distance(&got, &exact) : NAN;
     r->faithfulness = NAN;
-    if (p.engine == HF_ENGINE_GATHER) {
+    if (p.engine == HF_ENGINE_GATHER || p.engine == HF_ENGINE_CHAPTER) {
         struct hf_params published = hf_default_params();
-        published.engine = HF_ENGINE_GATHER;
-        published.gather.faithful = 1;
+        published.engine = HF_ENGINE_CHAPTER;
+        published.chapter.faithful = 1;
         published.max_radius = RADIUS;
         demo = in_double(&in, published);
         r->faithfulness = shown_distance(&got, &demo);

@@ -176,8 +176,8 @@ static const struct trade_result *by_options(const struct trade *t, const char *
 
 static void say_taps(FILE *out, const struct trade *t, const char *before, const char *after)
 {
-    const struct trade_result *few = by_options(t, "--engine gather --fill max --rings 3");
-    const struct trade_result *many = by_options(t, "--engine gather --fill none");
+    const struct trade_result *few = by_options(t, "--engine chapter --rings 3");
+    const struct trade_result *many = by_options(t, "--engine chapter --fill none");
     if (!few || !many)
         return;
     const double few_ms = pass_of_both(few, "Computation"), many_ms = pass_of_both(many, "Computation");

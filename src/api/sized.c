@@ -75,8 +75,8 @@ static const struct {
     {                                                                                                                  \
 #group ".reserved", offsetof(struct hf_params, group.reserved), sizeof((struct hf_params *)0)->group.reserved  \
     }
-    GROUP(range),   GROUP(lens),    GROUP(aperture), GROUP(highlight), GROUP(view), GROUP(gather),
-    GROUP(hexagon), GROUP(scatter), GROUP(gaussian), GROUP(layers),    GROUP(run),
+    GROUP(range),   GROUP(lens),    GROUP(aperture), GROUP(highlight), GROUP(view),   GROUP(gather),
+    GROUP(chapter), GROUP(hexagon), GROUP(scatter),  GROUP(gaussian),  GROUP(layers), GROUP(run),
 #undef GROUP
 };
 

@@ -16,7 +16,7 @@
     .lens = {.f_number = 2.8f, .focal_length_mm = 50, .sensor_width_mm = 36, .world_unit_m = 1},                       \
     .max_radius = HF_DERIVE, .aperture = {.squeeze = 1}, .highlight = {.gain = 1, .threshold = 0.9f},                  \
     .view = {.display_width = HF_DERIVE, .display_height = HF_DERIVE, .pixel_aspect = 1},                              \
-    .gather = {.rings = HF_DERIVE, .fill = (enum hf_fill)HF_DERIVE},                                                   \
+    .chapter = {.rings = HF_DERIVE},                                                                                   \
     .layers = {.spacing = HF_DERIVE, .half_from = HF_DERIVE, .quarter_from = HF_DERIVE},                               \
     .gaussian = {.iterations = 3, .sigma = HF_DERIVE, .by_depth = HF_DERIVE}
 

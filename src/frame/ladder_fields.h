@@ -7,8 +7,9 @@
 // clang-format off
 #define HF_LADDER_FIELDS(DO) \
     DO(engine) \
-    DO(gather.rings) DO(gather.fill) DO(gather.storage) DO(gather.faithful) DO(gather.karis) DO(gather.bicubic) \
-    DO(gather.per_pixel_kernel) DO(gather.downsample) DO(gather.division) \
+    DO(gather.storage) DO(gather.karis) DO(gather.bicubic) DO(gather.per_pixel_kernel) \
+    DO(chapter.storage) DO(chapter.karis) DO(chapter.bicubic) DO(chapter.per_pixel_kernel) DO(chapter.faithful) \
+    DO(chapter.rings) DO(chapter.fill) DO(chapter.downsample) DO(chapter.division) \
     DO(hexagon.resolution) DO(scatter.resolution) DO(gaussian.resolution) DO(gaussian.iterations) DO(gaussian.sigma) \
     DO(layers.quality) DO(layers.spacing) DO(layers.half_from) DO(layers.quarter_from) \
     DO(layers.no_unmix) DO(layers.no_hidden) DO(layers.no_highlights) DO(layers.no_patterns)

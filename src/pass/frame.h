@@ -22,11 +22,11 @@ struct hf_rect {
 enum { HF_MAX_BUFS = 32, HF_MAX_PASSES = 12 };
 
 // How many engines there are.
-enum { HF_ENGINE_COUNT = HF_ENGINE_LAYERS + 1 };
+enum { HF_ENGINE_COUNT = HF_ENGINE_CHAPTER + 1 };
 
 // What parameters come to for a picture; hf_resolve tells most of it.
 struct hf_settings {
-    struct hf_params params;  // without HF_DERIVE and HF_FILL_AUTO
+    struct hf_params params;  // without HF_DERIVE
     int width, height;        // of the image
     enum hf_limit limit;      // what set params.max_radius
     int rings_given;          // 1: params.gather.rings was; 0: it is rounded up

@@ -98,6 +98,11 @@ struct hf_edges_kernels {
     hf_edges_take *take;
 };
 
+// The near field's outward blur (fields.h).
+struct hf_fields_kernels {
+    hf_kernel *max_x, *max_y, *blur_x, *blur_y;
+};
+
 struct hf_pixel_kernels {
     hf_coc_row *coc_row;
     hf_sharp_row *sharp_row;
@@ -113,6 +118,7 @@ struct hf_pixel_kernels {
     hf_highlight_row *raise, *lower;
     struct hf_behind_kernels behind;
     struct hf_edges_kernels edges;
+    struct hf_fields_kernels fields;
 };
 HF_DECLARE_KERNELS(hf_pixel_kernels);
 

@@ -6,6 +6,8 @@
 #include "pixel/depth_rows_simd.h"
 #include "pixel/edges_simd.h"
 #include "pixel/highlight_simd.h"
+#include "pixel/near_blur_simd.h"
+#include "pixel/near_max_simd.h"
 #include "pixel/radius_simd.h"
 
 void HF_SIMD_NAME(hf_pixel_kernels)(struct hf_pixel_kernels *k)
@@ -20,6 +22,7 @@ void HF_SIMD_NAME(hf_pixel_kernels)(struct hf_pixel_kernels *k)
     k->raise = raise_row_simd;
     k->lower = lower_row_simd;
     k->edges = (struct hf_edges_kernels){edges_sure_simd, edges_take_simd};
+    k->fields = (struct hf_fields_kernels){max_x_simd, max_y_simd, blur_x_simd, blur_y_simd};
     k->behind = (struct hf_behind_kernels){.near_row = near_row_simd,
                                            .most_row = most_row_simd,
                                            .seen_row = seen_row_simd,

@@ -73,11 +73,11 @@ static void strings(void)
     static const char *const passes[] = {"CoC generation",  "Downsample",      "Near CoC Max X", "Near CoC Max Y",
                                          "Near CoC Blur X", "Near CoC Blur Y", "Computation",    "Fill",
                                          "Composite"};
-    const int count = tool_passes(HF_ENGINE_GATHER);
+    const int count = tool_passes(HF_ENGINE_CHAPTER);
     CHECK_INT(count, sizeof passes / sizeof *passes);
     for (int i = 0; i < count; i++)
-        CHECK(strcmp(hf_inspect_pass_name(HF_ENGINE_GATHER, i), passes[i]) == 0);
-    CHECK(!hf_inspect_pass_name(HF_ENGINE_GATHER, count) && !hf_inspect_pass_name(HF_ENGINE_GATHER, -1) &&
+        CHECK(strcmp(hf_inspect_pass_name(HF_ENGINE_CHAPTER, i), passes[i]) == 0);
+    CHECK(!hf_inspect_pass_name(HF_ENGINE_CHAPTER, count) && !hf_inspect_pass_name(HF_ENGINE_CHAPTER, -1) &&
           !hf_inspect_pass_name((enum hf_engine) - 1, 0));
 }
 
@@ -262,7 +262,6 @@ static void bad_params(struct hf_context *c)
     ALLOW(params.view.pixel_aspect = 10);
     ALLOW(params.view.pixel_aspect = 0.1f);
     SPOIL(params.gather.storage = (enum hf_storage)3);
-    SPOIL(params.gather.fill = (enum hf_fill)(HF_FILL_OPEN + 1));
     SPOIL(params.range.blend = (enum hf_blend) - 1);
     for (int blades = -1; blades <= 18; blades++) {
         if (blades == 0 || (blades >= 3 && blades <= 16))
@@ -274,8 +273,6 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.aperture.rotation = INFINITY);
     SPOIL(params.aperture.ring = 0.5f);  // the gather does not have it
     SPOIL(params.aperture.squeeze = 2);
-    SPOIL(params.gather.rings = 0);
-    SPOIL(params.gather.rings = 65);
     SPOIL(params.run.budget_ms = NAN);
     SPOIL(params.highlight.gain = 0.5f);
     SPOIL(params.highlight.gain = 65);
@@ -287,6 +284,14 @@ static void bad_params(struct hf_context *c)
     SPOIL(params.highlight.threshold = NAN);
     ALLOW(params.highlight.threshold = 0);
     good.params.highlight.gain = 1;
+    good.params.engine = HF_ENGINE_CHAPTER;
+    SPOIL(params.chapter.storage = (enum hf_storage)3);
+    SPOIL(params.chapter.fill = (enum hf_fill)(HF_FILL_OPEN + 1));
+    SPOIL(params.chapter.downsample = (enum hf_downsample)(HF_DOWNSAMPLE_POINT + 1));
+    SPOIL(params.chapter.division = (enum hf_division)(HF_DIVISION_NEWTON2 + 1));
+    SPOIL(params.aperture.ring = 0.5f);
+    SPOIL(params.chapter.rings = 0);
+    SPOIL(params.chapter.rings = 65);
     // An aperture picture is the complete shape.
     const struct hf_image aperture = good.src;
     good.params.engine = HF_ENGINE_LAYERS;

@@ -80,7 +80,7 @@ static struct hf_config counted(struct counter *n)
 static struct hf_params rich_params(void)
 {
     struct hf_params p = scene_params();
-    p.gather.karis = p.gather.per_pixel_kernel = p.gather.bicubic = 1;
+    p.gather = (struct hf_gather_params){.karis = 1, .per_pixel_kernel = 1, .bicubic = 1};
     p.aperture.blades = 7;
     return p;
 }

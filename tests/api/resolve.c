@@ -79,7 +79,9 @@ static void derived(void)
     CHECK(r.params.range.distance == 4 && r.params.range.near_begin == 4 && r.params.range.near_end == 8);
     CHECK(r.params.range.far_begin == 8 && r.params.range.far_end == 12);
     CHECK(r.params.max_radius == 12 && r.r.limit == HF_LIMIT_MODEL);
-    CHECK_INT(r.params.gather.rings, 3);  // of two half-resolution pixels up to 6
+    p.engine = HF_ENGINE_CHAPTER;
+    CHECK_INT(resolved(1920, 1080, &depth, &p).params.chapter.rings, 3);  // of two half-resolution pixels up to 6
+    p.engine = HF_ENGINE_GATHER;
     CHECK(r.params.view.display_width == 1920 && r.params.view.display_height == 1080);
     p.view.display_height = 2160;
     CHECK(resolved(100, 100, &depth, &p).params.max_radius == 24);
@@ -130,7 +132,7 @@ static void no_sentinels(void)
             const struct told r = resolved(640, 480, &depth, &p);
             const struct hf_params *q = &r.params;
             CHECK(q->max_radius > 0 && q->view.display_width == 640 && q->view.display_height == 480);
-            CHECK(e != HF_ENGINE_GATHER || q->gather.rings > 0);
+            CHECK(e != HF_ENGINE_CHAPTER || q->chapter.rings > 0);
             CHECK(e != HF_ENGINE_GAUSSIAN || (q->gaussian.sigma > 0 && q->gaussian.by_depth >= 0));
             if (model == HF_MODEL_RANGE)
                 CHECK(q->range.distance > 0 && q->range.near_begin > 0 && q->range.near_end > 0 &&
@@ -176,9 +178,9 @@ static void focus(void)
     refused(&depth, &p, HF_ERR_ARG, "focus", "is inf");
     p.model = HF_MODEL_LENS;
     CHECK(resolved(3, 3, &depth, &p).params.focus == INFINITY);
-    p.engine = HF_ENGINE_GATHER;
-    p.gather.fill = (enum hf_fill)9;
-    refused(&depth, &p, HF_ERR_ARG, "gather.fill", "gather.fill is 9: no such value (-1 to 3)");
+    p.engine = HF_ENGINE_CHAPTER;
+    p.chapter.fill = (enum hf_fill)9;
+    refused(&depth, &p, HF_ERR_ARG, "chapter.fill", "chapter.fill is 9: no such value (0 to 3)");
     p = hf_default_params();
     p.range.near_end = 12;
     refused(&depth, &p, HF_ERR_ARG, "range.near_end", "is 12; it must be at most 10");

@@ -148,7 +148,7 @@ static void widths(enum hf_engine engine, const char *name, enum hf_isa isa)
 {
     // the last is below any normal number
     static const float radii[] = {1, 8, 30, 1e-42f};
-    const int resolutions = engine == HF_ENGINE_GATHER ? 1 : 2;
+    const int resolutions = engine == HF_ENGINE_GATHER || engine == HF_ENGINE_CHAPTER ? 1 : 2;
     for (int width = 1; width <= WIDEST; width++)
         for (int i = 0; i < 4; i++)
             // The neighbouring widths, and other instruction sets, have the other radii. The scatter draws its sprites
@@ -164,11 +164,8 @@ int main(int argc, char **argv)
     static const struct {
         enum hf_engine engine;
         const char *name;
-    } engines[] = {{HF_ENGINE_GATHER, "gather"},
-                   {HF_ENGINE_HEXAGON, "hexagon"},
-                   {HF_ENGINE_SCATTER, "scatter"},
-                   {HF_ENGINE_GAUSSIAN, "gaussian"},
-                   {HF_ENGINE_LAYERS, "layers"}};
+    } engines[] = {{HF_ENGINE_GATHER, "gather"},     {HF_ENGINE_HEXAGON, "hexagon"}, {HF_ENGINE_SCATTER, "scatter"},
+                   {HF_ENGINE_GAUSSIAN, "gaussian"}, {HF_ENGINE_LAYERS, "layers"},   {HF_ENGINE_CHAPTER, "chapter"}};
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 0) : 1;
     printf("seed %u\n", seed);
     for (unsigned i = 0; i < SEEDS; i++) {

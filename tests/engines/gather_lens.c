@@ -17,7 +17,6 @@ static struct hf_params lens_params(void)
 {
     struct hf_params p = hf_default_params();
     p.engine = HF_ENGINE_GATHER;
-    p.gather.fill = HF_FILL_MEAN;
     return p;
 }
 

@@ -56,7 +56,7 @@ static const struct own owns[] = {
          {53, 57, {0.6942778171, 0.666689393, 0.6355185184}},
      }},
     {"faithful",
-     {.gather.faithful = 1},
+     {.chapter.faithful = 1},
      {
          {0, 0, {0.474755358, 0.5293789884, 0.5006396801}},
          {95, 63, {0.5739471948, 0.6729065033, 0.6379232622}},
@@ -67,7 +67,11 @@ static const struct own owns[] = {
          {53, 57, {0.6950711916, 0.6671676961, 0.6354408985}},
      }},
     {"faithful, karis, bicubic, mean, 6-gon",
-     {.gather.faithful = 1, .gather.karis = 1, .gather.bicubic = 1, .gather.fill = HF_FILL_MEAN, .aperture.blades = 6},
+     {.chapter.faithful = 1,
+      .chapter.karis = 1,
+      .chapter.bicubic = 1,
+      .chapter.fill = HF_FILL_MEAN,
+      .aperture.blades = 6},
      {
          {0, 0, {0.4588938311, 0.5232474704, 0.4843737309}},
          {95, 63, {0.4618032292, 0.5387925463, 0.523588222}},
@@ -93,11 +97,12 @@ static struct hf_params own_params(const struct own *own)
     p.highlight = d.highlight;
     p.view = d.view;
     p.aperture.squeeze = d.aperture.squeeze;
-    p.gather.rings = d.gather.rings;
+    p.chapter.rings = d.chapter.rings;
+    p.engine = HF_ENGINE_CHAPTER;
     return p;
 }
 
-// The whole frame against the reference. CoC is exact here, so only the roundings of gather.c's passes 2, 7, 8 and 9
+// The whole frame against the reference. CoC is exact here, so only the roundings of chapter.c's passes 2, 7, 8 and 9
 // remain: (32 + 2 * 129 + 12 + 11 + 102) * 2^-24 = 2.5e-5 of the largest sample nearby.
 static void check_own(struct hf_context *c, const char *isa, int o, int print)
 {
@@ -230,7 +235,8 @@ static void check_shared(struct hf_context *c, struct shared *shared, const stru
     struct hf_params p = hf_default_params();
     p.focus = 20;
     p.range.distance = 10;
-    p.gather.faithful = 1;
+    p.engine = HF_ENGINE_CHAPTER;
+    p.chapter.faithful = 1;
     const struct hf_depth depth = picture_depth(z);
     hf_inspect_dump(c, on_buffer, shared);
     struct picture dumped = render(c, colour, &depth, &p);
@@ -243,7 +249,7 @@ static void check_shared(struct hf_context *c, struct shared *shared, const stru
     struct picture want;
     if (!CHECK(read_golden(&want, shared, "composite_chapter_formats", 3) == 0))
         return;
-    p.gather.storage = HF_STORAGE_PACKED;
+    p.chapter.storage = HF_STORAGE_PACKED;
     out = render(c, colour, &depth, &p);
     const double psnr = display_psnr(&out, &want);
     printf("%s: chapter      %.2f dB\n", shared->isa, psnr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hard cases of the gather engine, values: bad samples, exact copies, constants, energy, ranges, extreme sizes.
+// Hard cases of gather and chapter, values: bad samples, exact copies, constants, energy, ranges, extreme sizes.
 // invariance.c has the cases that compare two pictures (shifts, flips, threads, skipping).
 //
 //     hard [seed]
@@ -56,9 +56,10 @@ static void bad_colours(const struct run *run, unsigned variant)
     }
     free(want);
     p.range.strength = 1;
-    p.gather.karis = variant % 2 == 1;
-    p.gather.fill = (enum hf_fill)(variant % 3);
-    p.gather.per_pixel_kernel = variant % 4 == 3;
+    p.chapter.karis = variant % 2 == 1;
+    p.chapter.fill = (enum hf_fill)(variant % 3);
+    p.chapter.per_pixel_kernel = variant % 4 == 3;
+    choose_fields(&p);
     for (int no_skip = 0; no_skip < 2; no_skip++) {
         p.run.no_skip = no_skip;
         struct picture a = render(run->c, &s.colour, &depth, &p);
@@ -146,8 +147,9 @@ static void giants(const struct run *run)
     for (int i = 0; i < 12; i++) {
         struct hf_params p = hf_default_params();
         p.max_radius = 16;
-        p.gather.fill = (enum hf_fill)(i % 4);
-        p.gather.downsample = (enum hf_downsample)(i / 4);
+        p.chapter.fill = (enum hf_fill)(i % 4);
+        p.chapter.downsample = (enum hf_downsample)(i / 4);
+        choose_fields(&p);
         for (float radius = -0x1p-7f; radius <= 0x1p-7f; radius += 0x1p-6f) {
             picture_fill(&radii, 0, radius);
             const struct hf_depth depth = picture_radii(&radii);
@@ -225,8 +227,10 @@ static void copies(const struct run *run)
     const struct hf_depth depth = picture_depth(&s.depth);
     for (int i = 0; i < 60; i++) {
         struct hf_params p = scene_params();
-        p.gather.storage = (enum hf_storage)(i / 5 % 3);
-        p.gather.faithful = i / 15 % 2;
+        p.chapter.storage = (enum hf_storage)(i / 5 % 3);
+        p.chapter.faithful = i / 15 % 2;
+        p.chapter.fill = p.chapter.faithful ? HF_FILL_MAX : HF_FILL_MEAN;
+        choose_fields(&p);
         p.run.no_skip = i / 30;
         struct hf_depth d = depth;
         switch (i % 5) {
@@ -256,9 +260,9 @@ static void copies(const struct run *run)
         }
         struct picture out = render(run->c, &s.colour, &d, &p);
         // The other storages round what they read; only a copy keeps the bits.
-        if (i % 5 != 4 || p.gather.storage == HF_STORAGE_FLOAT)
+        if (i % 5 != 4 || p.chapter.storage == HF_STORAGE_FLOAT)
             CHECK_MSG(picture_same_bits(&out, &s.colour), "%s: case %d, storage %d: not the input's bits", run->isa,
-                      i % 5, p.gather.storage);
+                      i % 5, p.chapter.storage);
         picture_free(&out);
     }
     scene_free(&s);
@@ -289,14 +293,15 @@ static void constants(const struct run *run)
     double worst[2] = {0, 0};  // convolved; with the per-pixel kernel
     for (unsigned i = 0; i < 120; i++) {
         struct hf_params p = scene_params();
-        p.gather.karis = i % 5 == 1;
-        p.gather.bicubic = i % 3 == 1;
-        p.gather.per_pixel_kernel = i % 7 == 2;
-        p.gather.fill = (enum hf_fill)(i / 3 % 3);
+        p.chapter.karis = i % 5 == 1;
+        p.chapter.bicubic = i % 3 == 1;
+        p.chapter.per_pixel_kernel = i % 7 == 2;
+        p.chapter.fill = (enum hf_fill)(i / 3 % 3);
+        choose_fields(&p);
         p.aperture.blades = i % 4 == 3 ? 5 + (int)(i / 4 % 5) : 0;
         p.range.strength = i % 6 == 5 ? 0.2f : i % 6 == 4 ? 0.7f : 1;
         p.max_radius = i % 10 == 9 ? 40 : i % 10 == 8 ? 3 : 12;
-        double *w = &worst[p.gather.per_pixel_kernel];
+        double *w = &worst[p.chapter.per_pixel_kernel];
         *w = worse(*w, constant(run, &p, values[i % 5], 70 - (int)(i % 9), 40 + (int)(i % 5), i));
         // CoC larger than the picture.
         p.max_radius = 100;
@@ -321,8 +326,9 @@ static void energy(const struct run *run)
         for (int c = 0; c < 3; c++)
             colour.plane[c][y * 96 + x] = 1e4f;
         struct hf_params p = scene_params();
-        p.gather.fill = (enum hf_fill)(i / 8 % 3);
-        p.gather.bicubic = i / 24 % 2;
+        p.chapter.fill = (enum hf_fill)(i / 8 % 3);
+        p.chapter.bicubic = i / 24 % 2;
+        choose_fields(&p);
         p.aperture.blades = i / 48 ? 7 : 0;
         const struct hf_depth depth = picture_depth(&z);
         struct picture out = render(run->c, &colour, &depth, &p);
@@ -330,7 +336,7 @@ static void energy(const struct run *run)
             double sum = 0;
             for (int k = 0; k < 96 * 90; k++)
                 sum += out.plane[c][k];
-            if (p.gather.fill == HF_FILL_MAX)
+            if (p.chapter.fill == HF_FILL_MAX)
                 max_fill = worse(max_fill, sum / 1e4);
             else
                 CHECK_MSG(fabs(sum / 1e4 - 1) <= 1e-5, "%s: case %d: energy of a highlight %.8f", run->isa, i,
@@ -344,7 +350,7 @@ static void energy(const struct run *run)
     CHECK(max_fill > 1 && max_fill < 9);
 }
 
-// No sample leaves the range of its sources, up to rounding. 60 ulp: the roundings of all passes, see gather.c.
+// No sample leaves the range of its sources, up to rounding. 60 ulp: the roundings of all passes, see chapter.c.
 static void ranges(const struct run *run)
 {
     for (int i = 0; i < 24; i++) {
@@ -352,11 +358,12 @@ static void ranges(const struct run *run)
         struct scene s = scene_new(&rng, (enum scene_kind)(i % SCENE_KINDS), 65, 44, 3);
         const struct hf_depth depth = picture_depth(&s.depth);
         struct hf_params p = scene_params();
-        p.gather.fill = (enum hf_fill)(i % 3);
-        p.gather.bicubic = i / 3 % 2;
-        p.gather.karis = i / 6 % 2;
-        p.gather.per_pixel_kernel = i / 12;
-        p.gather.storage = i % 5 == 4 ? HF_STORAGE_PACKED : HF_STORAGE_FLOAT;
+        p.chapter.fill = (enum hf_fill)(i % 3);
+        p.chapter.bicubic = i / 3 % 2;
+        p.chapter.karis = i / 6 % 2;
+        p.chapter.per_pixel_kernel = i / 12;
+        p.chapter.storage = i % 5 == 4 ? HF_STORAGE_PACKED : HF_STORAGE_FLOAT;
+        choose_fields(&p);
         struct picture out = render(run->c, &s.colour, &depth, &p);
         for (int c = 0; c < 3; c++) {
             float low = INFINITY, high = 0;
@@ -364,7 +371,7 @@ static void ranges(const struct run *run)
                 low = fminf(low, s.colour.plane[c][k]);
                 high = fmaxf(high, s.colour.plane[c][k]);
             }
-            if (p.gather.storage == HF_STORAGE_PACKED)
+            if (p.chapter.storage == HF_STORAGE_PACKED)
                 low *= 0.85f;  // five truncations of up to 1/32
             int outside = 0;
             for (size_t k = 0; k < samples_of(&out); k++)

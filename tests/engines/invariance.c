@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hard cases of the gather engine, as pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths
+// Hard cases of gather and chapter, as pairs of pictures: shifts and crops, flips, transposes, exposure, threads, widths
 // around a vector's length, a focus pull.
 //
 //     invariance [seed]
@@ -21,17 +21,18 @@ static struct hf_params random_params(struct rng *rng)
     static const float strengths[] = {1, 1, 1, 0.7f, 0.3f, 0.1f};
     p.max_radius = radii[rng_below(rng, 8)];
     p.range.strength = strengths[rng_below(rng, 6)];
-    p.gather.faithful = rng_below(rng, 3) == 0;
-    p.gather.karis = rng_below(rng, 3) == 0;
-    p.gather.per_pixel_kernel = rng_below(rng, 3) == 0;
-    p.gather.bicubic = rng_below(rng, 3) == 0;
-    p.gather.fill = (enum hf_fill)rng_below(rng, 3);
+    p.chapter.faithful = rng_below(rng, 3) == 0;
+    p.chapter.karis = rng_below(rng, 3) == 0;
+    p.chapter.per_pixel_kernel = rng_below(rng, 3) == 0;
+    p.chapter.bicubic = rng_below(rng, 3) == 0;
+    p.chapter.fill = (enum hf_fill)rng_below(rng, 3);
     p.range.blend = (enum hf_blend)rng_below(rng, 2);
-    p.gather.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
+    p.chapter.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
     p.aperture.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
     p.aperture.rotation = (float)rng_below(rng, 90);
     p.view.pixel_aspect = rng_below(rng, 4) ? 1 : rng_range(rng, 0.6f, 2);
     p.range.distance = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
+    choose_fields(&p);
     return p;
 }
 
@@ -79,13 +80,14 @@ static void flips(struct hf_context *c, const char *isa)
         struct rng rng = rng_seed(seed + i);
         struct scene s = quad_scene(&rng, 2 * (20 + rng_below(&rng, 50)), 2 * (10 + rng_below(&rng, 30)));
         struct hf_params p = random_params(&rng);
-        p.gather.faithful = p.gather.per_pixel_kernel = p.aperture.blades = 0;
+        p.chapter.faithful = p.chapter.per_pixel_kernel = p.aperture.blades = 0;
+        choose_fields(&p);
         struct scene mirror = {picture_flipped(&s.colour), picture_flipped(&s.depth)};
         struct picture a = render_scene(c, &s, &p), b = render_scene(c, &mirror, &p), back = picture_flipped(&b);
         CHECK_MSG(picture_same_bits(&a, &back),
                   "%s: seed %u: flipping gives other bits (storage %d, fill %d, karis %d,"
                   " bicubic %d)",
-                  isa, seed + i, p.gather.storage, p.gather.fill, p.gather.karis, p.gather.bicubic);
+                  isa, seed + i, p.chapter.storage, p.chapter.fill, p.chapter.karis, p.chapter.bicubic);
         picture_free(&a);
         picture_free(&b);
         picture_free(&back);
@@ -94,7 +96,7 @@ static void flips(struct hf_context *c, const char *isa)
     }
 }
 
-// Transposing changes only the order of sums: twice the roundings of all passes (gather.c) in units of the largest
+// Transposing changes only the order of sums: twice the roundings of all passes (chapter.c) in units of the largest
 // sample, 2 * (2 * 129 lattice weights + 12 + 32 + 11 + 102) * FLT_EPSILON / 2.
 static void transposes(struct hf_context *c, const char *isa)
 {
@@ -107,8 +109,9 @@ static void transposes(struct hf_context *c, const char *isa)
         p.view.pixel_aspect = 1;
         p.aperture.blades = 0;
         p.max_radius = 12;
-        p.gather.storage = HF_STORAGE_FLOAT;
-        p.gather.per_pixel_kernel = 0;  // gather.c tests it, apart from its threshold on CoC differences
+        p.chapter.storage = p.gather.storage = HF_STORAGE_FLOAT;
+        p.gather.per_pixel_kernel = 0;
+        p.chapter.per_pixel_kernel = 0;  // its threshold on CoC differences apart, it is in chapter.c
         struct scene turned = {picture_transposed(&s.colour), picture_transposed(&s.depth)};
         struct picture a = render_scene(c, &s, &p), b = render_scene(c, &turned, &p), back = picture_transposed(&b);
         worst = worse(worst, largest_difference(&a, &back) / largest_sample(&s.colour));
@@ -129,8 +132,8 @@ static void exposures(struct hf_context *c, const char *isa)
         struct rng rng = rng_seed(seed + i);
         struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 60 + rng_below(&rng, 60), 40 + rng_below(&rng, 40), 4);
         struct hf_params p = random_params(&rng);
-        p.gather.karis = 0;
-        p.gather.storage = HF_STORAGE_FLOAT;
+        p.chapter.karis = p.gather.karis = 0;
+        p.chapter.storage = p.gather.storage = HF_STORAGE_FLOAT;
         struct picture a = render_scene(c, &s, &p);
         const float scale = ldexpf(1, exponents[i % 5]);
         for (int k = 0; k < 4; k++)
@@ -152,13 +155,16 @@ static void threads(enum hf_isa isa)
 {
     struct rng rng = rng_seed(seed);
     struct scene s = scene_new(&rng, SCENE_HIGHLIGHTS, 401, 307, 3);
-    for (int storage = 0; storage < 3; storage++) {
+    for (int look = 0; look < 6; look++) {
+        const int storage = look % 3;
         struct picture first = {0};
         for (int n = 1; n <= 7; n++) {
             struct hf_context *c = context_new(isa, n, 16 * (n - 1), n > 1 ? 14 + 3 * n : 0);
             struct hf_params p = scene_params();
-            p.gather.storage = (enum hf_storage)storage;
-            p.gather.karis = storage == 1;
+            p.chapter.storage = (enum hf_storage)storage;
+            p.chapter.karis = storage == 1;
+            p.chapter.fill = look / 3 ? HF_FILL_MAX : HF_FILL_MEAN;
+            choose_fields(&p);
             for (int i = 0; i < 2; i++) {
                 struct picture out = render_scene(c, &s, &p);
                 if (!first.width)

@@ -100,6 +100,8 @@ int main(void)
         {"disc", HF_ENGINE_GATHER, {0}, 8, 1},
         {"disc of wide pixels", HF_ENGINE_GATHER, {0}, 8, 0.1f},
         {"disc of high pixels", HF_ENGINE_GATHER, {0}, 8, 10},
+        {"disc", HF_ENGINE_CHAPTER, {0}, 8, 1},
+        {"disc of wide pixels", HF_ENGINE_CHAPTER, {0}, 8, 0.1f},
         {"disc", HF_ENGINE_HEXAGON, {0}, 4, 1},
         {"disc", HF_ENGINE_GAUSSIAN, {0}, 4, 1},
         {"disc", HF_ENGINE_SCATTER, {0}, 4, 1},

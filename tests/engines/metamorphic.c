@@ -28,7 +28,7 @@ struct trial {
 static struct hf_params random_params(struct rng *rng)
 {
     struct hf_params p = scene_params();
-    p.engine = (enum hf_engine)rng_below(rng, tool_engines());
+    p.engine = (enum hf_engine)rng_below(rng, HF_ENGINE_CHAPTER);  // which stands in for two thirds of the gather
     p.max_radius = rng_below(rng, 3) ? rng_range(rng, 0.3f, 12) : (float)(1 + rng_below(rng, 12));
     p.range.strength = rng_below(rng, 3) ? 1 : rng_range(rng, 0.05f, 1);
     p.range.distance = rng_below(rng, 5) ? 10 : rng_range(rng, 0, 30);
@@ -38,16 +38,18 @@ static struct hf_params random_params(struct rng *rng)
     p.gaussian.resolution = (enum hf_resolution)rng_below(rng, 3);
     p.gaussian.iterations = 1 + rng_below(rng, 4);
     p.gaussian.sigma = rng_below(rng, 2) ? HF_DERIVE : rng_range(rng, 0.5f, 4);
-    p.gather.fill = (enum hf_fill)rng_below(rng, 3);
-    p.gather.karis = rng_below(rng, 4) == 0;
-    p.gather.per_pixel_kernel = rng_below(rng, 4) == 0;
-    p.gather.bicubic = rng_below(rng, 4) == 0;
+    p.chapter.fill = (enum hf_fill)rng_below(rng, 3);
+    p.chapter.karis = rng_below(rng, 4) == 0;
+    p.chapter.per_pixel_kernel = rng_below(rng, 4) == 0;
+    p.chapter.bicubic = rng_below(rng, 4) == 0;
     p.layers.quality = (enum hf_layers_quality)rng_below(rng, 4);
     if (p.engine == HF_ENGINE_GATHER || p.engine == HF_ENGINE_SCATTER || p.engine == HF_ENGINE_LAYERS)
         p.aperture.blades = rng_below(rng, 3) ? 0 : 3 + rng_below(rng, 8);
     if ((p.engine == HF_ENGINE_SCATTER || p.engine == HF_ENGINE_LAYERS) && rng_below(rng, 4) == 0)
         p.aperture.ring = rng_range(rng, 0.1f, 0.8f);
     p.run.deterministic = rng_below(rng, 4) == 0;
+    if (p.engine == HF_ENGINE_GATHER)
+        choose_fields(&p);
     return p;
 }
 
@@ -60,6 +62,7 @@ static int margin_of(const struct hf_params *p)
     const int whole = (int)ceilf(r), coarse = 1 << p->gaussian.resolution;
     switch (p->engine) {
     case HF_ENGINE_GATHER:
+    case HF_ENGINE_CHAPTER:
         return 2 * (3 * (int)ceilf(r / 2) + 4);
     case HF_ENGINE_GAUSSIAN:
         return 8 + (p->gaussian.sigma > 0 ? (int)(4 * p->gaussian.sigma / fminf(p->view.pixel_aspect, 1)) + 4 * coarse
@@ -69,6 +72,11 @@ static int margin_of(const struct hf_params *p)
     default:
         return 3 * whole + 24;
     }
+}
+
+static int is_fields(const struct hf_params *p)
+{
+    return p->engine == HF_ENGINE_GATHER || p->engine == HF_ENGINE_CHAPTER;
 }
 
 static const char *name_of(const struct trial *t)
@@ -81,8 +89,8 @@ static const char *name_of(const struct trial *t)
         "%d %d %d, quality %d",
         t->seed, hf_engine_name(p->engine), hf_isa_name(t->isa), t->s.colour.width, t->s.colour.height,
         (double)p->max_radius, (double)p->range.strength, (double)p->range.distance, (double)p->view.pixel_aspect,
-        p->aperture.blades, (int)p->gather.fill, p->gather.karis ? ", karis" : "",
-        p->gather.per_pixel_kernel ? ", per-pixel" : "", p->gather.bicubic ? ", bicubic" : "",
+        p->aperture.blades, (int)p->chapter.fill, p->chapter.karis ? ", karis" : "",
+        p->chapter.per_pixel_kernel ? ", per-pixel" : "", p->chapter.bicubic ? ", bicubic" : "",
         (int)p->hexagon.resolution, (int)p->scatter.resolution, (int)p->gaussian.resolution, (int)p->layers.quality);
     return name;
 }
@@ -115,8 +123,8 @@ static void run_otherwise(const struct trial *t, struct rng *rng)
 
 static void permuted(const struct trial *t)
 {
-    if (t->p.engine == HF_ENGINE_LAYERS || t->p.gather.karis)
-        return;  // engines that depend on brightness add channels in a fixed order
+    if (t->p.engine == HF_ENGINE_LAYERS || t->p.chapter.karis)
+        return;  // what hangs on brightness adds channels up in one order
     struct scene s = copied(&t->s);
     for (int c = 0; c < 3; c++)
         memcpy(s.colour.plane[c], t->s.colour.plane[(c + 1) % 3], samples_of(&s.colour) * sizeof(float));
@@ -132,7 +140,7 @@ static void permuted(const struct trial *t)
 
 static void exposed(const struct trial *t, struct rng *rng)
 {
-    if (t->p.engine == HF_ENGINE_LAYERS || t->p.gather.karis)
+    if (t->p.engine == HF_ENGINE_LAYERS || t->p.chapter.karis)
         return;
     struct scene s = copied(&t->s);
     struct picture want = picture_copy(&t->out);
@@ -155,7 +163,7 @@ static void mirrored(const struct trial *t)
 {
     // A kernel of each pixel's own size takes its taps one by one, in their order.
     if (t->p.engine == HF_ENGINE_LAYERS || t->p.engine == HF_ENGINE_HEXAGON || t->p.aperture.blades ||
-        (t->p.engine == HF_ENGINE_GATHER && t->p.gather.per_pixel_kernel))
+        (is_fields(&t->p) && t->p.chapter.per_pixel_kernel))
         return;
     const int w = t->s.colour.width & ~3, h = t->s.colour.height & ~3;
     if (!w || !h)
@@ -290,8 +298,7 @@ static void constant(const struct trial *t, struct rng *rng)
         }
     CHECK_MSG(worst <= constant_bound(&t->p), "%s: %g becomes off by %g, bound %g", name_of(t), (double)v, worst,
               constant_bound(&t->p));
-    const int exact =
-        t->p.engine != HF_ENGINE_HEXAGON && (t->p.engine != HF_ENGINE_GATHER || t->p.gather.fill == HF_FILL_MEAN);
+    const int exact = t->p.engine != HF_ENGINE_HEXAGON && t->p.engine != HF_ENGINE_CHAPTER;
     CHECK_MSG(!thin || !exact, "%s: %d opaque samples are not", name_of(t), thin);
     picture_free(&out);
     scene_free(&s);

@@ -457,8 +457,8 @@ static void reasons(void)
             CHECK_MSG(!r.pass[i].skipped || strcmp(r.pass[i].skipped, "sharp: copied"), "%s, %s",
                       hf_engine_name(p.engine), r.pass[i].name);
         }
-        // Fill with area kernels, the gaussian's passes for sigma, patterns of layers.
-        CHECK_INT(left_out > 0, e == HF_ENGINE_GATHER || e == HF_ENGINE_GAUSSIAN || e == HF_ENGINE_LAYERS);
+        // The gaussian's passes for sigma, patterns of layers.
+        CHECK_INT(left_out > 0, e == HF_ENGINE_GAUSSIAN || e == HF_ENGINE_LAYERS);
     }
     scene_free(&s);
     hf_close(&c);

@@ -56,9 +56,13 @@ static struct scene random_scene(struct rng *rng, enum hf_engine engine, const c
                     s.depth.plane[0][i] = 20;
     }
     // Values that blending with a weight of 0 would change. Not all engines can sum values that overflow.
-    const float odd[] = {-0.0f,  -1e-3f,
-                         1e-42f, engine == HF_ENGINE_GATHER || engine == HF_ENGINE_HEXAGON ? FLT_MAX : 1e30f,
-                         NAN,    INFINITY};
+    const float odd[] = {
+        -0.0f,
+        -1e-3f,
+        1e-42f,
+        engine == HF_ENGINE_GATHER || engine == HF_ENGINE_CHAPTER || engine == HF_ENGINE_HEXAGON ? FLT_MAX : 1e30f,
+        NAN,
+        INFINITY};
     for (int k = 0; k < w * h / 30; k++)
         s.colour.plane[rng_below(rng, 3)][rng_below(rng, w * h)] = odd[rng_below(rng, rng_below(rng, 8) ? 3 : 6)];
     return s;
@@ -79,15 +83,15 @@ static struct hf_params random_params(struct rng *rng, enum hf_engine engine)
     p.run.deterministic = rng_below(rng, 2);
     p.highlight.gain = rng_below(rng, 3) ? 1 : rng_range(rng, 1, 20);
     p.highlight.threshold = rng_range(rng, 0, 0.99f);
-    if (engine == HF_ENGINE_GATHER) {
-        p.gather.faithful = rng_below(rng, 3) == 0;
-        p.gather.karis = rng_below(rng, 3) == 0;
-        p.gather.per_pixel_kernel = rng_below(rng, 3) == 0;
-        p.gather.bicubic = rng_below(rng, 3) == 0;
-        p.gather.fill = (enum hf_fill)rng_below(rng, 3);
-        p.gather.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
+    if (engine == HF_ENGINE_GATHER || engine == HF_ENGINE_CHAPTER) {
+        p.chapter.faithful = rng_below(rng, 3) == 0;
+        p.gather.karis = p.chapter.karis = rng_below(rng, 3) == 0;
+        p.gather.per_pixel_kernel = p.chapter.per_pixel_kernel = rng_below(rng, 3) == 0;
+        p.gather.bicubic = p.chapter.bicubic = rng_below(rng, 3) == 0;
+        p.chapter.fill = (enum hf_fill)rng_below(rng, 4);
+        p.gather.storage = p.chapter.storage = (enum hf_storage)(rng_below(rng, 5) % 3);
         p.aperture.blades = rng_below(rng, 3) ? 0 : 5 + rng_below(rng, 5);
-        p.gather.rings = rng_below(rng, 3) ? HF_DERIVE : 1 + rng_below(rng, 4);
+        p.chapter.rings = rng_below(rng, 3) ? HF_DERIVE : 1 + rng_below(rng, 4);
         return p;
     }
     p.hexagon.resolution = p.scatter.resolution = p.gaussian.resolution =

@@ -173,18 +173,18 @@ static struct hf_params any_params(struct bytes *b)
         p.view.display_height = scaled(any_choice(b, 255), 16, -16);
         maybe(b, &p.view.pixel_aspect);
     }
-    p.gather.storage = (enum hf_storage)any_choice(b, 3);
-    p.gather.fill = (enum hf_fill)any_choice(b, 3);
+    p.gather.storage = p.chapter.storage = (enum hf_storage)any_choice(b, 3);
+    p.chapter.fill = (enum hf_fill)any_choice(b, 3);
     const unsigned flags = take_byte(b);
-    p.gather.faithful = flags & 1;
-    p.gather.karis = flags >> 1 & 1;
-    p.gather.per_pixel_kernel = flags >> 2 & 1;
-    p.gather.bicubic = flags >> 3 & 1;
+    p.chapter.faithful = flags & 1;
+    p.gather.karis = p.chapter.karis = flags >> 1 & 1;
+    p.gather.per_pixel_kernel = p.chapter.per_pixel_kernel = flags >> 2 & 1;
+    p.gather.bicubic = p.chapter.bicubic = flags >> 3 & 1;
     p.hexagon.uniform = flags >> 4 & 1;
     p.run.deterministic = flags >> 5 & 1;
     p.run.no_skip = flags >> 6 & 1;
     if (take_byte(b) < 30)
-        p.gather.rings = scaled(any_choice(b, 70), 1, -1);
+        p.chapter.rings = scaled(any_choice(b, 70), 1, -1);
     p.hexagon.resolution = (enum hf_resolution)any_choice(b, 2);
     p.scatter.resolution = (enum hf_resolution)any_choice(b, 2);
     p.gaussian.resolution = (enum hf_resolution)any_choice(b, 3);
@@ -298,8 +298,8 @@ static void any_layers(struct bytes *b, struct hf_layers_params *p)
 static void any_more_params(struct bytes *b, struct hf_params *p, struct hf_image *picture, struct area areas[4])
 {
     any_layers(b, &p->layers);
-    p->gather.downsample = (enum hf_downsample)any_choice(b, 3);
-    p->gather.division = (enum hf_division)any_choice(b, 4);
+    p->chapter.downsample = (enum hf_downsample)any_choice(b, 3);
+    p->chapter.division = (enum hf_division)any_choice(b, 4);
     p->gaussian.faithful = take_byte(b) & 1;
     if (now_and_then(b))
         p->gaussian.by_depth = scaled(any_choice(b, 4), 1, -1);

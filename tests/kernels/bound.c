@@ -72,7 +72,7 @@ static double bound_down(const struct world *w, int c, int x, int y)
 }
 
 // The values at (x +- dx, y +- dy), each counted once.
-static double mirrored(const struct world *w, enum hf_gather_buf b, int c, int x, int y, int dx, int dy)
+static double mirrored(const struct world *w, int b, int c, int x, int y, int dx, int dy)
 {
     double sum = 0;
     for (int v = y - dy; v <= y + dy; v += 2 * dy + !dy)
@@ -82,9 +82,9 @@ static double mirrored(const struct world *w, enum hf_gather_buf b, int c, int x
 }
 
 // Sum of |weight x value| over the lattice.
-static double lattice_sum(const struct world *w, enum hf_gather_buf b, int c, int x, int y)
+static double lattice_sum(const struct world *w, int b, int c, int x, int y)
 {
-    const struct hf_taps *t = &w->gather.taps;
+    const struct hf_taps *t = world_taps(w);
     double sum = 0;
     for (int k = 0; k < t->rows; k++)
         for (int i = t->first[k]; i < t->first[k + 1]; i++)
@@ -95,9 +95,9 @@ static double lattice_sum(const struct world *w, enum hf_gather_buf b, int c, in
 }
 
 // The sum of the magnitudes of all four neighbours of all taps of the per-pixel kernel.
-static double taps_sum(const struct world *w, enum hf_gather_buf b, int c, int x, int y)
+static double taps_sum(const struct world *w, int b, int c, int x, int y)
 {
-    const struct hf_taps *t = &w->gather.taps;
+    const struct hf_tap_set *t = &w->chapter.taps;
     const float scale = reference_at(w, HF_BUF_COC4, 1, x, y);
     double sum = 0;
     for (int i = 0; i < t->count; i++) {
@@ -112,8 +112,8 @@ static double taps_sum(const struct world *w, enum hf_gather_buf b, int c, int x
 // addition per row. Karis: luminance 3, the weight 5, and 6 more for its product with the value.
 static double gather_roundings(const struct world *w)
 {
-    const struct hf_taps *t = &w->gather.taps;
-    return 2 * t->rx + 2 * t->ry + 4 + (w->gather.karis ? 6 : 0);
+    const struct hf_taps *t = world_taps(w);
+    return 2 * t->rx + 2 * t->ry + 4 + (w->chapter.fields.karis ? 6 : 0);
 }
 
 // A quotient of sums has the errors of both, and those of the division, or of the inverse and the product with it.
@@ -137,7 +137,7 @@ static double bound_near(const struct world *w, int c, int x, int y, float want)
         value += fabs((double)reference_at(w, HF_BUF_COLOR4, c, x, y));
         mixed = 4 * FLT_EPSILON * value;
     }
-    if (!w->gather.karis)
+    if (!w->chapter.fields.karis)
         return k * lattice_sum(w, HF_BUF_COLOR4, c, x, y) + mixed;
     const double divisor = lattice_sum(w, HF_BUF_WEIGHT, 0, x, y);
     return bound_quotient(k * lattice_sum(w, HF_BUF_COLORW4, c, x, y), k * divisor, divisor, value) + mixed;
@@ -145,19 +145,20 @@ static double bound_near(const struct world *w, int c, int x, int y, float want)
 
 static double bound_far(const struct world *w, int c, int x, int y, float want)
 {
-    const enum hf_gather_buf colour = w->gather.karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
-    const enum hf_gather_buf weight = w->gather.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
+    const int colour = w->chapter.fields.karis ? HF_BUF_COLORFARW4 : HF_BUF_COLORFAR4;
+    const int weight = w->chapter.fields.karis ? HF_BUF_WEIGHT : HF_BUF_COC4;
     if (!(reference_at(w, HF_BUF_COC4, 1, x, y) > 0))
         return 0;
     // Products of denormals may be off by one denormal step.
-    const int n = w->gather.per_pixel_kernel ? 4 * w->gather.taps.count
-                                             : (2 * w->gather.taps.rx + 1) * (2 * w->gather.taps.ry + 1);
+    const int n = w->chapter.fields.per_pixel_kernel
+                      ? 4 * w->chapter.taps.count
+                      : (2 * w->chapter.taps.taps.rx + 1) * (2 * w->chapter.taps.taps.ry + 1);
     const double denormal = n * 0x1p-149;
     double k = gather_roundings(w) * FLT_EPSILON, sum, divisor, divisor_sum;
-    if (w->gather.per_pixel_kernel) {
+    if (w->chapter.fields.per_pixel_kernel) {
         // Three interpolations with 3 roundings each; the last one sees the others' magnitudes: 6 of all four
         // neighbours. Then one addition per tap.
-        k = (6 + w->gather.taps.count + (w->gather.karis ? 6 : 0)) * FLT_EPSILON;
+        k = (6 + w->chapter.taps.count + (w->chapter.fields.karis ? 6 : 0)) * FLT_EPSILON;
         sum = taps_sum(w, colour, c, x, y);
         divisor_sum = taps_sum(w, weight, 1, x, y);
         divisor = reference_at(w, HF_BUF_SUM, 1, x, y);
@@ -185,7 +186,7 @@ static double largest_near(const struct world *w, int b, int c, int x, int y)
 static double area_roundings(const struct world *w)
 {
     const struct hf_taps *t = world_taps(w);
-    return (w->gather.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 17;
+    return (w->gather.fields.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 17;
 }
 
 // What near pixels occlude is divided by the part of the kernel that lies in the frame, or by all weight that counts.
@@ -196,14 +197,15 @@ static double area_near_bound(const struct world *w, int c, int x, int y)
 {
     const struct hf_taps *t = world_taps(w);
     const struct hf_setup *s = &w->setup;
-    double most = 1, part = hf_taps_part(t, -x, s->half_width - x, -y, s->half_height - y);
+    double most = 1,
+           part = hf_area_part(&w->gather.levels[0].level[0].kernel, -x, s->half_width - x, -y, s->half_height - y);
     if (c >= 0)
         most = fmax(largest_near(w, HF_BUF_COLOR4, c, x, y), largest_near(w, HF_BUF_COLORNEAR4, c, x, y));
     if (!hf_gather_is_simple(s, HF_NEAR))
-        part = fmin(part, t->weight[0] * t->scale) / (w->gather.karis ? 100 : 1);
+        part = fmin(part, t->weight[0] * t->scale) / (w->gather.fields.karis ? 100 : 1);
     double behind = 0;
     if (!hf_gather_is_simple(s, HF_NEAR) && c >= 0) {
-        const double weight = reference_at(w, HF_BUF_BEHIND_WEIGHT, !w->gather.karis, x, y);
+        const double weight = reference_at(w, HF_BUF_BEHIND_WEIGHT, !w->gather.fields.karis, x, y);
         behind = weight > 0 ? fabs((double)reference_at(w, HF_BUF_BEHIND, c, x, y)) / weight : 0;
     }
     return area_roundings(w) * FLT_EPSILON * (most * 2 / part + behind);
@@ -218,13 +220,14 @@ static double area_far_bound(const struct world *w, int c, int x, int y)
     const int simple = hf_gather_is_simple(&w->setup, HF_FAR);
     double worst = 0, sum = 0, weight = 0;
     for (int i = l->count - 1; i >= 0; i--) {
-        const struct hf_taps *k = &l->level[i].taps;
+        const struct hf_area_kernel *kernel = &l->level[i].kernel;
+        const struct hf_taps *k = &kernel->taps;
         for (int v = y - k->ry; v <= y + k->ry; v++)
             for (int u = x - k->rx; u <= x + k->rx; u++) {
-                const double part = hf_taps_part(k, u - x, u - x + 1, v - y, v - y + 1);
+                const double part = hf_area_part(kernel, u - x, u - x + 1, v - y, v - y + 1);
                 const double reach =
                     simple ? 1 : hf_level_spread(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_MOST, u, v));
-                const double karis = w->gather.karis ? reference_at(w, HF_BUF_WEIGHT, 0, u, v) : 1;
+                const double karis = w->gather.fields.karis ? reference_at(w, HF_BUF_WEIGHT, 0, u, v) : 1;
                 sum += part * reach * karis * fabs((double)reference_at(w, HF_BUF_COLORFAR4, c, u, v));
                 weight += part * reach * karis * reference_at(w, HF_BUF_COC4, HF_AREA_FAR, u, v);
             }
@@ -237,7 +240,7 @@ static double area_far_bound(const struct world *w, int c, int x, int y)
 
 static double area_bound(const struct world *w, int b, int c, int x, int y)
 {
-    const int cancels = w->gather.karis && w->colours == COLOURS_MIXED;
+    const int cancels = w->gather.fields.karis && w->colours == COLOURS_MIXED;
     if (b == HF_BUF_COLORNEAR4 || b == HF_BUF_COLORFAR4)  // two products, three sums
         return 5 * FLT_EPSILON * bound_largest_sample(w, c, 2 * x - 1, 2 * y - 1, 2 * x + 2, 2 * y + 2);
     if (b == HF_BUF_COVER)
@@ -253,8 +256,8 @@ double bound_buffer(const struct world *w, int b, int c, int x, int y, float wan
         return hexagon_bound_buffer(w, b, c, x, y, want);
     double bound = 0;
     // Luminance of colours of both signs can cancel, and then no bound holds.
-    const int cancels = w->gather.karis && w->colours == COLOURS_MIXED;
-    if (w->gather.area)
+    const int cancels = w->chapter.fields.karis && w->colours == COLOURS_MIXED;
+    if (!is_chapter(w))
         bound = area_bound(w, b, c, x, y);
     else if (b == HF_BUF_COLORFAR4)
         bound = bound_down(w, c, x, y);
@@ -262,7 +265,7 @@ double bound_buffer(const struct world *w, int b, int c, int x, int y, float wan
         bound = cancels ? INFINITY : bound_near(w, c, x, y, want);
     else if (b == HF_BUF_FAR)
         bound = cancels ? INFINITY : bound_far(w, c, x, y, want);
-    return bound > 0 ? bound + 0x1p-140 + storage_step(w, b == HF_BUF_COVER ? 3 : c, want, got) : 0;
+    return bound > 0 ? bound + 0x1p-140 + storage_step(w, !is_chapter(w) && b == HF_BUF_COVER ? 3 : c, want, got) : 0;
 }
 
 // Composite. Far weights: d 2, products 8, their sum 10, inverse 11, together 20; the rest of the colour 25, the blend
@@ -272,17 +275,18 @@ double bound_pixel(const struct world *w, int c, int x, int y, float want, float
 {
     if (w->engine == &hf_hexagon_engine)
         return hexagon_bound_pixel(w, c, x, y) + format_step(w, c, want, got);
-    const int reach = w->gather.bicubic ? 2 : 1;
+    const int bicubic = is_chapter(w) ? w->chapter.fields.bicubic : w->gather.fields.bicubic, reach = bicubic ? 2 : 1;
+    const int near = is_chapter(w) ? (int)HF_BUF_NEAR_FILL : (int)HF_BUF_NEAR;
+    const int far = is_chapter(w) ? (int)HF_BUF_FAR_FILL : (int)HF_BUF_FAR;
     double most = bound_largest_sample(w, c, x - 1, y - 1, x + 1, y + 1);
     for (int v = y / 2 - reach; v <= y / 2 + reach && c < w->setup.channels; v++)
         for (int u = x / 2 - reach; u <= x / 2 + reach; u++) {
-            const int area = w->gather.area;
             if (w->near)
-                most = fmax(most, fabs((double)reference_at(w, area ? HF_BUF_NEAR : HF_BUF_NEAR_FILL, c, u, v)));
+                most = fmax(most, fabs((double)reference_at(w, near, c, u, v)));
             if (w->far && abs(u - x / 2) < 2 && abs(v - y / 2) < 2)
-                most = fmax(most, fabs((double)reference_at(w, area ? HF_BUF_FAR : HF_BUF_FAR_FILL, c, u, v)));
+                most = fmax(most, fabs((double)reference_at(w, far, c, u, v)));
         }
-    const int roundings = (w->far ? 30 : 0) + (w->near ? (w->gather.bicubic ? 37 : 16) : 0);
+    const int roundings = (w->far ? 30 : 0) + (w->near ? (bicubic ? 37 : 16) : 0);
     return (roundings + 1) * FLT_EPSILON * most + 0x1p-140 + storage_step(w, c, want, got) +
            format_step(w, c, want, got);
 }

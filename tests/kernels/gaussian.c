@@ -37,7 +37,7 @@ void blend_row_make(struct world *w, int count)
     start(w);
     struct rng *r = &w->rng;
     w->params.engine = HF_ENGINE_GAUSSIAN;
-    w->params.gaussian.faithful = w->params.gather.faithful;
+    w->params.gaussian.faithful = w->params.chapter.faithful;
     w->params.aperture.blades = 0;
     if (rng_one_in(r, 2)) {
         w->params.model = HF_MODEL_RANGE;

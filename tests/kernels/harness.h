@@ -7,6 +7,7 @@
 #ifndef HF_TESTS_HARNESS_H
 #define HF_TESTS_HARNESS_H
 
+#include "engine/chapter/chapter.h"
 #include "engine/gather/gather.h"
 #include "engine/gaussian/kernels.h"
 #include "engine/hexagon/kernels.h"
@@ -43,6 +44,7 @@ float random_store_value(struct rng *r);
 struct kernels {
     struct hf_pixel_kernels pixel;
     struct hf_gather_kernels gather;
+    struct hf_chapter_kernels chapter;
     struct hf_hexagon_kernels hexagon;
     struct hf_scatter_kernels scatter;
     struct hf_gaussian_kernels gaussian;
@@ -115,6 +117,7 @@ struct world {
     struct hf_settings resolved;
     struct hf_setup setup;
     struct hf_gather gather;
+    struct hf_chapter chapter;
     struct hf_gaussian gaussian;
     struct hf_hexagon hexagon;
     struct hf_scatter scatter;
@@ -122,7 +125,7 @@ struct world {
     enum colours colours;
     struct hf_image src, dst;  // in ARENA_MADE
     struct hf_depth depth;
-    const struct hf_engine_def *engine;  // the engine whose buffers these are
+    const struct hf_engine_def *engine;  // whose buffers they are: of make_setup the gather or the chapter
     struct hf_buf buf[HF_MAX_BUFS];
     struct hf_rect r;
     int near, far;
@@ -191,10 +194,20 @@ extern const struct test tests[];
 extern const int test_count;
 
 // passes.c
-// The gather's largest kernel, of both fields.
+// A pass of the gather, or of the chapter.
+enum { CHAPTER_PASS = HF_MAX_PASSES };
+static inline int is_chapter(const struct world *w)
+{
+    return w->engine == &hf_chapter_engine;
+}
+static inline struct hf_fields *world_fields(struct world *w)
+{
+    return is_chapter(w) ? &w->chapter.fields : &w->gather.fields;
+}
+// The largest kernel, of both fields.
 const struct hf_taps *world_taps(const struct world *w);
-void pass_make(struct world *w, int pass);
-void pass_call(struct world *w, const struct kernels *k, enum arena a, int pass);
+void pass_make(struct world *w, int index);
+void pass_call(struct world *w, const struct kernels *k, enum arena a, int index);
 int pass_check(const struct world *w, const struct level *l, char message[256]);
 int pass_pixels(const struct world *w);
 // Choose a random part of the frame to compute, half-resolution pixels.

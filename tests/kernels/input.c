@@ -38,13 +38,17 @@ static void random_options(struct rng *r, struct hf_params *p)
     if (rng_one_in(r, 2))
         p->max_radius = ceilf(p->max_radius);
     p->view.pixel_aspect = rng_one_in(r, 2) ? 1 : rng_float(r, 0.5f, 2);
-    p->gather.storage = (enum hf_storage)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
-    p->gather.faithful = rng_one_in(r, 4);
-    p->gather.karis = rng_one_in(r, 4);
-    p->gather.per_pixel_kernel = rng_one_in(r, 4);
-    p->gather.bicubic = rng_one_in(r, 3);
-    p->gather.fill = rng_one_in(r, 2) ? HF_FILL_MEAN : (enum hf_fill)rng_int(r, 0, 3);
-    p->gather.downsample = (enum hf_downsample)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->chapter.storage = (enum hf_storage)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->chapter.faithful = rng_one_in(r, 4);
+    p->chapter.karis = rng_one_in(r, 4);
+    p->chapter.per_pixel_kernel = rng_one_in(r, 4);
+    p->chapter.bicubic = rng_one_in(r, 3);
+    p->chapter.fill = (enum hf_fill)rng_int(r, 0, 3);
+    p->chapter.downsample = (enum hf_downsample)(rng_one_in(r, 2) ? 0 : rng_int(r, 0, 2));
+    p->gather = (struct hf_gather_params){.storage = p->chapter.storage,
+                                          .karis = p->chapter.karis,
+                                          .per_pixel_kernel = p->chapter.per_pixel_kernel,
+                                          .bicubic = p->chapter.bicubic};
     p->range.blend = rng_one_in(r, 3) ? HF_BLEND_SMOOTHSTEP : HF_BLEND_LINEAR;
     p->aperture.blades = rng_one_in(r, 3) ? rng_int(r, 5, 9) : 0;
     p->aperture.rotation = rng_one_in(r, 2) ? 0 : rng_float(r, -180, 180);
@@ -106,9 +110,11 @@ void make_setup(struct world *w, int half_width, int half_height)
             random_model(r, &w->params);
             random_options(r, &w->params);
         }
-        world_setup(w, &w->gather);
-        if (!w->resolved.sharp &&
-            hf_gather_engine.own.prepare(&w->gather, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK)
+        void *own = is_chapter(w) ? (void *)&w->chapter : (void *)&w->gather;
+        w->params.engine = is_chapter(w) ? HF_ENGINE_CHAPTER : HF_ENGINE_GATHER;
+        world_setup(w, own);
+        const struct hf_engine_def *e = is_chapter(w) ? &hf_chapter_engine : &hf_gather_engine;
+        if (!w->resolved.sharp && e->own.prepare(own, &w->setup, &w->resolved.params, &hf_mem_default) != HF_OK)
             abort();
     } while (w->resolved.sharp);
     w->colours = (enum colours)(w->bench ? COLOURS_PLAIN : rng_int(r, 0, COLOURS_COUNT - 1));

@@ -24,6 +24,7 @@ static void init(struct kernels *k, enum hf_isa isa, int fused)
     memset(k, 0, sizeof *k);
     hf_pixel_kernels_init(&k->pixel, isa, fused);
     hf_gather_kernels_init(&k->gather, isa, fused);
+    hf_chapter_kernels_init(&k->chapter, isa, fused);
     hf_hexagon_kernels_init(&k->hexagon, isa, fused);
     hf_scatter_kernels_init(&k->scatter, isa, fused);
     hf_gaussian_kernels_init(&k->gaussian, isa, fused);

@@ -23,15 +23,18 @@
     }
 
 const struct test tests[] = {
-    PASS("coc", HF_GATHER_COC, 1200),
-    PASS("down", HF_GATHER_DOWN, 2000),
-    PASS("max_x", HF_GATHER_MAX_X, 960),
-    PASS("max_y", HF_GATHER_MAX_Y, 960),
-    PASS("blur_x", HF_GATHER_BLUR_X, 960),
-    PASS("blur_y", HF_GATHER_BLUR_Y, 960),
-    PASS("gather", HF_GATHER_COMPUTATION, 1600),
-    PASS("fill", HF_GATHER_FILL, 1600),
-    PASS("composite", HF_GATHER_COMPOSITE, 2400),
+    PASS("coc", HF_PASS_COC, 1200),
+    PASS("max_x", HF_PASS_MAX_X, 960),
+    PASS("max_y", HF_PASS_MAX_Y, 960),
+    PASS("blur_x", HF_PASS_BLUR_X, 960),
+    PASS("blur_y", HF_PASS_BLUR_Y, 960),
+    PASS("gather_down", HF_PASS_DOWN, 1200),
+    PASS("gather_computation", HF_PASS_COMPUTATION, 1000),
+    PASS("gather_composite", HF_GATHER_COMPOSITE, 1400),
+    PASS("chapter_down", CHAPTER_PASS + HF_PASS_DOWN, 1200),
+    PASS("chapter_computation", CHAPTER_PASS + HF_PASS_COMPUTATION, 1000),
+    PASS("chapter_fill", CHAPTER_PASS + HF_CHAPTER_FILL, 1600),
+    PASS("chapter_composite", CHAPTER_PASS + HF_CHAPTER_COMPOSITE, 1400),
     ROW("coc_row", 0, 2000, coc_row_make, coc_row_call, row_check),
     ROW("sharp_row", 0, 2000, sharp_row_make, sharp_row_call, row_check),
     ROW("load_rgba32f", HF_FORMAT_RGBA32F, 1000, load_make, load_call, load_check),
@@ -155,17 +158,17 @@ struct outcome {
 };
 
 static void report(const struct test *t, const struct level *l, uint64_t seed, int number, const char *message,
-                   const struct world *w)
+                   struct world *w)
 {
     const struct hf_setup *s = &w->setup;
+    const struct hf_fields *g = world_fields(w);
     printf("FAILED %s, %s, case %d of seed %llu: %s\n", t->name, l->name, number, (unsigned long long)seed, message);
     printf("    frame %d x %d, area %d..%d x %d..%d, channels %d, storage %d, radius %g, strength %g, blades %d, fill "
            "%d%s%s%s%s%s%s, formats %d %d, row %d lane %d + %d\n",
            s->width, s->height, w->r.x0, w->r.x1, w->r.y0, w->r.y1, s->channels, (int)s->storage, s->max_radius,
-           w->params.range.strength, w->params.aperture.blades, (int)w->gather.fill, w->gather.karis ? ", karis" : "",
-           w->gather.per_pixel_kernel ? ", per-pixel" : "", w->gather.bicubic ? ", bicubic" : "",
-           s->faithful ? ", faithful" : "", w->near ? ", near" : "", w->far ? ", far" : "", (int)w->src.format,
-           (int)w->dst.format, w->y, w->x, w->n);
+           w->params.range.strength, w->params.aperture.blades, (int)w->chapter.fill, g->karis ? ", karis" : "",
+           g->per_pixel_kernel ? ", per-pixel" : "", g->bicubic ? ", bicubic" : "", s->faithful ? ", faithful" : "",
+           w->near ? ", near" : "", w->far ? ", far" : "", (int)w->src.format, (int)w->dst.format, w->y, w->x, w->n);
 }
 
 static int run_level(struct world *w, const struct test *t, const struct level *l, char message[256])
@@ -308,6 +311,7 @@ int main(int argc, char **argv)
     if (!failed && o.bench)
         bench_run(&world, levels, level_count, o.kernel);
     hf_gather_engine.own.release(&world.gather, &hf_mem_default);
+    hf_chapter_engine.own.release(&world.chapter, &hf_mem_default);
     hf_hexagon_engine.own.release(&world.hexagon, &hf_mem_default);
     return failed != 0;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nine passes one by one: random input buffers, only as large as engine.c's table says that they are read.
+// The passes of gather and chapter one by one: random input buffers, only as large as engine.c's table says that they are read.
 #include <math.h>
 #include <stdio.h>
 
 #include "harness.h"
 
-#define BIT(buf) (1u << HF_BUF_##buf)
+#define BIT(buf) HF_BIT(buf)
 
 struct hf_rect rect_grown(struct hf_rect r, struct hf_reach by)
 {
@@ -24,11 +24,11 @@ static struct hf_rect rows_of(const struct world *w, int b, struct hf_rect r)
 // and where nothing covers, the field is 0.
 static float buffer_value(struct world *w, int b, int x, int y)
 {
-    const int is_far = b == HF_BUF_COLORFAR4 || b == HF_BUF_FAR || b == HF_BUF_FAR_FILL;
+    const int is_far = b == HF_BUF_COLORFAR4 || (is_chapter(w) && (b == HF_BUF_FAR || b == HF_BUF_FAR_FILL));
     const float colour = random_colour(&w->rng, w->colours);
-    if (b == HF_BUF_COLORNEAR4)
+    if (!is_chapter(w) && b == HF_BUF_COLORNEAR4)
         return colour * *world_at(w, ARENA_MADE, HF_BUF_COC4, HF_AREA_NEAR, x, y);
-    if (b == HF_BUF_NEAR && w->gather.area)
+    if (b == HF_BUF_NEAR && !is_chapter(w))
         return colour * *world_at(w, ARENA_MADE, HF_BUF_COVER, 0, x, y);
     if (!is_far)
         return colour;
@@ -36,9 +36,9 @@ static float buffer_value(struct world *w, int b, int x, int y)
     return b == HF_BUF_COLORFAR4 ? colour * f : f > 0 ? colour : 0;
 }
 
-static int is_coc(int b)
+static int is_coc(const struct world *w, int b)
 {
-    return b == HF_BUF_COC || b == HF_BUF_COC4 || b == HF_BUF_COVER || b == HF_BUF_FAR_PART ||
+    return b == HF_BUF_COC || b == HF_BUF_COC4 || (!is_chapter(w) && (b == HF_BUF_COVER || b == HF_BUF_FAR_PART)) ||
            (b >= HF_BUF_MAX_X && b <= HF_BUF_BLUR);
 }
 
@@ -59,7 +59,7 @@ static float coc_value(struct world *w, int mode, int patch)
 // With area kernels, the near and far parts of a quad sum to at most 1.
 static float part_at_most(const struct world *w, int b, int c, int x, int y, float v)
 {
-    if (b != HF_BUF_COC4 || c != HF_AREA_FAR || !w->gather.area)
+    if (b != HF_BUF_COC4 || c != HF_AREA_FAR || is_chapter(w))
         return v;
     return fminf(v, 1 - *world_at(w, ARENA_MADE, HF_BUF_COC4, HF_AREA_NEAR, x, y));
 }
@@ -75,37 +75,40 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
                 const int patch = pattern >> ((x - r.x0) / size + 3 * ((y - r.y0) / 2) + 5 * (c / 2)) % 32 & 1;
                 world_put(
                     w, b, c, x, y,
-                    part_at_most(w, b, c, x, y, is_coc(b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y)));
+                    part_at_most(w, b, c, x, y, is_coc(w, b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y)));
             }
 }
 
 // A buffer that the flags exclude exists, but nobody has written it.
 static int wanted(const struct world *w, int b)
 {
-    const unsigned near = BIT(NEAR) | BIT(NEAR_FILL) | BIT(BLUR) | BIT(COLOR4) | BIT(COLORNEAR4) | BIT(COVER);
-    const unsigned far = BIT(FAR) | BIT(FAR_FILL) | BIT(COLORFAR4) | BIT(FAR_PART);
+    const unsigned near =
+        BIT(NEAR) | BIT(BLUR) | BIT(COLOR4) | (is_chapter(w) ? BIT(NEAR_FILL) : BIT(COLORNEAR4) | BIT(COVER));
+    const unsigned far = BIT(FAR) | BIT(COLORFAR4) | (is_chapter(w) ? BIT(FAR_FILL) : BIT(FAR_PART));
     return !(!w->near && (near >> b & 1)) && !(!w->far && (far >> b & 1));
 }
 
 static void make_inputs(struct world *w, int pass)
 {
-    const struct hf_pass *p = &hf_gather_engine.passes[pass];
-    const struct hf_reach halo = hf_gather_halo(&w->setup, p->halo);
+    const struct hf_pass *p = &w->engine->passes[pass];
+    const struct hf_reach halo = w->engine->plan.halo(&w->setup, p->halo);
+    const int cover = is_chapter(w) ? w->engine->buf_count : (int)HF_BUF_COVER;  // none, or that
     const unsigned all = p->reads | p->around;
-    for (int i = -2; i < HF_BUF_COUNT; i++) {
-        const int b = i == -2 ? HF_BUF_COVER : i < 0 ? HF_BUF_COC4 : i;  // first, because others depend on them
-        if (!(all >> b & 1) || i == HF_BUF_COC4 || i == HF_BUF_COVER || !buf_channels(w, b))
+    for (int i = -2; i < w->engine->buf_count; i++) {
+        const int b = i == -2 ? cover : i < 0 ? HF_BUF_COC4 : i;  // first: others depend on them
+        if (b == w->engine->buf_count || !(all >> b & 1) || i == HF_BUF_COC4 || i == cover || !buf_channels(w, b))
             continue;
         const struct hf_rect r = rows_of(w, b, p->around >> b & 1 ? rect_grown(w->r, halo) : w->r);
         make_buf(w, b, r);
         // Karis weights come from the colour, for either field; what near pixels occlude comes partly from far samples.
-        if (wanted(w, b) || (b == HF_BUF_COLOR4 && w->gather.karis) ||
-            (b == HF_BUF_COLORFAR4 && w->gather.area && hf_gather_leaves(&w->setup)))
+        if (wanted(w, b) || (b == HF_BUF_COLOR4 && world_fields(w)->karis) ||
+            (b == HF_BUF_COLORFAR4 && !is_chapter(w) && hf_gather_leaves(&w->setup)))
             fill_buf(w, b, r);
     }
-    if (pass == HF_GATHER_COC || pass == HF_GATHER_COMPOSITE)
-        make_depth(w, pass == HF_GATHER_COC || rng_one_in(&w->rng, 4));
-    if (pass == HF_GATHER_DOWN || pass == HF_GATHER_COMPOSITE)
+    const int composite = pass == w->engine->pass_count - 1;
+    if (pass == HF_PASS_COC || composite)
+        make_depth(w, pass == HF_PASS_COC || rng_one_in(&w->rng, 4));
+    if (pass == HF_PASS_DOWN || composite)
         make_image(w, &w->src, SLOT_SRC, rng_one_in(&w->rng, 4));
 }
 
@@ -163,23 +166,23 @@ void make_dst(struct world *w)
 
 static void make_outputs(struct world *w, int pass)
 {
-    for (int b = 0; b < HF_BUF_COUNT; b++)
-        if (hf_gather_engine.passes[pass].writes >> b & 1)
+    for (int b = 0; b < w->engine->buf_count; b++)
+        if (w->engine->passes[pass].writes >> b & 1)
             gather_output(w, REGION_FLOATS, b, rows_of(w, b, w->r));
-    if (pass == HF_GATHER_COMPUTATION) {
-        const struct hf_pass *p = &hf_gather_engine.passes[pass];
-        const struct hf_rect weighed = rect_grown(w->r, hf_gather_halo(&w->setup, HF_HALO_TAPS));
-        for (int b = 0; b < HF_BUF_COUNT; b++)
+    if (pass == HF_PASS_COMPUTATION) {
+        const struct hf_pass *p = &w->engine->passes[pass];
+        const struct hf_rect weighed = rect_grown(w->r, w->engine->plan.halo(&w->setup, HF_HALO_TAPS));
+        for (int b = 0; b < w->engine->buf_count; b++)
             if ((p->inside | p->weighed) >> b & 1 && buf_channels(w, b))
                 gather_output(w, REGION_SCRATCH, b, p->inside >> b & 1 ? w->r : weighed);
     }
-    if (pass == HF_GATHER_COMPOSITE)
+    if (pass == w->engine->pass_count - 1)
         make_dst(w);
 }
 
 const struct hf_taps *world_taps(const struct world *w)
 {
-    return w->gather.area ? &w->gather.levels[0].level[0].taps : &w->gather.taps;
+    return is_chapter(w) ? &w->chapter.taps.taps : &w->gather.levels[0].level[0].kernel.taps;
 }
 
 // Scratch is longer than render.c makes it; whole_frame.c tests that render.c's is long enough.
@@ -187,10 +190,10 @@ static void make_scratch(struct world *w)
 {
     const struct hf_taps *t = world_taps(w);
     const int width = w->r.x1 - w->r.x0, height = w->r.y1 - w->r.y0;
-    make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(w->gather.max_x, t->rx) + 8 + 2 * HF_PAD));
+    make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(world_fields(w)->max_x, t->rx) + 8 + 2 * HF_PAD));
     const size_t rows = 2 * (size_t)t->ry + 1, strips = HF_STRIP_PLANES * HF_STRIP * (size_t)height;
     const size_t gather = strips + (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 128;
-    const size_t near = 64 * (size_t)(height + 2 * w->gather.max_y), fill = 3 * w->line_floats;
+    const size_t near = 64 * (size_t)(height + 2 * world_fields(w)->max_y), fill = 3 * w->line_floats;
     const size_t floats = gather > near ? gather : near;
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);
 }
@@ -208,38 +211,46 @@ void random_area(struct world *w)
     w->r.y1 = rng_one_in(r, 2) ? s->half_height : rng_int(r, w->r.y0 + 1, s->half_height);
 }
 
-void pass_make(struct world *w, int pass)
+static int is_shared(int pass)
 {
+    return pass == HF_PASS_COC || (pass >= HF_PASS_MAX_X && pass <= HF_PASS_BLUR_Y);
+}
+
+void pass_make(struct world *w, int index)
+{
+    const int pass = index % CHAPTER_PASS;
     world_clear(w);
+    if (index >= CHAPTER_PASS || (is_shared(pass) && rng_one_in(&w->rng, 2)))
+        w->engine = &hf_chapter_engine;
     const int half_width = rng_int(&w->rng, 1, 70), half_height = rng_int(&w->rng, 1, 10);
-    do
-        make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
-    while (pass == HF_GATHER_FILL && w->gather.area && !w->bench);
+    make_setup(w, w->bench ? 128 : half_width, w->bench ? 64 : half_height);
     random_area(w);
-    // Passes of the gather with a reach also get random reaches.
-    if (!w->bench && pass >= HF_GATHER_MAX_X && pass <= HF_GATHER_BLUR_Y && rng_one_in(&w->rng, 4)) {
-        w->gather.max_x = w->gather.blur_x = rng_int(&w->rng, 1, 140);
-        w->gather.max_y = w->gather.blur_y = rng_int(&w->rng, 1, 140);
-        w->gather.edge_x = rng_one_in(&w->rng, 2) ? 1 : rng_float(&w->rng, 0, 1);
-        w->gather.edge_y = rng_one_in(&w->rng, 2) ? 1 : rng_float(&w->rng, 0, 1);
+    // Passes with a reach also get random reaches.
+    if (!w->bench && pass >= HF_PASS_MAX_X && pass <= HF_PASS_BLUR_Y && rng_one_in(&w->rng, 4)) {
+        struct hf_fields *g = world_fields(w);
+        g->max_x = g->blur_x = rng_int(&w->rng, 1, 140);
+        g->max_y = g->blur_y = rng_int(&w->rng, 1, 140);
+        g->edge_x = rng_one_in(&w->rng, 2) ? 1 : rng_float(&w->rng, 0, 1);
+        g->edge_y = rng_one_in(&w->rng, 2) ? 1 : rng_float(&w->rng, 0, 1);
     }
-    if (pass == HF_GATHER_COC)
-        w->r.x0 &= ~15;  // as cells have it
+    if (pass == HF_PASS_COC)
+        w->r.x0 &= ~15;  // as cells are
     w->is_pass = 1;
     w->near = w->far = 1;
-    if (!w->bench && (pass == HF_GATHER_DOWN || pass >= HF_GATHER_COMPUTATION) && rng_one_in(&w->rng, 3))
+    if (!w->bench && (pass == HF_PASS_DOWN || pass >= HF_PASS_COMPUTATION) && rng_one_in(&w->rng, 3))
         rng_one_in(&w->rng, 2) ? (w->near = 0) : (w->far = 0);
     make_scratch(w);
     make_inputs(w, pass);
     make_outputs(w, pass);
 }
 
-void pass_call(struct world *w, const struct kernels *k, enum arena a, int pass)
+void pass_call(struct world *w, const struct kernels *k, enum arena a, int index)
 {
+    const struct hf_passes *passes = is_chapter(w) ? &k->chapter.passes : &k->gather.passes;
     const struct hf_frame f = world_frame(w, k, a);
     if (a == ARENA_REFERENCE)
         w->reference = f;
-    k->gather.passes.pass[pass](&f, w->r);
+    passes->pass[index % CHAPTER_PASS](&f, w->r);
 }
 
 int pass_check(const struct world *w, const struct level *l, char message[256])

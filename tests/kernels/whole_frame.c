@@ -42,7 +42,7 @@ static void make_gaussian(struct world *w)
 {
     struct hf_params *p = &w->params;
     p->engine = HF_ENGINE_GAUSSIAN;
-    p->gaussian.faithful = p->gather.faithful;
+    p->gaussian.faithful = p->chapter.faithful;
     p->aperture.blades = 0;
     p->gaussian.iterations = rng_int(&w->rng, 0, 6);
     p->gaussian.sigma = rng_one_in(&w->rng, 3) ? rng_float(&w->rng, 0.1f, 40) : HF_DERIVE;
@@ -101,7 +101,9 @@ static void make_case(struct world *w, const struct frame_case *c)
         w->params.max_radius = c->max_radius ? c->max_radius : w->params.max_radius;
         w->params.range.strength = c->strength ? c->strength : w->params.range.strength;
         w->params.view.pixel_aspect = c->pixel_aspect ? c->pixel_aspect : w->params.view.pixel_aspect;
-        w->params.gather.karis &= w->colours != COLOURS_MIXED;  // with negative colours, luminance would cancel
+        const int keeps = w->colours != COLOURS_MIXED;  // with negative colours, luminance would cancel
+        w->params.gather.karis &= keeps;
+        w->params.chapter.karis &= keeps;
     } while (c->max_radius && (w->params.model == HF_MODEL_LENS || w->params.gather.per_pixel_kernel));
     if (rng_one_in(&w->rng, 4))
         make_gaussian(w);
@@ -111,6 +113,8 @@ static void make_case(struct world *w, const struct frame_case *c)
         make_scatter(w);
     else if (rng_one_in(&w->rng, 3))
         make_layers(w);
+    else
+        w->params.engine = rng_one_in(&w->rng, 2) ? HF_ENGINE_GATHER : HF_ENGINE_CHAPTER;
     const int in_place = rng_one_in(&w->rng, 4), bad = rng_one_in(&w->rng, 3);
     make_image(w, &w->src, SLOT_SRC, bad);
     if (in_place)
@@ -148,6 +152,7 @@ static void use_kernels(struct hf_context *c, const struct kernels *k)
     for (int fused = 0; fused < 2; fused++) {
         c->kernels[fused] = k->pixel;
         memcpy(c->engine[HF_ENGINE_GATHER].kernels[fused], &k->gather, sizeof k->gather);
+        memcpy(c->engine[HF_ENGINE_CHAPTER].kernels[fused], &k->chapter, sizeof k->chapter);
         memcpy(c->engine[HF_ENGINE_HEXAGON].kernels[fused], &k->hexagon, sizeof k->hexagon);
         memcpy(c->engine[HF_ENGINE_SCATTER].kernels[fused], &k->scatter, sizeof k->scatter);
         memcpy(c->engine[HF_ENGINE_GAUSSIAN].kernels[fused], &k->gaussian, sizeof k->gaussian);
@@ -284,9 +289,9 @@ static void check(int ok, const struct world *w, const struct level *l, const ch
            "model %d%s%s%s%s\n",
            hf_engine_name(p->engine), w->src.width, w->src.height, (int)w->src.format, (int)w->dst.format,
            w->src.data[0] == w->dst.data[0] ? " in place" : "", (int)p->gather.storage, p->max_radius,
-           p->range.strength, p->view.pixel_aspect, p->aperture.blades, (int)p->gather.fill, (int)w->depth.type,
+           p->range.strength, p->view.pixel_aspect, p->aperture.blades, (int)p->chapter.fill, (int)w->depth.type,
            (int)p->model, p->gather.karis ? ", karis" : "", p->gather.per_pixel_kernel ? ", per-pixel" : "",
-           p->gather.bicubic ? ", bicubic" : "", p->gather.faithful ? ", faithful" : "");
+           p->gather.bicubic ? ", bicubic" : "", p->chapter.faithful ? ", faithful" : "");
 }
 
 static void run_frame(struct world *w, const struct level *levels, int level_count, uint64_t seed, int number)
@@ -338,7 +343,7 @@ int main(int argc, char **argv)
     arenas_open();
     for (int i = first; i < SPECIALS + frames; i++)
         run_frame(&w, levels, level_count, seed ? strtoull(seed, NULL, 0) : 1, i);
-    hf_taps_free(&w.gather.taps, &hf_mem_default);
+    hf_gather_engine.own.release(&w.gather, &hf_mem_default);
     printf("hash of the C's pictures: %08x\n", hash);
     printf("%d passed, %d failed\n", passed, failed);
     return failed || !passed;

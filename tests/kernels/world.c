@@ -146,6 +146,8 @@ static struct hf_image *image_in(enum arena a, const struct hf_image *made, stru
 static const void *engine_kernels(const struct world *w, const struct kernels *k)
 {
     switch (w->setup.engine) {
+    case HF_ENGINE_CHAPTER:
+        return &k->chapter;
     case HF_ENGINE_HEXAGON:
         return &k->hexagon;
     case HF_ENGINE_SCATTER:

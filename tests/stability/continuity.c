@@ -77,7 +77,7 @@ static struct picture at(void *cookie, double t)
         depth.data = w->moved->plane[0];
     }
     struct picture out = render(w->r->c, &w->s->colour, &depth, &p);
-    if (p.gather.faithful)
+    if (p.chapter.faithful)
         out.plane[3] = demo_marks(w->pull == PULL_DOLLY ? w->moved : &w->s->depth, &p);
     return out;
 }
@@ -92,7 +92,7 @@ static const double FLOAT_STEP = 0.5;
 static const char *half_a_code(const struct run *r)
 {
     const struct hf_params *p = &r->subject->params;
-    return p->engine == HF_ENGINE_GATHER && p->gather.faithful
+    return p->engine == HF_ENGINE_CHAPTER && p->chapter.faithful
                ? "faithful: half a code, beside what the demo changes at once, which is left out; see continuity.c"
                : "half a code: what the smallest step of a float can make, see continuity.c";
 }
@@ -109,12 +109,17 @@ static double fall(double part, int truncations)
     return most;
 }
 
+static int is_packed(const struct hf_params *p)
+{
+    return (p->engine == HF_ENGINE_GATHER && p->gather.storage == HF_STORAGE_PACKED) ||
+           (p->engine == HF_ENGINE_CHAPTER && p->chapter.storage == HF_STORAGE_PACKED);
+}
+
 // The largest jump allowed from t on, and the reason.
 static double allowed(const struct run *r, enum pull pull, double t, const char **why)
 {
-    const struct hf_gather_params *g = &r->subject->params.gather;
-    const int is_gather = r->subject->params.engine == HF_ENGINE_GATHER, taps = is_gather && g->fill != HF_FILL_MEAN;
-    const int packed = is_gather && g->storage == HF_STORAGE_PACKED, chapters = taps && g->faithful;
+    const struct hf_params *p = &r->subject->params;
+    const int taps = p->engine == HF_ENGINE_CHAPTER, packed = is_packed(p), chapters = taps && p->chapter.faithful;
     // CoC is stored in bytes: one step of a pixel's own far CoC, and one of the near mean. A field is truncated when it
     // is stored, and so is the result. Where there is a maximum, far neighbours enter it by four times their CoC, up to
     // a quarter, at a pixel of no more: one byte more. Near colour and its maximum enter by eight times the mean's
@@ -210,8 +215,7 @@ static void first_blur(const struct run *r, const struct scene *s)
 {
     struct pulling w = {r, s, NULL, PULL_RADIUS};
     struct picture none = at(&w, 0), least = at(&w, 1e-6);
-    const int packed =
-        r->subject->params.engine == HF_ENGINE_GATHER && r->subject->params.gather.storage == HF_STORAGE_PACKED;
+    const int packed = is_packed(&r->subject->params);
     see(r, "radius 0 and the least above it: jump, 8-bit codes",
         packed ? "packed: two truncations to 5 bits, of the colour when it is read and of the result"
                : "half a code: what the smallest step of a float can make, see continuity.c",

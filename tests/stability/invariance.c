@@ -38,7 +38,7 @@ static void constants(const struct run *r)
             picture_fill(&s.colour, c, values[v]);
         struct picture out = render_scene(r->c, &s, &r->subject->params);
         const double bound = relative(r->subject, r->subject->constant);
-        if (r->subject->params.gather.faithful)
+        if (r->subject->params.chapter.faithful)
             see(r, "constant in: how far beyond it and 0, relative",
                 "the demo takes what holds no far colour for black, and the largest of that and a negative number",
                 beyond_zero(&out, values[v]), bound, "%g", values[v]);
@@ -99,7 +99,7 @@ static void highlight(const struct run *r, float radius, int x, int y)
     else
         see(r, "centre of a highlight, half resolution: off, pixels",
             "the middle of its quad is half a pixel away, and a thousandth; faithful takes the next quad's", off,
-            r->subject->params.gather.faithful ? 1.001 : 0.501, "radius %g at (%d, %d)", radius, x, y);
+            r->subject->params.chapter.faithful ? 1.001 : 0.501, "radius %g at (%d, %d)", radius, x, y);
     if (r->subject->params.engine == HF_ENGINE_SCATTER && (x - y) % 2 == 0)
         turned_disc(r, &out, radius, x, y);
     picture_free(&out);
@@ -109,9 +109,10 @@ static void highlight(const struct run *r, float radius, int x, int y)
 
 static void highlights(const struct run *r)
 {
-    // In the gather and the gaussian, radii below the largest are blends with the picture.
+    // In gather, chapter and gaussian, radii below the largest are blends with the picture.
     static const float radii[] = {12, -12, 0.3f, -0.7f, 1, 1.9f, -3, 6.5f, 9};
-    const int blends = r->subject->params.engine == HF_ENGINE_GATHER || r->subject->params.engine == HF_ENGINE_GAUSSIAN;
+    const enum hf_engine engine = r->subject->params.engine;
+    const int blends = engine == HF_ENGINE_GATHER || engine == HF_ENGINE_CHAPTER || engine == HF_ENGINE_GAUSSIAN;
     for (int i = 0; i < (blends ? 2 : 9); i++)
         for (int k = 0; k < 4; k++)
             highlight(r, radii[i], 47 + k % 2, 46 + k / 2);
@@ -150,7 +151,7 @@ static void bounds(const struct run *r)
         }
         see(r, "range of the sources: beyond it, of the largest", from_roundings, beyond,
             relative(r->subject, r->subject->roundings), "scene %u", i);
-        const int faithful = r->subject->params.gather.faithful;
+        const int faithful = r->subject->params.chapter.faithful;
         int thin = 0;
         for (size_t k = 0; k < samples_of(&out); k++)
             thin += out.plane[3][k] != 1 && !(faithful && takes_black(&s.depth, (int)k));

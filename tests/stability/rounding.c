@@ -26,7 +26,7 @@ static double local_largest(const struct picture *p, int c, int x, int y, int re
 static int reference_of(const struct run *r, const struct scene *s, const struct hf_depth *depth, struct picture *want)
 {
     const struct hf_params *p = &r->subject->params;
-    if (p->engine == HF_ENGINE_GATHER) {
+    if (p->engine == HF_ENGINE_GATHER || p->engine == HF_ENGINE_CHAPTER) {
         struct reference *ref = reference_render(&s->colour, depth, p, NULL, NULL);
         *want = reference_picture(ref);
         reference_free(ref);
@@ -88,9 +88,8 @@ static void against_double(const struct run *r)
 // fully.
 static double area_sums(const struct run *r, double radius)
 {
-    const struct hf_gather_params *g = &r->subject->params.gather;
-    const int by_area =
-        r->subject->params.engine == HF_ENGINE_GATHER && g->fill == HF_FILL_MEAN && !g->per_pixel_kernel;
+    const struct hf_params *p = &r->subject->params;
+    const int by_area = p->engine == HF_ENGINE_GATHER && !p->gather.per_pixel_kernel;
     const double h = ceil(radius / 2);
     return by_area ? 2 * (1 + (h + 1) + (2 * h + 1)) : 0;
 }

@@ -3,34 +3,29 @@
 
 #include <float.h>
 
-// How far a gather's pixel reads, in pixels: two radii of the near CoC, the taps, the fill and the upsampling, each in
+// How far a pixel of gather and chapter reads, in pixels: two radii of the near CoC, the taps, the fill and the upsampling, each in
 // half-resolution pixels.
-static int gather_margin(void)
+static int fields_margin(void)
 {
     const int h = (int)ceilf(STABILITY_RADIUS / 2);
     return 2 * (2 * h + h + 4);
 }
 
 // Twice the lattice's weights (making and adding them), 12 for the blurred CoC, 32 for downsampling and fill, 11 and
-// 102 for the composite: tests/engines/gather.c derives them.
-enum { GATHER_ROUNDINGS = 2 * 129 + 12 + 32 + 11 + 102 };
+// 102 for the composite: tests/engines/chapter.c derives them.
+enum { FIELDS_ROUNDINGS = 2 * 129 + 12 + 32 + 11 + 102 };
 
-static struct subject gather(const char *name, enum hf_fill fill, enum hf_storage storage)
+static struct subject fields(const char *name, enum hf_engine engine, enum hf_storage storage)
 {
     struct subject s = {name,
                         scene_params(),
                         EXPOSES | FLIPS_QUADS | TRANSPOSES | PERMUTES | EXACT,
-                        gather_margin(),
+                        fields_margin(),
                         32,
-                        GATHER_ROUNDINGS,
+                        FIELDS_ROUNDINGS,
                         0};
-    s.params.engine = HF_ENGINE_GATHER;
-    s.params.gather.fill = fill;
-    s.params.gather.storage = storage;
-    if (fill != HF_FILL_MAX)
-        s.promises |= KEEPS_ENERGY | ADDS;
-    if (fill == HF_FILL_MEAN)
-        s.promises |= SMOOTH;
+    s.params.engine = engine;
+    s.params.gather.storage = s.params.chapter.storage = storage;
     if (storage == HF_STORAGE_HALF) {
         s.promises &= ~(unsigned)(EXPOSES | EXACT | TRANSPOSES);
         s.step = 1.0 / 1024;
@@ -39,6 +34,22 @@ static struct subject gather(const char *name, enum hf_fill fill, enum hf_storag
         s.promises &= ~(unsigned)(EXPOSES | EXACT | TRANSPOSES | PERMUTES);
         s.step = 1.0 / 32;
     }
+    return s;
+}
+
+static struct subject gather(const char *name, enum hf_storage storage)
+{
+    struct subject s = fields(name, HF_ENGINE_GATHER, storage);
+    s.promises |= KEEPS_ENERGY | ADDS | SMOOTH;
+    return s;
+}
+
+static struct subject chapter(const char *name, enum hf_fill fill, enum hf_storage storage)
+{
+    struct subject s = fields(name, HF_ENGINE_CHAPTER, storage);
+    s.params.chapter.fill = fill;
+    if (fill == HF_FILL_NONE)
+        s.promises |= KEEPS_ENERGY | ADDS;
     return s;
 }
 
@@ -126,15 +137,15 @@ static struct subject gaussian(const char *name, float sigma, enum hf_resolution
 
 static struct subject per_pixel(void)
 {
-    struct subject s = gather("gather per pixel", HF_FILL_MEAN, HF_STORAGE_FLOAT);
+    struct subject s = gather("gather per pixel", HF_STORAGE_FLOAT);
     s.params.gather.per_pixel_kernel = 1;
     return s;
 }
 
 static struct subject faithful(void)
 {
-    struct subject s = gather("gather faithful", HF_FILL_MAX, HF_STORAGE_FLOAT);
-    s.params.gather.faithful = 1;
+    struct subject s = chapter("chapter faithful", HF_FILL_MAX, HF_STORAGE_FLOAT);
+    s.params.chapter.faithful = 1;
     // Its taps without a far colour count as black, and it compares the CoC of one quad with the colour of another.
     s.promises &= ~(unsigned)(FLIPS_QUADS | TRANSPOSES);
     return s;
@@ -151,19 +162,19 @@ struct subject subject_make(int index)
 {
     switch (index) {
     case 0:
-        return gather("gather", HF_FILL_MEAN, HF_STORAGE_FLOAT);
+        return gather("gather", HF_STORAGE_FLOAT);
     case 1:
-        return gather("gather max", HF_FILL_MAX, HF_STORAGE_FLOAT);
+        return chapter("chapter", HF_FILL_MAX, HF_STORAGE_FLOAT);
     case 2:
-        return gather("gather none", HF_FILL_NONE, HF_STORAGE_FLOAT);
+        return chapter("chapter none", HF_FILL_NONE, HF_STORAGE_FLOAT);
     case 3:
         return per_pixel();
     case 4:
-        return gather("gather half", HF_FILL_MEAN, HF_STORAGE_HALF);
+        return gather("gather half", HF_STORAGE_HALF);
     case 5:
-        return gather("gather packed", HF_FILL_MEAN, HF_STORAGE_PACKED);
+        return gather("gather packed", HF_STORAGE_PACKED);
     case 14:
-        return gather("gather packed max", HF_FILL_MAX, HF_STORAGE_PACKED);
+        return chapter("chapter packed", HF_FILL_MAX, HF_STORAGE_PACKED);
     case 6:
         return faithful();
     case 7:

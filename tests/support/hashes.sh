@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Print a hash of the pixels of 68 renders over engines, options, storages and instruction sets. Two builds whose lists
+# Print a hash of the pixels of 77 renders over engines, options, storages and instruction sets. Two builds whose lists
 # are equal make the same pictures to the bit:
 #     tests/support/hashes.sh old/src/tools/cli/hyperfocal > old.txt; tests/support/hashes.sh build/src/tools/cli/hyperfocal | diff old.txt -
 # Needs oiiotool (Debian: openimageio-tools).
@@ -39,6 +39,10 @@ for options in --karis --per-pixel-kernel --bicubic '--fill mean' '--fill none' 
     '--faithful --storage chapter' '--rings 2' '--aperture ngon:6' '--aperture ngon:5:0:20' '--strength 0.1' \
     '--strength 0.6' '--strength 0' '--max-radius 0' '--max-radius 40' '--no-skip' '--threads 1' '--range inf'; do
     render lights --engine gather $look $options
+done
+for options in '' '--storage half' '--fill mean' '--fill none' '--fill open' '--downsample linear' '--karis --bicubic' \
+    '--rings 2 --aperture ngon:5' '--faithful'; do
+    render lights --engine chapter $look $options
 done
 for options in '--resolution half' '--uniform' '--aperture ngon:6:0:15' '--max-radius 5'; do
     render foliage --engine hexagon --focus 4 --range 2 $options

@@ -10,8 +10,8 @@ struct look {
     enum hf_engine engine;
     enum hf_resolution resolution;  // of hexagon, scatter and gaussian
     float max_radius;               // HF_DERIVE: as the engine has it
-    enum hf_fill fill;              // gather; HF_DERIVE: as it has it
-    int faithful;                   // gather, gaussian
+    enum hf_fill fill;              // chapter
+    int faithful;                   // chapter, gaussian
     enum hf_layers_quality quality;
     float sigma;  // gaussian; 0: iterations
     int blades;
@@ -20,10 +20,10 @@ struct look {
 };
 
 static const struct look looks[] = {
-    {"gather", HF_ENGINE_GATHER, .max_radius = HF_DERIVE, .fill = (enum hf_fill)HF_DERIVE},
-    {"gather lens", HF_ENGINE_GATHER, .max_radius = HF_DERIVE, .fill = (enum hf_fill)HF_DERIVE, .lens = 1},
-    {"gather max", HF_ENGINE_GATHER, .max_radius = 14, .fill = HF_FILL_MAX, .blades = 5},
-    {"gather faithful", HF_ENGINE_GATHER, .max_radius = 12, .fill = HF_FILL_MAX, .faithful = 1},
+    {"gather", HF_ENGINE_GATHER, .max_radius = HF_DERIVE},
+    {"gather lens", HF_ENGINE_GATHER, .max_radius = HF_DERIVE, .lens = 1},
+    {"chapter", HF_ENGINE_CHAPTER, .max_radius = 14, .fill = HF_FILL_MAX, .blades = 5},
+    {"chapter faithful", HF_ENGINE_CHAPTER, .max_radius = 12, .fill = HF_FILL_MAX, .faithful = 1},
     {"hexagon", HF_ENGINE_HEXAGON, .max_radius = 14},
     {"hexagon half", HF_ENGINE_HEXAGON, HF_RESOLUTION_HALF, .max_radius = HF_DERIVE, .lens = 1},
     {"scatter", HF_ENGINE_SCATTER, .max_radius = 10},
@@ -48,8 +48,8 @@ static inline struct hf_params look_params(const struct look *l, int width, floa
     p.range.distance = 10;
     p.max_radius = l->max_radius;
     p.hexagon.resolution = p.scatter.resolution = p.gaussian.resolution = l->resolution;
-    p.gather.fill = l->fill;
-    p.gather.faithful = p.gaussian.faithful = l->faithful;
+    p.chapter.fill = l->fill;
+    p.chapter.faithful = p.gaussian.faithful = l->faithful;
     p.layers.quality = l->quality;
     p.gaussian.sigma = l->sigma > 0 ? l->sigma : HF_DERIVE;
     p.aperture.blades = l->blades;

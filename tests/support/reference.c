@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reference: storage, and passes 2 to 9 of the gather engine over whole buffers.
+// Reference: storage, and passes 2 to 9 of the chapter over whole buffers; the gather from CoC on is reference_area.c's.
 #include "support/reference.h"
 
 #include <math.h>
@@ -75,7 +75,9 @@ static void store(struct reference *r, enum ref_id id, int c, int x, int y, doub
     struct ref_buffer *b = &r->buffer[id];
     const int is_coc = id >= REF_COC && id <= REF_COCBLUR;
     b->raw[c][y * b->width + x] = v;
-    b->data[c][y * b->width + x] = ref_store(r->params.gather.storage, is_coc ? -1 : c, v);
+    b->data[c][y * b->width + x] =
+        ref_store(r->params.engine == HF_ENGINE_GATHER ? r->params.gather.storage : r->params.chapter.storage,
+                  is_coc ? -1 : c, v);
 }
 
 static struct ref_buffer *new_buffer(struct reference *r, enum ref_id id)
@@ -113,7 +115,7 @@ static void coc_generation(struct reference *r, const struct hf_depth *depth)
 // Pass 2. Weights as printed: 1000 for the top left sample, 1 / (|df| + 0.001) for the others.
 static void downsample(struct reference *r)
 {
-    const enum hf_downsample how = r->params.gather.downsample;
+    const enum hf_downsample how = r->params.chapter.downsample;
     const struct ref_buffer *colour = &r->buffer[REF_COLOUR], *coc = &r->buffer[REF_COC];
     new_buffer(r, REF_COC4);
     new_buffer(r, REF_COLOR4);
@@ -147,7 +149,7 @@ static void window(struct reference *r, enum ref_id from, enum ref_id to, int dx
     const struct ref_buffer *in = &r->buffer[from];
     const double radius = dx ? r->reach_x : r->reach_y;
     const int reach = (int)ceil(radius);
-    const double edge = r->params.gather.faithful ? 1 : radius - (reach - 1);
+    const double edge = r->params.chapter.faithful ? 1 : radius - (reach - 1);
     new_buffer(r, to);
     for (int y = 0; y < r->half_height; y++) {
         for (int x = 0; x < r->half_width; x++) {
@@ -182,7 +184,7 @@ static struct planes weigh(const struct reference *r)
     double *const *colour = r->buffer[REF_COLOR4].data;
     for (size_t i = 0; i < n; i++) {
         const double y709 = 0.2126 * colour[0][i] + 0.7152 * colour[1][i] + 0.0722 * colour[2][i];
-        const double w = r->params.gather.karis ? 1 / (1 + fmax(y709, 0)) : 1;
+        const double w = r->params.chapter.karis ? 1 / (1 + fmax(y709, 0)) : 1;
         p.near_weight.data[0][i] = w;
         p.far_weight.data[0][i] = r->buffer[REF_COC4].data[1][i] * w;
         for (int c = 0; c < r->channels; c++) {
@@ -220,7 +222,7 @@ static double lerp(double a, double b, double t)
 static double near_part(const struct reference *r, int x, int y)
 {
     const double blur = at(&r->buffer[REF_COCBLUR], 0, x, y);
-    return r->params.gather.faithful ? blur > 0 : fmin(1, 8 * blur);
+    return r->params.chapter.faithful ? blur > 0 : fmin(1, 8 * blur);
 }
 
 // Pass 7.
@@ -236,7 +238,7 @@ static void computation(struct reference *r)
         for (int x = 0; x < r->half_width; x++) {
             const double f = at(&r->buffer[REF_COC4], 1, x, y);
             const int has_near = at(&r->buffer[REF_COCBLUR], 0, x, y) > 0;
-            const double scale = r->params.gather.per_pixel_kernel ? f : 1;
+            const double scale = r->params.chapter.per_pixel_kernel ? f : 1;
             const double near_weight = has_near ? gather_one(r, &p.near_weight, 0, x, y, 1) : 1;
             const double far_weight = f > 0 ? gather_one(r, &p.far_weight, 0, x, y, scale) : 1;
             r->near_mean[y * r->half_width + x] = has_near ? near_weight / taps : 0;
@@ -266,14 +268,14 @@ static void computation(struct reference *r)
 static double fill_one(const struct reference *r, const struct ref_buffer *b, const struct ref_buffer *coc4, int c,
                        int x, int y)
 {
-    const int faithful = r->params.gather.faithful;
+    const int faithful = r->params.chapter.faithful;
     double largest = at(b, c, x, y), sum = 0, count = 0;
     for (int j = y - 1; j <= y + 1; j++) {
         for (int i = x - 1; i <= x + 1; i++) {
             const double df = coc4 ? fabs(at(coc4, 1, i, j) - at(coc4, 1, x, y)) : 0;
             const int holds = !coc4 || at(coc4, 1, i, j) > 0;
             double part = coc4 && !faithful ? fmin(1, 4 * at(coc4, 1, i, j)) : 1;
-            if (r->params.gather.per_pixel_kernel)
+            if (r->params.chapter.per_pixel_kernel)
                 part *= faithful ? df <= 0.25 : fmax(0, fmin(1, 2 - 4 * df));
             largest = fmax(largest, lerp(at(b, c, x, y), at(b, c, i, j), part));
             if (!holds)
@@ -282,7 +284,7 @@ static double fill_one(const struct reference *r, const struct ref_buffer *b, co
             count += part;
         }
     }
-    return r->params.gather.fill == HF_FILL_MAX ? largest : sum / count;
+    return r->params.chapter.fill == HF_FILL_MAX ? largest : sum / count;
 }
 
 // Pass 8.
@@ -290,7 +292,7 @@ static void fill(struct reference *r)
 {
     const struct ref_buffer *near = &r->buffer[REF_NEAR], *far = &r->buffer[REF_FAR];
     const struct ref_buffer *coc4 = &r->buffer[REF_COC4];
-    const int none = r->params.gather.fill >= HF_FILL_NONE;
+    const int none = r->params.chapter.fill >= HF_FILL_NONE;
     new_buffer(r, REF_NEARFILL);
     new_buffer(r, REF_FARFILL);
     for (int y = 0; y < r->half_height; y++) {
@@ -313,7 +315,7 @@ static double upsample_far(const struct reference *r, int x, int y, double out[4
 {
     const struct ref_buffer *coc4 = &r->buffer[REF_COC4];
     const double f = at(&r->buffer[REF_COC], 1, x, y);
-    const int faithful = r->params.gather.faithful;
+    const int faithful = r->params.chapter.faithful;
     const double hx = (x + 0.5) / 2 - 0.5, hy = (y + 0.5) / 2 - 0.5;
     const int cx = (int)floor(hx), cy = (int)floor(hy);  // of the CoCs: (k-1, k) for pixel 2k, (k, k+1) for 2k+1
     double weights = 0, most = 0;
@@ -341,7 +343,7 @@ static double upsample_far(const struct reference *r, int x, int y, double out[4
 static void composite(struct reference *r)
 {
     double (*const sample)(const struct ref_buffer *, int, double, double) =
-        r->params.gather.bicubic ? bicubic : bilinear;
+        r->params.chapter.bicubic ? bicubic : bilinear;
     new_buffer(r, REF_RESULT);
     for (int y = 0; y < r->height; y++) {
         for (int x = 0; x < r->width; x++) {
@@ -361,13 +363,14 @@ static void set_scales(struct reference *r, const struct hf_depth *depth)
 {
     const struct hf_params *p = &r->params;
     const int display = p->view.display_height != HF_DERIVE ? p->view.display_height : r->height;
-    r->rho = p->max_radius != HF_DERIVE ? p->max_radius : p->gather.faithful ? 12 : 12.0 * display / 1080;
+    const int faithful = p->engine == HF_ENGINE_CHAPTER && p->chapter.faithful;
+    r->rho = p->max_radius != HF_DERIVE ? p->max_radius : faithful ? 12 : 12.0 * display / 1080;
     r->reach_y = r->rho / 2;
     r->reach_x = r->reach_y / p->view.pixel_aspect;
     r->strength = p->model == HF_MODEL_RANGE && depth->type != HF_DEPTH_COC ? p->range.strength : 1;
     r->kernel_scale = fmax(r->strength, 0.25);
     r->blend = fmin(1, 4 * r->strength);
-    if (p->gather.faithful || p->gather.fill != HF_FILL_MEAN)
+    if (p->engine == HF_ENGINE_CHAPTER)
         r->blend *= fmin(1, r->reach_y);
 }
 
@@ -387,7 +390,7 @@ static int read_colour(struct reference *r, const struct picture *colour)
 static void run_passes(struct reference *r, const struct hf_depth *depth, reference_hook *hook, void *cookie)
 {
     coc_generation(r, depth);
-    if (!r->params.gather.faithful && r->params.gather.fill == HF_FILL_MEAN) {
+    if (r->params.engine == HF_ENGINE_GATHER) {
         new_buffer(r, REF_RESULT);
         ref_area(r);
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second implementation of the gather engine: literal, slow, in double precision, without code of the library, so
+// A second implementation of gather and chapter: literal, slow, in double precision, without code of the library, so
 // that the two can be compared.
 //
 //   reference_coc.c    depth types, repair of depth and colour, models, CoC generation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reference of the gather's default look, with apertures as areas: from full-resolution CoC to the result. Discs only,
+// Reference of the gather, with apertures as areas: from full-resolution CoC to the result. Discs only,
 // no Karis average, bilinear upsampling, float storage.
 #include <math.h>
 #include <stdlib.h>

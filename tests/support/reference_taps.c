@@ -40,8 +40,8 @@ static void add_rings(struct reference *r, int rings, double share)
 static void make_rings(struct reference *r)
 {
     const double apart = fmax(1, r->reach_y / 2);
-    const int given = r->params.gather.rings, rings = given > 0 ? given : (int)ceil(apart);
-    const double more = given > 0 || r->params.gather.faithful ? 1 : 1 - (rings - apart);
+    const int given = r->params.chapter.rings, rings = given > 0 ? given : (int)ceil(apart);
+    const double more = given > 0 || r->params.chapter.faithful ? 1 : 1 - (rings - apart);
     const double all = 1 + 4 * rings * (rings + 1), fewer = 1 + 4 * rings * (rings - 1);
     add_rings(r, rings, more);
     if (more < 1)
@@ -78,7 +78,7 @@ void ref_make_taps(struct reference *r)
     r->tap_share = malloc(sizeof *r->tap_share * REF_MAX_TAPS);
     r->taps = 0;
     r->centre = r->shares = 0;
-    if (r->params.gather.fill == HF_FILL_NONE)
+    if (r->params.chapter.fill == HF_FILL_NONE)
         make_grid(r);
     else
         make_rings(r);

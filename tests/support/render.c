@@ -108,6 +108,17 @@ void picture_fill(struct picture *p, int channel, float value)
         p->plane[channel][i] = value;
 }
 
+void choose_fields(struct hf_params *p)
+{
+    const struct hf_chapter_params *c = &p->chapter;
+    p->engine = c->fill == HF_FILL_MEAN && !c->faithful && !c->downsample && !c->division ? HF_ENGINE_GATHER
+                                                                                          : HF_ENGINE_CHAPTER;
+    p->gather.storage = c->storage;
+    p->gather.karis = c->karis;
+    p->gather.per_pixel_kernel = c->per_pixel_kernel;
+    p->gather.bicubic = c->bicubic;
+}
+
 struct picture render_radii(struct hf_context *c, enum hf_engine engine, const struct picture *colour,
                             const struct picture *radii, int half)
 {

@@ -17,6 +17,9 @@ struct picture render(struct hf_context *c, const struct picture *colour, const 
 struct picture render_scene(struct hf_context *c, const struct scene *s, const struct hf_params *p);
 // Depth that gives each pixel's radius in pixels, near negative.
 struct hf_depth picture_radii(const struct picture *radii);
+// Set the engine of parameters whose .chapter is set: the gather with the same options where fill is HF_FILL_MEAN and no other
+// option is the chapter's alone; else the chapter.
+void choose_fields(struct hf_params *p);
 // Render with any such radii, with an engine that has half-resolution buffers.
 struct picture render_radii(struct hf_context *c, enum hf_engine engine, const struct picture *colour,
                             const struct picture *radii, int half);

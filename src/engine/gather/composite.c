@@ -1,155 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Composite: the far field, upsampled where its CoC is like the pixel's, then the near field, over the picture.
-#include <float.h>
-
+// Composite: the far field, then the near one, over the picture. (1 - t) a + b never passes the larger of both, and
+// of ones it is 1.
 #include "engine/gather/gather.h"
-#include "engine/gather/phase.h"
 
-// Joint bilateral upsampling: bilinear weights 9 3 3 1 (sixteenths), each over 1 + 1000 |CoC difference|; what has
-// no far CoC has no far colour, and what has hardly any comes in by and by. Weights are kept in proportion by products instead
-// of quotients, so that one division serves all four; the factors 9 3 3 1 are those of the other three distances: 81 27 27 9.
-// Returns how far the pixel is: its CoC, but where its neighbours are hardly far only as much as they have colour for.
-static float far_weights(const struct hf_buf *coc, struct hf_phase p, float f, float w[4])
+// How much of a pixel the far field is: its own part, less twice what its neighbourhood has less of what is out of focus. A
+// pixel beside something sharp, where that is smoothed over its edge, so stays in part what it was.
+static float far_part(const struct hf_frame *f, struct hf_phase p, float coc)
 {
-    const float g[4] = {*hf_at(coc, 1, p.x, p.y), *hf_at(coc, 1, p.nx, p.y), *hf_at(coc, 1, p.x, p.ny),
-                        *hf_at(coc, 1, p.nx, p.ny)};
-    float d[4], has[4];
-    static const float factor[4] = {1, 3, 3, 9};
-    const float inverse = 1 / (f > FLT_MIN ? f : FLT_MIN);
-    for (int i = 0; i < 4; i++) {
-        const float whole = HF_FAR_WHOLE * g[i] * inverse;
-        d[i] = factor[i] + 1000 * factor[i] * __builtin_fabsf(f - g[i]);
-        has[i] = whole < 1 ? whole : 1;
-    }
-    const float p01 = d[0] * d[1], p23 = d[2] * d[3];
-    w[0] = d[1] * p23 * has[0];
-    w[1] = d[0] * p23 * has[1];
-    w[2] = d[3] * p01 * has[2];
-    w[3] = d[2] * p01 * has[3];
-    const float sum = (w[0] + w[1]) + (w[2] + w[3]);
-    if (!(sum > HF_FAR_LEAST))
-        return 0;
-    const float i = 1 / sum;
-    for (int t = 0; t < 4; t++)
-        w[t] *= i;
-    const float own = has[0] > has[1] ? has[0] : has[1], next = has[2] > has[3] ? has[2] : has[3];
-    return f * (own > next ? own : next);
-}
-
-// The published demo: the colours are those of (k, k) for an even pixel, but the CoCs compared are those of
-// (k - 1, k); all four bilinear weights are equal; what is not far counts as black.
-static void far_weights_faithful(const struct hf_buf *coc, struct hf_phase p, float f, float w[4])
-{
-    const int x0 = hf_min(p.x, p.nx), x1 = hf_max(p.x, p.nx), y0 = hf_min(p.y, p.ny), y1 = hf_max(p.y, p.ny);
-    const float g[4] = {*hf_at(coc, 1, x0, y0), *hf_at(coc, 1, x1, y0), *hf_at(coc, 1, x0, y1), *hf_at(coc, 1, x1, y1)};
-    float d[4];
-    for (int i = 0; i < 4; i++)
-        d[i] = 1 + 1000 * __builtin_fabsf(f - g[i]);
-    const float p01 = d[0] * d[1], p23 = d[2] * d[3];
-    w[0] = d[1] * p23;
-    w[1] = d[0] * p23;
-    w[2] = d[3] * p01;
-    w[3] = d[2] * p01;
-    const float i = 1 / ((w[0] + w[1]) + (w[2] + w[3]));
-    for (int t = 0; t < 4; t++)
-        w[t] *= i;
-}
-
-// Over the sum of the weights, which is 1 within rounding: what is opaque stays so.
-static float alpha_mean(const float w[4], const float v[4])
-{
-    float sum = w[0] * v[0], weight = w[0];
-    for (int i = 1; i < 4; i++) {
-        sum += w[i] * v[i];
-        weight += w[i];
-    }
-    return sum / weight;
+    const float gain = hf_gather_levels(f->s, HF_FAR)->gain;
+    const float own = gain * coc < 1 ? gain * coc : 1;
+    const float around = (2 / 16.0f) * hf_upsample(&f->buf[HF_BUF_FAR_PART], 0, p) - own;
+    const float t = around < own ? around : own;
+    return t > 0 ? t : 0;
 }
 
 static void blend_far(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i)
 {
-    const struct hf_buf *far = &f->buf[HF_BUF_FAR_FILL];
-    float w[4];
-    if (f->s->faithful) {
-        far_weights_faithful(&f->buf[HF_BUF_COC4], p, coc, w);
-        // Colour taps (k, k) for an even pixel, (k, k + 1) for an odd one.
-        p = (struct hf_phase){p.x, p.y, hf_max(p.x, p.nx), hf_max(p.y, p.ny)};
-    } else
-        coc = far_weights(&f->buf[HF_BUF_COC4], p, coc, w);
-    const float t = hf_gather(f->s)->blend * coc;
-    for (int c = 0; c < f->s->channels && t != 0; c++) {
-        const float v[4] = {*hf_at(far, c, p.x, p.y), *hf_at(far, c, p.nx, p.y), *hf_at(far, c, p.x, p.ny),
-                            *hf_at(far, c, p.nx, p.ny)};
-        const float own = hf_limited(colour[c][i], HF_BLENDED);
-        float rest = own;  // less the far field
-        for (int k = 0; k < 4 && c < 3; k++)
-            rest -= w[k] * v[k];
-        colour[c][i] = own - t * (c < 3 ? rest : rest - alpha_mean(w, v));
-    }
-}
-
-float hf_upsample(const struct hf_buf *b, int c, struct hf_phase p)
-{
-    const float v = 3 * *hf_at(b, c, p.x, p.y) + *hf_at(b, c, p.nx, p.y);
-    const float w = 3 * *hf_at(b, c, p.x, p.ny) + *hf_at(b, c, p.nx, p.ny);
-    return 3 * v + w;
-}
-
-static float cubic(float own, float neighbour, float other, float behind)
-{
-    return own + ((CUBIC_NEIGHBOUR * (neighbour - own) + CUBIC_OTHER * (other - own)) + CUBIC_BEHIND * (behind - own));
-}
-
-float hf_upsample_cubic(const struct hf_buf *b, int c, struct hf_phase p)
-{
-    const int dx = p.nx - p.x, dy = p.ny - p.y;
-    const int columns[4] = {p.x, p.nx, p.x - dx, p.nx + dx};
-    float v[4];
-    for (int i = 0; i < 4; i++)
-        v[i] = cubic(*hf_at(b, c, columns[i], p.y), *hf_at(b, c, columns[i], p.ny), *hf_at(b, c, columns[i], p.y - dy),
-                     *hf_at(b, c, columns[i], p.ny + dy));
-    return cubic(v[0], v[1], v[2], v[3]);
+    const float t = far_part(f, p, coc);
+    for (int c = 0; c < f->s->channels && t != 0; c++)
+        colour[c][i] = (1 - t) * colour[c][i] + (t * (1 / 16.0f)) * hf_upsample(&f->buf[HF_BUF_FAR], c, p);
 }
 
 static void blend_near(const struct hf_frame *f, struct hf_phase p, float *const colour[4], int i)
 {
-    hf_upsampling *up = hf_gather(f->s)->bicubic ? hf_upsample_cubic : hf_upsample;
-    const float scale = hf_gather(f->s)->bicubic ? 1 : 1 / 16.0f;
-    const float t = hf_gather(f->s)->blend * scale * up(&f->buf[HF_BUF_BLUR], 0, p);
+    hf_upsampling *up = hf_fields(f->s)->bicubic ? hf_upsample_cubic : hf_upsample;
+    const float scale = hf_fields(f->s)->bicubic ? 1 : 1 / 16.0f;
+    const float t = scale * up(&f->buf[HF_BUF_COVER], 0, p);
     for (int c = 0; c < f->s->channels && t != 0; c++)
-        colour[c][i] = hf_lerp(hf_limited(colour[c][i], HF_BLENDED), scale * up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);
+        colour[c][i] = (1 - t) * colour[c][i] + scale * up(&f->buf[HF_BUF_NEAR], c, p);
 }
 
-static void composite_row(const struct hf_frame *f, int y, struct hf_rect r)
+static void blend(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i)
 {
-    const int area = hf_gather(f->s)->area, n = r.x1 - r.x0, ny = y & 1 ? y / 2 + 1 : y / 2 - 1;
-    float *lane[2][4], *coc[4];
-    for (int i = 0; i < 4; i++) {
-        lane[0][i] = hf_line(f, i);
-        lane[1][i] = hf_line(f, 4 + i);
-        coc[i] = hf_line(f, 8 + i);
-    }
-    hf_read_colour(f, r.x0, y, n, lane[0], lane[1], f->counts);
     if (f->far)
-        f->k->coc_row(f, r.x0, y, n, coc, NULL);
-    for (int odd = 0; odd < 2; odd++) {
-        for (int i = 0; i < n; i++) {
-            const int x = r.x0 + i;
-            const struct hf_phase p = {x, y / 2, odd ? x + 1 : x - 1, ny};
-            if (f->far)
-                (area ? hf_area_blend_far : blend_far)(f, p, coc[2 + odd][i], lane[odd], i);
-            if (f->near)
-                (area ? hf_area_blend_near : blend_near)(f, p, lane[odd], i);
-        }
-        hf_store_rgb(f, lane[odd], n);
-    }
-    if (f->s->channels == 3)
-        lane[0][3] = lane[1][3] = NULL;
-    hf_store_colour(f, r.x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
+        blend_far(f, p, coc, colour, i);
+    if (f->near)
+        blend_near(f, p, colour, i);
 }
 
-void hf_composite_c(const struct hf_frame *f, struct hf_rect r)
+void hf_gather_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
-    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
-        composite_row(f, y, r);
+    hf_composite_with(f, r, blend);
 }

@@ -1,80 +1,89 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Downsample: half-resolution colour and near CoC for the near field, colour x far CoC and far CoC for the far one.
+// Downsample: what a quad's pixels are, and what of it is near and far. Every pixel counts by its own CoC, so that a
+// thin thing that moves by a part of a pixel brings as much light as before.
 #include "engine/gather/gather.h"
 
-// Weights of a 2x2 quad for the far field: like pixels count, relative to its top left one. The chapter has w00 =
-// 1000 and w = 1 / (|df| + 0.001); a thousandth of that is w00 = 1 and w = 1 / (1000 |df| + 1), exactly 1 for equal
-// CoC. One division: with d = 1 / w, the products of the other d's are in the weights' proportion.
-static void quad_weights(enum hf_downsample how, const float f[4], float w[4])
+// A quad's CoC of one kind, as what it adds to that field: gain x CoC, at most 1.
+struct quad {
+    float part[4], mean, most;  // most: of the CoC itself
+};
+
+static struct quad quad_of(const struct hf_frame *f, int even, int odd, int x, int y, int y1, float gain)
 {
-    for (int t = 0; t < 4; t++)
-        w[t] = how == HF_DOWNSAMPLE_LINEAR ? 0.25f : t == 0;
-    if (how != HF_DOWNSAMPLE_BILATERAL)
-        return;
-    const float d1 = 1 + 1000 * __builtin_fabsf(f[0] - f[1]);
-    const float d2 = 1 + 1000 * __builtin_fabsf(f[0] - f[2]);
-    const float d3 = 1 + 1000 * __builtin_fabsf(f[0] - f[3]);
-    const float p23 = d2 * d3;
-    w[0] = d1 * p23;
-    w[1] = p23;
-    w[2] = d1 * d3;
-    w[3] = d1 * d2;
-    const float i = 1 / ((w[0] + w[1]) + (w[2] + w[3]));
-    for (int t = 0; t < 4; t++)
-        w[t] *= i;
+    const struct hf_buf *b = &f->buf[HF_BUF_COC];
+    const float coc[4] = {*hf_at(b, even, x, y), *hf_at(b, odd, x, y), *hf_at(b, even, x, y1), *hf_at(b, odd, x, y1)};
+    struct quad q;
+    for (int i = 0; i < 4; i++) {
+        const float part = gain * coc[i];
+        q.part[i] = part < 1 ? part : 1;
+    }
+    const float top = coc[0] > coc[1] ? coc[0] : coc[1], bottom = coc[2] > coc[3] ? coc[2] : coc[3];
+    q.most = top > bottom ? top : bottom;
+    q.mean = 0.25f * ((q.part[0] + q.part[1]) + (q.part[2] + q.part[3]));
+    return q;
+}
+
+// What of four samples belongs to a field. Where all of them do it is their mean. It is limited in proportion to their
+// mean part, by which the field is divided again.
+static float part_of(const struct quad *q, const float c[4])
+{
+    return 0.25f * ((q->part[0] * c[0] + q->part[1] * c[1]) + (q->part[2] * c[2] + q->part[3] * c[3]));
 }
 
 static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
-    const enum hf_downsample how = hf_gather(s)->downsample;
     const int n = r.x1 - r.x0, y1 = hf_min(2 * y + 1, s->height - 1);
+    const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4];
     float *lane[2][2][4];  // [row][odd][channel]
     for (int i = 0; i < 16; i++)
         lane[i >> 3][i >> 2 & 1][i & 3] = hf_line(f, i);
     hf_read_colour(f, r.x0, 2 * y, n, lane[0][0], lane[0][1], f->seen);
     hf_read_colour(f, r.x0, y1, n, lane[1][0], lane[1][1], f->seen);
 
-    const struct hf_buf *coc = &f->buf[HF_BUF_COC];
-    float *colour[4], *far[4];
+    float *colour[4], *near[4], *far[4];
     hf_row(&f->buf[HF_BUF_COLOR4], s->channels, r.x0, y, colour);
+    hf_row(&f->buf[HF_BUF_COLORNEAR4], s->channels, r.x0, y, near);
     hf_row(&f->buf[HF_BUF_COLORFAR4], s->channels, r.x0, y, far);
     for (int x = 0; x < n; x++) {
-        const float quad[4] = {*hf_at(coc, 2, r.x0 + x, 2 * y), *hf_at(coc, 3, r.x0 + x, 2 * y),
-                               *hf_at(coc, 2, r.x0 + x, y1), *hf_at(coc, 3, r.x0 + x, y1)};
-        float w[4];
-        quad_weights(how, quad, w);
+        const struct quad nq = quad_of(f, 0, 1, r.x0 + x, 2 * y, y1, hf_gather_levels(s, HF_NEAR)->gain);
+        const struct quad fq = quad_of(f, 2, 3, r.x0 + x, 2 * y, y1, hf_gather_levels(s, HF_FAR)->gain);
         for (int c = 0; c < s->channels; c++) {
-            const float c00 = lane[0][0][c][x], c10 = lane[0][1][c][x];
-            const float c01 = lane[1][0][c][x], c11 = lane[1][1][c][x];
-            const float sum = 0.25f * ((c00 + c10) + (c01 + c11));
-            f->counts->clamped += !(__builtin_fabsf(sum) <= HF_LARGEST);
-            if (f->near)
-                colour[c][x] = hf_limited(how == HF_DOWNSAMPLE_POINT ? c00 : sum, HF_LARGEST);
-            if (f->far) {
-                float mean = (w[0] * c00 + w[1] * c10) + (w[2] * c01 + w[3] * c11);
-                if (c == 3)  // weights add up to 1 within rounding, and what is opaque stays so
-                    mean /= (w[0] + w[1]) + (w[2] + w[3]);
-                far[c][x] = hf_limited(mean, HF_LARGEST) * quad[0];
+            const float quad[4] = {lane[0][0][c][x], lane[0][1][c][x], lane[1][0][c][x], lane[1][1][c][x]};
+            const float sum = 0.25f * ((quad[0] + quad[1]) + (quad[2] + quad[3])),
+                        mean = hf_limited(sum, HF_AREA_LARGEST);
+            f->counts->clamped += !(__builtin_fabsf(sum) <= HF_AREA_LARGEST);
+            if (f->near) {
+                colour[c][x] = mean;
+                near[c][x] = hf_limited(part_of(&nq, quad), HF_AREA_LARGEST * nq.mean);
             }
+            if (f->far)
+                far[c][x] = hf_limited(part_of(&fq, quad), HF_AREA_LARGEST * fq.mean);
         }
-        if (f->near)
-            *hf_at(&f->buf[HF_BUF_COC4], 0, r.x0 + x, y) = *hf_at(coc, 0, r.x0 + x, 2 * y);
-        if (f->far)
-            *hf_at(&f->buf[HF_BUF_COC4], 1, r.x0 + x, y) = quad[0];
+        if (f->near) {
+            *hf_at(coc4, HF_AREA_NEAR, r.x0 + x, y) = nq.mean;
+            *hf_at(coc4, HF_AREA_NEAR_MOST, r.x0 + x, y) = nq.most;
+        }
+        if (f->far) {
+            *hf_at(coc4, HF_AREA_FAR, r.x0 + x, y) = fq.mean;
+            if (!hf_gather_is_simple(s, HF_FAR))
+                *hf_at(coc4, HF_AREA_FAR_MOST, r.x0 + x, y) = fq.most;
+        }
     }
-    if (f->near)
+    if (f->near) {
         hf_store_rgb(f, colour, n);
+        hf_store_rgb(f, near, n);
+    }
     if (f->far)
         hf_store_rgb(f, far, n);
+    // Parts round as alpha does: where that is 1 it is their part.
+    for (int i = 0; i < 2 && s->storage == HF_STORAGE_HALF; i++)
+        if (i ? f->far : f->near)
+            f->k->round_half(hf_at(coc4, i, r.x0, y), n);
 }
 
-void hf_down_c(const struct hf_frame *f, struct hf_rect r)
+void hf_gather_down_c(const struct hf_frame *f, struct hf_rect r)
 {
-    if (hf_gather(f->s)->area) {
-        hf_area_down_c(f, r);
-        return;
-    }
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         down_row(f, y, r);
 }

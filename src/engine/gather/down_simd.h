@@ -1,84 +1,81 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Downsample on vectors: rows come split into even and odd pixels, so a quad is four aligned loads.
-#include "base/cpu.h"
+// Downsample on vectors.
 #include "engine/gather/gather.h"
-#include "engine/gather/inverse_vf.h"
-#include "pixel/coc_vf.h"
+#include "pixel/down_vf.h"
 
-// Where the rows of r begin in the buffers.
+// Where a row of quads begins in the buffers: CoC in full resolution, of both fields; what is written.
 struct down_row {
-    const float *near, *far[4];  // full-resolution CoC: near of a quad's first pixel, far of all
-    float *colour[4], *colour_far[4], *coc[4];
+    const float *coc[2][4];
+    float *colour[4], *part[2][4], *coc4[4];
+    vf gain[2];
+    int far_most;  // is wanted
 };
 
 HF_INLINE struct down_row down_row_at(const struct hf_frame *f, const int channels, int x, int y)
 {
     const int y1 = hf_min(2 * y + 1, f->s->height - 1);
-    const struct hf_buf *coc = &f->buf[HF_BUF_COC];
-    struct down_row d = {
-        .near = hf_at(coc, 0, x, 2 * y),
-        .far = {hf_at(coc, 2, x, 2 * y), hf_at(coc, 3, x, 2 * y), hf_at(coc, 2, x, y1), hf_at(coc, 3, x, y1)}};
+    const struct hf_buf *b = &f->buf[HF_BUF_COC];
+    struct down_row d;
+    for (int i = 0; i < 2; i++) {
+        d.coc[i][0] = hf_at(b, 2 * i, x, 2 * y);
+        d.coc[i][1] = hf_at(b, 2 * i + 1, x, 2 * y);
+        d.coc[i][2] = hf_at(b, 2 * i, x, y1);
+        d.coc[i][3] = hf_at(b, 2 * i + 1, x, y1);
+        d.gain[i] = vf_set1(hf_gather(f->s)->levels[i].gain);
+    }
     hf_row(&f->buf[HF_BUF_COLOR4], channels, x, y, d.colour);
-    hf_row(&f->buf[HF_BUF_COLORFAR4], channels, x, y, d.colour_far);
-    hf_row(&f->buf[HF_BUF_COC4], 2, x, y, d.coc);
+    hf_row(&f->buf[HF_BUF_COLORNEAR4], channels, x, y, d.part[0]);
+    hf_row(&f->buf[HF_BUF_COLORFAR4], channels, x, y, d.part[1]);
+    hf_row(&f->buf[HF_BUF_COC4], 4, x, y, d.coc4);
+    d.far_most = !hf_gather_is_simple(f->s, HF_FAR);
     return d;
 }
 
-HF_INLINE vf down_distance(vf a, vf b)
+struct quad {
+    vf part[4], mean, most;
+};
+
+// unit: the gain is 1.
+HF_INLINE struct quad down_quad_at(const struct down_row *d, const int unit, const int field, int x)
 {
-    return vf_fma(vf_set1(1000), vf_abs(vf_sub(a, b)), vf_set1(1));
+    struct quad q;
+    vf coc[4];
+    for (int i = 0; i < 4; i++) {
+        coc[i] = vf_load(d->coc[field][i] + x);
+        q.part[i] = unit ? coc[i] : vf_min(vf_mul(d->gain[field], coc[i]), vf_set1(1));
+    }
+    q.most = vf_max(vf_max(coc[0], coc[1]), vf_max(coc[2], coc[3]));
+    q.mean = vf_mul(vf_set1(0.25f), down_sum(q.part));
+    return q;
 }
 
-// Are the quads' far CoCs not all the same? Mostly they are.
-HF_INLINE int down_differ(const vf f[4])
+// Not fused: from right to left, or upwards, it is the same.
+HF_INLINE vf down_part(const vf part[4], const vf c[4])
 {
-    return vm_any(vm_or(vm_or(vf_ne(f[0], f[1]), vf_ne(f[0], f[2])), vf_ne(f[0], f[3])));
+    const vf top = vf_add(vf_mul(part[0], c[0]), vf_mul(part[1], c[1]));
+    const vf bottom = vf_add(vf_mul(part[2], c[2]), vf_mul(part[3], c[3]));
+    return vf_mul(vf_set1(0.25f), vf_add(top, bottom));
 }
 
-HF_INLINE void down_weights(enum hf_division division, const vf f[4], vf w[4])
+// In proportion to the mean part, by which the field is divided again.
+HF_INLINE vf quad_limited(const struct quad *q, vf v)
 {
-    const vf d1 = down_distance(f[0], f[1]), d2 = down_distance(f[0], f[2]), d3 = down_distance(f[0], f[3]);
-    w[0] = vf_mul(d1, vf_mul(d2, d3));
-    w[1] = vf_mul(d2, d3);
-    w[2] = vf_mul(d1, d3);
-    w[3] = vf_mul(d1, d2);
-    const vf i = inverse_vf(division, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
-    for (int t = 0; t < 4; t++)
-        w[t] = vf_mul(w[t], i);
+    v = vf_max(v, vf_mul(vf_set1(-HF_AREA_LARGEST), q->mean));
+    return vf_min(v, vf_mul(vf_set1(HF_AREA_LARGEST), q->mean));
 }
 
-HF_INLINE vf down_sum(const vf c[4])
+HF_INLINE void down_put_coc(enum hf_storage storage, const struct down_row *d, const struct quad *q, const int field,
+                            int x, int stream)
 {
-    return vf_add(vf_add(c[0], c[1]), vf_add(c[2], c[3]));
-}
-
-HF_INLINE vf down_limited(vf v, float largest)
-{
-    return vf_min(vf_max(v, vf_set1(-largest)), vf_set1(largest));
-}
-
-// alpha: over the sum of the weights, which is 1 within rounding.
-HF_INLINE vf down_mean(const vf w[4], const vf c[4], const int alpha)
-{
-    const vf top = vf_fma(w[1], c[1], vf_mul(w[0], c[0])), bottom = vf_fma(w[3], c[3], vf_mul(w[2], c[2]));
-    const vf mean = vf_add(top, bottom);
-    return alpha ? vf_div(mean, down_sum(w)) : mean;
-}
-
-// Lanes of a row that are too large; only those that there are.
-static uint64_t down_count(vf sum, int lanes, float largest)
-{
-    float v[VF_N];
-    uint64_t n = 0;
-    vf_store(v, sum);
-    for (int i = 0; i < hf_min(lanes, VF_N); i++)
-        n += !(__builtin_fabsf(v[i]) <= largest);
-    return n;
+    // Parts round as alpha does: where that is 1 it is their part.
+    vf_put(d->coc4[field] + x, round_stored(storage, q->mean, 3), stream);
+    if (field == 0 || d->far_most)
+        vf_put(d->coc4[2 + field] + x, q->most, stream);
 }
 
 // A row of any format, by way of lines: the fields that are asked for.
-HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample how, const enum hf_division division,
-                              const int channels, const int near, const int far, int x0, int x1, int y)
+HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, const int near, const int far, int x0,
+                              int x1, int y)
 {
     const int n = x1 - x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
     float *lane[4][4];  // [row and even or odd][channel]
@@ -88,54 +85,41 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample
     hf_read_colour(f, x0, y1, n, lane[2], lane[3], f->seen);
     const struct down_row d = down_row_at(f, channels, x0, y);
     for (int x = 0; x < n; x += VF_N) {
-        const vf g[4] = {vf_load(d.far[0] + x), vf_load(d.far[1] + x), vf_load(d.far[2] + x), vf_load(d.far[3] + x)};
-        vf w[4] = {vf_set1(0.25f), vf_set1(0.25f), vf_set1(0.25f), vf_set1(0.25f)};
-        if (how == HF_DOWNSAMPLE_POINT) {
-            w[0] = vf_set1(1);
-            w[1] = w[2] = w[3] = vf_zero();
-        } else if (far && how == HF_DOWNSAMPLE_BILATERAL && down_differ(g)) {
-            down_weights(division, g, w);
-        }
+        struct quad q[2];
+        if (near)
+            q[0] = down_quad_at(&d, 0, 0, x);
+        if (far)
+            q[1] = down_quad_at(&d, 0, 1, x);
         for (int c = 0; c < channels; c++) {
             const vf quad[4] = {vf_load(lane[0][c] + x), vf_load(lane[1][c] + x), vf_load(lane[2][c] + x),
                                 vf_load(lane[3][c] + x)};
-            const vf sum = vf_mul(vf_set1(0.25f), down_sum(quad));
-            if (vm_any(vm_not(vf_le(vf_abs(sum), vf_set1(HF_LARGEST)))))
-                f->counts->clamped += down_count(sum, n - x, HF_LARGEST);
-            if (near)
-                vf_store(d.colour[c] + x, down_limited(how == HF_DOWNSAMPLE_POINT ? quad[0] : sum, HF_LARGEST));
-            // Limited before the CoC makes it small, by which the gather divides again.
+            const vf sum = vf_mul(vf_set1(0.25f), down_sum(quad)), mean = down_limited(sum, HF_AREA_LARGEST);
+            if (vm_any(vm_not(vf_le(vf_abs(sum), vf_set1(HF_AREA_LARGEST)))))
+                f->counts->clamped += down_count(sum, n - x, HF_AREA_LARGEST);
+            if (near) {
+                vf_store(d.colour[c] + x, mean);
+                vf_store(d.part[0][c] + x, quad_limited(&q[0], down_part(q[0].part, quad)));
+            }
             if (far)
-                vf_store(d.colour_far[c] + x, vf_mul(down_limited(down_mean(w, quad, c == 3), HF_LARGEST), g[0]));
+                vf_store(d.part[1][c] + x, quad_limited(&q[1], down_part(q[1].part, quad)));
         }
         if (near)
-            vf_store(d.coc[0] + x, vf_load(d.near + x));
+            down_put_coc(f->s->storage, &d, &q[0], 0, x, 0);
         if (far)
-            vf_store(d.coc[1] + x, g[0]);
+            down_put_coc(f->s->storage, &d, &q[1], 1, x, 0);
     }
-    if (near)
+    if (near) {
         hf_store_rgb(f, d.colour, n);
-    if (far)
-        hf_store_rgb(f, d.colour_far, n);
-}
-
-// R11G11B10F words of a quad as floats 2^112 times too small: see r11_unpack. Sums of four have the bits that they
-// have at full size, products with weights do not.
-HF_INLINE void down_unpack(const vi u[4], vf quad[3][4])
-{
-    for (int i = 0; i < 4; i++) {
-        quad[0][i] = vi_as_vf(vi_and(vi_shl(u[i], 17), vi_set1(0x7ff << 17)));
-        quad[1][i] = vi_as_vf(vi_and(vi_shl(u[i], 6), vi_set1(0x7ff << 17)));
-        quad[2][i] = vi_as_vf(vi_and(vi_shr(u[i], 4), vi_set1(0x3ff << 18)));
+        hf_store_rgb(f, d.part[0], n);
     }
+    if (far)
+        hf_store_rgb(f, d.part[1], n);
 }
 
-// A vector of quads of R11G11B10F, in registers: u as down_unpack wants them, x from the row's beginning. Returns the
-// largest mean.
-HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, const int near, const int far, int x,
-                            const vi u[4], const int stream)
+// A vector of quads of R11G11B10F, in registers. Returns the largest mean.
+HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, const int near, const int far,
+                            const int unit, int x, const vi u[4], const int stream)
 {
-    const vf g[4] = {vf_load(d->far[0] + x), vf_load(d->far[1] + x), vf_load(d->far[2] + x), vf_load(d->far[3] + x)};
     vf quad[3][4], mean[3];
     down_unpack(u, quad);
     for (int c = 0; c < 3; c++) {
@@ -143,100 +127,60 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
         if (near)
             vf_put(d->colour[c] + x, round_stored(storage, mean[c], c), stream);
     }
-    if (far && down_differ(g)) {
-        vf w[4];
-        down_weights(HF_DIVISION_EXACT, g, w);
-        for (int c = 0; c < 3; c++) {
-            for (int i = 0; i < 4; i++)
-                quad[c][i] = vf_mul(quad[c][i], vf_set1(0x1p112f));
-            vf_put(d->colour_far[c] + x, round_stored(storage, vf_mul(down_mean(w, quad[c], 0), g[0]), c), stream);
-        }
-    } else if (far) {  // quarters of small floats are exact, so that their sum is the mean
+    for (int field = 0; field < 2; field++) {
+        if (!(field ? far : near))
+            continue;
+        struct quad q = down_quad_at(d, unit, field, x);
+        down_put_coc(storage, d, &q, field, x, stream);
+        for (int i = 0; i < 4; i++)  // products are those with samples at full size
+            q.part[i] = vf_mul(q.part[i], vf_set1(0x1p112f));
         for (int c = 0; c < 3; c++)
-            vf_put(d->colour_far[c] + x, round_stored(storage, vf_mul(mean[c], g[0]), c), stream);
+            vf_put(d->part[field][c] + x, round_stored(storage, down_part(q.part, quad[c]), c), stream);
     }
-    if (near)
-        vf_put(d->coc[0] + x, vf_load(d->near + x), stream);
-    if (far)
-        vf_put(d->coc[1] + x, g[0], stream);
     return vf_max(vf_max(mean[0], mean[1]), mean[2]);
 }
 
-// A row of R11G11B10F. Returns 0 if there may be a sample that is not finite: then nothing of this row counts. The
-// frame's border is read at once, to be repeated outwards: it is not streamed.
-HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int far, int x0, int x1, int y, int stream)
+// A row of R11G11B10F. Returns 0 if there may be a sample that is not finite: then nothing of this row counts.
+HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int far, const int unit, int x0, int x1,
+                           int y, int stream)
 {
-    const int last = f->s->half_width - VF_N, inner_row = stream && y > 0 && y < f->s->half_height - 1;
     const struct hf_image *m = f->src;
     const uint8_t *p[2] = {plane_at(m, 0, 4, x0, 2 * y), plane_at(m, 0, 4, x0, hf_min(2 * y + 1, m->height - 1))};
     const struct down_row d = down_row_at(f, 3, x0, y);
     vf largest = vf_zero();
     for (int x = 0; x < x1 - x0; x += VF_N) {
         vi u[4];
-        for (int row = 0; row < 2; row++) {
-            const uint8_t *from = p[row] + 8 * x;
-            vf even, odd;
-            for (int k = 0; k < 8 * VF_N; k += 64)
-                __builtin_prefetch((const uint8_t *)((uintptr_t)from + (uintptr_t)(2 * m->stride[0])) + k);
-            vf_unzip(vf_load(from), vf_load(from + 4 * VF_N), &even, &odd);
-            u[2 * row] = vf_as_vi(even);
-            u[2 * row + 1] = vf_as_vi(odd);
-        }
-        const int inner = inner_row && x0 + x > 0 && x0 + x < last;
-        const vf mean = inner ? down_block_r11(f->s->storage, &d, near, far, x, u, 1)
-                              : down_block_r11(f->s->storage, &d, near, far, x, u, 0);
+        down_load(m, p, x, u);
+        const vf mean = stream ? down_block_r11(f->s->storage, &d, near, far, unit, x, u, 1)
+                               : down_block_r11(f->s->storage, &d, near, far, unit, x, u, 0);
         largest = vf_max(largest, mean);
     }
-    // One sample that is not finite makes 65536 / 4 at least.
-    return !vm_any(vm_not(vf_lt(largest, vf_set1(16384))));
-}
-
-// Are the planes of a frame so large that what is written first has left the cache, through which the pictures go too,
-// before it is read? Then they are written past it, and push nothing else out.
-HF_INLINE int down_streams(const struct hf_frame *f, struct hf_rect r)
-{
-    enum { LARGE = 12 << 20 };
-    const struct hf_buf *b = &f->buf[HF_BUF_COC4];
-    const size_t bytes = (size_t)b->stride * (size_t)f->s->half_height * 8 * sizeof(float);
-    return bytes > LARGE && bytes > hf_cpu_cache() / 2 && (uintptr_t)hf_at(b, 0, r.x0, r.y0) % sizeof(vf) == 0;
+    return down_is_finite(largest);
 }
 
 HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far, struct hf_rect r)
 {
-    const int stream = down_streams(f, r), channels = f->s->channels;
-    const enum hf_downsample how = hf_gather(f->s)->downsample;
-    const enum hf_division division = hf_gather(f->s)->division;
-    const int usual = how == HF_DOWNSAMPLE_BILATERAL && division == HF_DIVISION_EXACT;
-    const int words = usual && f->src->format == HF_FORMAT_R11G11B10F && !f->s->highlight.on;
+    const int stream = down_streams(f, r);
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         int x = r.x0;
-        if (words) {
-            // Up to the last vector that lies in the picture as a whole.
-            const int x1 = hf_min(r.x1, x + (f->s->width / 2 - x) / VF_N * VF_N);
-            if (x < x1 && down_row_r11(f, near, far, x, x1, y, stream))
+        if (f->src->format == HF_FORMAT_R11G11B10F && !f->s->highlight.on) {
+            const int x1 = down_words_end(f, r);
+            const int unit = hf_gather_levels(f->s, HF_NEAR)->gain == 1 && hf_gather_levels(f->s, HF_FAR)->gain == 1;
+            if (x < x1 && (unit ? down_row_r11(f, near, far, 1, x, x1, y, stream)
+                                : down_row_r11(f, near, far, 0, x, x1, y, stream)))
                 x = x1;
         }
-        if (x >= r.x1)
-            continue;
-        if (!usual)
-            down_row_lines(f, how, division, channels, near, far, x, r.x1, y);
-        else if (channels == 3)
-            down_row_lines(f, HF_DOWNSAMPLE_BILATERAL, HF_DIVISION_EXACT, 3, near, far, x, r.x1, y);
-        else
-            down_row_lines(f, HF_DOWNSAMPLE_BILATERAL, HF_DIVISION_EXACT, 4, near, far, x, r.x1, y);
+        if (x < r.x1 && f->s->channels == 3)
+            down_row_lines(f, 3, near, far, x, r.x1, y);
+        else if (x < r.x1)
+            down_row_lines(f, 4, near, far, x, r.x1, y);
     }
     if (stream)
         vf_stream_end();
 }
 
-#include "engine/gather/area_down_simd.inc"
-
 static void down_simd(const struct hf_frame *f, struct hf_rect r)
 {
-    if (hf_gather(f->s)->area) {
-        area_down_simd(f, r);
-        return;
-    }
     if (f->near && f->far)
         down_rows(f, 1, 1, r);
     else if (f->near)

@@ -169,7 +169,8 @@ static int check_model(const struct cli_args *args, struct tool_error *error)
 static int check_engine(const struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
     const struct hf_params *p = &args->params;
-    const int gather = p->engine == HF_ENGINE_GATHER, hexagon = p->engine == HF_ENGINE_HEXAGON;
+    const int fields = p->engine == HF_ENGINE_GATHER || p->engine == HF_ENGINE_CHAPTER;
+    const int hexagon = p->engine == HF_ENGINE_HEXAGON;
     const int gaussian = p->engine == HF_ENGINE_GAUSSIAN;
     const struct tool_option *misfit = tool_misfit(parser, p->engine);
     char engines[256];
@@ -185,18 +186,19 @@ static int check_engine(const struct cli_args *args, const struct tool_parser *p
         return tool_fail(error, -1, "--cat-eye cannot be used with --aperture %s: a picture is the whole shape",
                          args->aperture_file);
     const int plain = !args->aperture_file && p->aperture.ring == 0 && p->aperture.roundness == 0;
-    if (args->aperture && gather && !plain)
+    if (args->aperture && fields && !plain)
         return tool_fail(error, -1,
-                         "--aperture: '%s' is not an aperture of the gather engine, which takes disc or "
+                         "--aperture: '%s' is not an aperture of the %s engine, which takes disc or "
                          "ngon:N[:0[:DEGREES]]",
-                         args->aperture);
+                         args->aperture, hf_engine_name(p->engine));
     if (args->aperture && hexagon && (!plain || (p->aperture.blades != 6)))
         return tool_fail(error, -1,
                          "--aperture: '%s' is not an aperture of the hexagon engine, which takes "
                          "ngon:6[:0[:DEGREES]]",
                          args->aperture);
     if (args->aperture && gaussian)
-        return tool_fail(error, -1, "--aperture %s is of use only with --engine gather, hexagon, scatter and layers",
+        return tool_fail(error, -1,
+                         "--aperture %s is of use only with --engine gather, chapter, hexagon, scatter and layers",
                          args->aperture);
     return 0;
 }
@@ -229,6 +231,7 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
         p->engine = (enum hf_engine)args->engine;
     else
         p->engine = HF_ENGINE_LAYERS;
+    args->chose_chapter = tool_choose_chapter(parser, p);
     if (cli_choose_check(args, parser, error))
         return -1;
     if (tool_given(parser, "keys-blend") && !args->keys)

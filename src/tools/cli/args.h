@@ -34,8 +34,9 @@ struct cli_args {
     // The model and what belongs to it depend on the file, see setup.h.
     struct hf_params params;
 
-    int engine, quality;  // as given; -1: not given
-    float max_error;      // NAN: not given
+    int engine, quality;        // as given; -1: not given
+    const char *chose_chapter;  // the option that made the gather the chapter (tool_choose_chapter), or NULL
+    float max_error;            // NAN: not given
 
     enum cli_focus focus_by;
     int focus_given, focus_at_given;  // --focus in either form, --focus-at

@@ -45,16 +45,20 @@ static void print_slices(FILE *out, const struct tool_report *r)
         fprintf(out, ", hidden samples at %d distances", r->inner.hidden_levels);
 }
 
-static void print_settings(FILE *out, const struct cli_view *v)
+static void print_settings(FILE *out, const struct cli_args *args, const struct cli_view *v)
 {
     const struct tool_report *r = &v->report;
     const struct hf_params *p = &r->params;
-    const int rings = p->gather.rings;
+    const int rings = p->chapter.rings;
     fprintf(out, "  engine %s", hf_engine_name(p->engine));
-    if (p->engine == HF_ENGINE_GATHER)
+    if (args->chose_chapter && p->engine == HF_ENGINE_CHAPTER)
+        fprintf(out, ", as --engine gather with --%s is", args->chose_chapter);
+    if (p->engine == HF_ENGINE_CHAPTER)
         fprintf(out, ", %d ring%s of taps", rings, rings == 1 ? "" : "s");
     else if (p->engine == HF_ENGINE_LAYERS)
         print_slices(out, r);
+    else if (p->engine == HF_ENGINE_GATHER)
+        fprintf(out, ", half resolution");
     else
         fprintf(out, ", %s resolution", hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(p)));
     if (r->all.budget_step > 0)
@@ -76,10 +80,10 @@ static void print_settings(FILE *out, const struct cli_view *v)
             r->inner.tile_count[HF_TILE_FAR], r->inner.tile_count[HF_TILE_BOTH]);
 }
 
-static void print_report(FILE *out, const struct cli_view *v, int ran)
+static void print_report(FILE *out, const struct cli_args *args, const struct cli_view *v, int ran)
 {
     const struct tool_report *r = &v->report;
-    print_settings(out, v);
+    print_settings(out, args, v);
     fprintf(out, "  %-18s %7s %9s %13s %12s   %s\n", "pass", "runs on", "skips", "predicted ms",
             ran ? "measured ms" : "", "because");
     for (int i = 0; i < r->inner.passes; i++) {
@@ -107,6 +111,6 @@ void cli_explain_print(FILE *out, const struct cli_frame *frame, int ran)
         char name[TOOL_SHOWN];
         fprintf(out, "%s\n", tool_shown(frame->views[i].label, name));
         cli_choose_print(out, frame->args, &frame->views[i].setup, 1e-6 * view->width * view->height);
-        print_report(out, &frame->views[i], ran);
+        print_report(out, frame->args, &frame->views[i], ran);
     }
 }

@@ -92,7 +92,7 @@ static void put_report(struct tool_json *j, const struct tool_report *r)
     tool_json_open(j, "plan", '{');
     tool_json_text(j, "engine", hf_engine_name(used->engine));
     tool_json_text(j, "resolution", hf_name(HF_NAMES_RESOLUTION, (int)cli_explain_resolution(used)));
-    tool_json_count(j, "rings", used->engine == HF_ENGINE_GATHER && !r->used.sharp ? used->gather.rings : 0);
+    tool_json_count(j, "rings", used->engine == HF_ENGINE_CHAPTER && !r->used.sharp ? used->chapter.rings : 0);
     tool_json_count(j, "budget_step", r->all.budget_step);
     tool_json_text(j, "budget_options", r->inner.budget_options);
     tool_json_row(j, "tile_size", '[');

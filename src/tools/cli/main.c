@@ -28,7 +28,7 @@ static int print_plan(const struct cli_frame *frame, struct hf_context *context,
            frame->in_place ? ", over the input" : "");
     const struct hf_params *first = &frame->views[0].setup.params;
     printf("  engine %s, ", hf_engine_name(first->engine));
-    if (first->engine == HF_ENGINE_GATHER)
+    if (first->engine == HF_ENGINE_GATHER || first->engine == HF_ENGINE_CHAPTER)
         printf("%s storage, ", hf_name(HF_NAMES_STORAGE, (int)first->gather.storage));
     if (first->engine == HF_ENGINE_LAYERS)
         printf("%s quality, ", hf_name(HF_NAMES_LAYERS, (int)first->layers.quality));

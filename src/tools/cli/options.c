@@ -123,10 +123,10 @@ static const struct tool_option options[] = {
      "sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, unless keep is "
      "given.", CHOICE(depth_edges)},
 
-    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers", "How to blur. Default layers. layers: edges un-mixed, "
+    {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers|chapter", "How to blur. Default layers. layers: edges un-mixed, "
      "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "
      "half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. gaussian: soft, with "
-     "autofocus.", NAME(engine, ENGINE),
+     "autofocus. chapter: the nine passes of the book chapter that the gather grew out of.", NAME(engine, ENGINE),
      .field = "engine"},
     {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings. Default: "
      "--engine and its options count. From the settings that were measured, draft chooses the cheapest that blurs as far as "

@@ -115,8 +115,8 @@ int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
                range->near_begin > 0 ? range->near_begin : 0, range->near_end, range->far_begin, range->far_end);
     if (v->setup.model == CLI_MODEL_LENS)
         printf("    focal length %.6g pixels; radius %.6g * (1/focus - 1/distance)\n", r.focal_px, r.lens_k);
-    if (p.engine == HF_ENGINE_GATHER)
-        printf("    %d ring%s of taps\n", p.gather.rings, p.gather.rings == 1 ? "" : "s");
+    if (p.engine == HF_ENGINE_CHAPTER)
+        printf("    %d ring%s of taps\n", p.chapter.rings, p.chapter.rings == 1 ? "" : "s");
     if (p.engine == HF_ENGINE_GAUSSIAN)
         printf("    standard deviation %.4g pixels, blend by %s\n", p.gaussian.sigma,
                p.gaussian.by_depth ? "depth" : "radius");

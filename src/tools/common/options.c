@@ -110,6 +110,8 @@ static int set_value(struct tool_parser *p, int i, const char *value, int apart)
     p->metric = 0;
     if (o->parse(p, o, value))
         return -1;
+    for (int k = 0; k < 2 && o->also[k]; k++)
+        memcpy((char *)tool_field(p, o) - o->offset + o->also[k], tool_field(p, o), sizeof(int));
     p->measured = o->unit == TOOL_UNIT_NONE ? NULL : o;
     p->measure = value;
     p->state[i].given = 1;

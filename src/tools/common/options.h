@@ -32,6 +32,7 @@ struct tool_option {
     const char *(*chooses)(int number);
     tool_parse *parse;
     size_t offset;         // of the member that parse sets, in the section's struct
+    size_t also[2];        // of ints and enums that get the same value; 0: none
     float min, max;        // of a number, inclusive
     int above_min;         // min itself is excluded
     enum tool_unit unit;   // of the number, if the user writes one
@@ -130,5 +131,8 @@ void tool_print_man(const struct tool_program *program);
 // Options for the look of a picture and for running the library that mean the same in both programs. Their section's
 // struct is a struct hf_params.
 extern const struct tool_option tool_params_options[];
+// The gather, with an option that only the chapter has, is the chapter: those were one engine. Returns that option's name, or
+// NULL.
+const char *tool_choose_chapter(const struct tool_parser *p, struct hf_params *params);
 
 #endif

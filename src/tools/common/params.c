@@ -7,35 +7,12 @@
 // A choice is stored as an int.
 _Static_assert(sizeof(enum hf_isa) == sizeof(int) && sizeof(enum hf_engine) == sizeof(int), "size of an enum");
 
-// The struct that contains the option's value.
-static struct hf_params *params_of(const struct tool_parser *p, const struct tool_option *option)
-{
-    return (struct hf_params *)((char *)tool_field(p, option) - option->offset);
-}
-
-// Sets the resolution of every engine, because the engine is not known yet.
-static int parse_resolution(struct tool_parser *p, const struct tool_option *option, const char *value)
-{
-    struct hf_params *params = params_of(p, option);
-    if (tool_parse_name(p, option, value))
-        return -1;
-    params->scatter.resolution = params->gaussian.resolution = params->hexagon.resolution;
-    return 0;
-}
-
-static int parse_faithful(struct tool_parser *p, const struct tool_option *option, const char *value)
-{
-    struct hf_params *params = params_of(p, option);
-    (void)value;
-    params->gather.faithful = params->gaussian.faithful = 1;
-    return 0;
-}
-
 // clang-format off
 #define FIELD(f) .offset = offsetof(struct hf_params, f), .field = #f
 #define FLAG(f) .parse = tool_parse_flag, FIELD(f)
 #define NAME(f, of) .parse = tool_parse_name, FIELD(f), .names = HF_NAMES_##of
 #define COUNT(f, least, most) .parse = tool_parse_count, FIELD(f), .min = (least), .max = (most)
+#define OF(f) offsetof(struct hf_params, f)
 #define NUMBER(f, least, most) .parse = tool_parse_number, FIELD(f), .min = (least), .max = (most)
 
 const struct tool_option tool_params_options[] = {
@@ -62,24 +39,22 @@ const struct tool_option tool_params_options[] = {
      "to 256. Default: iterations.", NUMBER(gaussian.sigma, 0, 256),
      .engines = "gaussian"},
     {"resolution", 0, TOOL_LOOK, "full|half|quarter", "Size of the working buffers, quarter "
-     "only for gaussian. Default full.", .parse = parse_resolution,
-     .offset = offsetof(struct hf_params, hexagon.resolution),
-     .field = "hexagon.resolution|scatter.resolution|gaussian.resolution", .names = HF_NAMES_RESOLUTION,
+     "only for gaussian. Default full.", NAME(hexagon.resolution, RESOLUTION), .also = {OF(scatter.resolution), OF(gaussian.resolution)},
      .engines = "hexagon|scatter|gaussian"},
-    {"fill", 0, TOOL_LOOK, "max|mean|none|open", "How gaps between taps are closed: mean over the aperture's area "
-     "(default), 3x3 maximum (with --faithful), by three times as many taps, or not at all.", NAME(gather.fill, FILL),
-     .engines = "gather"},
+    {"fill", 0, TOOL_LOOK, "max|mean|none|open", "How gaps between taps are closed: 3x3 maximum (default), 3x3 mean, by three "
+     "times as many taps, or not at all. The gather has no gaps: its fill is mean.", NAME(chapter.fill, FILL),
+     .engines = "chapter|gather"},
     {"blend", 0, TOOL_LOOK, "linear|smoothstep", "How blur grows from sharp to full. Default linear.",
      NAME(range.blend, BLEND)},
     {"rings", 0, TOOL_LOOK, "N", "Rings of taps, 1 to 64. Default: as many as lie two half-resolution pixels "
-     "apart. Fewer are faster.", COUNT(gather.rings, 1, 64),
-     .engines = "gather"},
+     "apart. Fewer are faster. The gather has no taps, and no use for it.", COUNT(chapter.rings, 1, 64),
+     .engines = "chapter|gather"},
     {"downsample", 0, TOOL_LOOK, "bilateral|linear|point", "How four pixels become one of half resolution: "
-     "far ones by how alike their blur is (default), their mean, or the first of them.", NAME(gather.downsample, DOWNSAMPLE),
-     .engines = "gather"},
+     "far ones by how alike their blur is (default), their mean, or the first of them.", NAME(chapter.downsample, DOWNSAMPLE),
+     .engines = "chapter|gather"},
     {"division", 0, TOOL_LOOK, "exact|estimate|newton|newton2", "By sums of weights: exact (default), by the "
-     "processor's estimate of the reciprocal, or with one or two steps of Newton's.", NAME(gather.division, DIVISION),
-     .engines = "gather"},
+     "processor's estimate of the reciprocal, or with one or two steps of Newton's.", NAME(chapter.division, DIVISION),
+     .engines = "chapter|gather"},
     {"layers-quality", 0, TOOL_LOOK, "standard|draft|high|best", "What its accuracy may cost. Default standard.",
      NAME(layers.quality, LAYERS),
      .engines = "layers"},
@@ -101,21 +76,35 @@ const struct tool_option tool_params_options[] = {
     {"no-patterns", 0, TOOL_LOOK, NULL, "Behind objects no edges and patterns go on (quality best).",
      FLAG(layers.no_patterns),
      .engines = "layers"},
-    {"karis", 0, TOOL_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(gather.karis),
-     .engines = "gather"},
-    {"per-pixel-kernel", 0, TOOL_LOOK, NULL, "Scale the far kernel by each pixel's own blur.",
-     FLAG(gather.per_pixel_kernel),
-     .engines = "gather"},
+    {"karis", 0, TOOL_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(gather.karis), .also = {OF(chapter.karis)},
+     .engines = "gather|chapter"},
+    {"per-pixel-kernel", 0, TOOL_LOOK, NULL, "Scale kernels by each pixel's own blur.",
+     FLAG(gather.per_pixel_kernel), .also = {OF(chapter.per_pixel_kernel)},
+     .engines = "gather|chapter"},
     {"bicubic", 0, TOOL_LOOK, NULL, "Upsample the near field with a B-spline, not bilinearly.",
-     FLAG(gather.bicubic),
-     .engines = "gather"},
-    {"faithful", 0, TOOL_LOOK, NULL, "Reproduce the published demo, its flaws included.", .parse = parse_faithful, FIELD(gather.faithful),
-     .engines = "gather|gaussian"},
+     FLAG(gather.bicubic), .also = {OF(chapter.bicubic)},
+     .engines = "gather|chapter"},
+    {"faithful", 0, TOOL_LOOK, NULL, "Reproduce the published demo, its flaws included.", FLAG(chapter.faithful),
+     .also = {OF(gaussian.faithful)}, .engines = "chapter|gather|gaussian"},
     {"storage", 0, TOOL_LOOK, "float|half|packed", "Buffers between passes: 32-bit floats (default), 16-bit floats, "
-     "or the packed formats of the book chapter.", NAME(gather.storage, STORAGE),
-     .engines = "gather"},
+     "or the packed formats of the book chapter.", NAME(gather.storage, STORAGE), .also = {OF(chapter.storage)},
+     .engines = "gather|chapter"},
     {"deterministic", 0, TOOL_RUN, NULL, "Same bits on every instruction set.", FLAG(run.deterministic)},
     {"no-skip", 0, TOOL_RUN, NULL, "Run every pass on every tile: same picture, slower.", FLAG(run.no_skip)},
     {.name = NULL},
 };
 // clang-format on
+
+const char *tool_choose_chapter(const struct tool_parser *parser, struct hf_params *p)
+{
+    const struct hf_chapter_params *c = &p->chapter;
+    const char *by = c->faithful                                             ? "faithful"
+                     : tool_given(parser, "fill") && c->fill != HF_FILL_MEAN ? "fill"
+                     : c->downsample                                         ? "downsample"
+                     : c->division && !p->run.deterministic                  ? "division"
+                                                                             : NULL;
+    if (p->engine != HF_ENGINE_GATHER || !by)
+        return NULL;
+    p->engine = HF_ENGINE_CHAPTER;
+    return by;
+}

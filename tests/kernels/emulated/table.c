@@ -8,6 +8,7 @@ int emulated_check_vectors(void);
     void name##_emulated_fused(struct name *k)
 DECLARE(hf_pixel_kernels);
 DECLARE(hf_gather_kernels);
+DECLARE(hf_chapter_kernels);
 DECLARE(hf_hexagon_kernels);
 DECLARE(hf_scatter_kernels);
 DECLARE(hf_gaussian_kernels);
@@ -22,6 +23,7 @@ int emulated_kernels(struct kernels *k, int fused)
     memset(k, 0, sizeof *k);
     INIT(hf_pixel_kernels, &k->pixel);
     INIT(hf_gather_kernels, &k->gather);
+    INIT(hf_chapter_kernels, &k->chapter);
     INIT(hf_hexagon_kernels, &k->hexagon);
     INIT(hf_scatter_kernels, &k->scatter);
     INIT(hf_gaussian_kernels, &k->gaussian);

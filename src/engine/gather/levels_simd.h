@@ -1,149 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Computation by area, on vectors.
-// A part of computation_simd.h, which includes it in its midst: not to be included elsewhere.
-
-// ---- one kernel ----
-
-HF_INLINE vf area_hidden(const float *blur, vf gain)
-{
-    return vf_min(vf_mul(gain, vf_load(blur)), vf_set1(1));
-}
-
-static void area_store_near(const struct hf_frame *f, int y, struct hf_rect r)
-{
-    float *near[4];
-    hf_row(&f->buf[HF_BUF_NEAR], f->s->channels, r.x0, y, near);
-    hf_store_rgb(f, near, r.x1 - r.x0);
-    if (f->s->storage == HF_STORAGE_HALF)
-        f->k->round_half(hf_at(&f->buf[HF_BUF_COVER], 0, r.x0, y), r.x1 - r.x0);
-}
-
-// Sums of a strip: of what near pixels hide, by channel; and of the far field's weights.
-enum { AREA_BEHIND_SUM, AREA_FAR_SUM = 4 };
-
-// What near pixels hide, under the near field.
-static void area_finish_near(const struct hf_frame *f, struct hf_rect r)
-{
-    const struct hf_setup *s = f->s;
-    const struct hf_levels *l = hf_gather_levels(s, HF_NEAR);
-    const vf hides_all = vf_set1(l->hides), one = vf_set1(1);
-    const struct hf_taps *t = &l->level[0].taps;
-    const int height = r.y1 - r.y0;
-    float *inside = hf_line(f, 0);
-    int cut = 0;
-    for (int y = r.y0; y < r.y1; y++) {
-        float *near[4], *cover = hf_at(&f->buf[HF_BUF_COVER], 0, r.x0, y);
-        const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y);
-        const float *behind = strip_plane(f, AREA_BEHIND_SUM, height) + (y - r.y0) * HF_STRIP;
-        if (y == r.y0 || !hf_area_is_whole(s, t, y) || !hf_area_is_whole(s, t, y - 1))
-            cut = hf_area_inside(s, t, r.x0, y, r.x1 - r.x0, inside);
-        hf_row(&f->buf[HF_BUF_NEAR], s->channels, r.x0, y, near);
-        for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
-            const vf m = area_hidden(blur + x, hides_all);
-            const vm hides = vf_gt(m, vf_zero()), wholly = vf_eq(m, one);
-            const int is_cut = cut && vm_any(vf_lt(vf_load(inside + x), one));
-            if (!is_cut && !vm_any(hides))
-                continue;
-            for (int c = 0; c < s->channels; c++) {
-                vf back = vf_load(behind + (ptrdiff_t)c * height * HF_STRIP + x), v = vf_load(near[c] + x);
-                if (is_cut) {
-                    back = vf_div(back, vf_load(inside + x));
-                    v = vf_div(v, vf_load(inside + x));
-                }
-                const vf both = vf_select(wholly, back, vf_fma(m, vf_sub(back, v), v));
-                vf_store(near[c] + x, vf_select(hides, both, v));
-            }
-            vf v = vf_load(cover + x);
-            if (is_cut)
-                v = vf_div(v, vf_load(inside + x));
-            const vf both = vf_select(wholly, one, vf_fma(m, vf_sub(one, v), v));
-            vf_store(cover + x, vf_select(hides, both, v));
-        }
-        area_store_near(f, y, r);
-    }
-}
-
-static void area_near_simple(const struct hf_frame *f, struct hf_rect r)
-{
-    const struct hf_setup *s = f->s;
-    const struct hf_levels *l = hf_gather_levels(s, HF_NEAR);
-    const struct hf_taps *t = &l->level[0].taps;
-    struct gather_job jobs[2] = {{.reach = {t->rx, t->ry},
-                                  .clears = 1,
-                                  .full = hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, r.y0),
-                                  .full_stride = f->buf[HF_BUF_BLUR].stride,
-                                  .gain = l->hides},
-                                 {.planes = 0}};
-    for (int c = 0; c < s->channels; c++) {
-        gather_plane(&jobs[0], f, r, HF_BUF_COLORNEAR4, c, HF_BUF_NEAR, c);
-        gather_strip_plane(&jobs[1], f, r, HF_BUF_COLOR4, c, AREA_BEHIND_SUM + c);
-    }
-    gather_plane(&jobs[0], f, r, HF_BUF_COC4, HF_AREA_NEAR, HF_BUF_COVER, 0);
-    job_needs(&jobs[0], f, r, HF_BUF_COC4, HF_AREA_NEAR);
-    job_needs(&jobs[1], f, r, HF_BUF_BLUR, 0);
-    gather_jobs(f, r, t, jobs, 2, area_finish_near);
-}
-
-// A sum over its weight; alpha as a true quotient.
-HF_INLINE vf area_mean(int c, vf sum, vf divisor, vf inverse)
-{
-    return c == 3 ? vf_div(sum, divisor) : vf_mul(sum, inverse);
-}
-
-// Pixels that are far, and their neighbours, which are upsampled with them.
-HF_INLINE vm area_far_wanted(const float *part, ptrdiff_t stride)
-{
-    const vf own = vf_load(part);
-    if (!vm_any(vm_not(vf_gt(own, vf_zero()))))
-        return vf_gt(own, vf_zero());
-    vf most = own;
-    for (int y = -1; y <= 1; y++)
-        for (int x = -1; x <= 1; x++)
-            most = vf_max(vf_load(part + y * stride + x), most);
-    return vf_gt(most, vf_zero());
-}
-
-// What is near beside something far is no less out of focus.
-static void area_far_part_row(const struct hf_frame *f, int x0, int n, int y)
-{
-    const float *far = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, x0, y);
-    const float *near = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_NEAR, x0, y);
-    float *part = hf_at(&f->buf[HF_BUF_FAR_PART], 0, x0, y);
-    for (int x = 0; x < n; x += VF_N)
-        vf_store(part + x, f->near ? vf_add(vf_load(far + x), vf_load(near + x)) : vf_load(far + x));
-}
-
-static void area_finish_far(const struct hf_frame *f, struct hf_rect r)
-{
-    const struct hf_setup *s = f->s;
-    for (int y = r.y0; y < r.y1; y++) {
-        float *far[4];
-        const float *sum = strip_plane(f, AREA_FAR_SUM, r.y1 - r.y0) + (y - r.y0) * HF_STRIP;
-        const float *part = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, r.x0, y);
-        hf_row(&f->buf[HF_BUF_FAR], s->channels, r.x0, y, far);
-        area_far_part_row(f, r.x0, r.x1 - r.x0, y);
-        for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
-            const vm wanted = area_far_wanted(part + x, f->buf[HF_BUF_COC4].stride);
-            const vf divisor = vf_max(vf_load(sum + x), vf_set1(FLT_MIN)), inverse = vf_div(vf_set1(1), divisor);
-            for (int c = 0; c < s->channels; c++)
-                vf_store(
-                    far[c] + x,
-                    round_stored(s->storage, vf_keep(wanted, area_mean(c, vf_load(far[c] + x), divisor, inverse)), c));
-        }
-    }
-}
-
-// The neighbours of what is far are upsampled with it.
-static void area_far_simple(const struct hf_frame *f, struct hf_rect r)
-{
-    struct gather_job j = {.reach = {1, 1}, .clears = 1};
-    for (int c = 0; c < f->s->channels; c++)
-        gather_plane(&j, f, r, HF_BUF_COLORFAR4, c, HF_BUF_FAR, c);
-    gather_strip_plane(&j, f, r, HF_BUF_COC4, HF_AREA_FAR, AREA_FAR_SUM);
-    gather_run(f, r, &hf_gather_levels(f->s, HF_FAR)->level[0].taps, &j, HF_BUF_COC4, HF_AREA_FAR, area_finish_far);
-}
-
-// ---- levels ----
+// Computation with several kernels for a field, on vectors.
+#include "engine/gather/computation_simd.h"
+#include "engine/gather/lights_simd.h"
 
 HF_INLINE vf area_reached(const struct hf_levels *l, int i, vf coc)
 {
@@ -208,7 +66,7 @@ HF_INLINE void area_level_row(const struct hf_frame *f, const struct hf_rect are
 {
     const struct hf_setup *s = f->s;
     const struct hf_levels *l = hf_gather_levels(s, kind == AREA_FAR ? HF_FAR : HF_NEAR);
-    const int x0 = area.x0, karis = hf_gather(s)->karis;
+    const int x0 = area.x0, karis = hf_fields(s)->karis;
     const float *w = karis ? hf_at(&f->buf[HF_BUF_WEIGHT], 0, x0, y) : NULL;
     float *coc[4], *from[4], *to[4], *weight[4];
     hf_row(&f->buf[HF_BUF_COC4], 4, x0, y, coc);
@@ -284,7 +142,7 @@ HF_INLINE void area_behind_row(const struct hf_frame *f, const struct hf_rect ar
 static void area_behind_planes(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, int i)
 {
     const struct hf_rect area = {r.x0 - t->rx, r.y0 - t->ry, r.x1 + t->rx, r.y1 + t->ry};
-    const int karis = hf_gather(f->s)->karis, leaves = area_leaves(f->s, i);
+    const int karis = hf_fields(f->s)->karis, leaves = area_leaves(f->s, i);
     for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
         if (karis)
             area_behind_row(f, area, i, y, 1, leaves);
@@ -295,17 +153,18 @@ static void area_behind_planes(const struct hf_frame *f, struct hf_rect r, const
 }
 
 // Convolved where a buffer says that there is need, within reach.
-static void area_convolve_level(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t,
-                                enum hf_gather_buf need, struct hf_reach reach, int leaves)
+static void area_convolve_level(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, int need,
+                                struct hf_reach reach, int leaves)
 {
-    struct gather_job j = {.reach = reach, .clears = 1};
+    struct convolve_job j = {.reach = reach, .clears = 1};
     for (int c = 0; c < f->s->channels; c++)
-        gather_plane(&j, f, r, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM, c);
-    for (int c = 0; c < 1 + hf_gather(f->s)->karis; c++)
-        gather_plane(&j, f, r, HF_BUF_LEVEL_WEIGHT, c, HF_BUF_LEVEL_WEIGHT_SUM, c);
+        convolve_plane(&j, f, r, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM, c);
+    for (int c = 0; c < 1 + hf_fields(f->s)->karis; c++)
+        convolve_plane(&j, f, r, HF_BUF_LEVEL_WEIGHT, c, HF_BUF_LEVEL_WEIGHT_SUM, c);
     if (leaves)
-        gather_plane(&j, f, r, HF_BUF_LEVEL_WEIGHT, 2, HF_BUF_LEVEL_WEIGHT_SUM, 2);
-    gather_run(f, r, t, &j, need, 0, NULL);
+        convolve_plane(&j, f, r, HF_BUF_LEVEL_WEIGHT, 2, HF_BUF_LEVEL_WEIGHT_SUM, 2);
+    job_needs(&j, f, r, need, 0);
+    area_convolve(f, r, t, &j, 1, NULL);
 }
 
 // Rows of a field's sums: colour, its weight, and the weight without Karis'; without Karis average they are one, the last.
@@ -320,8 +179,7 @@ static struct area_sums area_near_sums(const struct hf_frame *f, int x, int y)
     return s;
 }
 
-static struct area_sums area_sums_in(const struct hf_frame *f, enum hf_gather_buf colour, enum hf_gather_buf weight,
-                                     int x, int y)
+static struct area_sums area_sums_in(const struct hf_frame *f, int colour, int weight, int x, int y)
 {
     const struct hf_buf *b = &f->buf[weight];
     struct area_sums s = {.weight = {hf_at(b, 0, x, y), hf_at(b, 1, x, y)}};
@@ -349,7 +207,7 @@ HF_INLINE void area_sum(float *to, const float *level, vf share, vm counts, int 
 static void area_add_row(const struct hf_frame *f, const struct area_sums *to, const float *share, int x0, int n, int y,
                          int first)
 {
-    const int karis = hf_gather(f->s)->karis;
+    const int karis = hf_fields(f->s)->karis;
     float *colour[4], *weight[4];
     hf_row(&f->buf[HF_BUF_LEVEL_SUM], f->s->channels, x0, y, colour);
     hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 2, x0, y, weight);
@@ -386,7 +244,7 @@ HF_INLINE vf area_weighed(vf colour, const float *weight, vf counts, const int k
     return vf_keep(vf_gt(w, vf_zero()), vf_mul(vf_div(colour, w), counts));
 }
 
-// As free_part in area_computation.c.
+// As free_part in computation.c.
 HF_INLINE vf area_free_part(vf cover, vf see)
 {
     const vf one = vf_set1(1), room = vf_max(vf_sub(one, cover), vf_zero());
@@ -396,7 +254,7 @@ HF_INLINE vf area_free_part(vf cover, vf see)
 static void area_finish_row(const struct hf_frame *f, int x0, int n, int y)
 {
     const vf hides_all = vf_set1(hf_gather_levels(f->s, HF_NEAR)->hides), one = vf_set1(1);
-    const int karis = hf_gather(f->s)->karis;
+    const int karis = hf_fields(f->s)->karis;
     const struct area_sums near = area_near_sums(f, x0, y), behind = area_behind_sums(f, x0, y);
     const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, x0, y);
     for (int x = 0; x < n; x += VF_N) {
@@ -416,7 +274,7 @@ static void area_finish_row(const struct hf_frame *f, int x0, int n, int y)
     }
 }
 
-// As add_far in area_computation.c.
+// As add_far in computation.c.
 static void area_add_far_row(const struct hf_frame *f, int x0, int n, int y)
 {
     const struct area_sums to = area_behind_sums(f, x0, y), far = area_far_sums(f, x0, y);
@@ -428,16 +286,16 @@ static void area_add_far_row(const struct hf_frame *f, int x0, int n, int y)
             continue;
         for (int c = 0; c < f->s->channels; c++)
             area_sum(to.colour[c] + x, far.colour[c] + x, part, counts, 0);
-        for (int k = !hf_gather(f->s)->karis; k < 2; k++)
+        for (int k = !hf_fields(f->s)->karis; k < 2; k++)
             area_sum(to.weight[k] + x, far.weight[k] + x, part, counts, 0);
     }
 }
 
 // One over what of a level lies in the frame; NULL where that is all.
-static const float *area_beyond(const struct hf_frame *f, const struct hf_taps *t, int x0, int n, int y)
+static const float *area_beyond(const struct hf_frame *f, const struct hf_area_kernel *k, int x0, int n, int y)
 {
     float *inside = hf_line(f, 1);
-    if (!hf_area_inside(f->s, t, x0, y, n, inside))
+    if (!hf_area_inside(f->s, k, x0, y, n, inside))
         return NULL;
     for (int x = 0; x < n; x += VF_N)
         vf_store(inside + x, vf_div(vf_set1(1), vf_load(inside + x)));
@@ -453,7 +311,7 @@ static void area_add_behind(const struct hf_frame *f, struct hf_rect r, int i, i
         const struct area_sums sums = area_behind_sums(f, r.x0, y);
         float *share = hf_line(f, 0), *left = hf_at(&f->buf[HF_BUF_BEHIND_WEIGHT], 2, r.x0, y);
         const float *level = hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 2, r.x0, y);
-        const float *beyond = area_beyond(f, &l->level[i].taps, r.x0, n, y);
+        const float *beyond = area_beyond(f, &l->level[i].kernel, r.x0, n, y);
         area_near_row(l, i, hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y), n, share);
         for (int x = 0; x < n && beyond; x += VF_N)
             vf_store(share + x, vf_mul(vf_load(share + x), vf_load(beyond + x)));
@@ -475,13 +333,13 @@ static void area_near_levels(const struct hf_frame *f, struct hf_rect r, int far
     if (hf_gather(f->s)->lights)
         area_lights(f, r);
     for (int i = 0; i < l->count && !hf_stopped(f->s->stop); i++) {
-        const struct hf_taps *t = &l->level[i].taps;
+        const struct hf_taps *t = &l->level[i].kernel.taps;
         const int leaves = far && area_leaves(f->s, i);
         area_level_planes(f, r, t, AREA_NEAR, i);
         area_convolve_level(f, r, t, HF_BUF_LEVEL_WEIGHT, (struct hf_reach){t->rx, t->ry}, 0);
         for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
             const struct area_sums sums = area_near_sums(f, r.x0, y);
-            area_add_row(f, &sums, area_beyond(f, t, r.x0, n, y), r.x0, n, y, i == 0);
+            area_add_row(f, &sums, area_beyond(f, &l->level[i].kernel, r.x0, n, y), r.x0, n, y, i == 0);
         }
         area_behind_planes(f, r, t, i);
         area_convolve_level(f, r, t, HF_BUF_BLUR, (struct hf_reach){0, 0}, leaves);
@@ -515,7 +373,7 @@ static void area_far_level_row(const struct hf_frame *f, int i, int x0, int n, i
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
     const struct area_sums all = area_far_sums(f, x0, y);
-    const float *part = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, x0, y), *weight = all.weight[!hf_gather(f->s)->karis];
+    const float *part = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, x0, y), *weight = all.weight[!hf_fields(f->s)->karis];
     const float *coc = hf_at(&f->buf[HF_BUF_SUM], 1, x0, y);
     float *far[4];
     hf_row(&f->buf[HF_BUF_FAR], f->s->channels, x0, y, far);
@@ -538,10 +396,10 @@ static void area_far_levels(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
     const int n = r.x1 - r.x0;
-    for (int y = r.y0; y < r.y1 && f->far; y++)
+    for (int y = r.y0; y < r.y1 && f->far && !hf_stopped(f->s->stop); y++)
         area_seen_row(f, r.x0, n, y, hf_at(&f->buf[HF_BUF_SUM], 1, r.x0, y));
     for (int i = l->count - 1; i >= 0 && !hf_stopped(f->s->stop); i--) {
-        const struct hf_taps *t = &l->level[i].taps;
+        const struct hf_taps *t = &l->level[i].kernel.taps;
         area_level_planes(f, r, t, AREA_FAR, i);
         area_convolve_level(f, r, t, HF_BUF_LEVEL_WEIGHT, (struct hf_reach){t->rx, t->ry}, 0);
         for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
@@ -562,9 +420,9 @@ static void area_far_levels(const struct hf_frame *f, struct hf_rect r)
 // Does anything far reach a rectangle?
 static int area_far_reaches(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_taps *t = &hf_gather_levels(f->s, HF_FAR)->level[0].taps;
+    const struct hf_taps *t = &hf_gather_levels(f->s, HF_FAR)->level[0].kernel.taps;
     vm any = vf_gt(vf_zero(), vf_zero());
-    for (int y = r.y0 - t->ry; y < r.y1 + t->ry && !vm_any(any); y++) {
+    for (int y = r.y0 - t->ry; y < r.y1 + t->ry && !vm_any(any) && !hf_stopped(f->s->stop); y++) {
         const float *far = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, r.x0 - t->rx, y);
         for (int x = 0; x < r.x1 - r.x0 + 2 * t->rx; x += VF_N)
             any = vm_or(any, vf_gt(vf_load(far + x), vf_zero()));
@@ -572,11 +430,11 @@ static int area_far_reaches(const struct hf_frame *f, struct hf_rect r)
     return vm_any(any);
 }
 
-static void area_gather_simd(const struct hf_frame *f, struct hf_rect r)
+static void computation_simd(const struct hf_frame *f, struct hf_rect r)
 {
     const int near_is_simple = hf_gather_is_simple(f->s, HF_NEAR), far_is_simple = hf_gather_is_simple(f->s, HF_FAR);
     const int far = !far_is_simple && (f->far || (f->near && hf_gather_leaves(f->s) && area_far_reaches(f, r)));
-    if (hf_gather(f->s)->karis)
+    if (hf_fields(f->s)->karis)
         area_weigh(f, r);
     if (far)
         area_far_levels(f, r);

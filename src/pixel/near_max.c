@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Near CoC max: the first half of the near field's outward blur, 2 max_x + 1 wide, then 2 max_y + 1 high. The first and the
 // last value of a window come in by and by as the radius reaches them: times the edge.
-#include "engine/gather/gather.h"
+#include "pixel/fields.h"
 
 static float larger(float a, float b)
 {
@@ -10,10 +10,10 @@ static float larger(float a, float b)
 
 void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_gather *g = hf_gather(f->s);
+    const struct hf_fields *g = hf_fields(f->s);
     const int m = g->max_x, bytes = hf_narrow_bytes(f->s->storage);
-    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
-        const float *in = hf_at(&f->buf[HF_BUF_COC4], g->area ? HF_AREA_NEAR_MOST : 0, 0, y);
+    for (int y = r.y0; y < r.y1; y++) {
+        const float *in = hf_at(&f->buf[HF_BUF_COC4], g->near_coc, 0, y);
         for (int x = r.x0; x < r.x1; x++) {
             float v = g->edge_x * larger(in[x - m], in[x + m]);
             for (int i = x - m + 1; i < x + m; i++)
@@ -25,9 +25,9 @@ void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 
 void hf_max_y_c(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_gather *g = hf_gather(f->s);
+    const struct hf_fields *g = hf_fields(f->s);
     const int m = g->max_y, bytes = hf_narrow_bytes(f->s->storage);
-    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
+    for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++) {
             float most = 0;
             for (int i = y - m; i <= y + m; i++) {

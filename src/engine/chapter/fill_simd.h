@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fill on vectors. Maximum and mean are separable: a column's three values are combined once and serve three
 // pixels. Only the per-pixel kernel, which picks its neighbours, and the far mean, which counts them, look at all nine.
-#include "engine/gather/gather.h"
-#include "engine/gather/near_part_vf.h"
+#include "engine/chapter/chapter.h"
+#include "engine/chapter/near_part_vf.h"
 #include "pixel/coc_vf.h"
 #include "pixel/format_vf.h"
 
@@ -97,7 +97,7 @@ static void fill_copy_row(const float *in, float *out, int n)
 HF_INLINE vf fill_counts(const struct hf_setup *s, vf own, vf g)
 {
     const vf one = vf_set1(1), begins = s->faithful ? one : vf_mul(vf_set1(4), g);
-    if (!hf_gather(s)->per_pixel_kernel)
+    if (!hf_fields(s)->per_pixel_kernel)
         return begins;
     const vf apart = vf_mul(vf_set1(4), vf_abs(vf_sub(own, g)));
     if (s->faithful)
@@ -144,8 +144,8 @@ HF_INLINE void fill_far_mean(const struct hf_setup *s, const float *in, ptrdiff_
     }
 }
 
-static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_gather_buf out, const struct hf_buf *want,
-                     int want_channel, int y, struct hf_rect r)
+static void fill_row(const struct hf_frame *f, int in, int out, const struct hf_buf *want, int want_channel, int y,
+                     struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     const int n = r.x1 - r.x0;
@@ -154,9 +154,9 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
     float *to[4], *from[4];
     hf_row(&f->buf[out], s->channels, r.x0, y, to);
     hf_row(&f->buf[in], s->channels, r.x0, y, from);
-    const int picked = in == HF_BUF_FAR && hf_gather(s)->fill != HF_FILL_NONE &&
-                       (hf_gather(s)->per_pixel_kernel || hf_gather(s)->fill == HF_FILL_MEAN || !s->faithful);
-    if (hf_gather(s)->fill == HF_FILL_MAX && !picked) {
+    const int picked = in == HF_BUF_FAR && hf_chapter(s)->fill != HF_FILL_NONE &&
+                       (hf_fields(s)->per_pixel_kernel || hf_chapter(s)->fill == HF_FILL_MEAN || !s->faithful);
+    if (hf_chapter(s)->fill == HF_FILL_MAX && !picked) {
         if (s->channels == 4)
             fill_max_row(from, stride, w, to, n, r.x0, s->faithful, 4);
         else if (s->faithful)
@@ -165,9 +165,9 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
             fill_max_row(from, stride, w, to, n, r.x0, 0, 3);
     } else {
         for (int c = 0; c < s->channels; c++)
-            if (hf_gather(s)->fill == HF_FILL_NONE)
+            if (hf_chapter(s)->fill == HF_FILL_NONE)
                 fill_copy_row(from[c], to[c], n);
-            else if (picked && hf_gather(s)->fill == HF_FILL_MAX)
+            else if (picked && hf_chapter(s)->fill == HF_FILL_MAX)
                 fill_far_max(s, from[c], stride, w, want->stride, to[c], n);
             else if (picked)
                 fill_far_mean(s, from[c], stride, w, want->stride, to[c], n);
@@ -175,7 +175,7 @@ static void fill_row(const struct hf_frame *f, enum hf_gather_buf in, enum hf_ga
                 fill_mean_row(s->faithful, from[c], stride, w, to[c], n, f->work);
     }
     // The largest of what a storage holds is what it holds.
-    if (hf_gather(s)->fill == HF_FILL_MEAN || (hf_gather(s)->fill == HF_FILL_MAX && !s->faithful))
+    if (hf_chapter(s)->fill == HF_FILL_MEAN || (hf_chapter(s)->fill == HF_FILL_MAX && !s->faithful))
         hf_store_rgb(f, to, n);
 }
 

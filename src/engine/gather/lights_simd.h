@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What samples weigh, on vectors: with Karis average, and lights behind near pixels as in area_lights.c.
-// A part of computation_simd.h, which includes it in its midst: not to be included elsewhere.
+// What samples weigh, on vectors: with Karis average, and lights behind near pixels as in lights.c.
+#include "engine/gather/gather.h"
+#include "simd/simd.h"
 
 static void area_weigh(const struct hf_frame *f, struct hf_rect r)
 {

@@ -5,7 +5,7 @@
 #ifndef HF_NEAR_MAX_SIMD_H
 #define HF_NEAR_MAX_SIMD_H
 
-#include "engine/gather/gather.h"
+#include "pixel/fields.h"
 #include "pixel/format_vf.h"
 
 enum { VECTOR = (int)sizeof(vi) };  // bytes
@@ -174,11 +174,11 @@ HF_INLINE void max_edges(const int bytes, const char *first, const char *last, c
 
 HF_INLINE void max_rows(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
-    const int m = hf_gather(f->s)->max_x, n = r.x1 - r.x0;
-    const float edge = hf_gather(f->s)->edge_x;
+    const int m = hf_fields(f->s)->max_x, n = r.x1 - r.x0;
+    const float edge = hf_fields(f->s)->edge_x;
     const struct hf_buf *b = &f->buf[HF_BUF_COC4];
     for (int y = r.y0; y < r.y1; y++) {
-        const float *coc = hf_at(b, hf_gather(f->s)->area ? HF_AREA_NEAR_MOST : 0, r.x0 - m, y);
+        const float *coc = hf_at(b, hf_fields(f->s)->near_coc, r.x0 - m, y);
         char *out = hf_narrow_at(&f->buf[HF_BUF_MAX_X], 0, r.x0, y, bytes);
         for (int x = 0; x < n + 2 * m + 15; x += 16)  // comes from memory, in rows too short for hardware prefetchers
             __builtin_prefetch(coc + 4 * b->stride + x);
@@ -237,8 +237,8 @@ HF_INLINE void max_columns(const struct hf_frame *f, struct hf_rect r, const int
 {
     const struct hf_buf *b = &f->buf[HF_BUF_MAX_X], *to = &f->buf[HF_BUF_MAX];
     const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float), out_stride = to->stride * (ptrdiff_t)sizeof(float);
-    const float edge = hf_gather(f->s)->edge_y;
-    const int reach = hf_gather(f->s)->max_y, m = reach - (edge < 1);
+    const float edge = hf_fields(f->s)->edge_y;
+    const int reach = hf_fields(f->s)->max_y, m = reach - (edge < 1);
     const int most = m < MAX_ROWS / 2 ? 2 * m + 1 : m < 24 ? MAX_ROWS : hf_min(2 * m + 1, MAX_MANY);
     for (int y = r.y0, rows; y < r.y1; y += rows) {
         rows = hf_min(most, r.y1 - y);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reciprocals of the gather, exact or not. Where this is not exact, bits are those of one kind of processor.
+// Reciprocals, exact or not. Where this is not exact, bits are those of one kind of processor.
 #ifndef HF_INVERSE_VF_H
 #define HF_INVERSE_VF_H
 
-#include "engine/gather/gather.h"
+#include "engine/chapter/chapter.h"
 #include "simd/simd.h"
 
 // 1 / x, x finite and at least FLT_MIN; what other lanes hold may come to anything, NaN included. Each step of Newton's

@@ -21,7 +21,7 @@ static float largest(const struct hf_frame *f, int x, int y)
     return most;
 }
 
-void hf_area_lights_c(const struct hf_frame *f, struct hf_rect r)
+void hf_gather_lights_c(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_reach reach = hf_gather_halo(f->s, HF_HALO_TAPS);
     const struct hf_buf *b = &f->buf[HF_BUF_WEIGHT];

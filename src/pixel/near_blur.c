@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Near CoC blur: a box as wide as the max before it, so that the near field's edge ramps over twice the reach. Its first and
 // last value count as much as there.
-#include "engine/gather/gather.h"
+#include "pixel/fields.h"
 
 // Sum of `size` values from p on, made of its two halves and, if that is odd, the value between them. step: bytes.
 static float window(enum hf_storage storage, const char *p, ptrdiff_t step, int size)
@@ -45,10 +45,10 @@ static float blurred(enum hf_storage storage, const char *p, ptrdiff_t step, int
 void hf_blur_x_c(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_buf *in = &f->buf[HF_BUF_MAX], *out = &f->buf[HF_BUF_BLUR_X];
-    const struct hf_gather *g = hf_gather(f->s);
+    const struct hf_fields *g = hf_fields(f->s);
     const enum hf_storage storage = f->s->storage;
     const int bytes = hf_narrow_bytes(storage);
-    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
+    for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++)
             hf_narrow_store(storage, hf_narrow_at(out, 0, x, y, bytes),
                             blurred(storage, hf_narrow_at(in, 0, x, y, bytes), bytes, g->blur_x, g->edge_x));
@@ -57,10 +57,10 @@ void hf_blur_x_c(const struct hf_frame *f, struct hf_rect r)
 void hf_blur_y_c(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_buf *in = &f->buf[HF_BUF_BLUR_X];
-    const struct hf_gather *g = hf_gather(f->s);
+    const struct hf_fields *g = hf_fields(f->s);
     const int bytes = hf_narrow_bytes(f->s->storage);
     const ptrdiff_t step = in->stride * (ptrdiff_t)sizeof(float);
-    for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
+    for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++)
             *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y) =
                 blurred(f->s->storage, hf_narrow_at(in, 0, x, y, bytes), step, g->blur_y, g->edge_y);

@@ -3,7 +3,7 @@
 #ifndef HF_NEAR_PART_VF_H
 #define HF_NEAR_PART_VF_H
 
-#include "engine/gather/gather.h"
+#include "engine/chapter/chapter.h"
 #include "simd/simd.h"
 
 // Is there any near CoC so small that the near field counts in part?

@@ -2,8 +2,8 @@
 // Near CoC blur on vectors. Bytes are summed as whole numbers, in words: any order gives the same sum, a running one
 // does not drift. Halves and floats are summed as floats: the windows that the C sums for each pixel are shared between
 // pixels, 5 additions a value for 13 wide, and the bits do not depend on where a tile starts.
-#include "engine/gather/gather.h"
-#include "engine/gather/near_max_simd.h"
+#include "pixel/fields.h"
+#include "pixel/near_max_simd.h"
 #include "pixel/format_vf.h"
 
 // ---- bytes, up to 255 wide: no sum is larger than a word ----
@@ -204,8 +204,8 @@ HF_INLINE void blur_row_wide(const struct hf_frame *f, const int bytes, char *in
 
 HF_INLINE void blur_rows(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
-    const int m = hf_gather(f->s)->blur_x, n = r.x1 - r.x0;
-    const float edge = hf_gather(f->s)->edge_x;
+    const int m = hf_fields(f->s)->blur_x, n = r.x1 - r.x0;
+    const float edge = hf_fields(f->s)->edge_x;
     for (int y = r.y0; y < r.y1; y++) {
         char *in = hf_narrow_at(&f->buf[HF_BUF_MAX], 0, r.x0 - m, y, bytes);
         char *out = hf_narrow_at(&f->buf[HF_BUF_BLUR_X], 0, r.x0, y, bytes);
@@ -305,8 +305,8 @@ HF_INLINE void blur_rows_3(const struct hf_frame *f, struct hf_rect r, const int
 HF_INLINE void blur_columns(const struct hf_frame *f, struct hf_rect r, const int bytes)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_BLUR_X], *to = &f->buf[HF_BUF_BLUR];
-    const float edge = hf_gather(f->s)->edge_y;
-    const int m = hf_gather(f->s)->blur_y, n = r.y1 - r.y0, is_sum = bytes == 1 && m <= BLUR_BYTES && !(edge < 1),
+    const float edge = hf_fields(f->s)->edge_y;
+    const int m = hf_fields(f->s)->blur_y, n = r.y1 - r.y0, is_sum = bytes == 1 && m <= BLUR_BYTES && !(edge < 1),
               width = is_sum ? VECTOR : VF_N;
     const ptrdiff_t stride = b->stride * (ptrdiff_t)sizeof(float);
     if (m == 1 && bytes > 1 && !(edge < 1)) {

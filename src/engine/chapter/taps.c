@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/gather/taps.h"
-
-#include "engine/gather/area.h"
+#include "engine/chapter/taps.h"
 
 #include <math.h>
 #include <string.h>
@@ -188,116 +186,11 @@ static void round_weights(struct hf_taps *t, const double *w, double all, int *f
         make_up(t, times, &missing, first, column, weight);
 }
 
-// Where all that the area covers of a row is one run around its middle, it is one entry.
-static void enter_areas(struct hf_taps *t, const double *w, int *first, int *column, float *weight)
-{
-    const int row = 2 * t->rx + 1;
-    int n = 0;
-    t->runs = t->symmetric && t->rx > 1 && t->ry > 1;
-    for (int k = 0; k < t->rows; k++) {
-        const double *p = t->symmetric ? w + (k + t->ry) * row + t->rx : w + k * row;
-        int from = 0, run = 0;
-        first[k] = n;
-        while (t->runs && run <= t->rx && p[run] == 1)
-            run++;
-        if (run > 1) {
-            column[n] = t->rx + run;
-            weight[n++] = 1;
-            from = run;
-        }
-        for (int j = from; j < (t->symmetric ? t->rx + 1 : row); j++)
-            if (p[j] > 0) {
-                column[n] = j;
-                weight[n++] = (float)p[j];
-            }
-    }
-    first[t->rows] = n;
-}
-
-static void sum_areas(int *sums, const double *w, float unit, int rx, int ry)
-{
-    const int row = 2 * rx + 2;
-    memset(sums, 0, (size_t)row * sizeof *sums);
-    for (int y = 0; y <= 2 * ry; y++) {
-        sums[(y + 1) * row] = 0;
-        for (int x = 0; x <= 2 * rx; x++)
-            sums[(y + 1) * row + x + 1] = sums[(y + 1) * row + x] + sums[y * row + x + 1] - sums[y * row + x] +
-                                          (int)(w[y * (2 * rx + 1) + x] / (double)unit);
-    }
-}
-
-float hf_taps_part(const struct hf_taps *t, int x0, int x1, int y0, int y1)
-{
-    const int row = 2 * t->rx + 2;
-    x0 = (x0 > -t->rx ? x0 : -t->rx) + t->rx;
-    x1 = (x1 < t->rx + 1 ? x1 : t->rx + 1) + t->rx;
-    y0 = (y0 > -t->ry ? y0 : -t->ry) + t->ry;
-    y1 = (y1 < t->ry + 1 ? y1 : t->ry + 1) + t->ry;
-    const int sum = t->sums[y1 * row + x1] - t->sums[y1 * row + x0] - (t->sums[y0 * row + x1] - t->sums[y0 * row + x0]);
-    return (float)sum * t->unit * t->scale;
-}
-
-// The lattice of an area: a pixel to either side at least, so that what lies between two pixels has both.
-static struct hf_area area_of(const struct hf_taps_key *k)
-{
-    const double y = fmax((double)k->radius * k->scale, 1);
-    const double x = fmax((double)k->radius * k->scale / k->pixel_aspect, 1);
-    const int mirrors = k->blades % 2 == 0 && fmod(k->rotation, 180.0 / (k->blades ? k->blades : 1)) == 0;
-    const int rx = (int)fmax(ceil(x - 0.5), 1), ry = (int)fmax(ceil(y - 0.5), 1);
-    const int most_x = k->most_x ? k->most_x : rx, most_y = k->most_y ? k->most_y : ry;
-    return (struct hf_area){.radius_x = x,
-                            .radius_y = y,
-                            .rx = rx < most_x ? rx : most_x,
-                            .ry = ry < most_y ? ry : most_y,
-                            .blades = k->blades,
-                            .rotation = k->rotation,
-                            .symmetric = !k->blades || mirrors,
-                            .cut = rx > most_x || ry > most_y};
-}
-
-static int build_area(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem, atomic_int *stop)
-{
-    const struct hf_area a = area_of(k);
-    const size_t lattice = (size_t)(2 * a.rx + 1) * (2 * a.ry + 1), sums = (size_t)(2 * a.rx + 2) * (2 * a.ry + 2);
-    const int err = hf_block_grow(&t->block,
-                                  lattice * (sizeof(double) + sizeof(float) + sizeof(int)) + sums * sizeof(int) +
-                                      (size_t)(2 * a.ry + 2) * sizeof(int),
-                                  mem);
-    if (err)
-        return err;
-    double *w = t->block.data;
-    float *weight = (float *)(w + lattice);
-    int *column = (int *)(weight + lattice), *first = column + lattice, *sum = first + 2 * a.ry + 2;
-    hf_area_cover(w, &a, stop);
-    if (hf_stopped(stop))
-        return HF_ERR_CANCELLED;
-    t->scale = hf_area_weights(w, &a);
-    t->unit = (float)hf_area_unit(&a);
-    t->count = 0;
-    t->rx = a.rx;
-    t->ry = a.ry;
-    t->symmetric = a.symmetric;
-    t->rows = t->symmetric ? t->ry + 1 : 2 * t->ry + 1;
-    t->first = first;
-    t->column = column;
-    t->weight = weight;
-    t->sums = sum;
-    enter_areas(t, w, first, column, weight);
-    sum_areas(sum, w, t->unit, a.rx, a.ry);
-    t->key = *k;
-    return HF_OK;
-}
-
-int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct hf_mem *mem, atomic_int *stop)
+int hf_tap_set_build(struct hf_tap_set *t, const struct hf_taps_key *k, const struct hf_mem *mem)
 {
     if (!memcmp(k, &t->key, sizeof *k))
         return HF_OK;
     t->key = (struct hf_taps_key){0};
-    if (k->area)
-        return build_area(t, k, mem, stop);
-    t->runs = 0;
-    t->scale = 1;
-    t->sums = NULL;
     const int count = tap_count(k);
     // Room for the largest reach there can be: a polygon's corners lie on its circle.
     const int max_rx = (int)ceil((double)k->radius * k->scale / k->pixel_aspect) + 1;
@@ -321,20 +214,22 @@ int hf_taps_build(struct hf_taps *t, const struct hf_taps_key *k, const struct h
     t->dx = dx;
     t->dy = dy;
     t->share = share;
-    t->rx = rx;
-    t->ry = ry;
-    t->symmetric = mirrors(w, rx, ry);
-    t->rows = t->symmetric ? ry + 1 : 2 * ry + 1;
-    t->first = first;
-    t->column = column;
-    t->weight = weight;
-    round_weights(t, w, k->dense ? count : taps_of_rings((int)ceilf(k->rings)), first, column, weight);
+    const int symmetric = mirrors(w, rx, ry);
+    t->taps = (struct hf_taps){.rx = rx,
+                               .ry = ry,
+                               .symmetric = symmetric,
+                               .rows = symmetric ? ry + 1 : 2 * ry + 1,
+                               .first = first,
+                               .column = column,
+                               .weight = weight,
+                               .scale = 1};
+    round_weights(&t->taps, w, k->dense ? count : taps_of_rings((int)ceilf(k->rings)), first, column, weight);
     t->key = *k;
     return HF_OK;
 }
 
-void hf_taps_free(struct hf_taps *t, const struct hf_mem *mem)
+void hf_tap_set_free(struct hf_tap_set *t, const struct hf_mem *mem)
 {
     hf_block_free(&t->block, mem);
-    *t = (struct hf_taps){0};
+    *t = (struct hf_tap_set){0};
 }

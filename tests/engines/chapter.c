@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library's gather engine against the reference in double precision, pass by pass: after each pass the library's
+// The library's chapter engine against the reference in double precision, pass by pass: after each pass the library's
 // buffer is compared and then replaces the reference's, so that each tolerance covers only one pass.
 //
-//     gather [seed]
+//     chapter [seed]
 //
 // Tolerances count roundings, at most U = 2^-24 each, relative to the largest value that went in. A few of them simply
 // add up. Many are taken as independent and uniform: n of them have a standard deviation of U sqrt(n / 3), and six of
@@ -92,7 +92,7 @@ static double buffer_near(const struct ref_buffer *b, int c, int x, int y, int r
 // rounded weights with 4 roundings each and 15 sums, twice (62). Two lerps, of differences (8).
 static double composite_bound(const struct reference *r, int c, int x, int y)
 {
-    const double roundings = 32 + (r->params.gather.bicubic ? 62 : 14) + 8;
+    const double roundings = 32 + (r->params.chapter.bicubic ? 62 : 14) + 8;
     const double fields = fmax(buffer_near(&r->buffer[REF_NEARFILL], c, x / 2, y / 2, 2),
                                buffer_near(&r->buffer[REF_FARFILL], c, x / 2, y / 2, 2));
     return many(roundings) * fmax(fabs(r->buffer[REF_COLOUR].data[c][y * r->width + x]), fields);
@@ -130,13 +130,13 @@ static double gather_bound(const struct reference *r, enum ref_id id, int c, int
     const int pixel = y * r->half_width + x;
     const double mean = id == REF_NEAR ? r->near_mean[pixel] : r->far_mean[pixel];
     if (mean == 0)
-        return 2 * U * colour_near(r, c, x, y, 0, 0);  // the pixel's own colour, at most divided by its CoC
-    const int per_pixel = id == REF_FAR && r->params.gather.per_pixel_kernel;
+        return 2 * U * colour_near(r, c, x, y, 0, 0);  // own colour, at most divided by its CoC
+    const int per_pixel = id == REF_FAR && r->params.chapter.per_pixel_kernel;
     const double points = per_pixel ? 4 * r->taps : fmin(4 * r->taps + 1, (2 * rx - 1) * (2 * ry - 1));
     const double moved = fmax(r->reach_x, r->reach_y) + 1 + (per_pixel ? r->half_width + r->half_height : 0);
     const double largest = colour_near(r, c, x, y, rx, ry);
     // Karis weights w = 1 / (1 + Y): w c <= 1 / 0.0722 for every channel.
-    const double sample = r->params.gather.karis ? fmin(largest, 14) : largest;
+    const double sample = r->params.chapter.karis ? fmin(largest, 14) : largest;
     const double units = per_pixel ? 0 : many(points);
     // The partial weight of the pixel's own colour adds a product, a difference, a product and a sum.
     return many(2 * points + 12 + 4) * largest + (units + U * 4 * moved) * sample / mean;
@@ -146,7 +146,7 @@ static double gather_bound(const struct reference *r, enum ref_id id, int c, int
 // times a value of at most 1.
 static double edge_bound(const struct reference *r, double radius)
 {
-    return r->params.gather.faithful || radius == ceil(radius) ? 0 : U * (ceil(radius) + 1);
+    return r->params.chapter.faithful || radius == ceil(radius) ? 0 : U * (ceil(radius) + 1);
 }
 
 // A mean of such values: 2 m + 1 positive terms and the scale; minus the missing part of two values, over the weight of
@@ -184,13 +184,13 @@ static double bound_of(const struct reference *r, const struct job *job, enum re
     case REF_FAR:
         return gather_bound(r, id, c, x, y);
     case REF_NEARFILL:  // nine terms, and the quotient or a product with a rounded 1/9; of a maximum as below
-        return r->params.gather.fill == HF_FILL_MEAN  ? 11 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1)
-               : r->params.gather.fill == HF_FILL_MAX ? 6 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1)
-                                                      : 0;
+        return r->params.chapter.fill == HF_FILL_MEAN  ? 11 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1)
+               : r->params.chapter.fill == HF_FILL_MAX ? 6 * U * buffer_near(&r->buffer[REF_NEAR], c, x, y, 1)
+                                                       : 0;
     case REF_FARFILL:  // of a maximum a difference, a product and a sum, of two values
-        return r->params.gather.fill == HF_FILL_MEAN  ? 11 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)
-               : r->params.gather.fill == HF_FILL_MAX ? 6 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)
-                                                      : 0;
+        return r->params.chapter.fill == HF_FILL_MEAN  ? 11 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)
+               : r->params.chapter.fill == HF_FILL_MAX ? 6 * U * buffer_near(&r->buffer[REF_FAR], c, x, y, 1)
+                                                       : 0;
     case REF_RESULT:
         return composite_bound(r, c, x, y);
     default:
@@ -205,7 +205,7 @@ static void compare(void *cookie, struct reference *r, enum ref_id id)
     struct ref_buffer *b = &r->buffer[id];
     const struct picture *got = &job->captured.buffer[id];
     const struct hf_params *p = &r->params;
-    const double unorm = p->gather.storage == HF_STORAGE_PACKED ? 2 * U : 0;  // n / 255, or n * (1 / 255)
+    const double unorm = p->chapter.storage == HF_STORAGE_PACKED ? 2 * U : 0;  // n / 255, or n * (1 / 255)
     if (!CHECK_MSG(got->width == b->width && got->height == b->height && got->channels == b->channels,
                    "%s: %s is %d x %d x %d, expected %d x %d x %d", job->label, b->name, got->width, got->height,
                    got->channels, b->width, b->height, b->channels))
@@ -219,8 +219,8 @@ static void compare(void *cookie, struct reference *r, enum ref_id id)
             const double raw = b->raw[c][i], have = got->plane[c][i];
             const double bound = bound_of(r, job, id, c, i % b->width, i / b->width);
             // The stored value must be what some value within the bound becomes when stored.
-            const double low = ref_store(p->gather.storage, stored_as, raw - bound) - unorm;
-            const double high = ref_store(p->gather.storage, stored_as, raw + bound) + unorm;
+            const double low = ref_store(p->chapter.storage, stored_as, raw - bound) - unorm;
+            const double high = ref_store(p->chapter.storage, stored_as, raw + bound) + unorm;
             b->data[c][i] = have;
             if (have >= low && have <= high)
                 continue;
@@ -269,29 +269,29 @@ struct option {
 #define ON 1
 static const struct option options[] = {
     {"default", {0}, 1},
-    {"faithful", {.gather.faithful = ON}, 1},
+    {"faithful", {.chapter.faithful = ON}, 1},
     {"strength 0.1", {.range.strength = 0.1f}, 0},
     {"strength 0.3", {.range.strength = 0.3f}, 0},
-    {"strength 0.6 faithful", {.range.strength = 0.6f, .gather.faithful = ON}, 0},
-    {"karis", {.gather.karis = ON}, 1},
-    {"per-pixel", {.gather.per_pixel_kernel = ON}, 1},
+    {"strength 0.6 faithful", {.range.strength = 0.6f, .chapter.faithful = ON}, 0},
+    {"karis", {.chapter.karis = ON}, 1},
+    {"per-pixel", {.chapter.per_pixel_kernel = ON}, 1},
     {"per-pixel karis mean",
-     {.gather.per_pixel_kernel = ON, .gather.karis = ON, .gather.fill = HF_FILL_MEAN, .gather.faithful = ON},
+     {.chapter.per_pixel_kernel = ON, .chapter.karis = ON, .chapter.fill = HF_FILL_MEAN, .chapter.faithful = ON},
      0},
     {"per-pixel none aspect 2",
-     {.gather.per_pixel_kernel = ON, .gather.fill = HF_FILL_NONE, .view.pixel_aspect = 2},
+     {.chapter.per_pixel_kernel = ON, .chapter.fill = HF_FILL_NONE, .view.pixel_aspect = 2},
      0},
-    {"bicubic", {.gather.bicubic = ON}, 1},
-    {"bicubic faithful strength 0.2", {.gather.bicubic = ON, .gather.faithful = ON, .range.strength = 0.2f}, 0},
-    {"mean", {.gather.fill = HF_FILL_MEAN, .gather.faithful = ON}, 0},
-    {"none", {.gather.fill = HF_FILL_NONE}, 0},
-    {"open, 2 rings", {.gather.fill = HF_FILL_OPEN, .gather.rings = 2}, 0},
-    {"linear downsample", {.gather.downsample = HF_DOWNSAMPLE_LINEAR}, 0},
-    {"point downsample karis", {.gather.downsample = HF_DOWNSAMPLE_POINT, .gather.karis = ON}, 0},
-    {"none radius 60", {.gather.fill = HF_FILL_NONE, .max_radius = 60}, 0},
-    {"none radius 60 per-pixel", {.gather.fill = HF_FILL_NONE, .max_radius = 60, .gather.per_pixel_kernel = ON}, 0},
+    {"bicubic", {.chapter.bicubic = ON}, 1},
+    {"bicubic faithful strength 0.2", {.chapter.bicubic = ON, .chapter.faithful = ON, .range.strength = 0.2f}, 0},
+    {"mean", {.chapter.fill = HF_FILL_MEAN, .chapter.faithful = ON}, 0},
+    {"none", {.chapter.fill = HF_FILL_NONE}, 0},
+    {"open, 2 rings", {.chapter.fill = HF_FILL_OPEN, .chapter.rings = 2}, 0},
+    {"linear downsample", {.chapter.downsample = HF_DOWNSAMPLE_LINEAR}, 0},
+    {"point downsample karis", {.chapter.downsample = HF_DOWNSAMPLE_POINT, .chapter.karis = ON}, 0},
+    {"none radius 60", {.chapter.fill = HF_FILL_NONE, .max_radius = 60}, 0},
+    {"none radius 60 per-pixel", {.chapter.fill = HF_FILL_NONE, .max_radius = 60, .chapter.per_pixel_kernel = ON}, 0},
     {"none karis 7-gon",
-     {.gather.fill = HF_FILL_NONE, .gather.karis = ON, .aperture.blades = 7, .aperture.rotation = 20},
+     {.chapter.fill = HF_FILL_NONE, .chapter.karis = ON, .aperture.blades = 7, .aperture.rotation = 20},
      0},
     {"smoothstep", {.range.blend = HF_BLEND_SMOOTHSTEP}, 0},
     {"5-gon", {.aperture.blades = 5}, 0},
@@ -300,15 +300,15 @@ static const struct option options[] = {
     {"6-gon rotated", {.aperture.blades = 6, .aperture.rotation = -10}, 0},
     {"7-gon strength 0.6", {.aperture.blades = 7, .range.strength = 0.6f}, 0},
     {"8-gon rotated", {.aperture.blades = 8, .aperture.rotation = 400}, 0},
-    {"9-gon karis", {.aperture.blades = 9, .gather.karis = ON}, 0},
+    {"9-gon karis", {.aperture.blades = 9, .chapter.karis = ON}, 0},
     {"aspect 2", {.view.pixel_aspect = 2}, 0},
-    {"aspect 0.6 karis", {.view.pixel_aspect = 0.6f, .gather.karis = ON}, 0},
+    {"aspect 0.6 karis", {.view.pixel_aspect = 0.6f, .chapter.karis = ON}, 0},
     {"radius 1", {.max_radius = 1}, 0},
     {"radius 4", {.max_radius = 4}, 0},
     {"radius 7.3 strength 0.45", {.max_radius = 7.3f, .range.strength = 0.45f}, 0},
     {"radius 40", {.max_radius = 40}, 0},
     {"radius 40 6-gon karis aspect 2",
-     {.max_radius = 40, .aperture.blades = 6, .gather.karis = ON, .view.pixel_aspect = 2},
+     {.max_radius = 40, .aperture.blades = 6, .chapter.karis = ON, .view.pixel_aspect = 2},
      0},
     {"range 20 (near begin at 0)", {.range.distance = 20}, 0},
     {"range 35 (near begin clamped)", {.range.distance = 35}, 0},
@@ -316,7 +316,7 @@ static const struct option options[] = {
     {"given distances", {.range.near_begin = 5, .range.near_end = 17, .range.far_begin = 22, .range.far_end = 31}, 0},
     {"display 1080", {.max_radius = HF_DERIVE, .view.display_height = 1080}, 0},
     {"derived radius", {.max_radius = HF_DERIVE, .view.display_height = 700}, 0},
-    {"derived radius faithful", {.max_radius = HF_DERIVE, .gather.faithful = ON}, 0},
+    {"derived radius faithful", {.max_radius = HF_DERIVE, .chapter.faithful = ON}, 0},
     {"lens", {.model = HF_MODEL_LENS, .lens.f_number = 0.05f}, 1},
     {"lens smoothstep display",
      {.model = HF_MODEL_LENS,
@@ -333,7 +333,7 @@ static struct hf_params merge(const struct hf_params *set)
 {
     struct hf_params p = scene_params();
     static const struct hf_params zero;
-    p.gather.fill = HF_FILL_MAX;  // the default has no taps: tests/engines/gather_lens.c
+    p.engine = HF_ENGINE_CHAPTER;
     // All fields are 4 bytes wide: enum, int or float.
     for (size_t i = 0; i < sizeof p / 4; i++)
         if (memcmp((const char *)set + 4 * i, (const char *)&zero + 4 * i, 4) != 0)
@@ -376,11 +376,12 @@ static void all_scenes_and_storages(struct hf_context *c, const char *isa, unsig
                 struct scene scene = scene_new(&rng, (enum scene_kind)kind, 45, 38, 3 + variant % 2);
                 const struct hf_depth depth = picture_depth(&scene.depth);
                 struct hf_params p = scene_params();
-                p.gather.storage = (enum hf_storage)storage;
-                p.gather.faithful = variant == 1 || variant == 3;
-                p.gather.karis = variant == 2;
-                p.gather.bicubic = p.gather.per_pixel_kernel = variant == 3;
-                p.gather.fill = variant == 3 ? HF_FILL_MEAN : HF_FILL_MAX;
+                p.engine = HF_ENGINE_CHAPTER;
+                p.chapter.storage = (enum hf_storage)storage;
+                p.chapter.faithful = variant == 1 || variant == 3;
+                p.chapter.karis = variant == 2;
+                p.chapter.bicubic = p.chapter.per_pixel_kernel = variant == 3;
+                p.chapter.fill = variant == 3 ? HF_FILL_MEAN : HF_FILL_MAX;
                 char label[120];
                 snprintf(label, sizeof label, "%s, storage %s, variant %d, %s", isa, storages[storage], variant,
                          scene_name((enum scene_kind)kind));
@@ -444,7 +445,7 @@ static void divisions(struct hf_context *c, const char *isa, unsigned seed)
     struct scene scene = scene_new(&rng, SCENE_NOISE, 77, 41, 3);
     const struct hf_depth depth = picture_depth(&scene.depth);
     struct hf_params p = scene_params();
-    p.gather.fill = HF_FILL_MAX;
+    p.engine = HF_ENGINE_CHAPTER;
     struct picture exact = render(c, &scene.colour, &depth, &p);
     double most = 0, e = hf_context_isa(c) == HF_ISA_NEON ? 1 / 256.0 : 1.5 / 4096;
     for (int k = 0; k < 3; k++)
@@ -452,7 +453,7 @@ static void divisions(struct hf_context *c, const char *isa, unsigned seed)
             most = fmax(most, fabs(scene.colour.plane[k][i]));
     for (int d = HF_DIVISION_ESTIMATE; d <= HF_DIVISION_NEWTON2; d++) {
         double worst = 0;
-        p.gather.division = (enum hf_division)d;
+        p.chapter.division = (enum hf_division)d;
         p.run.deterministic = 0;
         struct picture out = render(c, &scene.colour, &depth, &p);
         for (int k = 0; k < 3; k++)
@@ -464,7 +465,7 @@ static void divisions(struct hf_context *c, const char *isa, unsigned seed)
         picture_free(&out);
         p.run.deterministic = 1;
         struct hf_params q = p;
-        q.gather.division = HF_DIVISION_EXACT;
+        q.chapter.division = HF_DIVISION_EXACT;
         struct picture a = render(c, &scene.colour, &depth, &p), b = render(c, &scene.colour, &depth, &q);
         CHECK_MSG(picture_same_bits(&a, &b), "%s: division %s changes deterministic bits", isa,
                   hf_name(HF_NAMES_DIVISION, d));
@@ -485,7 +486,7 @@ static void deterministic(struct hf_context *scalar, struct hf_context *c, const
         const struct hf_depth depth = picture_depth(&scene.depth);
         struct hf_params p = merge(&options[o].p);
         p.run.deterministic = 1;
-        p.gather.storage = (enum hf_storage)(o % 3);
+        p.chapter.storage = (enum hf_storage)(o % 3);
         struct picture a = render(scalar, &scene.colour, &depth, &p), b = render(c, &scene.colour, &depth, &p);
         CHECK_MSG(picture_same_bits(&a, &b), "%s, deterministic, %s: not the bits of scalar", isa, options[o].name);
         picture_free(&a);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fill: closes the gaps between the taps by a 3x3 maximum, which makes highlights round and brighter, or a mean,
 // which keeps their energy.
-#include "engine/gather/gather.h"
+#include "engine/chapter/chapter.h"
 
 static float max_3x3(const struct hf_buf *b, int c, int x, int y)
 {
@@ -30,7 +30,7 @@ static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
 // and goes so from a quarter to half of difference.
 static float far_counts(const struct hf_setup *s, float f, float g)
 {
-    const float apart = hf_gather(s)->per_pixel_kernel ? 4 * __builtin_fabsf(f - g) : 0;
+    const float apart = hf_fields(s)->per_pixel_kernel ? 4 * __builtin_fabsf(f - g) : 0;
     if (s->faithful)
         return apart <= 1;
     return hf_saturate(4 * g) * hf_saturate(2 - apart);
@@ -73,20 +73,20 @@ static float fill_near(const struct hf_frame *f, int c, int x, int y)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_NEAR];
     const float own = *hf_at(b, c, x, y), blur = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
-    if (hf_gather(f->s)->fill == HF_FILL_NONE || !(blur > 0))
+    if (hf_chapter(f->s)->fill == HF_FILL_NONE || !(blur > 0))
         return own;
-    return hf_near_part(f->s, own, hf_gather(f->s)->fill == HF_FILL_MAX ? max_3x3(b, c, x, y) : mean_3x3(b, c, x, y),
+    return hf_near_part(f->s, own, hf_chapter(f->s)->fill == HF_FILL_MAX ? max_3x3(b, c, x, y) : mean_3x3(b, c, x, y),
                         blur);
 }
 
 static float fill_far(const struct hf_frame *f, int c, int x, int y)
 {
-    if (hf_gather(f->s)->fill == HF_FILL_NONE || !(*hf_at(&f->buf[HF_BUF_COC4], 1, x, y) > 0))
+    if (hf_chapter(f->s)->fill == HF_FILL_NONE || !(*hf_at(&f->buf[HF_BUF_COC4], 1, x, y) > 0))
         return *hf_at(&f->buf[HF_BUF_FAR], c, x, y);
-    return hf_gather(f->s)->fill == HF_FILL_MAX ? far_max(f, c, x, y) : far_mean(f, c, x, y);
+    return hf_chapter(f->s)->fill == HF_FILL_MAX ? far_max(f, c, x, y) : far_mean(f, c, x, y);
 }
 
-void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
+void hf_chapter_fill_c(const struct hf_frame *f, struct hf_rect r)
 {
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         float *near[4], *far[4];
@@ -101,7 +101,7 @@ void hf_fill_c(const struct hf_frame *f, struct hf_rect r)
             }
         // The largest of what a storage holds is what it holds.
         const int rounds =
-            hf_gather(f->s)->fill == HF_FILL_MEAN || (hf_gather(f->s)->fill == HF_FILL_MAX && !f->s->faithful);
+            hf_chapter(f->s)->fill == HF_FILL_MEAN || (hf_chapter(f->s)->fill == HF_FILL_MAX && !f->s->faithful);
         if (f->near && rounds)
             hf_store_rgb(f, near, r.x1 - r.x0);
         if (f->far && rounds)

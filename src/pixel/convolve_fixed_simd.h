@@ -1,36 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The gather's convolution for tap sets whose lattice is known when this is compiled: whole rings at kernel scale 1,
-// radius 4, 6 and 8 (12 pixels of a picture of 1080 lines, and the same at 720 and 1440).
+// Convolution with tap sets whose lattice is known when this is compiled, symmetric, radius FIXED_R at most: an engine that
+// has such sets makes a column for each by FIXED_COLUMN.
 //
 // One vector of columns is walked down with all sums in registers: the pairs h[j] of the row at hand, and one sum for
 // each of the 2 r + 1 output rows that it reaches. A sum moves one place up as the next row is added to it, which costs
 // nothing in an instruction of three operands. So an output row is stored once, no pair is stored at all, and what is
 // left of the loads are the weights and the shifted values.
-#include "engine/gather/gather.h"
-#include "pixel/format_vf.h"
+#ifndef HF_CONVOLVE_FIXED_SIMD_H
+#define HF_CONVOLVE_FIXED_SIMD_H
 
-// Which columns the rows of weights have, bit j for |dx| = j.
-static const uint16_t rings_4[] = {0x15, 0x1e, 0x1f, 0x0e, 0x07};
-static const uint16_t rings_6[] = {0x55, 0x7e, 0x7f, 0x6e, 0x37, 0x3e, 0x0f};
-static const uint16_t rings_8[] = {0x155, 0x1fe, 0x1ff, 0x1ee, 0x1f7, 0x0fe, 0x07f, 0x03e, 0x01f};
+#include "pixel/convolve.h"
+#include "pixel/format_vf.h"
 
 enum { FIXED_R = 8, FIXED_STRIP = 64 / VF_N };
 // Four lanes have no load that repeats a number: the weights are laid out four times each.
 enum { WEIGHT_N = VF_N == 4 ? 4 : 1 };
 
-// Discs by area, radius 4, 6 and 8: bits 0 to 8 as above, from bit 12 on the run of weights of 1 around the middle, 0 if
-// there is none, else one more than how far it reaches. Sums are scaled when they are complete.
+// Rows of weights: bits 0 to 8 say which columns they have, bit j for |dx| = j; from bit 12 on comes the run of weights of 1
+// around the middle, 0 if there is none, else one more than how far it reaches (a disc). Sums of discs are scaled when they are
+// complete.
 #define RUN(reach) (((reach) + 1) << 12)
-static const uint16_t disc_4[] = {RUN(3) | 0x10, RUN(3) | 0x10, RUN(2) | 0x18, RUN(1) | 0x0c, 0x07};
-static const uint16_t disc_6[] = {RUN(5) | 0x40, RUN(5) | 0x40, RUN(4) | 0x60, RUN(4) | 0x20,
-                                  RUN(3) | 0x30, RUN(1) | 0x1c, 0x07};
-static const uint16_t disc_8[] = {RUN(7) | 0x100, RUN(7) | 0x100, RUN(7) | 0x100,
-                                  RUN(6) | 0x180, RUN(6) | 0x080, RUN(5) | 0x0c0,
-                                  RUN(4) | 0x060, RUN(2) | 0x038, 0x0f};
 
-static int discs_are(const struct hf_taps *t, const uint16_t *rows, int r)
+// Are these the weights of such rows?
+HF_INLINE int fixed_are(const struct hf_taps *t, const uint16_t *rows, int r, int disc)
 {
-    if (!t->runs || t->rx != r || t->ry != r)
+    if (t->runs != disc || !t->symmetric || t->rx != r || t->ry != r)
         return 0;
     for (int k = 0; k <= r; k++) {
         unsigned columns = 0;
@@ -39,24 +33,6 @@ static int discs_are(const struct hf_taps *t, const uint16_t *rows, int r)
         if (columns != rows[k])
             return 0;
     }
-    return 1;
-}
-
-static int taps_are(const struct hf_taps *t, const uint16_t *rows, int r)
-{
-    if (t->runs || !t->symmetric || t->rx != r || t->ry != r)
-        return 0;
-    for (int k = 0; k <= r; k++) {
-        unsigned columns = 0;
-        for (int i = t->first[k]; i < t->first[k + 1]; i++)
-            columns |= 1u << t->column[i];
-        if (columns != rows[k])
-            return 0;
-    }
-    // Taps on the axes hit lattice points, all with one weight; see fixed_sum.
-    for (int i = 2; i <= r; i += 2)
-        if (t->weight[t->first[i]] != t->weight[1] || t->weight[i / 2] != t->weight[1])
-            return 0;
     return 1;
 }
 
@@ -227,13 +203,6 @@ typedef void fixed_column(const float *weight, float scale, const float *in, ptr
                         -out_stride, height);                                                                          \
     }
 
-FIXED_COLUMN(rings_4, 4, 0)
-FIXED_COLUMN(rings_6, 6, 0)
-FIXED_COLUMN(rings_8, 8, 0)
-FIXED_COLUMN(disc_4, 4, 1)
-FIXED_COLUMN(disc_6, 6, 1)
-FIXED_COLUMN(disc_8, 8, 1)
-
 // The weights as columns take them.
 static const float *fixed_weights(const struct hf_taps *t, float *work)
 {
@@ -244,14 +213,4 @@ static const float *fixed_weights(const struct hf_taps *t, float *work)
     return work;
 }
 
-// NULL: none fits.
-static fixed_column *fixed_column_for(const struct hf_taps *t)
-{
-    return discs_are(t, disc_6, 6)   ? disc_6_column
-           : discs_are(t, disc_4, 4) ? disc_4_column
-           : discs_are(t, disc_8, 8) ? disc_8_column
-           : taps_are(t, rings_6, 6) ? rings_6_column
-           : taps_are(t, rings_4, 4) ? rings_4_column
-           : taps_are(t, rings_8, 8) ? rings_8_column
-                                     : NULL;
-}
+#endif
