@@ -21,6 +21,7 @@
 #include "tools/cli/plan.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/resume.h"
+#include "tools/cli/room.h"
 #include "tools/cli/summary.h"
 #include "tools/cli/warn.h"
 #include "tools/common/machine.h"
@@ -44,9 +45,8 @@ struct batch {
     atomic_int chosen[MAX_STEPS];  // frames by step of the time budget
     atomic_int missed[2];          // frames that took longer than it; of these at the cheapest step
     int measuring;                 // one frame at a time, to see what it takes:
-    double frame_bytes, frame_pixels;
-    double room;           // bytes that frames in work may take together, and
-    atomic_llong in_work;  // bytes that they take
+    double frame_bytes;
+    struct cli_room room;
 };
 
 static volatile sig_atomic_t stop_signal;
@@ -108,41 +108,28 @@ static double peak_memory(void)
     return getrusage(RUSAGE_SELF, &usage) ? 0 : 1024. * (double)usage.ru_maxrss;
 }
 
-static double pixels(const struct cli_frame *frame)
+// Wait for memory. The session's library context may have been given up for other frames meanwhile.
+static int enter_room(struct batch *b, int worker, const struct cli_frame *frame, struct cli_record *record,
+                      struct tool_error *error)
 {
-    double sum = 0;
-    for (int i = 0; i < frame->view_count; i++)
-        sum += (double)frame->views[i].view->width * frame->views[i].view->height;
-    return sum;
-}
-
-// How many frames fit was counted by the first: one that is larger waits until the others leave it room, or are none.
-static void wait_for_room(struct batch *b, const struct cli_frame *frame, struct cli_record *record)
-{
+    struct cli_session *session = &b->sessions[worker];
     const double start = tool_now_ms();
-    const struct timespec pause = {.tv_nsec = 2000000};
-    if (b->measuring || !(b->frame_pixels > 0))
-        return;
-    const long long bytes = (long long)(b->frame_bytes * pixels(frame) / b->frame_pixels);
-    for (long long taken = atomic_load(&b->in_work);;) {
-        if (taken && (double)(taken + bytes) > b->room) {
-            nanosleep(&pause, NULL);
-            taken = atomic_load(&b->in_work);
-        } else if (atomic_compare_exchange_weak(&b->in_work, &taken, taken + bytes)) {
-            record->memory = bytes;
-            record->waited_ms = tool_now_ms() - start;
-            return;
-        }
-    }
+    cli_room_enter(&b->room, worker, frame);
+    record->waited_ms = tool_now_ms() - start;
+    if (session->context)
+        return 0;
+    cli_session_close(session);
+    return cli_session_open(session, b->args, b->threads, error);
 }
 
-static int make_frame(struct batch *b, struct cli_frame *frame, struct cli_session *session,
-                      const struct cli_args *args, struct cli_record *record, struct tool_error *error)
+static int make_frame(struct batch *b, struct cli_frame *frame, int worker, const struct cli_args *args,
+                      struct cli_record *record, struct tool_error *error)
 {
+    struct cli_session *session = &b->sessions[worker];
     const struct cli_stamp *stamp = record->stamp;
     int status = cli_frame_open(frame, args, &session->run, error);
     if (!status)
-        wait_for_room(b, frame, record);
+        status = enter_room(b, worker, frame, record, error);
     if (!status)
         status = cli_frame_setup(frame, error);
     if (!status)
@@ -178,7 +165,6 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
         // The peak of an earlier look at the shot may hide what this frame takes.
         if (b->measuring) {
             b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.all.memory);
-            b->frame_pixels = pixels(frame);
         }
         describe(frame, &report, r->ms, text, sizeof(text));
         atomic_fetch_add(&b->chosen[report.all.budget_step < MAX_STEPS ? report.all.budget_step : MAX_STEPS - 1], 1);
@@ -229,7 +215,7 @@ static void run_job(void *arg, int i, int worker)
     if (!status && args.resume && cli_stamp_fits(&stamp, args.output)) {
         record.status = CLI_FRAME_SKIPPED;
     } else if (!status) {
-        status = make_frame(b, &frame, session, &args, &record, &error);
+        status = make_frame(b, &frame, worker, &args, &record, &error);
         frame.args = &args;
         if (!status)
             cli_print_summary(&frame, cli_print_warnings(&frame));
@@ -240,8 +226,14 @@ static void run_job(void *arg, int i, int worker)
     }
     record.ms = tool_now_ms() - start;
     finish(b, &frame, session, &record, error.text);
+    // A context that was given up has no report, and a frame that failed has none either.
+    struct hf_report report = {.size = sizeof(report)};
+    if (record.status == CLI_FRAME_DONE)
+        hf_get_report(session->context, &report);
+    const double held = record.status == CLI_FRAME_DONE ? (double)report.memory_held : -1,
+                 size = cli_room_pixels(&frame);
     cli_frame_close(&frame);
-    atomic_fetch_sub(&b->in_work, record.memory);
+    cli_room_leave(&b->room, worker, size, held);
     cli_stamp_free(&stamp);
 }
 
@@ -266,6 +258,8 @@ static int open_sessions(struct batch *b, int workers, int threads, struct tool_
             return status;
     }
     b->threads = hf_context_threads(b->sessions[0].context);
+    if (cli_room_workers(&b->room, b->sessions, workers))
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", b->args->input);
     return 0;
 }
 
@@ -315,9 +309,8 @@ static int run_rest(struct batch *b, struct tool_error *error)
     b->threads_of_each = b->threads;
     if (left <= 0)
         return 0;
-    const double base = peak_memory() - b->frame_bytes;
-    const int workers = cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads, base, b->frame_bytes);
-    b->room = cli_plan_memory_limit(b->args) - base;
+    const int workers =
+        cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads, b->room.base, b->frame_bytes);
     // Where the last round has too few frames for all threads, each of them has more.
     const int last = left % workers, alone = last && threads / last > 1 && threads / last > threads / workers;
     int status = run_some(b, alone ? left - last : left, workers, error);
@@ -395,6 +388,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
     struct batch b = {.args = args, .shot = shot};
     error->text[0] = '\0';
     keep_memory();
+    cli_room_open(&b.room, cli_plan_memory_limit(args));
     int status = cli_plan_open(&b.plan, args, shot, error);
     if (!status)
         status = cli_log_open(&b.log, args->log_file, argc, argv, shot->jobs.count, error);
@@ -424,6 +418,7 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
         status = status ? status : log_status;
     }
     close_sessions(&b);
+    cli_room_close(&b.room);
     cli_plan_close(&b.plan);
     return status;
 }

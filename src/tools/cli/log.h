@@ -26,7 +26,6 @@ struct cli_record {
     const struct cli_stamp *stamp;
     const struct tool_report *report;  // of the last view; NULL unless done
     const char *why;                   // of a failure
-    long long memory;                  // bytes kept free for it
     double ms, waited_ms;              // from beginning to end; of that until others left it memory
 };
 

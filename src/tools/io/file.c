@@ -429,3 +429,23 @@ const char *hf_io_sandbox(void)
 {
     return hf_oiio_sandbox();
 }
+
+double hf_io_memory(const struct hf_io_file *file)
+{
+    double bytes = file->exr ? (double)file->exr->size : 0;
+    for (int p = 0; file->exr && p < file->exr->part_count; p++) {
+        const struct hf_exr_part *part = &file->exr->parts[p];
+        double pixel = 0;
+        bool colours = false;
+        for (int c = 0; c < part->channel_count; c++)
+            pixel += (double)part->channels[c].bytes / (part->channels[c].x_sampling * part->channels[c].y_sampling);
+        for (int i = 0; i < file->views.count; i++)
+            colours |= file->views.view[i].part == p;
+        // The samples, and the chunks of the new file. The codec that does DWA whole has each once more.
+        if (colours)
+            bytes += (hf_exr_is_dwa(part->compression) ? 4 : 2) * pixel * part->width * part->height;
+    }
+    for (int i = 0; i < file->views.count && !file->exr; i++)
+        bytes += 16. * file->views.view[i].width * file->views.view[i].height;
+    return bytes;
+}

@@ -173,6 +173,10 @@ void hf_io_end_by_signal(int number);
 // 1 if this build can read and write formats other than EXR.
 int hf_io_has_oiio(void);
 
+// Bytes that an open file comes to hold until it is closed, its new one included, when all views are replaced: about, and
+// without the caller's planes.
+double hf_io_memory(const struct hf_io_file *file);
+
 // What the sandbox in which formats other than EXR were read did not forbid, as one sentence; NULL if it was whole, or
 // nothing was read so.
 const char *hf_io_sandbox(void);
