@@ -151,8 +151,7 @@ int hf_open_abi(struct hf_context **out, const struct hf_config *config, int abi
     if (abi != HF_ABI_VERSION)
         return HF_ERR_ABI;
     if (config && hf_sized_in(&own, config, &hf_sized_config, "config", &message)) {
-        // The log lies within what every release has, if the size is one at all.
-        if (config->size >= hf_sized_config.first && config->log)
+        if (hf_sized_is_possible(config->size, &hf_sized_config) && config->log)
             config->log(config->log_cookie, &message);
         return HF_ERR_ARG;
     }

@@ -27,9 +27,14 @@ static int is_zero(const char *bytes, size_t n)
     return 1;
 }
 
+int hf_sized_is_possible(size_t size, const struct hf_sized *type)
+{
+    return size >= type->first && size <= MOST;
+}
+
 static int check_size(size_t size, const struct hf_sized *type, const char *argument, struct hf_message *message)
 {
-    if (size >= type->first && size <= MOST)
+    if (hf_sized_is_possible(size, type))
         return HF_OK;
     hf_bad(message, argument, "has the size %zu; set its field size to sizeof(struct %s), at least %zu", size,
            type->name, type->first);

@@ -20,6 +20,9 @@ extern const struct hf_sized hf_sized_choice, hf_sized_config, hf_sized_depth, h
 #type, sizeof(struct type), offsetof(struct type, last) + sizeof((struct type *)0)->last                       \
     }
 
+// 1: a release may have a struct of this size, so what the first release has is there to be read. 0: only its size is.
+int hf_sized_is_possible(size_t size, const struct hf_sized *type);
+
 // Copy what the program gave over *own, which holds defaults or zeros. argument is what the message calls it. Returns HF_OK,
 // or HF_ERR_ARG with the message filled.
 int hf_sized_in(void *own, const void *given, const struct hf_sized *type, const char *argument,
