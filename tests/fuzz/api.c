@@ -1,55 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The library's own functions with random parameters, formats, strides, sizes up to 256, failing allocations,
-// instruction sets. A call is either refused with one sentence, or it works: its input stays unchanged, its output is
-// finite, and all memory is freed. Without AddressSanitizer every block ends at a forbidden page.
+// instruction sets, sizes of structs. A call is either refused with one sentence, or it works: its input stays unchanged, its
+// output is finite, and all memory is freed. Without AddressSanitizer every block ends at a forbidden page.
 #include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
-#include <sys/mman.h>
 
+#include "fuzz/blocks.h"
 #include "fuzz/fuzz.h"
 #include "tools/common/report.h"
 
 // ---- memory ----
-
-#ifdef ADDRESS_SANITIZER
-static void *block_of(size_t size, size_t align)
-{
-    void *p = NULL;
-    return posix_memalign(&p, align < sizeof(void *) ? sizeof(void *) : align, size ? size : 1) ? NULL : p;
-}
-
-static void free_block(void *p)
-{
-    free(p);
-}
-#else
-enum { PAGE = 4096 };
-
-// A page that notes the length, the block at the end of its pages, a forbidden page.
-static void *block_of(size_t size, size_t align)
-{
-    const size_t whole = ((size ? size : 1) + align - 1) / align * align;
-    const size_t room = (whole + PAGE - 1) / PAGE * PAGE, all = room + 2 * PAGE;
-    char *start = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (start == MAP_FAILED)
-        return NULL;
-    memcpy(start, &all, sizeof(all));
-    MUST(!mprotect(start + PAGE + room, PAGE, PROT_NONE));
-    return start + PAGE + room - whole;
-}
-
-static void free_block(void *p)
-{
-    if (!p)
-        return;
-    char *start = (char *)((uintptr_t)p / PAGE * PAGE) - PAGE;  // it begins in the second page
-    size_t all;
-    memcpy(&all, start, sizeof(all));
-    MUST(!munmap(start, all));
-}
-#endif
 
 // The memory of an argument.
 struct area {
@@ -536,6 +498,80 @@ static void one_frame(struct hf_context *c, struct bytes *b, unsigned how)
         free_block(f.areas[i].start);
 }
 
+// ---- structs of other sizes, as programs of other releases give them
+
+// A struct in a block of its own size: mostly larger than the library's, with the right contents (NULL: none) and zeros, or
+// other bytes, behind. A size that no release can have lies in a block that holds nothing but the size.
+static void *any_sized(struct bytes *b, const void *right, size_t own)
+{
+    enum { MOST = 65536 };
+    const unsigned kind = take_byte(b);
+    size_t size = own;
+    if (kind < 140)
+        size = own + take_byte(b);
+    else if (kind < 170)
+        size = take_byte(b) * 2;
+    else if (kind < 200)
+        size = take_word(b) % (MOST + 1000);
+    else if (kind < 220)
+        size = (size_t)take_word(b) << 32 | take_word(b);
+    const size_t bytes = size > MOST || size < sizeof size ? sizeof size : size;
+    char *p = block_of(bytes, sizeof size);
+    MUST(p != NULL);
+    memset(p, now_and_then(b), bytes);
+    if (right)
+        memcpy(p, right, bytes < own ? bytes : own);
+    memcpy(p, &size, sizeof size);
+    return p;
+}
+
+// The library's own size must do for what it fills, and so must larger ones.
+static void filled(void *p, size_t own, int err)
+{
+    const size_t size = *(const size_t *)p;
+    MUST(err == (size >= own && size <= 65536 ? HF_OK : HF_ERR_ARG));
+    free_block(p);
+}
+
+static void fill_any_sizes(struct hf_context *c, struct bytes *b)
+{
+    struct hf_params params = hf_default_params();
+    struct hf_report *report = any_sized(b, NULL, sizeof *report);
+    filled(report, sizeof *report, hf_get_report(c, report));
+    struct hf_params *used = any_sized(b, NULL, sizeof *used);
+    filled(used, sizeof *used, hf_get_used(c, used, NULL));
+    struct hf_resolved *resolved = any_sized(b, NULL, sizeof *resolved);
+    filled(resolved, sizeof *resolved, hf_get_used(c, NULL, resolved));
+    struct hf_choice *choice = any_sized(b, NULL, sizeof *choice);
+    filled(choice, sizeof *choice, hf_choose_quality(16, NULL, &params, HF_QUALITY_BEST, choice, NULL));
+    struct hf_message *message = any_sized(b, NULL, sizeof *message);
+    filled(message, sizeof *message, hf_get_problem(c, message));
+}
+
+static void give_any_sizes(struct bytes *b)
+{
+    const struct hf_params right_params = hf_default_params();
+    const struct hf_depth right_depth = {.size = sizeof right_depth, .type = HF_DEPTH_COC};
+    const struct hf_config right_config = {
+        .size = sizeof right_config, .threads = 1, .alloc = take, .free = give, .log = hear};
+    struct hf_message message = {.size = sizeof message};
+    struct hf_params *params = any_sized(b, &right_params, sizeof *params);
+    struct hf_depth *depth = any_sized(b, &right_depth, sizeof *depth);
+    struct hf_config *config = any_sized(b, &right_config, sizeof *config);
+    const int err = hf_resolve(16, 16, depth, params, NULL, NULL, &message);
+    MUST((err == HF_OK || err == HF_ERR_ARG) && message.error == err);
+    if (err)
+        check_sentence(&message);
+    struct hf_context *c = NULL;
+    const int opened = hf_open(&c, config);
+    MUST(opened == HF_OK || opened == HF_ERR_ARG || opened == HF_ERR_MEMORY);
+    MUST(!opened == (c != NULL));
+    hf_close(&c);
+    free_block(params);
+    free_block(depth);
+    free_block(config);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct bytes b = {data, size};
@@ -564,6 +600,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     MUST(!opened == (c != NULL));
     for (int frame = 0; c && frame < 1 + (int)(how >> 4 & 1); frame++)
         one_frame(c, &b, how);
+    if (c && now_and_then(&b))
+        fill_any_sizes(c, &b);
+    if (now_and_then(&b))
+        give_any_sizes(&b);
     hf_close(&c);
     MUST(live == 0);
     return 0;
