@@ -416,7 +416,7 @@ static void reserved(void)
     struct hf_params p = hf_default_params();
     struct hf_depth d = depth();
 #define GROUP(group) check_reserved(#group ".reserved", &p, p.group.reserved, sizeof p.group.reserved)
-    GROUP(range), GROUP(lens), GROUP(aperture), GROUP(highlight), GROUP(view), GROUP(gather);
+    GROUP(range), GROUP(lens), GROUP(aperture), GROUP(highlight), GROUP(view), GROUP(gather), GROUP(chapter);
     GROUP(hexagon), GROUP(scatter), GROUP(gaussian), GROUP(layers), GROUP(run);
 #undef GROUP
     d.reserved = 1;

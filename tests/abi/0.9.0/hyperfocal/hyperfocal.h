@@ -15,7 +15,7 @@
 // Words. "CoC" is the circle of confusion: what the lens makes of a point. Its radius is counted in full-resolution pixels,
 // negative in front of the plane in focus (near), positive behind it (far). Depth is view depth unless said otherwise: positive
 // distance along the camera axis, in scene units. Pixel centres lie at +0.5. Colours are linear and premultiplied by alpha.
-// "The chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2, the source of the default engine.
+// "The chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2, which the engine of that name reproduces.
 //
 // Threads. One thread at a time may use a context. Any number of contexts may be used at once. After fork() the child has none
 // of the context's threads: a context with threads of its own returns HF_ERR_THREAD there, and hf_close frees its memory.
@@ -302,7 +302,7 @@ struct hf_resolved {
 };
 
 // What hf_render would make of params (NULL: defaults) for a width x height picture: *filled gets the parameters without
-// HF_DERIVE and HF_FILL_AUTO, *resolved the numbers that follow. If hf_render would fail, *message gets the reason. All three
+// HF_DERIVE, *resolved the numbers that follow. If hf_render would fail, *message gets the reason. All three
 // may be NULL. depth->data may be NULL if there are no pixels yet; then params->focus must not be HF_DERIVE. Errors:
 // HF_ERR_ARG, HF_ERR_FOCUS; then *filled and *resolved are 0 except for their size.
 HF_API int hf_resolve(int width, int height, const struct hf_depth *depth, const struct hf_params *params,

@@ -17,7 +17,7 @@ extern "C" {
 // What a scene asks of a tile: no blur, near blur, far blur or both.
 enum hf_tile { HF_TILE_SHARP, HF_TILE_NEAR, HF_TILE_FAR, HF_TILE_BOTH };
 
-// The name of an engine's pass, in the order in which passes run; the gather's are those of table 3.1 of the chapter. NULL for
+// The name of an engine's pass, in the order in which passes run; those of HF_ENGINE_CHAPTER are the names in the chapter's table 3.1. NULL for
 // numbers that are none.
 HF_API const char *hf_inspect_pass_name(enum hf_engine engine, int pass);
 
@@ -70,9 +70,9 @@ HF_API void hf_inspect_colour(struct hf_context *c, int on);
 // An intermediate buffer: planes of floats.
 struct hf_inspect_buffer {
     size_t size;  // sizeof(struct hf_inspect_buffer), the library's
-    const char
-        *name;  // gather: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far, nearfill,
-                // farfill; by area colormulnear4, farpart and cover instead of the last two
+    // gather and chapter: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far; gather also
+    // colormulnear4, farpart and cover; chapter also nearfill and farfill.
+    const char *name;
     int width, height;  // full, half or quarter resolution
     int channels;       // 1 to 4: near and far CoC, one CoC, or R, G, B and perhaps A
     uint32_t reserved;

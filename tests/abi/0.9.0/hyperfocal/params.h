@@ -34,14 +34,15 @@ struct hf_image;
 
 // The algorithms. Engines are numbered from 0 without gaps; hf_engine_name returns NULL after the last one.
 enum hf_engine {
-    HF_ENGINE_GATHER,    // Sterna's gather over half-resolution near and far fields: nine passes
+    HF_ENGINE_GATHER,    // near and far field at half resolution, each pixel the mean over its aperture's area
     HF_ENGINE_HEXAGON,   // hexagonal bokeh in two passes of directional blurs (White and Barre-Brisebois, 2011)
     HF_ENGINE_SCATTER,   // every pixel becomes the aperture's picture (Wronski, 2012)
     HF_ENGINE_GAUSSIAN,  // an iterated 5-tap blur, blended by depth, with autofocus (2010)
     HF_ENGINE_LAYERS,  // un-mixed edges, filled-in hidden surfaces, slices blended in order of depth: the most accurate
+    HF_ENGINE_CHAPTER,  // Sterna's nine passes as published: taps in place of areas, and a fill between them
 };
 
-// Size of the buffers in which hexagon, scatter and gaussian work. Smaller is faster and softer. gather works at half
+// Size of the buffers in which hexagon, scatter and gaussian work. Smaller is faster and softer. gather and chapter work at half
 // resolution, layers at several resolutions.
 enum hf_resolution {
     HF_RESOLUTION_FULL,
@@ -55,35 +56,31 @@ enum hf_model {
     HF_MODEL_LENS,   // from a thin lens: radius K * (1/P - 1/z), see struct hf_lens_params
 };
 
-// How the gather stores the buffers between its passes. The colour that it reads and its result are stored likewise.
+// How gather and chapter store the buffers between their passes. The colour that they read and their result are stored likewise.
 enum hf_storage {
     HF_STORAGE_FLOAT,  // float32
     HF_STORAGE_HALF,   // float16, clamped to +-65504
     HF_STORAGE_PACKED,  // the chapter's: R11G11B10F truncated towards zero for colour, 8 bits rounded for CoC; alpha is float32
 };
 
-// How the gather closes the gaps between its taps (chapter 3.3.5).
+// How the chapter closes the gaps between its taps (chapter 3.3.5).
 enum hf_fill {
-    // MEAN; but MAX with gather.faithful, and where downsample or division are not their defaults.
-    HF_FILL_AUTO = -1,
-    // 3x3 maximum, the chapter's choice: highlights are brighter than their energy allows. Far neighbours count little at
-    // first and fully once a pixel's CoC is a quarter of the largest; with gather.faithful they always count fully.
-    HF_FILL_MAX = 0,
-    // There are no gaps: each tap is the mean over its part of the aperture's area, which keeps energy. 3x3 mean with
-    // gather.faithful, and where downsample or division are not their defaults.
-    HF_FILL_MEAN,
+    // 3x3 maximum, the published choice: highlights are brighter than their energy allows. Far neighbours count little at
+    // first and fully once a pixel's CoC is a quarter of the largest; with chapter.faithful they always count fully.
+    HF_FILL_MAX,
+    HF_FILL_MEAN,  // 3x3 mean, which keeps energy
     HF_FILL_NONE,  // nothing; there are 144 taps instead, a 12x12 grid mapped to the disc (Shirley and Chiu, 1997)
     HF_FILL_OPEN,  // nothing, and no more taps: the gaps stay
 };
 
-// How the gather makes one pixel of half resolution from four (chapter 3.3.2).
+// How the chapter makes one pixel of half resolution from four (chapter 3.3.2).
 enum hf_downsample {
     HF_DOWNSAMPLE_BILATERAL,  // near: their mean; far: weighted by how similar their CoCs are to the first pixel's
     HF_DOWNSAMPLE_LINEAR,     // their mean: pixels in focus bleed into the far field beside them
     HF_DOWNSAMPLE_POINT,      // the first of them: no filter, so small details flicker
 };
 
-// How the gather divides by sums of weights.
+// How the chapter divides by sums of weights.
 enum hf_division {
     HF_DIVISION_EXACT,     // rounded to the nearest
     HF_DIVISION_ESTIMATE,  // by the processor's estimate of the reciprocal, 8 to 14 bits
@@ -125,7 +122,7 @@ struct hf_lens_params {
     uint32_t reserved[4];
 };
 
-// Shape of the aperture. layers and scatter draw all of it, gather blades and rotation, hexagon its own six sides and
+// Shape of the aperture. layers and scatter draw all of it, gather and chapter blades and rotation, hexagon its own six sides and
 // rotation, gaussian nothing. HF_ERR_ARG for what the engine in use cannot draw.
 struct hf_aperture_params {
     // A picture of the aperture: its centre is the lens's axis, its shorter side the diameter, its brightness the
@@ -185,25 +182,34 @@ struct hf_view_params {
 // Of the gather.
 struct hf_gather_params {
     enum hf_storage storage;  // default HF_STORAGE_FLOAT
-    // 1: reproduce the published demo, including the flaws of its composite. 0 (default): without those flaws.
-    int faithful;
-    // Rings of taps: 1 to 64. Fewer are faster and leave gaps. HF_DERIVE (default): as many as keep the rings two
-    // half-resolution pixels apart, at most 64. Where that is no whole number, the result is a blend of the numbers below and
-    // above it, so that the picture follows a radius without a jump; with faithful it is rounded up. Ignored with
-    // HF_FILL_NONE, and with HF_FILL_MEAN where that has no taps.
-    int rings;
-    // 1: weight samples by 1 / (1 + luminance), against fireflies; highlights become darker. Default 0. B. Karis, "Tone
-    // mapping", 2013; chapter 3.4.4.
+    // Weight samples by 1 / (1 + luminance), against fireflies: darker highlights. Default 0. B. Karis, "Tone mapping",
+    // 2013; chapter 3.4.4.
     int karis;
-    // 1: scale the far kernel by each pixel's own CoC; the far fill then takes only neighbours whose CoC differs by at most
+    // Scale both kernels by each pixel's own CoC, as the lens model always does. Default 0. Chapter 3.5.
+    int per_pixel_kernel;
+    // Upsample the near field with a uniform cubic B-spline instead of bilinearly. Default 0. Chapter 3.4.6.
+    int bicubic;
+    uint32_t reserved[8];
+};
+
+// Of the chapter.
+struct hf_chapter_params {
+    enum hf_storage storage;  // default HF_STORAGE_FLOAT
+    // Reproduce the published demo, the flaws of its composite included. Default 0: those are mended.
+    int faithful;
+    // Rings of taps, 1..64. HF_DERIVE (default): as many as keep them two half-resolution pixels apart, up to 64; where
+    // that is no whole number, a blend of both beside it, so that the picture follows a radius without a jump, except with
+    // .faithful. Fewer are faster and leave gaps. Ignored with HF_FILL_NONE.
+    int rings;
+    int karis;  // as for the gather
+    // Scale the far kernel by each pixel's own CoC; the far fill then takes only neighbours whose CoC is within
     // 0.25. Default 0. Chapter 3.5.
     int per_pixel_kernel;
-    // 1: upsample the near field with a uniform cubic B-spline. 0 (default): bilinearly. Chapter 3.4.6.
-    int bicubic;
-    enum hf_fill fill;              // default HF_FILL_AUTO
+    int bicubic;                    // as for the gather
+    enum hf_fill fill;              // default HF_FILL_MAX
     enum hf_downsample downsample;  // default HF_DOWNSAMPLE_BILATERAL
-    // Default HF_DIVISION_EXACT. Plain C and run.deterministic always divide exactly. The other values give different bits on
-    // each kind of processor; they are here to be measured.
+    // Default HF_DIVISION_EXACT, which plain C and run.deterministic always do. Others give other bits on each kind of
+    // processor, and are here to be measured.
     enum hf_division division;
     uint32_t reserved[7];
 };
@@ -297,14 +303,15 @@ struct hf_params {
     struct hf_range_params range;
     struct hf_lens_params lens;
     // Largest CoC radius, full-resolution pixels: 0 (the input, bit for bit) to 2048. HF_DERIVE (default): with the range
-    // model, the chapter's 12 pixels at 1080 lines, in proportion to the display height (always 12 with gather.faithful). With
-    // the lens model and HF_DEPTH_COC: 2048 in hexagon, scatter and layers; 256 in gather, whose kernels are then as large as
+    // model, the chapter's 12 pixels at 1080 lines, in proportion to the display height (always 12 with chapter.faithful). With
+    // the lens model and HF_DEPTH_COC: 2048 in hexagon, scatter and layers; 256 in gather and chapter, whose kernels are then as large as
     // the largest near and far radius in the picture.
     float max_radius;
     struct hf_aperture_params aperture;
     struct hf_highlight_params highlight;
     struct hf_view_params view;
     struct hf_gather_params gather;
+    struct hf_chapter_params chapter;
     struct hf_hexagon_params hexagon;
     struct hf_scatter_params scatter;
     struct hf_gaussian_params gaussian;
