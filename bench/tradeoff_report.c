@@ -454,7 +454,7 @@ void trade_ladder_table(FILE *out, const struct trade *t)
     fputs("\n// steps of draft, standard, high and best\n#define HF_LADDER_QUALITIES", out);
     for (int q = 0; q < TRADE_QUALITIES && !trade_qualities(t, place); q++)
         fprintf(out, "%s %d", q ? "," : "", t->result[place[q]].step - 1);
-    fputs("\n// milliseconds of a megapixel, of each engine with its defaults\n#define HF_LADDER_ENGINES", out);
+    fputs("\n// milliseconds per megapixel of each engine with its default settings\n#define HF_LADDER_ENGINES", out);
     for (int e = 0; e < tool_engines(); e++)
         fprintf(out, "%s %#.4gf", e ? "," : "", of_engine(t, e) / size);
     fputs("\n// clang-format on\n", out);

@@ -11,7 +11,8 @@ int hf_buffers_allocate(struct hf_context *c, const struct hf_setup *s, unsigned
 // Point a worker's buffers of a sweep at a cell.
 void hf_buffers_place(const struct hf_context *c, const struct hf_setup *s, struct hf_frame *f, int sweep,
                       struct hf_rect cell);
-// Bytes that all of this memory will have when it has been called for these fields: none of it shrinks.
+// Bytes that the frame's buffers and all scratch will occupy after hf_buffers_allocate for these fields. Blocks only
+// grow, so a block that is larger already counts with its present size.
 size_t hf_buffers_after(const struct hf_context *c, const struct hf_setup *s, unsigned fields);
 // The bytes that hf_buffers_allocate would need for these fields.
 size_t hf_buffers_bytes(const struct hf_context *c, const struct hf_setup *s, unsigned fields);

@@ -19,6 +19,6 @@
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.spacing = 4}}
 // steps of draft, standard, high and best
 #define HF_LADDER_QUALITIES 1, 2, 3, 3
-// milliseconds of a megapixel, of each engine with its defaults
+// milliseconds per megapixel of each engine with its default settings
 #define HF_LADDER_ENGINES 28.84f, 50.33f, 136.6f, 5.351f, 51.34f, 28.84f
 // clang-format on

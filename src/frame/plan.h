@@ -30,7 +30,8 @@ struct hf_plan {
     unsigned needs, reads;        // of all tiles
 };
 
-// Set the sizes of the chunks for a number of threads; tile sizes 0: the planner chooses. whole: one cell for all.
+// Choose the size of the chunks for this number of threads. A tile size of 0 leaves the choice to the planner. whole:
+// one cell holds the whole frame, and nothing is skipped.
 void hf_plan_chunks(struct hf_plan *p, const struct hf_engine_def *engine, const struct hf_setup *s, int tile_width,
                     int tile_height, int threads, int whole);
 // Set the reaches, and the other sweeps' cells; call once the setup's reach is known.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Convolution with tap sets whose lattice is known when this is compiled, symmetric, radius FIXED_R at most: an engine that
-// has such sets makes a column for each by FIXED_COLUMN.
+// Convolution with symmetric tap sets whose lattice is known at compile time, of radius FIXED_R at most. An engine
+// that has such sets makes a column function for each by FIXED_COLUMN.
 //
-// One vector of columns is walked down with all sums in registers: the pairs h[j] of the row at hand, and one sum for
-// each of the 2 r + 1 output rows that it reaches. A sum moves one place up as the next row is added to it, which costs
-// nothing in an instruction of three operands. So an output row is stored once, no pair is stored at all, and what is
-// left of the loads are the weights and the shifted values.
+// The function walks down one vector of columns and keeps all sums in registers. For each input row it adds up the
+// mirrored pairs h[j] of samples, and adds them, weighted, to the 2 r + 1 output rows that the input row reaches. The
+// sum of an output row moves to the next register as an input row is added to it, which an instruction of three
+// operands does for free. So each output row is stored once, and no pair is stored. The only loads are the weights and
+// the shifted samples.
 #ifndef HF_CONVOLVE_FIXED_SIMD_H
 #define HF_CONVOLVE_FIXED_SIMD_H
 

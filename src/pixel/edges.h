@@ -9,10 +9,11 @@
 //     for each full-resolution row y of r, downwards:
 //         some = hf_edges_row(&e, y, &sides);
 //
-// The layers engine (layers/unmix.c) finds mixed pixels and their fronts by these functions, but un-mixes by other
-// formulas: means of 7 x 7 pixels in which lamps count less, variances, alpha, fused operations. Here sums add mirrored
-// pairs first, and colours are compared by their largest channel difference: mirrored, permuted and scaled pictures have
-// the bits of the original. One formula for both would lose the one or the other.
+// The layers engine (layers/unmix.c) finds mixed pixels and their fronts by these functions, but un-mixes them by
+// formulas of its own: means of 7 x 7 pixels in which bright samples count less, variances, alpha, fused multiply-adds.
+// The formulas here keep the bits of the result when a picture is mirrored, its channels are permuted or its colours
+// are scaled: they add mirrored pairs first, and compare colours by the largest difference of a channel. One formula
+// could not do both.
 #ifndef HF_EDGES_H
 #define HF_EDGES_H
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Near CoC max: the first half of the near field's outward blur, 2 max_x + 1 wide, then 2 max_y + 1 high. The first and the
-// last value of a window come in by and by as the radius reaches them: times the edge.
+// Near CoC max: the first half of the near field's outward blur, 2 max_x + 1 wide, then 2 max_y + 1 high. The first
+// and the last value of a window are multiplied by the edge factor, which grows continuously from 0 as the radius
+// reaches them.
 #include "pixel/fields.h"
 
 static float larger(float a, float b)

@@ -241,12 +241,13 @@ static void try_cost(struct rng *rng, int look)
     p.max_radius = p.max_radius > 16 || p.max_radius < 0 ? 16 : p.max_radius;
     CHECK_INT(hf_render_region(c, &dst, &src, &depth, &p, &r), HF_OK);
     tool_report_get(c, &report);
-    // The last pass: tiles of 64 x 48 pixels that the region meets, and no more. Engines with cells of their own have larger
-    // ones, but there are at least 20 of them, and the region meets at most 4.
+    // The last pass runs only on the tiles (64 x 48 pixels) that the region meets. Engines that choose their own cells
+    // have larger ones. Every engine has at least 20, and the region meets at most 4 of them.
     const struct hf_inspect_pass *last = &report.pass[report.inner.passes - 1];
     CHECK_MSG(last->ran >= 1 && last->ran <= 4 && last->all >= 20, "%s: %s ran on %u of %u tiles", looks[look].name,
               last->name, last->ran, last->all);
-    // The first sweep's second pass, or the first of the tiles, does not run everywhere: but see hf_render_region.
+    // The first sweep's second pass, or the first of the tiles, does not run everywhere. hf_render_region names the
+    // exceptions.
     const int reads_all = looks[look].engine == HF_ENGINE_SCATTER || looks[look].sigma > 0;
     CHECK_MSG(reads_all || report.pass[1].ran * 3 <= report.pass[1].all, "%s: %s ran on %u of %u cells",
               looks[look].name, report.pass[1].name, report.pass[1].ran, report.pass[1].all);

@@ -124,7 +124,7 @@ static void run_otherwise(const struct trial *t, struct rng *rng)
 static void permuted(const struct trial *t)
 {
     if (t->p.engine == HF_ENGINE_LAYERS || t->p.chapter.karis)
-        return;  // what hangs on brightness adds channels up in one order
+        return;  // brightness is a sum of the channels in a fixed order, so permuted channels change its bits
     struct scene s = copied(&t->s);
     for (int c = 0; c < 3; c++)
         memcpy(s.colour.plane[c], t->s.colour.plane[(c + 1) % 3], samples_of(&s.colour) * sizeof(float));

@@ -233,9 +233,9 @@ static void budget(void)
     frames(&m, 50, 1, 5);
     CHECK_INT(m.b.step, 2);
     m.changes = 0;
-    frames(&m, 500, 1, 8.5f);  // 7 of 8.5 would fit, but with too little room, so nothing changes
+    frames(&m, 500, 1, 8.5f);  // 7 of 8.5 fits, but leaves too little room, so nothing changes
     CHECK_INT(m.changes, 0);
-    frames(&m, 60, 1, 12);  // 7 fits well, 10 with too little room
+    frames(&m, 60, 1, 12);  // 7 fits well; 10 fits too, but leaves too little room
     CHECK_INT(m.b.step, 1);
     frames(&m, 60, 1, 13);
     CHECK_INT(m.b.step, 0);

@@ -135,7 +135,7 @@ static double composite(const struct seen *seen, const struct picture *c, const 
         back = behind(seen, c->channels, k, i % c->width, i / c->width, far, front);
         cover /= visible_part(c, size, i % c->width, i / c->width);
     }
-    // The visible part of a near pixel itself covers the background as its sprite does.
+    // A near pixel that is visible covers the background as far as its own sprite covers that pixel.
     const double show = radius < 0 && own < 1 - cover ? own / (1 - cover) : radius < 0 ? 1 : own;
     const double base = back + show * (v - back);
     return base + clamp01(cover) * (front - base);

@@ -4,10 +4,11 @@
 
 #include "engine/chapter/chapter.h"
 
-// Joint bilateral upsampling: bilinear weights 9 3 3 1 (sixteenths), each over 1 + 1000 |CoC difference|; what has
-// no far CoC has no far colour, and what has hardly any comes in by and by. Weights are kept in proportion by products instead
-// of quotients, so that one division serves all four; the factors 9 3 3 1 are those of the other three distances: 81 27 27 9.
-// Returns how far the pixel is: its CoC, but where its neighbours are hardly far only as much as they have colour for.
+// Joint bilateral upsampling. A sample has its bilinear weight, 9 3 3 1 (sixteenths), over 1 + 1000 |CoC difference|.
+// A sample without far CoC has no far colour, so its weight is 0; the weight grows with the CoC from there. Products
+// in place of quotients keep the weights in proportion, so that one division serves all four: each weight is the
+// product of the other three samples' distances, whose factors 1 3 3 9 make 81 27 27 9 of them, which is 9 3 3 1.
+// Returns how far the pixel is: its CoC, limited where its neighbours are hardly far, as they have little far colour.
 static float far_weights(const struct hf_buf *coc, struct hf_phase p, float f, float w[4])
 {
     const float g[4] = {*hf_at(coc, 1, p.x, p.y), *hf_at(coc, 1, p.nx, p.y), *hf_at(coc, 1, p.x, p.ny),

@@ -97,8 +97,8 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample
         hf_store_rgb(f, d.colour_far, n);
 }
 
-// A vector of quads of R11G11B10F, in registers: u as down_unpack wants them, x from the row's beginning. Returns the
-// largest mean.
+// Downsample VF_N quads of R11G11B10F pixels without a buffer. u: the packed pixels, as down_unpack takes them. x: the
+// first quad, counted from the beginning of the row. Returns the largest mean.
 HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, const int near, const int far, int x,
                             const vi u[4], const int stream)
 {

@@ -24,10 +24,11 @@ static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
     return ((row[0] + row[2]) + row[1]) * (1 / 9.0f);
 }
 
-// How much a far neighbour of CoC g counts for a pixel of CoC f. The per-pixel kernel takes only neighbours of about its own
-// CoC, by up to a quarter of the largest (chapter 3.5). The published demo takes what is there, whatever its CoC; then a
-// quad that begins to be far lights up the others around it at once. So by default it comes in by and by, up to a quarter,
-// and goes so from a quarter to half of difference.
+// How much a far neighbour of CoC g counts for a pixel of CoC f, 0 to 1. The per-pixel kernel takes only neighbours
+// whose CoC differs by at most a quarter of the largest (chapter 3.5). The published demo gives every neighbour full
+// weight whatever its CoC, so a quad that becomes slightly far suddenly brightens those around it. By default the
+// weight therefore grows from 0 to 1 as g grows to a quarter, and falls from 1 to 0 as the difference grows from a
+// quarter to a half.
 static float far_counts(const struct hf_setup *s, float f, float g)
 {
     const float apart = hf_fields(s)->per_pixel_kernel ? 4 * __builtin_fabsf(f - g) : 0;

@@ -86,8 +86,8 @@ static void place_rings(const struct hf_taps_key *k, int rings, float *dx, float
     }
 }
 
-// One ring more moves every tap. So that a radius that grows changes the picture by and by, taps of both numbers of rings
-// take part, each by how near its number is.
+// A further ring moves every tap. The picture must change continuously as the radius grows. So the taps of both
+// numbers of rings take part, each weighted by how close its number is.
 static void place_taps(const struct hf_taps_key *k, float *dx, float *dy, float *share)
 {
     if (k->dense) {

@@ -203,7 +203,8 @@ static float weighed(float colour, float weight, float counts, int karis)
     return !karis ? colour : weight > 0 ? colour / weight * counts : 0;
 }
 
-// Of what is seen behind, how much counts: what the near field leaves free, as levels up to that at hand see it over and over.
+// The weight of the disocclusion fill, 0 to 1: what the near field leaves free, over `see`, which counts the free part
+// once for each level that sees it.
 static float free_part(float cover, float see)
 {
     const float room = 1 - cover > 0 ? 1 - cover : 0, part = room / (see > FLT_MIN ? see : FLT_MIN);

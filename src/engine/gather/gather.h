@@ -122,14 +122,15 @@ static inline int hf_gather_is_simple(const struct hf_setup *s, unsigned field)
     return hf_gather_levels(s, field)->count == 1 && !hf_fields(s)->karis;
 }
 
-// Do levels of what near pixels hide leave anything to the far levels?
+// Does any level of the disocclusion fill leave far samples to the far levels?
 static inline int hf_gather_leaves(const struct hf_setup *s)
 {
     return hf_gather_levels(s, HF_NEAR)->count > 1 && hf_gather_levels(s, HF_FAR)->count > 1;
 }
 
-// How much of a sample of this far CoC a level of what near pixels hide leaves to the far levels: what is blurred more
-// than twice as much itself would be too sharp in it, a light a small bright disc before the large one that it is beside. The largest leaves nothing.
+// How much of a sample with this far CoC level i of the disocclusion fill leaves to the far levels, 0 to 1. A sample
+// that is blurred more than twice as much as the level would look too sharp in it: a light would show a small bright
+// disc in front of its large one. Level 0, the largest, leaves nothing.
 static inline float hf_level_left(const struct hf_levels *l, int i, float far)
 {
     const float times = far * l->level[i].half_far, square = times * times, most = square > 1 ? square : 1;

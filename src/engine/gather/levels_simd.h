@@ -44,7 +44,8 @@ HF_INLINE vf area_left(const struct hf_levels *l, int i, const float *far)
     return vf_sub(one, vf_div(one, vf_mul(fourth, fourth)));
 }
 
-// Is there a sample that a level of what near pixels hide leaves, in part, to the far levels?
+// Level i of the disoccluded colour leaves strongly blurred far samples to the far levels, in part or wholly
+// (hf_level_left). Can there be such a sample?
 static int area_leaves(const struct hf_setup *s, int i)
 {
     return i > 0 && hf_gather_leaves(s) && hf_gather_levels(s, HF_NEAR)->level[i].half_far > 1;

@@ -6,8 +6,8 @@
 #include "pass/engine.h"
 #include "engine/gaussian/wide.h"
 
-// Blend factors of the n lanes from lane x of row y: even ones to out[0], odd ones to out[1]; out[2] and out[3] are
-// scratch. counts NULL: nothing is counted.
+// Blend factors of the n lanes from lane x of row y: of even pixels to out[0], of odd ones to out[1]. out[2] and
+// out[3] are scratch. counts, which may be NULL, gets what the report counts.
 typedef void hf_blend_row(const struct hf_frame *f, int x, int y, int n, float *const out[4], struct hf_counts *counts);
 // The counting part of blend_row, for lanes from x on, a multiple of 16. Uses scratch rows 0 to 3.
 typedef void hf_gaussian_count(const struct hf_frame *f, int x, int y, int n, struct hf_counts *counts);

@@ -78,8 +78,8 @@ static void weigh_seen(const struct hf_cell *c, const struct hf_build *b, int tx
     }
 }
 
-// Weigh the samples of one row of a run of tiles; (px, py) is its first sample. Sets c->any for each 16 samples with
-// some.
+// Weigh the samples of one row of a run of tiles; (px, py) is the first of them. c->any[i] becomes nonzero if one of
+// the samples 16 i to 16 i + 15 has a weight.
 static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
                       float *const out[5])
 {

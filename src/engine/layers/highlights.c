@@ -63,7 +63,8 @@ void hf_layers_shares_c(const float *const in[6], const float *const around[5], 
     }
 }
 
-// One row of means is extra, and two rows are zeros; roots have rows above and below.
+// Rows of the scratch: means of colour and means of alpha, each with APART rows above and below; one row of means
+// along columns; two rows of zeros; roots, with REACH rows above and below.
 size_t hf_layers_highlight_floats(int width, int height)
 {
     return ((size_t)width + 2 * PAD) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);

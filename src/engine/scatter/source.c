@@ -24,8 +24,8 @@ void hf_source_pictures_c(const float *radius, const float *weight, float scale,
     }
 }
 
-// What of a source is drawn: share is 1 / its sprite's area, hole the part of it that a hole takes away, negative; 1:
-// no hole.
+// How a source draws a sprite. share: the part of its colour for one pixel, 1 / area. hole: 1 adds the sprite; -w
+// takes it away with weight w, 0 to 1, as the hole of a ring.
 struct part {
     float share, hole;
 };

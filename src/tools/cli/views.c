@@ -117,7 +117,7 @@ static int name_view(const struct cli_frame *frame, struct cli_view *v)
     return v->tag && v->label ? 0 : -1;
 }
 
-// --display: a frame around the picture.
+// --display: declare the picture a crop of a larger frame, and check that it lies inside.
 static int set_display(const struct cli_frame *frame, int i, struct tool_error *error)
 {
     const int *d = frame->args->display;

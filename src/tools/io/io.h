@@ -136,8 +136,8 @@ struct hf_io_output;
 // chunks when the file is saved. The extension of path decides the format. An EXR source written in another format
 // (png, tif, jpg ...) keeps only one view's colour. Formats of 8 and 16 bit integers get the sRGB curve, which reading
 // removes; floats stay linear. If path is not .exr, results must hold exactly one view.
-// When this returns, planes and job belong to the caller again; the file must stay open until the output is freed.
-// written, which is cleared first, and err may be NULL.
+// When this returns, planes and job belong to the caller again. The file must stay open until the output is freed.
+// *written is cleared first. written and err may be NULL.
 int hf_io_encode(struct hf_io_output **out, struct hf_io_file *file, const struct hf_io_job *job,
                  struct hf_io_written *written, struct hf_io_error *err);
 // Write the output to a temporary file beside path (.hyperfocal-MACHINE-PID-N.ext), then rename it; after an error

@@ -36,7 +36,7 @@ static inline __m512 emulated_fmadd(__m512 a, __m512 b, __m512 c)
     return c;
 }
 
-// A reciprocal within 2^-14 of itself, though not the instruction's.
+// 1 / a with a relative error below 2^-14, as the instruction promises; its bits are not those of the instruction.
 static inline __m512 emulated_rcp14(__m512 a)
 {
     float x[16];
