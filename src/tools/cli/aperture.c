@@ -5,7 +5,7 @@
 
 #include "tools/io/io.h"
 
-enum { MAX_SIDE = 4096 };  // pixels; beyond that an aperture has no more to say
+enum { MAX_SIDE = 4096 };  // pixels; no sprite is drawn with more detail
 
 static int read_file(struct cli_aperture *a, struct hf_io_file *file, const char *path, struct tool_error *error)
 {

@@ -10,7 +10,8 @@ struct cli_aperture {
     float *samples;  // owns its pixels
 };
 
-// Read the file, if there is one, and enter it in args->params. Returns 0 or an exit status with *error filled.
+// Read the file, if one was given, and point args->params at its picture. Returns 0 or an exit status with *error
+// filled.
 int cli_aperture_load(struct cli_aperture *aperture, struct cli_args *args, struct tool_error *error);
 void cli_aperture_free(struct cli_aperture *aperture);
 

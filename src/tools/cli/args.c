@@ -28,8 +28,8 @@ static void set_defaults(struct cli_args *args)
         *unset[i] = NAN;
 }
 
-// Does an option change the pixels of a frame? Then it is part of what the frame was made with. Names of files and what
-// differs from frame to frame are left to resume.c.
+// Does an option change the pixels of a frame? Then the stamp in the OUTPUT's header lists it. Names of files and
+// values that differ from frame to frame are not listed here; resume.c adds them.
 static int makes_picture(const struct tool_option *o)
 {
     static const char *const others[] = {"views",       "layer",         "grow",     "display",
@@ -44,7 +44,8 @@ static int makes_picture(const struct tool_option *o)
     return o->group == TOOL_FOCUS || o->group == TOOL_LENS || o->group == TOOL_DEPTH || o->group == TOOL_LOOK;
 }
 
-// Keep what was given and changes the picture; and which word after --json may turn out to be INPUT.
+// Append the option to args->settings if it changes the picture. Remember the word after --json, which may turn out to
+// be INPUT.
 static int on_option(struct tool_parser *p, const struct tool_option *o, const char *value, int apart)
 {
     struct cli_args *args = p->args;
@@ -126,7 +127,7 @@ static int check_depth(const struct cli_args *args, struct tool_error *error)
     if (args->near_plane >= args->far_plane)
         return tool_fail(error, -1, "--near %g must be less than --far %g%s", args->near_plane, args->far_plane,
                          args->normalized ? "; for a map that is white where it is near take normalized-inverted" : "");
-    // Which engine a quality is differs from picture to picture (setup.c).
+    // The engine that --quality chooses differs from picture to picture; setup.c checks it.
     if (args->quality < 0 && !given(args->max_error) && cli_check_planes(args, args->params.engine, error))
         return -1;
     if (args->depth_scale == 0)
@@ -165,7 +166,7 @@ static int check_model(const struct cli_args *args, struct tool_error *error)
     return check_depth(args, error);
 }
 
-// What an engine cannot do is said, not ignored.
+// Refuse options that the engine does not have; none is ignored silently.
 static int check_engine(const struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
     const struct hf_params *p = &args->params;
@@ -216,14 +217,14 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
         return tool_fail(error, -1, "--compression %s is for EXR, but OUTPUT is %s", args->compression, args->output);
     if (!args->json_file)
         return 0;
-    // Forgetting that a word after --json is its FILE must not cost a picture.
+    // A user may forget that the word after --json is its FILE. That must not overwrite a picture.
     if (cli_is_exr(args->json_file) || !strcmp(args->json_file, args->input) ||
         (args->output && !strcmp(args->json_file, args->output)))
         return tool_fail(error, -1, "--json would write over the picture %s", args->json_file);
     return 0;
 }
 
-// What follows from several options, whatever their order.
+// Resolve and check combinations of options. Their order on the command line does not matter.
 static int combine(struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
     struct hf_params *p = &args->params;

@@ -22,9 +22,9 @@ enum { CLI_CENTRED = INT_MIN };  // a place in args->display
 
 enum cli_keys_blend { CLI_KEYS_LINEAR, CLI_KEYS_SMOOTH };
 
-// What was asked for. Numbers that were not given are NAN, texts NULL.
+// What the command line asks for. Numbers that it does not give are NAN, texts NULL.
 struct cli_args {
-    const char **inputs;  // as given; input: of the frame at hand
+    const char **inputs;  // as given; input: that of the current frame
     int input_count;
     const char *input, *output;
     int help, version, dry_run;  // help: see tool_parser
@@ -48,11 +48,11 @@ struct cli_args {
     int metric;  // some distance was given in metres
 
     const char *depth_channel, *depth_file;
-    enum hf_depth_type depth_type;  // as the library sees it, once cli_depth_prepare was there
+    enum hf_depth_type depth_type;  // as the library sees it, after cli_depth_prepare
     int normalized;                 // 1: a map from 0 at near_plane to 1 at far_plane; -1: the other way; else 0
     enum hf_io_edges depth_edges;
     float near_plane, far_plane;      // scene units
-    float depth_scale, depth_offset;  // of the numbers as they are stored, before all else
+    float depth_scale, depth_offset;  // applied first, to the numbers as they are stored
 
     const char *aperture;       // as given
     const char *aperture_file;  // NULL: the shape in params
@@ -61,8 +61,8 @@ struct cli_args {
     const char *frames, *chunk, *keys, *log_file;
     enum cli_keys_blend keys_blend;
     int focus_smooth;        // frames to each side; -1: not given
-    int focus_per_view;      // each eye its own
-    const char *focus_from;  // whence the focus of a frame; NULL: --focus
+    int focus_per_view;      // each view has its own focus
+    const char *focus_from;  // names what gave a frame its focus; NULL: --focus
     int print_focus, resume, stop_on_error;
     float memory_limit;  // GiB
     char *settings;      // the options that change pixels, as they were given
@@ -70,30 +70,30 @@ struct cli_args {
     const char *views;  // NULL: all, else names with commas
     const char *layer;  // likewise; NULL: the main one
     const char *compression;
-    int grow;        // the data window, by the reach of the blur
-    int display[4];  // width, height, and where in it the picture lies; [0] 0: the file's
+    int grow;        // --grow: enlarge the data window by the reach of the blur
+    int display[4];  // width, height, and the picture's x, y in it; [0] = 0: the file's window
     const char *dump_dir;
     int explain;
     const char *explain_image, *focus_image;
     int json;
     const char *json_file;  // NULL: stdout
-    const char *json_word;  // the same if it was a word of its own, which may turn out to be INPUT
+    const char *json_word;  // json_file if it was a word of its own, which may turn out to be INPUT
     int threads;
     enum hf_isa isa;
 };
 
-// All options, and what else is said of the program.
+// All options, and the other parts of the help text.
 extern const struct tool_program cli_program;
 
 // Parsers of values that only this program has.
 tool_parse cli_parse_depth_type, cli_parse_display, cli_parse_focus, cli_parse_focus_at, cli_parse_aperture,
     cli_parse_json, cli_parse_version;
 
-// Do the planes that were given mean something to the engine? Returns 0, or CLI_BAD_ARGUMENTS with one sentence in *error.
-// cli_parse_args asks for an engine that was given, cli_setup_view for one that a quality chose.
+// Check that the engine uses --near and --far if they were given. Returns 0, or CLI_BAD_ARGUMENTS with one sentence in
+// *error. cli_parse_args calls it when the command line names the engine, cli_setup_view when --quality chooses it.
 int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error);
-// Fill *args from the command line, argv[0] being skipped. Returns 0, or -1 with one sentence in *error. After -h or
-// --version the rest of the line is not looked at.
+// Fill *args from the command line; argv[0] is skipped. Returns 0, or -1 with one sentence in *error. Does not look at
+// what follows -h or --version.
 int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_error *error);
 void cli_free_args(struct cli_args *args);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame is made from beginning to end by one worker, and there are as many workers as plan.h says: then frames wait for
-// nothing but the disk, and bits depend on none of it. Each worker has its share of the threads.
+// One worker makes a frame from beginning to end, and plan.h says how many workers there are. So frames wait only for
+// the disk, and their bits do not depend on the number of workers. The workers share the threads equally.
 #include "tools/cli/batch.h"
 
 #include <errno.h>
@@ -41,10 +41,10 @@ struct batch {
     struct cli_progress progress;
     struct cli_log log;
     atomic_int stop;               // after an error
-    atomic_int bad_arguments;      // frames that failed for what the command line says
+    atomic_int bad_arguments;      // frames that failed because of the command line
     atomic_int chosen[MAX_STEPS];  // frames by step of the time budget
-    atomic_int missed[2];          // frames that took longer than it; of these at the cheapest step
-    int measuring;                 // one frame at a time, to see what it takes:
+    atomic_int missed[2];          // [0]: frames over the time budget; [1]: of these, at the cheapest step
+    int measuring;                 // one frame at a time, to measure its memory:
     double frame_bytes;
     struct cli_room room;
 };
@@ -53,7 +53,7 @@ static volatile sig_atomic_t stop_signal;
 static struct timespec stop_time;
 static volatile sig_atomic_t told_nothing;  // --quiet
 
-// From a signal's handler.
+// May be called in a signal handler.
 static void tell(const char *text)
 {
     static const char clear[] = "\r\033[K";
@@ -66,8 +66,8 @@ static void tell(const char *text)
     (void)ignored;
 }
 
-// The frames in work are finished; a second signal removes what is half-written and ends the process. Programs that end
-// others tell process and group (timeout does): what follows within 0.3 s belongs to the first.
+// The first signal lets the frames in work finish. A second one removes half-written files and ends the process.
+// Programs such as timeout signal both the process and its group, so a signal within 0.3 s counts as the first.
 static void on_signal(int number)
 {
     struct timespec now;
@@ -89,15 +89,15 @@ static void watch_signals(int quiet)
     static const int numbers[] = {SIGINT, SIGTERM};
     struct sigaction was, ours = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
     sigemptyset(&ours.sa_mask);
-    // One signal's handler is not interrupted by the other's.
+    // Neither signal interrupts the handler of the other.
     for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++)
         sigaddset(&ours.sa_mask, numbers[i]);
     stop_signal = 0;
     told_nothing = quiet;
-    // Whoever read our messages and went is no reason to end the shot.
+    // The shot goes on when the reader of our messages closes the pipe.
     signal(SIGPIPE, SIG_IGN);
     for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++)
-        // Who starts us with a signal ignored means it.
+        // A signal that our parent set to be ignored stays ignored.
         if (!sigaction(numbers[i], NULL, &was) && was.sa_handler != SIG_IGN)
             sigaction(numbers[i], &ours, NULL);
 }
@@ -139,7 +139,7 @@ static int make_frame(struct batch *b, struct cli_frame *frame, int worker, cons
     return status ? status : cli_frame_save(frame, error);
 }
 
-// What to say of a frame that is done.
+// The text that the progress line shows about a finished frame.
 static void describe(const struct cli_frame *frame, const struct tool_report *report, double ms, char *text,
                      size_t size)
 {
@@ -162,7 +162,7 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
     case CLI_FRAME_DONE:
         tool_report_get(session->context, &report);
         r->report = &report;
-        // The peak of an earlier look at the shot may hide what this frame takes.
+        // The process's peak may come from an earlier look at the shot, so this frame's memory is calculated.
         if (b->measuring) {
             b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.all.memory);
         }
@@ -226,7 +226,7 @@ static void run_job(void *arg, int i, int worker)
     }
     record.ms = tool_now_ms() - start;
     finish(b, &frame, session, &record, error.text);
-    // A context that was given up has no report, and a frame that failed has none either.
+    // A context that room.h took away has no report, and neither has a frame that failed.
     struct hf_report report = {.size = sizeof(report)};
     if (record.status == CLI_FRAME_DONE)
         hf_get_report(session->context, &report);
@@ -263,7 +263,7 @@ static int open_sessions(struct batch *b, int workers, int threads, struct tool_
     return 0;
 }
 
-// Frames are made one at a time until one has shown how much memory that takes.
+// Make frames one at a time until one succeeds and shows how much memory a frame takes.
 static void run_first(struct batch *b)
 {
     const double before = peak_memory();
@@ -277,14 +277,14 @@ static void run_first(struct batch *b)
     b->frame_bytes = fmax(peak_memory() - before, b->frame_bytes);
 }
 
-// How long frames waited for the disk over how long they were computed.
+// The time in which frames waited for the disk, divided by the time in which they were computed.
 static double waiting(const struct cli_progress *p)
 {
     const double computing = (double)(p->us[CLI_DECODE] + p->us[CLI_DEFOCUS] + p->us[CLI_ENCODE]);
     return computing > 0 ? (double)(p->us[CLI_READ] + p->us[CLI_WRITE]) / computing : 0;
 }
 
-// The next frames, so many at once.
+// Make the next `count` frames, `workers` of them at once.
 static int run_some(struct batch *b, int count, int workers, struct tool_error *error)
 {
     const int threads = cli_plan_threads(b->args) / workers;
@@ -311,7 +311,7 @@ static int run_rest(struct batch *b, struct tool_error *error)
         return 0;
     const int workers =
         cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads, b->room.base, b->frame_bytes);
-    // Where the last round has too few frames for all threads, each of them has more.
+    // If the last round has fewer frames than workers, each of its frames gets more threads.
     const int last = left % workers, alone = last && threads / last > 1 && threads / last > threads / workers;
     int status = run_some(b, alone ? left - last : left, workers, error);
     b->at_once = b->workers;
@@ -367,8 +367,8 @@ static int exit_code(const struct batch *b)
     return p->failed && b->bad_arguments == p->failed ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED;
 }
 
-// The next frame takes the memory that the last one gave back, in place of pages that the system has to clear first: a
-// quarter of the time of a shot that is not compressed.
+// Keep freed memory in the process, so that the next frame reuses it. New pages would have to be cleared by the system
+// first, which takes a quarter of the time of an uncompressed shot.
 static void keep_memory(void)
 {
 #ifdef __GLIBC__

@@ -6,7 +6,7 @@
 #include "tools/cli/args.h"
 #include "tools/cli/shot.h"
 
-// 1 if these arguments ask for more than one frame can have.
+// 1 if the arguments ask for a shot, or for an option that only shots have.
 int cli_batch_wanted(const struct cli_args *args, const struct cli_shot *shot);
 
 // Make all frames of the shot. Says what happens on stderr. Returns an exit code; with CLI_BAD_ARGUMENTS or when no

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// Options that say themselves what would be chosen.
+// Options that set what --quality and --max-error would choose; they exclude each other.
 static const char *const knobs[] = {"engine",        "resolution", "iterations",       "sigma",     "rings",
                                     "fill",          "downsample", "division",         "storage",   "karis",
                                     "faithful",      "bicubic",    "uniform",          "half-from", "quarter-from",
@@ -42,7 +42,8 @@ void cli_choose(struct cli_setup *setup, const struct cli_args *args)
     static const struct hf_image any = {.size = sizeof(any)};
     struct hf_params *p = &setup->params;
     const struct hf_image *picture = p->aperture.picture;
-    // The aperture's picture may be read later; that there will be one decides who can draw it.
+    // The aperture's picture may not be read yet. The choice only has to know that there will be one, as not every
+    // engine can draw it.
     if (args->aperture_file)
         p->aperture.picture = &any;
     if (by_error(args) || args->quality >= 0)

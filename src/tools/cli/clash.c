@@ -21,19 +21,19 @@ struct entry {
     char *owned;  // name, where it has to be freed
     const char *path;
     enum role role;
-    int frame;  // number of the job; the frames around them are counted on
+    int frame;  // number of the job; the frames around follow the jobs
     const char *input;
 };
 
 struct list {
     struct entry *entries;
     int count;
-    // The directory that was looked at last: frames mostly lie in one.
+    // The directory of the last look-up: most frames lie in the same one.
     char directory[PATH_MAX];
     struct stat directory_stat;
 };
 
-// The directory of a path, looked up once for all the paths that follow each other in it. 0 or -1.
+// Find the directory of a path. Consecutive paths in the same directory cost one look-up. Returns 0 or -1.
 static int stat_directory(struct list *list, const char *path, struct stat *st)
 {
     const char *slash = strrchr(path, '/');
@@ -54,7 +54,7 @@ static int stat_directory(struct list *list, const char *path, struct stat *st)
     return 0;
 }
 
-// Which file a path means. Where even its directory is not there, it is none, and nothing can be written to it.
+// Find the file that a path means. If even its directory does not exist, there is no file, and none can be written.
 static void identify(struct list *list, struct entry *e)
 {
     struct stat st;
@@ -65,7 +65,7 @@ static void identify(struct list *list, struct entry *e)
     }
     const char *path = e->path;
     char *end = NULL;
-    if (!lstat(path, &st) && S_ISLNK(st.st_mode))  // a link to what is not there yet
+    if (!lstat(path, &st) && S_ISLNK(st.st_mode))  // a link to a file that does not exist yet
         path = end = hf_out_resolve(path);
     if (path && !stat_directory(list, path, &st)) {
         const char *slash = strrchr(path, '/');
@@ -132,7 +132,7 @@ static int complain(const struct entry *writer, const struct entry *other, int o
                      writer->input, writer->path, other->path);
 }
 
-// Hard links are two files once one of them is written, as that gives its name to another file.
+// Hard links count as two files: writing renames a new file to one name, and the other name keeps the old file.
 static int same_name(const char *a, const char *b)
 {
     char *x = hf_out_resolve(a), *y = hf_out_resolve(b);
@@ -142,7 +142,8 @@ static int same_name(const char *a, const char *b)
     return same;
 }
 
-// One file in several roles, which stand in their order: is it written in one of them?
+// roles: all uses of one file, sorted by role. Fails if the last of them writes the file and another one loses by
+// that.
 static int check_file(const struct entry *roles, int count, struct tool_error *error)
 {
     const struct entry *writer = &roles[count - 1];

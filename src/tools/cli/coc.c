@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// What a radius follows from.
+// What determines the radius of a pixel.
 struct model {
     const struct hf_params *p;
     const struct hf_resolved *r;
@@ -69,7 +69,7 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
     struct hf_resolved resolved = {.size = sizeof(resolved)};
     const int width = v->view->width, height = v->view->height;
     const struct model m = {&filled, &resolved, &v->setup.depth, width, height};
-    // What is wrong with the settings is the library's to say.
+    // Wrong settings are not reported here: the library reports them when it renders.
     if (hf_resolve(width, height, &v->setup.depth, &v->setup.params, &filled, &resolved, NULL))
         return 0;
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
@@ -83,10 +83,11 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
             return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
     }
     v->far_away = m.depth->type == HF_DEPTH_COC ? 0 : fabsf(radius_of(&m, INFINITY));
-    // What the gaussian engine blurs at all it blurs alike, and blends: three standard deviations far.
+    // The gaussian engine blurs everything equally and blends the result in; its blur reaches three standard
+    // deviations.
     v->least_reach = filled.engine == HF_ENGINE_GAUSSIAN ? 3 * filled.gaussian.sigma : 0;
     v->least_radius = resolved.sharp ? 0 : INFINITY;
-    // The sky is in focus only where somebody focused on it.
+    // The sky counts as in focus only if the focus is infinite (or the depth holds radii).
     const int sky = m.depth->type == HF_DEPTH_COC || filled.focus == INFINITY;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {

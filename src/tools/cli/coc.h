@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of a picture is near, in focus and far, pixel by pixel, by the settings of its view.
+// Which pixels of a picture are near, in focus or far, by the settings of its view.
 #ifndef HF_CLI_COC_H
 #define HF_CLI_COC_H
 
 #include "tools/cli/frame.h"
 
-// Look whether anything is in focus, and keep the radii for --focus-image, and where blur may reach beyond the data
-// window: the depth must be there. Returns 0, or an exit code with *error filled.
+// Find the least radius of blur in the view, which says whether anything is in focus. Keep the radii of all pixels if
+// --focus-image, --grow or the test for blur beyond the data window needs them. v->depth must be loaded. Returns 0, or
+// an exit code with *error filled.
 int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_error *error);
-// Once v->report is there: the range of distances where nothing is in focus or nothing is blurred, as the warnings tell it,
-// and how much blur the gaussian engine mixes in. While v->depth is there.
+// Call after v->report is filled and before v->depth is freed. If nothing is in focus or nothing is blurred, find the
+// range of distances that the warning tells. For the gaussian engine, find how much of its blur is mixed in.
 void cli_coc_measure(struct cli_view *v);
-// Largest radius of blur that is seen in a view, pixels: of the gaussian engine that of a disc as wide as its blur, as far
-// as that is mixed in.
+// Largest visible radius of blur in a view, pixels. For the gaussian engine: the radius of a disc as wide as its blur,
+// times the largest part of the blur that is mixed in.
 float cli_coc_largest(const struct cli_view *v);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static const float NO_SURFACE = 1e10f;  // and beyond: as in the library
+static const float NO_SURFACE = 1e10f;  // this distance and beyond it: no surface, as in the library
 
 const char *cli_depth_type_name(const struct cli_args *args)
 {
@@ -12,7 +12,7 @@ const char *cli_depth_type_name(const struct cli_args *args)
                                   : hf_name(HF_NAMES_DEPTH_TYPE, (int)args->depth_type);
 }
 
-// The number as scale * number + offset, then between the planes.
+// A stored number becomes scale * number + offset, and then the distance between the planes.
 static void map(const struct cli_args *args, float *depth, size_t n)
 {
     const float near_plane = args->near_plane, far_plane = args->far_plane;
@@ -32,8 +32,8 @@ static void map(const struct cli_args *args, float *depth, size_t n)
         depth[i] = from + span * (depth[i] * scale + offset);
 }
 
-// Distances along the camera's axis are negative where it looks along -z. Then no surface is in front of it by the
-// other sign.
+// A camera that looks along -z gives negative distances. If all samples are negative, their sign is dropped. If only
+// some are, those count as no surface.
 static void turn_round(float *depth, size_t n, struct cli_depth_found *found)
 {
     uint64_t positive = 0, negative = 0;

@@ -26,7 +26,7 @@ static void write_buffer(void *cookie, const struct hf_inspect_buffer *buffer)
         return;
     if (asprintf(&path, "%s/%s%s.exr", dump->dir, dump->prefix, buffer->name) < 0)
         path = NULL;
-    // The directory is made only now that there is something to put into it.
+    // Make the directory only when there is a buffer to put into it.
     if (!path)
         dump->failed = tool_fail(&dump->error, 1, "--dump-passes %s: out of memory", dump->dir);
     else if (cli_check_overwrite(dump->args, "--dump-passes", path, &dump->error))
@@ -46,7 +46,7 @@ void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const str
         snprintf(dump->prefix, sizeof(dump->prefix), "%s.", view->tag);
     else if (frame->view_count > 1)
         snprintf(dump->prefix, sizeof(dump->prefix), "view%d.", view->index);
-    // The name is the file's, and must not lead out of the directory.
+    // The view's name comes from the file; it must not lead out of the directory.
     for (char *c = dump->prefix; *c; c++)
         if (*c == '/')
             *c = '_';

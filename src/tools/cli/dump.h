@@ -13,10 +13,10 @@ struct cli_dump {
     struct tool_error error;  // the first one
 };
 
-// From now on the context's buffers go to files.
+// From now on the context writes its buffers to files.
 void cli_dump_begin(struct cli_dump *dump, struct hf_context *context, const struct cli_frame *frame,
                     const struct cli_view *view);
-// No longer; and the rendered image becomes composite.exr. Returns 0, or an exit code with *error filled.
+// Stop that, and write the rendered image as composite.exr. Returns 0, or an exit code with *error filled.
 int cli_dump_end(struct cli_dump *dump, struct hf_context *context, const struct hf_image *image,
                  struct tool_error *error);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which part of the frames is this process's: --chunk.
+// --chunk: which part of the frames this process makes.
 #ifndef HF_CLI_FARM_H
 #define HF_CLI_FARM_H
 

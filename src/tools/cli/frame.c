@@ -27,7 +27,7 @@ static void keep_warning(struct cli_session *session, const char *message)
     session->said = said;
 }
 
-// The library says why before it returns an error; that is the sentence to show.
+// The library logs the reason before it returns an error. That sentence is the one to show.
 static void on_log(void *cookie, const struct hf_message *message)
 {
     struct cli_session *session = cookie;
@@ -60,20 +60,20 @@ int cli_session_open(struct cli_session *session, const struct cli_args *args, i
     const struct hf_config config = {
         .size = sizeof config, .threads = threads, .isa = args->isa, .log = on_log, .log_cookie = session};
     const int status = hf_open(&session->context, &config);
-    // Without threads of their own files are read and written on this one.
+    // Without these threads this thread reads and writes the files.
     if (status == HF_OK)
         hf_io_threads_open(&session->run, hf_context_threads(session->context));
     if (status == HF_OK)
         return 0;
     const char *why = session->log.text[0] ? session->log.text : hf_error_string(status);
-    // AUTO is only unavailable when the environment variable says so.
+    // HF_ISA_AUTO fails only if the environment variable names an instruction set that is missing.
     if (status == HF_ERR_ISA && args->isa == HF_ISA_AUTO)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s", why);
     return tool_fail(error, status == HF_ERR_MEMORY || status == HF_ERR_THREAD ? CLI_ALL_FAILED : CLI_BAD_ARGUMENTS,
                      "--threads %d, --isa %s: %s", args->threads, hf_isa_name(args->isa), why);
 }
 
-// Of a file that could not be opened: was it for the layer that the command line names?
+// A file could not be opened. Is the reason the layer that --layer names?
 static int lacks_layer(const struct cli_args *args)
 {
     struct hf_io_file *file;
@@ -89,7 +89,7 @@ int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const s
     struct hf_io_error io;
     *frame = (struct cli_frame){.args = args, .run = run};
     const double start = tool_now_ms();
-    // With a depth file the channel's name is meant for that one.
+    // With --depth-file, --depth-channel names a channel of that file.
     const struct hf_io_choice choice = {args->depth_file ? NULL : args->depth_channel, args->layer};
     if (hf_io_open(&frame->file, args->input, &choice, &io))
         return tool_fail(error, lacks_layer(args) ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s", io.message);
@@ -130,7 +130,7 @@ static int read_depth_file(const struct cli_args *args, const struct hf_io_run *
     return 0;
 }
 
-// Depth in INPUT itself, rows of it.
+// Read some rows of the depth in INPUT itself.
 static int sharpen(const struct cli_args *args, const struct hf_io_run *run, struct cli_view *v, float *depth,
                    int height, struct tool_error *error)
 {
@@ -168,7 +168,7 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
     return 0;
 }
 
-// The pixels of all views, if they are not there yet.
+// Read the pixels of all views, unless that was done.
 static int load(struct cli_frame *frame, struct tool_error *error)
 {
     if (frame->loaded)
@@ -193,7 +193,7 @@ static int load(struct cli_frame *frame, struct tool_error *error)
     return status;
 }
 
-// Rows around the pixel in focus: that which is read, and its neighbours, which count where it is no number.
+// Read the rows around the pixel to focus on: its own, and those next to it, which replace a sample that is NaN.
 static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, struct tool_error *error)
 {
     struct hf_io_error io;
@@ -235,7 +235,7 @@ int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *er
     return status;
 }
 
-// Where the focus is read from the picture, all views share that of the first: what one eye sees sharp, the other has
+// If the focus is read from the picture, all views take that of the first view: what one eye sees sharp, the other has
 // to see sharp too.
 static void share_focus(struct cli_frame *frame, struct cli_args *args)
 {
@@ -263,7 +263,7 @@ static int set_up(struct cli_frame *frame, struct tool_error *error)
 int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
 {
     int status = set_up(frame, error);
-    // How far blur reaches is known when the picture is; places in it are others then.
+    // --grow needs the pixels to know how far blur reaches. Growing moves coordinates, so the views are set up again.
     if (!status && frame->args->grow) {
         status = load(frame, error);
         if (!status)
@@ -274,7 +274,8 @@ int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
     return status;
 }
 
-// Pixels whose highlights will be raised: by the luminance of what is above 0, as the library has it.
+// Count the pixels that --highlight-gain raises: their luminance, negative channels taken as 0, is above the
+// threshold. The library tests the same.
 static uint64_t count_highlights(const struct cli_view *v)
 {
     const struct hf_highlight_params *p = &v->setup.params.highlight;
@@ -286,7 +287,7 @@ static uint64_t count_highlights(const struct cli_view *v)
     return count;
 }
 
-// Alpha is 1 everywhere. Blurred it would be as well, so it is left as it is: the engines have a quarter less to do.
+// Is alpha 1 everywhere? Then its blur is 1 too, and the engines need not compute it: a quarter less work.
 static int is_opaque(const struct cli_view *v)
 {
     const size_t n = (size_t)v->view->width * (size_t)v->view->height;
@@ -296,7 +297,7 @@ static int is_opaque(const struct cli_view *v)
     return i == n;
 }
 
-// All that is needed to render a view; *image is its colour.
+// Load all that is needed to render a view; *image becomes its colour.
 static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
                      struct tool_error *error)
 {
@@ -307,7 +308,7 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
                                .width = v->view->width,
                                .height = v->view->height,
                                .format = HF_FORMAT_PLANAR32F};
-    // Who looks at the passes sees all of their channels.
+    // --dump-passes shows all channels, so alpha is kept.
     const int channels = !frame->args->dump_dir && is_opaque(v) ? 3 : 4;
     for (int c = 0; c < channels; c++) {
         image->data[c] = v->planes[c];
@@ -325,7 +326,7 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     return looked;
 }
 
-// After the library has seen the view: what went wrong, or what to keep.
+// Call after the library rendered or planned the view: report its error, or keep its report.
 static int finish_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, int status,
                        struct tool_error *error)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame: open its file, set up its views, render each by its own depth, write them.
+// One frame: open its file, set up its views, render each with its own depth, write the result.
 #ifndef HF_CLI_FRAME_H
 #define HF_CLI_FRAME_H
 
@@ -7,45 +7,46 @@
 #include "tools/cli/setup.h"
 #include "tools/common/report.h"
 
-// The library and threads for files, kept from frame to frame, and what the library said last.
+// What stays open from frame to frame: the library's context and the threads for files. Also what the library logged
+// last.
 struct cli_session {
     struct hf_context *context;
     struct hf_io_run run;
     struct tool_error log;
-    const char *label;  // what is being rendered, for warnings
-    int warnings;       // that the library gave of it
-    char *said;         // what they were, a line each; NULL: none
+    const char *label;  // names what is being rendered, in warnings
+    int warnings;       // how many of them the library logged
+    char *said;         // their texts, one per line; NULL: none
 };
 
 // Up to this radius, pixels, one may say that something is in focus: half a pixel to each side.
 static const float CLI_SHARP_RADIUS = 1;
-// Below this one, nobody sees that there is blur.
+// Nobody sees blur of a smaller radius, in pixels.
 static const float CLI_SEEN_RADIUS = 0.1f;
 
 struct cli_view {
     int index;  // in the file
     const struct hf_io_view *view;
-    char *tag;    // what tells it from others of the frame: "left", "Foreground.Combined"; "" when it is the only one
+    char *tag;    // tells it from other views of the frame: "left", "Foreground.Combined"; "" if it is the only one
     char *label;  // "shot.exr", "shot.exr, view left"
     struct cli_setup setup;
     float *depth;  // NULL: not read yet, or not needed any more
     float *planes[4];
-    int map_size[2];  // width and height of the depth file, which was scaled; 0: it was not
+    int map_size[2];  // width and height of a depth file that was scaled; 0: none was
     int scaled_to[2];
     struct cli_depth_found found;
     long long sharpened, smoothed;  // samples of depth, see --depth-edges
-    int map_bits;                   // of the depth file's whole numbers; 0: floats, or no such file
-    float least_radius;             // pixels: the surface that is least blurred
+    int map_bits;                   // bits of a depth file's whole numbers; 0: floats, or no depth file
+    float least_radius;             // radius of the least blurred surface, pixels
     float range[2];     // distances of the nearest surface and the farthest, see cli_coc_measure; [0] > [1]: not known
-    float blend[2];     // gaussian: how much of its one blur is mixed in at most, in front of the focus and behind
-    float least_reach;  // of all that is blurred at all
-    float far_away;     // radius of what is infinitely far
-    float *radii;       // of all pixels, see cli_coc_look; NULL
-    int warned;         // times by the library
-    char *said;         // what it said then, a line each; NULL: nothing
-    uint64_t highlights;  // pixels above --highlight-threshold, if they are to be raised
-    int whole;            // --grow: the data window was as large as it may get
-    int cut;              // pixels by which the blur reaches beyond the data window, and is lost
+    float blend[2];     // gaussian: largest share of its blur that is mixed in, in front of the focus and behind it
+    float least_reach;  // how far everything that is blurred reaches at least
+    float far_away;     // radius at infinite distance
+    float *radii;       // of all pixels, see cli_coc_look; may be NULL
+    int warned;         // how many warnings the library gave
+    char *said;         // their texts, one per line; NULL: none
+    uint64_t highlights;  // pixels above --highlight-threshold, if --highlight-gain raises them
+    int whole;            // --grow had nothing to do: the data window was as large as allowed
+    int cut;              // pixels that the blur reaches beyond the data window, where it is lost
     struct tool_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for
 };
@@ -72,16 +73,16 @@ struct cli_frame {
 int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct tool_error *error);
 void cli_session_close(struct cli_session *session);
 
-// The steps, in order; plan, which looks at the pictures but renders nothing, in place of render. Each returns 0, or an
-// exit code with *error filled; close after any of them.
+// The steps of a frame, in order. cli_frame_plan stands in place of render: it reads the pictures but renders nothing.
+// Each returns 0, or an exit code with *error filled. Call close after any of them.
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
                    struct tool_error *error);
-// The focus of the first view, only the rows of depth around it being decoded. In place of the others.
+// In place of all steps: read the focus of the first view, decoding only the rows of depth around it.
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error);
 int cli_frame_setup(struct cli_frame *frame, struct tool_error *error);
 int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct tool_error *error);
 int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct tool_error *error);
-// The new file in memory, with some texts in its header; then to the disk.
+// Encode makes the new file in memory, with the given texts in its header. Save writes it to the disk.
 int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, int text_count, struct tool_error *error);
 int cli_frame_save(struct cli_frame *frame, struct tool_error *error);
 void cli_frame_close(struct cli_frame *frame);

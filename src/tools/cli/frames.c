@@ -33,7 +33,7 @@ int cli_frames_add(struct cli_frames *frames, int frame)
     return 0;
 }
 
-// Why a list of frames is refused.
+// Fill the error that refuses a list of frames.
 enum fault { NO_FAULT, NO_RANGE, TOO_HIGH, TOO_MANY, NO_MEMORY };
 
 static enum fault read_frame(const char **text, int *frame)
@@ -63,7 +63,7 @@ static enum fault read_range(const char **text, struct range *r)
     if (fault || (**text != 'x' && **text != 'y' && **text != ':'))
         return fault;
     r->by = *(*text)++;
-    // A minus sign before the step says what the order of the ends says already.
+    // A minus sign before the step is accepted: the order of the ends says the same.
     fault = read_frame(text, &r->step);
     r->step = abs(r->step);
     return fault || r->step ? fault : NO_RANGE;
@@ -74,7 +74,7 @@ static enum fault add(struct cli_frames *frames, int frame)
     return frames->count >= CLI_MAX_FRAMES ? TOO_MANY : cli_frames_add(frames, frame) ? NO_MEMORY : NO_FAULT;
 }
 
-// Every step-th first, then those that every (step - 1)-th adds, and so on.
+// For 1-100:3: every third frame first, then every second that is not in yet, then the rest.
 static enum fault add_in_turns(struct cli_frames *frames, const struct range *r, int sign, int span)
 {
     char *there = calloc((size_t)span, 1);

@@ -24,10 +24,12 @@ int cli_frames_parse(struct cli_frames *frames, const char *text, struct tool_er
 int cli_frames_add(struct cli_frames *frames, int frame);
 void cli_frames_free(struct cli_frames *frames);
 
-// The numbers missing between the first and the last of a sorted list, "4, 7-9", cut off at size. Returns how many.
+// Write the numbers missing between the first and the last of a sorted list, as "4, 7-9", cut off at size. Returns how
+// many there are.
 int cli_frames_gaps(const struct cli_frames *sorted, char *buf, size_t size);
 
-// The same for those that were asked for, in any order, and are not in the sorted list; -1 without memory.
+// Write in the same way the numbers of `asked`, in any order, that are not in the sorted list. Returns how many there
+// are, or -1 without memory.
 int cli_frames_missing(const struct cli_frames *asked, const struct cli_frames *sorted, char *buf, size_t size);
 
 #endif

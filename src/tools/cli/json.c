@@ -47,7 +47,7 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
     tool_json_count(j, "colour_repaired", (long long)s->all.colour_repaired);
     tool_json_count(j, "depth_repaired", (long long)s->all.depth_repaired);
     tool_json_count(j, "no_surface", (long long)s->all.no_surface);
-    // The file layer counts over all views, so with several only the sum is known, which is beside them.
+    // The file layer counts the samples of all views together, so with several views the sum stands beside them.
     tool_json_count(j, "clamped", (long long)(s->all.clamped + (frame->view_count == 1 ? frame->written.clamped : 0)));
     tool_json_flag(j, "depth_negative", v->found.flipped);
     tool_json_number(j, "least_radius", v->least_radius);
@@ -130,7 +130,7 @@ static void put_report(struct tool_json *j, const struct tool_report *r)
     tool_json_close(j);
 }
 
-// Both corners are in it.
+// Both corners lie in the window.
 static void put_window(struct tool_json *j, const char *name, const struct hf_io_box *box)
 {
     tool_json_row(j, name, '[');

@@ -8,14 +8,15 @@
 
 #include "tools/common/json.h"
 
-// Of a view's depth file: "depth_sharpened", samples, when it has whole numbers or some were; "depth_smoothed", when some
-// were; "depth_scaled_from", width and height, when it was.
+// Write what was done to a view's depth file: "depth_sharpened", samples, if it has whole numbers or any were
+// sharpened; "depth_smoothed", if any were; "depth_scaled_from", width and height, if it was scaled.
 void cli_json_map(struct tool_json *j, const struct cli_view *v);
 
-// One JSON object about a frame: what was asked for, what was done, how long it took. Of a --dry-run the first only.
+// Write one JSON object about a frame: what was asked for, what was done, how long it took. A --dry-run has only the
+// first of these.
 void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, struct hf_context *context);
 
-// The same into args->json_file, through a temporary file; a device is written where it is. 0, or an exit code.
+// The same into args->json_file, through a temporary file unless it is a device. Returns 0, or an exit code.
 int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
                         struct tool_error *error);
 

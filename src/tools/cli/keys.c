@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum { MAX_COLUMNS = 16, FRAME_COLUMN = CLI_KEY_COUNT };
-enum { MAX_LINE = 4096, MAX_LINES = 10000000 };  // more is no table that somebody keeps
+enum { MAX_LINE = 4096, MAX_LINES = 10000000 };  // nobody keeps a larger table
 
 // Names of the columns and what a value may be, inclusive.
 static const struct {
@@ -41,7 +41,7 @@ struct reader {
     struct tool_error *error;
 };
 
-// Cut the next cell off a line, spaces and quotes taken away. NULL after the last.
+// Cut the next cell off a line, without its spaces and quotes. Returns NULL after the last cell.
 static char *next_cell(char **rest)
 {
     char *c = *rest;

@@ -41,7 +41,7 @@ struct cli_keys {
 
 // Returns 0, or an exit code with *error filled, which names the line.
 int cli_keys_load(struct cli_keys *keys, const char *path, int smooth, struct tool_error *error);
-// Divide by it what was given in metres: it is how many metres a scene unit has. Once.
+// Convert values in metres to scene units; unit: metres in a scene unit. Call once.
 void cli_keys_scale(struct cli_keys *keys, double unit);
 void cli_keys_free(struct cli_keys *keys);
 

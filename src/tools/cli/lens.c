@@ -39,7 +39,7 @@ static int asks_range(const struct cli_args *args)
     return names_range(args) || given(args->depth_of_field) || given(args->strength);
 }
 
-// The option that chose the range model without having range in its meaning; NULL: there is one that has.
+// The option that chose the range model although its name does not say so; NULL if --range or the like was given, too.
 static const char *hidden_range(const struct cli_args *args)
 {
     if (names_range(args))
@@ -47,7 +47,7 @@ static const char *hidden_range(const struct cli_args *args)
     return given(args->depth_of_field) ? "--depth-of-field" : "--strength";
 }
 
-// Does the header have all that a lens needs, but what was given?
+// Does the header have the whole lens? A focus that the command line gives need not be there.
 static int has_lens(const struct cli_args *args, const struct hf_io_camera *camera)
 {
     const int focus = cli_lens_usable(camera->focus) || camera->focus == INFINITY || args->focus_by != CLI_FOCUS_HEADER;
@@ -95,14 +95,14 @@ static void add(char *list, size_t size, const char *format, ...)
     va_end(values);
 }
 
-// Of a header that has some of a lens: what it has, what not, and which options would give that.
+// For a header with an incomplete lens: write what it has, what it lacks, and which options would complete it.
 static int tell_gap(const struct cli_args *args, const struct hf_io_camera *camera, char *text, size_t size)
 {
     char has[128] = "", lacks[160] = "", options[64] = "";
     const struct {
         const char *name, *option;
         float value;
-        int helps;  // where it is there alone: a focus that is not the header's says nothing of a lens
+        int helps;  // whether this value alone hints at a lens; the focus does only if it is the header's
     } parts[] = {{"focus", "--focus", camera->focus, args->focus_by == CLI_FOCUS_HEADER},
                  {"aperture", "--fstop", camera->f_number, 1},
                  {given(camera->nominal_length_mm) && !given(camera->focal_length_mm) ? "nominalFocalLength"

@@ -16,8 +16,8 @@
 #include "tools/common/json.h"
 #include "tools/common/machine.h"
 
-// A line is put together first and written by one write(), whatever its length: several threads, and several processes,
-// may append to the file.
+// Each line is assembled first and written by one write(), whatever its length, because several threads and several
+// processes may append to the file.
 struct line {
     struct tool_json json;
     char *text;
@@ -56,7 +56,7 @@ static void put_line(struct cli_log *log, const struct line *line)
     } while (n < 0 && errno == EINTR);
     if (n < 0)
         lose(log, errno);
-    // A rest that followed in a write of its own could stand behind another process's line.
+    // A second write for the rest could land behind another process's line, so the line counts as lost.
     if (n >= 0 && (size_t)n < line->size) {
         lose(log, ENOSPC);
         atomic_store(&log->torn, n > 0);

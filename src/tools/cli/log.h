@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --log: what happened, one JSON object a line: a first that says what was begun, one for each frame, a last that sums up.
+// --log: one JSON object per line. The first says what the run is, one for each frame what became of it, the last sums
+// up.
 #ifndef HF_CLI_LOG_H
 #define HF_CLI_LOG_H
 
@@ -15,7 +16,7 @@ struct cli_log {
     int fd;            // meaningless without a path
     const char *path;  // NULL: no log
     atomic_int error;  // errno of the first line that was lost
-    atomic_int torn;   // the last line is there in part: the next begins on a line of its own
+    atomic_int torn;   // the last line was written in part, so the next write starts a new line
 };
 
 // What became of a frame.
@@ -26,7 +27,7 @@ struct cli_record {
     const struct cli_stamp *stamp;
     const struct tool_report *report;  // of the last view; NULL unless done
     const char *why;                   // of a failure
-    double ms, waited_ms;              // from beginning to end; of that until others left it memory
+    double ms, waited_ms;              // from beginning to end; of that, waiting for memory
 };
 
 // path NULL: no log. Returns 0, or an exit code with *error filled.

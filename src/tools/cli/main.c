@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hyperfocal INPUT -o OUTPUT: what to do comes from args, how from setup and frame; here is who says what to whom.
+// hyperfocal INPUT -o OUTPUT. args.c says what to do, setup.c and frame.c do it, and this file writes to stdout and
+// stderr.
 #include "tools/cli/aperture.h"
 #include "tools/cli/batch.h"
 #include "tools/cli/explain.h"
@@ -80,7 +81,7 @@ static int write_json(int argc, char **argv, const struct cli_frame *frame, stru
 {
     if (frame->args->json_file)
         return cli_write_json_file(argc, argv, frame, context, error);
-    cli_write_json(stdout, argc, argv, frame, context);  // main looks after stdout
+    cli_write_json(stdout, argc, argv, frame, context);  // main() checks stdout for errors
     return 0;
 }
 
@@ -113,7 +114,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
         status = print_plan(&frame, session->context, error);
     if (!status && args->dry_run)
         cli_print_warnings(&frame);
-    // JSON on stdout is for programs: then people are told on the other channel.
+    // If programs read JSON from stdout, the table for people goes to stderr.
     if (!status && args->explain)
         cli_explain_print(args->json && !args->json_file ? stderr : stdout, &frame, !args->dry_run);
     if (args->verbose || args->explain)
@@ -122,7 +123,7 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     return status;
 }
 
-// What is written about one frame only.
+// Refuse options that describe a single frame when there is a shot.
 static int check_alone(const struct cli_args *args, const struct cli_shot *shot, struct tool_error *error)
 {
     const char *option = args->json            ? "--json"
@@ -160,7 +161,7 @@ static int run_shot(int argc, char **argv, const struct cli_args *args, const st
     return status;
 }
 
-// One frame, with all that can be said of it.
+// Make one frame, with its report.
 static int run_alone(int argc, char **argv, struct cli_args *args, const struct cli_job *job, struct tool_error *error)
 {
     struct cli_session session;
@@ -181,7 +182,7 @@ static int run_args(int argc, char **argv, struct cli_args *args, struct tool_er
     struct cli_shot shot;
     struct cli_aperture aperture = {0};
     int status = cli_shot_make(&shot, &request, error);
-    // One for all frames; those that are numbered come with their frames.
+    // A depth file without a number serves all frames, so check it here. Numbered ones are checked with their frames.
     if (!status && args->depth_file && !cli_pattern_has_frame(args->depth_file) &&
         !cli_pattern_has_view(args->depth_file) && access(args->depth_file, R_OK))
         status = tool_fail(error, CLI_BAD_ARGUMENTS, "--depth-file %s cannot be read: %s", args->depth_file,
@@ -225,7 +226,7 @@ static int run(int argc, char **argv, struct tool_error *error)
 int main(int argc, char **argv)
 {
     tool_open_standard();
-    // A file that grows too large for the system's limit is an error like a full disk, not the end of the process.
+    // A file that exceeds the system's size limit is an error, as a full disk is. It must not end the process.
     signal(SIGXFSZ, SIG_IGN);
     hf_io_catch_signals();
     struct tool_error error = {""};
@@ -233,7 +234,7 @@ int main(int argc, char **argv)
     const int failed = ferror(stdout);
     if ((fflush(stdout) || failed) && !status)
         status = tool_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
-    // Of a shot all has been said.
+    // A shot has already printed its errors, and leaves the text empty.
     if (status && error.text[0])
         tool_print_line("%s", error.text);
     return status;

@@ -192,7 +192,7 @@ static const char *const groups[TOOL_GROUPS] = {
 
 // clang-format on
 
-// What most people need; the rest is told by --help=all.
+// The options that --help prints; --help=all prints all.
 static const char *const usual[] = {"output",  "focus",        "focus-at",   "range",      "max-radius",
                                     "fstop",   "focal-length", "depth-file", "depth-type", "engine",
                                     "quality", "aperture",     "dry-run",    "help",       NULL};

@@ -12,7 +12,7 @@
 
 typedef void paint(const struct cli_view *v, float *const planes[3]);
 
-// Tiles: near red, far blue, both violet, sharp as it is; a dark line between tiles.
+// Paint the tiles: near ones red, far ones blue, both violet, sharp ones unchanged, with dark lines between them.
 static void paint_tiles(const struct cli_view *v, float *const planes[3])
 {
     static const float tint[4][3] = {{1, 1, 1}, {1, 0.25f, 0.2f}, {0.2f, 0.4f, 1}, {0.75f, 0.25f, 0.9f}};
@@ -25,13 +25,13 @@ static void paint_tiles(const struct cli_view *v, float *const planes[3])
             for (int c = 0; c < 3; c++) {
                 const size_t i = (size_t)y * (size_t)width + (size_t)x;
                 const float colour = v->planes[c][i];
-                // Half the picture, half the tint at the brightness of a mid grey.
+                // Half of the picture plus half of the tint, which is as bright as a mid grey.
                 planes[c][i] = line ? 0 : tile == HF_TILE_SHARP ? colour : 0.5f * colour + 0.1f * tint[tile][c];
             }
         }
 }
 
-// Pixels: near red, in focus green, far blue, as bright as the picture is, the less so the nearer they are to the focus.
+// Paint the pixels: near ones red, those in focus green, far ones blue, as bright as the picture.
 static void paint_focus(const struct cli_view *v, float *const planes[3])
 {
     static const float tints[3][3] = {{1, 0.06f, 0.04f}, {0.1f, 1, 0.1f}, {0.05f, 0.12f, 1}};
@@ -58,7 +58,7 @@ static void list_overlays(const struct cli_args *args, struct overlay list[OVERL
     list[1] = (struct overlay){"--focus-image", args->focus_image, paint_focus};
 }
 
-// FILE, or for one of several views FILE with the view's name before the extension.
+// The name of the copy: FILE, or with several views FILE with the view's name before the extension.
 static char *image_path(const struct cli_frame *frame, const struct cli_view *v, const char *file)
 {
     const char *dot = strrchr(file, '.'), *slash = strrchr(file, '/');
@@ -72,7 +72,7 @@ static char *image_path(const struct cli_frame *frame, const struct cli_view *v,
                             : asprintf(&path, "%.*s.view%d%s", stem, file, v->index, dot);
     if (n < 0)
         return NULL;
-    // The name is the file's, and must not lead elsewhere.
+    // The view's name comes from the file; it must not lead to another directory.
     for (char *c = path + stem; c < path + n - strlen(dot); c++)
         if (*c == '/')
             *c = '_';

@@ -13,7 +13,7 @@
 enum { AS_FOUND = -1, MAX_DIGITS = 32, DEFAULT_DIGITS = 4 };
 enum kind { TEXT, FRAME, VIEW, INITIAL };
 
-// What stands at the beginning of a text: a place of how many characters, or text.
+// What a text begins with: a place, and how many characters it takes, or plain text.
 struct place {
     enum kind kind;
     size_t length;
@@ -67,7 +67,7 @@ int cli_pattern_has_view(const char *pattern)
     return has(pattern, VIEW, INITIAL);
 }
 
-// What a place becomes. frame and view: NULL leaves their places as they are.
+// Write what a place becomes. If frame or view is NULL, its places stay as they are.
 static void put_place(FILE *out, const char *c, const struct place *p, const int *frame, int digits, const char *view)
 {
     if (p->kind == FRAME && frame)
@@ -110,7 +110,8 @@ char *cli_pattern_view(const char *pattern, const char *view)
     return fill(pattern, NULL, 0, view);
 }
 
-// The number that begins at c: *end is what follows. Returns its digits, a minus sign included, or 0.
+// Read the number that begins at c. Returns how many characters it has, a minus sign included; 0 if there is no number
+// or it is out of range.
 static size_t number_at(const char *c, int *frame)
 {
     const size_t sign = c[0] == '-', n = strspn(c + sign, "0123456789");
@@ -121,8 +122,8 @@ static size_t number_at(const char *c, int *frame)
     return n && !errno && v >= -CLI_MAX_FRAME && v <= CLI_MAX_FRAME ? sign + n : 0;
 }
 
-// Does a file's name fit the pattern's? Its number and how many digits that has. Where the pattern has several places,
-// filling them all with the number of the first must give the name.
+// Does a file's name fit the pattern? Finds its number and the digits of that. If the pattern has several places, each
+// must hold the number of the first.
 static int matches(const char *pattern, const char *name, int *frame, int *digits)
 {
     size_t at = 0;

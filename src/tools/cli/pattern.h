@@ -16,18 +16,18 @@
 #include "tools/common/error.h"
 #include "tools/cli/frames.h"
 
-// 1 if a name has a place for the frame number, or for the view.
+// 1 if a name has a place for the frame number; for the view's name.
 int cli_pattern_has_frame(const char *pattern);
 int cli_pattern_has_view(const char *pattern);
 
-// The pattern with the places of the number, or of the view, filled in: to be freed; NULL without memory. digits: for #
-// alone.
+// Fill in the number, or the view's name. Returns a text to be freed, or NULL without memory. digits: how many a lone
+// # stands for.
 char *cli_pattern_fill(const char *pattern, int frame, int digits);
 char *cli_pattern_view(const char *pattern, const char *view);
 
-// The frames that there are, sorted. *digits: how many those of # have at least, 4
-// when there are none. Returns 0, or an exit code with *error filled: an unreadable directory, or a place for the number
-// in a directory's name, which is not searched.
+// Find the existing frames, sorted. *digits: the fewest digits that a lone # has in their names; 4 if there are none.
+// Returns 0, or an exit code with *error filled if the directory is unreadable or its own name has a place for the
+// number: only one directory is searched.
 int cli_pattern_scan(const char *pattern, struct cli_frames *found, int *digits, struct tool_error *error);
 
 // The last number in a file's name, "shot.0007.exr": 1 and *frame, *digits; 0 if there is none.

@@ -8,7 +8,7 @@
 #include "tools/cli/track.h"
 
 static const double LITTLE_WAIT = 0.02;
-static const double MOST_WAIT = 3;  // more frames at once than this would not make a disk faster
+static const double MOST_WAIT = 3;  // more frames at once do not make a disk faster
 static const double GIB = 1024. * 1024 * 1024;
 
 int cli_plan_threads(const struct cli_args *args)
@@ -58,7 +58,8 @@ void cli_plan_args(const struct cli_plan *plan, int i, struct cli_args *args)
 
 double cli_plan_frame_bytes(const struct cli_frame *frame, double library)
 {
-    // Planes of floats and the depth; the other channels as they are stored; the new file, which may not shrink.
+    // Five planes of floats, depth included, and 16 bytes for the channels as they are stored and for the new file,
+    // which may not be smaller.
     double bytes = library;
     for (int i = 0; i < frame->view_count; i++)
         bytes += (double)frame->views[i].view->width * frame->views[i].view->height * (5 * sizeof(float) + 16);
@@ -73,8 +74,9 @@ double cli_plan_memory_limit(const struct cli_args *args)
     return half < 2 * GIB ? half : 2 * GIB;
 }
 
-// Two threads make a frame in half the time, and need half the memory of two frames, whose pages the system has to find and
-// to clear first. Both wait for the disk, though: where that counts, each has a frame of its own.
+// Two threads make a frame in half the time, with half the memory of two frames, whose pages the system has to find
+// and clear first. But both threads wait while that frame waits for the disk. If that takes long, each thread gets a
+// frame of its own.
 static int busy_with(int threads, double wait)
 {
     return wait < LITTLE_WAIT ? (threads + 1) / 2 : (int)lround(threads * (1 + fmin(wait, MOST_WAIT)));
@@ -88,6 +90,6 @@ int cli_plan_workers(const struct cli_args *args, int frames, double wait, doubl
     if (fit < 1)
         tool_print_line("a frame takes %.2f GiB, more than the limit of %.3g GiB: one at a time",
                         (base + frame_bytes) / GIB, limit / GIB);
-    // A time budget learns from frame to frame, in one context.
+    // A time budget learns from frame to frame in one context, so the frames are made one at a time.
     return fit < 1 || args->params.run.budget_ms > 0 ? 1 : fit < most ? (int)fit : most;
 }

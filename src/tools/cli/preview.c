@@ -39,7 +39,7 @@ static void print_jobs(const struct cli_plan *plan, int *left)
     }
 }
 
-// The first frame that there is; the first, if there is none.
+// The first frame whose file is readable; frame 0 if none is.
 static int first_there(const struct cli_shot *shot)
 {
     for (int i = 0; i < shot->jobs.count; i++)

@@ -15,7 +15,7 @@ void cli_progress_begin(struct cli_progress *p, int total, int quiet)
         .total = total, .quiet = quiet, .bar = !quiet && isatty(STDERR_FILENO), .start = tool_now_ms()};
 }
 
-// What holds the work up, by the time that the frames so far spent in each stage: "reading", "writing" or "computing".
+// Which work takes the most time of the frames so far: "reading", "writing" or "computing".
 static const char *limit(const struct cli_progress *p)
 {
     const long long reading = atomic_load(&p->us[CLI_READ]), writing = atomic_load(&p->us[CLI_WRITE]);
@@ -57,7 +57,7 @@ void cli_progress_frame(struct cli_progress *p, const char *name, const char *te
 {
     char shown[TOOL_SHOWN], about[TOOL_SHOWN];
     const int finished = atomic_load(&p->done) + atomic_load(&p->skipped) + atomic_load(&p->failed);
-    // The stream's own lock keeps the lines of two threads apart.
+    // The stream's lock keeps the lines of two threads apart.
     flockfile(stderr);
     if (p->bar)
         draw(p, finished, name);

@@ -12,7 +12,7 @@
 
 #include "tools/io/temp.h"
 
-// FNV-1a of 64 bits: against accidents, not against enemies.
+// FNV-1a of 64 bits. It detects accidents, not forgeries.
 static uint64_t mix(uint64_t hash, const void *data, size_t size)
 {
     const unsigned char *bytes = data;
@@ -28,8 +28,9 @@ static uint64_t mix_text(uint64_t hash, const char *text)
 
 enum { FIRST = 1 << 16, BLOCK = 4096, BLOCKS = 16 };
 
-// A file that was made again is another one. It is told by size and time, and by some of its bytes, as copies may keep the
-// other two: its beginning, where an EXR has its header and the places of its chunks, and blocks spread over the rest.
+// Mix in what tells a new version of a file from the old one: size, time and some bytes, as copying may keep size and
+// time. The bytes are those at the beginning, where an EXR has its header and chunk table, and blocks spread over the
+// rest.
 static uint64_t mix_file(uint64_t hash, const char *path)
 {
     struct stat st;
@@ -51,7 +52,7 @@ static uint64_t mix_file(uint64_t hash, const char *path)
     return hash;
 }
 
-// Values of this frame's own, written as the options that would set them.
+// Write the values that only this frame has, as the options that would set them.
 static void put_values(FILE *out, const struct cli_args *args)
 {
     const struct {

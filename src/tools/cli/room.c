@@ -11,10 +11,10 @@
 #include <unistd.h>
 
 static const double SLACK = 1.12;   // for what is not counted: headers, tables, scratch of threads
-static const double LARGER = 1.25;  // a frame so many times as large as all before is new
-static const double WORST = 4;      // so many times as much may the library take for a new one, by its content
+static const double LARGER = 1.25;  // a frame this many times as large as all before is of a new size
+static const double WORST = 4;      // the library may take this many times as much for such a frame, by its content
 
-// Memory of the process that is in use or was and is not given back; 0: not known.
+// Bytes that the process holds, including memory that it freed but did not give back. 0: not known.
 static double resident(void)
 {
     long all, pages = 0;
@@ -56,7 +56,7 @@ double cli_room_pixels(const struct cli_frame *frame)
     return sum;
 }
 
-// Bytes of a frame that are not the library's: the file as it is stored, its samples, those of the new one, and the planes.
+// Bytes of a frame without the library's: the stored file, its samples, those of the new file, and the planes.
 static double bytes_of_file(const struct cli_frame *frame)
 {
     const int planes = 4 + 1 + (frame->args->depth_file != NULL) + frame->args->grow;
@@ -87,7 +87,7 @@ static int in_work(const struct cli_room *room)
     return n;
 }
 
-// What the library keeps for workers that have no frame now.
+// Close the library contexts of workers that have no frame now.
 static void drop_idle(struct cli_room *room)
 {
     for (int i = 0; i < room->count; i++) {
@@ -99,7 +99,7 @@ static void drop_idle(struct cli_room *room)
     }
 }
 
-// Memory that was freed but not given back, if it would not fit beside what comes.
+// Give freed memory back to the system if it would leave too little room for `more` bytes.
 static void give_back(const struct cli_room *room, double more)
 {
 #ifdef __GLIBC__
@@ -110,7 +110,7 @@ static void give_back(const struct cli_room *room, double more)
 #endif
 }
 
-// May the frame begin now? Under the lock.
+// May the frame begin now? The caller holds the lock.
 static int try_enter(struct cli_room *room, struct cli_share *own, double file, double pixels)
 {
     const double library = SLACK * room->per_pixel * pixels;
@@ -121,7 +121,7 @@ static int try_enter(struct cli_room *room, struct cli_share *own, double file, 
     if (taken(room) - own->held + worst > room->bytes) {
         if (room->count > 1)
             drop_idle(room);
-        // Alone it may take what it takes.
+        // A frame that is alone may exceed the limit.
         if (others && taken(room) - own->held + worst > room->bytes)
             return 0;
         room->exploring = !others && is_new;
@@ -160,7 +160,8 @@ void cli_room_leave(struct cli_room *room, int worker, double pixels, double hel
         own->held = held;
     if (pixels > 0 && held >= 0) {
         const double ratio = held / pixels;
-        // Small frames say little of large ones, as some of it is the same for all.
+        // Part of the library's memory is the same for all sizes, so the bytes per pixel of small frames say little
+        // about large ones.
         if (pixels > LARGER * room->most_pixels)
             room->per_pixel = ratio;
         else if (pixels * LARGER >= room->most_pixels)

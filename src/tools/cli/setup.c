@@ -34,7 +34,7 @@ static int display_width(const struct hf_io_view *view)
     return view->display_window.x1 - view->display_window.x0;
 }
 
-// What the numbers of the depth mean; for ray depth also where the camera's axis is and how wide it sees.
+// Describe the depth: what its numbers mean; for ray depth also where the camera's axis is and how wide the view is.
 static void describe_depth(struct hf_depth *depth, const struct cli_args *args, const struct hf_io_view *view,
                            const float *data)
 {
@@ -53,8 +53,9 @@ static void describe_depth(struct hf_depth *depth, const struct cli_args *args, 
     const float sensor = first_usable(args->sensor_width, view->camera.sensor_width_mm, 36);
     depth->focal_px = given(focal) ? focal / sensor * width : width / screen_width;
 
-    // The screen window is centred on the display window, and its own centre is off the axis by screenWindowCenter,
-    // in units in which it is screenWindowWidth wide, y upwards. Pixels that are not square count more of them in y.
+    // screenWindowCenter is how far the middle of the display window lies off the camera's axis, y upwards, in units
+    // of which the display window is screenWindowWidth wide. With pixels that are not square the same distance is more
+    // of them in y.
     const float shift_x = isfinite(view->screen_center_x) ? view->screen_center_x * (width / screen_width) : 0;
     const float shift_y =
         isfinite(view->screen_center_y) ? view->screen_center_y * (width / screen_width) * view->pixel_aspect : 0;
@@ -62,7 +63,7 @@ static void describe_depth(struct hf_depth *depth, const struct cli_args *args, 
     depth->center_y = 0.5f * (float)(display->y0 + display->y1) + shift_y - (float)view->data_window.y0;
 }
 
-// Focus on what a pixel shows, EXR coordinates.
+// Focus on the surface that a pixel shows; x and y are EXR coordinates.
 static int focus_at(struct cli_setup *setup, const struct hf_io_view *view, int x, int y, const char *option,
                     const char *label, struct tool_error *error)
 {
@@ -144,8 +145,8 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
     if (given(args->far_end))
         p->range.far_end = args->far_end;
 
-    // Those that were not given follow from the focus and the range, which may put them on the wrong side. Where the
-    // gaussian engine focuses by itself, it will say so.
+    // The others follow from the focus and the range, so they may lie on the wrong side of those that were given. If
+    // the gaussian engine finds the focus by itself, the library reports that.
     if (p->focus == HF_DERIVE)
         return 0;
     const float focus = p->focus;
@@ -175,7 +176,7 @@ static int set_range(struct hf_params *p, const struct cli_args *args, const cha
     return 0;
 }
 
-// What says how much blur there is, where that is no lens: then what is of a lens alone would be ignored.
+// Refuse options that only a lens uses when the blur follows from a range or from the depth.
 static int check_unused(const struct cli_setup *setup, const struct cli_args *args, const char *label,
                         struct tool_error *error)
 {

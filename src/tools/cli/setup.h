@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the command line and a view's header to what the library is told: which model, which focus, what depth means.
+// Turns the command line and a view's header into the library's parameters: the model, the focus, the meaning of the
+// depth.
 #ifndef HF_CLI_SETUP_H
 #define HF_CLI_SETUP_H
 
@@ -22,14 +23,14 @@ struct cli_setup {
     const char *focus_from;
     struct hf_params params;
     struct tool_choice choice;  // of --quality or --max-error; inner.options is NULL without them
-    bool missed;                // no setting errs as little as --max-error asks for
-    struct hf_depth depth;      // data is the caller's to set
+    bool missed;                // no setting has an error as small as --max-error
+    struct hf_depth depth;      // the caller sets data
 };
 
-// 1 if the focus is to be read from the depth, so that cli_setup_view needs its pixels.
+// 1 if the focus is read from the depth, so that cli_setup_view needs its pixels.
 int cli_focus_needs_depth(const struct cli_args *args);
 
-// Fill *setup for a view. depth: its pixels, width * height, or NULL when they are not needed. label names file and
+// Fill *setup for a view. depth: width * height samples, or NULL if they are not needed. label names the file and the
 // view in messages. Returns 0, or an exit code with *error filled.
 int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
                    const float *depth, const char *label, struct tool_error *error);

@@ -15,10 +15,11 @@ struct maker {
     struct cli_shot *shot;
     const struct cli_shot_request *request;
     struct tool_error *error;
-    int places;  // given out so far
+    int places;  // places given to frames so far
 };
 
-// The names of one INPUT and one view, and how many digits # alone has in each.
+// The file names, or patterns, of one INPUT and one view. digits: how many a lone # stands for in the input;
+// depth_digits: in the depth file.
 struct names {
     char *input, *output, *depth_file;
     int digits, depth_digits;
@@ -46,13 +47,14 @@ void cli_shot_free(struct cli_shot *shot)
     free_jobs(&shot->around);
 }
 
-// A file that is there is meant, whatever its name looks like.
+// A name that exists as a file means that file, even if it looks like a pattern.
 static int is_pattern(const char *name)
 {
     return (cli_pattern_has_frame(name) || cli_pattern_has_view(name)) && access(name, F_OK);
 }
 
-// The name for a frame; as it is where the frame has no number. Sets *failed without memory.
+// The name for a frame: the pattern with the number filled in, or unchanged if the frame has no number. Sets *failed
+// without memory.
 static char *name_of(const char *pattern, const struct cli_job *job, int digits, int *failed)
 {
     if (!pattern)
@@ -135,7 +137,7 @@ static int check_places(const struct maker *m, const char *input)
     return 0;
 }
 
-// Look which frames there are of a pattern, and with how many digits.
+// Find which frames of a pattern exist, and how many digits they have.
 static int look(struct maker *m, struct names *names, struct cli_frames *found)
 {
     struct cli_frames depths;
@@ -179,7 +181,7 @@ static int add_frames(struct maker *m, struct names *names, int view)
     return status;
 }
 
-// Views that are files of their own, one after the other; without a place for them there is one.
+// Add the jobs of a pattern: those of each view in turn if the pattern has a place for the view, else once.
 static int add_pattern(struct maker *m, const char *input)
 {
     const struct cli_shot_request *r = m->request;
@@ -219,7 +221,7 @@ static int by_place(const void *a, const void *b)
     return x->place != y->place ? (x->place > y->place) - (x->place < y->place) : x->view - y->view;
 }
 
-// Keep the frames of this process.
+// Keep only the frames that --chunk gives to this process.
 static int cut(struct maker *m)
 {
     struct cli_jobs *jobs = &m->shot->jobs;

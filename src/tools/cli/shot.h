@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A shot: from names with places for a number, or lists of names, to the files of each frame.
+// A shot: turns names with places for a number, or lists of names, into the files of each frame.
 #ifndef HF_CLI_SHOT_H
 #define HF_CLI_SHOT_H
 
 #include "tools/common/error.h"
 #include "tools/cli/frames.h"
 
-// What was asked for; NULL what was not.
+// What the command line asks for; NULL what it does not give.
 struct cli_shot_request {
     const char *const *inputs;
     int input_count;
     const char *output, *depth_file, *frames, *chunk;
     const char *views;     // names with commas, for %V
-    const char *log_file;  // which is to be none of the shot's files
+    const char *log_file;  // must not be one of the shot's files
 };
 
-// One frame, or one view of it where views are files of their own.
+// One frame, or one view of it if each view is a file of its own.
 struct cli_job {
     int frame, numbered;                // numbered: the frame has a number
-    int place;                          // among the frames; the views of one frame have the same
-    int view_file;                      // a view that is a file of its own:
-    int view;                           // which
+    int place;                          // index among the frames; the views of a frame share it
+    int view_file;                      // 1: each view is a file of its own
+    int view;                           // which view this file holds; -1: all
     char *input, *output, *depth_file;  // NULL: none
 };
 
@@ -30,11 +30,11 @@ struct cli_jobs {
 };
 
 struct cli_shot {
-    struct cli_jobs jobs;    // those of this process, in the order in which they are to be made
-    struct cli_jobs around;  // every frame that there is, without output: what a focus that follows looks at
-    int sequence;            // INPUT was a pattern or a list, also if that is one frame
-    int missing;             // frames that were asked for, or lie between the first and the last, and are not there
-    char gaps[1024];         // which
+    struct cli_jobs jobs;    // the jobs of this process, in the order in which they are made
+    struct cli_jobs around;  // all existing frames, without output: a focus that follows the pictures reads these
+    int sequence;            // INPUT was a pattern or a list, even one of a single frame
+    int missing;             // how many frames do not exist that were asked for, or lie between the first and the last
+    char gaps[1024];         // their numbers
 };
 
 // Returns 0, or an exit code with *error filled; free it in either case.

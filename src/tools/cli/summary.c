@@ -21,7 +21,7 @@ int cli_is_limited(const struct cli_view *v)
     return v->setup.model != CLI_MODEL_RANGE && (r->all.near_radius >= most || r->all.far_radius >= most);
 }
 
-// Why a radius cannot be larger.
+// What limits the radius.
 static const char *limit_words(enum hf_limit limit)
 {
     switch (limit) {
@@ -100,7 +100,7 @@ int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
     struct hf_resolved r = {.size = sizeof(r)};
     struct hf_message message = {.size = sizeof(message)};
     char sentence[TOOL_SENTENCE];
-    // A focus that is the picture's own is known when the picture is read.
+    // A focus that comes from the picture is not known before the picture is read.
     if (v->setup.params.focus == HF_DERIVE && v->setup.model != CLI_MODEL_COC)
         return 0;
     if (hf_resolve(v->view->width, v->view->height, &v->setup.depth, &v->setup.params, &p, &r, &message))

@@ -35,7 +35,8 @@ static int check_directory(const char *dir, const char *option, const char *path
     return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s cannot be written: %s: %s", option, path, dir, strerror(errno));
 }
 
-// A file is written beside its target and renamed, so the directory has to be writable, and what is there replaceable.
+// A file is written beside its target and then renamed, so the directory must be writable and an existing target
+// replaceable.
 static int check_file(const char *path, const char *option, int replaced, struct tool_error *error)
 {
     struct stat st;
@@ -99,7 +100,7 @@ int cli_check_overwrite(const struct cli_args *args, const char *option, const c
     for (int i = 0; i < NAMED; i++) {
         if (!files[i].path || !strcmp(files[i].option, option) || !hf_io_same_file(path, files[i].path))
             continue;
-        // The one way to change a picture in place.
+        // -o INPUT is the one way to change a picture in place.
         if (!strcmp(option, "-o") && !strcmp(files[i].option, "INPUT"))
             continue;
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s would write over %s %s, the same file", option, path,
@@ -130,7 +131,7 @@ int cli_check_targets(const struct cli_args *args, struct tool_error *error)
         const int json = f->path == args->json_file;
         status = cli_check_overwrite(args, f->option, f->path, error);
         if (f->path == args->log_file)
-            continue;  // what is there stays, and opening it says what is wrong
+            continue;  // the log is appended to, and opening it reports errors
         if (!status)
             status = check_file(f->path, f->option, !json, error);
         if (!status && !json && hf_io_check_format(f->path, &io))

@@ -6,7 +6,7 @@
 
 #include "tools/cli/frame.h"
 
-// A frame that is looked at.
+// A frame whose focus is read.
 struct look {
     double place;  // its number, or its place in a list without numbers
     int view;
@@ -30,7 +30,7 @@ void cli_frame_args(struct cli_args *args, const struct cli_args *all, const str
     args->output = job->output;
     args->depth_file = job->depth_file;
     if (job->view_file)
-        args->views = NULL;  // it names files, not views in them
+        args->views = NULL;  // --views names files here, not views in a file
     if (!args->keys)
         return;
     const double frame = job->numbered ? job->frame : job->place;
@@ -90,7 +90,7 @@ static double place_of(const struct cli_job *job)
     return job->numbered ? job->frame : job->place;
 }
 
-// The first look at or after a place.
+// Index of the first entry of t->looks at `place` or after it.
 static int first_from(const struct tracker *t, double place)
 {
     int low = 0, high = t->count;
@@ -127,7 +127,7 @@ int cli_track(float *focus, const struct cli_shot *shot, const struct cli_args *
     t.looks = calloc((size_t)around->count, sizeof(*t.looks));
     if (!t.looks)
         return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
-    // Where views are files of their own, the first is the one that is looked at.
+    // If each view is a file of its own, the focus is read from the first view.
     for (int i = 0; i < around->count; i++)
         if (around->list[i].view <= 0)
             t.looks[t.count++] = (struct look){.place = place_of(&around->list[i]), .job = &around->list[i]};

@@ -10,17 +10,17 @@
 
 enum { CLI_FOCUS_SMOOTH = 6 };  // frames to each side, by default
 
-// The arguments of one frame: those of all, its files, its keys. *args is to be treated as a copy: nothing to free.
+// The arguments of one frame: those of all frames, its files, its keys. *args owns nothing that has to be freed.
 void cli_frame_args(struct cli_args *args, const struct cli_args *all, const struct cli_job *job,
                     const struct cli_keys *keys);
 
 // 1 if the frames' focus is read from the pictures.
 int cli_track_wanted(const struct cli_args *args, const struct cli_keys *keys);
 
-// The focus of each job, or NAN where there is nothing to be had: the mean of what the pixel shows in the frames around,
-// weights falling linearly to 0 beyond --focus-smooth frames, of inverse distances, because blur is linear in those.
-// It depends on the files of the shot alone, not on which of them this process makes. Returns 0, or an exit code with
-// *error filled.
+// Find the focus of each job, or NAN if no frame around it has one. It is the mean of the distances that the pixel
+// shows in the frames around. The weights fall linearly to 0 beyond --focus-smooth frames. The mean is taken of
+// inverse distances, because blur is linear in those. It depends only on the files of the shot, not on which of them
+// this process makes. Returns 0, or an exit code with *error filled.
 int cli_track(float *focus, const struct cli_shot *shot, const struct cli_args *args, const struct cli_keys *keys,
               const struct hf_io_run *run, struct tool_error *error);
 

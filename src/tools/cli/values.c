@@ -90,7 +90,7 @@ static int parse_ngon(struct hf_aperture_params *aperture, const char *value, st
     return 0;
 }
 
-// What a word for a shape is here; NULL for what may be a file's name.
+// The --aperture value that a common word for a shape means; NULL for other words, which may be file names.
 static const char *aperture_word(const char *value)
 {
     static const char *const words[][2] = {{"circle", "disc"},     {"round", "disc"},      {"disk", "disc"},

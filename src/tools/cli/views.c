@@ -35,7 +35,7 @@ static int has_word(const char *list, const char *word)
     }
 }
 
-// Every name of --views must be one of the file's.
+// Check that each name in --views is a view of the file.
 static int check_names(const struct cli_frame *frame, struct tool_error *error)
 {
     const char *list = frame->args->views;
@@ -147,7 +147,7 @@ int cli_select_views(struct cli_frame *frame, struct tool_error *error)
         const struct hf_io_view *view = hf_io_view(frame->file, i);
         if (args->views && !has_word(args->views, view->name))
             continue;
-        // Where all layers are asked for, one without a depth stays as it is.
+        // With --layer all, a layer without a depth stays as it is.
         if (args->layer && !strcmp(args->layer, "all") && view->depth_part < 0 && !args->depth_file && count > 1) {
             tool_print_line("%s: layer %s has no depth of its own and stays as it is", args->input,
                             view->layer[0] ? view->layer : "RGB");

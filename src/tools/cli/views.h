@@ -4,8 +4,8 @@
 
 #include "tools/cli/frame.h"
 
-// Make frame->views from the file and --views: names, labels, and a check that each has depth and windows that can be
-// worked with. Returns 0, or an exit code with *error filled.
+// Make frame->views from the file and --views: names and labels. Checks that each view has a depth, and windows of a
+// size that the library takes. Returns 0, or an exit code with *error filled.
 int cli_select_views(struct cli_frame *frame, struct tool_error *error);
 
 #endif

@@ -14,9 +14,9 @@
 struct warner {
     const struct cli_frame *frame;
     const struct cli_args *args;
-    const char *label;       // what is warned of
-    int say;                 // on stderr
-    struct tool_json *list;  // sentences are entered here; NULL
+    const char *label;       // names what the warning is about
+    int say;                 // print it on stderr
+    struct tool_json *list;  // gets the sentences, unless NULL
     int count;
 };
 
@@ -40,7 +40,7 @@ static const char *depth_name(const struct warner *w, const struct cli_view *v)
     return w->args->depth_file ? w->args->depth_file : v->view->depth;
 }
 
-// All is infinitely far.
+// Is everything infinitely far?
 static int is_empty(const struct cli_view *v)
 {
     return v->setup.model != CLI_MODEL_COC &&
@@ -71,7 +71,7 @@ static int is_distance(const struct cli_args *args)
     return (args->depth_type == HF_DEPTH_VIEW || args->depth_type == HF_DEPTH_RAY) && !args->normalized;
 }
 
-// Where the surfaces are, and what the focus may have to do with that.
+// Write the range of distances of the surfaces, and the focus.
 static void tell_range(const struct cli_view *v, char *text, size_t size)
 {
     if (v->range[0] == v->range[1])
@@ -82,7 +82,7 @@ static void tell_range(const struct cli_view *v, char *text, size_t size)
         snprintf(text + strlen(text), size - strlen(text), ", the focus %.4g", v->report.params.focus);
 }
 
-// A focus in other units than the depth: the powers of ten that bring it there.
+// The focus lies outside the depth. If a power of ten brings it inside, write a hint that their units differ.
 static void guess_unit(const struct cli_args *args, const struct cli_view *v, char *text, size_t size)
 {
     static const float factors[] = {10, 100, 1000}, SLACK = 1.5f;
@@ -136,7 +136,7 @@ static void warn_focus(struct warner *w, const struct cli_view *v)
     warn(w, "nothing is in focus: all is blurred by %.3g pixels or more%s%s", v->least_radius, range, hint);
 }
 
-// Blur that nobody sees, unless that was asked for.
+// Warn if no blur is visible, unless the options ask for none.
 static void warn_sharp(struct warner *w, const struct cli_view *v)
 {
     const struct cli_args *args = w->args;
@@ -164,7 +164,7 @@ static void warn_sharp(struct warner *w, const struct cli_view *v)
     warn(w, "nothing is blurred: the largest radius is %.2f pixels%s", largest, hint);
 }
 
-// What was asked for and cannot be had.
+// Warn of options that cannot be fulfilled, or that have no effect on this picture.
 static void warn_options(struct warner *w, const struct cli_view *v)
 {
     const struct hf_highlight_params *p = &v->setup.params.highlight;
@@ -201,7 +201,7 @@ static void warn_view(struct warner *w, const struct cli_view *v)
     w->count += v->warned;
 }
 
-// Layers that could be blurred too, of a file of which only the main one is.
+// Warn that other layers have depths too if only the main one is blurred.
 static void warn_layers(struct warner *w)
 {
     char names[512];
@@ -217,7 +217,7 @@ static void warn_layers(struct warner *w)
              count > 1 ? "stay" : "stays", count > 1 ? "they are" : "it is");
 }
 
-// A window that OUTPUT cannot hold.
+// Warn if OUTPUT's format cannot hold the data window.
 static void warn_window(struct warner *w)
 {
     const struct hf_io_view *v = w->frame->views[0].view;
@@ -228,7 +228,7 @@ static void warn_window(struct warner *w)
              display->x1 - display->x0, display->y1 - display->y0);
 }
 
-// What is done to a picture that was defocused before, or that nobody has another copy of.
+// Warn if INPUT was defocused before, or if OUTPUT replaces it.
 static void warn_input(struct warner *w)
 {
     char text[2];
@@ -240,7 +240,7 @@ static void warn_input(struct warner *w)
              w->args->output);
 }
 
-// Of one picture, what only a shot has a use for.
+// Warn of options that have an effect only on shots if there is one picture.
 static void warn_alone(struct warner *w)
 {
     const struct cli_args *args = w->args;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What may be wrong with a frame but does not stop the work. Each thing is counted where its sentence is made, so that
-// there are as many sentences as are counted.
+// Warnings: what may be wrong with a frame but does not stop the work. The function that makes a sentence also counts
+// it, so the count and the sentences agree.
 #ifndef HF_CLI_WARN_H
 #define HF_CLI_WARN_H
 
@@ -9,9 +9,11 @@
 
 // How many warnings a view's picture has, those of the library included.
 int cli_warnings_of(const struct cli_frame *frame, const struct cli_view *v);
-// The same of a frame, each said on stderr (the library's have been), and what was lost in writing it.
+// Print all warnings of a frame on stderr, except the library's, which are there already, and note what the output
+// format lost. Returns how many there are, the library's included.
 int cli_print_warnings(const struct cli_frame *frame);
-// The sentences of a frame, those of the library included, as an array. After a dry run they are those that planning knows.
+// Write the warnings of a frame, the library's included, as an array. After a dry run they are those that planning
+// finds.
 void cli_json_warnings(struct tool_json *j, const struct cli_frame *frame);
 
 #endif

@@ -8,7 +8,7 @@
 #include "tools/cli/coc.h"
 
 enum {
-    MARGIN = 2,  // pixels beyond a radius that half resolution and soft edges reach
+    MARGIN = 2,  // pixels beyond the radius, for half resolution and soft edges
     STEP = 8     // the coarsest resolution, an eighth
 };
 
@@ -58,14 +58,14 @@ static int most(int a, int b)
     return a > b ? a : b;
 }
 
-// Where a window begins that shall hold `from`, whole multiples of STEP from `first`: engines that go to half the
-// resolution and less then take the same pixels together as in the whole frame.
+// Where a window that holds `from` begins: a multiple of STEP away from `first`, so that engines at half resolution
+// and below group the same pixels as in the whole frame.
 static int begin(int first, int from)
 {
     return from <= first ? first : first + (from - first) / STEP * STEP;
 }
 
-// As far as the blur reaches, but not beyond the display window where the data window does not already.
+// The data window enlarged by reach, but not beyond the display window, unless it is beyond already.
 static struct hf_io_box grown(const struct hf_io_view *v, int reach)
 {
     const struct hf_io_box *data = &v->data_window, *display = &v->display_window;
@@ -74,7 +74,7 @@ static struct hf_io_box grown(const struct hf_io_view *v, int reach)
         most(data->x1, least(display->x1, data->x1 + reach)), most(data->y1, least(display->y1, data->y1 + reach))};
 }
 
-// A plane of the old window in one of the new; what is around it is value.
+// Move a plane from the old window to the new one; new pixels get value.
 static int move_plane(float **plane, const struct hf_io_box *from, const struct hf_io_box *to, float value)
 {
     const size_t old_width = (size_t)(from->x1 - from->x0), width = (size_t)(to->x1 - to->x0);
@@ -94,7 +94,7 @@ static int move_plane(float **plane, const struct hf_io_box *from, const struct 
     return 0;
 }
 
-// What stands for no surface in the file, and in the plane of depth as the library reads it.
+// The depth that means no surface: in the file, or in the plane that the library reads.
 static float no_surface(const struct cli_args *args, int in_file)
 {
     switch (args->depth_type) {
@@ -109,15 +109,16 @@ static float no_surface(const struct cli_args *args, int in_file)
     }
 }
 
-// From how far around a near pixel of radius q scatter and hexagon make up what lies behind it, as nothing is seen beyond a
-// window: neighbourhoods of 2 q + 4 pixels, 14 where others are nearer, and 2 for a bilinear sample.
+// How far from a near pixel of radius q scatter and hexagon read to fill in what it occludes. Nothing exists beyond a
+// window, so the window must hold these pixels: neighbourhoods of 2 q + 4 pixels, 14 where others are nearer, and 2
+// for a bilinear sample.
 static float behind(enum hf_engine engine, float q)
 {
     return engine == HF_ENGINE_SCATTER || engine == HF_ENGINE_HEXAGON ? 2 * q + 4 + 14 + 2 : 0;
 }
 
-// How far what may be seen reaches, over the views of a part. What is new around it is infinitely far, and mixes with it
-// at the edges.
+// How far visible blur reaches, the largest of all views of a part. The new pixels around the window are infinitely
+// far, and their blur mixes with it at the edges.
 static float largest(const struct cli_frame *frame, int part)
 {
     float r = 0;
@@ -133,7 +134,7 @@ static float largest(const struct cli_frame *frame, int part)
     return r;
 }
 
-// The first of the views of its part: these share a window, which grows once.
+// Is this the first view of its part? The views of a part share a window, which grows once.
 static int is_first(const struct cli_frame *frame, int i)
 {
     for (int k = 0; k < i; k++)
@@ -142,7 +143,7 @@ static int is_first(const struct cli_frame *frame, int i)
     return 1;
 }
 
-// Is there no room around the data window?
+// Does the data window fill the display window?
 static int fills(const struct hf_io_view *view)
 {
     const struct hf_io_box *data = &view->data_window, *display = &view->display_window;
