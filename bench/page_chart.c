@@ -410,20 +410,39 @@ static void label(struct view *v, const struct mark *m)
         }
 }
 
+// Is there a setting of an engine?
+static int is_used(const struct view *v, int engine)
+{
+    for (int i = 0; i < v->marks; i++)
+        if (v->mark[i].result >= 0 && (int)v->mark[i].engine == engine)
+            return 1;
+    return 0;
+}
+
+static double legend_width(int engine)
+{
+    return 15 + 6.6 * (double)strlen(hf_engine_name((enum hf_engine)engine)) + 10;
+}
+
+// The engines above the chart, in two rows where one is too long.
 static void legend(struct view *v)
 {
-    double x = LEFT;
+    double x = LEFT, all = 0;
+    for (int e = 0; e < tool_engines(); e++)
+        all += is_used(v, e) ? legend_width(e) : 0;
+    double y = LEFT + all <= v->width ? 15 : 10;
     for (int e = 0; e < tool_engines(); e++) {
         const char *name = hf_engine_name((enum hf_engine)e);
-        int used = 0;
-        for (int i = 0; i < v->marks; i++)
-            used |= v->mark[i].result >= 0 && (int)v->mark[i].engine == e;
-        if (!used)
+        if (!is_used(v, e))
             continue;
+        if (x + legend_width(e) > v->width) {
+            x = LEFT;
+            y += 13;
+        }
         fprintf(v->out, "<g class=\"pt on %s\">", name);
-        shape(v->out, e, x + 6, 11);
-        fprintf(v->out, "</g><text class=\"label\" x=\"%.1f\" y=\"15\">%s</text>\n", x + 15, name);
-        x += 15 + 6.6 * (double)strlen(name) + 10;
+        shape(v->out, e, x + 6, y - 4);
+        fprintf(v->out, "</g><text class=\"label\" x=\"%.1f\" y=\"%.0f\">%s</text>\n", x + 15, y, name);
+        x += legend_width(e);
     }
 }
 

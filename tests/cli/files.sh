@@ -307,7 +307,7 @@ run plain.exr -o o.exr --focus 3 --memory-limit 0.5
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "--memory-limit 0.5 does nothing for one"
 result "--memory-limit for one picture is a warning" $?
 run plain.exr -o o.exr --focus 3 --fstop 0.01 --focal-length 50 --engine gather --faithful
-[ "$status" -eq 0 ] && contains "$dir/err" "unless --max-radius is given" && ! contains "$dir/err" "max_radius"
+[ "$status" -eq 0 ] && contains "$dir/err" "--max-radius is 12 pixels" && ! contains "$dir/err" "max_radius"
 result "options have their names in what the library says" $?
 rm -f o.exr
 
@@ -431,7 +431,7 @@ run near.exr --focus 4 --engine gaussian --sigma 3 --explain --dry-run --range 2
 contains "$dir/out" "standard deviation: 3.00 pixels, of which at most 100 % are mixed in near, 100 % far"
 result "--explain of the gaussian engine" $?
 told 1 near.exr -o o.exr --focus 4 --fstop 0.0002 --focal-length 50
-contains "$dir/err" "blur is cut to 2048 pixels where it would be larger, the most that there can be"
+contains "$dir/err" "--max-radius is 2048 pixels, the most that there can be: larger blur is cut to that"
 result "the largest radius that there can be" $?
 told 1 near.exr -o o.exr --focus 4 --fstop 0.002 --focal-length 50 --engine gather
 told 1 near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --engine gaussian

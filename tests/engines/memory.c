@@ -47,8 +47,10 @@ struct look {
     const char *name;
     enum hf_engine engine;
     struct hf_aperture_params aperture;
-    // How many planes an engine may hold. The gather has whole windows of half resolution, a quarter of a plane each:
-    // up to 16 of colours, CoC and sums for each of two threads. The others have only some rows and tables.
+    // How many planes an engine may hold. The gather and the chapter have whole windows of half resolution, a quarter of
+    // a plane each: up to 16 of colours, CoC and sums for each of two threads. The chapter's taps reach ten times as far
+    // along x where pixels are a tenth as wide as high, so its windows are that much wider. The others have only some
+    // rows and tables.
     int planes;
     float pixel_aspect;
 };
@@ -101,7 +103,7 @@ int main(void)
         {"disc of wide pixels", HF_ENGINE_GATHER, {0}, 8, 0.1f},
         {"disc of high pixels", HF_ENGINE_GATHER, {0}, 8, 10},
         {"disc", HF_ENGINE_CHAPTER, {0}, 8, 1},
-        {"disc of wide pixels", HF_ENGINE_CHAPTER, {0}, 8, 0.1f},
+        {"disc of narrow pixels", HF_ENGINE_CHAPTER, {0}, 80, 0.1f},
         {"disc", HF_ENGINE_HEXAGON, {0}, 4, 1},
         {"disc", HF_ENGINE_GAUSSIAN, {0}, 4, 1},
         {"disc", HF_ENGINE_SCATTER, {0}, 4, 1},
