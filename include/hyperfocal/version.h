@@ -4,7 +4,7 @@
 
 // Version of this header, and of the release that it belongs to. meson.build reads these lines.
 #define HF_VERSION_MAJOR 0
-#define HF_VERSION_MINOR 1
+#define HF_VERSION_MINOR 9
 #define HF_VERSION_PATCH 0
 
 // Version of the binary interface. It names the shared library, libhyperfocal.so.1, and is apart from the release's version.
