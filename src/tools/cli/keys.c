@@ -88,7 +88,7 @@ static int read_names(struct reader *r, char *line)
         r->order[r->count++] = c;
         frame |= c == 0;
     }
-    return frame ? 0 : fail(r, r->count ? columns[r->order[0]].name : "", "is there, but no column frame");
+    return frame ? 0 : fail(r, r->count ? columns[r->order[0]].name : "", "is a column, but there is no column frame");
 }
 
 static int add_key(struct cli_keys *keys, enum cli_key key, struct cli_keyed added)
@@ -203,7 +203,7 @@ static int read_line(struct reader *r, FILE *in, char line[MAX_LINE])
     r->line++;
     while ((c = getc_unlocked(in)) != EOF && c != '\n') {
         if (!c)
-            return tool_fail(r->error, CLI_BAD_ARGUMENTS, "--keys %s, line %d: a zero byte, so this is no text",
+            return tool_fail(r->error, CLI_BAD_ARGUMENTS, "--keys %s, line %d: a zero byte, so this is not a text file",
                              r->path, r->line);
         if (n == MAX_LINE - 1)
             return tool_fail(r->error, CLI_BAD_ARGUMENTS, "--keys %s, line %d is longer than %d bytes", r->path,

@@ -126,10 +126,11 @@ static int tell_gap(const struct cli_args *args, const struct hf_io_camera *came
     }
     if (!some)
         return 0;
-    snprintf(text, size,
-             "the header's lens is not whole, %s, but %s: blur follows a range and not the lens; for the lens give %s, "
-             "else --range",
-             has, lacks, options);
+    snprintf(
+        text, size,
+        "the header's lens is incomplete, %s, but %s: blur follows a range and not the lens; for the lens give %s, "
+        "else --range",
+        has, lacks, options);
     return 1;
 }
 
@@ -148,9 +149,8 @@ int cli_lens_remark(const struct cli_args *args, const struct cli_setup *setup, 
     }
     if (setup->model != CLI_MODEL_LENS || given(args->focal_length) || cli_lens_usable(camera->focal_length_mm))
         return 0;
-    snprintf(
-        text, size,
-        "the header has no pinholeFocalLength: its nominalFocalLength, %g mm, is taken; --focal-length goes before it",
-        setup->params.lens.focal_length_mm);
+    snprintf(text, size,
+             "the header has no pinholeFocalLength: its nominalFocalLength, %g mm, is taken; --focal-length replaces it",
+             setup->params.lens.focal_length_mm);
     return 1;
 }

@@ -137,11 +137,11 @@ static int check_alone(const struct cli_args *args, const struct cli_shot *shot,
                          "%s is for one picture by its own name; for a shot, also of one frame, there is --log",
                          option);
     if (args->resume && args->output && !cli_is_exr(args->output))
-        return tool_fail(error, CLI_BAD_ARGUMENTS, "--resume needs an EXR OUTPUT, as %s does not say what made it",
-                         args->output);
+        return tool_fail(error, CLI_BAD_ARGUMENTS,
+                         "--resume needs an EXR OUTPUT, as %s cannot store the settings that made it", args->output);
     if (args->resume && !shot->sequence && cli_is_in_place(args))
         return tool_fail(error, CLI_BAD_ARGUMENTS,
-                         "--resume cannot be used where OUTPUT %s is INPUT: nobody would know whether it is done",
+                         "--resume cannot be used where OUTPUT %s is INPUT: it would be unknown which frames are done",
                          args->output);
     return 0;
 }
@@ -153,7 +153,7 @@ static int run_shot(int argc, char **argv, const struct cli_args *args, const st
     if (!status && shot->missing)
         tool_print_line("%d frame%s missing: %s", shot->missing, shot->missing == 1 ? " is" : "s are", shot->gaps);
     if (!status && shot->jobs.count == 0)
-        tool_print_line("no frame of the shot is this process's part: nothing to do");
+        tool_print_line("this process's part of the shot has no frames: nothing to do");
     else if (!status && args->dry_run)
         status = cli_preview(args, shot, error);
     else if (!status)

@@ -24,20 +24,20 @@ static const struct tool_option options[] = {
     {"output", 'o', TOOL_FILES, "OUTPUT", "Picture to write: a copy of INPUT with its colours defocused. A name other "
      "than .exr keeps the colour of one view only.", TEXT(output)},
     {"frames", 0, TOOL_FILES, "LIST", "Frames of an INPUT with a place for the number: 1-100, 1-100x2 (every second), "
-     "10-1 (backwards), 1,5,9-20x3, -5--1, 1-100:3 (every third first, then those between). Default: those that there "
-     "are.", TEXT(frames)},
+     "10-1 (backwards), 1,5,9-20x3, -5--1, 1-100:3 (every third first, then those between). Default: all that "
+     "exist.", TEXT(frames)},
     {"chunk", 0, TOOL_FILES, "auto|I/N", "Only part I of N of the frames, for farms. auto: this task's part in a Slurm "
      "array. Default: all of them.", TEXT(chunk)},
     {"views", 0, TOOL_FILES, "all|NAME,...", "Views to defocus, each by its own depth; the others are kept as they "
      "are. Default all.", TEXT(views)},
     {"layer", 0, TOOL_FILES, "all|NAME,...", "Layers to defocus, each by its own depth: ViewLayer.Combined, or just "
-     "ViewLayer. all: every layer of colour, but masks, normals and the like. Default: the main one.", TEXT(layer)},
-    {"grow", 0, TOOL_FILES, NULL, "Let the data window grow by the reach of the blur, up to the display window. What is "
-     "new is black and transparent, 0 in other channels, and far away in depth. Default: what reaches beyond is cut, "
-     "with a warning.", FLAG(grow)},
-    {"display", 0, TOOL_FILES, "WxH[+X+Y]", "The picture is a crop of a frame of this size, pixels, at X,Y from its top "
-     "left corner, else in its middle, whatever the file says: the lens is that of the whole frame. Default: the file's "
-     "display window.",
+     "ViewLayer. all: every layer of colour, but no masks, normals or the like. Default: the main one.", TEXT(layer)},
+    {"grow", 0, TOOL_FILES, NULL, "Let the data window grow by the reach of the blur, up to the display window. New "
+     "pixels are black and transparent, 0 in other channels, and far away in depth. Default: blur beyond the window is "
+     "cut, with a warning.", FLAG(grow)},
+    {"display", 0, TOOL_FILES, "WxH[+X+Y]", "Treat the picture as a crop of a frame of this size, pixels, at X,Y from "
+     "its top left corner, by default in its middle. The lens is that of the whole frame. Default: the file's display "
+     "window.",
      .parse = cli_parse_display,
      .field = "view.display_width|view.display_height"},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
@@ -51,12 +51,12 @@ static const struct tool_option options[] = {
      .parse = cli_parse_focus_at},
     {"focus-smooth", 0, TOOL_FOCUS, "N", "A focus that is read from the pictures of a shot follows the mean of N frames "
      "before and after, so that it does not jump, 0 to 1000. Default 6.", COUNT(focus_smooth, 0, 1000)},
-    {"focus-per-view", 0, TOOL_FOCUS, NULL, "A focus that is read from the picture is each view's own. Default: all "
-     "have that of the first.", FLAG(focus_per_view)},
+    {"focus-per-view", 0, TOOL_FOCUS, NULL, "If the focus is read from the picture, read it for each view. "
+     "Default: all views have that of the first.", FLAG(focus_per_view)},
     {"print-focus", 0, TOOL_FOCUS, NULL, "Print the focus of each frame, as a file for --keys, and do nothing else.",
      FLAG(print_focus)},
     {"keys", 0, TOOL_FOCUS, "FILE", "Values that change over a shot, as CSV: a column frame and any of focus, range, "
-     "strength, fstop, focal-length, max-radius, focus-at (X:Y). They go before the options.", TEXT(keys)},
+     "strength, fstop, focal-length, max-radius, focus-at (X:Y). They replace the values of the options.", TEXT(keys)},
     {"keys-blend", 0, TOOL_FOCUS, "linear|smooth", "How values go from key to key. Default linear.",
      CHOICE(keys_blend)},
     {"range", 0, TOOL_FOCUS, "D", "Distance from the focus to full blur, scene units, 0 or more, or inf. Default: "
@@ -107,20 +107,21 @@ static const struct tool_option options[] = {
      "radii in pixels, near ones negative, which need no focus.", .parse = cli_parse_depth_type, FIELD(depth_type),
      .names = HF_NAMES_DEPTH_TYPE,
      .field = "depth.type"},
-    {"near", 0, TOOL_DEPTH, "D", "Distance of an ndc or normalized depth's near end, scene units; with inverse that of "
-     "1, in place of a scale; with gaussian of any. Default with gaussian 1, else none.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE,
+    {"near", 0, TOOL_DEPTH, "D", "Distance of the near end of an ndc or normalized depth, scene units. With inverse: "
+     "the distance of the number 1, in place of a scale. With gaussian: the near end of any depth. Default with "
+     "gaussian 1, else none.", POSITIVE(near_plane), .unit = TOOL_UNIT_DISTANCE,
      .field = "depth.near_plane"},
-    {"far", 0, TOOL_DEPTH, "D", "The same of its far end, or inf; with inverse that of 0. Default with gaussian "
-     "100 times --near, with inverse inf, else none.", POSITIVE(far_plane),
+    {"far", 0, TOOL_DEPTH, "D", "Distance of the far end, or inf; with inverse: of the number 0. Default with "
+     "gaussian 100 times --near, with inverse inf, else none.", POSITIVE(far_plane),
      .unit = TOOL_UNIT_DISTANCE, .inf = 1,
      .field = "depth.far_plane"},
-    {"depth-scale", 0, TOOL_DEPTH, "S", "What the numbers of the depth are multiplied with first, not 0. Whole numbers "
-     "of a picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
-    {"depth-offset", 0, TOOL_DEPTH, "D", "What is added to them then. Default 0.",
+    {"depth-scale", 0, TOOL_DEPTH, "S", "Multiply the numbers of the depth by S first, not 0. Whole numbers of a "
+     "picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
+    {"depth-offset", 0, TOOL_DEPTH, "D", "Add D to them after that. Default 0.",
      NUMBER(depth_offset, -FLT_MAX, FLT_MAX)},
-    {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers between the two sides of an outline, at which "
-     "there is nothing, go to the nearer side: for depth that was filtered, smoothed or made smaller. auto (default): "
-     "sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, unless keep is "
+    {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers between the two sides of an outline, where no "
+     "surface is, become those of the nearer side: for depth that was filtered, smoothed or made smaller. auto "
+     "(default): sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, unless keep is "
      "given.", CHOICE(depth_edges)},
 
     {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers|chapter", "How to blur. Default layers. layers: edges un-mixed, "
@@ -134,8 +135,9 @@ static const struct tool_option options[] = {
      "says why, what that costs, and how far from a ray tracer it is. Unless the aperture's shape or a large radius needs "
      "another:", NAME(quality, QUALITY), .chooses = cli_quality_words,
      .field = "quality"},
-    {"max-error", 0, TOOL_LOOK, "E", "The same by the error that is acceptable: root mean square distance from what a "
-     "ray tracer sees, of the display's range, more than 0 to 1. 0.03 is 30 dB.", NUMBER(max_error, 0, 1), .above_min = 1,
+    {"max-error", 0, TOOL_LOOK, "E", "Let the library choose the cheapest setting with at most this error: the root "
+     "mean square difference from a ray tracer, over the display's range, more than 0 to 1. 0.03 is 30 dB.",
+     NUMBER(max_error, 0, 1), .above_min = 1,
      .field = "error"},
     {"aperture", 0, TOOL_LOOK, "disc|ngon:N[:ROUNDNESS][:DEGREES]|ring:R|FILE", "Shape of a highlight: a disc "
      "(default), or a polygon with 3 to 16 sides, straight (0) to round (1), turned by some degrees: ngon:6:0.5:15. Of "
@@ -158,11 +160,11 @@ static const struct tool_option options[] = {
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
      "this CPU.", NAME(isa, ISA),
      .field = "config.isa"},
-    {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. When the frames before took longer, cheaper "
-     "settings are chosen, those from which --quality chooses that blur as far as is asked for. Default: any time.",
+    {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. If earlier frames took longer, cheaper "
+     "settings are chosen, from those of --quality that blur as far as is asked for. Default: any time.",
      POSITIVE(params.run.budget_ms),
      .field = "run.budget_ms"},
-    {"explain", 0, TOOL_RUN, NULL, "Print what the picture called for: on which tiles each pass ran and why not on the "
+    {"explain", 0, TOOL_RUN, NULL, "Print what the picture needed: on how many tiles each pass ran, why it skipped the "
      "others, memory, time. With --dry-run: what would run.", FLAG(explain)},
     {"explain-image", 0, TOOL_RUN, "FILE", "Write the picture with its tiles painted over: near red, far blue, both "
      "violet, sharp as it is. Of several views each has its own: out.png is out.left.png and out.right.png.", TEXT(explain_image)},
@@ -171,10 +173,11 @@ static const struct tool_option options[] = {
     {"json", 0, TOOL_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
      "FILE unless there is no other INPUT.", .parse = cli_parse_json},
     {"dump-passes", 0, TOOL_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},
-    {"dry-run", 0, TOOL_RUN, NULL, "Say what would be done, write no OUTPUT. What --json, --explain-image and "
-     "--focus-image name is written.", FLAG(dry_run)},
-    {"verbose", 0, TOOL_RUN, NULL, "Say in a line what was done with each frame, as on a terminal.", FLAG(verbose)},
-    {"quiet", 0, TOOL_RUN, NULL, "Do not, on a terminal either, nor how far a shot is: warnings and errors alone.", FLAG(quiet)},
+    {"dry-run", 0, TOOL_RUN, NULL, "Say what would be done, write no OUTPUT. Files of --json, --explain-image and "
+     "--focus-image are written.", FLAG(dry_run)},
+    {"verbose", 0, TOOL_RUN, NULL, "Print a line about each frame, even if stderr is not a terminal.", FLAG(verbose)},
+    {"quiet", 0, TOOL_RUN, NULL, "Print only warnings and errors: no line about each frame and no progress, even on a "
+     "terminal.", FLAG(quiet)},
     {"help", 'h', TOOL_RUN, "[all|man]", "Print the usual options; --help=all: all of them; --help=man: the man page.",
      .parse = tool_parse_help},
     {"version", 0, TOOL_RUN, NULL, "Print the version.", .parse = cli_parse_version},
@@ -183,7 +186,7 @@ static const struct tool_option options[] = {
 
 static const char *const groups[TOOL_GROUPS] = {
     [TOOL_FILES] = "Files",
-    [TOOL_FOCUS] = "Focus and range (in scene units, those of the depth; 1.2m or 80cm will do)",
+    [TOOL_FOCUS] = "Focus and range (in scene units, those of the depth; or as 1.2m, 80cm)",
     [TOOL_LENS] = "Lens",
     [TOOL_DEPTH] = "Depth",
     [TOOL_LOOK] = "Look",
@@ -214,11 +217,11 @@ const struct tool_program cli_program = {
             "grows over a distance of your choice, whatever lens the header has. --fstop, "
             "--focal-length or a lens in the header (aperture and pinholeFocalLength or "
             "nominalFocalLength) choose the lens: blur as a camera has it. With neither, "
-            "the range is half the focus distance. --focus goes before the header's.",
+            "the range is half the focus distance. --focus overrides the header's.",
     .examples =
         (const char *const[]){"hyperfocal shot.exr -o dof.exr --focus 4.2 --range 3",
                               "hyperfocal shot.exr -o dof.exr --focus-at 960,540 --fstop 2 --focal-length 50",
                               "hyperfocal shot.####.exr -o dof.####.exr --focus center --frames 1-9 --resume", NULL},
-    .outro = "Exit codes: 0 done; 1 the command line is wrong, or names what is not there: no use to "
+    .outro = "Exit codes: 0 done; 1 the command line is wrong or names what does not exist: do not "
              "try again; 2 some frames failed; 3 all failed.",
 };

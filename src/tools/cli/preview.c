@@ -91,7 +91,7 @@ int cli_preview(const struct cli_args *args, const struct cli_shot *shot, struct
     int left = 0;
     int status = cli_plan_open(&plan, args, shot, error);
     if (!status && args->log_file)
-        tool_print_line("--log %s: a dry run makes no frames, so nothing is entered", args->log_file);
+        tool_print_line("--log %s: a dry run makes no frames, so nothing is logged", args->log_file);
     if (!status)
         print_jobs(&plan, &left);
     if (!status)

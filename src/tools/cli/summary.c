@@ -107,7 +107,7 @@ int cli_print_resolved(const struct cli_view *v, struct tool_error *error)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s", v->label, tool_sentence(&cli_program, &message, sentence));
     const struct hf_range_params *range = &p.range;
     if (r.limit == HF_LIMIT_NONE)
-        printf("    radius not limited, but by %g pixels\n", p.max_radius);
+        printf("    radius limited only by the largest allowed, %g pixels\n", p.max_radius);
     else
         printf("    radius up to %g pixels, %s\n", p.max_radius, limit_words(r.limit));
     if (v->setup.model == CLI_MODEL_RANGE)

@@ -88,7 +88,7 @@ static int check_view(const struct cli_view *v, const struct cli_frame *frame, s
         check_window(&view->display_window, "display window", v->label, error))
         return CLI_ALL_FAILED;
     if (!(view->pixel_aspect >= 0.1f && view->pixel_aspect <= 10))
-        return tool_fail(error, CLI_ALL_FAILED, "%s: the pixelAspectRatio is %g, but 0.1 to 10 can be worked with",
+        return tool_fail(error, CLI_ALL_FAILED, "%s: the pixelAspectRatio is %g, but only 0.1 to 10 is supported",
                          v->label, view->pixel_aspect);
     return 0;
 }

@@ -56,11 +56,12 @@ static void warn_samples(struct warner *w, const struct cli_view *v)
 {
     const struct tool_report *r = &v->report;
     if (r->all.colour_repaired)
-        warn(w, "%" PRIu64 " colour samples were NaN or infinite, neighbours took their place", r->all.colour_repaired);
+        warn(w, "%" PRIu64 " colour samples were NaN or infinite and were replaced from their neighbours",
+             r->all.colour_repaired);
     if (r->all.depth_repaired)
-        warn(w, "%" PRIu64 " depth samples were NaN, neighbours took their place", r->all.depth_repaired);
+        warn(w, "%" PRIu64 " depth samples were NaN and were replaced from their neighbours", r->all.depth_repaired);
     if (v->found.flipped)
-        warn(w, "depth %s is negative, so the camera looks along -z: taken without its sign", depth_name(w, v));
+        warn(w, "depth %s is negative, so the camera looks along -z: the sign is dropped", depth_name(w, v));
     if (v->found.negative)
         warn(w, "%" PRIu64 " samples of depth %s are negative and count as no surface", v->found.negative,
              depth_name(w, v));
@@ -102,10 +103,10 @@ static void guess_unit(const struct cli_args *args, const struct cli_view *v, ch
     if (beyond)
         snprintf(text, size, ": is the focus in other units? %s would be near", list);
     else if (metres)
-        snprintf(text, size, ": is it in other units? --world-unit %s would bring them together", list);
+        snprintf(text, size, ": is it in other units? --world-unit %s would make them agree", list);
     else
         snprintf(text, size,
-                 ": is it in other units? --depth-scale %s would bring them together, or --world-unit %s with --focus "
+                 ": is it in other units? --depth-scale %s would make them agree, or --world-unit %s with --focus "
                  "in metres (%gm)",
                  list, list, focus);
 }
@@ -234,7 +235,7 @@ static void warn_input(struct warner *w)
     char text[2];
     if (hf_io_text(w->frame->file, "hyperfocalSettings", text, sizeof(text))[0] ||
         hf_io_text(w->frame->file, "hyperfocalHash", text, sizeof(text))[0])
-        warn(w, "hyperfocal made this file: it is defocused already, and blurred a second time");
+        warn(w, "hyperfocal made this file, so it is defocused already and is now blurred a second time");
     if (w->frame->in_place)
         warn(w, "OUTPUT %s is INPUT: the picture is replaced by the defocused one; another OUTPUT keeps it",
              w->args->output);
@@ -256,7 +257,7 @@ static void warn_alone(struct warner *w)
         warn(w, "--memory-limit %g does nothing for one picture: it says how many frames are worked on at once",
              args->memory_limit);
     if (args->stop_on_error)
-        warn(w, "--stop-on-error does nothing for one picture: it is about the frames after a bad one");
+        warn(w, "--stop-on-error does nothing for one picture: it stops a shot at a frame that fails");
     if (args->focus_smooth > 0)
         warn(w, "--focus-smooth %d does nothing for one picture: it is a mean over the frames before and after",
              args->focus_smooth);
