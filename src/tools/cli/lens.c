@@ -149,8 +149,9 @@ int cli_lens_remark(const struct cli_args *args, const struct cli_setup *setup, 
     }
     if (setup->model != CLI_MODEL_LENS || given(args->focal_length) || cli_lens_usable(camera->focal_length_mm))
         return 0;
-    snprintf(text, size,
-             "the header has no pinholeFocalLength: its nominalFocalLength, %g mm, is taken; --focal-length replaces it",
-             setup->params.lens.focal_length_mm);
+    snprintf(
+        text, size,
+        "the header has no pinholeFocalLength: its nominalFocalLength, %g mm, is taken; --focal-length replaces it",
+        setup->params.lens.focal_length_mm);
     return 1;
 }

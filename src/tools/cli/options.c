@@ -119,10 +119,10 @@ static const struct tool_option options[] = {
      "picture count as 0 to 1. Default 1.", NUMBER(depth_scale, -FLT_MAX, FLT_MAX)},
     {"depth-offset", 0, TOOL_DEPTH, "D", "Add D to them after that. Default 0.",
      NUMBER(depth_offset, -FLT_MAX, FLT_MAX)},
-    {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers between the two sides of an outline, where no "
-     "surface is, become those of the nearer side: for depth that was filtered, smoothed or made smaller. auto "
-     "(default): sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, unless keep is "
-     "given.", CHOICE(depth_edges)},
+    {"depth-edges", 0, TOOL_DEPTH, "auto|keep|sharpen", "sharpen: numbers between the two sides of an outline, where "
+     "no surface is, become those of the nearer side: for depth that was filtered, smoothed or made smaller. auto "
+     "(default): sharpen a --depth-file of whole numbers. One of 8 bits or less has its gentle slopes smoothed, too, "
+     "unless keep is given.", CHOICE(depth_edges)},
 
     {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers|chapter", "How to blur. Default layers. layers: edges un-mixed, "
      "what objects hide filled in, the most accurate. scatter: every pixel becomes the aperture's picture. gather: "
