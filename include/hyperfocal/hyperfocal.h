@@ -374,7 +374,7 @@ struct hf_report {
 HF_API int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                    const struct hf_depth *depth, const struct hf_params *params, struct hf_report *report);
 
-// What the last hf_render, hf_plan or hf_prepare did. All 0 except size before the first call and after one that failed.
+// What the last hf_render, hf_plan or hf_prepare did. If there was none, or it failed, all fields except size are 0.
 // Errors: HF_ERR_ARG.
 HF_API int hf_get_report(struct hf_context *c, struct hf_report *report);
 // What that frame was rendered with: the parameters without HF_DERIVE, of a cheaper setting where the budget chose one, and

@@ -13,7 +13,7 @@
 #include "base/stop.h"
 #include "hyperfocal/hyperfocal.h"
 
-// Half-open, in half-resolution pixels unless said otherwise.
+// A rectangle: x0 <= x < x1, y0 <= y < y1, in half-resolution pixels unless said otherwise.
 struct hf_rect {
     int x0, y0, x1, y1;
 };

@@ -2,19 +2,19 @@
 // The gaussian engine blends the picture with a blurred copy, by depth. It follows a shader of 2010 for a GTX 470,
 // which focuses on the depth in the picture's centre.
 //
-// Blur: n iterations of a 5-tap kernel along the rows and down the columns, 1 4 6 4 1 / 16; faithfully .3 .15 .1 .15 .3
-// (the printed weights, which are upside down). Each iteration clamps to the frame's edge. Filtering rows and filtering
-// columns are linear and independent, clamping included. So all iterations along the rows come first, from the picture
-// itself, chunk by chunk; that lets the engine work in place. Cost: n times 2 x 4 additions a sample, or with sigma
-// (wide.c) 2 x 4 boxes of three. Half and quarter buffers hold means of 2 x 2 or 4 x 4 pixels, and are upsampled
-// bilinearly.
+// Blur: n iterations of a 5-tap kernel along the rows and down the columns, 1 4 6 4 1 / 16; with `faithful` the
+// printed weights .3 .15 .1 .15 .3, which are upside down. Each iteration clamps to the frame's edge. Filtering rows
+// and filtering columns are linear and independent, clamping included. So all iterations along the rows come first,
+// from the picture itself, chunk by chunk; that lets the engine work in place. Cost per sample: n times 2 x 4
+// additions, or with sigma (wide.c) 2 x 4 boxes of three additions. Half and quarter buffers hold means of 2 x 2 or 4
+// x 4 pixels, and are upsampled bilinearly.
 //
 // Blend: per pixel at full resolution, whatever the buffer's size. If only a focus is given (range model, all of range
-// and near_begin to far_end derived), and always when faithful, the factor is strength * sat(3 |d(focus) - d|). There d
-// = sat(z / f); faithfully d = 2n / (f + n - zw (f - n)) with window depth zw = f (z - n) / (z (f - n)) in 0..1. With
-// z' = z clamped to n..f the latter is 2 z' / (z' + f), which does not cancel. n = 1 and f = 100 n, unless the depth
-// has clip planes. If a range, a lens or radii are given, the factor is strength * max(n, f) of the gather's near and
-// far CoC.
+// and near_begin to far_end derived), and always when faithful, the factor is strength * sat(3 |d(focus) - d|). There
+// d = sat(z / f); with `faithful` d = 2n / (f + n - zw (f - n)) with window depth zw = f (z - n) / (z (f - n)) in
+// 0..1. With z' = z clamped to n..f the latter is 2 z' / (z' + f), which does not cancel. n = 1 and f = 100 n, unless
+// the depth has clip planes. If a range, a lens or radii are given, the factor is strength * max(n, f) of the gather's
+// near and far CoC.
 #include <math.h>
 
 #include "pass/cells.h"
