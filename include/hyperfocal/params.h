@@ -236,7 +236,7 @@ struct hf_gaussian_params {
     // buffer's pixels.
     int iterations;
     // Standard deviation of one blur that replaces the iterations, in full-resolution pixels of y (pixel_aspect narrows it): 0
-    // (no blur) to 256. It costs the same for all values. Four boxes make it: an edge is within 1.3 % of a true gaussian's.
+    // (no blur) to 256. Every value costs the same. Four boxes make it: an edge is within 1.3 % of a true gaussian's.
     // HF_DERIVE (default): use the iterations.
     float sigma;
     // 1: the published weights and depth, whose flaws are its look. Default 0.
