@@ -260,11 +260,12 @@ HF_API int hf_region_reads(struct hf_context *c, const struct hf_image *dst, con
                            struct hf_region *colour, struct hf_region *depth_read);
 
 // Cancel the call of hf_render, hf_prepare or hf_plan that runs on c now: from any thread, also from callbacks. The call
-// returns HF_ERR_CANCELLED soon: within about a millisecond of work, plus what the system takes to wake a thread. hf_cancel
-// itself does not wait. The pixels of dst are then unspecified: in place, the picture is lost. The report is all zero and the
-// log says nothing. The context is as good as before, and so is all that it holds. A call that has just finished its picture
-// returns HF_OK all the same. When none runs nothing happens, and a call that begins later is not cancelled; who cannot
-// know whether the call has begun cancels through the progress callback. c must not be closed meanwhile; NULL does nothing.
+// returns HF_ERR_CANCELLED soon: within about a millisecond of work, plus what the system takes to wake a thread, and in a
+// context's first frame to give it memory (up to tens of milliseconds). hf_cancel itself does not wait. The pixels of dst
+// are then unspecified: in place, the picture is lost. The report is all zero and the log says nothing. The context is as
+// good as before, and so is all that it holds. A call that has just finished its picture returns HF_OK all the same. When
+// none runs nothing happens, and a call that begins later is not cancelled; who cannot know whether the call has begun
+// cancels through the progress callback. c must not be closed meanwhile; NULL does nothing.
 HF_API void hf_cancel(struct hf_context *c);
 
 // From now on call fn while hf_render runs on c; fn NULL (default) ends it. done says how much of the frame is done, 0 to 1,

@@ -192,10 +192,11 @@ struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def
 }
 
 // Clear the part of `want` outside `have`.
-static void clear_beyond(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want)
+static void clear_beyond(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want,
+                         const atomic_int *stop)
 {
     for (int c = 0; c < channels; c++)
-        for (int y = want.y0; y < want.y1; y++) {
+        for (int y = want.y0; y < want.y1 && !hf_stopped(stop); y++) {
             const int beyond = y < have.y0 || y >= have.y1;
             const int left = beyond ? want.x1 : have.x0, right = beyond ? want.x1 : have.x1;
             memset(hf_narrow_at(b, c, want.x0, y, bytes), 0, (size_t)(left - want.x0) * (size_t)bytes);
@@ -214,18 +215,19 @@ static void repeat(char *row, int bytes, int x, int x0, int x1)
         ((float *)(void *)row)[i] = ((float *)(void *)row)[x];
 }
 
-static void extend(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want)
+static void extend(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want,
+                   const atomic_int *stop)
 {
     for (int c = 0; c < channels; c++) {
-        for (int y = have.y0; y < have.y1; y++) {
+        for (int y = have.y0; y < have.y1 && !hf_stopped(stop); y++) {
             char *row = hf_narrow_at(b, c, 0, y, bytes);
             repeat(row, bytes, have.x0, want.x0, have.x0);
             repeat(row, bytes, have.x1 - 1, have.x1, want.x1);
         }
         const size_t n = (size_t)(want.x1 - want.x0) * (size_t)bytes;
-        for (int y = want.y0; y < have.y0; y++)
+        for (int y = want.y0; y < have.y0 && !hf_stopped(stop); y++)
             memcpy(hf_narrow_at(b, c, want.x0, y, bytes), hf_narrow_at(b, c, want.x0, have.y0, bytes), n);
-        for (int y = have.y1; y < want.y1; y++)
+        for (int y = have.y1; y < want.y1 && !hf_stopped(stop); y++)
             memcpy(hf_narrow_at(b, c, want.x0, y, bytes), hf_narrow_at(b, c, want.x0, have.y1 - 1, bytes), n);
     }
 }
@@ -252,7 +254,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
     if (!def->frame || r.y1 == s->half_height)
         want.y1 = y1 + reach.y;
     if (def->frame && s->zero_beyond)
-        clear_beyond(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want);
+        clear_beyond(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want, s->stop);
     else
-        extend(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want);
+        extend(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want, s->stop);
 }

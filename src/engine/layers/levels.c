@@ -250,7 +250,7 @@ static void make_levels(struct band *b)
     for (int j = 0; j < levels; j++)
         spread(b, b->needed, blocks_of((1 << levels) - (1 << j)), b->made[j]);
     for (int newest = top - most; newest < low + most && !hf_stopped(b->f->s->stop); newest++)
-        for (int j = 1, y = newest; j < levels; j++) {
+        for (int j = 1, y = newest; j < levels && !hf_stopped(b->f->s->stop); j++) {
             const int step = 1 << (j - 1), reach = (1 << levels) - (1 << j);
             struct merge m = {.from = &b->level[j - 1],
                               .to = &b->across,
@@ -391,7 +391,7 @@ static void find_row(const struct band *b, int y)
 static void smooth_along(const struct band *b, int y)
 {
     const int channels = b->l->channels;
-    for (struct run run = {0}; next_run(b, y, &run);) {
+    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, y, &run);) {
         float *in[HF_LAYERS_TAPS][6] = {{NULL}}, *out[6] = {NULL};
         planes_of(&b->across, channels, run.x, y, out);
         for (int i = 0; i < HF_LAYERS_TAPS; i++)
@@ -410,7 +410,7 @@ static void smooth_down(const struct band *b, int colour, int at, int y)
 {
     static const float none[STEP + PAD];
     const int channels = b->l->channels;
-    for (struct run run = {0}; next_run(b, y, &run);) {
+    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, y, &run);) {
         float *in[HF_LAYERS_TAPS][6] = {{NULL}}, *out[6] = {NULL};
         hf_row(&b->f->buf[colour], channels, run.x, y, out);
         out[4] = hf_at(&b->f->buf[at], 0, run.x, y);

@@ -109,6 +109,8 @@ void hf_flush_sources(struct walk *w)
     const struct hf_aperture *a = &w->t->aperture;
     for (int b = 0; b < w->bins->count; b++) {
         struct hf_splats *l = &w->list[b];
+        if (hf_stopped(w->f->s->stop))
+            l->count = 0;
         if (!l->count)
             continue;
         const struct hf_sums sums = draw_bin(w, b);
