@@ -11,8 +11,7 @@ static uint64_t mix(uint64_t hash, uint64_t v)
 // similar ones cost the same.
 static uint64_t key_of(const struct hf_setup *s, enum hf_isa isa)
 {
-    const int common[] = {(int)s->engine, s->channels,  (int)s->storage, s->faithful,
-                          s->smoothstep,  (int)s->form, s->lens,         (int)isa};
+    const int common[] = {(int)s->engine, s->channels, (int)s->storage, s->smoothstep, (int)s->form, s->lens, (int)isa};
     int own[HF_COST_NUMBERS], reach = 0;
     const struct hf_engine_cost *cost = &hf_engine_def(s->engine)->cost;
     const int count = cost->numbers ? cost->numbers(s, own, &reach) : 0;

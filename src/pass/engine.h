@@ -116,6 +116,7 @@ struct hf_engine_plan {
     unsigned across;
     // Rows of a tile's cell are a multiple of this, half-resolution ones. 0: any number.
     int grain;
+    int zero_beyond;  // buffers of the whole frame are 0 beyond it; else like its edge
     // Channels of a buffer; 0: not wanted with these options. NULL: the picture's.
     int (*channels)(const struct hf_setup *s, int buf);
     // Does a pass run with these options? NULL: all do.

@@ -66,8 +66,6 @@ struct hf_setup {
     enum hf_engine engine;
     int channels;             // blurred: 3, or 4 with alpha
     enum hf_storage storage;  // of colour between passes, and of CoC
-    int faithful;             // the gather's
-    int zero_beyond;          // the frame's buffers are 0 beyond it, not like its edge
     // The blur radius is known only after the depth pass; nothing else runs before it.
     int measured;
 

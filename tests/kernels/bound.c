@@ -133,7 +133,7 @@ static double bound_near(const struct world *w, int c, int x, int y, float want)
     if (!(blur > 0))
         return 0;  // a copy
     double value = fabs((double)want), mixed = 0;
-    if (!w->setup.faithful && HF_NEAR_WHOLE * blur < 1) {
+    if (!w->resolved.params.chapter.faithful && HF_NEAR_WHOLE * blur < 1) {
         value += fabs((double)reference_at(w, HF_BUF_COLOR4, c, x, y));
         mixed = 4 * FLT_EPSILON * value;
     }

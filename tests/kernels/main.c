@@ -167,8 +167,9 @@ static void report(const struct test *t, const struct level *l, uint64_t seed, i
            "%d%s%s%s%s%s%s, formats %d %d, row %d lane %d + %d\n",
            s->width, s->height, w->r.x0, w->r.x1, w->r.y0, w->r.y1, s->channels, (int)s->storage, s->max_radius,
            w->params.range.strength, w->params.aperture.blades, (int)w->chapter.fill, g->karis ? ", karis" : "",
-           g->per_pixel_kernel ? ", per-pixel" : "", g->bicubic ? ", bicubic" : "", s->faithful ? ", faithful" : "",
-           w->near ? ", near" : "", w->far ? ", far" : "", (int)w->src.format, (int)w->dst.format, w->y, w->x, w->n);
+           g->per_pixel_kernel ? ", per-pixel" : "", g->bicubic ? ", bicubic" : "",
+           w->resolved.params.chapter.faithful ? ", faithful" : "", w->near ? ", near" : "", w->far ? ", far" : "",
+           (int)w->src.format, (int)w->dst.format, w->y, w->x, w->n);
 }
 
 static int run_level(struct world *w, const struct test *t, const struct level *l, char message[256])

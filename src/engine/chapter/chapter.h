@@ -20,6 +20,7 @@ enum { HF_HALO_3X3 = HF_HALO_OWN };
 
 struct hf_chapter {
     struct hf_fields fields;
+    int faithful;
     enum hf_fill fill;  // of OPEN as of NONE: they differ in the taps
     enum hf_downsample downsample;
     enum hf_division division;
@@ -43,7 +44,7 @@ static inline const struct hf_tap_set *hf_chapter_taps(const struct hf_setup *s,
 static inline float hf_near_part(const struct hf_setup *s, float own, float v, float blur)
 {
     const float part = HF_NEAR_WHOLE * blur;
-    return !(blur > 0) ? own : s->faithful || part >= 1 ? v : own + part * (v - own);
+    return !(blur > 0) ? own : hf_chapter(s)->faithful || part >= 1 ? v : own + part * (v - own);
 }
 
 struct hf_chapter_kernels {

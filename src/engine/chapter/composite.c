@@ -70,7 +70,7 @@ static void blend_far(const struct hf_frame *f, struct hf_phase p, float coc, fl
 {
     const struct hf_buf *far = &f->buf[HF_BUF_FAR_FILL];
     float w[4];
-    if (f->s->faithful) {
+    if (hf_chapter(f->s)->faithful) {
         far_weights_faithful(&f->buf[HF_BUF_COC4], p, coc, w);
         // Colour taps (k, k) for an even pixel, (k, k + 1) for an odd one.
         p = (struct hf_phase){p.x, p.y, hf_max(p.x, p.nx), hf_max(p.y, p.ny)};

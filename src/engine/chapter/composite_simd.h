@@ -217,7 +217,7 @@ HF_INLINE void blend_block(const struct composite_rows *r, const int rows, const
 
 HF_INLINE int composite_how(const struct hf_setup *s)
 {
-    return (int)hf_chapter(s)->division * HOW_DIVISION + (s->faithful ? HOW_FAITHFUL : 0) +
+    return (int)hf_chapter(s)->division * HOW_DIVISION + (hf_chapter(s)->faithful ? HOW_FAITHFUL : 0) +
            (hf_fields(s)->bicubic ? HOW_BICUBIC : 0);
 }
 
@@ -251,5 +251,5 @@ static void composite_simd(const struct hf_frame *f, struct hf_rect r)
                                                      {composite_run_0, composite_run_1, composite_run_2,
                                                       composite_run_3, NULL, NULL, composite_run_6_any,
                                                       composite_run_7_any}};
-    composite_fields(f, r, f->s->faithful ? NULL : run[hf_chapter(f->s)->division != HF_DIVISION_EXACT]);
+    composite_fields(f, r, hf_chapter(f->s)->faithful ? NULL : run[hf_chapter(f->s)->division != HF_DIVISION_EXACT]);
 }

@@ -82,8 +82,9 @@ static void finish_near(const struct hf_frame *f, struct hf_rect r)
                 vf v = vf_load(near[c] + x);
                 if (sum)
                     v = vf_div(v, vf_load(sum + x));
-                vf_store(near[c] + x,
-                         round_stored(s->storage, near_part_vf(s->faithful, vf_load(colour[c] + x), v, coc), c));
+                vf_store(
+                    near[c] + x,
+                    round_stored(s->storage, near_part_vf(hf_chapter(s)->faithful, vf_load(colour[c] + x), v, coc), c));
             }
         }
     }

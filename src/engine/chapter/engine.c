@@ -131,7 +131,7 @@ static int check(struct hf_settings *r, const struct hf_params *asked, const str
 // How much the outermost of so many values to either side count where a window reaches a radius: all in the chapter.
 static float edge(const struct hf_setup *s, int reach, float radius)
 {
-    return s->faithful ? 1 : radius - (float)(reach - 1);
+    return hf_chapter(s)->faithful ? 1 : radius - (float)(reach - 1);
 }
 
 static void set_reach(struct hf_fields *g, const struct hf_setup *s, float h)
@@ -149,7 +149,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     const float h = s->max_radius / 2;
     (void)depth;
     s->storage = p->chapter.storage;
-    s->faithful = p->chapter.faithful;
+    c->faithful = p->chapter.faithful;
     c->fill = p->chapter.fill == HF_FILL_OPEN ? HF_FILL_NONE : p->chapter.fill;
     c->downsample = p->chapter.downsample;
     c->division = p->run.deterministic ? HF_DIVISION_EXACT : p->chapter.division;
@@ -168,7 +168,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 static float ring_count(const struct hf_setup *s, const struct hf_params *p, float radius)
 {
     const float most = (float)p->chapter.rings, spaced = hf_taps_spaced(radius);
-    if (s->faithful || (s->resolved->rings_given && !s->measured))
+    if (hf_chapter(s)->faithful || (s->resolved->rings_given && !s->measured))
         return most;
     return spaced < most ? spaced : most;
 }
@@ -228,7 +228,7 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
     numbers[1] = c->fields.per_pixel_kernel;
     numbers[2] = c->fields.bicubic;
     numbers[3] = (int)c->fill;
-    numbers[4] = 4 * (int)c->downsample + (int)c->division;
+    numbers[4] = 8 * (int)c->downsample + 2 * (int)c->division + c->faithful;
     *reach = hf_max(near->first[near->rows], far->first[far->rows]);  // weights
     return 5;
 }

@@ -32,7 +32,7 @@ static float mean_3x3(const struct hf_buf *b, int c, int x, int y)
 static float far_counts(const struct hf_setup *s, float f, float g)
 {
     const float apart = hf_fields(s)->per_pixel_kernel ? 4 * __builtin_fabsf(f - g) : 0;
-    if (s->faithful)
+    if (hf_chapter(s)->faithful)
         return apart <= 1;
     return hf_saturate(4 * g) * hf_saturate(2 - apart);
 }
@@ -101,8 +101,8 @@ void hf_chapter_fill_c(const struct hf_frame *f, struct hf_rect r)
                     far[c][x - r.x0] = fill_far(f, c, x, y);
             }
         // The largest of what a storage holds is what it holds.
-        const int rounds =
-            hf_chapter(f->s)->fill == HF_FILL_MEAN || (hf_chapter(f->s)->fill == HF_FILL_MAX && !f->s->faithful);
+        const int rounds = hf_chapter(f->s)->fill == HF_FILL_MEAN ||
+                           (hf_chapter(f->s)->fill == HF_FILL_MAX && !hf_chapter(f->s)->faithful);
         if (f->near && rounds)
             hf_store_rgb(f, near, r.x1 - r.x0);
         if (f->far && rounds)

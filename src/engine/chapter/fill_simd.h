@@ -96,11 +96,11 @@ static void fill_copy_row(const float *in, float *out, int n)
 // How much a far neighbour counts, 1 or more: wholly; rounded as the C is.
 HF_INLINE vf fill_counts(const struct hf_setup *s, vf own, vf g)
 {
-    const vf one = vf_set1(1), begins = s->faithful ? one : vf_mul(vf_set1(4), g);
+    const vf one = vf_set1(1), begins = hf_chapter(s)->faithful ? one : vf_mul(vf_set1(4), g);
     if (!hf_fields(s)->per_pixel_kernel)
         return begins;
     const vf apart = vf_mul(vf_set1(4), vf_abs(vf_sub(own, g)));
-    if (s->faithful)
+    if (hf_chapter(s)->faithful)
         return vf_keep(vf_le(apart, one), one);
     return vf_mul(vf_min(begins, one), coc_saturate(vf_sub(vf_set1(2), apart)));
 }
@@ -154,12 +154,13 @@ static void fill_row(const struct hf_frame *f, int in, int out, const struct hf_
     float *to[4], *from[4];
     hf_row(&f->buf[out], s->channels, r.x0, y, to);
     hf_row(&f->buf[in], s->channels, r.x0, y, from);
-    const int picked = in == HF_BUF_FAR && hf_chapter(s)->fill != HF_FILL_NONE &&
-                       (hf_fields(s)->per_pixel_kernel || hf_chapter(s)->fill == HF_FILL_MEAN || !s->faithful);
+    const int picked =
+        in == HF_BUF_FAR && hf_chapter(s)->fill != HF_FILL_NONE &&
+        (hf_fields(s)->per_pixel_kernel || hf_chapter(s)->fill == HF_FILL_MEAN || !hf_chapter(s)->faithful);
     if (hf_chapter(s)->fill == HF_FILL_MAX && !picked) {
         if (s->channels == 4)
-            fill_max_row(from, stride, w, to, n, r.x0, s->faithful, 4);
-        else if (s->faithful)
+            fill_max_row(from, stride, w, to, n, r.x0, hf_chapter(s)->faithful, 4);
+        else if (hf_chapter(s)->faithful)
             fill_max_row(from, stride, w, to, n, r.x0, 1, 3);
         else
             fill_max_row(from, stride, w, to, n, r.x0, 0, 3);
@@ -172,10 +173,10 @@ static void fill_row(const struct hf_frame *f, int in, int out, const struct hf_
             else if (picked)
                 fill_far_mean(s, from[c], stride, w, want->stride, to[c], n);
             else
-                fill_mean_row(s->faithful, from[c], stride, w, to[c], n, f->work);
+                fill_mean_row(hf_chapter(s)->faithful, from[c], stride, w, to[c], n, f->work);
     }
     // The largest of what a storage holds is what it holds.
-    if (hf_chapter(s)->fill == HF_FILL_MEAN || (hf_chapter(s)->fill == HF_FILL_MAX && !s->faithful))
+    if (hf_chapter(s)->fill == HF_FILL_MEAN || (hf_chapter(s)->fill == HF_FILL_MAX && !hf_chapter(s)->faithful))
         hf_store_rgb(f, to, n);
 }
 

@@ -140,7 +140,6 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     struct hf_gather *g = own;
     (void)depth;
     s->storage = p->gather.storage;
-    s->zero_beyond = 1;
     g->lights = 0;
     g->fields = (struct hf_fields){.near_coc = HF_AREA_NEAR_MOST,
                                    .edge_x = 1,
@@ -296,7 +295,12 @@ const struct hf_engine_def hf_gather_engine = {
     .kernels = {sizeof(struct hf_gather_kernels), hf_gather_kernels_init},
     .own = {sizeof(struct hf_gather), .resolve = resolve, .prepare = prepare, .measure = measure, .release = release,
             .held = held},
-    .plan =
-        {.channels = channels, .halo = hf_gather_halo, .spread = spread, .reads = reads, .cell = cell, .work = work},
+    .plan = {.zero_beyond = 1,
+             .channels = channels,
+             .halo = hf_gather_halo,
+             .spread = spread,
+             .reads = reads,
+             .cell = cell,
+             .work = work},
     .cost = {.times = times, .numbers = cost},
 };

@@ -184,7 +184,7 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
 {
     numbers[0] = (int)hf_gaussian(s)->resolution;
     numbers[1] = hf_gaussian(s)->iterations;
-    numbers[2] = hf_gaussian(s)->sigma > 0;
+    numbers[2] = 2 * (hf_gaussian(s)->sigma > 0) + hf_gaussian(s)->faithful;
     *reach = 0;
     return 3;
 }

@@ -110,7 +110,6 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     h->width = h->half ? s->half_width : s->width;
     h->height = h->half ? s->half_height : s->height;
     s->uniform = p->hexagon.uniform;
-    s->zero_beyond = 1;
     // Below this radius weights and colours times radii would be denormal, and a pixel's soft edge would have no slope.
     s->sharp_radius = 0x1p-40f;
 }
@@ -382,6 +381,6 @@ const struct hf_engine_def hf_hexagon_engine = {
     .kernels = {sizeof(struct hf_hexagon_kernels), hf_hexagon_kernels_init},
     .own = {sizeof(struct hf_hexagon), .resolve = resolve, .prepare = prepare, .measure = measure, .release = release,
             .held = held},
-    .plan = {.channels = channels, .halo = halo, .spread = spread, .cell = cell, .work = work},
+    .plan = {.zero_beyond = 1, .channels = channels, .halo = halo, .spread = spread, .cell = cell, .work = work},
     .cost = {.numbers = cost},
 };
