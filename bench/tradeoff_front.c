@@ -76,7 +76,7 @@ void trade_rank(struct trade *t)
 static int may_be_chosen(const struct trade_setting *s)
 {
     static const char *const never[] = {"--threads", "--isa",      "--max-radius", "--deterministic",
-                                        "--no-skip", "--faithful", "--blend"};
+                                        "--no-skip", "--faithful", "--blend",      "--engine chapter"};
     for (size_t i = 0; i < sizeof never / sizeof *never; i++)
         if (strstr(s->options, never[i]))
             return 0;
