@@ -11,6 +11,9 @@
 
 #define FORMATS "rgba32f|rgb32f|rgba16f|r11g11b10f|planar32f|rgba8|bgra8|rgbx8|bgrx8|rgb10a2|rgba16"
 
+// The commands that take one look of the picture, with all its options.
+#define LOOKS "passes|truth|scaling|formats"
+
 // clang-format off
 #define FIELD(f) .offset = offsetof(struct bench_args, f)
 #define FLAG(f) .parse = tool_parse_flag, FIELD(f)
@@ -38,16 +41,19 @@ static const struct tool_option options[] = {
     {"range", 0, TOOL_FOCUS, "D", "Distance from focus to full blur, scene units, or inf. Default 10; for a file half "
      "its focus.", NUMBER(params.range.distance, 0, FLT_MAX), .inf = 1, .commands = "passes|scaling|formats"},
     {"max-radius", 0, TOOL_FOCUS, "PX", "Largest blur radius, pixels, 0 to 2048. Default 12; truth: as the lens has "
-     "it.", NUMBER(params.max_radius, 0, 2048)},
+     "it.", NUMBER(params.max_radius, 0, 2048), .commands = LOOKS},
 
     {"engine", 0, TOOL_LOOK, "gather|hexagon|scatter|gaussian|layers|chapter", "How to blur. Default gather; passes: chapter; truth, stability and history: all.",
-     NAME(params.engine, ENGINE)},
-    {"blades", 0, TOOL_LOOK, "N", "Sides of the aperture; 0 (default): a disc.", COUNT(params.aperture.blades, 0, 16)},
+     NAME(params.engine, ENGINE), .commands = "passes|truth|scaling|formats|batch|stability|history"},
+    {"blades", 0, TOOL_LOOK, "N", "Sides of the aperture; 0 (default): a disc.", COUNT(params.aperture.blades, 0, 16),
+     .commands = LOOKS},
 
     {"frames", 0, TOOL_RUN, "N", "Frames to measure. Default: as many as take a few seconds.",
      COUNT(frames, 1, 1000000), .commands = "passes|batch|history"},
-    {"threads", 0, TOOL_RUN, "N", "Threads, up to 256; 0 (default): one per processor.", COUNT(threads, 0, 256)},
-    {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set. Default auto.", NAME(isa, ISA)},
+    {"threads", 0, TOOL_RUN, "N", "Threads, up to 256; 0 (default): one per processor.", COUNT(threads, 0, 256),
+     .commands = "passes|batch|truth|tradeoff|scaling|formats|cancel|history"},
+    {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set. Default auto.", NAME(isa, ISA),
+     .commands = "passes|truth|tradeoff|scaling|formats|cancel|stability|history"},
     {"full", 0, TOOL_RUN, NULL, "Run every case, some minutes.", FLAG(full), .commands = "stability"},
     {"json", 0, TOOL_RUN, "FILE|-", "Write the numbers as JSON; -: to stdout, instead of the table.", TEXT(json)},
     {"add", 0, TOOL_RUN, NULL, "Measure this commit, some minutes, and add a line to the history.",
@@ -84,7 +90,8 @@ const struct tool_program bench_program = {
     .intro = "Measures whole frames on this machine. A value follows its option as the next word or after =.",
     .commands = bench_command_words,
     .groups = groups,
-    .sections = (const struct tool_section[]){{options, 0}, {tool_params_options, offsetof(struct bench_args, params)}},
+    .sections = (const struct tool_section[]){{options, 0, NULL},
+                                              {tool_params_options, offsetof(struct bench_args, params), LOOKS}},
     .section_count = 2,
     .examples = (const char *const[]){"hyperfocal-bench passes --scene both", "hyperfocal-bench truth --json -",
                                       "hyperfocal-bench truth --image dof.exr --truth traced.exr",

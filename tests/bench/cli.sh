@@ -74,6 +74,13 @@ done
 "$bench" passes --help >out 2>err && grep -q '^      --scene' out && grep -q '^      --karis' out &&
     ! grep -qE -e '^ +--(html|image|add|full|compression)' out
 result "passes --help" $?
+for command in batch tradeoff cancel stability history; do
+    "$bench" $command --help >out 2>err && ! grep -qE -e '^ +--(karis|rings|layers-quality|highlight-gain|blades|scene)' out
+    result "$command --help has no options of a look" $?
+    bad "--karis|$command" $command --karis
+done
+"$bench" truth --help >out 2>err && grep -q '^      --karis' out && ! grep -qE -e '^ +--(quick|frames|full|scene)' out
+result "truth --help" $?
 "$bench" --help >out 2>err && grep -q '^      --html' out && grep -q '^      --scene' out
 result "--help has the options of all" $?
 [ "$(awk 'length($0) > 80' out | wc -l)" -eq 0 ]

@@ -96,7 +96,7 @@ check "over the input" exits 1
 run in/shot.0001.exr ./in/shot.0001.exr -o a/shot.#.exr $quick
 check "twice the same" says "would both be written"
 run in/none.####.exr -o a/x.####.exr $quick
-check "no such shot" exits 3
+check "no such shot" exits 1
 run in/shot.0001.exr -o a/x.exr --frames 1-3 $quick
 check "frames of a single file" exits 1
 run in/shot.####.exr -o a/x.####.exr --frames 1-x $quick

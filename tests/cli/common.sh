@@ -98,7 +98,8 @@ import struct
 def attribute(name, kind, data):
     return name.encode() + b'\0' + kind.encode() + b'\0' + struct.pack('<i', len(data)) + data
 
-def exr(path, channels, window=(0, 0, 63, 39), display=None, floats={}, views=None, squeeze=1.0):
+def exr(path, channels, window=(0, 0, 63, 39), display=None, floats={}, views=None, squeeze=1.0,
+        texts={}):
     display = display or window
     width, height = window[2] - window[0] + 1, window[3] - window[1] + 1
     names = sorted(channels)
@@ -113,6 +114,8 @@ def exr(path, channels, window=(0, 0, 63, 39), display=None, floats={}, views=No
     head += attribute('screenWindowWidth', 'float', struct.pack('<f', 1))
     for name, value in floats.items():
         head += attribute(name, 'float', struct.pack('<f', value))
+    for name, value in texts.items():
+        head += attribute(name, 'string', value.encode())
     if views:
         head += attribute('multiView', 'stringvector',
                           b''.join(struct.pack('<i', len(v)) + v.encode() for v in views))
@@ -165,6 +168,9 @@ depth = lambda x, y: 1 + x // 8 if y < 30 else 1e10
 lens = {'focus': 4, 'aperture': 2, 'pinholeFocalLength': 50}
 exr('plain.exr', dict(colour, Z=depth))
 exr('lens.exr', dict(colour, Z=depth), floats=lens)
+blender = {'BlenderMultiChannel': 'Blender V2.55.1 and newer'}
+exr('blender.exr', dict(colour, Z=depth), floats=lens, texts=blender)
+exr('border.exr', dict(colour, Z=depth), floats=lens, texts=blender, window=(0, 0, 48, 37))
 exr('focus.exr', dict(colour, Z=depth), floats={'focus': 4})
 exr('stop.exr', dict(colour, Z=depth), floats={'focus': 4, 'aperture': 2})
 exr('nominal.exr', dict(colour, Z=depth), floats={'focus': 4, 'aperture': 2, 'nominalFocalLength': 50})

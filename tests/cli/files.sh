@@ -104,6 +104,14 @@ bad 1 "--depth-scale|'0'" near.exr -o o.exr --focus 2 --depth-scale 0
 run void.exr -o o.exr --focus 2
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "no surface anywhere"
 result "a frame without any surface is a warning" $?
+# Not if that is meant: radii of the user's own, one blur everywhere, a lens turned past the subject.
+for settings in "--focus 12 --fstop 0.05 --focal-length 50" "--focus 0.5 --fstop 0.05 --focal-length 50" \
+    "--depth-type coc" "--engine hexagon --uniform --focus 100 --range 3"; do
+    # shellcheck disable=SC2086  # several words
+    run near.exr -o o.exr $settings
+    [ "$status" -eq 0 ] && ! contains "$dir/err" "nothing is in focus"
+    result "no warning that nothing is in focus: $settings" $?
+done
 run near.exr -o o.exr --focus 100 --fstop 0.05 --focal-length 50
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "nothing is in focus"
 result "a frame with nothing in focus is a warning" $?
@@ -412,6 +420,14 @@ warns "0.01562 to 1, the focus 4|normalized, inverse or ndc-d3d" \
     ndc.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 50
 warns "inverse depth may have a scale of its own" \
     near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --depth-type inverse
+# A crop by Blender's border render does not say so; its shape hints at it.
+warns "Blender|unusual shape, 49 x 38|--display 1920x1080+X+Y" border.exr -o o.exr
+for picture in "blender.exr" "border.exr --display 64x40" "border.exr --range 2"; do
+    # shellcheck disable=SC2086  # several words
+    run $picture -o o.exr
+    [ "$status" -eq 0 ] && ! contains "$dir/err" "unusual shape"
+    result "no crop is suspected: $picture" $?
+done
 # A warning if nothing is blurred, unless the options ask for that.
 warns "nothing is blurred: the largest radius is 0.00 pixels|0.05 mm: is it 50 mm?" \
     near.exr -o o.exr --focus 4 --fstop 2 --focal-length 0.05

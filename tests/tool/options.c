@@ -68,7 +68,8 @@ static const struct tool_option inner_options[] = {
      .inf = 1},
     {.name = NULL},
 };
-static const struct tool_section sections[] = {{outer_options, 0}, {inner_options, offsetof(struct outer, inner)}};
+static const struct tool_section sections[] = {{outer_options, 0, NULL},
+                                               {inner_options, offsetof(struct outer, inner), NULL}};
 static const struct tool_program program = {.name = "fruit", .sections = sections, .section_count = 2};
 
 static struct outer args;

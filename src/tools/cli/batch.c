@@ -164,7 +164,7 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
         r->report = &report;
         // The process's peak may come from an earlier look at the shot, so this frame's memory is calculated.
         if (b->measuring) {
-            b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.all.memory);
+            b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.all.memory_held);
         }
         describe(frame, &report, r->ms, text, sizeof(text));
         atomic_fetch_add(&b->chosen[report.all.budget_step < MAX_STEPS ? report.all.budget_step : MAX_STEPS - 1], 1);

@@ -9,6 +9,7 @@
 #include "tools/cli/coc.h"
 #include "tools/cli/dump.h"
 #include "tools/cli/explain.h"
+#include "tools/cli/room.h"
 #include "tools/cli/target.h"
 #include "tools/cli/views.h"
 #include "tools/cli/window.h"
@@ -53,7 +54,7 @@ void cli_session_close(struct cli_session *session)
 
 int cli_session_open(struct cli_session *session, const struct cli_args *args, int threads, struct tool_error *error)
 {
-    *session = (struct cli_session){0};
+    *session = (struct cli_session){.base = cli_room_resident()};
     if (!hf_isa_available(args->isa))
         return tool_fail(error, CLI_BAD_ARGUMENTS, "--isa %s cannot be used: this processor or this build lacks it",
                          hf_isa_name(args->isa));

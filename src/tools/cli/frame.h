@@ -16,6 +16,7 @@ struct cli_session {
     const char *label;  // names what is being rendered, in warnings
     int warnings;       // how many of them the library logged
     char *said;         // their texts, one per line; NULL: none
+    double base;        // bytes that the process held before
 };
 
 // Up to this radius, pixels, one may say that something is in focus: half a pixel to each side.

@@ -184,7 +184,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     tool_json_close(j);
 }
 
-void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, struct hf_context *context)
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct cli_session *session)
 {
     const struct cli_args *args = frame->args;
     struct tool_json j;
@@ -194,13 +194,13 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     tool_json_text(&j, "input", args->input);
     tool_json_text(&j, "output", args->output);
     tool_json_text(&j, "engine", hf_engine_name(frame->views[0].setup.params.engine));
-    tool_json_text(&j, "isa", hf_isa_name(hf_context_isa(context)));
-    tool_json_count(&j, "threads", hf_context_threads(context));
+    tool_json_text(&j, "isa", hf_isa_name(hf_context_isa(session->context)));
+    tool_json_count(&j, "threads", hf_context_threads(session->context));
     tool_json_text(&j, "storage", hf_name(HF_NAMES_STORAGE, (int)frame->views[0].setup.params.gather.storage));
     if (args->dry_run) {
-        const struct cli_expected e = cli_expect(frame, context);
+        const struct cli_expected e = cli_expect(frame, session);
         tool_json_flag(&j, "dry_run", 1);
-        tool_json_count(&j, "expected_memory", (long long)e.bytes);
+        tool_json_count(&j, "expected_memory", (long long)(e.base + e.bytes));
         tool_json_ms(&j, "expected_ms", e.ms);
         tool_json_ms(&j, "expected_defocus_ms", e.defocus_ms);
     } else {
@@ -217,34 +217,34 @@ void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *fr
     tool_json_end(&j);
 }
 
-static int write_device(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
+static int write_device(int argc, char **argv, const struct cli_frame *frame, const struct cli_session *session,
                         struct tool_error *error)
 {
     const char *path = frame->args->json_file;
     FILE *out = fopen(path, "w");
     if (!out)
         return tool_fail(error, CLI_ALL_FAILED, "--json %s cannot be written: %s", path, strerror(errno));
-    cli_write_json(out, argc, argv, frame, context);
+    cli_write_json(out, argc, argv, frame, session);
     const int failed = ferror(out);
     if (fclose(out) || failed)
         return tool_fail(error, CLI_ALL_FAILED, "--json %s could not be written", path);
     return 0;
 }
 
-int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
+int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, const struct cli_session *session,
                         struct tool_error *error)
 {
     struct hf_out out;
     struct hf_io_error io;
     struct stat st;
     if (!stat(frame->args->json_file, &st) && !S_ISREG(st.st_mode))
-        return write_device(argc, argv, frame, context, error);
+        return write_device(argc, argv, frame, session, error);
     char *text = NULL;
     size_t size = 0;
     FILE *memory = open_memstream(&text, &size);
     int failed = !memory;
     if (memory) {
-        cli_write_json(memory, argc, argv, frame, context);
+        cli_write_json(memory, argc, argv, frame, session);
         failed = ferror(memory);
         failed |= fclose(memory);
     }

@@ -14,10 +14,10 @@ void cli_json_map(struct tool_json *j, const struct cli_view *v);
 
 // Write one JSON object about a frame: what was asked for, what was done, how long it took. A --dry-run has only the
 // first of these.
-void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, struct hf_context *context);
+void cli_write_json(FILE *out, int argc, char **argv, const struct cli_frame *frame, const struct cli_session *session);
 
 // The same into args->json_file, through a temporary file unless it is a device. Returns 0, or an exit code.
-int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
+int cli_write_json_file(int argc, char **argv, const struct cli_frame *frame, const struct cli_session *session,
                         struct tool_error *error);
 
 #endif

@@ -20,7 +20,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static int print_plan(const struct cli_frame *frame, struct hf_context *context, struct tool_error *error)
+static int print_plan(const struct cli_frame *frame, const struct cli_session *session, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
     char name[TOOL_SHOWN], other[TOOL_SHOWN], third[TOOL_SHOWN];
@@ -33,7 +33,7 @@ static int print_plan(const struct cli_frame *frame, struct hf_context *context,
         printf("%s storage, ", hf_name(HF_NAMES_STORAGE, (int)first->gather.storage));
     if (first->engine == HF_ENGINE_LAYERS)
         printf("%s quality, ", hf_name(HF_NAMES_LAYERS, (int)first->layers.quality));
-    printf("%d threads, %s\n", hf_context_threads(context), hf_isa_name(hf_context_isa(context)));
+    printf("%d threads, %s\n", hf_context_threads(session->context), hf_isa_name(hf_context_isa(session->context)));
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
         const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
@@ -71,17 +71,18 @@ static int print_plan(const struct cli_frame *frame, struct hf_context *context,
         if (status)
             return status;
     }
-    const struct cli_expected e = cli_expect(frame, context);
-    printf("  expected: %.0f MiB, %.0f ms, defocus %.0f ms of it\n", e.bytes / (1 << 20), e.ms, e.defocus_ms);
+    const struct cli_expected e = cli_expect(frame, session);
+    printf("  expected: %.0f MiB, %.0f ms, defocus %.0f ms of it\n", (e.base + e.bytes) / (1 << 20), e.ms,
+           e.defocus_ms);
     return 0;
 }
 
-static int write_json(int argc, char **argv, const struct cli_frame *frame, struct hf_context *context,
+static int write_json(int argc, char **argv, const struct cli_frame *frame, const struct cli_session *session,
                       struct tool_error *error)
 {
     if (frame->args->json_file)
-        return cli_write_json_file(argc, argv, frame, context, error);
-    cli_write_json(stdout, argc, argv, frame, context);  // main() checks stdout for errors
+        return cli_write_json_file(argc, argv, frame, session, error);
+    cli_write_json(stdout, argc, argv, frame, session);  // main() checks stdout for errors
     return 0;
 }
 
@@ -91,6 +92,8 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     struct cli_frame frame;
     int status = cli_frame_open(&frame, args, &session->run, error);
     frame.alone = 1;
+    if (status && access(args->input, F_OK))
+        status = CLI_BAD_ARGUMENTS;  // the command line names what does not exist
     if (!status)
         status = cli_frame_setup(&frame, error);
     if (!status)
@@ -109,9 +112,9 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
     if (!status)
         status = cli_overlay_write(&frame, error);
     if (!status && args->json)
-        status = write_json(argc, argv, &frame, session->context, error);
+        status = write_json(argc, argv, &frame, session, error);
     if (!status && args->dry_run && (!args->json || args->json_file))
-        status = print_plan(&frame, session->context, error);
+        status = print_plan(&frame, session, error);
     if (!status && args->dry_run)
         cli_print_warnings(&frame);
     // If programs read JSON from stdout, the table for people goes to stderr.

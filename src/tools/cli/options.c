@@ -209,7 +209,8 @@ const struct tool_program cli_program = {
              "A shot: INPUT and OUTPUT with a place for the frame number, shot.####.exr (also "
              "#, @@@, %04d, $F4; %V for the view), or several INPUT.",
     .groups = groups,
-    .sections = (const struct tool_section[]){{options, 0}, {tool_params_options, offsetof(struct cli_args, params)}},
+    .sections = (const struct tool_section[]){{options, 0, NULL},
+                                              {tool_params_options, offsetof(struct cli_args, params), NULL}},
     .section_count = 2,
     .usual = usual,
     .more_title = "How much blur",

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "tools/cli/room.h"
 #include "tools/cli/track.h"
 
 static const double LITTLE_WAIT = 0.02;
@@ -58,12 +59,7 @@ void cli_plan_args(const struct cli_plan *plan, int i, struct cli_args *args)
 
 double cli_plan_frame_bytes(const struct cli_frame *frame, double library)
 {
-    // Five planes of floats, depth included, and 16 bytes for the channels as they are stored and for the new file,
-    // which may not be smaller.
-    double bytes = library;
-    for (int i = 0; i < frame->view_count; i++)
-        bytes += (double)frame->views[i].view->width * frame->views[i].view->height * (5 * sizeof(float) + 16);
-    return bytes;
+    return library + cli_room_file_bytes(frame);
 }
 
 double cli_plan_memory_limit(const struct cli_args *args)

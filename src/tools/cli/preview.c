@@ -48,13 +48,14 @@ static int first_there(const struct cli_shot *shot)
     return 0;
 }
 
-struct cli_expected cli_expect(const struct cli_frame *frame, struct hf_context *context)
+struct cli_expected cli_expect(const struct cli_frame *frame, const struct cli_session *session)
 {
     struct tool_report report = {0};
-    tool_report_get(context, &report);
+    tool_report_get(session->context, &report);
     const double defocus = frame->view_count * report.all.predicted_ms;
     const double files = frame->ms[CLI_READ] + frame->ms[CLI_DECODE] * (1 + ENCODE_BY_DECODE);
-    return (struct cli_expected){cli_plan_frame_bytes(frame, (double)report.all.memory), files + defocus, defocus};
+    return (struct cli_expected){session->base, cli_plan_frame_bytes(frame, (double)report.all.memory_needed),
+                                 files + defocus, defocus};
 }
 
 // Look at a frame as if to render it.
@@ -72,10 +73,10 @@ static int expect(const struct cli_plan *plan, int left, struct tool_error *erro
     if (!status)
         status = cli_frame_plan(&frame, &session, error);
     if (!status) {
-        const struct cli_expected e = cli_expect(&frame, session.context);
-        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, 0, 0, e.bytes);
+        const struct cli_expected e = cli_expect(&frame, &session);
+        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, 0, e.base, e.bytes);
         printf("%d frames, %d at a time; a frame takes about %.0f MiB, all at once %.0f MiB\n", left, workers,
-               e.bytes / (1 << 20), workers * e.bytes / (1 << 20));
+               e.bytes / (1 << 20), (e.base + workers * e.bytes) / (1 << 20));
         printf("expected: %.0f ms for a frame alone, defocus %.0f ms of it; about %.0f s for all\n", e.ms, e.defocus_ms,
                e.ms * left / 1000);
         cli_print_warnings(&frame);

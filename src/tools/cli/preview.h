@@ -7,12 +7,13 @@
 #include "tools/cli/frame.h"
 #include "tools/cli/shot.h"
 
-// What a planned frame is expected to take: bytes of memory, and milliseconds if it is made alone, of which defocus_ms
-// are the library's. The time to encode is estimated from the time to decode.
+// What a planned frame is expected to take: bytes of memory beside those that the program has anyway (base), and
+// milliseconds if it is made alone, of which defocus_ms are the library's. The time to encode is estimated from the time
+// to decode.
 struct cli_expected {
-    double bytes, ms, defocus_ms;
+    double base, bytes, ms, defocus_ms;
 };
-struct cli_expected cli_expect(const struct cli_frame *frame, struct hf_context *context);
+struct cli_expected cli_expect(const struct cli_frame *frame, const struct cli_session *session);
 
 // Print the frames with their files, and the memory and time that the first frame leads to expect. Returns an exit
 // code.

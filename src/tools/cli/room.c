@@ -14,8 +14,7 @@ static const double SLACK = 1.12;   // for what is not counted: headers, tables,
 static const double LARGER = 1.25;  // a frame this many times as large as all before is of a new size
 static const double WORST = 4;      // the library may take this many times as much for such a frame, by its content
 
-// Bytes that the process holds, including memory that it freed but did not give back. 0: not known.
-static double resident(void)
+double cli_room_resident(void)
 {
     long all, pages = 0;
     FILE *f = fopen("/proc/self/statm", "re");
@@ -28,7 +27,7 @@ static double resident(void)
 
 void cli_room_open(struct cli_room *room, double limit)
 {
-    *room = (struct cli_room){.base = resident(), .lock = ATOMIC_FLAG_INIT};
+    *room = (struct cli_room){.base = cli_room_resident(), .lock = ATOMIC_FLAG_INIT};
     room->bytes = limit - room->base;
 }
 
@@ -56,8 +55,7 @@ double cli_room_pixels(const struct cli_frame *frame)
     return sum;
 }
 
-// Bytes of a frame without the library's: the stored file, its samples, those of the new file, and the planes.
-static double bytes_of_file(const struct cli_frame *frame)
+double cli_room_file_bytes(const struct cli_frame *frame)
 {
     const int planes = 4 + 1 + (frame->args->depth_file != NULL) + frame->args->grow;
     double data = 0, display = 0;
@@ -103,7 +101,7 @@ static void drop_idle(struct cli_room *room)
 static void give_back(const struct cli_room *room, double more)
 {
 #ifdef __GLIBC__
-    if (resident() + more > room->base + room->bytes)
+    if (cli_room_resident() + more > room->base + room->bytes)
         malloc_trim(0);
 #else
     (void)room, (void)more;
@@ -142,7 +140,7 @@ static void lock(struct cli_room *room)
 void cli_room_enter(struct cli_room *room, int worker, const struct cli_frame *frame)
 {
     const struct timespec pause = {.tv_nsec = 2000000};
-    const double file = bytes_of_file(frame), pixels = cli_room_pixels(frame);
+    const double file = cli_room_file_bytes(frame), pixels = cli_room_pixels(frame);
     for (int entered = 0; !entered;) {
         lock(room);
         entered = try_enter(room, &room->shares[worker], file, pixels);

@@ -39,5 +39,9 @@ void cli_room_enter(struct cli_room *room, int worker, const struct cli_frame *f
 void cli_room_leave(struct cli_room *room, int worker, double pixels, double held);
 
 double cli_room_pixels(const struct cli_frame *frame);
+// Bytes of a frame without the library's: the stored file, its samples, those of the new file, and the planes.
+double cli_room_file_bytes(const struct cli_frame *frame);
+// Bytes that the process holds, including memory that it freed but did not give back. 0: not known.
+double cli_room_resident(void);
 
 #endif

@@ -147,7 +147,7 @@ static int look(struct maker *m, struct names *names, struct cli_frames *found)
     if (status && !m->request->frames)
         return status;
     if (!m->request->frames && !found->count)
-        return tool_fail(m->error, CLI_ALL_FAILED, "%s: there is no such file", names->input);
+        return tool_fail(m->error, CLI_BAD_ARGUMENTS, "%s: there is no such file", names->input);
     int digits;
     if (!names->depth_file || cli_pattern_scan(names->depth_file, &depths, &digits, &ignored))
         return 0;

@@ -111,6 +111,18 @@ static void guess_unit(const struct cli_args *args, const struct cli_view *v, ch
                  list, list, focus);
 }
 
+// Is it meant that nothing is in focus? Radii of the user's own and --uniform say so themselves. A focus that the
+// command line or its keys give as a number, less than BESIDE times nearer or farther than everything, is a lens turned
+// past the subject; one that is off by more may be in other units.
+static int is_meant(const struct cli_args *args, const struct cli_view *v)
+{
+    static const float BESIDE = 4;
+    const struct hf_params *p = &v->report.params;
+    const int number = args->focus_by == CLI_FOCUS_DISTANCE && is_distance(args) && !v->map_bits && v->range[1] > 1;
+    return v->setup.model == CLI_MODEL_COC || p->hexagon.uniform ||
+           (number && p->focus > v->range[0] / BESIDE && p->focus < v->range[1] * BESIDE);
+}
+
 static void warn_focus(struct warner *w, const struct cli_view *v)
 {
     char range[128] = "", hint[256] = "";
@@ -121,7 +133,7 @@ static void warn_focus(struct warner *w, const struct cli_view *v)
              depth_name(w, v), cli_depth_type_name(w->args));
         return;
     }
-    if (is_sharp(v))
+    if (is_sharp(v) || is_meant(w->args, v))
         return;
     const int raw = is_distance(w->args) && isnan(w->args->depth_scale);
     tell_range(v, range, sizeof(range));
@@ -191,10 +203,40 @@ static void warn_lens(struct warner *w, const struct cli_view *v)
         warn(w, "%s", text);
 }
 
+// Is width : height, or height : width, one of the usual shapes of a whole frame, to half a pixel?
+static int usual_shape(int width, int height)
+{
+    static const double shapes[] = {1, 5 / 4., 4 / 3.,  1.37, 1.4142, 1.43, 3 / 2., 1.6,  1.66, 16 / 9., 1.85, 1.9,
+                                    2, 2.2,    21 / 9., 2.35, 2.37,   2.39, 2.4,    2.55, 2.76, 3,       3.5,  4};
+    const double wide = width > height ? width : height, high = width > height ? height : width;
+    for (size_t i = 0; i < sizeof(shapes) / sizeof(shapes[0]); i++)
+        if (fabs(wide - high * shapes[i]) <= 0.5 * shapes[i] + 0.5)
+            return 1;
+    return 0;
+}
+
+// Blender's border render with "crop" writes a file whose windows are those of the crop. With a lens the blur is then too
+// large, because the crop counts as the whole sensor. Nothing in the header tells a crop; an unusual shape hints at one.
+static void warn_crop(struct warner *w, const struct cli_view *v)
+{
+    char text[8];
+    const struct hf_io_box *box = &v->view->display_window;
+    const int width = box->x1 - box->x0, height = box->y1 - box->y0;
+    const int blender = hf_io_text(w->frame->file, "BlenderMultiChannel", text, sizeof(text))[0] ||
+                        (hf_io_text(w->frame->file, "Scene", text, sizeof(text))[0] &&
+                         hf_io_text(w->frame->file, "RenderTime", text, sizeof(text))[0]);
+    if (v->setup.model == CLI_MODEL_LENS && blender && !w->args->display[0] && !usual_shape(width, height))
+        warn(w,
+             "a picture by Blender of an unusual shape, %d x %d: if it is a cropped border render, the lens must know "
+             "the whole frame, as in --display 1920x1080+X+Y; --display %dx%d says that it is whole",
+             width, height, width, height);
+}
+
 static void warn_view(struct warner *w, const struct cli_view *v)
 {
     w->label = v->label;
     warn_lens(w, v);
+    warn_crop(w, v);
     warn_samples(w, v);
     warn_focus(w, v);
     warn_sharp(w, v);

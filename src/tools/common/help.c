@@ -110,9 +110,10 @@ static int is_usual(const struct tool_program *program, const struct tool_option
     return !program->usual;
 }
 
-static int is_of_command(const struct tool_option *o, const char *command)
+static int is_of_command(const struct tool_program *program, const struct tool_option *o, const char *command)
 {
-    return !command || !o->commands || tool_has_word(o->commands, command);
+    const char *commands = tool_commands(program, o);
+    return !command || !commands || tool_has_word(commands, command);
 }
 
 // Call a function, if not NULL, for each option of a group, in order; of a command, for those that it takes. Returns how
@@ -123,7 +124,7 @@ static int each_option(const struct tool_program *program, int group, const char
     int count = 0;
     for (int s = 0; s < program->section_count; s++)
         for (const struct tool_option *o = program->sections[s].options; o->name; o++)
-            if ((int)o->group == group && (all || is_usual(program, o)) && is_of_command(o, command)) {
+            if ((int)o->group == group && (all || is_usual(program, o)) && is_of_command(program, o, command)) {
                 count++;
                 if (print)
                     print(o, all, command);

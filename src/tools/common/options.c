@@ -27,6 +27,15 @@ static const struct tool_option *option_at(const struct tool_program *program, i
     return NULL;
 }
 
+const char *tool_commands(const struct tool_program *program, const struct tool_option *option)
+{
+    for (int s = 0; s < program->section_count && !option->commands; s++)
+        for (const struct tool_option *o = program->sections[s].options; o->name; o++)
+            if (o == option)
+                return program->sections[s].commands;
+    return option->commands;
+}
+
 static int place_of(const struct tool_program *program, const char *name, size_t length)
 {
     const struct tool_option *o;
@@ -103,9 +112,10 @@ static int unknown_option(const struct tool_parser *p, const char *word)
 static int set_value(struct tool_parser *p, int i, const char *value, int apart)
 {
     const struct tool_option *o = option_at(p->program, i);
-    char commands[256];
-    if (o->commands && p->command && !tool_has_word(o->commands, p->command))
-        return tool_fail(p->error, -1, "--%s is of use only with %s, not %s", o->name, tool_and(o->commands, commands),
+    const char *commands = tool_commands(p->program, o);
+    char list[256];
+    if (commands && p->command && !tool_has_word(commands, p->command))
+        return tool_fail(p->error, -1, "--%s is of use only with %s, not %s", o->name, tool_and(commands, list),
                          p->command);
     p->metric = 0;
     if (o->parse(p, o, value))

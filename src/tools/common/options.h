@@ -47,6 +47,7 @@ struct tool_option {
 struct tool_section {
     const struct tool_option *options;  // ends with one without a name
     size_t base;
+    const char *commands;  // in programs with commands: those that accept them, "a|b"; NULL: all
 };
 
 // The texts of a program. They are flowing; the printing functions break the lines.
@@ -95,6 +96,8 @@ enum { TOOL_SENTENCE = 512 };
 const char *tool_sentence(const struct tool_program *program, const struct hf_message *message,
                           char buf[TOOL_SENTENCE]);
 
+// The commands that accept an option, "a|b": its own or its section's; NULL: all.
+const char *tool_commands(const struct tool_program *program, const struct tool_option *option);
 // Whether the option was on the command line.
 int tool_given(const struct tool_parser *p, const char *name);
 // Convert the values that were given in metres to scene units; unit: metres per scene unit.
