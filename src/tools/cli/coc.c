@@ -103,6 +103,21 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
     return 0;
 }
 
+int cli_coc_radii(const struct hf_depth *depth, int width, int height, const struct hf_params *params,
+                  const struct hf_io_box *box, float *radii)
+{
+    struct hf_params filled = {.size = sizeof(filled)};
+    struct hf_resolved resolved = {.size = sizeof(resolved)};
+    const struct model m = {&filled, &resolved, depth, width, height};
+    float z;
+    if (hf_resolve(width, height, depth, params, &filled, &resolved, NULL))
+        return -1;
+    for (int y = box->y0; y < box->y1; y++)
+        for (int x = box->x0; x < box->x1; x++)
+            *radii++ = radius_at(&m, x, y, &z);
+    return 0;
+}
+
 float cli_coc_largest(const struct cli_view *v)
 {
     const struct tool_report *r = &v->report;

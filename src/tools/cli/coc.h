@@ -12,6 +12,10 @@ int cli_coc_look(struct cli_view *v, const struct cli_args *args, struct tool_er
 // Call after v->report is filled and before v->depth is freed. If nothing is in focus or nothing is blurred, find the
 // range of distances that the warning tells. For the gaussian engine, find how much of its blur is mixed in.
 void cli_coc_measure(struct cli_view *v);
+// Signed radii of a rectangle of a depth's pixels, row after row, infinite distance included. Returns 0, or -1 if hf_resolve
+// refuses the parameters.
+int cli_coc_radii(const struct hf_depth *depth, int width, int height, const struct hf_params *params,
+                  const struct hf_io_box *box, float *radii);
 // Largest visible radius of blur in a view, pixels. For the gaussian engine: the radius of a disc as wide as its blur,
 // times the largest part of the blur that is mixed in.
 float cli_coc_largest(const struct cli_view *v);

@@ -169,8 +169,7 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
     return 0;
 }
 
-// Read the pixels of all views, unless that was done.
-static int load(struct cli_frame *frame, struct tool_error *error)
+int cli_frame_load(struct cli_frame *frame, struct tool_error *error)
 {
     if (frame->loaded)
         return 0;
@@ -251,7 +250,7 @@ static void share_focus(struct cli_frame *frame, struct cli_args *args)
 static int set_up(struct cli_frame *frame, struct tool_error *error)
 {
     struct cli_args args = *frame->args;
-    int status = cli_focus_needs_depth(&args) ? load(frame, error) : 0;
+    int status = cli_focus_needs_depth(&args) ? cli_frame_load(frame, error) : 0;
     for (int i = 0; i < frame->view_count && !status; i++) {
         struct cli_view *v = &frame->views[i];
         status = cli_setup_view(&v->setup, &args, v->view, v->depth, v->label, error);
@@ -266,7 +265,7 @@ int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
     int status = set_up(frame, error);
     // --grow needs the pixels to know how far blur reaches. Growing moves coordinates, so the views are set up again.
     if (!status && frame->args->grow) {
-        status = load(frame, error);
+        status = cli_frame_load(frame, error);
         if (!status)
             status = cli_window_grow(frame, error);
         if (!status)
@@ -298,23 +297,27 @@ static int is_opaque(const struct cli_view *v)
     return i == n;
 }
 
+struct hf_image cli_view_image(const struct cli_view *v, int keep_alpha)
+{
+    struct hf_image image = {
+        .size = sizeof(image), .width = v->view->width, .height = v->view->height, .format = HF_FORMAT_PLANAR32F};
+    const int channels = !keep_alpha && is_opaque(v) ? 3 : 4;
+    for (int c = 0; c < channels; c++) {
+        image.data[c] = v->planes[c];
+        image.stride[c] = (ptrdiff_t)v->view->width * (ptrdiff_t)sizeof(float);
+    }
+    return image;
+}
+
 // Load all that is needed to render a view; *image becomes its colour.
 static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
                      struct tool_error *error)
 {
-    const int status = load(frame, error);
+    const int status = cli_frame_load(frame, error);
     if (status)
         return status;
-    *image = (struct hf_image){.size = sizeof(struct hf_image),
-                               .width = v->view->width,
-                               .height = v->view->height,
-                               .format = HF_FORMAT_PLANAR32F};
     // --dump-passes shows all channels, so alpha is kept.
-    const int channels = !frame->args->dump_dir && is_opaque(v) ? 3 : 4;
-    for (int c = 0; c < channels; c++) {
-        image->data[c] = v->planes[c];
-        image->stride[c] = (ptrdiff_t)v->view->width * (ptrdiff_t)sizeof(float);
-    }
+    *image = cli_view_image(v, frame->args->dump_dir != NULL);
     v->setup.depth.data = v->depth;
     session->label = v->label;
     session->log.text[0] = '\0';

@@ -78,6 +78,10 @@ void cli_session_close(struct cli_session *session);
 // Each returns 0, or an exit code with *error filled. Call close after any of them.
 int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const struct hf_io_run *run,
                    struct tool_error *error);
+// Read the pixels of all views into their planes and depth, unless that was done. The steps below do it when they need them.
+int cli_frame_load(struct cli_frame *frame, struct tool_error *error);
+// A view's colour, in its planes, as the library gets it: without its alpha where that is 1 everywhere, unless it is kept.
+struct hf_image cli_view_image(const struct cli_view *v, int keep_alpha);
 // In place of all steps: read the focus of the first view, decoding only the rows of depth around it.
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error);
 int cli_frame_setup(struct cli_frame *frame, struct tool_error *error);

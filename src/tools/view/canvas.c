@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/view/canvas.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "tools/view/look.h"
+
+struct _ViewCanvas {
+    GtkWidget parent;
+    struct view_canvas_events events;
+    void *cookie;
+    struct view_picture *picture;
+    struct view_result *whole, *now;  // the newest that shows all of the picture; the newest. They may be the same
+    int unseen;                       // `now` has not been drawn yet
+    uint32_t *before;                 // all of the input at 1/before_n
+    int before_n;
+    float gain, before_gain;
+    struct view_camera camera;
+    int fitted;  // the camera follows the size of the widget
+    int show_before, divider;
+    double divided;               // place of the divider, part of the width
+    double pointer_x, pointer_y;  // of the widget; -1: not over it
+    double start_x, start_y, camera_x, camera_y;
+    enum { DRAG_NONE, DRAG_CLICK, DRAG_PAN, DRAG_DIVIDER } drag;
+};
+
+G_DEFINE_TYPE(ViewCanvas, view_canvas, GTK_TYPE_WIDGET)
+
+enum { SLACK = 4, GRIP = 8 };  // screen pixels that a click may move; around the divider
+
+static int factor(ViewCanvas *c)
+{
+    return MAX(1, gtk_widget_get_scale_factor(GTK_WIDGET(c)));
+}
+
+static struct view_screen screen_of(ViewCanvas *c)
+{
+    GtkWidget *w = GTK_WIDGET(c);
+    return (struct view_screen){NULL, gtk_widget_get_width(w) * factor(c), gtk_widget_get_height(w) * factor(c)};
+}
+
+static void forget(ViewCanvas *c)
+{
+    if (c->whole != c->now)
+        view_result_free(c->whole);
+    view_result_free(c->now);
+    c->whole = c->now = NULL;
+    free(c->before);
+    c->before = NULL;
+}
+
+static const struct hf_io_view *size_of(ViewCanvas *c)
+{
+    return c->picture ? view_picture_view(c->picture)->view : NULL;
+}
+
+// Keep the picture in sight.
+static void hold(ViewCanvas *c)
+{
+    const struct view_screen s = screen_of(c);
+    const struct hf_io_view *v = size_of(c);
+    if (!v)
+        return;
+    const double w = v->width * c->camera.zoom, h = v->height * c->camera.zoom;
+    c->camera.x = w <= s.width ? (s.width - w) / 2 : CLAMP(c->camera.x, s.width - w, 0);
+    c->camera.y = h <= s.height ? (s.height - h) / 2 : CLAMP(c->camera.y, s.height - h, 0);
+}
+
+static void changed(ViewCanvas *c)
+{
+    hold(c);
+    gtk_widget_queue_draw(GTK_WIDGET(c));
+    if (c->events.moved && c->picture)
+        c->events.moved(c->cookie);
+}
+
+static void fit(ViewCanvas *c)
+{
+    const struct view_screen s = screen_of(c);
+    const struct hf_io_view *v = size_of(c);
+    if (v && s.width > 0 && s.height > 0)
+        c->camera.zoom = fmin(1, fmin((double)s.width / v->width, (double)s.height / v->height));
+}
+
+void view_canvas_fit(ViewCanvas *c)
+{
+    c->fitted = 1;
+    fit(c);
+    changed(c);
+}
+
+void view_canvas_zoom(ViewCanvas *c, double zoom, double x, double y)
+{
+    const struct view_screen s = screen_of(c);
+    const double least = size_of(c) ? fmin(1, 32.0 / MAX(size_of(c)->width, size_of(c)->height)) : 1;
+    const double at_x = x < 0 ? s.width / 2.0 : x * factor(c), at_y = x < 0 ? s.height / 2.0 : y * factor(c);
+    zoom = CLAMP(zoom, least, 32);
+    // Above 1 whole numbers, so that all pixels are equally large.
+    if (zoom > 1)
+        zoom = round(zoom);
+    c->camera.x = at_x - (at_x - c->camera.x) * zoom / c->camera.zoom;
+    c->camera.y = at_y - (at_y - c->camera.y) * zoom / c->camera.zoom;
+    c->camera.zoom = zoom;
+    c->fitted = 0;
+    changed(c);
+}
+
+double view_canvas_get_zoom(ViewCanvas *c)
+{
+    return c->camera.zoom;
+}
+
+struct view_camera view_canvas_camera(ViewCanvas *c)
+{
+    return view_camera_drawn(&c->camera);
+}
+
+void view_canvas_pan(ViewCanvas *c, double x, double y)
+{
+    c->camera.x += x * factor(c);
+    c->camera.y += y * factor(c);
+    c->fitted = 0;
+    changed(c);
+}
+
+static void to_picture(ViewCanvas *c, double x, double y, double *px, double *py)
+{
+    const struct view_camera d = view_camera_drawn(&c->camera);
+    *px = (x * factor(c) - d.x) / d.zoom;
+    *py = (y * factor(c) - d.y) / d.zoom;
+}
+
+int view_canvas_seen(ViewCanvas *c, struct hf_region *seen, int *n)
+{
+    const struct view_screen s = screen_of(c);
+    const struct hf_io_view *v = size_of(c);
+    double x0, y0, x1, y1;
+    if (!v || s.width <= 0 || s.height <= 0)
+        return 0;
+    to_picture(c, 0, 0, &x0, &y0);
+    to_picture(c, (double)s.width / factor(c), (double)s.height / factor(c), &x1, &y1);
+    const int left = CLAMP((int)floor(x0), 0, v->width - 1), top = CLAMP((int)floor(y0), 0, v->height - 1);
+    const int right = CLAMP((int)ceil(x1), left + 1, v->width), bottom = CLAMP((int)ceil(y1), top + 1, v->height);
+    *seen = (struct hf_region){sizeof(*seen), left, top, right - left, bottom - top};
+    *n = CLAMP((int)(1 / c->camera.zoom + 1e-6), 1, VIEW_REDUCTIONS);
+    return 1;
+}
+
+// The input, encoded for the display, at the size that is seen.
+static int make_before(ViewCanvas *c)
+{
+    struct hf_region seen;
+    int n;
+    if (!view_canvas_seen(c, &seen, &n))
+        return 0;
+    if (c->before && c->before_n == n && c->before_gain == c->gain)
+        return 1;
+    const struct view_pixels *p = view_picture_at(c->picture, n);
+    free(c->before);
+    c->before = p ? malloc((size_t)p->width * (size_t)p->height * sizeof(*c->before)) : NULL;
+    c->before_n = n;
+    c->before_gain = c->gain;
+    if (c->before)
+        view_look_row(p->plane[0], p->plane[1], p->plane[2], c->gain, c->before, p->width * p->height);
+    return c->before != NULL;
+}
+
+static void draw_result(const struct view_screen *s, ViewCanvas *c, const struct view_result *r)
+{
+    const struct view_layer layer = {r->pixels, r->at.x, r->at.y, r->at.width, r->at.height, r->n, 0, s->width};
+    view_compose(s, &c->camera, &layer);
+}
+
+static void draw_before(const struct view_screen *s, ViewCanvas *c)
+{
+    const struct view_pixels *p = view_picture_at(c->picture, c->before_n);
+    const int to = c->show_before ? s->width : (int)(c->divided * s->width);
+    const struct view_layer layer = {c->before, 0, 0, p->width, p->height, c->before_n, 0, to};
+    view_compose(s, &c->camera, &layer);
+}
+
+static uint32_t *compose(ViewCanvas *c, struct view_screen *s)
+{
+    *s = screen_of(c);
+    s->pixels = malloc((size_t)s->width * (size_t)s->height * sizeof(*s->pixels));
+    if (!s->pixels)
+        return NULL;
+    view_compose_clear(s, 0xff1e1e1eu);
+    if (c->whole && c->whole != c->now)
+        draw_result(s, c, c->whole);
+    if (c->now)
+        draw_result(s, c, c->now);
+    if (c->picture && (c->show_before || c->divider) && make_before(c))
+        draw_before(s, c);
+    if (c->divider && !c->show_before)
+        for (int y = 0; y < s->height; y++)
+            for (int x = 0; x < factor(c); x++)
+                s->pixels[(size_t)y * (size_t)s->width + (size_t)MIN(s->width - 1, (int)(c->divided * s->width) + x)] =
+                    0xffffffffu;
+    return s->pixels;
+}
+
+static GdkTexture *texture_of(ViewCanvas *c)
+{
+    struct view_screen s;
+    if (!compose(c, &s))
+        return NULL;
+    const gsize size = (gsize)s.width * (gsize)s.height * sizeof(*s.pixels);
+    GBytes *bytes = g_bytes_new_with_free_func(s.pixels, size, free, s.pixels);
+    GdkTexture *texture = gdk_memory_texture_new(s.width, s.height, GDK_MEMORY_DEFAULT, bytes, (gsize)s.width * 4);
+    g_bytes_unref(bytes);
+    return texture;
+}
+
+static void after_paint(GdkFrameClock *clock, gpointer data)
+{
+    ViewCanvas *c = data;
+    g_signal_handlers_disconnect_by_func(clock, after_paint, data);
+    if (c->unseen != 2 || !c->now)
+        return;
+    c->unseen = 0;
+    if (c->events.drawn)
+        c->events.drawn(c->cookie, c->now);
+}
+
+static void snapshot(GtkWidget *widget, GtkSnapshot *to)
+{
+    ViewCanvas *c = VIEW_CANVAS(widget);
+    const int width = gtk_widget_get_width(widget), height = gtk_widget_get_height(widget);
+    if (width <= 0 || height <= 0)
+        return;
+    GdkTexture *texture = texture_of(c);
+    if (!texture)
+        return;
+    gtk_snapshot_append_texture(to, texture, &GRAPHENE_RECT_INIT(0, 0, (float)width, (float)height));
+    g_object_unref(texture);
+    if (c->unseen == 1) {
+        c->unseen = 2;
+        g_signal_connect(gtk_widget_get_frame_clock(widget), "after-paint", G_CALLBACK(after_paint), c);
+    }
+}
+
+int view_canvas_save(ViewCanvas *c, const char *path)
+{
+    GdkTexture *texture = texture_of(c);
+    const int saved = texture && gdk_texture_save_to_png(texture, path);
+    g_clear_object(&texture);
+    return saved ? 0 : -1;
+}
+
+static void size_allocate(GtkWidget *widget, int width, int height, int baseline)
+{
+    ViewCanvas *c = VIEW_CANVAS(widget);
+    (void)width;
+    (void)height;
+    (void)baseline;
+    if (c->fitted)
+        fit(c);
+    changed(c);
+}
+
+void view_canvas_set_picture(ViewCanvas *c, struct view_picture *picture, int fit_it)
+{
+    forget(c);
+    view_picture_unref(c->picture);
+    c->picture = picture ? view_picture_ref(picture) : NULL;
+    c->fitted |= fit_it;
+    if (c->fitted)
+        fit(c);
+    changed(c);
+}
+
+static int is_whole(const struct view_result *r)
+{
+    return r->at.x == 0 && r->at.y == 0 && r->at.width == r->width;
+}
+
+void view_canvas_set_result(ViewCanvas *c, struct view_result *r)
+{
+    if (r->picture != c->picture) {
+        view_result_free(r);
+        return;
+    }
+    if (c->now != c->whole)
+        view_result_free(c->now);
+    c->now = r;
+    if (is_whole(r)) {
+        view_result_free(c->whole);
+        c->whole = r;
+    }
+    c->unseen = 1;
+    gtk_widget_queue_draw(GTK_WIDGET(c));
+}
+
+const struct view_result *view_canvas_result(ViewCanvas *c)
+{
+    return c->now;
+}
+
+void view_canvas_set_before(ViewCanvas *c, int before)
+{
+    c->show_before = before;
+    gtk_widget_queue_draw(GTK_WIDGET(c));
+}
+
+void view_canvas_set_divider(ViewCanvas *c, int shown)
+{
+    c->divider = shown;
+    gtk_widget_queue_draw(GTK_WIDGET(c));
+}
+
+int view_canvas_get_divider(ViewCanvas *c)
+{
+    return c->divider;
+}
+
+void view_canvas_set_gain(ViewCanvas *c, float gain)
+{
+    c->gain = gain;
+}
+
+// Events.
+
+static void on_drag_begin(GtkGestureDrag *g, double x, double y, gpointer data)
+{
+    ViewCanvas *c = data;
+    (void)g;
+    gtk_widget_grab_focus(GTK_WIDGET(c));
+    c->start_x = x;
+    c->start_y = y;
+    c->camera_x = c->camera.x;
+    c->camera_y = c->camera.y;
+    c->drag =
+        c->divider && fabs(x - c->divided * gtk_widget_get_width(GTK_WIDGET(c))) < GRIP ? DRAG_DIVIDER : DRAG_CLICK;
+}
+
+static void on_drag_update(GtkGestureDrag *g, double x, double y, gpointer data)
+{
+    ViewCanvas *c = data;
+    (void)g;
+    if (c->drag == DRAG_DIVIDER) {
+        c->divided = CLAMP((c->start_x + x) / MAX(1, gtk_widget_get_width(GTK_WIDGET(c))), 0, 1);
+        gtk_widget_queue_draw(GTK_WIDGET(c));
+        return;
+    }
+    if (c->drag == DRAG_CLICK && fabs(x) + fabs(y) > SLACK)
+        c->drag = DRAG_PAN;
+    if (c->drag != DRAG_PAN)
+        return;
+    c->camera.x = c->camera_x + x * factor(c);
+    c->camera.y = c->camera_y + y * factor(c);
+    changed(c);
+}
+
+static void on_drag_end(GtkGestureDrag *g, double x, double y, gpointer data)
+{
+    ViewCanvas *c = data;
+    double px, py;
+    (void)g;
+    (void)x;
+    (void)y;
+    to_picture(c, c->start_x, c->start_y, &px, &py);
+    if (c->drag == DRAG_CLICK && c->picture && c->events.click)
+        c->events.click(c->cookie, px, py);
+    c->drag = DRAG_NONE;
+}
+
+static gboolean on_scroll(GtkEventControllerScroll *s, double dx, double dy, gpointer data)
+{
+    ViewCanvas *c = data;
+    (void)s;
+    (void)dx;
+    const double zoom = c->camera.zoom;
+    // Steps of a half below 1:1, whole numbers above.
+    const double next = dy < 0 ? (zoom >= 1 ? fmax(zoom + 1, round(zoom * 1.25)) : fmin(1, zoom * 1.25))
+                               : (zoom > 1 ? fmin(zoom - 1, round(zoom / 1.25)) : zoom / 1.25);
+    view_canvas_zoom(c, next, c->pointer_x, c->pointer_y);
+    return TRUE;
+}
+
+static void on_motion(GtkEventControllerMotion *m, double x, double y, gpointer data)
+{
+    ViewCanvas *c = data;
+    const struct hf_io_view *v = size_of(c);
+    double px, py;
+    (void)m;
+    c->pointer_x = x;
+    c->pointer_y = y;
+    to_picture(c, x, y, &px, &py);
+    if (v && c->events.hover)
+        c->events.hover(c->cookie, px, py, px >= 0 && py >= 0 && px < v->width && py < v->height);
+}
+
+static void on_leave(GtkEventControllerMotion *m, gpointer data)
+{
+    ViewCanvas *c = data;
+    (void)m;
+    if (c->events.hover)
+        c->events.hover(c->cookie, 0, 0, 0);
+}
+
+static void dispose(GObject *object)
+{
+    ViewCanvas *c = VIEW_CANVAS(object);
+    forget(c);
+    view_picture_unref(c->picture);
+    c->picture = NULL;
+    G_OBJECT_CLASS(view_canvas_parent_class)->dispose(object);
+}
+
+static void view_canvas_class_init(ViewCanvasClass *class)
+{
+    GtkWidgetClass *widget = GTK_WIDGET_CLASS(class);
+    G_OBJECT_CLASS(class)->dispose = dispose;
+    widget->snapshot = snapshot;
+    widget->size_allocate = size_allocate;
+    gtk_widget_class_set_css_name(widget, "canvas");
+    gtk_widget_class_set_accessible_role(widget, GTK_ACCESSIBLE_ROLE_IMG);
+}
+
+static void view_canvas_init(ViewCanvas *c)
+{
+    c->camera = (struct view_camera){1, 0, 0};
+    c->gain = 1;
+    c->divided = 0.5;
+    c->fitted = 1;
+    c->pointer_x = -1;
+}
+
+GtkWidget *view_canvas_new(const struct view_canvas_events *events, void *cookie)
+{
+    ViewCanvas *c = g_object_new(view_canvas_get_type(), NULL);
+    GtkWidget *w = GTK_WIDGET(c);
+    c->events = *events;
+    c->cookie = cookie;
+    GtkGesture *drag = gtk_gesture_drag_new();
+    g_signal_connect(drag, "drag-begin", G_CALLBACK(on_drag_begin), c);
+    g_signal_connect(drag, "drag-update", G_CALLBACK(on_drag_update), c);
+    g_signal_connect(drag, "drag-end", G_CALLBACK(on_drag_end), c);
+    gtk_widget_add_controller(w, GTK_EVENT_CONTROLLER(drag));
+    GtkEventController *scroll = gtk_event_controller_scroll_new(GTK_EVENT_CONTROLLER_SCROLL_VERTICAL);
+    g_signal_connect(scroll, "scroll", G_CALLBACK(on_scroll), c);
+    gtk_widget_add_controller(w, scroll);
+    GtkEventController *motion = gtk_event_controller_motion_new();
+    g_signal_connect(motion, "motion", G_CALLBACK(on_motion), c);
+    g_signal_connect(motion, "leave", G_CALLBACK(on_leave), c);
+    gtk_widget_add_controller(w, motion);
+    gtk_widget_set_focusable(w, TRUE);
+    gtk_widget_set_hexpand(w, TRUE);
+    gtk_widget_set_vexpand(w, TRUE);
+    gtk_widget_set_overflow(w, GTK_OVERFLOW_HIDDEN);
+    gtk_accessible_update_property(GTK_ACCESSIBLE(w), GTK_ACCESSIBLE_PROPERTY_LABEL, "Picture", -1);
+    return w;
+}

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hyperfocal-view: focus, lens and look are turned while the picture answers.
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tools/common/standard.h"
+#include "tools/view/app.h"
+
+struct start {
+    struct view_app *app;
+    struct tool_error error;
+    int status;
+};
+
+static void on_activate(GtkApplication *application, gpointer data)
+{
+    struct start *s = data;
+    if (s->app->window)
+        return;
+    s->app->application = application;
+    s->status = view_window_make(s->app, &s->error);
+    if (!s->status && s->app->model.input_count)
+        view_app_open(s->app, NULL, 0);
+}
+
+static int run_window(struct view_app *app, struct tool_error *error)
+{
+    struct start start = {.app = app};
+    if (!gtk_init_check())
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "there is no display to open a window on");
+    GtkApplication *application = gtk_application_new("org.hyperfocal.View", G_APPLICATION_NON_UNIQUE);
+    g_signal_connect(application, "activate", G_CALLBACK(on_activate), &start);
+    g_application_run(G_APPLICATION(application), 0, NULL);
+    g_object_unref(application);
+    if (start.status)
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s", start.error.text);
+    return 0;
+}
+
+static int run(int argc, char **argv, struct tool_error *error)
+{
+    static struct view_app app;
+    int help = 0;
+    int status = view_model_open(&app.model, &app.own, argc, argv, &help, error) ? CLI_BAD_ARGUMENTS : 0;
+    if (!status && help > 2)
+        tool_print_man(view_program());
+    else if (!status && help)
+        tool_print_help(view_program(), NULL, help > 1);
+    else if (!status && app.own.cli.version)
+        printf("hyperfocal-view %s\n", hf_version());
+    else if (!status)
+        status = run_window(&app, error);
+    view_model_close(&app.model);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    struct tool_error error = {""};
+    tool_open_standard();
+    tool_program = "hyperfocal-view";
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+    int status = run(argc, argv, &error);
+    const int failed = ferror(stdout);
+    if ((fflush(stdout) || failed) && !status)
+        status = tool_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
+    if (status && error.text[0])
+        tool_print_line("%s", error.text);
+    return status;
+}

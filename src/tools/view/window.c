@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <math.h>
+
+#include "tools/common/machine.h"
+#include "tools/view/actions.h"
+#include "tools/view/app.h"
+#include "tools/view/job.h"
+#include "tools/view/panel.h"
+#include "tools/view/say.h"
+
+// The canvas.
+
+static void on_click(void *cookie, double x, double y)
+{
+    struct view_app *app = cookie;
+    app->event_ms = tool_now_ms();
+    view_app_focus_at(app, x, y);
+}
+
+static void on_moved(void *cookie)
+{
+    struct view_app *app = cookie;
+    view_app_ask(app, 0);
+    view_window_refresh(app);
+}
+
+static void on_hover(void *cookie, double x, double y, int inside)
+{
+    view_window_hover(cookie, x, y, inside);
+}
+
+static void on_drawn(void *cookie, const struct view_result *result)
+{
+    view_window_drawn(cookie, result);
+}
+
+static void on_result(void *cookie, struct view_result *result)
+{
+    struct view_app *app = cookie;
+    if (result->failed) {
+        view_app_tell(app, "%s", result->error.text);
+        view_result_free(result);
+        return;
+    }
+    view_canvas_set_result(VIEW_CANVAS(app->canvas), result);
+}
+
+// Where the canvas is on the screen, when the window's corner is the screen's: for tests.
+static void say_drawn(struct view_app *app, const struct view_result *r, const char *stage)
+{
+    double x, y, sx, sy;
+    gtk_widget_translate_coordinates(app->canvas, app->window, 0, 0, &x, &y);
+    gtk_native_get_surface_transform(GTK_NATIVE(app->window), &sx, &sy);
+    const struct view_camera c = view_canvas_camera(VIEW_CANVAS(app->canvas));
+    view_say("drawn stage=%s n=%d at=%d,%d,%d,%d canvas=%g,%g,%d,%d camera=%g,%g,%g focus=%g fstop=%g ms=%.1f "
+             "latency=%.1f",
+             stage, r->n, r->at.x, r->at.y, r->at.width, r->at.height, x + sx, y + sy,
+             gtk_widget_get_width(app->canvas), gtk_widget_get_height(app->canvas), c.zoom, c.x, c.y,
+             app->setup.params.focus, app->setup.params.lens.f_number, r->ms, tool_now_ms() - r->asked_ms);
+}
+
+void view_window_drawn(struct view_app *app, const struct view_result *result)
+{
+    static const char *const stages[] = {"moving", "standard", "final"};
+    char text[160];
+    snprintf(text, sizeof(text), "%s · %.0f ms · %s", hf_engine_name(result->report.params.engine), result->ms,
+             stages[result->stage]);
+    gtk_label_set_text(GTK_LABEL(app->state), text);
+    say_drawn(app, result, stages[result->stage]);
+}
+
+void view_window_hover(struct view_app *app, double x, double y, int inside)
+{
+    const struct view_result *r = view_canvas_result(VIEW_CANVAS(app->canvas));
+    char text[200] = "", colour[80] = "", depth[40] = "no surface", radius[40] = "";
+    float z, coc;
+    if (!inside || !app->picture || !app->set_up) {
+        gtk_label_set_text(GTK_LABEL(app->value), "");
+        return;
+    }
+    const struct hf_io_view *v = view_picture_view(app->picture)->view;
+    const struct hf_region at = {sizeof(at), (int)x, (int)y, 1, 1};
+    if (r) {
+        const int u = (int)(x / r->n) - r->at.x, w = (int)(y / r->n) - r->at.y;
+        if (u >= 0 && w >= 0 && u < r->at.width && w < r->at.height) {
+            const size_t i = (size_t)w * (size_t)r->at.width + (size_t)u;
+            snprintf(colour, sizeof(colour), "   R %.4g  G %.4g  B %.4g", r->plane[0][i], r->plane[1][i],
+                     r->plane[2][i]);
+        }
+    }
+    if (hf_depth_at(&app->setup.depth, v->width, v->height, at.x, at.y, &z, NULL) == HF_OK)
+        snprintf(depth, sizeof(depth), "depth %.5g", z);
+    if (!view_radii(&app->setup.depth, v->width, v->height, &app->setup.params, &at, &coc))
+        snprintf(radius, sizeof(radius), "   radius %+.1f px", coc);
+    snprintf(text, sizeof(text), "%d, %d   %s%s%s", v->data_window.x0 + at.x, v->data_window.y0 + at.y, depth, radius,
+             colour);
+    gtk_label_set_text(GTK_LABEL(app->value), text);
+}
+
+void view_window_refresh(struct view_app *app)
+{
+    char text[64];
+    const double zoom = view_canvas_get_zoom(VIEW_CANVAS(app->canvas));
+    snprintf(text, sizeof(text), "%.0f %%", zoom * 100);
+    gtk_button_set_label(GTK_BUTTON(app->zoom), text);
+    snprintf(text, sizeof(text), "%+.1f EV", app->model.now.exposure);
+    gtk_label_set_text(GTK_LABEL(app->exposure), text);
+    const char *name = app->picture ? app->picture->args.input : app->model.input_count ? app->model.inputs[0] : NULL;
+    char *base = name ? g_path_get_basename(name) : g_strdup("hyperfocal");
+    gtk_window_set_title(GTK_WINDOW(app->window), base);
+    g_free(base);
+    view_actions_refresh(app);
+    view_panel_refresh(app);
+}
+
+// Making.
+
+static GtkWidget *button(const char *icon, const char *label, const char *action)
+{
+    GtkWidget *b = gtk_button_new_from_icon_name(icon);
+    gtk_widget_set_tooltip_text(b, label);
+    gtk_actionable_set_action_name(GTK_ACTIONABLE(b), action);
+    gtk_accessible_update_property(GTK_ACCESSIBLE(b), GTK_ACCESSIBLE_PROPERTY_LABEL, label, -1);
+    return b;
+}
+
+static GtkWidget *make_header(struct view_app *app)
+{
+    GtkWidget *bar = gtk_header_bar_new();
+    GtkHeaderBar *h = GTK_HEADER_BAR(bar);
+    gtk_header_bar_pack_start(h, button("document-open-symbolic", "Open a picture", "win.open"));
+    gtk_header_bar_pack_start(h, button("document-save-symbolic", "Save the picture", "win.save"));
+    gtk_header_bar_pack_start(h, button("edit-copy-symbolic", "Copy the command line", "win.copy"));
+    gtk_header_bar_pack_start(h, button("edit-undo-symbolic", "Undo", "win.undo"));
+    gtk_header_bar_pack_start(h, button("edit-redo-symbolic", "Redo", "win.redo"));
+    GtkWidget *menu = gtk_menu_button_new();
+    gtk_menu_button_set_icon_name(GTK_MENU_BUTTON(menu), "open-menu-symbolic");
+    gtk_menu_button_set_menu_model(GTK_MENU_BUTTON(menu), view_actions_menu());
+    gtk_widget_set_tooltip_text(menu, "Menu");
+    gtk_accessible_update_property(GTK_ACCESSIBLE(menu), GTK_ACCESSIBLE_PROPERTY_LABEL, "Menu", -1);
+    gtk_header_bar_pack_end(h, menu);
+    gtk_header_bar_pack_end(h, button("zoom-fit-best-symbolic", "All of the picture", "win.fit"));
+    app->zoom = gtk_button_new_with_label("100 %");
+    gtk_widget_set_tooltip_text(app->zoom, "Show each pixel as it is, 1:1");
+    gtk_actionable_set_action_name(GTK_ACTIONABLE(app->zoom), "win.full");
+    gtk_header_bar_pack_end(h, app->zoom);
+    return bar;
+}
+
+static GtkWidget *make_notice(struct view_app *app)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 8);
+    app->notice = box;
+    app->notice_text = gtk_label_new("");
+    gtk_label_set_wrap(GTK_LABEL(app->notice_text), TRUE);
+    gtk_label_set_xalign(GTK_LABEL(app->notice_text), 0);
+    gtk_label_set_selectable(GTK_LABEL(app->notice_text), TRUE);
+    gtk_widget_set_hexpand(app->notice_text, TRUE);
+    gtk_box_append(GTK_BOX(box), app->notice_text);
+    gtk_box_append(GTK_BOX(box), button("window-close-symbolic", "Close this message", "win.quiet"));
+    gtk_widget_add_css_class(box, "notice");
+    gtk_widget_set_visible(box, FALSE);
+    return box;
+}
+
+static GtkWidget *label(const char *class, float xalign)
+{
+    GtkWidget *l = gtk_label_new("");
+    gtk_label_set_xalign(GTK_LABEL(l), xalign);
+    gtk_label_set_ellipsize(GTK_LABEL(l), PANGO_ELLIPSIZE_END);
+    gtk_widget_add_css_class(l, class);
+    return l;
+}
+
+static GtkWidget *make_status(struct view_app *app)
+{
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 12);
+    app->value = label("numeric", 0);
+    app->state = label("numeric", 1);
+    app->exposure = label("numeric", 1);
+    gtk_widget_set_hexpand(app->value, TRUE);
+    gtk_box_append(GTK_BOX(box), app->value);
+    gtk_box_append(GTK_BOX(box), app->exposure);
+    gtk_box_append(GTK_BOX(box), app->state);
+    gtk_widget_add_css_class(box, "status");
+    return box;
+}
+
+static void load_style(void)
+{
+    GtkCssProvider *css = gtk_css_provider_new();
+    gtk_css_provider_load_from_data(css,
+                                    ".notice { padding: 6px 12px; background: #e5a50a; color: black; }"
+                                    ".status { padding: 4px 12px; }"
+                                    ".panel { padding: 8px 12px; }"
+                                    ".panel .derived { opacity: 0.7; }"
+                                    ".panel label.given { font-weight: bold; }"
+                                    ".panel scale { padding: 2px 6px; }"
+                                    ".panel entry { min-width: 0; }"
+                                    ".numeric { font-feature-settings: 'tnum'; }",
+                                    -1);
+    gtk_style_context_add_provider_for_display(gdk_display_get_default(), GTK_STYLE_PROVIDER(css),
+                                               GTK_STYLE_PROVIDER_PRIORITY_APPLICATION);
+    g_object_unref(css);
+}
+
+static GtkWidget *make_canvas(struct view_app *app)
+{
+    const struct view_canvas_events events = {on_click, on_moved, on_hover, on_drawn};
+    app->canvas = view_canvas_new(&events, app);
+    gtk_widget_set_size_request(app->canvas, 240, 180);
+    return app->canvas;
+}
+
+int view_window_make(struct view_app *app, struct tool_error *error)
+{
+    struct view_words words;
+    struct cli_args args;
+    if (view_model_words(&app->model, NULL, NULL, &words) || view_words_parse(&words, &args, error))
+        return -1;
+    app->renderer = view_renderer_open(args.threads, args.isa, on_result, app, error);
+    cli_free_args(&args);
+    view_words_free(&words);
+    if (!app->renderer)
+        return -1;
+    load_style();
+    app->window = gtk_application_window_new(app->application);
+    gtk_window_set_default_size(GTK_WINDOW(app->window), 1280, 800);
+    gtk_window_set_titlebar(GTK_WINDOW(app->window), make_header(app));
+    GtkWidget *column = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
+    GtkWidget *middle = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 0);
+    gtk_box_append(GTK_BOX(column), make_notice(app));
+    gtk_box_append(GTK_BOX(middle), make_canvas(app));
+    gtk_box_append(GTK_BOX(middle), view_panel_new(app));
+    gtk_box_append(GTK_BOX(column), middle);
+    gtk_box_append(GTK_BOX(column), view_job_bar(app));
+    gtk_box_append(GTK_BOX(column), make_status(app));
+    gtk_window_set_child(GTK_WINDOW(app->window), column);
+    view_actions_add(app);
+    view_window_refresh(app);
+    gtk_window_present(GTK_WINDOW(app->window));
+    gtk_widget_grab_focus(app->canvas);
+    view_say("window");
+    return 0;
+}
