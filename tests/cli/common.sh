@@ -230,7 +230,7 @@ exr('scaled.exr', dict(colour, Z=lambda x, y: near(x, y) * 4 - 5))
 exr('sky.exr', dict(colour, Z=lambda x, y: near(x, y) if y < 30 else 0))
 exr('ndc.exr', dict(colour, Z=lambda x, y: (x + 1) / 64))
 exr('void.exr', dict(colour, Z=lambda x, y: 0))
-def png(path, depth, bits, colours=None, width=64, height=40):
+def png(path, depth, bits, colours=None, width=64, height=40, profile=None):
     rows = b''
     for y in range(height):
         rows += b'\0' + b''.join(struct.pack('>H' if bits == 16 else 'B', round(f(x, y) * (2 ** bits - 1)))
@@ -239,6 +239,7 @@ def png(path, depth, bits, colours=None, width=64, height=40):
                                 struct.pack('>I', zlib.crc32(kind + data)))
     open(path, 'wb').write(b'\x89PNG\r\n\x1a\n' +
         chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, bits, 2 if colours else 0, 0, 0, 0)) +
+        (chunk(b'iCCP', b'test\0\0' + zlib.compress(profile)) if profile else b'') +
         chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
 png('map8.png', lambda x, y: x // 13 / 5, 8)
 png('soft8.png', lambda x, y: .2 if x < 30 else .5 if x < 31 else .8, 8)
@@ -246,6 +247,44 @@ png('half8.png', lambda x, y: 2 * x // 13 / 5, 8, width=32, height=20)
 png('map16.png', lambda x, y: x // 13 / 5, 16)
 png('white.png', lambda x, y: 1 - x // 13 / 5, 8)
 png('photo.png', None, 8, colours=[lambda x, y: x % 7 / 7, lambda x, y: y % 5 / 5, lambda x, y: (x ^ y) % 3 / 3])
+# A colour profile of a gamma of 1.8 and the primaries of ProPhoto RGB (ROMM), and one with a table in place of a matrix.
+xyz = lambda *v: b'XYZ \0\0\0\0' + struct.pack('>3i', *(round(65536 * x) for x in v))
+def icc(tags):
+    at, rows, data = 132 + 12 * len(tags), b'', b''
+    for name, value in tags.items():
+        rows += name + struct.pack('>II', at + len(data), len(value))
+        data += value + bytes(-len(value) % 4)
+    body = struct.pack('>I', len(tags)) + rows + data
+    head = struct.pack('>I4sI4s4s4s12x4s', 128 + len(body), b'none', 0x02400000, b'mntr', b'RGB ', b'XYZ ', b'acsp')
+    return head + bytes(28) + struct.pack('>3i', 63190, 65536, 54061) + bytes(48) + body
+gamma = b'curv\0\0\0\0' + struct.pack('>IH', 1, 461) + bytes(2)
+words = {b'desc': b'desc\0\0\0\0' + struct.pack('>I', 5) + b'Romm\0' + bytes(78), b'wtpt': xyz(.9642, 1, .8249),
+         b'cprt': b'text\0\0\0\0none\0\0\0\0'}
+romm = icc({**words, b'rXYZ': xyz(.79767, .28804, 0), b'gXYZ': xyz(.13519, .71188, 0),
+           b'bXYZ': xyz(.03134, .00009, .82491), b'rTRC': gamma, b'gTRC': gamma, b'bTRC': gamma})
+open('romm.icc', 'wb').write(romm)
+ramp = [lambda x, y: x / 63, lambda x, y: y / 39, lambda x, y: (x + y) % 40 / 39]
+png('romm.png', None, 8, colours=ramp, profile=romm)
+png('ramp.png', None, 8, colours=ramp)
+# A photograph's EXIF, in a TIFF: f/1.8, 26 mm as seen by 35 mm film, 6.9 mm.
+def tiff(path, exif):
+    pixels = bytes(round(255 * f(x, y)) for y in range(40) for x in range(64) for f in ramp)
+    def directory(at, entries):
+        rows, more, end = b'', b'', at + 2 + 12 * len(entries) + 4
+        for tag, kind, value in entries:
+            data = struct.pack('<2I', *value) if kind == 5 else struct.pack('<%dH' % len(value), *value) if kind == 3 else \
+                struct.pack('<I', value[0])
+            if len(data) > 4:
+                more, data = more + data, struct.pack('<I', end + len(more))
+            rows += struct.pack('<HHI', tag, kind, 1 if kind == 5 else len(value)) + data.ljust(4, b'\0')
+        return struct.pack('<H', len(entries)) + rows + bytes(4) + more
+    first = 8 + len(pixels)
+    base = [(256, 3, [64]), (257, 3, [40]), (258, 3, [8, 8, 8]), (259, 3, [1]), (262, 3, [2]), (273, 4, [8]), (277, 3, [3]),
+            (278, 3, [40]), (279, 4, [len(pixels)])]
+    size = len(directory(first, base + [(34665, 4, [0])]))
+    open(path, 'wb').write(b'II*\0' + struct.pack('<I', first) + pixels +
+                           directory(first, base + [(34665, 4, [first + size])]) + directory(first + size, exif))
+tiff('photo.tif', [(33437, 5, [18, 10]), (37386, 5, [69, 10]), (41989, 3, [26])])
 # A file of deep scan lines, as far as its header: one part of type deepscanline, version bit 11.
 flat = open('depth.exr', 'rb').read()
 at = flat.index(b'channels\0')

@@ -115,6 +115,25 @@ done
 run near.exr -o o.exr --focus 100 --fstop 0.05 --focal-length 50
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "nothing is in focus"
 result "a frame with nothing in focus is a warning" $?
+# A depth whose scale nobody knows: where to focus, and how much blur. The pixel that is farthest off gets that.
+blurs() {  # RADII ARGUMENTS...
+    words="radius $1"
+    shift
+    run "$@" --verbose
+    ok=$status
+    lacks "$dir/err" line
+    result "blurs by $words: $*" "$ok"
+}
+blurs "near 6.0 far 0.0" near.exr -o o.exr --focus-at 63,5 --blur 6
+blurs "near 6.0 far 0.0" inverse.exr -o o.exr --focus-at 63,5 --blur 6 --depth-type inverse
+blurs "near 6.0 far 0.0" normal.exr -o o.exr --focus-at 63,5 --blur 6 --depth-type normalized
+blurs "near 6.0 far" ndc.exr -o o.exr --focus-at 61,5 --blur 6 --depth-type ndc-d3d
+# 1/1, 1/2, 1/4, 1/8 from left to right: in focus 1/2; 1/8 is 3/4 as far off as 1/1 is.
+blurs "near 6.0 far 4.5" near.exr -o o.exr --focus-at 20,5 --blur 6
+bad 1 "--blur 6|--focus-at" near.exr -o o.exr --blur 6
+bad 1 "--fstop|--blur" near.exr -o o.exr --blur 6 --focus center --fstop 2
+bad 1 "--near|--blur" near.exr -o o.exr --blur 6 --focus center --near 2
+bad 1 "--focus-at is pixel 99,5|outside" near.exr -o o.exr --blur 6 --focus-at 99,5
 # A depth map of another size is scaled to the picture, with a message.
 good flat.exr -o steps-full.exr --focus 2 --max-radius 6 --depth-file steps.exr --json
 ! contains "$dir/out" depth_scaled_from
@@ -420,6 +439,67 @@ warns "0.01562 to 1, the focus 4|normalized, inverse or ndc-d3d" \
     ndc.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --max-radius 50
 warns "inverse depth may have a scale of its own" \
     near.exr -o o.exr --focus 4 --fstop 0.1 --focal-length 50 --depth-type inverse
+if [ -x "$(dirname "$program")/../io/hyperfocal-oiio" ]; then
+    # What estimators write, white near, needs no more; with a type it is as that says.
+    blurs "near 6.0 far 0.0" photo.png -o o.png --depth-file white.png --focus-at 60,20 --blur 6
+    blurs "near 0.0 far 6.0" photo.png -o o.png --depth-file map8.png --focus-at 60,20 --blur 6
+    blurs "near 6.0 far 0.0" photo.png -o o.png --depth-file map8.png --focus-at 60,20 --blur 6 --depth-type normalized
+    # EXIF is the lens, unless one is given. 26 mm on film of 43.27 mm across are 6.9 mm on 11.48 mm, of which a picture of
+    # 64 x 40 has 9.738 mm in x.
+    plan "model lens, f/1.8, focal length 6.9 mm, sensor 9.7|(from EXIF)|focus 3 from --focus" \
+        photo.tif --depth-file depth.exr --focus 3
+    plan "f/1.8, focal length 50 mm, sensor 36 mm (the rest from EXIF)" photo.tif --depth-file depth.exr --focus 3 --focal-length 50
+    plan "f/4, focal length 50 mm, sensor 36 mm, world" photo.tif --depth-file depth.exr --focus 3 --focal-length 50 --fstop 4
+    plan "model range" photo.tif --depth-file depth.exr --focus 3 --range 2
+    run photo.tif -o o.tif --depth-file depth.exr --focus 3 --verbose
+    [ "$status" -eq 0 ] && contains "$dir/err" "f/1.8 6.9 mm (from EXIF)"
+    result "--verbose says that the lens is from EXIF" $?
+    # A profile of curves and a matrix: what is not blurred keeps its codes, and the profile stays. In an EXR, which has no
+    # profile, the light has the primaries of sRGB: a code of 255, 255, 255 is 1, 1, 1 in any profile (to 2e-4, as the
+    # profile's numbers have 5 digits); the corner 0, 0, 0 stays; and other pixels are not as the curve of sRGB has them.
+    run romm.png -o kept.png --depth-file depth.exr --focus 3 --range inf
+    [ "$status" -eq 0 ] && python3 - <<'PYTHON'
+import zlib, struct
+def chunks(path):
+    data, at, found = open(path, 'rb').read(), 8, {}
+    while at < len(data):
+        size, kind = struct.unpack_from('>I4s', data, at)
+        found[kind] = found.get(kind, b'') + data[at + 8:at + 8 + size]
+        at += 12 + size
+    return found
+def pixels(path):
+    raw, rows, before = zlib.decompress(chunks(path)[b'IDAT']), [], bytes(192)
+    for y in range(40):
+        kind, row = raw[193 * y], bytearray(raw[193 * y + 1:193 * y + 193])
+        for i in range(192):
+            a, b, c = row[i - 3] if i > 2 else 0, before[i], before[i - 3] if i > 2 else 0
+            p = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+            row[i] = row[i] + [0, a, b, (a + b) // 2, p][kind] & 255
+        rows.append(bytes(row))
+        before = row
+    return rows
+assert pixels('kept.png') == pixels('romm.png')
+name, rest = chunks('kept.png')[b'iCCP'].split(b'\0', 1)
+assert zlib.decompress(rest[1:]) == open('romm.icc', 'rb').read()
+PYTHON
+    result "a profile stays, and codes that are not blurred" $?
+    run romm.png -o o.exr --depth-file depth.exr --focus 3 --range inf --compression none
+    [ "$status" -eq 0 ] && ! contains "$dir/err" profile && python3 - <<'PYTHON'
+import struct, exr
+c = exr.read('o.exr')
+size = len(c['R']) // 2560
+v = lambda n, x, y: struct.unpack_from('<e' if size == 2 else '<f', c[n], size * (y * 64 + x))[0]
+to = [[3.1338561, -1.6168667, -0.4906146], [-0.9787684, 1.9161415, 0.0334540], [0.0719453, -0.2289914, 1.4052427]]
+m = [[.79767, .13519, .03134], [.28804, .71188, .00009], [0, 0, .82491]]
+for x, y in (0, 0), (63, 39), (20, 30), (5, 33), (61, 2):
+    light = [(round(255 * f) / 255) ** (461 / 256) for f in (x / 63, y / 39, (x + y) % 40 / 39)]
+    xyz = [sum(a * b for a, b in zip(row, light)) for row in m]
+    for n, row in zip('RGB', to):
+        want = sum(a * b for a, b in zip(row, xyz))
+        assert abs(v(n, x, y) - want) < 2e-4 + abs(want) * 1e-3, (x, y, n, v(n, x, y), want)
+PYTHON
+    result "a profile's matrix gives the primaries of sRGB" $?
+fi
 # A crop by Blender's border render does not say so; its shape hints at it.
 warns "Blender|unusual shape, 49 x 38|--display 1920x1080+X+Y" border.exr -o o.exr
 for picture in "blender.exr" "border.exr --display 64x40" "border.exr --range 2"; do

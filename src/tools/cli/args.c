@@ -23,7 +23,7 @@ static void set_defaults(struct cli_args *args)
                             &args->near_end,     &args->far_begin,    &args->far_end,        &args->fstop,
                             &args->focal_length, &args->sensor_width, &args->world_unit,     &args->near_plane,
                             &args->far_plane,    &args->memory_limit, &args->depth_of_field, &args->depth_scale,
-                            &args->depth_offset};
+                            &args->depth_offset, &args->blur};
     for (size_t i = 0; i < sizeof(unset) / sizeof(unset[0]); i++)
         *unset[i] = NAN;
 }
@@ -132,7 +132,8 @@ static int check_depth(const struct cli_args *args, struct tool_error *error)
         return -1;
     if (args->depth_scale == 0)
         return tool_fail(error, -1, "--depth-scale: '0' is out of range, it must not be 0");
-    if (args->depth_type == HF_DEPTH_COC && (args->focus_at_given || args->focus_by == CLI_FOCUS_CENTER))
+    if (args->depth_type == HF_DEPTH_COC && !given(args->blur) &&
+        (args->focus_at_given || args->focus_by == CLI_FOCUS_CENTER))
         return tool_fail(error, -1, "--focus%s cannot be used with --depth-type coc, which has no distances",
                          args->focus_at_given ? "-at" : " center");
     return 0;
@@ -143,8 +144,9 @@ static int check_model(const struct cli_args *args, struct tool_error *error)
     const char *range = range_option(args);
     const char *lens = given(args->fstop) ? "fstop" : given(args->focal_length) ? "focal-length" : NULL;
     if (args->depth_type == HF_DEPTH_COC && (range || lens))
-        return tool_fail(error, -1, "--%s cannot be used with --depth-type coc, which holds the blur already",
-                         range ? range : lens);
+        return tool_fail(error, -1, "--%s cannot be used with %s", range ? range : lens,
+                         given(args->blur) ? "--blur, which says how much blur there is"
+                                           : "--depth-type coc, which holds the blur already");
     if (range && lens)
         return tool_fail(error, -1,
                          "--%s and --%s cannot be given together: one chooses the range model, the other "
@@ -224,6 +226,28 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
     return 0;
 }
 
+// --blur makes radii of any depth, so from here on the depth is radii, coc.
+static int take_blur(struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
+{
+    static const char *const useless[] = {"near",           "far",         "keys",        "focus-smooth",
+                                          "focus-per-view", "depth-scale", "depth-offset"};
+    if (!given(args->blur))
+        return 0;
+    if (args->focus_by != CLI_FOCUS_AT && args->focus_by != CLI_FOCUS_CENTER)
+        return tool_fail(error, -1, "--blur %g needs --focus-at or --focus center: where to focus", args->blur);
+    if (args->depth_type == HF_DEPTH_COC)
+        return tool_fail(error, -1, "--blur cannot be used with --depth-type coc, which holds the blur already");
+    for (size_t i = 0; i < sizeof(useless) / sizeof(useless[0]); i++)
+        if (tool_given(parser, useless[i]))
+            return tool_fail(error, -1, "--%s is of no use with --blur, which asks for no distances", useless[i]);
+    args->blur_typed = tool_given(parser, "depth-type");
+    args->blur_type = args->depth_type;
+    args->blur_normalized = args->normalized;
+    args->depth_type = HF_DEPTH_COC;
+    args->normalized = 0;
+    return 0;
+}
+
 // Resolve and check combinations of options. Their order on the command line does not matter.
 static int combine(struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
@@ -233,7 +257,7 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
     else
         p->engine = HF_ENGINE_LAYERS;
     args->chose_chapter = tool_choose_chapter(parser, p);
-    if (cli_choose_check(args, parser, error))
+    if (cli_choose_check(args, parser, error) || take_blur(args, parser, error))
         return -1;
     if (tool_given(parser, "keys-blend") && !args->keys)
         return tool_fail(error, -1, "--keys-blend is of use only with --keys");

@@ -47,6 +47,11 @@ struct cli_args {
     float fstop, focal_length, sensor_width, world_unit;
     int metric;  // some distance was given in metres
 
+    float blur;                    // --blur: pixels; depth_type is then coc, which depth.c makes of what is there:
+    int blur_typed;                // --depth-type says what that is, else the file's kind does
+    enum hf_depth_type blur_type;  // as depth_type, and
+    int blur_normalized;           // as normalized
+
     const char *depth_channel, *depth_file;
     enum hf_depth_type depth_type;  // as the library sees it, after cli_depth_prepare
     int normalized;                 // 1: a map from 0 at near_plane to 1 at far_plane; -1: the other way; else 0

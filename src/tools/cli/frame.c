@@ -142,6 +142,22 @@ static int sharpen(const struct cli_args *args, const struct hf_io_run *run, str
     return 0;
 }
 
+// --blur: the depth becomes radii.
+static int blur_without_scale(const struct cli_args *args, struct cli_view *v, struct tool_error *error)
+{
+    const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
+    const int centre = args->focus_by == CLI_FOCUS_CENTER;
+    const int x = centre ? display->x0 + (display->x1 - display->x0) / 2 : args->focus_x;
+    const int y = centre ? display->y0 + (display->y1 - display->y0) / 2 : args->focus_y;
+    const int size[2] = {v->view->width, v->view->height}, at[2] = {x - data->x0, y - data->y0};
+    if (!cli_depth_blur(args, v->depth, size, at, v->map_bits != 0))
+        return 0;
+    return tool_fail(error, CLI_BAD_ARGUMENTS,
+                     "%s: %s is pixel %d,%d, which is outside the data window %d,%d to %d,%d, or has no depth",
+                     v->label, centre ? "--focus center" : "--focus-at", x, y, data->x0, data->y0, data->x1 - 1,
+                     data->y1 - 1);
+}
+
 static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
@@ -163,6 +179,8 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
         if (status)
             return status;
         cli_depth_prepare(args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
+        if (!isnan(args->blur) && blur_without_scale(args, v, error))
+            return CLI_BAD_ARGUMENTS;
     }
     frame->ms[CLI_READ] += fetched - start;
     frame->ms[CLI_DECODE] += tool_now_ms() - fetched;

@@ -65,12 +65,24 @@ enum cli_model cli_lens_model(const struct cli_args *args, const struct hf_io_ca
     return has_lens(args, camera) ? CLI_MODEL_LENS : CLI_MODEL_RANGE;
 }
 
+const char *cli_lens_from(const struct cli_args *args, const struct hf_io_camera *camera)
+{
+    const int some = given(args->fstop) || given(args->focal_length),
+              all = given(args->fstop) && given(args->focal_length);
+    return all            ? ""
+           : camera->exif ? some ? " (the rest from EXIF)" : " (from EXIF)"
+           : some         ? " (the rest from the header)"
+                          : " (from the header)";
+}
+
 int cli_lens_set(struct hf_params *p, const struct cli_args *args, const struct hf_io_camera *camera, const char *label,
                  struct tool_error *error)
 {
     p->lens.f_number = first(args->fstop, camera->f_number, NAN);
     p->lens.focal_length_mm = first(args->focal_length, cli_lens_header_focal(camera), NAN);
-    p->lens.sensor_width_mm = first(args->sensor_width, camera->sensor_width_mm, 36);
+    // EXIF's sensor belongs to its focal length.
+    const float sensor = camera->exif && given(args->focal_length) ? NAN : camera->sensor_width_mm;
+    p->lens.sensor_width_mm = first(args->sensor_width, sensor, 36);
     p->lens.world_unit_m = given(args->world_unit) ? args->world_unit : 1;
     if (!given(p->lens.focal_length_mm))
         return tool_fail(error, CLI_BAD_ARGUMENTS,

@@ -13,6 +13,9 @@ float cli_lens_header_focal(const struct hf_io_camera *camera);
 // The model: the lens if an option asks for one, or if the header has a complete one and no option asks for a range.
 enum cli_model cli_lens_model(const struct cli_args *args, const struct hf_io_camera *camera);
 
+// Where a lens comes from that no option gives, as " (from EXIF)"; "" if options give all of it.
+const char *cli_lens_from(const struct cli_args *args, const struct hf_io_camera *camera);
+
 // Fill p->lens. Returns 0, or an exit code with *error filled when something is missing.
 int cli_lens_set(struct hf_params *p, const struct cli_args *args, const struct hf_io_camera *camera, const char *label,
                  struct tool_error *error);

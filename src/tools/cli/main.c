@@ -6,6 +6,7 @@
 #include "tools/cli/explain.h"
 #include "tools/cli/frame.h"
 #include "tools/cli/json.h"
+#include "tools/cli/lens.h"
 #include "tools/cli/overlay.h"
 #include "tools/cli/pattern.h"
 #include "tools/cli/preview.h"
@@ -53,8 +54,9 @@ static int print_plan(const struct cli_frame *frame, const struct cli_session *s
                tool_shown(depth_part, third), cli_depth_type_name(args));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)
-            printf(", f/%g, focal length %g mm, sensor %g mm, world unit %g m", p->lens.f_number,
-                   p->lens.focal_length_mm, p->lens.sensor_width_mm, p->lens.world_unit_m);
+            printf(", f/%g, focal length %g mm, sensor %g mm%s, world unit %g m", p->lens.f_number,
+                   p->lens.focal_length_mm, p->lens.sensor_width_mm, cli_lens_from(args, &v->view->camera),
+                   p->lens.world_unit_m);
         const int autofocus = p->focus == HF_DERIVE;  // no number yet
         if (autofocus)
             printf(", focus from %s", v->setup.focus_from);

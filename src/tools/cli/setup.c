@@ -26,7 +26,8 @@ const char *cli_model_name(enum cli_model model)
 
 int cli_focus_needs_depth(const struct cli_args *args)
 {
-    return args->focus_by == CLI_FOCUS_AT || args->focus_by == CLI_FOCUS_CENTER;
+    const int radii = args->depth_type == HF_DEPTH_COC;  // with --blur the focus is in them
+    return !radii && (args->focus_by == CLI_FOCUS_AT || args->focus_by == CLI_FOCUS_CENTER);
 }
 
 static int display_width(const struct hf_io_view *view)
@@ -90,6 +91,8 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     float *focus = &setup->params.focus;
     char option[64];
     const struct hf_io_box *display = &view->display_window;
+    if (setup->model == CLI_MODEL_COC)
+        return 0;
     switch (args->focus_by) {
     case CLI_FOCUS_DISTANCE:
         setup->focus_from = args->focus_from ? args->focus_from : "--focus";
@@ -110,8 +113,6 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
     case CLI_FOCUS_HEADER:
         break;
     }
-    if (setup->model == CLI_MODEL_COC)
-        return 0;
     if (setup->params.engine == HF_ENGINE_GAUSSIAN && setup->model == CLI_MODEL_RANGE) {
         setup->focus_from = "the picture's centre";
         *focus = HF_DERIVE;

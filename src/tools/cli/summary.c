@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "tools/cli/choose.h"
+#include "tools/cli/lens.h"
 #include "tools/common/report.h"
 
 int cli_missed_budget(const struct cli_view *v)
@@ -58,7 +59,8 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
         n += snprintf(text + n, sizeof(text) - (size_t)n, " (%s chose %s)", cli_choice_option(frame->args).text,
                       v->setup.choice.inner.options);
     if (v->setup.model == CLI_MODEL_LENS)
-        n += snprintf(text + n, sizeof(text) - (size_t)n, ", f/%g %g mm", p->lens.f_number, p->lens.focal_length_mm);
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", f/%g %g mm%s", p->lens.f_number, p->lens.focal_length_mm,
+                      cli_lens_from(frame->args, &v->view->camera));
     if (v->setup.focus_from)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", focus %.4g (%s)", p->focus, v->setup.focus_from);
     if (p->engine == HF_ENGINE_GAUSSIAN)

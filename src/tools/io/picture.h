@@ -25,6 +25,10 @@ struct hf_io_camera {
     float focal_length_mm;    // "pinholeFocalLength"
     float sensor_width_mm;    // "sensorOverallDimensions".x
     float nominal_length_mm;  // "nominalFocalLength": what is written on the lens
+    // Distance along the camera's axis of a point x, y, z of the world: |axis . (x, y, z, 1)|, from "worldToCamera", else from
+    // "worldToNDC". The first is NAN if the header has neither.
+    float axis[4];
+    bool exif;  // the lens is that of a photograph's EXIF
 };
 
 struct hf_io_box {
@@ -47,7 +51,7 @@ struct hf_io_view {
     struct hf_io_camera camera;
     // For a photograph: how to turn it upright, in EXIF's numbering, 1 upright; 0 unknown. Pixels are never turned.
     int orientation;
-    bool profile;  // it has a colour profile other than sRGB's
+    bool profile;  // it has a colour profile other than sRGB's, which is not used: the colours count as sRGB
 };
 
 // The views of a file, a growing list.

@@ -23,6 +23,17 @@ static float camera_value(const struct hf_exr *e, int p, const char *name)
     return exr_attr_get_float(e->core, p, name, &f) == EXR_ERR_SUCCESS ? f : NAN;
 }
 
+// The row vector (x, y, z, 1) times "worldToCamera" has the distance along the camera's axis third; times "worldToNDC" it
+// has it last.
+static void find_axis(const struct hf_exr *e, int p, float axis[4])
+{
+    exr_attr_m44f_t m;
+    const bool camera = exr_attr_get_m44f(e->core, p, "worldToCamera", &m) == EXR_ERR_SUCCESS;
+    const bool known = camera || exr_attr_get_m44f(e->core, p, "worldToNDC", &m) == EXR_ERR_SUCCESS;
+    for (int i = 0; i < 4; i++)
+        axis[i] = known ? m.m[4 * i + (camera ? 2 : 3)] : NAN;
+}
+
 static int fill_windows(const struct hf_exr *e, struct hf_io_view *v, struct hf_io_error *err)
 {
     const struct hf_exr_part *part = &e->parts[v->part];
@@ -49,6 +60,7 @@ static int fill_windows(const struct hf_exr *e, struct hf_io_view *v, struct hf_
     v->camera.nominal_length_mm = camera_value(e, v->part, "nominalFocalLength");
     v->camera.sensor_width_mm =
         exr_attr_get_v2f(e->core, v->part, "sensorOverallDimensions", &sensor) == EXR_ERR_SUCCESS ? sensor.x : NAN;
+    find_axis(e, v->part, v->camera.axis);
     return hf_io_check_window(e->path, "display window", v->display_window, err);
 }
 

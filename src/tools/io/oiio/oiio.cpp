@@ -2,6 +2,8 @@
 // Everything OpenImageIO does for us, behind a C interface that no exception leaves. Part of the helper program.
 #include "tools/io/oiio/oiio.h"
 
+#include "tools/io/oiio/icc.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,6 +32,7 @@ struct hf_oiio {
     ImageSpec spec;
     int colour[4];  // channel indices; -1
     int depth;
+    std::unique_ptr<hf_icc> profile;  // of the colours, if it is not sRGB's and can be used
 };
 
 namespace
@@ -257,6 +260,42 @@ int check_spec(const ImageSpec &spec, const char *path, hf_io_error *err)
     return 0;
 }
 
+bool has_profile(const ImageSpec &spec)
+{
+    return spec.find_attribute("ICCProfile") &&
+           spec.get_string_attribute("ICCProfile:profile_description").find("sRGB") == std::string::npos;
+}
+
+// The profile of colours stored as integers, if it is made of curves and a matrix; else none: the colours count as sRGB.
+std::unique_ptr<hf_icc> read_profile(const ImageSpec &spec, const int colour[3])
+{
+    const OIIO::ParamValue *p =
+        has_profile(spec) && is_integer(spec.format) ? spec.find_attribute("ICCProfile") : nullptr;
+    std::unique_ptr<hf_icc> icc;
+    if (!p || colour[0] == colour[1])
+        return icc;
+    icc.reset(new hf_icc);
+    if (hf_icc_read(icc.get(), static_cast<const uint8_t *>(p->data()), (size_t)p->datasize()))
+        icc.reset();
+    return icc;
+}
+
+// The lens of a photograph. The 35 mm equivalent compares diagonals (CIPA DCG-001), so the picture's shape says how wide
+// the sensor is.
+void fill_exif(struct hf_io_view *v, const ImageSpec &spec)
+{
+    const float unknown = NAN, focal = spec.get_float_attribute("Exif:FocalLength", unknown);
+    const float equivalent = (float)spec.get_int_attribute("Exif:FocalLengthIn35mmFilm");
+    const float apex = spec.get_float_attribute("Exif:ApertureValue", unknown);
+    const float width = (float)spec.width, height = (float)spec.height;
+    v->camera.exif = focal > 0;
+    v->camera.focal_length_mm = focal;
+    v->camera.f_number =
+        spec.get_float_attribute("FNumber", spec.get_float_attribute("Exif:FNumber", std::exp2(apex / 2)));
+    if (focal > 0 && equivalent > 0)
+        v->camera.sensor_width_mm = std::hypot(36.0f, 24.0f) * focal / equivalent * width / std::hypot(width, height);
+}
+
 void fill_view(struct hf_io_view *v, const hf_oiio *o)
 {
     const ImageSpec &spec = o->spec;
@@ -275,10 +314,10 @@ void fill_view(struct hf_io_view *v, const hf_oiio *o)
         v->display_window = v->data_window;
     v->pixel_aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
     v->screen_width = 1;
-    v->camera = {unknown, unknown, unknown, unknown, unknown};
+    v->camera = {unknown, unknown, unknown, unknown, unknown, {unknown, 0, 0, 0}, false};
+    fill_exif(v, spec);
     v->orientation = spec.get_int_attribute("Orientation");
-    v->profile = spec.find_attribute("ICCProfile") &&
-                 spec.get_string_attribute("ICCProfile:profile_description").find("sRGB") == std::string::npos;
+    v->profile = has_profile(spec) && !o->profile;
 }
 
 // Channel c of all pixels as floats: integers become 0 .. 1.
@@ -301,6 +340,7 @@ int read_colour(const hf_oiio *o, float *const planes[4], hf_io_error *err)
 {
     const size_t n = (size_t)o->spec.width * (size_t)o->spec.height;
     const bool curve = is_integer(o->spec.format);
+    const bool profiled = curve && o->profile && planes[0] && planes[1] && planes[2];
     const bool straight = o->colour[3] >= 0 && o->spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
     std::vector<float> alpha;
     Input input;
@@ -322,12 +362,19 @@ int read_colour(const hf_oiio *o, float *const planes[4], hf_io_error *err)
         }
         if (read_channel(input, o, o->colour[k], planes[k], err))
             return -1;
-        if (curve)
+        if (curve && !profiled)
             for (size_t i = 0; i < n; i++)
                 planes[k][i] = (float)from_srgb(planes[k][i]);
-        if (straight)
-            premultiply(planes[k], alpha.data(), n);
     }
+    for (size_t i = 0; i < n && profiled; i++) {
+        float rgb[3] = {planes[0][i], planes[1][i], planes[2][i]};
+        hf_icc_to_light(o->profile.get(), rgb);
+        for (int k = 0; k < 3; k++)
+            planes[k][i] = rgb[k];
+    }
+    for (int k = 0; k < 3 && straight; k++)
+        if (planes[k])
+            premultiply(planes[k], alpha.data(), n);
     return 0;
 }
 
@@ -342,9 +389,10 @@ TypeDesc output_type(const char *path, int bits)
     return bits == 16 ? TypeDesc::UINT16 : TypeDesc::UINT8;
 }
 
-// Interleave the planes as the format wants them: with the sRGB curve and straight alpha for integers.
+// Interleave the planes as the format wants them: for integers with straight alpha, and with the curve of sRGB or as the
+// profile says that goes along.
 std::vector<float> interleave(const struct hf_io_view *v, const float *const planes[4], const ImageSpec &spec,
-                              bool alpha)
+                              bool alpha, const hf_icc *profile)
 {
     const size_t n = (size_t)v->width * (size_t)v->height, channels = (size_t)spec.nchannels;
     const size_t colours = channels - (alpha ? 1 : 0);
@@ -355,9 +403,11 @@ std::vector<float> interleave(const struct hf_io_view *v, const float *const pla
             float f = planes[c][i];
             if (curve && alpha && planes[3][i] > 0)
                 f /= planes[3][i];
-            pixels[i * channels + c] = curve ? to_srgb(f) : std::isnan(f) ? 0.0f : f;
+            pixels[i * channels + c] = profile || std::isnan(f) ? (std::isnan(f) ? 0.0f : f) : curve ? to_srgb(f) : f;
         }
     }
+    for (size_t i = 0; i < n && profile; i++)
+        hf_icc_to_code(profile, &pixels[i * channels]);
     for (size_t i = 0; i < n && alpha; i++)
         pixels[i * channels + colours] = planes[3][i];
     return pixels;
@@ -453,7 +503,14 @@ int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error
     // The writer may have settled for another type.
     ImageSpec actual = output.out->spec();
     actual.nchannels = spec.nchannels;
-    const std::vector<float> pixels = interleave(v, planes, actual, alpha);
+    // Of the formats that are written, these keep a profile.
+    static const char *const profiled[] = {"jpeg", "png", "tiff"};
+    const int colours[3] = {0, grey ? 0 : 1, 2};
+    std::unique_ptr<hf_icc> profile;
+    for (const char *name : profiled)
+        if (!strcmp(name, output.out->format_name()) && is_integer(actual.format))
+            profile = read_profile(spec, colours);
+    const std::vector<float> pixels = interleave(v, planes, actual, alpha, profile.get());
     return output.write(TypeDesc::FLOAT, pixels.data(), made);
 }
 
@@ -576,8 +633,9 @@ int hf_oiio_open(hf_oiio **out, const char *path, const char *depth_channel, hf_
         if (open_input(input, path, err) || check_spec(input.in->spec(), path, err))
             return -1;
         OIIO::attribute("threads", 1);
-        hf_oiio *o = *out = new hf_oiio{path, input.in->spec(), {-1, -1, -1, -1}, -1};
+        hf_oiio *o = *out = new hf_oiio{path, input.in->spec(), {-1, -1, -1, -1}, -1, nullptr};
         find_colour(o->spec, o->colour);
+        o->profile = read_profile(o->spec, o->colour);
         o->depth = find_depth(o->spec, depth_channel);
         if (o->colour[0] < 0)
             return 0;
