@@ -67,7 +67,7 @@ static const struct tool_option options[] = {
      .unit = TOOL_UNIT_DISTANCE},
     {"blur", 0, TOOL_FOCUS, "PX", "For a depth of which nobody knows the scale: focus where --focus-at or --focus center says, "
      "and blur what is farthest off by PX pixels, all else in proportion. Whole numbers are then taken as depth estimators "
-     "give them, white near, unless --depth-type says otherwise.", NUMBER(blur, 0, 2048)},
+     "give them, white near, unless --depth-type says otherwise. Default: none, distances count.", NUMBER(blur, 0, 2048)},
     {"strength", 0, TOOL_FOCUS, "S", "Amount of blur, 0 (none) to 1. Default 1.", NUMBER(strength, 0, 1),
      .field = "range.strength"},
     {"near-begin", 0, TOOL_FOCUS, "D", "Near blur is full up to here, scene units. Default: focus - range.",
@@ -199,9 +199,9 @@ static const char *const groups[TOOL_GROUPS] = {
 // clang-format on
 
 // The options that --help prints; --help=all prints all.
-static const char *const usual[] = {"output",  "focus",        "focus-at",   "range",      "max-radius",
-                                    "blur",    "fstop",        "focal-length", "depth-file", "depth-type", "engine",
-                                    "quality", "aperture",     "dry-run",    "help",       NULL};
+static const char *const usual[] = {"output",   "focus",        "focus-at",   "range",      "max-radius", "blur",
+                                    "fstop",    "focal-length", "depth-file", "depth-type", "engine",     "quality",
+                                    "aperture", "dry-run",      "help",       NULL};
 
 const struct tool_program cli_program = {
     .name = "hyperfocal",
