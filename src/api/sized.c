@@ -91,6 +91,18 @@ static int bad_reserved(struct hf_message *message, const char *argument)
                   "is not zero, and this library (%s) knows nothing there; begin with defaults or zeros", hf_version());
 }
 
+// Fields that are 0 or 1. Kernels count with some of them.
+static const size_t flags[] = {
+    offsetof(struct hf_params, gather.karis),       offsetof(struct hf_params, gather.per_pixel_kernel),
+    offsetof(struct hf_params, gather.bicubic),     offsetof(struct hf_params, chapter.faithful),
+    offsetof(struct hf_params, chapter.karis),      offsetof(struct hf_params, chapter.per_pixel_kernel),
+    offsetof(struct hf_params, chapter.bicubic),    offsetof(struct hf_params, hexagon.uniform),
+    offsetof(struct hf_params, gaussian.faithful),  offsetof(struct hf_params, layers.no_unmix),
+    offsetof(struct hf_params, layers.no_hidden),   offsetof(struct hf_params, layers.no_highlights),
+    offsetof(struct hf_params, layers.no_patterns), offsetof(struct hf_params, run.deterministic),
+    offsetof(struct hf_params, run.no_skip),
+};
+
 int hf_given_params(struct hf_given *own, const struct hf_params *params, struct hf_message *message)
 {
     *own = (struct hf_given){.params = hf_params_defaults};
@@ -101,6 +113,10 @@ int hf_given_params(struct hf_given *own, const struct hf_params *params, struct
     for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++)
         if (!is_zero((const char *)&own->params + reserved[i].offset, reserved[i].bytes))
             return bad_reserved(message, reserved[i].name);
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
+        int *flag = (int *)(void *)((char *)&own->params + flags[i]);
+        *flag = *flag != 0;
+    }
     const struct hf_image **picture = &own->params.aperture.picture;
     if (*picture && hf_sized_in(&own->picture, *picture, &hf_sized_image, "aperture.picture", message))
         return HF_ERR_ARG;

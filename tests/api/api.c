@@ -502,6 +502,24 @@ static void depth_strides(struct hf_context *c)
     call_free(&good);
 }
 
+// A flag is 0 or 1: any other number counts as 1, also where a kernel counts with it.
+static void flags(struct hf_context *c)
+{
+    struct call call = call_new(48, 32, 4);
+    struct picture want = picture_new(48, 32, 4);
+    const struct hf_image reference = picture_image(&want);
+    call.params.engine = HF_ENGINE_GATHER;
+    call.params.gather.karis = call.params.gather.bicubic = call.params.gather.per_pixel_kernel = 1;
+    CHECK_INT(hf_render(c, &reference, &call.src, &call.depth, &call.params), HF_OK);
+    call.params.gather.karis = 7;
+    call.params.gather.bicubic = -3;
+    call.params.gather.per_pixel_kernel = 1000000;
+    CHECK_INT(hf_render(c, &call.dst, &call.src, &call.depth, &call.params), HF_OK);
+    CHECK(picture_same_bits(&want, &call.out));
+    picture_free(&want);
+    call_free(&call);
+}
+
 int main(int argc, char **argv)
 {
     seed = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : 1;
@@ -520,6 +538,7 @@ int main(int argc, char **argv)
         bad_images(c);
         bad_params(c);
         depth_strides(c);
+        flags(c);
         for (int from = 0; from <= HF_FORMAT_PLANAR32F; from++)
             for (int variant = 0; variant < 8; variant++)
                 repairs(c, (enum hf_format)from, variant);
