@@ -12,7 +12,7 @@ if [ "$program" = none ]; then
     exit 77
 fi
 passed=0 failed=0
-for file in $(find include src tests bench -name '*.[ch]' -o -name '*.cpp' | grep -v '/vec_[a-z0-9]*\.h$\|^tests/abi/[0-9]' | sort); do
+for file in $(find include src tests bench integrations -name '*.[ch]' -o -name '*.cpp' | grep -v '/vec_[a-z0-9]*\.h$\|^tests/abi/[0-9]' | sort); do
     if "$program" --dry-run --Werror "$file" 2>/dev/null; then
         passed=$((passed + 1))
     else

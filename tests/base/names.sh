@@ -6,7 +6,7 @@
 cd "$1" || exit 1
 list=$(mktemp) || exit 1
 trap 'rm -f "$list"' EXIT
-find src bench tests include examples docs images .ci -type f | grep -v '^tests/abi/[0-9]' | sort >"$list"
+find src bench tests include examples integrations docs images .ci -type f | grep -v '^tests/abi/[0-9]' | sort >"$list"
 grep -E '\.(c|h|inc|cpp|sh)$|meson\.build$' "$list" | xargs awk -v list="$list" '
     function check_file(name, ok) {
         if (name ~ /[*]|[A-Z][A-Z]|^_|^(windows|immintrin|pthread|math)[.]h$/) return
