@@ -217,6 +217,11 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
         return tool_fail(error, -1, "there is no OUTPUT for %s, name it with -o", args->input);
     if (args->output && args->compression && !cli_is_exr(args->output))
         return tool_fail(error, -1, "--compression %s is for EXR, but OUTPUT is %s", args->compression, args->output);
+    if (args->output && args->zip_level && !cli_is_exr(args->output))
+        return tool_fail(error, -1, "--zip-level %d is for EXR, but OUTPUT is %s", args->zip_level, args->output);
+    if (args->zip_level && args->compression && strncmp(args->compression, "zip", 3))
+        return tool_fail(error, -1, "--zip-level %d is for ZIP, but --compression is %s", args->zip_level,
+                         args->compression);
     if (!args->json_file)
         return 0;
     // A user may forget that the word after --json is its FILE. That must not overwrite a picture.

@@ -75,6 +75,7 @@ struct cli_args {
     const char *views;  // NULL: all, else names with commas
     const char *layer;  // likewise; NULL: the main one
     const char *compression;
+    int zip_level;   // 0: not given
     int grow;        // --grow: enlarge the data window by the reach of the blur
     int display[4];  // width, height, and the picture's x, y in it; [0] = 0: the file's window
     const char *dump_dir;

@@ -437,6 +437,7 @@ int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, in
                                   .results = results,
                                   .result_count = frame->view_count,
                                   .compression = frame->args->compression,
+                                  .zip_level = frame->args->zip_level,
                                   .texts = texts,
                                   .text_count = text_count,
                                   .run = frame->run};

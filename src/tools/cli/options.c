@@ -42,6 +42,8 @@ static const struct tool_option options[] = {
      .field = "view.display_width|view.display_height"},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Compression of an EXR OUTPUT. "
      "Default: that of INPUT.", .parse = tool_parse_choice_text, FIELD(compression)},
+    {"zip-level", 0, TOOL_FILES, "N", "How hard ZIP and ZIPS try to make an EXR OUTPUT small, 1 (fast) to 12 (slow). "
+     "Default: fast, and about as small as other programs write it.", COUNT(zip_level, 1, 12)},
 
     {"focus", 0, TOOL_FOCUS, "D|center", "Distance in perfect focus, scene units, more than 0, or inf with a lens; or "
      "center: what the middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,

@@ -120,6 +120,7 @@ struct hf_io_job {
     int result_count;
     const char *compression;  // "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab", or NULL:
                               // as it was
+    int zip_level;  // of ZIP and ZIPS: 1, fast, to 12, small; 0: what makes files no longer than other programs' in little time
     const struct hf_io_text
         *texts;  // for the header of an EXR, in place of those of the same names, and with them a checksum of
                  // the file; DWA made from what is no EXR goes without

@@ -58,6 +58,7 @@ static int make_exr(struct hf_io_bytes *made, const struct hf_io_job *job, const
         .names = names,
         .planes = planes,
         .stride = v->width,
+        .zip_level = job->zip_level,
         .texts = job->texts,
         .text_count = job->text_count,
     };
@@ -182,8 +183,8 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
         return hf_io_fail(err, "%s: out of memory", job->path);
     }
     const int compression = job->compression ? hf_exr_compression(job->compression) : -1;
-    const struct hf_exr_job exr = {&file->views, job->results, job->result_count,
-                                   compression,  job->texts,   job->text_count};
+    const struct hf_exr_job exr = {&file->views,   job->results, job->result_count, compression,
+                                   job->zip_level, job->texts,   job->text_count};
     o->unsynced = job->unsynced;
     int status = file->exr && hf_io_is_exr_name(job->path)
                      ? hf_exr_encode_file(&o->exr, file->exr, &exr, job->run, written, err)

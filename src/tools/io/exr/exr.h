@@ -179,12 +179,13 @@ struct hf_exr_encoder {
     bool started;
     const uint8_t *raw;
     size_t raw_size;
-    struct libdeflate_compressor *deflate;
+    struct libdeflate_compressor *deflate, *again;  // again: for chunks that shrink well; or NULL
     uint8_t *scratch, *packed;
     size_t scratch_size;
 };
+// zip_level: libdeflate's, 1 to 12; 0: by what it costs.
 int hf_exr_encoder_open(struct hf_exr_encoder *en, struct hf_exr *e, const struct hf_exr_part *part,
-                        exr_compression_t compression, struct hf_io_error *err);
+                        exr_compression_t compression, int zip_level, struct hf_io_error *err);
 // raw: the chunk's samples. *data is valid until the next call; it is raw if that does not shrink.
 int hf_exr_encode(struct hf_exr_encoder *en, const struct hf_exr_chunk *chunk, const uint8_t *raw, const uint8_t **data,
                   size_t *size, struct hf_io_error *err);
@@ -196,6 +197,7 @@ struct hf_exr_job {
     const struct hf_io_result *results;
     int n_results;
     int compression;  // -1: as it was
+    int zip_level;    // see hf_exr_encoder_open
     const struct hf_io_text *texts;
     int text_count;
 };
@@ -223,6 +225,7 @@ struct hf_exr_new {
     struct hf_io_box data_window, display_window;
     float pixel_aspect, screen_center_x, screen_center_y, screen_width;
     exr_compression_t compression;
+    int zip_level;  // as of hf_exr_encoder_open
     int channel_count;
     const char *const *names;
     const float *const *planes;

@@ -149,7 +149,7 @@ int hf_exr_make_new(struct hf_io_bytes *made, const char *path, const struct hf_
     hf_exr_quiet();
     hf_exr_context_init(&n, &init);
     init.write_fn = write_out;
-    init.zip_level = 4;
+    init.zip_level = !picture->zip_level ? 4 : picture->zip_level < 9 ? picture->zip_level : 9;  // zlib's
     exr_result_t rv = exr_start_write(&core, path, EXR_WRITE_FILE_DIRECTLY, &init);
     if (!rv)
         rv = describe(core, picture);

@@ -206,7 +206,7 @@ static int prepare(struct encoding *en, struct encode_worker *w, size_t size, st
 {
     const struct hf_exr_part *part = &en->e->parts[en->part];
     if (!w->open) {
-        if (hf_exr_encoder_open(&w->en, en->e, part, en->plan->compression, err))
+        if (hf_exr_encoder_open(&w->en, en->e, part, en->plan->compression, en->job->zip_level, err))
             return -1;
         w->open = true;
         w->row = malloc((size_t)part->width * sizeof(*w->row));
