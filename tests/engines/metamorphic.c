@@ -68,7 +68,7 @@ static int margin_of(const struct hf_params *p)
         return 8 + (p->gaussian.sigma > 0 ? (int)(4 * p->gaussian.sigma / fminf(p->view.pixel_aspect, 1)) + 4 * coarse
                                           : 2 * p->gaussian.iterations * coarse);
     case HF_ENGINE_LAYERS:
-        return whole + 42;
+        return whole + 52;
     default:
         return 3 * whole + 24;
     }

@@ -147,15 +147,24 @@ static void merge_call(const struct world *w, const struct kernels *k, enum aren
     k->layers.merge((const float *const(*)[6])set, now.channels, now.scale, w->n, out);
 }
 
+// The planes of sums: those of a set, and coverage.
+static void sums_of(const struct world *w, enum arena a, int i, float *sum[7])
+{
+    set_of(w, a, i, sum);
+    sum[6] = line(w, a, i + 6);
+}
+
 // Up to three taps, each with samples of its own.
 static void taps_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     struct hf_hidden_tap tap[3];
-    float *sum[6];
-    set_of(w, a, IN, sum);
+    float *sum[7];
+    sums_of(w, a, IN, sum);
     for (int i = 0; i < 3; i++) {
-        tap[i] = (struct hf_hidden_tap){
-            .scale = now.scale / (float)(1 << i), .off = now.off - 0.5f * (float)i, .part = now.part / (float)(1 << i)};
+        tap[i] = (struct hf_hidden_tap){.from = 4 * now.off + (float)(2 * i),
+                                        .scale = now.scale / (float)(1 << i),
+                                        .part = now.part / (float)(1 << i),
+                                        .whole = (float)(4 << i)};
         set_of(w, a, 7 + 6 * i, (float **)tap[i].in);
     }
     k->layers.taps(tap, now.rows % 4, now.channels, line(w, a, 6), w->n, sum);
@@ -165,10 +174,11 @@ static void taps_call(const struct world *w, const struct kernels *k, enum arena
 static void sums_make(struct world *w)
 {
     fill_set(w, IN, 0, w->n);
-    for (int i = IN; i < IN + 6; i++)
+    fill(w, IN + 6, 0, w->n, WEIGHT);
+    for (int i = IN; i < IN + 7; i++)
         for (int x = 0; x < w->n; x++)
             line(w, ARENA_MADE, i)[x] += 0.0f;
-    put_set(w, IN, 6, w->n);
+    put_set(w, IN, 7, w->n);
 }
 
 // Four steps on either side, where surfaces often continue; the nearest radii; sums.
@@ -190,26 +200,27 @@ static void between_make(struct world *w)
 static void between_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     struct hf_hidden_line l = {.steps = 4, .away = {1, 2, 3, 4}};
-    float *in[6], *sum[6];
+    float *in[6], *sum[7];
     set_of(w, a, 0, in);
     memcpy(l.in, in, sizeof in);
     for (int i = 0; i < 8; i++)
         l.side[i / 4][i % 4] = line(w, a, 6 * i) - line(w, a, 0);
-    set_of(w, a, IN, sum);
+    sums_of(w, a, IN, sum);
     k->layers.between(&l, now.channels, line(w, a, 48), w->n, sum);
 }
 
 static void found_call(const struct world *w, const struct kernels *k, enum arena a)
 {
-    float *sum[6], *out[6];
+    float *sum[7], *out[6];
     const float *const radius[4] = {line(w, a, 6), line(w, a, 7), line(w, a, 8), line(w, a, 9)}, *const weight[4] = {
                                                                                                      line(w, a, 10),
                                                                                                      line(w, a, 11),
                                                                                                      line(w, a, 12),
                                                                                                      line(w, a, 13)};
     set_of(w, a, 0, sum);
+    sum[6] = line(w, a, 14);
     set_of(w, a, IN, out);
-    k->layers.found((const float *const *)sum, radius, weight, now.channels, 4, w->n, out);
+    k->layers.found((const float *const *)sum, radius, weight, now.channels, w->n, out);
 }
 
 static void spread_call(const struct world *w, const struct kernels *k, enum arena a)
@@ -443,6 +454,7 @@ void layers_make(struct world *w, int which)
         fill_set(w, 0, 0, w->n);
         for (int i = 6; i < 14; i++)
             fill(w, i, 0, 2 * w->n, i < 10 ? RADIUS : WEIGHT);
+        fill(w, 14, 0, w->n, WEIGHT);
         put_set(w, IN, 6, which == LAYERS_SPREAD ? 2 * w->n : w->n);
         return;
     case LAYERS_SMOOTH:

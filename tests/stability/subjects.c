@@ -99,15 +99,15 @@ static struct subject scatter(const char *name, enum hf_resolution resolution)
 // 34: tests/engines/layers.c derives it. Colours of hidden samples are squares of means of roots, and sums of
 // brightness depend on the order of channels: so pictures times a factor, or with channels exchanged, may have other
 // bits. Un-mixing is not linear, so pictures do not add.
-// Margin: a radius, 4 pixels of half resolution at its end, 32 for hidden samples, which look 2^4 half-resolution
-// pixels far, 4 for un-mixing, and the mean around a highlight.
+// Margin: a radius, 4 pixels of half resolution at its end, 30 for hidden samples, which four levels find where radii
+// differ by 24, 12 for their means, 4 for un-mixing, and the mean around a highlight.
 // A cat's eye has another shape at every place; that has its own test.
 static struct subject layers(const char *name, const struct hf_aperture_params *aperture)
 {
     struct subject s = {name,
                         scene_params(),
                         EXACT | KEEPS_ENERGY | KEEPS_CENTRE | UNMIXES,
-                        (int)STABILITY_RADIUS + 4 + 32 + 4 + 2,
+                        (int)STABILITY_RADIUS + 4 + 30 + 12 + 4 + 2,
                         34,
                         60,
                         0};

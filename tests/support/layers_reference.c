@@ -367,8 +367,7 @@ static void put_together(const struct frame *f, struct picture *out)
         }
     for (; i < count && !level_of(f, s[i].own); i++) {
         // A part of the near coverage is withheld from visible samples behind the focus.
-        const double begun = fmin(fmax(f->high - f->low - 1, 0), 1);
-        const double part = f->hidden ? (f->patterns ? 0.75 : 0.25) * begun : 0;
+        const double part = f->hidden ? (f->patterns ? 0.75 : 0.25) : 0;
         for (int p = 0; s[i].own == 0 && p < f->width * f->height; p++) {
             double *m = at(&middle, p % f->width, p / f->width);
             m[HELD] = part * (1 - m[OPEN]);

@@ -249,11 +249,24 @@ static void quad(const struct frame *f, int x, int y, double *out)
     layers_reference_merge(from, 4, 2, 0.25, f->channels, out);
 }
 
+// A ray from the rim of the lens that passes a near edge at a distance of its CoC radius, r pixels, meets a surface of
+// radius s at most s - r pixels behind the edge. A search has to reach that far, for each pixel by itself. This is how
+// many pixels the first n levels reach: a tap lies two pixels times 2^j away, and its sample is merged from two pixels
+// of each step before it.
+static double reach_of(int n)
+{
+    double reach = 0;
+    for (int j = 0; j < n; j++)
+        reach += 2 * (1 << j);
+    return reach;
+}
+
 int layers_reference_levels(const struct frame *f)
 {
     int n = 0;
+    // No more than the pixel with the farthest ray needs: those beyond weigh nothing anywhere.
     if (f->hidden && f->high - f->low >= 1)
-        for (n = 1; n < 7 && 3 * (1 << n) < f->high - f->low;)
+        for (n = 1; n < 7 && reach_of(n) <= f->high - f->low;)
             n++;
     return n;
 }
@@ -312,11 +325,12 @@ static double side_of(const struct frame *f, const struct grid *quads, const dou
     return 1 - open;
 }
 
-// Add a surface that is found on both sides of a line.
-static void find_between(const struct frame *f, const struct grid *quads, int levels, double nearest, int x, int y,
-                         double *sum)
+// Add a surface that is found on both sides of a line. Returns how surely it is one.
+static double find_between(const struct frame *f, const struct grid *quads, int levels, double nearest, int x, int y,
+                           double *sum)
 {
     static const int along[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    double known = 0;
     for (int k = 0; k < 4; k++) {
         const int from[2] = {x, y}, back[2] = {-along[k][0], -along[k][1]};
         double a[SAMPLE] = {0}, b[SAMPLE] = {0}, t0, t1;
@@ -331,27 +345,32 @@ static void find_between(const struct frame *f, const struct grid *quads, int le
             sum[c] += w * (t1 * a[c] + t0 * b[c]) / (t0 + t1);
         sum[WEIGHT] += w;
         sum[RADIUS] += w * (t1 * a[RADIUS] + t0 * b[RADIUS]) / (t0 + t1);
+        known += whole * alike;
     }
+    return known;
 }
 
 static void find(const struct frame *f, const struct grid *level, int levels, double nearest, int x, int y, double *out)
 {
-    double sum[SAMPLE] = {0};
-    const double reached = levels > 1 ? fmin((f->high - f->low) / (1 << (levels - 1)) - 3, 1) : 1;
+    double sum[SAMPLE] = {0}, whole = 0;
     for (int j = 0; j < levels; j++)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1;
             const double *q = at(&level[j], x + u * (1 << j), y + v * (1 << j)), behind = q[RADIUS] - nearest;
-            const double a = fmin(fmax(behind / (2 << j) - hypot(u, v) + 0.5, 0), 1);
-            const double some = fmin(9 * q[WEIGHT], 1);
-            const double part = pow(256, -j) * (j == levels - 1 ? reached : 1);
+            // A tap begins where a ray reaches half a step before it, but not before the nearer levels end; it counts
+            // fully half a step behind it.
+            const double from = fmax((hypot(u, v) - 0.5) * (2 << j), reach_of(j)),
+                         to = (u || v || !j ? hypot(u, v) + 0.5 : 1.5) * (2 << j);
+            const double a = fmin(fmax((behind - from) / (to - from), 0), 1);
+            const double some = fmin(9 * q[WEIGHT], 1), part = pow(256, -j);
             const double w = part * (u ? 0.5 : 1) * (v ? 0.5 : 1) * a * some * layers_reference_hides(behind);
+            whole += 4 * w / part;
             for (int c = 0; c < f->channels; c++)
                 sum[c] += w * q[c];
             sum[WEIGHT] += w;
             sum[RADIUS] += w * q[RADIUS];
         }
-    find_between(f, &level[0], levels, nearest, x, y, sum);
+    whole += 4 * find_between(f, &level[0], levels, nearest, x, y, sum);
     if (sum[WEIGHT] <= 0)
         return;
     out[RADIUS] = sum[RADIUS] / sum[WEIGHT];
@@ -359,8 +378,8 @@ static void find(const struct frame *f, const struct grid *level, int levels, do
         out[c] = sum[c] / sum[WEIGHT];
     for (int i = 0; i < 4; i++)
         out[WEIGHT] += layers_reference_before(f, 2 * x + i % 2, 2 * y + i / 2, out[RADIUS]) / 4;
-    // A sample that the farthest taps have just reached covers nothing yet.
-    out[WEIGHT] *= fmin(4 * pow(256, levels - 2) * (1 + 255 * reached) * sum[WEIGHT], 1);
+    // A sample that taps have just reached covers nothing yet.
+    out[WEIGHT] *= fmin(whole, 1);
 }
 
 static double roots_of(const double *s)
@@ -480,8 +499,8 @@ static void find_hidden(struct frame *f)
             for (int x = -m; x < width + m; x++)
                 memcpy(at(&level[0], x, y), edge(&quads, x, y), SAMPLE * sizeof(double));
         if (j) {
-            step(f, &level[j - 1], &across, 1 << (j - 1), 0, 2 << j);
-            step(f, &across, &level[j], 0, 1 << (j - 1), 2 << j);
+            step(f, &level[j - 1], &across, 1 << (j - 1), 0, reach_of(j));
+            step(f, &across, &level[j], 0, 1 << (j - 1), reach_of(j));
         }
         free(across.v);
     }

@@ -208,11 +208,10 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     const float range = found->radius_max - found->radius_min;
     l->levels = 0;
     l->edges = l->set.unmix && range > HF_EDGES_FROM;
+    // Levels that no pixel of the frame needs are left out. Those that are made change nothing where they are not needed.
     if (l->set.hidden && range >= 1)
-        for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && 3 * (float)(1 << l->levels) < range;)
+        for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && hf_layers_level_from(l->levels) < range * 1.001f;)
             l->levels++;
-    l->held = l->set.held * hf_saturate(range - 1);
-    l->reached = l->levels > 1 ? hf_saturate(range / (float)(1 << (l->levels - 1)) - 3) : 1;
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);
     atomic_init(l->transparent, 0);

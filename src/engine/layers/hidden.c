@@ -105,23 +105,24 @@ void hf_layers_merge_c(const float *const in[3][6], int channels, float slope, i
     }
 }
 
-static void add_tap(const struct hf_hidden_tap *tap, int channels, const float *nearest, int n, float *const sum[6])
+static void add_tap(const struct hf_hidden_tap *tap, int channels, const float *nearest, int n, float *const sum[7])
 {
     const float *const *in = tap->in;
     for (int x = 0; x < n; x++) {
         const float behind = in[5][x] - nearest[x];
-        const float a = hf_saturate(behind * tap->scale + tap->off);
+        const float a = hf_saturate((behind - tap->from) * tap->scale);
         const float v = tap->part * a * hf_saturate(9 * in[4][x]) * hf_layers_hides(behind - 1);
         const float w = v > HF_LAYERS_SOME ? v : 0;
         for (int c = 0; c < channels; c++)
             sum[c][x] = sum[c][x] + w * in[c][x];
         sum[4][x] = sum[4][x] + w;
         sum[5][x] = w > 0 ? sum[5][x] + w * in[5][x] : sum[5][x];
+        sum[6][x] = sum[6][x] + w * tap->whole;
     }
 }
 
 void hf_layers_taps_c(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
-                      float *const sum[6])
+                      float *const sum[7])
 {
     for (int i = 0; i < count; i++)
         add_tap(&tap[i], channels, nearest, n, sum);
@@ -147,7 +148,7 @@ static float side_of(const struct hf_hidden_line *line, int side, int channels, 
 }
 
 void hf_layers_between_c(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
-                         float *const sum[6])
+                         float *const sum[7])
 {
     for (int x = 0; x < n; x++) {
         float end[2][6] = {{0}}, whole[2], inverse[2];
@@ -160,7 +161,7 @@ void hf_layers_between_c(const struct hf_hidden_line *line, int channels, const 
         const float behind = (r0 + r1) * 0.5f - nearest[x], apart = behind > 1 ? behind : 1;
         const float alike = hf_saturate(2 - fabsf(r0 - r1) * HF_LAYERS_UNLIKE / apart);
         const float square = t * t, fourth = square * square;
-        const float v = whole[0] * whole[1] * alike * HF_LAYERS_BETWEEN / (fourth * fourth);
+        const float both = whole[0] * whole[1] * alike, v = both * HF_LAYERS_BETWEEN / (fourth * fourth);
         const float w = v > HF_LAYERS_SOME ? v : 0;
         if (!(w > 0))
             continue;
@@ -169,6 +170,7 @@ void hf_layers_between_c(const struct hf_hidden_line *line, int channels, const 
             sum[c][x] = sum[c][x] + g0 * end[0][c] + g1 * end[1][c];
         sum[4][x] = sum[4][x] + w;
         sum[5][x] = sum[5][x] + g0 * end[0][4] + g1 * end[1][4];
+        sum[6][x] = sum[6][x] + both * HF_LAYERS_REACHED;
     }
 }
 
@@ -190,8 +192,8 @@ static float before_of(const float *const radius[4], const float *const weight[4
     return weight[row][at] * hf_layers_hides(limit - radius[row][at]) + mixed;
 }
 
-void hf_layers_found_c(const float *const sum[6], const float *const radius[4], const float *const weight[4],
-                       int channels, float scale, int n, float *const out[6])
+void hf_layers_found_c(const float *const sum[7], const float *const radius[4], const float *const weight[4],
+                       int channels, int n, float *const out[6])
 {
     for (int x = 0; x < n; x++) {
         const float inverse = sum[4][x] > 0 ? 1 / sum[4][x] : 0, r = sum[5][x] * inverse;
@@ -199,7 +201,7 @@ void hf_layers_found_c(const float *const sum[6], const float *const radius[4], 
         for (int i = 0; i < 4; i++)
             before[i] = before_of(radius, weight, x, i, r - 1);
         const float all = ((before[0] + before[2]) + (before[1] + before[3])) * 0.25f;
-        out[4][x] = sum[4][x] > 0 ? all * hf_saturate(sum[4][x] * scale) : 0;
+        out[4][x] = sum[4][x] > 0 ? all * hf_saturate(sum[6][x]) : 0;
         out[5][x] = r;
         for (int c = 0; c < channels; c++)
             out[c][x] = sum[c][x] * inverse;

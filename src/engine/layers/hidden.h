@@ -57,11 +57,20 @@ static inline float hf_layers_hides(float more)
 enum { HF_LAYERS_STEPS = 12, HF_LAYERS_LINES = 4 };
 
 // A tap of a level: its samples (colour, weight (4), radius (5)) and their weight, `part` times a ramp: scale times how
-// far they lie behind the nearest surface, plus off.
+// far they lie behind the nearest surface, less `from`. whole: how much of a hidden sample's coverage that weight gives.
 struct hf_hidden_tap {
     const float *in[6];
-    float scale, off, part;
+    float from, scale, part, whole;
 };
+
+// Behind an edge a lens sees as many pixels as the two surfaces' radii differ by. Level j finds what is up to 2^(j+2) - 2
+// pixels away: its taps are 2^(j+1) apart, and a sample is merged from 2^(j+1) - 2 pixels on either side. So the levels
+// before it are enough up to this difference of radii, and the level does not count. What a quad finds thus depends on
+// the surfaces around it alone, however many levels the rest of the frame needs.
+static inline float hf_layers_level_from(int j)
+{
+    return (float)((2 << j) - 2);
+}
 
 // A line through n samples (colour, weight (4), radius (5)): the offsets of the samples some steps away on either side,
 // and their distance in half-resolution pixels.
@@ -72,8 +81,7 @@ struct hf_hidden_line {
     float away[HF_LAYERS_STEPS];
 };
 
-// A sample that the last level's taps have just reached covers nothing yet; it covers fully from 1 / REACHED of a tap
-// on.
+// A sample that taps have just reached covers nothing yet; it covers fully from 1 / REACHED of a tap on.
 #define HF_LAYERS_REACHED 4
 
 // Weights of taps below this count as 0, so that 1 / weight is finite.

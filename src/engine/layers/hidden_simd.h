@@ -135,18 +135,18 @@ HF_INLINE vf layers_hides(vf more)
 }
 
 HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const int channels, const float *nearest,
-                              int n, float *const sum[6])
+                              int n, float *const sum[7])
 {
     for (int x = 0; x < n; x += VF_N) {
         const vf from = vf_load(nearest + x);
-        vf all[6];
-        for (int c = 0; c < 6; c++)
+        vf all[7];
+        for (int c = 0; c < 7; c++)
             if (c < channels || c > 3)
                 all[c] = vf_load(sum[c] + x);
         for (int i = 0; i < count; i++) {
             const float *const *in = tap[i].in;
             const vf r = vf_load(in[5] + x), behind = vf_sub(r, from);
-            const vf t = vf_max(vf_fma(behind, vf_set1(tap[i].scale), vf_set1(tap[i].off)), vf_zero());
+            const vf t = vf_max(vf_mul(vf_sub(behind, vf_set1(tap[i].from)), vf_set1(tap[i].scale)), vf_zero());
             const vf a = vf_min(t, vf_set1(1)), full = vf_min(vf_mul(vf_set1(9), vf_load(in[4] + x)), vf_set1(1));
             const vf v =
                 vf_mul(vf_mul(vf_mul(vf_set1(tap[i].part), a), full), layers_hides(vf_sub(behind, vf_set1(1))));
@@ -158,15 +158,16 @@ HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const 
                 all[c] = vf_fma(w, vf_load(in[c] + x), all[c]);
             all[4] = vf_add(all[4], w);
             all[5] = vf_select(some, vf_fma(w, r, all[5]), all[5]);
+            all[6] = vf_fma(w, vf_set1(tap[i].whole), all[6]);
         }
-        for (int c = 0; c < 6; c++)
+        for (int c = 0; c < 7; c++)
             if (c < channels || c > 3)
                 vf_store(sum[c] + x, all[c]);
     }
 }
 
 static void layers_taps_simd(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
-                             float *const sum[6])
+                             float *const sum[7])
 {
     HF_WITH_CHANNELS(channels, layers_taps_of(tap, count, CHANNELS, nearest, n, sum));
 }
@@ -197,7 +198,7 @@ HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, const i
 }
 
 HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int channels, const float *nearest, int n,
-                                 float *const sum[6])
+                                 float *const sum[7])
 {
     const vf one = vf_set1(1);
     for (int x = 0; x < n; x += VF_N) {
@@ -216,8 +217,8 @@ HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int ch
         const vf behind = vf_sub(vf_mul(vf_add(r[0], r[1]), vf_set1(0.5f)), from);
         const vf unlike = vf_mul(vf_abs(vf_sub(r[0], r[1])), vf_set1(HF_LAYERS_UNLIKE));
         const vf alike = coc_saturate(vf_sub(vf_set1(2), vf_div(unlike, vf_max(behind, one))));
-        const vf both = vf_mul(vf_mul(vf_mul(whole[0], whole[1]), alike), vf_set1(HF_LAYERS_BETWEEN));
-        const vf v = vf_div(both, vf_mul(fourth, fourth));
+        const vf both = vf_mul(vf_mul(whole[0], whole[1]), alike);
+        const vf v = vf_div(vf_mul(both, vf_set1(HF_LAYERS_BETWEEN)), vf_mul(fourth, fourth));
         const vm some = vf_gt(v, vf_set1(HF_LAYERS_SOME));
         if (!vm_any(some))
             continue;
@@ -227,11 +228,12 @@ HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int ch
             vf_store(sum[c] + x, vf_fma(g1, end[1][c], vf_fma(g0, end[0][c], vf_load(sum[c] + x))));
         vf_store(sum[4] + x, vf_add(vf_load(sum[4] + x), w));
         vf_store(sum[5] + x, vf_fma(g1, end[1][4], vf_fma(g0, end[0][4], vf_load(sum[5] + x))));
+        vf_store(sum[6] + x, vf_fma(vf_keep(some, both), vf_set1(HF_LAYERS_REACHED), vf_load(sum[6] + x)));
     }
 }
 
 static void layers_between_simd(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
-                                float *const sum[6])
+                                float *const sum[7])
 {
     HF_WITH_CHANNELS(channels, layers_between_of(line, CHANNELS, nearest, n, sum));
 }
@@ -259,8 +261,8 @@ HF_INLINE vf layers_before(const float *const radius[4], const float *const weig
     return vf_add(seen, vf_keep(some, vf_mul(w, hides)));
 }
 
-static void layers_found_simd(const float *const sum[6], const float *const radius[4], const float *const weight[4],
-                              int channels, float scale, int n, float *const out[6])
+static void layers_found_simd(const float *const sum[7], const float *const radius[4], const float *const weight[4],
+                              int channels, int n, float *const out[6])
 {
     for (int x = 0; x < n; x += VF_N) {
         const vf total = vf_load(sum[4] + x);
@@ -276,7 +278,7 @@ static void layers_found_simd(const float *const sum[6], const float *const radi
         }
         vf_unzip(before[0], before[1], &even, &odd);
         const vf all = vf_mul(vf_add(even, odd), vf_set1(0.25f));
-        vf_store(out[4] + x, vf_keep(some, vf_mul(all, coc_saturate(vf_mul(total, vf_set1(scale))))));
+        vf_store(out[4] + x, vf_keep(some, vf_mul(all, coc_saturate(vf_load(sum[6] + x)))));
         vf_store(out[5] + x, r);
         for (int c = 0; c < channels; c++)
             vf_store(out[c] + x, vf_mul(vf_load(sum[c] + x), inverse));

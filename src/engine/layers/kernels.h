@@ -21,21 +21,21 @@ typedef void hf_layers_quads(const float *const seen[2][6], const float *const m
 // Three samples of each lane become one: the mean of those whose radii lie within about 1 / slope of the farthest. out
 // must not be one of in.
 typedef void hf_layers_merge(const float *const in[3][6], int channels, float slope, int n, float *const out[6]);
-// Add the taps of levels to the sums, one tap after the other.
+// Add the taps of levels to the sums (colour, weight (4), radius (5), coverage (6)), one tap after the other.
 struct hf_hidden_tap;
 typedef void hf_layers_taps(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
-                            float *const sum[6]);
+                            float *const sum[7]);
 // Add the surfaces behind `nearest` that continue between both sides of a line to the sums.
 struct hf_hidden_line;
 typedef void hf_layers_between(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
-                               float *const sum[6]);
+                               float *const sum[7]);
 // The least radius of each of n quads, from two rows.
 typedef void hf_layers_nearest(const float *above, const float *below, int n, float *out);
 // Hidden samples from the sums of taps; their colours are square roots. Their weight is the part of the quad that lies
 // more than a pixel of radius before them. radius and weight: the quad's two rows of visible samples, then those behind
-// mixed edges. Where the taps' weight times scale is below 1, the hidden sample weighs less in proportion.
-typedef void hf_layers_found(const float *const sum[6], const float *const radius[4], const float *const weight[4],
-                             int channels, float scale, int n, float *const out[6]);
+// mixed edges. Where the sum of coverage is below 1, the hidden sample weighs less in proportion.
+typedef void hf_layers_found(const float *const sum[7], const float *const radius[4], const float *const weight[4],
+                             int channels, int n, float *const out[6]);
 // Give the hidden samples of n quads to one row of their pixels. The weight goes to the pixels that lie more than a
 // pixel of radius before the hidden sample, and is at most theirs. radius and weight: as for hf_layers_found.
 typedef void hf_layers_spread(const float *const in[6], const float *const radius[4], const float *const weight[4],

@@ -26,7 +26,7 @@ struct band {
     float *nearest;  // least visible radius in each quad; `width` quads per row
     int width;
     // Blocks; (0, 0) is the band's first, and there are more around it. farthest: largest radius in a block; within:
-    // largest radius within the search's reach; needed: whether a search is made; made: whether each level is.
+    // largest radius within the search's reach; needed: how many levels are searched; made: whether each level is made.
     int columns, rows, around, stride;
     float *farthest, *within;
     uint8_t *needed, *wide, *made[HF_LAYERS_LEVELS];  // wide: scratch
@@ -107,23 +107,20 @@ static struct hf_layers_range range_of(const struct band *b, const float *radius
     return range;
 }
 
-// Mark the blocks that have a marked one at most `by` blocks away: along rows, then along columns.
-static void spread(const struct band *b, const uint8_t *in, int by, uint8_t *out)
+// Mark the blocks that have one at most `by` blocks away that needs at least `least` levels: along rows, then columns.
+static void spread(const struct band *b, int least, int by, uint8_t *out)
 {
     for (int y = 0; y < b->rows; y++)
         for (int x = -b->around; x < b->columns + b->around; x++) {
             uint8_t any = 0;
             for (int i = hf_max(x - by, 0); i <= hf_min(x + by, b->columns - 1); i++)
-                any |= in[y * b->stride + i];
+                any |= b->needed[y * b->stride + i] >= least;
             b->wide[y * b->stride + x] = any;
         }
     for (int y = -b->around; y < b->rows + b->around; y++)
-        for (int x = -b->around; x < b->columns + b->around; x++) {
-            uint8_t any = 0;
+        for (int x = -b->around; x < b->columns + b->around; x++)
             for (int i = hf_max(y - by, 0); i <= hf_min(y + by, b->rows - 1); i++)
-                any |= b->wide[i * b->stride + x];
-            out[y * b->stride + x] = any;
-        }
+                out[y * b->stride + x] |= b->wide[i * b->stride + x];
 }
 
 // Find the nearest visible radius of each quad, and the farthest radius within each block's reach.
@@ -160,7 +157,8 @@ static void find_farthest(struct band *b)
     b->within -= b->around * b->stride;
 }
 
-// Mark the blocks that may find something: a surface at least a pixel of radius behind their nearest.
+// The levels that blocks need to find what lies at least a pixel of radius behind their nearest surface; 0: there is
+// nothing.
 static void find_needed(struct band *b)
 {
     for (int y = 0; y < b->rows && !hf_stopped(b->f->s->stop); y++)
@@ -170,7 +168,10 @@ static void find_needed(struct band *b)
             const float *nearest = b->nearest + y * BLOCK * b->width + x * BLOCK;
             // Rounding of the means is allowed for.
             const float low = range_of(b, nearest, NULL, b->width, n, rows).low;
-            b->needed[y * b->stride + x] = b->within[y * b->stride + x] - low > 0.99f;
+            const float behind = b->within[y * b->stride + x] - low + ROUNDED;
+            uint8_t *needed = &b->needed[y * b->stride + x];
+            for (*needed = behind > 1; *needed && *needed < b->l->levels && behind > hf_layers_level_from(*needed);)
+                ++*needed;
         }
 }
 
@@ -247,8 +248,12 @@ static int ring_row(const struct band *b, int j, int y)
 static void make_levels(struct band *b)
 {
     const int levels = b->l->levels, top = b->r.y0, low = b->r.y1, most = (1 << levels) - 1;
-    for (int j = 0; j < levels; j++)
-        spread(b, b->needed, blocks_of((1 << levels) - (1 << j)), b->made[j]);
+    for (int j = 0; j < levels; j++) {
+        memset(b->made[j] - b->around * b->stride - b->around, 0,
+               (size_t)b->stride * (size_t)(b->rows + 2 * b->around));
+        for (int k = j + 1; k <= levels; k++)
+            spread(b, k, blocks_of((1 << k) - (1 << j)), b->made[j]);
+    }
     for (int newest = top - most; newest < low + most && !hf_stopped(b->f->s->stop); newest++)
         for (int j = 1, y = newest; j < levels && !hf_stopped(b->f->s->stop); j++) {
             const int step = 1 << (j - 1), reach = (1 << levels) - (1 << j);
@@ -256,7 +261,7 @@ static void make_levels(struct band *b)
                               .to = &b->across,
                               .row = {y, y, y},
                               .dx = step,
-                              .slope = 1.0f / (float)(2 << j)};
+                              .slope = 1 / hf_layers_level_from(j)};
             columns_of(b, j, &m.x0, &m.x1);
             if (y >= top - reach - step && y < low + reach + step && y == row_of(b, j - 1, y))
                 merge_row(b, &m, b->made[j - 1], y, ring_row(b, j, y));
@@ -302,7 +307,7 @@ static float farthest_behind(const struct band *b, const float *nearest, int x, 
 
 // Add surfaces that continue between opposite sides. Steps beyond the reach of that bound are left out.
 static void find_between(const struct band *b, const float *nearest, float behind, int x, int n, int y,
-                         float *const sum[6])
+                         float *const sum[7])
 {
     const float *in[6] = {NULL};
     planes_of(&b->level[0], b->l->channels, x, y, (float **)in);
@@ -315,28 +320,37 @@ static void find_between(const struct band *b, const float *nearest, float behin
     }
 }
 
-static void find(const struct band *b, int x, int n, int y)
+// Whether a tap of level j, `away` of its steps from the quad, finds anything that far behind; and its ramp. It begins at
+// a radius half a step before the tap, but not before the level is needed.
+static int set_ramp(struct hf_hidden_tap *tap, int j, float away, float behind)
+{
+    const float step = (float)(2 << j), full = (away > 0 || !j ? away + 0.5f : 1.5f) * step;
+    tap->from = fmaxf((away - 0.5f) * step, hf_layers_level_from(j));
+    tap->scale = 1 / (full - tap->from);
+    return behind > tap->from;
+}
+
+static void find(const struct band *b, int x, int n, int y, int levels)
 {
     static const float distance[3] = {0, 1, 1.41421356f}, share[3] = {1, 0.5f, 0.25f};
     const struct hf_layers_kernels *k = hf_layers_kernels(b->f);
     const int channels = b->l->channels;
     const float *nearest = b->nearest + (y - b->r.y0) * b->width + x - b->r.x0;
-    _Alignas(64) float memory[6][STEP + PAD];
-    float *sum[6], *out[6] = {NULL}, part = 1;
-    for (int i = 0; i < 6; i++) {
+    _Alignas(64) float memory[7][STEP + PAD];
+    float *sum[7], *out[6] = {NULL}, part = 1;
+    for (int i = 0; i < 7; i++) {
         sum[i] = memory[i];
         memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // clears the rest of the last vector too
     }
     const float behind = farthest_behind(b, nearest, x, n, y);
     struct hf_hidden_tap taps[9 * HF_LAYERS_LEVELS];
     int count = 0;
-    for (int j = 0; j < b->l->levels && behind > 1; j++, part *= (j == b->l->levels - 1 ? b->l->reached : 1) / 256)
+    for (int j = 0; j < levels && behind > 1; j++, part /= 256)
         for (int i = 0; i < 9; i++) {
             const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
             struct hf_hidden_tap *tap = &taps[count];
-            *tap = (struct hf_hidden_tap){
-                .scale = 1.0f / (float)(2 << j), .off = 0.5f - distance[away], .part = part * share[away]};
-            if (behind * tap->scale + tap->off < -ROUNDED)
+            *tap = (struct hf_hidden_tap){.part = part * share[away], .whole = HF_LAYERS_REACHED / part};
+            if (!set_ramp(tap, j, distance[away], behind))
                 continue;
             planes_of(&b->level[j], channels, x + u * (1 << j), row_of(b, j, y + v * (1 << j)), (float **)tap->in);
             count++;
@@ -350,12 +364,10 @@ static void find(const struct band *b, int x, int n, int y)
         radius[i] = hf_at(of, 1, 2 * x, 2 * y + i % 2);
     }
     planes_of(&b->found, channels, x, y, out);
-    // A new level counts for nothing yet; the level before it counts as much as it did.
-    const float whole = HF_LAYERS_REACHED / 256.0f * (1 + 255 * b->l->reached);
-    k->found((const float *const *)sum, radius, weight, channels, ldexpf(whole, 8 * (b->l->levels - 1)), n, out);
+    k->found((const float *const *)sum, radius, weight, channels, n, out);
 }
 
-// The next run of blocks in a row that need a search, or that do not; at most STEP samples.
+// The next run of blocks in a row that need equally many levels; at most STEP samples.
 struct run {
     int x, n, needed, end;
 };
@@ -366,7 +378,7 @@ static int next_run(const struct band *b, int y, struct run *run)
     const int start = run->end;
     if (start >= b->columns)
         return 0;
-    for (run->end++; run->end < b->columns && !needed[run->end] == !needed[start] && (run->end - start) * BLOCK < STEP;)
+    for (run->end++; run->end < b->columns && needed[run->end] == needed[start] && (run->end - start) * BLOCK < STEP;)
         run->end++;
     run->x = b->r.x0 + start * BLOCK;
     run->n = hf_min(b->r.x0 + run->end * BLOCK, b->r.x1) - run->x;
@@ -380,7 +392,7 @@ static void find_row(const struct band *b, int y)
     float *weight = b->found.weight + y * b->found.stride;
     for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, y, &run);)
         if (run.needed)
-            find(b, run.x, run.n, y);
+            find(b, run.x, run.n, y, run.needed);
         else
             memset(weight + run.x, 0, sizeof(float) * (size_t)run.n);
     memset(weight + b->r.x0 - HF_LAYERS_SMOOTH, 0, sizeof(float) * HF_LAYERS_SMOOTH);

@@ -199,16 +199,16 @@ static void hold_back(const struct hf_cell *c)
             for (int y = ty * TILE; *hf_layers_map_at(&c->begun, tx, ty) && y < (ty + 1) * TILE; y++) {
                 const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
                 for (int x = 0; x < TILE; x++)
-                    r.held[x] = c->l->held * (1 - r.open[x]);
+                    r.held[x] = c->l->set.held * (1 - r.open[x]);
             }
 }
 
 // How a slice's visible samples go under a stack.
 static enum hf_layers_sums sums_of(const struct hf_layers *l, const struct hf_slice *s, int stack)
 {
-    return stack == NEAR                                                  ? HF_SUMS_HIDING
-           : stack == MIDDLE && s->radius > 0 && l->levels && l->held > 0 ? HF_SUMS_HELD
-                                                                          : HF_SUMS_SEEN;
+    return stack == NEAR                                         ? HF_SUMS_HIDING
+           : stack == MIDDLE && s->radius > 0 && l->set.held > 0 ? HF_SUMS_HELD
+                                                                 : HF_SUMS_SEEN;
 }
 
 void hf_layers_put_slice(struct hf_cell *c, int i)
