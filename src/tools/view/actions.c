@@ -6,7 +6,9 @@
 
 #include "tools/common/machine.h"
 #include "tools/view/job.h"
+#include "tools/view/keys_file.h"
 #include "tools/view/say.h"
+#include "tools/view/timeline.h"
 
 typedef void action(struct view_app *app);
 
@@ -115,6 +117,36 @@ static void do_copy(struct view_app *app)
     view_job_copy(app);
 }
 
+static void do_shot(struct view_app *app)
+{
+    view_job_shot(app);
+}
+
+static void do_store(struct view_app *app)
+{
+    view_keys_store(app);
+}
+
+static void do_play(struct view_app *app)
+{
+    view_timeline_play(app);
+}
+
+static void do_next(struct view_app *app)
+{
+    view_timeline_go(app, app->frame + 1);
+}
+
+static void do_previous(struct view_app *app)
+{
+    view_timeline_go(app, app->frame - 1);
+}
+
+static void do_key(struct view_app *app)
+{
+    view_timeline_toggle(app, "focus");
+}
+
 static void do_quit(struct view_app *app)
 {
     gtk_window_close(GTK_WINDOW(app->window));
@@ -131,6 +163,8 @@ static const struct {
     {"open", "Open a picture", "<Control>o", do_open, "File"},
     {"save", "Save the picture", "<Control>s", do_save, NULL},
     {"copy", "Copy the command line", "<Control><Shift>c", do_copy, NULL},
+    {"shot", "Render all frames of the shot", "<Control>r", do_shot, NULL},
+    {"store", "Save the keys", "<Control>k", do_store, NULL},
     {"quit", "Quit", "<Control>q", do_quit, NULL},
     {"undo", "Undo", "<Control>z", do_undo, "Change"},
     {"redo", "Redo", "<Control><Shift>z", do_redo, NULL},
@@ -142,8 +176,12 @@ static const struct {
     {"in", "Zoom in", "plus", do_zoom_in, NULL},
     {"out", "Zoom out", "minus", do_zoom_out, NULL},
     {"divider", "A line between before and after", "d", do_divider, NULL},
-    {"quiet", "Close the message", "Escape", do_quiet, NULL},
-    {"keys", "Show the keys", "question", do_keys, "Help"},
+    {"play", "Play or pause", "space", do_play, "Shot"},
+    {"next", "Next frame", "period", do_next, NULL},
+    {"previous", "Frame before", "comma", do_previous, NULL},
+    {"key", "Key of the focus at this frame", "k", do_key, NULL},
+    {"quiet", "Close the message", "Escape", do_quiet, "Help"},
+    {"keys", "Show the keys", "question", do_keys, NULL},
 };
 enum { ACTIONS = sizeof(actions) / sizeof(actions[0]) };
 
@@ -184,10 +222,11 @@ static void do_keys(struct view_app *app)
 }
 
 // A letter is typed into an entry when one has the focus; the keys of the picture belong to the window else.
-static gboolean types(struct view_app *app)
+static gboolean types(struct view_app *app, guint key)
 {
     GtkWidget *focus = gtk_window_get_focus(GTK_WINDOW(app->window));
-    return focus && GTK_IS_EDITABLE(focus);
+    return focus &&
+           (GTK_IS_EDITABLE(focus) || (key == GDK_KEY_space && (GTK_IS_BUTTON(focus) || GTK_IS_CHECK_BUTTON(focus))));
 }
 
 static gboolean on_key(GtkEventControllerKey *keys, guint key, guint code, GdkModifierType state, gpointer data)
@@ -196,7 +235,7 @@ static gboolean on_key(GtkEventControllerKey *keys, guint key, guint code, GdkMo
     const GdkModifierType held = state & (GDK_CONTROL_MASK | GDK_SHIFT_MASK | GDK_ALT_MASK);
     (void)keys;
     (void)code;
-    if (types(app) && !(held & GDK_CONTROL_MASK))
+    if (types(app, key) && !(held & GDK_CONTROL_MASK))
         return FALSE;
     if (key == GDK_KEY_b) {
         view_canvas_set_before(canvas(app), 1);
@@ -210,7 +249,7 @@ static gboolean on_key(GtkEventControllerKey *keys, guint key, guint code, GdkMo
         const GdkModifierType mask = with ? held : held & ~(GdkModifierType)GDK_SHIFT_MASK;
         if (gdk_keyval_to_lower(key) == wanted && mask == with) {
             app->event_ms = tool_now_ms();
-            actions[i].run(app);
+            g_action_group_activate_action(G_ACTION_GROUP(app->window), actions[i].name, NULL);
             return TRUE;
         }
     }
@@ -287,4 +326,7 @@ void view_actions_refresh(struct view_app *app)
     enable(app, "redo", app->model.future_count > 0);
     enable(app, "save", app->picture != NULL);
     enable(app, "copy", app->picture != NULL);
+    static const char *const of_shots[] = {"shot", "store", "play", "next", "previous", "key"};
+    for (size_t i = 0; i < sizeof(of_shots) / sizeof(of_shots[0]); i++)
+        enable(app, of_shots[i], app->shot.sequence && app->picture);
 }

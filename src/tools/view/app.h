@@ -8,6 +8,7 @@
 #include "tools/cli/aperture.h"
 #include "tools/cli/shot.h"
 #include "tools/view/canvas.h"
+#include "tools/view/frames.h"
 #include "tools/view/model.h"
 #include "tools/view/picture.h"
 #include "tools/view/renderer.h"
@@ -52,6 +53,10 @@ struct view_app {
     struct job *job;   // a command that runs; NULL: none
     char *keys_path;   // where the keys were read from or saved
     int keys_unsaved;  // they have changed since
+    int closing;       // the window closes once they are saved
+    struct view_frames frames;
+    int playing, reading_ahead;
+    int shots;  // how many were opened
     GFileMonitor *monitor;
     guint reload;
 };

@@ -262,7 +262,13 @@ static void size_allocate(GtkWidget *widget, int width, int height, int baseline
 
 void view_canvas_set_picture(ViewCanvas *c, struct view_picture *picture, int fit_it)
 {
-    forget(c);
+    const struct hf_io_view *old = size_of(c);
+    const struct hf_io_view *now = picture ? view_picture_view(picture)->view : NULL;
+    // The next frame of a shot: the last one stays on the screen until the new one is there.
+    if (!old || !now || old->width != now->width || old->height != now->height)
+        forget(c);
+    free(c->before);
+    c->before = NULL;
     view_picture_unref(c->picture);
     c->picture = picture ? view_picture_ref(picture) : NULL;
     c->fitted |= fit_it;

@@ -8,7 +8,9 @@
 #include "tools/cli/track.h"
 #include "tools/common/machine.h"
 #include "tools/view/app.h"
+#include "tools/view/keys_file.h"
 #include "tools/view/say.h"
+#include "tools/view/timeline.h"
 
 enum { GLIDE_MS = 240, SETTLE_MS = 300 };
 
@@ -198,7 +200,7 @@ void view_app_apply(struct view_app *app)
         } else {
             app->set_up = 1;
         }
-        view_app_ask(app, 0);
+        view_app_ask(app, app->playing);
     }
     view_window_refresh(app);
 }
@@ -232,6 +234,10 @@ void view_app_focus_at(struct view_app *app, double x, double y)
         view_app_tell(app, "There is no surface at this place to focus on.");
         return;
     }
+    if (view_timeline_focus(app, z)) {
+        view_app_glide(app, from);
+        return;
+    }
     snprintf(value, sizeof(value), "%d,%d", v->view->data_window.x0 + (int)x, v->view->data_window.y0 + (int)y);
     if (!view_app_set(app, view_option_place("focus-at"), value, 0))
         view_app_glide(app, from);
@@ -247,9 +253,13 @@ void view_app_undo(struct view_app *app, int redo)
 
 // Loading, on a thread of its own.
 
+static void read_ahead(struct view_app *app);
+
 struct load {
     struct view_app *app;
-    int number;
+    int number, frame;
+    int shot;   // which of those that were opened
+    int ahead;  // nobody waits for it
     struct view_words words;
     char *input, *depth_file, *loaded_by;
     struct view_picture *picture;
@@ -285,6 +295,7 @@ static gboolean on_settled(gpointer data)
         view_app_tell(app, "%s is gone; the picture is the one that was read before.", app->picture->args.input);
     else if (changed) {
         view_app_tell(app, "%s has been replaced and was read again.", app->picture->args.input);
+        view_frames_drop(&app->frames, app->frame);
         view_app_load(app);
     }
     return G_SOURCE_REMOVE;
@@ -337,20 +348,30 @@ static void on_loaded(GObject *source, GAsyncResult *result, gpointer data)
     struct view_app *app = data;
     struct load *l = g_task_get_task_data(G_TASK(result));
     (void)source;
-    if (l->number != app->loading)
+    const int current = app->loaded_by && !strcmp(l->loaded_by, app->loaded_by);
+    if (l->ahead)
+        app->reading_ahead = 0;
+    if (l->picture && (current || !l->ahead) && l->shot == app->shots)
+        view_frames_put(&app->frames, l->frame, l->picture, app->frame);
+    if (l->ahead || l->number != app->loading) {
+        if (current && l->picture)
+            read_ahead(app);
         return;
+    }
     app->load_pending = 0;
     if (l->picture) {
         use_picture(app, l->picture, l->loaded_by);
+        read_ahead(app);
     } else {
         view_app_tell(app, "%s", l->error.text);
         view_window_refresh(app);
     }
 }
 
-void view_app_load(struct view_app *app)
+// Read a frame on a thread.
+static void start_load(struct view_app *app, int frame, int ahead)
 {
-    const struct cli_job *job = app->shot.jobs.count ? &app->shot.jobs.list[app->frame] : NULL;
+    const struct cli_job *job = app->shot.jobs.count ? &app->shot.jobs.list[frame] : NULL;
     struct load *l = calloc(1, sizeof(*l));
     if (!l || view_model_words(&app->model, NULL, NULL, &l->words)) {
         free(l);
@@ -358,15 +379,45 @@ void view_app_load(struct view_app *app)
         return;
     }
     l->app = app;
-    l->number = ++app->loading;
+    l->frame = frame;
+    l->ahead = ahead;
+    l->shot = app->shots;
+    l->number = ahead ? 0 : ++app->loading;
     l->input = job && job->input ? strdup(job->input) : NULL;
     l->depth_file = job && job->depth_file ? strdup(job->depth_file) : NULL;
     l->loaded_by = loading_options(app);
-    app->load_pending = 1;
     GTask *task = g_task_new(NULL, NULL, on_loaded, app);
     g_task_set_task_data(task, l, free_load);
     g_task_run_in_thread(task, load_thread);
     g_object_unref(task);
+}
+
+static void read_ahead(struct view_app *app)
+{
+    const int next = app->reading_ahead || app->load_pending ? -1 : view_frames_ahead(&app->frames, app->frame);
+    if (next < 0)
+        return;
+    app->reading_ahead = 1;
+    start_load(app, next, 1);
+}
+
+void view_app_load(struct view_app *app)
+{
+    char *loaded_by = loading_options(app);
+    const int same = app->loaded_by && !strcmp(loaded_by, app->loaded_by);
+    struct view_picture *held = same ? view_frames_get(&app->frames, app->frame) : NULL;
+    if (!same)
+        view_frames_open(&app->frames, app->shot.jobs.count);
+    if (held) {
+        app->loading++;  // what is being read is not wanted any more
+        app->load_pending = 0;
+        use_picture(app, held, loaded_by);
+        read_ahead(app);
+    } else {
+        app->load_pending = 1;
+        start_load(app, app->frame, 0);
+    }
+    g_free(loaded_by);
 }
 
 // The files of the shot that the inputs name.
@@ -409,5 +460,9 @@ void view_app_open(struct view_app *app, char *const *names, int count)
     }
     if (names)
         view_app_tell(app, NULL);
+    app->shots++;
+    view_frames_open(&app->frames, app->shot.jobs.count);
+    view_keys_begin(app);
+    view_timeline_refresh(app);
     view_app_load(app);
 }

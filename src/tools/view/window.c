@@ -5,8 +5,10 @@
 #include "tools/view/actions.h"
 #include "tools/view/app.h"
 #include "tools/view/job.h"
+#include "tools/view/keys_file.h"
 #include "tools/view/panel.h"
 #include "tools/view/say.h"
+#include "tools/view/timeline.h"
 
 // The canvas.
 
@@ -111,6 +113,7 @@ void view_window_refresh(struct view_app *app)
     g_free(base);
     view_actions_refresh(app);
     view_panel_refresh(app);
+    view_timeline_refresh(app);
 }
 
 // Making.
@@ -212,6 +215,12 @@ static GtkWidget *make_canvas(struct view_app *app)
     return app->canvas;
 }
 
+static gboolean on_close(GtkWindow *window, gpointer data)
+{
+    (void)window;
+    return !view_keys_end(data);
+}
+
 int view_window_make(struct view_app *app, struct tool_error *error)
 {
     struct view_words words;
@@ -233,9 +242,11 @@ int view_window_make(struct view_app *app, struct tool_error *error)
     gtk_box_append(GTK_BOX(middle), make_canvas(app));
     gtk_box_append(GTK_BOX(middle), view_panel_new(app));
     gtk_box_append(GTK_BOX(column), middle);
+    gtk_box_append(GTK_BOX(column), view_timeline_new(app));
     gtk_box_append(GTK_BOX(column), view_job_bar(app));
     gtk_box_append(GTK_BOX(column), make_status(app));
     gtk_window_set_child(GTK_WINDOW(app->window), column);
+    g_signal_connect(app->window, "close-request", G_CALLBACK(on_close), app);
     view_actions_add(app);
     view_window_refresh(app);
     gtk_window_present(GTK_WINDOW(app->window));
