@@ -2,6 +2,7 @@
 """hyperfocal-view by real events on a screen in memory. Usage: view.py VIEW HYPERFOCAL SOURCE_ROOT"""
 import os
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -68,6 +69,133 @@ def check_pixels(screen, folder):
     tests.check("the program ends well", view.close() == 0)
 
 
+def check_keys(screen, folder):
+    """A focus pull by two keys: what is saved is read by the command, and the rendered shot is the command's."""
+    for i in range(1, 4):
+        shutil.copy(root + "/images/lights.exr", os.path.join(folder, "shot.%04d.exr" % i))
+    shot, out = os.path.join(folder, "shot.####.exr"), os.path.join(folder, "dof.####.exr")
+    keys = os.path.join(folder, "keys.csv")
+    with open(keys, "w") as file:
+        file.write("frame,focus\n1,4\n")
+    view = driver.View(screen, view_exe, shot, "-o", out, "--keys", keys, "--engine", "gaussian",
+                       XDG_STATE_HOME=os.path.join(folder, "state"))
+    first = view.drawn("focus=4 ")
+    view.key("period")
+    view.wait("^frame 2")
+    view.key("period")
+    view.wait("^frame 3")
+    view.drawn("focus=4 ")
+    view.click(*place(first, 60, 300))
+    last = view.drawn("focus=1")
+    view.key("ctrl+q")
+    view.wait("^ask unsaved keys")
+    view.key("Escape")
+    view.key("ctrl+k")
+    view.wait("^keys saved")
+    with open(keys) as file:
+        rows = file.read().split()
+    tests.check("the keys are saved as the command reads them", rows[:2] == ["frame,focus", "1,4"] and
+                abs(float(rows[2].split(",")[1]) - float(last["focus"])) < 1e-4, rows)
+    view.key("comma")
+    view.wait("^frame 2")
+    between = view.drawn()
+    middle = (4 + float(last["focus"])) / 2
+    tests.check("the frame between lies between", abs(float(between["focus"]) - middle) < 1e-3, between)
+    view.key("ctrl+r")
+    view.wait("^job done")
+    line = shlex.split((view.key("ctrl+shift+c"), view.wait("^copied (.*)").group(1))[1])
+    line[0], line[line.index("-o") + 1] = command_exe, os.path.join(folder, "again.####.exr")
+    subprocess.run(line, check=True, stderr=subprocess.DEVNULL)
+    same = [open(os.path.join(folder, "dof.%04d.exr" % i), "rb").read() ==
+            open(os.path.join(folder, "again.%04d.exr" % i), "rb").read() for i in range(1, 4)]
+    tests.check("the rendered shot is the copied command's", all(same), same)
+    view.key("space")
+    view.wait("^playing")
+    view.wait("^frame 3")
+    view.wait("^frame 1")
+    view.key("space")
+    view.wait("^paused")
+    tests.check("the program ends without asking", view.close() == 0)
+
+
+def check_looking(screen):
+    """False colours, the input by a held key, the divider, the profiler."""
+    view = driver.View(screen, view_exe, root + "/images/lights.exr", "--engine", "gather")
+    drawn = view.drawn()
+    canvas = [int(n) for n in driver.numbers(drawn["canvas"])]
+    seen = {"result": view.pixels(*canvas)}
+    for key, name in (("2", "depth"), ("3", "radius"), ("4", "peaking"), ("5", "tiles")):
+        view.key(key)
+        view.wait("^show " + name)
+        view.drawn("show=" + name)
+        seen[name] = view.pixels(*canvas)
+    view.key("5")
+    view.wait("^show after")
+    view.drawn("show=after")
+    tests.check("the result is as it was", view.pixels(*canvas) == seen["result"])
+    view.xdotool("keydown", "b")
+    view.wait("^before 1")
+    seen["before"] = view.pixels(*canvas)
+    view.xdotool("keyup", "b")
+    view.wait("^before 0")
+    view.key("d")
+    view.wait("^divider 1")
+    divided = view.pixels(*canvas)
+    half = [divided[(canvas[3] // 2 * canvas[2] + x) * 3:][:3 * 200] for x in (0, canvas[2] - 200)]
+    inputs = [seen[name][(canvas[3] // 2 * canvas[2] + x) * 3:][:3 * 200] for name, x in
+              (("before", 0), ("result", canvas[2] - 200))]
+    tests.check("left of the divider is the input, right of it the result", half == inputs)
+    tests.check("all of them differ", len(set(seen.values())) == len(seen), list(seen))
+    view.key("6")
+    view.wait("^show buffer")
+    view.drawn("show=buffer")
+    view.key("p")
+    view.wait("^profiler 1")
+    view.key("question")
+    view.wait("^keys")
+    view.kill()
+
+
+def check_demo(screen, folder):
+    profile = os.path.join(folder, "profile.txt")
+    view = driver.View(screen, view_exe, "--demo", "--frames", "110", "--profile", profile)
+    view.wait("^demo 100")
+    tests.check("the demo ends by itself", view.process.wait(driver.PATIENCE) == 0)
+    with open(profile) as file:
+        text = file.read()
+    tests.check("the profile has blocks of 100 frames", "frames 1 to 100:" in text and "frames 101 to 110:" in text and
+                text.count("All") == 2, text)
+
+
+def check_errors(screen, folder):
+    """Each of them is a sentence: in the window, or on the terminal."""
+    broken = os.path.join(folder, "broken.exr")
+    with open(root + "/images/lights.exr", "rb") as whole, open(broken, "wb") as part:
+        part.write(whole.read(100000))
+    view = driver.View(screen, view_exe, broken)
+    tests.check("a broken file is named", "broken.exr" in view.wait("^notice (.*)").group(1))
+    view.kill()
+    moved = os.path.join(folder, "folder")
+    os.mkdir(moved)
+    shown = os.path.join(moved, "shown.exr")
+    shutil.copy(root + "/images/lights.exr", shown)
+    view = driver.View(screen, view_exe, shown)
+    view.drawn()
+    shutil.copy(root + "/images/foliage.exr", shown + ".new")
+    os.rename(shown + ".new", shown)
+    tests.check("a replaced file is read again", "replaced" in view.wait("^notice (.*)").group(1))
+    view.drawn()
+    shutil.rmtree(moved)
+    tests.check("one that is gone is said to be", "gone" in view.wait("^notice (.*)").group(1))
+    view.kill()
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    alone = subprocess.run([view_exe], env=environment, capture_output=True, text=True)
+    tests.check("without a display there is one sentence", alone.returncode == 1 and alone.stderr ==
+                "hyperfocal-view: there is no display to open a window on\n", alone.stderr)
+    wrong = subprocess.run([view_exe, "--fstop", "0"], env=environment, capture_output=True, text=True)
+    tests.check("a wrong option too", wrong.returncode == 1 and wrong.stderr.count("\n") == 1, wrong.stderr)
+
+
 def main():
     tool = driver.missing()
     if tool:
@@ -78,6 +206,10 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             check_turning(screen)
             check_pixels(screen, folder)
+            check_keys(screen, folder)
+            check_looking(screen)
+            check_demo(screen, folder)
+            check_errors(screen, folder)
     finally:
         screen.close()
     tests.end()

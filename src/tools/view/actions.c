@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "tools/common/machine.h"
+#include "tools/view/demo.h"
 #include "tools/view/job.h"
 #include "tools/view/keys_file.h"
+#include "tools/view/profiler.h"
 #include "tools/view/say.h"
 #include "tools/view/timeline.h"
 
@@ -147,6 +149,41 @@ static void do_key(struct view_app *app)
     view_timeline_toggle(app, "focus");
 }
 
+static void do_profiler(struct view_app *app)
+{
+    view_profiler_toggle(app);
+}
+
+static void do_fade(struct view_app *app)
+{
+    view_demo_fade(app);
+}
+
+static void do_show_depth(struct view_app *app)
+{
+    view_window_show(app, VIEW_SHOW_DEPTH);
+}
+
+static void do_show_coc(struct view_app *app)
+{
+    view_window_show(app, VIEW_SHOW_COC);
+}
+
+static void do_show_peaking(struct view_app *app)
+{
+    view_window_show(app, VIEW_SHOW_PEAKING);
+}
+
+static void do_show_tiles(struct view_app *app)
+{
+    view_window_show(app, VIEW_SHOW_TILES);
+}
+
+static void do_show_buffer(struct view_app *app)
+{
+    view_window_show(app, VIEW_SHOW_BUFFER);
+}
+
 static void do_quit(struct view_app *app)
 {
     gtk_window_close(GTK_WINDOW(app->window));
@@ -176,6 +213,13 @@ static const struct {
     {"in", "Zoom in", "plus", do_zoom_in, NULL},
     {"out", "Zoom out", "minus", do_zoom_out, NULL},
     {"divider", "A line between before and after", "d", do_divider, NULL},
+    {"depth", "Depth in colours", "2", do_show_depth, NULL},
+    {"radius", "Radius of the blur in colours", "3", do_show_coc, NULL},
+    {"peaking", "Mark edges in focus", "4", do_show_peaking, NULL},
+    {"tiles", "What each tile needs", "5", do_show_tiles, NULL},
+    {"buffers", "Buffers of the engine", "6", do_show_buffer, NULL},
+    {"profiler", "Times of passes and frames", "p", do_profiler, NULL},
+    {"fade", "Blur away, and back (demo)", "e", do_fade, NULL},
     {"play", "Play or pause", "space", do_play, "Shot"},
     {"next", "Next frame", "period", do_next, NULL},
     {"previous", "Frame before", "comma", do_previous, NULL},

@@ -11,11 +11,13 @@
 #include "tools/view/frames.h"
 #include "tools/view/model.h"
 #include "tools/view/picture.h"
+#include "tools/view/profile.h"
 #include "tools/view/renderer.h"
 
 struct view_panel;
 struct view_timeline;
-struct view_profiler;
+struct view_demo;
+struct view_bench;
 struct job;
 
 // A picture of an aperture. The renderer may look at it until the window is closed.
@@ -26,11 +28,15 @@ struct view_aperture {
 
 struct view_app {
     GtkApplication *application;
-    GtkWidget *window, *canvas, *notice, *notice_text, *value, *state, *zoom, *exposure, *progress;
+    GtkWidget *window, *canvas, *notice, *notice_text, *value, *state, *zoom, *exposure, *progress, *shows, *buffers;
     struct view_panel *panel;
     struct view_timeline *timeline;
-    struct view_profiler *profiler;
-    struct view_args own;  // what the command line asks for beyond the model
+    GtkWidget *profiler;
+    struct view_profile profile;
+    struct view_demo *demo;    // NULL: a picture is shown
+    struct view_bench *bench;  // NULL: none runs
+    unsigned serial;           // of the last request
+    struct view_args own;      // what the command line asks for beyond the model
     struct view_model model;
     struct view_renderer *renderer;
     struct view_picture *picture;  // NULL: none
@@ -71,6 +77,8 @@ void view_app_glide(struct view_app *app, float from);
 void view_app_ask(struct view_app *app, int moving);
 // Load the file or the frame that is chosen.
 void view_app_load(struct view_app *app);
+// Show a picture that no file holds.
+void view_app_use(struct view_app *app, struct view_picture *picture);
 // Open other files.
 void view_app_open(struct view_app *app, char *const *names, int count);
 // Set an option; the result, an error too, is shown. Returns 0 or -1.
@@ -87,8 +95,12 @@ void view_app_tell(struct view_app *app, const char *format, ...) __attribute__(
 int view_window_make(struct view_app *app, struct tool_error *error);
 // Show the model's and the picture's state.
 void view_window_refresh(struct view_app *app);
+// Close the window, from an idle source.
+gboolean view_window_close(gpointer app);
 // What is shown was replaced.
 void view_window_drawn(struct view_app *app, const struct view_result *result);
+// Show something in place of the picture; the picture again if that is shown.
+void view_window_show(struct view_app *app, enum view_show show);
 void view_window_hover(struct view_app *app, double x, double y, int inside);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tools/view/look.h"
+#include "tools/view/say.h"
 
 struct _ViewCanvas {
     GtkWidget parent;
@@ -13,6 +14,7 @@ struct _ViewCanvas {
     struct view_picture *picture;
     struct view_result *whole, *now;  // the newest that shows all of the picture; the newest. They may be the same
     int unseen;                       // `now` has not been drawn yet
+    int said;                         // before or divider is told when it is on the screen
     uint32_t *before;                 // all of the input at 1/before_n
     int before_n;
     float gain, before_gain;
@@ -217,6 +219,9 @@ static void after_paint(GdkFrameClock *clock, gpointer data)
 {
     ViewCanvas *c = data;
     g_signal_handlers_disconnect_by_func(clock, after_paint, data);
+    if (c->said)
+        view_say("before %d\ndivider %d", c->show_before, c->divider);
+    c->said = 0;
     if (c->unseen != 2 || !c->now)
         return;
     c->unseen = 0;
@@ -235,8 +240,8 @@ static void snapshot(GtkWidget *widget, GtkSnapshot *to)
         return;
     gtk_snapshot_append_texture(to, texture, &GRAPHENE_RECT_INIT(0, 0, (float)width, (float)height));
     g_object_unref(texture);
-    if (c->unseen == 1) {
-        c->unseen = 2;
+    if (c->unseen == 1 || c->said) {
+        c->unseen = c->unseen ? 2 : 0;
         g_signal_connect(gtk_widget_get_frame_clock(widget), "after-paint", G_CALLBACK(after_paint), c);
     }
 }
@@ -304,16 +309,25 @@ const struct view_result *view_canvas_result(ViewCanvas *c)
     return c->now;
 }
 
+// Something other than the result is shown.
+static void changed_alone(ViewCanvas *c)
+{
+    c->said = 1;
+    gtk_widget_queue_draw(GTK_WIDGET(c));
+}
+
 void view_canvas_set_before(ViewCanvas *c, int before)
 {
+    if (c->show_before == before)
+        return;
     c->show_before = before;
-    gtk_widget_queue_draw(GTK_WIDGET(c));
+    changed_alone(c);
 }
 
 void view_canvas_set_divider(ViewCanvas *c, int shown)
 {
     c->divider = shown;
-    gtk_widget_queue_draw(GTK_WIDGET(c));
+    changed_alone(c);
 }
 
 int view_canvas_get_divider(ViewCanvas *c)

@@ -10,10 +10,12 @@ void view_levels_open(struct view_levels *l)
 void view_levels_tell(struct view_levels *l, enum view_stage stage, double megapixels, double ms)
 {
     double *known = &l->ms[stage != VIEW_QUICK];
-    // Small pictures do not take less time in proportion: do not learn from them.
-    if (megapixels < 0.02 || stage == VIEW_STANDARD)
+    const double now = ms / megapixels;
+    // Small pictures do not take less time in proportion, and other programs make a frame late: learn quickly that the machine is
+    // fast, and slowly that it is not.
+    if (stage == VIEW_STANDARD || (megapixels < 0.1 && now > *known))
         return;
-    *known += 0.3 * (ms / megapixels - *known);
+    *known += (now < *known ? 0.4 : 0.1) * (now - *known);
 }
 
 // The engines whose look the ladder's cheaper steps keep.
@@ -40,7 +42,7 @@ int view_levels_choose(const struct view_levels *l, const struct hf_params *fina
                       hf_choose_quality(height_of(final), depth, params, HF_QUALITY_DRAFT, NULL, NULL) == HF_OK;
     const double ms = l->ms[draft ? 0 : 1];
     int k = n;
-    while (k < 8 && ms * megapixels / (k * k) > VIEW_TARGET_MS)
+    while (k < 4 * n && k < 8 && ms * megapixels / (k * k) > VIEW_TARGET_MS)
         k++;
     return k;
 }

@@ -3,16 +3,32 @@
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tools/common/standard.h"
 #include "tools/view/app.h"
+#include "tools/view/bench.h"
+#include "tools/view/demo.h"
+#include "tools/view/panel.h"
+#include "tools/view/timeline.h"
 
 struct start {
     struct view_app *app;
     struct tool_error error;
     int status;
 };
+
+static void begin(struct view_app *app)
+{
+    const char *frames = view_model_get(&app->model, view_option_place("frames"));
+    if (app->own.bench)
+        view_bench_begin(app);
+    else if (app->model.input_count)
+        view_app_open(app, NULL, 0);
+    else
+        view_demo_begin(app, app->own.demo && frames ? atoi(frames) : 0);
+}
 
 static void on_activate(GtkApplication *application, gpointer data)
 {
@@ -21,8 +37,29 @@ static void on_activate(GtkApplication *application, gpointer data)
         return;
     s->app->application = application;
     s->status = view_window_make(s->app, &s->error);
-    if (!s->status && s->app->model.input_count)
-        view_app_open(s->app, NULL, 0);
+    if (!s->status)
+        begin(s->app);
+}
+
+// What the window must not outlive.
+static void end(struct view_app *app)
+{
+    if (app->bench)
+        view_bench_free(app);
+    view_demo_end(app);
+    view_renderer_close(app->renderer);
+    if (app->reload)
+        g_source_remove(app->reload);
+    g_clear_object(&app->monitor);
+    view_frames_close(&app->frames);
+    view_picture_unref(app->picture);
+    if (app->apertures)
+        g_ptr_array_unref(app->apertures);
+    cli_shot_free(&app->shot);
+    view_panel_free(app);
+    view_timeline_free(app);
+    g_free(app->loaded_by);
+    g_free(app->keys_path);
 }
 
 static int run_window(struct view_app *app, struct tool_error *error)
@@ -34,6 +71,10 @@ static int run_window(struct view_app *app, struct tool_error *error)
     g_signal_connect(application, "activate", G_CALLBACK(on_activate), &start);
     g_application_run(G_APPLICATION(application), 0, NULL);
     g_object_unref(application);
+    end(app);
+    if (!start.status && app->own.profile && view_profile_write(&app->profile, app->own.profile, error))
+        start.status = tool_fail(&start.error, -1, "%s", error->text);
+    view_profile_free(&app->profile);
     if (start.status)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s", start.error.text);
     return 0;

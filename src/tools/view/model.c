@@ -150,6 +150,8 @@ static const struct tool_option own_options[] = {
      .parse = tool_parse_flag, .offset = offsetof(struct view_args, demo)},
     {"bench", 0, TOOL_RUN, NULL, "Measure how fast the window answers, print that, and end.", .parse = tool_parse_flag,
      .offset = offsetof(struct view_args, bench)},
+    {"dark", 0, TOOL_RUN, NULL, "Light text on dark, whatever the desktop says.", .parse = tool_parse_flag,
+     .offset = offsetof(struct view_args, dark)},
     {"profile", 0, TOOL_RUN, "FILE", "On leaving write the averages of each 100 frames and of every pass.",
      .parse = tool_parse_text, .offset = offsetof(struct view_args, profile)},
     {.name = NULL},

@@ -10,7 +10,7 @@
 // What the command line asks for beyond the command's own options.
 struct view_args {
     struct cli_args cli;  // the first member, as the options' tables expect
-    int demo, bench;
+    int demo, bench, dark;
     const char *profile;
 };
 

@@ -57,7 +57,7 @@ GtkWidget *view_panel_new(struct view_app *app)
     GtkWidget *scrolled = gtk_scrolled_window_new();
     gtk_scrolled_window_set_child(GTK_SCROLLED_WINDOW(scrolled), column);
     gtk_scrolled_window_set_policy(GTK_SCROLLED_WINDOW(scrolled), GTK_POLICY_NEVER, GTK_POLICY_AUTOMATIC);
-    gtk_widget_set_size_request(scrolled, 360, -1);
+    gtk_widget_set_size_request(scrolled, 380, -1);
     gtk_widget_set_hexpand(scrolled, FALSE);
     return scrolled;
 }

@@ -80,6 +80,28 @@ struct view_picture *view_picture_load(struct view_words *words, const char *inp
     return p;
 }
 
+struct view_picture *view_picture_make(const struct hf_io_view *view, float *const planes[3], float *depth)
+{
+    struct view_picture *p = calloc(1, sizeof(*p));
+    struct cli_view *v = p ? calloc(1, sizeof(*v)) : NULL;
+    if (!v) {
+        for (int c = 0; c < 3; c++)
+            free(planes[c]);
+        free(depth);
+        free(p);
+        return NULL;
+    }
+    g_atomic_ref_count_init(&p->refs);
+    g_mutex_init(&p->lock);
+    p->made = *view;
+    *v = (struct cli_view){
+        .view = &p->made, .depth = depth, .label = strdup("scene"), .planes = {planes[0], planes[1], planes[2]}};
+    p->args.input = strdup("scene");
+    p->frame = (struct cli_frame){.args = &p->args, .views = v, .view_count = 1, .loaded = 1};
+    view_picture_show(p, 0);
+    return p;
+}
+
 void view_picture_show(struct view_picture *p, int view)
 {
     p->shown = view < p->frame.view_count ? view : 0;

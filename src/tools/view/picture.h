@@ -23,6 +23,7 @@ struct view_picture {
     struct view_words words;
     struct cli_args args;
     struct cli_frame frame;
+    struct hf_io_view made;                       // of a picture that no file holds
     struct stat file;                             // as it was read
     int shown;                                    // the view
     GMutex lock;                                  // of what follows
@@ -33,6 +34,8 @@ struct view_picture {
 // *error filled if that fails. Any thread may call it.
 struct view_picture *view_picture_load(struct view_words *words, const char *input, const char *depth_file,
                                        struct tool_error *error);
+// A picture that no file holds, of planes and a depth that become its own. NULL without memory.
+struct view_picture *view_picture_make(const struct hf_io_view *view, float *const planes[3], float *depth);
 struct view_picture *view_picture_ref(struct view_picture *p);
 void view_picture_unref(struct view_picture *p);
 

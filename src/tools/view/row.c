@@ -158,8 +158,8 @@ static void add_slider(struct view_row *row, const char *title)
 static void add_entry(struct view_row *row)
 {
     row->control = gtk_entry_new();
-    gtk_editable_set_width_chars(GTK_EDITABLE(row->control), row->kind == VIEW_NUMBER ? 7 : 10);
-    gtk_editable_set_max_width_chars(GTK_EDITABLE(row->control), row->kind == VIEW_NUMBER ? 7 : 24);
+    gtk_editable_set_width_chars(GTK_EDITABLE(row->control), row->kind == VIEW_NUMBER ? 6 : 10);
+    gtk_editable_set_max_width_chars(GTK_EDITABLE(row->control), row->kind == VIEW_NUMBER ? 6 : 24);
     gtk_widget_set_hexpand(row->control, !row->scale);
     g_signal_connect(row->control, "activate", G_CALLBACK(on_entry), row);
     GtkEventController *focus = gtk_event_controller_focus_new();
@@ -172,6 +172,7 @@ static void add_key(struct view_row *row, const char *title)
     char *label = g_strdup_printf("Key for %s at this frame", title);
     row->key = gtk_button_new_with_label("◇");
     gtk_button_set_has_frame(GTK_BUTTON(row->key), FALSE);
+    gtk_widget_add_css_class(row->key, "key");
     gtk_widget_set_tooltip_text(row->key, label);
     gtk_accessible_update_property(GTK_ACCESSIBLE(row->key), GTK_ACCESSIBLE_PROPERTY_LABEL, label, -1);
     g_free(label);
@@ -215,7 +216,9 @@ struct view_row *view_row_new(struct view_app *app, int option)
     row->box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 6);
     row->name = gtk_label_new(title);
     gtk_label_set_xalign(GTK_LABEL(row->name), 0);
-    gtk_label_set_width_chars(GTK_LABEL(row->name), 16);
+    gtk_label_set_width_chars(GTK_LABEL(row->name), 14);
+    gtk_label_set_ellipsize(GTK_LABEL(row->name), PANGO_ELLIPSIZE_END);
+    gtk_label_set_max_width_chars(GTK_LABEL(row->name), 18);
     gtk_widget_set_tooltip_text(row->name, "Double click: the default");
     GtkGesture *click = gtk_gesture_click_new();
     g_signal_connect(click, "pressed", G_CALLBACK(on_name), row);

@@ -44,7 +44,7 @@ void view_app_ask(struct view_app *app, int moving)
         return;
     memcpy(request.buffer, app->buffer, sizeof(request.buffer));
     view_canvas_set_gain(VIEW_CANVAS(app->canvas), request.gain);
-    view_renderer_ask(app->renderer, &request);
+    app->serial = view_renderer_ask(app->renderer, &request);
 }
 
 static void end_glide(struct view_app *app)
@@ -341,6 +341,17 @@ static void use_picture(struct view_app *app, struct view_picture *picture, char
     view_say("loaded %s %dx%d", picture->args.input, view_picture_view(picture)->view->width,
              view_picture_view(picture)->view->height);
     view_app_apply(app);
+}
+
+void view_app_use(struct view_app *app, struct view_picture *picture)
+{
+    struct tool_error error;
+    view_picture_unref(app->picture);
+    app->picture = view_picture_ref(picture);
+    view_canvas_set_picture(VIEW_CANVAS(app->canvas), picture, 1);
+    app->set_up = !set_up(app, &error);
+    if (!app->set_up)
+        view_app_tell(app, "%s", error.text);
 }
 
 static void on_loaded(GObject *source, GAsyncResult *result, gpointer data)

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <math.h>
+#include <string.h>
 
 #include "tools/common/machine.h"
 #include "tools/view/actions.h"
 #include "tools/view/app.h"
+#include "tools/view/bench.h"
+#include "tools/view/demo.h"
 #include "tools/view/job.h"
 #include "tools/view/keys_file.h"
 #include "tools/view/panel.h"
+#include "tools/view/profiler.h"
 #include "tools/view/say.h"
 #include "tools/view/timeline.h"
 
@@ -55,10 +59,55 @@ static void say_drawn(struct view_app *app, const struct view_result *r, const c
     gtk_native_get_surface_transform(GTK_NATIVE(app->window), &sx, &sy);
     const struct view_camera c = view_canvas_camera(VIEW_CANVAS(app->canvas));
     view_say("drawn stage=%s n=%d at=%d,%d,%d,%d canvas=%g,%g,%d,%d camera=%g,%g,%g focus=%g fstop=%g ms=%.1f "
-             "latency=%.1f",
+             "latency=%.1f show=%s",
              stage, r->n, r->at.x, r->at.y, r->at.width, r->at.height, x + sx, y + sy,
              gtk_widget_get_width(app->canvas), gtk_widget_get_height(app->canvas), c.zoom, c.x, c.y,
-             app->setup.params.focus, app->setup.params.lens.f_number, r->ms, tool_now_ms() - r->asked_ms);
+             app->setup.params.focus, app->setup.params.lens.f_number, r->ms, tool_now_ms() - r->asked_ms,
+             view_show_names[r->show]);
+}
+
+// The engine's buffers, as soon as their names are known.
+static void show_buffers(struct view_app *app, const struct view_result *r)
+{
+    char **names = r->buffers ? g_strsplit(g_strchomp(g_strdup(r->buffers)), "\n", -1) : NULL;
+    GtkStringList *list = names ? gtk_string_list_new((const char *const *)names) : NULL;
+    GListModel *old = gtk_drop_down_get_model(GTK_DROP_DOWN(app->buffers));
+    gtk_widget_set_visible(app->buffers, app->show == VIEW_SHOW_BUFFER && (list || g_list_model_get_n_items(old)));
+    if (list && g_list_model_get_n_items(G_LIST_MODEL(list)) != g_list_model_get_n_items(old)) {
+        gtk_drop_down_set_model(GTK_DROP_DOWN(app->buffers), G_LIST_MODEL(list));
+        gtk_drop_down_set_selected(GTK_DROP_DOWN(app->buffers), 0);
+    }
+    g_clear_object(&list);
+    g_strfreev(names);
+}
+
+static void on_buffer(GtkDropDown *down, GParamSpec *spec, gpointer data)
+{
+    struct view_app *app = data;
+    GtkStringObject *item = gtk_drop_down_get_selected_item(down);
+    (void)spec;
+    if (!item || !strcmp(app->buffer, gtk_string_object_get_string(item)))
+        return;
+    g_strlcpy(app->buffer, gtk_string_object_get_string(item), sizeof(app->buffer));
+    view_app_ask(app, 0);
+}
+
+static void on_show(GtkDropDown *down, GParamSpec *spec, gpointer data)
+{
+    struct view_app *app = data;
+    (void)spec;
+    if (!app->buffers)  // the window is being made
+        return;
+    app->show = (enum view_show)gtk_drop_down_get_selected(down);
+    app->event_ms = tool_now_ms();
+    gtk_widget_set_visible(app->buffers, FALSE);
+    view_say("show %s", view_show_names[app->show]);
+    view_app_ask(app, 0);
+}
+
+void view_window_show(struct view_app *app, enum view_show show)
+{
+    gtk_drop_down_set_selected(GTK_DROP_DOWN(app->shows), app->show == show ? VIEW_SHOW_AFTER : show);
 }
 
 void view_window_drawn(struct view_app *app, const struct view_result *result)
@@ -68,7 +117,13 @@ void view_window_drawn(struct view_app *app, const struct view_result *result)
     snprintf(text, sizeof(text), "%s · %.0f ms · %s", hf_engine_name(result->report.params.engine), result->ms,
              stages[result->stage]);
     gtk_label_set_text(GTK_LABEL(app->state), text);
+    if (result->report.inner.passes && !view_demo_done(app))
+        view_profile_add(&app->profile, &result->report, result->ms, tool_now_ms());
+    view_profiler_refresh(app);
     say_drawn(app, result, stages[result->stage]);
+    show_buffers(app, result);
+    view_bench_drawn(app, result);
+    view_demo_drawn(app);
 }
 
 void view_window_hover(struct view_app *app, double x, double y, int inside)
@@ -175,13 +230,30 @@ static GtkWidget *label(const char *class, float xalign)
     return l;
 }
 
+static GtkWidget *make_choice(const char *name, GCallback changed, struct view_app *app)
+{
+    GtkWidget *down = gtk_drop_down_new(G_LIST_MODEL(gtk_string_list_new(NULL)), NULL);
+    gtk_widget_set_tooltip_text(down, name);
+    gtk_accessible_update_property(GTK_ACCESSIBLE(down), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+    g_signal_connect(down, "notify::selected", changed, app);
+    return down;
+}
+
 static GtkWidget *make_status(struct view_app *app)
 {
+    static const char *const titles[VIEW_SHOWS] = {"Result", "Input", "Depth", "Radius", "Peaking", "Tiles", "Buffers"};
     GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 12);
     app->value = label("numeric", 0);
     app->state = label("numeric", 1);
     app->exposure = label("numeric", 1);
     gtk_widget_set_hexpand(app->value, TRUE);
+    app->shows = make_choice("What is shown", G_CALLBACK(on_show), app);
+    for (int i = 0; i < VIEW_SHOWS; i++)
+        gtk_string_list_append(GTK_STRING_LIST(gtk_drop_down_get_model(GTK_DROP_DOWN(app->shows))), titles[i]);
+    app->buffers = make_choice("Buffer of the engine", G_CALLBACK(on_buffer), app);
+    gtk_widget_set_visible(app->buffers, FALSE);
+    gtk_box_append(GTK_BOX(box), app->shows);
+    gtk_box_append(GTK_BOX(box), app->buffers);
     gtk_box_append(GTK_BOX(box), app->value);
     gtk_box_append(GTK_BOX(box), app->exposure);
     gtk_box_append(GTK_BOX(box), app->state);
@@ -199,7 +271,10 @@ static void load_style(void)
                                     ".panel .derived { opacity: 0.7; }"
                                     ".panel label.given { font-weight: bold; }"
                                     ".panel scale { padding: 2px 6px; }"
-                                    ".panel entry { min-width: 0; }"
+                                    ".panel entry { min-width: 0; min-height: 26px; padding: 0 6px; }"
+                                    ".panel .key { padding: 0; min-width: 22px; min-height: 22px; }"
+                                    ".panel dropdown > button { min-height: 22px; padding: 1px 8px; }"
+                                    ".status dropdown > button { min-height: 20px; padding: 0 8px; }"
                                     ".numeric { font-feature-settings: 'tnum'; }",
                                     -1);
     gtk_style_context_add_provider_for_display(gdk_display_get_default(), GTK_STYLE_PROVIDER(css),
@@ -221,6 +296,13 @@ static gboolean on_close(GtkWindow *window, gpointer data)
     return !view_keys_end(data);
 }
 
+gboolean view_window_close(gpointer data)
+{
+    struct view_app *app = data;
+    gtk_window_close(GTK_WINDOW(app->window));
+    return G_SOURCE_REMOVE;
+}
+
 int view_window_make(struct view_app *app, struct tool_error *error)
 {
     struct view_words words;
@@ -235,6 +317,8 @@ int view_window_make(struct view_app *app, struct tool_error *error)
     load_style();
     app->window = gtk_application_window_new(app->application);
     gtk_window_set_default_size(GTK_WINDOW(app->window), 1280, 800);
+    if (app->own.dark)
+        g_object_set(gtk_settings_get_default(), "gtk-application-prefer-dark-theme", TRUE, NULL);
     gtk_window_set_titlebar(GTK_WINDOW(app->window), make_header(app));
     GtkWidget *column = gtk_box_new(GTK_ORIENTATION_VERTICAL, 0);
     GtkWidget *middle = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 0);
@@ -242,6 +326,7 @@ int view_window_make(struct view_app *app, struct tool_error *error)
     gtk_box_append(GTK_BOX(middle), make_canvas(app));
     gtk_box_append(GTK_BOX(middle), view_panel_new(app));
     gtk_box_append(GTK_BOX(column), middle);
+    gtk_box_append(GTK_BOX(column), view_profiler_new(app));
     gtk_box_append(GTK_BOX(column), view_timeline_new(app));
     gtk_box_append(GTK_BOX(column), view_job_bar(app));
     gtk_box_append(GTK_BOX(column), make_status(app));

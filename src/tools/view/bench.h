@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// --bench: how fast the window answers.
+#ifndef HF_VIEW_BENCH_H
+#define HF_VIEW_BENCH_H
+
+#include "tools/view/app.h"
+
+void view_bench_begin(struct view_app *app);
+// A result is on the screen.
+void view_bench_drawn(struct view_app *app, const struct view_result *result);
+void view_bench_free(struct view_app *app);
+
+#endif
