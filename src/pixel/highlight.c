@@ -67,6 +67,20 @@ static void read_block(const struct hf_frame *f, int x, int y, int n, int raised
     (raised ? hf_read_colour : hf_read_given)(f, x, y, n, even, odd, f->seen);
 }
 
+// A pixel whose three channels all are as they were read is not blurred, and is stored with the picture's own bits. (One
+// channel alone may be so by chance, in a maximum for instance: its light still counts in what the others are lowered by.)
+static void keep_given(struct block *out, const struct block *given, const struct block *raised,
+                       const float *const from[4], int odd, int at, int n)
+{
+    for (int i = 0; i < n; i++) {
+        uint32_t other = 0;
+        for (int c = 0; c < 3; c++)
+            other |= hf_bits(from[c][at + i]) ^ hf_bits(raised->row[odd][c][i]);
+        for (int c = 0; c < 3 && !other; c++)
+            out->row[odd][c][i] = given->row[odd][c][i];
+    }
+}
+
 static void store_block(const struct hf_frame *f, int x, int y, int n, const float *const from[2][4], int at)
 {
     struct block given, raised, out;
@@ -77,12 +91,9 @@ static void store_block(const struct hf_frame *f, int x, int y, int n, const flo
         for (int c = 0; c < 3; c++)
             memcpy(out.row[o][c], from[o][c] + at, (size_t)n * sizeof(float));
         f->k->lower(&f->s->highlight, out.row[o][0], out.row[o][1], out.row[o][2], n);
-        for (int c = 0; c < 3; c++) {
-            for (int i = 0; i < n; i++)
-                if (hf_bits(from[o][c][at + i]) == hf_bits(raised.row[o][c][i]))
-                    out.row[o][c][i] = given.row[o][c][i];
+        keep_given(&out, &given, &raised, from[o], o, at, n);
+        for (int c = 0; c < 3; c++)
             rows[o][c] = out.row[o][c];
-        }
         rows[o][3] = from[o][3] ? from[o][3] + at : NULL;
     }
     f->counts->clamped += hf_store_lanes(f, x, y, n, rows[0], rows[1]);

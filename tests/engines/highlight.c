@@ -311,6 +311,43 @@ static void check_paint(struct hf_context *c, enum hf_engine engine)
         picture_free(made[i]);
 }
 
+// A frame with a gain is the same as one without, of the raised picture, lowered: each pixel as a whole, or it has the picture's
+// own bits as a whole. Lamps have a colour, and stand among dark ones, so that one channel alone may stay as it was.
+static void check_whole_pixels(struct hf_context *c, enum hf_engine engine)
+{
+    struct picture colour, z;
+    struct rng rng = rng_seed(3);
+    make_scene(&colour, &z, 0);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const int lamp = rng_below(&rng, 5) == 0;
+        for (int k = 0; k < 3; k++)
+            colour.plane[k][i] = lamp ? 1 - 0.3f * rng_float(&rng) : 0.3f * rng_float(&rng);
+        // From the focus on up to a pixel and a half; or up to 11, and as much behind.
+        z.plane[0][i] = 5 + (i < WIDTH * HEIGHT / 2 ? 0.4f : i % 8 ? 15 : 0) * (float)(i % WIDTH) / WIDTH;
+    }
+    struct hf_params on = lens(engine, 8), off = lens(engine, 1);
+    const struct hf_highlight h = hf_highlight_of(&on.highlight);
+    struct picture bright = render(c, &colour, &z, &on, HF_FORMAT_PLANAR32F, 0), raised = picture_copy(&colour);
+    hf_raise_row_c(&h, raised.plane[0], raised.plane[1], raised.plane[2], WIDTH * HEIGHT);
+    struct picture lowered = render(c, &raised, &z, &off, HF_FORMAT_PLANAR32F, 0);
+    hf_lower_row_c(&h, lowered.plane[0], lowered.plane[1], lowered.plane[2], WIDTH * HEIGHT);
+    int mixed = 0, blurred = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        int as_lowered = 1, as_given = 1;
+        for (int k = 0; k < 3; k++) {
+            as_lowered = as_lowered && bright.plane[k][i] == lowered.plane[k][i];
+            as_given = as_given && bright.plane[k][i] == colour.plane[k][i];
+        }
+        blurred += !as_given;
+        mixed += !as_lowered && !as_given;
+    }
+    CHECK_MSG(mixed == 0 && blurred > WIDTH, "%s: of %d blurred pixels %d are neither lowered nor as they were",
+              hf_engine_name(engine), blurred, mixed);
+    struct picture *const made[] = {&colour, &z, &bright, &raised, &lowered};
+    for (size_t i = 0; i < sizeof made / sizeof *made; i++)
+        picture_free(made[i]);
+}
+
 int main(void)
 {
     struct hf_context *contexts[2];
@@ -325,6 +362,7 @@ int main(void)
         check_even(contexts[0], (enum hf_engine)e);
         check_lamp(contexts[0], (enum hf_engine)e);
         check_paint(contexts[0], (enum hf_engine)e);
+        check_whole_pixels(contexts[0], (enum hf_engine)e);
         for (int f = 0; f <= HF_FORMAT_PLANAR32F; f++)
             check_frame(contexts, (enum hf_engine)e, (enum hf_format)f);
     }
