@@ -21,8 +21,8 @@ struct field_rows {
 struct composite_rows {
     struct field_rows far, far_coc;
     struct field_rows near, near_coc;  // for the cubic in lines: interpolated in y, and without neighbours
-    float blend;
-    int down;  // the neighbour row is the one below
+    float blend, square;               // of the engine: composite_gain, composite_square
+    int down;                          // the neighbour row is the one below
 };
 
 // Colours and far CoC of 2 VF_N pixels of a row or two: even, odd.

@@ -38,10 +38,21 @@ static double disc_area(double x0, double x1, double y0, double y1)
     return sum * (y1 - y0) / SLICES;
 }
 
+// An area is narrower than the radius that it stands for: the way to half resolution and back, and the lattice, blur too.
+static double narrowed(double radius)
+{
+    const double r = fmax(radius, 1);
+    if (r >= 4)
+        return r;
+    const double square = r * r - (r <= 2.5 ? 1.25 : 1.25 * (4 - r) / 1.5), small = 0.31 + 0.65 * (r - 1);
+    return sqrt(square > small ? square : small);
+}
+
 static void add_level(struct area *a, int far, double radius, double full)
 {
     struct levels *l = &a->levels[far];
-    const double rx = fmax(radius / a->r->params.view.pixel_aspect, 1), ry = radius;
+    const double rx = narrowed(radius / a->r->params.view.pixel_aspect), ry = narrowed(radius);
+    double sum = 0;
     const int i = l->count++;
     l->coc[i] = radius / full;
     l->rx[i] = (int)fmax(ceil(rx - 0.5), 1);
@@ -50,8 +61,11 @@ static void add_level(struct area *a, int far, double radius, double full)
     l->weight[i] = malloc(sizeof(double) * (size_t)row * (size_t)(2 * l->ry[i] + 1));
     for (int y = -l->ry[i]; y <= l->ry[i]; y++)
         for (int x = -l->rx[i]; x <= l->rx[i]; x++)
-            l->weight[i][(y + l->ry[i]) * row + x + l->rx[i]] =
-                disc_area((x - 0.5) / rx, (x + 0.5) / rx, (y - 0.5) / ry, (y + 0.5) / ry) * rx * ry / (M_PI * rx * ry);
+            sum += l->weight[i][(y + l->ry[i]) * row + x + l->rx[i]] =
+                fmax(disc_area((x - 0.5) / rx, (x + 0.5) / rx, (y - 0.5) / ry, (y + 0.5) / ry) * rx * ry,
+                     abs(x) <= 1 && abs(y) <= 1 ? 1.0 / 1024 : 0);
+    for (int k = 0; k < row * (2 * l->ry[i] + 1); k++)
+        l->weight[i][k] /= sum;
 }
 
 static void make_levels(struct area *a)
@@ -106,10 +120,18 @@ static double share_far(const struct levels *l, int i, double coc)
     return part * area[i] / own;
 }
 
-// Both fields end with the same level.
-static double smallest_part(const struct area *a, double coc)
+// A pixel's part in a field: of several kernels as a lens has it, else in proportion to its CoC. Both fields end with the same
+// level.
+static double curve(int far, double q)
 {
-    return fmin(1, a->r->blend / a->levels[0].coc[a->levels[0].count - 1] * coc);
+    return far ? q * q : (q * q + pow(q, 6)) / 2;
+}
+
+static double smallest_part(const struct area *a, int far, double coc)
+{
+    const double q = 1 / a->levels[0].coc[a->levels[0].count - 1];
+    return a->r->params.gather.per_pixel_kernel ? curve(far, fmin(1, a->r->blend * q * coc))
+                                                : fmin(1, a->r->blend * curve(far, q) * coc);
 }
 
 static void down(struct area *a)
@@ -119,7 +141,7 @@ static void down(struct area *a)
         for (int k = 0; k < 4; k++) {
             const int x = (int)fmin(i % a->width * 2 + k % 2, a->r->width - 1);
             const int y = (int)fmin(i / a->width * 2 + k / 2, a->r->height - 1), at = y * a->r->width + x;
-            const double near = smallest_part(a, coc->data[0][at]), far = smallest_part(a, coc->data[1][at]);
+            const double near = smallest_part(a, 0, coc->data[0][at]), far = smallest_part(a, 1, coc->data[1][at]);
             for (int c = 0; c < a->r->channels; c++) {
                 a->plane[COLOUR + c][i] += colour->data[c][at] / 4;
                 a->plane[NEAR + c][i] += colour->data[c][at] * near / 4;
@@ -138,11 +160,12 @@ struct sums {
 
 enum kind { KIND_NEAR, KIND_BEHIND, KIND_FAR };
 
-// Samples blurred more than twice as much as a smaller level are left to the far levels there. (Both fields have the
-// same radii.)
+// Samples blurred more than twice as much as a smaller level are left to the far levels there, wholly from a radius of 2 half-
+// resolution pixels on. (Both fields have the same radii.)
 static double left_of(const struct levels *l, int i, double coc)
 {
-    return i > 0 ? 1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8) : 0;
+    const double several = fmin(fmax(l->coc[0] / l->coc[l->count - 1] - 1, 0), 1);
+    return i > 0 ? several * (1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8)) : 0;
 }
 
 // One level's mean around a pixel; for the near field over the part of the disc within the frame. Beyond the frame
@@ -252,7 +275,7 @@ static void near_pixel(const struct area *a, int x, int y, double *near[5])
     const struct levels *l = &a->levels[0];
     const int i = y * a->width + x;
     const double hides = hidden(a, x, y),
-                 m = smallest_part(a, a->r->params.gather.per_pixel_kernel ? hides : hides * 8 / 7);
+                 m = smallest_part(a, 0, a->r->params.gather.per_pixel_kernel ? hides : hides * 8 / 7);
     struct sums own = {{0}, 0, 0}, back = {{0}, 0, 0};
     for (int k = 0; k < l->count; k++) {
         const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
@@ -294,7 +317,7 @@ static void composite(const struct area *a, double *const near[5], double *const
     for (int y = 0; y < r->height; y++)
         for (int x = 0; x < r->width; x++) {
             const int at = y * r->width + x;
-            const double own = smallest_part(a, r->buffer[REF_COC].data[1][at]);
+            const double own = smallest_part(a, 1, r->buffer[REF_COC].data[1][at]);
             const double blurred = up(a, a->plane[FAR_PART], x, y) + up(a, a->plane[NEAR_PART], x, y);
             const double t = fmax(fmin(own, 2 * blurred - own), 0), cover = up(a, near[4], x, y);
             for (int c = 0; c < r->channels; c++) {

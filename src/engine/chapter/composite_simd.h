@@ -226,6 +226,12 @@ HF_INLINE float composite_gain(const struct hf_setup *s)
     return hf_fields(s)->blend;
 }
 
+HF_INLINE float composite_square(const struct hf_setup *s)
+{
+    (void)s;
+    return 0;
+}
+
 enum {
     COMPOSITE_FAR = HF_BUF_FAR_FILL,
     COMPOSITE_FAR_COC = HF_BUF_COC4,

@@ -67,7 +67,7 @@ static double polygon_area(const struct polygon *whole, double x0, double y0, do
 }
 
 // What the eight pixels around the middle one weigh at least. A pixel beside a far one is upsampled with it and has to see
-// it: a triangle of radius 1 covers nothing of some of them.
+// it: a triangle of radius 1 covers nothing of some of them, and small discs nothing of the corners.
 static const double LEAST = 1.0 / 1024;
 
 void hf_area_cover(double *cover, const struct hf_area *a, atomic_int *stop)
@@ -84,7 +84,7 @@ void hf_area_cover(double *cover, const struct hf_area *a, atomic_int *stop)
         for (int x = -a->rx; x <= a->rx; x++) {
             const double x0 = (x - 0.5) * w, x1 = (x + 0.5) * w, y0 = (y - 0.5) * h, y1 = (y + 0.5) * h;
             const double area = p.n ? polygon_area(&p, x0, y0, x1, y1) : disc_area(x0, y0, x1, y1);
-            const double least = p.n && abs(x) <= 1 && abs(y) <= 1 ? LEAST : 0;
+            const double least = abs(x) <= 1 && abs(y) <= 1 ? LEAST : 0;
             cover[(y + a->ry) * (2 * a->rx + 1) + x + a->rx] = fmax(fmin(area / (w * h), 1), least);
         }
 }

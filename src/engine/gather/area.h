@@ -14,7 +14,7 @@ struct hf_area {
     int cut;                    // the aperture is larger than the lattice
 };
 
-// Part of each pixel of the lattice that is covered, 0..1, and of polygons at least a little of the nine in the middle: rows
+// Part of each pixel of the lattice that is covered, 0..1, and at least a little of the nine in the middle: rows
 // of 2 rx + 1.
 void hf_area_cover(double *cover, const struct hf_area *a, atomic_int *stop);
 // Weights from that, in its place: whole numbers of hf_area_unit, 1 where a pixel is covered. Returns by what sums are

@@ -7,8 +7,8 @@
 // pixel beside something sharp, where that is smoothed over its edge, so stays in part what it was.
 static float far_part(const struct hf_frame *f, struct hf_phase p, float coc)
 {
-    const float gain = hf_gather_levels(f->s, HF_FAR)->gain;
-    const float own = gain * coc < 1 ? gain * coc : 1;
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
+    const float own = hf_level_part(l, l->gain, coc);
     const float around = (2 / 16.0f) * hf_upsample(&f->buf[HF_BUF_FAR_PART], 0, p) - own;
     const float t = around < own ? around : own;
     return t > 0 ? t : 0;

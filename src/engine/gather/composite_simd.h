@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Composite on vectors: what a block is blended by. Both fields are upsampled bilinearly.
-#include "engine/gather/gather.h"
+#include "engine/gather/part_vf.h"
 #include "pixel/composite_vf.h"
 
 // In coc and near_coc it puts how much each field counts.
@@ -13,7 +13,8 @@ HF_INLINE int blend_kind(const struct composite_rows *r, const int rows, int wit
         near_up(&r->far_coc, rows, 0, 0, x, up);
         kind = BLEND_FAR;
         for (int i = 0; i < 2 * rows; i++) {
-            const vf own = vf_min(vf_mul(vf_set1(r->blend), coc[i / 2][i % 2]), vf_set1(1));
+            const struct hf_part_curve curve = {.linear = 1 - r->square, .square = r->square};
+            const vf own = level_part(curve, vf_set1(r->blend), coc[i / 2][i % 2]);
             const vf around = vf_sub(vf_mul(vf_set1(2 / 16.0f), up[i / 2][i % 2]), own);
             coc[i / 2][i % 2] = vf_max(vf_min(around, own), vf_zero());
         }
@@ -65,6 +66,11 @@ HF_INLINE int composite_how(const struct hf_setup *s)
 HF_INLINE float composite_gain(const struct hf_setup *s)
 {
     return hf_gather_levels(s, HF_FAR)->gain;
+}
+
+HF_INLINE float composite_square(const struct hf_setup *s)
+{
+    return hf_gather_levels(s, HF_FAR)->curve.square;
 }
 
 enum {

@@ -28,8 +28,8 @@ int hf_area_inside(const struct hf_setup *s, const struct hf_area_kernel *k, int
 // How far the near field hides at a pixel what is behind it: 1 where near pixels are fully so.
 static float hidden(const struct hf_frame *f, int x, int y)
 {
-    const float m = hf_gather_levels(f->s, HF_NEAR)->hides * *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
-    return m < 1 ? m : 1;
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
+    return hf_level_part(l, l->hides, *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y));
 }
 
 static void store_near(const struct hf_frame *f, int y, struct hf_rect r)

@@ -2,7 +2,7 @@
 // Computation on vectors, with one kernel for a field; more of them are levels_simd.h's.
 #include <float.h>
 
-#include "engine/gather/gather.h"
+#include "engine/gather/part_vf.h"
 #include "pixel/coc_vf.h"
 #include "pixel/convolve_simd.h"
 
@@ -49,9 +49,9 @@ static void area_convolve(const struct hf_frame *f, struct hf_rect r, const stru
     convolve_jobs(f, r, t, column, strip_plane(f, HF_STRIP_PLANES, r.y1 - r.y0), jobs, count, finish);
 }
 
-HF_INLINE vf area_hidden(const float *blur, vf gain)
+HF_INLINE vf area_hidden(const struct hf_levels *l, const float *blur)
 {
-    return vf_min(vf_mul(gain, vf_load(blur)), vf_set1(1));
+    return level_part(l->curve, vf_set1(l->hides), vf_load(blur));
 }
 
 static void area_store_near(const struct hf_frame *f, int y, struct hf_rect r)
@@ -71,7 +71,7 @@ static void area_finish_near(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_setup *s = f->s;
     const struct hf_levels *l = hf_gather_levels(s, HF_NEAR);
-    const vf hides_all = vf_set1(l->hides), one = vf_set1(1);
+    const vf one = vf_set1(1);
     const struct hf_area_kernel *k = &l->level[0].kernel;
     const int height = r.y1 - r.y0;
     float *inside = hf_line(f, 0);
@@ -84,7 +84,7 @@ static void area_finish_near(const struct hf_frame *f, struct hf_rect r)
             cut = hf_area_inside(s, k, r.x0, y, r.x1 - r.x0, inside);
         hf_row(&f->buf[HF_BUF_NEAR], s->channels, r.x0, y, near);
         for (int x = 0; x < r.x1 - r.x0; x += VF_N) {
-            const vf m = area_hidden(blur + x, hides_all);
+            const vf m = area_hidden(l, blur + x);
             const vm hides = vf_gt(m, vf_zero()), wholly = vf_eq(m, one);
             const int is_cut = cut && vm_any(vf_lt(vf_load(inside + x), one));
             if (!is_cut && !vm_any(hides))

@@ -3,20 +3,18 @@
 // thin thing that moves by a part of a pixel brings as much light as before.
 #include "engine/gather/gather.h"
 
-// A quad's CoC of one kind, as what it adds to that field: gain x CoC, at most 1.
+// A quad's CoC of one kind, as what it adds to that field.
 struct quad {
     float part[4], mean, most;  // most: of the CoC itself
 };
 
-static struct quad quad_of(const struct hf_frame *f, int even, int odd, int x, int y, int y1, float gain)
+static struct quad quad_of(const struct hf_frame *f, int even, int odd, int x, int y, int y1, const struct hf_levels *l)
 {
     const struct hf_buf *b = &f->buf[HF_BUF_COC];
     const float coc[4] = {*hf_at(b, even, x, y), *hf_at(b, odd, x, y), *hf_at(b, even, x, y1), *hf_at(b, odd, x, y1)};
     struct quad q;
-    for (int i = 0; i < 4; i++) {
-        const float part = gain * coc[i];
-        q.part[i] = part < 1 ? part : 1;
-    }
+    for (int i = 0; i < 4; i++)
+        q.part[i] = hf_level_part(l, l->gain, coc[i]);
     const float top = coc[0] > coc[1] ? coc[0] : coc[1], bottom = coc[2] > coc[3] ? coc[2] : coc[3];
     q.most = top > bottom ? top : bottom;
     q.mean = 0.25f * ((q.part[0] + q.part[1]) + (q.part[2] + q.part[3]));
@@ -46,8 +44,8 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
     hf_row(&f->buf[HF_BUF_COLORNEAR4], s->channels, r.x0, y, near);
     hf_row(&f->buf[HF_BUF_COLORFAR4], s->channels, r.x0, y, far);
     for (int x = 0; x < n; x++) {
-        const struct quad nq = quad_of(f, 0, 1, r.x0 + x, 2 * y, y1, hf_gather_levels(s, HF_NEAR)->gain);
-        const struct quad fq = quad_of(f, 2, 3, r.x0 + x, 2 * y, y1, hf_gather_levels(s, HF_FAR)->gain);
+        const struct quad nq = quad_of(f, 0, 1, r.x0 + x, 2 * y, y1, hf_gather_levels(s, HF_NEAR));
+        const struct quad fq = quad_of(f, 2, 3, r.x0 + x, 2 * y, y1, hf_gather_levels(s, HF_FAR));
         for (int c = 0; c < s->channels; c++) {
             const float quad[4] = {lane[0][0][c][x], lane[0][1][c][x], lane[1][0][c][x], lane[1][1][c][x]};
             const float sum = 0.25f * ((quad[0] + quad[1]) + (quad[2] + quad[3])),

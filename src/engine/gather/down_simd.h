@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Downsample on vectors.
-#include "engine/gather/gather.h"
+#include "engine/gather/part_vf.h"
 #include "pixel/down_vf.h"
 
 // Where a row of quads begins in the buffers: CoC in full resolution, of both fields; what is written.
@@ -8,6 +8,7 @@ struct down_row {
     const float *coc[2][4];
     float *colour[4], *part[2][4], *coc4[4];
     vf gain[2];
+    struct hf_part_curve curve[2];
     int far_most;  // is wanted
 };
 
@@ -22,6 +23,7 @@ HF_INLINE struct down_row down_row_at(const struct hf_frame *f, const int channe
         d.coc[i][2] = hf_at(b, 2 * i, x, y1);
         d.coc[i][3] = hf_at(b, 2 * i + 1, x, y1);
         d.gain[i] = vf_set1(hf_gather(f->s)->levels[i].gain);
+        d.curve[i] = hf_gather(f->s)->levels[i].curve;
     }
     hf_row(&f->buf[HF_BUF_COLOR4], channels, x, y, d.colour);
     hf_row(&f->buf[HF_BUF_COLORNEAR4], channels, x, y, d.part[0]);
@@ -35,14 +37,14 @@ struct quad {
     vf part[4], mean, most;
 };
 
-// unit: the gain is 1.
+// unit: a part is the CoC.
 HF_INLINE struct quad down_quad_at(const struct down_row *d, const int unit, const int field, int x)
 {
     struct quad q;
     vf coc[4];
     for (int i = 0; i < 4; i++) {
         coc[i] = vf_load(d->coc[field][i] + x);
-        q.part[i] = unit ? coc[i] : vf_min(vf_mul(d->gain[field], coc[i]), vf_set1(1));
+        q.part[i] = unit ? coc[i] : level_part(d->curve[field], d->gain[field], coc[i]);
     }
     q.most = vf_max(vf_max(coc[0], coc[1]), vf_max(coc[2], coc[3]));
     q.mean = vf_mul(vf_set1(0.25f), down_sum(q.part));
@@ -158,6 +160,11 @@ HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int f
     return down_is_finite(largest);
 }
 
+static int down_is_unit(const struct hf_levels *l)
+{
+    return l->gain == 1 && l->curve.linear == 1;
+}
+
 HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far, struct hf_rect r)
 {
     const int stream = down_streams(f, r);
@@ -165,7 +172,8 @@ HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far
         int x = r.x0;
         if (f->src->format == HF_FORMAT_R11G11B10F && !f->s->highlight.on) {
             const int x1 = down_words_end(f, r);
-            const int unit = hf_gather_levels(f->s, HF_NEAR)->gain == 1 && hf_gather_levels(f->s, HF_FAR)->gain == 1;
+            const int unit =
+                down_is_unit(hf_gather_levels(f->s, HF_NEAR)) && down_is_unit(hf_gather_levels(f->s, HF_FAR));
             if (x < x1 && (unit ? down_row_r11(f, near, far, 1, x, x1, y, stream)
                                 : down_row_r11(f, near, far, 0, x, x1, y, stream)))
                 x = x1;

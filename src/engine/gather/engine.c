@@ -158,6 +158,15 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
 // dear, and mostly lie over one another.
 static const float LEVEL_STEP[2] = {0.5f, 0.8f};
 
+// Of several levels, parts follow from the lens: a disc of radius r has the variance r^2 / 2, and a blend of the picture with
+// the smallest kernel must have it too. Near pixels are counted twice, in the field and in how far it hides the picture under
+// it: (q^2 + q^6) / 2 there comes to less than 1.06 q^2, and its slope stays finite at 1. With one kernel alone a pixel's
+// part is its CoC, and all of the field fades in so.
+static struct hf_part_curve curve_of(int far)
+{
+    return far ? (struct hf_part_curve){.square = 1} : (struct hf_part_curve){.square = 0.5f, .sixth = 0.5f};
+}
+
 // radius: h. With levels from it down to 1, each a step smaller than the one before; the last is 1, so that a radius that
 // grows adds a level where there is one already. Where levels are summed, that one counts by how far it is away from the one
 // before, else its samples would at once count twice.
@@ -186,14 +195,21 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
         // Radii that differ may have one CoC.
         level->to_next = r > next ? __builtin_fminf(1 / (level->coc - after), FLT_MAX) : 0;
         level->area_to_next = r > next ? __builtin_fminf(1 / (level->area - after * after), FLT_MAX) : 0;
-        l->gain = (s->strength < 0.25f ? 4 * s->strength : 1) / level->coc;
-        l->hides = many ? l->gain : l->gain * (8 / 7.0f);
+        l->gain = 1 / level->coc;
         const int err = hf_area_kernel_build(&level->kernel, &key, mem, s->stop);
         if (err)
             return err;
         if (!many || r <= 1)
             break;
     }
+    l->curve = curve_of(far);
+    l->several = hf_saturate(largest - 1);
+    if (!many) {
+        l->gain = hf_level_part(l, l->gain, 1);
+        l->curve = (struct hf_part_curve){.linear = 1};
+    }
+    l->gain *= s->strength < 0.25f ? 4 * s->strength : 1;
+    l->hides = many ? l->gain : l->gain * (8 / 7.0f);
     return HF_OK;
 }
 

@@ -44,6 +44,11 @@ struct hf_level {
 
 enum { HF_MAX_LEVELS = 34 };
 
+// A pixel's part in a field, from how much it is blurred, 0 to 1, against the field's smallest kernel: a polynomial, 1 at 1.
+struct hf_part_curve {
+    float linear, square, sixth;
+};
+
 // A far pixel sees what is blurred up to so much more than itself.
 #define HF_FAR_WIDER (16 / 9.0f)
 
@@ -51,10 +56,15 @@ enum { HF_MAX_LEVELS = 34 };
 // smallest is a blend of that and the picture.
 struct hf_levels {
     int count;
-    float gain;  // 1 / coc of the smallest: min(1, gain x CoC) is a pixel's part in the field
-    // Of near pixels: min(1, hides x CoC) is how far the field hides the picture where they are: as gain, but where there is
-    // one kernel alone, wholly from seven eighths of its radius on. A light in a mixed pixel would shine through as a speck.
+    float gain;  // 1 / coc of the smallest: hf_level_part of min(1, gain x CoC) is a pixel's part in the field
+    // Of near pixels: the same of min(1, hides x CoC) is how far the field hides the picture where they are: as gain, but where
+    // there is one kernel alone, wholly from seven eighths of its radius on. A light in a mixed pixel would shine through as a
+    // speck.
     float hides;
+    struct hf_part_curve curve;
+    // Of near ones: how far the field is treated as one of several kernels, 0 to 1: it grows from where there is a second one,
+    // at a radius of one half-resolution pixel, to a radius of two. What only several kernels do begins so.
+    float several;
     struct hf_level level[HF_MAX_LEVELS];
 };
 
@@ -67,6 +77,12 @@ struct hf_gather {
 static inline const struct hf_gather *hf_gather(const struct hf_setup *s)
 {
     return s->own;
+}
+
+static inline float hf_level_part(const struct hf_levels *l, float gain, float coc)
+{
+    const float own = gain * coc, q = own < 1 ? own : 1, square = q * q;
+    return q * l->curve.linear + square * (l->curve.sixth * (square * square) + l->curve.square);
 }
 
 // How much a pixel of this CoC takes from a level. All levels' shares sum to 1 exactly: each is one of u, 1 - u and 0.
@@ -135,7 +151,7 @@ static inline float hf_level_left(const struct hf_levels *l, int i, float far)
 {
     const float times = far * l->level[i].half_far, square = times * times, most = square > 1 ? square : 1;
     const float fourth = most * most;
-    return i == 0 ? 0 : 1 - 1 / (fourth * fourth);
+    return i == 0 ? 0 : l->several - l->several / (fourth * fourth);
 }
 
 struct hf_gather_kernels {
@@ -148,6 +164,7 @@ hf_kernel hf_gather_down_c, hf_gather_computation_c, hf_gather_composite_c;
 // How much of what is not near counts as what near pixels hide, within reach of their levels: what is more than so many
 // times as bright as what is on both sides of it, sideways and up and down, counts as that. It is a light, of which near pixels
 // that are farther away than its own disc see nothing; else each level draws a ring of its own size around it, over them.
+// hf_levels.several says how far that is so.
 #define HF_LIGHT 16.0f
 void hf_gather_lights_c(const struct hf_frame *f, struct hf_rect r);
 

@@ -39,9 +39,9 @@ HF_INLINE vf area_seen(const struct hf_levels *l, int i, vf coc)
 
 HF_INLINE vf area_left(const struct hf_levels *l, int i, const float *far)
 {
-    const vf times = vf_mul(vf_load(far), vf_set1(l->level[i].half_far)), one = vf_set1(1);
-    const vf most = vf_max(vf_mul(times, times), one), fourth = vf_mul(most, most);
-    return vf_sub(one, vf_div(one, vf_mul(fourth, fourth)));
+    const vf times = vf_mul(vf_load(far), vf_set1(l->level[i].half_far)), several = vf_set1(l->several);
+    const vf most = vf_max(vf_mul(times, times), vf_set1(1)), fourth = vf_mul(most, most);
+    return vf_sub(several, vf_div(several, vf_mul(fourth, fourth)));
 }
 
 // Level i of the disoccluded colour leaves strongly blurred far samples to the far levels, in part or wholly
@@ -254,12 +254,13 @@ HF_INLINE vf area_free_part(vf cover, vf see)
 
 static void area_finish_row(const struct hf_frame *f, int x0, int n, int y)
 {
-    const vf hides_all = vf_set1(hf_gather_levels(f->s, HF_NEAR)->hides), one = vf_set1(1);
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
+    const vf one = vf_set1(1);
     const int karis = hf_fields(f->s)->karis;
     const struct area_sums near = area_near_sums(f, x0, y), behind = area_behind_sums(f, x0, y);
     const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, x0, y);
     for (int x = 0; x < n; x += VF_N) {
-        const vf m = area_hidden(blur + x, hides_all), cover = vf_load(near.weight[1] + x);
+        const vf m = area_hidden(l, blur + x), cover = vf_load(near.weight[1] + x);
         const vf see = vf_load(behind.weight[1] + x), most = vf_max(cover, one);
         const vf part = area_free_part(cover, see), all = vf_fma(part, see, cover);
         const vm hides = vf_gt(m, vf_zero());
