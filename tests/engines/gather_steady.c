@@ -278,7 +278,7 @@ static void one_sample(struct hf_context *c, enum hf_engine engine)
         const int sx = at_pixel % WIDTH, sy = at_pixel / WIDTH;
         t.scene = (struct scene){picture_copy(&s.scene.colour), picture_copy(&s.scene.depth)};
         if (i % 2)
-            t.scene.depth.plane[0][at_pixel] = i % 8 == 1 ? 5 : s.scene.depth.plane[0][other];
+            t.scene.depth.plane[0][at_pixel] = i % 8 == 1 ? (i % 16 == 1 ? 5 : 1e9f) : s.scene.depth.plane[0][other];
         else
             for (int k = 0; k < 3; k++)
                 t.scene.colour.plane[k][at_pixel] = rng_float(&rng);

@@ -75,7 +75,7 @@ static void make_levels(struct area *a)
         double radius = fmax(full, 1);
         add_level(a, far, radius, full);
         while (a->r->params.gather.per_pixel_kernel && radius > 1)
-            add_level(a, far, radius = fmax(radius * (far ? 0.8 : 0.5), 1), full);
+            add_level(a, far, radius = far ? fmax(radius * 0.8, 1) : exp2(ceil(log2(radius)) - 1), full);
     }
 }
 
@@ -160,12 +160,12 @@ struct sums {
 
 enum kind { KIND_NEAR, KIND_BEHIND, KIND_FAR };
 
-// Samples blurred more than twice as much as a smaller level are left to the far levels there, wholly from a radius of 2 half-
-// resolution pixels on. (Both fields have the same radii.)
+// Samples blurred more than twice as much as a smaller level are left to the far levels there, as far as the level is
+// away from the one before. (Both fields have the same radii.)
 static double left_of(const struct levels *l, int i, double coc)
 {
-    const double several = fmin(fmax(l->coc[0] / l->coc[l->count - 1] - 1, 0), 1);
-    return i > 0 ? several * (1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8)) : 0;
+    const double apart = i > 0 ? 2 * (1 - l->coc[i] / l->coc[i - 1]) : 0;
+    return i > 0 ? apart * (1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8)) : 0;
 }
 
 // One level's mean around a pixel; for the near field over the part of the disc within the frame. Beyond the frame

@@ -167,9 +167,22 @@ static struct hf_part_curve curve_of(int far)
     return far ? (struct hf_part_curve){.square = 1} : (struct hf_part_curve){.square = 0.5f, .sixth = 0.5f};
 }
 
-// radius: h. With levels from it down to 1, each a step smaller than the one before; the last is 1, so that a radius that
-// grows adds a level where there is one already. Where levels are summed, that one counts by how far it is away from the one
-// before, else its samples would at once count twice.
+// The level after one of radius r. Near ones but the largest lie at 1, 2, 4 and so on, whatever the largest is: a sample that
+// is nearer than all others changes little for them. Far ones are each a step smaller than the one before, and the last is 1:
+// a far pixel sees levels by their order, and the samples at the largest radius, often all of the background, must be of that.
+static float next_radius(int far, float r)
+{
+    float rung = 1;
+    if (far)
+        return __builtin_fmaxf(LEVEL_STEP[far] * r, 1);
+    while (rung / LEVEL_STEP[far] < r)
+        rung /= LEVEL_STEP[far];
+    return rung;
+}
+
+// radius: h. With levels from it down to 1. A radius that grows adds a level where there is one already: the second one of near
+// levels, the last one of far ones. Where levels are summed, that one counts by how far it is away from the one before, else
+// its samples would at once count twice.
 static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, const struct hf_params *p, float radius,
                         const struct hf_mem *mem)
 {
@@ -189,8 +202,9 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
         level->coc = r / (radius * scale);
         level->inverse = 1 / level->coc;
         level->again = before > 0 ? 1 - (1 - r / before) / (1 - LEVEL_STEP[far]) : 0;
+        level->leaves = before > 0 ? 1 - level->again : 0;
         level->area = level->coc * level->coc;
-        next = __builtin_fmaxf(LEVEL_STEP[far] * r, 1);
+        next = next_radius(far, r);
         const float after = next / (radius * scale);
         // Radii that differ may have one CoC.
         level->to_next = r > next ? __builtin_fminf(1 / (level->coc - after), FLT_MAX) : 0;
@@ -203,7 +217,7 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
             break;
     }
     l->curve = curve_of(far);
-    l->several = hf_saturate(largest - 1);
+    l->limits = hf_saturate(largest - 1);
     if (!many) {
         l->gain = hf_level_part(l, l->gain, 1);
         l->curve = (struct hf_part_curve){.linear = 1};

@@ -35,6 +35,7 @@ struct hf_level {
     float coc;      // the CoC of pixels as blurred as this
     float inverse;  // 1 / coc
     float again;    // of near ones: how much of it the one before sees already, 0 where that is a whole step larger
+    float leaves;   // of near ones: the rest of that, 0 of the largest: how far it leaves far samples to the far levels
     float to_next;  // 1 / (coc - that of the next one)
     float area;     // coc^2, and as for coc:
     float area_to_next;
@@ -62,9 +63,9 @@ struct hf_levels {
     // speck.
     float hides;
     struct hf_part_curve curve;
-    // Of near ones: how far the field is treated as one of several kernels, 0 to 1: it grows from where there is a second one,
-    // at a radius of one half-resolution pixel, to a radius of two. What only several kernels do begins so.
-    float several;
+    // Of near ones: how far lights behind the field are limited, 0 to 1. It grows from where there is a second kernel, at a
+    // radius of one half-resolution pixel, to a radius of two.
+    float limits;
     struct hf_level level[HF_MAX_LEVELS];
 };
 
@@ -151,7 +152,7 @@ static inline float hf_level_left(const struct hf_levels *l, int i, float far)
 {
     const float times = far * l->level[i].half_far, square = times * times, most = square > 1 ? square : 1;
     const float fourth = most * most;
-    return i == 0 ? 0 : l->several - l->several / (fourth * fourth);
+    return l->level[i].leaves - l->level[i].leaves / (fourth * fourth);
 }
 
 struct hf_gather_kernels {
@@ -164,7 +165,7 @@ hf_kernel hf_gather_down_c, hf_gather_computation_c, hf_gather_composite_c;
 // How much of what is not near counts as what near pixels hide, within reach of their levels: what is more than so many
 // times as bright as what is on both sides of it, sideways and up and down, counts as that. It is a light, of which near pixels
 // that are farther away than its own disc see nothing; else each level draws a ring of its own size around it, over them.
-// hf_levels.several says how far that is so.
+// hf_levels.limits says how far that is so.
 #define HF_LIGHT 16.0f
 void hf_gather_lights_c(const struct hf_frame *f, struct hf_rect r);
 

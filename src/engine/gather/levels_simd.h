@@ -39,9 +39,9 @@ HF_INLINE vf area_seen(const struct hf_levels *l, int i, vf coc)
 
 HF_INLINE vf area_left(const struct hf_levels *l, int i, const float *far)
 {
-    const vf times = vf_mul(vf_load(far), vf_set1(l->level[i].half_far)), several = vf_set1(l->several);
+    const vf times = vf_mul(vf_load(far), vf_set1(l->level[i].half_far)), leaves = vf_set1(l->level[i].leaves);
     const vf most = vf_max(vf_mul(times, times), vf_set1(1)), fourth = vf_mul(most, most);
-    return vf_sub(several, vf_div(several, vf_mul(fourth, fourth)));
+    return vf_sub(leaves, vf_div(leaves, vf_mul(fourth, fourth)));
 }
 
 // Level i of the disoccluded colour leaves strongly blurred far samples to the far levels, in part or wholly
