@@ -77,7 +77,13 @@ static void farthest(void)
     spread[0] = 0.25f;
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 1);
     CHECK_MSG(fabs(spread[0] - 0.125) <= 4 * 0.125 * FLT_EPSILON, "a variance of %g, not 0.125", spread[0]);
+    // A pixel of which a millionth belongs to the edge changes nothing, however different its colour is.
+    radius[1][AT] = 0.5f - 0x1p-20f;
+    colour[1][AT] = 5;
     weight[0] = 0;
+    CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 1);
+    CHECK_MSG(fabs(mean[0][0] - want) <= 7 * FLT_EPSILON, "colour %g, not %g, beside a pixel of another surface",
+              (double)mean[0][0], want);
     weight[1] = 0;
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 0);
 }

@@ -71,7 +71,7 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
     return all;
 }
 
-// The mean of a side, weighted by the eighth power of the difference of colours from `other`.
+// The mean of a side, weighted by the eighth power of the difference of colours from `other` times its part.
 static void side_farthest(const struct frame *f, int x, int y, double middle, double slope, int front,
                           const double other[5], double mean[5])
 {
@@ -82,7 +82,7 @@ static void side_farthest(const struct frame *f, int x, int y, double middle, do
         part[i] = front ? s : 1 - s;
         far[i] = 0;
         for (int c = 0; c < f->channels; c++)
-            far[i] += fabs(colour_at(f, c, px, py) - other[c]);
+            far[i] += part[i] * fabs(colour_at(f, c, px, py) - other[c]);
         most = part[i] > 0 ? fmax(most, far[i]) : most;
     }
     memset(mean, 0, 5 * sizeof *mean);

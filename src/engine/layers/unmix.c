@@ -27,7 +27,8 @@ enum { SIDE = 5 };  // pixels each way
 
 // The mean of those of 5 x 5 pixels that are on one side, weighted by the eighth power of their distance in colour from
 // `other`. That is nearly the farthest pixel alone; but where two are equally far, a moving picture does not jump from
-// one to the other.
+// one to the other. A pixel's distance counts by its share of the side. Otherwise one that barely belongs to it, by the last
+// bit of a radius, would outweigh those that do.
 static void farthest(const struct hf_unmix_row *u, int x, int front, const float *other, float *colour, float *radius)
 {
     float share[SIDE * SIDE], distance[SIDE * SIDE], most = 0, sum = 0;
@@ -44,8 +45,8 @@ static void farthest(const struct hf_unmix_row *u, int x, int front, const float
         float d = 0;
         for (int c = 0; c < u->channels; c++)
             d = d + fabsf(u->colour[y][c][i] - other[c]) * 0.125f;  // finite even for the largest samples
-        distance[j] = d;
-        most = d > most ? d : most;
+        distance[j] = share[j] * d;
+        most = distance[j] > most ? distance[j] : most;
     }
     for (int j = 0; j < count; j++) {
         const int y = 1 + pixel[j] / SIDE, i = x - 2 + pixel[j] % SIDE;
