@@ -128,7 +128,7 @@ static void jumps(struct hf_context *c, int count, unsigned seed)
     for (int n = 0; n < count; n++) {
         struct rng rng = rng_seed(seed * 1000003u + (unsigned)n);
         struct subject t = subject_new(&rng);
-        const int vary = rng_below(&rng, CAT_EYE);  // its nodes still jump
+        const int vary = rng_below(&rng, VARIED);
         float from = rng_range(&rng, t.low[vary], t.high[vary]), to = rng_range(&rng, t.low[vary], t.high[vary]);
         if (rng_below(&rng, 6) == 0 && vary >= RING)
             from = 0;

@@ -104,14 +104,15 @@ static void scatter(const struct layers_shape *s, const struct grid *source, con
 }
 
 // The distance of the columns at which a cat's eye is made: from one to the next its second circle moves by at most 1.5
-// pixels. Between them the shapes are blended.
-static int node_apart(const struct frame *f, double r, int level)
+// pixels. Between them the shapes are blended. wide: how far they have the double distance, in its last quarter.
+static int node_apart(const struct frame *f, double r, int level, double *wide)
 {
     const double far =
         1.5 * hypot(f->width, f->height) / (1 << level) / (2 * f->aperture.cat_eye * r * fmax(f->wide, 1));
     int n = 4;
     while (2 * n <= far && n < 256)
         n *= 2;
+    *wide = n < 256 ? fmax(4 * far / n - 7, 0) : 0;
     return n;
 }
 
@@ -120,20 +121,23 @@ static int node_apart(const struct frame *f, double r, int level)
 static void gather_cut(const struct frame *f, struct layers_shape *s, int sign, int level, const struct grid *source,
                        const struct grid *out)
 {
-    const int reach = s->reach, apart = s->r > 0 ? node_apart(f, s->r, level) : 1, size = 1 << level;
+    double wide = 0;
+    const int reach = s->reach, apart = s->r > 0 ? node_apart(f, s->r, level, &wide) : 1, size = 1 << level;
     const double move = sign * (double)f->aperture.cat_eye * s->r / hypot(f->width, f->height);
-    for (int node = out->x0 / apart * apart - apart; node < out->x1 + apart; node += apart)
+    for (int node = (out->x0 / apart - 2) * apart; node < out->x1 + 2 * apart; node += apart)
         for (int y = out->y0; y < out->y1; y++) {
             const double px = fmin(fmax((node + 0.5) * size, 0), f->width),
                          py = fmin(fmax((y + 0.5) * size, 0), f->height);
             layers_shape_cut(f, s, move * (2 * px - f->width) * f->wide, move * (2 * py - f->height), s->r);
-            for (int x = clamp(node - apart + 1, out->x0, out->x1); x < clamp(node + apart, out->x0, out->x1); x++)
+            for (int x = clamp(node - 2 * apart, out->x0, out->x1); x < clamp(node + 2 * apart, out->x0, out->x1); x++)
                 for (int j = -reach; j <= reach; j++)
                     for (int i = -reach; i <= reach; i++) {
                         const double *v = at(source, clamp(x - i, source->x0, source->x1 - 1),
                                              clamp(y - j, source->y0, source->y1 - 1));
+                        const double near = fmax(1 - abs(x - node) / (double)apart, 0),
+                                     far = node % (2 * apart) ? 0 : 1 - abs(x - node) / (2.0 * apart);
                         const double k =
-                            (1 - abs(x - node) / (double)apart) * s->weight[(j + reach) * (2 * reach + 1) + i + reach];
+                            ((1 - wide) * near + wide * far) * s->weight[(j + reach) * (2 * reach + 1) + i + reach];
                         for (int c = 0; c < 5; c++)
                             at(out, x, y)[c] += k * v[c];
                     }

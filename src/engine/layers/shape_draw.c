@@ -3,7 +3,8 @@
 //
 // A cat's eye has another shape at each place: the aperture cut by a second circle. That circle is the one at the pixel
 // drawn to, as in a lens, so opaque surfaces stay opaque. Along columns this is exact. Along rows the shapes of nodes
-// are blended; from one node to the next the circle moves by at most STEP pixels.
+// are blended; from one node to the next the circle moves by at most STEP pixels, or a seventh more. Their distance is a
+// power of two. Before it doubles, every second node fades out.
 #include <math.h>
 #include <string.h>
 
@@ -28,21 +29,23 @@ static size_t whole(size_t n)
     return (n + 15) & ~(size_t)15;
 }
 
-// Nodes lie at multiples of a power of two.
-static int node_apart(const struct hf_layers *l, const struct hf_slice *s)
+// Nodes lie at multiples of a power of two. wide: how far only every second of them counts, 0 to 1.
+static int node_apart(const struct hf_layers *l, const struct hf_slice *s, float *wide)
 {
     const double pixels = hypot(l->width, l->height) / (1 << s->level);
     const double far = STEP * pixels / (2 * l->key.cat_eye * s->shape->radius * fmax(l->key.wide, 1));
     int n = CLOSEST;
     while (2 * n <= far && n < FARTHEST)
         n *= 2;
+    *wide = n < FARTHEST && far > 1.75 * n ? (float)(4 * far / n - 7) : 0;
     return n;
 }
 
 // Nodes in a row, and in a whole cell of that many tiles.
 static int nodes_across(const struct hf_layers *l, const struct hf_slice *s, int columns)
 {
-    return (columns * (TILE >> s->level) + 2 * AROUND) / node_apart(l, s) + 3;
+    float unused;
+    return (columns * (TILE >> s->level) + 2 * AROUND) / node_apart(l, s, &unused) + 5;
 }
 
 static size_t nodes_of(const struct hf_layers *l, const struct hf_slice *s, int columns, int rows)
@@ -254,15 +257,19 @@ static int floor_to(int x, int n)
     return x - (x % n + n) % n;
 }
 
-static void draw_node(const struct draw *d, int column, int x, int apart)
+// Draw the shape of the node at column x. narrow and wide: weights of its ramps to the next node, and to the one after it.
+static void draw_node(const struct draw *d, int column, int x, int apart, float narrow, float wide)
 {
     const struct hf_shape *s = d->shape;
-    const int left = d->c->x0 >> d->b->s->level, first = hf_max(floor_to(x - apart + 1 - d->x0 - left, 16), 0),
-              last = hf_min(x + apart - d->x0 - left, d->x1 - d->x0);
+    const int left = d->c->x0 >> d->b->s->level, around = wide > 0 ? 2 * apart : apart,
+              first = hf_max(floor_to(x - around + 1 - d->x0 - left, 16), 0),
+              last = hf_min(x + around - d->x0 - left, d->x1 - d->x0);
     if (first >= last)
         return;
-    for (int i = first; i < ((last + 15) & ~15); i++)
-        d->at.part[i] = hf_saturate(1 - fabsf((float)(i + d->x0 + left - x)) / (float)apart);
+    for (int i = first; i < ((last + 15) & ~15); i++) {
+        const float away = fabsf((float)(i + d->x0 + left - x)) / (float)apart;
+        d->at.part[i] = narrow * hf_saturate(1 - away) + wide * hf_saturate(1 - 0.5f * away);
+    }
     const int y0 = hf_max(d->from, d->y + s->top), y1 = hf_min(d->end, d->y + s->top + s->rows);
     for (int y = y0; y < y1; y++) {
         struct hf_shape_row *row = &d->at.row[y - y0];
@@ -279,12 +286,14 @@ static void draw_node(const struct draw *d, int column, int x, int apart)
 
 static void draw_cats_eye(const struct draw *d)
 {
-    const int apart = node_apart(d->c->l, d->b->s), left = d->c->x0 >> d->b->s->level,
-              begin = floor_to(left - LEFT, apart);
+    float wide;
+    const int apart = node_apart(d->c->l, d->b->s, &wide), left = d->c->x0 >> d->b->s->level,
+              begin = floor_to(left - LEFT, apart) - apart;
     for (int i = 0; i < d->b->channels; i++)
         make_windows(d, d->in + i * d->c->source.channel, d->at.window + i * d->at.plane * d->c->l->most_windows);
-    for (int x = floor_to(left + d->x0, apart); x - apart < left + d->x1 && !hf_stopped(d->c->l->stop); x += apart)
-        draw_node(d, (x - begin) / apart, x, apart);
+    for (int x = floor_to(left + d->x0, apart) - apart; x - 2 * apart < left + d->x1 && !hf_stopped(d->c->l->stop);
+         x += apart)
+        draw_node(d, (x - begin) / apart, x, apart, 1 - wide, x % (2 * apart) ? 0 : wide);
 }
 
 void hf_layers_begin_shape(const struct hf_cell *c, const struct hf_slice *s)
