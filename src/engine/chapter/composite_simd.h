@@ -62,19 +62,31 @@ HF_INLINE int far_differs(const struct field_rows *coc_rows, const int rows, int
     return vi_any(differs);
 }
 
+// Bilinear weights, in 144ths.
+static const float far_even[4] = {81, 27, 27, 9};
+
+// An estimate of 1 / 144 is not that number. So where a pixel has the CoC of its neighbours it gets the exact weights,
+// whatever the other lanes of its vector hold: those past a row's end hold what an earlier frame has left there.
+HF_INLINE void far_weights_same(vf coc, vf g[2][3], int row, int odd, vf w[4])
+{
+    vm same = vf_eq(coc, around(g, row, odd, 0));
+    for (int i = 1; i < 4; i++)
+        same = vm_and(same, vf_eq(coc, around(g, row, odd, i)));
+    for (int i = 0; i < 4; i++)
+        w[i] = vf_select(same, vf_set1(far_even[i] * (1 / 144.0f)), w[i]);
+}
+
 // Weights of the neighbours of all pixels, and how much the sums count. Where all CoCs are the same, as inside a far
 // field that is fully blurred, bilinear weights are what would come out.
 HF_INLINE void far_weights(const struct field_rows *coc_rows, const enum hf_division division, const int rows,
                            const int differs, int x, vf blend, vf coc[2][2], vf w[2][2][4], vf t[2][2])
 {
     vf g[2][3];
-    const float inverse = 1 / 144.0f;
     for (int i = 0; i < 2 * rows; i++) {
         vf *of = w[i / 2][i % 2];
         t[i / 2][i % 2] = vf_mul(blend, coc[i / 2][i % 2]);
-        of[0] = vf_set1(81 * inverse);
-        of[1] = of[2] = vf_set1(27 * inverse);
-        of[3] = vf_set1(9 * inverse);
+        for (int k = 0; k < 4; k++)
+            of[k] = vf_set1(far_even[k] * (1 / 144.0f));
     }
     if (!differs)
         return;
@@ -93,11 +105,16 @@ HF_INLINE void far_weights(const struct field_rows *coc_rows, const enum hf_divi
         far_weights_some(division, rows, coc, from, w, far);
         for (int i = 0; i < 2 * rows; i++)
             t[i / 2][i % 2] = vf_mul(blend, far[i / 2][i % 2]);
+        for (int i = 0; i < 2 * rows && division != HF_DIVISION_EXACT; i++)
+            far_weights_same(coc[i / 2][i % 2], g, i / 2, i % 2, w[i / 2][i % 2]);
         return;
     }
 #pragma GCC unroll 4
-    for (int i = 0; i < 2 * rows; i++)
+    for (int i = 0; i < 2 * rows; i++) {
         far_weights_block(division, 0, coc[i / 2][i % 2], g, i / 2, i % 2, w[i / 2][i % 2]);
+        if (division != HF_DIVISION_EXACT)
+            far_weights_same(coc[i / 2][i % 2], g, i / 2, i % 2, w[i / 2][i % 2]);
+    }
 }
 
 // What is blended of v: less a field it is a float. Plain: finite, not -0, and much smaller.

@@ -44,6 +44,12 @@ HF_INLINE void down_weights(enum hf_division division, const vf f[4], vf w[4])
     const vf i = inverse_vf(division, vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])));
     for (int t = 0; t < 4; t++)
         w[t] = vf_mul(w[t], i);
+    if (division == HF_DIVISION_EXACT)
+        return;
+    // An estimate of a quarter is not a quarter, and whether this is called depends on other lanes.
+    const vm same = vm_and(vm_and(vf_eq(f[0], f[1]), vf_eq(f[0], f[2])), vf_eq(f[0], f[3]));
+    for (int t = 0; t < 4; t++)
+        w[t] = vf_select(same, vf_set1(0.25f), w[t]);
 }
 
 // alpha: over the sum of the weights, which is 1 within rounding.
