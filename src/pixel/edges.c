@@ -258,8 +258,10 @@ static void take_pixel(const struct hf_edge_row *row, int x, const struct hf_sid
     const float mixed = 1 - row->sure[2][x], given = share_of(v, mean, a0);
     const float of_front = hf_saturate((given - HF_EDGES_NOISE) * (1 / (1 - 2 * HF_EDGES_NOISE)));
     const float share = (float)(int32_t)(mixed * (1 - of_front) * HF_EDGES_PARTS) * (1.0f / HF_EDGES_PARTS);
-    // The front's share of what is taken apart, from the rounded share. The rest of the pixel goes with the front.
-    const float a = 1 - share / mixed, seen = 1 - share, whole = seen > 0 ? row->sure[2][x] / seen : 0;
+    // The front's share of what is taken apart, from the rounded share. The rest of the pixel goes with the front. Its part
+    // of what is seen is not rounded: near 0 that would give the pixel the front's light at once.
+    const float a = 1 - share / mixed, seen = row->sure[2][x] + mixed * of_front;
+    const float whole = seen > 0 ? row->sure[2][x] / seen : 0;
     for (int c = 0; c < row->channels; c++) {
         const float f = mean[0][c], b = mean[1][c], rest = v[c] - (b + a * (f - b));
         const float front = hf_edges_between(f + rest, f, v[c]), back = hf_edges_between(b + rest, b, v[c]);

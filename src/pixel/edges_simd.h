@@ -135,7 +135,7 @@ HF_INLINE void edges_take_vector(const struct hf_edge_row *row, int x, const int
     const vf of_front = edges_unit(vf_mul(vf_sub(given, noise), vf_set1(1 / (1 - 2 * HF_EDGES_NOISE))));
     const vf parts = vf_mul(vf_mul(mixed, vf_sub(one, of_front)), vf_set1(HF_EDGES_PARTS));
     const vf share = vf_mul(vi_to_vf(vf_to_vi(parts)), vf_set1(1.0f / HF_EDGES_PARTS));
-    const vf a = vf_sub(one, vf_div(share, mixed)), seen = vf_sub(one, share);
+    const vf a = vf_sub(one, vf_div(share, mixed)), seen = vf_add(sure, vf_mul(mixed, of_front));
     const vf whole = vf_keep(vf_gt(seen, vf_zero()), vf_div(sure, seen));
     for (int c = 0; c < channels; c++) {
         const vf f = mean[0][c], b = mean[1][c], rest = vf_sub(v[c], edges_toward(b, f, a));
