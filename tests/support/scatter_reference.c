@@ -120,7 +120,7 @@ static double behind(const struct seen *s, int n, int k, int x, int y, const dou
     const double reached = clamp01(16 * far[4]), v = far[4] > 0 ? far[k] / far[4] : 0;
     const double other = front + reached * (v - front);
     const double unblurred = blurred > 0 ? seen_sample(s, n + k, x, y) / blurred : 0;
-    const double shown = unblurred + clamp01(far[4]) * (v - unblurred), nothing = 1e-8;
+    const double shown = unblurred + clamp01(far[4]) * (v - unblurred), nothing = 1e-5;
     return (seen_sample(s, k, x, y) + blurred * shown + nothing * other) / (sharp + blurred + nothing);
 }
 
