@@ -111,26 +111,48 @@ int hf_aperture_run(const struct hf_side *side, int sides, double y, double *a, 
     return *b > *a;
 }
 
-// Row dy of a polygon: the mean ends of its runs within the row, and the covered part of the row's height.
-static struct hf_run polygon_row(const struct hf_side *side, int sides, double r, double scale_x, int dy)
+// How far a polygon extends upwards (sign -1) or downwards (1) from its centre.
+static double polygon_end(const struct hf_side *side, int sides, double sign)
 {
-    const int parts = r < 16 ? 16 : r < 64 ? 8 : 4;
+    double in = 0, out = 1 + 1e-9;
+    for (int i = 0; i < 40; i++) {
+        const double y = (in + out) / 2;
+        double a, b;
+        int of[2];
+        if (hf_aperture_run(side, sides, sign * y, &a, &b, of))
+            in = y;
+        else
+            out = y;
+    }
+    return sign * in;
+}
+
+// A polygon's sides, and from where to where it extends.
+struct polygon {
+    struct hf_side side[HF_SIDES];
+    int sides;
+    double top, bottom;
+};
+
+// Row dy of a polygon: the mean ends of its runs within the part of the row that it covers, and that part of the row's
+// height.
+static struct hf_run polygon_row(const struct polygon *p, double r, double scale_x, int dy)
+{
+    enum { PARTS = 8 };
+    const double y0 = fmax(dy - 0.5, p->top * r), y1 = fmin(dy + 0.5, p->bottom * r), height = y1 - y0;
     double a = 0, b = 0;
-    int hit = 0;
-    for (int i = 0; i < parts; i++) {
+    const int32_t weight = height > 0 ? (int32_t)lround(HF_WHOLE_ROW * height) : 0;
+    if (!weight)
+        return (struct hf_run){0};
+    for (int i = 0; i < PARTS; i++) {
         double left, right;
         int of[2];
-        if (!hf_aperture_run(side, sides, (dy - 0.5 + (i + 0.5) / parts) / r, &left, &right, of))
-            continue;
+        hf_aperture_run(p->side, p->sides, (y0 + (i + 0.5) / PARTS * height) / r, &left, &right, of);
         a += left;
         b += right;
-        hit++;
     }
-    if (!hit)
-        return (struct hf_run){0};
-    return (struct hf_run){(int32_t)lround(256 * (a / hit * r * scale_x + 0.5)),
-                           (int32_t)lround(256 * (b / hit * r * scale_x + 0.5)),
-                           (HF_WHOLE_ROW * hit + parts / 2) / parts};
+    return (struct hf_run){(int32_t)lround(256 * (a / PARTS * r * scale_x + 0.5)),
+                           (int32_t)lround(256 * (b / PARTS * r * scale_x + 0.5)), weight};
 }
 
 // Row dy of a disc that a cat's eye will cut.
@@ -140,8 +162,8 @@ static struct hf_run disc_run(double r, double scale_x, int dy)
     return (struct hf_run){256 - half, half, row_height(r, dy)};
 }
 
-// Make a sprite of runs: of a polygon with these sides, or of a disc if there are none.
-static void build_runs(struct hf_aperture *a, const struct hf_side *side, int sides, int number, int first)
+// Make a sprite of runs: of a polygon, or of a disc if it has no sides.
+static void build_runs(struct hf_aperture *a, const struct polygon *polygon, int number, int first)
 {
     struct hf_picture *p = &a->picture[number];
     const double r = hf_picture_radius(number);
@@ -150,10 +172,10 @@ static void build_runs(struct hf_aperture *a, const struct hf_side *side, int si
     p->reach_y = rows_of(r) - 1;
     for (int i = 0; i < p->rows; i++) {
         struct hf_run *run = &a->run[first + i];
-        *run =
-            sides ? polygon_row(side, sides, r, a->key.scale_x, p->top + i) : disc_run(r, a->key.scale_x, p->top + i);
+        *run = polygon->sides ? polygon_row(polygon, r, a->key.scale_x, p->top + i)
+                              : disc_run(r, a->key.scale_x, p->top + i);
         area += (double)run->weight * (run->b - run->a);
-        p->reach_x = hf_max(p->reach_x, hf_max((run->b >> 8) + 1, -(run->a >> 8)) + (sides > 0));
+        p->reach_x = hf_max(p->reach_x, hf_max((run->b >> 8) + 1, -(run->a >> 8)) + (polygon->sides > 0));
     }
     if (area <= 0) {
         a->run[first - p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
@@ -189,8 +211,12 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
     a->inverse = (float *)(a->picture + a->count);
     a->half = (int32_t *)(a->inverse + a->count);
     a->run = (struct hf_run *)a->half;
-    struct hf_side side[HF_SIDES];
-    const int sides = key->blades ? hf_aperture_sides(side, key->blades, key->rotation, key->roundness) : 0;
+    struct polygon polygon = {.sides = 0};
+    if (key->blades) {
+        polygon.sides = hf_aperture_sides(polygon.side, key->blades, key->rotation, key->roundness);
+        polygon.top = polygon_end(polygon.side, polygon.sides, -1);
+        polygon.bottom = polygon_end(polygon.side, polygon.sides, 1);
+    }
     for (int i = 0, first = 0; i < a->count; i++) {
         if (hf_stopped(stop)) {
             a->count = 0;
@@ -199,7 +225,7 @@ int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, 
         if (a->symmetric)
             build_disc(a, i, first);
         else
-            build_runs(a, side, sides, i, first);
+            build_runs(a, &polygon, i, first);
         a->inverse[i] = 1 / a->picture[i].area;
         first += (a->symmetric ? 1 : 2) * rows_of(hf_picture_radius(i));
     }

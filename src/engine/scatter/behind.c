@@ -129,11 +129,12 @@ int hf_seen_weights_c(const struct hf_scatter *t, const float *radius, const flo
 void hf_behind_blend_c(const struct hf_scatter_row *row, const float *const weight[2], const float *const colour[2],
                        const float *own, float *out)
 {
+    const struct hf_scatter *t = hf_scatter(row->setup);
     for (int i = 0; i < row->n; i++) {
         const float far_weight = row->far ? row->far_weight[i] : 0, near_weight = row->near ? row->near_weight[i] : 0;
-        const float mine = own[i] * hf_scatter(row->setup)->dim;
-        const float front = near_weight > 0 ? row->near[i] / near_weight : mine;
-        const float far = far_weight > 0 ? row->far[i] / far_weight : mine;
+        const float mine = own[i] * t->dim;
+        const float front = row->near ? hf_field_colour(t, mine, row->near[i], near_weight) : mine;
+        const float far = row->far ? hf_field_colour(t, mine, row->far[i], far_weight) : mine;
         const float reached = hf_saturate(16 * far_weight), sharp = weight[0][i], blurred = weight[1][i];
         float v = hf_scatter_mix(front, far, reached);
         if (sharp + blurred > 0) {

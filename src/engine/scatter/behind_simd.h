@@ -33,17 +33,16 @@ static int seen_weights_simd(const struct hf_scatter *t, const float *radius, co
 static void behind_blend_simd(const struct hf_scatter_row *row, const float *const weight[2],
                               const float *const colour[2], const float *own, float *out)
 {
-    const vf zero = vf_zero(), nothing = vf_set1(HF_BEHIND_NOTHING), dim = vf_set1(hf_scatter(row->setup)->dim);
+    const struct hf_scatter *t = hf_scatter(row->setup);
+    const vf zero = vf_zero(), nothing = vf_set1(HF_BEHIND_NOTHING), dim = vf_set1(t->dim);
     for (int i = 0; i < row->n; i += VF_N) {
         const vf mine = vf_mul(vf_load(own + i), dim);
         vf front = mine, far = mine, far_weight = zero;
-        if (row->near) {
-            const vf w = vf_load(row->near_weight + i);
-            front = vf_select(vf_gt(w, zero), vf_div(vf_load(row->near + i), w), mine);
-        }
+        if (row->near)
+            front = scatter_field_colour(t, mine, vf_load(row->near + i), vf_load(row->near_weight + i));
         if (row->far) {
             far_weight = vf_load(row->far_weight + i);
-            far = vf_select(vf_gt(far_weight, zero), vf_div(vf_load(row->far + i), far_weight), mine);
+            far = scatter_field_colour(t, mine, vf_load(row->far + i), far_weight);
         }
         const vf reached = coc_saturate(vf_mul(vf_set1(16), far_weight));
         const vf sharp = vf_load(weight[0] + i), blurred = vf_load(weight[1] + i), both = vf_add(sharp, blurred);

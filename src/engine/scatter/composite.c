@@ -87,11 +87,11 @@ static float inside(const struct hf_setup *s, float reach_x, float reach_y, int 
 // Composite one sample: far field, then the pixel itself, then the near field. The visible part of a near pixel belongs
 // to what covers, so the background shows through neither. Nobody has seen that background; where far sprites hardly
 // reach, the near field hides it.
-static float composite_sample(float own, float show, float cover, int is_near, const float far[2], const float near[2],
-                              const float *behind)
+static float composite_sample(const struct hf_scatter *t, float own, float show, float cover, int is_near,
+                              const float far[2], const float near[2], const float *behind)
 {
-    const float front = near[1] > 0 ? near[0] / near[1] : own;
-    float v = far[1] > 0 ? far[0] / far[1] : own;
+    const float front = hf_field_colour(t, own, near[0], near[1]);
+    float v = hf_field_colour(t, own, far[0], far[1]);
     if (is_near) {
         const float left = 1 - cover;
         v = behind ? *behind : hf_scatter_mix(front, v, hf_saturate(16 * far[1]));
@@ -111,8 +111,8 @@ void hf_scatter_blend_c(const struct hf_scatter_row *row, float *out)
         const int at = row->column ? (int)row->column[x] : row->x + x;
         const float cover = r < 0 ? near[1] / inside(row->setup, reach_x, size, at, row->y) : near[1];
         const float own = out[x] * t->dim;
-        float v =
-            composite_sample(own, hf_own_part(t, size), cover, r < 0, far, near, row->behind ? &row->behind[x] : NULL);
+        float v = composite_sample(t, own, hf_own_part(t, size), cover, r < 0, far, near,
+                                   row->behind ? &row->behind[x] : NULL);
         v = v < t->most ? v : t->most;
         v = v > -t->most ? v : -t->most;
         // Denormal values may have lost bits.

@@ -5,6 +5,7 @@
 
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
+#include "engine/scatter/walk.h"
 #include "simd/simd.h"
 
 // Bits of the exponents of v >= 0, 0 for 0, as exponent_bit() in composite.c. 1 << k is computed by converting 2^k to
@@ -54,6 +55,14 @@ HF_INLINE vf scatter_mix(vf a, vf b, vf t)
     return vf_select(vf_lt(t, vf_set1(1)), vf_select(vf_eq(t, vf_zero()), a, v), b);
 }
 
+// As hf_field_colour() in walk.h.
+HF_INLINE vf scatter_field_colour(const struct hf_scatter *t, vf own, vf sum, vf weight)
+{
+    const vf part = vf_mul(weight, vf_set1(t->trust));
+    const vf v = scatter_mix(own, vf_div(sum, weight), vf_min(vf_max(part, vf_zero()), vf_set1(1)));
+    return vf_select(vf_gt(weight, vf_zero()), v, own);
+}
+
 HF_INLINE vf scatter_segment(vf d)
 {
     const vf t = vf_select(vf_lt(d, vf_set1(1)), d, vf_set1(1)), q = vf_mul(t, t);
@@ -85,11 +94,11 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
         vf v = own, far = zero, near = zero, front = own;
         if (row->far) {
             far = vf_load(row->far_weight + x);
-            v = vf_select(vf_gt(far, zero), vf_div(vf_load(row->far + x), far), own);
+            v = scatter_field_colour(t, own, vf_load(row->far + x), far);
         }
         if (row->near) {
             near = vf_load(row->near_weight + x);
-            front = vf_select(vf_gt(near, zero), vf_div(vf_load(row->near + x), near), own);
+            front = scatter_field_colour(t, own, vf_load(row->near + x), near);
         }
         const vm is_near = vf_lt(r, zero);
         vf cover = near, back = show;

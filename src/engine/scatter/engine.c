@@ -127,6 +127,9 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     }
     t->ring = a->picture ? 0 : a->ring;
     t->cat_eye = a->picture ? 0 : a->cat_eye;
+    // Sprites that may leave their own pixels out.
+    const float hollow = a->picture ? 1 : fminf(4 * (t->ring + t->cat_eye), 1);
+    t->trust = hollow > 0 ? 4 / hollow : INFINITY;
     t->corner = 1 / hypotf((float)s->width, (float)s->height);
     key.scale_x = 1 / (s->pixel_aspect * a->squeeze);
     const int err = a->picture ? hf_aperture_build_image(aperture, &key, a->picture, mem, s->stop)

@@ -57,6 +57,7 @@ struct hf_scatter {
     int slices;                 // of the far field (slice.c)
     int behind;                 // levels of neighbourhoods that near radii need (pixel/behind.h)
     float ring, cat_eye;        // radius of the hole; how far the second circle moves in the corners
+    float trust;                // 1 / the weight from which on a field's colour counts fully; INFINITY: every weight
     float corner;               // 1 / the picture's diagonal, pixels
     struct hf_bins bins[2][2];  // [level][of colour, of alpha]
     // Samples are summed and composited times dim, a power of two below 1 if some would overflow.

@@ -24,18 +24,26 @@ void hf_source_pictures_c(const float *radius, const float *weight, float scale,
     }
 }
 
-// How a source draws a sprite. share: the part of its colour for one pixel, 1 / area. hole: 1 adds the sprite; -w
-// takes it away with weight w, 0 to 1, as the hole of a ring.
+// How a source draws a sprite. share: the part of its colour for one pixel, 1 / area. part: 0 to 1 adds the sprite with
+// that weight, -1 to 0 takes it away, as the hole of a ring.
 struct part {
-    float share, hole;
+    float share, part;
 };
 
-// A hole's share is a whole number of the units of its outline's share, so a faint hole is not rounded away by its
-// bin's units.
-static float hole_share(float share, float hole)
+// A part's share is a whole number of the units of the whole share, so a faint one is not rounded away by its bin's
+// units.
+static float part_share(float share, float part)
 {
-    const float t = 4 * share, part = __builtin_fabsf(hole), whole = part < 1 ? (t + share * part) - t : share;
-    return hole < 0 ? -whole : whole;
+    const float t = 4 * share, size = __builtin_fabsf(part), whole = size < 1 ? (t + share * size) - t : share;
+    return part < 0 ? -whole : whole;
+}
+
+// The weight of a ring's hole. A hole too small for a sprite of its own is drawn as a fainter one, and so is one that
+// leaves less than a pixel of the ring.
+static float hole_of(const struct hf_scatter *t, float r)
+{
+    const float inner = r * t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    return hole * hf_saturate((1 - t->ring) * r);
 }
 
 // The lanes that bin b holds of a source, one bit each, 0 for none. A channel goes to the bin of its own brightness.
@@ -58,7 +66,7 @@ static void set_share(const struct hf_bins *bins, int b, int lanes, const float 
 {
     for (int c = 0; c < 4; c++) {
         const float v = hf_share((c == 3 ? weight : colour[c]) * part.share);
-        share[c] = lanes >> c & 1 ? (int64_t)((double)hole_share(v, part.hole) * bins->scale[b][c]) : 0;
+        share[c] = lanes >> c & 1 ? (int64_t)((double)part_share(v, part.part) * bins->scale[b][c]) : 0;
     }
 }
 
@@ -154,8 +162,10 @@ struct circle_row {
 static struct circle_row circle_row(const struct hf_aperture *a, const struct hf_picture *disc, float r, float dy)
 {
     if (a->key.blades) {
-        const float q = r * r - dy * dy;
-        return (struct circle_row){q > 0 ? 256 * a->key.scale_x * sqrtf(q) : 0, HF_WHOLE_ROW};
+        // The widest within the row, so that a circle that has not moved cuts no corner.
+        const float far = __builtin_fabsf(dy), near = far > 0.5f ? far - 0.5f : 0, q = r * r - near * near;
+        const float height = hf_saturate(r + 0.5f - far);
+        return (struct circle_row){q > 0 ? 256 * a->key.scale_x * sqrtf(q) : 0, HF_WHOLE_ROW * height};
     }
     static const struct hf_run none = {128, 128, 0};
     const float first = floorf(dy), t = dy - first;
@@ -212,7 +222,7 @@ static void add_cat_eye(struct walk *w, int x, int y, float r, const float colou
     const float step = w->level ? 2 : 1, toward = (w->field ? 1 : -1) * w->t->cat_eye * r;
     const float cx = toward * (2 * (((float)x + 0.5f) * step) - (float)s->width) * w->t->corner;
     const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
-    const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    const float inner = r * w->t->ring, hole = hole_of(w->t, r);
     const struct hf_picture *inside = &picture[hf_picture_number(inner)];
     const float hidden = hole > 0 ? hole * cut_picture(w, inside, p, r, cx, cy) : 0;
     float area = cut_picture(w, p, p, r, cx, cy) - hidden;
@@ -232,17 +242,20 @@ void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3],
 {
     const struct hf_aperture *a = &w->t->aperture;
     const struct hf_picture *picture = pictures(w);
-    const int number = a->tap ? (hf_picture_number(r) + a->steps / 2) / a->steps : hf_picture_number(r);
+    const int size = hf_picture_number(r), number = size / a->steps;
     if (w->t->cat_eye > 0) {
         add_cat_eye(w, x, y, r, colour, weight);
         return;
     }
     if (w->t->ring <= 0) {
-        add_picture(w, x, y, number, colour, weight, (struct part){1 / picture[number].area, 1});
+        // Between two sizes of an image both are drawn.
+        const float over = (float)(size % a->steps) / (float)a->steps;
+        add_picture(w, x, y, number, colour, weight, (struct part){1 / picture[number].area, 1 - over});
+        if (over > 0)
+            add_picture(w, x, y, number + 1, colour, weight, (struct part){1 / picture[number + 1].area, over});
         return;
     }
-    // A hole too small for a sprite of its own is drawn as a fainter one.
-    const float inner = r * w->t->ring, hole = inner < 0.5f ? 4 * inner * inner : 1;
+    const float inner = r * w->t->ring, hole = hole_of(w->t, r);
     const int inside = hf_picture_number(inner);
     const float part = 1 / (picture[number].area - hole * picture[inside].area);
     add_picture(w, x, y, number, colour, weight, (struct part){part, 1});

@@ -67,6 +67,15 @@ static inline float hf_scatter_mix(float a, float b, float t)
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
+// A field's colour from its sums. Where sprites may leave their own pixels out, weights can be as small as sprites' rims are
+// thin: there the pixel's own colour takes over gradually.
+static inline float hf_field_colour(const struct hf_scatter *t, float own, float sum, float weight)
+{
+    if (!(weight > 0))
+        return own;
+    return hf_scatter_mix(own, sum / weight, hf_saturate(weight * t->trust));
+}
+
 // The neighbour, on one axis, of a pixel's half-resolution pixel that its tent reaches.
 static inline int hf_beside(int pixel, int count)
 {
