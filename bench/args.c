@@ -49,11 +49,15 @@ static const struct tool_option options[] = {
      .commands = LOOKS},
 
     {"frames", 0, TOOL_RUN, "N", "Frames to measure. Default: as many as take a few seconds.",
-     COUNT(frames, 1, 1000000), .commands = "passes|batch|history"},
+     COUNT(frames, 1, 1000000), .commands = "passes|scaling|batch|history"},
     {"threads", 0, TOOL_RUN, "N", "Threads, up to 256; 0 (default): one per processor.", COUNT(threads, 0, 256),
      .commands = "passes|batch|truth|tradeoff|scaling|formats|cancel|history"},
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set. Default auto.", NAME(isa, ISA),
      .commands = "passes|truth|tradeoff|scaling|formats|cancel|stability|history"},
+    {"simulate", 0, TOOL_RUN, NULL, "Measure the tasks of a frame one by one, and print what frames of 1920x1080 and "
+     "3840x2160 are expected to take on 1 to 128 threads, and what limits them. --frames: of each number of threads, 7; --threads: only that number, and 1.", FLAG(simulate), .commands = "scaling"},
+    {"bandwidth", 0, TOOL_RUN, "GB/S", "With --simulate: what 64 threads move to and from memory. Default 150.",
+     NUMBER(bandwidth, 1, 1e5), .commands = "scaling"},
     {"full", 0, TOOL_RUN, NULL, "Run every case, some minutes.", FLAG(full), .commands = "stability"},
     {"json", 0, TOOL_RUN, "FILE|-", "Write the numbers as JSON; -: to stdout, instead of the table.", TEXT(json)},
     {"add", 0, TOOL_RUN, NULL, "Measure this commit, some minutes, and add a line to the history.",
@@ -108,6 +112,7 @@ void bench_args_default(struct bench_args *args)
         .in = HF_FORMAT_R11G11B10F,
         .out = HF_FORMAT_R11G11B10F,
         .params = hf_default_params(),
+        .bandwidth = 150,
     };
     args->params.focus = 20;
     args->params.range.distance = 10;

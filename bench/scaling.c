@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `hyperfocal-bench scaling`: how the time of a frame grows with its blurred part, and with its size.
 #include "commands.h"
+#include "simulate.h"
 #include "subject.h"
 #include "write.h"
 #include "tools/common/report.h"
@@ -236,6 +237,10 @@ int bench_scaling(struct bench_args *args, struct tool_error *error)
 {
     struct scaling r = {.args = args};
     struct tool_error log = {""};
+    if (args->simulate)
+        return bench_simulate(args, error);
+    if (args->frames)
+        return tool_fail(error, -1, "--frames %d is of use only with --simulate", args->frames);
     // With --size, sizes up to that one.
     for (int i = 0; i < SIZES && (!args->size_given || sizes[i][0] <= args->width); i++) {
         r.size[i] = (struct size_result){.width = sizes[i][0], .height = sizes[i][1]};
