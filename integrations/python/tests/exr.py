@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Just enough of OpenEXR for tests: scan lines of floats without compression."""
+"""Just enough of OpenEXR for tests: scan lines of floats, written without compression, read also with zip's."""
 import struct
+import zlib
 
 import numpy as np
 
@@ -27,11 +28,23 @@ def write(path, channels, attributes=()):
         file.write(header + table + lines)
 
 
+def inflate(block, size):
+    """The bytes of a block that was compressed by zip."""
+    if len(block) == size:
+        return block
+    delta = np.frombuffer(zlib.decompress(block), np.uint8).astype(np.int64)
+    delta[1:] -= 128
+    halves = (np.cumsum(delta) & 255).astype(np.uint8)
+    joined = np.empty_like(halves)
+    joined[0::2], joined[1::2] = halves[:(size + 1) // 2], halves[(size + 1) // 2:]
+    return joined.tobytes()
+
+
 def read(path):
-    """{name: array} of a file such as write makes; channels may have half floats too."""
+    """{name: array} of a file with one part; channels may have half floats too."""
     with open(path, "rb") as file:
         data = file.read()
-    at, names, types, box = 8, [], {}, None
+    at, names, types, box, lines = 8, [], {}, None, 1
     while data[at]:
         end = data.index(b"\0", at)
         name, at = data[at:end].decode(), data.index(b"\0", end + 1) + 1
@@ -39,8 +52,10 @@ def read(path):
         value, at = data[at:at + size], at + size
         if name == "dataWindow":
             box = struct.unpack("<4i", value)
-        elif name == "compression" and value != b"\0":
-            raise ValueError(f"{path} is compressed")
+        elif name == "compression":
+            if value[0] not in (0, 2, 3):
+                raise ValueError(f"{path} is compressed by method {value[0]}, which this reader lacks")
+            lines = 16 if value[0] == 3 else 1
         elif name == "channels":
             while len(value) > 1:
                 word, value = value.split(b"\0", 1)
@@ -49,10 +64,13 @@ def read(path):
                 value = value[16:]
     width, height = box[2] - box[0] + 1, box[3] - box[1] + 1
     planes = {n: np.empty((height, width), types[n]) for n in names}
-    offsets = struct.unpack_from(f"<{height}Q", data, at + 1)
-    for offset in offsets:
-        y, here = struct.unpack_from("<i", data, offset)[0] - box[1], offset + 8
-        for n in names:
-            planes[n][y] = np.frombuffer(data, types[n], width, here)
-            here += width * planes[n].itemsize
+    row = sum(width * planes[n].itemsize for n in names)
+    for offset in struct.unpack_from(f"<{(height + lines - 1) // lines}Q", data, at + 1):
+        y, size = struct.unpack_from("<ii", data, offset)
+        y -= box[1]
+        block, here = inflate(data[offset + 8:offset + 8 + size], row * min(lines, height - y)), 0
+        for line in range(y, min(height, y + lines)):
+            for n in names:
+                planes[n][line] = np.frombuffer(block, types[n], width, here)
+                here += width * planes[n].itemsize
     return planes
