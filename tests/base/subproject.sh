@@ -54,6 +54,14 @@ int main(void)
     return err != HF_OK;
 }
 END
+mkdir cmake
+cat >cmake/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.18)
+project(app C)
+find_package(hyperfocal 0.1 REQUIRED)
+add_executable(app ../app.c)
+target_link_libraries(app hyperfocal::hyperfocal)
+END
 printf '#include "base/mem.h"\nint main(void)\n{\n    return 0;\n}\n' >peeks.c
 
 # The wrap mode keeps meson from finding a hyperfocal installed on this machine.
@@ -83,7 +91,14 @@ if command -v pkg-config >/dev/null && [ -n "$pc" ]; then
     check "a program is linked as pkg-config says" "$@" app.c -o shared $(pkg-config --cflags --libs hyperfocal)
     check "to the shared library" env LD_LIBRARY_PATH="$libdir" ./shared
     check "which it needs" refused ./shared
-    rm "$libdir"/libhyperfocal.so*
+    for kind in shared static; do
+        if command -v cmake >/dev/null; then
+            check "CMake is set up, $kind" cmake -S cmake -B "cmake-$kind" -DCMAKE_PREFIX_PATH="$dir/dest"
+            check "it builds the program" cmake --build "cmake-$kind"
+            check "which runs" "cmake-$kind/app"
+        fi
+        [ $kind = static ] || rm "$libdir"/libhyperfocal.so*
+    done
     # shellcheck disable=SC2046
     check "without one as pkg-config --static says" "$@" app.c -o static $(pkg-config --cflags --static --libs hyperfocal)
     check "to the static library" ./static
