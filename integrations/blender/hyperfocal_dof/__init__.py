@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Render once, refocus for ever: depth of field after the render, from the scene's camera."""
+import os
+import shutil
+import time
+
+import bpy
+import numpy as np
+from bpy.app.handlers import persistent
+
+from . import lens, render
+
+bl_info = {
+    "name": "hyperfocal",
+    "author": "the hyperfocal authors",
+    "version": (0, 9, 0),
+    "blender": (3, 4, 0),
+    "location": "Properties > Camera > Depth of Field > hyperfocal",
+    "description": "Render once, refocus for ever: depth of field after the render",
+    "category": "Render",
+}
+
+IMAGE = "hyperfocal"
+# What the render changed: functions that put it back. The last picture, and what it was defocused with.
+_undo = []
+_last = {}
+_rendering = []  # the scene, while it is rendered
+
+
+class HyperfocalSettings(bpy.types.PropertyGroup):
+    use: bpy.props.BoolProperty(
+        name="hyperfocal", default=False,
+        description="Render sharp, and blur the picture by the camera's depth of field afterwards")
+    quality: bpy.props.EnumProperty(
+        name="Quality", default="STANDARD", description="How accurate the blur is, and how slow",
+        items=[("DRAFT", "Draft", "The fastest"), ("STANDARD", "Standard", "Close to the best"),
+               ("HIGH", "High", "Closer still"), ("BEST", "Best", "The most accurate")])
+    error: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+
+def active(scene):
+    camera = scene.camera
+    return camera is not None and camera.type == "CAMERA" and camera.data.hyperfocal.use
+
+
+def say(scene, sentence):
+    if scene.camera and scene.camera.type == "CAMERA":
+        scene.camera.data.hyperfocal.error = sentence
+    if sentence:
+        print(f"hyperfocal: {sentence}", flush=True)
+
+
+def change(owner, name, value):
+    """Set owner.name, and remember to put it back."""
+    before = getattr(owner, name)
+    if before != value:
+        _undo.append(lambda: setattr(owner, name, before))
+        setattr(owner, name, value)
+
+
+def put_back():
+    while _undo:
+        undo = _undo.pop()
+        try:
+            undo()
+        except ReferenceError:
+            pass  # what was changed is deleted
+
+
+@persistent
+def begin(scene, *_):
+    end()
+    # The clock of files ticks more coarsely than this one.
+    _last["begun"] = time.time() - 1
+    if not active(scene):
+        return
+    refused = lens.refusal(scene.camera) or (render.INSTALL if not render.backend() else None)
+    say(scene, refused or "")
+    if not refused:
+        _rendering.append(scene)
+        sharpen(scene)
+
+
+def sharpen(scene):
+    # Several cameras may be used in a shot, by markers.
+    for camera in {m.camera for m in scene.timeline_markers if m.camera} | {scene.camera}:
+        change(camera.data.dof, "use_dof", False)
+    for layer in scene.view_layers:
+        change(layer, "use_pass_z", True)
+
+
+def save_sharp(scene, path):
+    """The render with its passes, whatever format the scene's output has."""
+    settings, before = scene.render.image_settings, {}
+    wanted = {"file_format": "OPEN_EXR_MULTILAYER", "color_depth": "32", "exr_codec": "ZIP"}
+    order = ["file_format", "color_mode", "color_depth", "exr_codec"]
+    for name in order:
+        before[name] = getattr(settings, name)
+    try:
+        for name, value in wanted.items():
+            setattr(settings, name, value)
+        bpy.data.images["Render Result"].save_render(path, scene=scene)
+    finally:
+        for name in order:
+            try:
+                setattr(settings, name, before[name])
+            except TypeError:
+                pass  # a value that this file format does not have was not in use
+
+
+def sharp_path():
+    """The sharp EXR of the last render. Beside a frame that is written there will be a copy of it."""
+    return os.path.join(bpy.app.tempdir, "hyperfocal.exr")
+
+
+def show(color):
+    """The picture in the image 'hyperfocal', for the Image Editor."""
+    height, width = color.shape[:2]
+    image = bpy.data.images.get(IMAGE)
+    if image and tuple(image.size) != (width, height):
+        bpy.data.images.remove(image)
+        image = None
+    image = image or bpy.data.images.new(IMAGE, width, height, alpha=True, float_buffer=True)
+    image.alpha_mode = "PREMUL"
+    # Blender's rows begin at the bottom.
+    image.pixels.foreach_set(np.ascontiguousarray(color[::-1], np.float32).ravel())
+    image.update()
+    return image
+
+
+def refocus(scene):
+    """Blur the last render anew by the camera as it is now. Returns the image."""
+    given = lens.parameters(scene, scene.camera)
+    image = show(render.defocus(_last["picture"], given))
+    _last["given"] = given
+    return image
+
+
+@persistent
+def rendered(scene, *_):
+    """A frame is rendered (render_post), or rendered and written (render_write, which comes later)."""
+    if not active(scene) or lens.refusal(scene.camera) or not render.backend():
+        return
+    try:
+        path = sharp_path()
+        save_sharp(scene, path)
+        _last["picture"] = render.picture(path)
+        # The camera's own switch is off for the render: what counts is here.
+        refocus(scene)
+    except (ValueError, OSError, RuntimeError, MemoryError) as error:
+        say(scene, str(error))
+
+
+def written_path(scene):
+    """The file that this render wrote, None if there is none: a still has no number in its name, a frame of a shot has."""
+    still = bpy.path.abspath(scene.render.filepath)
+    if scene.render.use_file_extension and not still.endswith(scene.render.file_extension):
+        still += scene.render.file_extension
+    paths = [p for p in (scene.render.frame_path(frame=scene.frame_current), still)
+             if os.path.isfile(p) and os.path.getmtime(p) >= _last.get("begun", 0)]
+    return max(paths, key=os.path.getmtime, default=None)
+
+
+@persistent
+def written(scene, *_):
+    """Replace the sharp frame, which Blender has just written, at once by the defocused one."""
+    image, path = bpy.data.images.get(IMAGE), written_path(scene)
+    if not active(scene) or not image or "picture" not in _last or not path:
+        return
+    folder, name = os.path.split(path)
+    new, keep = os.path.join(folder, ".hyperfocal-" + name), os.path.splitext(path)[0] + ".sharp.exr"
+    try:
+        shutil.copyfile(sharp_path(), keep + ".new")
+        os.replace(keep + ".new", keep)
+        image.save_render(new, scene=scene)
+        os.replace(new, path)
+    except (OSError, RuntimeError) as error:
+        say(scene, f"{path}: {error}")
+    finally:
+        for left in (new, keep + ".new"):
+            if os.path.exists(left):
+                os.remove(left)
+
+
+@persistent
+def end(*_):
+    _rendering.clear()
+    put_back()
+
+
+@persistent
+def before_saving(*_):
+    """A file that is saved during a render holds the user's camera."""
+    put_back()
+
+
+@persistent
+def after_saving(*_):
+    for scene in _rendering:
+        sharpen(scene)
+
+
+@persistent
+def changed(scene, *_):
+    """The camera was turned after a render: refocus, when no more changes come for a moment."""
+    if not _rendering and "picture" in _last and active(scene) and not lens.refusal(scene.camera):
+        if lens.parameters(scene, scene.camera) != _last.get("given") and not bpy.app.timers.is_registered(catch_up):
+            bpy.app.timers.register(catch_up, first_interval=0.02)
+
+
+def catch_up():
+    scene = bpy.context.scene
+    try:
+        if active(scene) and "picture" in _last:
+            refocus(scene)
+    except (ValueError, RuntimeError) as error:
+        say(scene, str(error))
+
+
+class HYPERFOCAL_OT_refocus(bpy.types.Operator):
+    """Blur the last render anew by the camera as it is now"""
+    bl_idname = "hyperfocal.refocus"
+    bl_label = "Refocus the last render"
+
+    @classmethod
+    def poll(cls, context):
+        return "picture" in _last and active(context.scene)
+
+    def execute(self, context):
+        refused = lens.refusal(context.scene.camera)
+        if refused:
+            self.report({"ERROR"}, refused)
+            return {"CANCELLED"}
+        try:
+            refocus(context.scene)
+        except (ValueError, RuntimeError, MemoryError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class DATA_PT_hyperfocal(bpy.types.Panel):
+    bl_label = "hyperfocal"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "data"
+    bl_parent_id = "DATA_PT_camera_dof"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.camera is not None
+
+    def draw_header(self, context):
+        self.layout.prop(context.camera.hyperfocal, "use", text="")
+
+    def draw(self, context):
+        settings, layout = context.camera.hyperfocal, self.layout
+        layout.use_property_split = True
+        layout.active = settings.use
+        layout.prop(settings, "quality")
+        layout.operator(HYPERFOCAL_OT_refocus.bl_idname)
+        if not render.backend():
+            layout.label(text=render.INSTALL, icon="ERROR")
+        elif settings.error:
+            layout.label(text=settings.error, icon="ERROR")
+
+
+CLASSES = (HyperfocalSettings, HYPERFOCAL_OT_refocus, DATA_PT_hyperfocal)
+HANDLERS = {"render_init": begin, "render_post": rendered, "render_write": written, "render_complete": end,
+            "render_cancel": end, "load_pre": end, "save_pre": before_saving, "save_post": after_saving,
+             "depsgraph_update_post": changed}
+
+
+def register():
+    for kind in CLASSES:
+        bpy.utils.register_class(kind)
+    bpy.types.Camera.hyperfocal = bpy.props.PointerProperty(type=HyperfocalSettings)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister():
+    put_back()
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)
+    del bpy.types.Camera.hyperfocal
+    for kind in reversed(CLASSES):
+        bpy.utils.unregister_class(kind)

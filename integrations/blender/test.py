@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The add-on against Cycles' own lens: blender -b --factory-startup --python test.py -- [NAME ...]
+
+Each setting of the camera is rendered by Cycles with its lens, and sharp with the add-on's blur. A lamp's disc must have the same
+extent in 36 directions within half a pixel, and a picture must be at least 30 dB from Cycles' own, at a number of samples at
+which two of Cycles' pictures with different seeds are 36 dB apart. Names choose settings; `states` chooses the rest alone."""
+import math
+import os
+import shutil
+import sys
+import tempfile
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import hyperfocal_dof as addon  # noqa: E402
+from hyperfocal_dof import lens, render  # noqa: E402
+
+WIDTH, HEIGHT = 320, 180
+passed = failed = 0
+folder = tempfile.mkdtemp()
+
+
+def check(name, ok):
+    global passed, failed
+    passed, failed = passed + bool(ok), failed + (not ok)
+    if not ok:
+        print(f"FAILED: {name}", flush=True)
+
+
+def material(name, color, glow=1.0):
+    # It glows: all noise is then that of the lens.
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    shader = made.node_tree.nodes["Principled BSDF"]
+    shader.inputs["Base Color"].default_value = (0, 0, 0, 1)
+    shader.inputs["Specular"].default_value = 0
+    shader.inputs["Emission"].default_value = (*color, 1)
+    shader.inputs["Emission Strength"].default_value = glow
+    return made
+
+
+def thing(make, where, made, **more):
+    make(location=where, **more)
+    bpy.context.object.data.materials.append(made)
+    return bpy.context.object
+
+
+def scene_with_camera(lamp):
+    """A camera at the origin that looks along +y, and either a lamp in the dark or a few bodies."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    if not hasattr(bpy.types, "DATA_PT_hyperfocal"):
+        addon.register()
+    for name, handler in addon.HANDLERS.items():
+        if handler not in getattr(bpy.app.handlers, name):
+            getattr(bpy.app.handlers, name).append(handler)
+    scene = bpy.context.scene
+    data = bpy.data.cameras.new("camera")
+    camera = bpy.data.objects.new("camera", data)
+    scene.collection.objects.link(camera)
+    camera.rotation_euler = (math.pi / 2, 0, 0)
+    scene.camera = camera
+    data.dof.use_dof = True
+    data.dof.focus_distance = 4
+    data.dof.aperture_fstop = 0.15
+    scene.render.engine = "CYCLES"
+    scene.cycles.use_denoising = False
+    scene.cycles.use_adaptive_sampling = False
+    scene.cycles.pixel_filter_type = "BOX"
+    scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.view_settings.view_transform = "Raw"
+    scene.world = bpy.data.worlds.new("world")
+    scene.world.use_nodes = True
+    light = scene.world.node_tree.nodes["Background"].inputs
+    light[0].default_value = (0, 0, 0, 1) if lamp else (0.3, 0.35, 0.4, 1)
+    scene.cycles.max_bounces = 0
+    if lamp:
+        thing(bpy.ops.mesh.primitive_uv_sphere_add, (0.3, 12, 0.2), material("lamp", (1, 1, 1), 500.0), radius=0.035)
+    else:
+        # A wall of soft stripes and bodies whose edges cross it.
+        for i in range(-12, 13):
+            shade = 0.5 + 0.4 * math.sin(1.1 * i)
+            thing(bpy.ops.mesh.primitive_cube_add, (i, 14, 0), material(f"stripe{i}", (shade, 0.8 - 0.5 * shade, 0.4)),
+                  scale=(0.5, 0.5, 9))
+        thing(bpy.ops.mesh.primitive_uv_sphere_add, (-0.6, 4, -0.2), material("ball", (0.8, 0.2, 0.1)), radius=0.5, segments=64,
+              ring_count=32)
+        thing(bpy.ops.mesh.primitive_cube_add, (1.2, 6.5, 0.3), material("box", (0.1, 0.3, 0.8)), scale=(0.4, 0.4, 0.4))
+    empty = bpy.data.objects.new("target", None)
+    empty.location = (0.7, 6, 0.5)
+    scene.collection.objects.link(empty)
+    return scene
+
+
+def focus_object(scene):
+    scene.camera.data.dof.focus_object = bpy.data.objects["target"]
+
+
+def vertical_fit(scene):
+    scene.camera.data.sensor_fit = "VERTICAL"
+    scene.camera.data.sensor_height = 20
+
+
+def small_scale(scene):
+    scene.unit_settings.scale_length = 0.01
+    scene.camera.scale = (0.01, 0.01, 0.01)
+
+
+def shift(scene):
+    scene.camera.data.shift_x, scene.camera.data.shift_y = 0.1, -0.05
+
+
+def ratio(scene):
+    scene.camera.data.dof.aperture_ratio = 2
+
+
+def five_blades(scene):
+    scene.camera.data.dof.aperture_blades = 5
+    scene.camera.data.dof.aperture_rotation = math.radians(20)
+
+
+def long_lens(scene):
+    scene.camera.data.lens = 65
+
+
+def f_stop(scene):
+    scene.camera.data.dof.aperture_fstop = 0.3
+
+
+def portrait(scene):
+    scene.render.resolution_x, scene.render.resolution_y = HEIGHT, WIDTH
+
+
+def wide_pixels(scene):
+    scene.render.pixel_aspect_x = 1.5
+
+
+def border(scene):
+    scene.render.use_border = scene.render.use_crop_to_border = True
+    scene.render.border_min_x, scene.render.border_max_x = 0.2, 0.9
+    scene.render.border_min_y, scene.render.border_max_y = 0.1, 0.9
+
+
+def three_blades_near(scene):
+    scene.camera.data.dof.focus_distance = 30
+    scene.camera.data.dof.aperture_blades = 3
+    scene.camera.data.dof.aperture_rotation = math.radians(-35)
+
+
+SETTINGS = [focus_object, vertical_fit, small_scale, shift, ratio, five_blades, long_lens, f_stop, portrait, wide_pixels, border,
+            three_blades_near]
+
+
+def render_color(scene, samples, seed, own):
+    """Linear colour: own, by Cycles' lens; else sharp and blurred by the add-on."""
+    scene.cycles.samples, scene.cycles.seed = samples, seed
+    scene.camera.data.hyperfocal.use = not own
+    scene.camera.data.dof.use_dof = True
+    scene.view_layers[0].use_pass_z = True
+    bpy.ops.render.render()
+    check("the camera is as before", scene.camera.data.dof.use_dof)
+    if not own:
+        image = bpy.data.images[addon.IMAGE]
+        color = np.empty(image.size[0] * image.size[1] * 4, np.float32)
+        image.pixels.foreach_get(color)
+        return color.reshape(image.size[1], image.size[0], 4)[::-1, :, :3]
+    path = os.path.join(folder, "own.exr")
+    addon.save_sharp(scene, path)
+    return render.picture(path)[0][..., :3]
+
+
+def extents(color):
+    """How far a disc reaches from its centre in 36 directions: where all but 3 % of the light lies behind, pixels."""
+    light = color.mean(axis=2).astype(np.float64)
+    y, x = np.indices(light.shape)
+    cx, cy = (light * x).sum() / light.sum(), (light * y).sum() / light.sum()
+    # A pixel's light lies all over it: 8 x 8 points each, of the pixels with light.
+    seen = light > 1e-4 * light.max()
+    steps = (np.arange(8) - 3.5) / 8
+    sub_y, sub_x = (g.ravel() for g in np.meshgrid(steps, steps, indexing="ij"))
+    x, y = (v[seen][:, None] + sub for v, sub in ((x, sub_x), (y, sub_y)))
+    light = np.repeat(light[seen], 64)
+    found = []
+    for angle in np.arange(36) * math.pi / 18:
+        along = ((x - cx) * math.cos(angle) + (y - cy) * math.sin(angle)).ravel()
+        order = np.argsort(along)
+        sums = np.cumsum(light[order]) / light.sum()
+        found.append(np.interp(0.97, sums, along[order]))
+    return np.array(found), cx, cy
+
+
+def decibels(a, b):
+    def display(c):
+        c = np.clip(c, 0, 1)
+        return np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.maximum(c, 1e-9) ** (1 / 2.4) - 0.055)
+    return -10 * math.log10(np.mean((display(a) - display(b)) ** 2) + 1e-12)
+
+
+def try_setting(change):
+    name = change.__name__
+    scene = scene_with_camera(lamp=True)
+    change(scene)
+    (own, ox, oy), (ours, x, y) = (extents(c) for c in (render_color(scene, 256, 1, True), render_color(scene, 32, 2, False)))
+    off = abs(own - ours).max()
+    print(f"{name}: disc of {own.min():.2f} to {own.max():.2f} pixels, ours {ours.min():.2f} to {ours.max():.2f}, "
+          f"largest difference {off:.2f}, centre {math.hypot(ox - x, oy - y):.2f}", flush=True)
+    check(f"{name}: the disc is {off:.2f} pixels off", off <= 0.5 and math.hypot(ox - x, oy - y) <= 0.5 and own.min() > 2)
+    scene = scene_with_camera(lamp=False)
+    change(scene)
+    samples = 64
+    first, second = (render_color(scene, samples, seed, True) for seed in (1, 2))
+    apart = decibels(first, second)
+    ours = decibels(first, render_color(scene, samples, 3, False))
+    print(f"{name}: Cycles' own {apart:.1f} dB apart, ours {ours:.1f} dB from it", flush=True)
+    check(f"{name}: Cycles' pictures are {apart:.1f} dB apart, too noisy to judge", apart >= 36)
+    check(f"{name}: {ours:.1f} dB from Cycles' picture", ours >= 30)
+
+
+def try_animation():
+    """Four frames are rendered and written, defocused; the sharp EXR stays beside each."""
+    scene = scene_with_camera(lamp=False)
+    scene.cycles.samples = 4
+    scene.frame_start, scene.frame_end = 1, 4
+    scene.camera.data.hyperfocal.use = True
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.filepath = os.path.join(folder, "shot_")
+    bpy.ops.render.render(animation=True)
+    names = sorted(n for n in os.listdir(folder) if n.startswith("shot_"))
+    want = sorted(f"shot_{i:04d}{end}" for i in range(1, 5) for end in (".png", ".sharp.exr"))
+    check(f"four frames and their EXRs: {names}", names == want)
+    check("nothing else", not [n for n in os.listdir(folder) if n.startswith(".")])
+    check("the format is as before", scene.render.image_settings.file_format == "PNG")
+    image = bpy.data.images.load(os.path.join(folder, "shot_0004.png"))
+    pixels = np.array(image.pixels[:]).reshape(HEIGHT, WIDTH, 4)[::-1, :, :3]
+    sharp, depth = render.picture(os.path.join(folder, "shot_0004.sharp.exr"))
+    blurred = render.defocus((sharp, depth), lens.parameters(scene, scene.camera))[..., :3]
+    # The file has 8 bits a channel, dithered by one step.
+    check("the frame is the defocused picture", np.abs(pixels - np.clip(blurred, 0, 1)).max() < 2.5 / 255)
+    check("which differs from the sharp one", np.abs(blurred - sharp[..., :3]).max() > 0.1)
+
+
+def try_refocus():
+    scene = scene_with_camera(lamp=False)
+    render_color(scene, 4, 1, False)
+    before = np.array(bpy.data.images[addon.IMAGE].pixels[:])
+    scene.camera.data.dof.focus_distance = 12
+    bpy.context.view_layer.update()
+    addon.catch_up()
+    check("turning the focus changes the picture without a render", not np.array_equal(before, bpy.data.images[addon.IMAGE].pixels[:]))
+
+
+def try_refused():
+    scene = scene_with_camera(lamp=False)
+    for kind in ("ORTHO", "PANO"):
+        scene.camera.data.type = kind
+        scene.camera.data.hyperfocal.use = True
+        scene.cycles.samples = 1
+        bpy.ops.render.render()
+        said = scene.camera.data.hyperfocal.error
+        check(f"{kind}: {said}", said.count(".") == 1 and kind.lower() in said and scene.camera.data.dof.use_dof)
+
+
+def state(scene):
+    dof = scene.camera.data.dof
+    settings = scene.render.image_settings
+    return (dof.use_dof, dof.focus_distance, dof.aperture_fstop, scene.view_layers[0].use_pass_z, settings.file_format,
+            settings.color_depth, settings.color_mode, scene.render.filepath)
+
+
+def try_interruptions():
+    """A render that ends at ten places: by an error in what the add-on calls, before, within and after it."""
+    places = [(render, "picture"), (render, "defocus"), (render, "read"), (addon, "save_sharp"), (addon, "show"),
+              (addon, "refocus"), (lens, "parameters"), (addon, "sharp_path"), (shutil, "copyfile"), (os, "replace")]
+    for owner, name in places:
+        scene = scene_with_camera(lamp=False)
+        scene.cycles.samples = 1
+        scene.camera.data.hyperfocal.use = True
+        scene.render.filepath = os.path.join(folder, "stopped")
+        scene.render.image_settings.file_format = "PNG"
+        before, files = state(scene), set(os.listdir(folder))
+        whole = getattr(owner, name)
+
+        def stop(*_, **__):
+            raise OSError(f"stopped in {name}")
+
+        setattr(owner, name, stop)
+        try:
+            bpy.ops.render.render(write_still=True)
+        except RuntimeError:
+            pass
+        finally:
+            setattr(owner, name, whole)
+        check(f"stopped in {name}: {before} became {state(scene)}", before == state(scene))
+        check(f"stopped in {name}: it says so", f"stopped in {name}" in scene.camera.data.hyperfocal.error)
+        left = {n for n in set(os.listdir(folder)) - files if n not in ("stopped.png", "stopped.sharp.exr")}
+        check(f"stopped in {name}: {left} is left", not left)
+
+
+names = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+try:
+    print(f"hyperfocal by its {render.backend()}, Blender {bpy.app.version_string}", flush=True)
+    for setting in SETTINGS:
+        if not names or setting.__name__ in names:
+            try_setting(setting)
+    if not names or "states" in names:
+        for rest in (try_animation, try_refocus, try_refused, try_interruptions):
+            rest()
+except Exception as error:  # Blender would go on without a word
+    import traceback
+    traceback.print_exc()
+    check(f"an exception: {error}", False)
+shutil.rmtree(folder)
+print(f"{passed} passed, {failed} failed", flush=True)
+os._exit(failed > 0 or not passed)
