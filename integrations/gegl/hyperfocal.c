@@ -6,6 +6,7 @@
 #define GETTEXT_PACKAGE "hyperfocal"
 #include <glib/gi18n-lib.h>
 
+// clang-format off
 #ifdef GEGL_PROPERTIES
 
 enum_start(hyperfocal_depth)
@@ -93,6 +94,7 @@ property_double(highlight_threshold, _("Highlight threshold"), 0.9)
     value_range(0.0, 0.99)
 
 #else
+// clang-format on
 
 #define GEGL_OP_COMPOSER
 #define GEGL_OP_NAME hyperfocal
@@ -206,7 +208,8 @@ static int defocus(const GeglProperties *o, const struct hf_image *colour, float
     struct hf_params p = params_of(o);
     struct hf_context *c = NULL;
     map_depth(o, data, (size_t)colour->width * (size_t)colour->height);
-    int error = hf_choose_quality(colour->height, &depth, &p, (enum hf_quality)(o->quality - HYPERFOCAL_DRAFT), NULL, NULL);
+    int error =
+        hf_choose_quality(colour->height, &depth, &p, (enum hf_quality)(o->quality - HYPERFOCAL_DRAFT), NULL, NULL);
     if (!error)
         error = hf_open(&c, &config);
     if (!error)
@@ -239,7 +242,8 @@ static gboolean process(GeglOperation *operation, GeglBuffer *input, GeglBuffer 
         g_warning("hyperfocal:defocus: out of memory for %d x %d pixels", box.width, box.height);
     if (!error) {
         gegl_buffer_get(input, &box, 1.0, format, colour, GEGL_AUTO_ROWSTRIDE, GEGL_ABYSS_NONE);
-        gegl_buffer_get(aux, &box, 1.0, depth_format(gegl_buffer_get_format(aux)), depth, GEGL_AUTO_ROWSTRIDE, GEGL_ABYSS_CLAMP);
+        gegl_buffer_get(aux, &box, 1.0, depth_format(gegl_buffer_get_format(aux)), depth, GEGL_AUTO_ROWSTRIDE,
+                        GEGL_ABYSS_CLAMP);
         error = defocus(GEGL_PROPERTIES(operation), &image, depth);
     }
     // On an error the picture stays as it is.
@@ -262,8 +266,8 @@ static void gegl_op_class_init(GeglOpClass *klass)
     // The library has threads of its own.
     operation->threaded = FALSE;
     GEGL_OPERATION_COMPOSER_CLASS(klass)->process = process;
-    gegl_operation_class_set_keys(operation, "name", "hyperfocal:defocus", "title", _("Depth of field (hyperfocal)"), "categories",
-                                  "blur", "description",
+    gegl_operation_class_set_keys(operation, "name", "hyperfocal:defocus", "title", _("Depth of field (hyperfocal)"),
+                                  "categories", "blur", "description",
                                   _("Blur a picture as a lens would have taken it, by a map of its depth (aux)"), NULL);
 }
 
