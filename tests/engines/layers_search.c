@@ -3,6 +3,7 @@
 // random lenses, apertures and qualities.
 //
 //     layers_search images [COUNT [SEED]]      the folder of the ray-traced scenes; how many cases of each kind
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -230,6 +231,38 @@ static void local(struct hf_context *c, int count, unsigned seed)
     }
 }
 
+// ---- pictures that are related ----
+
+// Times 2^-4 and 2^4, no sample changes by more than roundings, also with patterns: a sample is a mean of others, and each
+// of at most 400 roundings in a row (layers_exact.c counts them) is half a unit of the largest sample.
+static void exposed(struct hf_context *c, int count, unsigned seed)
+{
+    for (int n = 0; n < count; n++) {
+        struct rng rng = rng_seed(seed * 1000003u + (unsigned)n);
+        struct subject t = subject_new(&rng);
+        t.p.layers.no_patterns = 0;
+        t.p.run.deterministic = 1;
+        struct picture want = render_scene(c, &t.s, &t.p);
+        for (int by = -4; by <= 4; by += 8) {
+            struct scene s = {picture_copy(&t.s.colour), picture_copy(&t.s.depth)};
+            double worst = 0;
+            for (int k = 0; k < 3; k++)
+                for (size_t i = 0; i < samples_of(&want); i++)
+                    s.colour.plane[k][i] = ldexpf(s.colour.plane[k][i], by);
+            struct picture got = render_scene(c, &s, &t.p);
+            for (int k = 0; k < 3; k++)
+                for (size_t i = 0; i < samples_of(&want); i++)
+                    worst = worse(fabs((double)ldexpf(got.plane[k][i], -by) - want.plane[k][i]), worst);
+            CHECK_MSG(worst <= 400 * FLT_EPSILON / 2, "exposed %d: %s, quality %d, times 2^%d: %.3g off", n, t.name,
+                      (int)t.p.layers.quality, by, worst);
+            picture_free(&got);
+            scene_free(&s);
+        }
+        picture_free(&want);
+        scene_free(&t.s);
+    }
+}
+
 int main(int argc, char **argv)
 {
     static const char *const rgb[] = {"R", "G", "B"}, *const z[] = {"Z"};
@@ -244,6 +277,7 @@ int main(int argc, char **argv)
     }
     jumps(c, count, seed);
     local(c, count / 2, seed);
+    exposed(c, count / 2, seed);
     for (int i = 0; i < IMAGES; i++)
         scene_free(&image[i]);
     hf_close(&c);

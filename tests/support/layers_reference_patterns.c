@@ -15,11 +15,11 @@ struct level {
 
 struct choices {
     int count, x[CHOICES], y[CHOICES];
-    double off[CHOICES], variance, trust;
+    double off[CHOICES], variance, unseen, trust;
 };
 
 struct patch {
-    double radius, slope, sum, variance, weight[MOST], colour[MOST][4];
+    double radius, slope, sum, variance, unseen, weight[MOST], colour[MOST][4];
     int count, x[MOST], y[MOST];
 };
 
@@ -85,6 +85,7 @@ static void look_around(const struct level *v, int channels, int x, int y, struc
         }
         p->count++;
     }
+    p->unseen = 1e-30 + (p->sum > 0 ? 0.0002 * square / p->sum : 0);
     for (int c = 0; c < channels && p->sum > 0; c++)
         square -= mean[c] * mean[c] / p->sum;
     p->variance = p->sum > 0 ? fmax(square, 0) / p->sum : 0;
@@ -132,7 +133,8 @@ static void compare(const struct level *v, int channels, const struct patch *p, 
 static void end_choices(struct choices *c, const struct patch *p)
 {
     c->variance = p->variance;
-    c->trust = c->count ? fmax(1 - c->off[0] / (0.5 * p->variance + 0.0005), 0) : 0;
+    c->unseen = p->unseen;
+    c->trust = c->count ? fmax(1 - c->off[0] / (0.5 * p->variance + p->unseen), 0) : 0;
 }
 
 static void refine(const struct level *v, int channels, const struct patch *p, int x, int y, const struct choices *from,
@@ -214,7 +216,7 @@ static void fill(const struct level *v, const struct choices *chosen, int channe
         const struct choices *c = &chosen[py * wide + px];
         double sum = 0, colour[4] = {0};
         for (int k = 0; k < c->count; k++) {
-            const double near = fmax(1 - (c->off[k] - c->off[0]) / (0.4 * c->variance + 0.002), 0);
+            const double near = fmax(1 - (c->off[k] - c->off[0]) / (0.4 * c->variance + 4 * c->unseen), 0);
             const double g = known(v, p.radius, p.slope, x + c->x[k], y + c->y[k]) * pow(near, 4);
             sum += g;
             for (int j = 0; j < channels && g > 0; j++)

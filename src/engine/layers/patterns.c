@@ -24,8 +24,9 @@ enum {
     LANES = 32  // shifts compared at once, and room for a whole vector
 };
 
-// A mean square difference of the roots of colours, over all channels, that nobody sees.
-#define UNSEEN 0.0005f
+// A mean square difference of the roots of colours, over all channels, that nobody sees: this part of their mean square
+// around the place. So the exposure changes no choice.
+#define UNSEEN 0.0002f
 // Parts of the variance around a place. A pattern whose error is ALIKE of it is not trusted. A choice counts in the
 // mean if its error exceeds the best one's by less than EQUAL of it.
 #define ALIKE 0.5f
@@ -42,7 +43,7 @@ struct level {
 struct choices {
     int count;
     int x[CHOICES], y[CHOICES];
-    float off[CHOICES], variance, trust;
+    float off[CHOICES], variance, unseen, trust;
 };
 
 struct band {
@@ -59,7 +60,7 @@ struct patch {
     int x, y;
     struct hf_pattern_place place;
     int count;
-    float sum, variance;
+    float sum, variance, unseen;
     struct hf_pattern_tap tap[MOST];
 };
 
@@ -270,7 +271,7 @@ static void look_around(const struct band *b, const struct level *v, int x, int 
     p->x = x;
     p->y = y;
     p->count = 0;
-    p->sum = p->variance = 0;
+    p->sum = p->variance = p->unseen = 0;
     for (int dy = -WINDOW; dy <= WINDOW; dy++)
         for (int dx = -WINDOW; dx <= WINDOW; dx++) {
             const ptrdiff_t apart = dy * v->set.stride + dx, at = y * v->set.stride + x + apart;
@@ -290,6 +291,7 @@ static void look_around(const struct band *b, const struct level *v, int x, int 
                 square += w * colour * colour;
             }
         }
+    p->unseen = HF_LAYERS_SOME + (p->sum > 0 ? UNSEEN * square / p->sum : 0);
     for (int c = 0; c < b->channels && p->sum > 0; c++)
         square -= mean[c] * mean[c] / p->sum;
     p->variance = p->sum > 0 && square > 0 ? square / p->sum : 0;
@@ -363,9 +365,10 @@ static void compare(const struct band *b, const struct patch *p, int sx, int sy,
 static void end_choices(struct choices *c, const struct patch *p)
 {
     c->variance = p->variance;
+    c->unseen = p->unseen;
     c->trust = 0;
     if (c->count > 0) {
-        const float trust = 1 - c->off[0] / (ALIKE * p->variance + UNSEEN);
+        const float trust = 1 - c->off[0] / (ALIKE * p->variance + p->unseen);
         c->trust = trust > 0 ? trust : 0;
     }
 }
@@ -431,7 +434,7 @@ static void add_choices(const struct band *b, const struct choices *c, struct hf
                         float part, struct found *found)
 {
     const struct level *v = &b->level[0];
-    const float scale = 1 / (EQUAL * c->variance + 4 * UNSEEN);
+    const float scale = 1 / (EQUAL * c->variance + 4 * c->unseen);
     float sum = 0, colour[4] = {0};
     for (int i = 0; i < c->count; i++) {
         const ptrdiff_t at = (y + c->y[i]) * v->set.stride + x + c->x[i];
