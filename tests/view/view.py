@@ -192,6 +192,9 @@ def check_errors(screen, folder):
     alone = subprocess.run([view_exe], env=environment, capture_output=True, text=True)
     tests.check("without a display there is one sentence", alone.returncode == 1 and alone.stderr ==
                 "hyperfocal-view: there is no display to open a window on\n", alone.stderr)
+    for words, begin in (("--help", "hyperfocal-view "), ("--help=man", ".TH hyperfocal-view 1")):
+        told = subprocess.run([view_exe, words], env=environment, capture_output=True, text=True)
+        tests.check(words, told.returncode == 0 and told.stdout.startswith(begin) and "--demo" in told.stdout.replace("\\", ""), told.stdout[:80])
     wrong = subprocess.run([view_exe, "--fstop", "0"], env=environment, capture_output=True, text=True)
     tests.check("a wrong option too", wrong.returncode == 1 and wrong.stderr.count("\n") == 1, wrong.stderr)
 

@@ -35,8 +35,12 @@ struct view_picture *view_scene_picture(int width, int height, double seconds)
                               .display_window = {0, 0, width, height},
                               .pixel_aspect = 1,
                               .screen_width = 1};
-    view.camera = (struct hf_io_camera){
-        .focus = NAN, .f_number = 0.4f, .focal_length_mm = 35, .sensor_width_mm = 36, .nominal_length_mm = NAN};
+    view.camera = (struct hf_io_camera){.focus = NAN,
+                                        .f_number = 0.4f,
+                                        .focal_length_mm = 35,
+                                        .sensor_width_mm = 36,
+                                        .nominal_length_mm = NAN,
+                                        .axis = {NAN}};
     float *planes[4] = {hf_io_alloc(n), hf_io_alloc(n), hf_io_alloc(n), hf_io_alloc(n)};
     if (!planes[0] || !planes[1] || !planes[2] || !planes[3]) {
         for (int c = 0; c < 4; c++)

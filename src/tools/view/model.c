@@ -162,6 +162,7 @@ const struct tool_program *view_program(void)
     static const char *const usual[] = {"focus",      "focus-at", "fstop", "focal-length", "engine", "quality",
                                         "depth-file", "frames",   "keys",  "demo",         "bench",  "profile",
                                         "help",       NULL};
+    static const char *const examples[] = {"hyperfocal-view shot.####.exr", "hyperfocal-view --demo", NULL};
     static struct tool_section sections[3];
     static struct tool_program program;
     memcpy(sections, cli_program.sections, 2 * sizeof(sections[0]));
@@ -177,7 +178,7 @@ const struct tool_program *view_program(void)
         .sections = sections,
         .section_count = 3,
         .usual = usual,
-        .examples = (const char *const[]){"hyperfocal-view shot.####.exr", "hyperfocal-view --demo", NULL},
+        .examples = examples,
         .outro = "Exit codes: 0 done; 1 the command line is wrong, or there is no display.",
     };
     return &program;

@@ -182,6 +182,14 @@ int view_timeline_focus(struct view_app *app, float distance)
 
 // Curves.
 
+// The names stand above the curves.
+enum { NAMES = 16 };
+
+static double place_on(double value, double base, double span, int height)
+{
+    return height - 6 - (value - base) / span * (height - NAMES - 12);
+}
+
 static void draw_column(cairo_t *c, const struct view_app *app, int column, int width, int height)
 {
     const struct cli_keys *k = &app->model.now.keys;
@@ -193,19 +201,20 @@ static void draw_column(cairo_t *c, const struct view_app *app, int column, int 
     }
     const double span = most > least ? most - least : 1, base = most > least ? least : least - 0.5;
     cairo_set_source_rgb(c, colours[column][0], colours[column][1], colours[column][2]);
+    cairo_new_path(c);
     for (int x = 0; x < width; x++) {
         const double place = last * (double)x / (width - 1);
         const int i = (int)place;
         const double from = frame_at(app, i), to = frame_at(app, MIN(i + 1, last));
         const double value = cli_keys_at(k, (enum cli_key)column, from + (place - i) * (to - from));
-        cairo_line_to(c, x, height - 6 - (value - base) / span * (height - 12));
+        cairo_line_to(c, x, place_on(value, base, span, height));
     }
     cairo_stroke(c);
     for (int i = 0; i <= last; i++) {
         const int key = view_keys_find(k, column, frame_at(app, i));
         if (key < 0)
             continue;
-        const double y = height - 6 - (k->column[column].keys[key].value - base) / span * (height - 12);
+        const double y = place_on(k->column[column].keys[key].value, base, span, height);
         cairo_arc(c, last ? (double)i / last * (width - 1) : 0, y, 4, 0, 2 * M_PI);
         cairo_fill(c);
     }
@@ -296,7 +305,7 @@ GtkWidget *view_timeline_new(struct view_app *app)
     for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
         gtk_box_append(GTK_BOX(row), parts[i]);
     t->curves = gtk_drawing_area_new();
-    gtk_drawing_area_set_content_height(GTK_DRAWING_AREA(t->curves), 72);
+    gtk_drawing_area_set_content_height(GTK_DRAWING_AREA(t->curves), 84);
     gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(t->curves), draw_curves, app, NULL);
     gtk_accessible_update_property(GTK_ACCESSIBLE(t->curves), GTK_ACCESSIBLE_PROPERTY_LABEL, "Curves of the keys", -1);
     GtkGesture *click = gtk_gesture_click_new();
