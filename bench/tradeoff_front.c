@@ -225,7 +225,7 @@ void trade_ladder(struct trade *t)
 int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES])
 {
     int order[TRADE_SETTINGS], last = -1;
-    static const double within_db[TRADE_QUALITIES] = {INFINITY, 1, 0.25, 0};
+    static const double within_db[TRADE_QUALITIES] = {INFINITY, 1, 0, 0};
     trade_order(t, order);
     for (int i = 0; i < t->results; i++)
         if (t->result[i].step > 0 && (last < 0 || t->result[i].step > t->result[last].step))

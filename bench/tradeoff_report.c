@@ -94,12 +94,14 @@ static const struct trade_result *of_quality(const struct trade *t, int quality)
     return t->results < 2 || trade_qualities(t, place) ? NULL : &t->result[place[quality]];
 }
 
-// Those that choose the same step stand in one row: "high, best". Returns the first quality of the next row.
+// Those that choose the same step stand in one row: "standard, best". The word high is another for best, and stands in none.
+// Returns the first quality of the next row.
 static int row_of_qualities(const struct trade *t, int q, char names[64])
 {
     const struct trade_result *r = of_quality(t, q);
     for (int n = 0; q < TRADE_QUALITIES && of_quality(t, q) == r; q++)
-        n += snprintf(names + n, 64 - (size_t)n, "%s%s", n ? ", " : "", hf_name(HF_NAMES_QUALITY, q));
+        if (q != HF_QUALITY_HIGH)
+            n += snprintf(names + n, 64 - (size_t)n, "%s%s", n ? ", " : "", hf_name(HF_NAMES_QUALITY, q));
     return q;
 }
 

@@ -311,11 +311,11 @@ HF_API int hf_resolve(int width, int height, const struct hf_depth *depth, const
 
 // How good a picture has to be. Each quality is a step on a ladder of settings. Each step is slower than the one before, at
 // least 0.2 dB closer to what a ray tracer sees on the mean, and farther from it on no measured scene where either can be
-// chosen. Where no step lies between two qualities, both are the same step: today high is best.
+// chosen.
 enum hf_quality {
     HF_QUALITY_DRAFT,     // the cheapest that blurs as far as any lens: the gather
-    HF_QUALITY_STANDARD,  // the cheapest within 1 dB of the best
-    HF_QUALITY_HIGH,      // the cheapest within 0.25 dB of the best
+    HF_QUALITY_STANDARD,  // the cheapest within 1 dB of the best; also for moving pictures
+    HF_QUALITY_HIGH,      // an old name of the best
     HF_QUALITY_BEST,      // the most accurate
 };
 

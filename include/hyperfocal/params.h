@@ -283,10 +283,11 @@ struct hf_run_params {
     // 1: run every pass on every tile, also where the scene does not need it. Default 0. It does not change a bit.
     int no_skip;
     // Milliseconds that a frame may take; 0 (default): any time. The given parameters are then the best that a frame may get.
-    // When earlier frames of the context took longer, the library tries cheaper settings in turn: those from which
-    // hf_choose_quality chooses that reach as far as the blur asked for. It returns to a better setting only when that would
-    // leave a fifth of the budget for a dozen frames in a row, so that a shot does not flicker between two looks. The log warns
-    // once when even the cheapest setting takes longer.
+    // When two frames of the context took longer, the next gets the best setting that is expected to keep the budget, by what
+    // those frames took and what settings cost: one of those from which hf_choose_quality chooses that reach as far as the blur
+    // asked for, or the chapter with 3 rings where nothing cheaper than the gather does. It returns to a better setting only when
+    // that would leave a fifth of the budget for a dozen frames in a row, so that a shot does not flicker between two looks. The
+    // log warns once when even the cheapest setting takes longer.
     float budget_ms;
     uint32_t reserved[5];
 };

@@ -22,12 +22,16 @@ const float hf_ladder_engine_ms[HF_ENGINE_COUNT] = {HF_LADDER_ENGINES};
 const int hf_ladder_quality[] = {HF_LADDER_QUALITIES};
 const char hf_ladder_measured[] = HF_LADDER_MEASURED;
 
-void hf_ladder_apply(struct hf_params *p, int step)
+void hf_ladder_set(struct hf_params *p, const struct hf_params *of)
 {
-    const struct hf_params *of = &hf_ladder[step].params;
 #define SET(field) p->field = of->field;
     HF_LADDER_FIELDS(SET)
 #undef SET
+}
+
+void hf_ladder_apply(struct hf_params *p, int step)
+{
+    hf_ladder_set(p, &hf_ladder[step].params);
 }
 
 uint64_t hf_ladder_hash(const struct hf_params *p)

@@ -20,7 +20,8 @@ extern const char hf_ladder_measured[];  // when and on what machine
 // Milliseconds of a megapixel for each engine with its defaults; 0: not measured.
 extern const float hf_ladder_engine_ms[HF_ENGINE_COUNT];
 
-// Set the members of params in which steps differ to those of a step: the engine and its options.
+// Set the members of params in which steps differ, the engine and its options, to those of other parameters or of a step.
+void hf_ladder_set(struct hf_params *params, const struct hf_params *of);
 void hf_ladder_apply(struct hf_params *params, int step);
 // A hash of those members.
 uint64_t hf_ladder_hash(const struct hf_params *params);

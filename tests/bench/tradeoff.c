@@ -104,7 +104,7 @@ static void test_ladder(void)
     CHECK_INT(trade_qualities(&t, place), 0);
     CHECK_INT(place[0], 0);
     CHECK_INT(place[1], 3);
-    CHECK_INT(place[2], 3);
+    CHECK_INT(place[2], 4);
     CHECK_INT(place[3], 4);
 
     // A cheap setting from which no way leads up is not the first step.

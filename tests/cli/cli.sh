@@ -375,6 +375,11 @@ picture_tests() {
     done
     plan "engine chapter, 2 rings" plain.exr --focus 3 --engine chapter --rings 2 --explain
     plan "--quality draft chose --engine gather, step |expected: |measured 20" plain.exr --focus 3 --quality draft --explain
+    # high was a name of best, and is in no help.
+    run plain.exr --focus 3 --quality high --dry-run --explain
+    [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "--quality high chooses what best does" &&
+        contains "$dir/out" "--quality best chose --engine layers" && ! contains "$dir/help" "standard|high"
+    result "--quality high" $?
     # One blur of one width may do for a range, but not for a lens, nor for --quality draft.
     plan "--max-error 0.9 chose --engine gaussian" plain.exr --focus 3 --max-error 0.9 --explain --near 1 --far 60
     bad 1 "--near|--depth-type" plain.exr -o o.exr --focus 3 --quality draft --near 1 --far 60

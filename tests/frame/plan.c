@@ -201,7 +201,7 @@ static void radii_found(void)
 
 // A machine on which step i takes ms[i] times a load.
 struct machine {
-    const float *ms;
+    float ms[HF_BUDGET_STEPS];
     struct hf_budget b;
     struct hf_params ladder[HF_BUDGET_STEPS];
     int steps, changes;
@@ -217,55 +217,89 @@ static void frames(struct machine *m, int n, float load, float budget)
     }
 }
 
+// The steps below an engine for a lens, each of which takes `times` as long as the library knows.
+static struct machine machine_of(enum hf_engine engine, float times)
+{
+    struct machine m = {.steps = 0};
+    struct hf_params p = hf_default_params();
+    p.engine = engine;
+    p.model = HF_MODEL_LENS;
+    m.steps = hf_budget_ladder(&p, INFINITY, m.ladder);
+    hf_budget_choose(&m.b, m.ladder, m.steps);
+    for (int i = 0; i < m.steps; i++)
+        m.ms[i] = times * m.b.cost[i];
+    return m;
+}
+
+// From any engine, with any budget that some step keeps: the fourth frame is of the first step that keeps it, on a fast
+// machine as on a slow one, and stays there. So is every engine's below the gather with a lens.
+static void at_once(void)
+{
+    for (int e = 0; e < tool_engines(); e++) {
+        struct machine first = machine_of((enum hf_engine)e, 1);
+        CHECK_MSG(first.steps > 1 || hf_ladder_farthest(&first.ladder[0]) < INFINITY || first.ms[0] < 20,
+                  "nothing is below %s with a lens", hf_engine_name((enum hf_engine)e));
+        for (int k = 0; k < first.steps; k++)
+            for (float times = 0.125f; times <= 8; times *= 8) {
+                struct machine m = machine_of((enum hf_engine)e, times);
+                frames(&m, 3, 1, 1.01f * m.ms[k]);
+                CHECK_INT(m.b.step, k);
+                frames(&m, 100, 1, 1.01f * m.ms[k]);
+                CHECK_INT(m.b.step, k);
+                CHECK(m.changes <= 1);
+            }
+    }
+}
+
 static void budget(void)
 {
-    static const float ms[HF_BUDGET_STEPS] = {10, 7, 4};
-    struct machine m = {.ms = ms};
-    struct hf_params p = hf_default_params();
-    p.engine = HF_ENGINE_SCATTER;
-    CHECK(hf_budget_ladder(&p, 0, m.ladder) >= 3);
-    m.steps = 3;
-
-    frames(&m, 50, 1, 12);
+    struct machine m = machine_of(HF_ENGINE_SCATTER, 1);
+    CHECK(m.steps >= 4);
+    const float *ms = m.ms;
+    frames(&m, 50, 1, 1.2f * ms[0]);
     CHECK_INT(m.b.step, 0);  // fits
-    frames(&m, 50, 1, 8);
-    CHECK_INT(m.b.step, 1);
-    frames(&m, 50, 1, 5);
-    CHECK_INT(m.b.step, 2);
+    frames(&m, 3, 1, 1.01f * ms[2]);
+    CHECK_INT(m.b.step, 2);  // at once
     m.changes = 0;
-    frames(&m, 500, 1, 8.5f);  // 7 of 8.5 fits, but leaves too little room, so nothing changes
+    frames(&m, 500, 1, 1.01f * ms[1]);  // the step above fits, but leaves too little room, so nothing changes
     CHECK_INT(m.changes, 0);
-    frames(&m, 60, 1, 12);  // 7 fits well; 10 fits too, but leaves too little room
-    CHECK_INT(m.b.step, 1);
-    frames(&m, 60, 1, 13);
+    frames(&m, 60, 1, 1.3f * ms[0]);  // all fit well
     CHECK_INT(m.b.step, 0);
-    frames(&m, 1, 3, 13);  // a single late frame changes nothing
+    CHECK_INT(m.changes, 1);
+    frames(&m, 1, 3, 1.3f * ms[0]);  // a single late frame changes nothing
     CHECK_INT(m.b.step, 0);
-    frames(&m, 3, 3, 1);  // nothing fits: the cheapest setting
-    frames(&m, 20, 3, 1);
-    CHECK_INT(m.b.step, 2);
+    frames(&m, 20, 3, 1);  // nothing fits: the cheapest setting
+    CHECK_INT(m.b.step, m.steps - 1);
 
-    // The first frame also pays for memory; if it counted, two frames would be late.
+    // The first frame also pays for memory; if it counted, two frames would be late. Much later than that is no memory.
     m.b = (struct hf_budget){0};
-    frames(&m, 2, 100, 12);
+    frames(&m, 2, 2, 1.2f * ms[0]);
     CHECK_INT(m.b.step, 0);
-    frames(&m, 50, 1, 12);
+    frames(&m, 50, 1, 1.2f * ms[0]);
     CHECK_INT(m.b.step, 0);
+    frames(&m, 2, 100, 1.2f * ms[0]);
+    CHECK(m.b.step > 0);
+
+    // A step that takes twice as long as the table has it is left again, and what it took is remembered.
+    m = machine_of(HF_ENGINE_SCATTER, 1);
+    m.ms[2] *= 2;
+    frames(&m, 3, 1, 1.5f * ms[2] / 2);
+    CHECK_INT(m.b.step, 2);
+    frames(&m, 200, 1, 1.5f * ms[2] / 2);
+    CHECK_INT(m.b.step, 3);
+    CHECK_INT(m.changes, 2);
 }
 
 // A scene whose better setting looks affordable from the cheaper one but is not: tries become rarer and rarer.
 static void no_flicker(void)
 {
-    static const float cheap[HF_BUDGET_STEPS] = {10, 5, 5};
-    struct machine m = {.ms = cheap};
-    struct hf_params p = hf_default_params();
-    p.engine = HF_ENGINE_SCATTER;
-    CHECK(hf_budget_ladder(&p, 0, m.ladder) >= 3);
-    m.steps = 3;
-    frames(&m, 20, 1, 9);
-    CHECK_INT(m.b.step, 1);
-    for (int i = 0; i < 1000; i++)  // light frames while the cheap setting runs, heavy ones with the other
-        frames(&m, 1, m.b.step == 0 ? 1 : 0.5f, 9);
+    struct machine m = machine_of(HF_ENGINE_SCATTER, 1);
+    const float budget = 1.01f * m.ms[2];
+    frames(&m, 20, 1, budget);
+    CHECK_INT(m.b.step, 2);
+    m.changes = 0;
+    for (int i = 0; i < 1000; i++)  // light frames while the cheap setting runs, heavy ones with the others
+        frames(&m, 1, m.b.step < 2 ? 1 : 0.1f, budget);
     CHECK_MSG(m.changes <= 20, "%d changes in 1000 frames", m.changes);
 }
 
@@ -297,6 +331,8 @@ static void ladders(void)
                 hf_ladder_apply(&step, i);
                 want += hf_ladder_farthest(&step) >= fminf((float)far, hf_ladder_farthest(&p));
             }
+            // Where no step is as cheap as the one beneath the ladder, that comes last.
+            want += want == 1 || far > 0;
             CHECK_INT(hf_budget_ladder(&p, (float)far, ladder), want);
         }
     // Shapes that a cheaper engine cannot draw are replaced by those that it can.
@@ -539,6 +575,7 @@ int main(void)
     only_what_is_called_for();
     radii_found();
     budget();
+    at_once();
     no_flicker();
     ladders();
     choices();

@@ -234,10 +234,11 @@ static void tables(void)
 // The help of --quality names the options that the library chooses.
 static void qualities(void)
 {
-    for (int i = 0; i < 4; i++) {
+    static const enum hf_quality words[] = {HF_QUALITY_DRAFT, HF_QUALITY_STANDARD, HF_QUALITY_BEST};
+    for (int i = 0; i < 3; i++) {
         struct hf_params p = hf_default_params();
         struct tool_choice choice;
-        CHECK_INT(tool_choose(1080, NULL, &p, (enum hf_quality)i, 0, &choice), HF_OK);
+        CHECK_INT(tool_choose(1080, NULL, &p, words[i], 0, &choice), HF_OK);
         CHECK_MSG(!strcmp(cli_quality_words(i), choice.inner.options), "%s", cli_quality_words(i));
     }
     CHECK(strstr(cli_quality_words(0), "--engine") != NULL);

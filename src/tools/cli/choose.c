@@ -15,11 +15,12 @@ static int by_error(const struct cli_args *args)
     return !isnan(args->max_error);
 }
 
-const char *cli_quality_words(int quality)
+const char *cli_quality_words(int word)
 {
+    static const enum hf_quality words[] = {HF_QUALITY_DRAFT, HF_QUALITY_STANDARD, HF_QUALITY_BEST};
     struct hf_params p = hf_default_params();
     struct tool_choice choice;
-    return tool_choose(1080, NULL, &p, (enum hf_quality)quality, 0, &choice) ? "" : choice.inner.options;
+    return tool_choose(1080, NULL, &p, words[word], 0, &choice) ? "" : choice.inner.options;
 }
 
 int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, struct tool_error *error)

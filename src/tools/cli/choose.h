@@ -8,8 +8,8 @@
 #include "tools/cli/setup.h"
 #include "tools/common/json.h"
 
-// The options that a number of enum hf_quality chooses for blur of 12 pixels at 1080 lines, as words.
-const char *cli_quality_words(int quality);
+// The options that a word of --quality, by its number in the help, chooses for blur of 12 pixels at 1080 lines, as words.
+const char *cli_quality_words(int word);
 // Refuse options that cannot be combined with --quality or --max-error. Returns 0, or -1 with *error filled.
 int cli_choose_check(const struct cli_args *args, const struct tool_parser *p, struct tool_error *error);
 // Choose the settings of a view whose model, depth and size are known. Does nothing without --quality and --max-error.

@@ -216,6 +216,11 @@ static int run(int argc, char **argv, struct tool_error *error)
 {
     struct cli_args args;
     int status = cli_parse_args(&args, argc, argv, error) ? CLI_BAD_ARGUMENTS : CLI_DONE;
+    if (!status && args.quality == HF_QUALITY_HIGH) {
+        tool_print_line(
+            "--quality high chooses what best does: no setting that is worth having lies between standard and best");
+        args.quality = HF_QUALITY_BEST;
+    }
     if (!status && args.help > 2)
         tool_print_man(&cli_program);
     else if (!status && args.help)

@@ -134,10 +134,10 @@ static const struct tool_option options[] = {
      "half-resolution near and far fields, the fastest. hexagon: hexagonal highlights in two passes. gaussian: soft, with "
      "autofocus. chapter: the nine passes of the book chapter that the gather grew out of.", NAME(engine, ENGINE),
      .field = "engine"},
-    {"quality", 0, TOOL_LOOK, "draft|standard|high|best", "Let the library choose the engine and its settings. Default: "
+    {"quality", 0, TOOL_LOOK, "draft|standard|best", "Let the library choose the engine and its settings. Default: "
      "--engine and its options count. From the settings that were measured, draft chooses the cheapest that blurs as far as "
-     "a lens (the gather), best the most accurate, standard and high the cheapest within 1 dB and 0.25 dB of that. --explain "
-     "says why, what that costs, and how far from a ray tracer it is. Unless the aperture's shape or a large radius needs "
+     "a lens (the gather), best the most accurate, standard the cheapest within 1 dB of that, which is also the one for moving "
+     "pictures. --explain says why, what that costs, and how far from a ray tracer it is. Unless the aperture's shape or a large radius needs "
      "another:", NAME(quality, QUALITY), .chooses = cli_quality_words,
      .field = "quality"},
     {"max-error", 0, TOOL_LOOK, "E", "Let the library choose the cheapest setting with at most this error: the root "
@@ -165,8 +165,9 @@ static const struct tool_option options[] = {
     {"isa", 0, TOOL_RUN, "auto|scalar|sse4.1|avx2|avx512|neon", "Instruction set to use. Default auto: the best of "
      "this CPU.", NAME(isa, ISA),
      .field = "config.isa"},
-    {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. If earlier frames took longer, cheaper "
-     "settings are chosen, from those of --quality that blur as far as is asked for. Default: any time.",
+    {"budget-ms", 0, TOOL_RUN, "MS", "Milliseconds that a frame may take. After two frames that took longer, the "
+     "best setting is chosen that is expected to fit, of those of --quality that blur as far as is asked for, and one below "
+     "them. Default: any time.",
      POSITIVE(params.run.budget_ms),
      .field = "run.budget_ms"},
     {"explain", 0, TOOL_RUN, NULL, "Print what the picture needed: on how many tiles each pass ran, why it skipped the "
