@@ -99,7 +99,7 @@ def attribute(name, kind, data):
     return name.encode() + b'\0' + kind.encode() + b'\0' + struct.pack('<i', len(data)) + data
 
 def exr(path, channels, window=(0, 0, 63, 39), display=None, floats={}, views=None, squeeze=1.0,
-        texts={}):
+        texts={}, matrices={}):
     display = display or window
     width, height = window[2] - window[0] + 1, window[3] - window[1] + 1
     names = sorted(channels)
@@ -114,6 +114,8 @@ def exr(path, channels, window=(0, 0, 63, 39), display=None, floats={}, views=No
     head += attribute('screenWindowWidth', 'float', struct.pack('<f', 1))
     for name, value in floats.items():
         head += attribute(name, 'float', struct.pack('<f', value))
+    for name, value in matrices.items():
+        head += attribute(name, 'm44f', struct.pack('<16f', *value))
     for name, value in texts.items():
         head += attribute(name, 'string', value.encode())
     if views:
@@ -285,6 +287,28 @@ def tiff(path, exif):
     open(path, 'wb').write(b'II*\0' + struct.pack('<I', first) + pixels +
                            directory(first, base + [(34665, 4, [first + size])]) + directory(first + size, exif))
 tiff('photo.tif', [(33437, 5, [18, 10]), (37386, 5, [69, 10]), (41989, 3, [26])])
+# Cryptomatte: Suzanne at distance 2, Box at 4, Wall at 8; numbers as Blender writes them, of which that of Box is no normal
+# float before its bit 23 is turned. Some pixels of the wall have a little of Suzanne in the second pair.
+number = {'Suzanne': 0xcb432898, 'Box': 0x803b1009 ^ 1 << 23, 'Wall': 0x2c388f97}
+bits = lambda name: struct.unpack('<f', struct.pack('<I', number[name]))[0]
+where = lambda x: 'Suzanne' if x < 20 else 'Box' if x < 40 else 'Wall'
+mattes = dict(colour, Z=lambda x, y: {'Suzanne': 2, 'Box': 4, 'Wall': 8}[where(x)])
+mattes.update({'V.Crypto00.r': lambda x, y: bits(where(x)), 'V.Crypto00.g': lambda x, y: .75 if x > 60 else 1,
+               'V.Crypto00.b': lambda x, y: bits('Suzanne') if x > 60 else 0, 'V.Crypto00.a': lambda x, y: .25 if x > 60 else 0})
+key = 'cryptomatte/0123456/'
+manifest = '{"Suzanne":"cb432898","Wall":"2c388f97", "Box":"803b1009"}'
+exr('matte.exr', mattes, texts={key + 'name': 'V.Crypto', key + 'manifest': manifest})
+exr('hashed.exr', mattes, texts={key + 'name': 'V.Crypto'})
+exr('beside.exr', mattes, texts={key + 'name': 'V.Crypto', key + 'manif_file': 'side.json'})
+open('side.json', 'w').write(manifest)
+# A camera at 1, 2, 13 that looks along -z: what is at z is at 13 - z.
+camera = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, -2, -13, 1]
+exr('camera.exr', dict(colour, Z=depth), matrices={'worldToCamera': camera})
+exr('ndc-camera.exr', dict(colour, Z=depth), matrices={'worldToNDC': [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, -1, 0, 0, 1, 13]})
+# A shot: a head comes from 4 to 3.2 before a wall at 9; in the frames 4 to 6 a wall at 1 comes by. One pixel is noise.
+for i in range(9):
+    z = lambda x, y: 30 if (x, y) == (31, 20) and i == 0 else 1 if 3 <= i <= 5 and x > 10 else 4 - .1 * i if 20 < x < 45 else 9
+    exr('walk.%04d.exr' % (i + 1), dict(colour, Z=z))
 # A file of deep scan lines, as far as its header: one part of type deepscanline, version bit 11.
 flat = open('depth.exr', 'rb').read()
 at = flat.index(b'channels\0')

@@ -115,6 +115,33 @@ done
 run near.exr -o o.exr --focus 100 --fstop 0.05 --focal-length 50
 [ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "nothing is in focus"
 result "a frame with nothing in focus is a warning" $?
+# The focus by an object's name, and by a point of the world.
+for file in matte.exr beside.exr hashed.exr; do
+    plan "focus 2 from --focus-object" $file --focus-object Suzanne
+    plan "focus 4 from --focus-object" $file --focus-object Box
+    plan "focus 8 from --focus-object" $file --focus-object Wall
+done
+bad 1 "no object Suzane|did you mean Suzanne?|Suzanne, Wall, Box" matte.exr -o o.exr --focus-object Suzane
+bad 1 "--focus-object Cube is nowhere" hashed.exr -o o.exr --focus-object Cube
+bad 1 "plain.exr|no Cryptomatte" plain.exr -o o.exr --focus-object Suzanne
+bad 1 "--focus|--focus-object" matte.exr -o o.exr --focus-object Suzanne --focus 2
+for file in camera.exr ndc-camera.exr; do
+    plan "focus 9 from --focus-point" $file --focus-point 3,-5,4
+done
+bad 1 "plain.exr|worldToCamera" plain.exr -o o.exr --focus-point 3,-5,4
+bad 1 "--focus-point|'1,2'|X,Y,Z" plain.exr -o o.exr --focus-point 1,2
+bad 1 "--focus-point|'1,2,3,4'|X,Y,Z" plain.exr -o o.exr --focus-point 1,2,3,4
+# Over a shot --focus-at follows the surface of the first frame: the wall that comes by does not take it, nor does noise.
+run walk.####.exr --focus-at 31,20 --print-focus --focus-smooth 0
+printf '%s\n' frame,focus 1,4 2,3.9 3,3.8 4,3.8 5,3.8 6,3.8 7,3.4 8,3.3 9,3.2 >"$dir/want"
+[ "$status" -eq 0 ] && cmp -s "$dir/out" "$dir/want"
+result "--focus-at follows a surface" $?
+run walk.####.exr --focus-at 31,20 --print-focus --focus-smooth 0 --frames 7-8
+[ "$status" -eq 0 ] && [ "$(cat "$dir/out")" = "$(sed -n '1p;8,9p' "$dir/want")" ]
+result "--focus-at follows it in whatever frames are asked for" $?
+run walk.####.exr --focus center --print-focus --focus-smooth 0
+[ "$status" -eq 0 ] && grep -q '^4,1$' "$dir/out"
+result "--focus center takes what is there" $?
 # A depth whose scale nobody knows: where to focus, and how much blur. The pixel that is farthest off gets that.
 blurs() {  # RADII ARGUMENTS...
     words="radius $1"

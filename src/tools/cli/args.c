@@ -98,6 +98,13 @@ static const char *range_option(const struct cli_args *args)
                                          : NULL;
 }
 
+int cli_focus_needs_depth(const struct cli_args *args)
+{
+    const int radii = args->depth_type == HF_DEPTH_COC;  // with --blur the focus is in them
+    return !radii &&
+           (args->focus_by == CLI_FOCUS_AT || args->focus_by == CLI_FOCUS_CENTER || args->focus_by == CLI_FOCUS_OBJECT);
+}
+
 int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error)
 {
     const enum hf_depth_type type = args->depth_type;
@@ -152,8 +159,6 @@ static int check_model(const struct cli_args *args, struct tool_error *error)
                          "--%s and --%s cannot be given together: one chooses the range model, the other "
                          "the lens",
                          range, lens);
-    if (args->focus_given && args->focus_at_given)
-        return tool_fail(error, -1, "--focus and --focus-at cannot be given together");
     if (args->near_begin > args->near_end)
         return tool_fail(error, -1, "--near-begin %g must not be more than --near-end %g", args->near_begin,
                          args->near_end);
@@ -253,6 +258,23 @@ static int take_blur(struct cli_args *args, const struct tool_parser *parser, st
     return 0;
 }
 
+// Each option says where to focus, so there may be one.
+static int check_focus(const struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
+{
+    static const char *const options[] = {"focus", "focus-at", "focus-object", "focus-point"};
+    const char *first = NULL;
+    for (size_t i = 0; i < sizeof(options) / sizeof(options[0]); i++) {
+        if (!tool_given(parser, options[i]))
+            continue;
+        if (first)
+            return tool_fail(error, -1, "--%s and --%s cannot be given together", first, options[i]);
+        first = options[i];
+    }
+    if (args->depth_type == HF_DEPTH_COC && (args->focus_by == CLI_FOCUS_OBJECT || args->focus_by == CLI_FOCUS_POINT))
+        return tool_fail(error, -1, "--%s cannot be used with --depth-type coc, which has no distances", first);
+    return 0;
+}
+
 // Resolve and check combinations of options. Their order on the command line does not matter.
 static int combine(struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
@@ -262,14 +284,14 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
     else
         p->engine = HF_ENGINE_LAYERS;
     args->chose_chapter = tool_choose_chapter(parser, p);
-    if (cli_choose_check(args, parser, error) || take_blur(args, parser, error))
+    if (check_focus(args, parser, error) || cli_choose_check(args, parser, error) || take_blur(args, parser, error))
         return -1;
     if (tool_given(parser, "keys-blend") && !args->keys)
         return tool_fail(error, -1, "--keys-blend is of use only with --keys");
-    if (args->focus_smooth >= 0 && !args->keys && args->focus_by != CLI_FOCUS_CENTER && args->focus_by != CLI_FOCUS_AT)
+    if (args->focus_smooth >= 0 && !args->keys && !cli_focus_needs_depth(args))
         return tool_fail(error, -1,
                          "--focus-smooth is of use only with a focus that is read from the pictures: --focus center, "
-                         "--focus-at or keys for it");
+                         "--focus-at, --focus-object or keys for it");
     if (args->focus_smooth > 0 && args->focus_per_view)
         return tool_fail(
             error, -1,

@@ -16,6 +16,8 @@ enum cli_focus {
     CLI_FOCUS_DISTANCE,  // --focus D
     CLI_FOCUS_CENTER,    // --focus center
     CLI_FOCUS_AT,        // --focus-at X,Y
+    CLI_FOCUS_OBJECT,    // --focus-object NAME
+    CLI_FOCUS_POINT,     // --focus-point X,Y,Z
 };
 
 enum { CLI_CENTRED = INT_MIN };  // a place in args->display
@@ -40,6 +42,8 @@ struct cli_args {
 
     enum cli_focus focus_by;
     int focus_given, focus_at_given;  // --focus in either form, --focus-at
+    const char *focus_object;         // a name in the Cryptomatte
+    float focus_point[3];             // of the world, scene units
     float focus;                      // scene units
     int focus_x, focus_y;             // EXR pixel coordinates
 
@@ -92,9 +96,11 @@ struct cli_args {
 extern const struct tool_program cli_program;
 
 // Parsers of values that only this program has.
-tool_parse cli_parse_depth_type, cli_parse_display, cli_parse_focus, cli_parse_focus_at, cli_parse_aperture,
-    cli_parse_json, cli_parse_version;
+tool_parse cli_parse_depth_type, cli_parse_display, cli_parse_focus, cli_parse_focus_at, cli_parse_focus_object,
+    cli_parse_focus_point, cli_parse_aperture, cli_parse_json, cli_parse_version;
 
+// 1 if the focus is read from the depth, so that cli_setup_view needs its pixels.
+int cli_focus_needs_depth(const struct cli_args *args);
 // Check that the engine uses --near and --far if they were given. Returns 0, or CLI_BAD_ARGUMENTS with one sentence in
 // *error. cli_parse_args calls it when the command line names the engine, cli_setup_view when --quality chooses it.
 int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error);

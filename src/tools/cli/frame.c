@@ -9,6 +9,7 @@
 #include "tools/cli/coc.h"
 #include "tools/cli/dump.h"
 #include "tools/cli/explain.h"
+#include "tools/cli/focus.h"
 #include "tools/cli/room.h"
 #include "tools/cli/target.h"
 #include "tools/cli/views.h"
@@ -211,23 +212,22 @@ int cli_frame_load(struct cli_frame *frame, struct tool_error *error)
     return status;
 }
 
-// Read the rows around the pixel to focus on: its own, and those next to it, which replace a sample that is NaN.
-static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, struct tool_error *error)
+// Read the rows around the pixel to focus on: its own, and `around` beside it; of an object all rows.
+static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, int around, struct tool_error *error)
 {
     struct hf_io_error io;
     const struct cli_args *args = frame->args;
     const struct hf_io_box *data = &v->view->data_window, *display = &v->view->display_window;
     const int at = args->focus_by == CLI_FOCUS_AT ? args->focus_y : display->y0 + (display->y1 - display->y0) / 2;
-    const int reach = 1 + (args->depth_edges == HF_IO_EDGES_SHARPEN ? HF_IO_EDGE_REACH : 0);
-    int from = at - reach > data->y0 ? at - reach : data->y0, status = 0;
-    int to = at + reach + 1 < data->y1 ? at + reach + 1 : data->y1;
-    if (args->depth_file) {
-        from = data->y0;
-        to = data->y1;
+    const int reach = around + (args->depth_edges == HF_IO_EDGES_SHARPEN ? HF_IO_EDGE_REACH : 0);
+    const int all = args->depth_file || args->focus_by == CLI_FOCUS_OBJECT;
+    const int from = all || at - reach < data->y0 ? data->y0 : at - reach;
+    const int to = all || at + reach + 1 > data->y1 ? data->y1 : at + reach + 1;
+    int status = 0;
+    if (args->depth_file)
         status = read_depth_file(args, frame->run, v, error);
-    } else if (from < to && hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, &io)) {
+    else if (from < to && hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, &io))
         status = tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
-    }
     if (status || from >= to)
         return status;
     float *rows = v->depth + (size_t)(from - data->y0) * (size_t)v->view->width;
@@ -240,16 +240,31 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, st
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error)
 {
     struct cli_view *v = &frame->views[0];
+    struct cli_args args = *frame->args;
     int status = 0;
-    if (cli_focus_needs_depth(frame->args)) {
+    if (cli_focus_needs_depth(&args)) {
         status = new_plane(v, &v->depth, error);
+        // The samples next to it replace one that is NaN.
         if (!status)
-            status = read_focus_rows(frame, v, error);
+            status = read_focus_rows(frame, v, 1, error);
+        if (!status && args.focus_by == CLI_FOCUS_OBJECT)
+            status = cli_focus_object(&args, frame, v, error);
     }
     if (!status)
-        status = cli_setup_view(&v->setup, frame->args, v->view, v->depth, v->label, error);
+        status = cli_setup_view(&v->setup, &args, v->view, v->depth, v->label, error);
     if (!status)
         *focus = v->setup.params.focus;
+    return status;
+}
+
+int cli_frame_around(struct cli_frame *frame, struct cli_around *around, struct tool_error *error)
+{
+    struct cli_view *v = &frame->views[0];
+    int status = new_plane(v, &v->depth, error);
+    if (!status)
+        status = read_focus_rows(frame, v, CLI_AROUND, error);
+    if (!status)
+        cli_focus_around(around, frame->args, v, frame->args->focus_x, frame->args->focus_y);
     return status;
 }
 
@@ -271,7 +286,11 @@ static int set_up(struct cli_frame *frame, struct tool_error *error)
     int status = cli_focus_needs_depth(&args) ? cli_frame_load(frame, error) : 0;
     for (int i = 0; i < frame->view_count && !status; i++) {
         struct cli_view *v = &frame->views[i];
-        status = cli_setup_view(&v->setup, &args, v->view, v->depth, v->label, error);
+        struct cli_args own = args;
+        if (own.focus_by == CLI_FOCUS_OBJECT)
+            status = cli_focus_object(&own, frame, v, error);
+        if (!status)
+            status = cli_setup_view(&v->setup, &own, v->view, v->depth, v->label, error);
         if (!status && i == 0)
             share_focus(frame, &args);
     }

@@ -84,6 +84,9 @@ int cli_frame_load(struct cli_frame *frame, struct tool_error *error);
 struct hf_image cli_view_image(const struct cli_view *v, int keep_alpha);
 // In place of all steps: read the focus of the first view, decoding only the rows of depth around it.
 int cli_frame_focus(struct cli_frame *frame, float *focus, struct tool_error *error);
+// In place of all steps, too: what lies around --focus-at, see focus.h.
+struct cli_around;
+int cli_frame_around(struct cli_frame *frame, struct cli_around *around, struct tool_error *error);
 int cli_frame_setup(struct cli_frame *frame, struct tool_error *error);
 int cli_frame_plan(struct cli_frame *frame, struct cli_session *session, struct tool_error *error);
 int cli_frame_render(struct cli_frame *frame, struct cli_session *session, struct tool_error *error);

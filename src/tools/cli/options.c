@@ -49,8 +49,13 @@ static const struct tool_option options[] = {
      "center: what the middle pixel of the display window shows. Default: the header's focus.", .parse = cli_parse_focus,
      FIELD(focus), .unit = TOOL_UNIT_DISTANCE, .max = FLT_MAX, .above_min = 1, .inf = 1,
      .field = "focus"},
-    {"focus-at", 0, TOOL_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates.",
+    {"focus-at", 0, TOOL_FOCUS, "X,Y", "Focus on what this pixel shows, EXR pixel coordinates. Over a shot: on the surface "
+     "that lies there in its first frame, also when another comes between.",
      .parse = cli_parse_focus_at},
+    {"focus-object", 0, TOOL_FOCUS, "NAME", "Focus on the object with this name in the EXR's Cryptomatte: the median of its "
+     "distances.", .parse = cli_parse_focus_object, FIELD(focus_object)},
+    {"focus-point", 0, TOOL_FOCUS, "X,Y,Z", "Focus on this point of the world, through worldToCamera or worldToNDC in the "
+     "header.", .parse = cli_parse_focus_point},
     {"focus-smooth", 0, TOOL_FOCUS, "N", "A focus that is read from the pictures of a shot follows the mean of N frames "
      "before and after, so that it does not jump, 0 to 1000. Default 6.", COUNT(focus_smooth, 0, 1000)},
     {"focus-per-view", 0, TOOL_FOCUS, NULL, "If the focus is read from the picture, read it for each view. "

@@ -52,7 +52,9 @@ void cli_plan_args(const struct cli_plan *plan, int i, struct cli_args *args)
     cli_frame_args(args, plan->args, &plan->shot->jobs.list[i], &plan->keys);
     if (!plan->focus || isnan(plan->focus[i]))
         return;
-    args->focus_from = args->focus_by == CLI_FOCUS_CENTER ? "--focus center" : "--focus-at";
+    args->focus_from = args->focus_by == CLI_FOCUS_CENTER   ? "--focus center"
+                       : args->focus_by == CLI_FOCUS_OBJECT ? "--focus-object"
+                                                            : "--focus-at";
     args->focus_by = CLI_FOCUS_DISTANCE;
     args->focus = plan->focus[i];
 }

@@ -24,20 +24,13 @@ const char *cli_model_name(enum cli_model model)
     return names[model];
 }
 
-int cli_focus_needs_depth(const struct cli_args *args)
-{
-    const int radii = args->depth_type == HF_DEPTH_COC;  // with --blur the focus is in them
-    return !radii && (args->focus_by == CLI_FOCUS_AT || args->focus_by == CLI_FOCUS_CENTER);
-}
-
 static int display_width(const struct hf_io_view *view)
 {
     return view->display_window.x1 - view->display_window.x0;
 }
 
-// Describe the depth: what its numbers mean; for ray depth also where the camera's axis is and how wide the view is.
-static void describe_depth(struct hf_depth *depth, const struct cli_args *args, const struct hf_io_view *view,
-                           const float *data)
+void cli_setup_depth(struct hf_depth *depth, const struct cli_args *args, const struct hf_io_view *view,
+                     const float *data)
 {
     *depth = (struct hf_depth){
         .size = sizeof(struct hf_depth),
@@ -85,6 +78,24 @@ static int focus_at(struct cli_setup *setup, const struct hf_io_view *view, int 
     return 0;
 }
 
+// Focus on a point of the world.
+static int focus_point(float *focus, const struct cli_args *args, const struct hf_io_view *view, const char *label,
+                       struct tool_error *error)
+{
+    const float *axis = view->camera.axis, *p = args->focus_point;
+    const float distance = fabsf(axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2] + axis[3]);
+    if (isnan(axis[0]))
+        return tool_fail(
+            error, CLI_BAD_ARGUMENTS,
+            "%s: --focus-point %g,%g,%g needs worldToCamera or worldToNDC in the header, which has neither", label,
+            p[0], p[1], p[2]);
+    *focus = distance;
+    return distance > 0 && isfinite(distance)
+               ? 0
+               : tool_fail(error, CLI_BAD_ARGUMENTS, "%s: --focus-point %g,%g,%g is at distance %g of the camera",
+                           label, p[0], p[1], p[2], distance);
+}
+
 static int find_focus(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
                       const char *label, struct tool_error *error)
 {
@@ -110,6 +121,10 @@ static int find_focus(struct cli_setup *setup, const struct cli_args *args, cons
         setup->focus_from = "--focus-at";
         snprintf(option, sizeof(option), "--focus-at %d,%d", args->focus_x, args->focus_y);
         return focus_at(setup, view, args->focus_x, args->focus_y, option, label, error);
+    case CLI_FOCUS_POINT:
+        setup->focus_from = "--focus-point";
+        return focus_point(focus, args, view, label, error);
+    case CLI_FOCUS_OBJECT:  // found before, and then a distance
     case CLI_FOCUS_HEADER:
         break;
     }
@@ -202,7 +217,7 @@ int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const s
 {
     *setup = (struct cli_setup){.params = args->params, .model = cli_lens_model(args, &view->camera)};
     struct hf_params *p = &setup->params;
-    describe_depth(&setup->depth, args, view, depth);
+    cli_setup_depth(&setup->depth, args, view, depth);
     p->model = setup->model == CLI_MODEL_LENS ? HF_MODEL_LENS : HF_MODEL_RANGE;
     p->view.display_width = display_width(view);
     p->view.display_height = view->display_window.y1 - view->display_window.y0;

@@ -19,7 +19,7 @@ const char *cli_model_name(enum cli_model model);
 // Render settings of one view.
 struct cli_setup {
     enum cli_model model;
-    // "--focus", "--focus-at", "--focus center", "header", "the picture's centre"; NULL: none needed (coc).
+    // "--focus", "--focus-at", "--focus center", "--focus-object", "--focus-point", "header", "the picture's centre"; NULL: none needed (coc).
     const char *focus_from;
     struct hf_params params;
     struct tool_choice choice;  // of --quality or --max-error; inner.options is NULL without them
@@ -27,10 +27,11 @@ struct cli_setup {
     struct hf_depth depth;      // the caller sets data
 };
 
-// 1 if the focus is read from the depth, so that cli_setup_view needs its pixels.
-int cli_focus_needs_depth(const struct cli_args *args);
+// Describe a view's depth: what its numbers mean; for ray depth also where the camera's axis is and how wide the view is.
+void cli_setup_depth(struct hf_depth *depth, const struct cli_args *args, const struct hf_io_view *view,
+                     const float *data);
 
-// Fill *setup for a view. depth: width * height samples, or NULL if they are not needed. label names the file and the
+// Fill *setup for a view, except where the focus is an object's: frame.c finds that before. depth: width * height samples, or NULL if they are not needed. label names the file and the
 // view in messages. Returns 0, or an exit code with *error filled.
 int cli_setup_view(struct cli_setup *setup, const struct cli_args *args, const struct hf_io_view *view,
                    const float *depth, const char *label, struct tool_error *error);

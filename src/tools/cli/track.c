@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "tools/cli/focus.h"
 #include "tools/cli/frame.h"
 
 // A frame whose focus is read.
@@ -12,6 +13,7 @@ struct look {
     int view;
     int wanted;
     float focus;
+    struct cli_around *around;  // of a focus that follows a surface
     const struct cli_job *job;
 };
 
@@ -20,6 +22,7 @@ struct tracker {
     const struct cli_keys *keys;
     struct look *looks;
     int count;
+    int follows;  // the surface of the first frame
 };
 
 void cli_frame_args(struct cli_args *args, const struct cli_args *all, const struct cli_job *job,
@@ -74,9 +77,37 @@ static void look_at(void *arg, int i, int worker)
     if (!l->wanted)
         return;
     cli_frame_args(&args, t->args, l->job, t->keys);
-    if (!cli_frame_open(&frame, &args, NULL, &error))
+    if (!cli_frame_open(&frame, &args, NULL, &error) && !t->follows)
         cli_frame_focus(&frame, &l->focus, &error);
+    else if (frame.file && t->follows && (l->around = calloc(1, sizeof(*l->around))) &&
+             cli_frame_around(&frame, l->around, &error))
+        l->around->count = 0;
     cli_frame_close(&frame);
+}
+
+// The surface of the first frame, from frame to frame: the median of what lies around the pixel and is nearly as near as
+// the surface was in the frame before. Where there is too little of that, something else is in front of it, and it counts
+// as where it was.
+static void follow(struct tracker *t)
+{
+    static const float SAME = 0.1f,
+                       STEP = 0.15f;  // parts of the nearness: within the first frame, and from one to the next
+    enum { LEAST = 50 };              // one pixel in so many is enough
+    float near = NAN;
+    for (int i = 0; i < t->count; i++) {
+        struct look *l = &t->looks[i];
+        const struct cli_around *around = l->around;
+        int count = 0;
+        if (around && around->count && isnan(near)) {
+            near = cli_focus_median(around, around->own, SAME, NULL);
+        } else if (around && around->count) {
+            const float here = cli_focus_median(around, near, STEP, &count);
+            near = count > 0 && count >= around->count / LEAST ? here : near;
+        }
+        l->focus = 1 / near;
+        free(l->around);
+        l->around = NULL;
+    }
 }
 
 static int by_place(const void *a, const void *b)
@@ -123,7 +154,10 @@ int cli_track(float *focus, const struct cli_shot *shot, const struct cli_args *
 {
     const struct cli_jobs *jobs = &shot->jobs, *around = shot->around.count ? &shot->around : jobs;
     const int reach = args->focus_smooth < 0 ? CLI_FOCUS_SMOOTH : args->focus_smooth;
-    struct tracker t = {.args = args, .keys = keys};
+    // Keys say where to look themselves.
+    const int keyed = args->keys && keys->column[CLI_KEY_FOCUS_X].count;
+    struct tracker t = {.args = args, .keys = keys, .follows = args->focus_by == CLI_FOCUS_AT && !keyed};
+    int last = -1;
     t.looks = calloc((size_t)around->count, sizeof(*t.looks));
     if (!t.looks)
         return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
@@ -134,9 +168,16 @@ int cli_track(float *focus, const struct cli_shot *shot, const struct cli_args *
     qsort(t.looks, (size_t)t.count, sizeof(*t.looks), by_place);
     for (int i = 0; i < jobs->count; i++)
         for (int k = first_from(&t, place_of(&jobs->list[i]) - reach);
-             k < t.count && t.looks[k].place <= place_of(&jobs->list[i]) + reach; k++)
+             k < t.count && t.looks[k].place <= place_of(&jobs->list[i]) + reach; k++) {
             t.looks[k].wanted = 1;
+            last = last > k ? last : k;
+        }
+    // What is followed comes from the first frame of all.
+    for (int k = 0; k <= last && t.follows; k++)
+        t.looks[k].wanted = 1;
     hf_io_run(run, t.count, look_at, &t);
+    if (t.follows)
+        follow(&t);
     for (int i = 0; i < jobs->count; i++)
         focus[i] = mean(&t, place_of(&jobs->list[i]), reach);
     free(t.looks);

@@ -60,6 +60,32 @@ int cli_parse_focus_at(struct tool_parser *p, const struct tool_option *option, 
     return 0;
 }
 
+int cli_parse_focus_object(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct cli_args *args = p->args;
+    args->focus_by = CLI_FOCUS_OBJECT;
+    return tool_parse_text(p, option, value);
+}
+
+int cli_parse_focus_point(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct cli_args *args = p->args;
+    const char *rest = value;
+    int bad = 0;
+    args->focus_by = CLI_FOCUS_POINT;
+    for (int i = 0; i < 3 && !bad; i++) {
+        char part[64];
+        double number;
+        const size_t n = strcspn(rest, ",");
+        snprintf(part, sizeof(part), "%.*s", (int)n, rest);
+        bad = n >= sizeof(part) || tool_read_number(part, &number) || !isfinite((float)number) ||
+              (rest[n] == ',') != (i < 2);
+        args->focus_point[i] = bad ? 0 : (float)number;
+        rest += n + (rest[n] == ',');
+    }
+    return bad ? tool_fail(p->error, -1, "--%s: '%s' must be three numbers X,Y,Z", option->name, value) : 0;
+}
+
 // ngon:N[:ROUNDNESS[:DEGREES]], the part after "ngon:".
 static int parse_ngon(struct hf_aperture_params *aperture, const char *value, struct tool_error *error)
 {

@@ -85,6 +85,10 @@ int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_
 // only the chunks that contain them are decoded.
 int hf_io_read_depth_rows(struct hf_io_file *file, int view, int first, int count, float *depth,
                           struct hf_io_error *err);
+// Find an object by its name in an EXR file's Cryptomatte: coverage, width * height floats, gets how much of each pixel of the
+// view's data window it fills. An object that the manifest does not have is an error that suggests the nearest; without a
+// manifest any name counts. Returns 0, or -1 with *err filled.
+int hf_io_read_object(struct hf_io_file *file, int view, const char *object, float *coverage, struct hf_io_error *err);
 // Use another display window for a view; the file keeps its own.
 void hf_io_set_display(struct hf_io_file *file, int view, struct hf_io_box box);
 // Enlarge the data window of a view's part; it must contain the old one. All views of the part have it then, and so

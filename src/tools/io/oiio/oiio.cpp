@@ -314,7 +314,7 @@ void fill_view(struct hf_io_view *v, const hf_oiio *o)
         v->display_window = v->data_window;
     v->pixel_aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
     v->screen_width = 1;
-    v->camera = {unknown, unknown, unknown, unknown, unknown, {unknown, 0, 0, 0}, false};
+    v->camera = {unknown, unknown, unknown, unknown, unknown, {unknown, unknown, unknown, unknown}, false};
     fill_exif(v, spec);
     v->orientation = spec.get_int_attribute("Orientation");
     v->profile = has_profile(spec) && !o->profile;
