@@ -76,7 +76,7 @@ def scene_with_camera(lamp):
     light[0].default_value = (0, 0, 0, 1) if lamp else (0.3, 0.35, 0.4, 1)
     scene.cycles.max_bounces = 0
     if lamp:
-        thing(bpy.ops.mesh.primitive_uv_sphere_add, (0.3, 12, 0.2), material("lamp", (1, 1, 1), 500.0), radius=0.035)
+        thing(bpy.ops.mesh.primitive_uv_sphere_add, (0.3, 12, 0.2), material("lamp", (1, 1, 1), 500.0), radius=0.1)
     else:
         # A wall of soft stripes and bodies whose edges cross it.
         for i in range(-12, 13):
@@ -200,14 +200,14 @@ def try_setting(change):
     name = change.__name__
     scene = scene_with_camera(lamp=True)
     change(scene)
-    (own, ox, oy), (ours, x, y) = (extents(c) for c in (render_color(scene, 256, 1, True), render_color(scene, 32, 2, False)))
+    (own, ox, oy), (ours, x, y) = (extents(c) for c in (render_color(scene, 256, 1, True), render_color(scene, 16, 2, False)))
     off = abs(own - ours).max()
     print(f"{name}: disc of {own.min():.2f} to {own.max():.2f} pixels, ours {ours.min():.2f} to {ours.max():.2f}, "
           f"largest difference {off:.2f}, centre {math.hypot(ox - x, oy - y):.2f}", flush=True)
     check(f"{name}: the disc is {off:.2f} pixels off", off <= 0.5 and math.hypot(ox - x, oy - y) <= 0.5 and own.min() > 2)
     scene = scene_with_camera(lamp=False)
     change(scene)
-    samples = 64
+    samples = 12
     first, second = (render_color(scene, samples, seed, True) for seed in (1, 2))
     apart = decibels(first, second)
     ours = decibels(first, render_color(scene, samples, 3, False))

@@ -197,7 +197,7 @@ def test_cancel():
 def test_interrupt():
     """Ctrl-C ends a frame."""
     code = ("import hyperfocal, numpy as np, signal\n"
-            "signal.setitimer(signal.ITIMER_REAL, 0.3); signal.signal(signal.SIGALRM, signal.default_int_handler)\n"
+            "signal.signal(signal.SIGALRM, signal.default_int_handler); signal.setitimer(signal.ITIMER_REAL, 0.3)\n"
             "c = np.ones((4000, 4000, 3), np.float32)\n"
             "z = np.linspace(1, 100, 16000000, dtype=np.float32).reshape(4000, 4000)\n"
             "while True: hyperfocal.defocus(c, z, out=c, focus=5, f_number=0.5, focal_length=100, engine='scatter')")
