@@ -203,18 +203,6 @@ static uint32_t *compose(ViewCanvas *c, struct view_screen *s)
     return s->pixels;
 }
 
-static GdkTexture *texture_of(ViewCanvas *c)
-{
-    struct view_screen s;
-    if (!compose(c, &s))
-        return NULL;
-    const gsize size = (gsize)s.width * (gsize)s.height * sizeof(*s.pixels);
-    GBytes *bytes = g_bytes_new_with_free_func(s.pixels, size, free, s.pixels);
-    GdkTexture *texture = gdk_memory_texture_new(s.width, s.height, GDK_MEMORY_DEFAULT, bytes, (gsize)s.width * 4);
-    g_bytes_unref(bytes);
-    return texture;
-}
-
 static void after_paint(GdkFrameClock *clock, gpointer data)
 {
     ViewCanvas *c = data;
@@ -229,29 +217,33 @@ static void after_paint(GdkFrameClock *clock, gpointer data)
         c->events.drawn(c->cookie, c->now);
 }
 
+static const cairo_user_data_key_t pixels_key;
+
 static void snapshot(GtkWidget *widget, GtkSnapshot *to)
 {
     ViewCanvas *c = VIEW_CANVAS(widget);
     const int width = gtk_widget_get_width(widget), height = gtk_widget_get_height(widget);
     if (width <= 0 || height <= 0)
         return;
-    GdkTexture *texture = texture_of(c);
-    if (!texture)
+    struct view_screen s;
+    if (!compose(c, &s))
         return;
-    gtk_snapshot_append_texture(to, texture, &GRAPHENE_RECT_INIT(0, 0, (float)width, (float)height));
-    g_object_unref(texture);
+    // As a picture without alpha, which GTK's software drawing copies; a texture's pixels are converted one by one.
+    cairo_surface_t *surface = cairo_image_surface_create_for_data((unsigned char *)s.pixels, CAIRO_FORMAT_RGB24,
+                                                                   s.width, s.height, s.width * 4);
+    cairo_surface_set_user_data(surface, &pixels_key, s.pixels, free);
+    cairo_surface_set_device_scale(surface, factor(c), factor(c));
+    cairo_t *to_cairo = gtk_snapshot_append_cairo(to, &GRAPHENE_RECT_INIT(0, 0, (float)width, (float)height));
+    cairo_set_source_surface(to_cairo, surface, 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(to_cairo), CAIRO_FILTER_NEAREST);
+    cairo_set_operator(to_cairo, CAIRO_OPERATOR_SOURCE);
+    cairo_paint(to_cairo);
+    cairo_destroy(to_cairo);
+    cairo_surface_destroy(surface);
     if (c->unseen == 1 || c->said) {
         c->unseen = c->unseen ? 2 : 0;
         g_signal_connect(gtk_widget_get_frame_clock(widget), "after-paint", G_CALLBACK(after_paint), c);
     }
-}
-
-int view_canvas_save(ViewCanvas *c, const char *path)
-{
-    GdkTexture *texture = texture_of(c);
-    const int saved = texture && gdk_texture_save_to_png(texture, path);
-    g_clear_object(&texture);
-    return saved ? 0 : -1;
 }
 
 static void size_allocate(GtkWidget *widget, int width, int height, int baseline)
@@ -279,7 +271,8 @@ void view_canvas_set_picture(ViewCanvas *c, struct view_picture *picture, int fi
     c->fitted |= fit_it;
     if (c->fitted)
         fit(c);
-    changed(c);
+    hold(c);
+    gtk_widget_queue_draw(GTK_WIDGET(c));
 }
 
 static int is_whole(const struct view_result *r)

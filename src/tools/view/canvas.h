@@ -39,7 +39,5 @@ void view_canvas_set_before(ViewCanvas *c, int before);
 void view_canvas_set_divider(ViewCanvas *c, int shown);
 int view_canvas_get_divider(ViewCanvas *c);
 void view_canvas_set_gain(ViewCanvas *c, float gain);
-// Write the widget's pixels, as they are on the screen, to a PNG file. Returns 0 or -1.
-int view_canvas_save(ViewCanvas *c, const char *path);
 
 #endif

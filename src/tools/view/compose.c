@@ -61,17 +61,31 @@ static void draw_near(const struct view_layer *l, const struct tap *column, uint
         to[x] = from[column[x].first];
 }
 
-static void draw_smooth(const struct view_layer *l, const struct tap *column, uint32_t *to, int begin, int end,
-                        const struct tap *row)
+// One row of the layer, stretched to the screen's columns.
+struct line {
+    uint32_t *pixels;
+    int row;
+};
+
+static const uint32_t *stretch(const struct view_layer *l, struct line *line, const struct tap *column, int begin,
+                               int end, int row)
 {
-    const uint32_t *a = l->pixels + (size_t)row->first * (size_t)l->width;
-    const uint32_t *b = l->pixels + (size_t)row->second * (size_t)l->width;
-    for (int x = begin; x < end; x++) {
-        const struct tap *t = &column[x];
-        const uint32_t above = blend(a[t->first], a[t->second], t->weight);
-        const uint32_t below = blend(b[t->first], b[t->second], t->weight);
-        to[x] = blend(above, below, row->weight);
-    }
+    const uint32_t *from = l->pixels + (size_t)row * (size_t)l->width;
+    for (int x = begin; x < end && line->row != row; x++)
+        line->pixels[x] = blend(from[column[x].first], from[column[x].second], column[x].weight);
+    line->row = row;
+    return line->pixels;
+}
+
+// Rows of the layer follow each other, so a row that two rows of the screen need is stretched once.
+static void draw_smooth(const struct view_layer *l, struct line lines[2], const struct tap *column, uint32_t *to,
+                        int begin, int end, const struct tap *row)
+{
+    const uint32_t *a = stretch(l, &lines[row->first & 1], column, begin, end, row->first);
+    const uint32_t *b = stretch(l, &lines[row->second & 1], column, begin, end, row->second);
+    const uint32_t weight = row->weight;
+    for (int x = begin; x < end; x++)
+        to[x] = blend(a[x], b[x], weight);
 }
 
 static int clamp(double v, int least, int most)
@@ -90,17 +104,22 @@ void view_compose(const struct view_screen *screen, const struct view_camera *ca
     const int y0 = clamp(ceil(c.y + l->y * scale - 0.5), 0, screen->height);
     const int y1 = clamp(ceil(c.y + (l->y + l->height) * scale - 0.5), 0, screen->height);
     struct tap *taps = x1 > x0 && y1 > y0 ? malloc((size_t)(screen->width + screen->height) * sizeof(*taps)) : NULL;
-    if (!taps)
+    uint32_t *room = taps ? malloc(2 * (size_t)screen->width * sizeof(*room)) : NULL;
+    if (!room) {
+        free(taps);
         return;
+    }
+    struct line lines[2] = {{room, -1}, {room + screen->width, -1}};
     struct tap *rows = taps + screen->width;
     find_taps(taps, x0, x1, c.x, scale, l->x, l->width, smooth);
     find_taps(rows, y0, y1, c.y, scale, l->y, l->height, smooth);
     for (int y = y0; y < y1; y++) {
         uint32_t *to = screen->pixels + (size_t)y * (size_t)screen->width;
         if (smooth)
-            draw_smooth(l, taps, to, x0, x1, &rows[y]);
+            draw_smooth(l, lines, taps, to, x0, x1, &rows[y]);
         else
             draw_near(l, taps, to, x0, x1, rows[y].first);
     }
+    free(room);
     free(taps);
 }

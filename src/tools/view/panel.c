@@ -11,6 +11,8 @@
 struct view_panel {
     struct view_row *rows[VIEW_OPTIONS];
     int count;
+    const struct view_picture *measured;  // whose distances are known
+    float nearest, farthest;
 };
 
 // Options that a still picture has no use for, or that have another place in the window.
@@ -68,10 +70,11 @@ void view_panel_refresh(struct view_app *app)
     struct hf_params filled = {.size = sizeof(filled)};
     if (app->picture && app->set_up) {
         const struct hf_io_view *v = view_picture_view(app->picture)->view;
-        float nearest, farthest;
-        view_picture_distances(app->picture, &app->setup.depth, &nearest, &farthest);
-        values.nearest = nearest;
-        values.farthest = farthest;
+        if (app->panel->measured != app->picture)
+            view_picture_distances(app->picture, &app->setup.depth, &app->panel->nearest, &app->panel->farthest);
+        app->panel->measured = app->picture;
+        values.nearest = app->panel->nearest;
+        values.farthest = app->panel->farthest;
         if (!hf_resolve(v->width, v->height, &app->setup.depth, &app->setup.params, &filled, NULL, NULL))
             values.params = &filled;
     }
