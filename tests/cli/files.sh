@@ -248,32 +248,48 @@ sys.exit(not any(t in data for t in tag))'
     result "millimetres in 16 bits" $?
 fi
 
-# Highlights: grey.exr has pixels from 0 to 6, photo.png is clipped.
-lens='--focus 4 --fstop 0.05 --focal-length 50'
-for scene in grey.exr photo.png; do
-    run $scene -o o.exr $lens --verbose --highlight-gain 8 --highlight-threshold 0.4 --json o.json --depth-file depth.exr
-    [ "$status" -eq 0 ] && grep -q 'pixels above 0.4 raised, 1 to 8' "$dir/err" && contains o.json '"highlight_gain": 8' &&
-        grep -q '"highlights": [1-9]' o.json
-    result "--highlight-gain is told, $scene" $?
-    run $scene -o plain-o.exr $lens --depth-file depth.exr
-    [ "$status" -eq 0 ] && ! cmp -s o.exr plain-o.exr
-    result "--highlight-gain has an effect, $scene" $?
-    run $scene -o o.exr $lens --depth-file depth.exr --highlight-gain 1 --highlight-threshold 0.4 --compression none
-    run $scene -o plain-o.exr $lens --depth-file depth.exr --compression none
-    python3 -c "from exr import read; assert read('o.exr') == read('plain-o.exr')"
-    result "--highlight-gain 1 has none, $scene" $?
-done
-run plain.exr -o o.exr $lens --highlight-gain 8 --highlight-threshold 0.99 --explain
-[ "$status" -eq 0 ] && contains "$dir/out" "highlights above 0.99 raised"
+# Highlights: a lamp is small and stands out. lamps.exr has three of 2 x 2 pixels, a bright wall of 20 x 40, and the wall has
+# specks that are no brighter than 2.5 times what is around.
+python3 - <<'PYTHON'
+from exr import exr
+lamp = lambda x, y: any(x0 <= x < x0 + 2 and y0 <= y < y0 + 2 for x0, y0 in [(5, 5), (15, 20), (30, 33)])
+wall = lambda x, y: .95 + .05 * (x % 5 == y % 5 == 0) if x >= 44 else 1 if lamp(x, y) else .1
+exr('lamps.exr', dict({n: wall for n in 'RGB'}, Z=lambda x, y: 8))
+exr('wall.exr', dict({n: (lambda x, y: max(.95 if x >= 44 else .1, 0)) for n in 'RGB'}, Z=lambda x, y: 8))
+PYTHON
+lens='--focus 4 --fstop 0.05 --focal-length 50 --sensor-width 60'
+run lamps.exr -o o.exr $lens --verbose --highlight-gain 8 --highlight-threshold 0.8 --json o.json --compression none
+[ "$status" -eq 0 ] && contains "$dir/err" "3 lamps, 12 pixels above 0.8 raised, 1 to 8" && contains o.json '"highlight_gain": 8' &&
+    contains o.json '"lamps": 3'
+result "--highlight-gain tells of lamps" $?
+run lamps.exr -o plain-o.exr $lens --compression none
+# Beside the lamps there is more light; at the wall's far side none, not a bit; and nowhere is more than the white of 1.
+[ "$status" -eq 0 ] && python3 -c '
+import struct
+from exr import read
+a, b = read("o.exr")["G"], read("plain-o.exr")["G"]
+v = lambda p, x, y: struct.unpack_from("<f", p, 4 * (64 * y + x))[0]
+assert v(a, 7, 7) > 1.5 * v(b, 7, 7), (v(a, 7, 7), v(b, 7, 7))
+assert all(v(a, 62, y) == v(b, 62, y) for y in range(40))
+assert max(v(a, x, y) for x in range(64) for y in range(40)) <= 1.0001'
+result "--highlight-gain raises lamps and no wall" $?
+run lamps.exr -o o.exr --focus 8 --range 3 --highlight-gain 8 --highlight-threshold 0.8 --compression none
+[ "$status" -eq 0 ] && python3 -c 'from exr import read; a, b = read("o.exr"), read("lamps.exr"); assert a == b'
+result "--highlight-gain keeps the bits of lamps that are sharp" $?
+run wall.exr -o o.exr $lens --highlight-gain 8
+[ "$status" -eq 0 ] && contains "$dir/err" "there is no lamp"
+result "a bright wall is no lamp" $?
+run lamps.exr -o o.exr $lens --highlight-gain 1 --highlight-threshold 0.4 --compression none
+[ "$status" -eq 0 ] && python3 -c "from exr import read; assert read('o.exr') == read('plain-o.exr')"
+result "--highlight-gain 1 has no effect" $?
+run lamps.exr -o o.exr $lens --highlight-gain 8 --highlight-threshold 0.8 --explain
+[ "$status" -eq 0 ] && contains "$dir/out" "highlights above 0.8 raised while they are blurred, 1 to 8: 3 lamps" && [ ! -s "$dir/err" ]
 result "--highlight-gain in --explain" $?
-run near.exr -o o.exr $lens --highlight-gain 8 --highlight-threshold 0.8
-[ "$status" -eq 0 ] && [ ! -s "$dir/err" ]
-result "--highlight-gain without a word where there are highlights" $?
-plan "highlights above 0.7 raised, 1 to 4" plain.exr --focus 3 --highlight-gain 4 --highlight-threshold 0.7
+plan "highlights above 0.8 raised, 1 to 4" lamps.exr --focus 3 --highlight-gain 4 --highlight-threshold 0.8
 exr_dark='from exr import exr; exr("dark.exr", {"Y": lambda x, y: 0.5, "Z": lambda x, y: 2 ** (x // 16)})'
 python3 -c "$exr_dark"
 run dark.exr -o o.exr $lens --highlight-gain 8
-[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "no pixel is brighter than 0.9"
+[ "$status" -eq 0 ] && [ "$(wc -l <"$dir/err")" -eq 1 ] && contains "$dir/err" "there is no lamp, small and brighter than 0.9"
 result "--highlight-gain without highlights is a warning" $?
 rm -f dark.exr o.json plain-o.exr
 

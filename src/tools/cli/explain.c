@@ -69,9 +69,10 @@ static void print_settings(FILE *out, const struct cli_args *args, const struct 
                 p->gaussian.sigma, 100 * v->blend[0], 100 * v->blend[1]);
     else
         fprintf(out, "\n  largest CoC radius: near %.2f, far %.2f pixels\n", r->all.near_radius, r->all.far_radius);
-    if (p->highlight.gain > 1)
-        fprintf(out, "  highlights above %g raised while they are blurred, 1 to %g\n", p->highlight.threshold,
-                p->highlight.gain);
+    const struct hf_highlight_params *light = &v->setup.params.highlight;
+    if (light->gain > 1)
+        fprintf(out, "  highlights above %g raised while they are blurred, 1 to %g: %d lamps\n", light->threshold,
+                light->gain, v->lamps);
     if (r->inner.colour_known)
         fprintf(out, "  colour to blur: up to %g, %s, %llu samples not finite\n", r->inner.brightest,
                 r->inner.opaque ? "opaque" : "with alpha below 1", (unsigned long long)r->inner.not_finite);

@@ -10,6 +10,7 @@
 #include "tools/cli/dump.h"
 #include "tools/cli/explain.h"
 #include "tools/cli/focus.h"
+#include "tools/cli/lamps.h"
 #include "tools/cli/room.h"
 #include "tools/cli/target.h"
 #include "tools/cli/views.h"
@@ -311,19 +312,6 @@ int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
     return status;
 }
 
-// Count the pixels that --highlight-gain raises: their luminance, negative channels taken as 0, is above the
-// threshold. The library tests the same.
-static uint64_t count_highlights(const struct cli_view *v)
-{
-    const struct hf_highlight_params *p = &v->setup.params.highlight;
-    const size_t n = p->gain > 1 ? (size_t)v->view->width * (size_t)v->view->height : 0;
-    uint64_t count = 0;
-    for (size_t i = 0; i < n; i++)
-        count += tool_luminance(fmaxf(v->planes[0][i], 0), fmaxf(v->planes[1][i], 0), fmaxf(v->planes[2][i], 0)) >
-                 p->threshold;
-    return count;
-}
-
 // Is alpha 1 everywhere? Then its blur is 1 too, and the engines need not compute it: a quarter less work.
 static int is_opaque(const struct cli_view *v)
 {
@@ -363,7 +351,6 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     session->said = NULL;
     const int looked = cli_coc_look(v, frame->args, error);
     v->cut = !looked && v->radii ? cli_window_cut(v) : 0;
-    v->highlights = count_highlights(v);
     return looked;
 }
 
@@ -400,7 +387,18 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
         cli_dump_begin(&dump, session->context, frame, v);
     hf_inspect_colour(session->context, frame->args->explain);
     const double start = tool_now_ms();
-    status = hf_render(session->context, &image, &image, &v->setup.depth, &v->setup.params);
+    struct cli_lamps lamps;
+    struct hf_params params = v->setup.params;
+    params.highlight.gain = 1;
+    status = cli_lamps_raise(&lamps, v, error);
+    if (status) {
+        cli_lamps_free(&lamps);
+        return status;
+    }
+    status = hf_render(session->context, &image, &image, &v->setup.depth, &params);
+    if (status == HF_OK)
+        cli_lamps_lower(&lamps, v);
+    cli_lamps_free(&lamps);
     frame->ms[CLI_DEFOCUS] += tool_now_ms() - start;
     status = finish_view(frame, v, session, status, error);
     return !status && frame->args->dump_dir ? cli_dump_end(&dump, session->context, &image, error) : status;
@@ -413,7 +411,14 @@ static int plan_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     if (status)
         return status;
     hf_inspect_colour(session->context, frame->args->explain);
-    status = hf_plan(session->context, &image, &image, &v->setup.depth, &v->setup.params, NULL);
+    struct cli_lamps lamps;
+    status = cli_lamps_raise(&lamps, v, error);
+    cli_lamps_free(&lamps);
+    if (status)
+        return status;
+    struct hf_params params = v->setup.params;
+    params.highlight.gain = 1;
+    status = hf_plan(session->context, &image, &image, &v->setup.depth, &params, NULL);
     return finish_view(frame, v, session, status, error);
 }
 

@@ -45,7 +45,8 @@ struct cli_view {
     float *radii;       // of all pixels, see cli_coc_look; may be NULL
     int warned;         // how many warnings the library gave
     char *said;         // their texts, one per line; NULL: none
-    uint64_t highlights;  // pixels above --highlight-threshold, if --highlight-gain raises them
+    uint64_t highlights;  // pixels of lamps, which --highlight-gain raises
+    int lamps;            // how many lamps
     int whole;            // --grow had nothing to do: the data window was as large as allowed
     int cut;              // pixels that the blur reaches beyond the data window, where it is lost
     struct tool_report report;

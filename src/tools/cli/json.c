@@ -57,8 +57,10 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
         tool_json_number(j, "far_blend", v->blend[1]);
     }
     tool_json_count(j, "cut", v->cut);
-    if (v->setup.params.highlight.gain > 1)
+    if (v->setup.params.highlight.gain > 1) {
         tool_json_count(j, "highlights", (long long)v->highlights);
+        tool_json_count(j, "lamps", v->lamps);
+    }
     tool_json_count(j, "warnings", cli_warnings_of(frame, v));
     tool_json_ms(j, "total_ms", s->all.total_ms);
     if (v->setup.params.run.budget_ms > 0)

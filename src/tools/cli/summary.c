@@ -73,9 +73,10 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     if (cli_is_limited(v) && p->engine != HF_ENGINE_GAUSSIAN)
         n +=
             snprintf(text + n, sizeof(text) - (size_t)n, " (cut to %g, %s)", p->max_radius, limit_words(r->used.limit));
-    if (p->highlight.gain > 1)
-        n += snprintf(text + n, sizeof(text) - (size_t)n, ", %" PRIu64 " pixels above %g raised, 1 to %g",
-                      v->highlights, p->highlight.threshold, p->highlight.gain);
+    const struct hf_highlight_params *light = &v->setup.params.highlight;
+    if (light->gain > 1)
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", %d lamps, %" PRIu64 " pixels above %g raised, 1 to %g",
+                      v->lamps, v->highlights, light->threshold, light->gain);
     if (r->all.budget_step)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", --budget-ms %g chose %s, %d below what was asked for",
                       budget, r->inner.budget_options, r->all.budget_step);

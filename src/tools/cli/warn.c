@@ -185,7 +185,10 @@ static void warn_options(struct warner *w, const struct cli_view *v)
         warn(w, "no setting errs as little as --max-error %g: the most accurate is expected to err %.3g",
              w->args->max_error, v->setup.choice.all.error);
     if (p->gain > 1 && v->highlights == 0)
-        warn(w, "no pixel is brighter than %g, so --highlight-gain %g changes nothing: see --highlight-threshold",
+        warn(w,
+             "there is no lamp, small and brighter than %g among what is darker, so --highlight-gain %g changes "
+             "nothing: see "
+             "--highlight-threshold",
              p->threshold, p->gain);
     if (v->whole)
         warn(w, "--grow changes nothing: the data window holds all of the display window");

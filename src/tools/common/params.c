@@ -26,7 +26,8 @@ const struct tool_option tool_params_options[] = {
      NUMBER(aperture.squeeze, 0.25, 4),
      .engines = "layers|scatter"},
     {"highlight-gain", 0, TOOL_LOOK, "G", "Give clipped highlights light back while they are blurred, so that lamps leave "
-     "bright discs: what is 1 counts as G, 1 (none, default) to 64, and what the blur leaves alone stays. 8 are three stops.",
+     "bright discs: what is 1 counts as G, 1 (none, default) to 64, and what the blur leaves alone stays. 8 are three stops. The "
+     "command does so for what is small and stands out; the library for all.",
      NUMBER(highlight.gain, 1, 64)},
     {"highlight-threshold", 0, TOOL_LOOK, "V", "Linear luminance (Rec. 709) above which --highlight-gain sets in, 0 to 0.99: "
      "not saturated paint. Default 0.9, a grey of 243 of 255 in sRGB.", NUMBER(highlight.threshold, 0, 0.99)},
