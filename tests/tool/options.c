@@ -195,9 +195,10 @@ const char *const bench_command_words[][2] = {{NULL, NULL}};
 // Options that take a value and have no default.
 static int has_no_default(const char *name)
 {
-    static const char *const names[] = {"output",      "focus-at", "focus-object", "focus-point", "keys",  "max-error", "log",     "explain-image",
-                                        "focus-image", "json",     "image", "truth",     "setting", "html",
-                                        "dump-passes", "png",      "csv",   "ladder",    "readme",  "help"};
+    static const char *const names[] = {"output",    "focus-at", "focus-object",  "focus-point", "keys",
+                                        "max-error", "log",      "explain-image", "focus-image", "json",
+                                        "image",     "truth",    "setting",       "html",        "dump-passes",
+                                        "png",       "csv",      "ladder",        "readme",      "help"};
     for (size_t i = 0; i < sizeof(names) / sizeof(*names); i++)
         if (!strcmp(name, names[i]))
             return 1;
