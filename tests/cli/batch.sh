@@ -84,6 +84,30 @@ for i in 2 3 4 5 6 7 8 9; do cp in/shot.0001.exr grow/g.000$i.exr; done
 run grow/g.####.exr -o a/g.####.exr $quick --threads 4 --memory-limit 0.1 --log grow/log
 check "frames that grow" exits 0
 check "frames that grow wait for each other" grep -q '"waited_ms": [0-9]*[1-9]\.' grow/log
+# The same with sizes mixed: the peak is at most a tenth over the limit, which one frame at a time keeps within and all at once do
+# not. No frame here needs a helper, so the command's own peak is all of it.
+cp in/shot.0002.exr grow/g.0004.exr
+cp "$source_root/tests/fuzz/corpus/exr/none.exr" grow/g.0005.exr
+cp in/shot.0003.exr grow/g.0007.exr
+for i in 10 11 12 13 14 15 16; do cp in/shot.0001.exr grow/g.00$i.exr; done
+if command -v python3 >/dev/null; then
+    for limit in 0.1 0.15; do
+        rm -f a/*
+        command="a shot within $limit GiB"
+        python3 - "$program" $limit >out 2>err <<'PYTHON'
+import os, sys
+words = [sys.argv[1], 'grow/g.####.exr', '-o', 'a/g.####.exr', '--engine', 'gather', '--focus', '5', '--fstop', '0.4',
+         '--focal-length', '50', '--threads', '8', '--memory-limit', sys.argv[2]]
+_, status, usage = os.wait4(os.spawnv(os.P_NOWAIT, words[0], words), 0)
+peak, limit = usage.ru_maxrss / 1024, float(sys.argv[2]) * 1024
+assert status == 0 and peak <= 1.1 * limit, (status, peak, limit)
+PYTHON
+        status=$?
+        check "a shot of mixed sizes within $limit GiB" exits 0
+    done
+else
+    skip "memory of a shot: no python3"
+fi
 rm -rf a/* grow
 run in/shot.####.exr -o a/shot.exr $quick
 check "an output without a place" exits 1

@@ -109,7 +109,7 @@ static void pulled(struct hf_context *c, const struct pull *pull)
     }
     picture_free(&before);
     double from = place, to = place + step;
-    const double jump = step_left(at, &w, HALVINGS, &from, &to);
+    const double jump = step_left(at, display_distance, &w, HALVINGS, &from, &to);
     printf("%s: the worst step of %.3g changes by %.3g codes and jumps by %.3g near %g\n", pull->name, step, worst,
            jump, place);
     CHECK_MSG(jump <= pull->most, "%s: jumps by %.3g codes near %g, bound %g", pull->name, jump, place, pull->most);

@@ -168,7 +168,7 @@ static void pulled(const struct run *r, enum pull pull, const struct scene *s, c
         if (worst[k] <= 0.5)
             continue;
         double from = place[k], to = place[k] + width;
-        const double left = step_left(at, &w, HALVINGS, &from, &to);
+        const double left = step_left(at, display_distance, &w, HALVINGS, &from, &to);
         const double bound = allowed(r, pull, from, &why);
         see(r, pulls[pull].name, why, left, bound, "%s, at %.9g (step %.3g)", scene, from, worst[k]);
     }
@@ -192,7 +192,8 @@ static void known_places(const struct run *r, const struct scene *s, const char 
         struct pulling w = {r, s, NULL, places[i].pull};
         double from = places[i].from, to = places[i].to;
         const char *why;
-        const double left = step_left(at, &w, HALVINGS, &from, &to), bound = allowed(r, places[i].pull, from, &why);
+        const double left = step_left(at, display_distance, &w, HALVINGS, &from, &to),
+                     bound = allowed(r, places[i].pull, from, &why);
         see(r, pulls[places[i].pull].name, why, left, bound, "%s, at %.9g", scene, from);
     }
 }

@@ -10,6 +10,13 @@
 //   continuity.c  pulls and ramps in tiny steps, flicker
 //   rounding.c    against references in double precision; long rows and large radii
 //   silhouettes.c anti-aliased outlines in focus
+// and over looks.c, each engine's qualities and apertures:
+//   stages.c      their scenes, and parts of real pictures
+//   pulls.c       lens and range in tiny steps
+//   local.c       one sample changed, and regions with the reads that the library names
+//   pairs.c       exposure, mirrored, transposed
+//   known.c       what goes beyond the bounds there, how far and why
+//   lamps.c       lamps that move behind sharp edges, and noise of other seeds
 #ifndef HF_TESTS_STABILITY_H
 #define HF_TESTS_STABILITY_H
 
@@ -38,6 +45,8 @@ enum promise {
     KEEPS_CENTRE = 1 << 11,     // a highlight's centre of gravity stays, far and near
     SMOOTH = 1 << 12,           // anti-aliased silhouettes before blur are closer to smooth than to stairs
     UNMIXES = 1 << 13,          // such silhouettes stay as they were
+    MIRRORS = 1 << 14,          // looks: left to right, within codes
+    TURNS = 1 << 15,            // looks: transposed, within codes
 };
 
 struct subject {
@@ -52,6 +61,9 @@ struct subject {
 
 int subject_count(void);
 struct subject subject_make(int index);
+// The same for looks.c: each engine's qualities and apertures, for the cases that run over all of them.
+int look_count(void);
+struct subject look_make(int index);
 
 // One subject on one instruction set.
 struct run {
@@ -69,6 +81,12 @@ struct run {
 // nearest to its bound, or farthest beyond it.
 __attribute__((format(printf, 6, 7))) void see(const struct run *r, const char *what, const char *why, double value,
                                                double bound, const char *where, ...);
+
+// The same for looks: rows of known.c have the bound that stands there, with its reason.
+__attribute__((format(printf, 6, 7))) void see_look(const struct run *r, const char *what, const char *why,
+                                                    double value, double bound, const char *where, ...);
+// The bound of a row, and its reason, if it stands in known.c; else `bound`.
+double known_bound(const struct run *r, const char *what, double bound, const char **why);
 
 // Call before the first finding.
 void stability_open_table(void);
@@ -100,6 +118,11 @@ void invariance_cases(const struct run *r);
 void continuity_cases(const struct run *r);
 void rounding_cases(const struct run *r);
 void silhouettes_cases(const struct run *r);
+// Over looks.
+void pulls_cases(const struct run *r);
+void local_cases(const struct run *r);
+void pairs_cases(const struct run *r);
+void lamps_cases(const struct run *r);
 
 // A picture of blocks with a soft pattern in each, 0.05 .. 1, with or without alpha, and depths on both sides of the
 // focus.
@@ -109,9 +132,27 @@ struct scene calm_scene(unsigned seed, int width, int height, int channels);
 double display_code(double v);
 double display_distance(const struct picture *a, const struct picture *b);
 
+// The same, where each pixel is exposed so that the brightest sample within 7 pixels of it in either picture, if that is over
+// 1, is white.
+double exposed_distance(const struct picture *a, const struct picture *b);
+
 // The change that remains when the step of a parameter from *from to *to has been halved, each time towards the greater
-// change by display_distance, until no float lies between its ends, or `halvings` times. at: makes the picture for a
+// change by `distance`, until no float lies between its ends, or `halvings` times. at: makes the picture for a
 // value of the parameter.
-double step_left(struct picture (*at)(void *cookie, double t), void *cookie, int halvings, double *from, double *to);
+double step_left(struct picture (*at)(void *cookie, double t),
+                 double (*distance)(const struct picture *a, const struct picture *b), void *cookie, int halvings,
+                 double *from, double *to);
+
+// A copy of a row's name that lives as long as the program.
+const char *row_name(const char *name);
+
+// Scenes for looks: depths are for a focus of STABILITY_FOCUS.
+enum stage { STAGE_FLOOR, STAGE_CARDS, STAGE_BLOCKS, STAGE_NOISE, STAGE_LAMPS, STAGES };
+struct scene stage_make(enum stage stage, unsigned seed, int width, int height);
+const char *stage_name(enum stage stage);
+// A part of that size of a picture of the folder images. Returns 0 if there are no more, or none can be read.
+int stage_picture(int index, int width, int height, struct scene *s, const char **name);
+// A lens that makes radii of up to about `reach` pixels in a stage of that width.
+void set_lens(struct hf_params *p, int width, float reach);
 
 #endif

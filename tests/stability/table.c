@@ -8,7 +8,7 @@
 
 #include "support/check.h"
 
-enum { MAX_ROWS = 1000 };
+enum { MAX_ROWS = 2000 };
 
 struct row {
     const char *subject, *what, *why;
@@ -58,7 +58,8 @@ static struct row *row_of(const char *subject, const char *what)
     return &rows[row_count++];
 }
 
-void see(const struct run *r, const char *what, const char *why, double value, double bound, const char *where, ...)
+static void add_finding(const struct run *r, const char *what, const char *why, double value, double bound,
+                        const char *where, va_list args)
 {
     struct row *row = row_of(r->subject->name, what);
     if (row->findings++ && share(value, bound) <= share(row->value, row->bound))
@@ -67,10 +68,33 @@ void see(const struct run *r, const char *what, const char *why, double value, d
     row->value = value;
     row->bound = bound;
     const int n = snprintf(row->where, sizeof row->where, "%s, ", r->isa_name);
+    vsnprintf(row->where + n, sizeof row->where - (size_t)n, where, args);
+}
+
+void see(const struct run *r, const char *what, const char *why, double value, double bound, const char *where, ...)
+{
     va_list args;
     va_start(args, where);
-    vsnprintf(row->where + n, sizeof row->where - (size_t)n, where, args);
+    add_finding(r, what, why, value, bound, where, args);
     va_end(args);
+}
+
+void see_look(const struct run *r, const char *what, const char *why, double value, double bound, const char *where,
+              ...)
+{
+    va_list args;
+    va_start(args, where);
+    bound = known_bound(r, what, bound, &why);
+    add_finding(r, what, why, value, bound, where, args);
+    va_end(args);
+}
+
+const char *row_name(const char *name)
+{
+    for (int i = 0; i < row_count; i++)
+        if (!strcmp(rows[i].what, name))
+            return rows[i].what;
+    return strdup(name);
 }
 
 int stability_passed(void)
