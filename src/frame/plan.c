@@ -7,6 +7,8 @@
 // runs; smaller ones stay in the cache and skip more. With more threads, tiles are halved until each thread has a few.
 // Chunks are wide, also for long runs, and low enough for their CoC to stay in the cache: 256 KB at 1024 x 8.
 enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4 };
+// The cells that an engine wants are cut if there are fewer than this for each thread. Strips are cells of whole rows.
+enum { CELLS_A_THREAD = 3, MIN_STRIP = 16 };
 enum { CHUNK_WIDTH = 1024, CHUNK_HEIGHT = 8 };
 
 static int ceil_div(int a, int b)
@@ -91,6 +93,35 @@ static void choose_tile(const struct hf_plan *p, int threads, int *width, int *h
         else
             break;
     }
+}
+
+// The height of cells, at most the given one, with which the thread that has most of them is done first. around: rows that a
+// cell reads, or makes, beyond its own.
+static int best_height(const struct hf_plan *p, int width, int height, int least, int step, int around, int threads)
+{
+    const int columns = ceil_div(p->width, width);
+    int best = height;
+    int64_t best_cost = INT64_MAX;
+    for (int h = height; h >= hf_min(least, height); h -= step) {
+        const int64_t cost = (int64_t)ceil_div(columns * ceil_div(p->height, h), threads) * (h + around);
+        best = cost < best_cost ? h : best;
+        best_cost = cost < best_cost ? cost : best_cost;
+    }
+    return best;
+}
+
+// Cut the cells of a sweep where threads would wait for others: of the second one, and of those whose cells are strips. Strips
+// of a few rows are as high as their engine's vectors ask for.
+static int cut_height(const struct hf_plan *p, const struct hf_setup *s, int sweep, int width, int height, int threads)
+{
+    const int strip =
+        p->engine->plan.across >> sweep & 1 && width >= p->width && height < p->height && height > 2 * MIN_STRIP;
+    const int grain = hf_max(p->engine->plan.grain, 8);
+    if ((sweep != 2 && !strip) || ceil_div(p->width, width) * ceil_div(p->height, height) >= CELLS_A_THREAD * threads)
+        return height;
+    const int around = hf_max(spread_of(p, s, HF_NEAR).y, spread_of(p, s, HF_FAR).y);
+    return best_height(p, width, ceil_div(hf_min(height, p->height), grain) * grain, strip ? MIN_STRIP : MIN_HEIGHT,
+                       grain, around, threads);
 }
 
 // Set a sweep's cells: of this size, or of the frame's if that is smaller, because buffers are made for whole cells.
@@ -198,6 +229,7 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
     const struct hf_engine_def *e = p->engine;
     int width, height;
     choose_tile(p, threads, &width, &height);
+    find_reaches(p, s);
     for (int sweep = 2; sweep <= e->sweeps; sweep++) {
         if (sweep > 2) {
             width = p->cells.width[2];
@@ -205,11 +237,11 @@ void hf_plan_cells(struct hf_plan *p, const struct hf_setup *s, int tile_width, 
         }
         if (e->plan.cell)
             e->plan.cell(s, sweep, &width, &height);
+        height = cut_height(p, s, sweep, width, height, threads);
         if (tile_height && sweep == 2)
             height = e->plan.grain ? ceil_div(tile_height, e->plan.grain) * e->plan.grain : tile_height;
         set_cells(p, sweep, tile_width && sweep == 2 ? tile_width : width, height, whole);
     }
-    find_reaches(p, s);
     find_areas(p, s);
     int longest = 0;
     for (int i = 0; i < e->pass_count; i++) {

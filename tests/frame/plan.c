@@ -567,8 +567,55 @@ static void colour(void)
     hf_close(&c);
 }
 
+static void one_by_one(void *cookie, int n, void (*fn)(void *arg, int i, int worker), void *arg)
+{
+    (void)cookie;
+    for (int i = 0; i < n; i++)
+        fn(arg, i, 0);
+}
+
+// With many threads a frame is cut into more cells, among them the strips in which layers looks for what is hidden, and keeps
+// its bits. Two threads have the cells that the engine measured.
+static void many_threads(void)
+{
+    static const int threads[] = {2, 5, 32, 128};
+    struct hf_params p = hf_default_params();
+    struct scene s = sharp(640, 400);
+    struct picture first = {.width = 0};
+    int before = 0;
+    put(&s, 100, 60, 380, 300, 1);
+    put(&s, 400, 0, 640, 400, 90);
+    p.engine = HF_ENGINE_LAYERS;
+    p.max_radius = 9;
+    for (int i = 0; i < 4; i++) {
+        struct hf_context *c;
+        const struct hf_config config = {.size = sizeof config, .threads = threads[i], .parallel_for = one_by_one};
+        CHECK_INT(hf_open(&c, &config), HF_OK);
+        struct picture out = render_scene(c, &s, &p);
+        struct tool_report r;
+        tool_report_get(c, &r);
+        const int cells = r.inner.columns * r.inner.rows;
+        CHECK_MSG(cells >= before, "%d threads: %d cells, fewer threads %d", threads[i], cells, before);
+        if (i == 0) {
+            CHECK(r.inner.tile_width == 320 && r.inner.tile_height == 192);
+            first = out;
+        } else {
+            CHECK(picture_same_bits(&first, &out));
+            picture_free(&out);
+        }
+        // 400 rows in tiles of 48 rows or less.
+        CHECK_MSG(threads[i] < 32 || cells >= 2 * 9, "%d threads, %d cells of %d rows", threads[i], cells,
+                  r.inner.tile_height);
+        before = cells;
+        hf_close(&c);
+    }
+    picture_free(&first);
+    scene_free(&s);
+}
+
 int main(void)
 {
+    many_threads();
     colour();
     planned_and_done();
     wider_is_dearer();
