@@ -224,6 +224,15 @@ static void copy_row(const struct hfpy_pixels *p, int c, int y, int to_copy)
 {
     char *array = p->at[c] + y * p->row[c];
     char *packed = p->copy + ((size_t)y * (size_t)p->width * (size_t)p->copy_pixel) + c * p->copy_sample;
+    // Most pictures: plain floats.
+    if (p->sample == 4 && !p->swapped) {
+        char *to = to_copy ? packed : array;
+        const char *from = to_copy ? array : packed;
+        const ptrdiff_t to_step = to_copy ? p->copy_pixel : p->column[c], step = to_copy ? p->column[c] : p->copy_pixel;
+        for (int x = 0; x < p->width; x++)
+            memcpy(to + x * to_step, from + x * step, 4);
+        return;
+    }
     for (int x = 0; x < p->width; x++, array += p->column[c], packed += p->copy_pixel) {
         char *to = to_copy ? packed : array;
         const char *from = to_copy ? array : packed;

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a call from Python costs beside the library's own time: 1920 x 1080, float32, in turn.
 
-    PYTHONPATH=build/integrations/python integrations/python/measure.py [FRAMES]
+    PYTHONPATH=build/integrations/python integrations/python/examples/measure.py [FRAMES]
 
 report["total_ms"] is the time of hf_render inside the same call; the rest is Python's. On an idle machine.
 """
