@@ -193,7 +193,7 @@ struct hf_rect hf_buffers_rect(const struct hf_setup *s, const struct hf_buf_def
 
 // Clear the part of `want` outside `have`.
 static void clear_beyond(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want,
-                         const atomic_int *stop)
+                         atomic_int *stop)
 {
     for (int c = 0; c < channels; c++)
         for (int y = want.y0; y < want.y1 && !hf_stopped(stop); y++) {
@@ -216,7 +216,7 @@ static void repeat(char *row, int bytes, int x, int x0, int x1)
 }
 
 static void extend(const struct hf_buf *b, int channels, int bytes, struct hf_rect have, struct hf_rect want,
-                   const atomic_int *stop)
+                   atomic_int *stop)
 {
     for (int c = 0; c < channels; c++) {
         for (int y = have.y0; y < have.y1 && !hf_stopped(stop); y++) {
