@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "api/layers.h"
 #include "api/message.h"
 #include "api/sized.h"
 #include "base/cpu.h"
@@ -11,6 +12,7 @@
 #include "frame/buffers.h"
 #include "frame/check.h"
 #include "frame/report.h"
+#include "frame/surfaces.h"
 #include "pixel/depth.h"
 #include "pixel/depth_rows.h"
 #include "pixel/limits.h"
@@ -177,6 +179,7 @@ void hf_close(struct hf_context **context)
     hf_block_free(&c->chunks, &c->mem);
     hf_block_free(&c->tiles, &c->mem);
     hf_block_free(&c->joined, &c->mem);
+    hf_block_free(&c->surfaces, &c->mem);
     hf_block_free(&c->repairs, &c->mem);
     const struct hf_mem mem = c->mem;
     mem.free(mem.cookie, c);
@@ -227,14 +230,33 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
 // A frame whose settings are known.
 static int run_resolved(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                         const struct hf_depth *depth, const struct hf_settings *r, const struct hf_region *region,
-                        enum hf_task task)
+                        const struct hf_surface_input *layers, int count, enum hf_task task)
 {
+    const int fused = !r->params.run.deterministic, several = count > 1 && !r->sharp;
     struct hf_setup s;
+    struct hf_known known;
+    struct hf_merged merged;
+    int err = HF_OK;
     hf_setup_make(&s, src, dst, depth, r, c->engine[r->params.engine].own);
+    s.stop = &c->stop;
+    if (several && layers[1].kind == HF_LAYER_PEEL)
+        err = hf_surfaces_read(c, &s, layers + 1, hf_min(count - 1, HF_MOST_BEHIND), fused, &known);
+    else if (several) {
+        err = hf_surfaces_merge(c, &s, layers, count, fused, &merged, &known);
+        src = &merged.image;
+        depth = &merged.depth;
+    }
+    if (err)
+        return err;
+    if (several) {
+        hf_setup_make(&s, src, dst, depth, r, c->engine[r->params.engine].own);
+        s.stop = &c->stop;
+        hf_engine_def(s.engine)->own.know(c->engine[s.engine].own, &known);
+    }
     if (region)
         s.region = (struct hf_rect){region->x, region->y, region->x + region->width, region->y + region->height};
     s.part = region && (region->width < r->width || region->height < r->height);
-    return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, !r->params.run.deterministic, task});
+    return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, fused, task});
 }
 
 // Choose the settings that fit the time budget, and resolve them. Returns how many settings there are to choose from, or an
@@ -307,12 +329,14 @@ struct call {
     struct hf_image dst, src;
     struct hf_depth depth;
     struct hf_given given;
+    struct hf_surface_input layers[HF_MOST_LAYERS];
+    int count;  // of layers, 0: one picture
 };
 
 static int take(struct call *call, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
                 const struct hf_params *params, const struct hf_region *region, struct hf_message *message)
 {
-    *call = (struct call){.region = region ? &call->own_region : NULL};
+    call->region = region ? &call->own_region : NULL;
     if (!src || !dst || !depth)
         return hf_bad(message, !src ? "src" : !dst ? "dst" : "depth", "is NULL");
     if (hf_sized_in(&call->src, src, &hf_sized_image, "src", message) ||
@@ -324,6 +348,15 @@ static int take(struct call *call, const struct hf_image *dst, const struct hf_i
     if (!err && region)
         err = check_region(&call->own_region, &call->src, message);
     return err ? err : hf_check_depth(&call->depth, call->src.width, message);
+}
+
+// Whether the engine takes several pictures. An engine that does not exist is an error of its own, later.
+static int check_engine(const struct call *call, struct hf_message *message)
+{
+    const struct hf_engine_def *engine = hf_engine_def(call->given.params.engine);
+    if (!engine || engine->own.know)
+        return HF_OK;
+    return hf_bad(message, "engine", "is %s, which takes one picture; the engine layers takes several", engine->name);
 }
 
 // Settings for the frame: those of the parameters, or what the budget leaves of them. *steps: how many it chooses from.
@@ -362,7 +395,7 @@ static int fail_by(struct hf_context *c, int error, const char *sentence)
 // Check the arguments, choose a setting that fits the budget, and render.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
-               enum hf_task task)
+               const struct hf_layer *layers, int count, enum hf_task task)
 {
     if (!c)
         return HF_ERR_ARG;
@@ -375,13 +408,22 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     atomic_store_explicit(&c->stop, 0, memory_order_relaxed);
     if (c->pool && c->threads > 1 && c->pid != hf_process())
         return fail_by(c, HF_ERR_THREAD, "the context was opened before fork(): its threads are in the parent process");
-    int err = take(&call, dst, src, depth, params, region, &message);
+    int err = layers || count ? hf_take_layers(call.layers, layers, count, &message) : HF_OK;
+    call.count = count;
+    if (!err && count) {
+        src = &call.layers->image;
+        depth = &call.layers->depth;
+    }
+    if (!err)
+        err = take(&call, dst, src, depth, params, region, &message);
+    if (!err && count > 1)
+        err = check_engine(&call, &message);
     if (!err)
         err = settle(c, &call, &r, &steps, &options, &message);
     if (err)
         return hf_fail(c, &message);
     tell_depth(c, &call.depth, &r.params);
-    err = run_resolved(c, &call.dst, &call.src, &call.depth, &r, call.region, task);
+    err = run_resolved(c, &call.dst, &call.src, &call.depth, &r, call.region, call.layers, call.count, task);
     if (err) {
         char sentence[128];
         c->report = (struct hf_frame_report){0};
@@ -402,20 +444,26 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
 int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
               const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, NULL, HF_TASK_RENDER);
+    return run(c, dst, src, depth, params, NULL, NULL, 0, HF_TASK_RENDER);
 }
 
 int hf_render_region(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region)
 {
-    return run(c, dst, src, depth, params, region, HF_TASK_RENDER);
+    return run(c, dst, src, depth, params, region, NULL, 0, HF_TASK_RENDER);
+}
+
+int hf_render_layers(struct hf_context *c, const struct hf_image *dst, const struct hf_layer *layers, int count,
+                     const struct hf_params *params, const struct hf_region *region)
+{
+    return run(c, dst, NULL, NULL, params, region, layers, count ? count : -1, HF_TASK_RENDER);
 }
 
 int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                     const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
                     struct hf_region *colour, struct hf_region *depth_read)
 {
-    const int err = run(c, dst, src, depth, params, region, HF_TASK_PLAN);
+    const int err = run(c, dst, src, depth, params, region, NULL, 0, HF_TASK_PLAN);
     struct hf_region *const out[2] = {colour, depth_read};
     struct hf_message message;
     for (int i = 0; i < 2 && c; i++) {
@@ -430,13 +478,13 @@ int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const stru
 int hf_prepare(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, NULL, HF_TASK_PREPARE);
+    return run(c, dst, src, depth, params, NULL, NULL, 0, HF_TASK_PREPARE);
 }
 
 int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
             const struct hf_params *params, struct hf_report *report)
 {
-    const int err = run(c, dst, src, depth, params, NULL, HF_TASK_PLAN);
+    const int err = run(c, dst, src, depth, params, NULL, NULL, 0, HF_TASK_PLAN);
     const int told = c && report ? hf_get_report(c, report) : HF_OK;
     return err ? err : told;
 }

@@ -16,6 +16,7 @@
 
 #include "base/mem.h"
 #include "pass/frame.h"
+#include "pass/known.h"
 #include "pass/report.h"
 #include "simd/choose.h"
 
@@ -96,6 +97,9 @@ struct hf_engine_own {
     size_t bytes;
     // Set numbers that follow from the resolved parameters. s holds what is common to all engines, and may be changed.
     void (*resolve)(void *own, struct hf_setup *s, const struct hf_depth *depth, const struct hf_params *p);
+    // Take surfaces that the caller gives beside the picture, which stay as they are until the frame has ended. Called after
+    // resolve, if there are any. NULL: it takes none.
+    void (*know)(void *own, const struct hf_known *known);
     // Make tables likewise, if there is anything to blur; returns HF_ERR_MEMORY. NULL: none.
     int (*prepare)(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem);
     // Called if s->measured, with what the first pass counted over the frame: sets the reach of the blur, and may change how

@@ -17,7 +17,7 @@ declared()
     sed -nE 's/^HF_API[^(]*[ *](hf_[a-z0-9_]+)\(.*/\1/p' "$@"
 }
 {
-    declared "$root/include/hyperfocal/hyperfocal.h" "$root/include/hyperfocal/params.h" | sed 's/$/ HYPERFOCAL_1/'
+    declared "$root/include/hyperfocal/hyperfocal.h" "$root/include/hyperfocal/layers.h" "$root/include/hyperfocal/params.h" | sed 's/$/ HYPERFOCAL_1/'
     declared "$root/include/hyperfocal/inspect.h" | sed 's/$/ HYPERFOCAL_INSPECT/'
 } | sort >"$work/declared"
 # The nodes are in the list of absolute symbols too. A release's node is HYPERFOCAL_1_MINOR or HYPERFOCAL_INSPECT_MAJOR.MINOR.

@@ -23,9 +23,9 @@
 
 #define B(name) (1u << HF_LAYERS_BUF_##name)
 
-enum { HALO_EDGE = 1, HALO_LEVELS, HALO_CELL };
+enum { HALO_EDGE = 1, HALO_LEVELS, HALO_CELL, HALO_KNOWN };
 
-enum { COC, LOAD, PREPARE, HIDDEN, PATTERNS, COMPOSITE, PASSES };
+enum { COC, LOAD, PREPARE, HIDDEN, PATTERNS, KNOWN, COMPOSITE, PASSES };
 
 static const struct hf_pass passes[PASSES] = {
     {"CoC generation", .sweep = 1, .ns = 2.5f},
@@ -36,8 +36,12 @@ static const struct hf_pass passes[PASSES] = {
      .writes = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT), .sweep = 3, .ns = 19, .ns_radius = 0.72f},
     {"Patterns", .reads = B(HIDDEN), .around = B(SEEN_AT) | B(QUADS) | B(QUADS_AT) | B(HIDDEN_AT), .halo = HALO_CELL,
      .writes = B(HIDDEN), .sweep = 4, .ns = 170},
+    {"Known", .reads = B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT),
+     .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(QUADS) | B(QUADS_AT), .halo = HALO_KNOWN,
+     .writes = B(SECOND) | B(SECOND_AT) | B(THIRD) | B(THIRD_AT), .sweep = 4, .ns = 8},
     {"Composite",
-     .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT),
+     .around = B(SEEN) | B(SEEN_AT) | B(MIXED) | B(MIXED_AT) | B(HIDDEN) | B(HIDDEN_AT) | B(BEYOND) | B(BEYOND_AT) |
+               B(SECOND) | B(SECOND_AT) | B(THIRD) | B(THIRD_AT),
      .halo = HALO_CELL, .sweep = 5, .ns = 58, .ns_radius = 0.65f},
 };
 
@@ -54,6 +58,10 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
     [HF_LAYERS_BUF_HIDDEN_AT] = {"hiddenat", .frame = 1},
     [HF_LAYERS_BUF_BEYOND] = {"beyond", .frame = 1},
     [HF_LAYERS_BUF_BEYOND_AT] = {"beyondat", .frame = 1},
+    [HF_LAYERS_BUF_SECOND] = {"second", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_SECOND_AT] = {"secondat", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_THIRD] = {"third", .frame = 1, .x = 1, .y = 1},
+    [HF_LAYERS_BUF_THIRD_AT] = {"thirdat", .frame = 1, .x = 1, .y = 1},
 };
 
 static const struct hf_layers_settings qualities[] = {
@@ -116,7 +124,14 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;
     l->slices = l->levels = 0;
+    l->given = NULL;
     s->sharp_radius = 0;
+}
+
+static void know(void *own, const struct hf_known *known)
+{
+    struct hf_layers *l = own;
+    l->given = known;
 }
 
 // Set the shape, without its sizes, and the number of groups of channels with sizes of their own.
@@ -197,21 +212,24 @@ static size_t held(const void *own)
 static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
 {
     struct hf_layers *l = own;
-    l->nearest = fminf(found->radius_min, 0);
-    l->farthest = fmaxf(found->radius_max, 0);
+    const float low = l->given ? fminf(l->given->radius_min, found->radius_min) : found->radius_min;
+    const float high = l->given ? fmaxf(l->given->radius_max, found->radius_max) : found->radius_max;
+    l->nearest = fminf(low, 0);
+    l->farthest = fmaxf(high, 0);
     const int err = l->shaped ? hf_layers_make_shapes(l, s->resolved->params.aperture.picture, mem) : HF_OK;
     if (err)
         return err;
     hf_layers_make_slices(l);
     if (hf_stopped(s->stop))
         return HF_ERR_CANCELLED;
-    const float range = found->radius_max - found->radius_min;
+    const float range = high - low;
     l->levels = 0;
     l->edges = l->set.unmix && range > HF_EDGES_FROM;
     // Levels that no pixel of the frame needs are left out. Those that are made change nothing where they are not needed.
-    if (l->set.hidden && range >= 1)
+    if ((l->set.hidden || l->given) && range >= 1)
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && hf_layers_level_from(l->levels) < range * 1.001f;)
             l->levels++;
+    l->known = l->given && l->levels;
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);
     atomic_init(l->transparent, 0);
@@ -254,6 +272,12 @@ static int channels(const struct hf_setup *s, int b)
     case HF_LAYERS_BUF_HIDDEN:
     case HF_LAYERS_BUF_BEYOND:
         return l->levels ? s->channels : 0;
+    case HF_LAYERS_BUF_SECOND:
+    case HF_LAYERS_BUF_THIRD:
+        return l->known ? s->channels : 0;
+    case HF_LAYERS_BUF_SECOND_AT:
+    case HF_LAYERS_BUF_THIRD_AT:
+        return l->known ? 2 : 0;
     default:
         return s->channels;
     }
@@ -261,7 +285,7 @@ static int channels(const struct hf_setup *s, int b)
 
 static int runs(const struct hf_setup *s, int pass)
 {
-    return pass != PATTERNS || hf_layers_patterns_reach(hf_layers(s));
+    return pass == PATTERNS ? hf_layers_patterns_reach(hf_layers(s)) != 0 : pass != KNOWN || hf_layers(s)->known;
 }
 
 static struct hf_reach halo(const struct hf_setup *s, int halo)
@@ -272,6 +296,7 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     const int border = hf_min(l->around, HF_LAYERS_BORDER) / 2;
     const int n = halo == HALO_EDGE     ? (l->set.highlights ? HF_LAYERS_BRIGHT_REACH : 6)
                   : halo == HALO_LEVELS ? hf_layers_hidden_reach(l)
+                  : halo == HALO_KNOWN  ? (l->known ? hf_max(border, hf_layers_hidden_reach(l)) : 0)
                                         : hf_max(border, hf_layers_patterns_reach(l));
     return (struct hf_reach){n, n};
 }
@@ -286,7 +311,8 @@ static struct hf_reach around(const struct hf_setup *s, int sweep)
     case 5:
         return (struct hf_reach){l->around / 2, l->around / 2};
     case 4:
-        return (struct hf_reach){hf_layers_patterns_reach(l) + HF_LAYERS_SMOOTH, hf_layers_patterns_reach(l)};
+        return (struct hf_reach){hf_max(hf_layers_patterns_reach(l) + HF_LAYERS_SMOOTH, l->known ? hidden : 0),
+                                 hf_max(hf_layers_patterns_reach(l), l->known ? hidden : 0)};
     case 3:
         return (struct hf_reach){hidden, hidden};
     default:
@@ -326,7 +352,7 @@ static size_t work(const struct hf_setup *s, const struct hf_cells *p)
     const size_t need[] = {
         hf_layers_unmix_floats(2 * p->width[2]) + hf_layers_highlight_floats(p->width[2], p->height[2]),
         hf_layers_hidden_floats(l, p->width[3], p->height[3]), hf_layers_patterns_floats(l, p->width[4], p->height[4]),
-        hf_layers_composite_floats(l, width, height)};
+        hf_layers_known_floats(l, p->width[4], p->height[4]), hf_layers_composite_floats(l, width, height)};
     for (size_t i = 0; i < sizeof need / sizeof *need; i++)
         most = need[i] > most ? need[i] : most;
     return most;
@@ -349,7 +375,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
 {
     *k = (struct hf_layers_kernels){
         .passes = {{hf_radius_pass, hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass,
-                    hf_layers_patterns_pass, hf_layers_composite_pass}},
+                    hf_layers_patterns_pass, hf_layers_known_pass, hf_layers_composite_pass}},
         .unmix = hf_layers_unmix_c,
         .roots = hf_layers_roots_c,
         .nine = hf_layers_nine_c,
@@ -388,8 +414,8 @@ const struct hf_engine_def hf_layers_engine = {
     .buf_count = HF_LAYERS_BUFS,
     .limits = {.aperture = HF_APERTURE_ALL, .check = check},
     .kernels = {sizeof(struct hf_layers_kernels), hf_layers_kernels_init},
-    .own = {sizeof(struct hf_layers), .resolve = resolve, .prepare = prepare, .measure = measure, .tell = tell,
-            .release = release, .held = held},
+    .own = {sizeof(struct hf_layers), .resolve = resolve, .know = know, .prepare = prepare, .measure = measure,
+            .tell = tell, .release = release, .held = held},
     .plan = {.across = 1u << 2 | 1u << 3 | 1u << 4,
              .around = around,
              .parts = 1u << 2 | 1u << 3 | 1u << 4,

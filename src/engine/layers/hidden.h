@@ -84,6 +84,9 @@ struct hf_hidden_line {
 // A sample that taps have just reached covers nothing yet; it covers fully from 1 / REACHED of a tap on.
 #define HF_LAYERS_REACHED 4
 
+// A known front that fills less than this of a pixel, or all but this, is not split off: so colours stay finite.
+#define HF_LAYERS_LEAST 1e-3f
+
 // Weights of taps below this count as 0, so that 1 / weight is finite.
 #define HF_LAYERS_SOME 1e-30f
 
@@ -103,6 +106,10 @@ static inline float hf_layers_root(float v)
 void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r);
 // Floats of scratch that the pass needs for a band of half-resolution rows.
 size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height);
+// Split pixels whose front surface is known into that and the rest.
+void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r);
+// Likewise for the pass of known surfaces.
+size_t hf_layers_known_floats(const struct hf_layers *l, int width, int height);
 // How far around a pixel the search for hidden samples reaches, half-resolution pixels.
 int hf_layers_hidden_reach(const struct hf_layers *l);
 

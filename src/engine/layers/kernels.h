@@ -162,11 +162,15 @@ enum {
     HF_LAYERS_BUF_HIDDEN_AT,
     HF_LAYERS_BUF_BEYOND,
     HF_LAYERS_BUF_BEYOND_AT,
+    HF_LAYERS_BUF_SECOND,  // hidden samples at full resolution, of frames with known surfaces
+    HF_LAYERS_BUF_SECOND_AT,
+    HF_LAYERS_BUF_THIRD,
+    HF_LAYERS_BUF_THIRD_AT,
     HF_LAYERS_BUFS
 };
 
 hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_layers_patterns_pass,
-    hf_layers_composite_pass;
+    hf_layers_known_pass, hf_layers_composite_pass;
 // Note the radii and slices of the samples that a cell has made, tile by tile.
 void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r);
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r);

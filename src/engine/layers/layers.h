@@ -18,6 +18,7 @@
 #include "base/mem.h"
 #include "base/stop.h"
 #include "engine/layers/shape.h"
+#include "pass/known.h"
 
 enum {
     HF_LAYERS_TILE = 16,     // pixels; each tile keeps its least and largest radius
@@ -97,6 +98,8 @@ struct hf_layers {
     int edges;                      // pixels may be mixed
     int most_tiles;                 // from which a slice's blur reaches a cell, on each side
     int around;                     // a cell reads samples up to this many pixels away
+    const struct hf_known *given;   // known surfaces, or NULL
+    int known;                      // hidden samples have full resolution, as surfaces are known
 
     int width, height;                // of the frame
     atomic_int *stop;                 // the setup's

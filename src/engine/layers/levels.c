@@ -521,6 +521,6 @@ void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
     if (!hf_layers(f->s)->levels)
         return;
     find_hidden(f, r);
-    if (!hf_stopped(f->s->stop))
+    if (!hf_stopped(f->s->stop) && !hf_layers(f->s)->known)
         hf_layers_mark_hidden(f, r);
 }

@@ -69,13 +69,16 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
-    const struct hf_buf *hidden = &f->buf[HF_LAYERS_BUF_HIDDEN_AT], *beyond = &f->buf[HF_LAYERS_BUF_BEYOND_AT];
-    const int size = TILE / 2;
+    const struct hf_buf *hidden = &f->buf[l->known ? HF_LAYERS_BUF_SECOND_AT : HF_LAYERS_BUF_HIDDEN_AT],
+                        *beyond = &f->buf[l->known ? HF_LAYERS_BUF_THIRD_AT : HF_LAYERS_BUF_BEYOND_AT];
+    const struct hf_slice *slice = l->known ? l->slice : l->behind;
+    const int size = TILE / 2, fine = l->known != 0;
+    const int width = fine ? f->s->width : f->s->half_width, height = fine ? f->s->height : f->s->half_height;
     for (int ty = r.y0 / size; ty * size < r.y1 && !hf_stopped(l->stop); ty++)
         for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
-            const int x = tx * size, y = ty * size, mark = (ty * l->columns + tx) * l->words;
-            const int n = hf_min(size, f->s->half_width - x), rows = hf_min(size, f->s->half_height - y);
-            mark_tile(f, l->behind, tile_of(hidden, 0, x, y, n, rows), &l->hidden_marks[mark]);
-            mark_tile(f, l->behind, tile_of(beyond, 0, x, y, n, rows), &l->beyond_marks[mark]);
+            const int x = tx * size << fine, y = ty * size << fine, mark = (ty * l->columns + tx) * l->words;
+            const int n = hf_min(size << fine, width - x), rows = hf_min(size << fine, height - y);
+            mark_tile(f, slice, tile_of(hidden, 0, x, y, n, rows), &l->hidden_marks[mark]);
+            mark_tile(f, slice, tile_of(beyond, 0, x, y, n, rows), &l->beyond_marks[mark]);
         }
 }

@@ -107,7 +107,9 @@ static inline struct hf_stack_row hf_layers_stack_at(const struct hf_cell *c, in
 
 static inline const struct hf_slice *hf_layers_table(const struct hf_layers *l, enum hf_kind kind)
 {
-    return kind == HF_KIND_SEEN ? l->slice : kind == HF_KIND_HIDDEN ? l->behind : l->shine;
+    return kind == HF_KIND_SEEN || (kind == HF_KIND_HIDDEN && l->known) ? l->slice
+           : kind == HF_KIND_HIDDEN                                     ? l->behind
+                                                                        : l->shine;
 }
 
 // tiles.c

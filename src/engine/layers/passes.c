@@ -83,6 +83,8 @@ void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y += TILE / 2) {
         const struct hf_rect rows = {r.x0, y, r.x1, hf_min(y + TILE / 2, r.y1)};
         hf_layers_unmix_rows(f, rows, y == r.y0);
+        if (hf_layers(f->s)->given && hf_layers(f->s)->given->edges)
+            hf_layers_take_edges(f, rows);
         if (l->set.highlights)
             hf_layers_highlights(f, r, rows, means);
         if (l->levels)
@@ -126,8 +128,10 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
     const struct hf_samples samples = {
         .seen = set_of(&f->buf[HF_LAYERS_BUF_SEEN], &f->buf[HF_LAYERS_BUF_SEEN_AT]),
         .mixed = set_of(&f->buf[HF_LAYERS_BUF_MIXED], &f->buf[HF_LAYERS_BUF_MIXED_AT]),
-        .hidden = set_of(&f->buf[HF_LAYERS_BUF_HIDDEN], &f->buf[HF_LAYERS_BUF_HIDDEN_AT]),
-        .beyond = set_of(&f->buf[HF_LAYERS_BUF_BEYOND], &f->buf[HF_LAYERS_BUF_BEYOND_AT]),
+        .hidden = set_of(&f->buf[l.known ? HF_LAYERS_BUF_SECOND : HF_LAYERS_BUF_HIDDEN],
+                         &f->buf[l.known ? HF_LAYERS_BUF_SECOND_AT : HF_LAYERS_BUF_HIDDEN_AT]),
+        .beyond = set_of(&f->buf[l.known ? HF_LAYERS_BUF_THIRD : HF_LAYERS_BUF_BEYOND],
+                         &f->buf[l.known ? HF_LAYERS_BUF_THIRD_AT : HF_LAYERS_BUF_BEYOND_AT]),
         .share = f->buf[HF_LAYERS_BUF_SEEN_AT].ch[2]};
     const int x0 = 2 * r.x0, y0 = 2 * r.y0, x1 = hf_min(2 * r.x1, f->s->width), y1 = hf_min(2 * r.y1, f->s->height);
     const struct hf_rect tiles = {x0 / TILE * TILE, y0 / TILE * TILE, (x1 + TILE - 1) / TILE * TILE,

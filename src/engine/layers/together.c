@@ -237,14 +237,14 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
     }
     // Next to the focus, the border between visible and hidden samples must be as fine as the picture; at quads'
     // resolution a line would stay open.
-    const int pixels = s->level == 0 && fabsf(s->radius) < 2;
+    const int pixels = l->known || (s->level == 0 && fabsf(s->radius) < 2);
     behind = pixels ? s : behind;
     if (l->levels && hf_layers_mark_used(c, i, HF_KIND_HIDDEN) && hf_layers_mark_touched(c, behind, &c->touched)) {
         const struct hf_build b = {.s = behind,
                                    .set = &c->samples->hidden,
                                    .weight = c->samples->hidden.weight,
                                    .finest = !pixels,
-                                   .spread = pixels,
+                                   .spread = pixels && !l->known,
                                    .channels = l->channels + 1,
                                    .more = &c->samples->beyond};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
@@ -259,12 +259,12 @@ static void cover_with(struct hf_cell *c, enum hf_kind kind)
 {
     const struct hf_layers *l = c->l;
     const int hidden = kind == HF_KIND_HIDDEN;
-    const struct hf_slice *s = &l->cover[hidden];
+    const struct hf_slice *s = &l->cover[hidden && !l->known];
     const struct hf_layers_set *set = hidden ? &c->samples->hidden : &c->samples->seen;
     const struct hf_build b = {.s = s,
                                .set = set,
                                .weight = set->weight,
-                               .finest = hidden,
+                               .finest = hidden && !l->known,
                                .first = l->channels,
                                .channels = l->channels + 1,
                                .more = hidden ? &c->samples->beyond : &c->samples->mixed};

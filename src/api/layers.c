@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "api/layers.h"
+
+#include <stdio.h>
+
+#include "api/sized.h"
+#include "frame/check.h"
+
+static const struct hf_sized sized_layer = HF_SIZED(hf_layer, depth);
+
+// One layer; a message of its picture or depth names it too.
+static int take(struct hf_surface_input *to, const struct hf_layer *given, const char *name, struct hf_message *message)
+{
+    struct hf_layer own = {0};
+    char image[40];
+    *to = (struct hf_surface_input){0};
+    if (hf_sized_in(&own, given, &sized_layer, name, message))
+        return HF_ERR_ARG;
+    if (own.reserved)
+        return hf_bad(message, name, "has reserved bits that are not zero");
+    if (hf_check_value(name, (int)own.kind, 0, HF_LAYER_PEEL, message))
+        return HF_ERR_ARG;
+    if (!own.image || !own.depth)
+        return hf_bad(message, name, "has no %s", own.image ? "depth" : "image");
+    snprintf(image, sizeof image, "%s.image", name);
+    if (hf_sized_in(&to->image, own.image, &hf_sized_image, image, message) ||
+        hf_given_depth(&to->depth, own.depth, message) || hf_check_image(&to->image, image, message) ||
+        hf_check_depth(&to->depth, to->image.width, message))
+        return HF_ERR_ARG;
+    to->kind = own.kind;
+    return HF_OK;
+}
+
+int hf_take_layers(struct hf_surface_input *to, const struct hf_layer *layers, int count, struct hf_message *message)
+{
+    if (!layers)
+        return hf_bad(message, "layers", "is NULL");
+    if (count < 1 || count > HF_MOST_LAYERS)
+        return hf_bad(message, "count", "is %d; it must be 1 to %d", count, HF_MOST_LAYERS);
+    int peels = 0;
+    for (int i = 0; i < count; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "layers[%d]", i);
+        // Structs of another release's size follow each other at that size.
+        const struct hf_layer *given = (const void *)((const char *)layers + (size_t)i * layers->size);
+        if (take(&to[i], given, name, message))
+            return HF_ERR_ARG;
+        if (to[i].image.width != to->image.width || to[i].image.height != to->image.height)
+            return hf_bad(message, name, "is %d x %d pixels, the first layer %d x %d", to[i].image.width,
+                          to[i].image.height, to->image.width, to->image.height);
+        if ((to[i].depth.type == HF_DEPTH_COC) != (to->depth.type == HF_DEPTH_COC))
+            return hf_bad(message, name, "has distances and another layer has CoC radii; give one kind");
+        if (i == 0 && to[i].kind == HF_LAYER_PEEL)
+            return hf_bad(message, name, "is a peel, with nothing before it");
+        if (i > 0 && to[i].kind == HF_LAYER_WHOLE && to[i - 1].kind == HF_LAYER_PEEL)
+            return hf_bad(message, name, "is whole and follows a peel; peels come last");
+        peels += to[i].kind == HF_LAYER_PEEL;
+    }
+    if (peels && peels < count - 1)
+        return hf_bad(message, "layers", "holds %d peels behind %d whole layers; peels belong to one picture", peels,
+                      count - peels);
+    return HF_OK;
+}

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hidden samples at full resolution: those of known surfaces, and guesses where none is known.
+//
+// A known sample counts as far as visible ones cover its pixel (else it would stand beside what it continues), and only
+// if a lens can see it at all: past an object a lens sees no farther than the difference of the two radii. So within
+// that distance there must be a pixel whose surface is not nearer than the sample.
+#include <math.h>
+#include <string.h>
+
+#include "engine/layers/hidden.h"
+#include "pixel/pass_c.h"
+
+// A band of quads. farthest: the largest visible radius within a distance that grows from level to level. Of each
+// surface and quad: how far a lens sees past what hides it, in quads; the least radius that leaves it in view; and
+// whether some does, 0 to 1.
+struct band {
+    const struct hf_frame *f;
+    struct hf_rect r;
+    int reach;
+    ptrdiff_t wide, stride;  // of farthest, and of the others
+    float *farthest, *across, *apart[HF_MOST_BEHIND], *least[HF_MOST_BEHIND], *open[HF_MOST_BEHIND];
+};
+
+static size_t wide_floats(const struct hf_layers *l, int width)
+{
+    return ((size_t)width + 2 * (size_t)hf_layers_hidden_reach(l) + 15) / 16 * 16 + HF_PAD;
+}
+
+size_t hf_layers_known_floats(const struct hf_layers *l, int width, int height)
+{
+    if (!l->known)
+        return 0;
+    const size_t rows = (size_t)height + 2 * (size_t)hf_layers_hidden_reach(l);
+    return 2 * wide_floats(l, width) * rows + (size_t)(3 * HF_MOST_BEHIND) * (size_t)(width + HF_PAD) * (size_t)height;
+}
+
+static struct band place(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_layers *l = hf_layers(f->s);
+    const int width = r.x1 - r.x0, height = r.y1 - r.y0;
+    struct band b = {.f = f, .r = r, .reach = hf_layers_hidden_reach(l)};
+    float *memory = f->work;
+    b.wide = (ptrdiff_t)wide_floats(l, width);
+    b.stride = width + HF_PAD;
+    const ptrdiff_t all = b.wide * (height + 2 * b.reach), plane = b.stride * height;
+    b.farthest = memory + b.reach * b.wide + b.reach;
+    b.across = b.farthest + all;
+    memory += 2 * all;
+    for (int k = 0; k < HF_MOST_BEHIND; k++, memory += 3 * plane) {
+        b.apart[k] = memory;
+        b.least[k] = memory + plane;
+        b.open[k] = memory + 2 * plane;
+    }
+    return b;
+}
+
+// What hides a sample of surface k most closely: the surface before it, or what is visible.
+static float before_of(const struct hf_known *known, int k, ptrdiff_t at, float visible)
+{
+    return k > 0 && known->behind[k - 1].weight[at] > 0 ? fmaxf(known->behind[k - 1].radius[at], visible) : visible;
+}
+
+// Note what the samples of a row of quads need.
+static void look_row(const struct band *b, int k, int y)
+{
+    const struct hf_frame *f = b->f;
+    const struct hf_known *known = hf_layers(f->s)->given;
+    float *apart = b->apart[k] + (y - b->r.y0) * b->stride, *least = b->least[k] + (y - b->r.y0) * b->stride;
+    memset(apart, 0, sizeof *apart * (size_t)(b->r.x1 - b->r.x0));
+    memset(b->open[k] + (y - b->r.y0) * b->stride, 0, sizeof *apart * (size_t)(b->r.x1 - b->r.x0));
+    for (int py = 2 * y; py < hf_min(2 * y + 2, f->s->height); py++) {
+        const ptrdiff_t row = py * known->stride;
+        const float *weight = known->behind[k].weight + row, *radius = known->behind[k].radius + row;
+        const float *visible = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 0, py);
+        for (int x = 2 * b->r.x0; x < hf_min(2 * b->r.x1, f->s->width); x++) {
+            const int q = x / 2 - b->r.x0;
+            const float d = weight[x] > 0 ? (radius[x] - before_of(known, k, row + x, visible[x])) * 0.5f : 0;
+            least[q] = d > apart[q] ? radius[x] - 1 : least[q];
+            apart[q] = d > apart[q] ? d : apart[q];
+        }
+    }
+}
+
+// Test whether something within `from` quads leaves the samples in view; it counts fully for those that a lens sees by
+// as much, and not at all for those it sees by less than `before`.
+static void test(const struct band *b, int k, int before, int from)
+{
+    const float scale = from > before ? 1 / (float)(from - before) : 1;
+    for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
+        const ptrdiff_t row = (y - b->r.y0) * b->stride;
+        const float *apart = b->apart[k] + row, *least = b->least[k] + row,
+                    *farthest = b->farthest + (y - b->r.y0) * b->wide;
+        float *open = b->open[k] + row;
+        for (int x = 0; x < b->r.x1 - b->r.x0; x++) {
+            const float reached = from > 0 ? hf_saturate((apart[x] - (float)before) * scale) : 1;
+            const float v = reached * (1 - hf_layers_hides(least[x] - farthest[x]));
+            open[x] = v > open[x] ? v : open[x];
+        }
+    }
+}
+
+// Grow the distance by `step` quads. have: how far around the band there are samples; afterwards `step` less.
+static void grow(const struct band *b, int step, int have)
+{
+    const int height = b->r.y1 - b->r.y0, width = b->r.x1 - b->r.x0, left = have - step;
+    for (int y = -have; y < height + have && !hf_stopped(b->f->s->stop); y++) {
+        const float *in = b->farthest + y * b->wide;
+        float *out = b->across + y * b->wide;
+        for (int x = -left; x < width + left; x++) {
+            const float a = in[x - step] > in[x] ? in[x - step] : in[x];
+            out[x] = a > in[x + step] ? a : in[x + step];
+        }
+    }
+    for (int y = -left; y < height + left && !hf_stopped(b->f->s->stop); y++) {
+        const float *in = b->across + y * b->wide, *above = in - step * b->wide, *below = in + step * b->wide;
+        float *out = b->farthest + y * b->wide;
+        for (int x = -left; x < width + left; x++) {
+            const float a = above[x] > in[x] ? above[x] : in[x];
+            out[x] = a > below[x] ? a : below[x];
+        }
+    }
+}
+
+// Find which samples a lens can see.
+static void find_open(const struct band *b)
+{
+    const struct hf_buf *quads = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
+    const int count = hf_layers(b->f->s)->given->count;
+    float most = 0;
+    for (int y = b->r.y0 - b->reach; y < b->r.y1 + b->reach && !hf_stopped(b->f->s->stop); y++)
+        memcpy(b->farthest + (y - b->r.y0) * b->wide - b->reach, hf_at(quads, 1, b->r.x0 - b->reach, y),
+               sizeof(float) * (size_t)(b->r.x1 - b->r.x0 + 2 * b->reach));
+    for (int k = 0; k < count; k++)
+        for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
+            look_row(b, k, y);
+            for (int x = 0; x < b->r.x1 - b->r.x0; x++)
+                most = fmaxf(b->apart[k][(y - b->r.y0) * b->stride + x], most);
+        }
+    // Distances 0, 1, 3, 7 and so on.
+    for (int from = 0, before = 0, step = 1; !hf_stopped(b->f->s->stop); step *= 2) {
+        for (int k = 0; k < count; k++)
+            test(b, k, before, from);
+        if ((float)from >= most || from + step > b->reach)
+            break;
+        grow(b, step, b->reach - from);
+        before = from;
+        from += step;
+    }
+}
+
+// Rows of samples: colour, weight (4), radius (5).
+static void planes_at(const struct hf_frame *f, int colour, int at, int x, int y, float *row[6])
+{
+    hf_row(&f->buf[colour], f->s->channels, x, y, row);
+    row[4] = hf_at(&f->buf[at], 0, x, y);
+    row[5] = hf_at(&f->buf[at], 1, x, y);
+}
+
+// The visible samples of a row of pixels: the first, and those behind mixed edges.
+struct seen {
+    const float *weight[2], *radius[2];
+};
+
+// How much of a pixel lies at least a pixel of radius before r.
+static float cover(const struct seen *s, int x, float r)
+{
+    float sum = 0;
+    for (int i = 0; i < 2; i++)
+        if (s->weight[i][x] > 0)
+            sum = sum + s->weight[i][x] * hf_layers_hides(r - 1 - s->radius[i][x]);
+    return sum;
+}
+
+// A lens that sees little past an edge needs pixels, not quads: up to NARROW pixels each one around is tested. From half
+// of that on quads begin to count.
+enum { NARROW = 8 };
+
+// Whether a pixel within `apart` pixels leaves a sample of radius r in view, 0 to 1.
+static float narrow(const struct hf_frame *f, int x, int y, float apart, float r)
+{
+    const struct hf_buf *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT], *mixed = &f->buf[HF_LAYERS_BUF_MIXED_AT];
+    const int reach = (int)apart + 1;
+    float open = 0;
+    for (int v = -reach; v <= reach && open < 1; v++)
+        for (int u = -reach; u <= reach && open < 1; u++) {
+            const float reached = hf_saturate(apart + 0.5f - sqrtf((float)(u * u + v * v)));
+            if (!(reached > open))
+                continue;
+            const float back = *hf_at(mixed, 0, x + u, y + v) > 0 ? *hf_at(mixed, 1, x + u, y + v) : -HUGE_VALF;
+            const float here = reached * (1 - hf_layers_hides(r - 1 - fmaxf(*hf_at(seen, 1, x + u, y + v), back)));
+            open = here > open ? here : open;
+        }
+    return open;
+}
+
+// Replace guesses by a known surface.
+static void take_known(const struct band *b, int k, const struct seen *seen, int y, float *const out[6])
+{
+    const struct hf_frame *f = b->f;
+    const struct hf_surface *known = &hf_layers(f->s)->given->behind[k];
+    const float *open = b->open[k] + (y / 2 - b->r.y0) * b->stride;
+    const int x0 = 2 * b->r.x0, n = hf_min(2 * b->r.x1, f->s->width) - x0;
+    const ptrdiff_t at = y * hf_layers(f->s)->given->stride + x0;
+    const float largest = hf_layers(f->s)->largest;
+    for (int i = 0; i < n; i++) {
+        const float all = known->weight[at + i];
+        if (!(all > 0))
+            continue;
+        const float r = known->radius[at + i], most = cover(seen, i, r);
+        const float apart = most > 0 ? r - before_of(hf_layers(f->s)->given, k, at + i, seen->radius[0][i]) : NARROW;
+        float view = open[i / 2];
+        if (apart < NARROW) {
+            const float part = hf_saturate(2 - apart * (2.0f / NARROW));
+            view = view + part * (narrow(f, x0 + i, y, apart > 0 ? apart : 0, r) - view);
+        }
+        out[4][i] = (all < most ? all : most) * view;
+        out[5][i] = r;
+        for (int c = 0; c < f->s->channels; c++) {
+            const float v = known->colour[c][at + i] / all;
+            out[c][i] = v < -largest ? -largest : v < largest ? v : largest;
+        }
+    }
+}
+
+static void make_row(const struct band *b, int y)
+{
+    static const int guess[2][2] = {{HF_LAYERS_BUF_HIDDEN, HF_LAYERS_BUF_HIDDEN_AT},
+                                    {HF_LAYERS_BUF_BEYOND, HF_LAYERS_BUF_BEYOND_AT}},
+                     known[2][2] = {{HF_LAYERS_BUF_SECOND, HF_LAYERS_BUF_SECOND_AT},
+                                    {HF_LAYERS_BUF_THIRD, HF_LAYERS_BUF_THIRD_AT}};
+    static const int visible[2] = {HF_LAYERS_BUF_SEEN_AT, HF_LAYERS_BUF_MIXED_AT};
+    const struct hf_frame *f = b->f;
+    const int x = 2 * b->r.x0;
+    const float *radius[4], *weight[4];
+    struct seen seen;
+    for (int i = 0; i < 4; i++) {
+        const struct hf_buf *at = &f->buf[visible[i / 2]];
+        const int row = hf_min((y & ~1) + i % 2, f->s->height - 1);
+        weight[i] = hf_at(at, 0, x, row);
+        radius[i] = hf_at(at, 1, x, row);
+    }
+    for (int i = 0; i < 2; i++) {
+        seen.weight[i] = hf_at(&f->buf[visible[i]], 0, x, y);
+        seen.radius[i] = hf_at(&f->buf[visible[i]], 1, x, y);
+    }
+    for (int k = 0; k < 2; k++) {
+        float *in[6] = {NULL}, *out[6] = {NULL};
+        planes_at(f, guess[k][0], guess[k][1], x / 2, y / 2, in);
+        planes_at(f, known[k][0], known[k][1], x, y, out);
+        hf_layers_kernels(f)->spread((const float *const *)in, radius, weight, y & 1, f->s->channels, b->r.x1 - b->r.x0,
+                                     out);
+        if (k < hf_layers(f->s)->given->count)
+            take_known(b, k, &seen, y, out);
+    }
+}
+
+void hf_layers_known_pass(const struct hf_frame *f, struct hf_rect r)
+{
+    if (!hf_layers(f->s)->known)
+        return;
+    const struct band b = place(f, r);
+    find_open(&b);
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
+        make_row(&b, y);
+    if (!hf_stopped(f->s->stop))
+        hf_layers_mark_hidden(f, r);
+}
+
+void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r)
+{
+    const struct hf_known *known = hf_layers(f->s)->given;
+    const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
+    for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
+        const ptrdiff_t at = y * known->stride + x0;
+        float *colour[4] = {NULL}, *seen[6] = {NULL}, *mixed[6] = {NULL};
+        hf_row(&f->buf[HF_LAYERS_BUF_COLOUR], f->s->channels, x0, y, colour);
+        planes_at(f, HF_LAYERS_BUF_SEEN, HF_LAYERS_BUF_SEEN_AT, x0, y, seen);
+        planes_at(f, HF_LAYERS_BUF_MIXED, HF_LAYERS_BUF_MIXED_AT, x0, y, mixed);
+        for (int x = 0; x < n; x++) {
+            const float w = known->front.weight[at + x];
+            if (!(w > HF_LAYERS_LEAST && w < 1 - HF_LAYERS_LEAST))
+                continue;
+            for (int c = 0; c < f->s->channels; c++) {
+                const float front = known->front.colour[c][at + x];
+                seen[c][x] = front / w;
+                mixed[c][x] = (colour[c][x] - front) / (1 - w);
+            }
+            seen[4][x] = w;
+            mixed[4][x] = 1 - w;
+            seen[5][x] = known->front.radius[at + x];
+            mixed[5][x] = known->rest[at + x];
+        }
+    }
+}

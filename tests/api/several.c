@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Several pictures with depth in one call: what hf_render_layers takes and refuses, and what must not change a picture.
+#include <math.h>
+#include <string.h>
+
+#include "support/check.h"
+#include "hyperfocal/layers.h"
+
+enum { W = 150, H = 101, N = W * H };
+
+struct picture {
+    float rgba[4 * N], z[N];
+    struct hf_image image;
+    struct hf_depth depth;
+};
+
+static void make(struct picture *p)
+{
+    p->image = (struct hf_image){.size = sizeof p->image,
+                                 .width = W,
+                                 .height = H,
+                                 .format = HF_FORMAT_RGBA32F,
+                                 .data = {p->rgba},
+                                 .stride = {W * 4 * sizeof(float)}};
+    p->depth = (struct hf_depth){.size = sizeof p->depth, .data = p->z, .stride = W * sizeof(float)};
+}
+
+static void set(struct picture *p, int x, int y, float r, float g, float b, float a, float z)
+{
+    float *c = p->rgba + 4 * (y * W + x);
+    c[0] = a * r;
+    c[1] = a * g;
+    c[2] = a * b;
+    c[3] = a;
+    p->z[y * W + x] = z;
+}
+
+static struct hf_layer layer_of(const struct picture *p, enum hf_layer_kind kind)
+{
+    return (struct hf_layer){.size = sizeof(struct hf_layer), .kind = kind, .image = &p->image, .depth = &p->depth};
+}
+
+static struct picture front, back, whole, nothing, peel, out[2];
+static struct hf_context *context;
+static struct hf_params params;
+
+// A near bar with soft edges before a far wall that is green where the bar hides it and blue elsewhere.
+static void paint(void)
+{
+    struct picture *const all[] = {&front, &back, &whole, &nothing, &peel, &out[0], &out[1]};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        make(all[i]);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const float a = fminf(fmaxf(9.5f - fabsf((float)x - W / 2.0f), 0), 1);
+            const int hidden = a > 0;
+            set(&front, x, y, 0.8f, 0.1f, 0.1f, a, a > 0 ? 2 : INFINITY);
+            set(&back, x, y, 0, hidden, !hidden, 1, 20);
+            set(&nothing, x, y, 0, 0, 0, 0, 3);
+            set(&whole, x, y, 0.8f * a, 0.1f * a + (1 - a) * hidden, 0.1f * a + (1 - a) * !hidden, 1,
+                a >= 0.5f ? 2 : 20);
+            set(&peel, x, y, 0, hidden, !hidden, a, 20);
+        }
+}
+
+static int render(struct picture *to, const struct hf_layer *layers, int count)
+{
+    memset(to->rgba, 0, sizeof to->rgba);
+    return hf_render_layers(context, &to->image, layers, count, &params, NULL);
+}
+
+static int same(void)
+{
+    return !memcmp(out[0].rgba, out[1].rgba, sizeof out[0].rgba);
+}
+
+// The most green anywhere: the bar hides it, so a lens alone can bring it out.
+static float green(const struct picture *p)
+{
+    float most = 0;
+    for (int i = 0; i < N; i++)
+        most = fmaxf(p->rgba[4 * i + 1], most);
+    return most;
+}
+
+static void test_neutral(void)
+{
+    const struct hf_layer one[] = {layer_of(&whole, HF_LAYER_WHOLE)},
+                          two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)},
+                          turned[] = {two[1], two[0]}, more[] = {two[0], layer_of(&nothing, HF_LAYER_WHOLE), two[1]};
+    CHECK_INT(render(&out[0], one, 1), HF_OK);
+    CHECK_INT(hf_render(context, &out[1].image, &whole.image, &whole.depth, &params), HF_OK);
+    CHECK_MSG(same(), "one layer is not hf_render");
+    CHECK_INT(render(&out[0], two, 2), HF_OK);
+    CHECK_INT(render(&out[1], turned, 2), HF_OK);
+    CHECK_MSG(same(), "the order of layers counts");
+    CHECK_INT(render(&out[1], more, 3), HF_OK);
+    CHECK_MSG(same(), "a layer of alpha 0 counts");
+}
+
+// What the bar hides is seen beside it. One picture cannot know that colour.
+static void test_hidden(void)
+{
+    const struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)},
+                          peels[] = {layer_of(&whole, HF_LAYER_WHOLE), layer_of(&peel, HF_LAYER_PEEL)};
+    CHECK_INT(render(&out[0], two, 2), HF_OK);
+    CHECK_MSG(green(&out[0]) > 0.5f, "layers: only %g of what the bar hides", green(&out[0]));
+    CHECK_INT(render(&out[0], peels, 2), HF_OK);
+    CHECK_MSG(green(&out[0]) > 0.5f, "peels: only %g of what the bar hides", green(&out[0]));
+}
+
+// Where all surfaces have one colour and fill the frame, so has the result: to 64 roundings of sums in the slices.
+static void test_constant(void)
+{
+    static struct picture a, b;
+    make(&a);
+    make(&b);
+    for (int i = 0; i < N; i++) {
+        set(&a, i % W, i / W, 0.5f, 0.5f, 0.5f, i % W / 20 % 2 ? 1 : 0, 2);
+        set(&b, i % W, i / W, 0.5f, 0.5f, 0.5f, 1, i / W > H / 2 ? 20 : 6);
+    }
+    const struct hf_layer two[] = {layer_of(&a, HF_LAYER_WHOLE), layer_of(&b, HF_LAYER_WHOLE)};
+    CHECK_INT(render(&out[0], two, 2), HF_OK);
+    float off = 0;
+    for (int i = 0; i < 4 * N; i++)
+        off = fmaxf(fabsf(out[0].rgba[i] - (i % 4 == 3 ? 1 : 0.5f)), off);
+    CHECK_MSG(off <= 64 * 1.2e-7f, "a constant scene is off by %g", off);
+}
+
+static void test_region(void)
+{
+    const struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)};
+    const struct hf_region part = {.size = sizeof part, .x = 40, .y = 20, .width = 50, .height = 33};
+    CHECK_INT(render(&out[0], two, 2), HF_OK);
+    memset(out[1].rgba, 0, sizeof out[1].rgba);
+    CHECK_INT(hf_render_layers(context, &out[1].image, two, 2, &params, &part), HF_OK);
+    int other = 0;
+    for (int i = 0; i < 4 * N; i++) {
+        const int x = i / 4 % W, y = i / 4 / W, in = x >= 40 && x < 90 && y >= 20 && y < 53;
+        other += memcmp(&out[1].rgba[i], in ? &out[0].rgba[i] : &(float){0}, sizeof(float)) != 0;
+    }
+    CHECK_INT(other, 0);
+}
+
+// 1 if the call is refused with a sentence that holds a word.
+static int refused(const struct hf_layer *layers, int count, const char *word)
+{
+    struct hf_message why = {.size = sizeof why};
+    return render(&out[0], layers, count) == HF_ERR_ARG && hf_get_problem(context, &why) == HF_OK &&
+           strstr(why.sentence, word) != NULL;
+}
+
+static void test_refused(void)
+{
+    struct hf_layer two[] = {layer_of(&whole, HF_LAYER_WHOLE), layer_of(&peel, HF_LAYER_PEEL)};
+    CHECK(refused(NULL, 1, "layers"));
+    CHECK(refused(two, 0, "count"));
+    CHECK(refused(two, 65, "count"));
+    CHECK(refused(two + 1, 1, "layers[0]"));
+    two[1].reserved = 1;
+    CHECK(refused(two, 2, "layers[1]"));
+    two[1] = layer_of(&peel, (enum hf_layer_kind)7);
+    CHECK(refused(two, 2, "layers[1]"));
+    two[1] = layer_of(&peel, HF_LAYER_PEEL);
+    two[1].depth = NULL;
+    CHECK(refused(two, 2, "layers[1]"));
+    two[1].depth = &peel.depth;
+    peel.image.width--;
+    CHECK(refused(two, 2, "layers[1]"));
+    peel.image.width++;
+    params.engine = HF_ENGINE_SCATTER;
+    CHECK(refused(two, 2, "scatter"));
+    params.engine = HF_ENGINE_LAYERS;
+}
+
+int main(void)
+{
+    const struct hf_config config = {.size = sizeof config, .threads = 2};
+    params = hf_default_params();
+    params.engine = HF_ENGINE_LAYERS;
+    params.model = HF_MODEL_LENS;
+    params.focus = 6;
+    params.lens.f_number = 0.5f;
+    params.lens.focal_length_mm = 30;
+    if (!CHECK_INT(hf_open(&context, &config), HF_OK))
+        return check_report();
+    paint();
+    for (int quality = HF_LAYERS_STANDARD; quality <= HF_LAYERS_BEST; quality++) {
+        params.layers.quality = (enum hf_layers_quality)quality;
+        test_neutral();
+        test_hidden();
+        test_constant();
+        test_region();
+    }
+    params.layers.quality = HF_LAYERS_STANDARD;
+    test_refused();
+    hf_close(&context);
+    return check_report();
+}
