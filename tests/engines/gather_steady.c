@@ -165,7 +165,7 @@ static double jump_of(struct hf_context *c, const struct shot *s, struct rng *rn
         double from = place[k], to = place[k] + width;
         if (worst[k] <= MOST)
             continue;
-        const double jump = step_left(at, &w, HALVINGS, &from, &to);
+        const double jump = step_left(at, display_distance, &w, HALVINGS, &from, &to);
         CHECK_MSG(jump <= MOST, "%s: %s jumps by %.3g codes at %.9g", s->name, pull_names[w.pull], jump, from);
         left = fmax(left, jump);
     }
@@ -210,7 +210,7 @@ static void second_kernel(struct hf_context *c)
     struct pulling w = {c, &s, PULL_APERTURE};
     const float at_two = s.p.lens.f_number;
     double from = (double)at_two * 0.99, to = (double)at_two * 1.01;
-    const double left = step_left(at, &w, HALVINGS, &from, &to);
+    const double left = step_left(at, display_distance, &w, HALVINGS, &from, &to);
     CHECK_MSG(left <= MOST, "where the near radius passes 2 pixels the picture jumps by %.3g codes", left);
     printf("where the near radius passes 2 pixels the picture jumps by %.3g codes\n", left);
     scene_free(&s.scene);
