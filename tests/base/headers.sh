@@ -37,6 +37,12 @@ else
     exr=none
 fi
 
+if pkg-config --exists gtk4 2>/dev/null; then
+    gtk=$(pkg-config --cflags gtk4)
+else
+    gtk=none
+fi
+
 # Include the public headers as an application does.
 stub=$(mktemp -d) || exit 1
 trap 'rm -rf "$stub"' EXIT
@@ -68,6 +74,9 @@ for header in $(find src tests bench -name '*.h' | grep -v '^tests/abi/[0-9]' | 
     src/tools/io/* | tests/io/*)
         [ "$exr" != none ] || continue
         flags=$exr isa=$family ;;
+    src/tools/view/*)
+        [ "$gtk" != none ] || continue
+        flags=$gtk isa=$family ;;
     *) isa=$family ;;
     esac
     [ "$isa" = "$family" ] || continue
