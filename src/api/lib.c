@@ -262,10 +262,15 @@ static int run_resolved(struct hf_context *c, const struct hf_image *dst, const 
 // Choose the settings that fit the time budget, and resolve them. Returns how many settings there are to choose from, or an
 // error.
 static int choose(struct hf_context *c, struct hf_settings *r, const struct hf_params *p, const struct hf_depth *depth,
-                  const char **options, struct hf_message *message)
+                  int several, const char **options, struct hf_message *message)
 {
     struct hf_params ladder[HF_BUDGET_STEPS];
-    const int steps = hf_budget_ladder(p, hf_asked_radius(p, depth->type, r->params.view.display_height), ladder);
+    const int all = hf_budget_ladder(p, hf_asked_radius(p, depth->type, r->params.view.display_height), ladder);
+    int steps = 0;
+    // Of several pictures only engines that take them.
+    for (int i = 0; i < all; i++)
+        if (!several || hf_engine_def(ladder[i].engine)->own.know)
+            ladder[steps++] = ladder[i];
     const int step = hf_budget_choose(&c->budget, ladder, steps);
     const int err = hf_params_resolve(r, r->width, r->height, depth, &ladder[step], message);
     *options = step ? hf_budget_options(p, &ladder[step]) : NULL;
@@ -370,7 +375,7 @@ static int settle(struct hf_context *c, const struct call *call, struct hf_setti
         c->budget.step = 0;
     if (err || !budget)
         return err;
-    *steps = choose(c, r, p, &call->depth, options, message);
+    *steps = choose(c, r, p, &call->depth, call->count > 1, options, message);
     return hf_min(*steps, 0);
 }
 

@@ -8,7 +8,11 @@
 #include "pixel/format.h"
 #include "pixel/pass_c.h"
 
-enum { ROWS = 16 };  // of a piece of work
+enum {
+    ROWS = 16,        // of a piece of work
+    FOUND_REACH = 2,  // how far from an edge's pixel its surface is looked for
+    FOUND_LINES = 6   // for that: a row of a layer, and what was found
+};
 
 struct reading {
     struct hf_context *c;
@@ -200,6 +204,40 @@ static void merge_pixel(const struct reading *r, const float *const *lines, int 
     counts->radius_max = open > 0 ? fmaxf(counts->radius_max, empty) : counts->radius_max;
 }
 
+// Whether a pixel of a layer has a part of a surface, and the depth of none: renderers sample the depth of an edge's pixel
+// once, beside the surface too. A radius this near that of nothing is blurred like it.
+static int is_lost(const struct reading *r, const struct hf_setup *s, const float *const *line, int x)
+{
+    const float beside = 1e-3f;
+    return s->channels == 4 && line[3][x] > 0 && line[3][x] < 1 && line[4][x] >= r->empty - beside;
+}
+
+// Give such pixels of a row the radius of the nearest surface around.
+static void find_lost(const struct reading *r, const struct hf_frame *f, int y, float *const line[5], float *lines)
+{
+    const struct hf_setup *s = f->s;
+    float *found = lines + 5 * r->line_floats, *around[5];
+    int lost = 0;
+    for (int x = 0; x < s->width && s->form != HF_FORM_COC; x++)
+        lost |= is_lost(r, s, (const float *const *)line, x);
+    if (!lost)
+        return;
+    for (int x = 0; x < s->width; x++)
+        found[x] = line[4][x];
+    for (int c = 0; c < 5; c++)
+        around[c] = lines + (size_t)c * r->line_floats;
+    for (int v = hf_max(y - FOUND_REACH, 0); v <= hf_min(y + FOUND_REACH, s->height - 1); v++) {
+        hf_read_pixels(f, 0, v, s->half_width, around, f->seen);
+        f->k->radius_row(f, 0, v, s->width, around[4], NULL);
+        for (int x = 0; x < s->width; x++)
+            if (is_lost(r, s, (const float *const *)line, x))
+                for (int u = hf_max(x - FOUND_REACH, 0); u <= hf_min(x + FOUND_REACH, s->width - 1); u++)
+                    found[x] = around[3][u] > 0 && around[4][u] < found[x] ? around[4][u] : found[x];
+    }
+    for (int x = 0; x < s->width; x++)
+        line[4][x] = found[x];
+}
+
 static void merge_piece(void *arg, int i, int worker)
 {
     const struct reading *r = arg;
@@ -214,6 +252,7 @@ static void merge_piece(void *arg, int i, int worker)
             }
             hf_read_pixels(&f, 0, y, r->s->half_width, to, f.seen);
             f.k->radius_row(&f, 0, y, r->s->width, to[4], NULL);
+            find_lost(r, &f, y, to, f.depth_lines + (size_t)(HF_DEPTH_LINES + 5 * r->count) * r->line_floats);
         }
         for (int x = 0; x < r->s->width; x++)
             merge_pixel(r, lines, x, y * r->known->stride + x, r->empty, &r->counts[worker]);
@@ -225,7 +264,7 @@ int hf_surfaces_merge(struct hf_context *c, const struct hf_setup *s, const stru
 {
     struct hf_setup setup[HF_MOST_LAYERS];
     struct reading r = {.c = c, .s = s, .in = in, .known = known, .fused = fused, .count = count};
-    float *memory = begin(&r, setup, count, 6 * (HF_MOST_BEHIND + 1) + 6, 5 * (size_t)count);
+    float *memory = begin(&r, setup, count, 6 * (HF_MOST_BEHIND + 1) + 6, 5 * (size_t)count + FOUND_LINES);
     if (!memory)
         return HF_ERR_MEMORY;
     known->count = HF_MOST_BEHIND;

@@ -98,6 +98,36 @@ static void test_neutral(void)
     CHECK_MSG(same(), "a layer of alpha 0 counts");
 }
 
+// A renderer's depth of an edge's pixel may be that of nothing. Its surface is the one beside it.
+static void test_edges(void)
+{
+    struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)};
+    int soft = 0;
+    CHECK_INT(render(&out[0], two, 2), HF_OK);
+    peel = front;
+    make(&peel);
+    for (int i = 0; i < N; i++)
+        if (peel.rgba[4 * i + 3] > 0 && peel.rgba[4 * i + 3] < 1) {
+            peel.z[i] = i % 2 ? INFINITY : 1e10f;
+            soft++;
+        }
+    CHECK(soft > 0);
+    two[0] = layer_of(&peel, HF_LAYER_WHOLE);
+    CHECK_INT(render(&out[1], two, 2), HF_OK);
+    CHECK_MSG(same(), "edges without a depth");
+    paint();
+}
+
+// A budget that nothing keeps may choose cheaper settings, but only of engines that take several pictures.
+static void test_budget(void)
+{
+    const struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)};
+    params.run.budget_ms = 1e-6f;
+    for (int i = 0; i < 6; i++)
+        CHECK_INT(render(&out[0], two, 2), HF_OK);
+    params.run.budget_ms = 0;
+}
+
 // What the bar hides is seen beside it. One picture cannot know that colour.
 static void test_hidden(void)
 {
@@ -188,11 +218,13 @@ int main(void)
     for (int quality = HF_LAYERS_STANDARD; quality <= HF_LAYERS_BEST; quality++) {
         params.layers.quality = (enum hf_layers_quality)quality;
         test_neutral();
+        test_edges();
         test_hidden();
         test_constant();
         test_region();
     }
     params.layers.quality = HF_LAYERS_STANDARD;
+    test_budget();
     test_refused();
     hf_close(&context);
     return check_report();

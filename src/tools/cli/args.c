@@ -32,8 +32,8 @@ static void set_defaults(struct cli_args *args)
 // values that differ from frame to frame are not listed here; resume.c adds them.
 static int makes_picture(const struct tool_option *o)
 {
-    static const char *const others[] = {"views",       "layer",         "grow",     "display",
-                                         "compression", "deterministic", "budget-ms"};
+    static const char *const others[] = {"views",   "layer",       "merge",         "grow",
+                                         "display", "compression", "deterministic", "budget-ms"};
     static const char *const per_frame[] = {"depth-file", "keys", "keys-blend", "focus-smooth", "print-focus"};
     for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
         if (!strcmp(o->name, others[i]))
@@ -76,8 +76,10 @@ void cli_free_args(struct cli_args *args)
 {
     free(args->settings);
     free(args->inputs);
-    args->settings = NULL;
-    args->inputs = NULL;
+    free(args->others);
+    free(args->layers);
+    args->settings = args->layers = NULL;
+    args->inputs = args->others = NULL;
 }
 
 static int given(float number)
@@ -211,6 +213,43 @@ static int check_engine(const struct cli_args *args, const struct tool_parser *p
     return 0;
 }
 
+int cli_others_peel(const struct cli_args *args)
+{
+    return args->other_option && !strcmp(args->other_option, "--peel");
+}
+
+// Check options that make several pictures one scene.
+static int check_others(const struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
+{
+    enum { MOST_OVER = 63, MOST_PEELS = 2 };  // of hf_render_layers, beside INPUT
+    // Those that say how one picture becomes what is blurred.
+    static const char *const alone[] = {"depth-file", "blur", "grow", "highlight-gain"};
+    const char *option = args->merge ? "--merge" : args->other_option;
+    const int peels = cli_others_peel(args);
+    if (!option)
+        return 0;
+    for (size_t i = 0; i < sizeof(alone) / sizeof(alone[0]); i++)
+        if (tool_given(parser, alone[i]))
+            return tool_fail(error, -1, "--%s cannot be used with %s: it is for one picture alone", alone[i], option);
+    if (args->merge && tool_given(parser, "depth-channel"))
+        return tool_fail(error, -1, "--depth-channel %s cannot be used with --merge: each layer has its own depth",
+                         args->depth_channel);
+    if (args->merge && (!args->layer || (!strchr(args->layer, ',') && strcmp(args->layer, "all"))))
+        return tool_fail(error, -1, "--merge needs several layers, name them with --layer");
+    if (args->merge && peels)
+        return tool_fail(error, -1, "--merge and --peel cannot be given together: peels are what one picture hides");
+    if (peels && args->other_count > MOST_PEELS)
+        return tool_fail(error, -1, "--peel is given %d times; a picture and %d surfaces behind it are used at most",
+                         args->other_count, MOST_PEELS);
+    if (args->other_count > MOST_OVER)
+        return tool_fail(error, -1, "--over is given %d times; %d is the most", args->other_count, MOST_OVER);
+    // What --quality chooses is checked by the library.
+    if (args->quality < 0 && !given(args->max_error) && args->params.engine != HF_ENGINE_LAYERS)
+        return tool_fail(error, -1, "%s is of use only with --engine layers, not %s", option,
+                         hf_engine_name(args->params.engine));
+    return 0;
+}
+
 static int check_files(const struct cli_args *args, struct tool_error *error)
 {
     if (!args->input)
@@ -307,7 +346,8 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_err
     struct tool_parser p = {.program = &cli_program, .args = args, .error = error, .word = on_word, .seen = on_option};
     set_defaults(args);
     args->inputs = calloc((size_t)argc + 1, sizeof(*args->inputs));
-    if (!args->inputs)
+    args->others = calloc((size_t)argc + 1, sizeof(*args->others));
+    if (!args->inputs || !args->others)
         return tool_fail(error, -1, "out of memory");
     if (tool_parse_line(&p, argc - 1, argv + 1))
         return -1;
@@ -327,7 +367,8 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_err
     }
     if (args->views && !strcmp(args->views, "all"))
         args->views = NULL;
-    if (check_files(args, error) || check_engine(args, &p, error) || check_model(args, error))
+    if (check_files(args, error) || check_engine(args, &p, error) || check_model(args, error) ||
+        check_others(args, &p, error))
         return -1;
     return 0;
 }

@@ -78,6 +78,12 @@ struct cli_args {
 
     const char *views;  // NULL: all, else names with commas
     const char *layer;  // likewise; NULL: the main one
+    char *layers;       // what --layer gave several times, joined by commas: args->layer then
+    // Other pictures of the scene, see surfaces.h: files of --over or --peel, or layers of --layer.
+    const char **others;  // as given; of a frame: its own files
+    int other_count;
+    const char *other_option;  // "--over", "--peel"; NULL: there are none
+    int merge;                 // --merge
     const char *compression;
     int zip_level;   // 0: not given
     int grow;        // --grow: enlarge the data window by the reach of the blur
@@ -97,13 +103,15 @@ extern const struct tool_program cli_program;
 
 // Parsers of values that only this program has.
 tool_parse cli_parse_depth_type, cli_parse_display, cli_parse_focus, cli_parse_focus_at, cli_parse_focus_object,
-    cli_parse_focus_point, cli_parse_aperture, cli_parse_json, cli_parse_version;
+    cli_parse_focus_point, cli_parse_aperture, cli_parse_json, cli_parse_layer, cli_parse_other, cli_parse_version;
 
 // 1 if the focus is read from the depth, so that cli_setup_view needs its pixels.
 int cli_focus_needs_depth(const struct cli_args *args);
 // Check that the engine uses --near and --far if they were given. Returns 0, or CLI_BAD_ARGUMENTS with one sentence in
 // *error. cli_parse_args calls it when the command line names the engine, cli_setup_view when --quality chooses it.
 int cli_check_planes(const struct cli_args *args, enum hf_engine engine, struct tool_error *error);
+// 1 if the pictures of --over or --peel are peels.
+int cli_others_peel(const struct cli_args *args);
 // Fill *args from the command line; argv[0] is skipped. Returns 0, or -1 with one sentence in *error. Does not look at
 // what follows -h or --version.
 int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_error *error);

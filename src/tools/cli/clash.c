@@ -10,7 +10,7 @@
 #include "tools/cli/args.h"
 #include "tools/io/out.h"
 
-enum role { INPUT, DEPTH_FILE, OUTPUT, LOG };
+enum role { INPUT, DEPTH_FILE, OTHER, OUTPUT, LOG };
 
 // A file that the shot reads or writes.
 struct entry {
@@ -108,13 +108,15 @@ static int by_file(const void *a, const void *b)
                                 : (x->frame > y->frame) - (x->frame < y->frame);
 }
 
-static int complain(const struct entry *writer, const struct entry *other, int over_itself, struct tool_error *error)
+static int complain(const struct entry *writer, const struct entry *other, int over_itself, const char *option,
+                    struct tool_error *error)
 {
+    const char *named = other->role == OTHER ? option : "--depth-file";
     if (writer->role == LOG)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "--log %s would be written into %s %s, the same file", writer->path,
                          other->role == OUTPUT  ? "OUTPUT"
                          : other->role == INPUT ? "INPUT"
-                                                : "--depth-file",
+                                                : named,
                          other->path);
     if (other->role == OUTPUT)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s and %s would both be written to %s%s%s", other->input,
@@ -123,10 +125,10 @@ static int complain(const struct entry *writer, const struct entry *other, int o
     if (over_itself)
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s would be written over INPUT, give a sequence another OUTPUT",
                          writer->path);
-    if (other->role == DEPTH_FILE)
+    if (other->role == DEPTH_FILE || other->role == OTHER)
         return tool_fail(error, CLI_BAD_ARGUMENTS,
-                         "%s would be written to %s, the same file as --depth-file %s of %s: give another OUTPUT",
-                         writer->input, writer->path, other->path, other->input);
+                         "%s would be written to %s, the same file as %s %s of %s: give another OUTPUT", writer->input,
+                         writer->path, named, other->path, other->input);
     return tool_fail(error, CLI_BAD_ARGUMENTS,
                      "%s would be written to %s, the same file as INPUT %s of another frame: give another OUTPUT",
                      writer->input, writer->path, other->path);
@@ -144,7 +146,7 @@ static int same_name(const char *a, const char *b)
 
 // roles: all uses of one file, sorted by role. Fails if the last of them writes the file and another one loses by
 // that.
-static int check_file(const struct entry *roles, int count, struct tool_error *error)
+static int check_file(const struct entry *roles, int count, const char *option, struct tool_error *error)
 {
     const struct entry *writer = &roles[count - 1];
     int itself = 0;  // the frame that writes the file also reads it
@@ -153,7 +155,7 @@ static int check_file(const struct entry *roles, int count, struct tool_error *e
     for (int i = 0; i + 1 < count && writer->role >= OUTPUT; i++) {
         const struct entry *other = &roles[i];
         if (other->role != OUTPUT || writer->role != OUTPUT || same_name(other->path, writer->path))
-            return complain(writer, other, itself && other->role == INPUT, error);
+            return complain(writer, other, itself && other->role == INPUT, option, error);
     }
     return 0;
 }
@@ -162,16 +164,23 @@ int cli_check_clashes(const struct cli_shot *shot, const char *log_file, struct 
 {
     const struct cli_jobs *jobs = &shot->jobs, *around = &shot->around;
     struct list list = {.count = 0};
-    list.entries = calloc(3 * (size_t)jobs->count + 2 * (size_t)around->count + 1, sizeof(*list.entries));
+    const size_t others = (size_t)shot->other_count;
+    list.entries =
+        calloc((3 + others) * (size_t)jobs->count + (2 + others) * (size_t)around->count + 1, sizeof(*list.entries));
     if (!list.entries)
         return tool_fail(error, CLI_ALL_FAILED, "out of memory for %d frames", jobs->count);
     for (int i = 0; i < jobs->count; i++)
         add(&list, jobs->list[i].input, INPUT, i, jobs->list[i].input);
-    for (int i = 0; i < jobs->count; i++)
+    for (int i = 0; i < jobs->count; i++) {
         add(&list, jobs->list[i].depth_file, DEPTH_FILE, i, jobs->list[i].input);
+        for (int k = 0; k < shot->other_count; k++)
+            add(&list, jobs->list[i].others[k], OTHER, i, jobs->list[i].input);
+    }
     for (int i = 0; i < around->count; i++) {
         add(&list, around->list[i].input, INPUT, jobs->count + i, around->list[i].input);
         add(&list, around->list[i].depth_file, DEPTH_FILE, jobs->count + i, around->list[i].input);
+        for (int k = 0; k < shot->other_count; k++)
+            add(&list, around->list[i].others[k], OTHER, jobs->count + i, around->list[i].input);
     }
     for (int i = 0; i < jobs->count; i++)
         add(&list, jobs->list[i].output, OUTPUT, i, jobs->list[i].input);
@@ -181,7 +190,7 @@ int cli_check_clashes(const struct cli_shot *shot, const char *log_file, struct 
     for (int from = 0, to; from < list.count && !status; from = to) {
         for (to = from + 1; to < list.count && !same_or_order(&list.entries[from], &list.entries[to]);)
             to++;
-        status = check_file(&list.entries[from], to - from, error);
+        status = check_file(&list.entries[from], to - from, shot->other_option, error);
     }
     for (int i = 0; i < list.count; i++)
         free(list.entries[i].owned);

@@ -12,6 +12,7 @@
 #include "tools/cli/focus.h"
 #include "tools/cli/lamps.h"
 #include "tools/cli/room.h"
+#include "tools/cli/surfaces.h"
 #include "tools/cli/target.h"
 #include "tools/cli/views.h"
 #include "tools/cli/window.h"
@@ -98,7 +99,10 @@ int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const s
         return tool_fail(error, lacks_layer(args) ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s", io.message);
     frame->ms[CLI_READ] += tool_now_ms() - start;
     frame->in_place = args->output && cli_is_in_place(args);
-    return cli_select_views(frame, error);
+    int status = cli_select_views(frame, error);
+    if (!status)
+        status = cli_surfaces_find(frame, error);
+    return status ? status : cli_check_single(frame, error);
 }
 
 static int new_plane(const struct cli_view *v, float **plane, struct tool_error *error)
@@ -160,15 +164,23 @@ static int blur_without_scale(const struct cli_args *args, struct cli_view *v, s
                      data->y1 - 1);
 }
 
-static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, struct tool_error *error)
+int cli_view_prepare(struct cli_frame *frame, struct cli_view *v, struct tool_error *error)
+{
+    const int status = sharpen(frame->args, frame->run, v, v->depth, v->view->height, error);
+    if (!status)
+        cli_depth_prepare(frame->args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
+    return status;
+}
+
+static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, int count, struct tool_error *error)
 {
     const struct cli_args *args = frame->args;
     struct hf_io_error io;
     const double start = tool_now_ms();
-    if (hf_io_fetch(frame->file, wants, frame->view_count, &io))
+    if (hf_io_fetch(frame->file, wants, count, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     const double fetched = tool_now_ms();
-    if (hf_io_decode(frame->file, wants, frame->view_count, frame->run, &io))
+    if (hf_io_decode(frame->file, wants, count, frame->run, &io))
         return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
     for (int i = 0; i < frame->view_count && args->depth_file; i++) {
         const int status = read_depth_file(args, frame->run, &frame->views[i], error);
@@ -177,44 +189,70 @@ static int read_files(struct cli_frame *frame, const struct hf_io_want *wants, s
     }
     for (int i = 0; i < frame->view_count; i++) {
         struct cli_view *v = &frame->views[i];
-        const int status = sharpen(args, frame->run, v, v->depth, v->view->height, error);
+        const int status = cli_view_prepare(frame, v, error);
         if (status)
             return status;
-        cli_depth_prepare(args, v->depth, (size_t)v->view->width * (size_t)v->view->height, &v->found);
         if (!isnan(args->blur) && blur_without_scale(args, v, error))
             return CLI_BAD_ARGUMENTS;
     }
+    const int status = cli_surfaces_load(frame, error);
     frame->ms[CLI_READ] += fetched - start;
     frame->ms[CLI_DECODE] += tool_now_ms() - fetched;
-    return 0;
+    return status;
+}
+
+int cli_view_want(struct cli_view *v, int depth, struct hf_io_want *want, struct tool_error *error)
+{
+    int status = 0;
+    want->view = v->index;
+    for (int c = 0; c < 4 && !status; c++)
+        if (c < 3 || v->view->colour[3][0])
+            status = new_plane(v, &v->planes[c], error);
+    if (!status)
+        status = new_plane(v, &v->depth, error);
+    memcpy(want->planes, v->planes, sizeof(v->planes));
+    want->depth = depth ? v->depth : NULL;
+    return status;
 }
 
 int cli_frame_load(struct cli_frame *frame, struct tool_error *error)
 {
     if (frame->loaded)
         return 0;
-    struct hf_io_want *wants = calloc((size_t)frame->view_count, sizeof(*wants));
-    int status = wants ? 0 : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->input);
+    struct hf_io_want *wants = calloc((size_t)(frame->view_count + cli_surfaces_inside(frame)), sizeof(*wants));
+    int count = 0, status = wants ? 0 : tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", frame->args->input);
     for (int i = 0; i < frame->view_count && !status; i++) {
         struct cli_view *v = &frame->views[i];
-        wants[i].view = v->index;
-        for (int c = 0; c < 4 && !status; c++)
-            if (c < 3 || v->view->colour[3][0])
-                status = new_plane(v, &v->planes[c], error);
-        if (!status)
-            status = new_plane(v, &v->depth, error);
-        memcpy(wants[i].planes, v->planes, sizeof(v->planes));
-        wants[i].depth = frame->args->depth_file ? NULL : v->depth;
+        status = cli_view_want(v, !frame->args->depth_file, &wants[count++], error);
+        for (int k = 0; k < v->surface_count && !status; k++)
+            if (!v->surfaces[k].file)
+                status = cli_view_want(&v->surfaces[k], 1, &wants[count++], error);
     }
     if (!status)
-        status = read_files(frame, wants, error);
+        status = read_files(frame, wants, count, error);
     free(wants);
     frame->loaded = !status;
     return status;
 }
 
+// The depth of what several pictures show together, in place of the view's own.
+static int read_shown(struct cli_frame *frame, struct cli_view *v, struct tool_error *error)
+{
+    free(v->depth);
+    v->depth = NULL;
+    const int status = cli_frame_load(frame, error);
+    float *shown = status ? NULL : cli_surfaces_depth(frame, v);
+    if (!status && !shown)
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+    if (shown) {
+        free(v->depth);
+        v->depth = shown;
+    }
+    return status;
+}
+
 // Read the rows around the pixel to focus on: its own, and `around` beside it; of an object all rows.
-static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, int around, struct tool_error *error)
+static int read_focus_rows(struct cli_frame *frame, struct cli_view *v, int around, struct tool_error *error)
 {
     struct hf_io_error io;
     const struct cli_args *args = frame->args;
@@ -225,6 +263,8 @@ static int read_focus_rows(const struct cli_frame *frame, struct cli_view *v, in
     const int from = all || at - reach < data->y0 ? data->y0 : at - reach;
     const int to = all || at + reach + 1 > data->y1 ? data->y1 : at + reach + 1;
     int status = 0;
+    if (v->surface_count)
+        return read_shown(frame, v, error);
     if (args->depth_file)
         status = read_depth_file(args, frame->run, v, error);
     else if (from < to && hf_io_read_depth_rows(frame->file, v->index, from - data->y0, to - from, v->depth, &io))
@@ -290,8 +330,12 @@ static int set_up(struct cli_frame *frame, struct tool_error *error)
         struct cli_args own = args;
         if (own.focus_by == CLI_FOCUS_OBJECT)
             status = cli_focus_object(&own, frame, v, error);
+        float *shown = NULL;
+        if (!status && v->surface_count && cli_focus_needs_depth(&own) && !(shown = cli_surfaces_depth(frame, v)))
+            status = tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
         if (!status)
-            status = cli_setup_view(&v->setup, &own, v->view, v->depth, v->label, error);
+            status = cli_setup_view(&v->setup, &own, v->view, shown ? shown : v->depth, v->label, error);
+        free(shown);
         if (!status && i == 0)
             share_focus(frame, &args);
     }
@@ -300,7 +344,10 @@ static int set_up(struct cli_frame *frame, struct tool_error *error)
 
 int cli_frame_setup(struct cli_frame *frame, struct tool_error *error)
 {
-    int status = set_up(frame, error);
+    // Further pictures may enlarge the windows.
+    int status = frame->views[0].surface_count ? cli_frame_load(frame, error) : 0;
+    if (!status)
+        status = set_up(frame, error);
     // --grow needs the pixels to know how far blur reaches. Growing moves coordinates, so the views are set up again.
     if (!status && frame->args->grow) {
         status = cli_frame_load(frame, error);
@@ -334,6 +381,22 @@ struct hf_image cli_view_image(const struct cli_view *v, int keep_alpha)
     return image;
 }
 
+// What is in focus may be in a further picture of the scene.
+static int look_further(const struct cli_args *args, struct cli_view *v, struct tool_error *error)
+{
+    int status = 0;
+    for (int k = 0; k < v->surface_count && !status; k++) {
+        struct cli_view *s = &v->surfaces[k];
+        struct cli_view as = *v;
+        as.radii = NULL;
+        as.setup.depth.data = s->depth;
+        status = cli_coc_look(&as, args, error);
+        v->least_radius = fminf(v->least_radius, as.least_radius);
+        free(as.radii);
+    }
+    return status;
+}
+
 // Load all that is needed to render a view; *image becomes its colour.
 static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_session *session, struct hf_image *image,
                      struct tool_error *error)
@@ -351,7 +414,7 @@ static int load_view(struct cli_frame *frame, struct cli_view *v, struct cli_ses
     session->said = NULL;
     const int looked = cli_coc_look(v, frame->args, error);
     v->cut = !looked && v->radii ? cli_window_cut(v) : 0;
-    return looked;
+    return looked ? looked : look_further(frame->args, v, error);
 }
 
 // Call after the library rendered or planned the view: report its error, or keep its report.
@@ -395,7 +458,8 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
         cli_lamps_free(&lamps);
         return status;
     }
-    status = hf_render(session->context, &image, &image, &v->setup.depth, &params);
+    status = v->surface_count ? cli_surfaces_render(session->context, frame->args, v, &image, &params)
+                              : hf_render(session->context, &image, &image, &v->setup.depth, &params);
     if (status == HF_OK)
         cli_lamps_lower(&lamps, v);
     cli_lamps_free(&lamps);
@@ -480,19 +544,23 @@ int cli_frame_save(struct cli_frame *frame, struct tool_error *error)
     return status ? tool_fail(error, CLI_ALL_FAILED, "%s", io.message) : 0;
 }
 
+void cli_view_free(struct cli_view *v)
+{
+    for (int c = 0; c < 4; c++)
+        free(v->planes[c]);
+    free(v->depth);
+    free(v->label);
+    free(v->tag);
+    free(v->radii);
+    free(v->tiles);
+    free(v->said);
+}
+
 void cli_frame_close(struct cli_frame *frame)
 {
-    for (int i = 0; i < frame->view_count; i++) {
-        struct cli_view *v = &frame->views[i];
-        for (int c = 0; c < 4; c++)
-            free(v->planes[c]);
-        free(v->depth);
-        free(v->label);
-        free(v->tag);
-        free(v->radii);
-        free(v->tiles);
-        free(v->said);
-    }
+    for (int i = 0; i < frame->view_count; i++)
+        cli_view_free(&frame->views[i]);
+    cli_surfaces_close(frame);
     free(frame->views);
     hf_io_output_free(&frame->output);
     hf_io_close(&frame->file);

@@ -27,6 +27,11 @@ static const float CLI_SEEN_RADIUS = 0.1f;
 struct cli_view {
     int index;  // in the file
     const struct hf_io_view *view;
+    struct cli_view *surfaces;  // further pictures of its scene, see surfaces.h
+    int surface_count;
+    struct hf_io_file *file;  // of such a picture: the file that it is in, NULL: INPUT; that file's name; and where its
+    const char *path;         // pixels are in the view's window
+    struct hf_io_box place;
     char *tag;    // tells it from other views of the frame: "left", "Foreground.Combined"; "" if it is the only one
     char *label;  // "shot.exr", "shot.exr, view left"
     struct cli_setup setup;
@@ -64,6 +69,8 @@ struct cli_frame {
     struct hf_io_output *output;
     struct cli_view *views;  // the selected ones, in the order of the file
     int view_count;
+    struct hf_io_file **others;  // further files, those of --over or --peel
+    int other_count;
     int loaded;    // the pixels are there
     int in_place;  // OUTPUT is INPUT, also through links
     int alone;     // no frame of a shot
@@ -81,6 +88,11 @@ int cli_frame_open(struct cli_frame *frame, const struct cli_args *args, const s
                    struct tool_error *error);
 // Read the pixels of all views into their planes and depth, unless that was done. The steps below do it when they need them.
 int cli_frame_load(struct cli_frame *frame, struct tool_error *error);
+// Steps of that for one picture: make its planes, and ask for them; then, where they hold what was asked for, make its depth
+// what the library takes. cli_view_free frees all that a view holds, except its further pictures.
+int cli_view_want(struct cli_view *v, int depth, struct hf_io_want *want, struct tool_error *error);
+int cli_view_prepare(struct cli_frame *frame, struct cli_view *v, struct tool_error *error);
+void cli_view_free(struct cli_view *v);
 // A view's colour, in its planes, as the library gets it: without its alpha where that is 1 everywhere, unless it is kept.
 struct hf_image cli_view_image(const struct cli_view *v, int keep_alpha);
 // In place of all steps: read the focus of the first view, decoding only the rows of depth around it.

@@ -5,6 +5,7 @@
 #include "tools/cli/explain.h"
 #include "tools/cli/preview.h"
 #include "tools/cli/summary.h"
+#include "tools/cli/surfaces.h"
 #include "tools/cli/warn.h"
 #include "tools/common/json.h"
 
@@ -143,6 +144,17 @@ static void put_window(struct tool_json *j, const char *name, const struct hf_io
     tool_json_close(j);
 }
 
+void cli_json_surfaces(struct tool_json *j, const struct cli_view *v)
+{
+    char name[TOOL_SHOWN + 300];
+    if (!v->surface_count)
+        return;
+    tool_json_open(j, "surfaces", '[');
+    for (int k = 0; k < v->surface_count; k++)
+        tool_json_text(j, NULL, cli_surface_name(&v->surfaces[k], name, sizeof(name)));
+    tool_json_close(j);
+}
+
 void cli_json_map(struct tool_json *j, const struct cli_view *v)
 {
     if (v->map_bits || v->sharpened)
@@ -169,6 +181,7 @@ static void put_view(struct tool_json *j, const struct cli_view *v, const struct
     tool_json_close(j);
     tool_json_text(j, "depth", frame->args->depth_file ? frame->args->depth_file : v->view->depth);
     tool_json_text(j, "depth_type", cli_depth_type_name(frame->args));
+    cli_json_surfaces(j, v);
     cli_json_map(j, v);
     tool_json_count(j, "width", v->view->width);
     tool_json_count(j, "height", v->view->height);

@@ -8,6 +8,9 @@
 
 #include "tools/common/json.h"
 
+// Write "surfaces", the names of the further pictures of a view's scene, if there are some.
+void cli_json_surfaces(struct tool_json *j, const struct cli_view *v);
+
 // Write what was done to a view's depth file: "depth_sharpened", samples, if it has whole numbers or any were
 // sharpened; "depth_smoothed", if any were; "depth_scaled_from", width and height, if it was scaled.
 void cli_json_map(struct tool_json *j, const struct cli_view *v);

@@ -116,6 +116,7 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         tool_json_open(j, NULL, '{');
         tool_json_text(j, "name", v->view->name);
         tool_json_text(j, "layer", v->view->layer);
+        cli_json_surfaces(j, v);
         cli_json_map(j, v);
         tool_json_number(j, "focus", s->focus_from && s->params.focus > 0 ? s->params.focus : NAN);
         tool_json_text(j, "focus_from", s->focus_from);

@@ -11,6 +11,7 @@
 #include "tools/cli/pattern.h"
 #include "tools/cli/preview.h"
 #include "tools/cli/summary.h"
+#include "tools/cli/surfaces.h"
 #include "tools/cli/target.h"
 #include "tools/cli/warn.h"
 #include "tools/common/standard.h"
@@ -52,6 +53,10 @@ static int print_plan(const struct cli_frame *frame, const struct cli_session *s
         printf("%s%s\n    depth %s%s%s, type %s\n", part[0] ? " of part " : "", tool_shown(part, other),
                tool_shown(args->depth_file ? args->depth_file : v->view->depth, name), depth_part[0] ? " of part " : "",
                tool_shown(depth_part, third), cli_depth_type_name(args));
+        for (int k = 0; k < v->surface_count; k++)
+            printf(
+                "    %s %s, depth %s\n", args->other_option && v->surfaces[k].file ? args->other_option + 2 : "merge",
+                cli_surface_name(&v->surfaces[k], name, sizeof(name)), tool_shown(v->surfaces[k].view->depth, other));
         printf("    model %s", cli_model_name(v->setup.model));
         if (v->setup.model == CLI_MODEL_LENS)
             printf(", f/%g, focal length %g mm, sensor %g mm%s, world unit %g m", p->lens.f_number,
@@ -167,36 +172,56 @@ static int run_shot(int argc, char **argv, const struct cli_args *args, const st
 }
 
 // Make one frame, with its report.
-static int run_alone(int argc, char **argv, struct cli_args *args, const struct cli_job *job, struct tool_error *error)
+static int run_alone(int argc, char **argv, const struct cli_args *args, const struct cli_job *job,
+                     struct tool_error *error)
 {
     struct cli_session session;
-    args->output = job->output;
-    args->depth_file = job->depth_file;
-    int status = cli_session_open(&session, args, args->threads, error);
+    struct cli_args own = *args;
+    own.output = job->output;
+    own.depth_file = job->depth_file;
+    own.others = (const char **)job->others;
+    int status = cli_session_open(&session, &own, own.threads, error);
     if (!status)
-        status = run_frame(argc, argv, args, &session, error);
+        status = run_frame(argc, argv, &own, &session, error);
     if (session.context)
         cli_session_close(&session);
     return status;
 }
 
+// A file without a number serves all frames, so check it first. Numbered ones are checked with their frames.
+static int check_readable(const char *option, const char *path, struct tool_error *error)
+{
+    if (cli_pattern_has_frame(path) || cli_pattern_has_view(path) || !access(path, R_OK))
+        return 0;
+    return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s cannot be read: %s", option, path, strerror(errno));
+}
+
 static int run_args(int argc, char **argv, struct cli_args *args, struct tool_error *error)
 {
-    const struct cli_shot_request request = {args->inputs, args->input_count, args->output, args->depth_file,
-                                             args->frames, args->chunk,       args->views,  args->log_file};
+    const struct cli_shot_request request = {.inputs = args->inputs,
+                                             .input_count = args->input_count,
+                                             .output = args->output,
+                                             .depth_file = args->depth_file,
+                                             .frames = args->frames,
+                                             .chunk = args->chunk,
+                                             .others = args->others,
+                                             .other_count = args->other_count,
+                                             .other_option = args->other_option,
+                                             .views = args->views,
+                                             .log_file = args->log_file};
     struct cli_shot shot;
     struct cli_aperture aperture = {0};
     int status = cli_shot_make(&shot, &request, error);
-    // A depth file without a number serves all frames, so check it here. Numbered ones are checked with their frames.
-    if (!status && args->depth_file && !cli_pattern_has_frame(args->depth_file) &&
-        !cli_pattern_has_view(args->depth_file) && access(args->depth_file, R_OK))
-        status = tool_fail(error, CLI_BAD_ARGUMENTS, "--depth-file %s cannot be read: %s", args->depth_file,
-                           strerror(errno));
+    if (!status && args->depth_file)
+        status = check_readable("--depth-file", args->depth_file, error);
+    for (int i = 0; i < args->other_count && !status; i++)
+        status = check_readable(args->other_option, args->others[i], error);
     for (int i = 0; i < shot.jobs.count && !status; i++) {
         struct cli_args own = *args;
         own.input = shot.jobs.list[i].input;
         own.output = shot.jobs.list[i].output;
         own.depth_file = shot.jobs.list[i].depth_file;
+        own.others = (const char **)shot.jobs.list[i].others;
         status = cli_check_targets(&own, error);
     }
     if (!status)

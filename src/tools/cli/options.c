@@ -31,7 +31,17 @@ static const struct tool_option options[] = {
     {"views", 0, TOOL_FILES, "all|NAME,...", "Views to defocus, each by its own depth; the others are kept as they "
      "are. Default all.", TEXT(views)},
     {"layer", 0, TOOL_FILES, "all|NAME,...", "Layers to defocus, each by its own depth: ViewLayer.Combined, or just "
-     "ViewLayer. all: every layer of colour, but no masks, normals or the like. Default: the main one.", TEXT(layer)},
+     "ViewLayer. all: every layer of colour, but no masks, normals or the like. Given several times: all of these. "
+     "Default: the main one.", .parse = cli_parse_layer, FIELD(layer)},
+    {"merge", 0, TOOL_FILES, NULL, "The layers of --layer are separate renders of one scene: defocus them together, merged "
+     "by depth. The first gets the result; the others are kept as they are. Default: each is defocused by itself.",
+     FLAG(merge)},
+    {"over", 0, TOOL_FILES, "FILE", "Another picture of INPUT's scene with depth of its own, before or behind it: defocus "
+     "both together, merged by depth. May be given several times. A lens then sees past edges what FILE shows, not a "
+     "guess. In a shot it has a place for the number, too. Default: INPUT shows all there is.", .parse = cli_parse_other},
+    {"peel", 0, TOOL_FILES, "FILE", "What INPUT hides: of each pixel the surface behind it, its depth, and as alpha the "
+     "part of the pixel in which there is one. Given twice, the second FILE has what the first hides. Default: it is "
+     "guessed.", .parse = cli_parse_other},
     {"grow", 0, TOOL_FILES, NULL, "Let the data window grow by the reach of the blur, up to the display window. New "
      "pixels are black and transparent, 0 in other channels, and far away in depth. Default: blur beyond the window is "
      "cut, with a warning.", FLAG(grow)},

@@ -33,6 +33,8 @@ static void print_jobs(const struct cli_plan *plan, int *left)
                args.output ? tool_shown(args.output, other) : "nothing, as there is no -o");
         if (args.depth_file)
             printf(", depth from %s", tool_shown(args.depth_file, name));
+        for (int k = 0; k < args.other_count; k++)
+            printf(", %s %s", args.other_option + 2, tool_shown(args.others[k], name));
         if (args.focus_by == CLI_FOCUS_DISTANCE)
             printf(", focus %.4g", args.focus);
         printf("%s\n", skip ? ", is there already" : "");

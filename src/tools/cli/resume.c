@@ -92,6 +92,8 @@ int cli_stamp_make(struct cli_stamp *stamp, const struct cli_args *args)
     hash = mix_text(hash, stamp->settings);
     hash = mix_file(mix_file(hash, args->input), args->depth_file);
     hash = mix_file(hash, args->aperture_file);
+    for (int i = 0; i < args->other_count; i++)
+        hash = mix_file(mix_text(hash, args->other_option), args->others[i]);
     snprintf(stamp->hash, sizeof(stamp->hash), "%016" PRIx64, hash);
     stamp->texts[0] = (struct hf_io_text){"hyperfocalVersion", hf_version()};
     stamp->texts[1] = (struct hf_io_text){"hyperfocalSettings", stamp->settings};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cli/room.h"
 
+#include "tools/cli/surfaces.h"
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -66,7 +68,7 @@ double cli_room_file_bytes(const struct cli_frame *frame)
         display += ((double)b->x1 - b->x0) * ((double)b->y1 - b->y0);
     }
     const double grown = frame->args->grow && display > data && data > 0 ? display / data : 1;
-    return grown * (data * planes * (double)sizeof(float) + hf_io_memory(frame->file));
+    return grown * (data * planes * (double)sizeof(float) + hf_io_memory(frame->file)) + cli_surfaces_bytes(frame);
 }
 
 static double taken(const struct cli_room *room)

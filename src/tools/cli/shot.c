@@ -21,7 +21,7 @@ struct maker {
 // The file names, or patterns, of one INPUT and one view. digits: how many a lone # stands for in the input;
 // depth_digits: in the depth file.
 struct names {
-    char *input, *output, *depth_file;
+    char *input, *output, *depth_file, **others;
     int digits, depth_digits;
 };
 
@@ -30,21 +30,33 @@ static int no_memory(const struct maker *m)
     return tool_fail(m->error, CLI_ALL_FAILED, "%s: out of memory", m->request->inputs[0]);
 }
 
-static void free_jobs(struct cli_jobs *jobs)
+static void free_list(char **list, int count)
 {
-    for (int i = 0; i < jobs->count; i++) {
-        free(jobs->list[i].input);
-        free(jobs->list[i].output);
-        free(jobs->list[i].depth_file);
-    }
+    for (int i = 0; i < count && list; i++)
+        free(list[i]);
+    free(list);
+}
+
+static void free_job(const struct cli_shot *shot, struct cli_job *job)
+{
+    free(job->input);
+    free(job->output);
+    free(job->depth_file);
+    free_list(job->others, shot->other_count);
+}
+
+static void free_jobs(const struct cli_shot *shot, struct cli_jobs *jobs)
+{
+    for (int i = 0; i < jobs->count; i++)
+        free_job(shot, &jobs->list[i]);
     free(jobs->list);
     *jobs = (struct cli_jobs){0};
 }
 
 void cli_shot_free(struct cli_shot *shot)
 {
-    free_jobs(&shot->jobs);
-    free_jobs(&shot->around);
+    free_jobs(shot, &shot->jobs);
+    free_jobs(shot, &shot->around);
 }
 
 // A name that exists as a file means that file, even if it looks like a pattern.
@@ -64,6 +76,17 @@ static char *name_of(const char *pattern, const struct cli_job *job, int digits,
     return name;
 }
 
+// The further pictures of a frame. A lone # stands for as many digits as in INPUT.
+static char **others_of(const struct maker *m, const struct names *names, const struct cli_job *job, int *failed)
+{
+    const int count = m->shot->other_count;
+    char **list = count ? calloc((size_t)count, sizeof(*list)) : NULL;
+    *failed |= count && !list;
+    for (int i = 0; i < count && list; i++)
+        list[i] = name_of(names->others[i], job, names->digits, failed);
+    return list;
+}
+
 static int add_job(const struct maker *m, struct cli_jobs *jobs, const struct names *names, struct cli_job job)
 {
     const size_t n = (size_t)jobs->count;
@@ -77,6 +100,7 @@ static int add_job(const struct maker *m, struct cli_jobs *jobs, const struct na
     job.input = is_pattern(names->input) ? name_of(names->input, &job, names->digits, &failed) : strdup(names->input);
     job.output = jobs == &m->shot->jobs ? name_of(names->output, &job, names->digits, &failed) : NULL;
     job.depth_file = name_of(names->depth_file, &job, names->depth_digits, &failed);
+    job.others = others_of(m, names, &job, &failed);
     jobs->list[jobs->count++] = job;
     return failed || !job.input ? no_memory(m) : 0;
 }
@@ -85,7 +109,10 @@ static int add_job(const struct maker *m, struct cli_jobs *jobs, const struct na
 static int add_file(struct maker *m, const char *input)
 {
     const struct cli_shot_request *r = m->request;
-    struct names names = {.input = (char *)input, .output = (char *)r->output, .depth_file = (char *)r->depth_file};
+    struct names names = {.input = (char *)input,
+                          .output = (char *)r->output,
+                          .depth_file = (char *)r->depth_file,
+                          .others = (char **)r->others};
     struct cli_job job = {.place = m->places++};
     job.numbered = cli_name_number(input, &job.frame, &names.digits);
     names.depth_digits = names.digits;
@@ -172,13 +199,25 @@ static int add_frames(struct maker *m, struct names *names, int view)
     const struct cli_frames *wanted = m->request->frames ? &asked : &found;
     for (int i = 0; i < wanted->count && !status; i++)
         status = add_job(m, &m->shot->jobs, names,
-                         (struct cli_job){wanted->list[i], 1, m->places + i, view >= 0, view, NULL, NULL, NULL});
+                         (struct cli_job){wanted->list[i], 1, m->places + i, view >= 0, view, NULL, NULL, NULL, NULL});
     for (int i = 0; i < found.count && !status; i++)
         status = add_job(m, &m->shot->around, names,
-                         (struct cli_job){found.list[i], 1, 0, view >= 0, view, NULL, NULL, NULL});
+                         (struct cli_job){found.list[i], 1, 0, view >= 0, view, NULL, NULL, NULL, NULL});
     cli_frames_free(&found);
     cli_frames_free(&asked);
     return status;
+}
+
+// The patterns of further pictures, with the view's name filled in; NULL without memory, or if there are none.
+static char **others_in_view(const struct cli_shot_request *r, const char *view)
+{
+    char **list = r->other_count ? calloc((size_t)r->other_count, sizeof(*list)) : NULL;
+    for (int i = 0; i < r->other_count && list; i++)
+        if (!(list[i] = cli_pattern_view(r->others[i], view))) {
+            free_list(list, i);
+            return NULL;
+        }
+    return list;
 }
 
 // Add the jobs of a pattern: those of each view in turn if the pattern has a place for the view, else once.
@@ -193,7 +232,9 @@ static int add_pattern(struct maker *m, const char *input)
         struct names n = {.input = name ? cli_pattern_view(input, name) : NULL};
         n.output = name && r->output ? cli_pattern_view(r->output, name) : NULL;
         n.depth_file = name && r->depth_file ? cli_pattern_view(r->depth_file, name) : NULL;
-        const int whole = n.input && !n.output == !r->output && !n.depth_file == !r->depth_file;
+        n.others = name ? others_in_view(r, name) : NULL;
+        const int whole =
+            n.input && !n.output == !r->output && !n.depth_file == !r->depth_file && !n.others == !r->other_count;
         if (!whole)
             status = no_memory(m);
         else if (cli_pattern_has_frame(n.input))
@@ -207,6 +248,7 @@ static int add_pattern(struct maker *m, const char *input)
         free(n.input);
         free(n.output);
         free(n.depth_file);
+        free_list(n.others, r->other_count);
         free(name);
     }
     for (int i = most; i < m->shot->jobs.count; i++)
@@ -238,11 +280,8 @@ static int cut(struct maker *m)
             jobs->list[kept++] = job;
         }
     }
-    for (int i = kept; i < jobs->count; i++) {
-        free(jobs->list[i].input);
-        free(jobs->list[i].output);
-        free(jobs->list[i].depth_file);
-    }
+    for (int i = kept; i < jobs->count; i++)
+        free_job(m->shot, &jobs->list[i]);
     jobs->count = kept;
     return 0;
 }
@@ -250,7 +289,9 @@ static int cut(struct maker *m)
 int cli_shot_make(struct cli_shot *shot, const struct cli_shot_request *request, struct tool_error *error)
 {
     struct maker m = {.shot = shot, .request = request, .error = error};
-    *shot = (struct cli_shot){.sequence = request->input_count > 1};
+    *shot = (struct cli_shot){.sequence = request->input_count > 1,
+                              .other_count = request->other_count,
+                              .other_option = request->other_option};
     int status = 0;
     for (int i = 0; i < request->input_count && !status; i++) {
         const char *input = request->inputs[i];

@@ -11,8 +11,11 @@ struct cli_shot_request {
     const char *const *inputs;
     int input_count;
     const char *output, *depth_file, *frames, *chunk;
-    const char *views;     // names with commas, for %V
-    const char *log_file;  // must not be one of the shot's files
+    const char *const *others;  // further pictures of each frame
+    int other_count;
+    const char *other_option;  // that named them
+    const char *views;         // names with commas, for %V
+    const char *log_file;      // must not be one of the shot's files
 };
 
 // One frame, or one view of it if each view is a file of its own.
@@ -22,6 +25,7 @@ struct cli_job {
     int view_file;                      // 1: each view is a file of its own
     int view;                           // which view this file holds; -1: all
     char *input, *output, *depth_file;  // NULL: none
+    char **others;                      // other_count of the shot
 };
 
 struct cli_jobs {
@@ -30,11 +34,13 @@ struct cli_jobs {
 };
 
 struct cli_shot {
-    struct cli_jobs jobs;    // the jobs of this process, in the order in which they are made
-    struct cli_jobs around;  // all existing frames, without output: a focus that follows the pictures reads these
-    int sequence;            // INPUT was a pattern or a list, even one of a single frame
-    int missing;             // how many frames do not exist that were asked for, or lie between the first and the last
-    char gaps[1024];         // their numbers
+    int other_count;           // further pictures of each frame
+    const char *other_option;  // that named them
+    struct cli_jobs jobs;      // the jobs of this process, in the order in which they are made
+    struct cli_jobs around;    // all existing frames, without output: a focus that follows the pictures reads these
+    int sequence;              // INPUT was a pattern or a list, even one of a single frame
+    int missing;      // how many frames do not exist that were asked for, or lie between the first and the last
+    char gaps[1024];  // their numbers
 };
 
 // Returns 0, or an exit code with *error filled; free it in either case.

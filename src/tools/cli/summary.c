@@ -47,6 +47,9 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
     const float budget = frame->args->params.run.budget_ms;
     char text[1024];
     int n = 0;
+    if (v->surface_count)
+        n += snprintf(text, sizeof(text), "%d %s, ", v->surface_count + 1,
+                      cli_others_peel(frame->args) ? "surfaces" : "pictures of one scene");
     if (v->map_size[0])
         n += snprintf(text, sizeof(text), "%d x %d scaled to %d x %d, ", v->map_size[0], v->map_size[1],
                       v->scaled_to[0], v->scaled_to[1]);

@@ -106,6 +106,10 @@ int cli_check_overwrite(const struct cli_args *args, const char *option, const c
         return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s would write over %s %s, the same file", option, path,
                          files[i].option, files[i].path);
     }
+    for (int i = 0; i < args->other_count; i++)
+        if (hf_io_same_file(path, args->others[i]))
+            return tool_fail(error, CLI_BAD_ARGUMENTS, "%s %s would write over %s %s, the same file", option, path,
+                             args->other_option, args->others[i]);
     return 0;
 }
 

@@ -32,6 +32,7 @@ void cli_frame_args(struct cli_args *args, const struct cli_args *all, const str
     args->input = job->input;
     args->output = job->output;
     args->depth_file = job->depth_file;
+    args->others = (const char **)job->others;
     if (job->view_file)
         args->views = NULL;  // --views names files here, not views in a file
     if (!args->keys)

@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tools/cli/args.h"
@@ -65,6 +66,36 @@ int cli_parse_focus_object(struct tool_parser *p, const struct tool_option *opti
     struct cli_args *args = p->args;
     args->focus_by = CLI_FOCUS_OBJECT;
     return tool_parse_text(p, option, value);
+}
+
+// Each --layer adds to those before it.
+int cli_parse_layer(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct cli_args *args = p->args;
+    const char *before = args->layer;
+    char *joined;
+    if (tool_parse_text(p, option, value))
+        return -1;
+    if (!before)
+        return 0;
+    if (asprintf(&joined, "%s,%s", before, value) < 0)
+        return tool_fail(p->error, -1, "out of memory");
+    free(args->layers);
+    args->layer = args->layers = joined;
+    return 0;
+}
+
+int cli_parse_other(struct tool_parser *p, const struct tool_option *option, const char *value)
+{
+    struct cli_args *args = p->args;
+    const int peels = !strcmp(option->name, "peel");
+    if (value[0] == '\0')
+        return tool_fail(p->error, -1, "--%s: '' is empty, it must be a file name", option->name);
+    if (args->other_count && peels != cli_others_peel(args))
+        return tool_fail(p->error, -1, "--over and --peel cannot be given together: peels are what one picture hides");
+    args->other_option = peels ? "--peel" : "--over";
+    args->others[args->other_count++] = value;
+    return 0;
 }
 
 int cli_parse_focus_point(struct tool_parser *p, const struct tool_option *option, const char *value)

@@ -166,6 +166,12 @@ int cli_select_views(struct cli_frame *frame, struct tool_error *error)
         return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
     if (frame->view_count == 0)
         return tool_fail(error, CLI_ALL_FAILED, "%s: there are no colour channels", args->input);
+    return 0;
+}
+
+int cli_check_single(const struct cli_frame *frame, struct tool_error *error)
+{
+    const struct cli_args *args = frame->args;
     if (frame->view_count > 1 && args->output && !cli_is_exr(args->output)) {
         char names[1024] = "";
         for (int i = 0; i < frame->view_count; i++)

@@ -150,6 +150,27 @@ static int fills(const struct hf_io_view *view)
     return data->x0 <= display->x0 && data->y0 <= display->y0 && data->x1 >= display->x1 && data->y1 >= display->y1;
 }
 
+int cli_window_enlarge(struct cli_frame *frame, const struct cli_view *view, const struct hf_io_box *box,
+                       struct tool_error *error)
+{
+    const struct hf_io_box old = view->view->data_window;
+    struct hf_io_error io;
+    int status = 0;
+    if (hf_io_grow(frame->file, view->index, *box, no_surface(frame->args, 1), frame->run, &io))
+        return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
+    for (int k = 0; k < frame->view_count && !status; k++) {
+        struct cli_view *o = &frame->views[k];
+        if (o->view->part != view->view->part)
+            continue;
+        for (int c = 0; c < 4 && !status; c++)
+            status = move_plane(&o->planes[c], &old, box, 0);
+        if (!status)
+            status =
+                move_plane(&o->depth, &old, box, no_surface(frame->args, 0)) || move_plane(&o->radii, &old, box, 0);
+    }
+    return status ? tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", view->label) : 0;
+}
+
 int cli_window_grow(struct cli_frame *frame, struct tool_error *error)
 {
     for (int i = 0; i < frame->view_count; i++) {
@@ -161,25 +182,12 @@ int cli_window_grow(struct cli_frame *frame, struct tool_error *error)
     }
     for (int i = 0; i < frame->view_count; i++) {
         const struct cli_view *v = &frame->views[i];
-        const struct hf_io_box old = v->view->data_window;
         const float r = largest(frame, v->view->part);
         const struct hf_io_box box = grown(v->view, r > 0 ? (int)ceilf(r) + MARGIN : 0);
-        struct hf_io_error io;
-        int status = 0;
-        if (!is_first(frame, i) || !memcmp(&old, &box, sizeof(box)))
-            continue;
-        if (hf_io_grow(frame->file, v->index, box, no_surface(frame->args, 1), frame->run, &io))
-            return tool_fail(error, CLI_ALL_FAILED, "%s", io.message);
-        for (int k = i; k < frame->view_count && !status; k++) {
-            struct cli_view *o = &frame->views[k];
-            for (int c = 0; c < 4 && !status && o->view->part == v->view->part; c++)
-                status = move_plane(&o->planes[c], &old, &box, 0);
-            if (!status && o->view->part == v->view->part)
-                status = move_plane(&o->depth, &old, &box, no_surface(frame->args, 0)) ||
-                         move_plane(&o->radii, &old, &box, 0);
-        }
+        const int same = !memcmp(&v->view->data_window, &box, sizeof(box));
+        const int status = is_first(frame, i) && !same ? cli_window_enlarge(frame, v, &box, error) : 0;
         if (status)
-            return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+            return status;
     }
     return 0;
 }

@@ -11,6 +11,10 @@
 // *error filled.
 int cli_window_grow(struct cli_frame *frame, struct tool_error *error);
 
+// Enlarge the data window of a view's part to box, which holds it, and move the pixels of all views of that part.
+int cli_window_enlarge(struct cli_frame *frame, const struct cli_view *view, const struct hf_io_box *box,
+                       struct tool_error *error);
+
 // Pixels that the blur of a view reaches beyond its data window inside the display window. v->radii must be filled.
 int cli_window_cut(const struct cli_view *v);
 

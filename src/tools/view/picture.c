@@ -45,6 +45,12 @@ static int load(struct view_picture *p, const char *input, const char *depth_fil
         p->args.input = p->args.depth_file = NULL;
         return -1;
     }
+    if (p->args.merge || p->args.other_option) {
+        tool_fail(error, -1, "%s: the window shows one picture; the command takes several",
+                  p->args.merge ? "--merge" : p->args.other_option);
+        p->args.input = p->args.depth_file = NULL;
+        return -1;
+    }
     p->args.input = strdup(input ? input : p->args.input);
     if (depth_file || p->args.depth_file)
         p->args.depth_file = strdup(depth_file ? depth_file : p->args.depth_file);
