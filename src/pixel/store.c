@@ -16,7 +16,8 @@ static uint64_t store_block(const struct hf_frame *f, int x, int y, int n, const
     if (first >= end)
         return 0;
     for (int p = 0; p < hf_plane_count(f->dst); p++) {
-        block.data[p] = row[p] - hf_row_bytes(f->dst->format, 2 * x);
+        // As a number, since a pointer to before the array is undefined. The kernel adds the bytes again.
+        block.data[p] = (void *)((uintptr_t)row[p] - (uintptr_t)hf_row_bytes(f->dst->format, 2 * x));
         block.stride[p] = 0;
     }
     const uint64_t clamped = f->k->store[f->dst->format](&block, x, y, n, even, odd);
