@@ -71,7 +71,11 @@ HF_API void hf_inspect_colour(struct hf_context *c, int on);
 struct hf_inspect_buffer {
     size_t size;  // sizeof(struct hf_inspect_buffer), the library's
     // gather and chapter: coc, coc4, cocmaxx, cocmax, cocblurx, cocblur, color4, colormulcoc4, near, far; gather also
-    // colormulnear4, farpart and cover; chapter also nearfill and farfill.
+    // colormulnear4, farpart and cover; chapter also nearfill and farfill. layers: samples, each a buffer of colour and, with
+    // "at" behind its name, one of weight and radius, and of seen a third channel, the share drawn as a highlight: seen, one for
+    // each pixel; mixed, the back one of an edge's pixel; quads, the farthest of four; hidden and beyond, what surfaces hide;
+    // second and third, the same with known surfaces. A sample of weight 0 is none. And slices: the place of the sample that is
+    // seen among the slices, 0 for the nearest, with fractions between two.
     const char *name;
     int width, height;  // full, half or quarter resolution
     int channels;       // 1 to 4: near and far CoC, one CoC, or R, G, B and perhaps A

@@ -42,6 +42,27 @@ static int widen(struct hf_context *c, const struct hf_setup *s, const struct hf
     return HF_OK;
 }
 
+// What the engine knows beside its buffers.
+static int show_own(struct hf_context *c, const struct hf_setup *s)
+{
+    const struct hf_engine_own *own = &c->plan.engine->own;
+    struct hf_inspect_buffer out = {.size = sizeof out,
+                                    .name = own->shown,
+                                    .width = s->width,
+                                    .height = s->height,
+                                    .channels = 1,
+                                    .stride = s->width * (ptrdiff_t)sizeof(float)};
+    const int err = hf_block_grow(&c->joined, (size_t)s->width * s->height * sizeof(float), &c->mem);
+    if (err)
+        return err;
+    float *p = c->joined.data;
+    out.data[0] = p;
+    for (int y = 0; y < s->height; y++)
+        own->show(s->own, &c->workers[0].frame, y, p + (size_t)y * s->width);
+    c->dump(c->dump_cookie, &out);
+    return HF_OK;
+}
+
 int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s)
 {
     const struct hf_engine_def *e = c->plan.engine;
@@ -67,5 +88,5 @@ int hf_dump_buffers(struct hf_context *c, const struct hf_setup *s)
             return err;
         c->dump(c->dump_cookie, &out);
     }
-    return HF_OK;
+    return e->own.show ? show_own(c, s) : HF_OK;
 }

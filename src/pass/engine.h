@@ -109,6 +109,9 @@ struct hf_engine_own {
     void (*made)(void *own, const struct hf_setup *s, const struct hf_counts *found);
     // Fill in the engine's own part of a report. NULL: it has none.
     void (*tell)(const void *own, struct hf_frame_report *report);
+    // For dumps, a row of what own knows of each pixel and no buffer holds, under this name. NULL: nothing.
+    const char *shown;
+    void (*show)(const void *own, const struct hf_frame *f, int y, float *row);
     // Free the memory that own holds; and tell how many bytes it holds. NULL: none.
     void (*release)(void *own, const struct hf_mem *mem);
     size_t (*held)(const void *own);

@@ -415,7 +415,7 @@ const struct hf_engine_def hf_layers_engine = {
     .limits = {.aperture = HF_APERTURE_ALL, .check = check},
     .kernels = {sizeof(struct hf_layers_kernels), hf_layers_kernels_init},
     .own = {sizeof(struct hf_layers), .resolve = resolve, .know = know, .prepare = prepare, .measure = measure,
-            .tell = tell, .release = release, .held = held},
+            .tell = tell, .shown = "slices", .show = hf_layers_show_slices, .release = release, .held = held},
     .plan = {.across = 1u << 2 | 1u << 3 | 1u << 4,
              .around = around,
              .parts = 1u << 2 | 1u << 3 | 1u << 4,

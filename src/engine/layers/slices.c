@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/layers/kernels.h"
+
 // The radius of the slice after r >= 0. Large radii lie a fixed part of their radius apart, which nobody sees. There is
 // no slice between 0 and 1: a disc no larger than its pixel would be as sharp as the pixel, while a mixture of 0 and 1
 // is not.
@@ -271,4 +273,17 @@ void hf_layers_use_group(struct hf_layers *l, int group)
 int hf_layers_tiles_around(const struct hf_slice *s)
 {
     return (((s->reach + 3 + HF_LAYERS_MARGIN) << s->level) + HF_LAYERS_TILE - 1) / HF_LAYERS_TILE;
+}
+
+void hf_layers_show_slices(const void *own, const struct hf_frame *f, int y, float *row)
+{
+    const struct hf_layers *l = own;
+    const float *radius = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 0, y);
+    for (int x = 0; x < l->width && l->slices; x++) {
+        int i = 0;
+        while (i + 2 < l->slices && l->slice[i + 1].radius <= radius[x])
+            i++;
+        const float from = l->slice[i].radius, step = l->slices > 1 ? l->slice[i + 1].radius - from : 1;
+        row[x] = (float)i + hf_saturate((radius[x] - from) / step);
+    }
 }

@@ -4,6 +4,7 @@
 #define HF_LAYERS_SLICES_H
 
 #include "engine/layers/layers.h"
+#include "pass/frame.h"
 
 enum { HF_LAYERS_MARGIN = 2 };  // pixels of a slice's own resolution that are made around a cell
 
@@ -14,6 +15,9 @@ int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, c
 // Make the frame's slices in l->tables, and use those of the first group.
 void hf_layers_make_slices(struct hf_layers *l);
 void hf_layers_use_group(struct hf_layers *l, int group);
+// A row of the place of each visible sample among the slices, from 0 for the nearest: 2.25 is a quarter of the way, by radius,
+// from slice 2 to slice 3.
+void hf_layers_show_slices(const void *own, const struct hf_frame *f, int y, float *row);
 // How many tiles beyond a cell a slice's blur may bring samples from.
 int hf_layers_tiles_around(const struct hf_slice *s);
 
