@@ -46,6 +46,7 @@ struct hf_io_view {
     int width, height;    // of the colour's data window
     struct hf_io_box data_window, display_window;
     float pixel_aspect;
+    double frame_rate;                       // "framesPerSecond"; 0: the header does not say
     float screen_center_x, screen_center_y;  // screenWindowCenter
     float screen_width;                      // screenWindowWidth
     struct hf_io_camera camera;

@@ -39,6 +39,7 @@ static int fill_windows(const struct hf_exr *e, struct hf_io_view *v, struct hf_
     const struct hf_exr_part *part = &e->parts[v->part];
     exr_attr_box2i_t display = part->window;
     exr_attr_v2f_t center = {.x = 0, .y = 0}, sensor;
+    exr_attr_rational_t rate;
     if (hf_exr_check_part(e, v->part, err))
         return -1;
     exr_get_display_window(e->core, v->part, &display);
@@ -61,6 +62,9 @@ static int fill_windows(const struct hf_exr *e, struct hf_io_view *v, struct hf_
     v->camera.sensor_width_mm =
         exr_attr_get_v2f(e->core, v->part, "sensorOverallDimensions", &sensor) == EXR_ERR_SUCCESS ? sensor.x : NAN;
     find_axis(e, v->part, v->camera.axis);
+    if (exr_attr_get_rational(e->core, v->part, "framesPerSecond", &rate) == EXR_ERR_SUCCESS && rate.num > 0 &&
+        rate.denom)
+        v->frame_rate = rate.num / (double)rate.denom;
     return hf_io_check_window(e->path, "display window", v->display_window, err);
 }
 
