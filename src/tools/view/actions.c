@@ -109,31 +109,6 @@ static void do_divider(struct view_app *app)
     view_canvas_set_divider(canvas(app), !view_canvas_get_divider(canvas(app)));
 }
 
-static void do_save(struct view_app *app)
-{
-    view_job_save(app);
-}
-
-static void do_copy(struct view_app *app)
-{
-    view_job_copy(app);
-}
-
-static void do_shot(struct view_app *app)
-{
-    view_job_shot(app);
-}
-
-static void do_store(struct view_app *app)
-{
-    view_keys_store(app);
-}
-
-static void do_play(struct view_app *app)
-{
-    view_timeline_play(app);
-}
-
 static void do_next(struct view_app *app)
 {
     view_timeline_go(app, app->frame + 1);
@@ -149,41 +124,6 @@ static void do_key(struct view_app *app)
     view_timeline_toggle(app, "focus");
 }
 
-static void do_profiler(struct view_app *app)
-{
-    view_profiler_toggle(app);
-}
-
-static void do_fade(struct view_app *app)
-{
-    view_demo_fade(app);
-}
-
-static void do_show_depth(struct view_app *app)
-{
-    view_window_show(app, VIEW_SHOW_DEPTH);
-}
-
-static void do_show_coc(struct view_app *app)
-{
-    view_window_show(app, VIEW_SHOW_COC);
-}
-
-static void do_show_peaking(struct view_app *app)
-{
-    view_window_show(app, VIEW_SHOW_PEAKING);
-}
-
-static void do_show_tiles(struct view_app *app)
-{
-    view_window_show(app, VIEW_SHOW_TILES);
-}
-
-static void do_show_buffer(struct view_app *app)
-{
-    view_window_show(app, VIEW_SHOW_BUFFER);
-}
-
 static void do_quit(struct view_app *app)
 {
     gtk_window_close(GTK_WINDOW(app->window));
@@ -191,69 +131,91 @@ static void do_quit(struct view_app *app)
 
 static void do_keys(struct view_app *app);
 
-// name, label and key of each action; heading: where a section of the list of keys begins.
+// name, label and key of each action; heading: where a section of the list of keys begins; show: what is shown, where nothing is
+// run.
 static const struct {
     const char *name, *label, *keys;
     action *run;
     const char *heading;
+    enum view_show show;
 } actions[] = {
-    {"open", "Open a picture", "<Control>o", do_open, "File"},
-    {"save", "Save the picture", "<Control>s", do_save, NULL},
-    {"copy", "Copy the command line", "<Control><Shift>c", do_copy, NULL},
-    {"shot", "Render all frames of the shot", "<Control>r", do_shot, NULL},
-    {"store", "Save the keys", "<Control>k", do_store, NULL},
-    {"quit", "Quit", "<Control>q", do_quit, NULL},
-    {"undo", "Undo", "<Control>z", do_undo, "Change"},
-    {"redo", "Redo", "<Control><Shift>z", do_redo, NULL},
-    {"brighter", "Half a stop brighter", "bracketright", do_brighter, NULL},
-    {"darker", "Half a stop darker", "bracketleft", do_darker, NULL},
-    {"plain", "Exposure as it is", "backslash", do_plain, NULL},
-    {"fit", "All of the picture", "f", do_fit, "Look"},
-    {"full", "Each pixel as it is, 1:1", "1", do_full, NULL},
-    {"in", "Zoom in", "plus", do_zoom_in, NULL},
-    {"out", "Zoom out", "minus", do_zoom_out, NULL},
-    {"divider", "A line between before and after", "d", do_divider, NULL},
-    {"depth", "Depth in colours", "2", do_show_depth, NULL},
-    {"radius", "Radius of the blur in colours", "3", do_show_coc, NULL},
-    {"peaking", "Mark edges in focus", "4", do_show_peaking, NULL},
-    {"tiles", "What each tile needs", "5", do_show_tiles, NULL},
-    {"buffers", "Buffers of the engine", "6", do_show_buffer, NULL},
-    {"profiler", "Times of passes and frames", "p", do_profiler, NULL},
-    {"fade", "Blur away, and back (demo)", "e", do_fade, NULL},
-    {"play", "Play or pause", "space", do_play, "Shot"},
-    {"next", "Next frame", "period", do_next, NULL},
-    {"previous", "Frame before", "comma", do_previous, NULL},
-    {"key", "Key of the focus at this frame", "k", do_key, NULL},
-    {"quiet", "Close the message", "Escape", do_quiet, "Help"},
-    {"keys", "Show the keys", "question", do_keys, NULL},
+    {"open", "Open a picture", "<Control>o", do_open, "File", 0},
+    {"save", "Save the picture", "<Control>s", view_job_save, NULL, 0},
+    {"copy", "Copy the command line", "<Control><Shift>c", view_job_copy, NULL, 0},
+    {"shot", "Render all frames of the shot", "<Control>r", view_job_shot, NULL, 0},
+    {"store", "Save the keys", "<Control>k", view_keys_store, NULL, 0},
+    {"quit", "Quit", "<Control>q", do_quit, NULL, 0},
+    {"undo", "Undo", "<Control>z", do_undo, "Change", 0},
+    {"redo", "Redo", "<Control><Shift>z", do_redo, NULL, 0},
+    {"brighter", "Half a stop brighter", "bracketright", do_brighter, NULL, 0},
+    {"darker", "Half a stop darker", "bracketleft", do_darker, NULL, 0},
+    {"plain", "Exposure as it is", "backslash", do_plain, NULL, 0},
+    {"fit", "All of the picture", "f", do_fit, "Look", 0},
+    {"full", "Each pixel as it is, 1:1", "1", do_full, NULL, 0},
+    {"in", "Zoom in", "plus", do_zoom_in, NULL, 0},
+    {"out", "Zoom out", "minus", do_zoom_out, NULL, 0},
+    {"divider", "A line between before and after", "d", do_divider, "Look closer", 0},
+    {"depth", "Depth in colours", "2", NULL, NULL, VIEW_SHOW_DEPTH},
+    {"radius", "Radius of the blur in colours", "3", NULL, NULL, VIEW_SHOW_COC},
+    {"peaking", "Mark edges in focus", "4", NULL, NULL, VIEW_SHOW_PEAKING},
+    {"tiles", "What each tile needs", "5", NULL, NULL, VIEW_SHOW_TILES},
+    {"buffers", "Buffers of the engine", "6", NULL, NULL, VIEW_SHOW_BUFFER},
+    {"buffer", "Next buffer of the engine", "n", view_window_next_buffer, NULL, 0},
+    {"profiler", "Times of passes and frames", "p", view_profiler_toggle, NULL, 0},
+    {"fade", "Blur away, and back (demo)", "e", view_demo_fade, NULL, 0},
+    {"play", "Play or pause", "space", view_timeline_play, "Shot", 0},
+    {"next", "Next frame", "period", do_next, NULL, 0},
+    {"previous", "Frame before", "comma", do_previous, NULL, 0},
+    {"key", "Key of the focus at this frame", "k", do_key, NULL, 0},
+    {"quiet", "Close the message", "Escape", do_quiet, "Help", 0},
+    {"keys", "Show the keys", "question", do_keys, NULL, 0},
 };
 enum { ACTIONS = sizeof(actions) / sizeof(actions[0]) };
+
+// What the picture does by itself, for the list of keys; they come behind the heading "Look".
+static const struct {
+    const char *label, *keys;
+} others[] = {
+    {"The input, while it is held", "b"},
+    {"Focus on what is at the pointer", "Return"},
+    {"Move the picture", "Left Right Up Down"},
+    {"Move the line", "&lt;Shift&gt;Left &lt;Shift&gt;Right"},
+};
+
+static void list_key(GString *xml, const char *label, const char *keys)
+{
+    g_string_append_printf(xml,
+                           "<child><object class=\"GtkShortcutsShortcut\"><property name=\"accelerator\">%s</property>"
+                           "<property name=\"title\">%s</property></object></child>",
+                           keys, label);
+}
 
 static void on_action(GSimpleAction *a, GVariant *parameter, gpointer data)
 {
     const char *name = g_action_get_name(G_ACTION(a));
     (void)parameter;
     for (int i = 0; i < ACTIONS; i++)
-        if (!strcmp(actions[i].name, name))
+        if (!strcmp(actions[i].name, name) && actions[i].run)
             actions[i].run(data);
+        else if (!strcmp(actions[i].name, name))
+            view_window_show(data, actions[i].show);
 }
 
 static void do_keys(struct view_app *app)
 {
-    GString *xml = g_string_new("<interface><object class=\"GtkShortcutsWindow\" id=\"keys\"><property name=\"modal\">1"
-                                "</property><child><object class=\"GtkShortcutsSection\">");
+    GString *xml = g_string_new(
+        "<interface><object class=\"GtkShortcutsWindow\" id=\"keys\"><property name=\"modal\">1"
+        "</property><child><object class=\"GtkShortcutsSection\"><property name=\"max-height\">13</property>");
     for (int i = 0; i < ACTIONS; i++) {
         if (actions[i].heading)
             g_string_append_printf(
                 xml, "%s<child><object class=\"GtkShortcutsGroup\"><property name=\"title\">%s</property>",
                 i ? "</object></child>" : "", actions[i].heading);
         char *keys = g_markup_escape_text(actions[i].keys, -1);
-        g_string_append_printf(
-            xml,
-            "<child><object class=\"GtkShortcutsShortcut\"><property name=\"accelerator\">%s</property>"
-            "<property name=\"title\">%s</property></object></child>",
-            keys, actions[i].label);
+        list_key(xml, actions[i].label, keys);
         g_free(keys);
+        for (size_t k = 0; k < sizeof(others) / sizeof(others[0]) && !strcmp(actions[i].name, "out"); k++)
+            list_key(xml, others[k].label, others[k].keys);
     }
     g_string_append(xml, "</object></child></object></child></object></interface>");
     GtkBuilder *builder = gtk_builder_new_from_string(xml->str, -1);

@@ -28,7 +28,8 @@ struct view_aperture {
 
 struct view_app {
     GtkApplication *application;
-    GtkWidget *window, *canvas, *notice, *notice_text, *value, *state, *zoom, *exposure, *progress, *shows, *buffers;
+    GtkWidget *window, *canvas, *notice, *notice_text, *value, *state, *zoom, *exposure, *progress, *shows, *buffers,
+        *views;
     struct view_panel *panel;
     struct view_timeline *timeline;
     GtkWidget *profiler;
@@ -44,8 +45,9 @@ struct view_app {
     struct cli_setup setup;        // valid if set_up
     int set_up;
     enum view_show show;
-    char buffer[32];
+    char buffer[VIEW_BUFFER];
     int loading;       // number of the load that counts; older ones are dropped
+    int view;          // of the file, which is shown
     int load_pending;  // one runs
     char *loaded_by;   // the options that made the picture what it is
     double event_ms;   // of the event that the next request answers
@@ -59,6 +61,7 @@ struct view_app {
     struct job *job;   // a command that runs; NULL: none
     char *keys_path;   // where the keys were read from or saved
     int keys_unsaved;  // they have changed since
+    int quiet;         // the window itself changes its controls
     int closing;       // the window closes once they are saved
     struct view_frames frames;
     int playing, reading_ahead;
@@ -101,6 +104,8 @@ gboolean view_window_close(gpointer app);
 void view_window_drawn(struct view_app *app, const struct view_result *result);
 // Show something in place of the picture; the picture again if that is shown.
 void view_window_show(struct view_app *app, enum view_show show);
+// Of the engine's buffers, if they are shown.
+void view_window_next_buffer(struct view_app *app);
 void view_window_hover(struct view_app *app, double x, double y, int inside);
 
 #endif

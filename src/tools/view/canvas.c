@@ -29,7 +29,7 @@ struct _ViewCanvas {
 
 G_DEFINE_TYPE(ViewCanvas, view_canvas, GTK_TYPE_WIDGET)
 
-enum { SLACK = 4, GRIP = 8 };  // screen pixels that a click may move; around the divider
+enum { SLACK = 4, GRIP = 8, KEY_STEP = 64 };  // pixels that a click may move; around the divider; of an arrow key
 
 static int factor(ViewCanvas *c)
 {
@@ -64,7 +64,7 @@ static void hold(ViewCanvas *c)
     const struct hf_io_view *v = size_of(c);
     if (!v)
         return;
-    const double w = v->width * c->camera.zoom, h = v->height * c->camera.zoom;
+    const double w = v->width * c->camera.zoom * c->camera.aspect, h = v->height * c->camera.zoom;
     c->camera.x = w <= s.width ? (s.width - w) / 2 : CLAMP(c->camera.x, s.width - w, 0);
     c->camera.y = h <= s.height ? (s.height - h) / 2 : CLAMP(c->camera.y, s.height - h, 0);
 }
@@ -82,7 +82,7 @@ static void fit(ViewCanvas *c)
     const struct view_screen s = screen_of(c);
     const struct hf_io_view *v = size_of(c);
     if (v && s.width > 0 && s.height > 0)
-        c->camera.zoom = fmin(1, fmin((double)s.width / v->width, (double)s.height / v->height));
+        c->camera.zoom = fmin(1, fmin(s.width / (v->width * c->camera.aspect), (double)s.height / v->height));
 }
 
 void view_canvas_fit(ViewCanvas *c)
@@ -129,7 +129,7 @@ void view_canvas_pan(ViewCanvas *c, double x, double y)
 static void to_picture(ViewCanvas *c, double x, double y, double *px, double *py)
 {
     const struct view_camera d = view_camera_drawn(&c->camera);
-    *px = (x * factor(c) - d.x) / d.zoom;
+    *px = (x * factor(c) - d.x) / (d.zoom * d.aspect);
     *py = (y * factor(c) - d.y) / d.zoom;
 }
 
@@ -208,7 +208,7 @@ static void after_paint(GdkFrameClock *clock, gpointer data)
     ViewCanvas *c = data;
     g_signal_handlers_disconnect_by_func(clock, after_paint, data);
     if (c->said)
-        view_say("before %d\ndivider %d", c->show_before, c->divider);
+        view_say("before %d\ndivider %d at %g", c->show_before, c->divider, c->divided);
     c->said = 0;
     if (c->unseen != 2 || !c->now)
         return;
@@ -268,6 +268,7 @@ void view_canvas_set_picture(ViewCanvas *c, struct view_picture *picture, int fi
     c->before = NULL;
     view_picture_unref(c->picture);
     c->picture = picture ? view_picture_ref(picture) : NULL;
+    c->camera.aspect = now && now->pixel_aspect >= 0.1f && now->pixel_aspect <= 10 ? now->pixel_aspect : 1;
     c->fitted |= fit_it;
     if (c->fitted)
         fit(c);
@@ -333,6 +334,12 @@ void view_canvas_set_gain(ViewCanvas *c, float gain)
     c->gain = gain;
 }
 
+static void move_divider(ViewCanvas *c, double divided)
+{
+    c->divided = CLAMP(divided, 0, 1);
+    changed_alone(c);
+}
+
 // Events.
 
 static void on_drag_begin(GtkGestureDrag *g, double x, double y, gpointer data)
@@ -353,8 +360,7 @@ static void on_drag_update(GtkGestureDrag *g, double x, double y, gpointer data)
     ViewCanvas *c = data;
     (void)g;
     if (c->drag == DRAG_DIVIDER) {
-        c->divided = CLAMP((c->start_x + x) / MAX(1, gtk_widget_get_width(GTK_WIDGET(c))), 0, 1);
-        gtk_widget_queue_draw(GTK_WIDGET(c));
+        move_divider(c, (c->start_x + x) / MAX(1, gtk_widget_get_width(GTK_WIDGET(c))));
         return;
     }
     if (c->drag == DRAG_CLICK && fabs(x) + fabs(y) > SLACK)
@@ -366,17 +372,47 @@ static void on_drag_update(GtkGestureDrag *g, double x, double y, gpointer data)
     changed(c);
 }
 
+static void focus_at(ViewCanvas *c, double x, double y)
+{
+    double px, py;
+    to_picture(c, x, y, &px, &py);
+    if (c->picture && c->events.click)
+        c->events.click(c->cookie, px, py);
+}
+
 static void on_drag_end(GtkGestureDrag *g, double x, double y, gpointer data)
 {
     ViewCanvas *c = data;
-    double px, py;
     (void)g;
     (void)x;
     (void)y;
-    to_picture(c, c->start_x, c->start_y, &px, &py);
-    if (c->drag == DRAG_CLICK && c->picture && c->events.click)
-        c->events.click(c->cookie, px, py);
+    if (c->drag == DRAG_CLICK)
+        focus_at(c, c->start_x, c->start_y);
     c->drag = DRAG_NONE;
+}
+
+// What the mouse does, by keys: the arrows move the picture, with Shift the divider; Return focuses.
+static gboolean on_key(GtkEventControllerKey *keys, guint key, guint code, GdkModifierType state, gpointer data)
+{
+    ViewCanvas *c = data;
+    GtkWidget *w = GTK_WIDGET(c);
+    const int x = (key == GDK_KEY_Right) - (key == GDK_KEY_Left), y = (key == GDK_KEY_Down) - (key == GDK_KEY_Up);
+    (void)keys;
+    (void)code;
+    if (state & (GDK_CONTROL_MASK | GDK_ALT_MASK))
+        return FALSE;
+    if (key == GDK_KEY_Return || key == GDK_KEY_KP_Enter) {
+        const int over = c->pointer_x >= 0;
+        focus_at(c, over ? c->pointer_x : gtk_widget_get_width(w) / 2.0,
+                 over ? c->pointer_y : gtk_widget_get_height(w) / 2.0);
+    } else if (x && state & GDK_SHIFT_MASK && c->divider) {
+        move_divider(c, c->divided + x / 32.0);
+    } else if (x || y) {
+        view_canvas_pan(c, -x * KEY_STEP, -y * KEY_STEP);
+    } else {
+        return FALSE;
+    }
+    return TRUE;
 }
 
 static gboolean on_scroll(GtkEventControllerScroll *s, double dx, double dy, gpointer data)
@@ -409,6 +445,7 @@ static void on_leave(GtkEventControllerMotion *m, gpointer data)
 {
     ViewCanvas *c = data;
     (void)m;
+    c->pointer_x = -1;
     if (c->events.hover)
         c->events.hover(c->cookie, 0, 0, 0);
 }
@@ -434,7 +471,7 @@ static void view_canvas_class_init(ViewCanvasClass *class)
 
 static void view_canvas_init(ViewCanvas *c)
 {
-    c->camera = (struct view_camera){1, 0, 0};
+    c->camera = (struct view_camera){1, 1, 0, 0};
     c->gain = 1;
     c->divided = 0.5;
     c->fitted = 1;
@@ -459,6 +496,9 @@ GtkWidget *view_canvas_new(const struct view_canvas_events *events, void *cookie
     g_signal_connect(motion, "motion", G_CALLBACK(on_motion), c);
     g_signal_connect(motion, "leave", G_CALLBACK(on_leave), c);
     gtk_widget_add_controller(w, motion);
+    GtkEventController *keys = gtk_event_controller_key_new();
+    g_signal_connect(keys, "key-pressed", G_CALLBACK(on_key), c);
+    gtk_widget_add_controller(w, keys);
     gtk_widget_set_focusable(w, TRUE);
     gtk_widget_set_hexpand(w, TRUE);
     gtk_widget_set_vexpand(w, TRUE);

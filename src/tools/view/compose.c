@@ -9,7 +9,7 @@ struct view_camera view_camera_drawn(const struct view_camera *camera)
 {
     if (camera->zoom < 1)
         return *camera;
-    return (struct view_camera){camera->zoom, round(camera->x), round(camera->y)};
+    return (struct view_camera){camera->zoom, camera->aspect, round(camera->x), round(camera->y)};
 }
 
 void view_compose_clear(const struct view_screen *screen, uint32_t colour)
@@ -25,15 +25,18 @@ struct tap {
     uint32_t weight;  // of the second, 0 to 256
 };
 
-// from: where the picture begins on the screen; first, count: of the layer's pixels.
-static void find_taps(struct tap *taps, int begin, int end, double from, double scale, int first, int count, int smooth)
+// from: where the picture begins on the screen; first, count: of the layer's pixels. whole: its pixels are shown as they are.
+// Where one of them covers less than one of the screen, or they are smaller copies, neighbours are mixed.
+static void find_taps(struct tap *taps, int begin, int end, double from, double scale, int first, int count, int whole)
 {
+    const int smooth = !(whole && scale >= 1);
     for (int i = begin; i < end; i++) {
         const double place = (i + 0.5 - from) / scale - first;
         struct tap *t = &taps[i];
         if (!smooth) {
             const int k = (int)floor(place);
-            *t = (struct tap){k < 0 ? 0 : k >= count ? count - 1 : k, 0, 0};
+            t->first = t->second = k < 0 ? 0 : k >= count ? count - 1 : k;
+            t->weight = 0;
             continue;
         }
         const double p = fmin(fmax(place - 0.5, 0), count - 1);
@@ -96,11 +99,11 @@ static int clamp(double v, int least, int most)
 void view_compose(const struct view_screen *screen, const struct view_camera *camera, const struct view_layer *l)
 {
     const struct view_camera c = view_camera_drawn(camera);
-    const double scale = c.zoom * l->n;
-    const int smooth = !(l->n == 1 && c.zoom >= 1);
+    const double scale = c.zoom * l->n, wide = scale * c.aspect;
+    const int whole = l->n == 1, smooth = !whole || scale < 1 || wide < 1;
     // Screen pixels whose centres lie in the layer.
-    const int x0 = clamp(ceil(c.x + l->x * scale - 0.5), l->from, l->to);
-    const int x1 = clamp(ceil(c.x + (l->x + l->width) * scale - 0.5), l->from, l->to);
+    const int x0 = clamp(ceil(c.x + l->x * wide - 0.5), l->from, l->to);
+    const int x1 = clamp(ceil(c.x + (l->x + l->width) * wide - 0.5), l->from, l->to);
     const int y0 = clamp(ceil(c.y + l->y * scale - 0.5), 0, screen->height);
     const int y1 = clamp(ceil(c.y + (l->y + l->height) * scale - 0.5), 0, screen->height);
     struct tap *taps = x1 > x0 && y1 > y0 ? malloc((size_t)(screen->width + screen->height) * sizeof(*taps)) : NULL;
@@ -111,8 +114,8 @@ void view_compose(const struct view_screen *screen, const struct view_camera *ca
     }
     struct line lines[2] = {{room, -1}, {room + screen->width, -1}};
     struct tap *rows = taps + screen->width;
-    find_taps(taps, x0, x1, c.x, scale, l->x, l->width, smooth);
-    find_taps(rows, y0, y1, c.y, scale, l->y, l->height, smooth);
+    find_taps(taps, x0, x1, c.x, wide, l->x, l->width, whole);
+    find_taps(rows, y0, y1, c.y, scale, l->y, l->height, whole);
     for (int y = y0; y < y1; y++) {
         uint32_t *to = screen->pixels + (size_t)y * (size_t)screen->width;
         if (smooth)

@@ -5,9 +5,10 @@
 
 #include <stdint.h>
 
-// Where the picture is on the screen: its top left corner lies at (x, y), and one of its pixels is zoom wide.
+// Where the picture is on the screen: its top left corner lies at (x, y), and one of its pixels is zoom high and aspect times as
+// wide.
 struct view_camera {
-    double zoom, x, y;
+    double zoom, aspect, x, y;
 };
 
 // A part of the picture at 1/n of its size.

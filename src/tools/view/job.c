@@ -186,7 +186,7 @@ static void run(struct view_app *app, const char *output, const char *input)
     view_words_free(&words);
 }
 
-static int is_busy(struct view_app *app)
+int view_job_runs(struct view_app *app)
 {
     if (app->job)
         view_app_tell(app, "%s is being written; wait for it or cancel it first.", app->job->output);
@@ -195,7 +195,7 @@ static int is_busy(struct view_app *app)
 
 void view_job_save_as(struct view_app *app, const char *path)
 {
-    if (!is_busy(app) && app->picture)
+    if (!view_job_runs(app) && app->picture)
         run(app, path, app->picture->args.input);
 }
 
@@ -246,7 +246,7 @@ void view_job_save(struct view_app *app)
 
 void view_job_shot_as(struct view_app *app, const char *pattern)
 {
-    if (!is_busy(app) && app->shot.jobs.count)
+    if (!view_job_runs(app) && app->shot.jobs.count)
         run(app, pattern, NULL);
 }
 

@@ -16,6 +16,8 @@ void view_job_shot(struct view_app *app);
 void view_job_shot_as(struct view_app *app, const char *pattern);
 void view_job_pause(struct view_app *app, int paused);
 void view_job_cancel(struct view_app *app);
+// 1, and a sentence in the window, if a command runs.
+int view_job_runs(struct view_app *app);
 // A name or pattern to write to, to be freed with g_free.
 char *view_job_output(const struct view_app *app);
 

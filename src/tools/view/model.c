@@ -152,6 +152,10 @@ static const struct tool_option own_options[] = {
      .offset = offsetof(struct view_args, bench)},
     {"dark", 0, TOOL_RUN, NULL, "Light text on dark, whatever the desktop says.", .parse = tool_parse_flag,
      .offset = offsetof(struct view_args, dark)},
+    {"fps", 0, TOOL_FILES, "N",
+     "Play a shot at this rate, frames a second, 0.1 to 1000. Default: the header's framesPerSecond, "
+     "else 24.",
+     .parse = tool_parse_number, .offset = offsetof(struct view_args, rate), .min = 0.1f, .max = 1000},
     {"profile", 0, TOOL_RUN, "FILE", "On leaving write the averages of each 100 frames and of every pass.",
      .parse = tool_parse_text, .offset = offsetof(struct view_args, profile)},
     {.name = NULL},
@@ -159,9 +163,9 @@ static const struct tool_option own_options[] = {
 
 const struct tool_program *view_program(void)
 {
-    static const char *const usual[] = {"focus",      "focus-at", "fstop", "focal-length", "engine", "quality",
-                                        "depth-file", "frames",   "keys",  "demo",         "bench",  "profile",
-                                        "help",       NULL};
+    static const char *const usual[] = {"focus",   "focus-at",   "fstop",   "focal-length", "engine",
+                                        "quality", "depth-file", "frames",  "keys",         "fps",
+                                        "demo",    "bench",      "profile", "help",         NULL};
     static const char *const examples[] = {"hyperfocal-view shot.####.exr", "hyperfocal-view --demo", NULL};
     static struct tool_section sections[3];
     static struct tool_program program;

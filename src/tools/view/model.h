@@ -12,6 +12,7 @@ struct view_args {
     struct cli_args cli;  // the first member, as the options' tables expect
     int demo, bench, dark;
     const char *profile;
+    float rate;  // frames a second; 0: the header's
 };
 
 enum { VIEW_OPTIONS = TOOL_MOST_OPTIONS, VIEW_UNDO = 1000 };

@@ -58,6 +58,18 @@ int view_keys_copy(struct cli_keys *to, const struct cli_keys *from)
     return 0;
 }
 
+int view_keys_same(const struct cli_keys *a, const struct cli_keys *b)
+{
+    int same = a->smooth == b->smooth;
+    for (int c = 0; c < CLI_KEY_COUNT; c++) {
+        same = same && a->column[c].count == b->column[c].count;
+        for (int i = 0; same && i < a->column[c].count; i++)
+            same = a->column[c].keys[i].frame == b->column[c].keys[i].frame &&
+                   a->column[c].keys[i].value == b->column[c].keys[i].value;
+    }
+    return same;
+}
+
 int view_keys_find(const struct cli_keys *k, int column, double frame)
 {
     for (int i = 0; i < k->column[column].count; i++)

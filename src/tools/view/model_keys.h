@@ -11,6 +11,8 @@ int view_keys_copy(struct cli_keys *to, const struct cli_keys *from);
 // The column of an option's name, that of X for focus-at; -1: none. And the name of a column.
 int view_keys_column(const char *option);
 const char *view_keys_name(int column);
+// 1 if both hold the same keys.
+int view_keys_same(const struct cli_keys *a, const struct cli_keys *b);
 // 1 if there is any key.
 int view_keys_any(const struct cli_keys *k);
 // The place of the key at a frame in its column; -1: none.

@@ -22,6 +22,11 @@ static int is_shown(const struct tool_option *o)
     for (size_t i = 0; i < sizeof(elsewhere) / sizeof(elsewhere[0]); i++)
         if (!strcmp(o->name, elsewhere[i]))
             return 0;
+    // Of the files' options, those that say what is looked at.
+    static const char *const files[] = {"layer", "views", "display"};
+    for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++)
+        if (!strcmp(o->name, files[i]))
+            return 1;
     return o->group == TOOL_FOCUS || o->group == TOOL_LENS || o->group == TOOL_DEPTH || o->group == TOOL_LOOK ||
            !strcmp(o->name, "deterministic");
 }
@@ -34,13 +39,13 @@ static GtkWidget *make_group(enum tool_group group, GtkWidget *box)
     GtkWidget *expander = gtk_expander_new(g_strstrip(title));
     g_free(title);
     gtk_expander_set_child(GTK_EXPANDER(expander), box);
-    gtk_expander_set_expanded(GTK_EXPANDER(expander), group != TOOL_DEPTH && group != TOOL_RUN);
+    gtk_expander_set_expanded(GTK_EXPANDER(expander), group == TOOL_FOCUS || group == TOOL_LENS || group == TOOL_LOOK);
     return expander;
 }
 
 GtkWidget *view_panel_new(struct view_app *app)
 {
-    static const enum tool_group order[] = {TOOL_FOCUS, TOOL_LENS, TOOL_LOOK, TOOL_DEPTH, TOOL_RUN};
+    static const enum tool_group order[] = {TOOL_FOCUS, TOOL_LENS, TOOL_LOOK, TOOL_DEPTH, TOOL_FILES, TOOL_RUN};
     GtkWidget *column = gtk_box_new(GTK_ORIENTATION_VERTICAL, 6);
     struct view_panel *panel = g_new0(struct view_panel, 1);
     app->panel = panel;

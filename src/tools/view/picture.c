@@ -66,7 +66,18 @@ static int load(struct view_picture *p, const char *input, const char *depth_fil
     return status ? -1 : 0;
 }
 
-struct view_picture *view_picture_load(struct view_words *words, const char *input, const char *depth_file,
+// Choose the view to look at.
+static void show(struct view_picture *p, int view)
+{
+    p->shown = view < p->frame.view_count ? view : 0;
+    struct cli_view *v = &p->frame.views[p->shown];
+    const struct hf_image image = cli_view_image(v, 0);
+    p->reduced[0] = (struct view_pixels){.width = image.width, .height = image.height, .depth = v->depth};
+    for (int c = 0; c < 4; c++)
+        p->reduced[0].plane[c] = image.data[c];
+}
+
+struct view_picture *view_picture_load(struct view_words *words, const char *input, const char *depth_file, int view,
                                        struct tool_error *error)
 {
     struct view_picture *p = calloc(1, sizeof(*p));
@@ -82,7 +93,7 @@ struct view_picture *view_picture_load(struct view_words *words, const char *inp
         free_picture(p);
         return NULL;
     }
-    view_picture_show(p, 0);
+    show(p, view);
     return p;
 }
 
@@ -104,18 +115,8 @@ struct view_picture *view_picture_make(const struct hf_io_view *view, float *con
         .view = &p->made, .depth = depth, .label = strdup("scene"), .planes = {planes[0], planes[1], planes[2]}};
     p->args.input = strdup("scene");
     p->frame = (struct cli_frame){.args = &p->args, .views = v, .view_count = 1, .loaded = 1};
-    view_picture_show(p, 0);
+    show(p, 0);
     return p;
-}
-
-void view_picture_show(struct view_picture *p, int view)
-{
-    p->shown = view < p->frame.view_count ? view : 0;
-    struct cli_view *v = &p->frame.views[p->shown];
-    const struct hf_image image = cli_view_image(v, 0);
-    p->reduced[0] = (struct view_pixels){.width = image.width, .height = image.height, .depth = v->depth};
-    for (int c = 0; c < 4; c++)
-        p->reduced[0].plane[c] = image.data[c];
 }
 
 const struct cli_view *view_picture_view(const struct view_picture *p)

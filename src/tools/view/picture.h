@@ -31,16 +31,14 @@ struct view_picture {
 };
 
 // Read what the words name; words becomes empty. input: the file, where words name a shot; NULL: what the words say. NULL with
-// *error filled if that fails. Any thread may call it.
-struct view_picture *view_picture_load(struct view_words *words, const char *input, const char *depth_file,
+// *error filled if that fails. view: the one to look at, the first if there is no such view. Any thread may call it.
+struct view_picture *view_picture_load(struct view_words *words, const char *input, const char *depth_file, int view,
                                        struct tool_error *error);
 // A picture that no file holds, of planes and a depth that become its own. NULL without memory.
 struct view_picture *view_picture_make(const struct hf_io_view *view, float *const planes[3], float *depth);
 struct view_picture *view_picture_ref(struct view_picture *p);
 void view_picture_unref(struct view_picture *p);
 
-// Choose the view to look at; only before others know the picture.
-void view_picture_show(struct view_picture *p, int view);
 const struct cli_view *view_picture_view(const struct view_picture *p);
 
 // 1/n of the picture, 1 <= n <= VIEW_REDUCTIONS; NULL without memory.

@@ -8,6 +8,8 @@
 #include "tools/view/picture.h"
 #include "tools/view/show.h"
 
+enum { VIEW_BUFFER = 64 };
+
 struct view_request {
     unsigned serial;               // set by view_renderer_ask
     struct view_picture *picture;  // view_renderer_ask takes a reference of its own
@@ -18,8 +20,8 @@ struct view_request {
     int moving;             // more will follow: the quick step is enough
     float gain;             // of the exposure
     enum view_show show;
-    char buffer[32];  // with VIEW_SHOW_BUFFER
-    double asked_ms;  // tool_now_ms of the event
+    char buffer[VIEW_BUFFER];  // which one, with VIEW_SHOW_BUFFER
+    double asked_ms;           // tool_now_ms of the event
 };
 
 struct view_result {
@@ -39,7 +41,9 @@ struct view_result {
     int width;       // of the whole picture, in such pixels
     uint8_t *tiles;  // enum hf_tile, if the request showed them; or NULL
     size_t tile_count;
-    char *buffers;  // names of the engine's buffers, one a line, if the request showed one; or NULL
+    char *buffers;  // what the engine's buffers hold, a line for each, if the request showed one; or NULL
+    int channels;   // of the buffer that plane holds; 0: it holds the picture
+    int kind;       // of its values, for view_false_colour
 };
 
 struct view_renderer;

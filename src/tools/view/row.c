@@ -124,6 +124,16 @@ static char *title_of(const char *name)
     return title;
 }
 
+// "Max radius" with its unit, where that is not the scene's: "Max radius, px".
+static char *title_with_unit(const char *title, const struct tool_option *o)
+{
+    static const char *const units[][2] = {{"PX", "px"}, {"MM", "mm"}, {"M", "m"}, {"MS", "ms"}};
+    for (size_t i = 0; o->placeholder && i < sizeof(units) / sizeof(units[0]); i++)
+        if (!strcmp(o->placeholder, units[i][0]))
+            return g_strdup_printf("%s, %s", title, units[i][1]);
+    return g_strdup(title);
+}
+
 static GtkWidget *choices_of(const struct tool_option *o)
 {
     char **words = g_strsplit(o->placeholder, "|", -1);
@@ -214,9 +224,11 @@ struct view_row *view_row_new(struct view_app *app, int option)
     row->option = option;
     row->kind = view_kind(o);
     row->box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 6);
-    row->name = gtk_label_new(title);
+    char *words = title_with_unit(title, o);
+    row->name = gtk_label_new(words);
+    g_free(words);
     gtk_label_set_xalign(GTK_LABEL(row->name), 0);
-    gtk_label_set_width_chars(GTK_LABEL(row->name), 14);
+    gtk_label_set_width_chars(GTK_LABEL(row->name), 16);
     gtk_label_set_ellipsize(GTK_LABEL(row->name), PANGO_ELLIPSIZE_END);
     gtk_label_set_max_width_chars(GTK_LABEL(row->name), 18);
     gtk_widget_set_tooltip_text(row->name, "Double click: the default");

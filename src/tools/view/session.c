@@ -167,7 +167,7 @@ static int set_up(struct view_app *app, struct tool_error *error)
     return status;
 }
 
-// The options that change what is loaded, as one text.
+// What changes what is loaded, as one text: options, and the view that is shown.
 static char *loading_options(const struct view_app *app)
 {
     GString *text = g_string_new(NULL);
@@ -178,6 +178,7 @@ static char *loading_options(const struct view_app *app)
         if (loads && app->model.now.value[i])
             g_string_append_printf(text, "--%s %s\n", o->name, app->model.now.value[i]);
     }
+    g_string_append_printf(text, "view %d\n", app->view);
     return g_string_free(text, FALSE);
 }
 
@@ -245,10 +246,18 @@ void view_app_focus_at(struct view_app *app, double x, double y)
 
 void view_app_undo(struct view_app *app, int redo)
 {
+    struct cli_keys before;
+    if (view_keys_copy(&before, &app->model.now.keys)) {
+        view_app_tell(app, "out of memory");
+        return;
+    }
     if (redo ? view_model_redo(&app->model) : view_model_undo(&app->model)) {
         view_app_tell(app, NULL);
+        if (!view_keys_same(&before, &app->model.now.keys))
+            view_keys_changed(app);
         view_app_apply(app);
     }
+    cli_keys_free(&before);
 }
 
 // Loading, on a thread of its own.
@@ -257,7 +266,7 @@ static void read_ahead(struct view_app *app);
 
 struct load {
     struct view_app *app;
-    int number, frame;
+    int number, frame, view;
     int shot;   // which of those that were opened
     int ahead;  // nobody waits for it
     struct view_words words;
@@ -282,7 +291,7 @@ static void load_thread(GTask *task, gpointer source, gpointer data, GCancellabl
     struct load *l = data;
     (void)source;
     (void)cancellable;
-    l->picture = view_picture_load(&l->words, l->input, l->depth_file, &l->error);
+    l->picture = view_picture_load(&l->words, l->input, l->depth_file, l->view, &l->error);
     g_task_return_boolean(task, TRUE);
 }
 
@@ -392,6 +401,7 @@ static void start_load(struct view_app *app, int frame, int ahead)
     l->app = app;
     l->frame = frame;
     l->ahead = ahead;
+    l->view = app->view;
     l->shot = app->shots;
     l->number = ahead ? 0 : ++app->loading;
     l->input = job && job->input ? strdup(job->input) : NULL;

@@ -8,7 +8,7 @@
 #include "tools/view/keys_file.h"
 #include "tools/view/say.h"
 
-#define RATE 24.0  // frames a second
+#define RATE 24.0  // frames a second, where neither the header nor the command line says
 
 struct view_timeline {
     GtkWidget *box, *play, *scale, *label, *curves, *smooth;
@@ -50,6 +50,12 @@ void view_timeline_go(struct view_app *app, int place)
     view_say("frame %g", view_timeline_frame(app));
 }
 
+static double rate_of(const struct view_app *app)
+{
+    const double header = app->picture ? view_picture_view(app->picture)->view->frame_rate : 0;
+    return app->own.rate > 0 ? app->own.rate : header > 0 ? header : RATE;
+}
+
 // Playing: the next frame when it is due and has been read.
 
 static gboolean on_tick(GtkWidget *widget, GdkFrameClock *clock, gpointer data)
@@ -58,11 +64,12 @@ static gboolean on_tick(GtkWidget *widget, GdkFrameClock *clock, gpointer data)
     struct view_timeline *t = app->timeline;
     const double now = tool_now_ms();
     const int next = (app->frame + 1) % frames_of(app);
+    const double step = 1000 / rate_of(app);
     (void)widget;
     (void)clock;
     if (now < t->next_ms || !view_frames_get(&app->frames, next))
         return TRUE;
-    t->next_ms = fmax(t->next_ms + 1000 / RATE, now - 1000 / RATE);
+    t->next_ms = fmax(t->next_ms + step, now - step);
     view_timeline_go(app, next);
     return TRUE;
 }
@@ -77,13 +84,14 @@ void view_timeline_play(struct view_app *app)
                              app->playing ? "media-playback-pause-symbolic" : "media-playback-start-symbolic");
     gtk_accessible_update_property(GTK_ACCESSIBLE(t->play), GTK_ACCESSIBLE_PROPERTY_LABEL,
                                    app->playing ? "Pause" : "Play", -1);
-    view_say("%s", app->playing ? "playing" : "paused");
     if (app->playing) {
+        view_say("playing at %g", rate_of(app));
         t->next_ms = tool_now_ms();
         t->tick = gtk_widget_add_tick_callback(app->canvas, on_tick, app, NULL);
         view_app_load(app);
         return;
     }
+    view_say("paused");
     gtk_widget_remove_tick_callback(app->canvas, t->tick);
     view_app_ask(app, 0);
 }
@@ -330,7 +338,8 @@ void view_timeline_refresh(struct view_app *app)
     gtk_range_set_value(GTK_RANGE(t->scale), app->frame);
     gtk_check_button_set_active(GTK_CHECK_BUTTON(t->smooth), app->model.now.keys.smooth);
     t->quiet = 0;
-    g_snprintf(text, sizeof(text), "frame %g, %d of %d", view_timeline_frame(app), app->frame + 1, frames_of(app));
+    g_snprintf(text, sizeof(text), "frame %g, %d of %d, %.4g a second", view_timeline_frame(app), app->frame + 1,
+               frames_of(app), rate_of(app));
     gtk_label_set_text(GTK_LABEL(t->label), text);
     gtk_widget_set_visible(t->curves, view_keys_any(&app->model.now.keys));
     gtk_widget_queue_draw(t->curves);

@@ -58,27 +58,12 @@ static void say_drawn(struct view_app *app, const struct view_result *r, const c
     gtk_widget_translate_coordinates(app->canvas, app->window, 0, 0, &x, &y);
     gtk_native_get_surface_transform(GTK_NATIVE(app->window), &sx, &sy);
     const struct view_camera c = view_canvas_camera(VIEW_CANVAS(app->canvas));
-    view_say("drawn stage=%s n=%d at=%d,%d,%d,%d canvas=%g,%g,%d,%d camera=%g,%g,%g focus=%g fstop=%g ms=%.1f "
+    view_say("drawn stage=%s n=%d at=%d,%d,%d,%d canvas=%g,%g,%d,%d camera=%g,%g,%g,%g focus=%g fstop=%g ms=%.1f "
              "latency=%.1f show=%s",
              stage, r->n, r->at.x, r->at.y, r->at.width, r->at.height, x + sx, y + sy,
-             gtk_widget_get_width(app->canvas), gtk_widget_get_height(app->canvas), c.zoom, c.x, c.y,
+             gtk_widget_get_width(app->canvas), gtk_widget_get_height(app->canvas), c.zoom, c.x, c.y, c.aspect,
              app->setup.params.focus, app->setup.params.lens.f_number, r->ms, tool_now_ms() - r->asked_ms,
              view_show_names[r->show]);
-}
-
-// The engine's buffers, as soon as their names are known.
-static void show_buffers(struct view_app *app, const struct view_result *r)
-{
-    char **names = r->buffers ? g_strsplit(g_strchomp(g_strdup(r->buffers)), "\n", -1) : NULL;
-    GtkStringList *list = names ? gtk_string_list_new((const char *const *)names) : NULL;
-    GListModel *old = gtk_drop_down_get_model(GTK_DROP_DOWN(app->buffers));
-    gtk_widget_set_visible(app->buffers, app->show == VIEW_SHOW_BUFFER && (list || g_list_model_get_n_items(old)));
-    if (list && g_list_model_get_n_items(G_LIST_MODEL(list)) != g_list_model_get_n_items(old)) {
-        gtk_drop_down_set_model(GTK_DROP_DOWN(app->buffers), G_LIST_MODEL(list));
-        gtk_drop_down_set_selected(GTK_DROP_DOWN(app->buffers), 0);
-    }
-    g_clear_object(&list);
-    g_strfreev(names);
 }
 
 static void on_buffer(GtkDropDown *down, GParamSpec *spec, gpointer data)
@@ -86,10 +71,93 @@ static void on_buffer(GtkDropDown *down, GParamSpec *spec, gpointer data)
     struct view_app *app = data;
     GtkStringObject *item = gtk_drop_down_get_selected_item(down);
     (void)spec;
-    if (!item || !strcmp(app->buffer, gtk_string_object_get_string(item)))
+    if (app->quiet || !item || !strcmp(app->buffer, gtk_string_object_get_string(item)))
         return;
     g_strlcpy(app->buffer, gtk_string_object_get_string(item), sizeof(app->buffer));
     view_app_ask(app, 0);
+}
+
+static int index_of(char *const *words, const char *word)
+{
+    for (int i = 0; words[i]; i++)
+        if (!strcmp(words[i], word))
+            return i;
+    return -1;
+}
+
+void view_window_next_buffer(struct view_app *app)
+{
+    const guint n = g_list_model_get_n_items(gtk_drop_down_get_model(GTK_DROP_DOWN(app->buffers)));
+    if (app->show == VIEW_SHOW_BUFFER && n)
+        gtk_drop_down_set_selected(GTK_DROP_DOWN(app->buffers),
+                                   (gtk_drop_down_get_selected(GTK_DROP_DOWN(app->buffers)) + 1) % n);
+}
+
+// Give a choice other words, unless it has these.
+static void set_words(GtkWidget *choice, int count, const char *const *words)
+{
+    GtkStringList *list = GTK_STRING_LIST(gtk_drop_down_get_model(GTK_DROP_DOWN(choice)));
+    const guint old = g_list_model_get_n_items(G_LIST_MODEL(list));
+    int same = (int)old == count;
+    for (int i = 0; i < count && same; i++)
+        same = !strcmp(gtk_string_list_get_string(list, (guint)i), words[i]);
+    if (same)
+        return;
+    GtkStringList *made = gtk_string_list_new(NULL);
+    for (int i = 0; i < count; i++)
+        gtk_string_list_append(made, words[i]);
+    gtk_drop_down_set_model(GTK_DROP_DOWN(choice), G_LIST_MODEL(made));
+    g_object_unref(made);
+}
+
+// The engine's buffers, as soon as their names are known.
+static void show_buffers(struct view_app *app, const struct view_result *r)
+{
+    char **names = r->buffers ? g_strsplit(g_strchomp(g_strdup(r->buffers)), "\n", -1) : NULL;
+    if (names) {
+        // At first what tells most of an engine.
+        const char *const wanted[] = {app->buffer, "Slices", "CoC, near and far"};
+        int place = -1;
+        for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]) && place < 0; i++)
+            place = index_of(names, wanted[i]);
+        app->quiet = 1;
+        set_words(app->buffers, (int)g_strv_length(names), (const char *const *)names);
+        gtk_drop_down_set_selected(GTK_DROP_DOWN(app->buffers), (guint)MAX(0, place));
+        app->quiet = 0;
+        on_buffer(GTK_DROP_DOWN(app->buffers), NULL, app);
+    }
+    gtk_widget_set_visible(app->buffers, app->show == VIEW_SHOW_BUFFER && (names || app->buffer[0]));
+    g_strfreev(names);
+}
+
+// The views of a file with several.
+static void show_views(struct view_app *app)
+{
+    const struct cli_frame *f = app->picture ? &app->picture->frame : NULL;
+    const int count = f && f->view_count > 1 ? f->view_count : 0;
+    GPtrArray *names = g_ptr_array_new();
+    for (int i = 0; i < count; i++)
+        g_ptr_array_add(names, f->views[i].tag);
+    app->quiet = 1;
+    set_words(app->views, (int)names->len, (const char *const *)names->pdata);
+    gtk_widget_set_visible(app->views, count > 0);
+    if (count)
+        gtk_drop_down_set_selected(GTK_DROP_DOWN(app->views), (guint)app->picture->shown);
+    app->quiet = 0;
+    g_ptr_array_unref(names);
+}
+
+static void on_view(GtkDropDown *down, GParamSpec *spec, gpointer data)
+{
+    struct view_app *app = data;
+    const guint view = gtk_drop_down_get_selected(down);
+    (void)spec;
+    if (app->quiet || view == GTK_INVALID_LIST_POSITION || (int)view == app->view)
+        return;
+    app->view = (int)view;
+    app->event_ms = tool_now_ms();
+    view_say("view %d", app->view);
+    view_app_apply(app);
 }
 
 static void on_show(GtkDropDown *down, GParamSpec *spec, gpointer data)
@@ -122,6 +190,8 @@ void view_window_drawn(struct view_app *app, const struct view_result *result)
     view_profiler_refresh(app);
     say_drawn(app, result, stages[result->stage]);
     show_buffers(app, result);
+    if (result->channels)
+        view_say("buffer %s", app->buffer);
     view_bench_drawn(app, result);
     view_demo_drawn(app);
 }
@@ -141,8 +211,13 @@ void view_window_hover(struct view_app *app, double x, double y, int inside)
         const int u = (int)(x / r->n) - r->at.x, w = (int)(y / r->n) - r->at.y;
         if (u >= 0 && w >= 0 && u < r->at.width && w < r->at.height) {
             const size_t i = (size_t)w * (size_t)r->at.width + (size_t)u;
-            snprintf(colour, sizeof(colour), "   R %.4g  G %.4g  B %.4g", r->plane[0][i], r->plane[1][i],
-                     r->plane[2][i]);
+            const float value[3] = {r->plane[0][i], r->plane[1][i], r->plane[2][i]};
+            if (r->channels == 1)
+                snprintf(colour, sizeof(colour), "   value %.4g", value[0]);
+            else if (r->channels == 2)
+                snprintf(colour, sizeof(colour), "   values %.4g  %.4g", value[0], value[1]);
+            else
+                snprintf(colour, sizeof(colour), "   R %.4g  G %.4g  B %.4g", value[0], value[1], value[2]);
         }
     }
     if (hf_depth_at(&app->setup.depth, v->width, v->height, at.x, at.y, &z, NULL) == HF_OK)
@@ -166,6 +241,7 @@ void view_window_refresh(struct view_app *app)
     char *base = name ? g_path_get_basename(name) : g_strdup("hyperfocal");
     gtk_window_set_title(GTK_WINDOW(app->window), base);
     g_free(base);
+    show_views(app);
     view_actions_refresh(app);
     view_panel_refresh(app);
     view_timeline_refresh(app);
@@ -253,6 +329,9 @@ static GtkWidget *make_status(struct view_app *app)
     app->buffers = make_choice("Buffer of the engine", G_CALLBACK(on_buffer), app);
     gtk_widget_set_visible(app->buffers, FALSE);
     gtk_box_append(GTK_BOX(box), app->shows);
+    app->views = make_choice("View of the file", G_CALLBACK(on_view), app);
+    gtk_widget_set_visible(app->views, FALSE);
+    gtk_box_append(GTK_BOX(box), app->views);
     gtk_box_append(GTK_BOX(box), app->buffers);
     gtk_box_append(GTK_BOX(box), app->value);
     gtk_box_append(GTK_BOX(box), app->exposure);
@@ -293,7 +372,7 @@ static GtkWidget *make_canvas(struct view_app *app)
 static gboolean on_close(GtkWindow *window, gpointer data)
 {
     (void)window;
-    return !view_keys_end(data);
+    return view_job_runs(data) || !view_keys_end(data);
 }
 
 gboolean view_window_close(gpointer data)
