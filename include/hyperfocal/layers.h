@@ -38,6 +38,34 @@ struct hf_layer {
 HF_API int hf_render_layers(struct hf_context *c, const struct hf_image *dst, const struct hf_layer *layers, int count,
                             const struct hf_params *params, const struct hf_region *region);
 
+// A deep picture: any number of samples in a pixel, in any order, in memory of the caller. Those of pixel i, counted row after
+// row from the top left one, are first[i] to first[i + 1] - 1 of each array.
+struct hf_deep {
+    size_t size;            // sizeof(struct hf_deep)
+    int width;              // pixels
+    int height;             // pixels
+    const uint64_t *first;  // width * height + 1 numbers, which never fall
+    uint64_t samples;       // that each array below has; no number of first is more
+    // Linear, premultiplied. Values that are not finite count as 0.
+    const float *colour[3];
+    const float *alpha;  // 0 to 1; a sample that has no more than 0 shows nothing
+    // Numbers of the type that *as describes, of which data, stride and format are not read. NaN: the sample shows nothing.
+    const float *depth;
+    const struct hf_depth *as;  // what the numbers mean
+    // NULL, or the far end of each sample, also such a number: a medium that fills the way from depth to there evenly, with alpha
+    // for all of it. One that is not behind depth is none.
+    const float *back;
+    // NULL, or the object that each sample belongs to, 0: unknown. Samples of one object that follow each other front to back are
+    // beside each other in the pixel: their alpha adds up. Others are over each other.
+    const uint32_t *object;
+};
+
+// As hf_render_region (region NULL: all), of a deep picture; pixels without samples are transparent and infinitely far away. Of a
+// pixel three depths are kept: what is seen, and two that may be hidden; samples of about the same blur are put over each
+// other first, a medium is cut into eight. The engine must be HF_ENGINE_LAYERS, and params->focus not HF_DERIVE, else HF_ERR_ARG. Errors as for hf_render_region.
+HF_API int hf_render_deep(struct hf_context *c, const struct hf_image *dst, const struct hf_deep *deep,
+                          const struct hf_params *params, const struct hf_region *region);
+
 #ifdef __cplusplus
 }
 #endif

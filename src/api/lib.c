@@ -11,6 +11,7 @@
 #include "base/system.h"
 #include "frame/buffers.h"
 #include "frame/check.h"
+#include "frame/deep.h"
 #include "frame/report.h"
 #include "frame/surfaces.h"
 #include "pixel/depth.h"
@@ -180,6 +181,7 @@ void hf_close(struct hf_context **context)
     hf_block_free(&c->tiles, &c->mem);
     hf_block_free(&c->joined, &c->mem);
     hf_block_free(&c->surfaces, &c->mem);
+    hf_block_free(&c->samples, &c->mem);
     hf_block_free(&c->repairs, &c->mem);
     const struct hf_mem mem = c->mem;
     mem.free(mem.cookie, c);
@@ -227,36 +229,62 @@ int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int 
     return err ? err : told;
 }
 
-// A frame whose settings are known.
-static int run_resolved(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
-                        const struct hf_depth *depth, const struct hf_settings *r, const struct hf_region *region,
-                        const struct hf_surface_input *layers, int count, enum hf_task task)
+// What a program gives to render a frame, copied.
+struct call {
+    const struct hf_region *region;  // NULL: all
+    struct hf_region own_region;
+    struct hf_image dst, src;
+    struct hf_depth depth;
+    struct hf_given given;
+    struct hf_surface_input layers[HF_MOST_LAYERS];
+    int count;  // of layers, 0: one picture
+    int is_deep;
+    struct hf_deep_input deep;
+};
+
+// Whether it gives more than one picture of one surface.
+static int is_several(const struct call *call)
 {
-    const int fused = !r->params.run.deterministic, several = count > 1 && !r->sharp;
-    struct hf_setup s;
+    return call->count > 1 || call->is_deep;
+}
+
+// Several pictures, or a deep one, become one picture and what the engine knows beside it.
+static int merge(struct hf_context *c, struct hf_setup *s, const struct call *call, int fused, struct hf_merged *merged,
+                 struct hf_known *known)
+{
+    const int peels = call->count > 1 && call->layers[1].kind == HF_LAYER_PEEL;
+    *merged = (struct hf_merged){call->src, call->depth};
+    if (call->is_deep)
+        return hf_deep_merge(c, s, &call->deep, fused, merged, known);
+    if (peels)
+        return hf_surfaces_read(c, s, call->layers + 1, hf_min(call->count - 1, HF_MOST_BEHIND), fused, known);
+    return hf_surfaces_merge(c, s, call->layers, call->count, fused, merged, known);
+}
+
+// A frame whose settings are known.
+static int run_resolved(struct hf_context *c, const struct call *call, const struct hf_settings *r, enum hf_task task)
+{
+    const int fused = !r->params.run.deterministic, peels = call->count > 1 && call->layers[1].kind == HF_LAYER_PEEL;
+    // Without blur nothing is seen of what a picture hides.
+    const int several = is_several(call) && !(r->sharp && peels);
+    const struct hf_region *region = call->region;
+    struct hf_merged merged = {call->src, call->depth};
     struct hf_known known;
-    struct hf_merged merged;
-    int err = HF_OK;
-    hf_setup_make(&s, src, dst, depth, r, c->engine[r->params.engine].own);
+    struct hf_setup s;
+    hf_setup_make(&s, &merged.image, &call->dst, &merged.depth, r, c->engine[r->params.engine].own);
     s.stop = &c->stop;
-    if (several && layers[1].kind == HF_LAYER_PEEL)
-        err = hf_surfaces_read(c, &s, layers + 1, hf_min(count - 1, HF_MOST_BEHIND), fused, &known);
-    else if (several) {
-        err = hf_surfaces_merge(c, &s, layers, count, fused, &merged, &known);
-        src = &merged.image;
-        depth = &merged.depth;
-    }
-    if (err)
-        return err;
     if (several) {
-        hf_setup_make(&s, src, dst, depth, r, c->engine[r->params.engine].own);
+        const int err = merge(c, &s, call, fused, &merged, &known);
+        if (err)
+            return err;
+        hf_setup_make(&s, &merged.image, &call->dst, &merged.depth, r, c->engine[r->params.engine].own);
         s.stop = &c->stop;
         hf_engine_def(s.engine)->own.know(c->engine[s.engine].own, &known);
     }
     if (region)
         s.region = (struct hf_rect){region->x, region->y, region->x + region->width, region->y + region->height};
     s.part = region && (region->width < r->width || region->height < r->height);
-    return hf_render_frame(c, &s, &(struct hf_job){dst, src, depth, fused, task});
+    return hf_render_frame(c, &s, &(struct hf_job){&call->dst, &merged.image, &merged.depth, fused, task});
 }
 
 // Choose the settings that fit the time budget, and resolve them. Returns how many settings there are to choose from, or an
@@ -327,17 +355,6 @@ static int check_region(const struct hf_region *r, const struct hf_image *src, s
     return HF_OK;
 }
 
-// What a program gives to render a frame, copied.
-struct call {
-    const struct hf_region *region;  // NULL: all
-    struct hf_region own_region;
-    struct hf_image dst, src;
-    struct hf_depth depth;
-    struct hf_given given;
-    struct hf_surface_input layers[HF_MOST_LAYERS];
-    int count;  // of layers, 0: one picture
-};
-
 static int take(struct call *call, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
                 const struct hf_params *params, const struct hf_region *region, struct hf_message *message)
 {
@@ -375,7 +392,7 @@ static int settle(struct hf_context *c, const struct call *call, struct hf_setti
         c->budget.step = 0;
     if (err || !budget)
         return err;
-    *steps = choose(c, r, p, &call->depth, call->count > 1, options, message);
+    *steps = choose(c, r, p, &call->depth, is_several(call), options, message);
     return hf_min(*steps, 0);
 }
 
@@ -397,15 +414,23 @@ static int fail_by(struct hf_context *c, int error, const char *sentence)
     return hf_fail(c, &message);
 }
 
+// In place of a picture and its depth.
+struct scene {
+    const struct hf_layer *layers;
+    int count, is_deep;
+    const struct hf_deep *deep;
+};
+
 // Check the arguments, choose a setting that fits the budget, and render.
 static int run(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
-               const struct hf_layer *layers, int count, enum hf_task task)
+               const struct scene *scene, enum hf_task task)
 {
     if (!c)
         return HF_ERR_ARG;
     struct hf_message message;
     struct call call;
+    struct hf_image image;
     struct hf_settings r;
     int steps = 0;
     const char *options = NULL;
@@ -413,22 +438,29 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
     atomic_store_explicit(&c->stop, 0, memory_order_relaxed);
     if (c->pool && c->threads > 1 && c->pid != hf_process())
         return fail_by(c, HF_ERR_THREAD, "the context was opened before fork(): its threads are in the parent process");
-    int err = layers || count ? hf_take_layers(call.layers, layers, count, &message) : HF_OK;
-    call.count = count;
-    if (!err && count) {
-        src = &call.layers->image;
-        depth = &call.layers->depth;
+    int err = HF_OK;
+    call.count = 0;
+    call.is_deep = scene && scene->is_deep;
+    if (call.is_deep)
+        err = hf_take_deep(&call.deep, &image, scene->deep, &message);
+    else if (scene)
+        err = hf_take_layers(call.layers, scene->layers, call.count = scene->count, &message);
+    if (!err && scene) {
+        src = call.is_deep ? &image : &call.layers->image;
+        depth = call.is_deep ? &call.deep.depth : &call.layers->depth;
     }
     if (!err)
         err = take(&call, dst, src, depth, params, region, &message);
-    if (!err && count > 1)
+    if (!err && call.is_deep && call.given.params.focus == HF_DERIVE)
+        err = hf_bad(&message, "focus", "is to be read from a deep picture; give a distance");
+    if (!err && is_several(&call))
         err = check_engine(&call, &message);
     if (!err)
         err = settle(c, &call, &r, &steps, &options, &message);
     if (err)
         return hf_fail(c, &message);
     tell_depth(c, &call.depth, &r.params);
-    err = run_resolved(c, &call.dst, &call.src, &call.depth, &r, call.region, call.layers, call.count, task);
+    err = run_resolved(c, &call, &r, task);
     if (err) {
         char sentence[128];
         c->report = (struct hf_frame_report){0};
@@ -449,26 +481,34 @@ static int run(struct hf_context *c, const struct hf_image *dst, const struct hf
 int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
               const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, NULL, NULL, 0, HF_TASK_RENDER);
+    return run(c, dst, src, depth, params, NULL, NULL, HF_TASK_RENDER);
 }
 
 int hf_render_region(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region)
 {
-    return run(c, dst, src, depth, params, region, NULL, 0, HF_TASK_RENDER);
+    return run(c, dst, src, depth, params, region, NULL, HF_TASK_RENDER);
 }
 
 int hf_render_layers(struct hf_context *c, const struct hf_image *dst, const struct hf_layer *layers, int count,
                      const struct hf_params *params, const struct hf_region *region)
 {
-    return run(c, dst, NULL, NULL, params, region, layers, count ? count : -1, HF_TASK_RENDER);
+    const struct scene scene = {.layers = layers, .count = count};
+    return run(c, dst, NULL, NULL, params, region, &scene, HF_TASK_RENDER);
+}
+
+int hf_render_deep(struct hf_context *c, const struct hf_image *dst, const struct hf_deep *deep,
+                   const struct hf_params *params, const struct hf_region *region)
+{
+    const struct scene scene = {.is_deep = 1, .deep = deep};
+    return run(c, dst, NULL, NULL, params, region, &scene, HF_TASK_RENDER);
 }
 
 int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                     const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
                     struct hf_region *colour, struct hf_region *depth_read)
 {
-    const int err = run(c, dst, src, depth, params, region, NULL, 0, HF_TASK_PLAN);
+    const int err = run(c, dst, src, depth, params, region, NULL, HF_TASK_PLAN);
     struct hf_region *const out[2] = {colour, depth_read};
     struct hf_message message;
     for (int i = 0; i < 2 && c; i++) {
@@ -483,13 +523,13 @@ int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const stru
 int hf_prepare(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                const struct hf_depth *depth, const struct hf_params *params)
 {
-    return run(c, dst, src, depth, params, NULL, NULL, 0, HF_TASK_PREPARE);
+    return run(c, dst, src, depth, params, NULL, NULL, HF_TASK_PREPARE);
 }
 
 int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src, const struct hf_depth *depth,
             const struct hf_params *params, struct hf_report *report)
 {
-    const int err = run(c, dst, src, depth, params, NULL, NULL, 0, HF_TASK_PLAN);
+    const int err = run(c, dst, src, depth, params, NULL, NULL, HF_TASK_PLAN);
     const int told = c && report ? hf_get_report(c, report) : HF_OK;
     return err ? err : told;
 }

@@ -45,6 +45,7 @@ struct hf_context {
     struct hf_block chunks, tiles;  // the plan's
     struct hf_block joined;         // CoC for a dump: of full resolution, or of narrow buffers
     struct hf_block surfaces;       // planes of known surfaces
+    struct hf_block samples;        // of a deep picture: a row's and a pixel's, of each worker
     struct hf_block repairs;        // in place: what has to be written before a tile overwrites its neighbours
     struct hf_frame_report report;
     struct hf_work work;  // of the plan

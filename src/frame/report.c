@@ -53,7 +53,8 @@ struct hf_counts hf_report_counts(const struct hf_context *c)
 static size_t memory_beside(const struct hf_context *c)
 {
     return sizeof *c + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size + c->surfaces.size +
-           hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0) + (size_t)c->threads * sizeof *c->workers;
+           c->samples.size + hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0) +
+           (size_t)c->threads * sizeof *c->workers;
 }
 
 static size_t memory_held(const struct hf_context *c)

@@ -6,29 +6,17 @@
 
 #include "pixel/depth.h"
 #include "pixel/format.h"
+#include "frame/reading.h"
 #include "pixel/pass_c.h"
 
 enum {
-    ROWS = 16,        // of a piece of work
+    ROWS = HF_READING_ROWS,
     FOUND_REACH = 2,  // how far from an edge's pixel its surface is looked for
-    FOUND_LINES = 6   // for that: a row of a layer, and what was found
+    FOUND_LINES = 6,  // for that: a row of a layer, and what was found
+    LINES = 6         // of a layer's row: colour, radius, and what a surface's distance was found to be, else NaN
 };
 
-struct reading {
-    struct hf_context *c;
-    const struct hf_setup *s;
-    const struct hf_surface_input *in;
-    const struct hf_setup *setup;  // of each surface
-    struct hf_known *known;
-    int fused, pieces, count;  // count of merged layers
-    size_t line_floats, worker_lines, plane;
-    float *picture[5], empty;  // merged: colour and radius; the radius of nothing
-    float *lines;
-    struct hf_counts *counts;  // of each worker
-};
-
-// A frame that reads one surface.
-static struct hf_frame frame_of(const struct reading *r, int surface, int worker)
+struct hf_frame hf_reading_frame(const struct hf_reading *r, int surface, int worker)
 {
     struct hf_frame f = {.s = &r->setup[surface],
                          .k = &r->c->kernels[r->fused],
@@ -43,7 +31,7 @@ static struct hf_frame frame_of(const struct reading *r, int surface, int worker
 }
 
 // A surface fills a pixel as its alpha says; without alpha wherever it has any colour or depth.
-static void read_row(const struct reading *r, const struct hf_frame *f, const struct hf_surface *to, int y)
+static void read_row(const struct hf_reading *r, const struct hf_frame *f, const struct hf_surface *to, int y)
 {
     const struct hf_setup *s = f->s;
     const ptrdiff_t at = y * r->known->stride;
@@ -66,15 +54,15 @@ static void read_row(const struct reading *r, const struct hf_frame *f, const st
 
 static void read_piece(void *arg, int i, int worker)
 {
-    const struct reading *r = arg;
+    const struct hf_reading *r = arg;
     const int surface = i / r->pieces, y0 = i % r->pieces * ROWS;
-    const struct hf_frame f = frame_of(r, surface, worker);
+    const struct hf_frame f = hf_reading_frame(r, surface, worker);
     for (int y = y0; y < hf_min(y0 + ROWS, r->s->height) && !hf_stopped(r->s->stop); y++)
         read_row(r, &f, &r->known->behind[surface], y);
 }
 
 // Place memory for `planes` planes of the frame's size and for the workers. Returns the first plane, or NULL.
-static float *begin(struct reading *r, struct hf_setup *setup, int count, size_t planes, size_t more_lines)
+float *hf_reading_begin(struct hf_reading *r, struct hf_setup *setup, int count, size_t planes, size_t more_lines)
 {
     struct hf_context *c = r->c;
     const struct hf_setup *s = r->s;
@@ -108,7 +96,7 @@ static struct hf_surface surface_at(float *memory, size_t plane)
                                .radius = memory + 5 * plane};
 }
 
-static int finish(struct reading *r, int pieces, void (*piece)(void *arg, int i, int worker))
+int hf_reading_finish(struct hf_reading *r, int pieces, void (*piece)(void *arg, int i, int worker))
 {
     struct hf_context *c = r->c;
     if (c->pool)
@@ -128,54 +116,68 @@ int hf_surfaces_read(struct hf_context *c, struct hf_setup *s, const struct hf_s
                      struct hf_known *known)
 {
     struct hf_setup setup[HF_MOST_BEHIND];
-    struct reading r = {.c = c, .s = s, .in = in, .known = known, .fused = fused};
-    float *memory = begin(&r, setup, count, (size_t)count * 6, 0);
+    struct hf_reading r = {.c = c, .s = s, .in = in, .known = known, .fused = fused};
+    float *memory = hf_reading_begin(&r, setup, count, (size_t)count * 6, 0);
     if (!memory)
         return HF_ERR_MEMORY;
     known->count = count;
     for (int i = 0; i < count; i++, memory += 6 * r.plane)
         known->behind[i] = surface_at(memory, r.plane);
-    return finish(&r, count * r.pieces, read_piece);
+    return hf_reading_finish(&r, count * r.pieces, read_piece);
 }
 
-// A layer's sample in a pixel.
-struct sample {
-    int layer;
-    float radius, alpha;
-};
+// Whether one sample is behind another of the same blur: where blur is cut off, or nothing is blurred, distances count. A pixel
+// that has the radius of the surface beside it has no distance of its own.
+static int behind(const struct hf_reading *r, const struct hf_frame *frames, const float *const *lines, int x, int y,
+                  const int layer[2])
+{
+    float v[2];
+    for (int i = 0; i < 2; i++) {
+        const float found = lines[LINES * layer[i] + 5][x];
+        v[i] = isnan(found) ? hf_coc_variable(&frames[layer[i]], x, y, NULL) : found;
+    }
+    return r->s->form != HF_FORM_COC && v[0] > v[1];
+}
 
 // The samples of a pixel, nearest first; of equally near ones the first layer's comes first.
-static int sort_pixel(const struct reading *r, const float *const *lines, int x, struct sample *to)
+static int sort_pixel(const struct hf_reading *r, const struct hf_frame *frames, const float *const *lines, int x,
+                      int y, struct hf_sample *to)
 {
-    int n = 0;
+    int layer[HF_MOST_LAYERS], n = 0;
     for (int i = 0; i < r->count; i++) {
-        const struct sample s = {i, lines[5 * i + 4][x],
-                                 r->setup[i].channels == 4 ? hf_saturate(lines[5 * i + 3][x]) : 1};
+        const float *const *line = lines + LINES * i;
+        const int channels = r->setup[i].channels;
+        struct hf_sample s = {.radius = line[4][x], .alpha = channels == 4 ? hf_saturate(line[3][x]) : 1};
         int at = n;
         if (!(s.alpha > 0))
             continue;
-        for (; at > 0 && to[at - 1].radius > s.radius; at--)
+        for (int c = 0; c < 4; c++)
+            s.colour[c] = c < 3 || channels == 4 ? line[c][x] : 1;
+        for (; at > 0 &&
+               (to[at - 1].radius > s.radius ||
+                (to[at - 1].radius == s.radius && behind(r, frames, lines, x, y, (const int[]){layer[at - 1], i})));
+             at--) {
             to[at] = to[at - 1];
+            layer[at] = layer[at - 1];
+        }
         to[at] = s;
+        layer[at] = i;
         n++;
     }
     return n;
 }
 
-// Merge the samples of a pixel: what is visible, the front surface and the rest, and what the front hides.
-static void merge_pixel(const struct reading *r, const float *const *lines, int x, ptrdiff_t at, float empty,
-                        struct hf_counts *counts)
+void hf_merge_pixel(const struct hf_reading *r, const struct hf_sample *s, int n, ptrdiff_t at,
+                    struct hf_counts *counts)
 {
-    struct sample s[HF_MOST_LAYERS];
     const struct hf_known *known = r->known;
-    const int n = sort_pixel(r, lines, x, s);
+    const float empty = r->empty;
     float open = 1, sum[4] = {0}, rest = 0, rest_weight = 0;
     int hidden = 0;
     for (int i = 0; i < n; i++) {
         const float v = s[i].alpha * open, h = s[i].alpha - v, part = v / s[i].alpha;
-        const float *const *line = lines + 5 * s[i].layer;
         for (int c = 0; c < 4; c++) {
-            const float colour = c < 3 || r->setup[s[i].layer].channels == 4 ? line[c][x] : 1;
+            const float colour = s[i].colour[c];
             sum[c] = sum[c] + part * colour;
             if (i == 0)
                 known->front.colour[c][at] = colour;
@@ -206,33 +208,38 @@ static void merge_pixel(const struct reading *r, const float *const *lines, int 
 
 // Whether a pixel of a layer has a part of a surface, and the depth of none: renderers sample the depth of an edge's pixel
 // once, beside the surface too. A radius this near that of nothing is blurred like it.
-static int is_lost(const struct reading *r, const struct hf_setup *s, const float *const *line, int x)
+static int is_lost(const struct hf_reading *r, const struct hf_setup *s, const float *const *line, int x)
 {
     const float beside = 1e-3f;
     return s->channels == 4 && line[3][x] > 0 && line[3][x] < 1 && line[4][x] >= r->empty - beside;
 }
 
-// Give such pixels of a row the radius of the nearest surface around.
-static void find_lost(const struct reading *r, const struct hf_frame *f, int y, float *const line[5], float *lines)
+// Give such pixels of a row the radius of the nearest surface around, and note its distance.
+static void find_lost(const struct hf_reading *r, const struct hf_frame *f, int y, float *const line[LINES],
+                      float *lines)
 {
     const struct hf_setup *s = f->s;
     float *found = lines + 5 * r->line_floats, *around[5];
     int lost = 0;
-    for (int x = 0; x < s->width && s->form != HF_FORM_COC; x++)
-        lost |= is_lost(r, s, (const float *const *)line, x);
+    for (int x = 0; x < s->width; x++) {
+        lost |= s->form != HF_FORM_COC && is_lost(r, s, (const float *const *)line, x);
+        line[5][x] = NAN;
+        found[x] = line[4][x];
+    }
     if (!lost)
         return;
-    for (int x = 0; x < s->width; x++)
-        found[x] = line[4][x];
     for (int c = 0; c < 5; c++)
         around[c] = lines + (size_t)c * r->line_floats;
     for (int v = hf_max(y - FOUND_REACH, 0); v <= hf_min(y + FOUND_REACH, s->height - 1); v++) {
         hf_read_pixels(f, 0, v, s->half_width, around, f->seen);
         f->k->radius_row(f, 0, v, s->width, around[4], NULL);
         for (int x = 0; x < s->width; x++)
-            if (is_lost(r, s, (const float *const *)line, x))
-                for (int u = hf_max(x - FOUND_REACH, 0); u <= hf_min(x + FOUND_REACH, s->width - 1); u++)
-                    found[x] = around[3][u] > 0 && around[4][u] < found[x] ? around[4][u] : found[x];
+            for (int u = hf_max(x - FOUND_REACH, 0);
+                 is_lost(r, s, (const float *const *)line, x) && u <= hf_min(x + FOUND_REACH, s->width - 1); u++)
+                if (around[3][u] > 0 && around[4][u] < found[x]) {
+                    found[x] = around[4][u];
+                    line[5][x] = hf_coc_variable(f, u, v, NULL);
+                }
     }
     for (int x = 0; x < s->width; x++)
         line[4][x] = found[x];
@@ -240,65 +247,74 @@ static void find_lost(const struct reading *r, const struct hf_frame *f, int y, 
 
 static void merge_piece(void *arg, int i, int worker)
 {
-    const struct reading *r = arg;
-    const float *lines[5 * HF_MOST_LAYERS];
+    const struct hf_reading *r = arg;
+    const float *lines[LINES * HF_MOST_LAYERS];
+    struct hf_frame frames[HF_MOST_LAYERS];
+    struct hf_sample samples[HF_MOST_LAYERS];
+    for (int k = 0; k < r->count; k++)
+        frames[k] = hf_reading_frame(r, k, worker);
+    float *more = frames[0].depth_lines + (size_t)HF_DEPTH_LINES * r->line_floats;
     for (int y = i * ROWS; y < hf_min(i * ROWS + ROWS, r->s->height) && !hf_stopped(r->s->stop); y++) {
         for (int k = 0; k < r->count; k++) {
-            const struct hf_frame f = frame_of(r, k, worker);
-            float *to[5];
-            for (int c = 0; c < 5; c++) {
-                to[c] = f.depth_lines + (size_t)(HF_DEPTH_LINES + 5 * k + c) * r->line_floats;
-                lines[5 * k + c] = to[c];
-            }
-            hf_read_pixels(&f, 0, y, r->s->half_width, to, f.seen);
-            f.k->radius_row(&f, 0, y, r->s->width, to[4], NULL);
-            find_lost(r, &f, y, to, f.depth_lines + (size_t)(HF_DEPTH_LINES + 5 * r->count) * r->line_floats);
+            float *to[LINES];
+            for (int c = 0; c < LINES; c++)
+                lines[LINES * k + c] = to[c] = more + (size_t)(LINES * k + c) * r->line_floats;
+            hf_read_pixels(&frames[k], 0, y, r->s->half_width, to, frames[k].seen);
+            frames[k].k->radius_row(&frames[k], 0, y, r->s->width, to[4], NULL);
+            find_lost(r, &frames[k], y, to, more + (size_t)(LINES * r->count) * r->line_floats);
         }
-        for (int x = 0; x < r->s->width; x++)
-            merge_pixel(r, lines, x, y * r->known->stride + x, r->empty, &r->counts[worker]);
+        for (int x = 0; x < r->s->width; x++) {
+            const int n = sort_pixel(r, frames, lines, x, y, samples);
+            hf_merge_pixel(r, samples, n, y * r->known->stride + x, &r->counts[worker]);
+        }
     }
+}
+
+void hf_reading_merged(struct hf_reading *r, float *memory, struct hf_merged *merged)
+{
+    r->known->count = HF_MOST_BEHIND;
+    r->known->edges = 1;
+    for (int i = 0; i <= HF_MOST_BEHIND; i++, memory += 6 * r->plane)
+        *(i < HF_MOST_BEHIND ? &r->known->behind[i] : &r->known->front) = surface_at(memory, r->plane);
+    for (int i = 0; i < 6; i++)
+        *(i < 5 ? &r->picture[i] : &r->known->rest) = memory + (size_t)i * r->plane;
+    // Where no layer has anything there is nothing, infinitely far away.
+    const float nothing = INFINITY;
+    const struct hf_depth far = {.data = &nothing, .stride = sizeof nothing};
+    struct hf_setup empty = *r->s;
+    struct hf_frame f = {.s = &empty,
+                         .k = &r->c->kernels[r->fused],
+                         .depth = &far,
+                         .lines = r->lines,
+                         .depth_lines = r->lines,
+                         .line_floats = r->line_floats};
+    empty.width = empty.height = 1;
+    if (r->s->form == HF_FORM_COC)
+        r->empty = r->s->max_radius;
+    else {
+        hf_setup_depth(&empty, &far, r->s->pixel_aspect);
+        hf_radius_row_c(&f, 0, 0, 1, &r->empty, NULL);
+    }
+    merged->image = (struct hf_image){
+        .size = sizeof merged->image, .width = r->s->width, .height = r->s->height, .format = HF_FORMAT_PLANAR32F};
+    for (int i = 0; i < 4; i++) {
+        merged->image.data[i] = r->picture[i];
+        merged->image.stride[i] = r->known->stride * (ptrdiff_t)sizeof(float);
+    }
+    merged->depth = (struct hf_depth){.size = sizeof merged->depth,
+                                      .data = r->picture[4],
+                                      .stride = r->known->stride * (ptrdiff_t)sizeof(float),
+                                      .type = HF_DEPTH_COC};
 }
 
 int hf_surfaces_merge(struct hf_context *c, const struct hf_setup *s, const struct hf_surface_input *in, int count,
                       int fused, struct hf_merged *merged, struct hf_known *known)
 {
     struct hf_setup setup[HF_MOST_LAYERS];
-    struct reading r = {.c = c, .s = s, .in = in, .known = known, .fused = fused, .count = count};
-    float *memory = begin(&r, setup, count, 6 * (HF_MOST_BEHIND + 1) + 6, 5 * (size_t)count + FOUND_LINES);
+    struct hf_reading r = {.c = c, .s = s, .in = in, .known = known, .fused = fused, .count = count};
+    float *memory = hf_reading_begin(&r, setup, count, HF_MERGED_PLANES, LINES * (size_t)count + FOUND_LINES);
     if (!memory)
         return HF_ERR_MEMORY;
-    known->count = HF_MOST_BEHIND;
-    known->edges = 1;
-    for (int i = 0; i <= HF_MOST_BEHIND; i++, memory += 6 * r.plane)
-        *(i < HF_MOST_BEHIND ? &known->behind[i] : &known->front) = surface_at(memory, r.plane);
-    for (int i = 0; i < 6; i++)
-        *(i < 5 ? &r.picture[i] : &known->rest) = memory + (size_t)i * r.plane;
-    // Where no layer has anything there is nothing, infinitely far away.
-    const float nothing = INFINITY;
-    const struct hf_depth far = {.data = &nothing, .stride = sizeof nothing};
-    struct hf_setup empty = *s;
-    struct hf_frame f = {.s = &empty,
-                         .k = &c->kernels[fused],
-                         .depth = &far,
-                         .lines = r.lines,
-                         .depth_lines = r.lines,
-                         .line_floats = r.line_floats};
-    empty.width = empty.height = 1;
-    if (s->form == HF_FORM_COC)
-        r.empty = s->max_radius;
-    else {
-        hf_setup_depth(&empty, &far, s->pixel_aspect);
-        hf_radius_row_c(&f, 0, 0, 1, &r.empty, NULL);
-    }
-    merged->image = (struct hf_image){
-        .size = sizeof merged->image, .width = s->width, .height = s->height, .format = HF_FORMAT_PLANAR32F};
-    for (int i = 0; i < 4; i++) {
-        merged->image.data[i] = r.picture[i];
-        merged->image.stride[i] = known->stride * (ptrdiff_t)sizeof(float);
-    }
-    merged->depth = (struct hf_depth){.size = sizeof merged->depth,
-                                      .data = r.picture[4],
-                                      .stride = known->stride * (ptrdiff_t)sizeof(float),
-                                      .type = HF_DEPTH_COC};
-    return finish(&r, r.pieces, merge_piece);
+    hf_reading_merged(&r, memory, merged);
+    return hf_reading_finish(&r, r.pieces, merge_piece);
 }

@@ -118,6 +118,27 @@ static void test_edges(void)
     paint();
 }
 
+// Where the two have the same blur, none or the most, the nearer one is still before the other.
+static void test_same_blur(void)
+{
+    const struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)},
+                          turned[] = {two[1], two[0]};
+    const struct hf_params was = params;
+    for (int i = 0; i < 3; i++) {
+        params.model = i == 1 ? HF_MODEL_RANGE : HF_MODEL_LENS;
+        params.range = (struct hf_range_params){
+            .distance = 1, .strength = 1, .near_begin = 30, .near_end = 40, .far_begin = 50, .far_end = 60};
+        params.max_radius = i == 0 ? HF_DERIVE : i == 1 ? 5 : 0;
+        params.focus = i == 0 ? 1e6f : 45;
+        CHECK_INT(render(&out[0], two, 2), HF_OK);
+        CHECK_INT(render(&out[1], turned, 2), HF_OK);
+        CHECK_MSG(same(), "order counts where blur is equal, %d", i);
+        const float *middle = out[0].rgba + 4 * (H / 2 * W + W / 2);
+        CHECK_MSG(middle[0] > middle[1] + 0.3f, "the bar is behind, %d: %g, %g", i, middle[0], middle[1]);
+    }
+    params = was;
+}
+
 // A budget that nothing keeps may choose cheaper settings, but only of engines that take several pictures.
 static void test_budget(void)
 {
@@ -224,6 +245,7 @@ int main(void)
         test_region();
     }
     params.layers.quality = HF_LAYERS_STANDARD;
+    test_same_blur();
     test_budget();
     test_refused();
     hf_close(&context);

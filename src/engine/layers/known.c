@@ -193,6 +193,12 @@ static float narrow(const struct hf_frame *f, int x, int y, float apart, float r
     return open;
 }
 
+// A colour, which the division by a small weight may make too large for the sums.
+static float within(float v, float largest)
+{
+    return v < -largest ? -largest : v < largest ? v : largest;
+}
+
 // Replace guesses by a known surface.
 static void take_known(const struct band *b, int k, const struct seen *seen, int y, float *const out[6])
 {
@@ -216,8 +222,7 @@ static void take_known(const struct band *b, int k, const struct seen *seen, int
         out[4][i] = (all < most ? all : most) * view;
         out[5][i] = r;
         for (int c = 0; c < f->s->channels; c++) {
-            const float v = known->colour[c][at + i] / all;
-            out[c][i] = v < -largest ? -largest : v < largest ? v : largest;
+            out[c][i] = within(known->colour[c][at + i] / all, largest);
         }
     }
 }
@@ -269,6 +274,7 @@ void hf_layers_known_pass(const struct hf_frame *f, struct hf_rect r)
 void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_known *known = hf_layers(f->s)->given;
+    const float largest = hf_layers(f->s)->largest;
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0;
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height); y++) {
         const ptrdiff_t at = y * known->stride + x0;
@@ -282,8 +288,8 @@ void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r)
                 continue;
             for (int c = 0; c < f->s->channels; c++) {
                 const float front = known->front.colour[c][at + x];
-                seen[c][x] = front / w;
-                mixed[c][x] = (colour[c][x] - front) / (1 - w);
+                seen[c][x] = within(front / w, largest);
+                mixed[c][x] = within((colour[c][x] - front) / (1 - w), largest);
             }
             seen[4][x] = w;
             mixed[4][x] = 1 - w;

@@ -458,8 +458,9 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
         cli_lamps_free(&lamps);
         return status;
     }
-    status = v->surface_count ? cli_surfaces_render(session->context, frame->args, v, &image, &params)
-                              : hf_render(session->context, &image, &image, &v->setup.depth, &params);
+    status = v->view->deep      ? cli_deep_render(session->context, frame, v, &image, &params)
+             : v->surface_count ? cli_surfaces_render(session->context, frame->args, v, &image, &params)
+                                : hf_render(session->context, &image, &image, &v->setup.depth, &params);
     if (status == HF_OK)
         cli_lamps_lower(&lamps, v);
     cli_lamps_free(&lamps);

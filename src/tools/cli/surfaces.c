@@ -351,6 +351,27 @@ int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struc
     return status;
 }
 
+int cli_deep_render(struct hf_context *c, const struct cli_frame *frame, struct cli_view *v,
+                    const struct hf_image *image, const struct hf_params *params)
+{
+    const struct hf_io_deep from = hf_io_deep(frame->file);
+    struct cli_depth_found found;
+    const struct hf_deep deep = {.size = sizeof(deep),
+                                 .width = v->view->width,
+                                 .height = v->view->height,
+                                 .first = from.first,
+                                 .samples = from.samples,
+                                 .colour = {from.colour[0], from.colour[1], from.colour[2]},
+                                 .alpha = from.alpha,
+                                 .depth = from.depth,
+                                 .as = &v->setup.depth,
+                                 .back = from.back};
+    cli_depth_prepare(frame->args, from.depth, (size_t)from.samples, &found);
+    if (from.back)
+        cli_depth_prepare(frame->args, from.back, (size_t)from.samples, &found);
+    return hf_render_deep(c, image, &deep, params, NULL);
+}
+
 double cli_surfaces_bytes(const struct cli_frame *frame)
 {
     double bytes = 0;

@@ -19,6 +19,9 @@ float *cli_surfaces_depth(const struct cli_frame *frame, const struct cli_view *
 // As hf_render, of the view with all of its pictures. *image, the view's own planes, becomes the result's.
 int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struct cli_view *v, struct hf_image *image,
                         const struct hf_params *params);
+// As hf_render, of a deep view.
+int cli_deep_render(struct hf_context *c, const struct cli_frame *frame, struct cli_view *v,
+                    const struct hf_image *image, const struct hf_params *params);
 // "bg.exr, layer Far" or, of a layer of INPUT, "layer Far".
 const char *cli_surface_name(const struct cli_view *surface, char *buf, size_t size);
 // Bytes that they come to hold, beside the views' own.

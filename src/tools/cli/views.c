@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cli/views.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,6 +85,16 @@ static int check_view(const struct cli_view *v, const struct cli_frame *frame, s
                          wanted ? wanted : "", wanted ? "'" : "", meant,
                          wanted ? "" : " (give one with --depth-channel or --depth-file)", channels);
     }
+    const struct cli_args *args = frame->args;
+    const char *alone = args->depth_file                  ? "--depth-file"
+                        : !isnan(args->blur)              ? "--blur"
+                        : args->grow                      ? "--grow"
+                        : args->params.highlight.gain > 1 ? "--highlight-gain"
+                        : args->focus_object              ? "--focus-object"
+                        : args->merge                     ? "--merge"
+                                                          : args->other_option;
+    if (view->deep && alone)
+        return tool_fail(error, CLI_BAD_ARGUMENTS, "%s: %s is for flat pictures, this one is deep", v->label, alone);
     if (check_window(&view->data_window, "data window", v->label, error) ||
         check_window(&view->display_window, "display window", v->label, error))
         return CLI_ALL_FAILED;

@@ -118,8 +118,8 @@ bool hf_io_is_deep(const struct hf_io_file *file)
 
 int hf_io_fail_deep(const char *path, struct hf_io_error *err)
 {
-    return hf_io_fail(err, "%s: a deep picture (several samples per pixel), which is not supported: flatten it first",
-                      path);
+    return hf_io_fail(
+        err, "%s: a deep picture (several samples per pixel), which cannot be used here, or has no colours", path);
 }
 
 int hf_io_open(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice, struct hf_io_error *err)
@@ -148,6 +148,7 @@ void hf_io_close(struct hf_io_file **file)
 {
     if (!file || !*file)
         return;
+    hf_exr_free_deep(&(*file)->samples);
     hf_exr_close((*file)->exr);
     hf_oiio_close((*file)->oiio);
     free((*file)->views.view);
@@ -281,10 +282,16 @@ static void clear_depth(const struct hf_io_file *file, const struct hf_io_want *
             w->depth[i] = INFINITY;
 }
 
+// Such a file has that view alone.
+static bool has_deep_view(const struct hf_io_file *file)
+{
+    return file->views.count && file->views.view[0].deep;
+}
+
 int hf_io_fetch(struct hf_io_file *file, const struct hf_io_want *wants, int count, struct hf_io_error *err)
 {
     int planes;
-    if (!file->exr)
+    if (!file->exr || has_deep_view(file))
         return 0;
     struct hf_exr_plane *list = all_planes(file, wants, count, &planes, err);
     const int status = list ? hf_exr_fetch(file->exr, list, planes, err) : -1;
@@ -313,7 +320,9 @@ int hf_io_decode(struct hf_io_file *file, const struct hf_io_want *wants, int co
     int planes, status = 0;
     for (int i = 0; i < count && !file->exr && !status; i++)
         status = decode_by_oiio(file, &wants[i], err);
-    if (!file->exr)
+    for (int i = 0; i < count && has_deep_view(file) && !status; i++)
+        status = check_view(file, wants[i].view, err) ? -1 : hf_io_decode_deep(file, &wants[i], run, err);
+    if (!file->exr || has_deep_view(file))
         return status;
     struct hf_exr_plane *list = all_planes(file, wants, count, &planes, err);
     for (int i = 0; i < count && list; i++)
@@ -341,7 +350,7 @@ int hf_io_read_depth_rows(struct hf_io_file *file, int view, int first, int coun
 {
     const struct hf_io_want want = {.view = view, .depth = depth};
     int planes;
-    if (!file->exr)
+    if (!file->exr || has_deep_view(file))
         return hf_io_read_depth(file, view, depth, err);
     struct hf_exr_plane *list = all_planes(file, &want, 1, &planes, err);
     if (!list)
@@ -445,6 +454,11 @@ double hf_io_memory(const struct hf_io_file *file)
         if (colours)
             bytes += (hf_exr_is_dwa(part->compression) ? 4 : 2) * pixel * part->width * part->height;
     }
+    // Samples that were not read yet are taken to be half as long in the file.
+    if (has_deep_view(file))
+        bytes += fmax(
+            2. * (double)file->exr->size,
+            hf_exr_deep_bytes(&file->samples, (size_t)file->views.view[0].width * (size_t)file->views.view[0].height));
     for (int i = 0; i < file->views.count && !file->exr; i++)
         bytes += 16. * file->views.view[i].width * file->views.view[i].height;
     return bytes;

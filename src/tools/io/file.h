@@ -3,6 +3,7 @@
 #ifndef HF_IO_FILE_H
 #define HF_IO_FILE_H
 
+#include "tools/io/exr/deep.h"
 #include "tools/io/io.h"
 
 struct hf_exr;
@@ -13,7 +14,13 @@ struct hf_io_file {
     struct hf_exr *exr;  // one of these two is set
     struct hf_oiio *oiio;
     struct hf_io_views views;
+    struct hf_exr_samples samples;  // of a deep view, once it was decoded
 };
+
+// deep.c: decode a deep view, of which there is no other in the file. What is wanted is the flat picture of its samples, over
+// each other, and the depth of the nearest behind which less than half of a pixel is seen.
+int hf_io_decode_deep(struct hf_io_file *file, const struct hf_io_want *want, const struct hf_io_run *run,
+                      struct hf_io_error *err);
 
 // As hf_io_open, but accepts a file without colour (a depth map), which has no views.
 int hf_io_open_any(struct hf_io_file **out, const char *path, const struct hf_io_choice *choice,

@@ -78,6 +78,16 @@ int hf_io_fetch(struct hf_io_file *file, const struct hf_io_want *wants, int cou
 int hf_io_decode(struct hf_io_file *file, const struct hf_io_want *wants, int count, const struct hf_io_run *run,
                  struct hf_io_error *err);
 
+// The samples of a deep view, once it was decoded: those of pixel i, row after row, are first[i] to first[i + 1] - 1 of each
+// array. They belong to the file. back is NULL if there is none.
+struct hf_io_deep {
+    const uint64_t *first;
+    uint64_t samples;
+    const float *colour[3], *alpha;
+    float *depth, *back;  // may be changed
+};
+struct hf_io_deep hf_io_deep(const struct hf_io_file *file);
+
 // Decode one view's colour or depth on this thread.
 int hf_io_read_colour(struct hf_io_file *file, int view, float *planes[4], struct hf_io_error *err);
 int hf_io_read_depth(struct hf_io_file *file, int view, float *depth, struct hf_io_error *err);

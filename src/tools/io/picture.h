@@ -52,6 +52,7 @@ struct hf_io_view {
     struct hf_io_camera camera;
     // For a photograph: how to turn it upright, in EXIF's numbering, 1 upright; 0 unknown. Pixels are never turned.
     int orientation;
+    bool deep;     // any number of samples in a pixel: see hf_io_deep
     bool profile;  // it has a colour profile other than sRGB's, which is not used: the colours count as sRGB
 };
 

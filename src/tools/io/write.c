@@ -186,7 +186,8 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
     const struct hf_exr_job exr = {&file->views,   job->results, job->result_count, compression,
                                    job->zip_level, job->texts,   job->text_count};
     o->unsynced = job->unsynced;
-    int status = file->exr && hf_io_is_exr_name(job->path)
+    // Deep samples are not written again.
+    int status = file->exr && hf_io_is_exr_name(job->path) && !file->views.view[0].deep
                      ? hf_exr_encode_file(&o->exr, file->exr, &exr, job->run, written, err)
                      : make_view(&o->bytes, file, job, compression, written, err);
     if (status)

@@ -359,7 +359,7 @@ static int load_part(struct hf_exr *e, int p, struct hf_io_error *err)
     part->view = string_attribute(e, p, "view");
     load_window(part);
     part->one_level = true;
-    if (part->storage == EXR_STORAGE_TILED) {
+    if (part->storage == EXR_STORAGE_TILED || part->storage == EXR_STORAGE_DEEP_TILED) {
         uint32_t tw = 0, th = 0;
         exr_tile_level_mode_t mode = EXR_TILE_ONE_LEVEL;
         exr_tile_round_mode_t round;
@@ -369,7 +369,7 @@ static int load_part(struct hf_exr *e, int p, struct hf_io_error *err)
         part->tile_width = (int)tw;
         part->tile_height = (int)th;
         part->one_level = mode == EXR_TILE_ONE_LEVEL;
-    } else if (part->storage == EXR_STORAGE_SCANLINE) {
+    } else if (part->storage == EXR_STORAGE_SCANLINE || part->storage == EXR_STORAGE_DEEP_SCANLINE) {
         part->chunk_lines = hf_exr_compression_lines(part->compression);
     }
     return load_channels(e, p, err);

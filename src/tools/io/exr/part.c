@@ -83,9 +83,14 @@ static uint64_t decoded_bytes(const struct hf_exr_part *part)
     return sum;
 }
 
+static bool is_tiled(const struct hf_exr_part *part)
+{
+    return part->storage == EXR_STORAGE_TILED || part->storage == EXR_STORAGE_DEEP_TILED;
+}
+
 static int chunks_needed(const struct hf_exr_part *part)
 {
-    if (part->storage == EXR_STORAGE_TILED) {
+    if (is_tiled(part)) {
         const int64_t nx = (part->width - 1) / part->tile_width + 1, ny = (part->height - 1) / part->tile_height + 1;
         return nx * ny > INT32_MAX ? INT32_MAX : (int)(nx * ny);
     }
@@ -101,7 +106,7 @@ int hf_exr_check_part(const struct hf_exr *e, int p, struct hf_io_error *err)
     if (!part->window_ok)
         return hf_io_fail(err, "%s: data window (%d %d) - (%d %d) is empty, too far out, or larger than %d a side",
                           e->path, w->min.x, w->min.y, w->max.x, w->max.y, HF_IO_MAX_SIDE);
-    if (part->storage != EXR_STORAGE_TILED && part->chunk_lines < 1)
+    if (!is_tiled(part) && part->chunk_lines < 1)
         return hf_io_fail(err, "%s: part %d has a compression (%d) that is not supported", e->path, p,
                           (int)part->compression);
     const int needed = chunks_needed(part);

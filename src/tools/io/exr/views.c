@@ -216,6 +216,34 @@ static int choose_layers(const struct hf_exr *e, struct hf_io_views *views, cons
     return status;
 }
 
+// Of a file with deep parts alone: the first that is a picture, or the one that --layer names by the part's name.
+static int find_deep(const struct hf_exr *e, struct hf_io_views *views, const struct hf_io_choice *choice,
+                     struct hf_io_error *err)
+{
+    const bool named = choice->layer && strcmp(choice->layer, "all");
+    for (int p = 0; p < e->part_count; p++)
+        if (!hf_exr_is_deep(&e->parts[p]))
+            return 0;
+    for (int p = 0; p < e->part_count && !views->count; p++) {
+        const struct hf_exr_part *part = &e->parts[p];
+        const char *depth = choice->depth_channel ? choice->depth_channel : "Z";
+        const int c = hf_exr_find_channel(part, depth);
+        if ((named && strcmp(part->name, choice->layer)) ||
+            (!hf_exr_colour_names(part, "") && hf_exr_find_prefixed(part, "", "Y") < 0))
+            continue;
+        if (add_view(e, views, p, part->view, "", err))
+            return -1;
+        struct hf_io_view *v = &views->view[0];
+        v->deep = true;
+        v->depth_part = c < 0 ? -1 : p;
+        snprintf(v->depth, sizeof(v->depth), "%s", c < 0 ? "" : part->channels[c].name);
+        // A grey picture has three equal colours.
+        for (int k = 1; k < 3 && !hf_exr_colour_names(part, ""); k++)
+            v->colour[k][0] = 0;
+    }
+    return 0;
+}
+
 // Set the layer that contains a view's colours.
 static void set_layer(const struct hf_exr *e, struct hf_io_view *v)
 {
@@ -233,6 +261,10 @@ int hf_exr_find_views(const struct hf_exr *e, struct hf_io_views *views, const s
 {
     const bool named = choice->layer && strcmp(choice->layer, "all");
     bool alone = true;
+    if (find_deep(e, views, choice, err))
+        return -1;
+    if (views->count)
+        return 0;
     for (int layers = 0; layers < 2 && !views->count && !named; layers++)
         for (int p = 0; p < e->part_count; p++)
             if (!hf_exr_is_deep(&e->parts[p]) && views_in_part(e, views, p, layers, err))

@@ -1,0 +1,4 @@
+var searchData=
+[
+  ['contributing_0',['Contributing',['../md_CONTRIBUTING.html',1,'']]]
+];

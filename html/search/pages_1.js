@@ -1,0 +1,4 @@
+var searchData=
+[
+  ['hyperfocal_0',['hyperfocal',['../md_README.html',1,'']]]
+];
