@@ -137,7 +137,7 @@ bad 1 "--merge|--peel" file.exr --merge --layer all --peel peel.exr -o o.exr $lo
 bad 1 "--depth-file|--over" bar.exr --over wall.exr -o o.exr $look --depth-file depth.exr
 bad 1 "--grow|--over" bar.exr --over wall.exr -o o.exr $look --grow
 bad 1 "wall.exr|--over" bar.exr --over wall.exr -o wall.exr $look
-bad 1 "wall.0001.exr|--over" bar.####.exr --over wall.####.exr -o wall.####.exr $look
+bad 1 "wall.000|--over" bar.####.exr --over wall.####.exr -o wall.####.exr $look
 bad 3 "left" stereo.exr --over half-stereo.exr -o o.exr $look
 bad 3 "Near|depth" one-depth.exr --layer all --merge -o o.exr $look
 }
