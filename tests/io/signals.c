@@ -40,9 +40,6 @@ static void write_on(void *arg, int i, int worker)
 static void write_until_struck(void)
 {
     struct hf_io_run run;
-    // The test's caller may ignore a signal (nohup), and the program must leave it ignored.
-    for (int i = 0; i < 3; i++)
-        signal(numbers[i], SIG_DFL);
     hf_io_catch_signals();
     if (!hf_io_threads_open(&run, WRITERS))
         hf_io_run(&run, WRITERS, write_on, NULL);
@@ -69,6 +66,11 @@ void test_signals(void)
 {
     struck = in_folder("struck");
     mkdir(struck, 0777);
+    // The test's caller may ignore a signal (nohup), and the program must leave it ignored. Reset before the fork, as a
+    // signal that a child still ignores is lost.
+    void (*before[3])(int);
+    for (int i = 0; i < 3; i++)
+        before[i] = signal(numbers[i], SIG_DFL);
     for (int i = 0; i < STRIKES; i++) {
         const int number = numbers[i % 3];
         const struct timespec pause = {.tv_nsec = 2000000 + (long)(rnd() % 6000000)};
@@ -81,4 +83,6 @@ void test_signals(void)
         CHECK(waitpid(pid, &status, 0) == pid && WIFSIGNALED(status) && WTERMSIG(status) == number);
         CHECK_INT(left_over(), 0);
     }
+    for (int i = 0; i < 3; i++)
+        signal(numbers[i], before[i]);
 }
