@@ -90,25 +90,18 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
         n += __builtin_popcount(rows[i] & 0xfff) + (rows[i] >> 12 != 0);
     vf sum = vf_zero();
     int j = 0;
-    if (disc) {
-        if (rows[k] >> 12) {
-            sum = h[FIXED_R + (rows[k] >> 12)];
-            n++;
-        }
-#pragma GCC unroll 9
-        for (; j <= r; j++)
-            if (rows[k] >> j & 1)
-                sum = vf_fma(fixed_weight(weight, n++), h[j], sum);
-        return sum;
+    if (disc && rows[k] >> 12) {
+        sum = h[FIXED_R + (rows[k] >> 12)];
+        n++;
     }
-    if (HF_FUSED && k == 0) {
+    if (HF_FUSED && !disc && k == 0) {
         vf even = h[2];
 #pragma GCC unroll 4
         for (int i = 4; i <= r; i += 2)
             even = vf_add(even, h[i]);
         return vf_fma(fixed_weight(weight, 0), h[0], vf_mul(fixed_weight(weight, 1), even));
     }
-    if (HF_FUSED && k % 2 == 0) {
+    if (HF_FUSED && !disc && k % 2 == 0) {
         sum = axis;
         j++;
         n++;
