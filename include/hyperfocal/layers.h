@@ -30,11 +30,12 @@ struct hf_layer {
     const struct hf_depth *depth;
 };
 
-// As hf_render_region (region NULL: all), of count pictures with depth, 1 to 64, that together say what stands where, and what
-// stands behind: a lens sees past edges, and what it sees there is taken from the layers that show it and guessed only where
-// none does. Structs of the array follow each other at layers->size. dst must not overlap a layer. With one layer it is
-// hf_render_region. The engine must be HF_ENGINE_LAYERS when there are more, else HF_ERR_ARG. With params->focus HF_DERIVE
-// the first layer's depth decides. Errors as for hf_render_region.
+// Render a region (NULL: all) as hf_render_region does, from count (1 to 64) pictures with depth. Together they say
+// what stands where and what stands behind it. A lens sees past edges. What it sees there is taken from the layers that
+// show it, and guessed only where no layer does. The structs of the array follow each other at a distance of
+// layers->size bytes. dst must not overlap a layer. With one layer the call is hf_render_region. With several, the
+// engine must be HF_ENGINE_LAYERS, else the call returns HF_ERR_ARG. If params->focus is HF_DERIVE, the focus comes
+// from the first layer's depth. Errors as for hf_render_region.
 HF_API int hf_render_layers(struct hf_context *c, const struct hf_image *dst, const struct hf_layer *layers, int count,
                             const struct hf_params *params, const struct hf_region *region);
 

@@ -162,8 +162,9 @@ static void make_up(struct hf_taps *t, int times, int *missing, const int *first
     *missing %= times;
 }
 
-// Round the lattice to units, keep what is not 0, and make the sum 1: sums of weights are exact then in any order, so that
-// alpha of 1 stays 1. Weights that are equal stay equal, as rows of them are added up before they are weighted.
+// Round the weights of the lattice to multiples of WEIGHT_UNIT, drop those that become 0, and make the others sum to 1.
+// Floats then sum them exactly in any order, so an alpha of 1 stays 1. Weights that mirror each other stay equal,
+// because the convolution adds up mirrored samples before it weights them.
 static void round_weights(struct hf_taps *t, const double *w, double all, int *first, int *column, float *weight)
 {
     const int row = 2 * t->rx + 1, columns = t->symmetric ? t->rx + 1 : row;

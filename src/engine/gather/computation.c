@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Computation.
+// Computation: the pass that blurs the far and the near field with the aperture's kernels, at half resolution.
 //
-// Far: the mean of what is far, by how far out of focus it is. Near: what is near, spread over the area that it covers, is
-// drawn over the picture; where a near pixel itself becomes see-through, what it hides is the mean of what is not near around
-// it. With several levels (gather.h) samples are spread by the level that is theirs, and a far pixel is the mean of what is
-// not blurred much more than itself; what near pixels hide is the mean of all levels up to theirs, so that what is nearest
-// counts most. A far sample is too sharp in levels that are smaller than its own blur: there it counts, but its colour is
-// what the far levels spread to the pixel. What lies beyond the frame has no weight: sums are over what lies within.
+// Far field: a pixel is the mean of the far samples within the kernel, each weighted by how far out of focus it is.
+//
+// Near field: each near sample is spread over the area of its blur, and the sum is drawn over the picture. Where a near
+// object itself becomes transparent, the lens sees what it hides. The picture does not show that, so the disocclusion
+// fill guesses it: the mean of the samples around the pixel that are not near.
+//
+// With several levels (gather.h):
+// - The level that fits a sample's own blur spreads it.
+// - A far pixel is the mean of those far samples that are not blurred much more than the pixel itself.
+// - The fill of a near pixel is the mean over all levels up to the pixel's own. So the samples at the least distance
+//   from it in the picture count most.
+// - A level of less than half the radius of a far sample's blur would draw that sample too sharp. The sample keeps its
+//   weight in the fill there, but its colour is what the far levels spread to the pixel.
+//
+// Samples outside the frame have no weight: all sums are of samples within it.
 #include <float.h>
 
 #include "engine/gather/gather.h"

@@ -241,8 +241,9 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     return s->measured ? HF_OK : build(own, s, p, s->max_radius / 2, s->max_radius / 2, mem);
 }
 
-// How far apart what is beside a light is looked at: as far as a light is large that leaves no rings, 16 pixels in a frame
-// of 720 lines.
+// hf_gather_lights_c compares each sample with the samples at this distance on its four sides, in half-resolution
+// pixels. The distance is the size up to which a light leaves no rings: 16 full-resolution pixels in a frame of 720
+// lines.
 static int lights_apart(int display_height)
 {
     return hf_max(hf_min(display_height / 90, 32), 1);

@@ -29,7 +29,7 @@ typedef void hf_layers_taps(const struct hf_hidden_tap *tap, int count, int chan
 struct hf_hidden_line;
 typedef void hf_layers_between(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
                                float *const sum[7]);
-// The least radius of each of n quads, from two rows.
+// The nearest, that is the least, radius of each of n quads (2 x 2 pixels), from their two rows of radii.
 typedef void hf_layers_nearest(const float *above, const float *below, int n, float *out);
 // Hidden samples from the sums of taps; their colours are square roots. Their weight is the part of the quad that lies
 // more than a pixel of radius before them. radius and weight: the quad's two rows of visible samples, then those behind

@@ -157,10 +157,11 @@ struct hf_unmix_row {
     float *seen[6], *mixed[6];  // colour, weight (4), radius (5)
 };
 
-// Sums of a stack: colour and weight (the coverage so far). open: 1 minus that coverage. behind: what hidden samples
-// may still cover. A pixel has one hidden surface at most, so those of all slices cover it once, together with the
-// visible samples of the same surfaces. held, in the middle stack: visible coverage behind the focus that still waits
-// for hidden samples.
+// A row of the sums of a stack. weight is the coverage by all slices so far, colour the sum of their colours times
+// their coverage, and open is 1 minus the coverage. behind is the coverage that hidden samples may still add. A pixel
+// has one hidden surface at most. So the hidden samples of all slices cover a pixel at most once, together with the
+// visible samples of the same surface. held is used in the middle stack: the coverage still to be withheld from visible
+// samples behind the focus, and left to hidden ones.
 struct hf_stack_row {
     float *colour[4], *weight, *open, *behind, *held;
 };

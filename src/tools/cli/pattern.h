@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // File names with places for a frame number and a view's name.
 //
-//     #            the number, as many digits as the files have
-//     ####, @@@    at least so many digits; @: as many as the number has
-//     %04d, %d     as printf writes it
-//     $F4, $F      as Houdini writes it
-//     %V, %v       the view's name, its first letter
+//     #            the number, with as many digits as the existing files have
+//     ####, @@@    the number, with at least as many digits as there are signs
+//     @            the number, with no zeros in front
+//     %04d, %d     the number, as printf writes it
+//     $F4, $F      the number, as Houdini writes it
+//     %V           the view's name
+//     %v           the first letter of the view's name
 //
-// Any of them may come more than once. The minus sign of a negative number counts as a digit, as for printf.
+// A name may have several such places. The minus sign of a negative number counts as a digit, as for printf.
 #ifndef HF_CLI_PATTERN_H
 #define HF_CLI_PATTERN_H
 
@@ -16,7 +18,7 @@
 #include "tools/common/error.h"
 #include "tools/cli/frames.h"
 
-// 1 if a name has a place for the frame number; for the view's name.
+// Whether a file name has a place for the frame number, or one for the view's name: 1 or 0.
 int cli_pattern_has_frame(const char *pattern);
 int cli_pattern_has_view(const char *pattern);
 

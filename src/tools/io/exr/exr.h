@@ -112,7 +112,8 @@ int hf_exr_compression_lines(exr_compression_t compression);
 int hf_exr_row_samples(const struct hf_exr_part *part, int c);
 bool hf_exr_row_has(const struct hf_exr_part *part, int c, int y);
 
-// Check that the part can be decoded: sizes, levels, a file long enough for what the header promises.
+// Check that the part can be decoded: its data window is valid, its compression is supported, it has the chunks that
+// its window and levels need, and the file is not far too short for the pixels that the header promises.
 int hf_exr_check_part(const struct hf_exr *e, int part, struct hf_io_error *err);
 
 // views.c

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which channels are a picture and which are its depth. The rules, in this order:
-// - a part with a multiView attribute holds a view per name: the first with plain channel names (R), the others with
-//   the name in front (left.R); any other part holds one view, called as its view attribute says, or "";
-// - a view needs R, G and B, or Y; the first part that has them for a name wins;
-// - only when the file has no such view: a layer (ViewLayer.Combined.R), if it is clear which one;
-// - depth: see find_depth.
+// - A part with a multiView attribute holds one view for each name in it. The first view has plain channel names (R),
+//   the others have the view's name in front (left.R). Any other part holds one view, named by its view attribute, or
+//   "".
+// - A view needs the channels R, G and B, or Y. If several parts have them for a view of one name, the first part wins.
+// - Only if the file has no such view, a layer (ViewLayer.Combined.R) is the picture, if it is clear which one.
+// - For the depth, see find_depth in depth.c.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -140,7 +141,8 @@ static bool has_view(const struct hf_io_views *views, const struct hf_exr_colour
     return false;
 }
 
-// Find the layer that a name means, once for each view that has it. Returns how many were added, or -1.
+// Find the layer that the user's name means in each view that has such a layer, and add those that are not in the list
+// yet. Returns in how many views it was found, or -1 with *err filled.
 static int add_named(const struct hf_exr *e, struct hf_io_views *views, const struct hf_exr_colours *list, int count,
                      const char *wanted, struct hf_io_error *err)
 {

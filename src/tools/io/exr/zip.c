@@ -76,8 +76,9 @@ int hf_exr_unzip(struct libdeflate_decompressor *d, uint8_t *to, size_t size, co
 
 enum { STORED = 65535, STORED_HEAD = 5, ZLIB_HEAD = 2, ZLIB_TAIL = 4 };
 
-// The same with the first half of the sorted bytes stored uncompressed: in noise these are the low bytes, which do not
-// shrink, and a deflate block that spans both halves suits neither. Returns 0 if there is no room.
+// Make a zlib stream of the sorted bytes (hf_exr_split) whose first half is stored and whose second half is deflated.
+// In noise the first half holds the low bytes, which do not shrink. A deflate block that spans both halves suits
+// neither. Returns the stream's size, or 0 if there is no room.
 static size_t zip_noise(struct libdeflate_compressor *c, uint8_t *to, size_t room, const uint8_t *sorted, size_t size)
 {
     const size_t half = (size + 1) / 2, blocks = (half + STORED - 1) / STORED;
