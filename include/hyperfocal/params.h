@@ -123,7 +123,9 @@ struct hf_lens_params {
 };
 
 // Shape of the aperture. layers and scatter draw all of it, gather and chapter blades and rotation, hexagon its own six sides and
-// rotation, gaussian nothing. HF_ERR_ARG for what the engine in use cannot draw.
+// rotation, gaussian nothing. HF_ERR_ARG for what the engine in use cannot draw. Highlights behind the focus have the shape as it is
+// described here, seen from behind the camera; those in front of it have it by half a turn, as in a lens. The chapter's fields
+// share their taps, so there both have it by half a turn.
 struct hf_aperture_params {
     // A picture of the aperture: its centre is the lens's axis, its shorter side the diameter, its brightness the
     // transmission of each channel. NULL (default): the shape that the other fields describe. The picture must stay alive and

@@ -147,8 +147,14 @@ def six_blades_near(scene):
     scene.camera.data.dof.aperture_rotation = math.radians(-35)
 
 
+def five_blades_near(scene):
+    scene.camera.data.dof.focus_distance = 30
+    scene.camera.data.dof.aperture_blades = 5
+    scene.camera.data.dof.aperture_rotation = math.radians(20)
+
+
 SETTINGS = [focus_object, vertical_fit, small_scale, shift, ratio, five_blades, long_lens, f_stop, portrait, wide_pixels, border,
-            six_blades_near]
+            six_blades_near, five_blades_near]
 
 
 def render_color(scene, samples, seed, own):

@@ -34,12 +34,12 @@ enum { HF_SIZES_LOG2 = 10, HF_SIZES = 1 << HF_SIZES_LOG2 };
 
 // All that the sprites depend on. There is no padding, because keys are compared byte by byte.
 struct hf_aperture_key {
-    float largest;        // radius, pixels
-    float scale_x;        // widths are multiplied by it: pixel aspect and squeeze
-    int blades, outline;  // outline: discs as runs too
-    float rotation, roundness;
-    int width, height;  // of an image
-    uint64_t image;     // its hash; 0: a shape
+    float largest;              // radius, pixels
+    float scale_x;              // widths are multiplied by it: pixel aspect and squeeze
+    int blades, outline;        // outline: discs as runs too
+    float rotation, roundness;  // an image's rotation is 0 or 180
+    int width, height;          // of an image
+    uint64_t image;             // its hash; 0: a shape
 };
 
 struct hf_aperture {
@@ -61,7 +61,7 @@ struct hf_aperture {
 int hf_aperture_build(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_mem *mem,
                       atomic_int *stop);
 
-// The same from an image. Its centre is the axis, its shorter side the diameter.
+// The same from an image. Its centre is the axis, its shorter side the diameter. key->rotation: 0, or 180 for half a turn.
 int hf_aperture_build_image(struct hf_aperture *a, const struct hf_aperture_key *key, const struct hf_image *image,
                             const struct hf_mem *mem, atomic_int *stop);
 

@@ -83,14 +83,17 @@ static double draw(struct hf_aperture *a, const struct hf_picture *p, const stru
 {
     const double shorter = t->width < t->height ? t->width : t->height, unit = shorter / 2 / r,
                  step_x = unit / a->key.scale_x;
+    const int turned = a->key.rotation != 0;
     double most = 0, area = 0;
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < p->rows; j++) {
+            const int row = turned ? p->rows - 1 - j : j;
             int16_t *tap = a->tap + p->first + (ptrdiff_t)j * p->columns;
-            const double y0 = t->height / 2.0 + (p->top + j - 0.5) * unit, y1 = y0 + unit;
+            const double y0 = t->height / 2.0 + (p->top + row - 0.5) * unit, y1 = y0 + unit;
             int last = 0;
             for (int i = 0; i < p->columns; i++) {
-                const double x0 = t->width / 2.0 + (i - p->reach_x - 0.5) * step_x, x1 = x0 + step_x;
+                const int from = turned ? p->reach_x - i : i - p->reach_x;
+                const double x0 = t->width / 2.0 + (from - 0.5) * step_x, x1 = x0 + step_x;
                 const double v = i + 1 < p->columns ? hf_integral_at(t, x1, y1) - hf_integral_at(t, x0, y1) -
                                                           hf_integral_at(t, x1, y0) + hf_integral_at(t, x0, y0)
                                                     : 0;

@@ -148,8 +148,10 @@ static void gather_cut(const struct frame *f, struct layers_shape *s, int sign, 
 static struct grid draw_at(const struct frame *f, const struct slice *s, double radius, int level, enum kind kind,
                            int light)
 {
+    struct frame side = *f;
+    side.turned = radius < 0;
     struct layers_shape shape =
-        layers_shape_new(f, fabs(radius) * (1 + (radius < 0 ? -f->shift : f->shift)) / (1 << level));
+        layers_shape_new(&side, fabs(radius) * (1 + (radius < 0 ? -f->shift : f->shift)) / (1 << level));
     const int reach = shape.reach;
     const int width = (f->width - 1) / (1 << level) + 1, height = (f->height - 1) / (1 << level) + 1,
               m = MARGIN + reach;

@@ -52,6 +52,7 @@ struct frame {
     int fine, unmix, hidden, highlights, patterns;
     double wide, half, quarter, low, high;
     double shift;                             // relative change of the radius behind the focus (chromatic aberration)
+    int turned;                               // in front of the focus: the aperture by half a turn
     int plane;                                // channel of a coloured aperture picture
     struct grid seen, mixed, behind, beyond;  // samples
 };

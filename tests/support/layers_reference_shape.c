@@ -12,9 +12,9 @@ struct side {
     double nx, ny, d, cx, cy, radius;  // radius 0: a line
 };
 
-static struct side side_of(const struct hf_aperture_params *a, int i)
+static struct side side_of(const struct hf_aperture_params *a, double rotation, int i)
 {
-    const double angle = 2 * PI * i / a->blades + a->rotation * PI / 180, half = sin(PI / a->blades);
+    const double angle = 2 * PI * i / a->blades + rotation * PI / 180, half = sin(PI / a->blades);
     struct side s = {.nx = cos(angle), .ny = sin(angle), .d = cos(PI / a->blades)};
     const double rise = a->roundness * (1 - s.d);
     if (a->roundness > 0) {
@@ -72,6 +72,8 @@ static int ascending(const void *a, const void *b)
 static struct layers_run outline(const struct frame *f, double r, int dy)
 {
     const struct hf_aperture_params *a = &f->aperture;
+    // Half a turn of an even number of sides is none.
+    const double rotation = a->rotation + (f->turned && a->blades % 2 ? 180.0f : 0);
     struct side side[16];
     double cut[2 + 3 * 16] = {(dy - 0.5) / r, (dy + 0.5) / r}, hit = 0, left = 0, right = 0;
     int cuts = 2;
@@ -83,8 +85,8 @@ static struct layers_run outline(const struct frame *f, double r, int dy)
         return (struct layers_run){-h * f->wide, h * f->wide, h > 0};
     }
     for (int i = 0; i < a->blades; i++) {
-        side[i] = side_of(a, i);
-        const double y[3] = {sin(2 * PI * (i + 0.5) / a->blades + a->rotation * PI / 180), side[i].cy - side[i].radius,
+        side[i] = side_of(a, rotation, i);
+        const double y[3] = {sin(2 * PI * (i + 0.5) / a->blades + rotation * PI / 180), side[i].cy - side[i].radius,
                              side[i].cy + side[i].radius};
         for (int k = 0; k < (side[i].radius > 0 ? 3 : 1); k++)
             if (y[k] > cut[0] && y[k] < cut[1])
@@ -152,7 +154,8 @@ static double picture_shape(const struct frame *f, double r, int reach, double *
     for (int dy = -high; dy <= high; dy++)
         for (int dx = -across; dx <= across; dx++) {
             const double x0 = m->width / 2.0 + (dx - 0.5) * step, y0 = m->height / 2.0 + (dy - 0.5) * unit;
-            sum += w[(dy + reach) * side + dx + reach] =
+            const int at = (dy + reach) * side + dx + reach;
+            sum += w[f->turned ? side * side - 1 - at : at] =
                 texels(m, f->plane, x0, x0 + step, y0, y0 + unit) / (unit * step);
         }
     return sum;

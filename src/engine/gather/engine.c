@@ -189,13 +189,16 @@ static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, 
     struct hf_levels *l = &g->levels[far];
     const float scale = s->strength >= 0.25f ? s->strength : 0.25f, largest = __builtin_fmaxf(radius * scale, 1);
     const int many = s->measured || p->gather.per_pixel_kernel;
+    // A pixel gathers what draws on it, so the kernel is the aperture by half a turn. In front of the focus that is by another.
+    const float turn = far && p->aperture.blades % 2 ? 180 : 0,
+                rotation = p->aperture.blades ? p->aperture.rotation + turn : 0;
     l->count = 0;
     for (float r = largest, before = 0, next; l->count < HF_MAX_LEVELS; before = r, r = next) {
         struct hf_level *level = &l->level[l->count++];
         const struct hf_area_key key = {.radius = r,
                                         .pixel_aspect = s->pixel_aspect,
                                         .blades = p->aperture.blades,
-                                        .rotation = p->aperture.blades ? p->aperture.rotation : 0,
+                                        .rotation = rotation,
                                         // Nothing lies beyond the frame: no pixel has another farther away.
                                         .most_x = hf_max(s->half_width - 1, 1),
                                         .most_y = hf_max(s->half_height - 1, 1)};

@@ -142,6 +142,8 @@ static void set_shape(struct hf_layers *l, const struct hf_params *p)
     memset(k, 0, sizeof *k);
     l->shaped = a->picture || a->blades || a->ring > 0 || a->cat_eye > 0;
     l->groups = l->chromatic != 0 || (a->picture && hf_aperture_coloured(a->picture, l->stop)) ? 3 : 1;
+    // In front of the focus the rays have not crossed yet.
+    l->turned = a->picture || a->blades % 2;
     k->wide = l->wide;
     k->spacing = l->set.spacing;
     k->half = l->set.half;
@@ -198,15 +200,17 @@ static void release(void *own, const struct hf_mem *mem)
     hf_block_free(&l->tables, mem);
     hf_block_free(&l->tiles, mem);
     hf_block_free(&l->marks, mem);
-    for (int i = 0; i < 3; i++)
-        hf_block_free(&l->shapes[i].block, mem);
+    for (int i = 0; i < 6; i++)
+        hf_block_free(&l->shapes[i / 3][i % 3].block, mem);
 }
 
 static size_t held(const void *own)
 {
     const struct hf_layers *l = own;
-    return l->tables.size + l->tiles.size + l->marks.size + l->shapes[0].block.size + l->shapes[1].block.size +
-           l->shapes[2].block.size;
+    size_t bytes = l->tables.size + l->tiles.size + l->marks.size;
+    for (int i = 0; i < 6; i++)
+        bytes += l->shapes[i / 3][i % 3].block.size;
+    return bytes;
 }
 
 static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)

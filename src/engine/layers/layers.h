@@ -91,15 +91,17 @@ struct hf_layers {
     float wide;                     // a disc's width is its height times this
     int shaped;                     // the aperture is not a disc
     struct hf_shape_key key;        // describes the aperture
-    struct hf_shapes shapes[3];     // at the slices' radii, at larger and at smaller ones (chromatic aberration)
-    int most_windows, most_rows;    // of a shape
-    float chromatic;                // relative difference of the radii of red and blue
-    float nearest, farthest;        // radii in the frame, 0 included
-    int edges;                      // pixels may be mixed
-    int most_tiles;                 // from which a slice's blur reaches a cell, on each side
-    int around;                     // a cell reads samples up to this many pixels away
-    const struct hf_known *given;   // known surfaces, or NULL
-    int known;                      // hidden samples have full resolution, as surfaces are known
+    int turned;                     // in front of the focus the aperture is another one: half a turn shows
+    // [in front of the focus, if turned]: at the slices' radii, at larger and at smaller ones (chromatic aberration).
+    struct hf_shapes shapes[2][3];
+    int most_windows, most_rows;   // of a shape
+    float chromatic;               // relative difference of the radii of red and blue
+    float nearest, farthest;       // radii in the frame, 0 included
+    int edges;                     // pixels may be mixed
+    int most_tiles;                // from which a slice's blur reaches a cell, on each side
+    int around;                    // a cell reads samples up to this many pixels away
+    const struct hf_known *given;  // known surfaces, or NULL
+    int known;                     // hidden samples have full resolution, as surfaces are known
 
     int width, height;                // of the frame
     atomic_int *stop;                 // the setup's

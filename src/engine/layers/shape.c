@@ -159,7 +159,8 @@ static size_t build_one(struct hf_shape *s, const struct maker *m, const struct 
     const size_t rows = (size_t)s->rows * sizeof(struct hf_shape_row);
     if (area) {
         if (memory)
-            hf_shape_draw(s, area, m->key->wide, (struct hf_shape_row *)memory, (float *)(memory + rows));
+            hf_shape_draw(s, area, m->key->wide, (struct hf_shape_row *)memory, (float *)(memory + rows),
+                          m->key->rotation != 0);
         return rows + ((size_t)s->reach * 2 + 1 + 15) / 16 * 16 * (size_t)s->rows * sizeof(float);
     }
     const size_t runs = (size_t)s->rows * HF_SHAPE_RUNS;

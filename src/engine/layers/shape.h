@@ -37,8 +37,8 @@ struct hf_shape {
 
 // All that shapes depend on. There is no padding, because keys are compared byte by byte.
 struct hf_shape_key {
-    int blades, count;  // number of radii
-    float rotation, roundness, ring, cat_eye, wide, factor;
+    int blades, count;                                       // number of radii
+    float rotation, roundness, ring, cat_eye, wide, factor;  // rotation: of a picture 0, or 180 in front of the focus
     float spacing, half, quarter;
     int fine;
     int width, height;  // of a picture
@@ -64,10 +64,10 @@ struct hf_shape_size {
 // a shape. Returns HF_ERR_MEMORY or HF_ERR_CANCELLED.
 int hf_shapes_build(struct hf_shapes *s, const struct hf_shape_key *key, const struct hf_shape_size *size,
                     const struct hf_image *picture, const struct hf_mem *mem, atomic_int *stop);
-// The weights of an aperture picture (shape_picture.c): find its rows and reach, and draw it.
+// The weights of an aperture picture (shape_picture.c): find its rows and reach, and draw it, turned by half a turn or not.
 void hf_shape_frame(struct hf_shape *s, const struct hf_integral *area, double wide);
 void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wide, struct hf_shape_row *row,
-                   float *weight);
+                   float *weight, int turned);
 // Make a run from its ends and its weight, in the form that drawing reads.
 struct hf_shape_run hf_shape_run_of(float a, float b, float weight);
 

@@ -38,8 +38,17 @@ static void draw_row(const struct hf_shape *s, const struct hf_integral *t, doub
     }
 }
 
+static void reverse(float *w, int n)
+{
+    for (int i = 0; i < n / 2; i++) {
+        const float v = w[i];
+        w[i] = w[n - 1 - i];
+        w[n - 1 - i] = v;
+    }
+}
+
 void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wide, struct hf_shape_row *row,
-                   float *weight)
+                   float *weight, int turned)
 {
     const int columns = 2 * s->reach + 1, stride = (columns + 15) / 16 * 16;
     s->row = row;
@@ -48,7 +57,9 @@ void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wi
     for (int i = 0; i < s->rows; i++) {
         float *w = weight + i * stride;
         int first = 0, last = columns;
-        draw_row(s, area, wide, i, w);
+        draw_row(s, area, wide, turned ? s->rows - 1 - i : i, w);
+        if (turned)
+            reverse(w, columns);
         while (first < last && !(w[first] > 0))
             first++;
         while (last > first && !(w[last - 1] > 0))

@@ -121,7 +121,7 @@ static struct hf_disc_row *make_slice(struct hf_layers *l, struct hf_slice *s, i
     const float shift = shift_of(l, group, radius);
     *s = (struct hf_slice){.radius = radius, .level = level, .sparse = which == 2};
     if (l->shaped && number > 0) {
-        const struct hf_shapes *shapes = &l->shapes[shift > 0 ? 1 : shift < 0 ? 2 : 0];
+        const struct hf_shapes *shapes = &l->shapes[l->turned && radius < 0][shift > 0 ? 1 : shift < 0 ? 2 : 0];
         s->shape = &shapes->shape[number - 1][shapes->planes == 3 ? group : 0][which];
         s->rows = 1 - s->shape->top;
         s->reach = hf_max(s->shape->reach + 1, s->rows);
@@ -199,14 +199,18 @@ int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, c
     struct hf_shape_size *size = l->tables.data;
     struct hf_shape_key key = l->key;
     float r = 0;
-    key.count = hf_max(slices_of(l, -l->nearest), slices_of(l, l->farthest));
-    for (int i = 0; i < key.count; i++) {
+    const int before = slices_of(l, -l->nearest), behind = slices_of(l, l->farthest), most = hf_max(before, behind);
+    for (int i = 0; i < most; i++) {
         size[i].radius = r = next_radius(&l->set, r);
         size[i].level = level_of(&l->set, r);
     }
     l->most_windows = l->most_rows = 0;
-    for (int i = 0; i < (l->chromatic != 0 ? 3 : 1); i++) {
-        struct hf_shapes *s = &l->shapes[i];
+    const int factors = l->chromatic != 0 ? 3 : 1;
+    for (int n = 0; n < (l->turned ? 2 : 1) * factors; n++) {
+        const int near = n / factors, i = n % factors;
+        struct hf_shapes *s = &l->shapes[near][i];
+        key.count = !l->turned ? most : near ? before : behind;
+        key.rotation = l->key.rotation + (near ? 180.0f : 0);
         key.factor = 1 + (i == 1 ? fabsf(l->chromatic) : i == 2 ? -fabsf(l->chromatic) : 0);
         const int err = hf_shapes_build(s, &key, size, picture, mem, l->stop);
         if (err)

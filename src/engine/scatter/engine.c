@@ -99,12 +99,18 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     s->sharp_radius = 0.5f;
 }
 
+static int build(struct hf_aperture *to, const struct hf_aperture_key *key, const struct hf_image *picture,
+                 const struct hf_setup *s, const struct hf_mem *mem)
+{
+    return picture ? hf_aperture_build_image(to, key, picture, mem, s->stop) : hf_aperture_build(to, key, mem, s->stop);
+}
+
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
     struct hf_scatter *t = own;
     struct hf_aperture *aperture = &t->aperture;
     const struct hf_aperture_params *a = &p->aperture;
-    *t = (struct hf_scatter){.aperture = *aperture, .half_from = 24, .half_to = 28, .fade = 1.5f};
+    *t = (struct hf_scatter){.aperture = *aperture, .turned = t->turned, .half_from = 24, .half_to = 28, .fade = 1.5f};
     if (p->scatter.resolution == HF_RESOLUTION_HALF) {
         t->half_from = -1;
         t->half_to = 0;
@@ -132,8 +138,12 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     t->trust = hollow > 0 ? 4 / hollow : INFINITY;
     t->corner = 1 / hypotf((float)s->width, (float)s->height);
     key.scale_x = 1 / (s->pixel_aspect * a->squeeze);
-    const int err = a->picture ? hf_aperture_build_image(aperture, &key, a->picture, mem, s->stop)
-                               : hf_aperture_build(aperture, &key, mem, s->stop);
+    int err = build(aperture, &key, a->picture, s, mem);
+    // In front of the focus the rays have not crossed yet. An even number of sides does not show it.
+    t->turns = a->picture || a->blades % 2;
+    key.rotation += 180;
+    if (!err && t->turns)
+        err = build(&t->turned, &key, a->picture, s, mem);
     t->ready = !err;
     set_groups(t, s, p->aperture.chromatic);
     return err;
@@ -141,12 +151,15 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
 
 static void release(void *own, const struct hf_mem *mem)
 {
-    hf_block_free(&((struct hf_scatter *)own)->aperture.block, mem);
+    struct hf_scatter *t = own;
+    hf_block_free(&t->aperture.block, mem);
+    hf_block_free(&t->turned.block, mem);
 }
 
 static size_t held(const void *own)
 {
-    return ((const struct hf_scatter *)own)->aperture.block.size;
+    const struct hf_scatter *t = own;
+    return t->aperture.block.size + t->turned.block.size;
 }
 
 // How far the largest sprites of a field reach at each level.
@@ -163,7 +176,8 @@ static void set_reach(struct hf_scatter *t, int field)
         float factor = 0;
         for (int g = 0; g < t->groups; g++)
             factor = fmaxf(factor, t->group[g].factor[field]);
-        const struct hf_picture *p = &t->aperture.picture[hf_picture_number(r * factor) / t->aperture.steps + 1];
+        const struct hf_aperture *a = hf_scatter_aperture(t, field);
+        const struct hf_picture *p = &a->picture[hf_picture_number(r * factor) / a->steps + 1];
         t->reach_x[field][level] = p->reach_x;
         t->reach_y[field][level] = p->reach_y;
     }
@@ -201,11 +215,12 @@ static int bin_bits(const struct hf_scatter *t, int level, int room)
     enum { SHARE = 22 };
     float area = 1;
     for (int field = 0; field < 2; field++) {
+        const struct hf_aperture *a = hf_scatter_aperture(t, field);
         const float r = level ? t->largest[field] / 2 : fminf(t->largest[field], fmaxf(t->half_to, 0));
         for (int g = 0; g < t->groups && r > 0; g++) {
-            const int number = hf_picture_number(r * t->group[g].factor[field]) / t->aperture.steps + 1;
-            for (int plane = 0; plane < t->aperture.planes; plane++)
-                area = fmaxf(area, t->aperture.picture[plane * t->aperture.count + number].area);
+            const int number = hf_picture_number(r * t->group[g].factor[field]) / a->steps + 1;
+            for (int plane = 0; plane < a->planes; plane++)
+                area = fmaxf(area, a->picture[plane * a->count + number].area);
         }
     }
     return hf_max(room - SHARE + 1 - (int)ceil(log2((double)area)), HF_BIN_BITS);

@@ -40,7 +40,9 @@ struct hf_splat_group {
 
 struct hf_scatter {
     int ready;  // prepared: the other members are valid
-    struct hf_aperture aperture;
+    // turned: the aperture in front of the focus, by half a turn, if that shows.
+    struct hf_aperture aperture, turned;
+    int turns;
     int groups;
     struct hf_splat_group group[4];
     int group_of[4];   // of each channel
@@ -69,6 +71,12 @@ static inline float hf_share(float v)
 {
     const float t = v * 5;
     return t - (t - v);
+}
+
+// The sprites of a field: 0 near, 1 far.
+static inline const struct hf_aperture *hf_scatter_aperture(const struct hf_scatter *t, int field)
+{
+    return t->turns && !field ? &t->turned : &t->aperture;
 }
 
 static inline const struct hf_scatter *hf_scatter(const struct hf_setup *s)

@@ -90,7 +90,7 @@ void hf_list_row_c(struct hf_splats list[HF_BINS], const struct hf_source_row *r
 // The sprites of a group's channel.
 static const struct hf_picture *pictures(const struct walk *w)
 {
-    const struct hf_aperture *a = &w->t->aperture;
+    const struct hf_aperture *a = hf_scatter_aperture(w->t, w->field);
     const int plane = a->planes == 3 && w->group->channel[0] < 3 ? w->group->channel[0] : a->planes == 3;
     return a->picture + plane * a->count;
 }
@@ -114,7 +114,7 @@ static struct hf_sums draw_bin(struct walk *w, int b)
 
 void hf_flush_sources(struct walk *w)
 {
-    const struct hf_aperture *a = &w->t->aperture;
+    const struct hf_aperture *a = hf_scatter_aperture(w->t, w->field);
     for (int b = 0; b < w->bins->count; b++) {
         struct hf_splats *l = &w->list[b];
         if (hf_stopped(w->f->s->stop))
@@ -182,7 +182,7 @@ static struct circle_row circle_row(const struct hf_aperture *a, const struct hf
 static float cut_picture(struct walk *w, const struct hf_picture *p, const struct hf_picture *disc, float r, float cx,
                          float cy)
 {
-    const struct hf_aperture *a = &w->t->aperture;
+    const struct hf_aperture *a = hf_scatter_aperture(w->t, w->field);
     const float scale = 256 * a->key.scale_x;
     float area = 0;
     for (int i = 0; i < p->rows; i++) {
@@ -218,7 +218,8 @@ static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, c
 static void add_cat_eye(struct walk *w, int x, int y, float r, const float colour[3], float weight)
 {
     const struct hf_setup *s = w->f->s;
-    const struct hf_picture *picture = w->t->aperture.picture, *p = &picture[hf_picture_number(r)];
+    const struct hf_picture *picture = hf_scatter_aperture(w->t, w->field)->picture,
+                            *p = &picture[hf_picture_number(r)];
     const float step = w->level ? 2 : 1, toward = (w->field ? 1 : -1) * w->t->cat_eye * r;
     const float cx = toward * (2 * (((float)x + 0.5f) * step) - (float)s->width) * w->t->corner;
     const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
@@ -240,7 +241,7 @@ static void add_cat_eye(struct walk *w, int x, int y, float r, const float colou
 // A ring is its outline minus its hole, which has the same shape.
 void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight)
 {
-    const struct hf_aperture *a = &w->t->aperture;
+    const struct hf_aperture *a = hf_scatter_aperture(w->t, w->field);
     const struct hf_picture *picture = pictures(w);
     const int size = hf_picture_number(r), number = size / a->steps;
     if (w->t->cat_eye > 0) {
@@ -271,7 +272,8 @@ void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, 
             for (int b = 0; b < w->bins->count; b++)
                 if (w->list[b].count + end - at > HF_SPLATS)
                     hf_flush_sources(w);
-            hf_scatter_kernels(w->f)->list_row(w->list, row, at, end, t->aperture.inverse, w->bins);
+            hf_scatter_kernels(w->f)->list_row(w->list, row, at, end, hf_scatter_aperture(t, w->field)->inverse,
+                                               w->bins);
         }
         return;
     }
