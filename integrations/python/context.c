@@ -162,9 +162,9 @@ static PyObject *defocus_into(struct context *self, struct hfpy_given *g, struct
         return PyErr_Format(PyExc_ValueError, "out has samples that share memory");
     // In place needs the very same array; another one that shares memory would be read after it is written.
     const int in_place = hfpy_same(to, in);
-    if (hfpy_image(in, !in_place && hfpy_overlap(to, in), 1) || hfpy_depth(z, hfpy_overlap(to, z), &g->depth) ||
-        (in_place && !in->copy ? hfpy_image_in_place(to, in) : hfpy_image(to, 0, 0)) ||
-        hfpy_choose(g, in->height, NULL))
+    if (hfpy_depth(z, hfpy_overlap(to, z), &g->depth) || hfpy_choose(g, in->height, NULL) ||
+        hfpy_image_for(in, !in_place && hfpy_overlap(to, in), g->params.engine) ||
+        (in_place && !in->copy ? hfpy_image_in_place(to, in) : hfpy_image(to, 0, 0)))
         return NULL;
     const struct hf_image *aperture = g->params.aperture.picture;
     if (aperture && hfpy_overlap(to, &g->aperture)) {

@@ -32,6 +32,8 @@ int hfpy_open_picture(struct hfpy_pixels *p, PyObject *object, const char *name,
 int hfpy_open_plane(struct hfpy_pixels *p, PyObject *object, const char *name, int writable);
 // Fill p->image; into a copy where the library cannot use the array, or where `copy` says so. read: the copy gets the samples.
 int hfpy_image(struct hfpy_pixels *p, int copy, int read);
+// The same for an input of this engine: alpha is left out where the engine has other bits without it.
+int hfpy_image_for(struct hfpy_pixels *p, int copy, enum hf_engine engine);
 // The same for an output that is the very array of the input.
 int hfpy_image_in_place(struct hfpy_pixels *to, const struct hfpy_pixels *from);
 int hfpy_depth(struct hfpy_pixels *p, int copy, struct hf_depth *depth);

@@ -258,8 +258,24 @@ static int new_copy(struct hfpy_pixels *p, int pixel, int sample)
     return 0;
 }
 
+// Plain floats of which alpha is left out: most of the copies.
+static void pack(const struct hfpy_pixels *p)
+{
+    for (int y = 0; y < p->height; y++) {
+        const char *from = p->at[0] + y * p->row[0];
+        char *to = p->copy + (size_t)y * (size_t)p->width * 12;
+        for (int x = 0; x < p->width; x++)
+            memcpy(to + (size_t)x * 12, from + (size_t)x * 16, 12);
+    }
+}
+
 static void read_copy(struct hfpy_pixels *p)
 {
+    if (p->type == 'f' && !p->swapped && p->used == 3 && p->column[0] == 16 && p->at[1] == p->at[0] + 4 &&
+        p->at[2] == p->at[0] + 8 && p->row[1] == p->row[0] && p->row[2] == p->row[0]) {
+        pack(p);
+        return;
+    }
     for (int y = 0; y < p->height; y++)
         for (int c = 0; c < p->used; c++)
             copy_row(p, c, y, 1);
@@ -294,7 +310,8 @@ static int image(struct hfpy_pixels *p, int copy, int read)
     return 0;
 }
 
-// Is alpha 1 everywhere? Then its blur is 1 too, and need not be computed. The command leaves it out likewise.
+// Is alpha 1 everywhere? Then its blur is 1 too, and need not be computed. The command leaves it out, and the layers engine
+// has other bits then; that of other engines is the same.
 static int is_opaque(const struct hfpy_pixels *p)
 {
     const size_t bytes = (size_t)p->sample;
@@ -319,11 +336,17 @@ static int is_opaque(const struct hfpy_pixels *p)
 
 int hfpy_image(struct hfpy_pixels *p, int copy, int read)
 {
+    p->used = p->channels;
+    return image(p, copy, read);
+}
+
+int hfpy_image_for(struct hfpy_pixels *p, int copy, enum hf_engine engine)
+{
     const int floats = p->type == 'f' || p->type == 'e';
     p->used = p->channels;
-    if (read && floats && p->channels == 4 && is_opaque(p))
+    if (engine == HF_ENGINE_LAYERS && floats && p->channels == 4 && is_opaque(p))
         p->used = 3;
-    return image(p, copy, read);
+    return image(p, copy, 1);
 }
 
 int hfpy_image_in_place(struct hfpy_pixels *to, const struct hfpy_pixels *from)
