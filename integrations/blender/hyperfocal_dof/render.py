@@ -103,7 +103,9 @@ def defocus(picture_of, given):
     color, depth = picture_of
     if module:
         _context = _context or module.Context()
-        return _context.defocus(color, depth, **given)
+        # Blender's rows begin at the bottom: show() then needs no copy.
+        out = np.empty(color.shape, np.float32)[::-1]
+        return _context.defocus(color, depth, out=out, **given)
     return by_command(color, depth, given)
 
 
