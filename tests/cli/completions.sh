@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The shells' completions name every option of the help, and bash completes with its own.
+# The shells' completions and the man page name every option of the help and no other, and bash completes with its own.
 # Usage: completions.sh COMMAND COMPLETIONS
 command=$1 completions=$2
 dir=$(mktemp -d) || exit 1
@@ -24,10 +24,18 @@ for shell in bash zsh fish; do
         [ $shell = fish ] && option="-l ${option#--}"
         check "$shell has $option" grep -Eq -e "$option([^a-z-]|\$)" "$dir/$shell"
     done <"$dir/options"
+    # In fish options stand behind -l, and without their dashes.
+    [ $shell = fish ] && sed -n 's/.* -l \([a-z-]*\).*/--\1/p' "$dir/fish" >"$dir/named" ||
+        grep -o -e '--[a-z][a-z-]*' "$dir/$shell" >"$dir/named"
+    check "$shell has no others: $(sort -u "$dir/named" | comm -13 "$dir/options" - | tr '\n' ' ')" \
+        sh -c '[ -s "$1/named" ] && [ -z "$(sort -u "$1/named" | comm -13 "$1/options" -)" ]' - "$dir"
     if command -v $shell >/dev/null; then
         check "$shell reads it" $shell -n "$dir/$shell"
     fi
 done
+# The entries of the man page's options, their dashes escaped.
+"$command" --help=man | sed 's/\\-/-/g; s/\\f[A-Z]//g' | grep -A1 '^\.TP' | grep -o -e '--[a-z][a-z-]*' | sort -u >"$dir/man"
+check "the man page has the same options: $(comm -3 "$dir/options" "$dir/man" | tr '\n\t' '  ')" cmp "$dir/options" "$dir/man"
 if command -v bash >/dev/null; then
     complete='. "$0"; COMP_WORDS=(hyperfocal "$@"); COMP_CWORD=$#; _hyperfocal; echo "${COMPREPLY[*]}"'
     check "bash: engines" test "$(bash -c "$complete" "$dir/bash" --engine g)" = "gather gaussian"
