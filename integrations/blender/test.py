@@ -3,12 +3,14 @@
 
 Each setting of the camera is rendered by Cycles with its lens, and sharp with the add-on's blur. A lamp's disc must have the same
 extent in 36 directions within half a pixel, and a picture must be at least 30 dB from Cycles' own, at a number of samples at
-which two of Cycles' pictures with different seeds are 36 dB apart. Names choose settings; `states` chooses the rest alone."""
+which two of Cycles' pictures with different seeds are 36 dB apart. Names choose settings; `states` chooses the rest alone, and
+`time` measures what turning the focus costs."""
 import math
 import os
 import shutil
 import sys
 import tempfile
+import time
 
 import bpy
 import numpy as np
@@ -302,12 +304,33 @@ def try_interruptions():
         check(f"stopped in {name}: {left} is left", not left)
 
 
+def time_refocus():
+    """No test: what turning the focus costs at 1920 x 1080, on an idle machine."""
+    scene = scene_with_camera(lamp=False)
+    scene.render.resolution_x, scene.render.resolution_y = 1920, 1080
+    render_color(scene, 1, 1, False)
+    spent = {"all": [], "defocus": [], "show": []}
+    for i in range(11):
+        scene.camera.data.dof.focus_distance = 4 + 0.1 * i
+        at = [time.perf_counter()]
+        given = lens.parameters(scene, scene.camera)
+        color = render.defocus(addon._last["picture"], given)
+        at.append(time.perf_counter())
+        addon.show(color)
+        at.append(time.perf_counter())
+        for name, seconds in zip(spent, (at[2] - at[0], at[1] - at[0], at[2] - at[1])):
+            spent[name].append(1000 * seconds)
+    print("refocus, 1920 x 1080:", ", ".join(f"{n} {np.median(v):.1f} ms" for n, v in spent.items()), flush=True)
+
+
 names = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
 try:
     print(f"hyperfocal by its {render.backend()}, Blender {bpy.app.version_string}", flush=True)
     for setting in SETTINGS:
         if not names or setting.__name__ in names:
             try_setting(setting)
+    if "time" in names:
+        time_refocus()
     if not names or "states" in names:
         for rest in (try_animation, try_refocus, try_refused, try_interruptions):
             rest()
