@@ -247,6 +247,31 @@ def try_animation():
     check("which differs from the sharp one", np.abs(blurred - sharp[..., :3]).max() > 0.1)
 
 
+def try_stereo():
+    """Each view is blurred and written; the other has another picture."""
+    scene = scene_with_camera(lamp=False)
+    scene.cycles.samples = 4
+    scene.camera.data.hyperfocal.use = scene.render.use_multiview = True
+    scene.camera.data.stereo.interocular_distance = 0.5
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    scene.render.filepath = os.path.join(folder, "both")
+    bpy.ops.render.render(write_still=True)
+    names = sorted(n for n in os.listdir(folder) if n.startswith("both"))
+    want = sorted(f"both_{side}{end}" for side in "LR" for end in (".exr", ".sharp.exr"))
+    check(f"two views and their EXRs: {names}", names == want)
+    check(f"without a word: {scene.camera.data.hyperfocal.error}", not scene.camera.data.hyperfocal.error)
+    written = []
+    for side in "LR":
+        planes = render.read(os.path.join(folder, f"both_{side}.exr"), lambda name: name in "RGB")
+        sharp = render.picture(os.path.join(folder, f"both_{side}.sharp.exr"))
+        blurred = render.defocus(sharp, lens.parameters(scene, scene.camera))[..., :3]
+        written.append(np.dstack([planes[c] for c in "RGB"]))
+        # The file has halves: one rounding to 11 bits.
+        check(f"view {side} is the defocused picture", np.allclose(written[-1], blurred, rtol=2.0**-10, atol=2.0**-20))
+        check(f"view {side} is not the sharp one", np.abs(blurred - sharp[0][..., :3]).max() > 0.1)
+    check("the views differ", np.abs(written[0] - written[1]).max() > 0.1)
+
+
 def try_refocus():
     scene = scene_with_camera(lamp=False)
     render_color(scene, 4, 1, False)
@@ -314,7 +339,7 @@ def time_refocus():
         scene.camera.data.dof.focus_distance = 4 + 0.1 * i
         at = [time.perf_counter()]
         given = lens.parameters(scene, scene.camera)
-        color = render.defocus(addon._last["picture"], given)
+        color = render.defocus(addon._last["pictures"][""], given)
         at.append(time.perf_counter())
         addon.show(color)
         at.append(time.perf_counter())
@@ -332,7 +357,7 @@ try:
     if "time" in names:
         time_refocus()
     if not names or "states" in names:
-        for rest in (try_animation, try_refocus, try_refused, try_interruptions):
+        for rest in (try_animation, try_stereo, try_refocus, try_refused, try_interruptions):
             rest()
 except Exception as error:  # Blender would go on without a word
     import traceback

@@ -89,17 +89,33 @@ def sharpen(scene):
         change(layer, "use_pass_z", True)
 
 
+def views(scene):
+    """The names of the views and the ends of their files' names; one without either where the render is not stereo."""
+    if not scene.render.use_multiview:
+        return {"": ""}
+    names = ("left", "right") if scene.render.views_format == "STEREO_3D" else [v.name for v in scene.render.views]
+    return {v.name: v.file_suffix for v in scene.render.views if v.use and v.name in names}
+
+
 def save_sharp(scene, path):
-    """The render with its passes, whatever format the scene's output has."""
+    """The render with its passes, whatever format the scene's output has: a file for each view."""
     settings, before = scene.render.image_settings, {}
     wanted = {"file_format": "OPEN_EXR_MULTILAYER", "color_depth": "32", "exr_codec": "ZIP"}
     order = ["file_format", "color_mode", "color_depth", "exr_codec"]
+    several = scene.render.use_multiview
+    if several:
+        wanted["views_format"] = "INDIVIDUAL"
+        order.append("views_format")
     for name in order:
         before[name] = getattr(settings, name)
     try:
         for name, value in wanted.items():
             setattr(settings, name, value)
         bpy.data.images["Render Result"].save_render(path, scene=scene)
+    except RuntimeError:
+        # Of several views Blender misses the file without a view's name.
+        if not several or not all(os.path.exists(with_suffix(path, end)) for end in views(scene).values()):
+            raise
     finally:
         for name in order:
             try:
@@ -108,19 +124,24 @@ def save_sharp(scene, path):
                 pass  # a value that this file format does not have was not in use
 
 
+def with_suffix(path, suffix):
+    return suffix.join(os.path.splitext(path)) if suffix else path
+
+
 def sharp_path():
     """The sharp EXR of the last render. Beside a frame that is written there will be a copy of it."""
     return os.path.join(bpy.app.tempdir, "hyperfocal.exr")
 
 
-def show(color):
-    """The picture in the image 'hyperfocal', for the Image Editor."""
+def show(color, suffix=""):
+    """The picture in the image 'hyperfocal', for the Image Editor; a view's has the end of its file's name."""
+    name = IMAGE + suffix
     height, width = color.shape[:2]
-    image = bpy.data.images.get(IMAGE)
+    image = bpy.data.images.get(name)
     if image and tuple(image.size) != (width, height):
         bpy.data.images.remove(image)
         image = None
-    image = image or bpy.data.images.new(IMAGE, width, height, alpha=True, float_buffer=True)
+    image = image or bpy.data.images.new(name, width, height, alpha=True, float_buffer=True)
     image.alpha_mode = "PREMUL"
     # Blender's rows begin at the bottom.
     image.pixels.foreach_set(np.ascontiguousarray(color[::-1], np.float32).ravel())
@@ -129,11 +150,11 @@ def show(color):
 
 
 def refocus(scene):
-    """Blur the last render anew by the camera as it is now. Returns the image."""
+    """Blur the last render anew by the camera as it is now, all its views."""
     given = lens.parameters(scene, scene.camera)
-    image = show(render.defocus(_last["picture"], given))
+    for suffix, picture in _last["pictures"].items():
+        show(render.defocus(picture, given), suffix)
     _last["given"] = given
-    return image
 
 
 @persistent
@@ -143,34 +164,48 @@ def rendered(scene, *_):
         return
     try:
         path = sharp_path()
+        for end in views(scene).values():
+            old = with_suffix(path, end)
+            if os.path.exists(old):
+                os.remove(old)
         save_sharp(scene, path)
-        _last["picture"] = render.picture(path)
+        _last["pictures"] = {end: render.picture(with_suffix(path, end)) for end in views(scene).values()}
         # The camera's own switch is off for the render: what counts is here.
         refocus(scene)
     except (ValueError, OSError, RuntimeError, MemoryError) as error:
         say(scene, str(error))
 
 
-def written_path(scene):
+def written_path(scene, view, suffix):
     """The file that this render wrote, None if there is none: a still has no number in its name, a frame of a shot has."""
-    still = bpy.path.abspath(scene.render.filepath)
+    still = bpy.path.abspath(scene.render.filepath) + suffix
     if scene.render.use_file_extension and not still.endswith(scene.render.file_extension):
         still += scene.render.file_extension
-    paths = [p for p in (scene.render.frame_path(frame=scene.frame_current), still)
+    paths = [p for p in (scene.render.frame_path(frame=scene.frame_current, view=view), still)
              if os.path.isfile(p) and os.path.getmtime(p) >= _last.get("begun", 0)]
     return max(paths, key=os.path.getmtime, default=None)
 
 
 @persistent
 def written(scene, *_):
-    """Replace the sharp frame, which Blender has just written, at once by the defocused one."""
-    image, path = bpy.data.images.get(IMAGE), written_path(scene)
-    if not active(scene) or not image or "picture" not in _last or not path:
+    """Replace the sharp frame, which Blender has just written, at once by the defocused one; that of each view."""
+    if not active(scene) or "pictures" not in _last:
         return
+    if scene.render.use_multiview and scene.render.image_settings.views_format != "INDIVIDUAL":
+        say(scene, "A frame with all views in one file stays sharp: set the output's Views Format to Individual.")
+        return
+    for view, suffix in views(scene).items():
+        image, path = bpy.data.images.get(IMAGE + suffix), written_path(scene, view, suffix)
+        if image and path:
+            replace(scene, image, path, with_suffix(sharp_path(), suffix))
+
+
+def replace(scene, image, path, sharp):
+    """Replace a file by the image, and keep the sharp picture beside it."""
     folder, name = os.path.split(path)
     new, keep = os.path.join(folder, ".hyperfocal-" + name), os.path.splitext(path)[0] + ".sharp.exr"
     try:
-        shutil.copyfile(sharp_path(), keep + ".new")
+        shutil.copyfile(sharp, keep + ".new")
         os.replace(keep + ".new", keep)
         image.save_render(new, scene=scene)
         os.replace(new, path)
@@ -203,7 +238,7 @@ def after_saving(*_):
 @persistent
 def changed(scene, *_):
     """The camera was turned after a render: refocus, when no more changes come for a moment."""
-    if not _rendering and "picture" in _last and active(scene) and not lens.refusal(scene.camera):
+    if not _rendering and "pictures" in _last and active(scene) and not lens.refusal(scene.camera):
         if lens.parameters(scene, scene.camera) != _last.get("given") and not bpy.app.timers.is_registered(catch_up):
             bpy.app.timers.register(catch_up, first_interval=0.02)
 
@@ -211,7 +246,7 @@ def changed(scene, *_):
 def catch_up():
     scene = bpy.context.scene
     try:
-        if active(scene) and "picture" in _last:
+        if active(scene) and "pictures" in _last:
             refocus(scene)
     except (ValueError, RuntimeError) as error:
         say(scene, str(error))
@@ -224,7 +259,7 @@ class HYPERFOCAL_OT_refocus(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return "picture" in _last and active(context.scene)
+        return "pictures" in _last and active(context.scene)
 
     def execute(self, context):
         refused = lens.refusal(context.scene.camera)
