@@ -76,4 +76,38 @@ HF_INLINE int down_streams(const struct hf_frame *f, struct hf_rect r)
     return bytes > LARGE && bytes > hf_cpu_cache() / 2 && (uintptr_t)hf_at(b, 0, r.x0, r.y0) % sizeof(vf) == 0;
 }
 
+// The colour of n quads from lane x of row y on, by way of lines.
+struct down_lines {
+    float *lane[4][4];  // [row and even or odd][channel]
+};
+
+HF_INLINE struct down_lines down_read(const struct hf_frame *f, int x, int y, int n)
+{
+    struct down_lines l;
+    for (int i = 0; i < 16; i++)
+        l.lane[i >> 2][i & 3] = hf_line(f, i);
+    hf_read_colour(f, x, 2 * y, n, l.lane[0], l.lane[1], f->seen);
+    hf_read_colour(f, x, hf_min(2 * y + 1, f->s->height - 1), n, l.lane[2], l.lane[3], f->seen);
+    return l;
+}
+
+// The quads of a channel from lane x of these on; returns their means, those too large are counted as clamped.
+HF_INLINE vf down_quads(const struct hf_frame *f, const struct down_lines *l, int c, int x, int n, float largest,
+                        vf quad[4])
+{
+    for (int i = 0; i < 4; i++)
+        quad[i] = vf_load(l->lane[i][c] + x);
+    const vf sum = vf_mul(vf_set1(0.25f), down_sum(quad));
+    if (vm_any(vm_not(vf_le(vf_abs(sum), vf_set1(largest)))))
+        f->counts->clamped += down_count(sum, n - x, largest);
+    return sum;
+}
+
+// The two rows of words of row y of quads.
+HF_INLINE void down_words(const struct hf_image *m, int x, int y, const uint8_t *p[2])
+{
+    for (int row = 0; row < 2; row++)
+        p[row] = plane_at(m, 0, 4, x, hf_min(2 * y + row, m->height - 1));
+}
+
 #endif

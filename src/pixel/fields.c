@@ -137,7 +137,7 @@ float hf_upsample_cubic(const struct hf_buf *b, int c, struct hf_phase p)
     return cubic(v[0], v[1], v[2], v[3]);
 }
 
-static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, hf_blend_fields *blend)
+static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, hf_blend_far *far, hf_blend_near *near)
 {
     const int n = r.x1 - r.x0, ny = y & 1 ? y / 2 + 1 : y / 2 - 1;
     float *lane[2][4], *coc[4];
@@ -152,7 +152,11 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, hf_
     for (int odd = 0; odd < 2; odd++) {
         for (int i = 0; i < n; i++) {
             const int x = r.x0 + i;
-            blend(f, (struct hf_phase){x, y / 2, odd ? x + 1 : x - 1, ny}, coc[2 + odd][i], lane[odd], i);
+            const struct hf_phase p = {x, y / 2, odd ? x + 1 : x - 1, ny};
+            if (f->far)
+                far(f, p, coc[2 + odd][i], lane[odd], i);
+            if (f->near)
+                near(f, p, lane[odd], i);
         }
         hf_store_rgb(f, lane[odd], n);
     }
@@ -161,8 +165,8 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, hf_
     hf_store_colour(f, r.x0, y, n, (const float *const *)lane[0], (const float *const *)lane[1]);
 }
 
-void hf_composite_with(const struct hf_frame *f, struct hf_rect r, hf_blend_fields *blend)
+void hf_composite_with(const struct hf_frame *f, struct hf_rect r, hf_blend_far *far, hf_blend_near *near)
 {
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
-        composite_row(f, y, r, blend);
+        composite_row(f, y, r, far, near);
 }

@@ -174,9 +174,10 @@ hf_upsampling hf_upsample_cubic;
 #define CUBIC_OTHER (27 / 384.0f)
 #define CUBIC_BEHIND (1 / 384.0f)
 
-// Put the fields that there are over lane i of the colour of the pixel p; coc: its far CoC.
-typedef void hf_blend_fields(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i);
-// Composite in C.
-void hf_composite_with(const struct hf_frame *f, struct hf_rect r, hf_blend_fields *blend);
+// Put a field over lane i of the colour of the pixel p; coc: its far CoC.
+typedef void hf_blend_far(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i);
+typedef void hf_blend_near(const struct hf_frame *f, struct hf_phase p, float *const colour[4], int i);
+// Composite in C: the fields that there are, the far one first.
+void hf_composite_with(const struct hf_frame *f, struct hf_rect r, hf_blend_far *far, hf_blend_near *near);
 
 #endif

@@ -97,15 +97,7 @@ static void blend_near(const struct hf_frame *f, struct hf_phase p, float *const
         colour[c][i] = hf_lerp(hf_limited(colour[c][i], HF_BLENDED), scale * up(&f->buf[HF_BUF_NEAR_FILL], c, p), t);
 }
 
-static void blend(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i)
-{
-    if (f->far)
-        blend_far(f, p, coc, colour, i);
-    if (f->near)
-        blend_near(f, p, colour, i);
-}
-
 void hf_chapter_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
-    hf_composite_with(f, r, blend);
+    hf_composite_with(f, r, blend_far, blend_near);
 }

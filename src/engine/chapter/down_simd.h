@@ -64,12 +64,8 @@ HF_INLINE vf down_mean(const vf w[4], const vf c[4], const int alpha)
 HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample how, const enum hf_division division,
                               const int channels, const int near, const int far, int x0, int x1, int y)
 {
-    const int n = x1 - x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
-    float *lane[4][4];  // [row and even or odd][channel]
-    for (int i = 0; i < 16; i++)
-        lane[i >> 2][i & 3] = hf_line(f, i);
-    hf_read_colour(f, x0, 2 * y, n, lane[0], lane[1], f->seen);
-    hf_read_colour(f, x0, y1, n, lane[2], lane[3], f->seen);
+    const int n = x1 - x0;
+    const struct down_lines l = down_read(f, x0, y, n);
     const struct down_row d = down_row_at(f, channels, x0, y);
     for (int x = 0; x < n; x += VF_N) {
         const vf g[4] = {vf_load(d.far[0] + x), vf_load(d.far[1] + x), vf_load(d.far[2] + x), vf_load(d.far[3] + x)};
@@ -81,11 +77,8 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const enum hf_downsample
             down_weights(division, g, w);
         }
         for (int c = 0; c < channels; c++) {
-            const vf quad[4] = {vf_load(lane[0][c] + x), vf_load(lane[1][c] + x), vf_load(lane[2][c] + x),
-                                vf_load(lane[3][c] + x)};
-            const vf sum = vf_mul(vf_set1(0.25f), down_sum(quad));
-            if (vm_any(vm_not(vf_le(vf_abs(sum), vf_set1(HF_LARGEST)))))
-                f->counts->clamped += down_count(sum, n - x, HF_LARGEST);
+            vf quad[4];
+            const vf sum = down_quads(f, &l, c, x, n, HF_LARGEST, quad);
             if (near)
                 vf_store(d.colour[c] + x, down_limited(how == HF_DOWNSAMPLE_POINT ? quad[0] : sum, HF_LARGEST));
             // Limited before the CoC makes it small, by which the gather divides again.
@@ -141,7 +134,8 @@ HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int f
 {
     const int last = f->s->half_width - VF_N, inner_row = stream && y > 0 && y < f->s->half_height - 1;
     const struct hf_image *m = f->src;
-    const uint8_t *p[2] = {plane_at(m, 0, 4, x0, 2 * y), plane_at(m, 0, 4, x0, hf_min(2 * y + 1, m->height - 1))};
+    const uint8_t *p[2];
+    down_words(m, x0, y, p);
     const struct down_row d = down_row_at(f, 3, x0, y);
     vf largest = vf_zero();
     for (int x = 0; x < x1 - x0; x += VF_N) {

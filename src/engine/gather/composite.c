@@ -30,15 +30,7 @@ static void blend_near(const struct hf_frame *f, struct hf_phase p, float *const
         colour[c][i] = (1 - t) * colour[c][i] + scale * up(&f->buf[HF_BUF_NEAR], c, p);
 }
 
-static void blend(const struct hf_frame *f, struct hf_phase p, float coc, float *const colour[4], int i)
-{
-    if (f->far)
-        blend_far(f, p, coc, colour, i);
-    if (f->near)
-        blend_near(f, p, colour, i);
-}
-
 void hf_gather_composite_c(const struct hf_frame *f, struct hf_rect r)
 {
-    hf_composite_with(f, r, blend);
+    hf_composite_with(f, r, blend_far, blend_near);
 }

@@ -79,12 +79,8 @@ HF_INLINE void down_put_coc(enum hf_storage storage, const struct down_row *d, c
 HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, const int near, const int far, int x0,
                               int x1, int y)
 {
-    const int n = x1 - x0, y1 = hf_min(2 * y + 1, f->s->height - 1);
-    float *lane[4][4];  // [row and even or odd][channel]
-    for (int i = 0; i < 16; i++)
-        lane[i >> 2][i & 3] = hf_line(f, i);
-    hf_read_colour(f, x0, 2 * y, n, lane[0], lane[1], f->seen);
-    hf_read_colour(f, x0, y1, n, lane[2], lane[3], f->seen);
+    const int n = x1 - x0;
+    const struct down_lines l = down_read(f, x0, y, n);
     const struct down_row d = down_row_at(f, channels, x0, y);
     for (int x = 0; x < n; x += VF_N) {
         struct quad q[2];
@@ -93,11 +89,8 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, cons
         if (far)
             q[1] = down_quad_at(&d, 0, 1, x);
         for (int c = 0; c < channels; c++) {
-            const vf quad[4] = {vf_load(lane[0][c] + x), vf_load(lane[1][c] + x), vf_load(lane[2][c] + x),
-                                vf_load(lane[3][c] + x)};
-            const vf sum = vf_mul(vf_set1(0.25f), down_sum(quad)), mean = down_limited(sum, HF_AREA_LARGEST);
-            if (vm_any(vm_not(vf_le(vf_abs(sum), vf_set1(HF_AREA_LARGEST)))))
-                f->counts->clamped += down_count(sum, n - x, HF_AREA_LARGEST);
+            vf quad[4];
+            const vf mean = down_limited(down_quads(f, &l, c, x, n, HF_AREA_LARGEST, quad), HF_AREA_LARGEST);
             if (near) {
                 vf_store(d.colour[c] + x, mean);
                 vf_store(d.part[0][c] + x, quad_limited(&q[0], down_part(q[0].part, quad)));
@@ -147,7 +140,8 @@ HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int f
                            int y, int stream)
 {
     const struct hf_image *m = f->src;
-    const uint8_t *p[2] = {plane_at(m, 0, 4, x0, 2 * y), plane_at(m, 0, 4, x0, hf_min(2 * y + 1, m->height - 1))};
+    const uint8_t *p[2];
+    down_words(m, x0, y, p);
     const struct down_row d = down_row_at(f, 3, x0, y);
     vf largest = vf_zero();
     for (int x = 0; x < x1 - x0; x += VF_N) {
