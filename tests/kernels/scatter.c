@@ -370,37 +370,27 @@ static int behind_rows_call(struct world *w, const struct kernels *k, enum arena
     const struct hf_behind_kernels *s = &k->pixel.behind;
     const float *const in[3] = {line(w, a, 0), line(w, a, 1), line(w, a, 2)};
     float *const out[2] = {line(w, a, LINES_IN), line(w, a, LINES_IN + 1)};
-    switch (which) {
-    case SCATTER_NEAR:
+    if (which == SCATTER_NEAR)
         s->near_row(in[0], w->n, out[0]);
-        return 1;
-    case SCATTER_MOST:
+    else if (which == SCATTER_MOST)
         s->most_row(in[0], in[1], in[2], w->n, out[0]);
-        return 1;
-    case SCATTER_SEEN_WEIGHTS:
+    else if (which == SCATTER_SEEN_WEIGHTS)
         w->result[a].returned = k->scatter.seen_weights(&now.scatter, in[0], in[1], now.from, w->n, out);
-        return 1;
-    case SCATTER_SEEN:
+    else if (which == SCATTER_SEEN)
         s->seen_row(in[0], in[1], now.scale, w->n, out[0]);
-        return 1;
-    case SCATTER_THIRD:
+    else if (which == SCATTER_THIRD)
         s->third_row(in[0], in[1], in[2], w->n, out[0]);
-        return 1;
-    case SCATTER_PART:
+    else if (which == SCATTER_PART)
         s->part_row(in[0], 0.25f, 4, w->n, out[0]);
-        return 1;
-    case SCATTER_ADD_PART:
+    else if (which == SCATTER_ADD_PART)
         s->add_part(in[0], in[1], w->n, out[0]);
-        return 1;
-    case SCATTER_UP:
+    else if (which == SCATTER_UP)
         s->up_row(in[0], in[1], w->n, out[0]);
-        return 1;
-    case SCATTER_BEHIND:
+    else if (which == SCATTER_BEHIND)
         behind_call(w, k, a);
-        return 1;
-    default:
+    else
         return 0;
-    }
+    return 1;
 }
 
 // ---- sums ----

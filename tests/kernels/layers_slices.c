@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of layers that weigh and draw slices, and the one that compares patterns.
+#include "layers.h"
+
+void weigh_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    const float before = rng_float(r, -20, 10), own = before + rng_float(r, 0.5f, 8),
+                after = own + rng_float(r, 0.5f, 8);
+    now.rows = 1 << rng_int(r, 0, 3);
+    now.whole = rng_one_in(r, 3);
+    now.slice = (struct hf_slice){.radius = own, .before = before, .after = after, .scale = rng_float(r, 0.01f, 1)};
+    now.slice.square = own * own;
+    now.slice.before_square = before * before;
+    now.slice.before_scale = 1 / (own * own - before * before);
+    now.slice.after_scale = 1 / (after * after - own * own);
+    for (int y = 0; y < now.rows; y++)
+        for (int c = 0; c < 7; c++)  // share last, a part of the weight
+            if (c == 5)
+                fill_surfaces(w, 8 * c + y, 0, w->n);
+            else
+                fill(w, 8 * c + y, 0, w->n, c < 4 ? COLOUR : WEIGHT);
+    for (int c = 0; c < 5; c++)
+        fill(w, IN + c, 0, w->n, COLOUR);
+    put_set(w, IN, 5, w->n);
+    const size_t any = (size_t)(w->n + 15) / 16;
+    slot_use(w, SLOT_WORK, any, 0);
+    world_region(w, REGION_BYTES, SLOT_WORK, slot_start(w, ARENA_MADE, SLOT_WORK), any, 0, 1, 0);
+}
+
+void weigh_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    const float *in[6];
+    float *out[6];
+    for (int c = 0; c < 6; c++)
+        in[c] = line(w, a, 8 * c);
+    if (now.whole)
+        in[4] = NULL;
+    set_of(w, a, IN, out);
+    k->layers.weigh(&now.slice, in, now.with ? line(w, a, 48) : NULL, stride(w), now.rows, now.channels, w->n, now.add,
+                    out, slot_start(w, a, SLOT_WORK));
+}
+
+// Rows of any lengths that decrease from the middle outwards.
+void disc_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    now.slice = (struct hf_slice){.rows = rng_int(r, 1, DISC_ROWS), .row = now.disc};
+    int n = rng_int(r, -1, 2);
+    for (int d = now.slice.rows - 1; d >= 0; d--) {
+        now.disc[d] = (struct hf_disc_row){n, rng_float(r, 0, 1)};
+        n = hf_min(n + rng_int(r, 0, 3), MOST);
+    }
+    now.from = rng_int(r, -DISC_ROWS, 0);
+    now.to = rng_int(r, now.from, DISC_ROWS + 1);
+    for (int i = 0; i < 2; i++)
+        fill(w, i, -MOST - 2, w->n + MOST + 2, COLOUR);
+    // Few sources; sums begin with 0, so none is -0.
+    now.slice.sparse = rng_one_in(r, 2);
+    for (int i = 0; now.slice.sparse && i < 2; i++)
+        for (int x = -MOST - 2; x < w->n + MOST + 2; x++)
+            line(w, ARENA_MADE, i)[x] = rng_one_in(r, 40) ? line(w, ARENA_MADE, i)[x] : 0;
+    for (int i = 0; i < 2 * DISC_ROWS + 2; i++) {
+        fill(w, IN + i, 0, w->n, COLOUR);
+        for (int x = 0; now.slice.sparse && x < w->n; x++)
+            line(w, ARENA_MADE, IN + i)[x] += 0.0f;
+        put(w, IN + i, w->n, 32);
+    }
+    now.roundings = 4 * MOST + 8;
+}
+
+void runs_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    fill(w, 0, -ROOM, w->n + ROOM, COLOUR);
+    for (int k = 1; k < 6; k++)
+        for (int x = -ROOM; x + (1 << k) <= w->n + ROOM; x++)
+            line(w, ARENA_MADE, k)[x] = line(w, ARENA_MADE, k - 1)[x] + line(w, ARENA_MADE, k - 1)[x + (1 << (k - 1))];
+    now.taps = rng_int(r, 1, 3);
+    for (int i = 0; i < now.taps; i++) {
+        const int start = rng_int(r, -MOST, 20);
+        now.run[i] = (struct hf_shape_run){start, rng_int(r, 0, MOST - hf_max(start, 0)), rng_float(r, 0, 1),
+                                           rng_float(r, 0, 1), rng_one_in(r, 2) ? 1 : rng_float(r, 0, 1)};
+    }
+    for (int x = 0; x < w->n + 32; x++)  // 0 where a node does not reach
+        line(w, ARENA_MADE, 6)[x] = x >= w->n || rng_one_in(r, 4) ? 0 : rng_float(r, 0, 1);
+    now.roundings = 3 * (6 + 4) + 4;
+}
+
+// Samples of up to two surfaces, and taps on either side of a place.
+void alike_make(struct world *w)
+{
+    fill_set(w, 0, -16, w->n + 16);
+    put(w, IN, w->n, 32);
+    put(w, IN + 1, w->n, 32);
+    now.taps = rng_int(&w->rng, 0, MOST);
+    now.place = (struct hf_pattern_place){rng_float(&w->rng, -30, 30), rng_float(&w->rng, 0.05f, 4)};
+    for (int i = 0; i < now.taps; i++) {
+        now.around[i] = (struct hf_pattern_tap){.at = rng_int(&w->rng, -16, 16), .weight = sample(w, WEIGHT)};
+        for (int c = 0; c < 4; c++)
+            now.around[i].colour[c] = sample(w, COLOUR);
+    }
+}
+
+void alike_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    float *in[6];
+    set_of(w, a, 0, in);
+    k->layers.alike(&now.place, now.around, now.taps, (const float *const *)in, now.channels, w->n, line(w, a, IN),
+                    line(w, a, IN + 1));
+}
