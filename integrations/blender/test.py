@@ -17,7 +17,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import hyperfocal_dof as addon  # noqa: E402
-from hyperfocal_dof import lens, render  # noqa: E402
+from hyperfocal_dof import exr, lens, render  # noqa: E402
 
 WIDTH, HEIGHT = 320, 180
 passed = failed = 0
@@ -262,7 +262,7 @@ def try_stereo():
     check(f"without a word: {scene.camera.data.hyperfocal.error}", not scene.camera.data.hyperfocal.error)
     written = []
     for side in "LR":
-        planes = render.read(os.path.join(folder, f"both_{side}.exr"), lambda name: name in "RGB")
+        planes = exr.read(os.path.join(folder, f"both_{side}.exr"), lambda name: name in "RGB")
         sharp = render.picture(os.path.join(folder, f"both_{side}.sharp.exr"))
         blurred = render.defocus(sharp, lens.parameters(scene, scene.camera))[..., :3]
         written.append(np.dstack([planes[c] for c in "RGB"]))
@@ -302,7 +302,7 @@ def state(scene):
 
 def try_interruptions():
     """A render that ends at ten places: by an error in what the add-on calls, before, within and after it."""
-    places = [(render, "picture"), (render, "defocus"), (render, "read"), (addon, "save_sharp"), (addon, "show"),
+    places = [(render, "picture"), (render, "defocus"), (exr, "read"), (addon, "save_sharp"), (addon, "show"),
               (addon, "refocus"), (lens, "parameters"), (addon, "sharp_path"), (shutil, "copyfile"), (os, "replace")]
     for owner, name in places:
         scene = scene_with_camera(lamp=False)

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python/tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "blender/hyperfocal_dof"))
 import exr  # noqa: E402
 import hyperfocal  # noqa: E402
 

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import os
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
+
+# The add-on's reader and writer of EXR files.
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender/hyperfocal_dof"))
 
 
 @pytest.fixture
