@@ -307,12 +307,12 @@ struct hf_params {
     struct hf_lens_params lens;
     // Largest CoC radius, full-resolution pixels: 0 (the input, bit for bit) to 2048. HF_DERIVE (default): with the range
     // model, the chapter's 12 pixels at 1080 lines, in proportion to the display height (always 12 with chapter.faithful). With
-    // the lens model and HF_DEPTH_COC: 2048 in hexagon, scatter and layers; 256 in gather and chapter, whose kernels are then as large as
-    // the largest near and far radius in the picture: there a sample that is nearer or farther than all others changes pixels
-    // that it does not reach, and a part of a picture must show the same two radii to have the whole's bits. In random small
-    // pictures one such sample changes half of the gather's samples, by up to 32 codes of 8 bits, and three quarters of the
-    // chapter's, which has one kernel for a field by its design, by up to 170. Where max_radius is given, no pixel depends on
-    // what does not reach it.
+    // the lens model and HF_DEPTH_COC: 2048 in hexagon, scatter and layers; 256 in gather and chapter. By its
+    // design the chapter has one kernel for each field, which then is as large as the largest near or far radius in the
+    // picture: there a sample that is nearer or farther than all others changes pixels that it does not reach, in random
+    // small pictures three quarters of all samples by up to 170 codes of 8 bits, and a part of a picture must show the same
+    // two radii to have the whole's bits. Where max_radius is given, and in the other engines, no pixel depends on what does
+    // not reach it.
     float max_radius;
     struct hf_aperture_params aperture;
     struct hf_highlight_params highlight;

@@ -11,7 +11,7 @@
 #define HF_LADDER_STEPS \
     {"--engine gaussian --resolution quarter --iterations 4", 0.058137f, 0.078830f, 1.945f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_GAUSSIAN, .hexagon.resolution = 2, .scatter.resolution = 2, .gaussian.resolution = 2, .gaussian.iterations = 4}}, \
-    {"--engine gather", 0.034526f, 0.072862f, 28.84f, \
+    {"--engine gather", 0.033964f, 0.069412f, 28.84f, \
      {HF_PARAMS_DEFAULTS}}, \
     {"--engine layers", 0.023636f, 0.032407f, 51.34f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS}}, \

@@ -58,10 +58,14 @@ void hf_fields_wait(struct hf_fields *g, struct hf_setup *s)
     g->max_x = g->max_y = g->blur_x = g->blur_y = 0;
 }
 
-void hf_fields_found(const struct hf_fields *g, struct hf_setup *s, const struct hf_counts *found, float radius[2])
+void hf_fields_found(const struct hf_setup *s, const struct hf_counts *found, float radius[2])
 {
     radius[0] = __builtin_fmaxf(s->max_radius * found->near_max, 1);
     radius[1] = __builtin_fmaxf(s->max_radius * found->far_max, 1);
+}
+
+void hf_fields_scale(const struct hf_fields *g, struct hf_setup *s, const float radius[2])
+{
     s->near_i *= s->max_radius / radius[0];
     s->far_i *= s->max_radius / radius[1];
     s->smoothstep = g->smoothstep;

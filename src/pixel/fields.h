@@ -123,9 +123,10 @@ static inline int hf_fields_are_measured(const struct hf_settings *r)
 // Until the radii are known the CoC is the radius over the largest there may be, which a byte cannot hold, and nothing has
 // a reach.
 void hf_fields_wait(struct hf_fields *g, struct hf_setup *s);
-// Each field's CoC is relative to the largest radius that there is of its kind, and so are its kernels: that is in radius,
-// near and far, at least a pixel.
-void hf_fields_found(const struct hf_fields *g, struct hf_setup *s, const struct hf_counts *found, float radius[2]);
+// The largest radius of each field, near and far, at least a pixel.
+void hf_fields_found(const struct hf_setup *s, const struct hf_counts *found, float radius[2]);
+// From now on each field's CoC is relative to one of these radii.
+void hf_fields_scale(const struct hf_fields *g, struct hf_setup *s, const float radius[2]);
 
 // One over what 2 m + 1 values weigh, the outermost of them by edge.
 static inline float hf_blur_scale(int m, float edge)

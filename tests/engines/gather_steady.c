@@ -229,10 +229,12 @@ static struct hf_report report_of(struct hf_context *c)
 // upsampling reads 1 or with the cubic 2 around, and from there both engines read an aperture's radius, rounded up. The gather
 // reads 1 more for lights, or 3 of the near field's CoC in place of that; the chapter reads twice the radius for it, and 1 more
 // for its fill and 1 for taps that lie between. A half-resolution pixel has 2 x 2, and a sample that is not finite would take 1.
+// With several kernels the gather's largest has up to twice the radius.
 static int reach_of(const struct shot *s, const struct hf_report *r)
 {
     const float most = s->p.model == HF_MODEL_LENS ? fmaxf(r->near_radius, r->far_radius) : s->p.max_radius;
-    const int taps = (int)ceilf(fmaxf(most, 2) / 2);
+    const int many = s->p.engine == HF_ENGINE_GATHER && (s->p.model == HF_MODEL_LENS || s->p.gather.per_pixel_kernel);
+    const int taps = (int)ceilf(fmaxf(many ? 2 * most : most, 2) / 2);
     return 2 * (2 + (s->p.engine == HF_ENGINE_GATHER ? (taps + 1 > 3 ? taps + 1 : 3) : 2 * taps + 2)) + 1;
 }
 
@@ -265,8 +267,8 @@ static void beyond(const struct picture *a, const struct picture *b, int sx, int
     *part = fmax(*part, 100.0 * changed / (3 * PIXELS));
 }
 
-// One sample of depth, or of colour, becomes another one. Where that leaves both largest radii, nothing beyond its reach may
-// change. Else a lens's kernels are others throughout the frame, by as much as is printed.
+// One sample of depth, or of colour, becomes another one. Nothing beyond its reach may change; except that the chapter has one
+// kernel for each field, of the frame's largest radius, so that a sample with that radius changes others by as much as is printed.
 static void one_sample(struct hf_context *c, enum hf_engine engine)
 {
     struct rng rng = rng_seed(seed + 1);
@@ -289,7 +291,7 @@ static void one_sample(struct hf_context *c, enum hf_engine engine)
         const int same = ra.near_radius == rb.near_radius && ra.far_radius == rb.far_radius;
         const int before = reach_of(&s, &ra), now = reach_of(&s, &rb), reach = before > now ? before : now;
         const int far = farthest(&a, &b, sx, sy);
-        if (same || s.p.model != HF_MODEL_LENS) {
+        if (same || s.p.model != HF_MODEL_LENS || engine == HF_ENGINE_GATHER) {
             CHECK_MSG(far <= reach, "%s: the %s sample at (%d, %d) changes pixels %d away, its reach is %d", s.name,
                       i % 2 ? "depth" : "colour", sx, sy, far, reach);
             tried += far >= 0;
@@ -308,7 +310,7 @@ static void one_sample(struct hf_context *c, enum hf_engine engine)
            hf_engine_name(engine), tried, part, most);
 }
 
-// A crop from even x and y, that has both largest radii, has the whole's bits farther from its cut than the reach.
+// A crop from even x and y, for the chapter with a lens one that has both largest radii, has the whole's bits farther from its cut than the reach.
 static void crops(struct hf_context *c, enum hf_engine engine)
 {
     struct rng rng = rng_seed(seed + 2);
@@ -323,10 +325,11 @@ static void crops(struct hf_context *c, enum hf_engine engine)
         const struct hf_report ra = report_of(c);
         struct picture b = render_scene(c, &t.scene, &s.p);
         const struct hf_report rb = report_of(c);
-        const int same = ra.near_radius == rb.near_radius && ra.far_radius == rb.far_radius;
+        const int same = engine == HF_ENGINE_GATHER || s.p.model != HF_MODEL_LENS ||
+                         (ra.near_radius == rb.near_radius && ra.far_radius == rb.far_radius);
         const int reach = reach_of(&s, &ra);
         int other = 0;
-        for (int k = 0; k < w * h && (same || s.p.model != HF_MODEL_LENS); k++) {
+        for (int k = 0; k < w * h && same; k++) {
             const int x = x0 + k % w, y = y0 + k / w;
             // The frame's own edge is the crop's, too.
             if ((x0 > 0 && x - x0 < reach) || (y0 > 0 && y - y0 < reach) || (x1 < WIDTH && x1 - 1 - x < reach) ||

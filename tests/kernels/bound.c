@@ -185,7 +185,7 @@ static double largest_near(const struct world *w, int b, int c, int x, int y)
 // rows 2 ry, the scale 1; adding a level 3. Then quotients and blends: 16.
 static double area_roundings(const struct world *w)
 {
-    const struct hf_taps *t = world_taps(w);
+    const struct hf_taps *t = w->gather.many ? &w->gather.levels[2].level[0].kernel.taps : world_taps(w);
     return (w->gather.fields.karis ? 12 : 8) + 4 * t->rx + 2 * t->ry + 3 * HF_MAX_LEVELS + 17;
 }
 
@@ -201,10 +201,10 @@ static double area_near_bound(const struct world *w, int c, int x, int y)
            part = hf_area_part(&w->gather.levels[0].level[0].kernel, -x, s->half_width - x, -y, s->half_height - y);
     if (c >= 0)
         most = fmax(largest_near(w, HF_BUF_COLOR4, c, x, y), largest_near(w, HF_BUF_COLORNEAR4, c, x, y));
-    if (!hf_gather_is_simple(s, HF_NEAR))
+    if (!hf_gather_is_simple(s))
         part = fmin(part, t->weight[0] * t->scale) / (w->gather.fields.karis ? 100 : 1);
     double behind = 0;
-    if (!hf_gather_is_simple(s, HF_NEAR) && c >= 0) {
+    if (!hf_gather_is_simple(s) && c >= 0) {
         const double weight = reference_at(w, HF_BUF_BEHIND_WEIGHT, !w->gather.fields.karis, x, y);
         behind = weight > 0 ? fabs((double)reference_at(w, HF_BUF_BEHIND, c, x, y)) / weight : 0;
     }
@@ -217,7 +217,7 @@ static double area_far_bound(const struct world *w, int c, int x, int y)
 {
     const struct hf_levels *l = &w->gather.levels[1];
     const struct hf_taps *t = world_taps(w);
-    const int simple = hf_gather_is_simple(&w->setup, HF_FAR);
+    const int simple = hf_gather_is_simple(&w->setup);
     double worst = 0, sum = 0, weight = 0;
     for (int i = l->count - 1; i >= 0; i--) {
         const struct hf_area_kernel *kernel = &l->level[i].kernel;

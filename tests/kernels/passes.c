@@ -102,7 +102,7 @@ static void make_inputs(struct world *w, int pass)
         make_buf(w, b, r);
         // Karis weights come from the colour, for either field; what near pixels occlude comes partly from far samples.
         if (wanted(w, b) || (b == HF_BUF_COLOR4 && world_fields(w)->karis) ||
-            (b == HF_BUF_COLORFAR4 && !is_chapter(w) && hf_gather_leaves(&w->setup)))
+            (b == HF_BUF_COLORFAR4 && !is_chapter(w) && w->gather.leaves))
             fill_buf(w, b, r);
     }
     const int composite = pass == w->engine->pass_count - 1;

@@ -11,7 +11,7 @@
 // largest near and far CoC.
 enum { COLOUR, NEAR = 4, FAR = 8, NEAR_PART = 12, FAR_PART, NEAR_MOST, FAR_MOST, PLANES };
 
-enum { MAX_LEVELS = 34 };
+enum { MAX_LEVELS = 64 };
 struct levels {
     int count;
     double coc[MAX_LEVELS];
@@ -23,7 +23,7 @@ struct area {
     const struct reference *r;
     int width, height;
     double *plane[PLANES];
-    struct levels levels[2];  // near, far
+    struct levels levels[3];  // near, far, and of what near pixels hide
 };
 
 // The area of the unit disc in x0..x1, y0..y1, integrated in slices.
@@ -48,9 +48,9 @@ static double narrowed(double radius)
     return sqrt(square > small ? square : small);
 }
 
-static void add_level(struct area *a, int far, double radius, double full)
+static void add_level(struct area *a, int set, double radius, double full)
 {
-    struct levels *l = &a->levels[far];
+    struct levels *l = &a->levels[set];
     const double rx = narrowed(radius / a->r->params.view.pixel_aspect), ry = narrowed(radius);
     double sum = 0;
     const int i = l->count++;
@@ -70,13 +70,19 @@ static void add_level(struct area *a, int far, double radius, double full)
 
 static void make_levels(struct area *a)
 {
-    const double full = a->r->reach_y * a->r->kernel_scale;
-    for (int far = 0; far < 2; far++) {
-        double radius = fmax(full, 1);
-        add_level(a, far, radius, full);
-        while (a->r->params.gather.per_pixel_kernel && radius > 1)
-            add_level(a, far, radius = far ? fmax(radius * 0.8, 1) : exp2(ceil(log2(radius)) - 1), full);
+    const double full = a->r->reach_y * a->r->kernel_scale, most = fmax(full, 1);
+    if (!a->r->params.gather.per_pixel_kernel) {
+        for (int set = 0; set < 3; set++)
+            add_level(a, set, most, full);
+        return;
     }
+    for (int k = (int)ceil(2 * log2(most)); k >= 0; k--)
+        add_level(a, 0, exp2(k / 2.0), full);
+    for (int k = (int)ceil(log2(most)); k >= 0; k--)
+        add_level(a, 2, exp2(k), full);
+    for (double radius = most; radius > 1; radius *= 0.88)
+        add_level(a, 1, radius, full);
+    add_level(a, 1, 1, full);
 }
 
 static double share(const struct levels *l, int i, double coc)
@@ -89,17 +95,14 @@ static double share(const struct levels *l, int i, double coc)
     return i + 1 < l->count && v > l->coc[i + 1] ? (v - l->coc[i + 1]) / (l->coc[i] - l->coc[i + 1]) : 0;
 }
 
-// What near pixels occlude is averaged over all levels up to theirs, weighted by the inverse of their squared area. A
-// CoC beyond the last level counts in it by how far it exceeds the level before, at most twice that.
-static double share_behind(const struct levels *l, int i, double coc)
+// What near pixels occlude is averaged over all levels up to theirs, weighted by the inverse of their squared area; of several
+// that is 1 at a radius of 32.
+static double share_behind(const struct levels *l, int i, double coc, double one)
 {
-    double sum = 0, before = 0;
+    double sum = 0;
     for (int k = 0; k <= i; k++)
         sum += share(l, k, coc);
-    const double again = i > 0 ? 1 - 2 * (1 - l->coc[i] / l->coc[i - 1]) : 0;
-    for (int k = 0; k < i; k++)
-        before += share(l, k, coc);
-    return sum * (1 - before * again) / (l->coc[i] * l->coc[i]);
+    return sum * (one * one) / (l->coc[i] * l->coc[i]);
 }
 
 // A disc with an area between two levels' is blended from both, so that inside the smaller one it is as bright as it
@@ -160,19 +163,17 @@ struct sums {
 
 enum kind { KIND_NEAR, KIND_BEHIND, KIND_FAR };
 
-// Samples blurred more than twice as much as a smaller level are left to the far levels there, as far as the level is
-// away from the one before. (Both fields have the same radii.)
+// Samples blurred more than twice as much as a level are left to the far levels there. (Both fields have the same radii.)
 static double left_of(const struct levels *l, int i, double coc)
 {
-    const double apart = i > 0 ? 2 * (1 - l->coc[i] / l->coc[i - 1]) : 0;
-    return i > 0 ? apart * (1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8)) : 0;
+    return 1 - 1 / pow(fmax(1, coc / (2 * l->coc[i])), 8);
 }
 
 // One level's mean around a pixel; for the near field over the part of the disc within the frame. Beyond the frame
 // there is nothing.
 static struct sums mean(const struct area *a, int x, int y, int i, enum kind kind)
 {
-    const struct levels *l = &a->levels[kind == KIND_FAR];
+    const struct levels *l = &a->levels[kind == KIND_FAR ? 1 : kind == KIND_BEHIND ? 2 : 0];
     struct sums s = {{0}, 0, 0};
     double inside = 0;
     for (int v = -l->ry[i]; v <= l->ry[i]; v++)
@@ -186,7 +187,8 @@ static struct sums mean(const struct area *a, int x, int y, int i, enum kind kin
                 w *= share(l, i, a->plane[NEAR_MOST][at]);
             if (kind == KIND_FAR)
                 w *= share_far(l, i, a->plane[FAR_MOST][at]);
-            const double left = kind == KIND_BEHIND ? left_of(l, i, a->plane[FAR_MOST][at]) : 0;
+            const double left =
+                kind == KIND_BEHIND && a->r->params.gather.per_pixel_kernel ? left_of(l, i, a->plane[FAR_MOST][at]) : 0;
             const double rest = 1 - a->plane[NEAR_PART][at] - left * a->plane[FAR_PART][at];
             s.left += w * left * a->plane[FAR_PART][at];
             if (kind == KIND_BEHIND && !(rest > 0))
@@ -272,19 +274,24 @@ static void add_far(const struct area *a, int x, int y, struct sums *back)
 
 static void near_pixel(const struct area *a, int x, int y, double *near[5])
 {
-    const struct levels *l = &a->levels[0];
+    const struct levels *l = &a->levels[0], *behind = &a->levels[2];
     const int i = y * a->width + x;
     const double hides = hidden(a, x, y),
                  m = smallest_part(a, 0, a->r->params.gather.per_pixel_kernel ? hides : hides * 8 / 7);
     struct sums own = {{0}, 0, 0}, back = {{0}, 0, 0};
     for (int k = 0; k < l->count; k++) {
-        const struct sums n = mean(a, x, y, k, KIND_NEAR), b = mean(a, x, y, k, KIND_BEHIND);
-        const double w = share_behind(l, k, hides);
-        for (int c = 0; c < a->r->channels; c++) {
+        const struct sums n = mean(a, x, y, k, KIND_NEAR);
+        for (int c = 0; c < a->r->channels; c++)
             own.colour[c] += n.colour[c];
-            back.colour[c] += w * b.colour[c];
-        }
         own.part += n.part;
+    }
+    for (int k = 0; k < behind->count; k++) {
+        const struct sums b = mean(a, x, y, k, KIND_BEHIND);
+        const double full = a->r->reach_y * a->r->kernel_scale,
+                     one = a->r->params.gather.per_pixel_kernel ? 32 / full : 1;
+        const double w = share_behind(behind, k, hides, one);
+        for (int c = 0; c < a->r->channels; c++)
+            back.colour[c] += w * b.colour[c];
         back.part += w * b.part;
         back.left += w * b.left;
     }
@@ -352,6 +359,6 @@ void ref_area(struct reference *r)
         free(near[i]);
     for (int i = 0; i < 4; i++)
         free(far[i]);
-    for (int i = 0; i < 2 * MAX_LEVELS; i++)
+    for (int i = 0; i < 3 * MAX_LEVELS; i++)
         free(a.levels[i / MAX_LEVELS].weight[i % MAX_LEVELS]);
 }

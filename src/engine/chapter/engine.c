@@ -203,7 +203,8 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
 {
     struct hf_chapter *c = own;
     float radius[2];
-    hf_fields_found(&c->fields, s, found, radius);
+    hf_fields_found(s, found, radius);
+    hf_fields_scale(&c->fields, s, radius);
     set_reach(&c->fields, s, radius[0] / 2);
     return build(c, s, &s->resolved->params, radius[0] / 2, radius[1] / 2, mem);
 }

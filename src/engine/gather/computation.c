@@ -149,14 +149,14 @@ static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part p
 // The same of what is not near, less what of far samples is left to the far levels; that is the last weight.
 static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
 {
-    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
+    const struct hf_levels *l = hf_gather_behind(f->s);
     const struct hf_rect area = grown(&l->level[i].kernel.taps, r);
     const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4], *level = &f->buf[HF_BUF_LEVEL_WEIGHT];
-    const int leaves = hf_gather_leaves(f->s);
+    const int leaves = hf_gather(f->s)->leaves;
     for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = area.x0; x < area.x1; x++) {
             const float w = karis(f, x, y);
-            const float counts = hf_gather(f->s)->lights ? *hf_at(&f->buf[HF_BUF_WEIGHT], 2, x, y) : 1;
+            const float counts = hf_level_limits(f->s, i) ? *hf_at(&f->buf[HF_BUF_WEIGHT], 2, x, y) : 1;
             const float left = leaves ? hf_level_left(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y)) : 0;
             const float far = leaves ? left * *hf_at(coc4, HF_AREA_FAR, x, y) : 0;
             const float rest = (1 - *hf_at(coc4, HF_AREA_NEAR, x, y)) - far;
@@ -198,8 +198,11 @@ static void clear(const struct hf_frame *f, struct hf_rect r, const struct sums 
         }
 }
 
+// What has no weight has no colour.
 static void add(const struct hf_frame *f, const struct sums *to, int x, int y, float share)
 {
+    if (!(*hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT_SUM], 1, x, y) > 0))
+        return;
     for (int c = 0; c < f->s->channels; c++)
         *hf_at(to->colour, c, x, y) += share * *hf_at(&f->buf[HF_BUF_LEVEL_SUM], c, x, y);
     for (int i = 0; i < 2; i++)
@@ -263,8 +266,8 @@ static const float *beyond(const struct hf_frame *f, const struct hf_area_kernel
 
 static void add_behind(const struct hf_frame *f, const struct sums *behind, struct hf_rect r, int i)
 {
-    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
-    const int leaves = hf_gather_leaves(f->s);
+    const struct hf_levels *l = hf_gather_behind(f->s);
+    const int leaves = hf_gather(f->s)->leaves;
     if (leaves)
         hf_convolve_c(f, r, &l->level[i].kernel.taps, &f->buf[HF_BUF_LEVEL_WEIGHT], 2, &f->buf[HF_BUF_LEVEL_WEIGHT_SUM],
                       2);
@@ -284,7 +287,7 @@ static void add_behind(const struct hf_frame *f, const struct sums *behind, stru
 
 static void near_levels(const struct hf_frame *f, struct hf_rect r)
 {
-    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
+    const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR), *b = hf_gather_behind(f->s);
     const struct sums near = {&f->buf[HF_BUF_NEAR], {&f->buf[HF_BUF_SUM], &f->buf[HF_BUF_COVER]}, {0, 0}};
     const struct sums behind = {
         &f->buf[HF_BUF_BEHIND], {&f->buf[HF_BUF_BEHIND_WEIGHT], &f->buf[HF_BUF_BEHIND_WEIGHT]}, {0, 1}};
@@ -303,11 +306,13 @@ static void near_levels(const struct hf_frame *f, struct hf_rect r)
             for (int x = r.x0; x < r.x1; x++)
                 add(f, &near, x, y, part[x - r.x0]);
         }
+    }
+    for (int i = 0; i < b->count && !hf_stopped(f->s->stop); i++) {
         behind_planes(f, r, i);
-        convolve_level(f, r, &l->level[i].kernel.taps);
+        convolve_level(f, r, &b->level[i].kernel.taps);
         add_behind(f, &behind, r, i);
     }
-    for (int y = r.y0; y < r.y1 && hf_gather_leaves(f->s) && !hf_stopped(f->s->stop); y++)
+    for (int y = r.y0; y < r.y1 && hf_gather(f->s)->leaves && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < r.x1; x++)
             add_far(f, &behind, x, y);
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
@@ -386,11 +391,14 @@ static void far_levels(const struct hf_frame *f, struct hf_rect r)
         &f->buf[HF_BUF_SPREAD], {&f->buf[HF_BUF_SPREAD_WEIGHT], &f->buf[HF_BUF_SPREAD_WEIGHT]}, {0, 1}};
     clear(f, r, &all);
     for (int i = l->count - 1; i >= 0; i--) {
-        level_planes(f, r, PART_FAR, i);
-        convolve_level(f, r, &l->level[i].kernel.taps);
+        if (i >= l->filled) {
+            level_planes(f, r, PART_FAR, i);
+            convolve_level(f, r, &l->level[i].kernel.taps);
+        }
         for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
             for (int x = r.x0; x < r.x1; x++) {
-                add(f, &all, x, y, 1);
+                if (i >= l->filled)
+                    add(f, &all, x, y, 1);
                 if (f->far)
                     take_far(f, &all, x, y, i);
             }
@@ -408,12 +416,12 @@ void hf_gather_computation_c(const struct hf_frame *f, struct hf_rect r)
 {
     if (hf_fields(f->s)->karis)
         weigh(f, r);
-    const int near_is_simple = hf_gather_is_simple(f->s, HF_NEAR), far_is_simple = hf_gather_is_simple(f->s, HF_FAR);
-    if (f->far && far_is_simple)
+    const int simple = hf_gather_is_simple(f->s);
+    if (f->far && simple)
         far_simple(f, r);
-    else if (f->far || (f->near && hf_gather_leaves(f->s)))
+    else if (f->far || (f->near && hf_gather(f->s)->leaves))
         far_levels(f, r);
-    if (f->near && near_is_simple)
+    if (f->near && simple)
         near_simple(f, r);
     else if (f->near)
         near_levels(f, r);

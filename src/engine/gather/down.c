@@ -64,7 +64,7 @@ static void down_row(const struct hf_frame *f, int y, struct hf_rect r)
         }
         if (f->far) {
             *hf_at(coc4, HF_AREA_FAR, r.x0 + x, y) = fq.mean;
-            if (!hf_gather_is_simple(s, HF_FAR))
+            if (!hf_gather_is_simple(s))
                 *hf_at(coc4, HF_AREA_FAR_MOST, r.x0 + x, y) = fq.most;
         }
     }

@@ -29,7 +29,7 @@ HF_INLINE struct down_row down_row_at(const struct hf_frame *f, const int channe
     hf_row(&f->buf[HF_BUF_COLORNEAR4], channels, x, y, d.part[0]);
     hf_row(&f->buf[HF_BUF_COLORFAR4], channels, x, y, d.part[1]);
     hf_row(&f->buf[HF_BUF_COC4], 4, x, y, d.coc4);
-    d.far_most = !hf_gather_is_simple(f->s, HF_FAR);
+    d.far_most = !hf_gather_is_simple(f->s);
     return d;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The gather: its passes and buffers, and what it makes of its parameters.
 #include <float.h>
+#include <math.h>
 
 #include "pass/cells.h"
 #include "pass/check.h"
@@ -30,10 +31,10 @@ static const struct hf_buf_def bufs[HF_GATHER_BUFS] = {
 static int channels(const struct hf_setup *s, int b)
 {
     const struct hf_gather *g = hf_gather(s);
-    const int levels = !(hf_gather_is_simple(s, HF_NEAR) && hf_gather_is_simple(s, HF_FAR));
+    const int levels = !hf_gather_is_simple(s);
     switch (b) {
     case HF_BUF_COC4:
-        return hf_gather_is_simple(s, HF_FAR) ? HF_AREA_FAR_MOST : HF_AREA_FAR_MOST + 1;
+        return levels ? HF_AREA_FAR_MOST + 1 : HF_AREA_FAR_MOST;
     case HF_BUF_SUM:
         return levels ? 2 : 0;
     case HF_BUF_WEIGHT:
@@ -58,14 +59,17 @@ static int channels(const struct hf_setup *s, int b)
 
 static const struct hf_taps *largest(const struct hf_setup *s, unsigned field)
 {
-    return &hf_gather_levels(s, field)->level[0].kernel.taps;
+    const struct hf_levels *l = hf_gather_levels(s, field);
+    return &l->level[l->filled].kernel.taps;
 }
 
-// The largest kernel of both fields.
+// The largest kernel of all.
 static struct hf_reach taps_reach(const struct hf_setup *s)
 {
     const struct hf_taps *near = largest(s, HF_NEAR), *far = largest(s, HF_FAR);
-    return (struct hf_reach){hf_max(near->rx, far->rx), hf_max(near->ry, far->ry)};
+    const struct hf_taps *behind = &hf_gather_behind(s)->level[0].kernel.taps;
+    return (struct hf_reach){hf_max(hf_max(near->rx, far->rx), behind->rx),
+                             hf_max(hf_max(near->ry, far->ry), behind->ry)};
 }
 
 struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo)
@@ -91,7 +95,7 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
 // Karis weights are made from the colour, whatever they weigh; and what near pixels hide depends on how far it is blurred.
 static unsigned reads(const struct hf_setup *s, unsigned needs)
 {
-    return (needs && hf_fields(s)->karis) || (needs & HF_NEAR && hf_gather_leaves(s)) ? HF_FIELDS : needs;
+    return (needs && hf_fields(s)->karis) || (needs & HF_NEAR && hf_gather(s)->leaves) ? HF_FIELDS : needs;
 }
 
 // What the kernels need: a strip's sums; terms, pairs and their sums of the convolution for strips of up to 80 columns; and
@@ -140,7 +144,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     struct hf_gather *g = own;
     (void)depth;
     s->storage = p->gather.storage;
-    g->lights = 0;
+    g->lights = g->leaves = 0;
     g->fields = (struct hf_fields){.near_coc = HF_AREA_NEAR_MOST,
                                    .edge_x = 1,
                                    .edge_y = 1,
@@ -154,9 +158,37 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
         hf_fields_wait(&g->fields, s);
 }
 
-// Levels' radii: of one, from the one before. Far highlights are to be discs with an edge; the near field's larger ones are
-// dear, and mostly lie over one another.
-static const float LEVEL_STEP[2] = {0.5f, 0.8f};
+// Levels' radii, half-resolution pixels, the largest first; these return how many. No sample changes those of others, nor does
+// what a frame shows besides: near ones are powers of two or of its root, and far ones are what the lens makes of infinity, 0.88
+// of that and so on, as backgrounds are often infinitely far and their highlights are to be discs with an edge. A frame has as
+// many as its largest radius needs.
+static int near_radii(float largest, int per_octave, float *radius)
+{
+    int n = 0, k = 0;
+    while (k < HF_MAX_LEVELS - 1 && exp2f((float)k / (float)per_octave) < largest)
+        k++;
+    for (; k >= 0; k--)
+        radius[n++] = exp2f((float)k / (float)per_octave);
+    return n;
+}
+
+// A far pixel sees levels beyond its own radius: these are there, too, so that it is the same in any frame. *filled: the first
+// that samples are in.
+static int far_radii(float most, float largest, float *radius, int *filled)
+{
+    const float step = 0.88f;
+    int n = 0;
+    while (step * most >= HF_FAR_WIDER * largest)
+        most *= step;
+    *filled = 0;
+    for (; n < HF_MAX_LEVELS - 1 && most > 1; most *= step) {
+        *filled = most >= largest ? n : *filled;
+        radius[n++] = most;
+    }
+    *filled = largest <= 1 ? n : *filled;
+    radius[n++] = 1;
+    return n;
+}
 
 // Of several levels, parts follow from the lens: a disc of radius r has the variance r^2 / 2, and a blend of the picture with
 // the smallest kernel must have it too. Near pixels are counted twice, in the field and in how far it hides the picture under
@@ -167,81 +199,93 @@ static struct hf_part_curve curve_of(int far)
     return far ? (struct hf_part_curve){.square = 1} : (struct hf_part_curve){.square = 0.5f, .sixth = 0.5f};
 }
 
-// The level after one of radius r. Near ones but the largest lie at 1, 2, 4 and so on, whatever the largest is: a sample that
-// is nearer than all others changes little for them. Far ones are each a step smaller than the one before, and the last is 1:
-// a far pixel sees levels by their order, and the samples at the largest radius, often all of the background, must be of that.
-static float next_radius(int far, float r)
+// One kernel for each radius. full: the radius whose CoC is 1.
+static int build_levels(struct hf_levels *l, int far, const float *radius, int count, float full,
+                        const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
-    float rung = 1;
-    if (far)
-        return __builtin_fmaxf(LEVEL_STEP[far] * r, 1);
-    while (rung / LEVEL_STEP[far] < r)
-        rung /= LEVEL_STEP[far];
-    return rung;
-}
-
-// radius: h. With levels from it down to 1. A radius that grows adds a level where there is one already: the second one of near
-// levels, the last one of far ones. Where levels are summed, that one counts by how far it is away from the one before, else
-// its samples would at once count twice.
-static int build_levels(struct hf_gather *g, int far, const struct hf_setup *s, const struct hf_params *p, float radius,
-                        const struct hf_mem *mem)
-{
-    struct hf_levels *l = &g->levels[far];
-    const float scale = s->strength >= 0.25f ? s->strength : 0.25f, largest = __builtin_fmaxf(radius * scale, 1);
-    const int many = s->measured || p->gather.per_pixel_kernel;
     // A pixel gathers what draws on it, so the kernel is the aperture by half a turn. In front of the focus that is by another.
     const float turn = far && p->aperture.blades % 2 ? 180 : 0,
                 rotation = p->aperture.blades ? p->aperture.rotation + turn : 0;
-    l->count = 0;
-    for (float r = largest, before = 0, next; l->count < HF_MAX_LEVELS; before = r, r = next) {
-        struct hf_level *level = &l->level[l->count++];
-        const struct hf_area_key key = {.radius = r,
+    l->count = count;
+    for (int i = 0; i < count; i++) {
+        struct hf_level *level = &l->level[i];
+        const struct hf_area_key key = {.radius = radius[i],
                                         .pixel_aspect = s->pixel_aspect,
                                         .blades = p->aperture.blades,
                                         .rotation = rotation,
                                         // Nothing lies beyond the frame: no pixel has another farther away.
                                         .most_x = hf_max(s->half_width - 1, 1),
                                         .most_y = hf_max(s->half_height - 1, 1)};
-        level->coc = r / (radius * scale);
-        level->inverse = 1 / level->coc;
-        level->again = before > 0 ? 1 - (1 - r / before) / (1 - LEVEL_STEP[far]) : 0;
-        level->leaves = before > 0 ? 1 - level->again : 0;
+        const float after = i + 1 < count ? radius[i + 1] / full : 0;
+        level->coc = radius[i] / full;
         level->area = level->coc * level->coc;
-        next = next_radius(far, r);
-        const float after = next / (radius * scale);
         // Radii that differ may have one CoC.
-        level->to_next = r > next ? __builtin_fminf(1 / (level->coc - after), FLT_MAX) : 0;
-        level->area_to_next = r > next ? __builtin_fminf(1 / (level->area - after * after), FLT_MAX) : 0;
+        level->to_next = __builtin_fminf(1 / (level->coc - after), FLT_MAX);
+        level->area_to_next = __builtin_fminf(1 / (level->area - after * after), FLT_MAX);
         l->gain = 1 / level->coc;
-        const int err = hf_area_kernel_build(&level->kernel, &key, mem, s->stop);
+        const int err = i < l->filled ? HF_OK : hf_area_kernel_build(&level->kernel, &key, mem, s->stop);
         if (err)
             return err;
-        if (!many || r <= 1)
-            break;
     }
+    return HF_OK;
+}
+
+// A field's kernels, of radii up to `largest`; most: the far radius that the others follow.
+static int build_field(struct hf_gather *g, int far, const struct hf_setup *s, const struct hf_params *p, float full,
+                       float largest, float most, const struct hf_mem *mem)
+{
+    struct hf_levels *l = &g->levels[far];
+    float radius[HF_MAX_LEVELS] = {largest};
+    l->filled = 0;
+    const int count = !g->many ? 1
+                      : far    ? far_radii(most, largest, radius, &l->filled)
+                               : near_radii(largest, 2, radius);
+    const int err = build_levels(l, far, radius, count, full, s, p, mem);
     l->curve = curve_of(far);
-    l->limits = hf_saturate(largest - 1);
-    if (!many) {
+    if (!g->many) {
         l->gain = hf_level_part(l, l->gain, 1);
         l->curve = (struct hf_part_curve){.linear = 1};
     }
     l->gain *= s->strength < 0.25f ? 4 * s->strength : 1;
-    l->hides = many ? l->gain : l->gain * (8 / 7.0f);
-    return HF_OK;
+    l->hides = g->many ? l->gain : l->gain * (8 / 7.0f);
+    return err;
 }
 
-static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_params *p, float near, float far,
-                 const struct hf_mem *mem)
+// Radii of each field, half-resolution pixels: whose CoC is 1, and the largest.
+struct radii {
+    float full[2], largest[2];
+};
+
+// The radius at which a sample that near pixels hide counts once. Where all count less, they fade out.
+#define COUNTS_ONE 32.0f
+
+static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_params *p, const struct radii *r,
+                 float most, const struct hf_mem *mem)
 {
-    const int err = build_levels(g, 0, s, p, near, mem);
-    for (int i = 0; i < g->levels[0].count; i++)
-        g->levels[0].level[i].half_far = far / near * 0.5f * g->levels[0].level[i].inverse;
-    return err ? err : build_levels(g, 1, s, p, far, mem);
+    struct hf_levels *behind = &g->levels[2];
+    float radius[HF_MAX_LEVELS] = {r->largest[0]};
+    const int count = g->many ? near_radii(r->largest[0], 1, radius) : 1;
+    int err = build_field(g, 0, s, p, r->full[0], r->largest[0], 0, mem);
+    if (!err)
+        err = build_field(g, 1, s, p, r->full[1], r->largest[1], most, mem);
+    if (!err)
+        err = build_levels(behind, 0, radius, count, r->full[0], s, p, mem);
+    for (int i = 0; i < behind->count; i++) {
+        struct hf_level *l = &behind->level[i];
+        l->counts = g->many ? COUNTS_ONE * COUNTS_ONE / (radius[i] * radius[i]) : 1 / l->area;
+        l->half_far = 0.5f * r->full[1] / (r->full[0] * l->coc);
+    }
+    return err;
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
 {
-    return s->measured ? HF_OK : build(own, s, p, s->max_radius / 2, s->max_radius / 2, mem);
+    struct hf_gather *g = own;
+    const float scale = s->strength >= 0.25f ? s->strength : 0.25f;
+    const float full = s->max_radius / 2 * scale, largest = __builtin_fmaxf(full, 1);
+    g->many = s->measured || p->gather.per_pixel_kernel;
+    g->leaves = !s->measured && g->many;
+    return s->measured ? HF_OK : build(g, s, p, &(struct radii){{full, full}, {largest, largest}}, largest, mem);
 }
 
 // hf_gather_lights_c compares each sample with the samples at this distance on its four sides, in half-resolution
@@ -252,22 +296,35 @@ static int lights_apart(int display_height)
     return hf_max(hf_min(display_height / 90, 32), 1);
 }
 
+// The radius of what is infinitely far, or the largest there may be.
+static float farthest(const struct hf_setup *s)
+{
+    return s->lens ? __builtin_fminf(-s->radius_0 * s->radius_k, s->max_radius) : s->max_radius;
+}
+
 static int measure(void *own, struct hf_setup *s, const struct hf_counts *found, const struct hf_mem *mem)
 {
     struct hf_gather *g = own;
     const struct hf_params *p = &s->resolved->params;
-    float radius[2];
-    hf_fields_found(&g->fields, s, found, radius);
+    float largest[2], full[2] = {1, 1};
+    hf_fields_found(s, found, largest);
+    // Powers of two: a larger one changes no bit.
+    for (int i = 0; i < 2; i++)
+        while (full[i] < largest[i])
+            full[i] *= 2;
+    hf_fields_scale(&g->fields, s, full);
     set_reach(&g->fields);
-    const int err = build(g, s, p, radius[0] / 2, radius[1] / 2, mem);
-    g->lights = g->levels[0].count > 1 ? lights_apart(p->view.display_height) : 0;
-    return err;
+    g->lights = found->near_max > 0 ? lights_apart(p->view.display_height) : 0;
+    g->leaves = found->near_max > 0 && found->far_max > 0;
+    const struct radii r = {{full[0] / 2, full[1] / 2},
+                            {__builtin_fmaxf(largest[0] / 2, 1), __builtin_fmaxf(largest[1] / 2, 1)}};
+    return build(g, s, p, &r, farthest(s) / 2, mem);
 }
 
 static void release(void *own, const struct hf_mem *mem)
 {
     struct hf_gather *g = own;
-    for (int i = 0; i < 2 * HF_MAX_LEVELS; i++)
+    for (int i = 0; i < 3 * HF_MAX_LEVELS; i++)
         hf_area_kernel_free(&g->levels[i / HF_MAX_LEVELS].level[i % HF_MAX_LEVELS].kernel, mem);
 }
 
@@ -275,7 +332,7 @@ static size_t held(const void *own)
 {
     const struct hf_gather *g = own;
     size_t sum = 0;
-    for (int i = 0; i < 2 * HF_MAX_LEVELS; i++)
+    for (int i = 0; i < 3 * HF_MAX_LEVELS; i++)
         sum += g->levels[i / HF_MAX_LEVELS].level[i % HF_MAX_LEVELS].kernel.block.size;
     return sum;
 }
@@ -294,12 +351,13 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
 // radius.
 static float times(const struct hf_setup *s, int pass, unsigned field, float radius)
 {
-    const struct hf_levels *l = hf_gather_levels(s, field);
-    if (l->count < 2)
+    const struct hf_levels *l = field == HF_NEAR ? hf_gather_behind(s) : hf_gather_levels(s, field);
+    (void)radius;
+    if (!hf_gather(s)->many)
         return 1;
     float sum = 0;  // of the levels' radii, half-resolution pixels
-    for (int i = 0; i < l->count; i++)
-        sum += l->level[i].coc * radius / 2;
+    for (int i = l->filled; i < l->count; i++)
+        sum += l->level[i].kernel.key.radius;
     return pass == HF_PASS_DOWN          ? 6
            : pass == HF_PASS_COMPUTATION ? 5.7f + 0.52f * sum
            : pass == HF_GATHER_COMPOSITE ? 2.6f

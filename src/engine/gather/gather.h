@@ -30,20 +30,18 @@ enum hf_gather_buf {
 // largest near and far CoC of it, the latter for levels.
 enum { HF_AREA_NEAR, HF_AREA_FAR, HF_AREA_NEAR_MOST, HF_AREA_FAR_MOST };
 
-// A kernel as large as some pixels' blur. CoC is relative to the largest radius.
+// A kernel as large as some pixels' blur. CoC is relative to a radius no smaller than the frame's largest (engine.c).
 struct hf_level {
     float coc;      // the CoC of pixels as blurred as this
-    float inverse;  // 1 / coc
-    float again;    // of near ones: how much of it the one before sees already, 0 where that is a whole step larger
-    float leaves;   // of near ones: the rest of that, 0 of the largest: how far it leaves far samples to the far levels
+    float counts;   // of what near pixels hide: what a sample counts, by the inverse of the area
     float to_next;  // 1 / (coc - that of the next one)
     float area;     // coc^2, and as for coc:
     float area_to_next;
-    float half_far;  // of near ones: times a far CoC, its radius in diameters of this
+    float half_far;  // of that: times a far CoC, its radius in diameters of this
     struct hf_area_kernel kernel;
 };
 
-enum { HF_MAX_LEVELS = 34 };
+enum { HF_MAX_LEVELS = 64 };
 
 // A pixel's part in a field, from how much it is blurred, 0 to 1, against the field's smallest kernel: a polynomial, 1 at 1.
 struct hf_part_curve {
@@ -57,27 +55,32 @@ struct hf_part_curve {
 // smallest is a blend of that and the picture.
 struct hf_levels {
     int count;
+    int filled;  // the first that any sample is in: those before it are only seen, and have no kernel
     float gain;  // 1 / coc of the smallest: hf_level_part of min(1, gain x CoC) is a pixel's part in the field
     // Of near pixels: the same of min(1, hides x CoC) is how far the field hides the picture where they are: as gain, but where
     // there is one kernel alone, wholly from seven eighths of its radius on. A light in a mixed pixel would shine through as a
     // speck.
     float hides;
     struct hf_part_curve curve;
-    // Of near ones: how far lights behind the field are limited, 0 to 1. It grows from where there is a second kernel, at a
-    // radius of one half-resolution pixel, to a radius of two.
-    float limits;
     struct hf_level level[HF_MAX_LEVELS];
 };
 
 struct hf_gather {
     struct hf_fields fields;
-    struct hf_levels levels[2];  // near, far
-    int lights;                  // measured: how far apart what is beside a light is looked at; else 0
+    struct hf_levels levels[3];  // near, far, and of what near pixels hide; CoC there is near CoC
+    int many;                    // fields have levels, be it one, else a kernel
+    int leaves;  // there are near and far levels: the disocclusion fill leaves far samples to the far ones
+    int lights;  // measured: how far apart what is beside a light is looked at; else 0
 };
 
 static inline const struct hf_gather *hf_gather(const struct hf_setup *s)
 {
     return s->own;
+}
+
+static inline const struct hf_levels *hf_gather_behind(const struct hf_setup *s)
+{
+    return &hf_gather(s)->levels[2];
 }
 
 static inline float hf_level_part(const struct hf_levels *l, float gain, float coc)
@@ -101,8 +104,7 @@ static inline float hf_level_share(const struct hf_levels *l, int i, float coc)
 // squared. So a sample counts by the inverse of its distance to the fourth, and a light far off draws no large disc there.
 static inline float hf_level_near(const struct hf_levels *l, int i, float coc)
 {
-    const float part = hf_level_reached(l, i, coc) * (1 - hf_level_reached(l, i - 1, coc) * l->level[i].again);
-    return part * (l->level[i].inverse * l->level[i].inverse);
+    return hf_level_reached(l, i, coc) * l->level[i].counts;
 }
 
 // How much of a far sample a level spreads. Both discs together are as bright inside the smaller one as a disc of its own
@@ -134,25 +136,19 @@ static inline const struct hf_levels *hf_gather_levels(const struct hf_setup *s,
 }
 
 // Is a field one convolution of what there is?
-static inline int hf_gather_is_simple(const struct hf_setup *s, unsigned field)
+static inline int hf_gather_is_simple(const struct hf_setup *s)
 {
-    return hf_gather_levels(s, field)->count == 1 && !hf_fields(s)->karis;
-}
-
-// Does any level of the disocclusion fill leave far samples to the far levels?
-static inline int hf_gather_leaves(const struct hf_setup *s)
-{
-    return hf_gather_levels(s, HF_NEAR)->count > 1 && hf_gather_levels(s, HF_FAR)->count > 1;
+    return !hf_gather(s)->many && !hf_fields(s)->karis;
 }
 
 // How much of a sample with this far CoC level i of the disocclusion fill leaves to the far levels, 0 to 1. A sample
 // that is blurred more than twice as much as the level would look too sharp in it: a light would show a small bright
-// disc in front of its large one. Level 0, the largest, leaves nothing.
+// disc in front of its large one.
 static inline float hf_level_left(const struct hf_levels *l, int i, float far)
 {
     const float times = far * l->level[i].half_far, square = times * times, most = square > 1 ? square : 1;
     const float fourth = most * most;
-    return l->level[i].leaves - l->level[i].leaves / (fourth * fourth);
+    return 1 - 1 / (fourth * fourth);
 }
 
 struct hf_gather_kernels {
@@ -165,8 +161,12 @@ hf_kernel hf_gather_down_c, hf_gather_computation_c, hf_gather_composite_c;
 // How much of what is not near counts as what near pixels hide, within reach of their levels: what is more than so many
 // times as bright as what is on both sides of it, sideways and up and down, counts as that. It is a light, of which near pixels
 // that are farther away than its own disc see nothing; else each level draws a ring of its own size around it, over them.
-// hf_levels.limits says how far that is so.
 #define HF_LIGHT 16.0f
+// The smallest level, whose ring is no wider than a pixel, sees them whole.
+static inline int hf_level_limits(const struct hf_setup *s, int i)
+{
+    return hf_gather(s)->lights && i < hf_gather_behind(s)->count - 1;
+}
 void hf_gather_lights_c(const struct hf_frame *f, struct hf_rect r);
 
 // Do a level's taps at row y end within the frame, above and below? Then what lies in it is as in all such rows.

@@ -26,7 +26,6 @@ void hf_gather_lights_c(const struct hf_frame *f, struct hf_rect r)
     const struct hf_reach reach = hf_gather_halo(f->s, HF_HALO_TAPS);
     const struct hf_buf *b = &f->buf[HF_BUF_WEIGHT];
     const int apart = hf_gather(f->s)->lights;
-    const float limits = hf_gather_levels(f->s, HF_NEAR)->limits;
     for (int y = r.y0 - reach.y; y < r.y1 + reach.y && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0 - reach.x; x < r.x1 + reach.x; x++)
             *hf_at(b, LARGEST, x, y) = largest(f, x, y);
@@ -36,6 +35,6 @@ void hf_gather_lights_c(const struct hf_frame *f, struct hf_rect r)
             const float upright = of_pair(*hf_at(b, LARGEST, x, y - apart), *hf_at(b, LARGEST, x, y + apart));
             const float beside = HF_LIGHT * (sides > upright ? sides : upright), most = beside > 0 ? beside : 0;
             const float own = *hf_at(b, LARGEST, x, y);
-            *hf_at(b, COUNTS, x, y) = own > most ? limits * (most / own) + (1 - limits) : 1;
+            *hf_at(b, COUNTS, x, y) = own > most ? most / own : 1;
         }
 }

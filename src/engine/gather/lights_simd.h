@@ -37,7 +37,6 @@ static void area_lights(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_reach reach = hf_gather_halo(f->s, HF_HALO_TAPS);
     const struct hf_buf *b = &f->buf[HF_BUF_WEIGHT];
-    const vf limits = vf_set1(hf_gather_levels(f->s, HF_NEAR)->limits), rest = vf_sub(vf_set1(1), limits);
     const int apart = hf_gather(f->s)->lights, x0 = r.x0 - reach.x, n = r.x1 + reach.x - x0;
     for (int y = r.y0 - reach.y; y < r.y1 + reach.y && !hf_stopped(f->s->stop); y++)
         area_largest_row(f, x0, n, y);
@@ -48,8 +47,7 @@ static void area_lights(const struct hf_frame *f, struct hf_rect r)
             const vf sides = vf_min(vf_load(at + x - apart), vf_load(at + x + apart));
             const vf beside = vf_max(sides, vf_min(vf_load(up + x), vf_load(down + x)));
             const vf most = vf_max(vf_mul(vf_set1(HF_LIGHT), beside), vf_zero()), own = vf_load(at + x);
-            const vf counts = vf_fma(limits, vf_div(most, own), rest);
-            vf_store(out + x, vf_select(vf_gt(own, most), counts, vf_set1(1)));
+            vf_store(out + x, vf_select(vf_gt(own, most), vf_div(most, own), vf_set1(1)));
         }
     }
 }
