@@ -63,7 +63,7 @@ def main(scenes):
         words = [f"{k.replace('_', '-')}={v}" for k, v in camera.items()]
         base = min(gegl("gegl:nop")[0] for _ in range(3))
         ours = [gegl("hyperfocal:defocus", *words, "aux=[", "load", "path=z.exr", "]") for _ in range(3)]
-        theirs = [gegl("gegl:lens-blur", f"radius={radii.max()}", "aux=[", "load", "path=radii.exr", "]") for _ in range(3)]
+        theirs = [gegl("gegl:lens-blur", f"radius={radii.max()}", "linear-mask=true", "aux=[", "load", "path=radii.exr", "]") for _ in range(3)]
         row = [f"{min(t for t, _ in some) - base:.2f} s, {decibels(some[0][1], truth):.1f} dB" for some in (ours, theirs)]
         print(f"| {name} | {row[0]} | {row[1]} |", flush=True)
 
