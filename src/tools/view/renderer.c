@@ -10,7 +10,7 @@
 #include "tools/view/look.h"
 
 enum {
-    REST_MS = 40,   // after a quick picture, before a better one
+    REST_MS = 16,   // after a quick picture, before a better one
     LATE_MS = 100,  // a quick picture that takes longer is cancelled for a newer one
 };
 
@@ -158,7 +158,10 @@ static int render(struct view_renderer *r, struct view_result *result, const str
     r->start = tool_now_ms();
     if (dumps)
         hf_inspect_dump(c, view_dump_buffer, &dump);
-    const int status = hf_render_region(c, &dst, &src, depth, params, &result->at);
+    int status;
+    do  // what was meant to cancel the request before may reach this one
+        status = hf_render_region(c, &dst, &src, depth, params, &result->at);
+    while (status == HF_ERR_CANCELLED && !is_old(r));
     if (dumps)
         hf_inspect_dump(c, NULL, NULL);
     result->ms = tool_now_ms() - r->start;
