@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs hyperfocal-view on a screen of its own (Xvfb) and waits for what it says on stdout: nothing here sleeps and guesses."""
+import atexit
 import os
 import queue
 import re
 import shutil
 import subprocess
 import sys
+import struct
 import threading
+import time
 
 PATIENCE = 60  # seconds until a state that never comes is a failure
 
@@ -33,25 +36,66 @@ class Screen:
         self.server.wait()
 
 
-class View:
-    """One run of the program."""
+def write_exr(path, width, height, channels, attributes=(), row=None):
+    """A picture of floats without compression. channels: names; row(y, name): its bytes of a row; attributes: name, type, bytes."""
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    box, names = struct.pack("<4i", 0, 0, width - 1, height - 1), sorted(channels)
+    header = {"channels": ("chlist", b"".join(n.encode() + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for n in names) + b"\0"),
+              "compression": ("compression", b"\0"), "dataWindow": ("box2i", box), "displayWindow": ("box2i", box),
+              "lineOrder": ("lineOrder", b"\0"), "pixelAspectRatio": ("float", struct.pack("<f", 1)),
+              "screenWindowCenter": ("v2f", struct.pack("<2f", 0, 0)), "screenWindowWidth": ("float", struct.pack("<f", 1))}
+    header.update({name: (kind, value) for name, kind, value in attributes})
+    begin = struct.pack("<ii", 20000630, 2) + b"".join(attribute(n, *v) for n, v in sorted(header.items())) + b"\0"
+    size = 4 * width * len(names)
+    with open(path, "wb") as file:
+        file.write(begin)
+        for y in range(height):
+            file.write(struct.pack("<Q", len(begin) + 8 * height + y * (8 + size)))
+        for y in range(height):
+            file.write(struct.pack("<ii", y, size) + b"".join(row(y, n) for n in names))
 
-    def __init__(self, screen, program, *arguments, cwd=None, **environment):
-        self.env = dict(os.environ, DISPLAY=screen.display, GDK_BACKEND="x11", GSK_RENDERER="cairo", GTK_A11Y="none",
+
+def until(test, what):
+    """Ask again until the answer is not empty; the answer."""
+    end = time.monotonic() + PATIENCE
+    while True:
+        answer = test()
+        if answer:
+            return answer
+        if time.monotonic() > end:
+            raise AssertionError(what + " never came")
+        time.sleep(0.02)
+
+
+def reader(stream):
+    """The lines of a stream, as a queue that ends with None."""
+    lines = queue.Queue()
+
+    def read():
+        for line in stream:
+            lines.put(line.rstrip("\n"))
+        lines.put(None)
+    threading.Thread(target=read, daemon=True).start()
+    return lines
+
+
+class View:
+    """One run of the program. accessible: other programs see its controls."""
+
+    def __init__(self, screen, program, *arguments, cwd=None, accessible=False, **environment):
+        self.env = dict(os.environ, DISPLAY=screen.display, GDK_BACKEND="x11", GSK_RENDERER="cairo",
                         HYPERFOCAL_VIEW_SAY="1", GSETTINGS_BACKEND="memory", **environment)
         self.env.pop("WAYLAND_DISPLAY", None)
-        self.lines, self.said = queue.Queue(), []
+        if not accessible:
+            self.env["GTK_A11Y"] = "none"
+        self.said = []
         self.process = subprocess.Popen([program, *arguments], env=self.env, cwd=cwd, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
-        self.errors = []
-        threading.Thread(target=self._read, daemon=True).start()
+        atexit.register(self.kill)  # also when a check has failed
+        self.lines, self.errors = reader(self.process.stdout), []
         self._stderr = threading.Thread(target=self._read_errors, daemon=True)
         self._stderr.start()
-
-    def _read(self):
-        for line in self.process.stdout:
-            self.lines.put(line.rstrip("\n"))
-        self.lines.put(None)
 
     def _read_errors(self):
         self.errors += self.process.stderr
@@ -104,6 +148,12 @@ class View:
 
 def numbers(text):
     return [float(n) for n in text.split(",")]
+
+
+def place(drawn, x, y):
+    """Where a pixel of the picture is on the screen."""
+    canvas, camera = numbers(drawn["canvas"]), numbers(drawn["camera"])
+    return int(canvas[0] + camera[1] + (x + 0.5) * camera[0] * camera[3]), int(canvas[1] + camera[2] + (y + 0.5) * camera[0])
 
 
 class Tests:

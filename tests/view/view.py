@@ -20,18 +20,12 @@ def rgb_of(path, x, y, width, height):
                           stdout=subprocess.PIPE).stdout
 
 
-def place(drawn, x, y):
-    """Where a pixel of the picture is on the screen."""
-    canvas, camera = driver.numbers(drawn["canvas"]), driver.numbers(drawn["camera"])
-    return int(canvas[0] + camera[1] + (x + 0.5) * camera[0]), int(canvas[1] + camera[2] + (y + 0.5) * camera[0])
-
-
 def check_turning(screen):
     """A click focuses and the f-number's slider opens the lens."""
     view = driver.View(screen, view_exe, root + "/images/lights.exr")
     first = view.drawn()
     tests.check("the header's focus", first["focus"] == "5", first)
-    view.click(*place(first, 60, 300))
+    view.click(*driver.place(first, 60, 300))
     near = view.drawn("focus=1")
     tests.check("the click moved the focus", float(near["focus"]) < 4, near)
     view.key("ctrl+z")
@@ -53,7 +47,7 @@ def check_pixels(screen, folder):
     drawn = view.drawn("camera=1,")
     canvas, camera = driver.numbers(drawn["canvas"]), driver.numbers(drawn["camera"])
     part = [int(-camera[1]) if camera[1] < 0 else 0, int(-camera[2]) if camera[2] < 0 else 0, 600, 300]
-    at = place(drawn, part[0], part[1])
+    at = driver.place(drawn, part[0], part[1])
     window = view.pixels(at[0], at[1], part[2], part[3])
     view.key("ctrl+s")
     view.wait("^job done")
@@ -85,7 +79,7 @@ def check_keys(screen, folder):
     view.key("period")
     view.wait("^frame 3")
     view.drawn("focus=4 ")
-    view.click(*place(first, 60, 300))
+    view.click(*driver.place(first, 60, 300))
     last = view.drawn("focus=1")
     view.key("ctrl+q")
     view.wait("^ask unsaved keys")

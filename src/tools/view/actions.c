@@ -290,6 +290,16 @@ static gboolean on_drop(GtkDropTarget *target, const GValue *value, double x, do
     return TRUE;
 }
 
+static GdkDragAction on_drag(GtkDropTarget *target, double x, double y, gpointer data)
+{
+    (void)target;
+    (void)x;
+    (void)y;
+    (void)data;
+    view_say("over");
+    return GDK_ACTION_COPY;
+}
+
 void view_actions_add(struct view_app *app)
 {
     for (int i = 0; i < ACTIONS; i++) {
@@ -304,6 +314,7 @@ void view_actions_add(struct view_app *app)
     g_signal_connect(keys, "key-released", G_CALLBACK(on_key_up), app);
     gtk_widget_add_controller(app->window, keys);
     GtkDropTarget *drop = gtk_drop_target_new(GDK_TYPE_FILE_LIST, GDK_ACTION_COPY);
+    g_signal_connect(drop, "enter", G_CALLBACK(on_drag), app);
     g_signal_connect(drop, "drop", G_CALLBACK(on_drop), app);
     gtk_widget_add_controller(app->window, GTK_EVENT_CONTROLLER(drop));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/aperture.h"
+#include "tools/view/name.h"
 
 #include <math.h>
 
@@ -64,12 +65,12 @@ static void draw(GtkDrawingArea *area, cairo_t *c, int width, int height, gpoint
 
 GtkWidget *view_aperture_new(void)
 {
-    GtkWidget *area = gtk_drawing_area_new();
+    GtkWidget *area = view_drawing();
     gtk_drawing_area_set_content_width(GTK_DRAWING_AREA(area), SIZE);
     gtk_drawing_area_set_content_height(GTK_DRAWING_AREA(area), SIZE);
     gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(area), draw, NULL, NULL);
     gtk_widget_set_valign(area, GTK_ALIGN_CENTER);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(area), GTK_ACCESSIBLE_PROPERTY_LABEL, "Shape of the aperture", -1);
+    view_name(area, "Shape of the aperture");
     return area;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tools/view/look.h"
+#include "tools/view/name.h"
 #include "tools/view/say.h"
 
 struct _ViewCanvas {
@@ -503,6 +504,6 @@ GtkWidget *view_canvas_new(const struct view_canvas_events *events, void *cookie
     gtk_widget_set_hexpand(w, TRUE);
     gtk_widget_set_vexpand(w, TRUE);
     gtk_widget_set_overflow(w, GTK_OVERFLOW_HIDDEN);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(w), GTK_ACCESSIBLE_PROPERTY_LABEL, "Picture", -1);
+    view_name(w, "Picture");
     return w;
 }

@@ -174,6 +174,8 @@ void view_demo_drawn(struct view_app *app)
 
 void view_demo_fade(struct view_app *app)
 {
-    if (app->demo)
-        app->demo->goal = app->demo->goal > 0 ? 0 : 1;
+    if (!app->demo)
+        return;
+    app->demo->goal = app->demo->goal > 0 ? 0 : 1;
+    view_say("fade %g", app->demo->goal);
 }

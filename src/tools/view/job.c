@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/job.h"
+#include "tools/view/name.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -98,7 +99,7 @@ static void on_end(GObject *source, GAsyncResult *result, gpointer data)
         view_app_tell(app, "%s", job->last ? job->last : "the command failed");
     else
         view_app_tell(app, "%s was given up; frames that were finished stay.", job->output);
-    view_say("job %s", done ? "done" : "failed");
+    view_say("job %s", done ? "done" : g_subprocess_get_if_exited(job->process) ? "failed" : "cancelled");
     view_job_show(app, NULL, 0);
     free_job(job);
 }
@@ -263,8 +264,10 @@ void view_job_shot(struct view_app *app)
 
 void view_job_pause(struct view_app *app, int paused)
 {
-    if (app->job)
-        g_subprocess_send_signal(app->job->process, paused ? SIGSTOP : SIGCONT);
+    if (!app->job)
+        return;
+    g_subprocess_send_signal(app->job->process, paused ? SIGSTOP : SIGCONT);
+    view_say("%s %s", paused ? "paused" : "resumed", g_subprocess_get_identifier(app->job->process));
 }
 
 void view_job_cancel(struct view_app *app)
@@ -297,7 +300,7 @@ GtkWidget *view_job_bar(struct view_app *app)
     gtk_progress_bar_set_ellipsize(GTK_PROGRESS_BAR(bar), PANGO_ELLIPSIZE_MIDDLE);
     gtk_widget_set_hexpand(bar, TRUE);
     gtk_widget_set_valign(bar, GTK_ALIGN_CENTER);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(bar), GTK_ACCESSIBLE_PROPERTY_LABEL, "Frames written", -1);
+    view_name(bar, "Frames written");
     g_signal_connect(pause, "toggled", G_CALLBACK(on_pause), app);
     g_signal_connect(cancel, "clicked", G_CALLBACK(on_cancel), app);
     gtk_box_append(GTK_BOX(box), bar);

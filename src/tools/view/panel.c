@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tools/view/name.h"
 #include "tools/view/panel.h"
 
 #include <ctype.h>
@@ -37,6 +38,7 @@ static GtkWidget *make_group(enum tool_group group, GtkWidget *box)
     char *title = g_strdup(cli_program.groups[group]);
     title[strcspn(title, "(")] = '\0';
     GtkWidget *expander = gtk_expander_new(g_strstrip(title));
+    view_name(expander, title);
     g_free(title);
     gtk_expander_set_child(GTK_EXPANDER(expander), box);
     gtk_expander_set_expanded(GTK_EXPANDER(expander), group == TOOL_FOCUS || group == TOOL_LENS || group == TOOL_LOOK);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tools/view/name.h"
 #include "tools/view/profiler.h"
 
 #include <math.h>
@@ -71,11 +72,10 @@ static void draw(GtkDrawingArea *area, cairo_t *c, int width, int height, gpoint
 
 GtkWidget *view_profiler_new(struct view_app *app)
 {
-    app->profiler = gtk_drawing_area_new();
+    app->profiler = view_drawing();
     gtk_drawing_area_set_content_height(GTK_DRAWING_AREA(app->profiler), 2 * MARGIN + 11 * ROW);
     gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(app->profiler), draw, app, NULL);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(app->profiler), GTK_ACCESSIBLE_PROPERTY_LABEL,
-                                   "Times of passes and frames", -1);
+    view_name(app->profiler, "Times of passes and frames");
     gtk_widget_add_css_class(app->profiler, "status");
     gtk_widget_set_visible(app->profiler, FALSE);
     return app->profiler;

@@ -8,6 +8,7 @@
 #include "tools/common/machine.h"
 #include "tools/view/aperture.h"
 #include "tools/view/derived.h"
+#include "tools/view/name.h"
 #include "tools/view/timeline.h"
 
 struct view_row {
@@ -184,7 +185,6 @@ static void add_key(struct view_row *row, const char *title)
     gtk_button_set_has_frame(GTK_BUTTON(row->key), FALSE);
     gtk_widget_add_css_class(row->key, "key");
     gtk_widget_set_tooltip_text(row->key, label);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(row->key), GTK_ACCESSIBLE_PROPERTY_LABEL, label, -1);
     g_free(label);
     g_signal_connect(row->key, "clicked", G_CALLBACK(on_diamond), row);
     gtk_box_append(GTK_BOX(row->box), row->key);
@@ -211,6 +211,8 @@ static void add_control(struct view_row *row, const char *title)
         add_entry(row);
         break;
     }
+    if (row->kind == VIEW_CHOICE)
+        view_name_choice(row->control, title);
     describe(row->control, title, o);
     gtk_box_append(GTK_BOX(row->box), row->control);
 }
@@ -282,6 +284,7 @@ static void refresh_key(struct view_row *row)
     const int state = view_timeline_key_state(row->app, option_of(row)->name);
     gtk_widget_set_visible(row->key, state >= 0);
     gtk_button_set_label(GTK_BUTTON(row->key), state > 0 ? "◆" : "◇");
+    view_name(row->key, gtk_widget_get_tooltip_text(row->key));  // the label became its name
 }
 
 void view_row_refresh(struct view_row *row, const struct view_shown_values *values)

@@ -6,6 +6,7 @@
 
 #include "tools/common/machine.h"
 #include "tools/view/keys_file.h"
+#include "tools/view/name.h"
 #include "tools/view/say.h"
 
 #define RATE 24.0  // frames a second, where neither the header nor the command line says
@@ -82,8 +83,7 @@ void view_timeline_play(struct view_app *app)
     app->playing = !app->playing;
     gtk_button_set_icon_name(GTK_BUTTON(t->play),
                              app->playing ? "media-playback-pause-symbolic" : "media-playback-start-symbolic");
-    gtk_accessible_update_property(GTK_ACCESSIBLE(t->play), GTK_ACCESSIBLE_PROPERTY_LABEL,
-                                   app->playing ? "Pause" : "Play", -1);
+    view_name(t->play, app->playing ? "Pause" : "Play");
     if (app->playing) {
         view_say("playing at %g", rate_of(app));
         t->next_ms = tool_now_ms();
@@ -297,12 +297,12 @@ GtkWidget *view_timeline_new(struct view_app *app)
     t->box = gtk_box_new(GTK_ORIENTATION_VERTICAL, 2);
     t->play = gtk_button_new_from_icon_name("media-playback-start-symbolic");
     gtk_widget_set_tooltip_text(t->play, "Play (space)");
-    gtk_accessible_update_property(GTK_ACCESSIBLE(t->play), GTK_ACCESSIBLE_PROPERTY_LABEL, "Play", -1);
+    view_name(t->play, "Play");
     g_signal_connect(t->play, "clicked", G_CALLBACK(on_play), app);
     t->scale = gtk_scale_new_with_range(GTK_ORIENTATION_HORIZONTAL, 0, 1, 1);
     gtk_scale_set_draw_value(GTK_SCALE(t->scale), FALSE);
     gtk_widget_set_hexpand(t->scale, TRUE);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(t->scale), GTK_ACCESSIBLE_PROPERTY_LABEL, "Frame", -1);
+    view_name(t->scale, "Frame");
     g_signal_connect(t->scale, "value-changed", G_CALLBACK(on_scale), app);
     t->label = gtk_label_new("");
     gtk_widget_add_css_class(t->label, "numeric");
@@ -312,10 +312,10 @@ GtkWidget *view_timeline_new(struct view_app *app)
     GtkWidget *const parts[] = {t->play, t->scale, t->label, t->smooth};
     for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
         gtk_box_append(GTK_BOX(row), parts[i]);
-    t->curves = gtk_drawing_area_new();
+    t->curves = view_drawing();
     gtk_drawing_area_set_content_height(GTK_DRAWING_AREA(t->curves), 84);
     gtk_drawing_area_set_draw_func(GTK_DRAWING_AREA(t->curves), draw_curves, app, NULL);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(t->curves), GTK_ACCESSIBLE_PROPERTY_LABEL, "Curves of the keys", -1);
+    view_name(t->curves, "Curves of the keys");
     GtkGesture *click = gtk_gesture_click_new();
     g_signal_connect(click, "pressed", G_CALLBACK(on_curves), app);
     gtk_widget_add_controller(t->curves, GTK_EVENT_CONTROLLER(click));

@@ -9,6 +9,7 @@
 #include "tools/view/demo.h"
 #include "tools/view/job.h"
 #include "tools/view/keys_file.h"
+#include "tools/view/name.h"
 #include "tools/view/panel.h"
 #include "tools/view/profiler.h"
 #include "tools/view/say.h"
@@ -235,6 +236,7 @@ void view_window_refresh(struct view_app *app)
     const double zoom = view_canvas_get_zoom(VIEW_CANVAS(app->canvas));
     snprintf(text, sizeof(text), "%.0f %%", zoom * 100);
     gtk_button_set_label(GTK_BUTTON(app->zoom), text);
+    view_name(app->zoom, "Zoom 1:1");
     snprintf(text, sizeof(text), "%+.1f EV", app->model.now.exposure);
     gtk_label_set_text(GTK_LABEL(app->exposure), text);
     const char *name = app->picture ? app->picture->args.input : app->model.input_count ? app->model.inputs[0] : NULL;
@@ -254,7 +256,7 @@ static GtkWidget *button(const char *icon, const char *label, const char *action
     GtkWidget *b = gtk_button_new_from_icon_name(icon);
     gtk_widget_set_tooltip_text(b, label);
     gtk_actionable_set_action_name(GTK_ACTIONABLE(b), action);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(b), GTK_ACCESSIBLE_PROPERTY_LABEL, label, -1);
+    view_name(b, label);
     return b;
 }
 
@@ -271,7 +273,7 @@ static GtkWidget *make_header(struct view_app *app)
     gtk_menu_button_set_icon_name(GTK_MENU_BUTTON(menu), "open-menu-symbolic");
     gtk_menu_button_set_menu_model(GTK_MENU_BUTTON(menu), view_actions_menu());
     gtk_widget_set_tooltip_text(menu, "Menu");
-    gtk_accessible_update_property(GTK_ACCESSIBLE(menu), GTK_ACCESSIBLE_PROPERTY_LABEL, "Menu", -1);
+    view_name(menu, "Menu");
     gtk_header_bar_pack_end(h, menu);
     gtk_header_bar_pack_end(h, button("zoom-fit-best-symbolic", "All of the picture", "win.fit"));
     app->zoom = gtk_button_new_with_label("100 %");
@@ -310,7 +312,7 @@ static GtkWidget *make_choice(const char *name, GCallback changed, struct view_a
 {
     GtkWidget *down = gtk_drop_down_new(G_LIST_MODEL(gtk_string_list_new(NULL)), NULL);
     gtk_widget_set_tooltip_text(down, name);
-    gtk_accessible_update_property(GTK_ACCESSIBLE(down), GTK_ACCESSIBLE_PROPERTY_LABEL, name, -1);
+    view_name_choice(down, name);
     g_signal_connect(down, "notify::selected", changed, app);
     return down;
 }
