@@ -274,7 +274,10 @@ struct hf_layers_params {
     // 1: BEST fills in behind objects by means, as the other qualities do. 0 (default): it continues edges and patterns from
     // around the object, which may jump from frame to frame.
     int no_patterns;
-    uint32_t reserved[8];
+    // 1: in place of the picture, how much of each pixel's light was guessed, 0 to 1, in all three colours; alpha is 1. Guessed is
+    // what objects hide, where no further picture shows it, and what lies beyond the frame. Needs highlight.gain 1. Default 0
+    int guessed;
+    uint32_t reserved[7];
 };
 
 // How a frame is run, apart from what it looks like.

@@ -99,8 +99,8 @@ static const size_t flags[] = {
     offsetof(struct hf_params, chapter.bicubic),    offsetof(struct hf_params, hexagon.uniform),
     offsetof(struct hf_params, gaussian.faithful),  offsetof(struct hf_params, layers.no_unmix),
     offsetof(struct hf_params, layers.no_hidden),   offsetof(struct hf_params, layers.no_highlights),
-    offsetof(struct hf_params, layers.no_patterns), offsetof(struct hf_params, run.deterministic),
-    offsetof(struct hf_params, run.no_skip),
+    offsetof(struct hf_params, layers.no_patterns), offsetof(struct hf_params, layers.guessed),
+    offsetof(struct hf_params, run.deterministic),  offsetof(struct hf_params, run.no_skip),
 };
 
 int hf_given_params(struct hf_given *own, const struct hf_params *params, struct hf_message *message)

@@ -253,7 +253,7 @@ void hf_buffers_extend(const struct hf_context *c, const struct hf_setup *s, str
         want.x1 = x1 + reach.x;
     if (!def->frame || r.y1 == s->half_height)
         want.y1 = y1 + reach.y;
-    if (def->frame && e->plan.zero_beyond)
+    if (def->frame && (e->plan.zero ? e->plan.zero(s, b) : e->plan.zero_beyond))
         clear_beyond(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want, s->stop);
     else
         extend(&f->buf[b], hf_engine_channels(e, s, b), bytes_of(s, def), have, want, s->stop);

@@ -124,6 +124,8 @@ struct hf_engine_plan {
     // Rows of a tile's cell are a multiple of this, half-resolution ones. 0: any number.
     int grain;
     int zero_beyond;  // buffers of the whole frame are 0 beyond it; else like its edge
+    // Is this buffer of the whole frame 0 beyond it? NULL: as zero_beyond says.
+    int (*zero)(const struct hf_setup *s, int buf);
     // Channels of a buffer; 0: not wanted with these options. NULL: the picture's.
     int (*channels)(const struct hf_setup *s, int buf);
     // Does a pass run with these options? NULL: all do.

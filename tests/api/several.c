@@ -139,6 +139,53 @@ static void test_same_blur(void)
     params = was;
 }
 
+// The share of light that was guessed, at pixel x of the middle row.
+static float guessed_at(const struct picture *p, int x)
+{
+    return p->rgba[4 * (H / 2 * W + x)];
+}
+
+static int render_guessed(struct picture *to, const struct hf_layer *layers, int count)
+{
+    params.layers.guessed = 1;
+    const int status = render(to, layers, count);
+    params.layers.guessed = 0;
+    return status;
+}
+
+// One picture guesses beside the bar and at the frame's border; with the wall known the border is left, and nothing where all
+// is sharp.
+static void test_guessed(void)
+{
+    const struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)},
+                          one[] = {layer_of(&whole, HF_LAYER_WHOLE)};
+    const int beside = W / 2 - 9, between = W / 4;
+    int outside = 0;
+    CHECK_INT(render_guessed(&out[0], one, 1), HF_OK);
+    for (int i = 0; i < 4 * N; i++)
+        outside += !(out[0].rgba[i] >= 0 && out[0].rgba[i] <= 1) || (i % 4 == 3 && out[0].rgba[i] != 1);
+    CHECK_INT(outside, 0);
+    // DRAFT fills in nothing that objects hide.
+    const int fills = params.layers.quality != HF_LAYERS_DRAFT;
+    CHECK_MSG(guessed_at(&out[0], beside) > 0.1f || !fills, "beside the bar %g", guessed_at(&out[0], beside));
+    CHECK_MSG(guessed_at(&out[0], 0) > 0.02f && guessed_at(&out[0], W - 1) > 0.02f, "at the border %g, %g",
+              guessed_at(&out[0], 0), guessed_at(&out[0], W - 1));
+    // What is left is roundings of a share of 1.
+    CHECK_MSG(guessed_at(&out[0], between) <= 1e-5f, "between them %g", guessed_at(&out[0], between));
+    CHECK_INT(render_guessed(&out[1], two, 2), HF_OK);
+    CHECK_MSG(guessed_at(&out[1], beside) < 0.02f, "with the wall known %g", guessed_at(&out[1], beside));
+    CHECK_MSG(guessed_at(&out[1], 0) > 0.02f, "with the wall known, at the border %g", guessed_at(&out[1], 0));
+    const struct hf_params was = params;
+    params.focus = 20;
+    params.lens.f_number = 1000;
+    CHECK_INT(render_guessed(&out[0], one, 1), HF_OK);
+    CHECK_MSG(guessed_at(&out[0], between) <= 1e-5f, "in focus %g", guessed_at(&out[0], between));
+    params.max_radius = 0;
+    CHECK_INT(render_guessed(&out[0], one, 1), HF_OK);
+    CHECK_MSG(guessed_at(&out[0], beside) == 0, "without blur %g", guessed_at(&out[0], beside));
+    params = was;
+}
+
 // A budget that nothing keeps may choose cheaper settings, but only of engines that take several pictures.
 static void test_budget(void)
 {
@@ -243,6 +290,7 @@ int main(void)
         test_hidden();
         test_constant();
         test_region();
+        test_guessed();
     }
     params.layers.quality = HF_LAYERS_STANDARD;
     test_same_blur();

@@ -105,6 +105,20 @@ else
     skip "no OpenImageIO"
 fi
 
+# ---- --guessed
+good both.exr -o o.exr $look --guessed --json j.json
+good bar.exr --over wall.exr -o o.exr $look --guessed --json k.json
+python3 - <<'PYTHON'
+import json
+one, two = (json.load(open(n))['views'][0]['guessed'] for n in ('j.json', 'k.json'))
+raise SystemExit(not 0 <= two < one < .5)
+PYTHON
+result "less is guessed where more is shown" $?
+good both.exr -o c.exr $look --guessed-image g.exr
+same c.exr flat.exr R G B && grep -q guessed g.exr
+result "--guessed-image, and the picture stays" $?
+bad 1 "--guessed|layers" both.exr -o o.exr $look --guessed --engine gather
+
 # ---- shots
 good bar.####.exr --over wall.####.exr -o o.####.exr --quiet $look
 same o.0001.exr b.exr R G B A && ! same o.0002.exr b.exr R

@@ -91,6 +91,11 @@ static int check(struct hf_settings *r, const struct hf_params *asked, const str
         return HF_ERR_ARG;
     const struct hf_layers_settings *set = &qualities[p->quality];
     struct hf_params *all = &r->params;
+    if (p->guessed && all->highlight.gain > 1)
+        return hf_bad(message, "layers.guessed", "is 1 and highlight.gain %g; it must be 1", all->highlight.gain);
+    // What has no blur must not be copied.
+    all->run.no_skip |= p->guessed;
+    r->sharp &= !p->guessed;
     if (all->aperture.picture && all->max_radius > hf_most_picture_radius(all)) {
         all->max_radius = hf_most_picture_radius(all);
         r->limit = HF_LIMIT_PICTURE;
@@ -118,13 +123,14 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->eighth = set->quarter * (p->aperture.picture ? 2 : 4);
     set->unmix &= !given->no_unmix;
     set->hidden &= !given->no_hidden;
-    set->highlights &= !given->no_highlights;
+    set->highlights &= !given->no_highlights && !given->guessed;
     set->patterns &= !given->no_patterns;
     set->held = !set->hidden ? 0 : set->patterns ? set->held : fminf(set->held, qualities[HF_LAYERS_STANDARD].held);
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;
     l->slices = l->levels = 0;
     l->given = NULL;
+    l->guessed = given->guessed;
     s->sharp_radius = 0;
 }
 
@@ -289,7 +295,15 @@ static int channels(const struct hf_setup *s, int b)
 
 static int runs(const struct hf_setup *s, int pass)
 {
-    return pass == PATTERNS ? hf_layers_patterns_reach(hf_layers(s)) != 0 : pass != KNOWN || hf_layers(s)->known;
+    return pass == PATTERNS ? hf_layers_patterns_reach(hf_layers(s)) != 0 && !hf_layers(s)->guessed
+                            : pass != KNOWN || hf_layers(s)->known;
+}
+
+// Nothing is known of colours beyond the frame.
+static int zero(const struct hf_setup *s, int b)
+{
+    return hf_layers(s)->guessed && (b == HF_LAYERS_BUF_SEEN || b == HF_LAYERS_BUF_MIXED || b == HF_LAYERS_BUF_SECOND ||
+                                     b == HF_LAYERS_BUF_THIRD);
 }
 
 static struct hf_reach halo(const struct hf_setup *s, int halo)
@@ -424,6 +438,7 @@ const struct hf_engine_def hf_layers_engine = {
              .around = around,
              .parts = 1u << 2 | 1u << 3 | 1u << 4,
              .grain = HF_LAYERS_TILE / 2,
+             .zero = zero,
              .channels = channels,
              .runs = runs,
              .halo = halo,

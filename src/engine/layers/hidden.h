@@ -106,10 +106,12 @@ static inline float hf_layers_root(float v)
 void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r);
 // Floats of scratch that the pass needs for a band of half-resolution rows.
 size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height);
-// Split pixels whose front surface is known into that and the rest.
-void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r);
 // Likewise for the pass of known surfaces.
 size_t hf_layers_known_floats(const struct hf_layers *l, int width, int height);
+// Split pixels whose front surface is known into that and the rest.
+void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r);
+// Set all colours of a buffer of samples in r, half-resolution pixels: 1 says that they are known, 0 that they are guesses.
+void hf_layers_set_colours(const struct hf_frame *f, int buf, struct hf_rect r, float to);
 // How far around a pixel the search for hidden samples reaches, half-resolution pixels.
 int hf_layers_hidden_reach(const struct hf_layers *l);
 

@@ -208,6 +208,7 @@ static void take_known(const struct band *b, int k, const struct seen *seen, int
     const int x0 = 2 * b->r.x0, n = hf_min(2 * b->r.x1, f->s->width) - x0;
     const ptrdiff_t at = y * hf_layers(f->s)->given->stride + x0;
     const float largest = hf_layers(f->s)->largest;
+    const int guessed = hf_layers(f->s)->guessed;
     for (int i = 0; i < n; i++) {
         const float all = known->weight[at + i];
         if (!(all > 0))
@@ -222,7 +223,7 @@ static void take_known(const struct band *b, int k, const struct seen *seen, int
         out[4][i] = (all < most ? all : most) * view;
         out[5][i] = r;
         for (int c = 0; c < f->s->channels; c++) {
-            out[c][i] = within(known->colour[c][at + i] / all, largest);
+            out[c][i] = guessed ? 1 : within(known->colour[c][at + i] / all, largest);
         }
     }
 }

@@ -101,6 +101,7 @@ struct hf_layers {
     int most_tiles;                // from which a slice's blur reaches a cell, on each side
     int around;                    // a cell reads samples up to this many pixels away
     const struct hf_known *given;  // known surfaces, or NULL
+    int guessed;                   // samples have 1 for a colour that is known and 0 for a guess
     int known;                     // hidden samples have full resolution, as surfaces are known
 
     int width, height;                // of the frame

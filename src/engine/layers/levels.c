@@ -521,6 +521,10 @@ void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
     if (!hf_layers(f->s)->levels)
         return;
     find_hidden(f, r);
+    if (hf_layers(f->s)->guessed) {
+        hf_layers_set_colours(f, HF_LAYERS_BUF_HIDDEN, r, 0);
+        hf_layers_set_colours(f, HF_LAYERS_BUF_BEYOND, r, 0);
+    }
     if (!hf_stopped(f->s->stop) && !hf_layers(f->s)->known)
         hf_layers_mark_hidden(f, r);
 }

@@ -73,6 +73,17 @@ static void count_row(const struct hf_frame *f, struct hf_rect r, int y)
             (uint64_t)limit(was[c], hf_min(2 * r.x1, f->s->width) - 2 * r.x0, hf_layers(f->s)->largest);
 }
 
+void hf_layers_set_colours(const struct hf_frame *f, int b, struct hf_rect r, float to)
+{
+    const int full = b == HF_LAYERS_BUF_SEEN || b == HF_LAYERS_BUF_MIXED;
+    const int x0 = r.x0 << full, x1 = full ? hf_min(2 * r.x1, f->s->width) : r.x1;
+    const int y1 = full ? hf_min(2 * r.y1, f->s->height) : r.y1;
+    for (int c = 0; c < f->s->channels; c++)
+        for (int y = r.y0 << full; y < y1; y++)
+            for (int x = x0; x < x1; x++)
+                *hf_at(&f->buf[b], c, x, y) = to;
+}
+
 // All steps run on a row of tiles before the next row, so what one step makes is still in the cache for the next.
 void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
 {
@@ -90,6 +101,10 @@ void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
         if (l->levels)
             hf_layers_quads_pass(f, rows);
         hf_layers_mark_seen(f, rows);
+    }
+    if (l->guessed) {
+        hf_layers_set_colours(f, HF_LAYERS_BUF_SEEN, r, 1);
+        hf_layers_set_colours(f, HF_LAYERS_BUF_MIXED, r, 1);
     }
 }
 
@@ -152,6 +167,9 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
             count_row(f, r, y);
         for (int c = 0; c < channels; c++)
             row[c] = out[c] + (ptrdiff_t)(y - tiles.y0) * width + x0 - tiles.x0;
+        for (int c = 0; c < channels && l.guessed; c++)
+            for (int x = 0; x < x1 - x0; x++)
+                row[c][x] = c < 3 ? hf_saturate(1 - row[c][x]) : 1;
         hf_store_rgb(f, row, x1 - x0);
         hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)row, channels == 4);
     }

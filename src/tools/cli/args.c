@@ -250,7 +250,7 @@ static int check_others(const struct cli_args *args, const struct tool_parser *p
     return 0;
 }
 
-static int check_files(const struct cli_args *args, struct tool_error *error)
+static int check_files(const struct cli_args *args, const struct tool_parser *parser, struct tool_error *error)
 {
     if (!args->input)
         return tool_fail(error, -1, "there is no INPUT, see hyperfocal --help");
@@ -263,6 +263,10 @@ static int check_files(const struct cli_args *args, struct tool_error *error)
         return tool_fail(error, -1, "--compression %s is for EXR, but OUTPUT is %s", args->compression, args->output);
     if (args->output && args->zip_level && !cli_is_exr(args->output))
         return tool_fail(error, -1, "--zip-level %d is for EXR, but OUTPUT is %s", args->zip_level, args->output);
+    if (args->guessed && tool_given(parser, "highlight-gain"))
+        return tool_fail(error, -1, "--guessed and --highlight-gain cannot be given together");
+    if (args->guessed_image && !cli_is_exr(args->guessed_image))
+        return tool_fail(error, -1, "--guessed-image %s: its name must end in .exr", args->guessed_image);
     if (args->zip_level && args->compression && strncmp(args->compression, "zip", 3))
         return tool_fail(error, -1, "--zip-level %d is for ZIP, but --compression is %s", args->zip_level,
                          args->compression);
@@ -323,6 +327,7 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
     else
         p->engine = HF_ENGINE_LAYERS;
     args->chose_chapter = tool_choose_chapter(parser, p);
+    args->guessed |= args->guessed_image != NULL;
     if (check_focus(args, parser, error) || cli_choose_check(args, parser, error) || take_blur(args, parser, error))
         return -1;
     if (tool_given(parser, "keys-blend") && !args->keys)
@@ -367,7 +372,7 @@ int cli_parse_args(struct cli_args *args, int argc, char **argv, struct tool_err
     }
     if (args->views && !strcmp(args->views, "all"))
         args->views = NULL;
-    if (check_files(args, error) || check_engine(args, &p, error) || check_model(args, error) ||
+    if (check_files(args, &p, error) || check_engine(args, &p, error) || check_model(args, error) ||
         check_others(args, &p, error))
         return -1;
     return 0;

@@ -90,7 +90,8 @@ struct cli_args {
     int display[4];  // width, height, and the picture's x, y in it; [0] = 0: the file's window
     const char *dump_dir;
     int explain;
-    const char *explain_image, *focus_image;
+    const char *explain_image, *focus_image, *guessed_image;
+    int guessed;  // --guessed, also with --guessed-image
     int json;
     const char *json_file;  // NULL: stdout
     const char *json_word;  // json_file if it was a word of its own, which may turn out to be INPUT

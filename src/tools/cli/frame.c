@@ -453,6 +453,9 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     struct cli_lamps lamps;
     struct hf_params params = v->setup.params;
     params.highlight.gain = 1;
+    status = frame->args->guessed ? cli_find_guessed(session, frame, v, &image, error) : 0;
+    if (status)
+        return status;
     status = cli_lamps_raise(&lamps, v, error);
     if (status) {
         cli_lamps_free(&lamps);

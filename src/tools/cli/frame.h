@@ -29,6 +29,7 @@ struct cli_view {
     const struct hf_io_view *view;
     struct cli_view *surfaces;  // further pictures of its scene, see surfaces.h
     int surface_count;
+    int samples_ready;        // of a deep view: their depths are what the library takes
     struct hf_io_file *file;  // of such a picture: the file that it is in, NULL: INPUT; that file's name; and where its
     const char *path;         // pixels are in the view's window
     struct hf_io_box place;
@@ -52,6 +53,7 @@ struct cli_view {
     char *said;         // their texts, one per line; NULL: none
     uint64_t highlights;  // pixels of lamps, which --highlight-gain raises
     int lamps;            // how many lamps
+    float guessed;        // --guessed: the share of the view's light that is guessed
     int whole;            // --grow had nothing to do: the data window was as large as allowed
     int cut;              // pixels that the blur reaches beyond the data window, where it is lost
     struct tool_report report;

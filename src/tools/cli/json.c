@@ -58,6 +58,8 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
         tool_json_number(j, "far_blend", v->blend[1]);
     }
     tool_json_count(j, "cut", v->cut);
+    if (frame->args->guessed)
+        tool_json_number(j, "guessed", v->guessed);
     if (v->setup.params.highlight.gain > 1) {
         tool_json_count(j, "highlights", (long long)v->highlights);
         tool_json_count(j, "lamps", v->lamps);

@@ -140,6 +140,7 @@ static int check_alone(const struct cli_args *args, const struct cli_shot *shot,
                          : args->explain       ? "--explain"
                          : args->explain_image ? "--explain-image"
                          : args->focus_image   ? "--focus-image"
+                         : args->guessed_image ? "--guessed-image"
                          : args->dump_dir      ? "--dump-passes"
                                                : NULL;
     if (option)

@@ -312,16 +312,16 @@ float *cli_surfaces_depth(const struct cli_frame *frame, const struct cli_view *
     return depth;
 }
 
-int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struct cli_view *v, struct hf_image *image,
-                        const struct hf_params *params)
+// The view with all of its pictures into dst, which is none of them.
+static int render_layers(struct hf_context *c, const struct cli_args *args, const struct cli_view *v,
+                         const struct hf_image *image, const struct hf_image *dst, const struct hf_params *params)
 {
     enum { MOST = 64 };
     struct hf_layer layers[MOST];
-    struct hf_image images[MOST], made = *image;
+    struct hf_image images[MOST];
     struct hf_depth depths[MOST];
-    const size_t bytes = (size_t)v->view->width * (size_t)v->view->height * sizeof(float);
     const enum hf_layer_kind kind = cli_others_peel(args) ? HF_LAYER_PEEL : HF_LAYER_WHOLE;
-    int count = 1, status = HF_OK;
+    int count = 1;
     images[0] = *image;
     depths[0] = v->setup.depth;
     for (int k = 0; k < v->surface_count && count < MOST; k++, count++) {
@@ -334,12 +334,21 @@ int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struc
     for (int k = 0; k < count; k++)
         layers[k] = (struct hf_layer){
             .size = sizeof(*layers), .kind = k ? kind : HF_LAYER_WHOLE, .image = &images[k], .depth = &depths[k]};
+    return hf_render_layers(c, dst, layers, count, params, NULL);
+}
+
+int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struct cli_view *v, struct hf_image *image,
+                        const struct hf_params *params)
+{
+    struct hf_image made = *image;
+    const size_t bytes = (size_t)v->view->width * (size_t)v->view->height * sizeof(float);
+    int status = HF_OK;
     for (int i = 0; i < 4 && status == HF_OK; i++) {
         made.data[i] = image->data[i] ? hf_io_alloc(bytes) : NULL;
         status = image->data[i] && !made.data[i] ? HF_ERR_MEMORY : HF_OK;
     }
     if (status == HF_OK)
-        status = hf_render_layers(c, &made, layers, count, params, NULL);
+        status = render_layers(c, args, v, image, &made, params);
     for (int i = 0; i < 4; i++) {
         if (status != HF_OK || !made.data[i]) {
             free(made.data[i]);
@@ -349,6 +358,50 @@ int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struc
         v->planes[i] = image->data[i] = made.data[i];
     }
     return status;
+}
+
+static int write_guessed(const struct cli_frame *frame, const struct cli_view *v, const float *plane,
+                         struct tool_error *error)
+{
+    static const char *const name = "guessed";
+    const struct hf_io_planes planes = {.width = v->view->width,
+                                        .height = v->view->height,
+                                        .channels = 1,
+                                        .names = &name,
+                                        .data = &plane,
+                                        .stride = v->view->width};
+    struct hf_io_error io;
+    if (!frame->args->guessed_image || !hf_io_write_planes(frame->args->guessed_image, &planes, &io))
+        return 0;
+    return tool_fail(error, CLI_ALL_FAILED, "--guessed-image: %s", io.message);
+}
+
+int cli_find_guessed(struct cli_session *session, const struct cli_frame *frame, struct cli_view *v,
+                     const struct hf_image *image, struct tool_error *error)
+{
+    const size_t n = (size_t)v->view->width * (size_t)v->view->height;
+    struct hf_params params = v->setup.params;
+    struct hf_image dst = *image;
+    float *memory = hf_io_alloc(3 * n * sizeof(float));
+    double sum = 0;
+    if (!memory)
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
+    for (int c = 0; c < 4; c++)
+        dst.data[c] = c < 3 ? memory + (size_t)c * n : NULL;
+    params.layers.guessed = 1;
+    params.run.budget_ms = 0;
+    const int status = v->view->deep      ? cli_deep_render(session->context, frame, v, &dst, &params)
+                       : v->surface_count ? render_layers(session->context, frame->args, v, image, &dst, &params)
+                                          : hf_render(session->context, &dst, image, &v->setup.depth, &params);
+    for (size_t i = 0; i < n && status == HF_OK; i++)
+        sum += memory[i];
+    v->guessed = (float)(sum / (double)n);
+    const int written = status == HF_OK ? write_guessed(frame, v, memory, error) : 0;
+    free(memory);
+    if (status == HF_OK)
+        return written;
+    return tool_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
+                     session->log.text[0] ? session->log.text : hf_error_string(status));
 }
 
 int cli_deep_render(struct hf_context *c, const struct cli_frame *frame, struct cli_view *v,
@@ -366,9 +419,12 @@ int cli_deep_render(struct hf_context *c, const struct cli_frame *frame, struct 
                                  .depth = from.depth,
                                  .as = &v->setup.depth,
                                  .back = from.back};
-    cli_depth_prepare(frame->args, from.depth, (size_t)from.samples, &found);
-    if (from.back)
-        cli_depth_prepare(frame->args, from.back, (size_t)from.samples, &found);
+    if (!v->samples_ready) {
+        cli_depth_prepare(frame->args, from.depth, (size_t)from.samples, &found);
+        if (from.back)
+            cli_depth_prepare(frame->args, from.back, (size_t)from.samples, &found);
+    }
+    v->samples_ready = 1;
     return hf_render_deep(c, image, &deep, params, NULL);
 }
 

@@ -75,7 +75,7 @@ struct named {
     int output;
 };
 
-enum { NAMED = 9 };
+enum { NAMED = 10 };
 
 static void list_files(const struct cli_args *args, struct named files[NAMED])
 {
@@ -88,6 +88,7 @@ static void list_files(const struct cli_args *args, struct named files[NAMED])
         {"--json", args->json_file, 1},
         {"--explain-image", args->explain_image, 1},
         {"--focus-image", args->focus_image, 1},
+        {"--guessed-image", args->guessed_image, 1},
         {"--log", args->log_file, 1},
     };
     memcpy(files, all, sizeof(all));
