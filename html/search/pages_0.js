@@ -1,4 +1,0 @@
-var searchData=
-[
-  ['contributing_0',['Contributing',['../md_CONTRIBUTING.html',1,'']]]
-];
