@@ -240,8 +240,8 @@ struct hf_region {
 // picture writes there. src, depth and dst describe whole pictures. Of dst no byte outside the region is read or written, so
 // its memory may be a tile: data then points to where pixel (0, 0) would be, and stride is the tile's. dst may be src, as for
 // hf_render. The cost grows with the region and with what is blurred into it. Some numbers are of the whole picture:
-//   - All depth is looked at, as the largest radius decides how things are blurred. The gaussian engine, and the gather with
-//     max_radius given or the range model, look at depth around the region alone.
+//   - All depth is looked at, as the largest radius decides how many levels, slices or kernels there are. The gaussian
+//     engine, and the gather with max_radius given or the range model, look at depth around the region alone.
 //   - Scatter reads all colour that is blurred, as the brightest sample decides the units of its sums.
 //   - The gaussian engine reads all colour when sigma is given, as it blurs whole columns and rows.
 // The context holds as much memory as for a whole picture. The report counts what was worked on. run.budget_ms chooses the

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several pictures with depth that show one scene: separate renders of its objects, or what stands behind what a picture shows.
-// Words, units, order of bytes, errors and how structs grow are those of hyperfocal.h.
+// Several pictures with depth that show one scene: separate renders of its objects, or what stands behind what a
+// picture shows. Words, units, order of bytes, errors and how structs grow are those of hyperfocal.h.
 #ifndef HYPERFOCAL_LAYERS_H
 #define HYPERFOCAL_LAYERS_H
 
@@ -14,8 +14,9 @@ extern "C" {
 // What a layer is to the others.
 enum hf_layer_kind {
     HF_LAYER_WHOLE,  // a picture of its own, also where other layers hide it
-    // What the layers before it hide: of each pixel the next surface behind them. Colour is premultiplied, alpha the part of
-    // the pixel in which there is such a surface. Peels follow one whole picture, front to back; two of them are used.
+    // What the layers before it hide: of each pixel the next surface behind them. Colour is premultiplied, alpha the
+    // part of the pixel in which there is such a surface. Peels follow one whole picture, front to back; two of them
+    // are used.
     HF_LAYER_PEEL,
 };
 
@@ -24,8 +25,8 @@ struct hf_layer {
     size_t size;              // sizeof(struct hf_layer)
     enum hf_layer_kind kind;  // default HF_LAYER_WHOLE
     uint32_t reserved;
-    // All layers have the same width and height; formats and types of depth may differ, but all or none are HF_DEPTH_COC. A
-    // picture without alpha has alpha 1.
+    // All layers have the same width and height; formats and types of depth may differ, but all or none are
+    // HF_DEPTH_COC. A picture without alpha has alpha 1.
     const struct hf_image *image;
     const struct hf_depth *depth;
 };
@@ -39,8 +40,8 @@ struct hf_layer {
 HF_API int hf_render_layers(struct hf_context *c, const struct hf_image *dst, const struct hf_layer *layers, int count,
                             const struct hf_params *params, const struct hf_region *region);
 
-// A deep picture: any number of samples in a pixel, in any order, in memory of the caller. Those of pixel i, counted row after
-// row from the top left one, are first[i] to first[i + 1] - 1 of each array.
+// A deep picture: any number of samples in a pixel, in any order, in memory of the caller. Those of pixel i, counted
+// row after row from the top left one, are first[i] to first[i + 1] - 1 of each array.
 struct hf_deep {
     size_t size;            // sizeof(struct hf_deep)
     int width;              // pixels
@@ -50,20 +51,22 @@ struct hf_deep {
     // Linear, premultiplied. Values that are not finite count as 0.
     const float *colour[3];
     const float *alpha;  // 0 to 1; a sample that has no more than 0 shows nothing
-    // Numbers of the type that *as describes, of which data, stride and format are not read. NaN: the sample shows nothing.
+    // Numbers of the type that *as describes, of which data, stride and format are not read. NaN: the sample shows
+    // nothing.
     const float *depth;
     const struct hf_depth *as;  // what the numbers mean
-    // NULL, or the far end of each sample, also such a number: a medium that fills the way from depth to there evenly, with alpha
-    // for all of it. One that is not behind depth is none.
+    // NULL, or the far end of each sample, also such a number: a medium that fills the way from depth to there evenly,
+    // with alpha for all of it. One that is not behind depth is none.
     const float *back;
-    // NULL, or the object that each sample belongs to, 0: unknown. Samples of one object that follow each other front to back are
-    // beside each other in the pixel: their alpha adds up. Others are over each other.
+    // NULL, or the object that each sample belongs to, 0: unknown. Samples of one object that follow each other front
+    // to back are beside each other in the pixel: their alpha adds up. Others are over each other.
     const uint32_t *object;
 };
 
-// As hf_render_region (region NULL: all), of a deep picture; pixels without samples are transparent and infinitely far away. Of a
-// pixel three depths are kept: what is seen, and two that may be hidden; samples of about the same blur are put over each
-// other first, a medium is cut into eight. The engine must be HF_ENGINE_LAYERS, and params->focus not HF_DERIVE, else HF_ERR_ARG. Errors as for hf_render_region.
+// Render a region (NULL: all) of a deep picture as hf_render_region does. Pixels without samples are transparent and
+// infinitely far away. Three depths of a pixel are kept: what is seen, and two that may be hidden. Samples of about the
+// same blur are put over each other first, and a medium is cut into eight parts. The engine must be HF_ENGINE_LAYERS,
+// and params->focus must not be HF_DERIVE, else the call returns HF_ERR_ARG. Errors as for hf_render_region.
 HF_API int hf_render_deep(struct hf_context *c, const struct hf_image *dst, const struct hf_deep *deep,
                           const struct hf_params *params, const struct hf_region *region);
 

@@ -171,6 +171,18 @@ static int unpack(struct reading *r, struct worker *w, int i, uint64_t at, uint6
                : 0;
 }
 
+// The pixel at which a row of a chunk begins, and the number of samples in that row.
+static size_t row_start(const struct reading *r, const struct chunk *k, int y)
+{
+    return (size_t)(k->y0 + y) * (size_t)r->part->width + (size_t)k->x0;
+}
+
+static uint64_t row_samples(const struct reading *r, const struct chunk *k, int y)
+{
+    const size_t at = row_start(r, k, y);
+    return r->out->first[at + (size_t)k->width] - r->out->first[at];
+}
+
 // Note the counts of a chunk's pixels in first[], one place late.
 static void read_counts(void *arg, int i, int worker)
 {
@@ -182,7 +194,7 @@ static void read_counts(void *arg, int i, int worker)
         unpack(r, w, i, k.at, k.counts, (uint64_t)k.width * (uint64_t)k.height * 4))
         return;
     for (int y = 0; y < k.height; y++) {
-        uint64_t *to = r->out->first + (size_t)(k.y0 + y) * (size_t)r->part->width + (size_t)k.x0 + 1;
+        uint64_t *to = r->out->first + row_start(r, &k, y) + 1;
         int32_t before = 0;
         for (int x = 0; x < k.width; x++) {
             int32_t sum;
@@ -215,12 +227,19 @@ static void read_samples(void *arg, int i, int worker)
     const struct hf_exr_samples *out = r->out;
     float *const to[CHANNELS] = {out->colour[0], out->colour[1], out->colour[2], out->colour[3], out->depth, out->back};
     struct chunk k;
-    if (atomic_load(&r->failed) || find_chunk(r, i, &k) || unpack(r, w, i, k.at + k.counts, k.packed, k.samples))
+    uint64_t all = 0;
+    if (atomic_load(&r->failed) || find_chunk(r, i, &k))
+        return;
+    for (int y = 0; y < k.height; y++)
+        all += row_samples(r, &k, y);
+    // Another program may have written to the file since its counts were read.
+    if (all * r->sample_bytes != k.samples)
+        fail(r, i, "has changed while it was read");
+    if (!all || atomic_load(&r->failed) || unpack(r, w, i, k.at + k.counts, k.packed, k.samples))
         return;
     const uint8_t *from = w->data;
     for (int y = 0; y < k.height; y++) {
-        const size_t at = (size_t)(k.y0 + y) * (size_t)r->part->width + (size_t)k.x0;
-        const size_t n = (size_t)(out->first[at + (size_t)k.width] - out->first[at]);
+        const size_t at = row_start(r, &k, y), n = (size_t)row_samples(r, &k, y);
         for (int c = 0; c < r->part->channel_count; c++) {
             for (int t = 0; t < CHANNELS; t++)
                 if (r->channel[t] == c && to[t] && (t == 0 || t > 2 || to[t] != to[0]))
